@@ -1,0 +1,36 @@
+//! The one error of this crate: which field of a scene is wrong, what it holds, what was expected.
+
+use thiserror::Error;
+
+/// A field of a scene that no renderer could work with.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{field} is {value}: expected {expected}")]
+pub struct SceneError {
+    /// The field, as a path from the scene: `camera.focal_length`, `beam 1.rows`, `mesh.faces[7]`.
+    pub field: String,
+    /// The value found there.
+    pub value: String,
+    /// What would have been accepted, with its unit.
+    pub expected: String,
+}
+
+impl SceneError {
+    /// Names a `field`, the `value` it holds and what was `expected` instead.
+    pub fn new(field: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
+        Self { field: field.into(), value: value.to_string(), expected: expected.into() }
+    }
+}
+
+/// Refuses a `value` outside `low..=high` (and NaN, which is outside of everything).
+pub(crate) fn check_range(
+    field: impl FnOnce() -> String,
+    value: f64,
+    low: f64,
+    high: f64,
+    unit: &str,
+) -> Result<(), SceneError> {
+    if value >= low && value <= high {
+        return Ok(());
+    }
+    Err(SceneError::new(field(), value, format!("{low} to {high} {unit}").trim_end()))
+}

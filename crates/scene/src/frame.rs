@@ -1,0 +1,168 @@
+//! What a renderer returns: per sensor, a raster of each quantity asked for and known.
+
+use std::time::Duration;
+
+use glam::DVec3;
+
+use crate::{FaceId, Hit, Image, Maybe, SensorId};
+
+/// What to render.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Request {
+    /// The camera's own range map.
+    pub camera: bool,
+    /// The maps of every beam.
+    pub beams: bool,
+    /// Which quantities of each map.
+    pub quantities: Quantities,
+}
+
+impl Request {
+    /// Every quantity of every sensor.
+    pub const EVERYTHING: Self = Self { camera: true, beams: true, quantities: Quantities::ALL };
+}
+
+/// Which quantities of a map to fill; what is left out costs neither time nor memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Quantities {
+    /// Distance along the ray.
+    pub range: bool,
+    /// Distance along the sensor's normal axis.
+    pub depth: bool,
+    /// The face hit.
+    pub face: bool,
+    /// The point hit.
+    pub point: bool,
+    /// The face's normal.
+    pub normal: bool,
+    /// The cosine of incidence.
+    pub incidence: bool,
+}
+
+impl Quantities {
+    /// All of them.
+    pub const ALL: Self =
+        Self { range: true, depth: true, face: true, point: true, normal: true, incidence: true };
+    /// The paper's range raster map alone, with the face that each range belongs to.
+    pub const RANGE_MAP: Self =
+        Self { range: true, depth: false, face: true, point: false, normal: false, incidence: false };
+}
+
+/// The maps of one sensor. Every quantity is optional; within one, a cell without a hit is `None`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SensorMap {
+    /// Whose cells these are.
+    pub sensor: SensorId,
+    /// Columns of every raster.
+    pub width: u32,
+    /// Rows of every raster.
+    pub height: u32,
+    /// [`Hit::range`], metres.
+    pub range: Option<Image<Maybe<f64>>>,
+    /// [`Hit::depth`], metres.
+    pub depth: Option<Image<Maybe<f64>>>,
+    /// [`Hit::face`].
+    pub face: Option<Image<Maybe<FaceId>>>,
+    /// [`Hit::point`], scene frame, metres.
+    pub point: Option<Image<Maybe<DVec3>>>,
+    /// [`Hit::normal`], scene frame.
+    pub normal: Option<Image<Maybe<DVec3>>>,
+    /// [`Hit::incidence`].
+    pub incidence: Option<Image<Maybe<f64>>>,
+}
+
+impl SensorMap {
+    /// Empty maps (no hit anywhere) of the `quantities` asked for.
+    pub fn empty(sensor: SensorId, width: u32, height: u32, quantities: Quantities) -> Self {
+        fn raster<T: crate::Sample>(wanted: bool, width: u32, height: u32) -> Option<Image<Maybe<T>>> {
+            wanted.then(|| Image::filled(width, height, Maybe::NONE))
+        }
+        Self {
+            sensor,
+            width,
+            height,
+            range: raster(quantities.range, width, height),
+            depth: raster(quantities.depth, width, height),
+            face: raster(quantities.face, width, height),
+            point: raster(quantities.point, width, height),
+            normal: raster(quantities.normal, width, height),
+            incidence: raster(quantities.incidence, width, height),
+        }
+    }
+
+    /// Maps filled from one `Option<Hit>` per cell, row by row.
+    ///
+    /// # Panics
+    /// If there are not exactly `width * height` hits.
+    pub fn from_hits(
+        sensor: SensorId,
+        width: u32,
+        height: u32,
+        quantities: Quantities,
+        hits: &[Option<Hit>],
+    ) -> Self {
+        fn raster<T: crate::Sample>(
+            wanted: bool,
+            size: (u32, u32),
+            hits: &[Option<Hit>],
+            quantity: impl Fn(&Hit) -> T,
+        ) -> Option<Image<Maybe<T>>> {
+            wanted.then(|| {
+                let cells = hits.iter().map(|hit| hit.as_ref().map(&quantity).into()).collect();
+                Image::from_cells(size.0, size.1, cells)
+            })
+        }
+        let size = (width, height);
+        Self {
+            sensor,
+            width,
+            height,
+            range: raster(quantities.range, size, hits, |hit| hit.range),
+            depth: raster(quantities.depth, size, hits, |hit| hit.depth),
+            face: raster(quantities.face, size, hits, |hit| hit.face),
+            point: raster(quantities.point, size, hits, |hit| hit.point),
+            normal: raster(quantities.normal, size, hits, |hit| hit.normal),
+            incidence: raster(quantities.incidence, size, hits, |hit| hit.incidence),
+        }
+    }
+
+    /// How many cells there are.
+    pub fn cell_count(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// Everything one renderer says of one scene.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// The camera's maps, if they were asked for and are known.
+    pub camera: Option<SensorMap>,
+    /// The maps of each beam, in the scene's order; empty if not asked for.
+    pub beams: Vec<SensorMap>,
+    /// How long each part of the work took, in order.
+    pub stages: Vec<Stage>,
+}
+
+impl Frame {
+    /// The maps of one sensor.
+    pub fn map(&self, sensor: SensorId) -> Option<&SensorMap> {
+        match sensor {
+            SensorId::Camera => self.camera.as_ref(),
+            SensorId::Beam(index) => self.beams.get(index),
+        }
+    }
+
+    /// The maps of all sensors, the camera's first.
+    pub fn maps(&self) -> impl Iterator<Item = &SensorMap> {
+        self.camera.iter().chain(&self.beams)
+    }
+}
+
+/// A named part of a render and the wall-clock time it took. Times are reported, never compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stage {
+    /// What was done.
+    pub name: String,
+    /// How long it took.
+    pub time: Duration,
+}

@@ -1,0 +1,142 @@
+//! The resolved scene: terrain, posed camera and beams. Valid by construction.
+
+use std::sync::Arc;
+
+use crate::error::check_range;
+use crate::{Beam, Camera, Mesh, Pose, Ray, SceneError, SensorId};
+
+/// A sensor and where it stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mounted<S> {
+    /// The sensor's frame in the scene frame.
+    pub scene_from_sensor: Pose,
+    /// The sensor.
+    pub sensor: S,
+}
+
+/// What the air does to light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Atmosphere {
+    /// Attenuation coefficient sigma, 1/m.
+    pub attenuation: f64,
+}
+
+/// Which equation gives a pencil's flux on the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FluxModel {
+    /// What a pencil's watts really deliver, in watts.
+    Radiometric,
+    /// Equation (1) of the paper as printed, in W/m.
+    Eq1,
+}
+
+/// Everything a renderer needs to know, checked once when it is built.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    mesh: Arc<Mesh>,
+    camera: Mounted<Camera>,
+    beams: Vec<Mounted<Beam>>,
+    atmosphere: Atmosphere,
+    flux_model: FluxModel,
+}
+
+impl Scene {
+    /// Puts a scene together.
+    ///
+    /// # Errors
+    /// Names the first field that no renderer could work with.
+    pub fn new(
+        mesh: Arc<Mesh>,
+        camera: Mounted<Camera>,
+        beams: Vec<Mounted<Beam>>,
+        atmosphere: Atmosphere,
+        flux_model: FluxModel,
+    ) -> Result<Self, SceneError> {
+        camera.scene_from_sensor.validate("camera")?;
+        camera.sensor.validate("camera")?;
+        if beams.len() > 64 {
+            return Err(SceneError::new("beams", beams.len(), "at most 64"));
+        }
+        for (index, beam) in beams.iter().enumerate() {
+            let field = format!("beam {index}");
+            beam.scene_from_sensor.validate(&field)?;
+            beam.sensor.validate(&field)?;
+        }
+        check_range(|| "atmosphere.attenuation".into(), atmosphere.attenuation, 0.0, 1e3, "1/m")?;
+        Ok(Self { mesh, camera, beams, atmosphere, flux_model })
+    }
+
+    /// The terrain. Shared, so that a renderer can keep what it built for it.
+    pub fn mesh(&self) -> &Arc<Mesh> {
+        &self.mesh
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Mounted<Camera> {
+        &self.camera
+    }
+
+    /// The laser beams.
+    pub fn beams(&self) -> &[Mounted<Beam>] {
+        &self.beams
+    }
+
+    /// The air.
+    pub fn atmosphere(&self) -> Atmosphere {
+        self.atmosphere
+    }
+
+    /// The equation of flux.
+    pub fn flux_model(&self) -> FluxModel {
+        self.flux_model
+    }
+
+    /// All sensors, the camera first.
+    pub fn sensors(&self) -> impl Iterator<Item = SensorId> {
+        std::iter::once(SensorId::Camera).chain((0..self.beams.len()).map(SensorId::Beam))
+    }
+
+    /// Columns and rows of a sensor's maps, or `None` if the scene has no such sensor.
+    pub fn size(&self, sensor: SensorId) -> Option<(u32, u32)> {
+        match sensor {
+            SensorId::Camera => Some((self.camera.sensor.width, self.camera.sensor.height)),
+            SensorId::Beam(index) => {
+                self.beams.get(index).map(|beam| (beam.sensor.columns, beam.sensor.rows))
+            }
+        }
+    }
+
+    /// The longest range of a sensor along its rays, metres, or `None` if the scene has no such sensor.
+    pub fn max_range(&self, sensor: SensorId) -> Option<f64> {
+        match sensor {
+            SensorId::Camera => Some(self.camera.sensor.max_range),
+            SensorId::Beam(index) => self.beams.get(index).map(|beam| beam.sensor.max_range),
+        }
+    }
+
+    /// The contract's ray of cell (i, j) of a sensor, rounded to `f64`, or `None` if there is no such cell.
+    ///
+    /// This is the definition for people and files. Each renderer forms its rays by itself.
+    pub fn ray(&self, sensor: SensorId, i: u32, j: u32) -> Option<Ray> {
+        let (width, height) = self.size(sensor)?;
+        if i >= width || j >= height {
+            return None;
+        }
+        Some(match sensor {
+            SensorId::Camera => {
+                let Mounted { scene_from_sensor, sensor } = self.camera;
+                Ray {
+                    origin: scene_from_sensor.position,
+                    direction: scene_from_sensor.rotate(sensor.direction(i, j)),
+                }
+            }
+            SensorId::Beam(index) => {
+                let Mounted { scene_from_sensor, sensor } = self.beams[index];
+                Ray {
+                    origin: scene_from_sensor * sensor.origin(j),
+                    direction: scene_from_sensor.rotate(sensor.direction(i)),
+                }
+            }
+        })
+    }
+}
