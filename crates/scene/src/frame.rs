@@ -90,45 +90,70 @@ impl SensorMap {
         }
     }
 
-    /// Maps filled from one `Option<Hit>` per cell, row by row.
-    ///
-    /// # Panics
-    /// If there are not exactly `width * height` hits.
-    pub fn from_hits(
-        sensor: SensorId,
-        width: u32,
-        height: u32,
-        quantities: Quantities,
-        hits: &[Option<Hit>],
-    ) -> Self {
-        fn raster<T: crate::Sample>(
-            wanted: bool,
-            size: (u32, u32),
-            hits: &[Option<Hit>],
-            quantity: impl Fn(&Hit) -> T,
-        ) -> Option<Image<Maybe<T>>> {
-            wanted.then(|| {
-                let cells = hits.iter().map(|hit| hit.as_ref().map(&quantity).into()).collect();
-                Image::from_cells(size.0, size.1, cells)
+    /// The rows of all rasters, to be filled in any order and on any thread.
+    pub fn rows_mut(&mut self) -> Vec<SensorRow<'_>> {
+        fn rows<T: Copy>(raster: &mut Option<Image<T>>, width: usize) -> impl Iterator<Item = &mut [T]> {
+            raster.as_mut().map(|image| image.cells_mut().chunks_exact_mut(width)).into_iter().flatten()
+        }
+        let width = self.width as usize;
+        let mut range = rows(&mut self.range, width);
+        let mut depth = rows(&mut self.depth, width);
+        let mut face = rows(&mut self.face, width);
+        let mut point = rows(&mut self.point, width);
+        let mut normal = rows(&mut self.normal, width);
+        let mut incidence = rows(&mut self.incidence, width);
+        (0..self.height)
+            .map(|j| SensorRow {
+                j,
+                range: range.next(),
+                depth: depth.next(),
+                face: face.next(),
+                point: point.next(),
+                normal: normal.next(),
+                incidence: incidence.next(),
             })
-        }
-        let size = (width, height);
-        Self {
-            sensor,
-            width,
-            height,
-            range: raster(quantities.range, size, hits, |hit| hit.range),
-            depth: raster(quantities.depth, size, hits, |hit| hit.depth),
-            face: raster(quantities.face, size, hits, |hit| hit.face),
-            point: raster(quantities.point, size, hits, |hit| hit.point),
-            normal: raster(quantities.normal, size, hits, |hit| hit.normal),
-            incidence: raster(quantities.incidence, size, hits, |hit| hit.incidence),
-        }
+            .collect()
     }
 
     /// How many cells there are.
     pub fn cell_count(&self) -> usize {
         self.width as usize * self.height as usize
+    }
+}
+
+/// One row of a sensor's maps, to be written.
+#[derive(Debug)]
+pub struct SensorRow<'a> {
+    /// Which row.
+    pub j: u32,
+    /// Its cells of [`SensorMap::range`].
+    pub range: Option<&'a mut [Maybe<f64>]>,
+    /// Its cells of [`SensorMap::depth`].
+    pub depth: Option<&'a mut [Maybe<f64>]>,
+    /// Its cells of [`SensorMap::face`].
+    pub face: Option<&'a mut [Maybe<FaceId>]>,
+    /// Its cells of [`SensorMap::point`].
+    pub point: Option<&'a mut [Maybe<DVec3>]>,
+    /// Its cells of [`SensorMap::normal`].
+    pub normal: Option<&'a mut [Maybe<DVec3>]>,
+    /// Its cells of [`SensorMap::incidence`].
+    pub incidence: Option<&'a mut [Maybe<f64>]>,
+}
+
+impl SensorRow<'_> {
+    /// Writes those quantities of a hit that the maps hold into column `i`.
+    pub fn put(&mut self, i: u32, hit: &Hit) {
+        fn write<T: crate::Sample>(row: &mut Option<&mut [Maybe<T>]>, i: u32, value: T) {
+            if let Some(cells) = row {
+                cells[i as usize] = Maybe::some(value);
+            }
+        }
+        write(&mut self.range, i, hit.range);
+        write(&mut self.depth, i, hit.depth);
+        write(&mut self.face, i, hit.face);
+        write(&mut self.point, i, hit.point);
+        write(&mut self.normal, i, hit.normal);
+        write(&mut self.incidence, i, hit.incidence);
     }
 }
 

@@ -32,7 +32,7 @@ mod world;
 pub use beam::{Beam, Profile};
 pub use camera::Camera;
 pub use error::SceneError;
-pub use frame::{Frame, Quantities, Request, SensorMap, Stage};
+pub use frame::{Frame, Quantities, Request, SensorMap, SensorRow, Stage};
 pub use image::{Image, Maybe, Sample};
 pub use mesh::{Material, Mesh};
 pub use pose::Pose;

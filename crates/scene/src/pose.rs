@@ -88,6 +88,7 @@ impl Mul<DVec3> for Pose {
     type Output = DVec3;
 
     /// `p_a = a_from_b * p_b`.
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "a rigid motion is a turn and then a sum")]
     fn mul(self, point: DVec3) -> DVec3 {
         self.position + self.rotate(point)
     }

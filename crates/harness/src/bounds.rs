@@ -1,0 +1,113 @@
+//! How far two honest renderers may differ, per quantity: derived bounds on rounding.
+//!
+//! Let u be the unit roundoff, and for the face hit: e1 = b - a, e2 = c - a, n = e1 x e2,
+//! kappa = |e1| |e2| / |n| (its aspect: at most longest edge / smallest altitude), L its longest edge.
+//! Let the ray start at o, run along q, meet the face at range R under the cosine c = cos(psi), and let
+//! S = R + L + |o|, which is at least the length of every vector that is subtracted or dotted on the way.
+//!
+//! Both renderers form n from edges of the scene frame, t from a quotient of n.(a - o) and n.q. To first
+//! order in u:
+//!
+//! * n: differences of f32 numbers (u each), two products and a difference per component:
+//!   |dn| <= 5 u |e1| |e2| = 5 kappa u |n|.
+//! * n.(a - o): n's error, the subtraction (u S, and u |o| where o had to be formed), a dot product (3 u):
+//!   <= (5 kappa + 6) u |n| S.
+//! * n.q: n's error, the rotation of q by a quaternion or a matrix formed from it (12 u), a dot product
+//!   (3 u): <= (5 kappa + 15) u |n| |q|.
+//! * |n.(a - o)| = |n| R c and |n.q| = |n| |q| c, so the relative error of t is at most
+//!   ((5 kappa + 6) S / R + 5 kappa + 15 + 3) u / c <= 34 kappa u S / (R c), as kappa >= 1 and S >= R.
+//! * R = t |q|, or |q| / (1/t): two more roundings at most, and a square root.
+//!
+//! [`RANGE`] = 36 rounds this up. The other quantities follow. Two renderers may differ by the sum of
+//! their bounds. Where the bound reaches the size of the quantity itself the first order says nothing, and
+//! the bound, being larger, does not pretend to.
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Mesh, Ray, Resolution};
+
+/// |dR| <= RANGE kappa u S / c.
+const RANGE: f64 = 36.0;
+
+/// Roundings of a point along a known range: rotation (12 u R), origin (4 u |o|), sum (u |P|), |P| <= S.
+const POINT: f64 = 18.0;
+
+/// |dn^| <= 2 |dn| / |n| + 3 u <= 13 kappa u.
+const NORMAL: f64 = 13.0;
+
+/// The longer of the two ways to cos(psi), -n.(a - o) (1/t) / (|n| |q|): the relative errors of
+/// n.(a - o) and of 1/t, each of which carries 1/c, times c: (11 + 34) kappa u S / R, and a few roundings.
+const INCIDENCE: f64 = 48.0;
+
+/// The bounds of one hit by one renderer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Range and depth, metres.
+    pub range: f64,
+    /// Distance of the point, metres.
+    pub point: f64,
+    /// Distance of the unit normal.
+    pub normal: f64,
+    /// Cosine of incidence.
+    pub incidence: f64,
+}
+
+impl Bounds {
+    /// The bounds for a hit on `face` at `range` metres along `ray`.
+    pub fn of(mesh: &Mesh, face: FaceId, ray: &Ray, range: f64, resolution: Resolution) -> Self {
+        let u = resolution.unit_roundoff;
+        let [a, b, c] = mesh.faces()[face.0 as usize].map(|v| {
+            let [x, y, z] = mesh.vertices()[v as usize];
+            DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+        });
+        let (e1, e2) = (b - a, c - a);
+        let n = e1.cross(e2);
+        let aspect = e1.length() * e2.length() / n.length();
+        let longest_edge = e1.length().max(e2.length()).max((c - b).length());
+        let scale = range + longest_edge + ray.origin.length();
+        let cosine = (n.dot(ray.direction) / (n.length() * ray.direction.length())).abs();
+        let range_bound = RANGE * aspect * u * scale / cosine;
+        Self {
+            range: range_bound,
+            point: range_bound + POINT * u * scale,
+            normal: NORMAL * aspect * u,
+            incidence: INCIDENCE * aspect * u * scale / range,
+        }
+    }
+
+    /// How far two renderers with these bounds may differ.
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            range: self.range + other.range,
+            point: self.point + other.point,
+            normal: self.normal + other.normal,
+            incidence: self.incidence + other.incidence,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raypencil_scene::Material;
+
+    #[test]
+    fn the_bound_of_a_right_triangle_seen_head_on() {
+        // Legs of 1 m: kappa = 1, L = sqrt 2. From 3 m above its corner at the origin, straight down:
+        // R = 3, |o| = 3, c = 1, so |dR| <= 36 u (6 + sqrt 2), u = 2^-53.
+        let mesh = Mesh::new(
+            DVec3::ZERO,
+            vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            vec![[0, 1, 2]],
+            vec![0],
+            vec![Material { name: "ground".into(), reflectivity: 0.25 }],
+        )
+        .unwrap();
+        let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: DVec3::new(0.0, 0.0, -0.5) };
+        let bounds = Bounds::of(&mesh, FaceId(0), &ray, 3.0, Resolution::F64);
+        let u = 2.0_f64.recip() * f64::EPSILON;
+        let scale = 6.0 + 2.0_f64.sqrt();
+        assert!((bounds.range - 36.0 * u * scale).abs() < 1e-30);
+        assert!((bounds.point - 54.0 * u * scale).abs() < 1e-30);
+        assert!((bounds.normal - 13.0 * u).abs() < 1e-30);
+    }
+}

@@ -1,0 +1,23 @@
+//! Runs renderers over one scene, compares every ray, reports.
+//!
+//! ```text
+//! run        scene -> frames -> comparisons, as one pass
+//! compare    two frames, ray by ray: agree, tie, defect
+//! bounds     how far two honest renderers may differ
+//! probe      everything about one ray
+//! output     the folder of a validation: maps, report, summary
+//! ```
+
+mod bounds;
+mod compare;
+mod probe;
+mod renderers;
+mod run;
+
+pub use bounds::Bounds;
+pub use compare::{
+    Class, Defect, Place, Quantity, SensorComparison, Side, Tally, Worst, compare,
+};
+pub use probe::{NoSuchRay, Probe, probe};
+pub use renderers::{RENDERER_NAMES, renderer};
+pub use run::{Counts, Pair, Progress, Rendered, Silent, Subject, Validation, validate};

@@ -1,0 +1,146 @@
+//! One validation, from a scene to its verdict, as one readable pass.
+
+use std::time::{Duration, Instant};
+
+use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, Stage};
+
+use crate::compare::{Class, SensorComparison, Side, compare};
+
+/// The scene under test, and how people name it.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// The resolved scene.
+    pub scene: Scene,
+    /// A short name, fit for a folder.
+    pub name: String,
+    /// The words after `raypencil validate` or `raypencil probe` that give this scene again.
+    pub arguments: String,
+    /// SHA-256 of what defines the scene, in hexadecimal digits.
+    pub sha256: String,
+}
+
+/// What one renderer made of the scene.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The renderer's name.
+    pub name: String,
+    /// How finely it computes.
+    pub resolution: Resolution,
+    /// Its maps.
+    pub frame: Frame,
+    /// Wall-clock time of the whole render.
+    pub time: Duration,
+}
+
+/// Two renderers compared.
+#[derive(Debug)]
+pub struct Pair {
+    /// Index of the one side in [`Validation::rendered`].
+    pub a: usize,
+    /// Index of the other side.
+    pub b: usize,
+    /// Sensor by sensor, the camera first.
+    pub sensors: Vec<SensorComparison>,
+}
+
+/// A scene rendered by several renderers, and every pair of them compared.
+#[derive(Debug)]
+pub struct Validation {
+    /// The scene.
+    pub subject: Subject,
+    /// Each renderer's frame, in the order asked for.
+    pub rendered: Vec<Rendered>,
+    /// Every pair.
+    pub pairs: Vec<Pair>,
+    /// How long each part of the work took, in order.
+    pub stages: Vec<Stage>,
+}
+
+/// Who wants to hear what is being done.
+pub trait Progress: Sync {
+    /// A new stage begins.
+    fn stage(&self, what: &str);
+}
+
+/// Nobody does.
+#[derive(Debug, Clone, Copy)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn stage(&self, _what: &str) {}
+}
+
+/// Rays by what became of them, over all sensors and pairs.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Rays compared; the classes add up to it.
+    pub compared: u64,
+    /// Rays that agree.
+    pub agree: u64,
+    /// Rays on which two faces tie.
+    pub tie: u64,
+    /// Rays that differ beyond doubt.
+    pub defects: u64,
+    /// Rays that one side does not have.
+    pub not_compared: u64,
+}
+
+impl Validation {
+    /// All rays of all pairs.
+    pub fn counts(&self) -> Counts {
+        let mut counts = Counts::default();
+        for sensor in self.pairs.iter().flat_map(|pair| &pair.sensors) {
+            counts.compared += sensor.compared;
+            counts.agree += sensor.of(Class::Agree);
+            counts.tie += sensor.of(Class::Tie);
+            counts.defects += sensor.of(Class::Defect);
+            counts.not_compared += sensor.not_compared;
+        }
+        counts
+    }
+
+    /// Whether everything that was compared agrees, and something was.
+    pub fn passes(&self) -> bool {
+        let counts = self.counts();
+        counts.defects == 0 && counts.compared > 0
+    }
+}
+
+/// Renders `subject` with each of `renderers` and compares every pair.
+pub fn validate(subject: Subject, renderers: &[&dyn Renderer], progress: &dyn Progress) -> Validation {
+    let mut stages = Vec::new();
+
+    // Render.
+    let mut rendered = Vec::new();
+    for renderer in renderers {
+        let name = renderer.name().to_string();
+        progress.stage(&format!("{name}: rendering"));
+        let start = Instant::now();
+        let frame = renderer.render(&subject.scene, &Request::EVERYTHING);
+        let time = start.elapsed();
+        stages.extend(
+            frame.stages.iter().map(|stage| Stage { name: format!("{name}: {}", stage.name), ..stage.clone() }),
+        );
+        rendered.push(Rendered { name, resolution: renderer.resolution(), frame, time });
+    }
+
+    // Compare every pair.
+    let mut pairs = Vec::new();
+    for a in 0..rendered.len() {
+        for b in a + 1..rendered.len() {
+            let what = format!("{} against {}: comparing", rendered[a].name, rendered[b].name);
+            progress.stage(&what);
+            let start = Instant::now();
+            let sensors = compare(&subject.scene, rendered[a].side(), rendered[b].side());
+            stages.push(Stage { name: what, time: start.elapsed() });
+            pairs.push(Pair { a, b, sensors });
+        }
+    }
+    Validation { subject, rendered, pairs, stages }
+}
+
+impl Rendered {
+    fn side(&self) -> Side<'_> {
+        Side { name: &self.name, frame: &self.frame, resolution: self.resolution }
+    }
+}

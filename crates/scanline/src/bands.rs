@@ -1,0 +1,225 @@
+//! The main loop of §4: faces are sorted into bands of rows, and bands are scanned in parallel.
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
+use rayon::prelude::*;
+
+use crate::Options;
+use crate::clip::{Edge, NewLines, clip_at_plane};
+use crate::raster::{Plane, Raster, Transformation, scene_plane};
+use crate::scan::SplitTriangle;
+use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT};
+use crate::vertices::{self, Vertex, widen};
+
+/// Faces that one task sorts into bands.
+const FACES_PER_TASK: usize = 8192;
+
+/// Cells of a band: 1/t and face of that many fit a core's own cache.
+const CELLS_PER_BAND: u32 = 32 * 1024;
+
+/// Renders the maps of one sensor.
+pub(crate) fn render<T: Transformation>(
+    mesh: &Mesh,
+    transformation: &T,
+    sensor: SensorId,
+    quantities: Quantities,
+    options: Options,
+) -> SensorMap {
+    let (width, height) = (transformation.columns().count(), transformation.rows().count());
+    let mut map = SensorMap::empty(sensor, width, height, quantities);
+
+    // Step 2: all vertices into the sensor's frame.
+    let vertices = vertices::transform(mesh, |scene_point| {
+        let into_sensor = transformation.into_sensor();
+        let position = into_sensor.turn(into_sensor.relative(scene_point));
+        let corner = transformation.project(position);
+        Vertex { position, corner, outside: transformation.outside(position) }
+    });
+
+    // Steps 1 and 3: drop the faces that cannot be seen, sort the others into bands of rows.
+    let rows_per_band = (CELLS_PER_BAND / width).clamp(1, height);
+    let band_count = height.div_ceil(rows_per_band) as usize;
+    let faces = Faces { mesh, vertices: &vertices, transformation, options };
+    let sorted: Vec<Vec<Vec<FaceId>>> = (0..mesh.faces().len().div_ceil(FACES_PER_TASK))
+        .into_par_iter()
+        .map(|task| {
+            let mut bands = vec![Vec::new(); band_count];
+            let first = task * FACES_PER_TASK;
+            let end = (first + FACES_PER_TASK).min(mesh.faces().len());
+            for index in first..end {
+                let id = FaceId(index as u32);
+                if let Some(rows) = faces.rows(id) {
+                    for band in rows.start / rows_per_band..=(rows.end - 1) / rows_per_band {
+                        bands[band as usize].push(id);
+                    }
+                }
+            }
+            bands
+        })
+        .collect();
+
+    // Step 4, band by band.
+    let mut rows = map.rows_mut();
+    rows.par_chunks_mut(rows_per_band as usize).enumerate().for_each(|(band, rows)| {
+        let mut raster = Raster::new(rows[0].j, rows.len() as u32, width);
+        for task in &sorted {
+            for &id in &task[band] {
+                faces.scan(id, rows, &mut raster);
+            }
+        }
+        raster.resolve(mesh, transformation, quantities, rows);
+    });
+    drop(rows);
+    map
+}
+
+/// The terrain as one sensor sees it.
+struct Faces<'a, T> {
+    mesh: &'a Mesh,
+    vertices: &'a [Vertex],
+    transformation: &'a T,
+    options: Options,
+}
+
+impl<T: Transformation> Faces<'_, T> {
+    /// Steps 1 and 3: the rows that a face may touch, or `None` if it cannot be seen.
+    #[inline]
+    fn rows(&self, id: FaceId) -> Option<std::ops::Range<u32>> {
+        let transformation = self.transformation;
+        let face = self.mesh.faces()[id.0 as usize];
+        let [a, b, c] = face.map(|v| &self.vertices[v as usize]);
+        let (all, any) = (a.outside & b.outside & c.outside, a.outside | b.outside | c.outside);
+        if self.options.skip_unseen && all != 0 {
+            return None;
+        }
+        if any & BEHIND_PLANE != 0 {
+            // What clipping will leave of it is not known yet.
+            return if all & BEHIND_PLANE != 0 { None } else { Some(0..transformation.rows().count()) };
+        }
+        let corners = [a.corner, b.corner, c.corner];
+        let top = corners.iter().fold(f64::INFINITY, |top, corner| top.min(corner.y));
+        let bottom = corners.iter().fold(f64::NEG_INFINITY, |bottom, corner| bottom.max(corner.y));
+        let first = transformation.rows().first_at_or_after(top);
+        let end = transformation.rows().end_at_or_before(bottom);
+        if first >= end {
+            return None;
+        }
+        if self.options.skip_unseen {
+            // A face between two columns covers no cell.
+            let left = corners.iter().fold(f64::INFINITY, |left, corner| left.min(corner.x));
+            let right = corners.iter().fold(f64::NEG_INFINITY, |right, corner| right.max(corner.x));
+            let columns = transformation.columns();
+            if columns.first_at_or_after(left) >= columns.end_at_or_before(right) {
+                return None;
+            }
+            // 1b, where it holds for every row. (A beam's rows differ: those are asked one by one.)
+            let scene_vertices = face.map(|v| widen(self.mesh.vertices()[v as usize]));
+            let (n, distance) = scene_plane(&scene_vertices, transformation.into_sensor());
+            let plane = Plane { normal: transformation.into_sensor().turn(n), distance, normal_over_distance: n };
+            let rows = transformation.rows();
+            if transformation.row_distance(&plane, rows.centre(first)) >= 0.0
+                && transformation.row_distance(&plane, rows.centre(end - 1)) >= 0.0
+            {
+                return None;
+            }
+            if any & (LEFT | RIGHT | ABOVE | BELOW) != 0
+                && transformation.misses_screen(&[a.position, b.position, c.position])
+            {
+                return None;
+            }
+        }
+        Some(first..end)
+    }
+
+    /// Step 4: scans a face into some rows.
+    #[inline]
+    fn scan(&self, id: FaceId, rows: &[SensorRow<'_>], raster: &mut Raster) {
+        let transformation = self.transformation;
+        let face = self.mesh.faces()[id.0 as usize];
+        let stored = face.map(|v| self.mesh.vertices()[v as usize]);
+        let scene_vertices = stored.map(widen);
+        let plane = Plane::of(&scene_vertices, transformation.into_sensor());
+        let seen = face.map(|v| &self.vertices[v as usize]);
+
+        let edge = |k: usize, next: usize| {
+            // One order of an edge's ends in both faces that share it.
+            let (first, second) = if precedes(&stored[next], &stored[k]) { (next, k) } else { (k, next) };
+            let along = transformation.into_sensor().turn(scene_vertices[second] - scene_vertices[first]);
+            let (first, second) = (seen[first].position, seen[second].position);
+            Edge { first, second, line: transformation.line(first, second, along) }
+        };
+        let edges = [edge(0, 1), edge(1, 2), edge(2, 0)];
+        let corners = seen.map(|vertex| vertex.corner);
+
+        if seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE == 0) {
+            let triangle = SplitTriangle::new(corners, edges.map(|edge| edge.line));
+            // All of the face is at or beyond the SPP.
+            self.scan_triangle(&triangle, &plane, f64::MAX, id, rows, raster);
+        } else {
+            let spp = transformation.plane_distance();
+            let new_lines = NewLines {
+                along_plane: |from, to| transformation.line_along_plane(from, to, &plane),
+                diagonal: |from: DVec3, to: DVec3| transformation.line(from, to, to - from),
+            };
+            let positions = seen.map(|vertex| vertex.position);
+            clip_at_plane(spp, positions, corners, &edges, new_lines, |triangle| {
+                // t >= 1: what the cut leaves must not be scanned in front of the SPP by rounding.
+                self.scan_triangle(&triangle, &plane, 1.0, id, rows, raster);
+            });
+        }
+    }
+
+    /// Step 4b: the rows of one projected triangle.
+    #[inline]
+    fn scan_triangle(
+        &self,
+        triangle: &SplitTriangle<T::Line>,
+        plane: &Plane,
+        largest: f64,
+        id: FaceId,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        let (x, y) = (self.transformation.columns(), self.transformation.rows());
+        let (band_first, band_end) = (rows[0].j, rows[0].j + rows.len() as u32);
+        let first = y.first_at_or_after(triangle.top()).max(band_first);
+        let end = y.end_at_or_before(triangle.bottom()).min(band_end);
+        for j in first..end {
+            let y = y.centre(j);
+            let (left, right) = triangle.span(y);
+            let columns = x.first_at_or_after(left)..x.end_at_or_before(right);
+            if columns.is_empty() {
+                continue;
+            }
+            if let Some(inverse_t) = self.transformation.inverse_t(plane, y) {
+                raster.scan_row(j, columns, x.centres(), inverse_t, largest, id);
+            }
+        }
+    }
+}
+
+/// The scene's order of vertex *positions*: lexicographic, -0 equal to +0. By position, not by index, so
+/// that meshes without shared indices are watertight too.
+#[inline]
+fn precedes(a: &[f32; 3], b: &[f32; 3]) -> bool {
+    for k in 0..3 {
+        if a[k] != b[k] {
+            return a[k] < b[k];
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_ends_is_by_position() {
+        assert!(precedes(&[0.0, 1.0, 5.0], &[0.0, 2.0, 0.0]));
+        assert!(!precedes(&[0.0, 2.0, 0.0], &[0.0, 1.0, 5.0]));
+        // -0 and +0 are one position.
+        assert!(!precedes(&[-0.0, 1.0, 2.0], &[0.0, 1.0, 2.0]));
+        assert!(!precedes(&[0.0, 1.0, 2.0], &[-0.0, 1.0, 2.0]));
+    }
+}

@@ -1,0 +1,157 @@
+//! A beam's transformation: cylindrical. (§5, figure 7)
+//!
+//! A point (X, Y, Z) projects to (g X / Z, Y). Lines do not map to lines; but row y of the grid *is* the
+//! plane Y = y of space, which cuts an edge from P to P' in one point:
+//!
+//! ```text
+//! X* = X (Y' - y) + X' (y - Y),   Z* = Z (Y' - y) + Z' (y - Y),   x = g X* / Z*
+//! ```
+//!
+//! DIFFERENCE: the paper joins the projected vertices by straight lines, which "becomes insignificant" for a
+//! thin sheet; this is the curve itself.
+
+use glam::DVec3;
+use raypencil_scene::{Beam, Mounted};
+
+use crate::raster::{Affine, Plane, Transformation};
+use crate::scan::{Corner, Line};
+use crate::skip;
+use crate::tables::Axis;
+use crate::vertices::IntoSensor;
+
+/// A posed beam with its tables.
+#[derive(Debug)]
+pub(crate) struct Cylindrical {
+    into_sensor: IntoSensor,
+    x: Axis,
+    y: Axis,
+    /// |q| of each column, metres; the same in every row.
+    q_length: Vec<f64>,
+    grid_distance: f64,
+    max_range: f64,
+}
+
+impl Cylindrical {
+    pub(crate) fn new(mounted: &Mounted<Beam>) -> Self {
+        let beam = &mounted.sensor;
+        let x = Axis::of_grid(beam.columns, beam.half_width);
+        let y = Axis::of_rows(beam.rows, beam.thickness);
+        let g = beam.grid_distance;
+        let q_length = x.centres().iter().map(|x| (x * x + g * g).sqrt()).collect();
+        Self {
+            into_sensor: IntoSensor::of(&mounted.scene_from_sensor),
+            x,
+            y,
+            q_length,
+            grid_distance: g,
+            max_range: beam.max_range,
+        }
+    }
+}
+
+/// The image of an edge: the curve of the points in which the rows' planes cut it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CutLine {
+    first: DVec3,
+    second: DVec3,
+    grid_distance: f64,
+}
+
+impl Line for CutLine {
+    #[inline]
+    fn x_at(&self, y: f64) -> f64 {
+        let (from_first, to_second) = (y - self.first.y, self.second.y - y);
+        let x = self.first.x * to_second + self.second.x * from_first;
+        let z = self.first.z * to_second + self.second.z * from_first;
+        self.grid_distance * x / z
+    }
+}
+
+impl Transformation for Cylindrical {
+    type Line = CutLine;
+
+    fn into_sensor(&self) -> &IntoSensor {
+        &self.into_sensor
+    }
+
+    fn plane_distance(&self) -> f64 {
+        self.grid_distance
+    }
+
+    fn max_range(&self) -> f64 {
+        self.max_range
+    }
+
+    fn columns(&self) -> &Axis {
+        &self.x
+    }
+
+    fn rows(&self) -> &Axis {
+        &self.y
+    }
+
+    #[inline]
+    fn project(&self, p: DVec3) -> Corner {
+        Corner { x: self.grid_distance * p.x / p.z, y: p.y }
+    }
+
+    #[inline]
+    fn outside(&self, p: DVec3) -> u8 {
+        let ([left, right], [top, bottom]) = (self.x.borders(), self.y.borders());
+        let x = self.grid_distance * p.x;
+        skip::bits(
+            p.z < self.grid_distance,
+            x < left * p.z,
+            x > right * p.z,
+            p.y < top,
+            p.y > bottom,
+            p.z > self.max_range,
+        )
+    }
+
+    #[inline]
+    fn line(&self, first: DVec3, second: DVec3, _along: DVec3) -> CutLine {
+        CutLine { first, second, grid_distance: self.grid_distance }
+    }
+
+    fn line_along_plane(&self, from: DVec3, to: DVec3, _face: &Plane) -> CutLine {
+        CutLine { first: from, second: to, grid_distance: self.grid_distance }
+    }
+
+    fn misses_screen(&self, _front: &[DVec3; 3]) -> bool {
+        false
+    }
+
+    #[inline]
+    fn inverse_t(&self, face: &Plane, y: f64) -> Option<Affine> {
+        // For row y, 1/t = (n_x x + n_z g) / (d - n_y y).
+        let distance = self.row_distance(face, y);
+        // Rule 1b, row by row: the rows' origins differ, so they may see different sides of a face.
+        if distance < 0.0 {
+            let n = face.normal;
+            Some(Affine { slope: n.x / distance, start: n.z * self.grid_distance / distance })
+        } else {
+            None
+        }
+    }
+
+    #[inline]
+    fn row_distance(&self, face: &Plane, y: f64) -> f64 {
+        face.distance - face.normal.y * y
+    }
+
+    #[inline]
+    fn row_origin(&self, y: f64) -> DVec3 {
+        DVec3::new(0.0, y, 0.0)
+    }
+
+    #[inline]
+    fn q(&self, x: f64, _y: f64) -> DVec3 {
+        DVec3::new(x, 0.0, self.grid_distance)
+    }
+
+    #[inline]
+    fn q_lengths(&self, _j: u32) -> &[f64] {
+        &self.q_length
+    }
+}

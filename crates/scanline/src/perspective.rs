@@ -1,0 +1,152 @@
+//! The camera's transformation: perspective. (§4)
+//!
+//! A point (X, Y, Z) projects to (f X / Z, f Y / Z). Lines map to lines: the edge from P to P' lies with
+//! the projection centre in a plane of normal N = P x (P' - P), and its image is N.(x, y, f) = 0.
+
+use glam::DVec3;
+use raypencil_scene::{Camera, Mounted};
+
+use crate::raster::{Affine, Plane, Transformation};
+use crate::scan::{Corner, Line};
+use crate::skip;
+use crate::tables::{Axis, CameraTables};
+use crate::vertices::IntoSensor;
+
+/// A posed camera with its tables.
+#[derive(Debug)]
+pub(crate) struct Perspective<'a> {
+    into_sensor: IntoSensor,
+    tables: &'a CameraTables,
+    focal_length: f64,
+    max_range: f64,
+    screen_corners: [DVec3; 4],
+}
+
+impl<'a> Perspective<'a> {
+    pub(crate) fn new(mounted: &Mounted<Camera>, tables: &'a CameraTables) -> Self {
+        let camera = &mounted.sensor;
+        let [left, right] = tables.x.borders();
+        let [top, bottom] = tables.y.borders();
+        let corner = |x, y| DVec3::new(x, y, camera.focal_length);
+        Self {
+            into_sensor: IntoSensor::of(&mounted.scene_from_sensor),
+            tables,
+            focal_length: camera.focal_length,
+            max_range: camera.max_range,
+            screen_corners: [
+                corner(left, top),
+                corner(right, top),
+                corner(right, bottom),
+                corner(left, bottom),
+            ],
+        }
+    }
+}
+
+/// The image of an edge: N.(x, y, f) = 0, or N.x x + (N.y y + along) = 0.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StraightLine {
+    normal: DVec3,
+    /// N.z f, the same for every row.
+    along: f64,
+}
+
+impl Line for StraightLine {
+    #[inline]
+    fn x_at(&self, y: f64) -> f64 {
+        -(self.normal.y * y + self.along) / self.normal.x
+    }
+}
+
+impl Transformation for Perspective<'_> {
+    type Line = StraightLine;
+
+    fn into_sensor(&self) -> &IntoSensor {
+        &self.into_sensor
+    }
+
+    fn plane_distance(&self) -> f64 {
+        self.focal_length
+    }
+
+    fn max_range(&self) -> f64 {
+        self.max_range
+    }
+
+    fn columns(&self) -> &Axis {
+        &self.tables.x
+    }
+
+    fn rows(&self) -> &Axis {
+        &self.tables.y
+    }
+
+    #[inline]
+    fn project(&self, p: DVec3) -> Corner {
+        Corner { x: self.focal_length * p.x / p.z, y: self.focal_length * p.y / p.z }
+    }
+
+    #[inline]
+    fn outside(&self, p: DVec3) -> u8 {
+        let ([left, right], [top, bottom]) = (self.tables.x.borders(), self.tables.y.borders());
+        let (x, y) = (self.focal_length * p.x, self.focal_length * p.y);
+        skip::bits(
+            p.z < self.focal_length,
+            x < left * p.z,
+            x > right * p.z,
+            y < top * p.z,
+            y > bottom * p.z,
+            p.z > self.max_range,
+        )
+    }
+
+    #[inline]
+    fn line(&self, first: DVec3, _second: DVec3, along: DVec3) -> StraightLine {
+        let normal = first.cross(along);
+        StraightLine { normal, along: normal.z * self.focal_length }
+    }
+
+    fn line_along_plane(&self, _from: DVec3, _to: DVec3, face: &Plane) -> StraightLine {
+        // On the SPP t = 1: n.(x, y, f) - d = 0.
+        let along = face.normal.z * self.focal_length - face.distance;
+        StraightLine { normal: face.normal, along }
+    }
+
+    #[inline]
+    fn misses_screen(&self, front: &[DVec3; 3]) -> bool {
+        let [a, b, c] = *front;
+        skip::screen_is_beyond_one_edge([a.cross(b), b.cross(c), c.cross(a)], self.screen_corners)
+    }
+
+    #[inline]
+    fn inverse_t(&self, face: &Plane, y: f64) -> Option<Affine> {
+        // Rule 1b: all rays start in one point, which sees the front where d < 0.
+        if !(face.distance < 0.0) {
+            return None;
+        }
+        // 1/t = n.q / d with q = (x, y, f).
+        let m = face.normal_over_distance;
+        Some(Affine { slope: m.x, start: m.y * y + m.z * self.focal_length })
+    }
+
+    #[inline]
+    fn row_distance(&self, face: &Plane, _y: f64) -> f64 {
+        face.distance
+    }
+
+    #[inline]
+    fn row_origin(&self, _y: f64) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    #[inline]
+    fn q(&self, x: f64, y: f64) -> DVec3 {
+        DVec3::new(x, y, self.focal_length)
+    }
+
+    #[inline]
+    fn q_lengths(&self, j: u32) -> &[f64] {
+        let width = self.tables.x.count() as usize;
+        &self.tables.q_length[j as usize * width..][..width]
+    }
+}

@@ -1,0 +1,165 @@
+//! Look-up tables: cell centres along an axis of the screen, and |q| of every pixel. (§5: "can, therefore,
+//! be fetched from pre-computed tables")
+
+use raypencil_scene::Camera;
+use rayon::prelude::*;
+
+/// Cell centres along one axis of the sensor screen, metres on the SPP, ascending.
+#[derive(Debug, Clone)]
+pub(crate) struct Axis {
+    centres: Vec<f64>,
+    /// Cells per metre and the place of the axis' origin, for a first guess that the table then corrects.
+    cells_per_metre: f64,
+    origin: f64,
+    /// The screen's borders, half a cell beyond the outermost centres.
+    borders: [f64; 2],
+}
+
+impl Axis {
+    /// Pixel centres `(i + 1/2 - centre) pitch`.
+    pub(crate) fn of_pixels(count: u32, centre: f64, pitch: f64) -> Self {
+        let centres = (0..count).map(|i| (f64::from(i) + 0.5 - centre) * pitch).collect();
+        let borders = [-centre * pitch, (f64::from(count) - centre) * pitch];
+        Self { centres, cells_per_metre: 1.0 / pitch, origin: centre - 0.5, borders }
+    }
+
+    /// Centres of `count` grid cells over `-half..half`: `half (2i + 1 - count) / count`.
+    pub(crate) fn of_grid(count: u32, half: f64) -> Self {
+        let n = f64::from(count);
+        let centres = (0..count).map(|i| half * (2.0 * f64::from(i) + 1.0 - n) / n).collect();
+        Self {
+            centres,
+            cells_per_metre: n / (2.0 * half),
+            origin: 0.5 * n - 0.5,
+            borders: [-half, half],
+        }
+    }
+
+    /// Centres of the rows of a beam's grid over a sheet of that thickness:
+    /// `T (2j + 1 - rows) / (2 rows)`.
+    pub(crate) fn of_rows(rows: u32, thickness: f64) -> Self {
+        let n = f64::from(rows);
+        let centres =
+            (0..rows).map(|j| thickness * (2.0 * f64::from(j) + 1.0 - n) / (2.0 * n)).collect();
+        let half = 0.5 * thickness;
+        Self { centres, cells_per_metre: n / thickness, origin: 0.5 * n - 0.5, borders: [-half, half] }
+    }
+
+    pub(crate) fn count(&self) -> u32 {
+        self.centres.len() as u32
+    }
+
+    #[inline]
+    pub(crate) fn centre(&self, index: u32) -> f64 {
+        self.centres[index as usize]
+    }
+
+    pub(crate) fn centres(&self) -> &[f64] {
+        &self.centres
+    }
+
+    pub(crate) fn borders(&self) -> [f64; 2] {
+        self.borders
+    }
+
+    /// The first cell whose centre is at or after `value`; the count if there is none.
+    ///
+    /// The comparison is with the centres themselves, so that every face asks the very same question.
+    #[inline]
+    pub(crate) fn first_at_or_after(&self, value: f64) -> u32 {
+        let count = self.count();
+        // `as` saturates, and takes NaN to 0.
+        let mut index = (value * self.cells_per_metre + self.origin).ceil() as u32;
+        index = index.min(count);
+        while index > 0 && self.centres[index as usize - 1] >= value {
+            index -= 1;
+        }
+        while index < count && self.centres[index as usize] < value {
+            index += 1;
+        }
+        index
+    }
+
+    /// One past the last cell whose centre is at or before `value`; 0 if there is none.
+    #[inline]
+    pub(crate) fn end_at_or_before(&self, value: f64) -> u32 {
+        let count = self.count();
+        let mut end = ((value * self.cells_per_metre + self.origin).floor() + 1.0) as u32;
+        end = end.min(count);
+        while end > 0 && self.centres[end as usize - 1] > value {
+            end -= 1;
+        }
+        while end < count && self.centres[end as usize] <= value {
+            end += 1;
+        }
+        end
+    }
+}
+
+/// What depends on the camera alone.
+#[derive(Debug)]
+pub(crate) struct CameraTables {
+    camera: Camera,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    /// |q| of every pixel, row by row, metres: the range is |q| / (1/t).
+    pub(crate) q_length: Vec<f64>,
+}
+
+impl CameraTables {
+    pub(crate) fn of(camera: &Camera) -> Self {
+        let x = Axis::of_pixels(camera.width, camera.principal_point[0], camera.pixel_pitch[0]);
+        let y = Axis::of_pixels(camera.height, camera.principal_point[1], camera.pixel_pitch[1]);
+        let f_squared = camera.focal_length * camera.focal_length;
+        let mut q_length = vec![0.0; camera.width as usize * camera.height as usize];
+        q_length.par_chunks_mut(camera.width as usize).enumerate().for_each(|(j, row)| {
+            let y = y.centre(j as u32);
+            for (length, x) in row.iter_mut().zip(x.centres()) {
+                *length = (x * x + (y * y + f_squared)).sqrt();
+            }
+        });
+        Self { camera: *camera, x, y, q_length }
+    }
+
+    pub(crate) fn are_of(&self, camera: &Camera) -> bool {
+        self.camera == *camera
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        // Against a linear search of the same table.
+        #[test]
+        fn cells_are_found_like_by_looking_at_each(
+            count in 1u32..40,
+            centre in -50.0f64..50.0,
+            pitch in 1e-6f64..1.0,
+            at in -2.0f64..3.0,
+            on in proptest::option::of(0u32..40),
+        ) {
+            let axis = Axis::of_pixels(count, centre, pitch);
+            let [low, high] = axis.borders();
+            // Anywhere around the screen, or exactly on a centre.
+            let value = match on {
+                Some(i) if i < count => axis.centre(i),
+                _ => low + at * (high - low),
+            };
+            let first = axis.centres().iter().position(|&c| c >= value).unwrap_or(count as usize);
+            let end = axis.centres().iter().rposition(|&c| c <= value).map_or(0, |last| last + 1);
+            prop_assert_eq!(axis.first_at_or_after(value), first as u32);
+            prop_assert_eq!(axis.end_at_or_before(value), end as u32);
+        }
+    }
+
+    #[test]
+    fn infinities_and_nan_stay_on_the_screen() {
+        let axis = Axis::of_grid(8, 0.1);
+        assert_eq!((axis.first_at_or_after(f64::INFINITY), axis.end_at_or_before(f64::INFINITY)), (8, 8));
+        assert_eq!((axis.first_at_or_after(-f64::INFINITY), axis.end_at_or_before(-f64::INFINITY)), (0, 0));
+        assert_eq!(axis.end_at_or_before(f64::NAN), 0);
+    }
+}

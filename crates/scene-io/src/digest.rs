@@ -1,0 +1,128 @@
+//! SHA-256 of what a scene comes from, and of what it came to.
+
+use raypencil_scene::{FluxModel, Mesh, Pose, Profile, Scene};
+use sha2::{Digest, Sha256};
+
+/// A SHA-256.
+pub(crate) type Sha = [u8; 32];
+
+/// The SHA-256 of some bytes.
+pub(crate) fn sha(bytes: &[u8]) -> Sha {
+    Sha256::digest(bytes).into()
+}
+
+/// One digest for several parts: a single part's own (what `sha256sum` prints for that file), else the
+/// SHA-256 of the parts' digests one after the other.
+pub(crate) fn combine(parts: &[Sha]) -> String {
+    match parts {
+        [only] => hex(only),
+        several => hex(&sha(several.as_flattened())),
+    }
+}
+
+/// Lower-case hexadecimal digits.
+fn hex(sha: &Sha) -> String {
+    sha.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The SHA-256 of a resolved scene: of every number that a renderer sees, as little-endian bytes, and of
+/// no name. Two files that resolve to the same numbers have the same digest.
+pub fn scene_sha256(scene: &Scene) -> String {
+    hex(&resolved(scene))
+}
+
+/// See [`scene_sha256`].
+pub(crate) fn resolved(scene: &Scene) -> Sha {
+    let mut hash = Numbers(Sha256::new());
+    hash.mesh(scene.mesh());
+    let camera = scene.camera();
+    hash.pose(&camera.scene_from_sensor);
+    let sensor = &camera.sensor;
+    hash.count(sensor.width.into());
+    hash.count(sensor.height.into());
+    hash.reals(&sensor.pixel_pitch);
+    hash.reals(&sensor.principal_point);
+    hash.reals(&[sensor.focal_length, sensor.aperture, sensor.max_range]);
+    hash.count(scene.beams().len() as u64);
+    for beam in scene.beams() {
+        hash.pose(&beam.scene_from_sensor);
+        let sensor = &beam.sensor;
+        hash.count(sensor.columns.into());
+        hash.count(sensor.rows.into());
+        hash.reals(&[sensor.thickness, sensor.grid_distance, sensor.half_width]);
+        hash.reals(&[sensor.max_range, sensor.power, sensor.wavelength]);
+        match sensor.profile {
+            Profile::Paper => hash.count(0),
+            Profile::UniformAngle => hash.count(1),
+            Profile::Gaussian { half_width } => {
+                hash.count(2);
+                hash.reals(&[half_width]);
+            }
+        }
+    }
+    hash.reals(&[scene.atmosphere().attenuation]);
+    hash.count(match scene.flux_model() {
+        FluxModel::Radiometric => 0,
+        FluxModel::Eq1 => 1,
+    });
+    hash.0.finalize().into()
+}
+
+/// The SHA-256 of a mesh alone.
+pub(crate) fn mesh(mesh: &Mesh) -> Sha {
+    let mut hash = Numbers(Sha256::new());
+    hash.mesh(mesh);
+    hash.0.finalize().into()
+}
+
+/// A hash that is fed numbers. Every list is preceded by its length, so that no two lists run together.
+struct Numbers(Sha256);
+
+impl Numbers {
+    fn count(&mut self, value: u64) {
+        self.0.update(value.to_le_bytes());
+    }
+
+    fn reals(&mut self, values: &[f64]) {
+        for value in values {
+            self.0.update(value.to_le_bytes());
+        }
+    }
+
+    fn pose(&mut self, pose: &Pose) {
+        self.reals(&pose.position.to_array());
+        self.reals(&pose.rotation.to_array());
+    }
+
+    fn mesh(&mut self, mesh: &Mesh) {
+        self.reals(&mesh.origin().to_array());
+        self.count(mesh.vertices().len() as u64);
+        for coordinate in mesh.vertices().as_flattened() {
+            self.0.update(coordinate.to_le_bytes());
+        }
+        self.count(mesh.faces().len() as u64);
+        for index in mesh.faces().as_flattened() {
+            self.0.update(index.to_le_bytes());
+        }
+        for material in mesh.face_materials() {
+            self.0.update(material.to_le_bytes());
+        }
+        self.count(mesh.materials().len() as u64);
+        for material in mesh.materials() {
+            self.reals(&[material.reflectivity]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_part_has_its_own_digest() {
+        // FIPS 180-4, the example "abc".
+        let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(combine(&[sha(b"abc")]), abc);
+        assert_ne!(combine(&[sha(b"abc"), sha(b"abc")]), abc);
+    }
+}

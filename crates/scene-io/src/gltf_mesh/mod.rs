@@ -1,0 +1,315 @@
+//! Terrain from glTF 2.0 and GLB: every reference, length and number is checked before it is used.
+//!
+//! The `gltf` crate gives the JSON its types. Its own validation is not used: it stops at the first
+//! unknown texture, and does not look at the numbers in the buffers.
+
+mod accessors;
+mod buffers;
+mod container;
+mod nodes;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::DVec3;
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{Material as MaterialJson, Root};
+use raypencil_scene::{Material, Mesh};
+use serde::Deserialize;
+
+use crate::digest::{Sha, sha};
+use crate::error::Fault;
+use crate::{SceneIoError, bytes};
+use buffers::Buffers;
+
+/// Reflectivity of ground that brings none of its own. CHOICE: bright Martian dust reflects about this much
+/// in the near infrared.
+pub const DEFAULT_REFLECTIVITY: f64 = 0.25;
+
+/// The largest file, and the largest sum of buffers beside it, that is read: 1 GiB.
+pub(crate) const LARGEST_FILE: u64 = 1 << 30;
+
+/// The most faces, and the most vertices, of all instances together. A small file can ask for any number of
+/// instances of one mesh; 2^25 of each take about 1.5 GB.
+const MOST: u64 = 1 << 25;
+
+/// Loads a `.glb` or `.gltf` terrain; materials that bring no reflectivity get [`DEFAULT_REFLECTIVITY`].
+///
+/// # Errors
+/// Names the file and the accessor, node, buffer or line of JSON that is wrong.
+pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, SceneIoError> {
+    Ok(read(path.as_ref(), DEFAULT_REFLECTIVITY)?.0)
+}
+
+/// A mesh from the bytes of a `.glb` or `.gltf` file; `file` is for messages, and buffers in files of their
+/// own are looked up beside it.
+///
+/// # Errors
+/// As [`load_mesh`].
+pub fn mesh_from_bytes(bytes: &[u8], file: &Path, reflectivity: f64) -> Result<Mesh, SceneIoError> {
+    Ok(parse(bytes, file, reflectivity)?.0)
+}
+
+/// The mesh of a file, and the digests of the file and of the buffers beside it.
+pub(crate) fn read(path: &Path, reflectivity: f64) -> Result<(Mesh, Vec<Sha>), SceneIoError> {
+    let bytes = bytes::read_file(path, LARGEST_FILE).map_err(|error| SceneIoError::io(path, "read", error))?;
+    let (mesh, external) = parse(&bytes, path, reflectivity)?;
+    Ok((mesh, std::iter::once(sha(&bytes)).chain(external).collect()))
+}
+
+fn parse(bytes: &[u8], file: &Path, reflectivity: f64) -> Result<(Mesh, Vec<Sha>), SceneIoError> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let unfit = |fault: Fault| SceneIoError::Gltf(fault.in_file(file));
+    let container = container::split(bytes).map_err(unfit)?;
+    let root = root(container.json).map_err(unfit)?;
+    let mut buffers = Buffers::new(&root, folder, container.bin);
+    let parts = assemble(&root, &mut buffers, reflectivity).map_err(unfit)?;
+    let Parts { vertices, faces, face_materials, materials } = parts;
+    let mesh = Mesh::from_global(&vertices, faces, face_materials, materials)
+        .map_err(|source| SceneIoError::Scene { origin: file.display().to_string(), source })?;
+    Ok((mesh, buffers.digests().collect()))
+}
+
+/// The parts of the JSON that say whether the rest can be understood.
+#[derive(Deserialize)]
+struct Head {
+    asset: HeadAsset,
+    #[serde(default, rename = "extensionsRequired")]
+    required: Vec<String>,
+    #[serde(default, rename = "extensionsUsed")]
+    used: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct HeadAsset {
+    version: String,
+    #[serde(rename = "minVersion")]
+    min_version: Option<String>,
+}
+
+/// Parses the JSON. Depth is limited by serde_json, which refuses what is nested deeper than 128 and skips
+/// unknown keys without recursion.
+fn root(json: &[u8]) -> Result<Root, Fault> {
+    let unfit = |error: serde_json::Error| Fault::new("JSON", error.to_string(), "a glTF 2.0 asset");
+    let head: Head = serde_json::from_slice(json).map_err(unfit)?;
+    let HeadAsset { version, min_version } = &head.asset;
+    if !version.starts_with("2.") || min_version.as_ref().is_some_and(|least| least != "2.0") {
+        let found = format!("version {version:?}, minVersion {min_version:?}");
+        return Err(Fault::new("asset", found, "glTF 2.0"));
+    }
+    // Extensions of light and colour do not move a vertex.
+    let harmless = |name: &str| {
+        ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"].iter().any(|start| name.starts_with(start))
+    };
+    if let Some(name) = head.required.iter().find(|name| !harmless(name)) {
+        let expected = "plain buffers and nodes; extensions are known only for materials, textures and lights";
+        return Err(Fault::new("extensionsRequired", format!("{name:?}"), expected));
+    }
+    // Without it most of the ground would be missing, and nothing would say so.
+    if head.used.iter().any(|name| name == "EXT_mesh_gpu_instancing") {
+        return Err(Fault::new("extensionsUsed", "\"EXT_mesh_gpu_instancing\"", "a node for each instance"));
+    }
+    serde_json::from_slice(json).map_err(unfit)
+}
+
+/// What becomes a mesh, in the global frame.
+#[derive(Default)]
+struct Parts {
+    vertices: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+    face_materials: Vec<u16>,
+    materials: Vec<Material>,
+}
+
+/// Faces in the order of nodes, then primitives, then the primitive's own order: this is `FaceId`.
+fn assemble(root: &Root, buffers: &mut Buffers<'_>, reflectivity: f64) -> Result<Parts, Fault> {
+    let placed = nodes::placed(root)?;
+    // How much it will be is known before anything is read: no small file can ask for much memory.
+    let mut totals = [0_u64; 2];
+    for node in &placed {
+        for primitive in primitives(root, node.node)? {
+            let Drawn { positions, corners, .. } = drawn(root, primitive)?;
+            totals[0] = totals[0].saturating_add(accessors::get(root, positions)?.count.0);
+            totals[1] = totals[1].saturating_add(corners / if is_list(primitive) { 3 } else { 1 });
+        }
+    }
+    for (total, kind) in totals.into_iter().zip(["vertices", "faces"]) {
+        if total > MOST {
+            let found = format!("{total} {kind} in all instances");
+            return Err(Fault::new("nodes", found, format!("at most {MOST}")));
+        }
+    }
+
+    let mut parts = Parts { materials: materials(root, reflectivity)?, ..Parts::default() };
+    let mut bare = None;
+    for nodes::Placed { node, file_from_node } in placed {
+        // Primitives of one mesh often share their vertices.
+        let mut first_vertex = BTreeMap::new();
+        let mirrored = file_from_node.matrix3.determinant() < 0.0;
+        let untouched = file_from_node == glam::DAffine3::IDENTITY;
+        for primitive in primitives(root, node)? {
+            let drawn = drawn(root, primitive)?;
+            if drawn.corners == 0 {
+                continue;
+            }
+            let accessor = drawn.positions.value();
+            let (first, count) = match first_vertex.get(&accessor) {
+                Some(known) => *known,
+                None => {
+                    let first = parts.vertices.len();
+                    let positions = accessors::positions(root, buffers, drawn.positions)?;
+                    for (number, &[x, y, z]) in positions.iter().enumerate() {
+                        let local = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+                        let file = if untouched { local } else { file_from_node.transform_point3(local) };
+                        if !(file.abs().max_element() <= 1e12) {
+                            let found = format!("vertex {number} of accessor {accessor} lands at {file}");
+                            return Err(Fault::new(nodes::place(root, node), found, "a place within 1e12 m"));
+                        }
+                        // y up becomes z up. `0 - z` rather than `-z`: zero stays +0.
+                        parts.vertices.push(DVec3::new(file.x, 0.0 - file.z, file.y));
+                    }
+                    *first_vertex.entry(accessor).or_insert((first, positions.len()))
+                }
+            };
+            let corners = match primitive.indices {
+                Some(indices) => accessors::indices(root, buffers, indices, count)?,
+                // Below 2^25, as all counts are.
+                None => (0..count as u32).collect(),
+            };
+            let material = match primitive.material {
+                Some(index) if index.value() < root.materials.len() => index.value(),
+                Some(index) => {
+                    let count = root.materials.len();
+                    return Err(buffers::missing(format!("material {}", index.value()), count));
+                }
+                // Primitives without a material share one more.
+                None => *bare.get_or_insert_with(|| {
+                    parts.materials.push(Material { name: "no material".to_string(), reflectivity });
+                    parts.materials.len() - 1
+                }),
+            };
+            let before = parts.faces.len();
+            for [a, b, c] in triangles(drawn.mode, &corners) {
+                // A mirror turns the outside in: the other way round it is the outside again.
+                let [b, c] = if mirrored { [c, b] } else { [b, c] };
+                parts.faces.push([a, b, c].map(|corner| first as u32 + corner));
+            }
+            // There are at most 65534 materials and the bare one.
+            parts.face_materials.extend(std::iter::repeat_n(material as u16, parts.faces.len() - before));
+        }
+    }
+    if parts.faces.is_empty() {
+        return Err(Fault::new("scene", "no triangles", "at least one"));
+    }
+    Ok(parts)
+}
+
+/// The primitives of a node's mesh.
+fn primitives(root: &Root, index: usize) -> Result<&[Primitive], Fault> {
+    let node = &root.nodes[index];
+    let Some(mesh_index) = node.mesh else { return Ok(&[]) };
+    let mesh_index = mesh_index.value();
+    let Some(mesh) = root.meshes.get(mesh_index) else {
+        return Err(buffers::missing(format!("{}: mesh {mesh_index}", nodes::place(root, index)), root.meshes.len()));
+    };
+    // Bones and blend shapes move vertices; without them the ground would be in the wrong place.
+    if node.skin.is_some() {
+        return Err(Fault::new(nodes::place(root, index), "a skin", "a rigid mesh: skins are not supported"));
+    }
+    let weights = node.weights.as_ref().or(mesh.weights.as_ref());
+    if weights.is_some_and(|weights| weights.iter().any(|&weight| weight != 0.0)) {
+        let expected = "a rigid mesh: morph targets are not supported";
+        return Err(Fault::new(nodes::place(root, index), "morph weights", expected));
+    }
+    Ok(&mesh.primitives)
+}
+
+/// A primitive whose references are known to exist.
+struct Drawn {
+    mode: Mode,
+    positions: gltf::json::Index<gltf::json::Accessor>,
+    /// How many indices, or vertices without any; 0 for points and lines.
+    corners: u64,
+}
+
+/// CHOICE: points and lines are no ground and are skipped; a survey's marks do not make its mesh unusable.
+fn drawn(root: &Root, primitive: &Primitive) -> Result<Drawn, Fault> {
+    let Checked::Valid(mode) = primitive.mode else {
+        return Err(Fault::new("primitive", "an unknown mode", "0 to 6"));
+    };
+    let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+        return Err(Fault::new("primitive", "no POSITION", "a POSITION accessor"));
+    };
+    let (count, place) = match primitive.indices {
+        Some(indices) => (accessors::get(root, indices)?.count.0, indices.value()),
+        None => (accessors::get(root, positions)?.count.0, positions.value()),
+    };
+    let place = || format!("accessor {place}");
+    let corners = match mode {
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => 0,
+        Mode::Triangles if count % 3 != 0 => {
+            return Err(Fault::new(place(), format!("{count} corners of triangles"), "a multiple of 3"));
+        }
+        Mode::TriangleStrip | Mode::TriangleFan if count < 3 => {
+            return Err(Fault::new(place(), format!("{count} corners of a strip or fan"), "3 or more"));
+        }
+        _ => count,
+    };
+    Ok(Drawn { mode, positions, corners })
+}
+
+/// Whether a primitive lists its triangles one by one.
+fn is_list(primitive: &Primitive) -> bool {
+    primitive.mode == Checked::Valid(Mode::Triangles)
+}
+
+/// The triangles of a primitive, by the formulas of the specification. (glTF 2.0, §3.7.2.1)
+fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
+    let c = corners;
+    match mode {
+        Mode::Triangles => c.chunks_exact(3).map(|corners| [corners[0], corners[1], corners[2]]).collect(),
+        // Every second triangle of a strip is listed the other way round.
+        Mode::TriangleStrip => {
+            (0..c.len().saturating_sub(2)).map(|i| [c[i], c[i + 1 + i % 2], c[i + 2 - i % 2]]).collect()
+        }
+        Mode::TriangleFan => (0..c.len().saturating_sub(2)).map(|i| [c[i + 1], c[i + 2], c[0]]).collect(),
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
+    }
+}
+
+/// One kind of ground for each material of the file, in its order.
+fn materials(root: &Root, default: f64) -> Result<Vec<Material>, Fault> {
+    if root.materials.len() >= usize::from(u16::MAX) {
+        let found = root.materials.len().to_string();
+        return Err(Fault::new("materials", found, "fewer than 65535"));
+    }
+    let kind = |(index, material): (usize, &MaterialJson)| {
+        let name = material.name.clone().unwrap_or_else(|| format!("material {index}"));
+        let reflectivity = reflectivity(material, index)?.unwrap_or(default);
+        Ok(Material { name, reflectivity })
+    };
+    root.materials.iter().enumerate().map(kind).collect()
+}
+
+/// `extras.reflectivity` of a material, if its extras are an object that has it.
+fn reflectivity(material: &MaterialJson, index: usize) -> Result<Option<f64>, Fault> {
+    #[derive(Deserialize)]
+    struct Extras {
+        reflectivity: Option<serde_json::Value>,
+    }
+    let Some(extras) = &material.extras else { return Ok(None) };
+    if !extras.get().trim_start().starts_with('{') {
+        return Ok(None);
+    }
+    let place = || format!("material {index} {:?}", material.name.as_deref().unwrap_or(""));
+    let unfit = |found: String| Fault::new(place(), found, "extras.reflectivity from 0 to 1");
+    let extras: Extras = serde_json::from_str(extras.get()).map_err(|error| unfit(error.to_string()))?;
+    match extras.reflectivity {
+        None => Ok(None),
+        Some(value) => match value.as_f64() {
+            Some(number) if (0.0..=1.0).contains(&number) => Ok(Some(number)),
+            _ => Err(unfit(value.to_string())),
+        },
+    }
+}

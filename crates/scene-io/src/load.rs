@@ -1,0 +1,292 @@
+//! From a name or a path to a scene.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use raypencil_scene::{Beam, Mesh, Pose, Scene, SceneError};
+use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
+
+use crate::digest::{self, Sha};
+use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY};
+use crate::plan::{self, Plan, Source, Terrain};
+use crate::{SceneIoError, bytes, resolve, scene_sha256};
+
+/// A scene file larger than this is none: 1 MiB.
+const LARGEST_TOML: u64 = 1 << 20;
+
+/// What a scene is made from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SceneSource {
+    /// A built-in ground, under the default rig.
+    Builtin(String),
+    /// A scene file.
+    Toml(PathBuf),
+    /// A terrain, under the default rig.
+    Gltf(PathBuf),
+}
+
+impl SceneSource {
+    /// Tells a built-in name, a `.toml` and a `.glb` or `.gltf` apart. A built-in name wins over a file.
+    ///
+    /// # Errors
+    /// Lists the built-in names and the extensions if it is none of them, or if there is no such file.
+    pub fn parse(source: &str) -> Result<Self, SceneIoError> {
+        if BUILTIN_NAMES.contains(&source) {
+            return Ok(Self::Builtin(source.to_string()));
+        }
+        let refuse = |problem: &str| SceneIoError::Source {
+            given: source.to_string(),
+            problem: problem.to_string(),
+            expected: format!(
+                "a built-in name ({}) or a file that ends in .toml, .glb or .gltf",
+                BUILTIN_NAMES.join(", ")
+            ),
+        };
+        let path = PathBuf::from(source);
+        if path.is_dir() {
+            return Err(refuse("is a folder"));
+        }
+        let known = |end: &str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
+        let exists = path.exists();
+        match (known("toml"), known("glb") || known("gltf")) {
+            (true, _) if exists => Ok(Self::Toml(path)),
+            (_, true) if exists => Ok(Self::Gltf(path)),
+            (false, false) if exists => Err(refuse("is a file of an unknown kind")),
+            (false, false) => Err(refuse("is neither a built-in name nor a file")),
+            _ => Err(refuse("does not exist")),
+        }
+    }
+}
+
+/// What the command line changes of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Overrides {
+    /// The vehicle stands on the ground here, global frame, metres; also if the file gives a height.
+    pub at: Option<[f64; 2]>,
+    /// The vehicle's heading, degrees to the left of the global x axis.
+    pub heading_deg: Option<f64>,
+    /// The full fan angle of every beam, degrees.
+    pub fan_deg: Option<f64>,
+}
+
+/// A scene and where it came from.
+#[derive(Debug, Clone)]
+pub struct LoadedScene {
+    /// The scene.
+    pub scene: Scene,
+    /// A short name, fit for a folder: letters, digits, `.`, `-` and `_`.
+    pub name: String,
+    /// SHA-256 of what defines the scene, in hexadecimal digits. Of a lone `.glb` it is the file's own; of
+    /// several parts (scene file, terrain files, overrides) the SHA-256 of their digests one after the
+    /// other. A built-in or generated ground takes part by its numbers, not by its name.
+    pub source_sha256: String,
+    /// SHA-256 of the resolved numbers, whatever they came from; see [`scene_sha256`].
+    pub scene_sha256: String,
+    /// The vehicle in the global frame: `global_from_vehicle`.
+    pub vehicle: Pose,
+    /// What it was made from.
+    pub source: SceneSource,
+}
+
+/// Loads a scene from a built-in name, a scene `.toml`, or a terrain `.glb` or `.gltf`.
+///
+/// A terrain alone, built-in or from a file, gets the default rig. On a terrain from a file the vehicle
+/// stands level at the centre of the ground's bounding box; if there is no ground exactly there, on the
+/// middle of the nearest face that looks up.
+///
+/// # Errors
+/// Names the file, the place in it, what was found and what was expected.
+pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoError> {
+    check(overrides)?;
+    let source = SceneSource::parse(source)?;
+    match &source {
+        SceneSource::Builtin(name) => {
+            let plan = plan::default_rig(Terrain::Builtin(name.clone()));
+            finish(&source, plan, Vec::new(), None, overrides)
+        }
+        SceneSource::Gltf(path) => {
+            let mut plan = plan::default_rig(Terrain::File(path.clone()));
+            let (mesh, parts) = gltf_mesh::read(path, DEFAULT_REFLECTIVITY)?;
+            if overrides.at.is_none() {
+                plan.vehicle.position = resolve::central_place(&mesh).unwrap_or_default();
+            }
+            finish(&source, plan, parts, Some(mesh), overrides)
+        }
+        SceneSource::Toml(path) => {
+            let bytes = bytes::read_file(path, LARGEST_TOML).map_err(|e| SceneIoError::io(path, "read", e))?;
+            let text = String::from_utf8(bytes).map_err(|error| {
+                let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
+                SceneIoError::io(path, "read", error)
+            })?;
+            load_toml(&source, path, &text, overrides)
+        }
+    }
+}
+
+fn load_toml(
+    source: &SceneSource,
+    path: &Path,
+    text: &str,
+    overrides: &Overrides,
+) -> Result<LoadedScene, SceneIoError> {
+    let plan = plan::parse(path, text)?;
+    let mut parts = vec![digest::sha(text.as_bytes())];
+    let places = Source { file: path, text };
+    let mesh = match &plan.terrain {
+        Terrain::File(file) => {
+            let terrain = path.parent().unwrap_or(Path::new("")).join(file);
+            let known = |end: &str| terrain.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
+            if !(known("glb") || known("gltf")) {
+                let message =
+                    format!("`terrain.file` is \"{}\"; expected a file that ends in .glb or .gltf", file.display());
+                return Err(places.error(plan.terrain_span.clone(), message));
+            }
+            if !terrain.is_file() {
+                let message = format!("`terrain.file`: there is no file \"{}\"; expected a path relative to the scene file", terrain.display());
+                return Err(places.error(plan.terrain_span.clone(), message));
+            }
+            let (mesh, more) = gltf_mesh::read(&terrain, plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY))?;
+            parts.extend(more);
+            Some(mesh)
+        }
+        _ => None,
+    };
+    let position_span = plan.position_span.clone();
+    finish(source, plan, parts, mesh, overrides).map_err(|error| match error {
+        // A vehicle off the ground is a matter of a line in the file, unless the command line put it there.
+        SceneIoError::NoGround { x, y, ground, .. } if overrides.at.is_none() => {
+            let message = format!("`vehicle.position_m`: no ground under ({x}, {y}); expected a place within {ground}, or a height as the third number");
+            places.error(position_span, message)
+        }
+        other => other,
+    })
+}
+
+/// Resolves a plan: makes the ground if it is not loaded yet, stands the vehicle on it, mounts the sensors.
+fn finish(
+    source: &SceneSource,
+    mut plan: Plan,
+    mut parts: Vec<Sha>,
+    mesh: Option<Mesh>,
+    overrides: &Overrides,
+) -> Result<LoadedScene, SceneIoError> {
+    let origin = || match source {
+        SceneSource::Builtin(name) => name.clone(),
+        SceneSource::Toml(path) | SceneSource::Gltf(path) => path.display().to_string(),
+    };
+    let unfit = |source: SceneError| SceneIoError::Scene { origin: origin(), source };
+    apply(overrides, &mut plan);
+    let loaded = mesh.is_some();
+    let mesh = match mesh {
+        Some(mesh) => mesh,
+        None => make(&plan).map_err(unfit)?,
+    };
+    let Some(vehicle) = plan.vehicle.global_from_vehicle(&mesh) else {
+        let [x, y] = plan.vehicle.position;
+        return Err(SceneIoError::NoGround { origin: origin(), x, y, ground: resolve::extent(&mesh) });
+    };
+    let scene = resolve::resolve(&plan, Arc::new(mesh), vehicle).map_err(unfit)?;
+    // A ground that was made takes part in the digest by its numbers, which its name does not promise.
+    match source {
+        SceneSource::Builtin(_) => parts.push(digest::resolved(&scene)),
+        _ if !loaded => parts.push(digest::mesh(scene.mesh())),
+        _ => {}
+    }
+    if *overrides != Overrides::default() && !matches!(source, SceneSource::Builtin(_)) {
+        parts.push(digest::sha(format!("{overrides:?}").as_bytes()));
+    }
+    Ok(LoadedScene {
+        name: folder_name(source),
+        source_sha256: digest::combine(&parts),
+        scene_sha256: scene_sha256(&scene),
+        scene,
+        vehicle,
+        source: source.clone(),
+    })
+}
+
+/// Makes a ground that comes from no file.
+fn make(plan: &Plan) -> Result<Mesh, SceneError> {
+    match &plan.terrain {
+        Terrain::Builtin(name) => builtin(name, plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY))
+            .ok_or_else(|| SceneError::new("terrain.builtin", name, BUILTIN_NAMES.join(", ")))?
+            .into_mesh(),
+        &Terrain::Generate { nasty, seed, faces, extent, offset } => {
+            let mut random = match nasty {
+                true => RandomGround::nasty(seed, faces),
+                false => RandomGround::plain(seed, faces, extent),
+            };
+            (random.extent, random.offset) = (extent, offset);
+            let mut ground = random.build();
+            // A reflectivity in the file is for the whole ground, else each kind keeps its own.
+            if let Some(reflectivity) = plan.reflectivity {
+                ground.materials.iter_mut().for_each(|kind| kind.reflectivity = reflectivity);
+            }
+            ground.into_mesh()
+        }
+        Terrain::File(path) => {
+            Err(SceneError::new("terrain.file", path.display(), "a terrain that is loaded already"))
+        }
+    }
+}
+
+/// Refuses an override out of range.
+fn check(overrides: &Overrides) -> Result<(), SceneIoError> {
+    let [x, y] = overrides.at.map_or([None; 2], |at| at.map(Some));
+    let all = [
+        ("at x", x, plan::GLOBAL_M, "metres"),
+        ("at y", y, plan::GLOBAL_M, "metres"),
+        ("heading", overrides.heading_deg, plan::TURN_DEG, "degrees"),
+        ("fan", overrides.fan_deg, plan::FAN_DEG, "degrees"),
+    ];
+    for (name, value, range, unit) in all {
+        if let Some(value) = value.filter(|value| !range.contains(value)) {
+            let expected = format!("{} to {} {unit}", range.start(), range.end());
+            return Err(SceneIoError::Override { name, value: value.to_string(), expected });
+        }
+    }
+    Ok(())
+}
+
+/// Puts the overrides in place of what the file says.
+fn apply(overrides: &Overrides, plan: &mut Plan) {
+    if let Some(at) = overrides.at {
+        plan.vehicle.position = at;
+        plan.vehicle.height = None;
+    }
+    if let Some(heading_deg) = overrides.heading_deg {
+        plan.vehicle.heading_deg = heading_deg;
+    }
+    if let Some(fan_deg) = overrides.fan_deg {
+        for (_, beam) in &mut plan.beams {
+            beam.half_width = Beam::half_width_of(beam.grid_distance, fan_deg.to_radians());
+        }
+    }
+}
+
+/// The source's own name as a folder name: other characters than letters, digits, `.`, `-` and `_` become
+/// `-`; no leading dots, no longer than 64.
+fn folder_name(source: &SceneSource) -> String {
+    let stem = match source {
+        SceneSource::Builtin(name) => name.clone(),
+        SceneSource::Toml(path) | SceneSource::Gltf(path) => {
+            path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+        }
+    };
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' };
+    let name: String = stem.trim_start_matches('.').chars().map(plain).take(64).collect();
+    if name.is_empty() { "scene".to_string() } else { name }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_fit_for_folders() {
+        let name = |path: &str| folder_name(&SceneSource::Toml(path.into()));
+        assert_eq!(name("a/b/My Scene (2).v1.toml"), "My-Scene--2-.v1");
+        assert_eq!(name("..toml"), "scene");
+        assert_eq!(name(&format!("{}.toml", "x".repeat(100))).len(), 64);
+    }
+}

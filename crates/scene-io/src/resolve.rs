@@ -1,0 +1,99 @@
+//! From checked numbers and a mesh to a scene: poses are composed here, and rounded once.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use raypencil_scene::{Atmosphere, Mesh, Mounted, Pose, Scene, SceneError};
+
+use crate::plan::{Mount, Plan, Vehicle};
+
+/// A turn about z, then y, then x, each about the axis that the turns before it left: yaw (or heading) to
+/// the left, pitch down, roll to the right. In a frame with x forward, y left and z up all three are
+/// right-handed.
+fn turned(yaw_left_deg: f64, pitch_down_deg: f64, roll_right_deg: f64) -> Pose {
+    let turn = |axis, degrees: f64| Pose::from_axis_angle(axis, degrees.to_radians());
+    turn(DVec3::Z, yaw_left_deg) * turn(DVec3::Y, pitch_down_deg) * turn(DVec3::X, roll_right_deg)
+}
+
+impl Mount {
+    /// Where the sensor stands on the vehicle.
+    fn vehicle_from_sensor(&self) -> Pose {
+        let turned = turned(self.yaw_left_deg, self.pitch_down_deg, self.roll_right_deg);
+        Pose { position: self.position, ..turned * Pose::VEHICLE_FROM_FORWARD_SENSOR }
+    }
+}
+
+impl Vehicle {
+    /// Where the vehicle stands, or `None` if it should stand on ground that is not there.
+    pub(crate) fn global_from_vehicle(&self, mesh: &Mesh) -> Option<Pose> {
+        let [x, y] = self.position;
+        let z = match self.height {
+            Some(z) => z,
+            None => raypencil_terrain::height_at(mesh, x, y)?,
+        };
+        let turned = turned(self.heading_deg, self.pitch_down_deg, self.roll_right_deg);
+        Some(Pose { position: DVec3::new(x, y, z), ..turned })
+    }
+}
+
+/// Puts the scene together.
+pub(crate) fn resolve(plan: &Plan, mesh: Arc<Mesh>, global_from_vehicle: Pose) -> Result<Scene, SceneError> {
+    // The origin is taken off first: at 1e6 m, sensor offsets added to global coordinates would lose seven
+    // digits.
+    let scene_from_vehicle =
+        Pose { position: global_from_vehicle.position - mesh.origin(), ..global_from_vehicle };
+    let (mount, camera) = plan.camera;
+    let camera =
+        Mounted { scene_from_sensor: scene_from_vehicle * mount.vehicle_from_sensor(), sensor: camera };
+    let beams = plan.beams.iter().map(|&(mount, beam)| Mounted {
+        scene_from_sensor: scene_from_vehicle * mount.vehicle_from_sensor(),
+        sensor: beam,
+    });
+    let atmosphere = Atmosphere { attenuation: plan.attenuation };
+    Scene::new(mesh, camera, beams.collect(), atmosphere, plan.flux_model)
+}
+
+/// The place nearest the centre of the ground, seen from above, where a vehicle can stand: the centre
+/// itself, else the middle of the face that is nearest to it among those that look up.
+pub(crate) fn central_place(mesh: &Mesh) -> Option<[f64; 2]> {
+    let [low, high] = mesh.bounds()?;
+    let centre = 0.5 * low + 0.5 * high;
+    let origin = mesh.origin();
+    let global = |place: DVec3| [place.x + origin.x, place.y + origin.y];
+    let [x, y] = global(centre);
+    if raypencil_terrain::height_at(mesh, x, y).is_some() {
+        return Some([x, y]);
+    }
+    let vertex = |index: u32| {
+        let [x, y, z] = mesh.vertices()[index as usize];
+        DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+    };
+    let mut nearest: Option<(f64, DVec3)> = None;
+    for face in mesh.faces() {
+        let [a, b, c] = face.map(vertex);
+        let normal = (b - a).cross(c - a);
+        // A vehicle does not stand on a wall: steeper than 60 degrees is none of ours.
+        if normal.z <= 0.5 * normal.length() {
+            continue;
+        }
+        let middle = (a + b + c) / 3.0;
+        let (dx, dy) = (middle.x - centre.x, middle.y - centre.y);
+        let distance = dx * dx + dy * dy;
+        // Strictly nearer: of equals the lowest index stays.
+        if nearest.is_none_or(|(least, _)| distance < least) {
+            nearest = Some((distance, middle));
+        }
+    }
+    nearest.map(|(_, middle)| global(middle))
+}
+
+/// The extent of the ground seen from above, in words.
+pub(crate) fn extent(mesh: &Mesh) -> String {
+    match mesh.bounds() {
+        None => "a ground that has faces (this one has none)".to_string(),
+        Some([low, high]) => {
+            let (low, high) = (low + mesh.origin(), high + mesh.origin());
+            format!("x {:.3} to {:.3}, y {:.3} to {:.3} m", low.x, high.x, low.y, high.y)
+        }
+    }
+}

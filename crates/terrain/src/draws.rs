@@ -1,0 +1,91 @@
+//! Random numbers keyed by (seed, purpose, index): ChaCha with 8 rounds (D. J. Bernstein, 2008).
+
+use glam::DVec3;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+/// What a stream of numbers is for. Streams are independent, so that more of one kind of feature does not
+/// move the others. The numbers are part of what a seed means: never reuse or renumber one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    Relief = 1,
+    Grid = 2,
+    Materials = 3,
+    Boulders = 4,
+    Overhangs = 5,
+    Walls = 6,
+    Slivers = 7,
+    DuplicateFaces = 8,
+    ZeroAreaFaces = 9,
+    UnreferencedVertices = 10,
+    Diagonals = 11,
+}
+
+/// The numbers of one (seed, purpose), in order: the index is the place in the key stream.
+pub(crate) struct Draws(ChaCha8Rng);
+
+impl Draws {
+    pub(crate) fn new(seed: u64, purpose: Purpose) -> Self {
+        let mut key = [0; 32];
+        key[..8].copy_from_slice(&seed.to_le_bytes());
+        key[8..16].copy_from_slice(&(purpose as u64).to_le_bytes());
+        Self(ChaCha8Rng::from_seed(key))
+    }
+
+    /// Uniform in [0, 1): a multiple of 2^-53, so the conversion is exact.
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+    }
+
+    /// Uniform in [low, high).
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Uniform in 0..count, by the high half of a product (its bias is below 2^-32). `count` must not be 0.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        let count = u64::try_from(count).expect("counts of faces fit 64 bits");
+        ((u128::from(self.0.next_u64()) * u128::from(count)) >> 64) as usize
+    }
+
+    /// Heads or tails.
+    pub(crate) fn coin(&mut self) -> bool {
+        self.0.next_u64() >> 63 == 1
+    }
+
+    /// A direction, uniform over the sphere: a point of the unit ball, made a unit. (von Neumann, 1951)
+    pub(crate) fn direction(&mut self) -> DVec3 {
+        loop {
+            let mut coordinate = || self.between(-1.0, 1.0);
+            let v = DVec3::new(coordinate(), coordinate(), coordinate());
+            let length_squared = v.dot(v);
+            if (1e-6..=1.0).contains(&length_squared) {
+                return v / length_squared.sqrt();
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_differ_by_seed_and_by_purpose_only() {
+        let first = |seed, purpose| Draws::new(seed, purpose).unit();
+        assert_eq!(first(1, Purpose::Grid), first(1, Purpose::Grid));
+        assert_ne!(first(1, Purpose::Grid), first(2, Purpose::Grid));
+        assert_ne!(first(1, Purpose::Grid), first(1, Purpose::Relief));
+    }
+
+    #[test]
+    fn draws_stay_in_their_ranges() {
+        let mut draws = Draws::new(3, Purpose::Grid);
+        for _ in 0..10_000 {
+            assert!((0.0..1.0).contains(&draws.unit()));
+            assert!((-2.0..5.0).contains(&draws.between(-2.0, 5.0)));
+            assert!(draws.below(3) < 3);
+            assert!((draws.direction().length() - 1.0).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! Grounds for a rover to look at: the paper's two scenes (§9), random ones, and the height of any.
+//!
+//! ```
+//! use raypencil_terrain::{RandomGround, builtin, height_at};
+//!
+//! let pyramids = builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
+//! assert_eq!(height_at(&pyramids, 0.0, 0.0), Some(0.0));
+//!
+//! let hills = RandomGround::plain(7, 2_000, 40.0).build().into_mesh()?;
+//! assert!(height_at(&hills, 3.0, -1.0).is_some());
+//! assert!(height_at(&hills, 300.0, -1.0).is_none());
+//! # Ok::<(), raypencil_scene::SceneError>(())
+//! ```
+//!
+//! Every ground is the same bytes on every machine: polynomials, square roots and `libm` only, and random
+//! numbers keyed by (seed, purpose, index).
+//!
+//! Faces are counter-clockwise from outside, n = (b - a) x (c - a): a height field's normals point up, a
+//! body's outward.
+
+mod builtin;
+mod draws;
+mod ground;
+mod height;
+mod random;
+
+pub use builtin::{BUILTIN_NAMES, builtin};
+pub use ground::Ground;
+pub use height::height_at;
+pub use random::RandomGround;

@@ -1,0 +1,485 @@
+//! Random grounds: a height field, and on request everything that makes terrain hard to render.
+
+use glam::DVec3;
+use raypencil_scene::Material;
+
+use crate::Ground;
+use crate::draws::{Draws, Purpose};
+
+/// A random ground, centred on `offset`. Start from [`RandomGround::plain`] or [`RandomGround::nasty`] and
+/// change fields; the same fields give the same bytes on every machine.
+///
+/// Bodies (boulders, overhangs, walls) are closed and reach into the ground. Their centres stay 2 m (at most
+/// a quarter of `extent`) away from the middle, so that a rover can stand there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RandomGround {
+    /// Which of the grounds with these settings.
+    pub seed: u64,
+    /// Approximate number of faces. The height field gets what the features below leave, and at least one
+    /// cell of two faces.
+    pub faces: usize,
+    /// Side of the square that the height field covers, metres.
+    pub extent: f64,
+    /// Added to every vertex, metres. Up to 1e6 m still leaves 1e-10 m of precision.
+    pub offset: DVec3,
+    /// The height field stays within plus or minus this height, metres.
+    pub relief: f64,
+    /// Kinds of ground, 1 to 65535, spread at random over faces and bodies; reflectivities from 0.1 to 0.9.
+    pub materials: u16,
+    /// Closed, irregular rocks of 32 faces.
+    pub boulders: usize,
+    /// By turns closed mushrooms of 64 faces and floating slabs of 12.
+    pub overhangs: usize,
+    /// Closed upright slabs of 12 faces, their sides exactly vertical, 2 mm to 0.2 m thick. Every second one
+    /// is parallel to the axes.
+    pub walls: usize,
+    /// Loose triangles near the ground, up to 3 m long, 1e3 to 1e6 times longer than wide. Far from the
+    /// scene origin the thinnest lose their area when they are rounded to `f32`.
+    pub slivers: usize,
+    /// Copies of other faces, on the same vertices in the same sense, of a random material.
+    pub duplicate_faces: usize,
+    /// By turns a vertex used twice, two vertices in one place, and three on a line.
+    pub zero_area_faces: usize,
+    /// Vertices that no face uses.
+    pub unreferenced_vertices: usize,
+}
+
+/// Faces of a rock, of a mushroom with [`MUSHROOM_SIDES`] sides, of a box.
+const ROCK_FACES: usize = 32;
+const MUSHROOM_FACES: usize = 8 * MUSHROOM_SIDES as usize;
+const BOX_FACES: usize = 12;
+const MUSHROOM_SIDES: u32 = 8;
+
+impl RandomGround {
+    /// A height field of about `faces` faces over a square of side `extent` metres: hills over a third of
+    /// it down to bumps over a 24th, no higher than a fortieth. Nothing else; the ground for benchmarks.
+    pub fn plain(seed: u64, faces: usize, extent: f64) -> Self {
+        Self {
+            seed,
+            faces,
+            extent,
+            offset: DVec3::ZERO,
+            relief: extent / 40.0,
+            materials: 1,
+            boulders: 0,
+            overhangs: 0,
+            walls: 0,
+            slivers: 0,
+            duplicate_faces: 0,
+            zero_area_faces: 0,
+            unreferenced_vertices: 0,
+        }
+    }
+
+    /// Everything at once: of about `faces` faces (from some 250 on) half are height field. The square has a
+    /// side of 24 m, more from 4000 faces on, so that the features do not crowd. No offset.
+    pub fn nasty(seed: u64, faces: usize) -> Self {
+        let extent = 24.0 * (faces as f64 / 4000.0).sqrt().max(1.0);
+        let share = |divisor: usize| (faces / divisor).max(1);
+        Self {
+            relief: 0.8,
+            materials: 5,
+            boulders: share(250),
+            overhangs: share(400).max(2),
+            walls: share(240).max(2),
+            slivers: share(20),
+            duplicate_faces: share(20),
+            zero_area_faces: share(20).max(3),
+            unreferenced_vertices: share(50),
+            ..Self::plain(seed, faces, extent)
+        }
+    }
+
+    /// Builds it.
+    ///
+    /// # Panics
+    /// If `materials` is 0, or `extent` is not a positive, finite number.
+    pub fn build(&self) -> Ground {
+        assert!(self.materials > 0, "a ground needs a material");
+        assert!(self.extent > 0.0 && self.extent.is_finite(), "extent {} m", self.extent);
+        let relief = Relief::new(self.seed, self.extent, self.relief);
+        let mut ground = Ground { materials: self.kinds(), ..Ground::default() };
+        self.add_height_field(&mut ground, &relief);
+        self.add_boulders(&mut ground, &relief);
+        self.add_overhangs(&mut ground, &relief);
+        self.add_walls(&mut ground, &relief);
+        self.add_slivers(&mut ground, &relief);
+        self.add_duplicate_faces(&mut ground);
+        self.add_zero_area_faces(&mut ground, &relief);
+        self.add_unreferenced_vertices(&mut ground, &relief);
+        if self.offset != DVec3::ZERO {
+            for vertex in &mut ground.vertices {
+                *vertex += self.offset;
+            }
+        }
+        ground
+    }
+
+    fn kinds(&self) -> Vec<Material> {
+        let reflectivity = |kind: u16| match self.materials {
+            1 => 0.25,
+            count => 0.1 + 0.8 * f64::from(kind) / f64::from(count - 1),
+        };
+        let kind = |kind| Material { name: format!("ground {kind}"), reflectivity: reflectivity(kind) };
+        (0..self.materials).map(kind).collect()
+    }
+
+    fn draw_material(&self, draws: &mut Draws) -> u16 {
+        draws.below(usize::from(self.materials)) as u16
+    }
+
+    fn add_height_field(&self, ground: &mut Ground, relief: &Relief) {
+        // At most one mushroom more than slabs.
+        let overhangs = self.overhangs.div_ceil(2) * MUSHROOM_FACES + self.overhangs / 2 * BOX_FACES;
+        let features = self.boulders * ROCK_FACES
+            + overhangs
+            + self.walls * BOX_FACES
+            + self.slivers
+            + self.duplicate_faces
+            + self.zero_area_faces;
+        // n x n cells of two faces each.
+        let left = self.faces.saturating_sub(features);
+        let cells = ((left as f64 / 2.0).sqrt() as u32).max(1);
+        let step = self.extent / f64::from(cells);
+        ground.vertices.reserve((cells as usize + 1) * (cells as usize + 1));
+        ground.faces.reserve(left + features);
+        ground.face_materials.reserve(left + features);
+
+        // Corners move by up to a fifth of a cell each way. With shifts of at most j cells a face's area seen
+        // from above is at least ((1 - 2j)^2 - (2j)^2) / 2 = (1 - 4j) / 2 cells: above 0 for j < 1/4, so
+        // that every normal points up. The border stays straight.
+        const JITTER: f64 = 0.2;
+        let mut draws = Draws::new(self.seed, Purpose::Grid);
+        let place = |column: u32, row: u32| {
+            let mut coordinate = |index: u32| {
+                let shift = draws.between(-JITTER, JITTER);
+                let inside = index > 0 && index < cells;
+                step * (f64::from(index) + if inside { shift } else { 0.0 }) - 0.5 * self.extent
+            };
+            let (x, y) = (coordinate(column), coordinate(row));
+            DVec3::new(x, y, relief.at(x, y))
+        };
+        let mut materials = Draws::new(self.seed, Purpose::Materials);
+        let mut diagonals = Draws::new(self.seed, Purpose::Diagonals);
+        ground.height_field(cells, cells, place, || diagonals.coin(), || self.draw_material(&mut materials));
+    }
+
+    /// A place for a body: on the height field, not in the middle.
+    fn draw_site(&self, draws: &mut Draws, relief: &Relief) -> DVec3 {
+        let clear = f64::min(2.0, 0.25 * self.extent);
+        loop {
+            let mut coordinate = || 0.46 * self.extent * draws.between(-1.0, 1.0);
+            let (x, y) = (coordinate(), coordinate());
+            if x * x + y * y > clear * clear {
+                return DVec3::new(x, y, relief.at(x, y));
+            }
+        }
+    }
+
+    /// How large bodies are: 1 on grounds of 20 m and more, less on smaller ones.
+    fn body_scale(&self) -> f64 {
+        f64::min(1.0, self.extent / 20.0)
+    }
+
+    fn add_boulders(&self, ground: &mut Ground, relief: &Relief) {
+        let mut draws = Draws::new(self.seed, Purpose::Boulders);
+        for _ in 0..self.boulders {
+            let mut half_axis = || self.body_scale() * draws.between(0.15, 0.9);
+            let half_axes = DVec3::new(half_axis(), half_axis(), half_axis());
+            let site = self.draw_site(&mut draws, relief);
+            let centre = site + DVec3::new(0.0, 0.0, draws.between(0.0, 0.6) * half_axes.z);
+            let material = self.draw_material(&mut draws);
+            ground.rock(centre, half_axes, &mut draws, material);
+        }
+    }
+
+    fn add_overhangs(&self, ground: &mut Ground, relief: &Relief) {
+        let mut draws = Draws::new(self.seed, Purpose::Overhangs);
+        let scale = self.body_scale();
+        for index in 0..self.overhangs {
+            let site = self.draw_site(&mut draws, relief);
+            let radius = scale * draws.between(0.3, 1.0);
+            let height = scale * draws.between(0.4, 1.3);
+            let material = self.draw_material(&mut draws);
+            if index % 2 == 0 {
+                let foot = site - DVec3::new(0.0, 0.0, 0.2 * height);
+                ground.mushroom(foot, 1.2 * height, radius, MUSHROOM_SIDES, &mut draws, material);
+            } else {
+                // A slab that floats, turned about a random axis by little: its top still looks up.
+                let [u, v] = draw_level_frame(&mut draws);
+                let tilt = DVec3::new(0.0, 0.0, draws.between(-0.4, 0.4));
+                let thickness = DVec3::new(0.0, 0.0, scale * draws.between(0.02, 0.15));
+                let sides = [(u + tilt) * radius, v * (radius * draws.between(0.3, 1.0)), thickness];
+                ground.solid_box(site + DVec3::new(0.0, 0.0, height), sides, material);
+            }
+        }
+    }
+
+    fn add_walls(&self, ground: &mut Ground, relief: &Relief) {
+        let mut draws = Draws::new(self.seed, Purpose::Walls);
+        let scale = self.body_scale();
+        for index in 0..self.walls {
+            let site = self.draw_site(&mut draws, relief);
+            let turned = draw_level_frame(&mut draws);
+            let [u, v] = if index % 2 == 0 { [DVec3::X, DVec3::Y] } else { turned };
+            let half_length = scale * draws.between(0.2, 1.2);
+            let half_thickness = scale * draws.between(0.001, 0.1);
+            let half_height = DVec3::new(0.0, 0.0, scale * draws.between(0.3, 0.9));
+            let material = self.draw_material(&mut draws);
+            ground.solid_box(site, [u * half_length, v * half_thickness, half_height], material);
+        }
+    }
+
+    fn add_slivers(&self, ground: &mut Ground, relief: &Relief) {
+        let mut draws = Draws::new(self.seed, Purpose::Slivers);
+        for _ in 0..self.slivers {
+            let site = self.draw_site(&mut draws, relief);
+            let [along, across] = draw_level_frame(&mut draws);
+            let length = self.body_scale() * draws.between(0.3, 3.0);
+            let aspect = libm::pow(10.0, draws.between(3.0, 6.0));
+            let rise = DVec3::new(0.0, 0.0, draws.between(-0.5, 0.5));
+            let low = site + DVec3::new(0.0, 0.0, draws.between(0.02, 0.4));
+            // The third corner lies anywhere along the long side: needles and caps.
+            let third = low + (along + rise) * (length * draws.unit()) + across * (length / aspect);
+            let corners = [low, low + (along + rise) * length, third].map(|corner| ground.vertex(corner));
+            let material = self.draw_material(&mut draws);
+            ground.face(corners, material);
+        }
+    }
+
+    fn add_duplicate_faces(&self, ground: &mut Ground) {
+        let mut draws = Draws::new(self.seed, Purpose::DuplicateFaces);
+        let originals = ground.faces.len();
+        for _ in 0..self.duplicate_faces {
+            let mut corners = ground.faces[draws.below(originals)];
+            corners.rotate_left(draws.below(3));
+            let material = self.draw_material(&mut draws);
+            ground.face(corners, material);
+        }
+    }
+
+    fn add_zero_area_faces(&self, ground: &mut Ground, relief: &Relief) {
+        let mut draws = Draws::new(self.seed, Purpose::ZeroAreaFaces);
+        for index in 0..self.zero_area_faces {
+            let site = self.draw_site(&mut draws, relief);
+            let a = ground.vertex(site);
+            let b = ground.vertex(site + DVec3::new(draws.between(0.1, 1.0), 0.0, 0.0));
+            let c = match index % 3 {
+                0 => a,
+                1 => ground.vertex(site),
+                // y and z are the very same numbers, so the three stay on a line through any rounding.
+                _ => ground.vertex(site + DVec3::new(draws.between(1.0, 2.0), 0.0, 0.0)),
+            };
+            let material = self.draw_material(&mut draws);
+            ground.face([a, b, c], material);
+        }
+    }
+
+    fn add_unreferenced_vertices(&self, ground: &mut Ground, relief: &Relief) {
+        let mut draws = Draws::new(self.seed, Purpose::UnreferencedVertices);
+        for _ in 0..self.unreferenced_vertices {
+            let site = self.draw_site(&mut draws, relief);
+            ground.vertex(site + DVec3::new(0.0, 0.0, draws.between(-1.0, 1.0)));
+        }
+    }
+}
+
+/// Two level unit vectors at right angles, counter-clockwise from above; neither is parallel to an axis.
+fn draw_level_frame(draws: &mut Draws) -> [DVec3; 2] {
+    let (sin, cos) = libm::sincos(draws.between(0.0, std::f64::consts::TAU));
+    [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0)]
+}
+
+/// Value noise in four octaves: random heights on a lattice, each octave twice as fine and half as high,
+/// blended with 3t^2 - 2t^3. (Perlin's lattice noise; polynomials only.)
+struct Relief {
+    extent: f64,
+    amplitude: f64,
+    /// Lattice heights in [-1, 1), row by row, of (cells + 1)^2 nodes.
+    octaves: Vec<(usize, Vec<f64>)>,
+}
+
+impl Relief {
+    /// Cells per side of the coarsest octave.
+    const CELLS: usize = 3;
+    const OCTAVES: usize = 4;
+
+    fn new(seed: u64, extent: f64, relief: f64) -> Self {
+        let mut draws = Draws::new(seed, Purpose::Relief);
+        let octave = |octave| {
+            let cells = Self::CELLS << octave;
+            (cells, (0..(cells + 1) * (cells + 1)).map(|_| draws.between(-1.0, 1.0)).collect())
+        };
+        let octaves = (0..Self::OCTAVES).map(octave).collect();
+        // The octaves' heights are 1, 1/2, 1/4, ...: together below 2.
+        Self { extent, amplitude: 0.5 * relief, octaves }
+    }
+
+    /// Height at a point of the square, before the offset, metres. Outside, that of the nearest border.
+    fn at(&self, x: f64, y: f64) -> f64 {
+        let [u, v] = [x, y].map(|coordinate| (coordinate / self.extent + 0.5).clamp(0.0, 1.0));
+        let mut height = 0.0;
+        let mut weight = self.amplitude;
+        for (cells, nodes) in &self.octaves {
+            let locate = |share: f64| {
+                let place = share * *cells as f64;
+                let cell = (place as usize).min(cells - 1);
+                let t = place - cell as f64;
+                (cell, t * t * (3.0 - 2.0 * t))
+            };
+            let ((i, s), (j, t)) = (locate(u), locate(v));
+            let node = |i: usize, j: usize| nodes[j * (cells + 1) + i];
+            let near = node(i, j) + (node(i + 1, j) - node(i, j)) * s;
+            let far = node(i, j + 1) + (node(i + 1, j + 1) - node(i, j + 1)) * s;
+            height += weight * (near + (far - near) * t);
+            weight *= 0.5;
+        }
+        height
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::ground::tests::{assert_closed_and_outward, normal};
+    use crate::height_at;
+
+    #[test]
+    fn plain_ground_has_the_size_asked_for_and_looks_up() {
+        for faces in [2, 50, 2_000, 200_000] {
+            let plain = RandomGround::plain(11, faces, 40.0);
+            let ground = plain.build();
+            // n x n cells for the largest n that fits: fewer by at most 2 (2n + 1).
+            let cells = (faces as f64 / 2.0).sqrt() as usize;
+            assert_eq!(ground.faces.len(), 2 * cells * cells);
+            assert!(ground.faces.iter().all(|&face| normal(&ground, face).z > 0.0));
+            let on_border = |c: f64| c.abs() <= 20.0;
+            assert!(ground.vertices.iter().all(|v| on_border(v.x) && on_border(v.y) && v.z.abs() <= 1.0));
+            assert_eq!(ground.into_mesh().unwrap().zero_area_faces(), 0);
+        }
+    }
+
+    #[test]
+    fn nasty_ground_has_about_the_size_asked_for() {
+        for faces in [1_000, 10_000, 100_000] {
+            let count = RandomGround::nasty(4, faces).build().faces.len() as f64;
+            assert!((count / faces as f64 - 1.0).abs() < 0.06, "{count} of {faces}");
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
+        let build = |seed| RandomGround::nasty(seed, 1_500).build();
+        assert_eq!(build(1), build(1));
+        assert_ne!(build(1).vertices, build(2).vertices);
+        // Features have streams of their own: without walls the rest stays put.
+        let with = RandomGround::nasty(1, 1_500);
+        let without = RandomGround { walls: 0, faces: with.faces - BOX_FACES * with.walls, ..with.clone() };
+        let (with, without) = (with.build(), without.build());
+        assert!(without.vertices.iter().all(|v| with.vertices.contains(v)));
+    }
+
+    #[test]
+    fn the_bytes_are_these() {
+        // A fingerprint (FNV-1a, 64 bits) of all coordinates: changes with any change of what a seed means.
+        let ground = RandomGround::nasty(2024, 3_000).build();
+        let mut digest = 0xcbf2_9ce4_8422_2325_u64;
+        for byte in ground.vertices.iter().flat_map(|v| v.to_array()).flat_map(f64::to_le_bytes) {
+            digest = (digest ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+        assert_eq!(format!("{digest:016x}"), "1355a55db8eff14d");
+    }
+
+    #[test]
+    fn nasty_ground_holds_what_it_promises() {
+        let nasty = RandomGround::nasty(5, 5_000);
+        let ground = nasty.build();
+        let features = nasty.slivers + nasty.duplicate_faces + nasty.zero_area_faces;
+        let bodies_end = ground.faces.len() - features;
+        let overhang_faces = nasty.overhangs / 2 * (MUSHROOM_FACES + BOX_FACES);
+        let body_faces = nasty.boulders * ROCK_FACES + overhang_faces + nasty.walls * BOX_FACES;
+        assert_eq!(nasty.overhangs % 2, 0);
+
+        // The height field comes first, then closed bodies.
+        let mut at = bodies_end - body_faces;
+        assert!(ground.faces[..at].iter().all(|&face| normal(&ground, face).z > 0.0));
+        let overhangs = (0..nasty.overhangs).map(|i| if i % 2 == 0 { MUSHROOM_FACES } else { BOX_FACES });
+        let bodies = std::iter::repeat_n(ROCK_FACES, nasty.boulders)
+            .chain(overhangs)
+            .chain(std::iter::repeat_n(BOX_FACES, nasty.walls));
+        for faces in bodies {
+            assert_closed_and_outward(&ground, at..at + faces);
+            at += faces;
+        }
+        assert_eq!(at, bodies_end);
+
+        // Walls stand upright: eight of each one's twelve normals are exactly level.
+        let walls = &ground.faces[bodies_end - nasty.walls * BOX_FACES..bodies_end];
+        let level = walls.iter().filter(|&&face| normal(&ground, face).z == 0.0).count();
+        assert_eq!(level, 8 * nasty.walls);
+
+        // Slivers: the longest side squared over twice the area is length / width.
+        for &face in &ground.faces[bodies_end..bodies_end + nasty.slivers] {
+            let [a, b, _] = face.map(|v| ground.vertices[v as usize]);
+            let aspect = (b - a).length_squared() / normal(&ground, face).length();
+            assert!((0.99e3..1.2e6).contains(&aspect), "{aspect}");
+        }
+
+        // Every duplicate has its like among the faces before.
+        let sorted = |face: [u32; 3]| {
+            let mut face = face;
+            face.sort_unstable();
+            face
+        };
+        let duplicates = bodies_end + nasty.slivers;
+        for &face in &ground.faces[duplicates..duplicates + nasty.duplicate_faces] {
+            assert!(ground.faces[..duplicates].iter().any(|&other| sorted(other) == sorted(face)));
+        }
+        assert_eq!(ground.materials.len(), 5);
+        let mesh = ground.into_mesh().unwrap();
+        assert!(mesh.zero_area_faces() >= nasty.zero_area_faces);
+    }
+
+    #[test]
+    fn an_overhang_counts_with_its_upper_side() {
+        // One mushroom, found by its top, the last of its vertices; the ground below is lower.
+        let one = RandomGround { overhangs: 1, ..RandomGround::plain(8, 500, 20.0) };
+        let ground = one.build();
+        let top = *ground.vertices.last().unwrap();
+        let below = RandomGround { overhangs: 0, ..one }.build().into_mesh().unwrap();
+        let mesh = ground.into_mesh().unwrap();
+        let z = height_at(&mesh, top.x, top.y).unwrap();
+        assert!((z - top.z).abs() < 1e-5, "{z} against {top}");
+        assert!(height_at(&below, top.x, top.y).unwrap() < z - 0.3);
+    }
+
+    #[test]
+    fn offsets_of_a_million_metres_keep_sub_millimetre_precision() {
+        let near = RandomGround::nasty(6, 1_000);
+        let offset = DVec3::new(1e6, -1e6, 1e6);
+        let far = RandomGround { offset, ..near.clone() };
+        let (near, far) = (near.build(), far.build().into_mesh().unwrap());
+        for (v, stored) in near.vertices.iter().zip(far.vertices()) {
+            let [x, y, z] = stored.map(f64::from);
+            // f32 offsets of up to 14 m are rounded by at most 2^-21 m, the sum in f64 by 2^-34 m.
+            let error = (far.origin() + DVec3::new(x, y, z) - offset - *v).abs().max_element();
+            assert!(error < 1e-6, "{error}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..Default::default() })]
+
+        #[test]
+        fn every_random_ground_is_a_mesh(seed: u64, faces in 0_usize..3_000, far in -1e6..1e6) {
+            let ground = RandomGround { offset: DVec3::new(far, -far, far), ..RandomGround::nasty(seed, faces) };
+            let mesh = ground.build().into_mesh();
+            prop_assert!(mesh.is_ok(), "{:?}", mesh.err());
+            // The rover's place is free of bodies, and on the ground.
+            let z = height_at(&mesh.unwrap(), far, -far);
+            prop_assert!(z.is_some_and(|z| (z - far).abs() <= ground.relief + 3.0));
+        }
+    }
+}
