@@ -63,10 +63,21 @@ impl Plane {
 }
 
 /// n and d of a face, n along the scene's axes.
+///
+/// Reckoned from the corner of the lowest position, so that faces of the same three corners tie exactly,
+/// whichever corner their lists begin with.
 #[inline]
-pub(crate) fn scene_plane([a, b, c]: &[DVec3; 3], into_sensor: &IntoSensor) -> (DVec3, f64) {
-    let n = (*b - *a).cross(*c - *a);
-    (n, n.dot(into_sensor.relative(*a)))
+pub(crate) fn scene_plane(corners: &[DVec3; 3], into_sensor: &IntoSensor) -> (DVec3, f64) {
+    let lowest = (1..3).fold(0, |lowest, k| if is_lower(&corners[k], &corners[lowest]) { k } else { lowest });
+    let [a, b, c] = [corners[lowest], corners[(lowest + 1) % 3], corners[(lowest + 2) % 3]];
+    let n = (b - a).cross(c - a);
+    (n, n.dot(into_sensor.relative(a)))
+}
+
+/// Lexicographic order of positions.
+#[inline]
+fn is_lower(p: &DVec3, q: &DVec3) -> bool {
+    (p.x, p.y, p.z) < (q.x, q.y, q.z)
 }
 
 /// `slope x + start`.

@@ -64,7 +64,7 @@ impl Hierarchy {
         let mut boxed: Vec<(u32, Triangle)> = Vec::with_capacity(mesh.faces().len());
         for (index, face) in mesh.faces().iter().enumerate() {
             let vertices = face.map(|v| mesh.vertices()[v as usize]);
-            let triangle = Triangle { vertices, face: FaceId(index as u32) };
+            let triangle = Triangle::new(vertices, FaceId(index as u32));
             if triangle.normal() == glam::DVec3::ZERO {
                 continue;
             }

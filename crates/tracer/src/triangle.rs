@@ -17,7 +17,7 @@ use raypencil_scene::FaceId;
 
 use crate::rays::TracedRay;
 
-/// A face as stored beside the tree: its vertices, unrounded, and its name.
+/// A face as stored beside the tree: its corners, unrounded, and its name.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Triangle {
     pub(crate) vertices: [[f32; 3]; 3],
@@ -25,6 +25,19 @@ pub(crate) struct Triangle {
 }
 
 impl Triangle {
+    /// Starts the cycle at the lowest position, so that two faces of the same corners get the same bits and
+    /// tie exactly, wherever their cycles start in the file.
+    pub(crate) fn new([a, b, c]: [[f32; 3]; 3], face: FaceId) -> Self {
+        let vertices = if a <= b && a <= c {
+            [a, b, c]
+        } else if b <= c {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        };
+        Self { vertices, face }
+    }
+
     /// n = (b - a) x (c - a), not a unit, scene frame.
     pub(crate) fn normal(&self) -> DVec3 {
         let [a, b, c] = self.vertices.map(widen);

@@ -1,0 +1,110 @@
+//! The command `raypencil`: arguments in, one screen and an exit code out.
+//!
+//! Exit codes are those of `diff`: 0 all agree, 1 a defect or difference, 2 trouble.
+
+mod args;
+mod console;
+mod probe;
+mod render;
+mod subject;
+mod validate;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
+use raypencil_harness::{NoSuchRay, OutputError};
+use raypencil_scene::Renderer;
+use raypencil_scene_io::SceneIoError;
+use thiserror::Error;
+
+use args::{Arguments, Command};
+
+/// Where the command finds renderers by name.
+pub type Registry = dyn Fn(&str) -> Option<Box<dyn Renderer>>;
+
+/// What a command that ran to its end found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// All agree, or there was nothing to disagree about.
+    Fine,
+    /// A defect or a difference.
+    Differs,
+}
+
+/// Why a command could not do its work.
+#[derive(Debug, Error, Diagnostic)]
+enum Trouble {
+    /// A file or a scene.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneIoError),
+
+    /// The output folder.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+
+    /// A ray that the scene does not have.
+    #[error(transparent)]
+    Ray(#[from] NoSuchRay),
+
+    /// Words that clap cannot judge.
+    #[error("{0}")]
+    Usage(String),
+}
+
+/// Runs the command with `arguments` (the program's name first), taking renderers from `registry`.
+pub fn main_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // `--help` and `--version` are no trouble. Printing may fail only on a closed pipe.
+            let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
+            let _ = error.print();
+            return ExitCode::from(if asked { 0 } else { 2 });
+        }
+    };
+    match run(arguments, registry) {
+        Ok(Outcome::Fine) => ExitCode::SUCCESS,
+        Ok(Outcome::Differs) => ExitCode::from(1),
+        Err(trouble) => {
+            console::complain(&render_trouble(&trouble));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
+    if let Some(threads) = arguments.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads as usize)
+            .build()
+            .map_err(|error| Trouble::Usage(format!("--threads {threads}: {error}")))?
+            .install(|| dispatch(&arguments, registry))
+    } else {
+        dispatch(&arguments, registry)
+    }
+}
+
+fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
+    match &arguments.command {
+        None => validate::validate(&args::Validate::pyramids(), arguments.json, registry),
+        Some(Command::Validate(command)) => validate::validate(command, arguments.json, registry),
+        Some(Command::Render(command)) => render::render(command, arguments.json, registry),
+        Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),
+    }
+}
+
+/// One clear message: what is wrong, where, what was expected; with the line and a caret where there is one.
+fn render_trouble(trouble: &Trouble) -> String {
+    let mut text = String::new();
+    let theme =
+        if console::in_colour() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let rendered = GraphicalReportHandler::new_themed(theme).with_links(false).render_report(&mut text, trouble);
+    if rendered.is_err() {
+        text = format!("{trouble}\n");
+    }
+    text
+}

@@ -1,0 +1,30 @@
+//! `raypencil validate`: render, compare, report.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_harness::{one_screen, summary_json, validate as run, write_validation};
+
+use crate::args::Validate;
+use crate::console::{Spinner, say};
+use crate::subject::{renderers, subject};
+use crate::{Outcome, Registry, Trouble};
+
+pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
+    let spinner = Spinner::new();
+    let renderers = renderers(&command.with, 2, registry)?;
+    let subject = subject(&command.scene, &spinner)?;
+    let folder: PathBuf = match &command.output {
+        Some(folder) => folder.clone(),
+        None => Path::new("out").join(&subject.name),
+    };
+    let renderers: Vec<_> = renderers.iter().map(AsRef::as_ref).collect();
+    let validation = run(subject, &renderers, &spinner);
+    write_validation(&validation, &folder, &spinner)?;
+    drop(spinner);
+    if json {
+        say(&summary_json(&validation));
+    } else {
+        say(&one_screen(&validation, Some(&folder)));
+    }
+    Ok(if validation.passes() { Outcome::Fine } else { Outcome::Differs })
+}
