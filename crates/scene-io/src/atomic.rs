@@ -63,7 +63,8 @@ mod tests {
     #[test]
     fn a_missing_folder_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let message = write_atomically(folder.path().join("no/such.txt"), |_| Ok(())).unwrap_err().to_string();
+        let message =
+            write_atomically(folder.path().join("no/such.txt"), |_| Ok(())).unwrap_err().to_string();
         assert!(message.contains("such.txt: cannot write"), "{message}");
     }
 

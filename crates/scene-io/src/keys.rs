@@ -2,8 +2,8 @@
 //!
 //! Structs of options, never tagged enums: those lose the place of an error, and with it the caret.
 
-use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::Deserialize;
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use toml::Spanned;
 
 /// A value that remembers its place in the file, if the key is given.

@@ -24,6 +24,7 @@ mod exr_map;
 mod gltf_mesh;
 mod keys;
 mod load;
+mod parse;
 mod plan;
 mod resolve;
 

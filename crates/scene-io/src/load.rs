@@ -8,11 +8,15 @@ use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
 use crate::digest::{self, Sha};
 use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY};
-use crate::plan::{self, Plan, Source, Terrain};
+use crate::parse::{self, Source};
+use crate::plan::{self, Plan, Terrain};
 use crate::{SceneIoError, bytes, resolve, scene_sha256};
 
 /// A scene file larger than this is none: 1 MiB.
 const LARGEST_TOML: u64 = 1 << 20;
+
+/// Side of a plain generated ground, metres: the default sensors see 20 m, to every side.
+const PLAIN_EXTENT: f64 = 40.0;
 
 /// What a scene is made from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -113,7 +117,8 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish(&source, plan, parts, Some(mesh), overrides)
         }
         SceneSource::Toml(path) => {
-            let bytes = bytes::read_file(path, LARGEST_TOML).map_err(|e| SceneIoError::io(path, "read", e))?;
+            let bytes =
+                bytes::read_file(path, LARGEST_TOML).map_err(|e| SceneIoError::io(path, "read", e))?;
             let text = String::from_utf8(bytes).map_err(|error| {
                 let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
                 SceneIoError::io(path, "read", error)
@@ -129,7 +134,7 @@ fn load_toml(
     text: &str,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
-    let plan = plan::parse(path, text)?;
+    let plan = parse::parse(path, text)?;
     let mut parts = vec![digest::sha(text.as_bytes())];
     let places = Source { file: path, text };
     let mesh = match &plan.terrain {
@@ -137,12 +142,17 @@ fn load_toml(
             let terrain = path.parent().unwrap_or(Path::new("")).join(file);
             let known = |end: &str| terrain.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
             if !(known("glb") || known("gltf")) {
-                let message =
-                    format!("`terrain.file` is \"{}\"; expected a file that ends in .glb or .gltf", file.display());
+                let message = format!(
+                    "`terrain.file` is \"{}\"; expected a file that ends in .glb or .gltf",
+                    file.display()
+                );
                 return Err(places.error(plan.terrain_span.clone(), message));
             }
             if !terrain.is_file() {
-                let message = format!("`terrain.file`: there is no file \"{}\"; expected a path relative to the scene file", terrain.display());
+                let message = format!(
+                    "`terrain.file`: there is no file \"{}\"; expected a path relative to the scene file",
+                    terrain.display()
+                );
                 return Err(places.error(plan.terrain_span.clone(), message));
             }
             let (mesh, more) = gltf_mesh::read(&terrain, plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY))?;
@@ -214,9 +224,10 @@ fn make(plan: &Plan) -> Result<Mesh, SceneError> {
         &Terrain::Generate { nasty, seed, faces, extent, offset } => {
             let mut random = match nasty {
                 true => RandomGround::nasty(seed, faces),
-                false => RandomGround::plain(seed, faces, extent),
+                false => RandomGround::plain(seed, faces, extent.unwrap_or(PLAIN_EXTENT)),
             };
-            (random.extent, random.offset) = (extent, offset);
+            random.offset = offset;
+            random.extent = extent.unwrap_or(random.extent);
             let mut ground = random.build();
             // A reflectivity in the file is for the whole ground, else each kind keeps its own.
             if let Some(reflectivity) = plan.reflectivity {
@@ -234,10 +245,10 @@ fn make(plan: &Plan) -> Result<Mesh, SceneError> {
 fn check(overrides: &Overrides) -> Result<(), SceneIoError> {
     let [x, y] = overrides.at.map_or([None; 2], |at| at.map(Some));
     let all = [
-        ("at x", x, plan::GLOBAL_M, "metres"),
-        ("at y", y, plan::GLOBAL_M, "metres"),
-        ("heading", overrides.heading_deg, plan::TURN_DEG, "degrees"),
-        ("fan", overrides.fan_deg, plan::FAN_DEG, "degrees"),
+        ("at x", x, parse::GLOBAL_M, "metres"),
+        ("at y", y, parse::GLOBAL_M, "metres"),
+        ("heading", overrides.heading_deg, parse::TURN_DEG, "degrees"),
+        ("fan", overrides.fan_deg, parse::FAN_DEG, "degrees"),
     ];
     for (name, value, range, unit) in all {
         if let Some(value) = value.filter(|value| !range.contains(value)) {

@@ -1,15 +1,10 @@
-//! A scene as numbers, checked one by one, before any terrain is loaded; and the default rig.
+//! A scene as numbers, before any terrain is loaded; and the default rig.
 
-use std::ops::{Range, RangeInclusive};
-use std::path::{Path, PathBuf};
+use std::ops::Range;
+use std::path::PathBuf;
 
 use glam::DVec3;
 use raypencil_scene::{Beam, Camera, FluxModel, Profile};
-use toml::Spanned;
-
-use crate::gltf_mesh::DEFAULT_REFLECTIVITY;
-use crate::keys::{BeamKeys, CameraKeys, GenerateKeys, Key, SceneKeys, TerrainKeys, VehicleKeys, VersionKey};
-use crate::{SceneIoError, TomlProblem};
 
 /// Everything a scene needs but its mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +52,8 @@ pub(crate) enum Terrain {
         nasty: bool,
         seed: u64,
         faces: usize,
-        extent: f64,
+        /// `None`: the generator's own.
+        extent: Option<f64>,
         offset: DVec3,
     },
 }
@@ -94,7 +90,7 @@ pub(crate) fn default_rig(terrain: Terrain) -> Plan {
 }
 
 /// The default beam of that index. The second is higher and flatter; any other is as the first.
-fn default_beam(index: usize) -> (Mount, Beam) {
+pub(crate) fn default_beam(index: usize) -> (Mount, Beam) {
     let mount = match index {
         1 => Mount::new(DVec3::new(0.3, 0.0, 2.0), 22.0),
         _ => Mount::new(DVec3::new(0.3, 0.0, 1.8), 31.0),
@@ -114,349 +110,11 @@ fn default_beam(index: usize) -> (Mount, Beam) {
     (mount, beam)
 }
 
-const DEFAULT_FAN_DEG: f64 = 60.0;
-
-/// A fan of light, from a thread to just below a half plane, degrees.
-pub(crate) const FAN_DEG: RangeInclusive<f64> = 0.001..=179.9;
-/// Any turn, either way, degrees.
-pub(crate) const TURN_DEG: RangeInclusive<f64> = -360.0..=360.0;
-/// Global coordinates, metres: a scene origin's own limit.
-pub(crate) const GLOBAL_M: RangeInclusive<f64> = -1e12..=1e12;
-/// Coordinates of a sensor on the vehicle, metres.
-const MOUNT_M: RangeInclusive<f64> = -1e3..=1e3;
-/// The longest range of a sensor, metres.
-const MAX_RANGE_M: RangeInclusive<f64> = 1e-3..=1e7;
-/// Columns or rows of a sensor, and all its cells: 2^20 and 2^26, the limits of the `scene` crate.
-const SIDE: RangeInclusive<i64> = 1..=1 << 20;
-const MOST_CELLS: u64 = 1 << 26;
-/// Faces of a generated ground: a gigabyte or so.
-const GENERATED_FACES: RangeInclusive<i64> = 1..=1 << 24;
+/// The default fan, degrees.
+pub(crate) const DEFAULT_FAN_DEG: f64 = 60.0;
 
 impl Mount {
     fn new(position: DVec3, pitch_down_deg: f64) -> Self {
         Self { position, pitch_down_deg, yaw_left_deg: 0.0, roll_right_deg: 0.0 }
-    }
-}
-
-/// Reads a scene TOML; `file` is for the messages.
-pub(crate) fn parse(file: &Path, text: &str) -> Result<Plan, SceneIoError> {
-    let source = Source { file, text };
-    source.version()?;
-    let keys: SceneKeys = source.deserialize()?;
-    source.plan(keys)
-}
-
-/// The text of a scene file, to which every error points.
-pub(crate) struct Source<'a> {
-    pub file: &'a Path,
-    pub text: &'a str,
-}
-
-impl Source<'_> {
-    /// An error at some bytes of the file.
-    pub(crate) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneIoError {
-        SceneIoError::Toml(Box::new(TomlProblem::new(self.file, self.text, span, message)))
-    }
-
-    fn deserialize<T: serde::de::DeserializeOwned>(&self) -> Result<T, SceneIoError> {
-        toml::from_str(self.text)
-            .map_err(|error| self.error(error.span().unwrap_or(0..0), error.message().trim_end()))
-    }
-
-    fn version(&self) -> Result<(), SceneIoError> {
-        let wanted = "`version = 1`, the only version there is";
-        match self.deserialize::<VersionKey>()?.version {
-            None => Err(self.error(0..0, format!("`version` is missing; expected {wanted}"))),
-            Some(version) if version.get_ref().as_integer() == Some(1) => Ok(()),
-            Some(version) => {
-                let message = format!("`version` is {}; expected {wanted}", version.get_ref());
-                Err(self.error(version.span(), message))
-            }
-        }
-    }
-
-    fn plan(&self, keys: SceneKeys) -> Result<Plan, SceneIoError> {
-        let mut plan = default_rig(Terrain::Builtin("pyramids".to_string()));
-        self.vehicle(keys.vehicle, &mut plan)?;
-        self.camera(keys.camera, &mut plan.camera)?;
-        if let Some(beams) = keys.beam {
-            let build = |(index, keys)| self.beam(index, keys);
-            plan.beams = beams.into_iter().enumerate().map(build).collect::<Result<_, _>>()?;
-        }
-        if let Some(terrain) = keys.terrain {
-            plan.terrain_span = terrain.span();
-            self.terrain(terrain, &mut plan)?;
-        }
-        let attenuation = keys.atmosphere.attenuation_per_m;
-        self.number(attenuation, "atmosphere.attenuation_per_m", &mut plan.attenuation, 0.0..=1e3, "per metre")?;
-        if let Some(model) = keys.flux.model {
-            plan.flux_model =
-                self.word(&model, "flux.model", &[("radiometric", FluxModel::Radiometric), ("eq1", FluxModel::Eq1)])?;
-        }
-        Ok(plan)
-    }
-
-    fn vehicle(&self, keys: VehicleKeys, plan: &mut Plan) -> Result<(), SceneIoError> {
-        let vehicle = &mut plan.vehicle;
-        if let Some(position) = keys.position_m {
-            plan.position_span = position.span();
-            let place = "vehicle.position_m";
-            match *self.list(&position, place, &[2, 3], GLOBAL_M, "metres")? {
-                [x, y] => vehicle.position = [x, y],
-                [x, y, z] => (vehicle.position, vehicle.height) = ([x, y], Some(z)),
-                _ => unreachable!("two or three numbers"),
-            }
-        }
-        self.number(keys.heading_deg, "vehicle.heading_deg", &mut vehicle.heading_deg, TURN_DEG, "degrees")?;
-        let pitch = &mut vehicle.pitch_down_deg;
-        self.number(keys.pitch_down_deg, "vehicle.pitch_down_deg", pitch, TURN_DEG, "degrees")?;
-        let roll = &mut vehicle.roll_right_deg;
-        self.number(keys.roll_right_deg, "vehicle.roll_right_deg", roll, TURN_DEG, "degrees")
-    }
-
-    /// The keys that a camera and a beam share.
-    fn mount(&self, sensor: &str, keys: [Key<f64>; 3], position: Key<Vec<f64>>, mount: &mut Mount) -> Result<(), SceneIoError> {
-        if let Some(position) = position {
-            let place = format!("{sensor}.position_m");
-            mount.position = DVec3::from_slice(self.list(&position, &place, &[3], MOUNT_M, "metres")?);
-        }
-        let [pitch, yaw, roll] = keys;
-        self.number(pitch, &format!("{sensor}.pitch_down_deg"), &mut mount.pitch_down_deg, TURN_DEG, "degrees")?;
-        self.number(yaw, &format!("{sensor}.yaw_left_deg"), &mut mount.yaw_left_deg, TURN_DEG, "degrees")?;
-        self.number(roll, &format!("{sensor}.roll_right_deg"), &mut mount.roll_right_deg, TURN_DEG, "degrees")
-    }
-
-    fn camera(&self, keys: CameraKeys, (mount, camera): &mut (Mount, Camera)) -> Result<(), SceneIoError> {
-        let turns = [keys.pitch_down_deg, keys.yaw_left_deg, keys.roll_right_deg];
-        self.mount("camera", turns, keys.position_m, mount)?;
-        let sides = [("width_px", keys.width_px), ("height_px", keys.height_px)];
-        [camera.width, camera.height] = self.cells("camera", sides, [camera.width, camera.height], "pixels")?;
-        if let Some(pitch) = keys.pixel_pitch_um {
-            for value in pitch.get_ref().0 {
-                self.check(value, pitch.span(), "camera.pixel_pitch_um", 0.01..=1e5, "micrometres")?;
-            }
-            camera.pixel_pitch = pitch.get_ref().0.map(|um| um / 1e6);
-        }
-        camera.focal_length =
-            self.scaled(keys.focal_length_mm, "camera.focal_length_mm", camera.focal_length, 0.01..=1e5, "millimetres", 1e3)?;
-        camera.aperture =
-            self.scaled(keys.aperture_mm, "camera.aperture_mm", camera.aperture, 1e-3..=1e4, "millimetres", 1e3)?;
-        // The middle of the image, whatever its size.
-        camera.principal_point = [camera.width, camera.height].map(|side| 0.5 * f64::from(side));
-        if let Some(point) = keys.principal_point_px {
-            let numbers = self.list(&point, "camera.principal_point_px", &[2], -1e6..=1e6, "pixels")?;
-            camera.principal_point = [numbers[0], numbers[1]];
-        }
-        self.number(keys.max_range_m, "camera.max_range_m", &mut camera.max_range, MAX_RANGE_M, "metres")
-    }
-
-    fn beam(&self, index: usize, keys: BeamKeys) -> Result<(Mount, Beam), SceneIoError> {
-        let (mut mount, mut beam) = default_beam(index);
-        let name = format!("beam {index}");
-        let key = |key: &str| format!("{name}.{key}");
-        let turns = [keys.pitch_down_deg, keys.yaw_left_deg, keys.roll_right_deg];
-        self.mount(&name, turns, keys.position_m, &mut mount)?;
-        let mut fan_deg = DEFAULT_FAN_DEG;
-        self.number(keys.fan_deg, &key("fan_deg"), &mut fan_deg, FAN_DEG, "degrees")?;
-        let mm = "millimetres";
-        beam.thickness = self.scaled(keys.thickness_mm, &key("thickness_mm"), beam.thickness, 1e-3..=1e5, mm, 1e3)?;
-        let distance = &key("grid_distance_mm");
-        beam.grid_distance = self.scaled(keys.grid_distance_mm, distance, beam.grid_distance, 0.1..=1e5, mm, 1e3)?;
-        beam.half_width = Beam::half_width_of(beam.grid_distance, fan_deg.to_radians());
-        let sides = [("columns", keys.columns), ("rows", keys.rows)];
-        [beam.columns, beam.rows] = self.cells(&name, sides, [beam.columns, beam.rows], "pencils")?;
-        self.number(keys.power_w, &key("power_w"), &mut beam.power, 0.0..=1e6, "watts")?;
-        let wavelength = &key("wavelength_nm");
-        beam.wavelength = self.scaled(keys.wavelength_nm, wavelength, beam.wavelength, 10.0..=1e6, "nanometres", 1e9)?;
-        self.number(keys.max_range_m, &key("max_range_m"), &mut beam.max_range, MAX_RANGE_M, "metres")?;
-        beam.profile = self.profile(&name, keys.profile, keys.gaussian_half_width_deg)?;
-        Ok((mount, beam))
-    }
-
-    /// `profile` and `gaussian_half_width_deg`, which is there exactly when the profile is Gaussian.
-    fn profile(&self, beam: &str, profile: Key<String>, width: Key<f64>) -> Result<Profile, SceneIoError> {
-        let (name, width_name) = (format!("{beam}.profile"), format!("{beam}.gaussian_half_width_deg"));
-        let paper = || Spanned::new(0..0, "paper".to_string());
-        let profile = profile.unwrap_or_else(paper);
-        // The Gaussian's width is filled in below.
-        let gaussian = Profile::Gaussian { half_width: 0.0 };
-        let words = [("paper", Profile::Paper), ("uniform_angle", Profile::UniformAngle), ("gaussian", gaussian)];
-        match (self.word(&profile, &name, &words)?, width) {
-            (Profile::Gaussian { .. }, Some(width)) => {
-                self.check(*width.get_ref(), width.span(), &width_name, 1e-3..=1e4, "degrees")?;
-                Ok(Profile::Gaussian { half_width: width.get_ref().to_radians() })
-            }
-            (Profile::Gaussian { .. }, None) => {
-                let message = format!("`{name}` is \"gaussian\" without a width; expected `gaussian_half_width_deg` too");
-                Err(self.error(profile.span(), message))
-            }
-            (other, None) => Ok(other),
-            (_, Some(width)) => {
-                let message =
-                    format!("`{width_name}` is given; expected it only with profile = \"gaussian\", not \"{}\"", profile.get_ref());
-                Err(self.error(width.span(), message))
-            }
-        }
-    }
-
-    fn terrain(&self, terrain: Spanned<TerrainKeys>, plan: &mut Plan) -> Result<(), SceneIoError> {
-        let whole = terrain.span();
-        let keys = terrain.into_inner();
-        let mut reflectivity = DEFAULT_REFLECTIVITY;
-        if let Some(given) = keys.reflectivity {
-            self.number(Some(given), "terrain.reflectivity", &mut reflectivity, 0.0..=1.0, "")?;
-            plan.reflectivity = Some(reflectivity);
-        }
-        let one = "exactly one of `builtin`, `file` and `generate`";
-        plan.terrain = match (keys.builtin, keys.file, keys.generate) {
-            (Some(name), None, None) => {
-                let names: Vec<_> = raypencil_terrain::BUILTIN_NAMES.iter().map(|name| (*name, *name)).collect();
-                Terrain::Builtin(self.word(&name, "terrain.builtin", &names)?.to_string())
-            }
-            (None, Some(file), None) => {
-                plan.terrain_span = file.span();
-                Terrain::File(PathBuf::from(file.into_inner()))
-            }
-            (None, None, Some(generate)) => self.generate(generate.into_inner())?,
-            (None, None, None) => {
-                return Err(self.error(whole, format!("`terrain` has no ground; expected {one}")));
-            }
-            // The later of the two is the one too many.
-            (builtin, file, generate) => {
-                let named = [
-                    ("builtin", builtin.map(|key| key.span())),
-                    ("file", file.map(|key| key.span())),
-                    ("generate", generate.map(|key| key.span())),
-                ];
-                let given = named.into_iter().filter_map(|(name, span)| Some((span?, name)));
-                let (span, last) = given.max_by_key(|(span, _)| span.start).unwrap_or((whole, "terrain"));
-                return Err(self.error(span, format!("`terrain.{last}` is one ground too many; expected {one}")));
-            }
-        };
-        Ok(())
-    }
-
-    fn generate(&self, keys: GenerateKeys) -> Result<Terrain, SceneIoError> {
-        let nasty = match keys.kind {
-            Some(kind) => self.word(&kind, "terrain.generate.kind", &[("plain", false), ("nasty", true)])?,
-            None => false,
-        };
-        let integer = |key: Key<i64>, name: &str, default: i64, range: RangeInclusive<i64>| match key {
-            Some(key) if range.contains(key.get_ref()) => Ok(key.into_inner()),
-            Some(key) => {
-                let (low, high) = (range.start(), range.end());
-                let message = format!("`terrain.generate.{name}` is {}; expected {low} to {high}", key.get_ref());
-                Err(self.error(key.span(), message))
-            }
-            None => Ok(default),
-        };
-        let seed = integer(keys.seed, "seed", 0, 0..=i64::MAX)?;
-        let faces = integer(keys.faces, "faces", 10_000, GENERATED_FACES)?;
-        let mut extent = 40.0;
-        self.number(keys.extent_m, "terrain.generate.extent_m", &mut extent, 0.1..=1e5, "metres")?;
-        let offset = match keys.offset_m {
-            Some(offset) => {
-                DVec3::from_slice(self.list(&offset, "terrain.generate.offset_m", &[3], -1e7..=1e7, "metres")?)
-            }
-            None => DVec3::ZERO,
-        };
-        Ok(Terrain::Generate { nasty, seed: seed.unsigned_abs(), faces: faces.unsigned_abs() as usize, extent, offset })
-    }
-
-    /// Refuses a `value` outside `range`, and NaN and the infinities with it.
-    fn check(&self, value: f64, span: Range<usize>, name: &str, range: RangeInclusive<f64>, unit: &str) -> Result<(), SceneIoError> {
-        if range.contains(&value) {
-            return Ok(());
-        }
-        let (low, high) = (range.start(), range.end());
-        let message = format!("`{name}` is {value}; expected {low} to {high} {unit}");
-        Err(self.error(span, message.trim_end()))
-    }
-
-    /// Replaces `slot` by the key's value, if there is one.
-    fn number(&self, key: Key<f64>, name: &str, slot: &mut f64, range: RangeInclusive<f64>, unit: &str) -> Result<(), SceneIoError> {
-        if let Some(key) = key {
-            self.check(*key.get_ref(), key.span(), name, range, unit)?;
-            *slot = key.into_inner();
-        }
-        Ok(())
-    }
-
-    /// The key's value divided by `per_si` (units per metre), else the `default`, which is SI already.
-    ///
-    /// A division by a power of ten rounds once: 9 micrometres are the double nearest 9e-6.
-    fn scaled(
-        &self,
-        key: Key<f64>,
-        name: &str,
-        default: f64,
-        range: RangeInclusive<f64>,
-        unit: &str,
-        per_si: f64,
-    ) -> Result<f64, SceneIoError> {
-        let Some(key) = key else { return Ok(default) };
-        self.check(*key.get_ref(), key.span(), name, range, unit)?;
-        Ok(key.into_inner() / per_si)
-    }
-
-    /// A list of numbers whose length is one of `lengths`.
-    fn list<'k>(
-        &self,
-        key: &'k Spanned<Vec<f64>>,
-        name: &str,
-        lengths: &[usize],
-        range: RangeInclusive<f64>,
-        unit: &str,
-    ) -> Result<&'k [f64], SceneIoError> {
-        let numbers = key.get_ref();
-        if !lengths.contains(&numbers.len()) {
-            let wanted = lengths.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
-            let message = format!("`{name}` has {} numbers; expected {wanted}", numbers.len());
-            return Err(self.error(key.span(), message));
-        }
-        for &number in numbers {
-            self.check(number, key.span(), name, range.clone(), unit)?;
-        }
-        Ok(numbers)
-    }
-
-    /// One of a few words.
-    fn word<T: Copy>(&self, key: &Spanned<String>, name: &str, words: &[(&str, T)]) -> Result<T, SceneIoError> {
-        if let Some((_, value)) = words.iter().find(|(word, _)| word == key.get_ref()) {
-            return Ok(*value);
-        }
-        let known = words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
-        Err(self.error(key.span(), format!("`{name}` is \"{}\"; expected one of {known}", key.get_ref())))
-    }
-
-    /// Columns and rows of a sensor: each in range, and their product too.
-    fn cells(
-        &self,
-        sensor: &str,
-        keys: [(&str, Key<i64>); 2],
-        defaults: [u32; 2],
-        unit: &str,
-    ) -> Result<[u32; 2], SceneIoError> {
-        let mut sides = defaults;
-        let mut place = 0..0;
-        let mut names = [""; 2];
-        for (axis, (name, key)) in keys.into_iter().enumerate() {
-            names[axis] = name;
-            let Some(key) = key else { continue };
-            place = key.span();
-            if !SIDE.contains(key.get_ref()) {
-                let (low, high) = (SIDE.start(), SIDE.end());
-                let message = format!("`{sensor}.{name}` is {}; expected {low} to {high} {unit}", key.get_ref());
-                return Err(self.error(place, message));
-            }
-            sides[axis] = u32::try_from(key.into_inner()).unwrap_or(u32::MAX);
-        }
-        let [across, down] = sides;
-        if u64::from(across) * u64::from(down) > MOST_CELLS {
-            let names = names.join(" x ");
-            let message = format!("`{sensor}.{names}` is {across} x {down}; expected at most {MOST_CELLS} {unit}");
-            return Err(self.error(place, message));
-        }
-        Ok(sides)
     }
 }

@@ -63,7 +63,13 @@ impl<'a> Buffers<'a> {
                 },
                 None => match (index, self.bin) {
                     (0, Some(bin)) => Cow::Borrowed(bin),
-                    _ => return Err(Fault::new(place(), "no uri", "a uri, or buffer 0 of a GLB with a BIN chunk")),
+                    _ => {
+                        return Err(Fault::new(
+                            place(),
+                            "no uri",
+                            "a uri, or buffer 0 of a GLB with a BIN chunk",
+                        ));
+                    }
                 },
             };
             self.loaded.insert(index, bytes);
@@ -81,7 +87,11 @@ impl<'a> Buffers<'a> {
         let place = format!("buffer {index}");
         let quoted: String = uri.chars().take(80).collect();
         let refuse = |why: &str| {
-            Fault::new(&place, format!("uri \"{}\" {why}", quoted.escape_debug()), "a file in the folder of this one, or below it")
+            Fault::new(
+                &place,
+                format!("uri \"{}\" {why}", quoted.escape_debug()),
+                "a file in the folder of this one, or below it",
+            )
         };
         let relative = percent_decoded(uri).ok_or_else(|| refuse("has a broken % escape"))?;
         // Backslashes and colons separate folders and drives on some systems, schemes and streams on others.
@@ -119,7 +129,9 @@ fn data_uri(data: &str, place: &str) -> Result<Vec<u8>, Fault> {
         .split_once(',')
         .filter(|(head, _)| head.ends_with(";base64"))
         .map(|(_, digits)| digits)
-        .ok_or_else(|| Fault::new(place, "a data URI without base64", "data:application/octet-stream;base64,..."))?;
+        .ok_or_else(|| {
+            Fault::new(place, "a data URI without base64", "data:application/octet-stream;base64,...")
+        })?;
     STANDARD
         .decode(digits)
         .map_err(|error| Fault::new(place, format!("a data URI: {error}"), "base64 with padding (RFC 4648)"))

@@ -15,7 +15,11 @@ pub(super) fn split(file: &[u8]) -> Result<Container<'_>, Fault> {
         // A text file starts with its JSON object. What starts otherwise is neither.
         return match file.iter().find(|byte| !byte.is_ascii_whitespace()) {
             Some(b'{') => Ok(Container { json: file, bin: None }),
-            _ => Err(Fault::new("first bytes", format!("{:02x?}", &file[..file.len().min(4)]), "the magic \"glTF\" of a GLB, or a JSON object")),
+            _ => Err(Fault::new(
+                "first bytes",
+                format!("{:02x?}", &file[..file.len().min(4)]),
+                "the magic \"glTF\" of a GLB, or a JSON object",
+            )),
         };
     }
     let word = |at: usize| -> Option<u32> {

@@ -8,7 +8,7 @@ mod buffers;
 mod container;
 mod nodes;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use glam::DVec3;
@@ -53,7 +53,8 @@ pub fn mesh_from_bytes(bytes: &[u8], file: &Path, reflectivity: f64) -> Result<M
 
 /// The mesh of a file, and the digests of the file and of the buffers beside it.
 pub(crate) fn read(path: &Path, reflectivity: f64) -> Result<(Mesh, Vec<Sha>), SceneIoError> {
-    let bytes = bytes::read_file(path, LARGEST_FILE).map_err(|error| SceneIoError::io(path, "read", error))?;
+    let bytes =
+        bytes::read_file(path, LARGEST_FILE).map_err(|error| SceneIoError::io(path, "read", error))?;
     let (mesh, external) = parse(&bytes, path, reflectivity)?;
     Ok((mesh, std::iter::once(sha(&bytes)).chain(external).collect()))
 }
@@ -100,10 +101,13 @@ fn root(json: &[u8]) -> Result<Root, Fault> {
     }
     // Extensions of light and colour do not move a vertex.
     let harmless = |name: &str| {
-        ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"].iter().any(|start| name.starts_with(start))
+        ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"]
+            .iter()
+            .any(|start| name.starts_with(start))
     };
     if let Some(name) = head.required.iter().find(|name| !harmless(name)) {
-        let expected = "plain buffers and nodes; extensions are known only for materials, textures and lights";
+        let expected =
+            "plain buffers and nodes; extensions are known only for materials, textures and lights";
         return Err(Fault::new("extensionsRequired", format!("{name:?}"), expected));
     }
     // Without it most of the ground would be missing, and nothing would say so.
@@ -128,10 +132,13 @@ fn assemble(root: &Root, buffers: &mut Buffers<'_>, reflectivity: f64) -> Result
     // How much it will be is known before anything is read: no small file can ask for much memory.
     let mut totals = [0_u64; 2];
     for node in &placed {
+        let mut shared = BTreeSet::new();
         for primitive in primitives(root, node.node)? {
-            let Drawn { positions, corners, .. } = drawn(root, primitive)?;
-            totals[0] = totals[0].saturating_add(accessors::get(root, positions)?.count.0);
-            totals[1] = totals[1].saturating_add(corners / if is_list(primitive) { 3 } else { 1 });
+            let Some(Drawn { mode, positions, corners }) = drawn(root, primitive)? else { continue };
+            if shared.insert(positions.value()) {
+                totals[0] = totals[0].saturating_add(accessors::get(root, positions)?.count.0);
+            }
+            totals[1] = totals[1].saturating_add(if mode == Mode::Triangles { corners / 3 } else { corners });
         }
     }
     for (total, kind) in totals.into_iter().zip(["vertices", "faces"]) {
@@ -149,10 +156,7 @@ fn assemble(root: &Root, buffers: &mut Buffers<'_>, reflectivity: f64) -> Result
         let mirrored = file_from_node.matrix3.determinant() < 0.0;
         let untouched = file_from_node == glam::DAffine3::IDENTITY;
         for primitive in primitives(root, node)? {
-            let drawn = drawn(root, primitive)?;
-            if drawn.corners == 0 {
-                continue;
-            }
+            let Some(drawn) = drawn(root, primitive)? else { continue };
             let accessor = drawn.positions.value();
             let (first, count) = match first_vertex.get(&accessor) {
                 Some(known) => *known,
@@ -211,7 +215,10 @@ fn primitives(root: &Root, index: usize) -> Result<&[Primitive], Fault> {
     let Some(mesh_index) = node.mesh else { return Ok(&[]) };
     let mesh_index = mesh_index.value();
     let Some(mesh) = root.meshes.get(mesh_index) else {
-        return Err(buffers::missing(format!("{}: mesh {mesh_index}", nodes::place(root, index)), root.meshes.len()));
+        return Err(buffers::missing(
+            format!("{}: mesh {mesh_index}", nodes::place(root, index)),
+            root.meshes.len(),
+        ));
     };
     // Bones and blend shapes move vertices; without them the ground would be in the wrong place.
     if node.skin.is_some() {
@@ -229,15 +236,20 @@ fn primitives(root: &Root, index: usize) -> Result<&[Primitive], Fault> {
 struct Drawn {
     mode: Mode,
     positions: gltf::json::Index<gltf::json::Accessor>,
-    /// How many indices, or vertices without any; 0 for points and lines.
+    /// How many indices, or vertices without any.
     corners: u64,
 }
 
+/// The references of a primitive, or `None` if it has no triangles.
+///
 /// CHOICE: points and lines are no ground and are skipped; a survey's marks do not make its mesh unusable.
-fn drawn(root: &Root, primitive: &Primitive) -> Result<Drawn, Fault> {
+fn drawn(root: &Root, primitive: &Primitive) -> Result<Option<Drawn>, Fault> {
     let Checked::Valid(mode) = primitive.mode else {
         return Err(Fault::new("primitive", "an unknown mode", "0 to 6"));
     };
+    if matches!(mode, Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
+        return Ok(None);
+    }
     let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
         return Err(Fault::new("primitive", "no POSITION", "a POSITION accessor"));
     };
@@ -246,22 +258,15 @@ fn drawn(root: &Root, primitive: &Primitive) -> Result<Drawn, Fault> {
         None => (accessors::get(root, positions)?.count.0, positions.value()),
     };
     let place = || format!("accessor {place}");
-    let corners = match mode {
-        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => 0,
-        Mode::Triangles if count % 3 != 0 => {
-            return Err(Fault::new(place(), format!("{count} corners of triangles"), "a multiple of 3"));
+    match mode {
+        Mode::Triangles if !count.is_multiple_of(3) => {
+            Err(Fault::new(place(), format!("{count} corners of triangles"), "a multiple of 3"))
         }
         Mode::TriangleStrip | Mode::TriangleFan if count < 3 => {
-            return Err(Fault::new(place(), format!("{count} corners of a strip or fan"), "3 or more"));
+            Err(Fault::new(place(), format!("{count} corners of a strip or fan"), "3 or more"))
         }
-        _ => count,
-    };
-    Ok(Drawn { mode, positions, corners })
-}
-
-/// Whether a primitive lists its triangles one by one.
-fn is_list(primitive: &Primitive) -> bool {
-    primitive.mode == Checked::Valid(Mode::Triangles)
+        _ => Ok(Some(Drawn { mode, positions, corners: count })),
+    }
 }
 
 /// The triangles of a primitive, by the formulas of the specification. (glTF 2.0, §3.7.2.1)

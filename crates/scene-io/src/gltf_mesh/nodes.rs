@@ -135,13 +135,16 @@ fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
     let has_parts = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
     if let Some(matrix) = node.matrix {
         if has_parts {
-            return Err(Fault::new(place, "a matrix beside translation, rotation or scale", "one or the other"));
+            return Err(Fault::new(
+                place,
+                "a matrix beside translation, rotation or scale",
+                "one or the other",
+            ));
         }
         finite("matrix", &matrix)?;
         // Column by column; the last row is that of an affine map.
-        let [a, b, c, d]: [[f32; 4]; 4] = std::array::from_fn(|column| {
-            std::array::from_fn(|row| matrix[4 * column + row])
-        });
+        let [a, b, c, d]: [[f32; 4]; 4] =
+            std::array::from_fn(|column| std::array::from_fn(|row| matrix[4 * column + row]));
         if [a[3], b[3], c[3], d[3]] != [0.0, 0.0, 0.0, 1.0] {
             let found = format!("a matrix with the last row {:?}", [a[3], b[3], c[3], d[3]]);
             return Err(Fault::new(place, found, "[0, 0, 0, 1]"));

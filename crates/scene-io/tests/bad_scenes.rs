@@ -1,0 +1,296 @@
+//! Scene files that are wrong: the line, the column, the marked text and the message of each.
+
+use miette::Diagnostic;
+use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem, load};
+
+fn problem(text: &str) -> TomlProblem {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.toml");
+    std::fs::write(&path, text).unwrap();
+    match load(path.to_str().unwrap(), &Overrides::default()).unwrap_err() {
+        SceneIoError::Toml(problem) => *problem,
+        other => panic!("not a problem of a line: {other}"),
+    }
+}
+
+/// What is wrong in the third line, after `version = 1` and a table's header.
+fn third_line(table: &str, line: &str, marked: &str, message: &str) {
+    let problem = problem(&format!("version = 1\n{table}\n{line}\n"));
+    assert_eq!(problem.message, message, "{line}");
+    assert_eq!((problem.line, problem.marked()), (3, marked), "{line}");
+    let column = line.find(marked).unwrap() + 1;
+    assert_eq!(problem.column, column, "{line}");
+    assert!(problem.to_string().contains(&format!("bad.toml:3:{column}: ")), "{problem}");
+}
+
+#[test]
+fn numbers_out_of_range_name_the_key_the_value_and_the_unit() {
+    let degrees = "expected -360 to 360 degrees";
+    third_line(
+        "[camera]",
+        "pitch_down_deg = 400",
+        "400",
+        &format!("`camera.pitch_down_deg` is 400; {degrees}"),
+    );
+    third_line("[camera]", "yaw_left_deg = nan", "nan", &format!("`camera.yaw_left_deg` is NaN; {degrees}"));
+    third_line(
+        "[vehicle]",
+        "heading_deg = -inf",
+        "-inf",
+        &format!("`vehicle.heading_deg` is -inf; {degrees}"),
+    );
+    third_line(
+        "[[beam]]",
+        "fan_deg = 180",
+        "180",
+        "`beam 0.fan_deg` is 180; expected 0.001 to 179.9 degrees",
+    );
+    third_line(
+        "[[beam]]",
+        "wavelength_nm = 810e-9",
+        "810e-9",
+        "`beam 0.wavelength_nm` is 8.1e-7; expected 10 to 1000000 nanometres",
+    );
+    third_line("[camera]", "width_px = 0", "0", "`camera.width_px` is 0; expected 1 to 1048576 pixels");
+    third_line("[camera]", "height_px = -5", "-5", "`camera.height_px` is -5; expected 1 to 1048576 pixels");
+    third_line(
+        "[camera]",
+        "width_px = 1048576",
+        "1048576",
+        "`camera.width_px x height_px` is 1048576 x 1024; expected at most 67108864 pixels",
+    );
+    third_line(
+        "[camera]",
+        "pixel_pitch_um = [9, -9]",
+        "[9, -9]",
+        "`camera.pixel_pitch_um` is -9; expected 0.01 to 100000 micrometres",
+    );
+    third_line(
+        "[camera]",
+        "principal_point_px = [1]",
+        "[1]",
+        "`camera.principal_point_px` has 1 numbers; expected 2",
+    );
+    third_line("[vehicle]", "position_m = [1]", "[1]", "`vehicle.position_m` has 1 numbers; expected 2 or 3");
+    third_line(
+        "[vehicle]",
+        "position_m = [0, inf]",
+        "[0, inf]",
+        "`vehicle.position_m` is inf; expected -1e12 to 1e12 metres",
+    );
+    third_line("[[beam]]", "position_m = [1, 2]", "[1, 2]", "`beam 0.position_m` has 2 numbers; expected 3");
+    third_line(
+        "[atmosphere]",
+        "attenuation_per_m = -1",
+        "-1",
+        "`atmosphere.attenuation_per_m` is -1; expected 0 to 1000 per metre",
+    );
+    third_line("[terrain]", "reflectivity = 1.5", "1.5", "`terrain.reflectivity` is 1.5; expected 0 to 1");
+    third_line(
+        "[terrain]",
+        "generate = { faces = 0 }",
+        "0",
+        "`terrain.generate.faces` is 0; expected 1 to 16777216",
+    );
+    third_line(
+        "[terrain]",
+        "generate = { seed = -1 }",
+        "-1",
+        "`terrain.generate.seed` is -1; expected 0 to 9223372036854775807",
+    );
+}
+
+#[test]
+fn words_are_listed() {
+    third_line(
+        "[flux]",
+        "model = \"lux\"",
+        "\"lux\"",
+        "`flux.model` is \"lux\"; expected one of \"radiometric\", \"eq1\"",
+    );
+    third_line(
+        "[[beam]]",
+        "profile = \"flat\"",
+        "\"flat\"",
+        "`beam 0.profile` is \"flat\"; expected one of \"paper\", \"uniform_angle\", \"gaussian\"",
+    );
+    third_line(
+        "[terrain]",
+        "builtin = \"moon\"",
+        "\"moon\"",
+        "`terrain.builtin` is \"moon\"; expected one of \"pyramids\", \"facets\"",
+    );
+    third_line(
+        "[terrain]",
+        "generate = { kind = \"odd\" }",
+        "\"odd\"",
+        "`terrain.generate.kind` is \"odd\"; expected one of \"plain\", \"nasty\"",
+    );
+}
+
+#[test]
+fn unknown_keys_are_marked() {
+    let cases = [
+        ("[camera]\nfocal_lenght_mm = 8", "focal_lenght_mm"),
+        ("[vehicle]\npitch_deg = 8", "pitch_deg"),
+        ("[[beam]]\nfan = 8", "fan"),
+        ("[terrain]\ndem = \"x.tif\"", "dem"),
+        ("[terrain]\ngenerate = { size = 3 }", "size"),
+        ("[atmosphere]\nsigma = 3", "sigma"),
+        ("[flux]\nkind = 3", "kind"),
+        ("\n[sun]", "sun"),
+    ];
+    for (text, key) in cases {
+        let problem = problem(&format!("version = 1\n{text}\n"));
+        assert!(
+            problem.message.starts_with(&format!("unknown field `{key}`, expected")),
+            "{}",
+            problem.message
+        );
+        assert_eq!((problem.line, problem.marked()), (3, key), "{text}");
+    }
+}
+
+#[test]
+fn wrong_types_are_marked() {
+    let cases = [
+        ("[camera]", "pitch_down_deg = \"20\"", "\"20\""),
+        ("[camera]", "width_px = 10.5", "10.5"),
+        ("[camera]", "pixel_pitch_um = [1, 2, 3]", "[1, 2, 3]"),
+        ("[camera]", "pixel_pitch_um = [1]", "[1]"),
+        ("[camera]", "pixel_pitch_um = \"9\"", "\"9\""),
+        ("[vehicle]", "position_m = 3", "3"),
+        ("[terrain]", "generate = 7", "7"),
+    ];
+    for (table, line, marked) in cases {
+        let problem = problem(&format!("version = 1\n{table}\n{line}\n"));
+        assert_eq!((problem.line, problem.marked()), (3, marked), "{line}: {problem}");
+        assert!(problem.message.contains("expected"), "{problem}");
+    }
+    // Tables and lists mistaken for one another.
+    assert!(problem("version = 1\n[beam]\nrows = 3\n").message.contains("expected a sequence"));
+    assert!(
+        problem("version = 1\n[[camera]]\n").message.contains("camera")
+            || problem("version = 1\n[[camera]]\n").line == 2
+    );
+}
+
+#[test]
+fn the_version_is_asked_first() {
+    let missing = problem("[camera]\nnew_key = 1\n");
+    assert_eq!(missing.message, "`version` is missing; expected `version = 1`, the only version there is");
+    assert_eq!((missing.line, missing.column), (1, 1));
+    assert_eq!(problem("").line, 1);
+    for version in ["2", "0", "1.0", "\"1\"", "true"] {
+        let newer = problem(&format!("# of the future\nversion = {version}\n[camera]\nnew_key = 1\n"));
+        assert!(
+            newer.message.starts_with(&format!("`version` is {version}; expected `version = 1`")),
+            "{newer}"
+        );
+        assert_eq!((newer.line, newer.column, newer.marked()), (2, 11, version));
+    }
+}
+
+#[test]
+fn what_is_no_toml_is_marked() {
+    let broken = problem("version = 1\n[camera]\nwidth_px = \n");
+    assert_eq!(broken.line, 3, "{broken}");
+    let twice = problem("version = 1\n[camera]\nwidth_px = 3\nwidth_px = 4\n");
+    assert_eq!((twice.line, twice.message.as_str()), (4, "duplicate key"), "{twice}");
+    // Deep nesting ends in an error, not in a stack overflow.
+    let deep = problem(&format!("version = 1\nx = {}\n", "[".repeat(200_000)));
+    assert_eq!(deep.line, 2, "{deep}");
+    let tables = problem(&format!("version = 1\nx{} = 1\n", ".x".repeat(200_000)));
+    assert_eq!(tables.message, "recursion limit");
+}
+
+#[test]
+fn exactly_one_ground() {
+    let one = "expected exactly one of `builtin`, `file` and `generate`";
+    let none = problem("version = 1\n[terrain]\nreflectivity = 0.1\n");
+    assert_eq!((none.message, none.line), (format!("`terrain` has no ground; {one}"), 2));
+    let two = problem("version = 1\n[terrain]\nfile = \"a.glb\"\nbuiltin = \"pyramids\"\n");
+    assert_eq!(two.marked(), "\"pyramids\"");
+    assert_eq!((two.message, two.line), (format!("`terrain.builtin` is one ground too many; {one}"), 4));
+    let three = problem("version = 1\n[terrain]\nbuiltin = \"pyramids\"\nfile = \"a.glb\"\ngenerate = {}\n");
+    assert_eq!((three.message, three.line), (format!("`terrain.generate` is one ground too many; {one}"), 5));
+}
+
+#[test]
+fn a_gaussian_has_a_width_and_nothing_else_has() {
+    let without = problem("version = 1\n[[beam]]\nprofile = \"gaussian\"\n");
+    assert_eq!(
+        without.message,
+        "`beam 0.profile` is \"gaussian\" without a width; expected `gaussian_half_width_deg` too"
+    );
+    assert_eq!(without.line, 3);
+    let with = problem("version = 1\n[[beam]]\n[[beam]]\ngaussian_half_width_deg = 20\n");
+    assert_eq!(
+        with.message,
+        "`beam 1.gaussian_half_width_deg` is given; expected it only with profile = \"gaussian\", not \"paper\""
+    );
+    assert_eq!((with.line, with.marked()), (4, "20"));
+    let narrow = problem("version = 1\n[[beam]]\nprofile = \"gaussian\"\ngaussian_half_width_deg = 0\n");
+    assert_eq!(narrow.message, "`beam 0.gaussian_half_width_deg` is 0; expected 0.001 to 10000 degrees");
+}
+
+#[test]
+fn terrain_files_are_found_or_marked() {
+    third_line(
+        "[terrain]",
+        "file = \"x.obj\"",
+        "\"x.obj\"",
+        "`terrain.file` is \"x.obj\"; expected a file that ends in .glb or .gltf",
+    );
+    let missing = problem("version = 1\n[terrain]\nfile = \"no/such.glb\"\n");
+    assert!(
+        missing.message.contains("there is no file") && missing.message.contains("such.glb"),
+        "{missing}"
+    );
+    assert_eq!((missing.line, missing.marked()), (3, "\"no/such.glb\""));
+}
+
+#[test]
+fn a_vehicle_off_the_ground_is_marked() {
+    let off = problem("version = 1\n[vehicle]\nposition_m = [1e5, 3]\n");
+    assert!(
+        off.message
+            .starts_with("`vehicle.position_m`: no ground under (100000, 3); expected a place within x"),
+        "{off}"
+    );
+    assert_eq!((off.line, off.marked()), (3, "[1e5, 3]"));
+}
+
+#[test]
+fn columns_count_characters() {
+    let problem =
+        problem("version = 1\n[terrain]\ngenerate = { kind = \"\u{e9}\u{e9}\u{1f600}\", seed = -3 }\n");
+    assert_eq!(problem.marked(), "\"\u{e9}\u{e9}\u{1f600}\"");
+    assert_eq!(problem.column, 21);
+    let problem = self::problem("version = 1\n[vehicle]\n\"\u{e9}\" = 3\n");
+    assert_eq!(problem.line, 3);
+}
+
+#[test]
+fn the_report_shows_the_line_and_a_caret() {
+    let problem = problem("version = 1\n[camera]\npitch_down_deg = 400 # steep\n");
+    let error = SceneIoError::Toml(Box::new(problem));
+    assert_eq!(error.code().unwrap().to_string(), "raypencil::toml");
+    let mut report = String::new();
+    let handler = miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
+    handler.render_report(&mut report, &error).unwrap();
+    assert!(report.contains("3 \u{2502} pitch_down_deg = 400 # steep"), "{report}");
+    assert!(report.contains("here"), "{report}");
+}
+
+#[test]
+fn a_file_that_is_no_text_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("binary.toml");
+    std::fs::write(&path, b"version = 1\n# \xff\n").unwrap();
+    let message = load(path.to_str().unwrap(), &Overrides::default()).unwrap_err().to_string();
+    assert!(message.contains("binary.toml: cannot read: invalid utf-8"), "{message}");
+    std::fs::write(&path, vec![b' '; (1 << 20) + 1]).unwrap();
+    let message = load(path.to_str().unwrap(), &Overrides::default()).unwrap_err().to_string();
+    assert!(message.contains("larger than 1048576 bytes"), "{message}");
+}
