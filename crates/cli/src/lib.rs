@@ -23,7 +23,7 @@ use thiserror::Error;
 use args::{Arguments, Command};
 
 /// Where the command finds renderers by name.
-pub type Registry = dyn Fn(&str) -> Option<Box<dyn Renderer>>;
+pub type Registry = dyn Fn(&str) -> Option<Box<dyn Renderer>> + Sync;
 
 /// What a command that ran to its end found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,7 +102,8 @@ fn render_trouble(trouble: &Trouble) -> String {
     let mut text = String::new();
     let theme =
         if console::in_colour() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
-    let rendered = GraphicalReportHandler::new_themed(theme).with_links(false).render_report(&mut text, trouble);
+    let rendered =
+        GraphicalReportHandler::new_themed(theme).with_links(false).render_report(&mut text, trouble);
     if rendered.is_err() {
         text = format!("{trouble}\n");
     }

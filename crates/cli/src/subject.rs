@@ -30,7 +30,9 @@ pub(crate) fn renderers(
     }
     if names.len() < least {
         let given = names.join(",");
-        return Err(Trouble::Usage(format!("--with {given}: expected at least {least} renderers to compare")));
+        return Err(Trouble::Usage(format!(
+            "--with {given}: expected at least {least} renderers to compare"
+        )));
     }
     names
         .iter()

@@ -6,8 +6,8 @@
 use std::fmt;
 
 use glam::DVec3;
-use raypencil_scene::{FaceId, Frame, Image, Maybe, Resolution, Scene, SensorId, SensorMap};
 use rayon::prelude::*;
+use raypencil_scene::{FaceId, Frame, Image, Maybe, Resolution, Scene, SensorId, SensorMap};
 use serde::Serialize;
 
 use crate::bounds::Bounds;
@@ -348,21 +348,21 @@ fn compare_ray(
             None => difference == 0.0,
         };
         let mut values: [Option<(Quantity, f64, Option<f64>)>; 5] = [
-            of_a.range.zip(of_b.range).map(|(x, y)| {
-                (Quantity::Range, (x - y).abs(), bounds.map(|bounds| bounds.range))
-            }),
-            of_a.depth.zip(of_b.depth).map(|(x, y)| {
-                (Quantity::Depth, (x - y).abs(), bounds.map(|bounds| bounds.range))
-            }),
-            of_a.point.zip(of_b.point).map(|(x, y)| {
-                (Quantity::Point, (x - y).length(), bounds.map(|bounds| bounds.point))
-            }),
-            of_a.normal.zip(of_b.normal).map(|(x, y)| {
-                (Quantity::Normal, (x - y).length(), bounds.map(|bounds| bounds.normal))
-            }),
-            of_a.incidence.zip(of_b.incidence).map(|(x, y)| {
-                (Quantity::Incidence, (x - y).abs(), bounds.map(|bounds| bounds.incidence))
-            }),
+            of_a.range
+                .zip(of_b.range)
+                .map(|(x, y)| (Quantity::Range, (x - y).abs(), bounds.map(|bounds| bounds.range))),
+            of_a.depth
+                .zip(of_b.depth)
+                .map(|(x, y)| (Quantity::Depth, (x - y).abs(), bounds.map(|bounds| bounds.range))),
+            of_a.point
+                .zip(of_b.point)
+                .map(|(x, y)| (Quantity::Point, (x - y).length(), bounds.map(|bounds| bounds.point))),
+            of_a.normal
+                .zip(of_b.normal)
+                .map(|(x, y)| (Quantity::Normal, (x - y).length(), bounds.map(|bounds| bounds.normal))),
+            of_a.incidence
+                .zip(of_b.incidence)
+                .map(|(x, y)| (Quantity::Incidence, (x - y).abs(), bounds.map(|bounds| bounds.incidence))),
         ];
 
         let same_face = of_a.face.zip(of_b.face).map(|(x, y)| x == y);

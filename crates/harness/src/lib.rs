@@ -10,14 +10,21 @@
 
 mod bounds;
 mod compare;
+mod output;
 mod probe;
 mod renderers;
 mod run;
 
 pub use bounds::Bounds;
-pub use compare::{
-    Class, Defect, Place, Quantity, SensorComparison, Side, Tally, Worst, compare,
+pub use compare::{Class, Defect, Place, Quantity, SensorComparison, Side, Tally, Worst, compare};
+pub use output::{
+    OutputError, Written, one_screen, probe_command, summary_json, write_maps, write_validation,
 };
 pub use probe::{NoSuchRay, Probe, probe};
 pub use renderers::{RENDERER_NAMES, renderer};
 pub use run::{Counts, Pair, Progress, Rendered, Silent, Subject, Validation, validate};
+
+/// The README's example, compiled and run with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -119,7 +119,10 @@ pub fn validate(subject: Subject, renderers: &[&dyn Renderer], progress: &dyn Pr
         let frame = renderer.render(&subject.scene, &Request::EVERYTHING);
         let time = start.elapsed();
         stages.extend(
-            frame.stages.iter().map(|stage| Stage { name: format!("{name}: {}", stage.name), ..stage.clone() }),
+            frame
+                .stages
+                .iter()
+                .map(|stage| Stage { name: format!("{name}: {}", stage.name), ..stage.clone() }),
         );
         rendered.push(Rendered { name, resolution: renderer.resolution(), frame, time });
     }

@@ -1,8 +1,8 @@
 //! The main loop of §4: faces are sorted into bands of rows, and bands are scanned in parallel.
 
 use glam::DVec3;
-use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 use rayon::prelude::*;
+use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 
 use crate::Options;
 use crate::clip::{Edge, NewLines, clip_at_plane};
@@ -30,8 +30,8 @@ pub(crate) fn render<T: Transformation>(
 
     // Step 2: all vertices into the sensor's frame.
     let vertices = vertices::transform(mesh, |scene_point| {
-        let into_sensor = transformation.into_sensor();
-        let position = into_sensor.turn(into_sensor.relative(scene_point));
+        let sensor_from_scene = transformation.sensor_from_scene();
+        let position = sensor_from_scene.turn(sensor_from_scene.relative(scene_point));
         let corner = transformation.project(position);
         Vertex { position, corner, outside: transformation.outside(position) }
     });
@@ -114,8 +114,12 @@ impl<T: Transformation> Faces<'_, T> {
             }
             // 1b, where it holds for every row. (A beam's rows differ: those are asked one by one.)
             let scene_vertices = face.map(|v| widen(self.mesh.vertices()[v as usize]));
-            let (n, distance) = scene_plane(&scene_vertices, transformation.into_sensor());
-            let plane = Plane { normal: transformation.into_sensor().turn(n), distance, normal_over_distance: n };
+            let (n, distance) = scene_plane(&scene_vertices, transformation.sensor_from_scene());
+            let plane = Plane {
+                normal: transformation.sensor_from_scene().turn(n),
+                distance,
+                normal_over_distance: n,
+            };
             let rows = transformation.rows();
             if transformation.row_distance(&plane, rows.centre(first)) >= 0.0
                 && transformation.row_distance(&plane, rows.centre(end - 1)) >= 0.0
@@ -138,13 +142,14 @@ impl<T: Transformation> Faces<'_, T> {
         let face = self.mesh.faces()[id.0 as usize];
         let stored = face.map(|v| self.mesh.vertices()[v as usize]);
         let scene_vertices = stored.map(widen);
-        let plane = Plane::of(&scene_vertices, transformation.into_sensor());
+        let plane = Plane::of(&scene_vertices, transformation.sensor_from_scene());
         let seen = face.map(|v| &self.vertices[v as usize]);
 
         let edge = |k: usize, next: usize| {
             // One order of an edge's ends in both faces that share it.
             let (first, second) = if precedes(&stored[next], &stored[k]) { (next, k) } else { (k, next) };
-            let along = transformation.into_sensor().turn(scene_vertices[second] - scene_vertices[first]);
+            let along =
+                transformation.sensor_from_scene().turn(scene_vertices[second] - scene_vertices[first]);
             let (first, second) = (seen[first].position, seen[second].position);
             Edge { first, second, line: transformation.line(first, second, along) }
         };

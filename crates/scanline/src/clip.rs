@@ -48,8 +48,7 @@ pub(crate) fn clip_at_plane<L: Line>(
 ) {
     // Walk around the face: keep the corners in front, add one where an edge crosses the plane. Each
     // corner is stored with the line of the side that leaves it.
-    let mut kept: [(DVec3, Corner, Option<L>); 4] =
-        [(DVec3::ZERO, Corner { x: 0.0, y: 0.0 }, None); 4];
+    let mut kept: [(DVec3, Corner, Option<L>); 4] = [(DVec3::ZERO, Corner { x: 0.0, y: 0.0 }, None); 4];
     let mut count = 0;
     let mut keep = |point: DVec3, corner: Corner, leaving: Option<L>| {
         kept[count] = (point, corner, leaving);
@@ -78,9 +77,8 @@ pub(crate) fn clip_at_plane<L: Line>(
     if count < 3 {
         return;
     }
-    let side = |k: usize, next: usize| {
-        kept[k].2.unwrap_or_else(|| (new_lines.along_plane)(kept[k].0, kept[next].0))
-    };
+    let side =
+        |k: usize, next: usize| kept[k].2.unwrap_or_else(|| (new_lines.along_plane)(kept[k].0, kept[next].0));
     let corner = |k: usize| kept[k].1;
     if count == 3 {
         let lines = [side(0, 1), side(1, 2), side(2, 0)];

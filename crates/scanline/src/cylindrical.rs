@@ -17,12 +17,12 @@ use crate::raster::{Affine, Plane, Transformation};
 use crate::scan::{Corner, Line};
 use crate::skip;
 use crate::tables::Axis;
-use crate::vertices::IntoSensor;
+use crate::vertices::SensorFromScene;
 
 /// A posed beam with its tables.
 #[derive(Debug)]
 pub(crate) struct Cylindrical {
-    into_sensor: IntoSensor,
+    sensor_from_scene: SensorFromScene,
     x: Axis,
     y: Axis,
     /// |q| of each column, metres; the same in every row.
@@ -39,7 +39,7 @@ impl Cylindrical {
         let g = beam.grid_distance;
         let q_length = x.centres().iter().map(|x| (x * x + g * g).sqrt()).collect();
         Self {
-            into_sensor: IntoSensor::of(&mounted.scene_from_sensor),
+            sensor_from_scene: SensorFromScene::of(&mounted.scene_from_sensor),
             x,
             y,
             q_length,
@@ -70,8 +70,8 @@ impl Line for CutLine {
 impl Transformation for Cylindrical {
     type Line = CutLine;
 
-    fn into_sensor(&self) -> &IntoSensor {
-        &self.into_sensor
+    fn sensor_from_scene(&self) -> &SensorFromScene {
+        &self.sensor_from_scene
     }
 
     fn plane_distance(&self) -> f64 {

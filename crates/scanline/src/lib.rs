@@ -102,13 +102,8 @@ impl Renderer for Scanline {
             stages.push(Stage { name: "tables".into(), time: start.elapsed() });
             let start = Instant::now();
             let perspective = Perspective::new(scene.camera(), &tables);
-            let map = bands::render(
-                scene.mesh(),
-                &perspective,
-                SensorId::Camera,
-                request.quantities,
-                self.options,
-            );
+            let map =
+                bands::render(scene.mesh(), &perspective, SensorId::Camera, request.quantities, self.options);
             stages.push(Stage { name: SensorId::Camera.to_string(), time: start.elapsed() });
             map
         });
@@ -120,8 +115,7 @@ impl Renderer for Scanline {
                 let start = Instant::now();
                 let sensor = SensorId::Beam(index);
                 let cylindrical = Cylindrical::new(beam);
-                let map =
-                    bands::render(scene.mesh(), &cylindrical, sensor, request.quantities, self.options);
+                let map = bands::render(scene.mesh(), &cylindrical, sensor, request.quantities, self.options);
                 stages.push(Stage { name: sensor.to_string(), time: start.elapsed() });
                 map
             })

@@ -10,12 +10,12 @@ use crate::raster::{Affine, Plane, Transformation};
 use crate::scan::{Corner, Line};
 use crate::skip;
 use crate::tables::{Axis, CameraTables};
-use crate::vertices::IntoSensor;
+use crate::vertices::SensorFromScene;
 
 /// A posed camera with its tables.
 #[derive(Debug)]
 pub(crate) struct Perspective<'a> {
-    into_sensor: IntoSensor,
+    sensor_from_scene: SensorFromScene,
     tables: &'a CameraTables,
     focal_length: f64,
     max_range: f64,
@@ -29,7 +29,7 @@ impl<'a> Perspective<'a> {
         let [top, bottom] = tables.y.borders();
         let corner = |x, y| DVec3::new(x, y, camera.focal_length);
         Self {
-            into_sensor: IntoSensor::of(&mounted.scene_from_sensor),
+            sensor_from_scene: SensorFromScene::of(&mounted.scene_from_sensor),
             tables,
             focal_length: camera.focal_length,
             max_range: camera.max_range,
@@ -61,8 +61,8 @@ impl Line for StraightLine {
 impl Transformation for Perspective<'_> {
     type Line = StraightLine;
 
-    fn into_sensor(&self) -> &IntoSensor {
-        &self.into_sensor
+    fn sensor_from_scene(&self) -> &SensorFromScene {
+        &self.sensor_from_scene
     }
 
     fn plane_distance(&self) -> f64 {

@@ -6,14 +6,14 @@ use raypencil_scene::{FaceId, Hit, Maybe, Mesh, Quantities, SensorRow};
 
 use crate::scan::{Corner, Line};
 use crate::tables::Axis;
-use crate::vertices::{IntoSensor, widen};
+use crate::vertices::{SensorFromScene, widen};
 
 /// What the camera and a beam do differently.
 pub(crate) trait Transformation: Sync {
     /// The image of an edge.
     type Line: Line;
 
-    fn into_sensor(&self) -> &IntoSensor;
+    fn sensor_from_scene(&self) -> &SensorFromScene;
     /// Distance of the SPP along the normal axis, metres.
     fn plane_distance(&self) -> f64;
     fn max_range(&self) -> f64;
@@ -55,9 +55,9 @@ pub(crate) struct Plane {
 impl Plane {
     /// Formed in the scene frame, whose edge vectors are exact, and only then turned.
     #[inline]
-    pub(crate) fn of(scene_vertices: &[DVec3; 3], into_sensor: &IntoSensor) -> Self {
-        let (n, distance) = scene_plane(scene_vertices, into_sensor);
-        let normal = into_sensor.turn(n);
+    pub(crate) fn of(scene_vertices: &[DVec3; 3], sensor_from_scene: &SensorFromScene) -> Self {
+        let (n, distance) = scene_plane(scene_vertices, sensor_from_scene);
+        let normal = sensor_from_scene.turn(n);
         Self { normal, distance, normal_over_distance: normal / distance }
     }
 }
@@ -67,11 +67,11 @@ impl Plane {
 /// Reckoned from the corner of the lowest position, so that faces of the same three corners tie exactly,
 /// whichever corner their lists begin with.
 #[inline]
-pub(crate) fn scene_plane(corners: &[DVec3; 3], into_sensor: &IntoSensor) -> (DVec3, f64) {
+pub(crate) fn scene_plane(corners: &[DVec3; 3], sensor_from_scene: &SensorFromScene) -> (DVec3, f64) {
     let lowest = (1..3).fold(0, |lowest, k| if is_lower(&corners[k], &corners[lowest]) { k } else { lowest });
     let [a, b, c] = [corners[lowest], corners[(lowest + 1) % 3], corners[(lowest + 2) % 3]];
     let n = (b - a).cross(c - a);
-    (n, n.dot(into_sensor.relative(a)))
+    (n, n.dot(sensor_from_scene.relative(a)))
 }
 
 /// Lexicographic order of positions.
@@ -186,18 +186,18 @@ fn hit<T: Transformation>(
     q_length: f64,
     range: f64,
 ) -> Hit {
-    let into_sensor = transformation.into_sensor();
+    let sensor_from_scene = transformation.sensor_from_scene();
     let (x, y) = (transformation.columns().centre(i), transformation.rows().centre(j));
     let p = transformation.row_origin(y) + transformation.q(x, y) / inverse_t;
     let vertices = mesh.faces()[face.0 as usize].map(|v| widen(mesh.vertices()[v as usize]));
-    let (n, _) = scene_plane(&vertices, into_sensor);
+    let (n, _) = scene_plane(&vertices, sensor_from_scene);
     let n_length = n.length();
     // n.q = d / t, so cos(psi) = -n.q / (|n| |q|) needs no direction.
-    let distance = transformation.row_distance(&Plane::of(&vertices, into_sensor), y);
+    let distance = transformation.row_distance(&Plane::of(&vertices, sensor_from_scene), y);
     Hit {
         face,
         range,
-        point: into_sensor.back(p),
+        point: sensor_from_scene.back(p),
         normal: n / n_length,
         depth: transformation.plane_distance() / inverse_t,
         incidence: -distance * inverse_t / (n_length * q_length),

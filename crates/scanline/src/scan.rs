@@ -41,8 +41,11 @@ impl<L: Line> Side<L> {
         }
         // Between its ends a side is monotonic in both transformations; rounding may overshoot where it
         // runs almost along the row. `max` and `min` take the other operand for a NaN.
-        let (left, right) =
-            if self.top.x <= self.bottom.x { (self.top.x, self.bottom.x) } else { (self.bottom.x, self.top.x) };
+        let (left, right) = if self.top.x <= self.bottom.x {
+            (self.top.x, self.bottom.x)
+        } else {
+            (self.bottom.x, self.top.x)
+        };
         self.line.x_at(y).max(left).min(right)
     }
 }

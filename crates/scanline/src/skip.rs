@@ -31,12 +31,13 @@ pub(crate) fn bits(
     below: bool,
     too_deep: bool,
 ) -> u8 {
-    u8::from(behind_plane) * BEHIND_PLANE
-        | u8::from(left) * LEFT
-        | u8::from(right) * RIGHT
-        | u8::from(above) * ABOVE
-        | u8::from(below) * BELOW
-        | u8::from(too_deep) * TOO_DEEP
+    let bit = |is: bool, bit: u8| if is { bit } else { 0 };
+    bit(behind_plane, BEHIND_PLANE)
+        | bit(left, LEFT)
+        | bit(right, RIGHT)
+        | bit(above, ABOVE)
+        | bit(below, BELOW)
+        | bit(too_deep, TOO_DEEP)
 }
 
 /// Rule 3c for the camera: whether the rays through all four corners of the screen pass on the outer side

@@ -1,8 +1,8 @@
 //! Look-up tables: cell centres along an axis of the screen, and |q| of every pixel. (§5: "can, therefore,
 //! be fetched from pre-computed tables")
 
-use raypencil_scene::Camera;
 use rayon::prelude::*;
+use raypencil_scene::Camera;
 
 /// Cell centres along one axis of the sensor screen, metres on the SPP, ascending.
 #[derive(Debug, Clone)]
@@ -27,20 +27,14 @@ impl Axis {
     pub(crate) fn of_grid(count: u32, half: f64) -> Self {
         let n = f64::from(count);
         let centres = (0..count).map(|i| half * (2.0 * f64::from(i) + 1.0 - n) / n).collect();
-        Self {
-            centres,
-            cells_per_metre: n / (2.0 * half),
-            origin: 0.5 * n - 0.5,
-            borders: [-half, half],
-        }
+        Self { centres, cells_per_metre: n / (2.0 * half), origin: 0.5 * n - 0.5, borders: [-half, half] }
     }
 
     /// Centres of the rows of a beam's grid over a sheet of that thickness:
     /// `T (2j + 1 - rows) / (2 rows)`.
     pub(crate) fn of_rows(rows: u32, thickness: f64) -> Self {
         let n = f64::from(rows);
-        let centres =
-            (0..rows).map(|j| thickness * (2.0 * f64::from(j) + 1.0 - n) / (2.0 * n)).collect();
+        let centres = (0..rows).map(|j| thickness * (2.0 * f64::from(j) + 1.0 - n) / (2.0 * n)).collect();
         let half = 0.5 * thickness;
         Self { centres, cells_per_metre: n / thickness, origin: 0.5 * n - 0.5, borders: [-half, half] }
     }

@@ -1,20 +1,20 @@
 //! Step 2: vertices in the sensor's frame and on the SPP. (§4, 2; figure 7)
 
 use glam::{DMat3, DVec3};
-use raypencil_scene::{Mesh, Pose};
 use rayon::prelude::*;
+use raypencil_scene::{Mesh, Pose};
 
 use crate::scan::Corner;
 
 /// From the scene into a sensor's frame: `R^T (p - position)`, with the matrix R of the pose's quaternion.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct IntoSensor {
+pub(crate) struct SensorFromScene {
     position: DVec3,
     /// Columns are the sensor's axes in the scene frame.
     axes: DMat3,
 }
 
-impl IntoSensor {
+impl SensorFromScene {
     /// The matrix of `(q p q*) / (q . q)`, term by term.
     pub(crate) fn of(pose: &Pose) -> Self {
         let [x, y, z, w] = pose.rotation.to_array();

@@ -69,10 +69,9 @@ impl Hierarchy {
                 continue;
             }
             let corners = padded_box(&vertices, reach);
-            let bits = [
-                corners.min.x, corners.min.y, corners.min.z, corners.max.x, corners.max.y, corners.max.z,
-            ]
-            .map(f32::to_bits);
+            let bits =
+                [corners.min.x, corners.min.y, corners.min.z, corners.max.x, corners.max.y, corners.max.z]
+                    .map(f32::to_bits);
             let number = *box_of_corners.entry(bits).or_insert_with(|| {
                 boxes.push(corners);
                 boxes.len() as u32 - 1

@@ -20,10 +20,10 @@ mod triangle;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
+use rayon::prelude::*;
 use raypencil_scene::{
     Frame, Mesh, Quantities, Renderer, Request, Resolution, Scene, SensorId, SensorMap, Stage,
 };
-use rayon::prelude::*;
 
 use hierarchy::Hierarchy;
 use rays::SensorRays;

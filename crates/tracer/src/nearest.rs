@@ -37,7 +37,12 @@ impl Found {
 
 /// Keeps the better of the nearest hit so far and what `triangle` offers.
 #[inline]
-pub(crate) fn offer(nearest: &mut Option<Found>, triangle: &Triangle, ray: &TracedRay, max_range: f64) -> bool {
+pub(crate) fn offer(
+    nearest: &mut Option<Found>,
+    triangle: &Triangle,
+    ray: &TracedRay,
+    max_range: f64,
+) -> bool {
     let Some(t) = triangle.meets(ray) else { return false };
     // At or beyond the SPP, and within the range, which is distance along the ray.
     if !(t >= 1.0 && t * ray.metres_per_t <= max_range) {

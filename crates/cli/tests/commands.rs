@@ -1,0 +1,200 @@
+//! The command as a user meets it: exit codes, what it prints, what it leaves behind.
+
+use std::path::Path;
+use std::process::{Command, ExitCode, Output};
+
+use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene};
+use tempfile::TempDir;
+
+/// Runs the binary in `folder`.
+fn raypencil(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_raypencil"))
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the binary runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A folder with `small.toml`: the pyramids under small sensors, so that a run takes a moment.
+fn folder() -> TempDir {
+    let folder = TempDir::new().expect("a temporary folder");
+    let scene = "version = 1\n\
+        [camera]\nwidth_px = 64\nheight_px = 48\npixel_pitch_um = 144\n\
+        [[beam]]\ncolumns = 64\nrows = 4\n\
+        [terrain]\nbuiltin = \"pyramids\"\n";
+    std::fs::write(folder.path().join("small.toml"), scene).expect("a scene file");
+    folder
+}
+
+/// Asserts trouble: exit 2, nothing on standard output, and a message with all of `words`.
+fn assert_trouble(output: &Output, words: &[&str]) {
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert_eq!(text(&output.stdout), "");
+    for word in words {
+        assert!(message.contains(word), "`{word}` is not in:\n{message}");
+    }
+}
+
+#[test]
+fn bare_it_validates_the_pyramids() {
+    let folder = TempDir::new().unwrap();
+    let output = raypencil(folder.path(), &[]);
+    let screen = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(screen.contains("pyramids") && screen.contains("1,081,344"), "{screen}");
+    // One screen: no more than 40 lines of 100 characters.
+    assert!(screen.lines().count() <= 40, "{screen}");
+    assert!(screen.lines().all(|line| line.chars().count() <= 100), "{screen}");
+    for file in
+        ["summary.json", "report.html", "summary.md", "junit.xml", "scanline/camera.exr", "tracer/beam-1.exr"]
+    {
+        assert!(folder.path().join("out/pyramids").join(file).is_file(), "{file} is missing");
+    }
+    // No terminal, no progress.
+    assert_eq!(text(&output.stderr), "");
+}
+
+#[test]
+fn json_is_the_summary_that_was_written() {
+    let folder = folder();
+    let output = raypencil(folder.path(), &["validate", "small.toml", "--json", "-o", "here"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let printed: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let written = std::fs::read(folder.path().join("here/summary.json")).unwrap();
+    let written: serde_json::Value = serde_json::from_slice(&written).expect("JSON");
+    assert_eq!(printed, written);
+    // 64 x 48 pixels and one beam of 64 x 4 pencils.
+    assert_eq!(printed["compared"], 64 * 48 + 64 * 4);
+    assert_eq!(printed["defects"], 0);
+}
+
+#[test]
+fn threads_change_nothing_that_is_written() {
+    let folder = folder();
+    for threads in ["1", "3"] {
+        let output =
+            raypencil(folder.path(), &["validate", "small.toml", "--threads", threads, "-o", threads]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    }
+    for file in ["scanline/camera.exr", "scanline/beam-0.exr", "tracer/camera.exr", "tracer/beam-0.exr"] {
+        let read = |threads: &str| std::fs::read(folder.path().join(threads).join(file)).unwrap();
+        assert!(read("1") == read("3"), "{file} differs");
+    }
+}
+
+#[test]
+fn probe_tells_what_both_say_of_one_ray() {
+    let folder = folder();
+    let output = raypencil(folder.path(), &["probe", "small.toml", "--beam", "0", "--pencil", "20,3"]);
+    let said = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for word in ["beam-0 pencil 20,3", "scanline: face", "tracer: face", "range", "normal"] {
+        assert!(said.contains(word), "`{word}` is not in:\n{said}");
+    }
+    let output = raypencil(folder.path(), &["probe", "small.toml", "--pixel", "63,47", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(said["cell"], serde_json::json!([63, 47]));
+    assert_eq!(said["answers"].as_array().map(Vec::len), Some(2));
+}
+
+#[test]
+fn render_writes_one_renderers_maps() {
+    let folder = folder();
+    let output = raypencil(folder.path(), &["render", "small.toml", "--with", "tracer", "-o", "maps"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let mut written: Vec<_> = std::fs::read_dir(folder.path().join("maps"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    written.sort();
+    assert_eq!(written, ["beam-0.exr", "camera.exr"]);
+}
+
+#[test]
+fn trouble_is_one_clear_message() {
+    let folder = folder();
+    let at = folder.path();
+    assert_trouble(&raypencil(at, &["validate", "moon"]), &["`moon`", "pyramids", ".glb"]);
+    assert_trouble(&raypencil(at, &["validate", "gone.glb"]), &["gone.glb", "does not exist"]);
+    assert_trouble(&raypencil(at, &["validate", "small.toml", "--with", "tracer"]), &["at least 2"]);
+    assert_trouble(&raypencil(at, &["validate", "small.toml", "--with", "tracer,tracer"]), &["twice"]);
+    assert_trouble(
+        &raypencil(at, &["validate", "small.toml", "--with", "scanline,magic"]),
+        &["magic", "scanline"],
+    );
+    assert_trouble(&raypencil(at, &["validate", "small.toml", "--fan", "180"]), &["fan", "180"]);
+    assert_trouble(&raypencil(at, &["validate", "small.toml", "--at", "1000,0"]), &["no ground", "1000"]);
+    assert_trouble(&raypencil(at, &["probe", "small.toml", "--pixel", "64,0"]), &["64,0", "64 x 48"]);
+    assert_trouble(
+        &raypencil(at, &["probe", "small.toml", "--beam", "1", "--pencil", "0,0"]),
+        &["no beam 1", "1"],
+    );
+    assert_trouble(&raypencil(at, &["probe", "small.toml"]), &["--pixel"]);
+    assert_trouble(&raypencil(at, &["validate", "small.toml", "--threads", "0"]), &["--threads"]);
+
+    std::fs::write(at.join("bad.toml"), "version = 1\n[camera]\nwidth_px = 0\n").unwrap();
+    assert_trouble(&raypencil(at, &["validate", "bad.toml"]), &["bad.toml", "width_px", "3"]);
+    std::fs::write(at.join("rubbish.glb"), b"glTF rubbish that is no GLB at all").unwrap();
+    assert_trouble(&raypencil(at, &["validate", "rubbish.glb"]), &["rubbish.glb"]);
+
+    // A file where the output folder should be, and nothing left behind by all of the above.
+    std::fs::write(at.join("taken"), "").unwrap();
+    assert_trouble(&raypencil(at, &["validate", "small.toml", "-o", "taken"]), &["taken"]);
+    assert!(!at.join("out").exists());
+}
+
+/// A renderer whose normals have the sign of x turned.
+struct Flipped {
+    inner: Box<dyn Renderer>,
+}
+
+impl Renderer for Flipped {
+    fn name(&self) -> &str {
+        "tracer"
+    }
+
+    fn resolution(&self) -> Resolution {
+        self.inner.resolution()
+    }
+
+    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+        let mut frame = self.inner.render(scene, request);
+        for map in frame.camera.iter_mut().chain(&mut frame.beams) {
+            for normal in map.normal.iter_mut().flat_map(|image| image.cells_mut()) {
+                *normal = normal
+                    .get()
+                    .map(|mut n| {
+                        n.x = -n.x;
+                        n
+                    })
+                    .into();
+            }
+        }
+        frame
+    }
+}
+
+#[test]
+fn a_renderer_with_one_sign_flipped_is_a_defect() {
+    let folder = folder();
+    let registry = |name: &str| {
+        let inner = raypencil_harness::renderer(name)?;
+        Some(if name == "tracer" { Box::new(Flipped { inner }) as Box<dyn Renderer> } else { inner })
+    };
+    let scene = folder.path().join("small.toml").display().to_string();
+    let out = folder.path().join("out").display().to_string();
+    let arguments = ["raypencil", "validate", scene.as_str(), "-o", out.as_str()].map(Into::into);
+    assert_eq!(raypencil_cli::main_with(arguments, &registry), ExitCode::from(1));
+    let summary = std::fs::read(folder.path().join("out/summary.json")).expect("a summary of what failed");
+    let summary: serde_json::Value = serde_json::from_slice(&summary).expect("JSON");
+    assert!(summary["defects"].as_u64() > Some(100), "{summary:#}");
+    // And the same arguments with the honest renderers agree.
+    let arguments = ["raypencil", "validate", scene.as_str(), "-o", out.as_str()].map(Into::into);
+    assert_eq!(raypencil_cli::main_with(arguments, &raypencil_harness::renderer), ExitCode::SUCCESS);
+}

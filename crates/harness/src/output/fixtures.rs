@@ -1,0 +1,98 @@
+//! Validations for the tests of this module.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, FluxModel, Image, Maybe, Mounted, Pose, Profile, Scene, SensorId,
+};
+
+use crate::compare::{Class, Defect, Place, Quantity, Worst};
+use crate::renderers::renderer;
+use crate::run::{Silent, Subject, Validation, validate};
+
+/// The pyramids through a small camera and one small beam.
+pub(crate) fn subject() -> Subject {
+    let mesh = Arc::new(raypencil_terrain::builtin("pyramids", 0.25).unwrap().into_mesh().unwrap());
+    let mount = |height: f64, down: f64| {
+        Pose::from_position(DVec3::new(0.3, 0.0, height))
+            * Pose::from_axis_angle(DVec3::Y, down.to_radians())
+            * Pose::VEHICLE_FROM_FORWARD_SENSOR
+    };
+    let camera = Mounted {
+        scene_from_sensor: mount(1.5, 20.0),
+        sensor: Camera {
+            width: 48,
+            height: 40,
+            pixel_pitch: [200e-6; 2],
+            focal_length: 8e-3,
+            principal_point: [24.0, 20.0],
+            aperture: 2e-3,
+            max_range: 20.0,
+        },
+    };
+    let beam = Mounted {
+        scene_from_sensor: mount(1.8, 31.0),
+        sensor: Beam {
+            columns: 64,
+            rows: 4,
+            thickness: 5e-3,
+            grid_distance: 0.1,
+            half_width: Beam::half_width_of(0.1, 60_f64.to_radians()),
+            max_range: 20.0,
+            power: 1.0,
+            wavelength: 810e-9,
+            profile: Profile::Paper,
+        },
+    };
+    let air = Atmosphere { attenuation: 0.0 };
+    Subject {
+        scene: Scene::new(mesh, camera, vec![beam], air, FluxModel::Radiometric).unwrap(),
+        name: "pyramids".into(),
+        arguments: "pyramids --fan 60".into(),
+        sha256: "0123456789abcdef".repeat(4),
+    }
+}
+
+/// Both renderers, in agreement.
+pub(crate) fn agreeing() -> Validation {
+    let renderers = ["scanline", "tracer"].map(|name| renderer(name).unwrap());
+    validate(subject(), &[&*renderers[0], &*renderers[1]], &Silent)
+}
+
+/// One renderer, and so nothing to compare.
+pub(crate) fn lonely() -> Validation {
+    let renderer = renderer("tracer").unwrap();
+    validate(subject(), &[&*renderer], &Silent)
+}
+
+/// Where [`defective`] has its defects: a hit on one side only, and an error that is no number.
+pub(crate) const DEFECTS: [Place; 2] =
+    [Place { sensor: SensorId::Beam(0), i: 7, j: 1 }, Place { sensor: SensorId::Beam(0), i: 9, j: 2 }];
+
+/// [`agreeing`], and two defects in the beam with text that no format must take for its own.
+pub(crate) fn defective() -> Validation {
+    let mut validation = agreeing();
+    let sensor = validation.pairs[0].sensors.last_mut().unwrap();
+    sensor.by_class[Class::Agree as usize] -= 2;
+    sensor.by_class[Class::Defect as usize] += 2;
+    for (quantity, tally) in &mut sensor.quantities {
+        if matches!(quantity, Quantity::Hit | Quantity::Range) {
+            tally.by_class[Class::Agree as usize] -= 1;
+            tally.by_class[Class::Defect as usize] += 1;
+        }
+        if *quantity == Quantity::Range {
+            tally.worst_error = Some(Worst { value: f64::INFINITY, place: DEFECTS[1] });
+            tally.worst_ratio = Some(Worst { value: f64::NAN, place: DEFECTS[1] });
+        }
+    }
+    let described = ["scanline: <no> & \"hit\"; tracer: face 3", "scanline: face 3; tracer: face 3"];
+    for ((place, quantity), what) in DEFECTS.into_iter().zip([Quantity::Hit, Quantity::Range]).zip(described)
+    {
+        sensor.defects.push(Defect { place, quantity, what: what.into() });
+    }
+    let map = validation.rendered[1].frame.beams[0].range.as_mut().unwrap();
+    let image: &mut Image<Maybe<f64>> = map;
+    image.set(7, 1, Maybe::NONE);
+    validation
+}

@@ -1,0 +1,223 @@
+//! `report.html`: the validation for people, as one file that links to nothing.
+
+use askama::Template;
+
+use super::VERSION;
+use super::plot::{self, Plots};
+use super::table::{Row, hits, rows};
+use super::text::{count, counted, list, probe_command, time};
+use super::verdict::{CAVEAT, Verdict, explanation, headline};
+use crate::compare::{Class, SensorComparison};
+use crate::run::{Pair, Validation};
+
+/// How many defects of a sensor are listed.
+const LISTED: usize = 10;
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Page<'a> {
+    verdict: &'static str,
+    sign: &'static str,
+    headline: String,
+    explanation: String,
+    caveat: &'static str,
+    scene: &'a str,
+    sha256: &'a str,
+    version: &'static str,
+    command: String,
+    renderers: String,
+    tiles: Vec<Tile>,
+    comparisons: Vec<Comparison>,
+    sensors: Vec<Sensor>,
+    defects: Vec<Defects>,
+    stages: Vec<Timed>,
+}
+
+/// One big number.
+struct Tile {
+    number: String,
+    name: &'static str,
+    meaning: &'static str,
+    bad: bool,
+}
+
+/// Two renderers.
+struct Comparison {
+    title: String,
+    all: Vec<Row>,
+    sensors: Vec<SensorTable>,
+}
+
+struct SensorTable {
+    title: String,
+    rows: Vec<Row>,
+}
+
+/// One sensor's pictures and numbers.
+struct Sensor {
+    name: String,
+    size: String,
+    numbers: Vec<String>,
+    plots: Plots,
+}
+
+/// The defects of one sensor and pair.
+struct Defects {
+    title: String,
+    listed: Vec<Listed>,
+    more: String,
+}
+
+struct Listed {
+    place: String,
+    quantity: String,
+    what: String,
+    command: String,
+}
+
+/// A stage and how its time compares with the longest.
+struct Timed {
+    name: String,
+    time: String,
+    percent: f64,
+}
+
+/// The whole page.
+pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
+    let Validation { subject, rendered, pairs, stages } = validation;
+    let verdict = Verdict::of(validation);
+    let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
+    let longest = stages.iter().map(|stage| stage.time).max().unwrap_or_default().as_secs_f64();
+    let most = plot::most_across(validation);
+    let page = Page {
+        verdict: match verdict {
+            Verdict::Agree => "agree",
+            Verdict::Defects => "defects",
+            Verdict::NothingCompared => "nothing",
+        },
+        sign: verdict.sign(),
+        headline: headline(validation),
+        explanation: explanation(validation),
+        caveat: if verdict == Verdict::Agree { CAVEAT } else { "" },
+        scene: &subject.name,
+        sha256: &subject.sha256,
+        version: VERSION,
+        command: format!("raypencil validate {}", subject.arguments),
+        renderers: list(&names),
+        tiles: tiles(validation),
+        comparisons: pairs.iter().map(|pair| comparison(validation, pair)).collect(),
+        sensors: subject
+            .scene
+            .sensors()
+            .map(|id| {
+                let (width, height) = subject.scene.size(id).expect("a sensor of this scene");
+                Sensor {
+                    name: id.to_string(),
+                    size: format!("{width} × {height}"),
+                    numbers: numbers(validation, id),
+                    plots: plot::plots(validation, id, most),
+                }
+            })
+            .collect(),
+        defects: pairs.iter().flat_map(|pair| defects(validation, pair)).collect(),
+        stages: stages
+            .iter()
+            .map(|stage| Timed {
+                name: stage.name.clone(),
+                time: time(stage.time),
+                percent: if longest > 0.0 { 100.0 * stage.time.as_secs_f64() / longest } else { 0.0 },
+            })
+            .collect(),
+    };
+    let mut html = page.render()?;
+    html.push('\n');
+    Ok(html)
+}
+
+fn tiles(validation: &Validation) -> Vec<Tile> {
+    let counts = validation.counts();
+    let tile = |number, name, meaning, bad| Tile { number: count(number), name, meaning, bad };
+    let mut tiles = vec![
+        tile(counts.compared, "compared", "rays, pencils and pixels alike", counts.compared == 0),
+        tile(counts.agree, "agree", "same face or none, values within the bound", false),
+        tile(counts.tie, "tie", "two faces at the same range", false),
+        tile(counts.defects, "defects", "anything else", counts.defects > 0),
+    ];
+    if counts.not_compared > 0 {
+        tiles.push(tile(counts.not_compared, "not compared", "one side has no maps", false));
+    }
+    tiles
+}
+
+fn comparison(validation: &Validation, pair: &Pair) -> Comparison {
+    let subject = &validation.subject;
+    let sensor_table = |sensor: &SensorComparison| SensorTable {
+        title: sensor.sensor.to_string(),
+        rows: rows(subject, [sensor]),
+    };
+    Comparison {
+        title: title(validation, pair),
+        all: rows(subject, &pair.sensors),
+        sensors: pair.sensors.iter().map(sensor_table).collect(),
+    }
+}
+
+fn title(validation: &Validation, pair: &Pair) -> String {
+    format!("{} against {}", validation.rendered[pair.a].name, validation.rendered[pair.b].name)
+}
+
+/// What there is to say of a sensor, pair by pair.
+fn numbers(validation: &Validation, sensor: raypencil_scene::SensorId) -> Vec<String> {
+    let mut numbers: Vec<String> = Vec::new();
+    for rendered in &validation.rendered {
+        numbers.push(match rendered.frame.map(sensor).and_then(hits) {
+            Some(hits) => format!("{}: {}", rendered.name, counted(hits, "hit", "hits")),
+            None => format!("{}: no map", rendered.name),
+        });
+    }
+    for pair in &validation.pairs {
+        let Some(found) = pair.sensors.iter().find(|found| found.sensor == sensor) else { continue };
+        let of = |class| count(found.of(class));
+        numbers.push(format!(
+            "{}: {} agree, {} tie, {} defect{}",
+            title(validation, pair),
+            of(Class::Agree),
+            of(Class::Tie),
+            of(Class::Defect),
+            match found.not_compared {
+                0 => String::new(),
+                some => format!(", {} not compared", count(some)),
+            }
+        ));
+    }
+    numbers
+}
+
+fn defects(validation: &Validation, pair: &Pair) -> Vec<Defects> {
+    let of_sensor = |sensor: &SensorComparison| {
+        let total = sensor.of(Class::Defect);
+        let listed: Vec<Listed> = sensor
+            .defects
+            .iter()
+            .take(LISTED)
+            .map(|defect| Listed {
+                place: defect.place.to_string(),
+                quantity: defect.quantity.to_string(),
+                what: defect.what.clone(),
+                command: probe_command(&validation.subject, defect.place),
+            })
+            .collect();
+        let more = total - total.min(listed.len() as u64);
+        (total > 0).then(|| Defects {
+            title: format!(
+                "{}, {}: {}",
+                sensor.sensor,
+                title(validation, pair),
+                counted(total, "defect", "defects")
+            ),
+            listed,
+            more: if more > 0 { counted(more, "more ray", "more rays") } else { String::new() },
+        })
+    };
+    pair.sensors.iter().filter_map(of_sensor).collect()
+}

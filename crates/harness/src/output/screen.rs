@@ -1,0 +1,236 @@
+//! What the command prints: a validation on one screen of 80 columns and 40 lines.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use raypencil_scene::{SensorId, Stage};
+
+use super::VERSION;
+use super::table::{hits, totals};
+use super::text::{count, list, probe_command, time, worst};
+use super::verdict::{Verdict, defects, explanation, headline, rays};
+use crate::compare::{Class, Place, SensorComparison};
+use crate::run::Validation;
+
+/// Columns of the screen. Only paths and commands, which are there to be copied, may be longer.
+const COLUMNS: usize = 80;
+/// Sensors that get a line.
+const SENSORS: usize = 5;
+/// Lines of stage times.
+const TIMES: usize = 4;
+/// Defects that get their lines.
+const DEFECTS: usize = 5;
+
+/// The validation on one terminal screen; `folder` is where [`crate::write_validation`] put its files.
+pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
+    let blocks = [
+        head(validation),
+        quantities(validation),
+        sensors(validation),
+        times(validation),
+        files(validation, folder),
+        verdict(validation),
+    ];
+    blocks.into_iter().filter(|block| !block.is_empty()).collect::<Vec<_>>().join("\n")
+}
+
+/// The scene and who rendered it.
+fn head(validation: &Validation) -> String {
+    let subject = &validation.subject;
+    let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
+    let who = cut(&format!("raypencil {VERSION}: {} by {}", subject.name, list(&names)));
+    format!("{who}\nSHA-256 {}\n", subject.sha256)
+}
+
+/// The table of quantities and classes over all sensors.
+fn quantities(validation: &Validation) -> String {
+    let heads = ["", "agree", "tie", "defect", "worst error", "at", "error/bound"].map(String::from);
+    let mut lines = vec![heads];
+    for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
+        // No cell holds blanks for a value that is not there.
+        let or_dash = |text: String| if text.is_empty() { "-".into() } else { text };
+        lines.push([
+            quantity.to_string(),
+            count(tally.of(Class::Agree)),
+            count(tally.of(Class::Tie)),
+            count(tally.of(Class::Defect)),
+            or_dash(worst(tally.worst_error, quantity.unit())),
+            or_dash(tally.worst_error.map_or(String::new(), |worst| short(worst.place))),
+            or_dash(worst(tally.worst_ratio, "")),
+        ]);
+    }
+    let widths: Vec<usize> = (0..7)
+        .map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0))
+        .collect();
+    // Two blanks between columns, one where counts are huge.
+    let blanks = if widths.iter().sum::<usize>() + 2 * (widths.len() - 1) <= COLUMNS { "  " } else { " " };
+    let mut text = String::new();
+    for line in lines {
+        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
+            0 | 5 => format!("{cell:<width$}"),
+            _ => format!("{cell:>width$}"),
+        });
+        let line = cells.collect::<Vec<_>>().join(blanks);
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    text
+}
+
+/// A place in as few letters as tell it.
+fn short(Place { sensor, i, j }: Place) -> String {
+    format!("{sensor} {i},{j}")
+}
+
+/// A line for each sensor, over all pairs.
+fn sensors(validation: &Validation) -> String {
+    let mut text = String::new();
+    let sensors: Vec<SensorId> = validation.subject.scene.sensors().collect();
+    for &sensor in sensors.iter().take(SENSORS) {
+        let (width, height) = validation.subject.scene.size(sensor).expect("a sensor of this scene");
+        let hit: Vec<String> = validation
+            .rendered
+            .iter()
+            .map(|rendered| rendered.frame.map(sensor).and_then(hits).map_or("?".into(), count))
+            .collect();
+        // One number where all say the same.
+        let hit = if hit.windows(2).all(|two| two[0] == two[1]) {
+            hit.into_iter().next().unwrap_or_default()
+        } else {
+            hit.join("/")
+        };
+        let comparisons =
+            || validation.pairs.iter().flat_map(|pair| &pair.sensors).filter(|found| found.sensor == sensor);
+        let of = |class| comparisons().map(|comparison| comparison.of(class)).sum::<u64>();
+        let missing: u64 = comparisons().map(|SensorComparison { not_compared, .. }| not_compared).sum();
+        let mut line = format!(
+            "{:<7} {} rays: {} agree, {} tie, {} defect",
+            sensor.to_string(),
+            count(u64::from(width) * u64::from(height)),
+            count(of(Class::Agree)),
+            count(of(Class::Tie)),
+            count(of(Class::Defect)),
+        );
+        if missing > 0 {
+            let _ = write!(line, ", {} not compared", count(missing));
+        }
+        let _ = write!(line, "; {hit} hit");
+        let _ = writeln!(text, "{}", cut(&line));
+    }
+    if sensors.len() > SENSORS {
+        let _ = writeln!(text, "... and {} more sensors in the summary", sensors.len() - SENSORS);
+    }
+    text
+}
+
+/// Stage times, a renderer a line.
+fn times(validation: &Validation) -> String {
+    let mut text = String::new();
+    for rendered in &validation.rendered {
+        let stages = rendered.frame.stages.iter().map(|stage| format!("{} {}", stage.name, time(stage.time)));
+        text.push_str(&wrap(&format!("{} {}: ", rendered.name, time(rendered.time)), stages, 1));
+    }
+    // The other stages are named after no renderer.
+    let of_renderer = |stage: &&Stage| {
+        let stage = stage.name.split_once(": ").map(|(renderer, _)| renderer);
+        validation.rendered.iter().any(|rendered| stage == Some(rendered.name.as_str()))
+    };
+    let others = validation.stages.iter().filter(|stage| !of_renderer(stage));
+    let others: Vec<String> = others.map(|stage| format!("{} {}", stage.name, time(stage.time))).collect();
+    if !others.is_empty() {
+        text.push_str(&wrap("", others, 1));
+    }
+    text.lines().take(TIMES).map(|line| format!("{line}\n")).collect()
+}
+
+/// What was written.
+fn files(validation: &Validation, folder: Option<&Path>) -> String {
+    let Some(folder) = folder else { return String::new() };
+    let mut text = format!("{}\n", folder.join("report.html").display());
+    let maps: Vec<String> =
+        validation.rendered.iter().map(|rendered| format!("{}/*.exr", rendered.name)).collect();
+    let beside = ["summary.json", "summary.md", "junit.xml"].map(String::from);
+    text.push_str(&wrap("  beside it: ", beside.into_iter().chain(maps), 2));
+    text
+}
+
+/// The verdict, and how to see the first defects.
+fn verdict(validation: &Validation) -> String {
+    let verdict = Verdict::of(validation);
+    let mut text = format!("{}\n", cut(&format!("{}.", headline(validation))));
+    let counts = validation.counts();
+    match verdict {
+        Verdict::Agree if counts.not_compared > 0 => {
+            let _ = writeln!(
+                text,
+                "{} not compared: one side has no maps.",
+                rays(validation, counts.not_compared)
+            );
+        }
+        Verdict::NothingCompared => {
+            let _ = writeln!(text, "{}", cut(&explanation(validation)));
+        }
+        _ => {}
+    }
+    for defect in defects(validation).take(DEFECTS) {
+        let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
+        let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.quantity, defect.what)));
+    }
+    text
+}
+
+/// Parts with commas on lines that begin with `head` or as many blanks; what exceeds `most` lines is counted.
+fn wrap(head: &str, parts: impl IntoIterator<Item = String>, most: usize) -> String {
+    let parts: Vec<String> = parts.into_iter().collect();
+    let (mut lines, mut line) = (Vec::new(), head.to_string());
+    for (index, part) in parts.iter().enumerate() {
+        let part = if index + 1 < parts.len() { format!("{part},") } else { part.clone() };
+        // All but the last part leave room for the count of what does not fit.
+        let room = if index + 1 == parts.len() { COLUMNS } else { COLUMNS - 12 };
+        let needed = line.chars().count() + 1 + part.chars().count();
+        if index == 0 {
+            line.push_str(&part);
+        } else if needed <= room {
+            line.push(' ');
+            line.push_str(&part);
+        } else if lines.len() + 1 < most {
+            lines.push(std::mem::replace(&mut line, format!("{}{part}", " ".repeat(head.chars().count()))));
+        } else {
+            line.push_str(&format!(" {} more", parts.len() - index));
+            break;
+        }
+    }
+    lines.push(line);
+    lines.into_iter().map(|line| cut(&line) + "\n").collect()
+}
+
+/// A line that ends at the edge of the screen.
+fn cut(line: &str) -> String {
+    if line.chars().count() <= COLUMNS {
+        return line.into();
+    }
+    let mut short: String = line.chars().take(COLUMNS - 3).collect();
+    short.push_str("...");
+    short
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lists_are_wrapped_and_counted() {
+        let parts = (0..40).map(|index| format!("stage number {index} 12.3 ms"));
+        let text = wrap("times: ", parts, 3);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 3);
+        assert!(lines.iter().all(|line| line.chars().count() <= COLUMNS), "{text}");
+        assert!(lines[0].starts_with("times: stage number 0 12.3 ms, stage"), "{text}");
+        assert!(lines[1].starts_with("       stage"), "{text}");
+        assert!(lines[2].ends_with("more"), "{text}");
+    }
+
+    #[test]
+    fn short_lists_stay_on_one_line() {
+        assert_eq!(wrap("times: ", ["a 1 s".into(), "b 2 s".into()], 3), "times: a 1 s, b 2 s\n");
+    }
+}

@@ -1,0 +1,220 @@
+//! `summary.json`: the validation for programs. Its schema is `docs/summary.schema.json`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::table::hits;
+use super::text::probe_command;
+use super::verdict::Verdict;
+use super::{VERSION, map_file};
+use crate::compare::{Class, Quantity, SensorComparison, Worst};
+use crate::run::{Pair, Rendered, Subject, Validation};
+
+/// The number of the schema; it grows when a key changes its meaning or goes away.
+const FORMAT: u32 = 1;
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    format: u32,
+    version: &'a str,
+    verdict: Verdict,
+    #[serde(flatten)]
+    classes: Classes,
+    /// Causes of differences that a switch explains, with their counts.
+    approximations: BTreeMap<String, u64>,
+    scene: SceneName<'a>,
+    renderers: Vec<RendererSummary<'a>>,
+    pairs: Vec<PairSummary<'a>>,
+    stages: Vec<StageSummary<'a>>,
+}
+
+/// Rays by class; all but `not_compared` add up to `compared`.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Classes {
+    compared: u64,
+    agree: u64,
+    tie: u64,
+    /// 0 until exact arithmetic judges what differs; so is `undecided`.
+    rounding: u64,
+    undecided: u64,
+    defects: u64,
+    not_compared: u64,
+}
+
+#[derive(Serialize)]
+struct SceneName<'a> {
+    name: &'a str,
+    sha256: &'a str,
+    arguments: &'a str,
+}
+
+#[derive(Serialize)]
+struct RendererSummary<'a> {
+    name: &'a str,
+    unit_roundoff: Option<f64>,
+    seconds: f64,
+    sensors: Vec<MapSummary>,
+}
+
+#[derive(Serialize)]
+struct MapSummary {
+    sensor: String,
+    columns: u32,
+    rows: u32,
+    hits: Option<u64>,
+    file: String,
+}
+
+#[derive(Serialize)]
+struct PairSummary<'a> {
+    a: &'a str,
+    b: &'a str,
+    sensors: Vec<SensorSummary<'a>>,
+}
+
+#[derive(Serialize)]
+struct SensorSummary<'a> {
+    sensor: String,
+    #[serde(flatten)]
+    classes: Classes,
+    quantities: Vec<QuantitySummary>,
+    first_defects: Vec<DefectSummary<'a>>,
+}
+
+#[derive(Serialize)]
+struct QuantitySummary {
+    quantity: Quantity,
+    unit: &'static str,
+    agree: u64,
+    tie: u64,
+    defects: u64,
+    not_compared: u64,
+    worst_error: Option<WorstSummary>,
+    worst_ratio: Option<WorstSummary>,
+}
+
+#[derive(Serialize)]
+struct WorstSummary {
+    /// `None` where it is no finite number, as JSON has no other.
+    value: Option<f64>,
+    sensor: String,
+    i: u32,
+    j: u32,
+    probe: String,
+}
+
+#[derive(Serialize)]
+struct DefectSummary<'a> {
+    i: u32,
+    j: u32,
+    quantity: Quantity,
+    what: &'a str,
+    probe: String,
+}
+
+#[derive(Serialize)]
+struct StageSummary<'a> {
+    name: &'a str,
+    seconds: f64,
+}
+
+/// The summary as JSON with line breaks, as it stands in `summary.json`.
+pub fn summary_json(validation: &Validation) -> String {
+    let Validation { subject, rendered, pairs, stages } = validation;
+    let counts = validation.counts();
+    let summary = Summary {
+        format: FORMAT,
+        version: VERSION,
+        verdict: Verdict::of(validation),
+        classes: Classes {
+            compared: counts.compared,
+            agree: counts.agree,
+            tie: counts.tie,
+            rounding: 0,
+            undecided: 0,
+            defects: counts.defects,
+            not_compared: counts.not_compared,
+        },
+        approximations: BTreeMap::new(),
+        scene: SceneName { name: &subject.name, sha256: &subject.sha256, arguments: &subject.arguments },
+        renderers: rendered.iter().map(of_renderer).collect(),
+        pairs: pairs.iter().map(|pair| of_pair(validation, pair)).collect(),
+        stages: stages
+            .iter()
+            .map(|stage| StageSummary { name: &stage.name, seconds: stage.time.as_secs_f64() })
+            .collect(),
+    };
+    let mut json = serde_json::to_string_pretty(&summary).expect("numbers, texts and lists of them are JSON");
+    json.push('\n');
+    json
+}
+
+fn of_renderer(rendered: &Rendered) -> RendererSummary<'_> {
+    let sensors = rendered.frame.maps().map(|map| MapSummary {
+        sensor: map.sensor.to_string(),
+        columns: map.width,
+        rows: map.height,
+        hits: hits(map),
+        file: map_file(rendered, map.sensor),
+    });
+    RendererSummary {
+        name: &rendered.name,
+        unit_roundoff: finite(rendered.resolution.unit_roundoff),
+        seconds: rendered.time.as_secs_f64(),
+        sensors: sensors.collect(),
+    }
+}
+
+fn of_pair<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'a> {
+    let name = |index: usize| validation.rendered[index].name.as_str();
+    let sensors = pair.sensors.iter().map(|sensor| of_sensor(&validation.subject, sensor)).collect();
+    PairSummary { a: name(pair.a), b: name(pair.b), sensors }
+}
+
+fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorComparison) -> SensorSummary<'a> {
+    let worst = |worst: Option<Worst>| {
+        worst.map(|Worst { value, place }| WorstSummary {
+            value: finite(value),
+            sensor: place.sensor.to_string(),
+            i: place.i,
+            j: place.j,
+            probe: probe_command(subject, place),
+        })
+    };
+    let quantities = comparison.quantities.iter().map(|(quantity, tally)| QuantitySummary {
+        quantity: *quantity,
+        unit: quantity.unit(),
+        agree: tally.of(Class::Agree),
+        tie: tally.of(Class::Tie),
+        defects: tally.of(Class::Defect),
+        not_compared: tally.not_compared,
+        worst_error: worst(tally.worst_error),
+        worst_ratio: worst(tally.worst_ratio),
+    });
+    let defects = comparison.defects.iter().map(|defect| DefectSummary {
+        i: defect.place.i,
+        j: defect.place.j,
+        quantity: defect.quantity,
+        what: &defect.what,
+        probe: probe_command(subject, defect.place),
+    });
+    SensorSummary {
+        sensor: comparison.sensor.to_string(),
+        classes: Classes {
+            compared: comparison.compared,
+            agree: comparison.of(Class::Agree),
+            tie: comparison.of(Class::Tie),
+            rounding: 0,
+            undecided: 0,
+            defects: comparison.of(Class::Defect),
+            not_compared: comparison.not_compared,
+        },
+        quantities: quantities.collect(),
+        first_defects: defects.collect(),
+    }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

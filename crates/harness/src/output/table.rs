@@ -1,0 +1,74 @@
+//! The table of quantities and classes, ready to be printed by anything.
+
+use raypencil_scene::SensorMap;
+
+use super::text::{self, probe_command};
+use crate::compare::{Class, Quantity, SensorComparison, Tally, Worst};
+use crate::run::Subject;
+
+/// One quantity over one or more sensors.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) quantity: Quantity,
+    pub(crate) agree: String,
+    pub(crate) tie: String,
+    pub(crate) defects: String,
+    /// Whether there are defects.
+    pub(crate) fails: bool,
+    pub(crate) not_compared: String,
+    pub(crate) error: Option<Extreme>,
+    pub(crate) ratio: Option<Extreme>,
+}
+
+/// A worst value in words, and how to see it again.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Extreme {
+    pub(crate) value: String,
+    pub(crate) place: String,
+    pub(crate) command: String,
+}
+
+/// The rows of some sensors, each quantity summed over them.
+pub(crate) fn rows<'a>(
+    subject: &Subject,
+    sensors: impl IntoIterator<Item = &'a SensorComparison>,
+) -> Vec<Row> {
+    let extreme = |worst: Option<Worst>, unit: &str| {
+        worst.map(|Worst { value, place }| Extreme {
+            value: text::quantity(value, unit),
+            place: place.to_string(),
+            command: probe_command(subject, place),
+        })
+    };
+    totals(sensors)
+        .into_iter()
+        .map(|(quantity, tally)| Row {
+            quantity,
+            agree: text::count(tally.of(Class::Agree)),
+            tie: text::count(tally.of(Class::Tie)),
+            defects: text::count(tally.of(Class::Defect)),
+            fails: tally.of(Class::Defect) > 0,
+            not_compared: text::count(tally.not_compared),
+            error: extreme(tally.worst_error, quantity.unit()),
+            ratio: extreme(tally.worst_ratio, ""),
+        })
+        .collect()
+}
+
+/// Each quantity summed over some sensors.
+pub(crate) fn totals<'a>(sensors: impl IntoIterator<Item = &'a SensorComparison>) -> Vec<(Quantity, Tally)> {
+    let mut totals = Quantity::ALL.map(|quantity| (quantity, Tally::default()));
+    for (quantity, tally) in sensors.into_iter().flat_map(|sensor| &sensor.quantities) {
+        totals[*quantity as usize].1.add(tally);
+    }
+    totals.into()
+}
+
+/// Rays that hit, as the map itself says; `None` if it does not.
+pub(crate) fn hits(map: &SensorMap) -> Option<u64> {
+    let ranges =
+        || map.range.as_ref().map(|map| map.cells().iter().filter(|cell| cell.get().is_some()).count());
+    let faces =
+        || map.face.as_ref().map(|map| map.cells().iter().filter(|cell| cell.get().is_some()).count());
+    ranges().or_else(faces).map(|hits| hits as u64)
+}

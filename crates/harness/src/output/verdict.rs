@@ -1,0 +1,128 @@
+//! The verdict on a validation, in words that claim no more than was shown.
+
+use serde::Serialize;
+
+use super::text::{count, counted, list, number};
+use crate::compare::{Class, Defect, Quantity, Worst};
+use crate::run::Validation;
+
+/// What came of it all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Verdict {
+    /// Something was compared and nothing of it is a defect.
+    Agree,
+    /// There are defects.
+    Defects,
+    /// There was nothing to compare.
+    NothingCompared,
+}
+
+/// What a pass does not say.
+pub(crate) const CAVEAT: &str = "Agreement is evidence, not proof: an error that both sides make alike \
+    does not show here, and no exact arithmetic has ruled on these rays.";
+
+impl Verdict {
+    pub(crate) fn of(validation: &Validation) -> Self {
+        let counts = validation.counts();
+        if counts.defects > 0 {
+            Self::Defects
+        } else if counts.compared > 0 {
+            Self::Agree
+        } else {
+            Self::NothingCompared
+        }
+    }
+
+    /// A sign for it that does not rest on its colour.
+    pub(crate) fn sign(self) -> &'static str {
+        match self {
+            Self::Agree => "✓",
+            Self::Defects => "✗",
+            Self::NothingCompared => "?",
+        }
+    }
+}
+
+/// What one compares: a ray for each pair of renderers.
+pub(crate) fn rays(validation: &Validation, how_many: u64) -> String {
+    match validation.pairs.len() {
+        0 | 1 => counted(how_many, "ray", "rays"),
+        _ => counted(how_many, "comparison of a ray", "comparisons of rays"),
+    }
+}
+
+/// The verdict in a few words.
+pub(crate) fn headline(validation: &Validation) -> String {
+    let counts = validation.counts();
+    let compared = rays(validation, counts.compared);
+    match Verdict::of(validation) {
+        Verdict::NothingCompared => "Nothing was compared".into(),
+        Verdict::Defects if counts.defects == 1 => format!("1 of {compared} differs"),
+        Verdict::Defects => format!("{} of {compared} differ", count(counts.defects)),
+        Verdict::Agree if counts.compared == 1 => format!("The only {} agrees", &compared[2..]),
+        Verdict::Agree => format!("All {compared} agree"),
+    }
+}
+
+/// What the verdict rests on, in one or two sentences.
+pub(crate) fn explanation(validation: &Validation) -> String {
+    let counts = validation.counts();
+    let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
+    let who = list(&names);
+    let mut text = match Verdict::of(validation) {
+        Verdict::NothingCompared => match names.len() {
+            0 | 1 => "It takes two renderers to compare.".into(),
+            _ => format!("No sensor has maps of {who} that both say which rays hit."),
+        },
+        Verdict::Defects => {
+            let mut text = format!(
+                "{who} differ by more than the rounding errors that both sides can make, or on what is hit."
+            );
+            if let Some(defect) = defects(validation).next() {
+                let Defect { place, quantity, what } = defect;
+                text.push_str(&format!(" The first: {place}, {quantity}. {what}."));
+            }
+            text
+        }
+        Verdict::Agree => {
+            let faces =
+                if counts.tie > 0 { "the same faces, or faces at the same range" } else { "the same faces" };
+            let largest = worst_ratio(validation);
+            let largest = largest.map_or(String::new(), |(quantity, worst)| {
+                let percent = number(100.0 * worst.value);
+                format!(" The largest share of that bound: {percent} %, in {quantity} at {}.", worst.place)
+            });
+            format!(
+                "{who} hit {faces}, and no value differs by more than the rounding errors that both sides can \
+                 make.{largest}"
+            )
+        }
+    };
+    if counts.not_compared > 0 && counts.compared > 0 {
+        text.push_str(&format!(
+            " {} could not be compared: one side has no maps of them.",
+            rays(validation, counts.not_compared)
+        ));
+    }
+    text
+}
+
+/// The defects described, pair by pair and sensor by sensor.
+pub(crate) fn defects(validation: &Validation) -> impl Iterator<Item = &Defect> {
+    validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.defects)
+}
+
+/// The largest ratio of an error to its bound among all quantities that have any error.
+fn worst_ratio(validation: &Validation) -> Option<(Quantity, Worst)> {
+    let tallies =
+        validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.quantities);
+    tallies
+        .filter(|(_, tally)| tally.of(Class::Agree) > 0)
+        .filter_map(|(quantity, tally)| tally.worst_ratio.map(|worst| (*quantity, worst)))
+        .filter(|(_, worst)| worst.value > 0.0)
+        .fold(None, |best, next| match best {
+            Some((_, worst)) if worst.value >= next.1.value => best,
+            _ => Some(next),
+        })
+}
