@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use raypencil_scene_io::Overrides;
 
 /// A Mars rover's structured-light vision, simulated twice by two unlike algorithms and compared ray by ray.
@@ -86,6 +86,15 @@ fn quoted(word: &str) -> String {
     }
 }
 
+/// What `--judge` takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum JudgeWhich {
+    /// One in a hundred or more.
+    Sample,
+    /// Every ray.
+    All,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct Validate {
     #[command(flatten)]
@@ -94,6 +103,10 @@ pub(crate) struct Validate {
     /// Renderers to compare, two or more.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = ["scanline", "tracer"])]
     pub(crate) with: Vec<String>,
+
+    /// Which of the rays that agree the referee rules on as well; it always rules on those that do not.
+    #[arg(long, value_name = "WHICH", default_value = "sample")]
+    pub(crate) judge: JudgeWhich,
 
     /// Folder to write to; out/<scene's name> if not given.
     #[arg(short, long, value_name = "DIR")]
@@ -106,6 +119,7 @@ impl Validate {
         Self {
             scene: SceneArguments { scene: "pyramids".into(), fan: None, at: None, heading: None },
             with: vec!["scanline".into(), "tracer".into()],
+            judge: JudgeWhich::Sample,
             output: None,
         }
     }

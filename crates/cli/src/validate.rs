@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_harness::{one_screen, summary_json, validate as run, write_validation};
+use raypencil_harness::{JudgeShare, one_screen, summary_json, validate as run, write_validation};
 
-use crate::args::Validate;
+use crate::args::{JudgeWhich, Validate};
 use crate::console::{Spinner, say};
 use crate::subject::{renderers, subject};
 use crate::{Outcome, Registry, Trouble};
@@ -18,7 +18,11 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         None => Path::new("out").join(&subject.name),
     };
     let renderers: Vec<_> = renderers.iter().map(AsRef::as_ref).collect();
-    let validation = run(subject, &renderers, &spinner);
+    let share = match command.judge {
+        JudgeWhich::Sample => JudgeShare::Sample,
+        JudgeWhich::All => JudgeShare::All,
+    };
+    let validation = run(subject, &renderers, share, &spinner);
     write_validation(&validation, &folder, &spinner)?;
     drop(spinner);
     if json {

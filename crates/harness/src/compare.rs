@@ -1,16 +1,19 @@
-//! Two frames of one scene, ray by ray: what agrees, what ties, what is a defect.
+//! Two frames of one scene, ray by ray: what agrees, and what each difference is.
 //!
 //! A ray is a cell of a sensor: a pencil or a pixel. Its class is the worst of its quantities', and the
-//! classes of all rays add up to those compared.
+//! classes of all rays add up to those compared. The referee rules on every ray whose two answers differ, and
+//! on a sample of those that agree: two renderers may share a mistake.
 
 use std::fmt;
 
 use glam::DVec3;
 use rayon::prelude::*;
+use raypencil_referee::Ruling;
 use raypencil_scene::{FaceId, Frame, Image, Maybe, Resolution, Scene, SensorId, SensorMap};
 use serde::Serialize;
 
 use crate::bounds::Bounds;
+use crate::judge::{Judge, JudgeShare};
 
 /// What a difference is. In ascending order of badness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -18,11 +21,18 @@ use crate::bounds::Bounds;
 pub enum Class {
     /// The same face, or none on either side; every value within its bound.
     Agree,
-    /// Different faces at the same range, within the bound.
+    /// Each side names one of several faces that are met at exactly the same point.
     Tie,
+    /// Not the exact answer, but that of a ray displaced by no more than the renderer's resolution.
+    Rounding,
+    /// The referee's budget ran out. Its arithmetic is exact and has none, so this stays 0.
+    Undecided,
     /// Anything else.
     Defect,
 }
+
+/// How many classes there are.
+const CLASSES: usize = 5;
 
 /// What is compared of each ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -112,7 +122,7 @@ impl Worst {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tally {
     /// Rays by class, in the order of [`Class`].
-    pub by_class: [u64; 3],
+    pub by_class: [u64; CLASSES],
     /// Rays of which one side does not say it.
     pub not_compared: u64,
     /// The largest difference, in [`Quantity::unit`], over rays that hit the same face or tie.
@@ -164,7 +174,9 @@ pub struct SensorComparison {
     /// Rays whose maps one side does not have at all.
     pub not_compared: u64,
     /// Rays by class, in the order of [`Class`]; they add up to `compared`.
-    pub by_class: [u64; 3],
+    pub by_class: [u64; CLASSES],
+    /// Rays that the referee ruled on.
+    pub judged: u64,
     /// Each quantity by itself.
     pub quantities: Vec<(Quantity, Tally)>,
     /// The first defects, in reading order.
@@ -194,13 +206,19 @@ pub struct Side<'a> {
     pub resolution: Resolution,
 }
 
-/// Compares two frames of `scene`, sensor by sensor.
+/// Compares two frames of `scene`, sensor by sensor, with a judge of its own.
 pub fn compare(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Vec<SensorComparison> {
+    compare_judged(&Judge::new(scene, JudgeShare::Sample), a, b)
+}
+
+/// Compares two frames of the judge's scene, sensor by sensor.
+pub fn compare_judged(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>) -> Vec<SensorComparison> {
+    let scene = judge.scene();
     scene
         .sensors()
         .map(|sensor| match (a.frame.map(sensor), b.frame.map(sensor)) {
             (Some(of_a), Some(of_b)) if says_hit(of_a) && says_hit(of_b) => {
-                compare_maps(scene, sensor, (of_a, a), (of_b, b))
+                compare_maps(judge, sensor, (of_a, a), (of_b, b))
             }
             _ => {
                 let (width, height) = scene.size(sensor).expect("a sensor of this scene");
@@ -210,7 +228,8 @@ pub fn compare(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Vec<SensorComparison>
                     sensor,
                     compared: 0,
                     not_compared,
-                    by_class: [0; 3],
+                    by_class: [0; CLASSES],
+                    judged: 0,
                     quantities: Quantity::ALL.map(|quantity| (quantity, tally.clone())).to_vec(),
                     defects: Vec::new(),
                     range_difference: None,
@@ -258,26 +277,27 @@ impl Answer {
 /// One row's or one sensor's results while they are gathered.
 #[derive(Default)]
 struct Gathered {
-    by_class: [u64; 3],
+    by_class: [u64; CLASSES],
+    judged: u64,
     tallies: [Tally; 7],
     defects: Vec<Defect>,
     differences: Vec<Maybe<f64>>,
 }
 
 fn compare_maps(
-    scene: &Scene,
+    judge: &Judge<'_>,
     sensor: SensorId,
     (map_a, a): (&SensorMap, Side<'_>),
     (map_b, b): (&SensorMap, Side<'_>),
 ) -> SensorComparison {
-    let (width, height) = scene.size(sensor).expect("a sensor of this scene");
+    let (width, height) = judge.scene().size(sensor).expect("a sensor of this scene");
     // Rows in parallel, added up in their order: the result does not depend on threads.
     let rows: Vec<Gathered> = (0..height)
         .into_par_iter()
         .map(|j| {
             let mut row = Gathered::default();
             for i in 0..width {
-                compare_ray(scene, Place { sensor, i, j }, (map_a, a), (map_b, b), &mut row);
+                compare_ray(judge, Place { sensor, i, j }, (map_a, a), (map_b, b), &mut row);
             }
             row
         })
@@ -287,6 +307,7 @@ fn compare_maps(
         for (mine, theirs) in all.by_class.iter_mut().zip(row.by_class) {
             *mine += theirs;
         }
+        all.judged += row.judged;
         for (mine, theirs) in all.tallies.iter_mut().zip(&row.tallies) {
             mine.add(theirs);
         }
@@ -299,6 +320,7 @@ fn compare_maps(
         compared: u64::from(width) * u64::from(height),
         not_compared: 0,
         by_class: all.by_class,
+        judged: all.judged,
         quantities: Quantity::ALL.into_iter().zip(all.tallies).collect(),
         defects: all.defects,
         range_difference: Some(Image::from_cells(width, height, all.differences)),
@@ -307,7 +329,7 @@ fn compare_maps(
 
 /// Compares one ray and enters it into `row`.
 fn compare_ray(
-    scene: &Scene,
+    judge: &Judge<'_>,
     place: Place,
     (map_a, a): (&SensorMap, Side<'_>),
     (map_b, b): (&SensorMap, Side<'_>),
@@ -324,13 +346,24 @@ fn compare_ray(
     };
 
     row.differences.push(of_a.range.zip(of_b.range).map(|(a, b)| b - a).into());
-    if of_a.hit != of_b.hit {
-        enter(Quantity::Hit, Class::Defect);
-    } else {
-        enter(Quantity::Hit, Class::Agree);
-    }
+    let same_face = of_a.face.zip(of_b.face).map(|(x, y)| x == y);
+    let differ = of_a.hit != of_b.hit || same_face == Some(false);
 
-    if of_a.hit && of_b.hit {
+    // What the referee says of both answers, if it is asked and they can be named.
+    let named = |answer: &Answer| !answer.hit || answer.face.is_some();
+    let ruled = (named(&of_a) && named(&of_b) && (differ || judge.samples(place))).then(|| {
+        row.judged += 1;
+        let of_a = judge.rule(place, of_a.face, of_a.range, a.resolution);
+        let of_b = judge.rule(place, of_b.face, of_b.range, b.resolution);
+        class_of(of_a).max(class_of(of_b))
+    });
+    // Answers that cannot be named can only be compared by being the same.
+    let answers = ruled.unwrap_or(if differ { Class::Defect } else { Class::Agree });
+    let both_hit = of_a.hit && of_b.hit;
+    enter(Quantity::Hit, if both_hit { Class::Agree } else { answers });
+
+    if both_hit {
+        let scene = judge.scene();
         let ray = scene.ray(sensor, i, j).expect("a cell of this sensor");
         // Without faces or ranges there is nothing to derive a bound from: only exactness agrees.
         let mesh = scene.mesh();
@@ -365,16 +398,16 @@ fn compare_ray(
                 .map(|(x, y)| (Quantity::Incidence, (x - y).abs(), bounds.map(|bounds| bounds.incidence))),
         ];
 
-        let same_face = of_a.face.zip(of_b.face).map(|(x, y)| x == y);
+        if same_face.is_some() {
+            enter(Quantity::Face, answers);
+        }
         if same_face == Some(false) {
-            // Two faces at one range are a tie; two normals at one point are both right.
-            let range = values[0];
-            let tie = range.is_some_and(|(_, difference, bound)| within(difference, bound));
-            enter(Quantity::Face, if tie { Class::Tie } else { Class::Defect });
-            values[3] = None;
-            values[4] = None;
-        } else if same_face == Some(true) {
-            enter(Quantity::Face, Class::Agree);
+            // Two faces at one point have the same range, and each its own normal. The values of two faces
+            // at different points have nothing to do with each other.
+            (values[3], values[4]) = (None, None);
+            if answers != Class::Tie {
+                values = [None; 5];
+            }
         }
         for (quantity, difference, bound) in values.into_iter().flatten() {
             enter(quantity, if within(difference, bound) { Class::Agree } else { Class::Defect });
@@ -407,6 +440,16 @@ fn compare_ray(
     if class == Class::Defect && row.defects.len() < DEFECTS_DESCRIBED {
         let what = format!("{}: {}; {}: {}", a.name, describe(&of_a), b.name, describe(&of_b));
         row.defects.push(Defect { place, quantity, what });
+    }
+}
+
+/// What a ruling makes of a ray.
+fn class_of(ruling: Ruling) -> Class {
+    match ruling {
+        Ruling::Exact => Class::Agree,
+        Ruling::Tie => Class::Tie,
+        Ruling::Rounding(_) => Class::Rounding,
+        Ruling::Wrong => Class::Defect,
     }
 }
 

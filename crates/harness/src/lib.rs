@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! run        scene -> frames -> comparisons, as one pass
-//! compare    two frames, ray by ray: agree, tie, defect
+//! compare    two frames, ray by ray: agree, tie, rounding, defect
+//! judge      when the referee is asked, and with what tolerance
 //! bounds     how far two honest renderers may differ
 //! probe      everything about one ray
 //! output     the folder of a validation: maps, report, summary
@@ -10,13 +11,17 @@
 
 mod bounds;
 mod compare;
+mod judge;
 mod output;
 mod probe;
 mod renderers;
 mod run;
 
 pub use bounds::Bounds;
-pub use compare::{Class, Defect, Place, Quantity, SensorComparison, Side, Tally, Worst, compare};
+pub use compare::{
+    Class, Defect, Place, Quantity, SensorComparison, Side, Tally, Worst, compare, compare_judged,
+};
+pub use judge::{Judge, JudgeShare};
 pub use output::{
     OutputError, Written, one_screen, probe_command, summary_json, write_maps, write_validation,
 };

@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use raypencil_referee::{Margin, Ruling, Verdict};
 use raypencil_scene::{Hit, Ray, Renderer, Request, SensorId};
 use serde::Serialize;
 
 use crate::compare::Place;
+use crate::judge::{Judge, JudgeShare};
 use crate::run::Subject;
 
 /// One ray and what each renderer says of it.
@@ -17,8 +19,14 @@ pub struct Probe {
     pub ray: Ray,
     /// The longest range along it, metres.
     pub max_range: f64,
-    /// Each renderer's name and answer.
-    pub answers: Vec<(String, Option<Hit>)>,
+    /// Each renderer's name, answer, and what the referee rules on it.
+    pub answers: Vec<(String, Option<Hit>, Ruling)>,
+    /// The exact verdict.
+    pub verdict: Verdict,
+    /// The least displacement that changes the set of nearest faces.
+    pub face_margin: Margin,
+    /// The least displacement at which the range jumps.
+    pub surface_margin: Margin,
 }
 
 /// Why there is no such ray.
@@ -68,6 +76,7 @@ pub fn probe(subject: &Subject, place: Place, renderers: &[&dyn Renderer]) -> Re
         beams: sensor != SensorId::Camera,
         ..Request::EVERYTHING
     };
+    let judge = Judge::new(scene, JudgeShare::Sample);
     let answers = renderers
         .iter()
         .map(|renderer| {
@@ -82,10 +91,20 @@ pub fn probe(subject: &Subject, place: Place, renderers: &[&dyn Renderer]) -> Re
                     incidence: map.incidence.as_ref()?.at(i, j).get()?,
                 })
             });
-            (renderer.name().to_string(), hit)
+            let face = hit.map(|hit| hit.face);
+            let ruling = judge.rule(place, face, hit.map(|hit| hit.range), renderer.resolution());
+            (renderer.name().to_string(), hit, ruling)
         })
         .collect();
-    Ok(Probe { place, ray, max_range, answers })
+    let referee = judge.referee();
+    let (Some(verdict), Some(face_margin), Some(surface_margin)) = (
+        referee.verdict(sensor, i, j),
+        referee.face_margin(sensor, i, j),
+        referee.surface_margin(sensor, i, j),
+    ) else {
+        return Err(NoSuchRay::Cell { sensor, i, j, width, height });
+    };
+    Ok(Probe { place, ray, max_range, answers, verdict, face_margin, surface_margin })
 }
 
 impl Probe {
@@ -94,6 +113,7 @@ impl Probe {
         #[derive(Serialize)]
         struct Answer {
             renderer: String,
+            ruling: String,
             hit: Option<HitValues>,
         }
         #[derive(Serialize)]
@@ -108,8 +128,9 @@ impl Probe {
         let answers: Vec<Answer> = self
             .answers
             .iter()
-            .map(|(renderer, hit)| Answer {
+            .map(|(renderer, hit, ruling)| Answer {
                 renderer: renderer.clone(),
+                ruling: in_words(*ruling),
                 hit: hit.map(|hit| HitValues {
                     face: hit.face.0,
                     range_m: hit.range,
@@ -128,8 +149,36 @@ impl Probe {
                 "direction_m": self.ray.direction.to_array(),
                 "max_range_m": self.max_range,
             },
+            "exact": {
+                "faces": self.verdict.faces.iter().map(|face| face.0).collect::<Vec<_>>(),
+                "face_margin_cells": [self.face_margin.lo, self.face_margin.hi],
+                "surface_margin_cells": [self.surface_margin.lo, self.surface_margin.hi],
+            },
             "answers": answers,
         })
+    }
+}
+
+/// A ruling in words.
+fn in_words(ruling: Ruling) -> String {
+    match ruling {
+        Ruling::Exact => "exact".into(),
+        Ruling::Tie => "one of a tie".into(),
+        Ruling::Rounding(by) => {
+            format!("rounding: exact for the ray displaced by {:e}, {:e} cells", by.dx, by.dy)
+        }
+        Ruling::Wrong => "wrong".into(),
+    }
+}
+
+/// A margin in words.
+fn margin(margin: &Margin) -> String {
+    match margin.witness {
+        None if margin.lo >= 1.0 => "at least 1 cell".into(),
+        None => format!("at least {:e} cells", margin.lo),
+        Some(by) => {
+            format!("{:e} to {:e} cells, witness {:e}, {:e}", margin.lo, margin.hi, by.dx, by.dy)
+        }
     }
 }
 
@@ -141,12 +190,21 @@ impl fmt::Display for Probe {
         writeln!(f, "  ray, scene frame: origin {} m", vector(origin))?;
         writeln!(f, "    direction {} m; t = 1 at the projection plane", vector(direction))?;
         writeln!(f, "    longest range {} m, t = {}", self.max_range, self.max_range / direction.length())?;
-        for (name, hit) in &self.answers {
+        let faces: Vec<String> = self.verdict.faces.iter().map(|face| face.0.to_string()).collect();
+        match faces.as_slice() {
+            [] => writeln!(f, "  exactly: no hit")?,
+            [face] => writeln!(f, "  exactly: face {face}")?,
+            faces => writeln!(f, "  exactly: a tie of faces {}", faces.join(", "))?,
+        }
+        writeln!(f, "    face margin {}", margin(&self.face_margin))?;
+        writeln!(f, "    surface margin {}", margin(&self.surface_margin))?;
+        for (name, hit, ruling) in &self.answers {
+            let ruling = in_words(*ruling);
             let Some(hit) = hit else {
-                writeln!(f, "  {name}: no hit")?;
+                writeln!(f, "  {name}: no hit ({ruling})")?;
                 continue;
             };
-            writeln!(f, "  {name}: face {}", hit.face.0)?;
+            writeln!(f, "  {name}: face {} ({ruling})", hit.face.0)?;
             writeln!(f, "    range {} m, depth {} m", hit.range, hit.depth)?;
             writeln!(f, "    point {} m", vector(hit.point))?;
             writeln!(f, "    normal {}, cos(psi) {}", vector(hit.normal), hit.incidence)?;

@@ -1,17 +1,19 @@
 //! The renderers of this house, by name.
 
+use raypencil_referee::ExactRenderer;
 use raypencil_scanline::Scanline;
 use raypencil_scene::Renderer;
 use raypencil_tracer::Tracer;
 
 /// The names [`renderer`] knows.
-pub const RENDERER_NAMES: &[&str] = &["scanline", "tracer"];
+pub const RENDERER_NAMES: &[&str] = &["scanline", "tracer", "referee"];
 
 /// A renderer by its name.
 pub fn renderer(name: &str) -> Option<Box<dyn Renderer>> {
     match name {
         "scanline" => Some(Box::new(Scanline::default())),
         "tracer" => Some(Box::new(Tracer::new())),
+        "referee" => Some(Box::new(ExactRenderer)),
         _ => None,
     }
 }

@@ -4,7 +4,8 @@ use std::time::{Duration, Instant};
 
 use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, Stage};
 
-use crate::compare::{Class, SensorComparison, Side, compare};
+use crate::compare::{Class, SensorComparison, Side, compare_judged};
+use crate::judge::{Judge, JudgeShare};
 
 /// The scene under test, and how people name it.
 #[derive(Debug, Clone)]
@@ -79,10 +80,16 @@ pub struct Counts {
     pub agree: u64,
     /// Rays on which two faces tie.
     pub tie: u64,
+    /// Rays answered as a displaced ray would be.
+    pub rounding: u64,
+    /// Rays on which the referee gave up.
+    pub undecided: u64,
     /// Rays that differ beyond doubt.
     pub defects: u64,
     /// Rays that one side does not have.
     pub not_compared: u64,
+    /// Rays that the referee ruled on.
+    pub judged: u64,
 }
 
 impl Validation {
@@ -93,6 +100,9 @@ impl Validation {
             counts.compared += sensor.compared;
             counts.agree += sensor.of(Class::Agree);
             counts.tie += sensor.of(Class::Tie);
+            counts.rounding += sensor.of(Class::Rounding);
+            counts.undecided += sensor.of(Class::Undecided);
+            counts.judged += sensor.judged;
             counts.defects += sensor.of(Class::Defect);
             counts.not_compared += sensor.not_compared;
         }
@@ -102,12 +112,18 @@ impl Validation {
     /// Whether everything that was compared agrees, and something was.
     pub fn passes(&self) -> bool {
         let counts = self.counts();
-        counts.defects == 0 && counts.compared > 0
+        counts.defects == 0 && counts.undecided == 0 && counts.compared > 0
     }
 }
 
-/// Renders `subject` with each of `renderers` and compares every pair.
-pub fn validate(subject: Subject, renderers: &[&dyn Renderer], progress: &dyn Progress) -> Validation {
+/// Renders `subject` with each of `renderers`, compares every pair, and has the referee judge what differs and
+/// that `share` of what agrees.
+pub fn validate(
+    subject: Subject,
+    renderers: &[&dyn Renderer],
+    share: JudgeShare,
+    progress: &dyn Progress,
+) -> Validation {
     let mut stages = Vec::new();
 
     // Render.
@@ -127,18 +143,25 @@ pub fn validate(subject: Subject, renderers: &[&dyn Renderer], progress: &dyn Pr
         rendered.push(Rendered { name, resolution: renderer.resolution(), frame, time });
     }
 
-    // Compare every pair.
+    // The referee reads the scene by itself.
+    progress.stage("referee: preparing");
+    let start = Instant::now();
+    let judge = Judge::new(&subject.scene, share);
+    stages.push(Stage { name: "referee: preparing".into(), time: start.elapsed() });
+
+    // Compare every pair, and judge.
     let mut pairs = Vec::new();
     for a in 0..rendered.len() {
         for b in a + 1..rendered.len() {
             let what = format!("{} against {}: comparing", rendered[a].name, rendered[b].name);
             progress.stage(&what);
             let start = Instant::now();
-            let sensors = compare(&subject.scene, rendered[a].side(), rendered[b].side());
+            let sensors = compare_judged(&judge, rendered[a].side(), rendered[b].side());
             stages.push(Stage { name: what, time: start.elapsed() });
             pairs.push(Pair { a, b, sensors });
         }
     }
+    drop(judge);
     Validation { subject, rendered, pairs, stages }
 }
 

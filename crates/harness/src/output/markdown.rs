@@ -37,6 +37,7 @@ struct Sensor {
     hits: String,
     agree: String,
     tie: String,
+    rounding: String,
     defects: String,
 }
 
@@ -63,6 +64,7 @@ pub(crate) fn markdown(validation: &Validation) -> Result<String, askama::Error>
                 hits: format!("{} / {}", of(a), of(b)),
                 agree: count(sensor.of(Class::Agree)),
                 tie: count(sensor.of(Class::Tie)),
+                rounding: count(sensor.of(Class::Rounding)),
                 defects: count(sensor.of(Class::Defect)),
             });
         }

@@ -140,8 +140,10 @@ fn tiles(validation: &Validation) -> Vec<Tile> {
     let mut tiles = vec![
         tile(counts.compared, "compared", "rays, pencils and pixels alike", counts.compared == 0),
         tile(counts.agree, "agree", "same face or none, values within the bound", false),
-        tile(counts.tie, "tie", "two faces at the same range", false),
+        tile(counts.tie, "tie", "several faces at exactly one point", false),
+        tile(counts.rounding, "rounding", "right for a ray displaced within the arithmetic", false),
         tile(counts.defects, "defects", "anything else", counts.defects > 0),
+        tile(counts.judged, "judged", "ruled on in exact arithmetic", false),
     ];
     if counts.not_compared > 0 {
         tiles.push(tile(counts.not_compared, "not compared", "one side has no maps", false));
@@ -179,10 +181,11 @@ fn numbers(validation: &Validation, sensor: raypencil_scene::SensorId) -> Vec<St
         let Some(found) = pair.sensors.iter().find(|found| found.sensor == sensor) else { continue };
         let of = |class| count(found.of(class));
         numbers.push(format!(
-            "{}: {} agree, {} tie, {} defect{}",
+            "{}: {} agree, {} tie, {} rounding, {} defect{}",
             title(validation, pair),
             of(Class::Agree),
             of(Class::Tie),
+            of(Class::Rounding),
             of(Class::Defect),
             match found.not_compared {
                 0 => String::new(),

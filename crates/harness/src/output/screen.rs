@@ -44,7 +44,8 @@ fn head(validation: &Validation) -> String {
 
 /// The table of quantities and classes over all sensors.
 fn quantities(validation: &Validation) -> String {
-    let heads = ["", "agree", "tie", "defect", "worst error", "at", "error/bound"].map(String::from);
+    let heads =
+        ["", "agree", "tie", "rounding", "defect", "worst error", "at", "error/bound"].map(String::from);
     let mut lines = vec![heads];
     for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
         // No cell holds blanks for a value that is not there.
@@ -53,13 +54,14 @@ fn quantities(validation: &Validation) -> String {
             quantity.to_string(),
             count(tally.of(Class::Agree)),
             count(tally.of(Class::Tie)),
+            count(tally.of(Class::Rounding)),
             count(tally.of(Class::Defect)),
             or_dash(worst(tally.worst_error, quantity.unit())),
             or_dash(tally.worst_error.map_or(String::new(), |worst| short(worst.place))),
             or_dash(worst(tally.worst_ratio, "")),
         ]);
     }
-    let widths: Vec<usize> = (0..7)
+    let widths: Vec<usize> = (0..8)
         .map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0))
         .collect();
     // Two blanks between columns, one where counts are huge.
@@ -67,7 +69,7 @@ fn quantities(validation: &Validation) -> String {
     let mut text = String::new();
     for line in lines {
         let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
-            0 | 5 => format!("{cell:<width$}"),
+            0 | 6 => format!("{cell:<width$}"),
             _ => format!("{cell:>width$}"),
         });
         let line = cells.collect::<Vec<_>>().join(blanks);
@@ -103,11 +105,12 @@ fn sensors(validation: &Validation) -> String {
         let of = |class| comparisons().map(|comparison| comparison.of(class)).sum::<u64>();
         let missing: u64 = comparisons().map(|SensorComparison { not_compared, .. }| not_compared).sum();
         let mut line = format!(
-            "{:<7} {} rays: {} agree, {} tie, {} defect",
+            "{:<7} {} rays: {} agree, {} tie, {} rounding, {} defect",
             sensor.to_string(),
             count(u64::from(width) * u64::from(height)),
             count(of(Class::Agree)),
             count(of(Class::Tie)),
+            count(of(Class::Rounding)),
             count(of(Class::Defect)),
         );
         if missing > 0 {

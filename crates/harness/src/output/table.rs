@@ -12,6 +12,7 @@ pub(crate) struct Row {
     pub(crate) quantity: Quantity,
     pub(crate) agree: String,
     pub(crate) tie: String,
+    pub(crate) rounding: String,
     pub(crate) defects: String,
     /// Whether there are defects.
     pub(crate) fails: bool,
@@ -46,6 +47,7 @@ pub(crate) fn rows<'a>(
             quantity,
             agree: text::count(tally.of(Class::Agree)),
             tie: text::count(tally.of(Class::Tie)),
+            rounding: text::count(tally.of(Class::Rounding)),
             defects: text::count(tally.of(Class::Defect)),
             fails: tally.of(Class::Defect) > 0,
             not_compared: text::count(tally.not_compared),

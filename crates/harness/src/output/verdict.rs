@@ -19,8 +19,9 @@ pub(crate) enum Verdict {
 }
 
 /// What a pass does not say.
-pub(crate) const CAVEAT: &str = "Agreement is evidence, not proof: an error that both sides make alike \
-    does not show here, and no exact arithmetic has ruled on these rays.";
+pub(crate) const CAVEAT: &str = "Which face is hit was checked in exact arithmetic, on every ray whose \
+    answers differ and on a sample of the others. The values were not: an error in them that both sides make alike \
+    does not show here.";
 
 impl Verdict {
     pub(crate) fn of(validation: &Validation) -> Self {
@@ -86,8 +87,11 @@ pub(crate) fn explanation(validation: &Validation) -> String {
             text
         }
         Verdict::Agree => {
-            let faces =
-                if counts.tie > 0 { "the same faces, or faces at the same range" } else { "the same faces" };
+            let faces = match (counts.tie, counts.rounding) {
+                (0, 0) => "the same faces",
+                (_, 0) => "the same faces, or faces at the same point",
+                _ => "the same faces, but for rays within rounding of an edge",
+            };
             let largest = worst_ratio(validation);
             let largest = largest.map_or(String::new(), |(quantity, worst)| {
                 let percent = number(100.0 * worst.value);

@@ -1,0 +1,128 @@
+//! When the referee is asked, and with what tolerance.
+
+use raypencil_referee::{Referee, Ruling, Tolerance};
+use raypencil_scene::{FaceId, Resolution, Scene, SensorId};
+
+use crate::bounds::Bounds;
+use crate::compare::Place;
+
+/// Which of the rays that agree are judged as well; those that do not are always judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum JudgeShare {
+    /// One in a hundred or more, chosen by a hash of the cell.
+    #[default]
+    Sample,
+    /// All of them.
+    All,
+}
+
+/// One in so many rays that agree is judged: 64, so that chance does not leave less than 1 %.
+const ONE_IN: u64 = 64;
+
+/// Roundings of a direction: a vertex is subtracted from the origin and turned into the sensor's frame (15 u S,
+/// see `bounds`), and an edge's crossing formed from it (6 u S). As an angle, divided by the range.
+const DIRECTION: f64 = 21.0;
+
+/// The finest lateral resolution that any renderer is held to, in cells.
+const FINEST: f64 = 1e-9;
+
+/// The referee, and whom it asks.
+#[derive(Debug)]
+pub struct Judge<'s> {
+    referee: Referee<'s>,
+    scene: &'s Scene,
+    share: JudgeShare,
+}
+
+impl<'s> Judge<'s> {
+    /// Prepares to judge the rays of `scene`.
+    pub fn new(scene: &'s Scene, share: JudgeShare) -> Self {
+        Self { referee: Referee::new(scene), scene, share }
+    }
+
+    /// Whether a ray that agrees is judged.
+    pub(crate) fn samples(&self, place: Place) -> bool {
+        self.share == JudgeShare::All || hash(place) % ONE_IN == 0
+    }
+
+    /// Rules on one side's answer to a ray, with the range it gave if it gave one.
+    pub(crate) fn rule(
+        &self,
+        place: Place,
+        answer: Option<FaceId>,
+        range: Option<f64>,
+        resolution: Resolution,
+    ) -> Ruling {
+        let tolerance = self.tolerance(place, answer, range, resolution);
+        // A face that the mesh does not have is as wrong as can be.
+        self.referee.rule(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
+    }
+
+    /// delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S
+    /// as a length along the focal axis, in cells); epsilon is the bound of the range.
+    fn tolerance(
+        &self,
+        Place { sensor, i, j }: Place,
+        answer: Option<FaceId>,
+        range: Option<f64>,
+        resolution: Resolution,
+    ) -> Tolerance {
+        let scene = self.scene;
+        let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
+            return Tolerance { lateral: FINEST, depth: 0.0 };
+        };
+        let mesh = scene.mesh();
+        let range = range.unwrap_or(max_range);
+        let known = answer.filter(|face| (face.0 as usize) < mesh.faces().len());
+        let depth = known.map_or(0.0, |face| Bounds::of(mesh, face, &ray, range, resolution).range);
+        let edge = known.map_or(0.0, |face| longest_edge(scene, face));
+        let error = DIRECTION * resolution.unit_roundoff * (range + edge + ray.origin.length());
+        let q = ray.direction.length();
+        // The smallest angle between neighbouring cells' rays here: across the ray, a cell is at least its
+        // size times the cosine of the obliquity.
+        let lateral = match sensor {
+            SensorId::Camera => {
+                let camera = &scene.camera().sensor;
+                let cell = camera.pixel_pitch[0].min(camera.pixel_pitch[1]) * camera.focal_length / (q * q);
+                error / range / cell
+            }
+            SensorId::Beam(index) => {
+                let beam = &scene.beams()[index].sensor;
+                let width = 2.0 * beam.half_width / f64::from(beam.columns);
+                let cell = width * beam.grid_distance / (q * q);
+                let row = beam.thickness / f64::from(beam.rows);
+                (error / range / cell).max(error / row)
+            }
+        };
+        Tolerance { lateral: lateral.clamp(FINEST, 1.0), depth }
+    }
+
+    /// The scene whose rays are judged.
+    pub fn scene(&self) -> &'s Scene {
+        self.scene
+    }
+
+    /// The referee itself, for questions about single rays.
+    pub(crate) fn referee(&self) -> &Referee<'s> {
+        &self.referee
+    }
+}
+
+/// The longest edge of a face, metres.
+fn longest_edge(scene: &Scene, face: FaceId) -> f64 {
+    let corner = |v: u32| glam::Vec3::from_array(scene.mesh().vertices()[v as usize]).as_dvec3();
+    let [a, b, c] = scene.mesh().faces()[face.0 as usize].map(corner);
+    (b - a).length().max((c - b).length()).max((a - c).length())
+}
+
+/// A fixed hash of a cell (the finaliser of splitmix64), so that the sample is the same in every run.
+fn hash(Place { sensor, i, j }: Place) -> u64 {
+    let sensor = match sensor {
+        SensorId::Camera => 0,
+        SensorId::Beam(index) => index as u64 + 1,
+    };
+    let mut x = (u64::from(i) << 32 | u64::from(j)).wrapping_add(sensor.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}

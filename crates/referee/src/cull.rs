@@ -1,0 +1,154 @@
+//! Which faces a ray may meet: a tree of boxes of the referee's own, in f64.
+//!
+//! It only has to be complete. A median split over the faces' centres, boxes exact in f64, and a slab test
+//! that is widened by far more than its rounding and by the displacement that is asked about.
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Mesh};
+
+use crate::face::Face;
+
+/// Faces in a leaf.
+const LEAF: usize = 4;
+
+/// Relative slack of a slab test: 2^-40, where its rounding is a few 2^-53.
+const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// The terrain's faces in a tree.
+#[derive(Debug)]
+pub(crate) struct Tree {
+    nodes: Vec<Node>,
+    faces: Vec<Face>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// Of a leaf, its faces; of an inner node, its two children lie at `first` and `first + 1`.
+    first: u32,
+    /// 0 for an inner node.
+    count: u32,
+}
+
+/// The line that is asked about: a ray in f64, and how wide the bundle around it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bundle {
+    /// Where the ray starts, scene frame, metres.
+    pub(crate) origin: DVec3,
+    /// Its unit direction.
+    pub(crate) direction: DVec3,
+    /// How far along it faces matter, metres.
+    pub(crate) reach: f64,
+    /// How far a ray of the bundle may start from the origin, metres.
+    pub(crate) start_radius: f64,
+    /// How much farther away it may be per metre of range.
+    pub(crate) spread: f64,
+}
+
+impl Tree {
+    pub(crate) fn build(mesh: &Mesh) -> Self {
+        let mut faces: Vec<Face> =
+            (0..mesh.faces().len()).map(|index| Face::of(mesh, FaceId(index as u32))).collect();
+        let mut nodes = Vec::with_capacity(faces.len());
+        if !faces.is_empty() {
+            let (low, high) = bounds(&faces);
+            nodes.push(Node { low, high, first: 0, count: faces.len() as u32 });
+            let mut waiting = vec![0usize];
+            while let Some(index) = waiting.pop() {
+                let Node { low, high, first, count } = nodes[index];
+                if count as usize <= LEAF {
+                    continue;
+                }
+                // Halves of equal number, however the faces lie: the depth is logarithmic for any input.
+                let axis = (high - low).max_position();
+                let range = &mut faces[first as usize..(first + count) as usize];
+                let middle = range.len() / 2;
+                let centre = |face: &Face| face.corners.iter().map(|c| f64::from(c[axis])).sum::<f64>();
+                range.select_nth_unstable_by(middle, |a, b| {
+                    centre(a).total_cmp(&centre(b)).then(a.id.cmp(&b.id))
+                });
+                let children = nodes.len();
+                for (start, end) in [(0, middle), (middle, range.len())] {
+                    let (low, high) = bounds(&range[start..end]);
+                    nodes.push(Node { low, high, first: first + start as u32, count: (end - start) as u32 });
+                }
+                nodes[index].first = children as u32;
+                nodes[index].count = 0;
+                waiting.extend([children, children + 1]);
+            }
+        }
+        Self { nodes, faces }
+    }
+
+    /// Calls `visit` with every face that a ray of the bundle may meet within its reach, and perhaps with
+    /// others. `visit` answers with the reach from there on: nearer faces are asked about first.
+    pub(crate) fn visit<'t>(&'t self, bundle: &Bundle, mut visit: impl FnMut(&'t Face, f64) -> f64) {
+        let Some(root) = self.nodes.first() else { return };
+        let inverse = bundle.direction.recip();
+        let mut reach = bundle.reach;
+        let mut waiting: Vec<(f64, u32)> = Vec::with_capacity(64);
+        if let Some(entry) = root.entered(bundle, inverse) {
+            waiting.push((entry, 0));
+        }
+        while let Some((entry, index)) = waiting.pop() {
+            if entry > reach {
+                continue;
+            }
+            let node = &self.nodes[index as usize];
+            if node.count > 0 {
+                for face in &self.faces[node.first as usize..(node.first + node.count) as usize] {
+                    reach = visit(face, entry).min(reach);
+                }
+                continue;
+            }
+            let mut children = [node.first, node.first + 1]
+                .map(|child| (self.nodes[child as usize].entered(bundle, inverse), child));
+            // The nearer child is taken from the stack first.
+            if children[0].0 < children[1].0 {
+                children.swap(0, 1);
+            }
+            waiting.extend(children.into_iter().filter_map(|(entry, child)| Some((entry?, child))));
+        }
+    }
+}
+
+impl Node {
+    /// Where the bundle enters this box, widened, or `None` if it does not.
+    #[inline]
+    fn entered(&self, bundle: &Bundle, inverse: DVec3) -> Option<f64> {
+        let (low, high) = (self.low - bundle.origin, self.high - bundle.origin);
+        // The farthest that a point of the box can be from the origin; rays are at most so far apart there.
+        let farthest = low.abs().max(high.abs()).length();
+        let size = self.low.abs().max(self.high.abs()).max_element();
+        let margin = bundle.start_radius
+            + bundle.spread * farthest
+            + SLACK * (farthest + size + bundle.origin.length());
+        let margin = DVec3::splat(margin);
+        let (low, high) = (low - margin, high + margin);
+        let (mut enter, mut leave) = (0.0_f64, bundle.reach);
+        for k in 0..3 {
+            if bundle.direction[k] == 0.0 {
+                if low[k] > 0.0 || high[k] < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = (low[k] * inverse[k], high[k] * inverse[k]);
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        if enter <= leave { Some(enter) } else { None }
+    }
+}
+
+/// The box around some faces.
+fn bounds(faces: &[Face]) -> (DVec3, DVec3) {
+    let widen = |[x, y, z]: [f32; 3]| DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+    faces
+        .iter()
+        .flat_map(|face| face.corners)
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
+            (low.min(widen(corner)), high.max(widen(corner)))
+        })
+}

@@ -1,0 +1,191 @@
+//! The questions of the contract about one ray and one face, as signs of polynomials.
+//!
+//! With a' = s a - O for a vertex a (which is s (a - o)), n = (b - a) x (c - a):
+//!
+//! * the ray passes on the inner side of the edge from a to b, or on it: D.(a' x b') <= 0
+//! * it meets the front: n.D < 0
+//! * t = sigma n.a' / (s n.D), so t >= 1 is sigma n.a' <= s n.D (both negative)
+//! * R = n.a' |D| / (s n.D), so R <= M is (n.a')^2 |D|^2 <= (M s n.D)^2
+//! * t < t' is n.a' n'.D < n'.a'' n.D (each the product of two negative numbers)
+//!
+//! a' x b' is formed as a' x s (b - a), whose terms are smaller where the edge is short.
+
+use std::cell::OnceCell;
+use std::cmp::Ordering;
+
+use raypencil_scene::{FaceId, Mesh};
+
+use crate::number::{Dyadic, Interval, Number};
+use crate::pencil::{Aim, ScaledRay, Sensor};
+use crate::vector::Vector;
+
+/// A polynomial of a ray whose sign is asked for.
+trait Polynomial {
+    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T;
+}
+
+/// One ray, in both numbers; the exact one is only made when it is needed.
+pub(crate) struct ExactRay<'a> {
+    sensor: &'a Sensor,
+    aim: Aim,
+    fast: ScaledRay<Interval>,
+    exact: OnceCell<ScaledRay<Dyadic>>,
+}
+
+impl<'a> ExactRay<'a> {
+    pub(crate) fn new(sensor: &'a Sensor, aim: Aim) -> Self {
+        Self { sensor, aim, fast: sensor.ray(aim), exact: OnceCell::new() }
+    }
+
+    /// The exact sign: by the interval if that is certain, else by exact arithmetic.
+    #[inline]
+    fn sign(&self, polynomial: &impl Polynomial) -> Ordering {
+        match polynomial.value(&self.fast).sign() {
+            Some(sign) => sign,
+            None => self.exact_sign(polynomial),
+        }
+    }
+
+    #[cold]
+    fn exact_sign(&self, polynomial: &impl Polynomial) -> Ordering {
+        let ray = self.exact.get_or_init(|| self.sensor.ray(self.aim));
+        polynomial.value(ray).sign().unwrap_or(Ordering::Equal)
+    }
+}
+
+/// A face's corners, unrounded.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Face {
+    pub(crate) id: FaceId,
+    pub(crate) corners: [[f32; 3]; 3],
+}
+
+impl Face {
+    pub(crate) fn of(mesh: &Mesh, id: FaceId) -> Self {
+        Self { id, corners: mesh.faces()[id.0 as usize].map(|v| mesh.vertices()[v as usize]) }
+    }
+
+    /// Corner `k`.
+    fn corner<T: Number>(&self, k: usize) -> Vector<T> {
+        Vector::of_f32(self.corners[k])
+    }
+
+    /// n.
+    fn normal<T: Number>(&self) -> Vector<T> {
+        let a = self.corner::<T>(0);
+        self.corner(1).sub(&a).cross(&self.corner(2).sub(&a))
+    }
+
+    /// n.a', which is s n.(a - o).
+    fn height<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+        self.normal().dot(&self.corner(0).scaled(&ray.origin_scale).sub(&ray.origin))
+    }
+
+    /// n.D, which is sigma n.q.
+    fn approach<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+        self.normal().dot(&ray.direction)
+    }
+
+    /// Whether the ray meets this face's front, edges and corners included, at or beyond the SPP and within
+    /// `max_range`: the whole question of the contract but for other faces.
+    pub(crate) fn is_met_by(&self, ray: &ExactRay<'_>, max_range: f64) -> bool {
+        // From the cheapest and likeliest to fail.
+        (0..3).all(|k| ray.sign(&EdgeSide { face: self, k }) != Ordering::Greater)
+            && ray.sign(&Approach(self)) == Ordering::Less
+            && ray.sign(&BeforePlane(self)) != Ordering::Greater
+            && ray.sign(&BeyondRange { face: self, max_range }) != Ordering::Greater
+    }
+
+    /// Whether `other` lies in this face's plane, facing the same way, exactly.
+    pub(crate) fn is_coplanar_with(&self, other: &Self) -> bool {
+        let (n, a) = (self.normal::<Dyadic>(), self.corner::<Dyadic>(0));
+        let on_plane = |k: usize| n.dot(&other.corner(k).sub(&a)).sign() == Some(Ordering::Equal);
+        (0..3).all(on_plane) && n.dot(&other.normal()).sign() == Some(Ordering::Greater)
+    }
+
+    /// A range that the meeting point certainly does not exceed, metres.
+    pub(crate) fn farthest_range(&self, ray: &ExactRay<'_>, max_range: f64) -> f64 {
+        // R = n.a' |D| / (s n.D); where n.D may be 0 there is no bound but the sensor's own.
+        let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
+        let scale = ray.fast.origin_scale.low * -approach.high;
+        if !(scale > 0.0) {
+            return max_range;
+        }
+        let length = ray.fast.direction.length_squared().high.sqrt();
+        // Four roundings, each below 2^-52.
+        (height.magnitude() * length / scale * (1.0 + 8.0 * f64::EPSILON)).min(max_range)
+    }
+
+    /// The range of the meeting point, metres, to f64 rounding.
+    pub(crate) fn range(&self, ray: &ExactRay<'_>) -> f64 {
+        let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
+        let length = ray.fast.direction.length_squared().middle().sqrt();
+        height.middle() * length / (approach.middle() * ray.fast.origin_scale.middle())
+    }
+
+    /// Which of two faces that `ray` meets it meets first.
+    pub(crate) fn compare(&self, other: &Self, ray: &ExactRay<'_>) -> Ordering {
+        ray.sign(&Nearness { face: self, other })
+    }
+}
+
+/// D.(a' x b') for the edge from corner k: positive outside.
+struct EdgeSide<'a> {
+    face: &'a Face,
+    k: usize,
+}
+
+impl Polynomial for EdgeSide<'_> {
+    #[inline]
+    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+        let (a, b) = (self.face.corner::<T>(self.k), self.face.corner::<T>((self.k + 1) % 3));
+        let relative = a.scaled(&ray.origin_scale).sub(&ray.origin);
+        ray.direction.dot(&relative.cross(&b.sub(&a)))
+    }
+}
+
+/// n.D: negative where the front is met.
+struct Approach<'a>(&'a Face);
+
+impl Polynomial for Approach<'_> {
+    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+        self.0.approach(ray)
+    }
+}
+
+/// sigma n.a' - s n.D: positive where t < 1.
+struct BeforePlane<'a>(&'a Face);
+
+impl Polynomial for BeforePlane<'_> {
+    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+        let height = self.0.height(ray).mul(&ray.direction_scale);
+        height.sub(&self.0.approach(ray).mul(&ray.origin_scale))
+    }
+}
+
+/// (n.a')^2 |D|^2 - (M s n.D)^2: positive where the range exceeds M.
+struct BeyondRange<'a> {
+    face: &'a Face,
+    max_range: f64,
+}
+
+impl Polynomial for BeyondRange<'_> {
+    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+        let range = self.face.height(ray).square().mul(&ray.direction.length_squared());
+        let limit = T::of(self.max_range).mul(&ray.origin_scale).mul(&self.face.approach(ray));
+        range.sub(&limit.square())
+    }
+}
+
+/// n.a' n'.D - n'.a'' n.D: negative where the face is met before the other.
+struct Nearness<'a> {
+    face: &'a Face,
+    other: &'a Face,
+}
+
+impl Polynomial for Nearness<'_> {
+    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+        let first = self.face.height(ray).mul(&self.other.approach(ray));
+        first.sub(&self.other.height(ray).mul(&self.face.approach(ray)))
+    }
+}

@@ -1,0 +1,37 @@
+//! The judge: the true answer for any ray of the contract, and how far that answer is from changing.
+//!
+//! Two f64 programs that agree prove only that they share their mistakes. All that the contract says of a ray
+//! is a sign of a polynomial in stored f64 numbers, so it can be known without error: by an interval if
+//! that is certain, else by exact dyadic rationals. Proofs and bounds are in `docs/referee.md`.
+//!
+//! ```text
+//! number, vector   intervals and exact dyadic rationals
+//! pencil           the contract's rays, multiplied by their denominators
+//! face             the contract's conditions, as signs of polynomials
+//! cull             a tree of boxes of its own
+//! verdict          the nearest faces of a ray
+//! forms, region    the conditions as functions of a small displacement
+//! margin, surface  how far a verdict is from changing, with a witness
+//! ruling           whether an answer is right, or admissible
+//! render           the verdicts of a whole sensor
+//! ```
+//!
+//! It depends on `raypencil-scene` alone, and no renderer may call it.
+
+mod cull;
+mod face;
+mod forms;
+mod margin;
+mod number;
+mod pencil;
+mod region;
+mod render;
+mod ruling;
+mod surface;
+mod vector;
+mod verdict;
+
+pub use margin::Margin;
+pub use render::ExactRenderer;
+pub use ruling::{Ruling, Tolerance};
+pub use verdict::{Displacement, Referee, Verdict};

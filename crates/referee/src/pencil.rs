@@ -1,0 +1,124 @@
+//! The contract's ray of a cell, and the rays beside it, without any division.
+//!
+//! All that the contract says of a ray is rational in stored f64 numbers; multiplied by its positive
+//! denominators it is polynomial. A ray here is (O, s, D, sigma), s > 0 and sigma > 0, and means the ray from
+//! O / s along q = D / sigma:
+//!
+//! | | s | sigma | O | D |
+//! | --- | --- | --- | --- | --- |
+//! | camera | 1 | N | p | M ((i + 1/2 + dx - c_x) p_x, (j + 1/2 + dy - c_y) p_y, f_c) |
+//! | beam | 2 rows N | columns N | s p + M (0, T (2j + 1 - rows + 2 dy), 0) | M (w (2i + 1 - columns + 2 dx), 0, columns g) |
+//!
+//! with the pose's position p and quaternion q, N = q . q and M = the matrix of q p q*, which is N times the
+//! rotation. (dx, dy) displaces the ray in cells: in a beam, dy moves its origin along the focal axis.
+
+use raypencil_scene::{Beam, Camera, Mounted, Pose, Scene, SensorId};
+
+use crate::number::Number;
+use crate::vector::{ScaledRotation, Vector};
+
+/// A cell of a sensor and a displacement from its centre, in cells of that sensor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Aim {
+    pub(crate) i: u32,
+    pub(crate) j: u32,
+    pub(crate) dx: f64,
+    pub(crate) dy: f64,
+}
+
+/// A ray as above.
+#[derive(Debug, Clone)]
+pub(crate) struct ScaledRay<T> {
+    pub(crate) origin: Vector<T>,
+    pub(crate) origin_scale: T,
+    pub(crate) direction: Vector<T>,
+    pub(crate) direction_scale: T,
+}
+
+/// One sensor of a scene, as its rays need it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Sensor {
+    Camera(Mounted<Camera>),
+    Beam(Mounted<Beam>),
+}
+
+impl Sensor {
+    pub(crate) fn of(scene: &Scene, id: SensorId) -> Option<Self> {
+        match id {
+            SensorId::Camera => Some(Self::Camera(*scene.camera())),
+            SensorId::Beam(index) => scene.beams().get(index).copied().map(Self::Beam),
+        }
+    }
+
+    pub(crate) fn pose(&self) -> Pose {
+        match self {
+            Self::Camera(mounted) => mounted.scene_from_sensor,
+            Self::Beam(mounted) => mounted.scene_from_sensor,
+        }
+    }
+
+    /// Columns and rows.
+    pub(crate) fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Camera(mounted) => (mounted.sensor.width, mounted.sensor.height),
+            Self::Beam(mounted) => (mounted.sensor.columns, mounted.sensor.rows),
+        }
+    }
+
+    /// Longest range along a ray, metres.
+    pub(crate) fn max_range(&self) -> f64 {
+        match self {
+            Self::Camera(mounted) => mounted.sensor.max_range,
+            Self::Beam(mounted) => mounted.sensor.max_range,
+        }
+    }
+
+    /// The ray of an aim, as polynomials.
+    pub(crate) fn ray<T: Number>(&self, aim: Aim) -> ScaledRay<T> {
+        let pose = self.pose();
+        let rotation = ScaledRotation::<T>::of(pose.rotation);
+        let position = Vector::<T>::of(pose.position);
+        match self {
+            Self::Camera(Mounted { sensor, .. }) => {
+                let along = |index: u32, displaced: f64, centre: f64, pitch: f64| {
+                    let from_centre = T::of_integer(index).add(&T::of(0.5)).add(&T::of(displaced));
+                    from_centre.sub(&T::of(centre)).mul(&T::of(pitch))
+                };
+                let q = Vector([
+                    along(aim.i, aim.dx, sensor.principal_point[0], sensor.pixel_pitch[0]),
+                    along(aim.j, aim.dy, sensor.principal_point[1], sensor.pixel_pitch[1]),
+                    T::of(sensor.focal_length),
+                ]);
+                ScaledRay {
+                    origin: position,
+                    origin_scale: T::of(1.0),
+                    direction: rotation.apply(&q),
+                    direction_scale: rotation.norm_squared,
+                }
+            }
+            Self::Beam(Mounted { sensor, .. }) => {
+                // 2k + 1 - n + 2 displaced: the cell's centre in half cells from the middle.
+                let half_cells = |index: u32, displaced: f64, count: u32| {
+                    let whole = T::of(2.0 * f64::from(index) + 1.0 - f64::from(count));
+                    whole.add(&T::of(displaced).doubled())
+                };
+                let (columns, rows) = (T::of_integer(sensor.columns), T::of_integer(sensor.rows));
+                let zero = || T::of(0.0);
+                let q = Vector([
+                    T::of(sensor.half_width).mul(&half_cells(aim.i, aim.dx, sensor.columns)),
+                    zero(),
+                    columns.mul(&T::of(sensor.grid_distance)),
+                ]);
+                let height = T::of(sensor.thickness).mul(&half_cells(aim.j, aim.dy, sensor.rows));
+                let origin_scale = rows.doubled().mul(&rotation.norm_squared);
+                let start = rotation.apply(&Vector([zero(), height, zero()]));
+                ScaledRay {
+                    origin: position.scaled(&origin_scale).add(&start),
+                    origin_scale,
+                    direction: rotation.apply(&q),
+                    direction_scale: columns.mul(&rotation.norm_squared),
+                }
+            }
+        }
+    }
+}

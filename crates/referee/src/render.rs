@@ -1,0 +1,96 @@
+//! The referee as a renderer: slow, and right about every face.
+//!
+//! Which face is nearest is exact. The values are formed in f64 from the middles of the intervals that
+//! contain them, a third evaluation beside the two renderers'; they are rounded, not yet correctly rounded.
+
+use std::time::Instant;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use raypencil_scene::{
+    Frame, Hit, Mounted, Quantities, Renderer, Request, Resolution, Scene, SensorId, SensorMap, Stage,
+};
+
+use crate::face::Face;
+use crate::number::Interval;
+use crate::pencil::{Aim, Sensor};
+use crate::vector::Vector;
+use crate::verdict::Referee;
+
+/// The exact verdict on every cell, as maps.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ExactRenderer;
+
+impl Renderer for ExactRenderer {
+    fn name(&self) -> &str {
+        "referee"
+    }
+
+    fn resolution(&self) -> Resolution {
+        Resolution::F64
+    }
+
+    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+        let start = Instant::now();
+        let referee = Referee::new(scene);
+        let mut stages = vec![Stage { name: "tree".into(), time: start.elapsed() }];
+        let mut timed = |id: SensorId| {
+            let start = Instant::now();
+            let map = referee.map(id, request.quantities);
+            stages.push(Stage { name: id.to_string(), time: start.elapsed() });
+            map
+        };
+        let camera = if request.camera { timed(SensorId::Camera) } else { None };
+        let beams = if request.beams { scene.beams().len() } else { 0 };
+        let beams = (0..beams).filter_map(|index| timed(SensorId::Beam(index))).collect();
+        Frame { camera, beams, stages }
+    }
+}
+
+impl Referee<'_> {
+    /// The maps of one sensor, or `None` if the scene has no such sensor.
+    fn map(&self, id: SensorId, quantities: Quantities) -> Option<SensorMap> {
+        let sensor = Sensor::of(self.scene, id)?;
+        let (width, height) = sensor.size();
+        let mut map = SensorMap::empty(id, width, height, quantities);
+        map.rows_mut().into_par_iter().for_each(|mut row| {
+            for i in 0..width {
+                let aim = Aim { i, j: row.j, dx: 0.0, dy: 0.0 };
+                if let Some(face) = self.nearest(&sensor, aim).first() {
+                    row.put(i, &hit(&sensor, aim, face));
+                }
+            }
+        });
+        Some(map)
+    }
+}
+
+/// The hit of `face` by the ray of an aim that meets it.
+fn hit(sensor: &Sensor, aim: Aim, face: &Face) -> Hit {
+    let ray = sensor.ray::<Interval>(aim);
+    let middle = |v: &Vector<Interval>| {
+        let [x, y, z] = &v.0;
+        DVec3::new(x.middle(), y.middle(), z.middle())
+    };
+    let [a, b, c] = face.corners.map(Vector::<Interval>::of_f32);
+    let normal = b.sub(&a).cross(&c.sub(&a));
+    let height = normal.dot(&a.scaled(&ray.origin_scale).sub(&ray.origin)).middle();
+    let approach = normal.dot(&ray.direction).middle();
+    let direction_length = ray.direction.length_squared().middle().sqrt();
+    let normal_length = normal.length_squared().middle().sqrt();
+    let (s, sigma) = (ray.origin_scale.middle(), ray.direction_scale.middle());
+    // t along D: P = O / s + t D.
+    let t = height / (s * approach);
+    let depth_per_t = match sensor {
+        Sensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
+        Sensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
+    };
+    Hit {
+        face: face.id,
+        range: t * direction_length,
+        point: middle(&ray.origin) / s + middle(&ray.direction) * t,
+        normal: middle(&normal) / normal_length,
+        depth: t * sigma * depth_per_t,
+        incidence: -approach / (normal_length * direction_length),
+    }
+}

@@ -1,0 +1,157 @@
+//! Whether an answer is right, or one that an honest renderer of finite resolution may give.
+//!
+//! A renderer of lateral resolution delta and depth resolution epsilon may give the exact answer of *some* ray
+//! displaced by at most delta, or name a face that such a ray meets within epsilon of its true range. The
+//! ruling exhibits that ray. A miss through an edge that two faces share is therefore never admissible: no
+//! displaced ray misses there.
+
+use raypencil_scene::{FaceId, SensorId};
+
+use crate::face::{ExactRay, Face};
+use crate::forms::{FaceForms, Form, MovingRay};
+use crate::pencil::{Aim, Sensor};
+use crate::verdict::{Displacement, Referee};
+
+/// How finely a renderer tells rays and ranges apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// delta, in cells of the sensor, at most 1.
+    pub lateral: f64,
+    /// epsilon, metres.
+    pub depth: f64,
+}
+
+/// What the referee says of one answer to one ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ruling {
+    /// It is the exact answer.
+    Exact,
+    /// It is one of several faces met at exactly the same point.
+    Tie,
+    /// It is the answer to the ray displaced so, or a face which that ray meets within epsilon of its range.
+    Rounding(Displacement),
+    /// No ray within the tolerance has this answer.
+    Wrong,
+}
+
+impl Referee<'_> {
+    /// Rules on `answer`, a face or a miss, to the ray of cell (i, j); `None` if there is no such cell or face.
+    pub fn rule(
+        &self,
+        sensor: SensorId,
+        i: u32,
+        j: u32,
+        answer: Option<FaceId>,
+        tolerance: Tolerance,
+    ) -> Option<Ruling> {
+        let sensor = Sensor::of(self.scene, sensor)?;
+        let (width, height) = sensor.size();
+        if i >= width || j >= height {
+            return None;
+        }
+        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
+        let nearest = self.nearest(&sensor, aim);
+        match answer {
+            None if nearest.is_empty() => return Some(Ruling::Exact),
+            Some(face) if nearest.iter().any(|kept| kept.id == face) => {
+                return Some(if nearest.len() == 1 { Ruling::Exact } else { Ruling::Tie });
+            }
+            _ => {}
+        }
+        let lateral = tolerance.lateral.clamp(0.0, 1.0);
+        let witness = match answer {
+            None => self.displaced_miss(&sensor, aim, &nearest, lateral),
+            Some(id) => {
+                let mesh = self.scene.mesh();
+                if id.0 as usize >= mesh.faces().len() {
+                    return None;
+                }
+                let face = Face::of(mesh, id);
+                self.displaced_hit(&sensor, aim, &face, Tolerance { lateral, ..tolerance })
+            }
+        };
+        Some(witness.map_or(Ruling::Wrong, Ruling::Rounding))
+    }
+
+    /// A ray within `lateral` that misses everything, found where a nearest face comes to an end.
+    fn displaced_miss(
+        &self,
+        sensor: &Sensor,
+        aim: Aim,
+        nearest: &[&Face],
+        lateral: f64,
+    ) -> Option<Displacement> {
+        let ray = MovingRay::new(sensor, aim);
+        let mut tried = vec![];
+        for face in nearest {
+            for form in FaceForms::new(&ray, face).own() {
+                if form.holds_within() < lateral {
+                    let away = |slope: f64| if slope > 0.0 { -lateral } else { lateral };
+                    tried.push([away(form.x.middle()), away(form.y.middle())]);
+                }
+            }
+        }
+        // Where two ends meet, the gap may lie in another direction than either.
+        for x in [-1.0, 0.0, 1.0] {
+            for y in [-1.0, 0.0, 1.0] {
+                tried.push([x * lateral, y * lateral]);
+            }
+        }
+        let missed = |[dx, dy]: &[f64; 2]| self.nearest(sensor, Aim { dx: *dx, dy: *dy, ..aim }).is_empty();
+        tried.into_iter().find(missed).map(|[dx, dy]| Displacement { dx, dy })
+    }
+
+    /// A ray within the tolerance that meets `face` first, or within epsilon of what it meets first.
+    fn displaced_hit(
+        &self,
+        sensor: &Sensor,
+        aim: Aim,
+        face: &Face,
+        tolerance: Tolerance,
+    ) -> Option<Displacement> {
+        let ray = MovingRay::new(sensor, aim);
+        let forms = FaceForms::new(&ray, face).own().map(|form| form.scaled(tolerance.lateral));
+        let mut tried = vec![[0.0, 0.0]];
+        if let Some(region) = crate::region::Region::of(&forms) {
+            // Its nearest point may be judged outside by a hair: try on towards its middle, and its corners.
+            for inward in [0.0, 1e-6, 1e-3, 0.1, 1.0] {
+                tried.push(
+                    [0, 1].map(|k: usize| region.near[k] + inward * (region.middle[k] - region.near[k])),
+                );
+            }
+            tried.extend(region.corners);
+        }
+        let scaled = |at: [f64; 2]| {
+            at.map(|part| (part * tolerance.lateral).clamp(-tolerance.lateral, tolerance.lateral))
+        };
+        tried
+            .into_iter()
+            .map(scaled)
+            .find(|&[dx, dy]| {
+                let aim = Aim { dx, dy, ..aim };
+                let exact = ExactRay::new(sensor, aim);
+                if !face.is_met_by(&exact, sensor.max_range()) {
+                    return false;
+                }
+                let first = self.nearest(sensor, aim);
+                let Some(first) = first.first() else { return false };
+                first.id == face.id || face.range(&exact) - first.range(&exact) <= tolerance.depth
+            })
+            .map(|[dx, dy]| Displacement { dx, dy })
+    }
+}
+
+impl Form {
+    /// The same form for displacements in units of `unit` cells.
+    fn scaled(&self, unit: f64) -> Self {
+        use crate::number::{Interval, Number};
+        let by = Interval::of(unit);
+        Self {
+            constant: self.constant,
+            x: self.x.mul(&by),
+            y: self.y.mul(&by),
+            xy: self.xy.mul(&by).mul(&by),
+            bend: self.bend * unit * unit,
+        }
+    }
+}
