@@ -1,0 +1,195 @@
+//! What must hold for any rig on any ground, by proptest. `PROPTEST_CASES` changes the number of cases.
+
+use std::cell::Cell;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use glam::DQuat;
+use proptest::prelude::*;
+use proptest::test_runner::{TestCaseError, TestCaseResult, TestRunner};
+use raypencil_harness::Side;
+use raypencil_scanline::{Options, Scanline};
+use raypencil_scene::{Frame, Mesh, Mounted, Renderer, Request, Scene};
+use raypencil_tests::lattice::hash;
+use raypencil_tests::random::{Case, cases};
+use raypencil_tests::{agreement, bits, first_difference, hit, remeshed, renderers, scene, unindexed};
+use raypencil_tracer::Tracer;
+
+/// Runs `property` on `usually` cases, or on as many as `PROPTEST_CASES` says.
+fn check<S: Strategy<Value: Debug>>(
+    usually: u32,
+    strategy: S,
+    property: impl Fn(S::Value) -> TestCaseResult,
+) {
+    let from_environment = std::env::var_os("PROPTEST_CASES").is_some();
+    let default = ProptestConfig::default();
+    let cases = if from_environment { default.cases } else { usually };
+    // A failing case is printed whole; no file is kept of it.
+    let config = ProptestConfig { cases, failure_persistence: None, max_shrink_iters: 400, ..default };
+    if let Err(failure) = TestRunner::new(config).run(&strategy, property) {
+        panic!("{failure}");
+    }
+}
+
+fn render(renderer: &dyn Renderer, scene: &Scene) -> Frame {
+    renderer.render(scene, &Request::EVERYTHING)
+}
+
+fn side<'a>(renderer: &'a dyn Renderer, frame: &'a Frame) -> Side<'a> {
+    Side { name: renderer.name(), frame, resolution: renderer.resolution() }
+}
+
+/// Fails unless both frames hold the same bits.
+fn same_bits(what: &str, expected: &Frame, found: &Frame) -> TestCaseResult {
+    match first_difference(expected, found) {
+        None => Ok(()),
+        Some(difference) => Err(TestCaseError::fail(format!("{what}: {difference}"))),
+    }
+}
+
+/// Rays of a frame, and those of them that hit.
+fn count_hits(frame: &Frame) -> [u64; 2] {
+    let mut counts = [0, 0];
+    for map in frame.maps() {
+        let ranges = map.range.as_ref().expect("every quantity was asked for").cells();
+        counts[0] += ranges.len() as u64;
+        counts[1] += ranges.iter().filter(|range| range.get().is_some()).count() as u64;
+    }
+    counts
+}
+
+#[test]
+fn both_renderers_agree_on_every_ray() {
+    let (rays, hits) = (Cell::new(0), Cell::new(0));
+    check(6000, cases(), |case: Case| {
+        let scene = case.scene();
+        let (scanline, tracer) = (Scanline::default(), Tracer::new());
+        let (a, b) = (render(&scanline, &scene), render(&tracer, &scene));
+        let [of_case, hits_of_case] = count_hits(&a);
+        rays.set(rays.get() + of_case);
+        hits.set(hits.get() + hits_of_case);
+        agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
+    });
+    // The rigs are no good if they look past the ground.
+    assert!(5 * hits.get() >= rays.get(), "{} of {} rays hit", hits.get(), rays.get());
+}
+
+#[test]
+fn skipping_faces_never_changes_a_map() {
+    check(3000, cases(), |case: Case| {
+        let scene = case.scene();
+        let skipping = render(&Scanline::default(), &scene);
+        let looking_at_all = render(&Scanline::new(Options { skip_unseen: false }), &scene);
+        same_bits("skipping", &looking_at_all, &skipping)
+    });
+}
+
+/// The mesh with its faces in another order: face k of the result is `order[k]` of the original.
+fn shuffled(original: &Mesh, seed: u64) -> (Arc<Mesh>, Vec<u32>) {
+    let mut order: Vec<u32> = (0..original.faces().len() as u32).collect();
+    order.sort_by_key(|&face| hash(seed, u64::from(face)));
+    let faces = order.iter().map(|&face| original.faces()[face as usize]).collect();
+    (remeshed(original, original.vertices().to_vec(), faces), order)
+}
+
+#[test]
+fn the_order_of_faces_does_not_matter() {
+    check(1500, (cases(), any::<u64>()), |(case, seed): (Case, u64)| {
+        let mesh = case.mesh();
+        let (shuffled, order) = shuffled(&mesh, seed);
+        let (scene, other) = (case.scene_of(&mesh, &mesh), case.scene_of(&shuffled, &mesh));
+        for renderer in renderers() {
+            let (expected, found) = (render(&*renderer, &scene), render(&*renderer, &other));
+            for (of_expected, of_found) in expected.maps().zip(found.maps()) {
+                for j in 0..of_expected.height {
+                    for i in 0..of_expected.width {
+                        let what = format!("{} {} {i},{j}", renderer.name(), of_expected.sensor);
+                        let (expected, found) = (hit(of_expected, i, j), hit(of_found, i, j));
+                        let (Some(expected), Some(found)) = (expected, found) else {
+                            prop_assert!(expected.is_none() && found.is_none(), "{what}");
+                            continue;
+                        };
+                        let face = order[found.face.0 as usize];
+                        prop_assert_eq!(expected.range.to_bits(), found.range.to_bits(), "{}", what);
+                        if face == expected.face.0 {
+                            prop_assert_eq!(expected.normal, found.normal, "{}", what);
+                            prop_assert_eq!(expected.point, found.point, "{}", what);
+                        } else {
+                            // Two faces at the very same range: each order reports the one that comes first
+                            // in it.
+                            prop_assert!(
+                                expected.face.0 < face,
+                                "{what}: face {face} before {:?}",
+                                expected.face
+                            );
+                            let place = order.iter().position(|&at| at == expected.face.0);
+                            prop_assert!(found.face.0 < place.unwrap() as u32, "{what}: not the first");
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    });
+}
+
+/// The mesh with every vertex doubled, half of the faces on the copies: as exporters split a mesh where
+/// normals differ.
+fn split(original: &Mesh, seed: u64) -> Arc<Mesh> {
+    let count = original.vertices().len() as u32;
+    let vertices = [original.vertices(), original.vertices()].concat();
+    let copy = |face: usize| count * (hash(seed, face as u64) % 2) as u32;
+    let faces = original.faces().iter().enumerate().map(|(index, face)| face.map(|v| v + copy(index)));
+    remeshed(original, vertices, faces.collect())
+}
+
+#[test]
+fn sharing_vertices_or_not_does_not_matter() {
+    check(1500, (cases(), any::<u64>()), |(case, seed): (Case, u64)| {
+        let mesh = case.mesh();
+        let scene = case.scene_of(&mesh, &mesh);
+        for renderer in renderers() {
+            let expected = render(&*renderer, &scene);
+            for (how, other) in [("unindexed", unindexed(&mesh)), ("split", split(&mesh, seed))] {
+                let found = render(&*renderer, &case.scene_of(&other, &mesh));
+                same_bits(&format!("{}, {how}", renderer.name()), &expected, &found)?;
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn the_length_of_a_quaternion_does_not_matter() {
+    check(1500, (cases(), -1.5..1.5), |(case, exponent): (Case, f64)| {
+        let one = case.scene();
+        let factor = libm::pow(10.0, exponent);
+        fn scaled<S: Copy>(mounted: &Mounted<S>, factor: f64) -> Mounted<S> {
+            let mut mounted = *mounted;
+            let q = mounted.scene_from_sensor.rotation.to_array().map(|entry| factor * entry);
+            mounted.scene_from_sensor.rotation = DQuat::from_array(q);
+            mounted
+        }
+        let beams = one.beams().iter().map(|beam| scaled(beam, factor)).collect();
+        let other = scene(Arc::clone(one.mesh()), scaled(one.camera(), factor), beams);
+        for renderer in renderers() {
+            let (a, b) = (render(&*renderer, &one), render(&*renderer, &other));
+            agreement(&one, side(&*renderer, &a), side(&*renderer, &b)).map_err(TestCaseError::fail)?;
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn rendering_again_gives_the_same_bits() {
+    // A renderer keeps tables and trees between frames: they must not be those of another scene.
+    check(600, (cases(), cases()), |(first, second): (Case, Case)| {
+        let scenes = [first.scene(), second.scene()];
+        for (kept, fresh) in renderers().into_iter().zip(renderers()) {
+            render(&*kept, &scenes[1]);
+            let again = render(&*kept, &scenes[0]);
+            prop_assert!(bits(&again) == bits(&render(&*fresh, &scenes[0])), "{}", kept.name());
+        }
+        Ok(())
+    });
+}
