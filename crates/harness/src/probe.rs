@@ -185,7 +185,7 @@ fn margin(margin: &Margin) -> String {
 impl fmt::Display for Probe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Ray { origin, direction } = self.ray;
-        let vector = |v: glam::DVec3| format!("({}, {}, {})", v.x, v.y, v.z);
+        let vector = |v: glam::DVec3| format!("({:?}, {:?}, {:?})", v.x, v.y, v.z);
         writeln!(f, "{}", self.place)?;
         writeln!(f, "  ray, scene frame: origin {} m", vector(origin))?;
         writeln!(f, "    direction {} m; t = 1 at the projection plane", vector(direction))?;

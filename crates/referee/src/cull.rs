@@ -48,8 +48,10 @@ pub(crate) struct Bundle {
 
 impl Tree {
     pub(crate) fn build(mesh: &Mesh) -> Self {
-        let mut faces: Vec<Face> =
-            (0..mesh.faces().len()).map(|index| Face::of(mesh, FaceId(index as u32))).collect();
+        let mut faces: Vec<Face> = (0..mesh.faces().len())
+            .map(|index| Face::of(mesh, FaceId(index as u32)))
+            .filter(Face::has_area)
+            .collect();
         let mut nodes = Vec::with_capacity(faces.len());
         if !faces.is_empty() {
             let (low, high) = bounds(&faces);

@@ -19,7 +19,7 @@ use raypencil_scene::SensorId;
 use crate::face::Face;
 use crate::forms::{FaceForms, Form, MovingRay, edge};
 use crate::pencil::{Aim, Sensor};
-use crate::region::{Region, size};
+use crate::region::{Region, holds_between, size};
 use crate::verdict::{Displacement, Referee, bundle};
 
 /// The least displacement that changes a verdict, in cells, somewhere in `lo..=hi`.
@@ -180,11 +180,19 @@ impl Search<'_> {
                     }
                 }
             } else if let Some(Region { near, middle, .. }) = Region::of(&event.forms) {
-                // From the nearest point of the region where all hold towards its middle.
-                for inward in [1e-9, 1e-6, 1e-3, 0.03, 0.3, 1.0] {
+                // From the nearest point of the region where all hold towards its middle. At one dy the forms
+                // are linear in dx, so that thin regions, which a beam bends, are met as well.
+                for inward in [0.0, 1e-9, 1e-6, 1e-3, 0.03, 0.3, 1.0] {
                     let at = [0, 1].map(|k: usize| near[k] + inward * (middle[k] - near[k]));
-                    if offer(&mut best, at) {
-                        return best.map(|[dx, dy]| Displacement { dx, dy });
+                    let across = holds_between(&event.forms, at[1]);
+                    let in_row = across.map(|[from, to]| {
+                        let nearest = if from > 0.0 { from } else { to.min(0.0) };
+                        [[nearest + 1e-3 * (0.5 * (from + to) - nearest), at[1]], [0.5 * (from + to), at[1]]]
+                    });
+                    for at in std::iter::once(at).chain(in_row.into_iter().flatten()) {
+                        if offer(&mut best, at) {
+                            return best.map(|[dx, dy]| Displacement { dx, dy });
+                        }
                     }
                 }
             }

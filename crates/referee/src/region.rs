@@ -42,6 +42,23 @@ impl Region {
     }
 }
 
+/// Between which dx all forms hold at `dy`, or `None` if nowhere in |dx| <= 1.
+pub(crate) fn holds_between(forms: &[Form], dy: f64) -> Option<[f64; 2]> {
+    let (mut from, mut to) = (-1.0_f64, 1.0_f64);
+    for form in forms {
+        let constant = form.at([0.0, dy]);
+        let slope = form.at([1.0, dy]) - constant;
+        if slope > 0.0 {
+            from = from.max(-constant / slope);
+        } else if slope < 0.0 {
+            to = to.min(-constant / slope);
+        } else if constant < 0.0 {
+            return None;
+        }
+    }
+    if from <= to { Some([from, to]) } else { None }
+}
+
 /// The larger of |dx| and |dy|.
 pub(crate) fn size(at: [f64; 2]) -> f64 {
     at[0].abs().max(at[1].abs())

@@ -8,6 +8,7 @@ use raypencil_scene::{
 };
 
 use crate::compare::{Class, Defect, Place, Quantity, Worst};
+use crate::judge::JudgeShare;
 use crate::renderers::renderer;
 use crate::run::{Silent, Subject, Validation, validate};
 
@@ -57,13 +58,13 @@ pub(crate) fn subject() -> Subject {
 /// Both renderers, in agreement.
 pub(crate) fn agreeing() -> Validation {
     let renderers = ["scanline", "tracer"].map(|name| renderer(name).unwrap());
-    validate(subject(), &[&*renderers[0], &*renderers[1]], &Silent)
+    validate(subject(), &[&*renderers[0], &*renderers[1]], JudgeShare::Sample, &Silent)
 }
 
 /// One renderer, and so nothing to compare.
 pub(crate) fn lonely() -> Validation {
     let renderer = renderer("tracer").unwrap();
-    validate(subject(), &[&*renderer], &Silent)
+    validate(subject(), &[&*renderer], JudgeShare::Sample, &Silent)
 }
 
 /// Where [`defective`] has its defects: a hit on one side only, and an error that is no number.

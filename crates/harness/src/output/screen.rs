@@ -45,7 +45,7 @@ fn head(validation: &Validation) -> String {
 /// The table of quantities and classes over all sensors.
 fn quantities(validation: &Validation) -> String {
     let heads =
-        ["", "agree", "tie", "rounding", "defect", "worst error", "at", "error/bound"].map(String::from);
+        ["", "agree", "tie", "rounding", "defect", "error", "at", "/bound"].map(String::from);
     let mut lines = vec![heads];
     for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
         // No cell holds blanks for a value that is not there.
@@ -105,14 +105,16 @@ fn sensors(validation: &Validation) -> String {
         let of = |class| comparisons().map(|comparison| comparison.of(class)).sum::<u64>();
         let missing: u64 = comparisons().map(|SensorComparison { not_compared, .. }| not_compared).sum();
         let mut line = format!(
-            "{:<7} {} rays: {} agree, {} tie, {} rounding, {} defect",
+            "{:<7} {} rays: {} agree, {} tie, {} defect",
             sensor.to_string(),
             count(u64::from(width) * u64::from(height)),
             count(of(Class::Agree)),
             count(of(Class::Tie)),
-            count(of(Class::Rounding)),
             count(of(Class::Defect)),
         );
+        if of(Class::Rounding) > 0 {
+            let _ = write!(line, ", {} rounding", count(of(Class::Rounding)));
+        }
         if missing > 0 {
             let _ = write!(line, ", {} not compared", count(missing));
         }
