@@ -1,1 +1,3 @@
 //! Helpers that the whole-house tests share.
+
+pub mod naive;
