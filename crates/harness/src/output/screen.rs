@@ -44,8 +44,7 @@ fn head(validation: &Validation) -> String {
 
 /// The table of quantities and classes over all sensors.
 fn quantities(validation: &Validation) -> String {
-    let heads =
-        ["", "agree", "tie", "rounding", "defect", "error", "at", "/bound"].map(String::from);
+    let heads = ["", "agree", "tie", "rounding", "defect", "error", "at", "/bound"].map(String::from);
     let mut lines = vec![heads];
     for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
         // No cell holds blanks for a value that is not there.

@@ -1,0 +1,333 @@
+//! A third renderer, as plain as the definitions allow: every ray asks every face.
+//!
+//! It is written from the contract's words alone: its own rotation, its own rays, its own triangle test,
+//! no tables, no tree, no order of faces. It is slow, and there to be wrong on purpose: a [`Fault`] can be
+//! planted in it, and a comparison with the other renderers must find it.
+
+mod fault;
+
+use std::time::Instant;
+
+use glam::{DQuat, DVec3};
+use raypencil_scene::{
+    Beam, Camera, FaceId, Frame, Hit, Mesh, Pose, Quantities, Renderer, Request, Resolution, Scene, SensorId,
+    SensorMap, Stage,
+};
+
+pub use fault::Fault;
+
+/// The naive renderer.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Naive {
+    /// What is wrong with it, if anything.
+    pub fault: Option<Fault>,
+}
+
+/// What of the side functions is rounding, relative to the product of the three lengths.
+///
+/// Each component of a x b is two products and a difference, 2 u (|a_x b_y| + |a_y b_x|) <= 2 u |a| |b|, so
+/// the vector is off by at most 2 sqrt 3 u |a| |b|; the dot product with q adds 3 u |q| |a x b|. That makes
+/// 6.5 u |q| |a| |b|, rounded up. The differences a and b are rounded too, but in every face alike: the mesh
+/// is met as it would be with vertices moved that little, and that mesh has no holes either.
+const SIDE: f64 = 8.0 * (f64::EPSILON / 2.0);
+
+/// One sensor, wherever its numbers came from.
+struct Eye<'a> {
+    id: SensorId,
+    pose: Pose,
+    size: (u32, u32),
+    /// Distance of the SPP along the normal axis, f_c or g, metres.
+    plane: f64,
+    max_range: f64,
+    /// Origin and direction of the ray of cell (i, j), sensor frame.
+    ray: &'a dyn Fn(u32, u32) -> [DVec3; 2],
+}
+
+/// A ray in the scene.
+struct SceneRay {
+    origin: DVec3,
+    /// To the crossing of the SPP, not a unit.
+    q: DVec3,
+    /// Whether it crosses the SPP right of and below the normal axis.
+    is_lower_right: bool,
+}
+
+impl Renderer for Naive {
+    fn name(&self) -> &str {
+        "naive"
+    }
+
+    fn resolution(&self) -> Resolution {
+        Resolution::F64
+    }
+
+    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+        let faces = self.faces(scene.mesh());
+        let mut stages = Vec::new();
+        let mut timed = |eye: &Eye<'_>| {
+            let start = Instant::now();
+            let map = self.map(&faces, eye, request.quantities);
+            stages.push(Stage { name: eye.id.to_string(), time: start.elapsed() });
+            map
+        };
+        let camera = request.camera.then(|| {
+            let camera = &scene.camera().sensor;
+            timed(&Eye {
+                id: SensorId::Camera,
+                pose: self.camera_pose(scene.camera().scene_from_sensor),
+                size: (camera.width, camera.height),
+                plane: camera.focal_length,
+                max_range: camera.max_range,
+                ray: &|i, j| self.pixel_ray(camera, i, j),
+            })
+        });
+        let mut beams = Vec::new();
+        if request.beams {
+            for (index, mounted) in scene.beams().iter().enumerate() {
+                let beam = &mounted.sensor;
+                beams.push(timed(&Eye {
+                    id: SensorId::Beam(index),
+                    pose: mounted.scene_from_sensor,
+                    size: (beam.columns, beam.rows),
+                    plane: beam.grid_distance,
+                    max_range: beam.max_range,
+                    ray: &|i, j| self.pencil_ray(beam, i, j),
+                }));
+            }
+        }
+        Frame { camera, beams, stages }
+    }
+}
+
+impl Naive {
+    /// Whether this fault is planted.
+    fn has(&self, fault: Fault) -> bool {
+        self.fault == Some(fault)
+    }
+
+    /// The three corners of every face.
+    fn faces(&self, mesh: &Mesh) -> Vec<[DVec3; 3]> {
+        let corner = |index: u32| {
+            let [x, y, z] = mesh.vertices()[index as usize];
+            let vertex = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+            if self.has(Fault::OriginTakenOffTwice) { vertex - mesh.origin() } else { vertex }
+        };
+        mesh.faces().iter().map(|face| face.map(corner)).collect()
+    }
+
+    fn camera_pose(&self, pose: Pose) -> Pose {
+        let rotation =
+            if self.has(Fault::CameraPoseConjugated) { conjugate(pose.rotation) } else { pose.rotation };
+        Pose { rotation, ..pose }
+    }
+
+    /// Column, row and the share of a cell from its corner to where its ray goes through.
+    fn sample(&self, i: u32, j: u32, height: u32) -> (f64, f64, f64) {
+        let i = if self.has(Fault::ColumnOffByOne) { i + 1 } else { i };
+        let j = if self.has(Fault::RowsBottomUp) { height - 1 - j } else { j };
+        let middle = if self.has(Fault::HalfCellShift) { 0.0 } else { 0.5 };
+        (f64::from(i), f64::from(j), middle)
+    }
+
+    /// From the projection centre along ((i + 1/2 - c_x) p_x, (j + 1/2 - c_y) p_y, f_c).
+    fn pixel_ray(&self, camera: &Camera, i: u32, j: u32) -> [DVec3; 2] {
+        let (i, j, middle) = self.sample(i, j, camera.height);
+        let [mut centre_x, mut centre_y] = camera.principal_point;
+        if self.has(Fault::PrincipalPointRounded) {
+            (centre_x, centre_y) = (centre_x.round(), centre_y.round());
+        }
+        let [mut pitch_x, mut pitch_y] = camera.pixel_pitch;
+        if self.has(Fault::PitchesSwapped) {
+            (pitch_x, pitch_y) = (pitch_y, pitch_x);
+        }
+        let x = (i + middle - centre_x) * pitch_x;
+        let y = (j + middle - centre_y) * pitch_y;
+        [DVec3::ZERO, DVec3::new(x, y, camera.focal_length)]
+    }
+
+    /// From (0, y_j, 0) on the focal axis along (x_i, 0, g), where x_i = w (2i + 1 - columns) / columns and
+    /// y_j = T (2j + 1 - rows) / (2 rows).
+    fn pencil_ray(&self, beam: &Beam, i: u32, j: u32) -> [DVec3; 2] {
+        let (i, j, middle) = self.sample(i, j, beam.rows);
+        let g = beam.grid_distance;
+        let (mut half_width, mut half_thickness) = (beam.half_width, 0.5 * beam.thickness);
+        if self.has(Fault::FanAndThicknessSwapped) {
+            (half_width, half_thickness) = (half_thickness, half_width);
+        }
+        if self.has(Fault::GridOfWholeFan) {
+            // tan(2 a) = 2 tan(a) / (1 - tan(a)^2)
+            let tangent = half_width / g;
+            half_width = g * 2.0 * tangent / (1.0 - tangent * tangent);
+        }
+        let (mut columns, rows) = (f64::from(beam.columns), f64::from(beam.rows));
+        if self.has(Fault::ColumnsCountedAsRows) {
+            columns = rows;
+        }
+        let x = half_width * (2.0 * (i + middle) - columns) / columns;
+        let y = half_thickness * (2.0 * (j + middle) - rows) / rows;
+        if self.has(Fault::PencilsFromCentre) {
+            return [DVec3::ZERO, DVec3::new(x, y, g)];
+        }
+        [DVec3::new(0.0, y, 0.0), DVec3::new(x, 0.0, g)]
+    }
+
+    /// The vector `p` turned by (q p q*) / (q . q).
+    fn rotate(&self, q: DQuat, p: DVec3) -> DVec3 {
+        let turned = product(product(q, DQuat::from_xyzw(p.x, p.y, p.z, 0.0)), conjugate(q));
+        let turned = DVec3::new(turned.x, turned.y, turned.z);
+        if self.has(Fault::QuaternionTakenAsUnit) {
+            return turned;
+        }
+        turned / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)
+    }
+
+    /// All cells of a sensor, one after the other.
+    fn map(&self, faces: &[[DVec3; 3]], eye: &Eye<'_>, quantities: Quantities) -> SensorMap {
+        let (width, height) = eye.size;
+        let mut map = SensorMap::empty(eye.id, width, height, quantities);
+        let faces = self.clipped(faces, eye);
+        for mut row in map.rows_mut() {
+            for i in 0..width {
+                // The ray, from the sensor into the scene.
+                let [start, q] = (eye.ray)(i, row.j);
+                let mut ray = SceneRay {
+                    origin: eye.pose.position + self.rotate(eye.pose.rotation, start),
+                    q: self.rotate(eye.pose.rotation, q),
+                    is_lower_right: q.x > 0.0 && start.y + q.y > 0.0,
+                };
+                if self.has(Fault::DirectionsInSinglePrecision) {
+                    ray.q = ray.q.as_vec3().as_dvec3();
+                }
+                if let Some((index, t)) = self.first_hit(&faces, eye, &ray) {
+                    row.put(i, &self.describe(&faces, eye, &ray, index, t));
+                }
+            }
+        }
+        map
+    }
+
+    /// The faces that a sensor's rays ask. Nothing needs to be clipped, for t >= 1 is asked of every hit: all
+    /// stay, and the fault makes faces of no area of those that it loses.
+    fn clipped(&self, faces: &[[DVec3; 3]], eye: &Eye<'_>) -> Vec<[DVec3; 3]> {
+        if !self.has(Fault::ClipCaseLost) {
+            return faces.to_vec();
+        }
+        let axis = self.rotate(eye.pose.rotation, DVec3::Z);
+        let is_behind = |corner: &&DVec3| axis.dot(**corner - eye.pose.position) < eye.plane;
+        let one_behind = |face: &[DVec3; 3]| face.iter().filter(is_behind).count() == 1;
+        faces.iter().map(|face| if one_behind(face) { [face[0]; 3] } else { *face }).collect()
+    }
+
+    /// The nearest hit at t >= 1 with R = t |q| <= the maximum range; of equals the lowest face.
+    fn first_hit(&self, faces: &[[DVec3; 3]], eye: &Eye<'_>, ray: &SceneRay) -> Option<(usize, f64)> {
+        let least = if self.has(Fault::HitsBeforePlane) { 0.0 } else { 1.0 };
+        let metres = if self.has(Fault::MaxRangeLimitsDepth) { eye.plane } else { ray.q.length() };
+        let mut best: Option<(usize, f64)> = None;
+        for (index, face) in faces.iter().enumerate() {
+            let Some(t) = self.meets(face, ray) else { continue };
+            if t < least || t * metres > eye.max_range {
+                continue;
+            }
+            let is_better = match best {
+                None => true,
+                Some(_) if self.has(Fault::FirstInOrderWins) => false,
+                Some((_, of_best)) if self.has(Fault::FarthestWins) => t > of_best,
+                Some((_, of_best)) => t < of_best,
+            };
+            if is_better {
+                best = Some((index, t));
+            }
+        }
+        best
+    }
+
+    /// The t at which a ray meets the front of a closed triangle.
+    fn meets(&self, &[a, b, c]: &[DVec3; 3], ray: &SceneRay) -> Option<f64> {
+        // The front faces the ray: n.q < 0.
+        let n = (b - a).cross(c - a);
+        let n_dot_q = n.dot(ray.q);
+        let faces_ray = if self.has(Fault::BackFacesKept) {
+            n_dot_q != 0.0
+        } else if self.has(Fault::WindingOfOneQuadrant) && ray.is_lower_right {
+            n_dot_q > 0.0
+        } else {
+            n_dot_q < 0.0
+        };
+        if !faces_ray || (self.has(Fault::SmallDeterminantsDropped) && n_dot_q.abs() < 1e-6) {
+            return None;
+        }
+
+        // The ray passes on the inner side of each edge from p to p', or on it: q.(p' x p) >= 0 with corners
+        // seen from its origin. It is the other way round for a back.
+        let mut corners = [a - ray.origin, b - ray.origin, c - ray.origin];
+        if self.has(Fault::VerticesInSinglePrecision) {
+            corners = corners.map(|corner| corner.as_vec3().as_dvec3());
+        }
+        let [a, b, c] = corners;
+        let edges = if n_dot_q < 0.0 { [(a, b), (b, c), (c, a)] } else { [(b, a), (c, b), (a, c)] };
+        let sides = edges.map(|(from, to)| ray.q.dot(to.cross(from)));
+        for ((from, to), side) in edges.into_iter().zip(sides) {
+            let is_inside = if self.has(Fault::EdgesExcluded) {
+                side > 0.0
+            } else if self.has(Fault::EdgesWidened) {
+                side >= -1e-6 * (sides[0] + sides[1] + sides[2])
+            } else {
+                side >= -SIDE * ray.q.length() * from.length() * to.length()
+            };
+            if !is_inside {
+                return None;
+            }
+        }
+
+        // The plane of the face: n.(o + t q) = n.a.
+        Some(n.dot(a) / n_dot_q)
+    }
+
+    /// Every quantity of a hit, each by its definition.
+    fn describe(&self, faces: &[[DVec3; 3]], eye: &Eye<'_>, ray: &SceneRay, index: usize, t: f64) -> Hit {
+        let [a, b, c] = faces[index];
+        let n = (b - a).cross(c - a);
+        let rotation = eye.pose.rotation;
+
+        let depth = t * eye.plane;
+        let range = if self.has(Fault::DepthForRange) {
+            depth
+        } else if self.has(Fault::RangeFromPlane) {
+            (t - 1.0) * ray.q.length()
+        } else {
+            t * ray.q.length()
+        };
+        let normal = if self.has(Fault::NormalNotNormalised) {
+            n
+        } else if self.has(Fault::NormalInSensorFrame) {
+            self.rotate(conjugate(rotation), n / n.length())
+        } else {
+            n / n.length()
+        };
+        let towards =
+            if self.has(Fault::IncidenceAgainstAxis) { self.rotate(rotation, DVec3::Z) } else { ray.q };
+        Hit {
+            face: FaceId(index as u32),
+            range,
+            point: ray.origin + ray.q * t,
+            normal,
+            depth,
+            incidence: -n.dot(towards) / (n.length() * towards.length()),
+        }
+    }
+}
+
+/// Hamilton's product of two quaternions.
+fn product(p: DQuat, q: DQuat) -> DQuat {
+    DQuat::from_xyzw(
+        p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+        p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x,
+        p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w,
+        p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z,
+    )
+}
+
+/// q*.
+fn conjugate(q: DQuat) -> DQuat {
+    DQuat::from_xyzw(-q.x, -q.y, -q.z, q.w)
+}
