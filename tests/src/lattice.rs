@@ -93,7 +93,7 @@ impl Lattice {
         let size = [width, height].map(|cells| (cells / 2 + 1 + 2 * rings) as usize);
         let count = size[0] * size[1];
         let t = (0..count).map(|index| ts[hash(seed, index as u64) as usize % ts.len()]).collect();
-        let falling = (0..count).map(|index| hash(!seed, index as u64) % 2 == 0).collect();
+        let falling = (0..count).map(|index| hash(!seed, index as u64).is_multiple_of(2)).collect();
         Self { sensor, rings, size, t, falling }
     }
 
@@ -136,7 +136,7 @@ impl Lattice {
     /// The t of the vertex that ray (i, j) goes through, if any.
     pub fn t_at(&self, i: u32, j: u32) -> Option<f64> {
         let [u, v] = [i, j].map(|index| (index / 2 + self.rings) as usize);
-        (i % 2 == 0 && j % 2 == 0).then(|| self.t[v * self.size[0] + u])
+        (i.is_multiple_of(2) && j.is_multiple_of(2)).then(|| self.t[v * self.size[0] + u])
     }
 
     /// What ray (i, j) does, from the t of the vertices around it.
@@ -175,7 +175,7 @@ impl Lattice {
                 // The cells that touch the ray's place.
                 let cells = |index: u32, vertices: usize| {
                     let cell = (index / 2 + self.rings) as usize;
-                    let first = if index % 2 == 0 { cell.saturating_sub(1) } else { cell };
+                    let first = if index.is_multiple_of(2) { cell.saturating_sub(1) } else { cell };
                     first..=cell.min(vertices - 2)
                 };
                 let on_cell = |u: usize, v: usize| {

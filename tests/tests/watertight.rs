@@ -237,6 +237,60 @@ fn rays_within_rounding_of_edges_hit() {
     }
 }
 
+/// Turns of whole quaternions, at no special angle. With D = q . q the entries of (q p q*) / (q . q) are whole
+/// multiples of 1 / D.
+const RATIONAL_TURNS: &[[f64; 4]] = &[
+    // About x: the lattice's middle column keeps x = 0.
+    [1.0, 0.0, 0.0, 2.0],
+    [0.0, 0.0, 1.0, 2.0],
+    [1.0, 2.0, 3.0, 4.0],
+    [1.0, 1.0, 1.0, 2.0],
+    [0.0, 1.0, 1.0, 1.0],
+    [2.0, -1.0, 1.0, 0.0],
+    [-3.0, 1.0, 0.0, 1.0],
+];
+
+/// A sensor of the same rays, `factor` times as large.
+fn enlarged(sensor: Sensor, factor: f64) -> Sensor {
+    match sensor {
+        Sensor::Camera(camera) => Sensor::Camera(Camera {
+            pixel_pitch: camera.pixel_pitch.map(|pitch| pitch * factor),
+            focal_length: camera.focal_length * factor,
+            max_range: camera.max_range * factor,
+            ..camera
+        }),
+        Sensor::Beam(beam) => Sensor::Beam(Beam {
+            grid_distance: beam.grid_distance * factor,
+            half_width: beam.half_width * factor,
+            thickness: beam.thickness * factor,
+            max_range: beam.max_range * factor,
+            ..beam
+        }),
+    }
+}
+
+#[test]
+fn rays_on_edges_hit_at_rational_turns() {
+    // Sensors D / 32 times as large: in the scene the lattice's vertices are dyadic again, D has cancelled. So
+    // the contract's rays pass exactly through vertices and edges, while a renderer must round every vertex
+    // or ray that it turns: whatever is computed twice for two neighbours, and not alike, opens a gap here.
+    for (index, [x, y, z, w]) in RATIONAL_TURNS.iter().copied().enumerate() {
+        let pose = Pose { position: DVec3::new(0.0, -0.75, 0.5), rotation: DQuat::from_xyzw(x, y, z, w) };
+        let factor = (x * x + y * y + z * z + w * w) / 32.0;
+        for (what, sensor, ts) in small_sensors() {
+            let sensor = enlarged(sensor, factor);
+            let lattice = Lattice::before(sensor, 1, 700 + index as u64, ts);
+            let (mesh, moved) = lattice.mesh(&pose);
+            // The turn itself is rounded by an ulp of 8 m at most; f32 adds nothing, or it would add 1e-8 m.
+            assert!(moved <= 1e-14, "{what}: vertices are exact in f32, not {moved} m off");
+            let what = format!("{what}, quaternion {x}, {y}, {z}, {w}");
+            let apart = taken_apart(&mesh);
+            assert_watertight(&what, &lattice, &sensor, &maps(&sensor, pose, mesh), ROUNDED);
+            assert_watertight(&what, &lattice, &sensor, &maps(&sensor, pose, apart), ROUNDED);
+        }
+    }
+}
+
 #[test]
 fn rays_near_edges_hit_at_any_pose() {
     // Any turn, up to 170 m from the origin. Vertices are rounded to f32, by up to 1e-5 m; cells are 2^-10 t m wide,
@@ -261,14 +315,16 @@ fn rays_near_edges_hit_at_any_pose() {
     }
 }
 
-/// Every face on vertices of its own, in another order and from another corner, the coordinates 0 of every
-/// second one -0.
+/// Every face on vertices of its own, in another order and from another corner, half of the coordinates that
+/// are 0 made -0.
 fn taken_apart(indexed: &Mesh) -> Arc<Mesh> {
     let split = unindexed(indexed);
     let mut vertices = split.vertices().to_vec();
-    for face in vertices.chunks_exact_mut(3).step_by(2) {
-        for coordinate in face.iter_mut().flatten().filter(|coordinate| **coordinate == 0.0) {
-            *coordinate = -0.0;
+    for (index, vertex) in vertices.iter_mut().enumerate() {
+        if hash(9, index as u64).is_multiple_of(2) {
+            for coordinate in vertex.iter_mut().filter(|coordinate| **coordinate == 0.0) {
+                *coordinate = -0.0;
+            }
         }
     }
     let mut faces = split.faces().to_vec();
@@ -283,29 +339,12 @@ fn taken_apart(indexed: &Mesh) -> Arc<Mesh> {
 #[test]
 fn edges_are_shared_by_position_not_by_index() {
     for (index, (what, sensor, ts)) in small_sensors().into_iter().enumerate() {
-        // Exactly, with the border.
+        // Exactly, with the border. (Within rounding: `rays_on_edges_hit_at_rational_turns`.)
         let lattice = Lattice::before(sensor, 0, 500 + index as u64, ts);
         let (indexed, _) = lattice.mesh(&Pose::IDENTITY);
         let apart = taken_apart(&indexed);
         let zero = |x: &f32| *x == 0.0 && x.is_sign_negative();
         assert!(apart.vertices().iter().flatten().any(zero), "{what}: it has zeros");
         assert_watertight(what, &lattice, &sensor, &maps(&sensor, Pose::IDENTITY, apart), ROUNDED);
-
-        // Within rounding, where it matters from which end a side is computed.
-        let lattice = Lattice::before(sensor, 1, 600 + index as u64, ts);
-        for (turn, position) in [DVec3::ZERO, DVec3::new(0.3, -7.7, 1.1)].into_iter().enumerate() {
-            let number = |index| hash_unit(2000 + turn as u64, index);
-            let rotation = match turn {
-                // No turn, but coordinates 0 stay 0: the quaternion (0, 0, 0, 1), and a third of the camera.
-                0 => DQuat::from_xyzw(0.0, 0.0, 0.0, 1.0),
-                _ => DQuat::from_xyzw(number(0), number(1), number(2), number(3)),
-            };
-            let pose = Pose { position, rotation };
-            let (indexed, _) = lattice.mesh(&pose);
-            let apart = taken_apart(&indexed);
-            let what = format!("{what}, pose {pose:?}");
-            let maps = maps(&a_third_as_large(sensor, ts), pose, apart);
-            assert_watertight(&what, &lattice, &sensor, &maps, f64::INFINITY);
-        }
     }
 }

@@ -42,7 +42,7 @@ impl<'s> Judge<'s> {
 
     /// Whether a ray that agrees is judged.
     pub(crate) fn samples(&self, place: Place) -> bool {
-        self.share == JudgeShare::All || hash(place) % ONE_IN == 0
+        self.share == JudgeShare::All || hash(place).is_multiple_of(ONE_IN)
     }
 
     /// Rules on one side's answer to a ray, with the range it gave if it gave one.
