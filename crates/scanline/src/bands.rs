@@ -4,12 +4,14 @@ use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 
-use crate::Options;
-use crate::clip::{Edge, NewLines, clip_at_plane};
+use crate::clip::{Edge, NewLines, Piece, clip_at_plane};
+use crate::printed::Screen;
 use crate::raster::{Plane, Raster, Transformation, scene_plane};
-use crate::scan::SplitTriangle;
+use crate::scan::{Corner, Line, SplitTriangle};
 use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT};
+use crate::stripe::{LARGEST_INVERSE_T, Stripe};
 use crate::vertices::{self, Vertex, widen};
+use crate::{Fidelity, Options};
 
 /// Faces that one task sorts into bands.
 const FACES_PER_TASK: usize = 8192;
@@ -39,7 +41,15 @@ pub(crate) fn render<T: Transformation>(
     // Steps 1 and 3: drop the faces that cannot be seen, sort the others into bands of rows.
     let rows_per_band = (CELLS_PER_BAND / width).clamp(1, height);
     let band_count = height.div_ceil(rows_per_band) as usize;
-    let faces = Faces { mesh, vertices: &vertices, transformation, options };
+    let as_printed = options.switches.skip_rules == Fidelity::Paper;
+    let faces = Faces {
+        mesh,
+        vertices: &vertices,
+        transformation,
+        printed_rules_3: (as_printed && options.skip_unseen)
+            .then(|| Screen::new(transformation.columns(), transformation.rows())),
+        skip_unseen: !as_printed && options.skip_unseen,
+    };
     let sorted: Vec<Vec<Vec<FaceId>>> = (0..mesh.faces().len().div_ceil(FACES_PER_TASK))
         .into_par_iter()
         .map(|task| {
@@ -48,6 +58,10 @@ pub(crate) fn render<T: Transformation>(
             let end = (first + FACES_PER_TASK).min(mesh.faces().len());
             for index in first..end {
                 let id = FaceId(index as u32);
+                // 1b as printed. (In its exact form it is part of what follows.)
+                if as_printed && !faces.faces_sensor(id) {
+                    continue;
+                }
                 if let Some(rows) = faces.rows(id) {
                     for band in rows.start / rows_per_band..=(rows.end - 1) / rows_per_band {
                         bands[band as usize].push(id);
@@ -78,7 +92,10 @@ struct Faces<'a, T> {
     mesh: &'a Mesh,
     vertices: &'a [Vertex],
     transformation: &'a T,
-    options: Options,
+    /// Rules 3 as printed, if they are to be used.
+    printed_rules_3: Option<Screen>,
+    /// Whether to skip what the conservative forms of rules 1 and 3 find unseen.
+    skip_unseen: bool,
 }
 
 impl<T: Transformation> Faces<'_, T> {
@@ -89,7 +106,7 @@ impl<T: Transformation> Faces<'_, T> {
         let face = self.mesh.faces()[id.0 as usize];
         let [a, b, c] = face.map(|v| &self.vertices[v as usize]);
         let (all, any) = (a.outside & b.outside & c.outside, a.outside | b.outside | c.outside);
-        if self.options.skip_unseen && all != 0 {
+        if self.skip_unseen && all != 0 {
             return None;
         }
         if any & BEHIND_PLANE != 0 {
@@ -104,7 +121,7 @@ impl<T: Transformation> Faces<'_, T> {
         if first >= end {
             return None;
         }
-        if self.options.skip_unseen {
+        if self.skip_unseen {
             // A face between two columns covers no cell.
             let left = corners.iter().fold(f64::INFINITY, |left, corner| left.min(corner.x));
             let right = corners.iter().fold(f64::NEG_INFINITY, |right, corner| right.max(corner.x));
@@ -135,6 +152,15 @@ impl<T: Transformation> Faces<'_, T> {
         Some(first..end)
     }
 
+    /// Rule 1b as printed: whether the front of a face is towards the sensor's own origin.
+    ///
+    /// CHOICE: a face seen edge on shows neither side, and is skipped: its image has no width.
+    #[inline(never)]
+    fn faces_sensor(&self, id: FaceId) -> bool {
+        let corners = self.mesh.faces()[id.0 as usize].map(|v| widen(self.mesh.vertices()[v as usize]));
+        scene_plane(&corners, self.transformation.sensor_from_scene()).1 < 0.0
+    }
+
     /// Step 4: scans a face into some rows.
     #[inline]
     fn scan(&self, id: FaceId, rows: &[SensorRow<'_>], raster: &mut Raster) {
@@ -147,38 +173,85 @@ impl<T: Transformation> Faces<'_, T> {
 
         let edge = |k: usize, next: usize| {
             // One order of an edge's ends in both faces that share it.
-            let (first, second) = if precedes(&stored[next], &stored[k]) { (next, k) } else { (k, next) };
+            let reversed = precedes(&stored[next], &stored[k]);
+            let (first, second) = if reversed { (next, k) } else { (k, next) };
             let along =
                 transformation.sensor_from_scene().turn(scene_vertices[second] - scene_vertices[first]);
             let (first, second) = (seen[first].position, seen[second].position);
-            Edge { first, second, line: transformation.line(first, second, along) }
+            Edge { first, second, reversed, line: transformation.line(first, second, along) }
         };
         let edges = [edge(0, 1), edge(1, 2), edge(2, 0)];
+        let points = seen.map(|vertex| vertex.position);
         let corners = seen.map(|vertex| vertex.corner);
 
-        if seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE == 0) {
-            let triangle = SplitTriangle::new(corners, edges.map(|edge| edge.line));
+        if let Some(stripe) = transformation.stripe() {
+            self.scan_within(stripe, points, &edges, &plane, id, rows, raster);
+        } else if seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE == 0) {
+            let piece = Piece { points, corners, lines: edges.map(|edge| edge.line) };
             // All of the face is at or beyond the SPP.
-            self.scan_triangle(&triangle, &plane, f64::MAX, id, rows, raster);
+            self.scan_piece(&piece, &plane, f64::MAX, id, rows, raster);
         } else {
             let spp = transformation.plane_distance();
             let new_lines = NewLines {
                 along_plane: |from, to| transformation.line_along_plane(from, to, &plane),
                 diagonal: |from: DVec3, to: DVec3| transformation.line(from, to, to - from),
             };
-            let positions = seen.map(|vertex| vertex.position);
-            clip_at_plane(spp, positions, corners, &edges, new_lines, |triangle| {
+            clip_at_plane(spp, points, corners, &edges, new_lines, |piece| {
                 // t >= 1: what the cut leaves must not be scanned in front of the SPP by rounding.
-                self.scan_triangle(&triangle, &plane, 1.0, id, rows, raster);
+                self.scan_piece(piece, &plane, 1.0, id, rows, raster);
             });
         }
     }
 
+    /// Step 4 with straight sides (`beam-edges = paper`). Kept out of line: the exact path is the hot one.
+    #[inline(never)]
+    fn scan_within(
+        &self,
+        stripe: &Stripe,
+        points: [DVec3; 3],
+        edges: &[Edge<T::Line>; 3],
+        plane: &Plane,
+        id: FaceId,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        stripe.clip(points, edges, |piece| {
+            self.scan_piece(piece, plane, LARGEST_INVERSE_T, id, rows, raster);
+        });
+    }
+
+    /// Step 3 as printed, and step 4 for what it leaves.
+    #[inline(always)]
+    fn scan_piece<L: Line>(
+        &self,
+        piece: &Piece<L>,
+        plane: &Plane,
+        largest: f64,
+        id: FaceId,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        if let Some(screen) = &self.printed_rules_3
+            && self.is_skipped_as_printed(screen, piece.points, piece.corners)
+        {
+            return;
+        }
+        let triangle = SplitTriangle::new(piece.corners, piece.lines);
+        self.scan_triangle(&triangle, plane, largest, id, rows, raster);
+    }
+
+    /// Step 3 as printed, out of line and by value: it must cost the exact path nothing.
+    #[cold]
+    fn is_skipped_as_printed(&self, screen: &Screen, points: [DVec3; 3], corners: [Corner; 3]) -> bool {
+        let max_range = self.transformation.max_range();
+        screen.skips(&corners, |k| self.transformation.range(points[k]) > max_range)
+    }
+
     /// Step 4b: the rows of one projected triangle.
     #[inline]
-    fn scan_triangle(
+    fn scan_triangle<L: Line>(
         &self,
-        triangle: &SplitTriangle<T::Line>,
+        triangle: &SplitTriangle<L>,
         plane: &Plane,
         largest: f64,
         id: FaceId,
