@@ -7,9 +7,9 @@ use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 use crate::clip::{Edge, NewLines, Piece, clip_at_plane};
 use crate::printed::Screen;
 use crate::raster::{Plane, Raster, Transformation, scene_plane};
-use crate::scan::{Corner, Line, SplitTriangle};
+use crate::scan::{Line, SplitTriangle};
 use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT};
-use crate::stripe::{LARGEST_INVERSE_T, Stripe};
+use crate::stripe::LARGEST_INVERSE_T;
 use crate::vertices::{self, Vertex, widen};
 use crate::{Fidelity, Options};
 
@@ -46,10 +46,10 @@ pub(crate) fn render<T: Transformation>(
         mesh,
         vertices: &vertices,
         transformation,
-        printed_rules_3: (as_printed && options.skip_unseen)
-            .then(|| Screen::new(transformation.columns(), transformation.rows())),
-        skip_unseen: !as_printed && options.skip_unseen,
+        skip_unseen: options.skip_unseen && !as_printed,
+        screen: Screen::new(transformation.columns(), transformation.rows()),
     };
+    let by_printed_rules_3 = options.skip_unseen && as_printed;
     let sorted: Vec<Vec<Vec<FaceId>>> = (0..mesh.faces().len().div_ceil(FACES_PER_TASK))
         .into_par_iter()
         .map(|task| {
@@ -58,10 +58,6 @@ pub(crate) fn render<T: Transformation>(
             let end = (first + FACES_PER_TASK).min(mesh.faces().len());
             for index in first..end {
                 let id = FaceId(index as u32);
-                // 1b as printed. (In its exact form it is part of what follows.)
-                if as_printed && !faces.faces_sensor(id) {
-                    continue;
-                }
                 if let Some(rows) = faces.rows(id) {
                     for band in rows.start / rows_per_band..=(rows.end - 1) / rows_per_band {
                         bands[band as usize].push(id);
@@ -77,8 +73,11 @@ pub(crate) fn render<T: Transformation>(
     rows.par_chunks_mut(rows_per_band as usize).enumerate().for_each(|(band, rows)| {
         let mut raster = Raster::new(rows[0].j, rows.len() as u32, width);
         for task in &sorted {
-            for &id in &task[band] {
-                faces.scan(id, rows, &mut raster);
+            // Asked here, not for every face: that would cost the exact rules some 3 % of their time.
+            if by_printed_rules_3 {
+                faces.scan::<true>(&task[band], rows, &mut raster);
+            } else {
+                faces.scan::<false>(&task[band], rows, &mut raster);
             }
         }
         raster.resolve(mesh, transformation, quantities, rows);
@@ -92,14 +91,15 @@ struct Faces<'a, T> {
     mesh: &'a Mesh,
     vertices: &'a [Vertex],
     transformation: &'a T,
-    /// Rules 3 as printed, if they are to be used.
-    printed_rules_3: Option<Screen>,
     /// Whether to skip what the conservative forms of rules 1 and 3 find unseen.
     skip_unseen: bool,
+    /// For rules 3 as printed.
+    screen: Screen,
 }
 
 impl<T: Transformation> Faces<'_, T> {
-    /// Steps 1 and 3: the rows that a face may touch, or `None` if it cannot be seen.
+    /// Steps 1 and 3: the rows that a face may touch, or `None` if it cannot be seen. (As printed, 1b is asked
+    /// in `Transformation::inverse_t` and rules 3 in `scan_piece`: those see what clipping leaves.)
     #[inline]
     fn rows(&self, id: FaceId) -> Option<std::ops::Range<u32>> {
         let transformation = self.transformation;
@@ -152,77 +152,101 @@ impl<T: Transformation> Faces<'_, T> {
         Some(first..end)
     }
 
-    /// Rule 1b as printed: whether the front of a face is towards the sensor's own origin.
-    ///
-    /// CHOICE: a face seen edge on shows neither side, and is skipped: its image has no width.
+    /// Step 4: scans faces into some rows; `BY_RULES_3`: those that rules 3 as printed leave.
     #[inline(never)]
-    fn faces_sensor(&self, id: FaceId) -> bool {
-        let corners = self.mesh.faces()[id.0 as usize].map(|v| widen(self.mesh.vertices()[v as usize]));
-        scene_plane(&corners, self.transformation.sensor_from_scene()).1 < 0.0
+    fn scan<const BY_RULES_3: bool>(&self, ids: &[FaceId], rows: &[SensorRow<'_>], raster: &mut Raster) {
+        for &id in ids {
+            self.scan_face::<BY_RULES_3>(id, rows, raster);
+        }
     }
 
     /// Step 4: scans a face into some rows.
     #[inline]
-    fn scan(&self, id: FaceId, rows: &[SensorRow<'_>], raster: &mut Raster) {
-        let transformation = self.transformation;
+    fn scan_face<const BY_RULES_3: bool>(&self, id: FaceId, rows: &[SensorRow<'_>], raster: &mut Raster) {
         let face = self.mesh.faces()[id.0 as usize];
         let stored = face.map(|v| self.mesh.vertices()[v as usize]);
-        let scene_vertices = stored.map(widen);
-        let plane = Plane::of(&scene_vertices, transformation.sensor_from_scene());
+        let plane = Plane::of(&stored.map(widen), self.transformation.sensor_from_scene());
         let seen = face.map(|v| &self.vertices[v as usize]);
-
-        let edge = |k: usize, next: usize| {
-            // One order of an edge's ends in both faces that share it.
-            let reversed = precedes(&stored[next], &stored[k]);
-            let (first, second) = if reversed { (next, k) } else { (k, next) };
-            let along =
-                transformation.sensor_from_scene().turn(scene_vertices[second] - scene_vertices[first]);
-            let (first, second) = (seen[first].position, seen[second].position);
-            Edge { first, second, reversed, line: transformation.line(first, second, along) }
-        };
-        let edges = [edge(0, 1), edge(1, 2), edge(2, 0)];
-        let points = seen.map(|vertex| vertex.position);
-        let corners = seen.map(|vertex| vertex.corner);
-
-        if let Some(stripe) = transformation.stripe() {
-            self.scan_within(stripe, points, &edges, &plane, id, rows, raster);
+        if self.transformation.stripe().is_some() {
+            self.scan_within_stripe::<BY_RULES_3>(id, &plane, rows, raster);
         } else if seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE == 0) {
-            let piece = Piece { points, corners, lines: edges.map(|edge| edge.line) };
-            // All of the face is at or beyond the SPP.
-            self.scan_piece(&piece, &plane, f64::MAX, id, rows, raster);
-        } else {
-            let spp = transformation.plane_distance();
-            let new_lines = NewLines {
-                along_plane: |from, to| transformation.line_along_plane(from, to, &plane),
-                diagonal: |from: DVec3, to: DVec3| transformation.line(from, to, to - from),
+            let piece = Piece {
+                points: seen.map(|vertex| vertex.position),
+                corners: seen.map(|vertex| vertex.corner),
+                lines: [
+                    self.edge(&stored, &seen, 0, 1).line,
+                    self.edge(&stored, &seen, 1, 2).line,
+                    self.edge(&stored, &seen, 2, 0).line,
+                ],
             };
-            clip_at_plane(spp, points, corners, &edges, new_lines, |piece| {
-                // t >= 1: what the cut leaves must not be scanned in front of the SPP by rounding.
-                self.scan_piece(piece, &plane, 1.0, id, rows, raster);
+            // All of the face is at or beyond the SPP.
+            self.scan_piece::<_, BY_RULES_3>(&piece, &plane, f64::MAX, id, rows, raster);
+        } else {
+            self.scan_beyond_spp::<BY_RULES_3>(id, &plane, rows, raster);
+        }
+    }
+
+    /// The edge of a face from corner k to the next, its ends in the one order that both faces sharing it find.
+    #[inline]
+    fn edge(&self, stored: &[[f32; 3]; 3], seen: &[&Vertex; 3], k: usize, next: usize) -> Edge<T::Line> {
+        let reversed = precedes(&stored[next], &stored[k]);
+        let (first, second) = if reversed { (next, k) } else { (k, next) };
+        let along = widen(stored[second]) - widen(stored[first]);
+        let along = self.transformation.sensor_from_scene().turn(along);
+        let (first, second) = (seen[first].position, seen[second].position);
+        Edge { first, second, reversed, line: self.transformation.line(first, second, along) }
+    }
+
+    fn edges(&self, id: FaceId) -> [Edge<T::Line>; 3] {
+        let face = self.mesh.faces()[id.0 as usize];
+        let stored = face.map(|v| self.mesh.vertices()[v as usize]);
+        let seen = face.map(|v| &self.vertices[v as usize]);
+        [(0, 1), (1, 2), (2, 0)].map(|(k, next)| self.edge(&stored, &seen, k, next))
+    }
+
+    /// Step 4 for a face that the SPP cuts. Few are: kept out of line of the others.
+    #[inline(never)]
+    fn scan_beyond_spp<const BY_RULES_3: bool>(
+        &self,
+        id: FaceId,
+        plane: &Plane,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        let transformation = self.transformation;
+        let seen = self.mesh.faces()[id.0 as usize].map(|v| &self.vertices[v as usize]);
+        let (points, corners) = (seen.map(|vertex| vertex.position), seen.map(|vertex| vertex.corner));
+        let new_lines = NewLines {
+            along_plane: |from, to| transformation.line_along_plane(from, to, plane),
+            diagonal: |from: DVec3, to: DVec3| transformation.line(from, to, to - from),
+        };
+        let spp = transformation.plane_distance();
+        clip_at_plane(spp, points, corners, &self.edges(id), new_lines, |piece| {
+            // t >= 1: what the cut leaves must not be scanned in front of the SPP by rounding.
+            self.scan_piece::<_, BY_RULES_3>(piece, plane, 1.0, id, rows, raster);
+        });
+    }
+
+    /// Step 4 with straight sides (`beam-edges = paper`), kept out of line of the exact ones.
+    #[inline(never)]
+    fn scan_within_stripe<const BY_RULES_3: bool>(
+        &self,
+        id: FaceId,
+        plane: &Plane,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        let points = self.mesh.faces()[id.0 as usize].map(|v| self.vertices[v as usize].position);
+        if let Some(stripe) = self.transformation.stripe() {
+            stripe.clip(points, &self.edges(id), |piece| {
+                self.scan_piece::<_, BY_RULES_3>(piece, plane, LARGEST_INVERSE_T, id, rows, raster);
             });
         }
     }
 
-    /// Step 4 with straight sides (`beam-edges = paper`). Kept out of line: the exact path is the hot one.
-    #[inline(never)]
-    fn scan_within(
-        &self,
-        stripe: &Stripe,
-        points: [DVec3; 3],
-        edges: &[Edge<T::Line>; 3],
-        plane: &Plane,
-        id: FaceId,
-        rows: &[SensorRow<'_>],
-        raster: &mut Raster,
-    ) {
-        stripe.clip(points, edges, |piece| {
-            self.scan_piece(piece, plane, LARGEST_INVERSE_T, id, rows, raster);
-        });
-    }
-
     /// Step 3 as printed, and step 4 for what it leaves.
-    #[inline(always)]
-    fn scan_piece<L: Line>(
+    #[inline]
+    fn scan_piece<L: Line, const BY_RULES_3: bool>(
         &self,
         piece: &Piece<L>,
         plane: &Plane,
@@ -231,24 +255,19 @@ impl<T: Transformation> Faces<'_, T> {
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
     ) {
-        if let Some(screen) = &self.printed_rules_3
-            && self.is_skipped_as_printed(screen, piece.points, piece.corners)
-        {
-            return;
+        if BY_RULES_3 {
+            let max_range = self.transformation.max_range();
+            let too_far = |k: usize| self.transformation.range(piece.points[k]) > max_range;
+            if self.screen.skips(&piece.corners, too_far) {
+                return;
+            }
         }
         let triangle = SplitTriangle::new(piece.corners, piece.lines);
         self.scan_triangle(&triangle, plane, largest, id, rows, raster);
     }
 
-    /// Step 3 as printed, out of line and by value: it must cost the exact path nothing.
-    #[cold]
-    fn is_skipped_as_printed(&self, screen: &Screen, points: [DVec3; 3], corners: [Corner; 3]) -> bool {
-        let max_range = self.transformation.max_range();
-        screen.skips(&corners, |k| self.transformation.range(points[k]) > max_range)
-    }
-
     /// Step 4b: the rows of one projected triangle.
-    #[inline]
+    #[inline(always)]
     fn scan_triangle<L: Line>(
         &self,
         triangle: &SplitTriangle<L>,

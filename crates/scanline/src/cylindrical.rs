@@ -157,7 +157,8 @@ impl Transformation for Cylindrical {
             // DIFFERENCE: rule 1b, row by row: the rows' origins differ, so they may see different sides of
             // a face.
             Fidelity::Exact => distance < 0.0,
-            // 1b as printed, one decision for all rows. (A row that sees a face edge on sees nothing of it.)
+            // 1b as printed, one decision for all rows: see `printed`. CHOICE: edge on, from the origin or
+            // from a row, neither side is seen.
             Fidelity::Paper => face.distance < 0.0 && distance != 0.0,
         };
         if is_seen {
