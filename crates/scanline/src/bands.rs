@@ -4,12 +4,14 @@ use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 
-use crate::Options;
-use crate::clip::{Edge, NewLines, clip_at_plane};
+use crate::clip::{Edge, NewLines, Piece, clip_at_plane};
+use crate::printed::Screen;
 use crate::raster::{Plane, Raster, Transformation, scene_plane};
-use crate::scan::SplitTriangle;
+use crate::scan::{Line, SplitTriangle};
 use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT};
+use crate::stripe::LARGEST_INVERSE_T;
 use crate::vertices::{self, Vertex, widen};
+use crate::{Fidelity, Options};
 
 /// Faces that one task sorts into bands.
 const FACES_PER_TASK: usize = 8192;
@@ -39,7 +41,15 @@ pub(crate) fn render<T: Transformation>(
     // Steps 1 and 3: drop the faces that cannot be seen, sort the others into bands of rows.
     let rows_per_band = (CELLS_PER_BAND / width).clamp(1, height);
     let band_count = height.div_ceil(rows_per_band) as usize;
-    let faces = Faces { mesh, vertices: &vertices, transformation, options };
+    let as_printed = options.switches.skip_rules == Fidelity::Paper;
+    let faces = Faces {
+        mesh,
+        vertices: &vertices,
+        transformation,
+        skip_unseen: options.skip_unseen && !as_printed,
+        screen: Screen::new(transformation.columns(), transformation.rows()),
+    };
+    let by_printed_rules_3 = options.skip_unseen && as_printed;
     let sorted: Vec<Vec<Vec<FaceId>>> = (0..mesh.faces().len().div_ceil(FACES_PER_TASK))
         .into_par_iter()
         .map(|task| {
@@ -63,8 +73,11 @@ pub(crate) fn render<T: Transformation>(
     rows.par_chunks_mut(rows_per_band as usize).enumerate().for_each(|(band, rows)| {
         let mut raster = Raster::new(rows[0].j, rows.len() as u32, width);
         for task in &sorted {
-            for &id in &task[band] {
-                faces.scan(id, rows, &mut raster);
+            // Asked here, not for every face: that would cost the exact rules some 3 % of their time.
+            if by_printed_rules_3 {
+                faces.scan::<true>(&task[band], rows, &mut raster);
+            } else {
+                faces.scan::<false>(&task[band], rows, &mut raster);
             }
         }
         raster.resolve(mesh, transformation, quantities, rows);
@@ -78,18 +91,22 @@ struct Faces<'a, T> {
     mesh: &'a Mesh,
     vertices: &'a [Vertex],
     transformation: &'a T,
-    options: Options,
+    /// Whether to skip what the conservative forms of rules 1 and 3 find unseen.
+    skip_unseen: bool,
+    /// For rules 3 as printed.
+    screen: Screen,
 }
 
 impl<T: Transformation> Faces<'_, T> {
-    /// Steps 1 and 3: the rows that a face may touch, or `None` if it cannot be seen.
+    /// Steps 1 and 3: the rows that a face may touch, or `None` if it cannot be seen. (As printed, 1b is asked
+    /// in `Transformation::inverse_t` and rules 3 in `scan_piece`: those see what clipping leaves.)
     #[inline]
     fn rows(&self, id: FaceId) -> Option<std::ops::Range<u32>> {
         let transformation = self.transformation;
         let face = self.mesh.faces()[id.0 as usize];
         let [a, b, c] = face.map(|v| &self.vertices[v as usize]);
         let (all, any) = (a.outside & b.outside & c.outside, a.outside | b.outside | c.outside);
-        if self.options.skip_unseen && all != 0 {
+        if self.skip_unseen && all != 0 {
             return None;
         }
         if any & BEHIND_PLANE != 0 {
@@ -104,7 +121,7 @@ impl<T: Transformation> Faces<'_, T> {
         if first >= end {
             return None;
         }
-        if self.options.skip_unseen {
+        if self.skip_unseen {
             // A face between two columns covers no cell.
             let left = corners.iter().fold(f64::INFINITY, |left, corner| left.min(corner.x));
             let right = corners.iter().fold(f64::NEG_INFINITY, |right, corner| right.max(corner.x));
@@ -135,50 +152,125 @@ impl<T: Transformation> Faces<'_, T> {
         Some(first..end)
     }
 
+    /// Step 4: scans faces into some rows; `BY_RULES_3`: those that rules 3 as printed leave.
+    #[inline(never)]
+    fn scan<const BY_RULES_3: bool>(&self, ids: &[FaceId], rows: &[SensorRow<'_>], raster: &mut Raster) {
+        for &id in ids {
+            self.scan_face::<BY_RULES_3>(id, rows, raster);
+        }
+    }
+
     /// Step 4: scans a face into some rows.
     #[inline]
-    fn scan(&self, id: FaceId, rows: &[SensorRow<'_>], raster: &mut Raster) {
-        let transformation = self.transformation;
+    fn scan_face<const BY_RULES_3: bool>(&self, id: FaceId, rows: &[SensorRow<'_>], raster: &mut Raster) {
         let face = self.mesh.faces()[id.0 as usize];
         let stored = face.map(|v| self.mesh.vertices()[v as usize]);
-        let scene_vertices = stored.map(widen);
-        let plane = Plane::of(&scene_vertices, transformation.sensor_from_scene());
+        let plane = Plane::of(&stored.map(widen), self.transformation.sensor_from_scene());
         let seen = face.map(|v| &self.vertices[v as usize]);
-
-        let edge = |k: usize, next: usize| {
-            // One order of an edge's ends in both faces that share it.
-            let (first, second) = if precedes(&stored[next], &stored[k]) { (next, k) } else { (k, next) };
-            let along =
-                transformation.sensor_from_scene().turn(scene_vertices[second] - scene_vertices[first]);
-            let (first, second) = (seen[first].position, seen[second].position);
-            Edge { first, second, line: transformation.line(first, second, along) }
-        };
-        let edges = [edge(0, 1), edge(1, 2), edge(2, 0)];
-        let corners = seen.map(|vertex| vertex.corner);
-
-        if seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE == 0) {
-            let triangle = SplitTriangle::new(corners, edges.map(|edge| edge.line));
-            // All of the face is at or beyond the SPP.
-            self.scan_triangle(&triangle, &plane, f64::MAX, id, rows, raster);
-        } else {
-            let spp = transformation.plane_distance();
-            let new_lines = NewLines {
-                along_plane: |from, to| transformation.line_along_plane(from, to, &plane),
-                diagonal: |from: DVec3, to: DVec3| transformation.line(from, to, to - from),
+        if self.transformation.stripe().is_some() {
+            self.scan_within_stripe::<BY_RULES_3>(id, &plane, rows, raster);
+        } else if seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE == 0) {
+            let piece = Piece {
+                points: seen.map(|vertex| vertex.position),
+                corners: seen.map(|vertex| vertex.corner),
+                lines: [
+                    self.edge(&stored, &seen, 0, 1).line,
+                    self.edge(&stored, &seen, 1, 2).line,
+                    self.edge(&stored, &seen, 2, 0).line,
+                ],
             };
-            let positions = seen.map(|vertex| vertex.position);
-            clip_at_plane(spp, positions, corners, &edges, new_lines, |triangle| {
-                // t >= 1: what the cut leaves must not be scanned in front of the SPP by rounding.
-                self.scan_triangle(&triangle, &plane, 1.0, id, rows, raster);
+            // All of the face is at or beyond the SPP.
+            self.scan_piece::<_, BY_RULES_3>(&piece, &plane, f64::MAX, id, rows, raster);
+        } else {
+            self.scan_beyond_spp::<BY_RULES_3>(id, &plane, rows, raster);
+        }
+    }
+
+    /// The edge of a face from corner k to the next, its ends in the one order that both faces sharing it find.
+    #[inline]
+    fn edge(&self, stored: &[[f32; 3]; 3], seen: &[&Vertex; 3], k: usize, next: usize) -> Edge<T::Line> {
+        let reversed = precedes(&stored[next], &stored[k]);
+        let (first, second) = if reversed { (next, k) } else { (k, next) };
+        let along = widen(stored[second]) - widen(stored[first]);
+        let along = self.transformation.sensor_from_scene().turn(along);
+        let (first, second) = (seen[first].position, seen[second].position);
+        Edge { first, second, reversed, line: self.transformation.line(first, second, along) }
+    }
+
+    fn edges(&self, id: FaceId) -> [Edge<T::Line>; 3] {
+        let face = self.mesh.faces()[id.0 as usize];
+        let stored = face.map(|v| self.mesh.vertices()[v as usize]);
+        let seen = face.map(|v| &self.vertices[v as usize]);
+        [(0, 1), (1, 2), (2, 0)].map(|(k, next)| self.edge(&stored, &seen, k, next))
+    }
+
+    /// Step 4 for a face that the SPP cuts. Few are: kept out of line of the others.
+    #[inline(never)]
+    fn scan_beyond_spp<const BY_RULES_3: bool>(
+        &self,
+        id: FaceId,
+        plane: &Plane,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        let transformation = self.transformation;
+        let seen = self.mesh.faces()[id.0 as usize].map(|v| &self.vertices[v as usize]);
+        let (points, corners) = (seen.map(|vertex| vertex.position), seen.map(|vertex| vertex.corner));
+        let new_lines = NewLines {
+            along_plane: |from, to| transformation.line_along_plane(from, to, plane),
+            diagonal: |from: DVec3, to: DVec3| transformation.line(from, to, to - from),
+        };
+        let spp = transformation.plane_distance();
+        clip_at_plane(spp, points, corners, &self.edges(id), new_lines, |piece| {
+            // t >= 1: what the cut leaves must not be scanned in front of the SPP by rounding.
+            self.scan_piece::<_, BY_RULES_3>(piece, plane, 1.0, id, rows, raster);
+        });
+    }
+
+    /// Step 4 with straight sides (`beam-edges = paper`), kept out of line of the exact ones.
+    #[inline(never)]
+    fn scan_within_stripe<const BY_RULES_3: bool>(
+        &self,
+        id: FaceId,
+        plane: &Plane,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        let points = self.mesh.faces()[id.0 as usize].map(|v| self.vertices[v as usize].position);
+        if let Some(stripe) = self.transformation.stripe() {
+            stripe.clip(points, &self.edges(id), |piece| {
+                self.scan_piece::<_, BY_RULES_3>(piece, plane, LARGEST_INVERSE_T, id, rows, raster);
             });
         }
     }
 
-    /// Step 4b: the rows of one projected triangle.
+    /// Step 3 as printed, and step 4 for what it leaves.
     #[inline]
-    fn scan_triangle(
+    fn scan_piece<L: Line, const BY_RULES_3: bool>(
         &self,
-        triangle: &SplitTriangle<T::Line>,
+        piece: &Piece<L>,
+        plane: &Plane,
+        largest: f64,
+        id: FaceId,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        if BY_RULES_3 {
+            let max_range = self.transformation.max_range();
+            let too_far = |k: usize| self.transformation.range(piece.points[k]) > max_range;
+            if self.screen.skips(&piece.corners, too_far) {
+                return;
+            }
+        }
+        let triangle = SplitTriangle::new(piece.corners, piece.lines);
+        self.scan_triangle(&triangle, plane, largest, id, rows, raster);
+    }
+
+    /// Step 4b: the rows of one projected triangle.
+    #[inline(always)]
+    fn scan_triangle<L: Line>(
+        &self,
+        triangle: &SplitTriangle<L>,
         plane: &Plane,
         largest: f64,
         id: FaceId,

@@ -6,13 +6,15 @@
 
 use glam::DVec3;
 
-use crate::scan::{Corner, Line, SplitTriangle};
+use crate::scan::{Corner, Line};
 
 /// An edge of a face in the sensor's frame, its ends in the scene's order.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Edge<L> {
     pub(crate) first: DVec3,
     pub(crate) second: DVec3,
+    /// Whether that is the order opposite to the face's own.
+    pub(crate) reversed: bool,
     pub(crate) line: L,
 }
 
@@ -23,6 +25,17 @@ impl<L> Edge<L> {
         let p = self.first + (self.second - self.first) * s;
         DVec3::new(p.x, p.y, spp)
     }
+}
+
+/// A triangle of a face, or of what clipping leaves of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Piece<L> {
+    /// Its corners in the sensor's frame.
+    pub(crate) points: [DVec3; 3],
+    /// Their projections.
+    pub(crate) corners: [Corner; 3],
+    /// `lines[k]` joins corner k to k + 1.
+    pub(crate) lines: [L; 3],
 }
 
 /// The lines that clipping adds.
@@ -44,7 +57,7 @@ pub(crate) fn clip_at_plane<L: Line>(
     corners: [Corner; 3],
     edges: &[Edge<L>; 3],
     new_lines: NewLines<impl Fn(DVec3, DVec3) -> L, impl Fn(DVec3, DVec3) -> L>,
-    mut visit: impl FnMut(SplitTriangle<L>),
+    mut visit: impl FnMut(&Piece<L>),
 ) {
     // Walk around the face: keep the corners in front, add one where an edge crosses the plane. Each
     // corner is stored with the line of the side that leaves it.
@@ -79,13 +92,15 @@ pub(crate) fn clip_at_plane<L: Line>(
     }
     let side =
         |k: usize, next: usize| kept[k].2.unwrap_or_else(|| (new_lines.along_plane)(kept[k].0, kept[next].0));
-    let corner = |k: usize| kept[k].1;
+    let mut piece = |[a, b, c]: [usize; 3], lines: [L; 3]| {
+        let (points, corners) = ([kept[a].0, kept[b].0, kept[c].0], [kept[a].1, kept[b].1, kept[c].1]);
+        visit(&Piece { points, corners, lines });
+    };
     if count == 3 {
-        let lines = [side(0, 1), side(1, 2), side(2, 0)];
-        visit(SplitTriangle::new([corner(0), corner(1), corner(2)], lines));
+        piece([0, 1, 2], [side(0, 1), side(1, 2), side(2, 0)]);
     } else {
         let diagonal = (new_lines.diagonal)(kept[0].0, kept[2].0);
-        visit(SplitTriangle::new([corner(0), corner(1), corner(2)], [side(0, 1), side(1, 2), diagonal]));
-        visit(SplitTriangle::new([corner(0), corner(2), corner(3)], [diagonal, side(2, 3), side(3, 0)]));
+        piece([0, 1, 2], [side(0, 1), side(1, 2), diagonal]);
+        piece([0, 2, 3], [diagonal, side(2, 3), side(3, 0)]);
     }
 }

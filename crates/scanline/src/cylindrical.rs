@@ -7,8 +7,9 @@
 //! X* = X (Y' - y) + X' (y - Y),   Z* = Z (Y' - y) + Z' (y - Y),   x = g X* / Z*
 //! ```
 //!
-//! DIFFERENCE: the paper joins the projected vertices by straight lines, which "becomes insignificant" for a
-//! thin sheet; this is the curve itself.
+//! DIFFERENCE: the paper joins the projected vertices by straight lines, whose "non-linearity [...] becomes
+//! insignificant" for a thin sheet; this is the curve itself. With `beam-edges = paper` the lines are straight:
+//! see `stripe`.
 
 use glam::DVec3;
 use raypencil_scene::{Beam, Mounted};
@@ -16,8 +17,10 @@ use raypencil_scene::{Beam, Mounted};
 use crate::raster::{Affine, Plane, Transformation};
 use crate::scan::{Corner, Line};
 use crate::skip;
+use crate::stripe::Stripe;
 use crate::tables::Axis;
 use crate::vertices::SensorFromScene;
+use crate::{Fidelity, Switches};
 
 /// A posed beam with its tables.
 #[derive(Debug)]
@@ -29,15 +32,25 @@ pub(crate) struct Cylindrical {
     q_length: Vec<f64>,
     grid_distance: f64,
     max_range: f64,
+    /// Depth beyond which nothing is in range.
+    too_deep: f64,
+    /// The stripe, with `beam-edges = paper`.
+    stripe: Option<Stripe>,
+    skip_rules: Fidelity,
 }
 
 impl Cylindrical {
-    pub(crate) fn new(mounted: &Mounted<Beam>) -> Self {
+    pub(crate) fn new(mounted: &Mounted<Beam>, switches: Switches) -> Self {
         let beam = &mounted.sensor;
         let x = Axis::of_grid(beam.columns, beam.half_width);
         let y = Axis::of_rows(beam.rows, beam.thickness);
         let g = beam.grid_distance;
         let q_length = x.centres().iter().map(|x| (x * x + g * g).sqrt()).collect();
+        let stripe = (switches.beam_edges == Fidelity::Paper).then_some(Stripe {
+            grid_distance: g,
+            half_width: beam.half_width,
+            half_thickness: 0.5 * beam.thickness,
+        });
         Self {
             sensor_from_scene: SensorFromScene::of(&mounted.scene_from_sensor),
             x,
@@ -45,6 +58,10 @@ impl Cylindrical {
             q_length,
             grid_distance: g,
             max_range: beam.max_range,
+            // Between a straight side and the curve a face's plane may be nearer than any of its points.
+            too_deep: if stripe.is_none() { beam.max_range } else { f64::INFINITY },
+            stripe,
+            skip_rules: switches.skip_rules,
         }
     }
 }
@@ -105,7 +122,7 @@ impl Transformation for Cylindrical {
             x > right * p.z,
             p.y < top,
             p.y > bottom,
-            p.z > self.max_range,
+            p.z > self.too_deep,
         )
     }
 
@@ -123,11 +140,28 @@ impl Transformation for Cylindrical {
     }
 
     #[inline]
+    fn stripe(&self) -> Option<&Stripe> {
+        self.stripe.as_ref()
+    }
+
+    fn range(&self, p: DVec3) -> f64 {
+        // From (0, y, 0), where the ray starts.
+        (p.x * p.x + p.z * p.z).sqrt()
+    }
+
+    #[inline]
     fn inverse_t(&self, face: &Plane, y: f64) -> Option<Affine> {
         // For row y, 1/t = (n_x x + n_z g) / (d - n_y y).
         let distance = self.row_distance(face, y);
-        // Rule 1b, row by row: the rows' origins differ, so they may see different sides of a face.
-        if distance < 0.0 {
+        let is_seen = match self.skip_rules {
+            // DIFFERENCE: rule 1b, row by row: the rows' origins differ, so they may see different sides of
+            // a face.
+            Fidelity::Exact => distance < 0.0,
+            // 1b as printed, one decision for all rows: see `printed`. CHOICE: edge on, from the origin or
+            // from a row, neither side is seen.
+            Fidelity::Paper => face.distance < 0.0 && distance != 0.0,
+        };
+        if is_seen {
             let n = face.normal;
             Some(Affine { slope: n.x / distance, start: n.z * self.grid_distance / distance })
         } else {

@@ -9,6 +9,7 @@ use raypencil_scene::{Camera, Mounted};
 use crate::raster::{Affine, Plane, Transformation};
 use crate::scan::{Corner, Line};
 use crate::skip;
+use crate::stripe::Stripe;
 use crate::tables::{Axis, CameraTables};
 use crate::vertices::SensorFromScene;
 
@@ -116,6 +117,16 @@ impl Transformation for Perspective<'_> {
     fn misses_screen(&self, front: &[DVec3; 3]) -> bool {
         let [a, b, c] = *front;
         skip::screen_is_beyond_one_edge([a.cross(b), b.cross(c), c.cross(a)], self.screen_corners)
+    }
+
+    #[inline]
+    fn stripe(&self) -> Option<&Stripe> {
+        // Lines map to lines: the paper's sides are the true ones.
+        None
+    }
+
+    fn range(&self, p: DVec3) -> f64 {
+        p.length()
     }
 
     #[inline]

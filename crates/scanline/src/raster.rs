@@ -5,6 +5,7 @@ use glam::DVec3;
 use raypencil_scene::{FaceId, Hit, Maybe, Mesh, Quantities, SensorRow};
 
 use crate::scan::{Corner, Line};
+use crate::stripe::Stripe;
 use crate::tables::Axis;
 use crate::vertices::{SensorFromScene, widen};
 
@@ -29,7 +30,11 @@ pub(crate) trait Transformation: Sync {
     fn line_along_plane(&self, from: DVec3, to: DVec3, face: &Plane) -> Self::Line;
     /// Rule 3c: whether a face whose front is seen cannot meet the screen.
     fn misses_screen(&self, front: &[DVec3; 3]) -> bool;
-    /// 1/t along the row at `y`, or `None` where the row sees the face's back.
+    /// What faces are clipped to if their sides are to be drawn straight (`beam-edges = paper`).
+    fn stripe(&self) -> Option<&Stripe>;
+    /// The range of a point at or beyond the SPP, along its ray, metres.
+    fn range(&self, p: DVec3) -> f64;
+    /// 1/t along the row at `y`, or `None` where the row does not see the face. (1b)
     fn inverse_t(&self, face: &Plane, y: f64) -> Option<Affine>;
     /// n.(a - o) for the origin o of the row at `y`.
     fn row_distance(&self, face: &Plane, y: f64) -> f64;

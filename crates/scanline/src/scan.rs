@@ -15,7 +15,8 @@ pub(crate) struct Corner {
     pub(crate) y: f64,
 }
 
-/// The image of a straight line in space on the SPP: a straight line for the camera, a curve for a beam.
+/// The image of a straight line in space on the SPP: a straight line for the camera, a curve for a beam (or
+/// what the paper draws instead, `stripe::Chord`).
 pub(crate) trait Line: Copy {
     /// Where it crosses the row at `y`. May be anything, even NaN, where the line runs along the row.
     fn x_at(&self, y: f64) -> f64;

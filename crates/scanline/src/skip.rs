@@ -1,4 +1,5 @@
-//! Skip rules 1a, 1b, 3a, 3b and 3c in a form that never changes a map. (§4, 1 and 3)
+//! Skip rules 1a, 1b, 3a, 3b and 3c in a form that never changes a map. (§4, 1 and 3) As the paper prints
+//! them, `skip-rules = paper`, they are in `printed`.
 //!
 //! | rule | as printed | here |
 //! | --- | --- | --- |

@@ -1,0 +1,157 @@
+//! A switch per approximation of the paper: as the paper has it, or exact. One code path serves both.
+
+use std::fmt;
+
+/// Which side a switch is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Fidelity {
+    /// What the contract's rays really meet.
+    #[default]
+    Exact,
+    /// What the paper's text computes.
+    Paper,
+}
+
+impl fmt::Display for Fidelity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Exact => "exact",
+            Self::Paper => "paper",
+        })
+    }
+}
+
+/// The approximations of the paper that can be had or left, each by itself.
+///
+/// ```
+/// use raypencil_scanline::{Fidelity, Switches};
+///
+/// let mut switches = Switches::EXACT;
+/// switches.set("beam-edges", Fidelity::Paper)?;
+/// assert_eq!(switches.to_string(), "beam-edges");
+/// assert_eq!(Switches::subsets().count(), 4);
+/// # Ok::<(), raypencil_scanline::UnknownSwitch>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Switches {
+    /// `beam-edges`: how the sides of a face are drawn on a beam's grid. The camera is not concerned.
+    ///
+    /// * `Exact`: row y of the grid is the plane y = const of space, which cuts a side in one point.
+    /// * `Paper`: faces are clipped to the stripe (figures 8, 9), their vertices projected, and straight
+    ///   lines drawn between. It costs accuracy where a side leans and recedes at once: one that crosses the
+    ///   sheet from (x, z) to (x', z') is off by up to about (x'/z' - x/z) (z' - z) / (2 (z + z')) g on the
+    ///   grid, nothing for a thin sheet, hundreds of columns for a thick one that grazes the ground. A pencil
+    ///   between line and curve gets the face that the line gives it, at the range of that face's plane, and
+    ///   time: every face is clipped.
+    pub beam_edges: Fidelity,
+    /// `skip-rules`: rules 1b, 3a, 3b and 3c of §4. (1a is the same on both sides.)
+    ///
+    /// * `Exact`: conservative forms; skipping saves time and never changes a map. Facing is asked per row
+    ///   of a beam.
+    /// * `Paper`: as printed. 3b loses faces, in both sensors, whose vertices lie beyond the maximum range
+    ///   and whose interior does not; with straight beam edges that can be the whole stripe on a wall. 1b,
+    ///   asked once per face, makes a beam lose and add hits on faces that its rows see from different
+    ///   sides, those added with a negative cosine of incidence. 3c loses faces whose curved sides reach
+    ///   into a beam's screen where the straight lines between their corners do not; never if `beam_edges`
+    ///   is `Paper` too.
+    pub skip_rules: Fidelity,
+}
+
+impl Switches {
+    /// No approximation.
+    pub const EXACT: Self = Self { beam_edges: Fidelity::Exact, skip_rules: Fidelity::Exact };
+    /// All of the paper's.
+    pub const PAPER: Self = Self { beam_edges: Fidelity::Paper, skip_rules: Fidelity::Paper };
+    /// Names of the switches, in the order of the fields.
+    pub const NAMES: [&'static str; 2] = ["beam-edges", "skip-rules"];
+
+    /// Sets a switch by its name.
+    ///
+    /// # Errors
+    /// If there is no switch of that name.
+    pub fn set(&mut self, name: &str, fidelity: Fidelity) -> Result<(), UnknownSwitch> {
+        let index = Self::NAMES.iter().position(|known| *known == name);
+        let index = index.ok_or_else(|| UnknownSwitch(name.to_string()))?;
+        *self.in_order()[index] = fidelity;
+        Ok(())
+    }
+
+    /// Every switch's name and side, in the order of [`Switches::NAMES`].
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, Fidelity)> + use<> {
+        Self::NAMES.into_iter().zip([self.beam_edges, self.skip_rules])
+    }
+
+    /// All combinations, from [`Switches::EXACT`] to [`Switches::PAPER`].
+    pub fn subsets() -> impl Iterator<Item = Self> {
+        (0..1_u32 << Self::NAMES.len()).map(|bits| {
+            let mut switches = Self::EXACT;
+            for (k, switch) in switches.in_order().into_iter().enumerate() {
+                if bits >> k & 1 == 1 {
+                    *switch = Fidelity::Paper;
+                }
+            }
+            switches
+        })
+    }
+
+    fn in_order(&mut self) -> [&mut Fidelity; 2] {
+        [&mut self.beam_edges, &mut self.skip_rules]
+    }
+}
+
+/// The names of the switches that stand on `paper`, joined with `+`; nothing if none does.
+impl fmt::Display for Switches {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut separator = "";
+        for (name, fidelity) in self.iter() {
+            if fidelity == Fidelity::Paper {
+                write!(f, "{separator}{name}")?;
+                separator = "+";
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A name that is no switch's.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownSwitch(pub String);
+
+impl fmt::Display for UnknownSwitch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no switch is called {:?}; there are {}", self.0, Switches::NAMES.join(", "))
+    }
+}
+
+impl std::error::Error for UnknownSwitch {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn switches_are_set_by_name() {
+        for (k, name) in Switches::NAMES.into_iter().enumerate() {
+            let mut switches = Switches::EXACT;
+            switches.set(name, Fidelity::Paper).unwrap();
+            // That one and no other.
+            let on: Vec<_> = switches.iter().map(|(_, fidelity)| fidelity == Fidelity::Paper).collect();
+            assert_eq!(on.iter().filter(|on| **on).count(), 1);
+            assert!(on[k]);
+            assert_eq!(switches.to_string(), name);
+            switches.set(name, Fidelity::Exact).unwrap();
+            assert_eq!(switches, Switches::EXACT);
+        }
+        let mut switches = Switches::EXACT;
+        let error = switches.set("beam_edges", Fidelity::Paper).unwrap_err();
+        assert_eq!(error.to_string(), "no switch is called \"beam_edges\"; there are beam-edges, skip-rules");
+    }
+
+    #[test]
+    fn every_combination_comes_once() {
+        let names: Vec<_> = Switches::subsets().map(|switches| switches.to_string()).collect();
+        assert_eq!(names, ["", "beam-edges", "skip-rules", "beam-edges+skip-rules"]);
+        assert_eq!(Switches::subsets().next(), Some(Switches::EXACT));
+        assert_eq!(Switches::subsets().last(), Some(Switches::PAPER));
+    }
+}
