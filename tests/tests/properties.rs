@@ -79,7 +79,8 @@ fn skipping_faces_never_changes_a_map() {
     check(3000, cases(), |case: Case| {
         let scene = case.scene();
         let skipping = render(&Scanline::default(), &scene);
-        let looking_at_all = render(&Scanline::new(Options { skip_unseen: false }), &scene);
+        let looking_at_all =
+            render(&Scanline::new(Options { skip_unseen: false, ..Options::default() }), &scene);
         same_bits("skipping", &looking_at_all, &skipping)
     });
 }
