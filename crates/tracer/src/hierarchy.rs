@@ -17,15 +17,13 @@
 //! are of order 2^-46 and are covered by the last rounding outward.
 
 use std::collections::HashMap;
-use std::time::Duration;
 
 use glam::Vec3A;
-use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
 use raypencil_scene::{FaceId, Mesh};
 
+use crate::grouped;
 use crate::triangle::Triangle;
 
 /// Widening of a box in units of (largest |coordinate| + reach): 8 x 2^-24, derived above.
@@ -80,8 +78,7 @@ impl Hierarchy {
         }
         drop(box_of_corners);
 
-        // `fast` is the sweet spot measured between build time and rays per second.
-        let tree = build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Duration::default());
+        let tree = grouped::build(&boxes);
         // obvhs' fixed stacks overflow silently, so the search brings one that fits the real depth.
         let stack_size = deepest(&tree) + 1;
 

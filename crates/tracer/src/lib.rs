@@ -8,10 +8,12 @@
 //! ```text
 //! rays       the contract's rays, formed in the scene frame
 //! hierarchy  padded boxes -> obvhs Bvh2
+//! grouped    the tree's building, in bounded time for any input
 //! triangle   is this face met, and where
 //! nearest    the search: smallest t, lowest face on ties
 //! ```
 
+mod grouped;
 mod hierarchy;
 mod nearest;
 mod rays;

@@ -214,6 +214,31 @@ mod tests {
     }
 
     #[test]
+    fn faces_inside_one_another_build_at_once_and_are_found() {
+        // 100,000 triangles around one centre, each a little larger and a little lower than the one before it.
+        // (In one go obvhs' builder takes minutes over them.)
+        let count = 100_000;
+        let corner = |k: u32, x: f32, y: f32| {
+            let size = 1.0 + k as f32 * 1e-4;
+            [x * size, y * size, -1e-5 * k as f32]
+        };
+        let vertices =
+            (0..count).flat_map(|k| [corner(k, -1.0, -1.0), corner(k, 1.0, -1.0), corner(k, 0.0, 1.0)]);
+        let faces: Vec<[u32; 3]> = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let materials = vec![0; faces.len()];
+        let mesh = Mesh::new(DVec3::ZERO, vertices.collect(), faces, materials, ground()).unwrap();
+        let hierarchy = Hierarchy::build(&mesh, 20.0);
+        let mut search = Search::new(&hierarchy);
+        // Straight down beside the first k faces: the next one is met.
+        for x in [0.0, 0.9, 1.7, 3.3, 5.2] {
+            let ray = TracedRay::new(DVec3::new(x, -0.3, 2.0), DVec3::new(0.0, 0.0, -0.01));
+            let found = bits(search.nearest(&ray, 20.0));
+            assert!(found.is_some());
+            assert_eq!(found, bits(exhaustive(&mesh, &ray, 20.0)));
+        }
+    }
+
+    #[test]
     fn no_face_and_faces_without_area_make_a_tree_that_is_never_hit() {
         let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
         for faces in [vec![], vec![[0, 1, 2], [0, 0, 1]]] {
