@@ -72,6 +72,28 @@ impl Form {
     }
 }
 
+/// A square in which the forms certainly do not all hold, by one of them or by two combined: the largest that
+/// can be shown, or one of at least `enough`.
+pub(crate) fn certainly_fails(forms: &[Form], enough: f64) -> f64 {
+    let mut best = forms.iter().map(Form::fails_within).fold(0.0, f64::max);
+    for (k, a) in forms.iter().enumerate() {
+        for b in &forms[k + 1..] {
+            if best >= enough {
+                return best;
+            }
+            // Where both hold, so does their sum with any positive weight; those that make the sum level in
+            // dx or in dy are the best for a square.
+            for (slope_a, slope_b) in [(a.x, b.x), (a.y, b.y)] {
+                let weight = -slope_a.middle() / slope_b.middle();
+                if weight > 0.0 && weight.is_finite() {
+                    best = best.max(a.plus(b, weight).fails_within());
+                }
+            }
+        }
+    }
+    best
+}
+
 /// A cell's ray and how displacement moves it.
 pub(crate) struct MovingRay {
     origin: Vector<Interval>,

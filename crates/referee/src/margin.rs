@@ -17,7 +17,7 @@
 use raypencil_scene::SensorId;
 
 use crate::face::Face;
-use crate::forms::{FaceForms, Form, MovingRay, edge};
+use crate::forms::{FaceForms, Form, MovingRay, certainly_fails, edge};
 use crate::pencil::{Aim, Sensor};
 use crate::region::{Region, holds_between, size};
 use crate::verdict::{Displacement, Referee, bundle};
@@ -131,19 +131,7 @@ impl Search<'_> {
         let mut forms = edges.to_vec();
         forms.extend([own.front(), own.plane(), own.range()]);
         forms.extend(nearest.map(|nearest| own.at_or_before(nearest)));
-        let mut out = forms.iter().map(Form::fails_within).fold(0.0, f64::max);
-        if out < *lo {
-            for (k, a) in forms.iter().enumerate() {
-                for b in &forms[k + 1..] {
-                    for (slope_a, slope_b) in [(a.x, b.x), (a.y, b.y)] {
-                        let weight = -slope_a.middle() / slope_b.middle();
-                        if weight > 0.0 && weight.is_finite() {
-                            out = out.max(a.plus(b, weight).fails_within());
-                        }
-                    }
-                }
-            }
-        }
+        let out = certainly_fails(&forms, *lo);
         if out < *lo {
             *lo = out;
             events.push(Event { radius: out, forms, fails: false });

@@ -24,7 +24,7 @@ use std::collections::HashMap;
 use raypencil_scene::SensorId;
 
 use crate::face::{ExactRay, Face};
-use crate::forms::{FaceForms, Form, MovingRay};
+use crate::forms::{FaceForms, Form, MovingRay, certainly_fails};
 use crate::margin::Margin;
 use crate::pencil::{Aim, Sensor};
 use crate::region::{Region, size};
@@ -112,7 +112,7 @@ impl<'a> Neighbour<'a> {
         let forms = FaceForms::new(ray, face);
         let [a, b, c, front, plane, range] = forms.own();
         let edges = [a, b, c];
-        let absent_within = certainly_fails(&[a, b, c, front, plane, range]);
+        let absent_within = certainly_fails(&[a, b, c, front, plane, range], 1.0);
         let edge_absent_within = [0, 1, 2].map(|k: usize| {
             // On the edge its own form is 0: it may be added with any weight, of either sign.
             let (edge, others) = (&edges[k], [&edges[(k + 1) % 3], &edges[(k + 2) % 3]]);
@@ -134,22 +134,6 @@ impl<'a> Neighbour<'a> {
     fn goes_on(&self, r: f64) -> bool {
         [&self.front, &self.plane, &self.range].iter().all(|form| form.holds_within() >= r)
     }
-}
-
-/// The largest square in which the forms certainly do not all hold: by one of them, or by two combined.
-fn certainly_fails(forms: &[Form]) -> f64 {
-    let mut best = forms.iter().map(Form::fails_within).fold(0.0, f64::max);
-    for (k, a) in forms.iter().enumerate() {
-        for b in &forms[k + 1..] {
-            for (slope_a, slope_b) in [(a.x, b.x), (a.y, b.y)] {
-                let weight = -slope_a.middle() / slope_b.middle();
-                if weight > 0.0 && weight.is_finite() {
-                    best = best.max(a.plus(b, weight).fails_within());
-                }
-            }
-        }
-    }
-    best
 }
 
 /// All faces near a ray, and who lies on the other side of each edge.
@@ -221,7 +205,7 @@ impl<'a> Neighbourhood<'a> {
                 }
                 let [a, b, c] = &face.edges;
                 let [d, e, f] = &kept.edges;
-                certainly_fails(&[before, *a, *b, *c, *d, *e, *f]) >= r
+                certainly_fails(&[before, *a, *b, *c, *d, *e, *f], r) >= r
             });
             if behind {
                 continue;
