@@ -69,22 +69,20 @@ pub(crate) fn build(boxes: &[Aabb]) -> Bvh2 {
     // A group's root takes its place among the upper nodes; its other nodes follow at the end.
     for (Part { node, first, count }, tree) in groups.into_iter().zip(trees) {
         let end = nodes.len() as u32;
-        let placed = |mut of_tree: Bvh2Node| {
-            of_tree.first_index = if of_tree.is_leaf() {
-                of_tree.first_index + first as u32
-            } else {
-                of_tree.first_index - 1 + end
-            };
-            of_tree
-        };
-        nodes[node] = placed(tree.nodes[0]);
-        nodes.extend(tree.nodes[1..].iter().copied().map(placed));
+        nodes[node] = placed(tree.nodes[0], first as u32, end);
+        nodes.extend(tree.nodes[1..].iter().map(|&of_group| placed(of_group, first as u32, end)));
         let members = order[first..first + count].to_vec();
         for (place, &member) in order[first..first + count].iter_mut().zip(&tree.primitive_indices) {
             *place = members[member as usize];
         }
     }
     Bvh2 { nodes, primitive_indices: order, ..Bvh2::default() }
+}
+
+/// A node of a group, whose boxes begin at `first` and whose nodes but for the root at `end`.
+fn placed(mut node: Bvh2Node, first: u32, end: u32) -> Bvh2Node {
+    node.first_index = if node.is_leaf() { node.first_index + first } else { node.first_index - 1 + end };
+    node
 }
 
 /// Brings the lower half of some boxes, by their centres along the longest axis, before the upper half.
