@@ -118,7 +118,10 @@ impl Lattice {
         for v in 0..down {
             for u in 0..across {
                 let exact = *scene_from_sensor * self.vertex(u, v);
-                let rounded = exact.as_vec3();
+                // What is a whole multiple of 2^-24 m but for the rounding of the turn, is made one.
+                let whole = (exact * f64::from(1 << 24)).round() / f64::from(1 << 24);
+                let is_whole = (whole - exact).abs().max_element() < 1e-14;
+                let rounded = if is_whole { whole.as_vec3() } else { exact.as_vec3() };
                 moved = moved.max((rounded.as_dvec3() - exact).length());
                 vertices.push(rounded.to_array());
             }

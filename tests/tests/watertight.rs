@@ -237,17 +237,18 @@ fn rays_within_rounding_of_edges_hit() {
     }
 }
 
-/// Turns of whole quaternions, at no special angle. With D = q . q the entries of (q p q*) / (q . q) are whole
-/// multiples of 1 / D.
-const RATIONAL_TURNS: &[[f64; 4]] = &[
-    // About x: the lattice's middle column keeps x = 0.
-    [1.0, 0.0, 0.0, 2.0],
-    [0.0, 0.0, 1.0, 2.0],
-    [1.0, 2.0, 3.0, 4.0],
-    [1.0, 1.0, 1.0, 2.0],
-    [0.0, 1.0, 1.0, 1.0],
-    [2.0, -1.0, 1.0, 0.0],
-    [-3.0, 1.0, 0.0, 1.0],
+/// Turns of whole quaternions, at no special angle, and where the sensor is. With D = q . q the entries of
+/// (q p q*) / (q . q) are whole multiples of 1 / D.
+const RATIONAL_POSES: &[([f64; 4], [f64; 3])] = &[
+    // The scene's x of (x, y, z) is -2.5 - 0.6 x + 0.8 z, whatever y: on the flat lattice, z = 2 D / 32 = 3.125,
+    // the whole middle column has x = 0, or -0, in which the order of an edge's ends must not differ.
+    ([1.0, 6.0, 2.0, 3.0], [-2.5, -0.75, 0.5]),
+    ([0.0, 0.0, 1.0, 2.0], [0.25, -0.75, 0.5]),
+    ([1.0, 2.0, 3.0, 4.0], [0.25, -0.75, 0.5]),
+    ([1.0, 1.0, 1.0, 2.0], [0.25, -0.75, 0.5]),
+    ([0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 0.0]),
+    ([2.0, -1.0, 1.0, 0.0], [0.25, -0.75, 0.5]),
+    ([-3.0, 1.0, 0.0, 1.0], [0.25, -0.75, 0.5]),
 ];
 
 /// A sensor of the same rays, `factor` times as large.
@@ -274,8 +275,8 @@ fn rays_on_edges_hit_at_rational_turns() {
     // Sensors D / 32 times as large: in the scene the lattice's vertices are dyadic again, D has cancelled. So
     // the contract's rays pass exactly through vertices and edges, while a renderer must round every vertex
     // or ray that it turns: whatever is computed twice for two neighbours, and not alike, opens a gap here.
-    for (index, [x, y, z, w]) in RATIONAL_TURNS.iter().copied().enumerate() {
-        let pose = Pose { position: DVec3::new(0.0, -0.75, 0.5), rotation: DQuat::from_xyzw(x, y, z, w) };
+    for (index, &([x, y, z, w], position)) in RATIONAL_POSES.iter().enumerate() {
+        let pose = Pose { position: DVec3::from_array(position), rotation: DQuat::from_xyzw(x, y, z, w) };
         let factor = (x * x + y * y + z * z + w * w) / 32.0;
         for (what, sensor, ts) in small_sensors() {
             let sensor = enlarged(sensor, factor);
