@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use raypencil_harness::Fidelity;
 use raypencil_scene_io::Overrides;
 
 /// A Mars rover's structured-light vision, simulated twice by two unlike algorithms and compared ray by ray.
@@ -46,6 +47,10 @@ pub(crate) struct SceneArguments {
     #[arg(long, value_name = "DEG")]
     pub(crate) fan: Option<f64>,
 
+    /// Thickness of every beam's sheet, millimetres.
+    #[arg(long, value_name = "MM")]
+    pub(crate) thickness: Option<f64>,
+
     /// Stand here on the ground: global x,y in metres.
     #[arg(long, value_name = "X,Y", value_parser = pair::<f64>, allow_hyphen_values = true)]
     pub(crate) at: Option<[f64; 2]>,
@@ -57,7 +62,7 @@ pub(crate) struct SceneArguments {
 
 impl SceneArguments {
     pub(crate) fn overrides(&self) -> Overrides {
-        Overrides { at: self.at, heading_deg: self.heading, fan_deg: self.fan }
+        Overrides { at: self.at, heading_deg: self.heading, fan_deg: self.fan, thickness_mm: self.thickness }
     }
 
     /// These arguments again, as one would type them.
@@ -65,6 +70,9 @@ impl SceneArguments {
         let mut words = vec![quoted(&self.scene)];
         if let Some(fan) = self.fan {
             words.push(format!("--fan {fan}"));
+        }
+        if let Some(thickness) = self.thickness {
+            words.push(format!("--thickness {thickness}"));
         }
         if let Some([x, y]) = self.at {
             words.push(format!("--at {x},{y}"));
@@ -86,6 +94,31 @@ fn quoted(word: &str) -> String {
     }
 }
 
+/// Which sides of the scanline renderer's switches.
+#[derive(Debug, Default, Args)]
+pub(crate) struct SwitchArguments {
+    /// Set a switch of the scanline renderer to the paper's approximation or to exact: beam-edges,
+    /// skip-rules. May be given several times.
+    #[arg(long = "switch", value_name = "NAME=paper|exact", value_parser = switch)]
+    pub(crate) set: Vec<(String, Fidelity)>,
+}
+
+/// The renderers that are compared if none are named.
+const DEFAULT_WITH: [&str; 2] = ["scanline", "tracer"];
+
+/// The words that choose renderers, as one would type them after a scene; nothing for the default.
+pub(crate) fn typed_renderers(with: &[String], switches: &SwitchArguments) -> String {
+    let mut text = String::new();
+    if with != DEFAULT_WITH {
+        let names: Vec<String> = with.iter().map(|name| quoted(name)).collect();
+        text.push_str(&format!(" --with {}", names.join(",")));
+    }
+    for (name, fidelity) in &switches.set {
+        text.push_str(&format!(" --switch {name}={fidelity}"));
+    }
+    text
+}
+
 /// What `--judge` takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum JudgeWhich {
@@ -101,8 +134,11 @@ pub(crate) struct Validate {
     pub(crate) scene: SceneArguments,
 
     /// Renderers to compare, two or more.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = ["scanline", "tracer"])]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = DEFAULT_WITH)]
     pub(crate) with: Vec<String>,
+
+    #[command(flatten)]
+    pub(crate) switches: SwitchArguments,
 
     /// Which of the rays that agree the referee rules on as well; it always rules on those that do not.
     #[arg(long, value_name = "WHICH", default_value = "sample")]
@@ -117,8 +153,15 @@ impl Validate {
     /// What `raypencil` does without a command.
     pub(crate) fn pyramids() -> Self {
         Self {
-            scene: SceneArguments { scene: "pyramids".into(), fan: None, at: None, heading: None },
-            with: vec!["scanline".into(), "tracer".into()],
+            scene: SceneArguments {
+                scene: "pyramids".into(),
+                fan: None,
+                thickness: None,
+                at: None,
+                heading: None,
+            },
+            with: DEFAULT_WITH.map(String::from).to_vec(),
+            switches: SwitchArguments::default(),
             judge: JudgeWhich::Sample,
             output: None,
         }
@@ -133,6 +176,9 @@ pub(crate) struct Render {
     /// The renderer.
     #[arg(long, value_name = "NAME")]
     pub(crate) with: String,
+
+    #[command(flatten)]
+    pub(crate) switches: SwitchArguments,
 
     /// Folder to write to.
     #[arg(short, long, value_name = "DIR")]
@@ -157,8 +203,21 @@ pub(crate) struct Probe {
     pub(crate) pixel: Option<[u32; 2]>,
 
     /// Renderers to ask.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = ["scanline", "tracer"])]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = DEFAULT_WITH)]
     pub(crate) with: Vec<String>,
+
+    #[command(flatten)]
+    pub(crate) switches: SwitchArguments,
+}
+
+/// `NAME=paper` or `NAME=exact`; the name is judged where the switches are known.
+fn switch(text: &str) -> Result<(String, Fidelity), String> {
+    let (name, side) = text.split_once('=').unwrap_or((text, ""));
+    match side {
+        "paper" => Ok((name.into(), Fidelity::Paper)),
+        "exact" => Ok((name.into(), Fidelity::Exact)),
+        _ => Err("expected a switch and its side, such as beam-edges=paper or skip-rules=exact".into()),
+    }
 }
 
 /// `A,B`.

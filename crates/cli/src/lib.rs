@@ -15,15 +15,14 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
-use raypencil_harness::{NoSuchRay, OutputError};
-use raypencil_scene::Renderer;
+use raypencil_harness::{Contender, NoSuchRay, OutputError};
 use raypencil_scene_io::SceneIoError;
 use thiserror::Error;
 
 use args::{Arguments, Command};
 
 /// Where the command finds renderers by name.
-pub type Registry = dyn Fn(&str) -> Option<Box<dyn Renderer>> + Sync;
+pub type Registry = dyn Fn(&str) -> Option<Contender> + Sync;
 
 /// What a command that ran to its end found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 use raypencil_harness::{Place, probe as ask};
 use raypencil_scene::SensorId;
 
-use crate::args::Probe;
+use crate::args::{Probe, typed_renderers};
 use crate::console::{Spinner, say};
-use crate::subject::{renderers, subject};
+use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble};
 
 pub(crate) fn probe(command: &Probe, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
@@ -15,10 +15,10 @@ pub(crate) fn probe(command: &Probe, json: bool, registry: &Registry) -> Result<
         _ => return Err(Trouble::Usage("expected either --pixel I,J or --beam N --pencil I,J".into())),
     };
     let spinner = Spinner::new();
-    let renderers = renderers(&command.with, 1, registry)?;
-    let subject = subject(&command.scene, &spinner)?;
-    let renderers: Vec<_> = renderers.iter().map(AsRef::as_ref).collect();
-    let probe = ask(&subject, place, &renderers)?;
+    let contenders = contenders(&command.with, &command.switches, 1, registry)?;
+    let words = typed_renderers(&command.with, &command.switches);
+    let subject = subject(&command.scene, &words, &spinner)?;
+    let probe = ask(&subject, place, &contenders, &spinner)?;
     drop(spinner);
     say(&if json { format!("{:#}\n", probe.to_json()) } else { probe.to_string() });
     Ok(Outcome::Fine)

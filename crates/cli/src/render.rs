@@ -5,21 +5,23 @@ use raypencil_scene::Request;
 
 use crate::args::Render;
 use crate::console::{Spinner, say};
-use crate::subject::{renderers, subject};
+use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble};
 
 pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
-    let renderers = renderers(std::slice::from_ref(&command.with), 1, registry)?;
-    let subject = subject(&command.scene, &spinner)?;
-    spinner.stage(&format!("{}: rendering", command.with));
-    let frame = renderers[0].render(&subject.scene, &Request::EVERYTHING);
+    let with = std::slice::from_ref(&command.with);
+    let contenders = contenders(with, &command.switches, 1, registry)?;
+    let renderer = &contenders[0].renderer;
+    let subject = subject(&command.scene, "", &spinner)?;
+    spinner.stage(&format!("{}: rendering", renderer.name()));
+    let frame = renderer.render(&subject.scene, &Request::EVERYTHING);
     spinner.stage(&format!("{}: writing", command.output.display()));
-    let files = write_maps(&frame, &command.with, &subject, &command.output)?;
+    let files = write_maps(&frame, renderer.name(), &subject, &command.output)?;
     drop(spinner);
     let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     if json {
-        say(&format!("{:#}\n", serde_json::json!({ "renderer": command.with, "files": files })));
+        say(&format!("{:#}\n", serde_json::json!({ "renderer": renderer.name(), "files": files })));
     } else {
         say(&format!("{}\n", files.join("\n")));
     }

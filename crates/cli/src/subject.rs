@@ -1,46 +1,70 @@
 //! From words to a scene and renderers.
 
-use raypencil_harness::{Progress, RENDERER_NAMES, Subject};
-use raypencil_scene::Renderer;
+use raypencil_harness::{Contender, Progress, RENDERER_NAMES, Subject};
 use raypencil_scene_io::load;
 
-use crate::args::SceneArguments;
+use crate::args::{SceneArguments, SwitchArguments};
 use crate::{Registry, Trouble};
 
-/// Loads the scene that was asked for.
-pub(crate) fn subject(arguments: &SceneArguments, progress: &dyn Progress) -> Result<Subject, Trouble> {
+/// Loads the scene that was asked for; `renderers` are the words that chose who renders it.
+pub(crate) fn subject(
+    arguments: &SceneArguments,
+    renderers: &str,
+    progress: &dyn Progress,
+) -> Result<Subject, Trouble> {
     progress.stage(&format!("{}: loading", arguments.scene));
     let loaded = load(&arguments.scene, &arguments.overrides())?;
     Ok(Subject {
         scene: loaded.scene,
         name: loaded.name,
-        arguments: arguments.typed(),
+        arguments: arguments.typed() + renderers,
         sha256: loaded.source_sha256,
     })
 }
 
-/// Finds the renderers that were asked for, at least `least` of them, none twice.
-pub(crate) fn renderers(
+/// Finds the renderers that were asked for, at least `least` of them, none twice, with the switches set.
+pub(crate) fn contenders(
     names: &[String],
+    switches: &SwitchArguments,
     least: usize,
     registry: &Registry,
-) -> Result<Vec<Box<dyn Renderer>>, Trouble> {
-    if let Some(twice) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
-        return Err(Trouble::Usage(format!("--with names {} twice: expected different renderers", twice.1)));
-    }
+) -> Result<Vec<Contender>, Trouble> {
     if names.len() < least {
         let given = names.join(",");
         return Err(Trouble::Usage(format!(
             "--with {given}: expected at least {least} renderers to compare"
         )));
     }
-    names
-        .iter()
-        .map(|name| {
-            registry(name).ok_or_else(|| {
-                let known = RENDERER_NAMES.join(", ");
-                Trouble::Usage(format!("--with {name}: there is no such renderer; expected some of {known}"))
-            })
-        })
-        .collect()
+    let mut contenders = Vec::new();
+    for name in names {
+        let mut contender = registry(name).ok_or_else(|| {
+            let known = RENDERER_NAMES.join(", ");
+            Trouble::Usage(format!("--with {name}: there is no such renderer; expected some of {known}"))
+        })?;
+        for (switch, fidelity) in &switches.set {
+            contender = contender
+                .with_switch(switch, *fidelity)
+                .map_err(|error| Trouble::Usage(format!("--switch {switch}={fidelity}: {error}")))?;
+        }
+        contenders.push(contender);
+    }
+    if let Some((switch, fidelity)) = switches.set.first()
+        && contenders.iter().all(|contender| contender.switches.is_none())
+    {
+        return Err(Trouble::Usage(format!(
+            "--switch {switch}={fidelity}: {} has no switches; expected scanline or scanline-paper among the \
+             renderers",
+            names.join(", ")
+        )));
+    }
+    for (k, contender) in contenders.iter().enumerate() {
+        let name = contender.renderer.name();
+        if contenders[..k].iter().any(|other| other.renderer.name() == name) {
+            return Err(Trouble::Usage(format!(
+                "--with {}: {name} is there twice; expected different renderers",
+                names.join(",")
+            )));
+        }
+    }
+    Ok(contenders)
 }

@@ -4,25 +4,25 @@ use std::path::{Path, PathBuf};
 
 use raypencil_harness::{JudgeShare, one_screen, summary_json, validate as run, write_validation};
 
-use crate::args::{JudgeWhich, Validate};
+use crate::args::{JudgeWhich, Validate, typed_renderers};
 use crate::console::{Spinner, say};
-use crate::subject::{renderers, subject};
+use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble};
 
 pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
-    let renderers = renderers(&command.with, 2, registry)?;
-    let subject = subject(&command.scene, &spinner)?;
+    let contenders = contenders(&command.with, &command.switches, 2, registry)?;
+    let words = typed_renderers(&command.with, &command.switches);
+    let subject = subject(&command.scene, &words, &spinner)?;
     let folder: PathBuf = match &command.output {
         Some(folder) => folder.clone(),
         None => Path::new("out").join(&subject.name),
     };
-    let renderers: Vec<_> = renderers.iter().map(AsRef::as_ref).collect();
     let share = match command.judge {
         JudgeWhich::Sample => JudgeShare::Sample,
         JudgeWhich::All => JudgeShare::All,
     };
-    let validation = run(subject, &renderers, share, &spinner);
+    let validation = run(subject, &contenders, share, &spinner);
     write_validation(&validation, &folder, &spinner)?;
     drop(spinner);
     if json {

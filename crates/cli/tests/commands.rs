@@ -184,8 +184,8 @@ impl Renderer for Flipped {
 fn a_renderer_with_one_sign_flipped_is_a_defect() {
     let folder = folder();
     let registry = |name: &str| {
-        let inner = raypencil_harness::renderer(name)?;
-        Some(if name == "tracer" { Box::new(Flipped { inner }) as Box<dyn Renderer> } else { inner })
+        let contender = raypencil_harness::contender(name)?;
+        Some(if name == "tracer" { Flipped { inner: contender.renderer }.into() } else { contender })
     };
     let scene = folder.path().join("small.toml").display().to_string();
     let out = folder.path().join("out").display().to_string();
@@ -196,5 +196,5 @@ fn a_renderer_with_one_sign_flipped_is_a_defect() {
     assert!(summary["defects"].as_u64() > Some(100), "{summary:#}");
     // And the same arguments with the honest renderers agree.
     let arguments = ["raypencil", "validate", scene.as_str(), "-o", out.as_str()].map(Into::into);
-    assert_eq!(raypencil_cli::main_with(arguments, &raypencil_harness::renderer), ExitCode::SUCCESS);
+    assert_eq!(raypencil_cli::main_with(arguments, &raypencil_harness::contender), ExitCode::SUCCESS);
 }

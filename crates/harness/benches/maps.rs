@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::DVec3;
-use raypencil_harness::renderer;
+use raypencil_harness::contender;
 use raypencil_scene::{
     Atmosphere, Beam, Camera, FluxModel, Mounted, Pose, Profile, Quantities, Request, Scene,
 };

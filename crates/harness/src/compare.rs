@@ -4,14 +4,17 @@
 //! classes of all rays add up to those compared. The referee rules on every ray whose two answers differ, and
 //! on a sample of those that agree: two renderers may share a mistake.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_referee::Ruling;
+use raypencil_scanline::Switches;
 use raypencil_scene::{FaceId, Frame, Image, Maybe, Resolution, Scene, SensorId, SensorMap};
 use serde::Serialize;
 
+use crate::attribution::{Attributions, Cause};
 use crate::bounds::Bounds;
 use crate::judge::{Judge, JudgeShare};
 
@@ -25,6 +28,8 @@ pub enum Class {
     Tie,
     /// Not the exact answer, but that of a ray displaced by no more than the renderer's resolution.
     Rounding,
+    /// One side follows the paper into error, for a cause that the referee confirms.
+    Approximation,
     /// The referee's budget ran out. Its arithmetic is exact and has none, so this stays 0.
     Undecided,
     /// Anything else.
@@ -32,7 +37,7 @@ pub enum Class {
 }
 
 /// How many classes there are.
-const CLASSES: usize = 5;
+const CLASSES: usize = 6;
 
 /// What is compared of each ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -153,6 +158,34 @@ impl Tally {
     }
 }
 
+/// What one set of the paper's approximations did to a sensor's rays.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ApproximationTally {
+    /// Rays.
+    pub rays: u64,
+    /// Those that hit in truth, and miss.
+    pub lost: u64,
+    /// Those that miss in truth, and hit.
+    pub added: u64,
+    /// The largest error of a range, metres, over rays that hit in truth and hit another face.
+    pub worst_range: Option<Worst>,
+}
+
+impl ApproximationTally {
+    /// Adds what is said of later rays.
+    pub fn add(&mut self, later: &Self) {
+        self.rays += later.rays;
+        self.lost += later.lost;
+        self.added += later.added;
+        if let Some(worst) = later.worst_range {
+            Worst::keep(&mut self.worst_range, worst.value, worst.place);
+        }
+    }
+}
+
+/// The tallies of each set of approximations that caused a difference.
+pub type ApproximationTallies = BTreeMap<Switches, ApproximationTally>;
+
 /// A ray on which the two sides differ beyond doubt.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Defect {
@@ -177,6 +210,8 @@ pub struct SensorComparison {
     pub by_class: [u64; CLASSES],
     /// Rays that the referee ruled on.
     pub judged: u64,
+    /// Rays of [`Class::Approximation`] by cause; they add up to that class.
+    pub approximations: ApproximationTallies,
     /// Each quantity by itself.
     pub quantities: Vec<(Quantity, Tally)>,
     /// The first defects, in reading order.
@@ -204,6 +239,8 @@ pub struct Side<'a> {
     pub frame: &'a Frame,
     /// How finely it computes.
     pub resolution: Resolution,
+    /// The causes of its errors, if it follows the paper into some.
+    pub attributions: Option<&'a Attributions>,
 }
 
 /// Compares two frames of `scene`, sensor by sensor, with a judge of its own.
@@ -230,6 +267,7 @@ pub fn compare_judged(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>) -> Vec<Sensor
                     not_compared,
                     by_class: [0; CLASSES],
                     judged: 0,
+                    approximations: BTreeMap::new(),
                     quantities: Quantity::ALL.map(|quantity| (quantity, tally.clone())).to_vec(),
                     defects: Vec::new(),
                     range_difference: None,
@@ -279,6 +317,7 @@ impl Answer {
 struct Gathered {
     by_class: [u64; CLASSES],
     judged: u64,
+    approximations: ApproximationTallies,
     tallies: [Tally; 7],
     defects: Vec<Defect>,
     differences: Vec<Maybe<f64>>,
@@ -308,6 +347,9 @@ fn compare_maps(
             *mine += theirs;
         }
         all.judged += row.judged;
+        for (cause, tally) in row.approximations {
+            all.approximations.entry(cause).or_default().add(&tally);
+        }
         for (mine, theirs) in all.tallies.iter_mut().zip(&row.tallies) {
             mine.add(theirs);
         }
@@ -321,6 +363,7 @@ fn compare_maps(
         not_compared: 0,
         by_class: all.by_class,
         judged: all.judged,
+        approximations: all.approximations,
         quantities: Quantity::ALL.into_iter().zip(all.tallies).collect(),
         defects: all.defects,
         range_difference: Some(Image::from_cells(width, height, all.differences)),
@@ -353,9 +396,11 @@ fn compare_ray(
     let named = |answer: &Answer| !answer.hit || answer.face.is_some();
     let ruled = (named(&of_a) && named(&of_b) && (differ || judge.samples(place))).then(|| {
         row.judged += 1;
-        let of_a = judge.rule(place, of_a.face, of_a.range, a.resolution);
-        let of_b = judge.rule(place, of_b.face, of_b.range, b.resolution);
-        class_of(of_a).max(class_of(of_b))
+        let class_of = |answer: &Answer, side: Side<'_>| {
+            let ruling = judge.rule(place, answer.face, answer.range, side.resolution);
+            Class::of(ruling, side.attributions.and_then(|causes| causes.cause(place)))
+        };
+        class_of(&of_a, a).max(class_of(&of_b, b))
     });
     // Answers that cannot be named can only be compared by being the same.
     let answers = ruled.unwrap_or(if differ { Class::Defect } else { Class::Agree });
@@ -437,19 +482,46 @@ fn compare_ray(
 
     let (class, quantity) = worst;
     row.by_class[class as usize] += 1;
+    if class == Class::Approximation {
+        let mut causes = Switches::EXACT;
+        let mut tally = ApproximationTally { rays: 1, ..ApproximationTally::default() };
+        for (answer, side) in [(&of_a, a), (&of_b, b)] {
+            let Some(cause) = side.attributions.and_then(|causes| causes.cause(place)) else { continue };
+            causes = causes.union(cause.switches);
+            tally.enter(answer, cause, place);
+        }
+        row.approximations.entry(causes).or_default().add(&tally);
+    }
     if class == Class::Defect && row.defects.len() < DEFECTS_DESCRIBED {
         let what = format!("{}: {}; {}: {}", a.name, describe(&of_a), b.name, describe(&of_b));
         row.defects.push(Defect { place, quantity, what });
     }
 }
 
-/// What a ruling makes of a ray.
-fn class_of(ruling: Ruling) -> Class {
-    match ruling {
-        Ruling::Exact => Class::Agree,
-        Ruling::Tie => Class::Tie,
-        Ruling::Rounding(_) => Class::Rounding,
-        Ruling::Wrong => Class::Defect,
+impl Class {
+    /// What a ruling makes of a ray, and of its cause if it has one.
+    pub(crate) fn of(ruling: Ruling, cause: Option<&Cause>) -> Self {
+        match ruling {
+            Ruling::Exact => Self::Agree,
+            Ruling::Tie => Self::Tie,
+            Ruling::Rounding(_) => Self::Rounding,
+            Ruling::Wrong if cause.is_some() => Self::Approximation,
+            Ruling::Wrong => Self::Defect,
+        }
+    }
+}
+
+impl ApproximationTally {
+    /// Enters one side's error.
+    fn enter(&mut self, answer: &Answer, cause: &Cause, place: Place) {
+        match (answer.hit, cause.restored_range) {
+            (false, Some(_)) => self.lost = 1,
+            (true, None) => self.added = 1,
+            _ => {}
+        }
+        if let (Some(range), Some(restored)) = (answer.range, cause.restored_range) {
+            Worst::keep(&mut self.worst_range, (range - restored).abs(), place);
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! When the referee is asked, and with what tolerance.
 
-use raypencil_referee::{Referee, Ruling, Tolerance};
+use raypencil_referee::{Approximations, Explained, Referee, Ruling, Tolerance};
 use raypencil_scene::{FaceId, Resolution, Scene, SensorId};
 
 use crate::bounds::Bounds;
@@ -58,6 +58,19 @@ impl<'s> Judge<'s> {
         self.referee.rule(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
     }
 
+    /// Explains one side's answer to a ray by the approximations it was made with; `None` if they do not.
+    pub(crate) fn explain(
+        &self,
+        place: Place,
+        answer: Option<FaceId>,
+        range: Option<f64>,
+        with: Approximations,
+        resolution: Resolution,
+    ) -> Option<Vec<Explained>> {
+        let tolerance = self.tolerance(place, answer, range, resolution);
+        self.referee.explain(place.sensor, place.i, place.j, answer, with, tolerance)
+    }
+
     /// delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S
     /// as a length along the focal axis, in cells); epsilon is the bound of the range.
     fn tolerance(
@@ -69,7 +82,7 @@ impl<'s> Judge<'s> {
     ) -> Tolerance {
         let scene = self.scene;
         let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
-            return Tolerance { lateral: FINEST, depth: 0.0 };
+            return Tolerance { lateral: FINEST, depth: 0.0, position: 0.0 };
         };
         let mesh = scene.mesh();
         let range = range.unwrap_or(max_range);
@@ -94,7 +107,7 @@ impl<'s> Judge<'s> {
                 (error / range / cell).max(error / row)
             }
         };
-        Tolerance { lateral: lateral.clamp(FINEST, 1.0), depth }
+        Tolerance { lateral: lateral.clamp(FINEST, 1.0), depth, position: error }
     }
 
     /// The scene whose rays are judged.

@@ -4,11 +4,13 @@
 //! run        scene -> frames -> comparisons, as one pass
 //! compare    two frames, ray by ray: agree, tie, rounding, defect
 //! judge      when the referee is asked, and with what tolerance
+//! attribution  why the paper's algorithm differs where it does
 //! bounds     how far two honest renderers may differ
 //! probe      everything about one ray
 //! output     the folder of a validation: maps, report, summary
 //! ```
 
+mod attribution;
 mod bounds;
 mod compare;
 mod judge;
@@ -17,16 +19,19 @@ mod probe;
 mod renderers;
 mod run;
 
+pub use attribution::{Attributions, Cause};
 pub use bounds::Bounds;
 pub use compare::{
-    Class, Defect, Place, Quantity, SensorComparison, Side, Tally, Worst, compare, compare_judged,
+    ApproximationTallies, ApproximationTally, Class, Defect, Place, Quantity, SensorComparison, Side, Tally,
+    Worst, compare, compare_judged,
 };
 pub use judge::{Judge, JudgeShare};
 pub use output::{
     OutputError, Written, one_screen, probe_command, summary_json, write_maps, write_validation,
 };
-pub use probe::{NoSuchRay, Probe, probe};
-pub use renderers::{RENDERER_NAMES, renderer};
+pub use probe::{NoSuchRay, Probe, ProbedAnswer, probe};
+pub use raypencil_scanline::{Fidelity, Switches};
+pub use renderers::{Contender, RENDERER_NAMES, contender};
 pub use run::{Counts, Pair, Progress, Rendered, Silent, Subject, Validation, validate};
 
 /// The README's example, compiled and run with the documentation tests.

@@ -2,10 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, Stage};
+use raypencil_scanline::Switches;
+use raypencil_scene::{Frame, Request, Resolution, Scene, Stage};
 
-use crate::compare::{Class, SensorComparison, Side, compare_judged};
+use crate::attribution::Attributions;
+use crate::compare::{ApproximationTallies, Class, SensorComparison, Side, compare_judged};
 use crate::judge::{Judge, JudgeShare};
+use crate::renderers::Contender;
 
 /// The scene under test, and how people name it.
 #[derive(Debug, Clone)]
@@ -14,7 +17,7 @@ pub struct Subject {
     pub scene: Scene,
     /// A short name, fit for a folder.
     pub name: String,
-    /// The words after `raypencil validate` or `raypencil probe` that give this scene again.
+    /// The words after `raypencil validate` or `raypencil probe` that give this scene and its renderers again.
     pub arguments: String,
     /// SHA-256 of what defines the scene, in hexadecimal digits.
     pub sha256: String,
@@ -27,6 +30,10 @@ pub struct Rendered {
     pub name: String,
     /// How finely it computes.
     pub resolution: Resolution,
+    /// The paper's approximations that it makes.
+    pub approximations: Switches,
+    /// What they did.
+    pub attributions: Attributions,
     /// Its maps.
     pub frame: Frame,
     /// Wall-clock time of the whole render.
@@ -82,6 +89,8 @@ pub struct Counts {
     pub tie: u64,
     /// Rays answered as a displaced ray would be.
     pub rounding: u64,
+    /// Rays on which one side follows the paper into error, for a confirmed cause.
+    pub approximation: u64,
     /// Rays on which the referee gave up.
     pub undecided: u64,
     /// Rays that differ beyond doubt.
@@ -101,6 +110,7 @@ impl Validation {
             counts.agree += sensor.of(Class::Agree);
             counts.tie += sensor.of(Class::Tie);
             counts.rounding += sensor.of(Class::Rounding);
+            counts.approximation += sensor.of(Class::Approximation);
             counts.undecided += sensor.of(Class::Undecided);
             counts.judged += sensor.judged;
             counts.defects += sensor.of(Class::Defect);
@@ -109,18 +119,29 @@ impl Validation {
         counts
     }
 
-    /// Whether everything that was compared agrees, and something was.
+    /// What each set of the paper's approximations did, over all sensors and pairs.
+    pub fn approximations(&self) -> ApproximationTallies {
+        let mut all = ApproximationTallies::new();
+        for sensor in self.pairs.iter().flat_map(|pair| &pair.sensors) {
+            for (cause, tally) in &sensor.approximations {
+                all.entry(*cause).or_default().add(tally);
+            }
+        }
+        all
+    }
+
+    /// Whether everything that was compared agrees or has a confirmed cause, and something was.
     pub fn passes(&self) -> bool {
         let counts = self.counts();
         counts.defects == 0 && counts.undecided == 0 && counts.compared > 0
     }
 }
 
-/// Renders `subject` with each of `renderers`, compares every pair, and has the referee judge what differs and
+/// Renders `subject` with each of `contenders`, compares every pair, and has the referee judge what differs and
 /// that `share` of what agrees.
 pub fn validate(
     subject: Subject,
-    renderers: &[&dyn Renderer],
+    contenders: &[Contender],
     share: JudgeShare,
     progress: &dyn Progress,
 ) -> Validation {
@@ -128,7 +149,8 @@ pub fn validate(
 
     // Render.
     let mut rendered = Vec::new();
-    for renderer in renderers {
+    for contender in contenders {
+        let renderer = &contender.renderer;
         let name = renderer.name().to_string();
         progress.stage(&format!("{name}: rendering"));
         let start = Instant::now();
@@ -140,7 +162,14 @@ pub fn validate(
                 .iter()
                 .map(|stage| Stage { name: format!("{name}: {}", stage.name), ..stage.clone() }),
         );
-        rendered.push(Rendered { name, resolution: renderer.resolution(), frame, time });
+        rendered.push(Rendered {
+            name,
+            resolution: renderer.resolution(),
+            approximations: contender.approximations(),
+            attributions: Attributions::default(),
+            frame,
+            time,
+        });
     }
 
     // The referee reads the scene by itself.
@@ -148,6 +177,15 @@ pub fn validate(
     let start = Instant::now();
     let judge = Judge::new(&subject.scene, share);
     stages.push(Stage { name: "referee: preparing".into(), time: start.elapsed() });
+
+    // Find what the paper's approximations did.
+    for side in rendered.iter_mut().filter(|side| side.approximations != Switches::EXACT) {
+        let what = format!("attributing {}", side.name);
+        progress.stage(&what);
+        let start = Instant::now();
+        side.attributions = Attributions::find(&judge, &side.frame, side.approximations, side.resolution);
+        stages.push(Stage { name: what, time: start.elapsed() });
+    }
 
     // Compare every pair, and judge.
     let mut pairs = Vec::new();
@@ -167,6 +205,11 @@ pub fn validate(
 
 impl Rendered {
     fn side(&self) -> Side<'_> {
-        Side { name: &self.name, frame: &self.frame, resolution: self.resolution }
+        Side {
+            name: &self.name,
+            frame: &self.frame,
+            resolution: self.resolution,
+            attributions: Some(&self.attributions),
+        }
     }
 }

@@ -13,6 +13,8 @@
 //! forms, region    the conditions as functions of a small displacement
 //! margin, surface  how far a verdict is from changing, with a witness
 //! ruling           whether an answer is right, or admissible
+//! paper            whether an approximation of the paper explains an answer
+//! truth            yes, no, or either, of what is known up to an interval
 //! render           the verdicts of a whole sensor
 //! ```
 //!
@@ -23,15 +25,18 @@ mod face;
 mod forms;
 mod margin;
 mod number;
+mod paper;
 mod pencil;
 mod region;
 mod render;
 mod ruling;
 mod surface;
+mod truth;
 mod vector;
 mod verdict;
 
 pub use margin::Margin;
+pub use paper::{Approximations, Explained, Reason};
 pub use render::ExactRenderer;
 pub use ruling::{Ruling, Tolerance};
 pub use verdict::{Displacement, Referee, Verdict};

@@ -48,6 +48,44 @@ impl Interval {
         0.5 * self.low + 0.5 * self.high
     }
 
+    /// Everything between two numbers in order.
+    #[inline]
+    pub(crate) fn between(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    /// This range and `by` more on both sides; `by` is not negative.
+    #[inline]
+    pub(crate) fn wider(self, by: f64) -> Self {
+        widened(self.low - by, self.high + by)
+    }
+
+    /// A range that contains both.
+    #[inline]
+    pub(crate) fn hull(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// The quotient; everything if the divisor may be 0.
+    pub(crate) fn over(self, divisor: Self) -> Self {
+        if divisor.low <= 0.0 && divisor.high >= 0.0 {
+            return Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+        }
+        let [a, b, c, d] = [
+            self.low / divisor.low,
+            self.low / divisor.high,
+            self.high / divisor.low,
+            self.high / divisor.high,
+        ];
+        widened(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+    }
+
+    /// -x.
+    #[inline]
+    pub(crate) fn negated(self) -> Self {
+        Self { low: -self.high, high: -self.low }
+    }
+
     /// The largest absolute value inside.
     #[inline]
     pub(crate) fn magnitude(&self) -> f64 {
@@ -201,6 +239,13 @@ mod tests {
                 a.mul(&b).sub(&c.square()).add(&b.mul(&c).mul(&a)).sub(&a.doubled())
             }
             prop_assert!(contains(poly::<Interval>(a, b, c), &poly::<Dyadic>(a, b, c)));
+        }
+
+        #[test]
+        fn a_quotient_times_its_divisor_contains_the_dividend(a in some_number(), b in some_number()) {
+            let quotient = Interval::of(a).over(Interval::of(b));
+            prop_assert!(b == 0.0 || contains(quotient.mul(&Interval::of(b)), &Dyadic::of(a)));
+            prop_assert!(b != 0.0 || (quotient.low == f64::NEG_INFINITY && quotient.high == f64::INFINITY));
         }
 
         #[test]

@@ -8,10 +8,10 @@ use std::time::Instant;
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{
-    Frame, Hit, Mounted, Quantities, Renderer, Request, Resolution, Scene, SensorId, SensorMap, Stage,
+    FaceId, Frame, Hit, Mounted, Quantities, Renderer, Request, Resolution, Scene, SensorId, SensorMap, Stage,
 };
 
-use crate::face::Face;
+use crate::face::{ExactRay, Face};
 use crate::number::Interval;
 use crate::pencil::{Aim, Sensor};
 use crate::vector::Vector;
@@ -48,6 +48,21 @@ impl Renderer for ExactRenderer {
 }
 
 impl Referee<'_> {
+    /// The values of the hit of `face` by the ray of cell (i, j), in f64; `None` if there is no such cell or face,
+    /// or the ray does not meet it.
+    pub fn hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<Hit> {
+        let sensor = Sensor::of(self.scene, id)?;
+        let (width, height) = sensor.size();
+        let mesh = self.scene.mesh();
+        if i >= width || j >= height || face.0 as usize >= mesh.faces().len() {
+            return None;
+        }
+        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
+        let face = Face::of(mesh, face);
+        let is_met = face.is_met_by(&ExactRay::new(&sensor, aim), sensor.max_range());
+        is_met.then(|| hit(&sensor, aim, &face))
+    }
+
     /// The maps of one sensor, or `None` if the scene has no such sensor.
     fn map(&self, id: SensorId, quantities: Quantities) -> Option<SensorMap> {
         let sensor = Sensor::of(self.scene, id)?;

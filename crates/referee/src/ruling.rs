@@ -19,6 +19,9 @@ pub struct Tolerance {
     pub lateral: f64,
     /// epsilon, metres.
     pub depth: f64,
+    /// How far the renderer may misplace a point of the terrain, metres; only asked of the paper's
+    /// approximations, whose sides and limits are themselves computed.
+    pub position: f64,
 }
 
 /// What the referee says of one answer to one ray.

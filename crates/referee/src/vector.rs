@@ -81,4 +81,10 @@ impl<T: Number> ScaledRotation<T> {
     pub(crate) fn apply(&self, v: &Vector<T>) -> Vector<T> {
         Vector(std::array::from_fn(|k| self.rows[k].dot(v)))
     }
+
+    /// The opposite rotation, with the same factor.
+    pub(crate) fn apply_inverse(&self, v: &Vector<T>) -> Vector<T> {
+        let [a, b, c] = std::array::from_fn(|k| self.rows[k].scaled(&v.0[k]));
+        a.add(&b).add(&c)
+    }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// Which side a switch is on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Fidelity {
     /// What the contract's rays really meet.
     #[default]
@@ -32,7 +32,7 @@ impl fmt::Display for Fidelity {
 /// assert_eq!(Switches::subsets().count(), 4);
 /// # Ok::<(), raypencil_scanline::UnknownSwitch>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Switches {
     /// `beam-edges`: how the sides of a face are drawn on a beam's grid. The camera is not concerned.
     ///
@@ -74,6 +74,36 @@ impl Switches {
         let index = index.ok_or_else(|| UnknownSwitch(name.to_string()))?;
         *self.in_order()[index] = fidelity;
         Ok(())
+    }
+
+    /// How many stand on `paper`.
+    pub fn count(self) -> usize {
+        self.iter().filter(|(_, fidelity)| *fidelity == Fidelity::Paper).count()
+    }
+
+    /// Whether every switch that stands on `paper` in `other` does so here.
+    pub fn contains(self, other: Self) -> bool {
+        self.iter().zip(other.iter()).all(|((_, mine), (_, theirs))| mine >= theirs)
+    }
+
+    /// These, but `exact` where `other` stands on `paper`.
+    #[must_use]
+    pub fn without(mut self, mut other: Self) -> Self {
+        for (mine, theirs) in self.in_order().into_iter().zip(other.in_order()) {
+            if *theirs == Fidelity::Paper {
+                *mine = Fidelity::Exact;
+            }
+        }
+        self
+    }
+
+    /// All that stand on `paper` in either.
+    #[must_use]
+    pub fn union(mut self, mut other: Self) -> Self {
+        for (mine, theirs) in self.in_order().into_iter().zip(other.in_order()) {
+            *mine = (*mine).max(*theirs);
+        }
+        self
     }
 
     /// Every switch's name and side, in the order of [`Switches::NAMES`].
@@ -153,5 +183,18 @@ mod tests {
         assert_eq!(names, ["", "beam-edges", "skip-rules", "beam-edges+skip-rules"]);
         assert_eq!(Switches::subsets().next(), Some(Switches::EXACT));
         assert_eq!(Switches::subsets().last(), Some(Switches::PAPER));
+    }
+
+    #[test]
+    fn sets_of_switches() {
+        for a in Switches::subsets() {
+            for b in Switches::subsets() {
+                let union = a.union(b);
+                assert!(union.contains(a) && union.contains(b));
+                assert_eq!(a.contains(b), union == a);
+                assert_eq!(a.without(b).count(), union.count() - b.count());
+                assert!(a.contains(a.without(b)));
+            }
+        }
     }
 }

@@ -71,6 +71,8 @@ pub struct Overrides {
     pub heading_deg: Option<f64>,
     /// The full fan angle of every beam, degrees.
     pub fan_deg: Option<f64>,
+    /// The thickness T of every beam's sheet, millimetres.
+    pub thickness_mm: Option<f64>,
 }
 
 /// A scene and where it came from.
@@ -249,6 +251,7 @@ fn check(overrides: &Overrides) -> Result<(), SceneIoError> {
         ("at y", y, parse::GLOBAL_M, "metres"),
         ("heading", overrides.heading_deg, parse::TURN_DEG, "degrees"),
         ("fan", overrides.fan_deg, parse::FAN_DEG, "degrees"),
+        ("thickness", overrides.thickness_mm, parse::THICKNESS_MM, "millimetres"),
     ];
     for (name, value, range, unit) in all {
         if let Some(value) = value.filter(|value| !range.contains(value)) {
@@ -271,6 +274,11 @@ fn apply(overrides: &Overrides, plan: &mut Plan) {
     if let Some(fan_deg) = overrides.fan_deg {
         for (_, beam) in &mut plan.beams {
             beam.half_width = Beam::half_width_of(beam.grid_distance, fan_deg.to_radians());
+        }
+    }
+    if let Some(thickness_mm) = overrides.thickness_mm {
+        for (_, beam) in &mut plan.beams {
+            beam.thickness = thickness_mm / 1e3;
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::{SceneIoError, TomlProblem};
 
 /// A fan of light, from a thread to just below a half plane, degrees.
 pub(crate) const FAN_DEG: RangeInclusive<f64> = 0.001..=179.9;
+pub(crate) const THICKNESS_MM: RangeInclusive<f64> = 1e-3..=1e5;
 /// Any turn, either way, degrees.
 pub(crate) const TURN_DEG: RangeInclusive<f64> = -360.0..=360.0;
 /// Global coordinates, metres: a scene origin's own limit.
@@ -184,7 +185,7 @@ impl Source<'_> {
         self.number(keys.fan_deg, &key("fan_deg"), &mut fan_deg, FAN_DEG, "degrees")?;
         let mm = "millimetres";
         beam.thickness =
-            self.scaled(keys.thickness_mm, &key("thickness_mm"), beam.thickness, 1e-3..=1e5, mm, 1e3)?;
+            self.scaled(keys.thickness_mm, &key("thickness_mm"), beam.thickness, THICKNESS_MM, mm, 1e3)?;
         let distance = &key("grid_distance_mm");
         beam.grid_distance =
             self.scaled(keys.grid_distance_mm, distance, beam.grid_distance, 0.1..=1e5, mm, 1e3)?;

@@ -201,7 +201,12 @@ fn the_documented_example_is_the_file() {
 fn overrides_change_the_scene_and_its_digests() {
     let path = scenes().join("ramp.toml");
     let plain = load_path(&path, &Overrides::default()).unwrap();
-    let moved = Overrides { at: Some([-8.0, 0.5]), heading_deg: Some(180.0), fan_deg: Some(90.0) };
+    let moved = Overrides {
+        at: Some([-8.0, 0.5]),
+        heading_deg: Some(180.0),
+        fan_deg: Some(90.0),
+        thickness_mm: Some(80.0),
+    };
     let moved = load_path(&path, &moved).unwrap();
     near(moved.vehicle.position, DVec3::new(-8.0, 0.5, -2.0), 1e-12);
     assert!((moved.scene.beams()[0].sensor.half_width - 0.1).abs() < 1e-15);
@@ -214,6 +219,8 @@ fn overrides_change_the_scene_and_its_digests() {
 #[test]
 fn overrides_out_of_range_are_named() {
     let refuse = |overrides| load("pyramids", &overrides).unwrap_err().to_string();
+    let message = refuse(Overrides { thickness_mm: Some(0.0), ..Overrides::default() });
+    assert!(message.contains("thickness") && message.contains("0.001 to 100000 millimetres"), "{message}");
     let message = refuse(Overrides { fan_deg: Some(180.0), ..Overrides::default() });
     assert_eq!(message, "override fan is 180; expected 0.001 to 179.9 degrees");
     let message = refuse(Overrides { at: Some([0.0, f64::NAN]), ..Overrides::default() });

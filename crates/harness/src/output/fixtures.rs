@@ -9,7 +9,7 @@ use raypencil_scene::{
 
 use crate::compare::{Class, Defect, Place, Quantity, Worst};
 use crate::judge::JudgeShare;
-use crate::renderers::renderer;
+use crate::renderers::contender;
 use crate::run::{Silent, Subject, Validation, validate};
 
 /// The pyramids through a small camera and one small beam.
@@ -57,14 +57,28 @@ pub(crate) fn subject() -> Subject {
 
 /// Both renderers, in agreement.
 pub(crate) fn agreeing() -> Validation {
-    let renderers = ["scanline", "tracer"].map(|name| renderer(name).unwrap());
-    validate(subject(), &[&*renderers[0], &*renderers[1]], JudgeShare::Sample, &Silent)
+    of(subject(), ["scanline", "tracer"])
 }
 
 /// One renderer, and so nothing to compare.
 pub(crate) fn lonely() -> Validation {
-    let renderer = renderer("tracer").unwrap();
-    validate(subject(), &[&*renderer], JudgeShare::Sample, &Silent)
+    of(subject(), ["tracer"])
+}
+
+/// The paper's algorithm with a sheet of 80 mm against the tracer.
+pub(crate) fn approximate() -> Validation {
+    let mut subject = subject();
+    let scene = &subject.scene;
+    let mut beam = scene.beams()[0];
+    beam.sensor.thickness = 0.08;
+    let (mesh, camera) = (Arc::clone(scene.mesh()), *scene.camera());
+    subject.scene = Scene::new(mesh, camera, vec![beam], scene.atmosphere(), scene.flux_model()).unwrap();
+    of(subject, ["scanline-paper", "tracer"])
+}
+
+fn of<const N: usize>(subject: Subject, names: [&str; N]) -> Validation {
+    let contenders = names.map(|name| contender(name).unwrap());
+    validate(subject, &contenders, JudgeShare::Sample, &Silent)
 }
 
 /// Where [`defective`] has its defects: a hit on one side only, and an error that is no number.

@@ -3,7 +3,7 @@
 use askama::Template;
 
 use super::VERSION;
-use super::table::{Row, hits, rows};
+use super::table::{CauseRow, Row, causes, hits, rows};
 use super::text::{self, count, probe_command};
 use super::verdict::{CAVEAT, Verdict, defects, explanation, headline};
 use crate::compare::Class;
@@ -25,6 +25,7 @@ struct Page {
     command: String,
     rows: Vec<Row>,
     sensors: Vec<Sensor>,
+    causes: Vec<CauseRow>,
     defects: Vec<Listed>,
     more_defects: String,
     stages: Vec<String>,
@@ -38,6 +39,7 @@ struct Sensor {
     agree: String,
     tie: String,
     rounding: String,
+    approximation: String,
     defects: String,
 }
 
@@ -65,6 +67,7 @@ pub(crate) fn markdown(validation: &Validation) -> Result<String, askama::Error>
                 agree: count(sensor.of(Class::Agree)),
                 tie: count(sensor.of(Class::Tie)),
                 rounding: count(sensor.of(Class::Rounding)),
+                approximation: count(sensor.of(Class::Approximation)),
                 defects: count(sensor.of(Class::Defect)),
             });
         }
@@ -93,6 +96,7 @@ pub(crate) fn markdown(validation: &Validation) -> Result<String, askama::Error>
         command: code(&format!("raypencil validate {}", subject.arguments)),
         rows: rows(subject, validation.pairs.iter().flat_map(|pair| &pair.sensors)),
         sensors,
+        causes: causes(subject, &validation.approximations()),
         defects: listed,
         more_defects: if more > 0 { text::counted(more, "more is", "more are") } else { String::new() },
         stages: validation

@@ -4,7 +4,7 @@ use askama::Template;
 
 use super::VERSION;
 use super::plot::{self, Plots};
-use super::table::{Row, hits, rows};
+use super::table::{CauseRow, Row, causes, hits, rows};
 use super::text::{count, counted, list, probe_command, time};
 use super::verdict::{CAVEAT, Verdict, explanation, headline};
 use crate::compare::{Class, SensorComparison};
@@ -28,6 +28,7 @@ struct Page<'a> {
     renderers: String,
     tiles: Vec<Tile>,
     comparisons: Vec<Comparison>,
+    causes: Vec<CauseRow>,
     sensors: Vec<Sensor>,
     defects: Vec<Defects>,
     stages: Vec<Timed>,
@@ -106,6 +107,7 @@ pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
         renderers: list(&names),
         tiles: tiles(validation),
         comparisons: pairs.iter().map(|pair| comparison(validation, pair)).collect(),
+        causes: causes(subject, &validation.approximations()),
         sensors: subject
             .scene
             .sensors()
@@ -142,6 +144,7 @@ fn tiles(validation: &Validation) -> Vec<Tile> {
         tile(counts.agree, "agree", "same face or none, values within the bound", false),
         tile(counts.tie, "tie", "several faces at exactly one point", false),
         tile(counts.rounding, "rounding", "right for a ray displaced within the arithmetic", false),
+        tile(counts.approximation, "approximation", "the paper's own error, its cause confirmed", false),
         tile(counts.defects, "defects", "anything else", counts.defects > 0),
         tile(counts.judged, "judged", "ruled on in exact arithmetic", false),
     ];
@@ -181,11 +184,12 @@ fn numbers(validation: &Validation, sensor: raypencil_scene::SensorId) -> Vec<St
         let Some(found) = pair.sensors.iter().find(|found| found.sensor == sensor) else { continue };
         let of = |class| count(found.of(class));
         numbers.push(format!(
-            "{}: {} agree, {} tie, {} rounding, {} defect{}",
+            "{}: {} agree, {} tie, {} rounding, {} approximation, {} defect{}",
             title(validation, pair),
             of(Class::Agree),
             of(Class::Tie),
             of(Class::Rounding),
+            of(Class::Approximation),
             of(Class::Defect),
             match found.not_compared {
                 0 => String::new(),

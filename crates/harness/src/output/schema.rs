@@ -79,7 +79,9 @@ fn faults_of(summary: &Value) -> Vec<String> {
 
 #[test]
 fn every_summary_keeps_to_the_schema() {
-    for validation in [fixtures::agreeing(), fixtures::defective(), fixtures::lonely()] {
+    for validation in
+        [fixtures::agreeing(), fixtures::defective(), fixtures::approximate(), fixtures::lonely()]
+    {
         let summary: Value = serde_json::from_str(&summary_json(&validation)).unwrap();
         assert_eq!(faults_of(&summary), Vec::<String>::new());
     }

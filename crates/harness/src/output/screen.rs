@@ -7,7 +7,7 @@ use raypencil_scene::{SensorId, Stage};
 
 use super::VERSION;
 use super::table::{hits, totals};
-use super::text::{count, list, probe_command, time, worst};
+use super::text::{count, counted, list, probe_command, time, worst};
 use super::verdict::{Verdict, defects, explanation, headline, rays};
 use crate::compare::{Class, Place, SensorComparison};
 use crate::run::Validation;
@@ -18,6 +18,10 @@ const COLUMNS: usize = 80;
 const SENSORS: usize = 5;
 /// Lines of stage times.
 const TIMES: usize = 4;
+/// Causes that get a line.
+const CAUSES: usize = 4;
+/// Column of the paper's approximations in the table of quantities.
+const APPROXIMATIONS: usize = 4;
 /// Defects that get their lines.
 const DEFECTS: usize = 5;
 
@@ -27,6 +31,7 @@ pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
         head(validation),
         quantities(validation),
         sensors(validation),
+        approximations(validation),
         times(validation),
         files(validation, folder),
         verdict(validation),
@@ -44,8 +49,10 @@ fn head(validation: &Validation) -> String {
 
 /// The table of quantities and classes over all sensors.
 fn quantities(validation: &Validation) -> String {
-    let heads = ["", "agree", "tie", "rounding", "defect", "error", "at", "/bound"].map(String::from);
-    let mut lines = vec![heads];
+    // The paper's approximations have a column where there are any.
+    let has_approximations = validation.counts().approximation > 0;
+    let heads = ["", "agree", "tie", "rounding", "approx.", "defect", "error", "at", "/bound"];
+    let mut lines = vec![heads.map(String::from)];
     for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
         // No cell holds blanks for a value that is not there.
         let or_dash = |text: String| if text.is_empty() { "-".into() } else { text };
@@ -54,22 +61,35 @@ fn quantities(validation: &Validation) -> String {
             count(tally.of(Class::Agree)),
             count(tally.of(Class::Tie)),
             count(tally.of(Class::Rounding)),
+            count(tally.of(Class::Approximation)),
             count(tally.of(Class::Defect)),
             or_dash(worst(tally.worst_error, quantity.unit())),
             or_dash(tally.worst_error.map_or(String::new(), |worst| short(worst.place))),
             or_dash(worst(tally.worst_ratio, "")),
         ]);
     }
-    let widths: Vec<usize> = (0..8)
+    let lines: Vec<Vec<String>> = lines
+        .into_iter()
+        .map(|line| {
+            let shown = |(column, _): &(usize, String)| has_approximations || *column != APPROXIMATIONS;
+            line.into_iter().enumerate().filter(shown).map(|(_, cell)| cell).collect()
+        })
+        .collect();
+    // Text is on the left, numbers on the right.
+    let place = lines[0].iter().position(|head| head == "at");
+    let widths: Vec<usize> = (0..lines[0].len())
         .map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0))
         .collect();
     // Two blanks between columns, one where counts are huge.
     let blanks = if widths.iter().sum::<usize>() + 2 * (widths.len() - 1) <= COLUMNS { "  " } else { " " };
     let mut text = String::new();
     for line in lines {
-        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
-            0 | 6 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
+        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
+            if column == 0 || Some(column) == place {
+                format!("{cell:<width$}")
+            } else {
+                format!("{cell:>width$}")
+            }
         });
         let line = cells.collect::<Vec<_>>().join(blanks);
         let _ = writeln!(text, "{}", line.trim_end());
@@ -114,6 +134,9 @@ fn sensors(validation: &Validation) -> String {
         if of(Class::Rounding) > 0 {
             let _ = write!(line, ", {} rounding", count(of(Class::Rounding)));
         }
+        if of(Class::Approximation) > 0 {
+            let _ = write!(line, ", {} approximation", count(of(Class::Approximation)));
+        }
         if missing > 0 {
             let _ = write!(line, ", {} not compared", count(missing));
         }
@@ -122,6 +145,28 @@ fn sensors(validation: &Validation) -> String {
     }
     if sensors.len() > SENSORS {
         let _ = writeln!(text, "... and {} more sensors in the summary", sensors.len() - SENSORS);
+    }
+    text
+}
+
+/// What each set of the paper's approximations did.
+fn approximations(validation: &Validation) -> String {
+    let mut text = String::new();
+    let all = validation.approximations();
+    for (cause, tally) in all.iter().take(CAUSES) {
+        let mut line = format!(
+            "{cause}: {}, {} lost, {} added",
+            counted(tally.rays, "ray", "rays"),
+            count(tally.lost),
+            count(tally.added)
+        );
+        if let Some(found) = tally.worst_range {
+            let _ = write!(line, "; range off by {} at {}", worst(Some(found), "m"), short(found.place));
+        }
+        let _ = writeln!(text, "{}", cut(&line));
+    }
+    if all.len() > CAUSES {
+        let _ = writeln!(text, "... and {} more causes in the summary", all.len() - CAUSES);
     }
     text
 }

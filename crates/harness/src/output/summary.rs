@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use raypencil_scanline::Switches;
 use serde::Serialize;
 
 use super::table::hits;
 use super::text::probe_command;
 use super::verdict::Verdict;
 use super::{VERSION, map_file};
-use crate::compare::{Class, Quantity, SensorComparison, Worst};
+use crate::compare::{ApproximationTallies, ApproximationTally, Class, Quantity, SensorComparison, Worst};
 use crate::run::{Pair, Rendered, Subject, Validation};
 
 /// The number of the schema; it grows when a key changes its meaning or goes away.
@@ -21,15 +22,16 @@ struct Summary<'a> {
     verdict: Verdict,
     #[serde(flatten)]
     classes: Classes,
-    /// Causes of differences that a switch explains, with their counts.
+    /// Rays of each set of the paper's approximations, by the names of its switches.
     approximations: BTreeMap<String, u64>,
+    causes: Vec<CauseSummary>,
     scene: SceneName<'a>,
     renderers: Vec<RendererSummary<'a>>,
     pairs: Vec<PairSummary<'a>>,
     stages: Vec<StageSummary<'a>>,
 }
 
-/// Rays by class; all but `not_compared` add up to `compared`.
+/// Rays by class; those and all approximations add up to `compared`.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Classes {
     compared: u64,
@@ -75,10 +77,21 @@ struct PairSummary<'a> {
 }
 
 #[derive(Serialize)]
+struct CauseSummary {
+    switches: String,
+    rays: u64,
+    lost: u64,
+    added: u64,
+    worst_range_error_m: Option<WorstSummary>,
+}
+
+#[derive(Serialize)]
 struct SensorSummary<'a> {
     sensor: String,
     #[serde(flatten)]
     classes: Classes,
+    approximations: BTreeMap<String, u64>,
+    causes: Vec<CauseSummary>,
     quantities: Vec<QuantitySummary>,
     first_defects: Vec<DefectSummary<'a>>,
 }
@@ -90,6 +103,7 @@ struct QuantitySummary {
     agree: u64,
     tie: u64,
     rounding: u64,
+    approximation: u64,
     undecided: u64,
     defects: u64,
     not_compared: u64,
@@ -126,6 +140,7 @@ struct StageSummary<'a> {
 pub fn summary_json(validation: &Validation) -> String {
     let Validation { subject, rendered, pairs, stages } = validation;
     let counts = validation.counts();
+    let approximations = validation.approximations();
     let summary = Summary {
         format: FORMAT,
         version: VERSION,
@@ -140,7 +155,8 @@ pub fn summary_json(validation: &Validation) -> String {
             not_compared: counts.not_compared,
             judged: counts.judged,
         },
-        approximations: BTreeMap::new(),
+        approximations: counts_of(&approximations),
+        causes: of_causes(subject, &approximations),
         scene: SceneName { name: &subject.name, sha256: &subject.sha256, arguments: &subject.arguments },
         renderers: rendered.iter().map(of_renderer).collect(),
         pairs: pairs.iter().map(|pair| of_pair(validation, pair)).collect(),
@@ -177,26 +193,18 @@ fn of_pair<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'a> {
 }
 
 fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorComparison) -> SensorSummary<'a> {
-    let worst = |worst: Option<Worst>| {
-        worst.map(|Worst { value, place }| WorstSummary {
-            value: finite(value),
-            sensor: place.sensor.to_string(),
-            i: place.i,
-            j: place.j,
-            probe: probe_command(subject, place),
-        })
-    };
     let quantities = comparison.quantities.iter().map(|(quantity, tally)| QuantitySummary {
         quantity: *quantity,
         unit: quantity.unit(),
         agree: tally.of(Class::Agree),
         tie: tally.of(Class::Tie),
         rounding: tally.of(Class::Rounding),
+        approximation: tally.of(Class::Approximation),
         undecided: tally.of(Class::Undecided),
         defects: tally.of(Class::Defect),
         not_compared: tally.not_compared,
-        worst_error: worst(tally.worst_error),
-        worst_ratio: worst(tally.worst_ratio),
+        worst_error: worst(subject, tally.worst_error),
+        worst_ratio: worst(subject, tally.worst_ratio),
     });
     let defects = comparison.defects.iter().map(|defect| DefectSummary {
         i: defect.place.i,
@@ -217,9 +225,36 @@ fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorComparison) -> SensorS
             not_compared: comparison.not_compared,
             judged: comparison.judged,
         },
+        approximations: counts_of(&comparison.approximations),
+        causes: of_causes(subject, &comparison.approximations),
         quantities: quantities.collect(),
         first_defects: defects.collect(),
     }
+}
+
+fn counts_of(approximations: &ApproximationTallies) -> BTreeMap<String, u64> {
+    approximations.iter().map(|(cause, tally)| (cause.to_string(), tally.rays)).collect()
+}
+
+fn of_causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<CauseSummary> {
+    let of_cause = |(cause, tally): (&Switches, &ApproximationTally)| CauseSummary {
+        switches: cause.to_string(),
+        rays: tally.rays,
+        lost: tally.lost,
+        added: tally.added,
+        worst_range_error_m: worst(subject, tally.worst_range),
+    };
+    approximations.iter().map(of_cause).collect()
+}
+
+fn worst(subject: &Subject, worst: Option<Worst>) -> Option<WorstSummary> {
+    worst.map(|Worst { value, place }| WorstSummary {
+        value: finite(value),
+        sensor: place.sensor.to_string(),
+        i: place.i,
+        j: place.j,
+        probe: probe_command(subject, place),
+    })
 }
 
 fn finite(value: f64) -> Option<f64> {

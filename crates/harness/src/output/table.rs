@@ -1,9 +1,12 @@
 //! The table of quantities and classes, ready to be printed by anything.
 
+use raypencil_scanline::Switches;
 use raypencil_scene::SensorMap;
 
 use super::text::{self, probe_command};
-use crate::compare::{Class, Quantity, SensorComparison, Tally, Worst};
+use crate::compare::{
+    ApproximationTallies, ApproximationTally, Class, Quantity, SensorComparison, Tally, Worst,
+};
 use crate::run::Subject;
 
 /// One quantity over one or more sensors.
@@ -13,6 +16,7 @@ pub(crate) struct Row {
     pub(crate) agree: String,
     pub(crate) tie: String,
     pub(crate) rounding: String,
+    pub(crate) approximation: String,
     pub(crate) defects: String,
     /// Whether there are defects.
     pub(crate) fails: bool,
@@ -34,13 +38,6 @@ pub(crate) fn rows<'a>(
     subject: &Subject,
     sensors: impl IntoIterator<Item = &'a SensorComparison>,
 ) -> Vec<Row> {
-    let extreme = |worst: Option<Worst>, unit: &str| {
-        worst.map(|Worst { value, place }| Extreme {
-            value: text::quantity(value, unit),
-            place: place.to_string(),
-            command: probe_command(subject, place),
-        })
-    };
     totals(sensors)
         .into_iter()
         .map(|(quantity, tally)| Row {
@@ -48,13 +45,44 @@ pub(crate) fn rows<'a>(
             agree: text::count(tally.of(Class::Agree)),
             tie: text::count(tally.of(Class::Tie)),
             rounding: text::count(tally.of(Class::Rounding)),
+            approximation: text::count(tally.of(Class::Approximation)),
             defects: text::count(tally.of(Class::Defect)),
             fails: tally.of(Class::Defect) > 0,
             not_compared: text::count(tally.not_compared),
-            error: extreme(tally.worst_error, quantity.unit()),
-            ratio: extreme(tally.worst_ratio, ""),
+            error: extreme(subject, tally.worst_error, quantity.unit()),
+            ratio: extreme(subject, tally.worst_ratio, ""),
         })
         .collect()
+}
+
+/// What one set of the paper's approximations did.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CauseRow {
+    pub(crate) cause: String,
+    pub(crate) rays: String,
+    pub(crate) lost: String,
+    pub(crate) added: String,
+    pub(crate) error: Option<Extreme>,
+}
+
+/// The rows of all causes.
+pub(crate) fn causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<CauseRow> {
+    let row = |(cause, tally): (&Switches, &ApproximationTally)| CauseRow {
+        cause: cause.to_string(),
+        rays: text::count(tally.rays),
+        lost: text::count(tally.lost),
+        added: text::count(tally.added),
+        error: extreme(subject, tally.worst_range, "m"),
+    };
+    approximations.iter().map(row).collect()
+}
+
+fn extreme(subject: &Subject, worst: Option<Worst>, unit: &str) -> Option<Extreme> {
+    worst.map(|Worst { value, place }| Extreme {
+        value: text::quantity(value, unit),
+        place: place.to_string(),
+        command: probe_command(subject, place),
+    })
 }
 
 /// Each quantity summed over some sensors.

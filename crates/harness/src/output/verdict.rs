@@ -10,7 +10,7 @@ use crate::run::Validation;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Verdict {
-    /// Something was compared and nothing of it is a defect.
+    /// Something was compared, and nothing of it is a defect or undecided.
     Agree,
     /// There are defects.
     Defects,
@@ -62,6 +62,10 @@ pub(crate) fn headline(validation: &Validation) -> String {
         Verdict::Defects if counts.defects == 1 => format!("1 of {compared} differs"),
         Verdict::Defects => format!("{} of {compared} differ", count(counts.defects)),
         Verdict::Agree if counts.compared == 1 => format!("The only {} agrees", &compared[2..]),
+        Verdict::Agree if counts.approximation > 0 => format!(
+            "All {compared} agree or are accounted for: {} by the paper's approximations",
+            count(counts.approximation)
+        ),
         Verdict::Agree => format!("All {compared} agree"),
     }
 }
@@ -91,6 +95,13 @@ pub(crate) fn explanation(validation: &Validation) -> String {
                 (0, 0) => "the same faces",
                 (_, 0) => "the same faces, or faces at the same point",
                 _ => "the same faces, but for rays within rounding of an edge",
+            };
+            let faces = match counts.approximation {
+                0 => faces.to_string(),
+                some => format!(
+                    "{faces}, but for {} that follow the paper into error for a cause that was confirmed",
+                    rays(validation, some)
+                ),
             };
             let largest = worst_ratio(validation);
             let largest = largest.map_or(String::new(), |(quantity, worst)| {
