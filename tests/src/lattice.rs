@@ -13,10 +13,10 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-use raypencil_scene::{Beam, Camera, Mesh, Pose};
+use glam::{DQuat, DVec3};
+use raypencil_scene::{Beam, Camera, Mesh, Mounted, Pose, Scene};
 
-use crate::mesh;
+use crate::{mesh, rig, scene};
 
 /// A sensor of dyadic numbers, in its own frame.
 #[derive(Debug, Clone, Copy)]
@@ -68,6 +68,33 @@ pub struct Lattice {
     t: Vec<f64>,
     /// Whether a cell's diagonal falls from the upper left to the lower right.
     falling: Vec<bool>,
+}
+
+/// Hills before a camera of `size` x `size` pixels, turned by (1, 2, 3, 4) / sqrt 30, all of whose rays pass within
+/// 1e-16 of themselves of a vertex, an edge or a diagonal.
+///
+/// # Panics
+/// If `size` is even.
+pub fn turned(size: u32) -> Scene {
+    let (x, y, z, w) = (1.0, 2.0, 3.0, 4.0);
+    let factor = (x * x + y * y + z * z + w * w) / 32.0;
+    let pose = Pose { position: DVec3::new(0.25, -0.75, 0.5), rotation: DQuat::from_xyzw(x, y, z, w) };
+    let plain = rig::camera(size, size, 1.0 / 1024.0, 1.0 / 16.0);
+    let camera = Camera {
+        pixel_pitch: plain.pixel_pitch.map(|pitch| pitch * factor),
+        focal_length: plain.focal_length * factor,
+        ..plain
+    };
+    let lattice = Lattice::before(Sensor::Camera(camera), 1, 5, &[24.0, 26.0, 30.0, 32.0]);
+    let (mesh, moved) = lattice.mesh(&pose);
+    assert!(moved <= 1e-14, "vertices are exact in f32, not {moved} m off");
+    // A third as large, the rays are the same but for rounding.
+    let sensor = Camera {
+        pixel_pitch: camera.pixel_pitch.map(|pitch| pitch / 3.0),
+        focal_length: camera.focal_length / 3.0,
+        ..camera
+    };
+    scene(mesh, Mounted { scene_from_sensor: pose, sensor }, Vec::new())
 }
 
 /// What a ray is known to do.

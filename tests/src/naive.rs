@@ -264,6 +264,14 @@ impl Naive {
             corners = corners.map(|corner| corner.as_vec3().as_dvec3());
         }
         let [a, b, c] = corners;
+        if self.has(Fault::EdgesReckonedApart) {
+            let (ab, ac) = (b - a, c - a);
+            let p = ray.q.cross(ac);
+            let determinant = ab.dot(p);
+            let u = -a.dot(p) / determinant;
+            let v = ray.q.dot((-a).cross(ab)) / determinant;
+            return (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| n.dot(a) / n_dot_q);
+        }
         let edges = if n_dot_q < 0.0 { [(a, b), (b, c), (c, a)] } else { [(b, a), (c, b), (a, c)] };
         let sides = edges.map(|(from, to)| ray.q.dot(to.cross(from)));
         for ((from, to), side) in edges.into_iter().zip(sides) {

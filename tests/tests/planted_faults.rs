@@ -12,6 +12,7 @@ use raypencil_scene::{
     Scene, SensorId,
 };
 use raypencil_terrain::{RandomGround, builtin};
+use raypencil_tests::lattice;
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tracer::Tracer;
 
@@ -80,6 +81,10 @@ fn plant(fault: Fault) -> Plant {
         // Every ray passes through a vertex, an edge or a diagonal of the wall. All numbers are dyadic, so
         // that side functions are exactly 0.
         Fault::EdgesExcluded => ("a wall whose edges the rays meet", lattice(), Everywhere),
+        // Every ray passes within rounding of a vertex, an edge or a diagonal.
+        Fault::EdgesReckonedApart => {
+            ("a turned lattice whose edges the rays meet", lattice::turned(31), Everywhere)
+        }
         // The rays of column 3 cross the plate's plane at x = 1/16 m, 2^-22 m beyond its right edge: that is
         // 2^-20 < 1e-6 of its width of 1/4 m. They must meet the wall.
         Fault::EdgesWidened => ("a plate beside the rays", before_wall(plate(false)), Everywhere),
@@ -287,8 +292,8 @@ impl<'a> Judges<'a> {
         let resolution = naive.resolution();
         [0, 1].map(|index| {
             let (name, judge) = &self.frames[index];
-            let a = Side { name, frame: judge, resolution };
-            let b = Side { name: naive.name(), frame: &frame, resolution };
+            let a = Side { name, frame: judge, resolution, attributions: None };
+            let b = Side { name: naive.name(), frame: &frame, resolution, attributions: None };
             (*name, compare(self.scene, a, b))
         })
     }

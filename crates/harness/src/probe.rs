@@ -182,7 +182,19 @@ impl Probe {
             .map(|answer| {
                 let cause = answer.cause.as_ref().map(|cause| {
                     let explained: Vec<String> = cause.explained.iter().map(explained_in_words).collect();
-                    serde_json::json!({ "switches": cause.switches.to_string(), "because": explained })
+                    let without: Vec<_> = cause
+                        .explained_without
+                        .iter()
+                        .map(|(exact, explained)| {
+                            let explained: Vec<String> = explained.iter().map(explained_in_words).collect();
+                            serde_json::json!({ "exact": exact.to_string(), "because": explained })
+                        })
+                        .collect();
+                    serde_json::json!({
+                        "switches": cause.switches.to_string(),
+                        "because": explained,
+                        "still_wrong_without": without,
+                    })
                 });
                 serde_json::json!({
                     "renderer": answer.renderer,
@@ -269,6 +281,10 @@ impl fmt::Display for Probe {
             writeln!(f, "  {}: {said} ({class})", answer.renderer)?;
             for one in answer.cause.iter().flat_map(|cause| &cause.explained) {
                 writeln!(f, "    {}", explained_in_words(one))?;
+            }
+            for (exact, explained) in answer.cause.iter().flat_map(|cause| &cause.explained_without) {
+                let explained: Vec<String> = explained.iter().map(explained_in_words).collect();
+                writeln!(f, "    and with {exact} exact: {}", explained.join("; "))?;
             }
             if let Some(hit) = &answer.hit {
                 write_values(f, hit)?;

@@ -44,6 +44,9 @@ pub enum Fault {
     ClipCaseLost,
     /// A ray exactly on an edge meets neither face: `u > 0` where it should be `u >= 0`.
     EdgesExcluded,
+    /// The published test of Moeller and Trumbore as it stands: two neighbours reckon their common edge each
+    /// from a corner of its own, so that rounding opens a crack between them.
+    EdgesReckonedApart,
     /// Faces are widened by a millionth of their size: barycentric coordinates from `-EPSILON` on.
     EdgesWidened,
     /// Faces with |n.q| below 1e-6 count as parallel to the ray: the `EPSILON` of the published test of
@@ -71,7 +74,7 @@ pub enum Fault {
 
 impl Fault {
     /// All of them.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 30] = [
         Self::HalfCellShift,
         Self::ColumnOffByOne,
         Self::RowsBottomUp,
@@ -90,6 +93,7 @@ impl Fault {
         Self::WindingOfOneQuadrant,
         Self::ClipCaseLost,
         Self::EdgesExcluded,
+        Self::EdgesReckonedApart,
         Self::EdgesWidened,
         Self::SmallDeterminantsDropped,
         Self::HitsBeforePlane,

@@ -1,0 +1,77 @@
+//! What the harness makes of answers at the limit of arithmetic: a crack is a defect however thin it is, and
+//! faces closer than rounding are no defect.
+
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3};
+use raypencil_harness::{Class, Judge, JudgeShare, SensorComparison, Side, compare_judged};
+use raypencil_scene::{Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId};
+use raypencil_tests::naive::{Fault, Naive};
+use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene};
+
+fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorComparison> {
+    let frames = [a, b].map(|renderer| renderer.render(scene, &Request::EVERYTHING));
+    let side = |renderer: &dyn Renderer, frame| Side {
+        name: if renderer.name() == a.name() { "a" } else { "b" },
+        frame,
+        resolution: renderer.resolution(),
+        attributions: None,
+    };
+    let judge = Judge::new(scene, JudgeShare::All);
+    compare_judged(&judge, side(a, &frames[0]), side(b, &frames[1]))
+}
+
+#[test]
+fn a_crack_is_a_defect_however_thin() {
+    // Every ray passes within 1e-16 of itself of an edge that two faces share, and nothing is behind them. A
+    // renderer that reckons the edge twice, with the rounding of two different corners, lets some of the rays
+    // through. The crack is some 1e-13 cells wide, where an honest renderer may displace a ray by 1e-9: but
+    // no displaced ray misses.
+    let scene = lattice::turned(101);
+    let leaking = Naive { fault: Some(Fault::EdgesReckonedApart) };
+    let map = leaking.render(&scene, &Request::EVERYTHING).camera.expect("the camera was asked for");
+    let through: u64 = (0..101)
+        .flat_map(|j| (0..101).map(move |i| (i, j)))
+        .filter(|&(i, j)| hit(&map, i, j).is_none())
+        .count() as u64;
+    assert!(through > 20, "{through} of 10201 rays slip through");
+    for honest in renderers() {
+        let sensors = compared(&scene, &*honest, &leaking);
+        assert_eq!(sensors[0].sensor, SensorId::Camera);
+        assert_eq!(sensors[0].of(Class::Defect), through, "{}", honest.name());
+    }
+    let [a, b] = renderers();
+    assert_eq!(compared(&scene, &*a, &*b)[0].of(Class::Defect), 0);
+}
+
+/// Two faces with a common edge that a row of pixels looks along, the far corner of the second moved by one unit
+/// in the last place of `f32`; from a camera at no special angle.
+fn nearly_coincident() -> Scene {
+    let pose =
+        Pose { position: DVec3::new(0.3, -1.7, 2.9), rotation: DQuat::from_xyzw(0.31, -0.52, 0.23, 0.74) };
+    let camera = rig::camera(1024, 9, 9e-6, 8e-3);
+    let camera = Mounted { scene_from_sensor: pose, sensor: camera };
+    let at = |i: f64, j: f64, z: f64| {
+        let q = DVec3::new((i - 512.0) * 9e-6, (j - 4.5) * 9e-6, 8e-3);
+        (pose * (q * (z / 8e-3))).as_vec3().to_array()
+    };
+    // The edge lies in the middle row, from beyond the left border to beyond the right one.
+    let (left, right, below) = (at(-5.0, 4.5, 2.0), at(1029.0, 4.5, 3.0), at(512.0, 700.0, 2.5));
+    let moved = [below[0], below[1], below[2].next_up()];
+    let vertices = vec![left, right, below, moved];
+    let ground = |faces: Vec<[u32; 3]>| -> Arc<Mesh> { mesh(vertices.clone(), faces) };
+    scene(ground(vec![[0, 2, 1], [0, 3, 1]]), camera, Vec::new())
+}
+
+#[test]
+fn faces_one_ulp_apart_are_rounding() {
+    let scene = nearly_coincident();
+    let [a, b] = renderers();
+    let found = &compared(&scene, &*a, &*b)[0];
+    let of = |class| found.of(class);
+    // Below the edge the two faces are up to 2e-7 m apart, which f64 tells; along it less than 1e-15 m.
+    assert_eq!(of(Class::Defect) + of(Class::Undecided), 0, "{:?}", found.defects);
+    assert!(of(Class::Rounding) > 0, "no ray is close enough: {:?}", found.by_class);
+    assert!(of(Class::Agree) > 4000, "{:?}", found.by_class);
+    assert_eq!(found.judged, found.compared);
+}
