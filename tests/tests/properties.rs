@@ -1,6 +1,7 @@
 //! What must hold for any rig on any ground, by proptest. `PROPTEST_CASES` changes the number of cases.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -76,7 +77,7 @@ fn both_renderers_agree_on_every_ray() {
 
 #[test]
 fn every_error_of_the_paper_has_a_confirmed_cause() {
-    let approximated = Cell::new(0);
+    let approximated = RefCell::new(BTreeMap::new());
     check(1500, cases(), |case: Case| {
         let scene = case.scene();
         let tracer = Tracer::new();
@@ -89,14 +90,23 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
             let a = Side { attributions: Some(&attributions), ..side(&scanline, &a) };
             let sensors = agreement(&scene, a, side(&tracer, &b))
                 .map_err(|error| TestCaseError::fail(format!("{}: {error}", scanline.name())))?;
-            let approximations: u64 = sensors.iter().map(|sensor| sensor.of(Class::Approximation)).sum();
-            prop_assert!(switches != Switches::EXACT || approximations == 0);
-            approximated.set(approximated.get() + approximations);
+            for sensor in &sensors {
+                let causes = &sensor.approximations;
+                let rays: u64 = causes.values().map(|tally| tally.rays).sum();
+                prop_assert_eq!(rays, sensor.of(Class::Approximation));
+                for (cause, tally) in causes {
+                    prop_assert!(switches.contains(*cause), "{} for {}", cause, switches);
+                    *approximated.borrow_mut().entry(*cause).or_insert(0) += tally.rays;
+                }
+            }
         }
         Ok(())
     });
     // Sheets of up to a metre and ranges from 30 cm: the paper errs often enough to be seen.
-    assert!(approximated.get() > 10_000, "{}", approximated.get());
+    let approximated = approximated.into_inner();
+    let of = |switches: Switches| approximated.get(&switches).copied().unwrap_or(0);
+    let [_, beam_edges, skip_rules, both] = Switches::subsets().collect::<Vec<_>>()[..] else { panic!() };
+    assert!(of(beam_edges) > 5000 && of(skip_rules) > 5000 && of(both) > 50, "{approximated:?}");
 }
 
 #[test]

@@ -104,6 +104,41 @@ fn probe_tells_what_both_say_of_one_ray() {
 }
 
 #[test]
+fn the_papers_errors_have_causes() {
+    // A sheet of 80 mm: at pencil 715,4 the straight side of a pyramid's face is drawn beyond the pencil.
+    let folder = folder();
+    let paper = ["--thickness", "80", "--with", "scanline-paper,tracer"];
+    let arguments = [["validate", "pyramids", "--json", "-o", "out"].as_slice(), &paper].concat();
+    let output = raypencil(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(summary["defects"], 0);
+    let of_cause = summary["approximations"]["beam-edges"].as_u64().expect("rays of that cause");
+    assert!(of_cause > 10, "{summary:#}");
+    assert_eq!(summary["agree"].as_u64().unwrap() + of_cause, summary["compared"].as_u64().unwrap());
+
+    let ray = ["--beam", "0", "--pencil", "715,4"];
+    let arguments = [["probe", "pyramids"].as_slice(), &paper, &ray].concat();
+    let said = text(&raypencil(folder.path(), &arguments).stdout);
+    for words in [
+        "(approximation: beam-edges)",
+        "is lost: the pencil lies between a true side and the straight line drawn for it",
+        "tracer: face 130 (exact)",
+        "again: raypencil probe pyramids --thickness 80 --with scanline-paper,tracer --beam 0 --pencil 715,4",
+    ] {
+        assert!(said.contains(words), "`{words}` is not in:\n{said}");
+    }
+    // One switch of the default renderer does the same; the renderer says so in its name.
+    let arguments = ["probe", "pyramids", "--thickness", "80", "--switch", "beam-edges=paper"];
+    let said = text(&raypencil(folder.path(), &[arguments.as_slice(), &ray].concat()).stdout);
+    assert!(said.contains("scanline-paper-beam-edges: face 54 (approximation: beam-edges)"), "{said}");
+    // And the other one does not.
+    let arguments = ["probe", "pyramids", "--thickness", "80", "--switch", "skip-rules=paper"];
+    let said = text(&raypencil(folder.path(), &[arguments.as_slice(), &ray].concat()).stdout);
+    assert!(said.contains("scanline-paper-skip-rules: face 130 (exact)"), "{said}");
+}
+
+#[test]
 fn render_writes_one_renderers_maps() {
     let folder = folder();
     let output = raypencil(folder.path(), &["render", "small.toml", "--with", "tracer", "-o", "maps"]);
@@ -128,6 +163,19 @@ fn trouble_is_one_clear_message() {
         &raypencil(at, &["validate", "small.toml", "--with", "scanline,magic"]),
         &["magic", "scanline"],
     );
+    let switch = |words: &'static str| raypencil(at, &["validate", "small.toml", "--switch", words]);
+    assert_trouble(&switch("beam-edges"), &["beam-edges=paper"]);
+    assert_trouble(&switch("beam-edges=maybe"), &["beam-edges=paper"]);
+    assert_trouble(&switch("edges=paper"), &["edges", "beam-edges, skip-rules"]);
+    let without = ["validate", "small.toml", "--with", "tracer,referee", "--switch", "beam-edges=paper"];
+    assert_trouble(&raypencil(at, &without), &["no switches", "scanline"]);
+    let twice =
+        ["validate", "small.toml", "--with", "scanline,scanline-paper", "--switch", "beam-edges=paper"];
+    let output = raypencil(at, &twice);
+    assert_eq!(output.status.code(), Some(0), "different switches: {}", text(&output.stderr));
+    std::fs::remove_dir_all(at.join("out")).unwrap();
+    let twice = [twice.as_slice(), &["--switch", "skip-rules=paper"]].concat();
+    assert_trouble(&raypencil(at, &twice), &["scanline-paper is there twice"]);
     assert_trouble(&raypencil(at, &["validate", "small.toml", "--fan", "180"]), &["fan", "180"]);
     assert_trouble(&raypencil(at, &["validate", "small.toml", "--at", "1000,0"]), &["no ground", "1000"]);
     assert_trouble(&raypencil(at, &["probe", "small.toml", "--pixel", "64,0"]), &["64,0", "64 x 48"]);
