@@ -136,7 +136,8 @@ fn rulings_tell_rounding_from_wrong() {
     assert_eq!(rule(4, Some(3), 1e-9), Ruling::Tie);
     assert_eq!(rule(4, None, 1e-3), Ruling::Wrong);
     // An index that the mesh does not have.
-    let none = referee.rule(CAMERA, 4, 4, Some(FaceId(6)), Tolerance { lateral: 1e-9, depth: 0.0 });
+    let none =
+        referee.rule(CAMERA, 4, 4, Some(FaceId(6)), Tolerance { lateral: 1e-9, depth: 0.0, position: 0.0 });
     assert_eq!(none, None);
 }
 
