@@ -124,7 +124,9 @@ fn rulings_tell_rounding_from_wrong() {
     let scene = looking_along_z(vertices, six, 100.0);
     let referee = Referee::new(&scene);
     let rule = |i, answer: Option<u32>, lateral| {
-        referee.rule(CAMERA, i, 4, answer.map(FaceId), Tolerance { lateral, depth: 1e-12 }).unwrap()
+        referee
+            .rule(CAMERA, i, 4, answer.map(FaceId), Tolerance { lateral, depth: 1e-12, position: 0.0 })
+            .unwrap()
     };
     // On the edge of faces 0 and 5: both tie. A miss there is never admissible, however coarse.
     assert_eq!(rule(5, Some(0), 1e-9), Ruling::Tie);
@@ -149,7 +151,8 @@ fn an_answer_just_beyond_an_edge_is_rounding_with_its_witness() {
     let scene = looking_along_z(vertices, vec![[0, 2, 1]], 100.0);
     let referee = Referee::new(&scene);
     assert_eq!(faces(&scene, 4, 4), [0]);
-    let rule = |lateral| referee.rule(CAMERA, 4, 4, None, Tolerance { lateral, depth: 0.0 }).unwrap();
+    let rule =
+        |lateral| referee.rule(CAMERA, 4, 4, None, Tolerance { lateral, depth: 0.0, position: 0.0 }).unwrap();
     assert_eq!(rule(1e-9), Ruling::Wrong);
     let Ruling::Rounding(by) = rule(1e-8) else { panic!("{:?}", rule(1e-8)) };
     assert!(by.size() <= 1e-8);
@@ -169,7 +172,7 @@ fn faces_one_ulp_apart_are_rounding_in_depth() {
     let scene = looking_along_z(vertices, vec![[0, 2, 1], [3, 5, 4]], 100.0);
     assert_eq!(faces(&scene, 4, 4), [0]);
     let rule = |depth| {
-        let tolerance = Tolerance { lateral: 1e-9, depth };
+        let tolerance = Tolerance { lateral: 1e-9, depth, position: 0.0 };
         Referee::new(&scene).rule(CAMERA, 4, 4, Some(FaceId(1)), tolerance).unwrap()
     };
     assert_eq!(rule(1e-12), Ruling::Wrong);
