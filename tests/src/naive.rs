@@ -95,7 +95,7 @@ impl Renderer for Naive {
                 }));
             }
         }
-        Frame { camera, beams, stages }
+        Frame { camera, beams, returns: Vec::new(), flux: Vec::new(), stages }
     }
 }
 

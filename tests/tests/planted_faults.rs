@@ -8,8 +8,8 @@ use proptest::prelude::*;
 use raypencil_harness::{Class, SensorComparison, Side, compare};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Frame, Material, Mesh, Mounted, Pose, Profile, Renderer, Request,
-    Scene, SensorId,
+    Atmosphere, Beam, Camera, FluxModel, Frame, Lens, Material, Mesh, Mounted, Pose, Profile, Renderer,
+    Request, Scene, SensorId,
 };
 use raypencil_terrain::{RandomGround, builtin};
 use raypencil_tests::lattice;
@@ -138,6 +138,7 @@ fn rig(mesh: Arc<Mesh>, position: DVec3, heading: f64, length: f64) -> Scene {
         focal_length: 8e-3,
         principal_point: [31.3, 24.8],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range: 20.0,
     };
     let beam = Beam {
@@ -192,6 +193,7 @@ fn along_z(mesh: Arc<Mesh>, size: u32, plane: f64, slope: f64, step: f64, max_ra
         focal_length: plane,
         principal_point: [middle; 2],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range,
     };
     let beam = Beam {

@@ -116,6 +116,7 @@ fn causes(
         camera: frame.camera.is_some(),
         beams: !frame.beams.is_empty(),
         quantities: Quantities::RANGE_MAP,
+        ..Request::MAPS
     };
     let render = |switches: Switches| {
         Scanline::new(Options { switches, ..Options::EXACT }).render(judge.scene(), &request)

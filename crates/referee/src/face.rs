@@ -200,7 +200,7 @@ impl Polynomial for Nearness<'_> {
 mod tests {
     use super::*;
     use glam::{DQuat, DVec3};
-    use raypencil_scene::{Beam, Camera, Mounted, Pose, Profile};
+    use raypencil_scene::{Beam, Camera, Lens, Mounted, Pose, Profile};
 
     /// A number from 0 to 1 that depends on the seed alone (splitmix64).
     fn draw(seed: &mut u64) -> f64 {
@@ -224,6 +224,7 @@ mod tests {
             focal_length: 8e-3,
             principal_point: [31.3, 24.9],
             aperture: 2e-3,
+            lens: Lens::CLEAR,
             max_range: 20.0,
         };
         let beam = Beam {

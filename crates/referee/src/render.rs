@@ -43,7 +43,7 @@ impl Renderer for ExactRenderer {
         let camera = if request.camera { timed(SensorId::Camera) } else { None };
         let beams = if request.beams { scene.beams().len() } else { 0 };
         let beams = (0..beams).filter_map(|index| timed(SensorId::Beam(index))).collect();
-        Frame { camera, beams, stages }
+        Frame { camera, beams, returns: Vec::new(), flux: Vec::new(), stages }
     }
 }
 

@@ -166,6 +166,6 @@ impl Renderer for Scanline {
                 map
             })
             .collect();
-        Frame { camera, beams, stages }
+        Frame { camera, beams, returns: Vec::new(), flux: Vec::new(), stages }
     }
 }

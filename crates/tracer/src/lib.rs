@@ -94,7 +94,7 @@ impl Renderer for Tracer {
             .enumerate()
             .map(|(index, beam)| timed(SensorId::Beam(index), &SensorRays::of_beam(beam)))
             .collect();
-        Frame { camera, beams, stages }
+        Frame { camera, beams, returns: Vec::new(), flux: Vec::new(), stages }
     }
 }
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Frame, Material, Mesh, Mounted, Pose, Profile, Renderer, Request,
-    Scene, SensorMap,
+    Atmosphere, Beam, Camera, FluxModel, Frame, Lens, Material, Mesh, Mounted, Pose, Profile, Renderer,
+    Request, Scene, SensorMap,
 };
 use raypencil_terrain::{Ground, height_at};
 
@@ -23,6 +23,7 @@ pub(crate) fn square_camera(max_range: f64) -> Camera {
         focal_length: 1.0 / 128.0,
         principal_point: [64.0; 2],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range,
     }
 }
@@ -83,6 +84,7 @@ pub(crate) fn rig_on(ground: Ground, thickness: f64, max_range: f64) -> Scene {
         focal_length: 8e-3,
         principal_point: [128.0; 2],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range,
     };
     let beam = Beam {
