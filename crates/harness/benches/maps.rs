@@ -63,7 +63,7 @@ const BEAMS: Request = Request { camera: false, quantities: Quantities::RANGE_MA
 /// Renders over and over on so many threads; 0 is all cores.
 fn frames(bencher: Bencher, name: &str, threads: usize, request: Request, items: u64) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let renderer = renderer(name).expect("a renderer of this house");
+    let renderer = contender(name).expect("a renderer of this house").renderer;
     let scene = &*SCENE;
     let render = || pool.install(|| renderer.render(black_box(scene), &request));
     black_box(render());
@@ -93,6 +93,6 @@ fn both_beams_one_thread(bencher: Bencher, name: &str) {
 fn first_frame(bencher: Bencher, name: &str) {
     let scene = &*SCENE;
     bencher
-        .with_inputs(|| renderer(name).expect("a renderer of this house"))
+        .with_inputs(|| contender(name).expect("a renderer of this house").renderer)
         .bench_local_values(|renderer| renderer.render(black_box(scene), &Request::EVERYTHING));
 }
