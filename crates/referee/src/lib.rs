@@ -13,6 +13,8 @@
 //! forms, region    the conditions as functions of a small displacement
 //! margin, surface  how far a verdict is from changing, with a witness
 //! ruling           whether an answer is right, or admissible
+//! sight            what the camera sees of a pencil's hit
+//! light            what comes back of a pencil, as values
 //! paper            whether an approximation of the paper explains an answer
 //! truth            yes, no, or either, of what is known up to an interval
 //! render           the verdicts of a whole sensor
@@ -23,6 +25,7 @@
 mod cull;
 mod face;
 mod forms;
+mod light;
 mod margin;
 mod number;
 mod paper;
@@ -30,13 +33,16 @@ mod pencil;
 mod region;
 mod render;
 mod ruling;
+mod sight;
 mod surface;
 mod truth;
 mod vector;
 mod verdict;
 
+pub use light::Light;
 pub use margin::Margin;
 pub use paper::{Approximations, Explained, Reason};
 pub use render::ExactRenderer;
 pub use ruling::{Ruling, Tolerance};
+pub use sight::Sight;
 pub use verdict::{Displacement, Referee, Verdict};
