@@ -14,6 +14,7 @@
 //! margin, surface  how far a verdict is from changing, with a witness
 //! ruling           whether an answer is right, or admissible
 //! sight            what the camera sees of a pencil's hit
+//! sight_ruling     whether an answer about that is right, or admissible
 //! light            what comes back of a pencil, as values
 //! paper            whether an approximation of the paper explains an answer
 //! truth            yes, no, or either, of what is known up to an interval
@@ -34,6 +35,7 @@ mod region;
 mod render;
 mod ruling;
 mod sight;
+mod sight_ruling;
 mod surface;
 mod truth;
 mod vector;
@@ -45,4 +47,5 @@ pub use paper::{Approximations, Explained, Reason};
 pub use render::ExactRenderer;
 pub use ruling::{Ruling, Tolerance};
 pub use sight::Sight;
+pub use sight_ruling::SightRuling;
 pub use verdict::{Displacement, Referee, Verdict};

@@ -164,6 +164,12 @@ impl<'a> ExactWay<'a> {
         DVec3::new(x, y, z) / self.fast.scale.middle()
     }
 
+    /// r, to f64 rounding, metres.
+    pub(crate) fn depth(&self) -> f64 {
+        let way = &self.fast;
+        way.seen.0[2].middle() / (way.frame_scale.middle() * way.scale.middle())
+    }
+
     /// Whether `other` meets the segment from the point to the image plane.
     pub(crate) fn is_hidden_by(&self, other: &Face) -> bool {
         let facing = self.sign(&Facing(other));

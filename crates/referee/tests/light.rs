@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use raypencil_referee::{Displacement, ExactRenderer, Referee};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pixel, Pose, Profile, Renderer,
-    Request, Return, Sampling, Scene,
+    Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pixel, Pose, Profile,
+    Renderer, Request, Return, Sampling, Scene,
 };
 
 /// One pencil at the scene's origin along z, on 2 m of range; a camera 1 m to its right, looking along z too. The
@@ -147,7 +147,9 @@ fn what_meets_the_segment_hides_the_point() {
     // The segment passes (1/2, 0, 1). A plate there hides the point, whichever way it faces, also if only its corner
     // or its edge is touched; a plate beside it does not.
     let plate = |x: f32| [[x, 0.0, 1.0], [x + 0.25, 0.25, 1.0], [x + 0.25, -0.25, 1.0]];
-    for (face, seen) in [(plate(0.4375), false), (plate(0.5), false), (plate(0.53125), true), (plate(0.1875), true)] {
+    for (face, seen) in
+        [(plate(0.4375), false), (plate(0.5), false), (plate(0.53125), true), (plate(0.1875), true)]
+    {
         assert_eq!(visible(&[face]), seen, "{face:?}");
         assert_eq!(visible(&[[face[0], face[2], face[1]]]), seen, "{face:?} turned");
     }
