@@ -42,13 +42,29 @@ pub struct Cause {
 #[derive(Debug, Clone, Default)]
 pub struct Attributions {
     by_ray: HashMap<(SensorId, u32, u32), Cause>,
+    of_sight: HashMap<(SensorId, u32, u32), SightCause>,
+}
+
+/// What explains one answer about what the camera sees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SightCause {
+    /// The smallest set of switches that restores an exact answer and is confirmed.
+    pub switches: Switches,
 }
 
 impl Attributions {
     /// Finds the causes of `frame`, which the scanline renderer made of the judge's scene with `switches`.
     pub fn find(judge: &Judge<'_>, frame: &Frame, switches: Switches, resolution: Resolution) -> Self {
         let by_ray = causes(judge, frame, switches, resolution).into_iter();
-        Self { by_ray: by_ray.map(|(Place { sensor, i, j }, cause)| ((sensor, i, j), cause)).collect() }
+        Self {
+            by_ray: by_ray.map(|(Place { sensor, i, j }, cause)| ((sensor, i, j), cause)).collect(),
+            of_sight: HashMap::new(),
+        }
+    }
+
+    /// The cause of the answer about what the camera sees of one pencil's hit, if it has one.
+    pub fn sight_cause(&self, Place { sensor, i, j }: Place) -> Option<&SightCause> {
+        self.of_sight.get(&(sensor, i, j))
     }
 
     /// The cause of the answer to one ray, if it has one.

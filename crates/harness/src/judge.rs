@@ -1,7 +1,7 @@
 //! When the referee is asked, and with what tolerance.
 
-use raypencil_referee::{Approximations, Explained, Referee, Ruling, Tolerance};
-use raypencil_scene::{FaceId, Resolution, Scene, SensorId};
+use raypencil_referee::{Approximations, Displacement, Explained, Referee, Ruling, SightRuling, Tolerance};
+use raypencil_scene::{FaceId, Pixel, Resolution, Scene, SensorId};
 
 use crate::bounds::Bounds;
 use crate::compare::Place;
@@ -56,6 +56,22 @@ impl<'s> Judge<'s> {
         let tolerance = self.tolerance(place, answer, range, resolution);
         // A face that the mesh does not have is as wrong as can be.
         self.referee.rule(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
+    }
+
+    /// Rules on what one side says of the camera's view of a pencil's hit on `face`.
+    pub(crate) fn rule_sight(
+        &self,
+        place: Place,
+        face: FaceId,
+        range: Option<f64>,
+        visible: bool,
+        pixel: Option<Pixel>,
+        resolution: Resolution,
+    ) -> Option<SightRuling> {
+        let SensorId::Beam(beam) = place.sensor else { return None };
+        let tolerance = self.tolerance(place, Some(face), range, resolution);
+        let Place { i, j, .. } = place;
+        self.referee.rule_sight(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
     }
 
     /// Explains one side's answer to a ray by the approximations it was made with; `None` if they do not.

@@ -146,7 +146,7 @@ fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
     let cause = (ruling == Ruling::Wrong)
         .then(|| Attributions::find(judge, &frame, contender.approximations(), renderer.resolution()))
         .and_then(|attributions| attributions.cause(place).cloned());
-    let class = Class::of(ruling, cause.as_ref());
+    let class = Class::of(ruling, cause.is_some());
     ProbedAnswer { renderer: renderer.name().to_string(), hit, ruling, class, cause }
 }
 

@@ -66,7 +66,7 @@ fn status(subject: &Subject, sensor: &SensorComparison, quantity: Quantity, tall
         lines.push(format!("    {}", probe_command(subject, defect.place)));
     }
     if let Some(worst) = tally.worst_error {
-        let value = super::text::quantity(worst.value, quantity.unit());
+        let value = super::text::quantity(worst.value, quantity.unit(subject.scene.flux_model()));
         lines.push(format!("Worst error: {value} at {}", worst.place));
         lines.push(format!("    {}", probe_command(subject, worst.place)));
     }

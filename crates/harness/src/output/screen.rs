@@ -63,7 +63,7 @@ fn quantities(validation: &Validation) -> String {
             count(tally.of(Class::Rounding)),
             count(tally.of(Class::Approximation)),
             count(tally.of(Class::Defect)),
-            or_dash(worst(tally.worst_error, quantity.unit())),
+            or_dash(worst(tally.worst_error, quantity.unit(validation.subject.scene.flux_model()))),
             or_dash(tally.worst_error.map_or(String::new(), |worst| short(worst.place))),
             or_dash(worst(tally.worst_ratio, "")),
         ]);

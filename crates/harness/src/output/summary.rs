@@ -195,7 +195,7 @@ fn of_pair<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'a> {
 fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorComparison) -> SensorSummary<'a> {
     let quantities = comparison.quantities.iter().map(|(quantity, tally)| QuantitySummary {
         quantity: *quantity,
-        unit: quantity.unit(),
+        unit: quantity.unit(subject.scene.flux_model()),
         agree: tally.of(Class::Agree),
         tie: tally.of(Class::Tie),
         rounding: tally.of(Class::Rounding),

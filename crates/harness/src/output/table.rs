@@ -49,7 +49,7 @@ pub(crate) fn rows<'a>(
             defects: text::count(tally.of(Class::Defect)),
             fails: tally.of(Class::Defect) > 0,
             not_compared: text::count(tally.not_compared),
-            error: extreme(subject, tally.worst_error, quantity.unit()),
+            error: extreme(subject, tally.worst_error, quantity.unit(subject.scene.flux_model())),
             ratio: extreme(subject, tally.worst_ratio, ""),
         })
         .collect()
