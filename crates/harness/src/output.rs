@@ -35,7 +35,7 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use raypencil_scene::{Frame, SensorId, SensorMap};
-use raypencil_scene_io::{Attributes, SceneIoError, write_atomically, write_exr_map};
+use raypencil_scene_io::{Attributes, ExrMap, SceneIoError, write_atomically, write_exr};
 
 use crate::run::{Progress, Rendered, Subject, Validation};
 
@@ -161,9 +161,23 @@ pub fn write_maps(
         scene_sha256: subject.sha256.clone(),
         extra: Vec::new(),
     };
+    let model = subject.scene.flux_model();
     let write = |map: &SensorMap| {
         let path = folder.join(format!("{}.exr", map.sensor));
-        write_exr_map(&path, map, &attributes)?;
+        let mut exr = ExrMap::from_sensor_map(map, &attributes);
+        match map.sensor {
+            SensorId::Camera => {
+                for (beam, image) in frame.flux.iter().enumerate() {
+                    exr.insert_flux(beam, image, model);
+                }
+            }
+            SensorId::Beam(index) => {
+                if let Some(returns) = frame.returns.get(index) {
+                    exr.insert_returns(returns, model);
+                }
+            }
+        }
+        write_exr(&path, &exr)?;
         Ok(path)
     };
     frame.maps().map(write).collect()

@@ -83,6 +83,7 @@ struct CauseSummary {
     lost: u64,
     added: u64,
     worst_range_error_m: Option<WorstSummary>,
+    flux_changed: f64,
 }
 
 #[derive(Serialize)]
@@ -243,6 +244,7 @@ fn of_causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<Ca
         lost: tally.lost,
         added: tally.added,
         worst_range_error_m: worst(subject, tally.worst_range),
+        flux_changed: tally.flux_changed,
     };
     approximations.iter().map(of_cause).collect()
 }
