@@ -17,6 +17,7 @@
 //! sight_ruling     whether an answer about that is right, or admissible
 //! light            what comes back of a pencil, as values
 //! paper            whether an approximation of the paper explains an answer
+//! paper_sight      the same of what the camera sees
 //! truth            yes, no, or either, of what is known up to an interval
 //! render           the verdicts of a whole sensor
 //! ```
@@ -30,6 +31,7 @@ mod light;
 mod margin;
 mod number;
 mod paper;
+mod paper_sight;
 mod pencil;
 mod region;
 mod render;
@@ -44,6 +46,7 @@ mod verdict;
 pub use light::Light;
 pub use margin::Margin;
 pub use paper::{Approximations, Explained, Reason};
+pub use paper_sight::{ExplainedSight, SightApproximations, SightReason};
 pub use render::ExactRenderer;
 pub use ruling::{Ruling, Tolerance};
 pub use sight::Sight;
