@@ -10,6 +10,7 @@
 //! ```
 
 mod junit;
+mod light;
 mod markdown;
 mod picture;
 mod plot;

@@ -15,9 +15,6 @@ use crate::pencil::{Aim, Sensor};
 use crate::sight::ExactWay;
 use crate::verdict::{Displacement, Referee};
 
-/// Relative error of a flux, in units of u.
-pub(crate) const ROUNDINGS: f64 = 120.0;
-
 /// The returns of one beam, pencil by pencil.
 #[derive(Debug)]
 pub struct Light<'r, 's> {
