@@ -70,11 +70,49 @@ pub enum Fault {
     NormalInSensorFrame,
     /// The incidence is reckoned against the sensor's axis, not against the ray: right for a distant sun.
     IncidenceAgainstAxis,
+    /// cos(psi) where cos(theta) should be: the light's angle for the camera's.
+    IncidenceForEmission,
+    /// cos(theta) left out: a face as bright from every side.
+    EmissionForgotten,
+    /// The air weakens light on its way to the ground only.
+    AttenuationOnce,
+    /// 1 / R^2 for 1 / r^2: the wrong one of two distances.
+    RangeForCameraDepth,
+    /// Shares of power from a table that was made for the first beam.
+    StaleShares,
+    /// phi of the pixel's centre in the radiometric model too.
+    PhiOfPixelCentre,
+    /// cos^4(phi), the law of a lens's image, where a pencil's flux has cos^3(phi).
+    FourthPower,
+    /// The aperture taken for its radius: four times as bright.
+    ApertureAsRadius,
+    /// The filter's pass band does not move with the angle.
+    FilterAlongAxis,
+    /// A normalised profile is not divided by its sum.
+    ProfileNotNormalised,
+    /// All ground has the reflectivity of the first material.
+    ReflectivityOfFirst,
+    /// Faces within a millimetre of the point do not hide it: the epsilon of a shadow ray.
+    ShadowEpsilon,
+    /// Only fronts cast shadows: culling left on.
+    ShadowsOfFronts,
+    /// Shadow rays go on beyond the point.
+    ShadowsFromBehind,
+    /// What is hidden is lit all the same.
+    HiddenLit,
+    /// The camera's maximum range limits what it sees of the stripes.
+    CameraRangeLimits,
+    /// A pixel's row for its column.
+    PixelTransposed,
+    /// The nearest pixel centre by rounding coordinates that count from corners.
+    PixelRounded,
+    /// A pixel keeps the flux of its last pencil: `=` for `+=`.
+    LastPencilWins,
 }
 
 impl Fault {
     /// All of them.
-    pub const ALL: [Self; 30] = [
+    pub const ALL: [Self; 49] = [
         Self::HalfCellShift,
         Self::ColumnOffByOne,
         Self::RowsBottomUp,
@@ -105,5 +143,24 @@ impl Fault {
         Self::NormalNotNormalised,
         Self::NormalInSensorFrame,
         Self::IncidenceAgainstAxis,
+        Self::IncidenceForEmission,
+        Self::EmissionForgotten,
+        Self::AttenuationOnce,
+        Self::RangeForCameraDepth,
+        Self::StaleShares,
+        Self::PhiOfPixelCentre,
+        Self::FourthPower,
+        Self::ApertureAsRadius,
+        Self::FilterAlongAxis,
+        Self::ProfileNotNormalised,
+        Self::ReflectivityOfFirst,
+        Self::ShadowEpsilon,
+        Self::ShadowsOfFronts,
+        Self::ShadowsFromBehind,
+        Self::HiddenLit,
+        Self::CameraRangeLimits,
+        Self::PixelTransposed,
+        Self::PixelRounded,
+        Self::LastPencilWins,
     ];
 }
