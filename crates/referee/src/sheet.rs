@@ -1,0 +1,240 @@
+//! Whether the nearest range is continuous over a square of displacements.
+//!
+//! # The proof
+//!
+//! For a square of radius r around a centre call a face *possible* if no condition of its own (edges, front,
+//! plane, range, or two of them combined) fails over all of the square. From a possible face walk over each of its
+//! edges that may lie in the square to a face that has the same edge the other way round. If that succeeds
+//! for every edge, and the front, plane and range conditions of all faces walked over hold over all of the
+//! square, then these faces form a sheet without an end in it: the union of their images is closed, not empty,
+//! and has no border inside the square, since a border could only be an edge, and on the other side of every edge
+//! lies the mate. So the sheet covers the square; having no fold (at a fold one of the two faces shows its back),
+//! it covers it once, and its range is continuous.
+//!
+//! If the nearest face's sheet has no end, and every other possible face either lies in a sheet without an
+//! end or is certainly met after all faces of the first sheet, then the nearest range over the square is the
+//! least of finitely many continuous functions, and there is no jump. If there is no possible face at all, all
+//! of the square misses.
+//!
+//! # The largest such square
+//!
+//! It needs no search. An edge that is absent from the square of radius d has to be walked over in larger squares
+//! only, and so have all faces behind it: each face enters at the least d over all ways to it of the greatest d on
+//! the way (`sheet`, which takes the faces in the order of their d, as Dijkstra does). A sheet ends at the least
+//! radius at which a face that has entered fails a condition, or an edge without a mate comes into the square.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::forms::{FaceForms, Form, beside, certainly_fails, line_leaves};
+use crate::near::{Mate, Neighbourhood};
+
+/// What is asked of one face about one centre.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    edges: [Form; 3],
+    /// The largest squares in which: the triangle does not lie, the face is not possible, each edge does not lie,
+    /// and front, plane and range hold.
+    triangle_absent: f64,
+    absent: f64,
+    edge_absent: [f64; 3],
+    holds: f64,
+}
+
+impl Seen {
+    fn of(face: &FaceForms<'_>, centre: [f64; 2]) -> Self {
+        let own = face.own().map(|form| form.about(centre));
+        let [a, b, c, front, plane, range] = own;
+        let edges = [a, b, c];
+        let corners = &face.corners;
+        let inside = edges.map(|edge| edge.holds_within());
+        let others = [front, plane, range];
+        let holds = others.iter().map(Form::holds_within).fold(1.0, f64::min);
+        let triangle_absent = face.triangle_absent(&edges, centre);
+        let known = face.is_before();
+        let mut absent = others.iter().map(Form::fails_within).fold(triangle_absent, f64::max);
+        if absent < 1.0 && (holds < 1.0 || !known) {
+            absent = absent.max(certainly_fails(&own, if known { 3 } else { 0 }, 1.0));
+        }
+        let edge_absent = [0, 1, 2].map(|k: usize| {
+            let next = (k + 1) % 3;
+            let mut best = inside[k].max(triangle_absent);
+            if best < 1.0 {
+                best = best.max(beside([&corners[k], &corners[next]], centre));
+            }
+            if best < 1.0 && !known {
+                let others = [&edges[next], &edges[(k + 2) % 3]];
+                best = others.into_iter().map(|other| line_leaves(&edges[k], other)).fold(best, f64::max);
+            }
+            best
+        });
+        Self { edges, triangle_absent, absent, edge_absent, holds }
+    }
+}
+
+/// A sheet: up to which radius it has no end, and the faces of it with the radius at which each enters.
+struct Sheet {
+    radius: f64,
+    faces: Vec<(usize, f64)>,
+}
+
+/// What is known about one centre.
+struct Around<'n, 'a> {
+    near: &'n mut Neighbourhood<'a>,
+    centre: [f64; 2],
+    seen: Vec<Option<Seen>>,
+}
+
+impl Neighbourhood<'_> {
+    /// A radius of at most `cap` up to which the nearest range is certainly continuous around `centre`: a square
+    /// that must lie within a cell of the ray. 0 if there is none.
+    pub(crate) fn continuous_within(&mut self, centre: [f64; 2], nearest: &[usize], cap: f64) -> f64 {
+        let mut around = Around { near: self, centre, seen: Vec::new() };
+        match nearest.first() {
+            Some(&first) => around.continuous(first, cap),
+            None => around.all_miss(cap),
+        }
+    }
+}
+
+impl Around<'_, '_> {
+    fn seen(&mut self, index: usize) -> Seen {
+        if self.seen.len() <= index {
+            self.seen.resize(self.near.faces.len(), None);
+        }
+        *self.seen[index].get_or_insert_with(|| Seen::of(&self.near.faces[index], self.centre))
+    }
+
+    fn all_miss(&mut self, cap: f64) -> f64 {
+        self.near.reach_all();
+        (0..self.near.faces.len()).fold(cap, |r, index| if r > 0.0 { r.min(self.seen(index).absent) } else { r })
+    }
+
+    fn continuous(&mut self, first: usize, cap: f64) -> f64 {
+        let sheet = self.sheet(first, cap);
+        let mut r = sheet.radius;
+        // Faces that are known not to make a jump: those of sheets without an end.
+        let mut continuous = vec![false; self.near.faces.len()];
+        let mark = |continuous: &mut Vec<bool>, sheet: &Sheet| {
+            for &(index, enters) in &sheet.faces {
+                if enters < sheet.radius {
+                    if continuous.len() <= index {
+                        continuous.resize(index + 1, false);
+                    }
+                    continuous[index] = true;
+                }
+            }
+        };
+        mark(&mut continuous, &sheet);
+        // All that may be met before the first sheet's end has been found on the way; it may become more.
+        let mut index = 0;
+        while index < self.near.faces.len() && r > 0.0 {
+            let known = continuous.get(index).copied().unwrap_or(false);
+            if !known && self.seen(index).absent < r {
+                let behind = self.behind(index, &sheet, r);
+                let mut enough = behind.max(self.seen(index).absent);
+                if enough < r {
+                    let own = self.sheet(index, r);
+                    enough = enough.max(own.radius);
+                    if own.radius >= r {
+                        mark(&mut continuous, &own);
+                    }
+                }
+                r = r.min(enough);
+            }
+            index += 1;
+        }
+        r
+    }
+
+    /// The sheet of a face, followed up to the radius `cap`.
+    fn sheet(&mut self, start: usize, cap: f64) -> Sheet {
+        let mut r = cap;
+        let mut faces: Vec<(usize, f64)> = Vec::new();
+        let mut enters = vec![f64::INFINITY; self.near.faces.len()];
+        let mut done = vec![false; self.near.faces.len()];
+        // Bits of numbers that are not negative are in the order of the numbers.
+        let mut waiting = BinaryHeap::from([Reverse((0.0_f64.to_bits(), start))]);
+        enters[start] = 0.0;
+        while let Some(Reverse((bits, index))) = waiting.pop() {
+            let d = f64::from_bits(bits);
+            if d >= r {
+                break;
+            }
+            if std::mem::replace(&mut done[index], true) {
+                continue;
+            }
+            faces.push((index, d));
+            // What lies behind it, up to its far end, may be its mates or hidden by it.
+            if self.near.reach_to(self.near.faces[index].farthest) {
+                enters.resize(self.near.faces.len(), f64::INFINITY);
+                done.resize(self.near.faces.len(), false);
+            }
+            let seen = self.seen(index);
+            r = r.min(seen.holds.max(d));
+            for k in 0..3 {
+                let at = seen.edge_absent[k].max(d);
+                if at >= r {
+                    continue;
+                }
+                match self.mate(index, k) {
+                    None => r = r.min(at),
+                    Some(Mate::Beside) => {}
+                    Some(Mate::Near(mate)) => {
+                        // The edge is the mate's as well: where all of it is absent, so is the edge.
+                        let at = at.max(self.seen(mate).triangle_absent);
+                        if at < enters[mate] {
+                            enters[mate] = at;
+                            waiting.push(Reverse((at.to_bits(), mate)));
+                        }
+                    }
+                }
+            }
+        }
+        Sheet { radius: r, faces }
+    }
+
+    /// The face on the other side of edge `k`. Where more than two faces share an edge, any front will do: the one
+    /// that goes on farthest.
+    fn mate(&mut self, index: usize, k: usize) -> Option<Mate> {
+        let mates = self.near.mates(index, k);
+        if mates.len() <= 1 || mates.contains(&Mate::Beside) {
+            return mates.into_iter().max_by_key(|mate| *mate == Mate::Beside);
+        }
+        let goes_on = |mate: &Mate, around: &mut Self| match mate {
+            Mate::Near(mate) => around.seen(*mate).holds,
+            Mate::Beside => 1.0,
+        };
+        let mut best: Option<(Mate, f64)> = None;
+        for mate in mates {
+            let far = goes_on(&mate, self);
+            if best.is_none_or(|(_, best)| far > best) {
+                best = Some((mate, far));
+            }
+        }
+        best.map(|(mate, _)| mate)
+    }
+
+    /// A square in which a face is certainly not met at or before any face of a sheet that is met: the largest
+    /// that can be shown, or one of at least `enough`.
+    fn behind(&mut self, index: usize, sheet: &Sheet, enough: f64) -> f64 {
+        let mut least = enough;
+        for &(kept, enters) in &sheet.faces {
+            if enters >= least {
+                continue;
+            }
+            let (face, other) = (self.seen(index), self.seen(kept));
+            let before = self.near.faces[index].at_or_before(&self.near.faces[kept]).about(self.centre);
+            let mut radius = before.fails_within().max(other.absent).max(enters);
+            if radius < least {
+                let ([a, b, c], [d, e, f]) = (face.edges, other.edges);
+                radius = radius.max(certainly_fails(&[a, b, c, d, e, f, before], 0, least));
+            }
+            least = least.min(radius);
+            if least <= 0.0 {
+                break;
+            }
+        }
+        least
+    }
+}
