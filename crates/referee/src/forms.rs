@@ -334,6 +334,16 @@ pub(crate) fn beside<const N: usize>(corners: [&Corner; N], centre: [f64; 2]) ->
     best.min(1.0)
 }
 
+/// Where a face lies as to the unit square of displacements.
+pub(crate) enum Place<'a> {
+    /// It may be met.
+    Near(FaceForms<'a>),
+    /// No ray of the square meets its triangle between the SPP and the longest range.
+    Beside,
+    /// No ray of the square meets its front; its edges may lie anywhere.
+    Back,
+}
+
 /// The conditions of one face.
 #[derive(Debug, Clone)]
 pub(crate) struct FaceForms<'a> {
@@ -351,6 +361,8 @@ pub(crate) struct FaceForms<'a> {
     area_size: f64,
     distance: f64,
     q_size: f64,
+    /// How far the lengths of the places may be off, metres.
+    off: f64,
     /// A range in metres that no point met in the unit square exceeds.
     pub(crate) farthest: f64,
 }
@@ -360,14 +372,25 @@ impl<'a> FaceForms<'a> {
         Self::of_edges(ray, face, &Placed::of(ray, face))
     }
 
-    /// `None` if the face's triangle certainly meets no ray of the unit square, by one line or plane.
-    pub(crate) fn unless_beside(ray: &MovingRay, face: &'a Face) -> Option<Self> {
+    /// Where the face lies as to the unit square, with its conditions if it may be met there.
+    ///
+    /// An edge's form is negative outside of a triangle that shows its front, and *inside* of one that shows
+    /// its back: only with the front is it known where the triangle lies.
+    pub(crate) fn in_square(ray: &MovingRay, face: &'a Face) -> Place<'a> {
         let placed = Placed::of(ray, face);
         if placed.is_beside(ray) {
-            return None;
+            return Place::Beside;
         }
         let forms = Self::of_edges(ray, face, &placed);
-        if forms.edges().iter().any(|edge| edge.fails_within() >= 1.0) { None } else { Some(forms) }
+        // Where the ray lies in the face's plane all forms vanish: ask how far away the triangle is.
+        if forms.closest(ray) > ray.max_range {
+            return Place::Beside;
+        }
+        if forms.edges().iter().any(|edge| edge.fails_within() >= 1.0) {
+            let shows_front = forms.own[3].holds_within() >= 1.0;
+            return if shows_front { Place::Beside } else { Place::Back };
+        }
+        Place::Near(forms)
     }
 
     fn of_edges(ray: &MovingRay, face: &'a Face, placed: &Placed) -> Self {
@@ -403,7 +426,6 @@ impl<'a> FaceForms<'a> {
         let [h, hy] = height;
         let [p, px, py] = approach;
         let [l, lx, ly] = ray.length;
-        let limit = ray.max_range;
         let rounded = 256.0 * U * area_size * (1.0 + 8.0 * f64::EPSILON);
         let front = Form {
             constant: -p,
@@ -421,17 +443,10 @@ impl<'a> FaceForms<'a> {
             error: rounded * (ray.plane * ray.q_size + distance),
             bend: 0.0,
         };
-        let range = Form {
-            constant: h * l - limit * p,
-            x: h * lx - limit * px,
-            y: h * ly + hy * l - limit * py,
-            xy: hy * lx,
-            error: rounded * ray.q_size * (limit + distance),
-            bend: (h.abs() + hy.abs() + rounded * distance) * ray.length_bend * (1.0 + 4.0 * f64::EPSILON),
-        };
         // The point met lies in the triangle, no farther from a displaced start than a corner is.
         let to_corners = placed.corners.map(DVec3::length).into_iter().fold(0.0, f64::max);
         let off = 128.0 * U * placed.sizes.into_iter().fold(0.0, f64::max);
+        let range = range_form(ray, height, approach, area_size, distance, ray.max_range);
         let by_corners = (to_corners + ray.height_step + off) * (1.0 + 8.0 * f64::EPSILON);
         let slope = px.abs() + py.abs();
         let nearest_approach = (-p - slope) - 0.5 * rounded * ray.q_size;
@@ -453,7 +468,8 @@ impl<'a> FaceForms<'a> {
             area_size,
             distance,
             q_size: ray.q_size,
-            farthest: by_corners.min(on_plane).min(limit),
+            off,
+            farthest: by_corners.min(on_plane).min(ray.max_range),
         }
     }
 
@@ -465,6 +481,19 @@ impl<'a> FaceForms<'a> {
     /// Inside the edges, each from the corner of its index.
     pub(crate) fn edges(&self) -> &[Form] {
         &self.own[..3]
+    }
+
+    /// Met within the range `limit`, metres, which is not beyond the sensor's own.
+    pub(crate) fn within(&self, ray: &MovingRay, limit: f64) -> Form {
+        range_form(ray, self.height, self.approach, self.area_size, self.distance, limit)
+    }
+
+    /// A range in metres than which no point of the triangle is met nearer, perhaps negative.
+    pub(crate) fn closest(&self, ray: &MovingRay) -> f64 {
+        // The part of the way to a point along any unit vector is no longer than the way.
+        let along = DVec3::new(ray.q[0], ray.q[1], 1.0) / ray.length[0];
+        let least = self.places.into_iter().map(|v| v.dot(along)).fold(f64::INFINITY, f64::min);
+        least - ray.height_step - self.off - least.abs() * 64.0 * f64::EPSILON
     }
 
     /// This face is met at or before `other`, where both are met from the front.
@@ -499,6 +528,27 @@ impl<'a> FaceForms<'a> {
     /// Whether all corners lie certainly before the sensor, so that `beside` knows of them.
     pub(crate) fn is_before(&self) -> bool {
         self.corners.iter().all(|corner| corner.error[0] < f64::INFINITY)
+    }
+}
+
+/// M (-n.q) + n.V |q|, for a limit M.
+fn range_form(
+    ray: &MovingRay,
+    [h, hy]: [f64; 2],
+    [p, px, py]: [f64; 3],
+    area_size: f64,
+    distance: f64,
+    limit: f64,
+) -> Form {
+    let [l, lx, ly] = ray.length;
+    let rounded = 256.0 * U * area_size * (1.0 + 16.0 * f64::EPSILON);
+    Form {
+        constant: h * l - limit * p,
+        x: h * lx - limit * px,
+        y: h * ly + hy * l - limit * py,
+        xy: hy * lx,
+        error: rounded * ray.q_size * (limit + distance),
+        bend: (h.abs() + hy.abs() + rounded * distance) * ray.length_bend * (1.0 + 4.0 * f64::EPSILON),
     }
 }
 
@@ -540,11 +590,11 @@ impl Placed {
         32.0 * U * self.sizes[k] * ray.q_size * (1.0 + 8.0 * f64::EPSILON)
     }
 
-    /// Whether all corners certainly lie on one side of the unit square, or behind the sensor.
+    /// Whether all corners certainly lie on one side of the unit square, or before the SPP.
     fn is_beside(&self, ray: &MovingRay) -> bool {
         let all = |test: &dyn Fn(usize) -> bool| (0..3).all(test);
         let v = &self.corners;
-        if all(&|k| v[k].z < -32.0 * U * self.sizes[k]) {
+        if all(&|k| v[k].z < ray.plane - 32.0 * U * (self.sizes[k] + ray.plane)) {
             return true;
         }
         let side = |part: usize, slope: f64, sign: f64| {

@@ -19,6 +19,7 @@
 //! It depends on `raypencil-scene` alone, and no renderer may call it.
 
 mod cull;
+mod divide;
 mod face;
 mod forms;
 mod margin;

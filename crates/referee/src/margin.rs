@@ -21,8 +21,9 @@
 
 use raypencil_scene::SensorId;
 
+use crate::divide::{divided, is_tight};
 use crate::face::Face;
-use crate::forms::{FaceForms, Form, beside, certainly_fails};
+use crate::forms::{Form, beside, certainly_fails};
 use crate::near::Neighbourhood;
 use crate::pencil::{Aim, Sensor};
 use crate::region::{Region, holds_between, size};
@@ -42,6 +43,14 @@ pub struct Margin {
 impl Margin {
     /// A verdict that does not change within a cell.
     pub(crate) const CAPPED: Self = Self { lo: 1.0, hi: 1.0, witness: None };
+
+    /// What is proven, and the nearest displacement that was found to change the verdict.
+    pub(crate) fn of(lo: f64, witness: Option<[f64; 2]>) -> Self {
+        match witness {
+            Some(at) => Self { lo, hi: size(at).min(1.0), witness: Some(displacement(at)) },
+            None => Self { lo, hi: 1.0, witness: None },
+        }
+    }
 }
 
 /// The verdict on a ray, and how far it is from changing.
@@ -96,15 +105,41 @@ impl Referee<'_> {
         if let Some(&first) = nearest.first() {
             near.reach_to(near.faces[first].farthest);
         }
-        let face = Search { near: &near, nearest: &nearest, lo: 1.0, events: Vec::new() }.margin();
+        let face = margin(&near, &nearest);
         (near, nearest, face)
     }
 }
 
-/// The search for the margin of the set of nearest faces.
+/// The margin of the set of nearest faces.
+fn margin(near: &Neighbourhood<'_>, nearest: &[usize]) -> Margin {
+    let search = Search::of(near, nearest, [0.0; 2], 1.0);
+    let lo = search.lo;
+    if lo >= 1.0 {
+        return Margin::CAPPED;
+    }
+    let witness = search.witness();
+    if is_tight(lo, witness) || lo <= 0.0 {
+        return Margin::of(lo, witness);
+    }
+    // A part that shows the same faces at its middle, and keeps them, is without a change.
+    let (lo, witness) = divided(lo, witness, |square, _| {
+        let differs = |at: [f64; 2]| near.nearest_at(at) != nearest;
+        let changed = differs(square.middle);
+        if !changed && Search::of(near, nearest, square.middle, square.half).lo >= square.half {
+            return None;
+        }
+        let places = square.corners().into_iter().filter(|&at| differs(at));
+        let places = places.chain(changed.then_some(square.middle));
+        Some(places.min_by(|a, b| size(*a).total_cmp(&size(*b))))
+    });
+    Margin::of(lo, witness)
+}
+
+/// The search for the margin of the set of nearest faces, about a centre at which they are the nearest.
 struct Search<'a> {
     near: &'a Neighbourhood<'a>,
     nearest: &'a [usize],
+    centre: [f64; 2],
     lo: f64,
     events: Vec<Event>,
 }
@@ -122,45 +157,42 @@ enum What {
     Enters(usize),
 }
 
-impl Search<'_> {
-    fn margin(mut self) -> Margin {
-        let faces = &self.near.faces;
+impl<'a> Search<'a> {
+    /// Finds `lo`, at most `cap`, and what it depends on.
+    fn of(near: &'a Neighbourhood<'a>, nearest: &'a [usize], centre: [f64; 2], cap: f64) -> Self {
+        let mut search = Self { near, nearest, centre, lo: cap, events: Vec::new() };
+        let faces = &near.faces;
         // The nearest faces must stay what they are.
-        for form in self.nearest.iter().flat_map(|&index| faces[index].own()) {
+        for form in nearest.iter().flat_map(|&index| faces[index].own()) {
+            let form = form.about(centre);
             let radius = form.holds_within();
-            if radius < 1.0 {
-                self.lo = self.lo.min(radius);
-                self.events.push(Event { radius, what: What::Fails(*form) });
+            if radius < cap {
+                search.lo = search.lo.min(radius);
+                search.events.push(Event { radius, what: What::Fails(form) });
             }
         }
         // Several at one point stay together only if they lie in one plane.
         let of = |index: usize| -> &Face { faces[index].face };
-        if let [first, others @ ..] = self.nearest
+        if let [first, others @ ..] = nearest
             && others.iter().any(|&other| !of(*first).is_coplanar_with(of(other)))
         {
-            self.lo = 0.0;
+            search.lo = 0.0;
         }
         // Every other face that could come to be met must stay out of it.
         for index in 0..faces.len() {
-            if !self.nearest.contains(&index) {
-                self.keep_out(index);
+            if !nearest.contains(&index) {
+                search.keep_out(index);
             }
         }
-        let lo = self.lo;
-        if lo >= 1.0 {
-            return Margin::CAPPED;
-        }
-        self.events.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-        match self.witness() {
-            Some(witness) => Margin { lo, hi: witness.size().min(1.0), witness: Some(witness) },
-            None => Margin { lo, hi: 1.0, witness: None },
-        }
+        search.events.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+        search
     }
 
     /// Lowers `lo` to a radius within which a face is certainly not among the nearest.
     fn keep_out(&mut self, index: usize) {
-        let face = &self.near.faces[index];
-        let clear = face.edges().iter().map(Form::fails_within).fold(0.0, f64::max);
+        let (face, centre) = (&self.near.faces[index], self.centre);
+        let fails = face.edges().iter().map(|edge| edge.about(centre).fails_within());
+        let clear = fails.fold(0.0, f64::max);
         // An edge that it shares with the nearest face gives the same radius but for rounding: no event.
         let enough = self.lo * (1.0 - 1.0 / (1u64 << 20) as f64);
         if clear >= enough {
@@ -168,29 +200,34 @@ impl Search<'_> {
             return;
         }
         let [a, b, c] = &face.corners;
-        let clear = beside([a, b, c], [0.0; 2]).max(clear);
-        let (forms, of_edges) = self.conditions(index, clear.max(enough));
-        let out = certainly_fails(&forms, if face.is_before() { of_edges } else { 0 }, enough).max(clear);
-        if out < self.lo {
-            self.lo = out;
-            self.events.push(Event { radius: out, what: What::Enters(index) });
+        let mut clear = beside([a, b, c], centre).max(clear);
+        if let Some(&nearest) = self.nearest.first() {
+            clear = self.near.sooner(nearest, index).about(centre).holds_within().max(clear);
+        }
+        if clear < enough {
+            let apart = if face.is_before() { 3 } else { 0 };
+            clear = certainly_fails(&self.conditions(index, enough), apart, enough).max(clear);
+        }
+        if clear < self.lo {
+            self.lo = clear;
+            self.events.push(Event { radius: clear, what: What::Enters(index) });
         }
     }
 
-    /// The conditions of a face that comes to be met first, but for those that hold within `r` anyway, and how many
-    /// of them are its edges.
-    fn conditions(&self, index: usize, r: f64) -> (Vec<Form>, usize) {
+    /// The conditions of a face that comes to be met first, its edges first of all, but for those others that hold
+    /// within `r` anyway.
+    fn conditions(&self, index: usize, r: f64) -> Vec<Form> {
         let face = &self.near.faces[index];
         let mut forms = Vec::with_capacity(7);
-        forms.extend_from_slice(face.edges());
+        forms.extend(face.edges().iter().map(|edge| edge.about(self.centre)));
         let before = self.nearest.first().map(|&nearest| face.at_or_before(&self.near.faces[nearest]));
-        let others = face.own()[3..].iter().copied().chain(before);
+        let others = face.own()[3..].iter().copied().chain(before).map(|form| form.about(self.centre));
         forms.extend(others.filter(|form| form.holds_within() < r));
-        (forms, 3)
+        forms
     }
 
     /// A displaced ray whose verdict differs, as near as it can be found.
-    fn witness(&self) -> Option<Displacement> {
+    fn witness(&self) -> Option<[f64; 2]> {
         // All that the nearest faces could be hidden by is known. Where none of the known is met, or another one is,
         // the verdict is another, whatever lies beyond.
         let differs = |at: [f64; 2]| self.near.nearest_at(at) != self.nearest;
@@ -214,14 +251,13 @@ impl Search<'_> {
                     for further in [1e-9, 1e-6, 1e-3, 0.1, 0.7] {
                         let r = event.radius * (1.0 + further) + doubt * (1.0 + further * 1e2);
                         if offer(&mut best, [corner[0] * r, corner[1] * r]) {
-                            return best.map(displacement);
+                            return best;
                         }
                     }
                 }
                 What::Enters(index) => {
-                    let (forms, _) = self.conditions(*index, 2.0);
-                    if self.towards(&forms, |at| offer(&mut best, at)) {
-                        return best.map(displacement);
+                    if self.towards(&self.conditions(*index, 2.0), |at| offer(&mut best, at)) {
+                        return best;
                     }
                 }
             }
@@ -229,7 +265,7 @@ impl Search<'_> {
                 break;
             }
         }
-        best.map(displacement)
+        best
     }
 
     /// Offers points from the nearest one of the region where all forms hold towards its middle, until one is
@@ -249,15 +285,6 @@ impl Search<'_> {
 }
 
 /// A displacement from its parts.
-pub(crate) fn displacement([dx, dy]: [f64; 2]) -> Displacement {
+fn displacement([dx, dy]: [f64; 2]) -> Displacement {
     Displacement { dx, dy }
-}
-
-impl FaceForms<'_> {
-    /// A square in which no ray meets the face's triangle, about a centre, as `edges` there and its corners
-    /// show.
-    pub(crate) fn triangle_absent(&self, edges: &[Form], centre: [f64; 2]) -> f64 {
-        let [a, b, c] = &self.corners;
-        edges.iter().map(Form::fails_within).fold(beside([a, b, c], centre), f64::max)
-    }
 }

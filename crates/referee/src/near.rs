@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 
 use crate::cull::Walk;
 use crate::face::{ExactRay, Face};
-use crate::forms::{FaceForms, MovingRay};
+use crate::forms::{FaceForms, Form, MovingRay, Place};
 use crate::pencil::{Aim, Sensor};
 use crate::verdict::{Referee, bundle_of};
 
@@ -23,7 +23,7 @@ pub(crate) struct Neighbourhood<'a> {
     /// All that may be met within this range, metres, is in `faces`.
     reach: f64,
     pub(crate) faces: Vec<FaceForms<'a>>,
-    /// Faces that were found beside the square: the other sides of edges that cannot lie in it either.
+    /// Faces whose triangles lie beside the square: the other sides of edges that cannot lie in it either.
     beside: Vec<&'a Face>,
     edges: Edges,
 }
@@ -33,7 +33,7 @@ pub(crate) struct Neighbourhood<'a> {
 pub(crate) enum Mate {
     /// A face of the neighbourhood, by its index.
     Near(usize),
-    /// A face that lies beside the square.
+    /// A face whose triangle lies beside the square, and so does the edge.
     Beside,
 }
 
@@ -61,11 +61,16 @@ impl<'a> Neighbourhood<'a> {
     fn gather(&mut self, lowers: bool) {
         while let Some(leaf) = self.walk.next_leaf(self.reach) {
             for face in leaf {
-                let Some(forms) = FaceForms::unless_beside(&self.ray, face) else {
-                    self.beside.push(face);
-                    continue;
+                let forms = match FaceForms::in_square(&self.ray, face) {
+                    Place::Near(forms) => forms,
+                    Place::Beside => {
+                        self.beside.push(face);
+                        continue;
+                    }
+                    // No front in the square: neither to be met nor to go on with.
+                    Place::Back => continue,
                 };
-                let met = |form: &crate::forms::Form| form.is_positive_at([0.0; 2]) == Some(true);
+                let met = |form: &Form| form.is_positive_at([0.0; 2]) == Some(true);
                 if lowers && forms.farthest < self.reach && forms.own().iter().all(met) {
                     self.reach = forms.farthest;
                 }
@@ -123,6 +128,12 @@ impl<'a> Neighbourhood<'a> {
         }
         nearest.sort_by_key(|&index| self.faces[index].face.id);
         nearest
+    }
+
+    /// The condition that one face is met nearer than any point of another; negative if there is no such range.
+    pub(crate) fn sooner(&self, face: usize, other: usize) -> Form {
+        let closest = self.faces[other].closest(&self.ray).clamp(0.0, self.sensor.max_range());
+        self.faces[face].within(&self.ray, closest)
     }
 
     /// Whether a displaced ray meets a face.

@@ -29,16 +29,16 @@ use std::collections::BinaryHeap;
 use crate::forms::{FaceForms, Form, beside, certainly_fails, line_leaves};
 use crate::near::{Mate, Neighbourhood};
 
-/// What is asked of one face about one centre.
+/// What is asked of one face about one centre: the largest squares that can be shown.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     edges: [Form; 3],
-    /// The largest squares in which: the triangle does not lie, the face is not possible, each edge does not lie,
-    /// and front, plane and range hold.
-    triangle_absent: f64,
+    /// In which the face is not possible.
     absent: f64,
-    edge_absent: [f64; 3],
+    /// In which front, plane and range hold.
     holds: f64,
+    /// In which each edge does not lie; known as far as `holds`.
+    edge_absent: [f64; 3],
 }
 
 impl Seen {
@@ -46,29 +46,29 @@ impl Seen {
         let own = face.own().map(|form| form.about(centre));
         let [a, b, c, front, plane, range] = own;
         let edges = [a, b, c];
-        let corners = &face.corners;
-        let inside = edges.map(|edge| edge.holds_within());
         let others = [front, plane, range];
         let holds = others.iter().map(Form::holds_within).fold(1.0, f64::min);
-        let triangle_absent = face.triangle_absent(&edges, centre);
         let known = face.is_before();
-        let mut absent = others.iter().map(Form::fails_within).fold(triangle_absent, f64::max);
+        let [p, q, r] = &face.corners;
+        let mut absent = own.iter().map(Form::fails_within).fold(beside([p, q, r], centre), f64::max);
         if absent < 1.0 && (holds < 1.0 || !known) {
             absent = absent.max(certainly_fails(&own, if known { 3 } else { 0 }, 1.0));
         }
+        // A piece of a line lies beside a square by the line itself or by a side of the square.
         let edge_absent = [0, 1, 2].map(|k: usize| {
-            let next = (k + 1) % 3;
-            let mut best = inside[k].max(triangle_absent);
+            let (edge, next) = (&edges[k], (k + 1) % 3);
+            let mut best = edge.holds_within().max(edge.fails_within());
             if best < 1.0 {
-                best = best.max(beside([&corners[k], &corners[next]], centre));
+                best = best.max(beside([&face.corners[k], &face.corners[next]], centre));
             }
             if best < 1.0 && !known {
+                // Where the front shows, no point of the edge lies outside of the other two.
                 let others = [&edges[next], &edges[(k + 2) % 3]];
-                best = others.into_iter().map(|other| line_leaves(&edges[k], other)).fold(best, f64::max);
+                best = others.into_iter().map(|other| line_leaves(edge, other)).fold(best, f64::max);
             }
             best
         });
-        Self { edges, triangle_absent, absent, edge_absent, holds }
+        Self { edges, absent, holds, edge_absent }
     }
 }
 
@@ -181,8 +181,6 @@ impl Around<'_, '_> {
                     None => r = r.min(at),
                     Some(Mate::Beside) => {}
                     Some(Mate::Near(mate)) => {
-                        // The edge is the mate's as well: where all of it is absent, so is the edge.
-                        let at = at.max(self.seen(mate).triangle_absent);
                         if at < enters[mate] {
                             enters[mate] = at;
                             waiting.push(Reverse((at.to_bits(), mate)));
@@ -226,6 +224,11 @@ impl Around<'_, '_> {
             let (face, other) = (self.seen(index), self.seen(kept));
             let before = self.near.faces[index].at_or_before(&self.near.faces[kept]).about(self.centre);
             let mut radius = before.fails_within().max(other.absent).max(enters);
+            if radius < least {
+                // Where the ray lies in a face's plane the form vanishes, but its distance does not.
+                let sooner = self.near.sooner(kept, index).about(self.centre);
+                radius = radius.max(sooner.holds_within());
+            }
             if radius < least {
                 let ([a, b, c], [d, e, f]) = (face.edges, other.edges);
                 radius = radius.max(certainly_fails(&[a, b, c, d, e, f, before], 0, least));

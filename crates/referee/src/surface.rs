@@ -5,21 +5,13 @@
 //! count, nor lines where two surfaces pass through one another: there the range is continuous.
 //!
 //! lo starts as the largest square that `sheet` proves, or the margin of the face if that is larger. A witness is
-//! looked for where surfaces end (`ends`). If it is not found within twice lo, the unit square is divided
-//! (`divided`), which moves both.
-//!
-//! # The proof of the division
-//!
-//! The square is cut in four, and each part again, where it cannot be proven continuous from its own centre.
-//! A range that is continuous on each of two closed squares that share a side is continuous on both: so it is on
-//! the union of all that are proven. Taken in the order of their distance from the ray, by the larger of |dx| and
-//! |dy|, all squares nearer than the first unproven one are proven, and its distance is a lo.
+//! looked for where surfaces end. If it is not found within twice lo, the unit square is divided (`divide`), and
+//! its parts are proven from their own middles. A range that is continuous on each of two closed squares that
+//! share a side is continuous on both, so a jump can only be in a part that is not proven.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
+use crate::divide::{Square, divided, is_tight};
 use crate::forms::Form;
-use crate::margin::{Margin, displacement};
+use crate::margin::Margin;
 use crate::near::{Mate, Neighbourhood};
 use crate::region::{Region, size};
 
@@ -37,9 +29,6 @@ const CLOSE: f64 = 1.0 / (1u64 << 40) as f64;
 /// Points of an edge at which a witness is looked for.
 const POINTS: u32 = 16;
 
-/// Squares that are looked at before the division gives up.
-const SQUARES: u32 = 2000;
-
 impl Neighbourhood<'_> {
     /// The margin of the surface, from the nearest faces and theirs.
     pub(crate) fn surface_margin(&mut self, nearest: &[usize], face: &Margin) -> Margin {
@@ -53,11 +42,15 @@ impl Neighbourhood<'_> {
         }
         self.reach_all();
         let witness = self.at_an_end(lo);
-        if witness.is_some_and(|at| is_tight(lo, size(at))) {
-            return margin(lo, witness);
+        if is_tight(lo, witness) {
+            return Margin::of(lo, witness);
         }
-        let (lo, witness) = self.divided(lo, witness);
-        margin(lo, witness)
+        let (lo, witness) = divided(lo, witness, |square, lo| {
+            let nearest = self.nearest_at(square.middle);
+            let proven = self.continuous_within(square.middle, &nearest, square.half) >= square.half;
+            if proven { None } else { Some(self.jump_within(square, lo)) }
+        });
+        Margin::of(lo, witness)
     }
 
     /// A displaced ray beyond a jump where a surface ends: the nearest of the places tried.
@@ -189,64 +182,11 @@ impl Neighbourhood<'_> {
         (size(farther) >= lo && size(farther) <= 1.0).then_some(farther)
     }
 
-    /// Divides the unit square until the first square that cannot be proven is no nearer than half the nearest
-    /// witness.
-    fn divided(&mut self, lo: f64, witness: Option<[f64; 2]>) -> (f64, Option<[f64; 2]>) {
-        let (mut lo, mut witness) = (lo, witness);
-        let mut squares = vec![Square { middle: [0.0; 2], half: 1.0 }];
-        // By distance, then by age: the same order everywhere.
-        let mut waiting = BinaryHeap::from([Reverse((0.0_f64.to_bits(), 0))]);
-        let mut looked = 0;
-        while let Some(Reverse((bits, index))) = waiting.pop() {
-            let square: Square = squares[index];
-            lo = lo.max(f64::from_bits(bits));
-            if witness.is_some_and(|at| is_tight(lo, size(at))) || looked == SQUARES {
-                return (lo, witness);
-            }
-            if square.farthest() <= lo {
-                continue;
-            }
-            looked += 1;
-            let nearest = self.nearest_at(square.middle);
-            if self.continuous_within(square.middle, &nearest, square.half) >= square.half {
-                continue;
-            }
-            if witness.is_none_or(|at| square.nearest() < size(at))
-                && let Some(at) = self.jump_within(&square, lo)
-                && witness.is_none_or(|best| size(at) < size(best))
-            {
-                witness = Some(at);
-            }
-            if square.half < CLOSE {
-                // As small as the rays of a witness are close: it can only stay unproven.
-                return (lo, witness);
-            }
-            for part in square.parts() {
-                waiting.push(Reverse((part.nearest().to_bits(), squares.len())));
-                squares.push(part);
-            }
-        }
-        (1.0, None)
-    }
-
     /// A jump between the middle of a square and one of its corners.
     fn jump_within(&self, square: &Square, lo: f64) -> Option<[f64; 2]> {
         let corners = square.corners();
         let found = corners.into_iter().filter_map(|corner| self.jump_between(square.middle, corner, lo));
         found.min_by(|a, b| size(*a).total_cmp(&size(*b)))
-    }
-}
-
-/// Whether a witness is near enough: less than twice lo, with room for rounding.
-fn is_tight(lo: f64, hi: f64) -> bool {
-    hi <= 1.9 * lo || hi <= 1e-9
-}
-
-fn margin(lo: f64, witness: Option<[f64; 2]>) -> Margin {
-    match witness {
-        Some(at) => Margin { lo, hi: size(at).min(1.0), witness: Some(displacement(at)) },
-        None if lo >= 1.0 => Margin::CAPPED,
-        None => Margin { lo, hi: 1.0, witness: None },
     }
 }
 
@@ -263,32 +203,4 @@ fn step(a: Option<f64>, b: Option<f64>) -> f64 {
 fn outward([x, y]: [f64; 2]) -> Option<[f64; 2]> {
     let length = (x * x + y * y).sqrt();
     (length > 0.0).then(|| [-x / length, -y / length])
-}
-
-/// A part of the unit square of displacements. Its numbers are multiples of its half side: exact.
-#[derive(Debug, Clone, Copy)]
-struct Square {
-    middle: [f64; 2],
-    half: f64,
-}
-
-impl Square {
-    fn nearest(&self) -> f64 {
-        let [x, y] = self.middle.map(|part| (part.abs() - self.half).max(0.0));
-        x.max(y)
-    }
-
-    fn farthest(&self) -> f64 {
-        size(self.middle) + self.half
-    }
-
-    fn corners(&self) -> [[f64; 2]; 4] {
-        let h = self.half;
-        [[-h, -h], [h, -h], [h, h], [-h, h]].map(|[x, y]| [self.middle[0] + x, self.middle[1] + y])
-    }
-
-    fn parts(&self) -> [Self; 4] {
-        let half = 0.5 * self.half;
-        Self { half, ..*self }.corners().map(|middle| Self { middle, half })
-    }
 }
