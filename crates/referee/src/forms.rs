@@ -525,6 +525,12 @@ impl<'a> FaceForms<'a> {
         ray.through(self.places[k] + s * self.along[k])
     }
 
+    /// The displacement of the ray through a point of the triangle, given by its corners' weights.
+    pub(crate) fn point(&self, ray: &MovingRay, weights: [f64; 3]) -> [f64; 2] {
+        let [a, b, c] = self.places;
+        ray.through(a * weights[0] + b * weights[1] + c * weights[2])
+    }
+
     /// Whether all corners lie certainly before the sensor, so that `beside` knows of them.
     pub(crate) fn is_before(&self) -> bool {
         self.corners.iter().all(|corner| corner.error[0] < f64::INFINITY)

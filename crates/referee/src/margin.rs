@@ -262,10 +262,41 @@ impl<'a> Search<'a> {
                 }
             }
             if best.is_some_and(|best| size(best) <= 1.9 * event.radius) {
+                return best;
+            }
+        }
+        // Threads that a beam bends by more than their width: from points of the triangles themselves.
+        for event in &self.events {
+            if is_tight(event.radius, best) {
                 break;
+            }
+            if let What::Enters(index) = event.what {
+                for at in self.threads(index) {
+                    if offer(&mut best, at) {
+                        return best;
+                    }
+                }
             }
         }
         best
+    }
+
+    /// Points of a face near its corners and along its sides, in it by a part of its width, the nearest first.
+    fn threads(&self, index: usize) -> Vec<[f64; 2]> {
+        let mut points = Vec::new();
+        for k in 0..3 {
+            for s in [0.0, 1e-6, 1e-4, 0.01, 0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.96] {
+                for inward in [1e-6, 1e-3, 0.03] {
+                    let mut weights = [inward / 3.0; 3];
+                    weights[k] += (1.0 - s) * (1.0 - inward);
+                    weights[(k + 1) % 3] += s * (1.0 - inward);
+                    points.push(self.near.faces[index].point(&self.near.ray, weights));
+                }
+            }
+        }
+        points.retain(|&at| size(at) <= 1.0);
+        points.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
+        points
     }
 
     /// Offers points from the nearest one of the region where all forms hold towards its middle, until one is

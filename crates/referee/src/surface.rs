@@ -127,7 +127,10 @@ impl Neighbourhood<'_> {
         if !(from < to) {
             return;
         }
-        cuts.extend((0..POINTS).map(|step| from + (to - from) * (f64::from(step) + 0.5) / f64::from(POINTS)));
+        let length = to - from;
+        cuts.extend((0..POINTS).map(|step| from + length * (f64::from(step) + 0.5) / f64::from(POINTS)));
+        // Tips: a jump begins at nothing where an edge comes out of another surface, or at a corner.
+        cuts.extend([1e-6, 1e-4, 1e-2].into_iter().flat_map(|s| [from + s * length, to - s * length]));
         for s in cuts {
             let here = at(s);
             let slope = [edge.x + edge.xy * here[1], edge.y + edge.xy * here[0]];
