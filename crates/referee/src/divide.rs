@@ -94,3 +94,52 @@ pub(crate) fn divided(
     // All of it is proven.
     (1.0, None)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Divides where the change is known: a part is proven if it certainly has none of it, a witness is a corner
+    /// or the middle.
+    fn margin(changed: impl Fn([f64; 2]) -> bool, free: impl Fn(&Square) -> bool) -> (f64, Option<f64>) {
+        let (lo, witness) = divided(0.0, None, |square, _| {
+            if free(square) {
+                return None;
+            }
+            let places = square.corners().into_iter().chain([square.middle]).filter(|&at| changed(at));
+            Some(places.min_by(|a, b| size(*a).total_cmp(&size(*b))))
+        });
+        (lo, witness.map(size))
+    }
+
+    /// The distance of a square from a point, by the larger of both parts.
+    fn apart(square: &Square, point: [f64; 2]) -> f64 {
+        size([square.middle[0] - point[0], square.middle[1] - point[1]]) - square.half
+    }
+
+    #[test]
+    fn a_speck_is_found_and_never_passed_over() {
+        // A square speck with a half side of 1/1024, its middle 0.37 away: the change begins at 0.37 - 1/1024.
+        let (speck, small) = ([0.37, -0.21], 1.0 / 1024.0);
+        let begins = 0.37 - small;
+        let (lo, hi) = margin(
+            |at| size([at[0] - speck[0], at[1] - speck[1]]) <= small,
+            |square| apart(square, speck) > small,
+        );
+        let hi = hi.expect("found");
+        assert!(lo <= begins && begins <= hi && hi <= 1.9 * lo, "{lo} {hi}");
+    }
+
+    #[test]
+    fn what_cannot_be_proven_bounds_lo_without_a_witness() {
+        // A single point at which nothing changes, but which nothing proves either.
+        let point = [-0.3, 0.6];
+        let (lo, hi) = margin(|_| false, |square| apart(square, point) > 0.0);
+        assert!(hi.is_none() && lo <= 0.6 && lo > 0.6 - 1e-9, "{lo}");
+    }
+
+    #[test]
+    fn nothing_to_be_found_is_the_cap() {
+        assert_eq!(margin(|_| false, |square| square.half <= 0.25), (1.0, None));
+    }
+}
