@@ -708,15 +708,26 @@ mod tests {
         Sensor::Beam(Mounted { scene_from_sensor, sensor })
     }
 
-    /// A triangle around a point that a displaced ray passes: well shaped or thin, large or small, or with the ray
-    /// almost in its plane.
-    fn face(ray: &MovingRay, seed: &mut u64) -> Face {
+    /// A point on a ray: anywhere, at the end of the range, or on the SPP.
+    fn point(ray: &MovingRay, seed: &mut u64) -> DVec3 {
         let (origin, q) = ray.line();
-        let at = origin + q.normalize() * (10.5 + 10.0 * draw(seed));
-        let size = [2.0, 0.1, 1e-3][(draw(seed).abs() * 3.0) as usize % 3];
+        match draw(seed) {
+            x if x < 0.0 => origin + q.normalize() * (10.5 + 10.0 * draw(seed)),
+            x if x < 0.5 => origin + q.normalize() * 20.0,
+            _ => origin + q * ray.plane,
+        }
+    }
+
+    /// A triangle around a point of a ray: well shaped or thin, large or small, or with the ray in its plane but
+    /// for a cell's width.
+    fn face(ray: &MovingRay, at: DVec3, seed: &mut u64) -> Face {
+        let (origin, q) = ray.line();
+        let scale = (at - origin).length() / 10.0;
+        let size = scale * [2.0, 0.1, 1e-3][(draw(seed).abs() * 3.0) as usize % 3];
         let thin = [1.0, 1e-3, 1e-6][(draw(seed).abs() * 3.0) as usize % 3];
         let (long, wide) = (size * direction(seed), size * thin * direction(seed));
-        let long = if draw(seed) > 0.7 { q.normalize() * size } else { long };
+        let grazing = size * (q.normalize() + ray.step[0] * direction(seed));
+        let long = if draw(seed) > 0.0 { grazing } else { long };
         let corners = [at - long + wide * draw(seed), at + long, at + wide + long * draw(seed)];
         Face { id: FaceId(0), corners: corners.map(|v| v.as_vec3().to_array()) }
     }
@@ -735,7 +746,7 @@ mod tests {
     /// error to three times of it, and anywhere else.
     #[test]
     fn what_a_form_is_certain_of_is_exact() {
-        let (mut seed, mut certain, mut asked) = (11, 0, 0);
+        let (mut seed, mut certain, mut asked, mut close) = (11, 0, 0, [0; 8]);
         for _ in 0..12_000 {
             let sensor = sensor(&mut seed);
             let (width, height) = sensor.size();
@@ -743,7 +754,8 @@ mod tests {
             let aim =
                 Aim { i: index(width, draw(&mut seed)), j: index(height, draw(&mut seed)), dx: 0.0, dy: 0.0 };
             let ray = MovingRay::new(&sensor, aim);
-            let faces = [face(&ray, &mut seed), face(&ray, &mut seed)];
+            let at = point(&ray, &mut seed);
+            let faces = [face(&ray, at, &mut seed), face(&ray, at, &mut seed)];
             if !faces.iter().all(Face::has_area) {
                 continue;
             }
@@ -756,7 +768,8 @@ mod tests {
                 let (dy, by) = (draw(&mut seed), 3.0 * draw(&mut seed));
                 let slope = form.x + form.xy * dy;
                 let root = -(form.constant + form.y * dy) / slope + by * form.error / slope;
-                let dx = if root.abs() <= 1.0 { root } else { draw(&mut seed) };
+                let is_close = root.abs() <= 1.0;
+                let dx = if is_close { root } else { draw(&mut seed) };
                 let scaled = sensor.ray::<Dyadic>(Aim { dx, dy, ..aim });
                 let ([h, p], edges) = exact(&scaled, &faces[0]);
                 let ([g, q], _) = exact(&scaled, &faces[1]);
@@ -778,6 +791,7 @@ mod tests {
                     }
                 };
                 let sign = value.sign().expect("exact");
+                close[kind] += u32::from(is_close);
                 let near = [dx, dy];
                 let about = form.about(centre).is_positive_at([dx - centre[0], dy - centre[1]]);
                 for answer in [form.is_positive_at(near), about] {
@@ -791,6 +805,7 @@ mod tests {
             }
         }
         assert!(asked > 100_000 && certain > asked / 2, "{certain} of {asked}");
+        assert!(close.iter().all(|&count| count > 300), "{close:?}");
     }
 
     /// Rays that meet a face do so neither nearer nor farther than it says, nor where it is beside them.
@@ -801,7 +816,8 @@ mod tests {
             let sensor = sensor(&mut seed);
             let aim = Aim { i: 40, j: 3, dx: 0.0, dy: 0.0 };
             let ray = MovingRay::new(&sensor, aim);
-            let face = face(&ray, &mut seed);
+            let at = point(&ray, &mut seed);
+            let face = face(&ray, at, &mut seed);
             if !face.has_area() {
                 continue;
             }
