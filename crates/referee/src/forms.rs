@@ -427,14 +427,8 @@ impl<'a> FaceForms<'a> {
         let [p, px, py] = approach;
         let [l, lx, ly] = ray.length;
         let rounded = 256.0 * U * area_size * (1.0 + 8.0 * f64::EPSILON);
-        let front = Form {
-            constant: -p,
-            x: -px,
-            y: -py,
-            xy: 0.0,
-            error: 0.5 * rounded * ray.q_size,
-            bend: 0.0,
-        };
+        let front =
+            Form { constant: -p, x: -px, y: -py, xy: 0.0, error: 0.5 * rounded * ray.q_size, bend: 0.0 };
         let plane = Form {
             constant: ray.plane * p - h,
             x: ray.plane * px,
@@ -604,9 +598,7 @@ impl Placed {
             return true;
         }
         let side = |part: usize, slope: f64, sign: f64| {
-            all(&|k: usize| {
-                sign * (v[k][part] - slope * v[k].z) > self.off(ray, k)
-            })
+            all(&|k: usize| sign * (v[k][part] - slope * v[k].z) > self.off(ray, k))
         };
         let [x, y] = ray.q;
         let [px, py] = ray.step;
@@ -635,9 +627,8 @@ impl Placed {
                 at[0] = 0.0;
                 at[1] = if ray.height_step > 0.0 { at[1] } else { 0.0 };
             }
-            let of_axis = |axis: usize| {
-                self.off(ray, k) / (ray.step[axis] * v.z) + at[axis].abs() * (doubt + 16.0 * U)
-            };
+            let of_axis =
+                |axis: usize| self.off(ray, k) / (ray.step[axis] * v.z) + at[axis].abs() * (doubt + 16.0 * U);
             let across = if known { of_axis(0) * (1.0 + 1.0 / 256.0) } else { f64::INFINITY };
             let down = if ray.height_step > 0.0 {
                 32.0 * U * size / ray.height_step + at[1].abs() * 16.0 * U

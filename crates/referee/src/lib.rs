@@ -10,8 +10,10 @@
 //! face             the contract's conditions, as signs of polynomials
 //! cull             a tree of boxes of its own
 //! verdict          the nearest faces of a ray
-//! forms, region    the conditions as functions of a small displacement
+//! forms, region    the conditions as functions of a small displacement, in f64 with proven errors
+//! near             all faces near a ray, and the verdict on any ray beside it
 //! margin, surface  how far a verdict is from changing, with a witness
+//! sheet, divide    where the range is continuous; what to do where one square does not tell
 //! ruling           whether an answer is right, or admissible
 //! render           the verdicts of a whole sensor
 //! ```

@@ -101,9 +101,8 @@ impl<'a> Neighbourhood<'a> {
     /// reach.
     pub(crate) fn nearest_at(&self, at: [f64; 2]) -> Vec<usize> {
         let exact = OnceCell::new();
-        let exact = || {
-            exact.get_or_init(|| ExactRay::new(self.sensor, Aim { dx: at[0], dy: at[1], ..self.aim }))
-        };
+        let exact =
+            || exact.get_or_init(|| ExactRay::new(self.sensor, Aim { dx: at[0], dy: at[1], ..self.aim }));
         let mut nearest: Vec<usize> = Vec::new();
         for (index, forms) in self.faces.iter().enumerate() {
             if !self.is_met(forms, at, exact) {
@@ -137,12 +136,7 @@ impl<'a> Neighbourhood<'a> {
     }
 
     /// Whether a displaced ray meets a face.
-    fn is_met<'r>(
-        &self,
-        forms: &FaceForms<'_>,
-        at: [f64; 2],
-        exact: impl Fn() -> &'r ExactRay<'r>,
-    ) -> bool {
+    fn is_met<'r>(&self, forms: &FaceForms<'_>, at: [f64; 2], exact: impl Fn() -> &'r ExactRay<'r>) -> bool {
         let mut certain = true;
         for form in forms.own() {
             match form.is_positive_at(at) {
@@ -217,13 +211,7 @@ impl Edges {
         (self.faces, self.beside) = (faces.len(), beside.len());
     }
 
-    fn find(
-        &self,
-        from: [f32; 3],
-        to: [f32; 3],
-        faces: &[FaceForms<'_>],
-        beside: &[&Face],
-    ) -> Vec<Mate> {
+    fn find(&self, from: [f32; 3], to: [f32; 3], faces: &[FaceForms<'_>], beside: &[&Face]) -> Vec<Mate> {
         let hash = hash(from, to);
         let start = self.sorted.partition_point(|&(other, ..)| other < hash);
         let same = self.sorted[start..].iter().take_while(|&&(other, ..)| other == hash);

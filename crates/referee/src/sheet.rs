@@ -4,17 +4,32 @@
 //!
 //! For a square of radius r around a centre call a face *possible* if no condition of its own (edges, front,
 //! plane, range, or two of them combined) fails over all of the square. From a possible face walk over each of its
-//! edges that may lie in the square to a face that has the same edge the other way round. If that succeeds
-//! for every edge, and the front, plane and range conditions of all faces walked over hold over all of the
-//! square, then these faces form a sheet without an end in it: the union of their images is closed, not empty,
-//! and has no border inside the square, since a border could only be an edge, and on the other side of every edge
-//! lies the mate. So the sheet covers the square; having no fold (at a fold one of the two faces shows its back),
-//! it covers it once, and its range is continuous.
+//! edges that may lie in the square to a face that has the same edge the other way round, and so on. The faces
+//! walked over are a *sheet without an end* if this succeeds for every edge, and the front, plane and range conditions
+//! of all of them hold over all of the square. (At a fold one of the two faces shows its back: a fold is an end.)
+//!
+//! Take any point x of the square in the image of such a face F. On an edge through x lies a mate, whose image
+//! begins at that edge on the other side, for both show their fronts; at x it has the range of F, for it has the
+//! edge's own points. If x is a corner, mates follow upon one another around it, all the same way round and all with
+//! that corner, until every direction is covered. So around x there are faces of the sheet in every direction whose
+//! ranges at x are F's, and it follows:
+//!
+//! 1. The images of the sheet cover the square: together they are closed, not empty, and have no border in it.
+//! 2. The least range over some such sheets is continuous: it is at most F's near x, nearly, for all F at x; and as
+//!    faces are closed and few it does not fall below the least at x either.
 //!
 //! If the nearest face's sheet has no end, and every other possible face either lies in a sheet without an
-//! end or is certainly met after all faces of the first sheet, then the nearest range over the square is the
-//! least of finitely many continuous functions, and there is no jump. If there is no possible face at all, all
-//! of the square misses.
+//! end or is certainly met after all faces of the first sheet (which are there everywhere, by 1), then the nearest
+//! range over the square is that least range, and by 2 there is no jump. If there is no possible face at all, all of
+//! the square misses.
+//!
+//! "Certainly after": the order of two faces is a form, and so is that one is met nearer than the whole triangle of
+//! the other is. Faces that lie beyond all that the first sheet's triangles reach over the square are not even
+//! looked up.
+//!
+//! That a triangle lies beside the square can be told from its edges only if its front is known to show: all edge
+//! forms are negative inside of a triangle seen from behind. So nothing is concluded from a mate but what its
+//! corners say, and an edge is absent by its own line and its own two ends alone.
 //!
 //! # The largest such square
 //!
@@ -107,7 +122,8 @@ impl Around<'_, '_> {
 
     fn all_miss(&mut self, cap: f64) -> f64 {
         self.near.reach_all();
-        (0..self.near.faces.len()).fold(cap, |r, index| if r > 0.0 { r.min(self.seen(index).absent) } else { r })
+        (0..self.near.faces.len())
+            .fold(cap, |r, index| if r > 0.0 { r.min(self.seen(index).absent) } else { r })
     }
 
     fn continuous(&mut self, first: usize, cap: f64) -> f64 {

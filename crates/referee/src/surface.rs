@@ -29,6 +29,17 @@ const CLOSE: f64 = 1.0 / (1u64 << 40) as f64;
 /// Points of an edge at which a witness is looked for.
 const POINTS: u32 = 16;
 
+/// A place where a surface may end.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    at: [f64; 2],
+    /// A unit vector across.
+    outward: [f64; 2],
+    /// The edge that it lies on, if any, as (face, corner), and where.
+    edge: Option<(usize, usize)>,
+    s: f64,
+}
+
 impl Neighbourhood<'_> {
     /// The margin of the surface, from the nearest faces and theirs.
     pub(crate) fn surface_margin(&mut self, nearest: &[usize], face: &Margin) -> Margin {
@@ -41,7 +52,11 @@ impl Neighbourhood<'_> {
             return Margin::CAPPED;
         }
         self.reach_all();
-        let witness = self.at_an_end(lo);
+        let ends = self.ends();
+        let mut witness = self.at_an_end(&ends, lo);
+        if !is_tight(lo, witness) {
+            witness = self.where_it_begins(&ends, lo, witness);
+        }
         if is_tight(lo, witness) {
             return Margin::of(lo, witness);
         }
@@ -54,19 +69,58 @@ impl Neighbourhood<'_> {
     }
 
     /// A displaced ray beyond a jump where a surface ends: the nearest of the places tried.
-    fn at_an_end(&mut self, lo: f64) -> Option<[f64; 2]> {
-        let mut ends = self.ends();
-        ends.retain(|(at, _)| size(*at) <= 1.0 && size(*at) >= lo * 0.5);
-        ends.sort_by(|(a, _), (b, _)| size(*a).total_cmp(&size(*b)));
-        ends.iter().find_map(|&(at, outward)| {
-            let aside = |sign: f64| [0, 1].map(|k: usize| at[k] + sign * ASIDE * outward[k]);
-            self.jump_between(aside(-1.0), aside(1.0), lo)
-        })
+    fn at_an_end(&self, ends: &[End], lo: f64) -> Option<[f64; 2]> {
+        let mut ends: Vec<&End> =
+            ends.iter().filter(|end| size(end.at) <= 1.0 && size(end.at) >= lo * 0.5).collect();
+        ends.sort_by(|a, b| size(a.at).total_cmp(&size(b.at)));
+        ends.iter().find_map(|end| self.jump_at(end, lo))
     }
 
-    /// Points on the ends of surfaces, each with a unit vector across: on edges that no front shares, and where the
-    /// plane or the range ends a face.
-    fn ends(&mut self) -> Vec<([f64; 2], [f64; 2])> {
+    /// A displaced ray beyond the jump at an end.
+    fn jump_at(&self, end: &End, lo: f64) -> Option<[f64; 2]> {
+        let aside = |sign: f64| [0, 1].map(|k: usize| end.at[k] + sign * ASIDE * end.outward[k]);
+        self.jump_between(aside(-1.0), aside(1.0), lo)
+    }
+
+    /// A nearer witness, where an edge that is hidden at one place and not at the next comes out from behind
+    /// another surface, or through it: there its jump begins.
+    fn where_it_begins(&self, ends: &[End], lo: f64, witness: Option<[f64; 2]>) -> Option<[f64; 2]> {
+        let mut best = witness;
+        for pair in ends.windows(2) {
+            let ([a, b], least) = ([&pair[0], &pair[1]], best.map_or(1.0, size));
+            let (Some(edge), true) = (a.edge, a.edge == b.edge && size(a.at).min(size(b.at)) < least) else {
+                continue;
+            };
+            let (mut jumps, mut goes_on) = match (self.jump_at(a, lo), self.jump_at(b, lo)) {
+                (Some(at), None) => ((a.s, at), b.s),
+                (None, Some(at)) => ((b.s, at), a.s),
+                _ => continue,
+            };
+            for _ in 0..40 {
+                let middle = 0.5 * (jumps.0 + goes_on);
+                match self.end_at(edge, middle).and_then(|end| self.jump_at(&end, lo)) {
+                    Some(at) => jumps = (middle, at),
+                    None => goes_on = middle,
+                }
+            }
+            if size(jumps.1) < least {
+                best = Some(jumps.1);
+            }
+        }
+        best
+    }
+
+    /// The place on edge `k` of a face, `s` of the way along it.
+    fn end_at(&self, (index, k): (usize, usize), s: f64) -> Option<End> {
+        let face = &self.faces[index];
+        let edge = &face.own()[k];
+        let at = face.edge_point(&self.ray, k, s);
+        let slope = [edge.x + edge.xy * at[1], edge.y + edge.xy * at[0]];
+        outward(slope).map(|outward| End { at, outward, edge: Some((index, k)), s })
+    }
+
+    /// Places on the ends of surfaces: on edges that no front shares, and where the plane or the range ends a face.
+    fn ends(&mut self) -> Vec<End> {
         let mut ends = Vec::new();
         for index in 0..self.faces.len() {
             if self.faces[index].own().iter().any(|form| form.fails_within() >= 1.0) {
@@ -90,15 +144,12 @@ impl Neighbourhood<'_> {
     }
 
     /// Points of an edge, and among them those that may be nearest: where it crosses an axis or a diagonal.
-    fn points_of_edge(&self, index: usize, k: usize, ends: &mut Vec<([f64; 2], [f64; 2])>) {
-        let face = &self.faces[index];
-        let edge = &face.own()[k];
-        let at = |s: f64| face.edge_point(&self.ray, k, s);
+    fn points_of_edge(&self, index: usize, k: usize, ends: &mut Vec<End>) {
+        let at = |s: f64| self.faces[index].edge_point(&self.ray, k, s);
         // The part of it in the square, by the sides that a straight line crosses. A beam bends it but little.
         let (a, b) = (at(0.0), at(1.0));
         let mut cuts: Vec<f64> = vec![0.0, 1.0];
         let across = |f: &dyn Fn([f64; 2]) -> f64| {
-            // Two steps of the secant, which are exact on a straight line seen without perspective.
             let (mut low, mut high) = (0.0, 1.0);
             if !(f(a) * f(b) < 0.0) {
                 return None;
@@ -131,15 +182,12 @@ impl Neighbourhood<'_> {
         cuts.extend((0..POINTS).map(|step| from + length * (f64::from(step) + 0.5) / f64::from(POINTS)));
         // Tips: a jump begins at nothing where an edge comes out of another surface, or at a corner.
         cuts.extend([1e-6, 1e-4, 1e-2].into_iter().flat_map(|s| [from + s * length, to - s * length]));
-        for s in cuts {
-            let here = at(s);
-            let slope = [edge.x + edge.xy * here[1], edge.y + edge.xy * here[0]];
-            ends.extend(outward(slope).map(|outward| (here, outward)));
-        }
+        cuts.sort_by(f64::total_cmp);
+        ends.extend(cuts.into_iter().filter_map(|s| self.end_at((index, k), s)));
     }
 
     /// Points where a condition other than an edge ends a face.
-    fn points_of_limit(&self, index: usize, part: usize, ends: &mut Vec<([f64; 2], [f64; 2])>) {
+    fn points_of_limit(&self, index: usize, part: usize, ends: &mut Vec<End>) {
         let all = self.faces[index].own();
         let limit = &all[part];
         if limit.holds_within() >= 1.0 {
@@ -150,12 +198,13 @@ impl Neighbourhood<'_> {
         forms.push(limit.negated());
         let Some(region) = Region::of(&forms) else { return };
         let Some(outward) = outward([limit.x, limit.y]) else { return };
-        ends.push((region.near, outward));
+        let mut push = |at: [f64; 2]| ends.push(End { at, outward, edge: None, s: 0.0 });
+        push(region.near);
         for (k, &a) in region.corners.iter().enumerate() {
             let b = region.corners[(k + 1) % region.corners.len()];
             for step in 0..POINTS {
                 let s = f64::from(step) / f64::from(POINTS);
-                ends.push(([0, 1].map(|axis: usize| a[axis] + s * (b[axis] - a[axis])), outward));
+                push([0, 1].map(|axis: usize| a[axis] + s * (b[axis] - a[axis])));
             }
         }
     }

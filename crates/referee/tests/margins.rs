@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Displacement, Margin, Referee};
-use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Profile, Scene, SensorId,
-};
+use raypencil_scene::{Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Profile, Scene, SensorId};
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
 /// Numbers that depend on the seed alone (splitmix64).
@@ -53,8 +51,7 @@ fn scene(number: u64) -> Scene {
             * Pose::VEHICLE_FROM_FORWARD_SENSOR;
         rotation = turned.rotation;
     }
-    let position =
-        DVec3::new(draws.between(-4.0, 4.0), draws.between(-4.0, 4.0), draws.between(0.5, 3.5));
+    let position = DVec3::new(draws.between(-4.0, 4.0), draws.between(-4.0, 4.0), draws.between(0.5, 3.5));
     let scene_from_sensor = Pose { position, rotation };
     let fine = if number.is_multiple_of(3) { 1 } else { 25 };
     let camera = Camera {
@@ -177,7 +174,11 @@ fn no_pair_of_displacements_within_lo_has_a_jump_between_and_the_witness_has() {
             let is_hit = margins.verdict.is_hit();
             assert_eq!(Some(margins.verdict), referee.verdict(sensor, i, j));
             let Margin { lo, hi, witness } = margins.surface;
-            assert!(margins.face.lo <= lo && lo <= hi && hi <= 1.0, "{number} {cell:?} {:?}", margins.surface);
+            assert!(
+                margins.face.lo <= lo && lo <= hi && hi <= 1.0,
+                "{number} {cell:?} {:?}",
+                margins.surface
+            );
             let range = |at: [f64; 2]| range(&scene, &referee, cell, at);
             for _ in 0..10 {
                 let [a, b] = [in_square(&mut draws), in_square(&mut draws)].map(|at| at.map(|x| x * lo));
