@@ -10,33 +10,38 @@
 //! | inside the edge | -q.(V x E) |
 //! | the front is met | -n.q |
 //! | at or beyond the SPP at z = f | f n.q - n.V |
-//! | within the range | M (-n.q) + n.V \|q\| |
+//! | within the range | M (-n.q) + n.V L, with L the length of q |
 //! | at or before the other face, primed | n'.V' n.q - n.V n'.q |
 //!
-//! each a positive multiple of the one there. All are bilinear in (dx, dy), but for the range, whose \|q\| is
+//! each a positive multiple of the one there. All are bilinear in (dx, dy), but for the range, whose L is
 //! bent a little.
 //!
 //! # The errors
 //!
-//! u = 2^-53. \|x\|_1 is the sum of the absolute values; it is at least the length of x and at least any part of
+//! u = 2^-53. |x|_1 is the sum of the absolute values; it is at least the length of x and at least any part of
 //! it. Terms of order u^2 are covered where a bound is rounded up. The limits on what a scene may hold (vertices
 //! and positions within 1e7 m, pitches and distances from 1e-8 to 1e3) keep all products far from overflow,
 //! and underflow far below the errors.
 //!
-//! * M: its parts are quotients of sums of four products by q.q, each sum within 4 u q.q: off by at most 10 u.
-//! * a - start: u of itself before it is turned. A sum of three products: 3 u. So V is off by at most 10 u \|d\|_1
-//!   + (1 + 3) u \|d\| <= 14 u \|d\|_1 in each part; in a beam, the row's height adds 4 u of itself and the
-//!   subtraction u of the result: in all at most 20 u S, with S = \|d\|_1 + height + h. E likewise: 14 u e, with
-//!   e = \|b - a\|_1.
-//! * q_x, q_y, p_x, p_y, h: at most 3 u of themselves. Q = \|q_x\| + \|q_y\| + 1 + p_x + p_y bounds \|q\| over the square.
-//! * V x E: each part 2 (20 + 14) u S e from the factors, 4 u S e from its own three roundings: 72 u S e. The edge
-//!   form, of size Q S e: 72 u from V x E, 4 u from q, 3 u from the sum, and 16 u for evaluating it (below): less than
-//!   128 u Q S e.
-//! * n: 2 (14 + 14) u K + 4 u K with K = e e': 60 u K each part. n.q: 60 u K Q + 7 u K Q, with 16 u for evaluating it less
-//!   than 128 u K Q. n.V: 60 u K times \|V\|_1 <= 1.8 S, 20 u S times \|n\|_1 <= 1.8 K, and 3 u: less than 160 u K S.
-//! * SPP: 67 u f K Q + 160 u K S + 2 u and 16 u of the sum: less than 256 u K (f Q + S). Range: 67 u M K Q + 160 u K S Q, 12 u from
-//!   \|q\| and its slopes, 16 u: less than 256 u K Q (M + S). Order: (67 + 160 + 3 + 16) u for each of two products of
-//!   sizes K K' S' Q and K K' S Q: less than 256 u K K' Q (S + S').
+//! M: its parts are quotients of sums of four products by q.q, each sum within 4 u q.q: off by at most 10 u.
+//!
+//! V: a - start, u of itself before it is turned; a sum of three products, 3 u. So it is off by at most
+//! 10 u |d|_1 + (1 + 3) u |d| <= 14 u |d|_1 in each part; in a beam, the row's height adds 4 u of itself and the
+//! subtraction u of the result: in all at most 20 u S, with S = |d|_1 + height + h. E likewise: 14 u e, with
+//! e = |b - a|_1.
+//!
+//! q_x, q_y, p_x, p_y, h: at most 3 u of themselves. Q = |q_x| + |q_y| + 1 + p_x + p_y bounds |q| over the square.
+//!
+//! V x E: each part 2 (20 + 14) u S e from the factors, 4 u S e from its own three roundings: 72 u S e. The edge
+//! form, of size Q S e: 72 u from V x E, 4 u from q, 3 u from the sum, and 16 u for evaluating it (below): less than
+//! 128 u Q S e.
+//!
+//! n: 2 (14 + 14) u K + 4 u K with K = e e': 60 u K each part. n.q: 60 u K Q + 7 u K Q, with 16 u for evaluating it
+//! less than 128 u K Q. n.V: 60 u K times |V|_1 <= 1.8 S, 20 u S times |n|_1 <= 1.8 K, and 3 u: less than 160 u K S.
+//!
+//! SPP: 67 u f K Q + 160 u K S + 2 u and 16 u of the sum: less than 256 u K (f Q + S). Range: 67 u M K Q +
+//! 160 u K S Q, 12 u from |q| and its slopes, 16 u: less than 256 u K Q (M + S). Order: (67 + 160 + 3 + 16) u for each
+//! of two products of sizes K K' S' Q and K K' S Q: less than 256 u K K' Q (S + S').
 //!
 //! "Evaluating": adding up the at most four terms of a form somewhere in the square, and moving its origin.
 
@@ -334,10 +339,9 @@ pub(crate) fn beside<const N: usize>(corners: [&Corner; N], centre: [f64; 2]) ->
     best.min(1.0)
 }
 
-/// Where a face lies as to the unit square of displacements.
-pub(crate) enum Place<'a> {
-    /// It may be met.
-    Near(FaceForms<'a>),
+/// Why a face is not met in the unit square of displacements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Away {
     /// No ray of the square meets its triangle between the SPP and the longest range.
     Beside,
     /// No ray of the square meets its front; its edges may lie anywhere.
@@ -372,25 +376,25 @@ impl<'a> FaceForms<'a> {
         Self::of_edges(ray, face, &Placed::of(ray, face))
     }
 
-    /// Where the face lies as to the unit square, with its conditions if it may be met there.
+    /// The conditions of a face that may be met in the unit square.
     ///
     /// An edge's form is negative outside of a triangle that shows its front, and *inside* of one that shows
     /// its back: only with the front is it known where the triangle lies.
-    pub(crate) fn in_square(ray: &MovingRay, face: &'a Face) -> Place<'a> {
+    pub(crate) fn in_square(ray: &MovingRay, face: &'a Face) -> Result<Self, Away> {
         let placed = Placed::of(ray, face);
         if placed.is_beside(ray) {
-            return Place::Beside;
+            return Err(Away::Beside);
         }
         let forms = Self::of_edges(ray, face, &placed);
         // Where the ray lies in the face's plane all forms vanish: ask how far away the triangle is.
         if forms.closest(ray) > ray.max_range {
-            return Place::Beside;
+            return Err(Away::Beside);
         }
         if forms.edges().iter().any(|edge| edge.fails_within() >= 1.0) {
             let shows_front = forms.own[3].holds_within() >= 1.0;
-            return if shows_front { Place::Beside } else { Place::Back };
+            return Err(if shows_front { Away::Beside } else { Away::Back });
         }
-        Place::Near(forms)
+        Ok(forms)
     }
 
     fn of_edges(ray: &MovingRay, face: &'a Face, placed: &Placed) -> Self {
@@ -829,7 +833,7 @@ mod tests {
                     continue;
                 }
                 met += 1;
-                assert!(matches!(place, Place::Near(_)), "{face:?}");
+                assert!(place.is_ok(), "{face:?}");
                 let range = face.range(&exact);
                 // The range itself is rounded, by more where the ray is almost in the face's plane.
                 let (_, doubt) = forms.range_at(&ray, at);

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 
 use crate::cull::Walk;
 use crate::face::{ExactRay, Face};
-use crate::forms::{FaceForms, Form, MovingRay, Place};
+use crate::forms::{Away, FaceForms, Form, MovingRay};
 use crate::pencil::{Aim, Sensor};
 use crate::verdict::{Referee, bundle_of};
 
@@ -62,13 +62,13 @@ impl<'a> Neighbourhood<'a> {
         while let Some(leaf) = self.walk.next_leaf(self.reach) {
             for face in leaf {
                 let forms = match FaceForms::in_square(&self.ray, face) {
-                    Place::Near(forms) => forms,
-                    Place::Beside => {
+                    Ok(forms) => forms,
+                    Err(Away::Beside) => {
                         self.beside.push(face);
                         continue;
                     }
                     // No front in the square: neither to be met nor to go on with.
-                    Place::Back => continue,
+                    Err(Away::Back) => continue,
                 };
                 let met = |form: &Form| form.is_positive_at([0.0; 2]) == Some(true);
                 if lowers && forms.farthest < self.reach && forms.own().iter().all(met) {
