@@ -529,6 +529,19 @@ impl<'a> FaceForms<'a> {
         ray.through(a * weights[0] + b * weights[1] + c * weights[2])
     }
 
+    /// The least and the greatest displacement, per axis, of rays that meet the triangle: they lie between those
+    /// of its corners, as `beside` says.
+    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
+        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for corner in &self.corners {
+            for axis in 0..2 {
+                bounds[0][axis] = bounds[0][axis].min(corner.at[axis] - corner.error[axis]);
+                bounds[1][axis] = bounds[1][axis].max(corner.at[axis] + corner.error[axis]);
+            }
+        }
+        bounds
+    }
+
     /// Whether all corners lie certainly before the sensor, so that `beside` knows of them.
     pub(crate) fn is_before(&self) -> bool {
         self.corners.iter().all(|corner| corner.error[0] < f64::INFINITY)

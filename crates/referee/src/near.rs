@@ -23,6 +23,8 @@ pub(crate) struct Neighbourhood<'a> {
     /// All that may be met within this range, metres, is in `faces`.
     reach: f64,
     pub(crate) faces: Vec<FaceForms<'a>>,
+    /// Their bounds in the square, side by side: most faces are not met by most rays.
+    bounds: Vec<[[f64; 2]; 2]>,
     /// Faces whose triangles lie beside the square: the other sides of edges that cannot lie in it either.
     beside: Vec<&'a Face>,
     edges: Edges,
@@ -50,6 +52,7 @@ impl<'a> Neighbourhood<'a> {
             walk,
             reach: max_range,
             faces: Vec::with_capacity(16),
+            bounds: Vec::with_capacity(16),
             beside: Vec::with_capacity(32),
             edges: Edges::default(),
         };
@@ -74,6 +77,7 @@ impl<'a> Neighbourhood<'a> {
                 if lowers && forms.farthest < self.reach && forms.own().iter().all(met) {
                     self.reach = forms.farthest;
                 }
+                self.bounds.push(forms.bounds());
                 self.faces.push(forms);
             }
         }
@@ -104,8 +108,10 @@ impl<'a> Neighbourhood<'a> {
         let exact =
             || exact.get_or_init(|| ExactRay::new(self.sensor, Aim { dx: at[0], dy: at[1], ..self.aim }));
         let mut nearest: Vec<usize> = Vec::new();
-        for (index, forms) in self.faces.iter().enumerate() {
-            if !self.is_met(forms, at, exact) {
+        for (index, [low, high]) in self.bounds.iter().enumerate() {
+            let inside = low[0] <= at[0] && at[0] <= high[0] && low[1] <= at[1] && at[1] <= high[1];
+            let forms = &self.faces[index];
+            if !inside || !self.is_met(forms, at, exact) {
                 continue;
             }
             let order = nearest.first().map(|&kept| {
