@@ -251,6 +251,33 @@ fn one_call_answers_as_three_do() {
     assert_eq!(referee.margins(SensorId::Beam(1), 0, 0), None);
 }
 
+/// Neighbours are told by where their corners are, not by indices, and -0 is where 0 is.
+#[test]
+fn faces_need_no_common_vertices_to_be_one_surface() {
+    for number in [0, 5, 6] {
+        let scene = scene(number);
+        let mesh = scene.mesh();
+        let corners = mesh.faces().iter().enumerate().flat_map(|(index, face)| {
+            face.map(|v| {
+                mesh.vertices()[v as usize].map(|x| if x == 0.0 && index % 2 == 0 { -0.0 } else { x })
+            })
+        });
+        let count = mesh.faces().len();
+        let faces = (0..count as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let kinds = mesh.materials().to_vec();
+        let apart = Mesh::new(mesh.origin(), corners.collect(), faces, vec![0; count], kinds).expect("valid");
+        let (beams, air) = (scene.beams().to_vec(), scene.atmosphere());
+        let apart =
+            Scene::new(Arc::new(apart), *scene.camera(), beams, air, scene.flux_model()).expect("valid");
+        let (one, other) = (Referee::new(&scene), Referee::new(&apart));
+        let mut draws = Draws(7);
+        for _ in 0..200 {
+            let (sensor, i, j) = cell(&scene, &mut draws);
+            assert_eq!(one.margins(sensor, i, j), other.margins(sensor, i, j), "{number} {sensor} {i},{j}");
+        }
+    }
+}
+
 /// A hidden wall must not end the search for what hides the ground farther away.
 #[test]
 fn a_wall_under_the_ground_hides_no_post_behind_it() {
