@@ -10,8 +10,10 @@
 //! face             the contract's conditions, as signs of polynomials
 //! cull             a tree of boxes of its own
 //! verdict          the nearest faces of a ray
-//! forms, region    the conditions as functions of a small displacement
+//! forms, region    the conditions as functions of a small displacement, in f64 with proven errors
+//! near             all faces near a ray, and the verdict on any ray beside it
 //! margin, surface  how far a verdict is from changing, with a witness
+//! sheet, divide    where the range is continuous; what to do where one square does not tell
 //! ruling           whether an answer is right, or admissible
 //! paper            whether an approximation of the paper explains an answer
 //! truth            yes, no, or either, of what is known up to an interval
@@ -21,21 +23,24 @@
 //! It depends on `raypencil-scene` alone, and no renderer may call it.
 
 mod cull;
+mod divide;
 mod face;
 mod forms;
 mod margin;
+mod near;
 mod number;
 mod paper;
 mod pencil;
 mod region;
 mod render;
 mod ruling;
+mod sheet;
 mod surface;
 mod truth;
 mod vector;
 mod verdict;
 
-pub use margin::Margin;
+pub use margin::{Margin, Margins};
 pub use paper::{Approximations, Explained, Reason};
 pub use render::ExactRenderer;
 pub use ruling::{Ruling, Tolerance};
