@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use raypencil_referee::{Explained, Margin, Ruling, Verdict};
+use raypencil_referee::{Explained, Margin, Margins, Ruling, Verdict};
 use raypencil_scene::{Hit, Ray, Request, SensorId};
 use serde::Serialize;
 
@@ -108,16 +108,22 @@ pub fn probe(
         })
         .collect();
     let referee = judge.referee();
-    let (Some(verdict), Some(face_margin), Some(surface_margin)) = (
-        referee.verdict(sensor, i, j),
-        referee.face_margin(sensor, i, j),
-        referee.surface_margin(sensor, i, j),
-    ) else {
+    let Some(Margins { verdict, face, surface }) = referee.margins(sensor, i, j) else {
         return Err(no_such_cell);
     };
     let exact = verdict.faces.first().and_then(|face| referee.hit(sensor, i, j, *face));
     let command = probe_command(subject, place);
-    Ok(Probe { place, command, ray, max_range, answers, verdict, exact, face_margin, surface_margin })
+    Ok(Probe {
+        place,
+        command,
+        ray,
+        max_range,
+        answers,
+        verdict,
+        exact,
+        face_margin: face,
+        surface_margin: surface,
+    })
 }
 
 /// One renderer's answer.

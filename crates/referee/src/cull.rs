@@ -42,7 +42,8 @@ pub(crate) struct Bundle {
     pub(crate) reach: f64,
     /// How far a ray of the bundle may start from the origin, metres.
     pub(crate) start_radius: f64,
-    /// How much farther away it may be per metre of range.
+    /// How far apart the unit directions of two of its rays may be from the middle one's: metres per metre of
+    /// range.
     pub(crate) spread: f64,
 }
 
@@ -85,48 +86,87 @@ impl Tree {
 
     /// Calls `visit` with every face that a ray of the bundle may meet within its reach, and perhaps with
     /// others. `visit` answers with the reach from there on: nearer faces are asked about first.
-    pub(crate) fn visit<'t>(&'t self, bundle: &Bundle, mut visit: impl FnMut(&'t Face, f64) -> f64) {
-        let Some(root) = self.nodes.first() else { return };
-        let inverse = bundle.direction.recip();
+    pub(crate) fn visit<'t>(&'t self, bundle: &Bundle, mut visit: impl FnMut(&'t Face) -> f64) {
+        let mut walk = Walk::new(self, bundle);
         let mut reach = bundle.reach;
-        let mut waiting: Vec<(f64, u32)> = Vec::with_capacity(64);
-        if let Some(entry) = root.entered(bundle, inverse) {
-            waiting.push((entry, 0));
-        }
-        while let Some((entry, index)) = waiting.pop() {
-            if entry > reach {
-                continue;
+        while let Some(leaf) = walk.next_leaf(reach) {
+            for face in leaf {
+                reach = visit(face).min(reach);
             }
-            let node = &self.nodes[index as usize];
-            if node.count > 0 {
-                for face in &self.faces[node.first as usize..(node.first + node.count) as usize] {
-                    reach = visit(face, entry).min(reach);
-                }
-                continue;
-            }
-            let mut children = [node.first, node.first + 1]
-                .map(|child| (self.nodes[child as usize].entered(bundle, inverse), child));
-            // The nearer child is taken from the stack first.
-            if children[0].0 < children[1].0 {
-                children.swap(0, 1);
-            }
-            waiting.extend(children.into_iter().filter_map(|(entry, child)| Some((entry?, child))));
         }
     }
 }
 
-impl Node {
-    /// Where the bundle enters this box, widened, or `None` if it does not.
+/// A way through the tree along a bundle, leaf by leaf, roughly from near to far. Parts beyond the reach are
+/// kept for later, should it grow again.
+#[derive(Debug)]
+pub(crate) struct Walk<'t> {
+    tree: &'t Tree,
+    bundle: Bundle,
+    inverse: DVec3,
+    /// How much a box is widened wherever it lies.
+    widened: f64,
+    /// Where the bundle enters a node, and the node.
+    waiting: Vec<(f64, u32)>,
+    beyond: Vec<(f64, u32)>,
+}
+
+impl<'t> Walk<'t> {
+    pub(crate) fn new(tree: &'t Tree, bundle: &Bundle) -> Self {
+        let mut walk = Self {
+            tree,
+            bundle: *bundle,
+            inverse: bundle.direction.recip(),
+            widened: bundle.start_radius * (1.0 + bundle.spread) + SLACK * bundle.origin.length(),
+            waiting: Vec::with_capacity(64),
+            beyond: Vec::new(),
+        };
+        if let Some(entry) = tree.nodes.first().and_then(|root| walk.entry(root)) {
+            walk.waiting.push((entry, 0));
+        }
+        walk
+    }
+
+    /// The faces of the next leaf that the bundle enters within `reach`; `None` if there is no other.
+    pub(crate) fn next_leaf(&mut self, reach: f64) -> Option<&'t [Face]> {
+        while let Some((entry, index)) = self.waiting.pop() {
+            if entry > reach {
+                self.beyond.push((entry, index));
+                continue;
+            }
+            let node = &self.tree.nodes[index as usize];
+            if node.count > 0 {
+                return Some(&self.tree.faces[node.first as usize..(node.first + node.count) as usize]);
+            }
+            let child = |child: u32| (self.entry(&self.tree.nodes[child as usize]), child);
+            let mut children = [child(node.first), child(node.first + 1)];
+            // The nearer child is taken from the stack first.
+            if children[0].0 < children[1].0 {
+                children.swap(0, 1);
+            }
+            self.waiting.extend(children.into_iter().filter_map(|(entry, child)| Some((entry?, child))));
+        }
+        None
+    }
+
+    /// Takes up what had been beyond the reach.
+    pub(crate) fn resume(&mut self) {
+        self.waiting.append(&mut self.beyond);
+    }
+
+    /// Where the bundle enters a node's box, widened, or `None` if it does not.
+    ///
+    /// A ray of the bundle meets a point P of the box at its own range R. It starts at most `start_radius` from the
+    /// bundle's start, and its direction is at most `spread` from the bundle's: so the point of the bundle's
+    /// middle at R lies within `start_radius + spread R` of P, and R is at most the distance of P and
+    /// `start_radius`. The widened box contains that point, hence it is entered at R or before.
     #[inline]
-    fn entered(&self, bundle: &Bundle, inverse: DVec3) -> Option<f64> {
-        let (low, high) = (self.low - bundle.origin, self.high - bundle.origin);
-        // The farthest that a point of the box can be from the origin; rays are at most so far apart there.
+    fn entry(&self, node: &Node) -> Option<f64> {
+        let bundle = &self.bundle;
+        let (low, high) = (node.low - bundle.origin, node.high - bundle.origin);
         let farthest = low.abs().max(high.abs()).length();
-        let size = self.low.abs().max(self.high.abs()).max_element();
-        let margin = bundle.start_radius
-            + bundle.spread * farthest
-            + SLACK * (farthest + size + bundle.origin.length());
-        let margin = DVec3::splat(margin);
+        let size = node.low.abs().max(node.high.abs()).max_element();
+        let margin = DVec3::splat(self.widened + bundle.spread * farthest + SLACK * (farthest + size));
         let (low, high) = (low - margin, high + margin);
         let (mut enter, mut leave) = (0.0_f64, bundle.reach);
         for k in 0..3 {
@@ -136,7 +176,7 @@ impl Node {
                 }
                 continue;
             }
-            let (a, b) = (low[k] * inverse[k], high[k] * inverse[k]);
+            let (a, b) = (low[k] * self.inverse[k], high[k] * self.inverse[k]);
             enter = enter.max(a.min(b));
             leave = leave.min(a.max(b));
         }

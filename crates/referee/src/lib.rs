@@ -10,8 +10,10 @@
 //! face             the contract's conditions, as signs of polynomials
 //! cull             a tree of boxes of its own
 //! verdict          the nearest faces of a ray
-//! forms, region    the conditions as functions of a small displacement
+//! forms, region    the conditions as functions of a small displacement, in f64 with proven errors
+//! near             all faces near a ray, and the verdict on any ray beside it
 //! margin, surface  how far a verdict is from changing, with a witness
+//! sheet, divide    where the range is continuous; what to do where one square does not tell
 //! ruling           whether an answer is right, or admissible
 //! sight            what the camera sees of a pencil's hit
 //! sight_ruling     whether an answer about that is right, or admissible
@@ -25,10 +27,12 @@
 //! It depends on `raypencil-scene` alone, and no renderer may call it.
 
 mod cull;
+mod divide;
 mod face;
 mod forms;
 mod light;
 mod margin;
+mod near;
 mod number;
 mod paper;
 mod paper_sight;
@@ -36,6 +40,7 @@ mod pencil;
 mod region;
 mod render;
 mod ruling;
+mod sheet;
 mod sight;
 mod sight_ruling;
 mod surface;
@@ -44,7 +49,7 @@ mod vector;
 mod verdict;
 
 pub use light::Light;
-pub use margin::Margin;
+pub use margin::{Margin, Margins};
 pub use paper::{Approximations, Explained, Reason};
 pub use paper_sight::{ExplainedSight, SightApproximations, SightReason};
 pub use render::ExactRenderer;

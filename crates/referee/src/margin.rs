@@ -1,26 +1,33 @@
-//! How far a verdict is from changing: the margin `face`, as an interval with a witness.
+//! How far a verdict is from changing: the margins, and the one that is called `face`.
 //!
-//! Displacements are measured by the larger of |dx| and |dy|, in cells. The margin is the least displacement
-//! that changes the set of nearest faces; it is given as [lo, hi]: within lo no displaced ray changes the
-//! set (proven), at hi one does (the witness is judged exactly). Both are capped at 1.
+//! Displacements are measured by the larger of |dx| and |dy|, in cells. A margin is the least displacement
+//! that changes something; it is given as [lo, hi]: within lo no displaced ray changes it (proven), at hi one does
+//! (the witness is judged exactly). Both are capped at 1. Here it is the set of nearest faces; `surface` has the
+//! other.
 //!
 //! # The proof of lo
 //!
 //! A square |dx|, |dy| <= r changes nothing if over all of it the nearest face F meets its own conditions and
 //! every other face G breaks one: an edge, front, plane or range of its own, or to be met at or before F.
 //! Each condition is a form g (see `forms`), so a radius up to which it holds, or fails, is the root of a
-//! quadratic. Where a corner of G points at the ray no single condition fails for long, though two do
-//! together: if g1 >= 0 and g2 >= 0 then g1 + w g2 >= 0 for any w > 0, and the weights that make the combined
-//! slope in x or in y vanish are the best there are for a square. (The separating line of a convex polygon
-//! and a square runs along a side of one of them.)
+//! quadratic. Where a corner of G points at the ray no single condition fails for long, though G lies on the far
+//! side of one side of the square: of two convex polygons that do not meet, a side of one separates them. For
+//! G's edges that is seen from its corners. For its other conditions it takes two together: if g1 >= 0 and
+//! g2 >= 0 then g1 + w g2 >= 0 for any w > 0, and the weights that make the combined slope in x or in y vanish
+//! are the best there are for a square.
+//!
+//! A face that lies beyond all that F's triangle or plane reaches over the unit square need not be asked: it is
+//! met after F wherever F is met.
 
 use raypencil_scene::SensorId;
 
+use crate::divide::{divided, is_tight};
 use crate::face::Face;
-use crate::forms::{FaceForms, Form, MovingRay, certainly_fails, edge};
+use crate::forms::{Form, beside, certainly_fails};
+use crate::near::Neighbourhood;
 use crate::pencil::{Aim, Sensor};
 use crate::region::{Region, holds_between, size};
-use crate::verdict::{Displacement, Referee, bundle};
+use crate::verdict::{Displacement, Referee, Verdict};
 
 /// The least displacement that changes a verdict, in cells, somewhere in `lo..=hi`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,116 +43,194 @@ pub struct Margin {
 impl Margin {
     /// A verdict that does not change within a cell.
     pub(crate) const CAPPED: Self = Self { lo: 1.0, hi: 1.0, witness: None };
+
+    /// What is proven, and the nearest displacement that was found to change the verdict.
+    pub(crate) fn of(lo: f64, witness: Option<[f64; 2]>) -> Self {
+        match witness {
+            Some(at) => Self { lo, hi: size(at).min(1.0), witness: Some(displacement(at)) },
+            None => Self { lo, hi: 1.0, witness: None },
+        }
+    }
+}
+
+/// The verdict on a ray, and how far it is from changing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Margins {
+    /// The nearest faces.
+    pub verdict: Verdict,
+    /// The least displacement that changes the set of nearest faces.
+    pub face: Margin,
+    /// The least displacement at which the ray comes to hit or to miss, or its range jumps.
+    pub surface: Margin,
 }
 
 impl Referee<'_> {
+    /// The verdict on cell (i, j) and both of its margins, or `None` if there is no such cell. Quicker than to
+    /// ask for them one by one.
+    pub fn margins(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margins> {
+        let sensor = self.sensor_with(sensor, i, j)?;
+        let (mut near, nearest, face) = self.with_face_margin(&sensor, i, j);
+        let verdict = Verdict { faces: nearest.iter().map(|&index| near.faces[index].face.id).collect() };
+        let surface = near.surface_margin(&nearest, &face);
+        Some(Margins { verdict, face, surface })
+    }
+
     /// The margin of the set of nearest faces of cell (i, j), or `None` if there is no such cell.
     pub fn face_margin(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margin> {
+        let sensor = self.sensor_with(sensor, i, j)?;
+        Some(self.with_face_margin(&sensor, i, j).2)
+    }
+
+    /// The margin of the surface of cell (i, j), or `None` if there is no such cell.
+    pub fn surface_margin(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margin> {
+        self.margins(sensor, i, j).map(|margins| margins.surface)
+    }
+
+    /// The sensor, if it has such a cell.
+    fn sensor_with(&self, sensor: SensorId, i: u32, j: u32) -> Option<Sensor> {
         let sensor = Sensor::of(self.scene, sensor)?;
         let (width, height) = sensor.size();
-        if i >= width || j >= height {
-            return None;
+        (i < width && j < height).then_some(sensor)
+    }
+
+    /// What all margins start from: the neighbourhood, the nearest faces in it, and their margin.
+    fn with_face_margin<'a>(
+        &'a self,
+        sensor: &'a Sensor,
+        i: u32,
+        j: u32,
+    ) -> (Neighbourhood<'a>, Vec<usize>, Margin) {
+        let mut near = Neighbourhood::new(self, sensor, Aim { i, j, dx: 0.0, dy: 0.0 });
+        let nearest = near.nearest_at([0.0; 2]);
+        if let Some(&first) = nearest.first() {
+            near.reach_to(near.faces[first].farthest);
         }
-        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
-        Some(Search { referee: self, sensor: &sensor, aim, nearest: self.nearest(&sensor, aim) }.margin())
+        let face = margin(&near, &nearest);
+        (near, nearest, face)
     }
 }
 
-/// The search for one margin.
-struct Search<'a> {
-    referee: &'a Referee<'a>,
-    sensor: &'a Sensor,
-    aim: Aim,
-    nearest: Vec<&'a Face>,
+/// The margin of the set of nearest faces.
+fn margin(near: &Neighbourhood<'_>, nearest: &[usize]) -> Margin {
+    let search = Search::of(near, nearest, [0.0; 2], 1.0);
+    let lo = search.lo;
+    if lo >= 1.0 {
+        return Margin::CAPPED;
+    }
+    let witness = search.witness();
+    if is_tight(lo, witness) || lo <= 0.0 {
+        return Margin::of(lo, witness);
+    }
+    // A part that shows the same faces at its middle, and keeps them, is without a change.
+    let (lo, witness) = divided(lo, witness, |square, _| {
+        let differs = |at: [f64; 2]| near.nearest_at(at) != nearest;
+        let changed = differs(square.middle);
+        if !changed && Search::of(near, nearest, square.middle, square.half).lo >= square.half {
+            return None;
+        }
+        let places = square.corners().into_iter().filter(|&at| differs(at));
+        let places = places.chain(changed.then_some(square.middle));
+        Some(places.min_by(|a, b| size(*a).total_cmp(&size(*b))))
+    });
+    Margin::of(lo, witness)
 }
 
-/// What may end the verdict first: a condition of a nearest face that comes to fail, or another face whose
-/// conditions come to hold together.
+/// The search for the margin of the set of nearest faces, about a centre at which they are the nearest.
+struct Search<'a> {
+    near: &'a Neighbourhood<'a>,
+    nearest: &'a [usize],
+    centre: [f64; 2],
+    lo: f64,
+    events: Vec<Event>,
+}
+
+/// What may end the verdict first, and the radius at which it may.
 struct Event {
     radius: f64,
-    forms: Vec<Form>,
-    /// Whether it is the failing of the (only) form; else it is the holding of all.
-    fails: bool,
+    what: What,
 }
 
-impl Search<'_> {
-    fn margin(&self) -> Margin {
-        let ray = MovingRay::new(self.sensor, self.aim);
-        let nearest: Vec<FaceForms<'_>> =
-            self.nearest.iter().map(|face| FaceForms::new(&ray, face)).collect();
-        let mut events = Vec::new();
-        let mut lo = 1.0_f64;
+enum What {
+    /// A condition of a nearest face comes to fail.
+    Fails(Form),
+    /// All conditions of another face come to hold together.
+    Enters(usize),
+}
 
+impl<'a> Search<'a> {
+    /// Finds `lo`, at most `cap`, and what it depends on.
+    fn of(near: &'a Neighbourhood<'a>, nearest: &'a [usize], centre: [f64; 2], cap: f64) -> Self {
+        let mut search = Self { near, nearest, centre, lo: cap, events: Vec::new() };
+        let faces = &near.faces;
         // The nearest faces must stay what they are.
-        for forms in &nearest {
-            for form in forms.own() {
-                let radius = form.holds_within();
-                lo = lo.min(radius);
-                events.push(Event { radius, forms: vec![form], fails: true });
+        for form in nearest.iter().flat_map(|&index| faces[index].own()) {
+            let form = form.about(centre);
+            let radius = form.holds_within();
+            if radius < cap {
+                search.lo = search.lo.min(radius);
+                search.events.push(Event { radius, what: What::Fails(form) });
             }
         }
         // Several at one point stay together only if they lie in one plane.
-        if let [first, others @ ..] = self.nearest.as_slice()
-            && others.iter().any(|other| !first.is_coplanar_with(other))
+        let of = |index: usize| -> &Face { faces[index].face };
+        if let [first, others @ ..] = nearest
+            && others.iter().any(|&other| !of(*first).is_coplanar_with(of(other)))
         {
-            lo = 0.0;
+            search.lo = 0.0;
         }
-
         // Every other face that could come to be met must stay out of it.
-        let reach =
-            nearest.iter().map(|forms| forms.farthest_range(lo)).fold(self.sensor.max_range(), f64::min);
-        let mut around = bundle(self.sensor, self.aim, 1.0);
-        around.reach = reach * (1.0 + f64::EPSILON);
-        self.referee.tree.visit(&around, |face, _| {
-            if !self.nearest.iter().any(|kept| kept.id == face.id) {
-                self.keep_out(&ray, nearest.first(), face, &mut lo, &mut events);
+        for index in 0..faces.len() {
+            if !nearest.contains(&index) {
+                search.keep_out(index);
             }
-            around.reach
-        });
-
-        if lo >= 1.0 {
-            return Margin::CAPPED;
         }
-        events.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-        match self.witness(&events, lo) {
-            Some(witness) => Margin { lo, hi: witness.size().min(1.0), witness: Some(witness) },
-            None => Margin { lo, hi: 1.0, witness: None },
+        search.events.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+        search
+    }
+
+    /// Lowers `lo` to a radius within which a face is certainly not among the nearest.
+    fn keep_out(&mut self, index: usize) {
+        let (face, centre) = (&self.near.faces[index], self.centre);
+        let fails = face.edges().iter().map(|edge| edge.about(centre).fails_within());
+        let clear = fails.fold(0.0, f64::max);
+        // An edge that it shares with the nearest face gives the same radius but for rounding: no event.
+        let enough = self.lo * (1.0 - 1.0 / (1u64 << 20) as f64);
+        if clear >= enough {
+            self.lo = self.lo.min(clear);
+            return;
+        }
+        let [a, b, c] = &face.corners;
+        let mut clear = beside([a, b, c], centre).max(clear);
+        if let Some(&nearest) = self.nearest.first() {
+            clear = self.near.sooner(nearest, index).about(centre).holds_within().max(clear);
+        }
+        if clear < enough {
+            let apart = if face.is_before() { 3 } else { 0 };
+            clear = certainly_fails(&self.conditions(index, enough), apart, enough).max(clear);
+        }
+        if clear < self.lo {
+            self.lo = clear;
+            self.events.push(Event { radius: clear, what: What::Enters(index) });
         }
     }
 
-    /// Lowers `lo` to a radius within which `face` is certainly not among the nearest.
-    fn keep_out(
-        &self,
-        ray: &MovingRay,
-        nearest: Option<&FaceForms<'_>>,
-        face: &Face,
-        lo: &mut f64,
-        events: &mut Vec<Event>,
-    ) {
-        // Most faces of the neighbourhood are cleared by one of their edges.
-        let edges = [0, 1, 2].map(|k| edge(ray, face, k));
-        if edges.iter().any(|form| form.fails_within() >= *lo) {
-            return;
-        }
-        let own = FaceForms::new(ray, face);
-        let mut forms = edges.to_vec();
-        forms.extend([own.front(), own.plane(), own.range()]);
-        forms.extend(nearest.map(|nearest| own.at_or_before(nearest)));
-        let out = certainly_fails(&forms, *lo);
-        if out < *lo {
-            *lo = out;
-            events.push(Event { radius: out, forms, fails: false });
-        }
+    /// The conditions of a face that comes to be met first, its edges first of all, but for those others that hold
+    /// within `r` anyway.
+    fn conditions(&self, index: usize, r: f64) -> Vec<Form> {
+        let face = &self.near.faces[index];
+        let mut forms = Vec::with_capacity(7);
+        forms.extend(face.edges().iter().map(|edge| edge.about(self.centre)));
+        let before = self.nearest.first().map(|&nearest| face.at_or_before(&self.near.faces[nearest]));
+        let others = face.own()[3..].iter().copied().chain(before).map(|form| form.about(self.centre));
+        forms.extend(others.filter(|form| form.holds_within() < r));
+        forms
     }
 
     /// A displaced ray whose verdict differs, as near as it can be found.
-    fn witness(&self, events: &[Event], lo: f64) -> Option<Displacement> {
-        let before: Vec<_> = self.nearest.iter().map(|face| face.id).collect();
-        let differs = |at: [f64; 2]| {
-            let aim = Aim { dx: at[0], dy: at[1], ..self.aim };
-            let after = self.referee.nearest(self.sensor, aim);
-            !after.iter().map(|face| face.id).eq(before.iter().copied())
-        };
+    fn witness(&self) -> Option<[f64; 2]> {
+        // All that the nearest faces could be hidden by is known. Where none of the known is met, or another one is,
+        // the verdict is another, whatever lies beyond.
+        let differs = |at: [f64; 2]| self.near.nearest_at(at) != self.nearest;
         let mut best: Option<[f64; 2]> = None;
         // Keeps a nearer witness; says whether it is near enough to stop.
         let offer = |best: &mut Option<[f64; 2]>, at: [f64; 2]| {
@@ -153,41 +238,84 @@ impl Search<'_> {
             if nearer && size(at) <= 1.0 && differs(at) {
                 *best = Some(at);
             }
-            best.is_some_and(|best| size(best) <= lo * 1.01 + 1e-12)
+            best.is_some_and(|best| size(best) <= self.lo * 1.01 + 1e-12)
         };
-        for event in events {
-            if event.fails {
-                // The corner of the square at which the form vanishes first.
-                let form = &event.forms[0];
-                let away = |slope: f64| if slope > 0.0 { -1.0 } else { 1.0 };
-                let corner = [away(form.x.middle()), away(form.y.middle())];
-                for further in [1e-9, 1e-6, 1e-3, 0.1, 0.7] {
-                    let r = event.radius * (1.0 + further) + 1e-13 * (1.0 + further * 1e6);
-                    if offer(&mut best, [corner[0] * r, corner[1] * r]) {
-                        return best.map(|[dx, dy]| Displacement { dx, dy });
+        for event in &self.events {
+            match &event.what {
+                What::Fails(form) => {
+                    // The corner of the square at which the form vanishes first.
+                    let away = |slope: f64| if slope > 0.0 { -1.0 } else { 1.0 };
+                    let corner = [away(form.x), away(form.y)];
+                    // Beyond it by what the form may be off, twice, and then farther.
+                    let doubt = 2.25 * form.error / (form.x.abs() + form.y.abs());
+                    for further in [1e-9, 1e-6, 1e-3, 0.1, 0.7] {
+                        let r = event.radius * (1.0 + further) + doubt * (1.0 + further * 1e2);
+                        if offer(&mut best, [corner[0] * r, corner[1] * r]) {
+                            return best;
+                        }
                     }
                 }
-            } else if let Some(Region { near, middle, .. }) = Region::of(&event.forms) {
-                // From the nearest point of the region where all hold towards its middle. At one dy the forms
-                // are linear in dx, so that thin regions, which a beam bends, are met as well.
-                for inward in [0.0, 1e-9, 1e-6, 1e-3, 0.03, 0.3, 1.0] {
-                    let at = [0, 1].map(|k: usize| near[k] + inward * (middle[k] - near[k]));
-                    let across = holds_between(&event.forms, at[1]);
-                    let in_row = across.map(|[from, to]| {
-                        let nearest = if from > 0.0 { from } else { to.min(0.0) };
-                        [[nearest + 1e-3 * (0.5 * (from + to) - nearest), at[1]], [0.5 * (from + to), at[1]]]
-                    });
-                    for at in std::iter::once(at).chain(in_row.into_iter().flatten()) {
-                        if offer(&mut best, at) {
-                            return best.map(|[dx, dy]| Displacement { dx, dy });
-                        }
+                What::Enters(index) => {
+                    if self.towards(&self.conditions(*index, 2.0), |at| offer(&mut best, at)) {
+                        return best;
                     }
                 }
             }
             if best.is_some_and(|best| size(best) <= 1.9 * event.radius) {
-                break;
+                return best;
             }
         }
-        best.map(|[dx, dy]| Displacement { dx, dy })
+        // Threads that a beam bends by more than their width: from points of the triangles themselves.
+        for event in &self.events {
+            if is_tight(event.radius, best) {
+                break;
+            }
+            if let What::Enters(index) = event.what {
+                for at in self.threads(index) {
+                    if offer(&mut best, at) {
+                        return best;
+                    }
+                }
+            }
+        }
+        best
     }
+
+    /// Points of a face near its corners and along its sides, in it by a part of its width, the nearest first.
+    fn threads(&self, index: usize) -> Vec<[f64; 2]> {
+        let mut points = Vec::new();
+        for k in 0..3 {
+            for s in [0.0, 1e-6, 1e-4, 0.01, 0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.96] {
+                for inward in [1e-6, 1e-3, 0.03] {
+                    let mut weights = [inward / 3.0; 3];
+                    weights[k] += (1.0 - s) * (1.0 - inward);
+                    weights[(k + 1) % 3] += s * (1.0 - inward);
+                    points.push(self.near.faces[index].point(&self.near.ray, weights));
+                }
+            }
+        }
+        points.retain(|&at| size(at) <= 1.0);
+        points.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
+        points
+    }
+
+    /// Offers points from the nearest one of the region where all forms hold towards its middle, until one is
+    /// taken. At one dy the forms are linear in dx, so that thin regions, which a beam bends, are met as well.
+    fn towards(&self, forms: &[Form], mut offer: impl FnMut([f64; 2]) -> bool) -> bool {
+        let Some(Region { near, middle, .. }) = Region::of(forms) else { return false };
+        [0.0, 1e-9, 1e-6, 1e-3, 0.03, 0.3, 1.0].into_iter().any(|inward| {
+            let at = [0, 1].map(|k: usize| near[k] + inward * (middle[k] - near[k]));
+            let across = holds_between(forms, at[1]);
+            let in_row = across.map(|[from, to]| {
+                let nearest = if from > 0.0 { from } else { to.min(0.0) };
+                [[nearest + 1e-3 * (0.5 * (from + to) - nearest), at[1]], [0.5 * (from + to), at[1]]]
+            });
+            std::iter::once(at).chain(in_row.into_iter().flatten()).any(&mut offer)
+        })
+    }
+}
+
+/// A displacement from its parts.
+fn displacement([dx, dy]: [f64; 2]) -> Displacement {
+    Displacement { dx, dy }
 }

@@ -101,7 +101,7 @@ impl Referee<'_> {
         let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
         let (ray, max_range) = (ExactRay::new(&sensor, aim), sensor.max_range());
         let mut met: Vec<&Face> = Vec::new();
-        self.tree.visit(&bundle(&sensor, aim, 0.0), |face, _| {
+        self.tree.visit(&bundle(&sensor, aim, 0.0), |face| {
             if face.is_met_by(&ray, max_range) {
                 met.push(face);
             }

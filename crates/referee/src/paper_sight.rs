@@ -96,7 +96,7 @@ impl Referee<'_> {
                 .collect(),
             (false, true) if with.place => {
                 let mut found: Vec<ExplainedSight> = Vec::new();
-                self.tree.visit(&section.at_centre(&camera, pixel), |other, _| {
+                self.tree.visit(&section.at_centre(&camera, pixel), |other| {
                     if section.hides(other).may_be {
                         found.push(ExplainedSight { face: other.id, reasons: vec![SightReason::Place] });
                     }

@@ -8,7 +8,7 @@
 use raypencil_scene::{FaceId, SensorId};
 
 use crate::face::{ExactRay, Face};
-use crate::forms::{FaceForms, Form, MovingRay};
+use crate::forms::{FaceForms, MovingRay};
 use crate::pencil::{Aim, Sensor};
 use crate::verdict::{Displacement, Referee};
 
@@ -90,7 +90,7 @@ impl Referee<'_> {
             for form in FaceForms::new(&ray, face).own() {
                 if form.holds_within() < lateral {
                     let away = |slope: f64| if slope > 0.0 { -lateral } else { lateral };
-                    tried.push([away(form.x.middle()), away(form.y.middle())]);
+                    tried.push([away(form.x), away(form.y)]);
                 }
             }
         }
@@ -141,20 +141,5 @@ impl Referee<'_> {
                 first.id == face.id || face.range(&exact) - first.range(&exact) <= tolerance.depth
             })
             .map(|[dx, dy]| Displacement { dx, dy })
-    }
-}
-
-impl Form {
-    /// The same form for displacements in units of `unit` cells.
-    fn scaled(&self, unit: f64) -> Self {
-        use crate::number::{Interval, Number};
-        let by = Interval::of(unit);
-        Self {
-            constant: self.constant,
-            x: self.x.mul(&by),
-            y: self.y.mul(&by),
-            xy: self.xy.mul(&by).mul(&by),
-            bend: self.bend * unit * unit,
-        }
     }
 }

@@ -296,7 +296,7 @@ impl Referee<'_> {
     fn occluder(&self, way: &ExactWay<'_>) -> Option<FaceId> {
         let bundle = way.bundle();
         let mut found: Option<FaceId> = None;
-        self.tree.visit(&bundle, |face, _| {
+        self.tree.visit(&bundle, |face| {
             if found.is_none() && way.is_hidden_by(face) {
                 found = Some(face.id);
             }
@@ -310,7 +310,7 @@ impl Referee<'_> {
     pub(crate) fn occluders(&self, way: &ExactWay<'_>) -> Vec<Face> {
         let bundle = way.bundle();
         let mut found: Vec<Face> = Vec::new();
-        self.tree.visit(&bundle, |face, _| {
+        self.tree.visit(&bundle, |face| {
             if way.is_hidden_by(face) {
                 found.push(*face);
             }

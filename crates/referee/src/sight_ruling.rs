@@ -109,7 +109,7 @@ impl Referee<'_> {
         // Something passes within rounding of the point that does not hide it.
         let mut found = false;
         let bundle = crate::cull::Bundle { start_radius: off, ..way.bundle() };
-        self.tree.visit(&bundle, |other, _| {
+        self.tree.visit(&bundle, |other| {
             found |= other.id != face.id
                 && distance_from_plane(other, point).abs() <= off
                 && is_beside(other, point, off);

@@ -4,274 +4,255 @@
 //! continuous sheet: the ray comes to miss, or to hit, or its range jumps. Edges *inside* a surface do not
 //! count, nor lines where two surfaces pass through one another: there the range is continuous.
 //!
-//! # The proof of lo
-//!
-//! For a square |dx|, |dy| <= r call a face *possible* if no condition of its own (edges, front, plane, range,
-//! or two of them combined) fails over all of the square. From a possible face walk over each of its edges
-//! that may lie in the square to the possible face that has the same edge the other way round. If that
-//! succeeds for every edge, and the front, plane and range conditions of all faces walked over hold over
-//! all of the square, then these faces form a sheet without an end in it: the union of their images is
-//! closed, not empty, and has no border inside the square, since a border could only be an edge, and on the
-//! other side of every edge lies the mate. So the sheet covers the square; having no fold (at a fold one of
-//! the two faces shows its back), it covers it once, and its range is continuous.
-//!
-//! If the nearest face's sheet has no end, and every other possible face either lies in a sheet without an
-//! end or is certainly met after all faces of the first sheet, then the nearest range over the square is the
-//! least of finitely many continuous functions, and there is no jump.
+//! lo starts as the largest square that `sheet` proves, or the margin of the face if that is larger. A witness is
+//! looked for where surfaces end. If it is not found within twice lo, the unit square is divided (`divide`), and
+//! its parts are proven from their own middles. A range that is continuous on each of two closed squares that
+//! share a side is continuous on both, so a jump can only be in a part that is not proven.
 
-use std::collections::HashMap;
-
-use raypencil_scene::SensorId;
-
-use crate::face::{ExactRay, Face};
-use crate::forms::{FaceForms, Form, MovingRay, certainly_fails};
+use crate::divide::{Square, divided, is_tight};
+use crate::forms::Form;
 use crate::margin::Margin;
-use crate::pencil::{Aim, Sensor};
+use crate::near::{Mate, Neighbourhood};
 use crate::region::{Region, size};
-use crate::verdict::{Displacement, Referee, bundle};
 
 /// Two ranges at almost one displacement whose ratio differs from 1 by more than this have a jump between
-/// them. CHOICE: 2^-20 is tuned: far above what a slope does over the distance of a witness (2^-30 cells),
-/// far below any step that matters.
+/// them. CHOICE: 2^-20 is tuned: far below any step that matters, and far above what a slope does over `CLOSE`.
 const JUMP: f64 = 1.0 / (1u32 << 20) as f64;
 
-/// How far to both sides of an edge a witness looks, in cells.
-const BESIDE: f64 = 1.0 / (1u32 << 30) as f64;
+/// How far to both sides of an end a witness looks first, in cells.
+const ASIDE: f64 = 1.0 / (1u32 << 30) as f64;
+
+/// A jump is one that is left between two rays so close, in cells. A face seen edge-on whose range grows by
+/// thousands per cell has none.
+const CLOSE: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Points of an edge at which a witness is looked for.
 const POINTS: u32 = 16;
 
-impl Referee<'_> {
-    /// The margin of the surface of cell (i, j), or `None` if there is no such cell.
-    pub fn surface_margin(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margin> {
-        let face = self.face_margin(sensor, i, j)?;
-        if face.lo >= 1.0 {
-            return Some(face);
+/// A place where a surface may end.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    at: [f64; 2],
+    /// A unit vector across.
+    outward: [f64; 2],
+    /// The edge that it lies on, if any, as (face, corner), and where.
+    edge: Option<(usize, usize)>,
+    s: f64,
+}
+
+impl Neighbourhood<'_> {
+    /// The margin of the surface, from the nearest faces and theirs.
+    pub(crate) fn surface_margin(&mut self, nearest: &[usize], face: &Margin) -> Margin {
+        // Whatever ends a miss is a hit.
+        if face.lo >= 1.0 || nearest.is_empty() {
+            return *face;
         }
-        let sensor = Sensor::of(self.scene, sensor)?;
-        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
-        let nearest = self.nearest(&sensor, aim);
-        if nearest.is_empty() {
-            // Whatever ends a miss is a hit.
-            return Some(face);
+        let lo = self.continuous_within([0.0; 2], nearest, 1.0).max(face.lo);
+        if lo >= 1.0 {
+            return Margin::CAPPED;
         }
-        let ray = MovingRay::new(&sensor, aim);
-        let mut around = bundle(&sensor, aim, 1.0);
-        around.reach = sensor.max_range();
-        let mut faces = Vec::new();
-        self.tree.visit(&around, |face, _| {
-            faces.push(Neighbour::new(&ray, face));
-            around.reach
+        self.reach_all();
+        let ends = self.ends();
+        let mut witness = self.at_an_end(&ends, lo);
+        if !is_tight(lo, witness) {
+            witness = self.where_it_begins(&ends, lo, witness);
+        }
+        if is_tight(lo, witness) {
+            return Margin::of(lo, witness);
+        }
+        let (lo, witness) = divided(lo, witness, |square, lo| {
+            let nearest = self.nearest_at(square.middle);
+            let proven = self.continuous_within(square.middle, &nearest, square.half) >= square.half;
+            if proven { None } else { Some(self.jump_within(square, lo)) }
         });
-        let starts: Vec<usize> = (0..faces.len())
-            .filter(|&k| nearest.iter().any(|face| face.id == faces[k].forms.face.id))
-            .collect();
-        let neighbourhood = Neighbourhood::new(faces);
-
-        // The largest r that can be proven, to a part in 2^12 of itself: no jump within a larger square means
-        // none within a smaller one.
-        if neighbourhood.is_continuous(&starts, 1.0) {
-            return Some(Margin::CAPPED);
-        }
-        let (mut lo, mut beyond) = (face.lo, 1.0);
-        if lo > 0.0 && !neighbourhood.is_continuous(&starts, lo) {
-            // The face alone proves its own margin.
-            beyond = lo;
-        }
-        while beyond > lo * (1.0 + 1.0 / 4096.0) && beyond > 1e-13 {
-            let middle = if lo > 0.0 { (lo * beyond).sqrt() } else { beyond / 4.0 };
-            if !(middle > lo && middle < beyond) {
-                break;
-            }
-            if neighbourhood.is_continuous(&starts, middle) {
-                lo = middle;
-            } else {
-                beyond = middle;
-            }
-        }
-        let witness = neighbourhood.jump(self, &sensor, aim, lo);
-        Some(Margin { lo, hi: witness.map_or(1.0, |at| at.size().min(1.0)), witness })
+        Margin::of(lo, witness)
     }
-}
 
-/// A face near a ray, with its conditions.
-struct Neighbour<'a> {
-    forms: FaceForms<'a>,
-    edges: [Form; 3],
-    front: Form,
-    plane: Form,
-    range: Form,
-    /// The largest square in which the face is not possible.
-    absent_within: f64,
-    /// The largest square in which each edge certainly does not lie.
-    edge_absent_within: [f64; 3],
-}
+    /// A displaced ray beyond a jump where a surface ends: the nearest of the places tried.
+    fn at_an_end(&self, ends: &[End], lo: f64) -> Option<[f64; 2]> {
+        let mut ends: Vec<&End> =
+            ends.iter().filter(|end| size(end.at) <= 1.0 && size(end.at) >= lo * 0.5).collect();
+        ends.sort_by(|a, b| size(a.at).total_cmp(&size(b.at)));
+        ends.iter().find_map(|end| self.jump_at(end, lo))
+    }
 
-impl<'a> Neighbour<'a> {
-    fn new(ray: &'a MovingRay, face: &'a Face) -> Self {
-        let forms = FaceForms::new(ray, face);
-        let [a, b, c, front, plane, range] = forms.own();
-        let edges = [a, b, c];
-        let absent_within = certainly_fails(&[a, b, c, front, plane, range], 1.0);
-        let edge_absent_within = [0, 1, 2].map(|k: usize| {
-            // On the edge its own form is 0: it may be added with any weight, of either sign.
-            let (edge, others) = (&edges[k], [&edges[(k + 1) % 3], &edges[(k + 2) % 3]]);
-            let mut best = edge.holds_within().max(absent_within);
-            for other in others {
-                for (slope, slope_edge) in [(other.x, edge.x), (other.y, edge.y)] {
-                    let weight = -slope.middle() / slope_edge.middle();
-                    if weight.is_finite() {
-                        best = best.max(other.plus(edge, weight).fails_within());
-                    }
+    /// A displaced ray beyond the jump at an end.
+    fn jump_at(&self, end: &End, lo: f64) -> Option<[f64; 2]> {
+        let aside = |sign: f64| [0, 1].map(|k: usize| end.at[k] + sign * ASIDE * end.outward[k]);
+        self.jump_between(aside(-1.0), aside(1.0), lo)
+    }
+
+    /// A nearer witness, where an edge that is hidden at one place and not at the next comes out from behind
+    /// another surface, or through it: there its jump begins.
+    fn where_it_begins(&self, ends: &[End], lo: f64, witness: Option<[f64; 2]>) -> Option<[f64; 2]> {
+        let mut best = witness;
+        for pair in ends.windows(2) {
+            let ([a, b], least) = ([&pair[0], &pair[1]], best.map_or(1.0, size));
+            let (Some(edge), true) = (a.edge, a.edge == b.edge && size(a.at).min(size(b.at)) < least) else {
+                continue;
+            };
+            let (mut jumps, mut goes_on) = match (self.jump_at(a, lo), self.jump_at(b, lo)) {
+                (Some(at), None) => ((a.s, at), b.s),
+                (None, Some(at)) => ((b.s, at), a.s),
+                _ => continue,
+            };
+            for _ in 0..40 {
+                let middle = 0.5 * (jumps.0 + goes_on);
+                match self.end_at(edge, middle).and_then(|end| self.jump_at(&end, lo)) {
+                    Some(at) => jumps = (middle, at),
+                    None => goes_on = middle,
                 }
             }
-            best
-        });
-        Self { forms, edges, front, plane, range, absent_within, edge_absent_within }
-    }
-
-    /// Whether the face's surface goes on past the square wherever its edges let it.
-    fn goes_on(&self, r: f64) -> bool {
-        [&self.front, &self.plane, &self.range].iter().all(|form| form.holds_within() >= r)
-    }
-}
-
-/// All faces near a ray, and who lies on the other side of each edge.
-struct Neighbourhood<'a> {
-    faces: Vec<Neighbour<'a>>,
-    /// By the positions of its two ends, in the face's own direction.
-    by_edge: HashMap<[[u32; 3]; 2], Vec<usize>>,
-}
-
-/// A position as a key: -0 and +0 are one.
-fn key(corner: [f32; 3]) -> [u32; 3] {
-    corner.map(|coordinate| (coordinate + 0.0).to_bits())
-}
-
-impl<'a> Neighbourhood<'a> {
-    fn new(faces: Vec<Neighbour<'a>>) -> Self {
-        let mut by_edge: HashMap<_, Vec<usize>> = HashMap::new();
-        for (index, face) in faces.iter().enumerate() {
-            let corners = face.forms.face.corners;
-            for k in 0..3 {
-                by_edge.entry([key(corners[k]), key(corners[(k + 1) % 3])]).or_default().push(index);
+            if size(jumps.1) < least {
+                best = Some(jumps.1);
             }
         }
-        Self { faces, by_edge }
+        best
     }
 
-    /// The faces of the sheet that starts at `start`, or `None` if it has an end within the square.
-    fn sheet(&self, start: usize, r: f64) -> Option<Vec<usize>> {
-        let mut sheet = vec![start];
-        let mut next = 0;
-        while let Some(&index) = sheet.get(next) {
-            next += 1;
-            let face = &self.faces[index];
-            if !face.goes_on(r) {
+    /// The place on edge `k` of a face, `s` of the way along it.
+    fn end_at(&self, (index, k): (usize, usize), s: f64) -> Option<End> {
+        let face = &self.faces[index];
+        let edge = &face.own()[k];
+        let at = face.edge_point(&self.ray, k, s);
+        let slope = [edge.x + edge.xy * at[1], edge.y + edge.xy * at[0]];
+        outward(slope).map(|outward| End { at, outward, edge: Some((index, k)), s })
+    }
+
+    /// Places on the ends of surfaces: on edges that no front shares, and where the plane or the range ends a face.
+    fn ends(&mut self) -> Vec<End> {
+        let mut ends = Vec::new();
+        for index in 0..self.faces.len() {
+            if self.faces[index].own().iter().any(|form| form.fails_within() >= 1.0) {
+                continue;
+            }
+            for k in 0..3 {
+                let mates = self.mates(index, k);
+                let shows_front = |mate: &Mate| match mate {
+                    Mate::Near(mate) => self.faces[*mate].own()[3].holds_within() >= 1.0,
+                    Mate::Beside => true,
+                };
+                if !mates.iter().any(shows_front) {
+                    self.points_of_edge(index, k, &mut ends);
+                }
+            }
+            for part in [4, 5] {
+                self.points_of_limit(index, part, &mut ends);
+            }
+        }
+        ends
+    }
+
+    /// Points of an edge, and among them those that may be nearest: where it crosses an axis or a diagonal.
+    fn points_of_edge(&self, index: usize, k: usize, ends: &mut Vec<End>) {
+        let at = |s: f64| self.faces[index].edge_point(&self.ray, k, s);
+        // The part of it in the square, by the sides that a straight line crosses. A beam bends it but little.
+        let (a, b) = (at(0.0), at(1.0));
+        let mut cuts: Vec<f64> = vec![0.0, 1.0];
+        let across = |f: &dyn Fn([f64; 2]) -> f64| {
+            let (mut low, mut high) = (0.0, 1.0);
+            if !(f(a) * f(b) < 0.0) {
                 return None;
             }
-            let corners = face.forms.face.corners;
-            for k in 0..3 {
-                if face.edge_absent_within[k] >= r {
-                    continue;
-                }
-                let mates = self.by_edge.get(&[key(corners[(k + 1) % 3]), key(corners[k])])?;
-                // Where more than two faces share an edge, any front will do.
-                let mate = *mates.iter().find(|&&mate| self.faces[mate].goes_on(r))?;
-                if !sheet.contains(&mate) {
-                    sheet.push(mate);
-                }
+            for _ in 0..50 {
+                let middle = 0.5 * (low + high);
+                if f(at(middle)) * f(a) > 0.0 { low = middle } else { high = middle }
             }
-        }
-        Some(sheet)
-    }
-
-    /// Whether the nearest range is certainly continuous over the square.
-    fn is_continuous(&self, starts: &[usize], r: f64) -> bool {
-        let Some(&start) = starts.first() else { return false };
-        let Some(first) = self.sheet(start, r) else { return false };
-        let mut continuous: Vec<usize> = first.clone();
-        for index in 0..self.faces.len() {
-            if continuous.contains(&index) || self.faces[index].absent_within >= r {
-                continue;
-            }
-            // Nowhere in the square may it be nearest where a face of the first sheet is met.
-            let face = &self.faces[index];
-            let behind = first.iter().all(|&kept| {
-                let kept = &self.faces[kept];
-                let before = face.forms.at_or_before(&kept.forms);
-                if before.fails_within() >= r {
-                    return true;
-                }
-                let [a, b, c] = &face.edges;
-                let [d, e, f] = &kept.edges;
-                certainly_fails(&[before, *a, *b, *c, *d, *e, *f], r) >= r
-            });
-            if behind {
-                continue;
-            }
-            match self.sheet(index, r) {
-                Some(sheet) => continuous.extend(sheet),
-                None => return false,
-            }
-        }
-        true
-    }
-
-    /// A displaced ray beyond a jump, as near as it can be found.
-    fn jump(&self, referee: &Referee<'_>, sensor: &Sensor, aim: Aim, lo: f64) -> Option<Displacement> {
-        // Where faces end: along edges, and where front, plane or range come to fail.
-        let mut points: Vec<([f64; 2], [f64; 2])> = Vec::new();
-        for face in self.faces.iter().filter(|face| face.absent_within < 1.0) {
-            let all = [face.edges[0], face.edges[1], face.edges[2], face.front, face.plane, face.range];
-            for ending in &all {
-                let slope = [ending.x.middle(), ending.y.middle()];
-                let length = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
-                if !(length > 0.0) || ending.holds_within() >= 1.0 {
-                    continue;
-                }
-                // A thin region along the end, from which its points are taken.
-                let thin = Form {
-                    constant: negated(ending.constant),
-                    x: negated(ending.x),
-                    y: negated(ending.y),
-                    ..*ending
-                };
-                let mut forms = all.to_vec();
-                forms.push(thin);
-                let Some(region) = Region::of(&forms) else { continue };
-                let outward = [-slope[0] / length, -slope[1] / length];
-                points.push((region.near, outward));
-                for (k, &a) in region.corners.iter().enumerate() {
-                    let b = region.corners[(k + 1) % region.corners.len()];
-                    for step in 0..POINTS {
-                        let s = f64::from(step) / f64::from(POINTS);
-                        points.push(([0, 1].map(|axis: usize| a[axis] + s * (b[axis] - a[axis])), outward));
-                    }
-                }
-            }
-        }
-        points.retain(|(at, _)| size(*at) <= 1.0 && size(*at) >= lo * 0.5);
-        points.sort_by(|(a, _), (b, _)| size(*a).total_cmp(&size(*b)));
-        let range = |at: [f64; 2]| {
-            let aim = Aim { dx: at[0], dy: at[1], ..aim };
-            let exact = ExactRay::new(sensor, aim);
-            referee.nearest(sensor, aim).first().map(|face| face.range(&exact))
+            Some(0.5 * (low + high))
         };
-        points.iter().find_map(|&(at, outward)| {
-            let beside = |sign: f64| [0, 1].map(|k: usize| at[k] + sign * BESIDE * outward[k]);
-            let (inside, outside) = (beside(-1.0), beside(1.0));
-            let jumps = match (range(inside), range(outside)) {
-                (Some(a), Some(b)) => (a - b).abs() > JUMP * a.min(b),
-                (a, b) => a.is_some() != b.is_some(),
-            };
-            let farther = if size(inside) > size(outside) { inside } else { outside };
-            jumps.then_some(Displacement { dx: farther[0], dy: farther[1] })
-        })
+        for line in [
+            &(|p: [f64; 2]| p[0]) as &dyn Fn([f64; 2]) -> f64,
+            &|p| p[1],
+            &|p| p[0] - p[1],
+            &|p| p[0] + p[1],
+            &|p| p[0] - 1.0,
+            &|p| p[0] + 1.0,
+            &|p| p[1] - 1.0,
+            &|p| p[1] + 1.0,
+        ] {
+            cuts.extend(across(line));
+        }
+        cuts.retain(|&s| size(at(s)) <= 1.0 + 1e-9);
+        let from = cuts.iter().copied().fold(f64::INFINITY, f64::min);
+        let to = cuts.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if !(from < to) {
+            return;
+        }
+        let length = to - from;
+        cuts.extend((0..POINTS).map(|step| from + length * (f64::from(step) + 0.5) / f64::from(POINTS)));
+        // Tips: a jump begins at nothing where an edge comes out of another surface, or at a corner.
+        cuts.extend([1e-6, 1e-4, 1e-2].into_iter().flat_map(|s| [from + s * length, to - s * length]));
+        cuts.sort_by(f64::total_cmp);
+        ends.extend(cuts.into_iter().filter_map(|s| self.end_at((index, k), s)));
+    }
+
+    /// Points where a condition other than an edge ends a face.
+    fn points_of_limit(&self, index: usize, part: usize, ends: &mut Vec<End>) {
+        let all = self.faces[index].own();
+        let limit = &all[part];
+        if limit.holds_within() >= 1.0 {
+            return;
+        }
+        // A thin region along the end, from which its points are taken.
+        let mut forms: Vec<Form> = all.to_vec();
+        forms.push(limit.negated());
+        let Some(region) = Region::of(&forms) else { return };
+        let Some(outward) = outward([limit.x, limit.y]) else { return };
+        let mut push = |at: [f64; 2]| ends.push(End { at, outward, edge: None, s: 0.0 });
+        push(region.near);
+        for (k, &a) in region.corners.iter().enumerate() {
+            let b = region.corners[(k + 1) % region.corners.len()];
+            for step in 0..POINTS {
+                let s = f64::from(step) / f64::from(POINTS);
+                push([0, 1].map(|axis: usize| a[axis] + s * (b[axis] - a[axis])));
+            }
+        }
+    }
+
+    /// The farther of two displaced rays with a jump between them, if there is one beyond `lo`. All must be known.
+    fn jump_between(&self, a: [f64; 2], b: [f64; 2], lo: f64) -> Option<[f64; 2]> {
+        let (mut a, mut b) = (a, b);
+        let (mut range_a, mut range_b) = (self.range_at(a), self.range_at(b));
+        loop {
+            if !(step(range_a, range_b) > JUMP) {
+                return None;
+            }
+            let apart = (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+            if apart <= CLOSE {
+                break;
+            }
+            let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            let range = self.range_at(middle);
+            // On with the half that holds the greater step.
+            if step(range_a, range) >= step(range, range_b) {
+                (b, range_b) = (middle, range);
+            } else {
+                (a, range_a) = (middle, range);
+            }
+        }
+        let farther = if size(a) > size(b) { a } else { b };
+        (size(farther) >= lo && size(farther) <= 1.0).then_some(farther)
+    }
+
+    /// A jump between the middle of a square and one of its corners.
+    fn jump_within(&self, square: &Square, lo: f64) -> Option<[f64; 2]> {
+        let corners = square.corners();
+        let found = corners.into_iter().filter_map(|corner| self.jump_between(square.middle, corner, lo));
+        found.min_by(|a, b| size(*a).total_cmp(&size(*b)))
     }
 }
 
-/// -x.
-fn negated(x: crate::number::Interval) -> crate::number::Interval {
-    crate::number::Interval { low: -x.high, high: -x.low }
+/// How much two ranges differ, relatively; infinitely if one is a miss and the other is not.
+fn step(a: Option<f64>, b: Option<f64>) -> f64 {
+    match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() / a.min(b),
+        (None, None) => 0.0,
+        _ => f64::INFINITY,
+    }
+}
+
+/// A unit vector against a slope.
+fn outward([x, y]: [f64; 2]) -> Option<[f64; 2]> {
+    let length = (x * x + y * y).sqrt();
+    (length > 0.0).then(|| [-x / length, -y / length])
 }

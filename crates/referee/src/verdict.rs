@@ -2,12 +2,11 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
-use raypencil_scene::{FaceId, Mounted, Scene, SensorId};
+use raypencil_scene::{FaceId, Scene, SensorId};
 
 use crate::cull::{Bundle, Tree};
 use crate::face::{ExactRay, Face};
-use crate::number::Interval;
+use crate::forms::MovingRay;
 use crate::pencil::{Aim, Sensor};
 
 /// What the contract says of a ray, without rounding.
@@ -78,7 +77,7 @@ impl<'s> Referee<'s> {
         let ray = ExactRay::new(sensor, aim);
         let max_range = sensor.max_range();
         let mut nearest: Vec<&Face> = Vec::new();
-        self.tree.visit(&bundle(sensor, aim, 0.0), |face, _| {
+        self.tree.visit(&bundle(sensor, aim, 0.0), |face| {
             if face.is_met_by(&ray, max_range) {
                 match nearest.first().map(|kept| face.compare(kept, &ray)) {
                     None | Some(Ordering::Less) => nearest = vec![face],
@@ -96,21 +95,12 @@ impl<'s> Referee<'s> {
 
 /// The rays that are displaced by at most `radius` cells from an aim, for the tree.
 pub(crate) fn bundle(sensor: &Sensor, aim: Aim, radius: f64) -> Bundle {
-    // In f64, each number good to a few 2^-53: the tree's slack is far wider.
-    let ray = sensor.ray::<Interval>(aim);
-    let middle = |v: &[Interval; 3]| DVec3::new(v[0].middle(), v[1].middle(), v[2].middle());
-    let origin = middle(&ray.origin.0) / ray.origin_scale.middle();
-    let q = middle(&ray.direction.0) / ray.direction_scale.middle();
-    let direction = q.normalize();
-    // A displacement by (dx, dy) cells moves q by at most |dx| p_x + |dy| p_y, hence the ray at range R by
-    // at most R times that over |q|, and once more for the second order.
-    let (start_radius, step) = match sensor {
-        Sensor::Camera(Mounted { sensor, .. }) => (0.0, sensor.pixel_pitch[0] + sensor.pixel_pitch[1]),
-        Sensor::Beam(Mounted { sensor, .. }) => (
-            radius * sensor.thickness / f64::from(sensor.rows),
-            2.0 * sensor.half_width / f64::from(sensor.columns),
-        ),
-    };
-    let spread = 2.0 * radius * step / q.length();
-    Bundle { origin, direction, reach: sensor.max_range(), start_radius, spread }
+    bundle_of(&MovingRay::new(sensor, aim), sensor.max_range(), radius)
+}
+
+/// The same for a ray in f64: good to a few 2^-53, and the tree's slack is far wider.
+pub(crate) fn bundle_of(ray: &MovingRay, max_range: f64, radius: f64) -> Bundle {
+    let (origin, direction) = ray.line();
+    let (start_radius, spread) = ray.spread(radius);
+    Bundle { origin, direction: direction.normalize(), reach: max_range, start_radius, spread }
 }

@@ -1,0 +1,259 @@
+//! Whether the nearest range is continuous over a square of displacements.
+//!
+//! # The proof
+//!
+//! For a square of radius r around a centre call a face *possible* if no condition of its own (edges, front,
+//! plane, range, or two of them combined) fails over all of the square. From a possible face walk over each of its
+//! edges that may lie in the square to a face that has the same edge the other way round, and so on. The faces
+//! walked over are a *sheet without an end* if this succeeds for every edge, and the front, plane and range conditions
+//! of all of them hold over all of the square. (At a fold one of the two faces shows its back: a fold is an end.)
+//!
+//! Take any point x of the square in the image of such a face F. On an edge through x lies a mate, whose image
+//! begins at that edge on the other side, for both show their fronts; at x it has the range of F, for it has the
+//! edge's own points. If x is a corner, mates follow upon one another around it, all the same way round and all with
+//! that corner, until every direction is covered. So around x there are faces of the sheet in every direction whose
+//! ranges at x are F's, and it follows:
+//!
+//! 1. The images of the sheet cover the square: together they are closed, not empty, and have no border in it.
+//! 2. The least range over some such sheets is continuous: it is at most F's near x, nearly, for all F at x; and as
+//!    faces are closed and few it does not fall below the least at x either.
+//!
+//! If the nearest face's sheet has no end, and every other possible face either lies in a sheet without an
+//! end or is certainly met after all faces of the first sheet (which are there everywhere, by 1), then the nearest
+//! range over the square is that least range, and by 2 there is no jump. If there is no possible face at all, all of
+//! the square misses.
+//!
+//! "Certainly after": the order of two faces is a form, and so is that one is met nearer than the whole triangle of
+//! the other is. Faces that lie beyond all that the first sheet's triangles reach over the square are not even
+//! looked up.
+//!
+//! That a triangle lies beside the square can be told from its edges only if its front is known to show: all edge
+//! forms are negative inside of a triangle seen from behind. So nothing is concluded from a mate but what its
+//! corners say, and an edge is absent by its own line and its own two ends alone.
+//!
+//! # The largest such square
+//!
+//! It needs no search. An edge that is absent from the square of radius d has to be walked over in larger squares
+//! only, and so have all faces behind it: each face enters at the least d over all ways to it of the greatest d on
+//! the way (`sheet`, which takes the faces in the order of their d, as Dijkstra does). A sheet ends at the least
+//! radius at which a face that has entered fails a condition, or an edge without a mate comes into the square.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::forms::{FaceForms, Form, beside, certainly_fails, line_leaves};
+use crate::near::{Mate, Neighbourhood};
+
+/// What is asked of one face about one centre: the largest squares that can be shown.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    edges: [Form; 3],
+    /// In which the face is not possible.
+    absent: f64,
+    /// In which front, plane and range hold.
+    holds: f64,
+    /// In which each edge does not lie; known as far as `holds`.
+    edge_absent: [f64; 3],
+}
+
+impl Seen {
+    fn of(face: &FaceForms<'_>, centre: [f64; 2]) -> Self {
+        let own = face.own().map(|form| form.about(centre));
+        let [a, b, c, front, plane, range] = own;
+        let edges = [a, b, c];
+        let others = [front, plane, range];
+        let holds = others.iter().map(Form::holds_within).fold(1.0, f64::min);
+        let known = face.is_before();
+        let [p, q, r] = &face.corners;
+        let mut absent = own.iter().map(Form::fails_within).fold(beside([p, q, r], centre), f64::max);
+        if absent < 1.0 && (holds < 1.0 || !known) {
+            absent = absent.max(certainly_fails(&own, if known { 3 } else { 0 }, 1.0));
+        }
+        // A piece of a line lies beside a square by the line itself or by a side of the square.
+        let edge_absent = [0, 1, 2].map(|k: usize| {
+            let (edge, next) = (&edges[k], (k + 1) % 3);
+            let mut best = edge.holds_within().max(edge.fails_within());
+            if best < 1.0 {
+                best = best.max(beside([&face.corners[k], &face.corners[next]], centre));
+            }
+            if best < 1.0 && !known {
+                // Where the front shows, no point of the edge lies outside of the other two.
+                let others = [&edges[next], &edges[(k + 2) % 3]];
+                best = others.into_iter().map(|other| line_leaves(edge, other)).fold(best, f64::max);
+            }
+            best
+        });
+        Self { edges, absent, holds, edge_absent }
+    }
+}
+
+/// A sheet: up to which radius it has no end, and the faces of it with the radius at which each enters.
+struct Sheet {
+    radius: f64,
+    faces: Vec<(usize, f64)>,
+}
+
+/// What is known about one centre.
+struct Around<'n, 'a> {
+    near: &'n mut Neighbourhood<'a>,
+    centre: [f64; 2],
+    seen: Vec<Option<Seen>>,
+}
+
+impl Neighbourhood<'_> {
+    /// A radius of at most `cap` up to which the nearest range is certainly continuous around `centre`: a square
+    /// that must lie within a cell of the ray. 0 if there is none.
+    pub(crate) fn continuous_within(&mut self, centre: [f64; 2], nearest: &[usize], cap: f64) -> f64 {
+        let mut around = Around { near: self, centre, seen: Vec::new() };
+        match nearest.first() {
+            Some(&first) => around.continuous(first, cap),
+            None => around.all_miss(cap),
+        }
+    }
+}
+
+impl Around<'_, '_> {
+    fn seen(&mut self, index: usize) -> Seen {
+        if self.seen.len() <= index {
+            self.seen.resize(self.near.faces.len(), None);
+        }
+        *self.seen[index].get_or_insert_with(|| Seen::of(&self.near.faces[index], self.centre))
+    }
+
+    fn all_miss(&mut self, cap: f64) -> f64 {
+        self.near.reach_all();
+        (0..self.near.faces.len())
+            .fold(cap, |r, index| if r > 0.0 { r.min(self.seen(index).absent) } else { r })
+    }
+
+    fn continuous(&mut self, first: usize, cap: f64) -> f64 {
+        let sheet = self.sheet(first, cap);
+        let mut r = sheet.radius;
+        // Faces that are known not to make a jump: those of sheets without an end.
+        let mut continuous = vec![false; self.near.faces.len()];
+        let mark = |continuous: &mut Vec<bool>, sheet: &Sheet| {
+            for &(index, enters) in &sheet.faces {
+                if enters < sheet.radius {
+                    if continuous.len() <= index {
+                        continuous.resize(index + 1, false);
+                    }
+                    continuous[index] = true;
+                }
+            }
+        };
+        mark(&mut continuous, &sheet);
+        // All that may be met before the first sheet's end has been found on the way; it may become more.
+        let mut index = 0;
+        while index < self.near.faces.len() && r > 0.0 {
+            let known = continuous.get(index).copied().unwrap_or(false);
+            if !known && self.seen(index).absent < r {
+                let behind = self.behind(index, &sheet, r);
+                let mut enough = behind.max(self.seen(index).absent);
+                if enough < r {
+                    let own = self.sheet(index, r);
+                    enough = enough.max(own.radius);
+                    if own.radius >= r {
+                        mark(&mut continuous, &own);
+                    }
+                }
+                r = r.min(enough);
+            }
+            index += 1;
+        }
+        r
+    }
+
+    /// The sheet of a face, followed up to the radius `cap`.
+    fn sheet(&mut self, start: usize, cap: f64) -> Sheet {
+        let mut r = cap;
+        let mut faces: Vec<(usize, f64)> = Vec::new();
+        let mut enters = vec![f64::INFINITY; self.near.faces.len()];
+        let mut done = vec![false; self.near.faces.len()];
+        // Bits of numbers that are not negative are in the order of the numbers.
+        let mut waiting = BinaryHeap::from([Reverse((0.0_f64.to_bits(), start))]);
+        enters[start] = 0.0;
+        while let Some(Reverse((bits, index))) = waiting.pop() {
+            let d = f64::from_bits(bits);
+            if d >= r {
+                break;
+            }
+            if std::mem::replace(&mut done[index], true) {
+                continue;
+            }
+            faces.push((index, d));
+            // What lies behind it, up to its far end, may be its mates or hidden by it.
+            if self.near.reach_to(self.near.faces[index].farthest) {
+                enters.resize(self.near.faces.len(), f64::INFINITY);
+                done.resize(self.near.faces.len(), false);
+            }
+            let seen = self.seen(index);
+            r = r.min(seen.holds.max(d));
+            for k in 0..3 {
+                let at = seen.edge_absent[k].max(d);
+                if at >= r {
+                    continue;
+                }
+                match self.mate(index, k) {
+                    None => r = r.min(at),
+                    Some(Mate::Beside) => {}
+                    Some(Mate::Near(mate)) => {
+                        if at < enters[mate] {
+                            enters[mate] = at;
+                            waiting.push(Reverse((at.to_bits(), mate)));
+                        }
+                    }
+                }
+            }
+        }
+        Sheet { radius: r, faces }
+    }
+
+    /// The face on the other side of edge `k`. Where more than two faces share an edge, any front will do: the one
+    /// that goes on farthest.
+    fn mate(&mut self, index: usize, k: usize) -> Option<Mate> {
+        let mates = self.near.mates(index, k);
+        if mates.len() <= 1 || mates.contains(&Mate::Beside) {
+            return mates.into_iter().max_by_key(|mate| *mate == Mate::Beside);
+        }
+        let goes_on = |mate: &Mate, around: &mut Self| match mate {
+            Mate::Near(mate) => around.seen(*mate).holds,
+            Mate::Beside => 1.0,
+        };
+        let mut best: Option<(Mate, f64)> = None;
+        for mate in mates {
+            let far = goes_on(&mate, self);
+            if best.is_none_or(|(_, best)| far > best) {
+                best = Some((mate, far));
+            }
+        }
+        best.map(|(mate, _)| mate)
+    }
+
+    /// A square in which a face is certainly not met at or before any face of a sheet that is met: the largest
+    /// that can be shown, or one of at least `enough`.
+    fn behind(&mut self, index: usize, sheet: &Sheet, enough: f64) -> f64 {
+        let mut least = enough;
+        for &(kept, enters) in &sheet.faces {
+            if enters >= least {
+                continue;
+            }
+            let (face, other) = (self.seen(index), self.seen(kept));
+            let before = self.near.faces[index].at_or_before(&self.near.faces[kept]).about(self.centre);
+            let mut radius = before.fails_within().max(other.absent).max(enters);
+            if radius < least {
+                // Where the ray lies in a face's plane the form vanishes, but its distance does not.
+                let sooner = self.near.sooner(kept, index).about(self.centre);
+                radius = radius.max(sooner.holds_within());
+            }
+            if radius < least {
+                let ([a, b, c], [d, e, f]) = (face.edges, other.edges);
+                radius = radius.max(certainly_fails(&[a, b, c, d, e, f, before], 0, least));
+            }
+            least = least.min(radius);
+            if least <= 0.0 {
+                break;
+            }
+        }
+        least
+    }
+}
