@@ -1,7 +1,7 @@
 //! Faults to plant in the naive renderer, each the likeness of one that real renderers had or could have.
 
 /// A way to be wrong. Each changes one step, at the place that asks for it by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
     /// Cells are sampled at their upper left corner: the forgotten `+ 0.5` of a pixel loop.
     HalfCellShift,
@@ -111,6 +111,11 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// Whether it is of light, not of what a ray meets.
+    pub fn is_of_light(self) -> bool {
+        self >= Self::IncidenceForEmission
+    }
+
     /// All of them.
     pub const ALL: [Self; 49] = [
         Self::HalfCellShift,
