@@ -21,7 +21,7 @@ fn lit(model: FluxModel) -> Scene {
     let ground = builtin("pyramids", 0.25).expect("a built-in name").into_mesh().expect("a mesh");
     let materials =
         [0.25, 0.75].map(|reflectivity| Material { name: "ground".into(), reflectivity }).to_vec();
-    let kinds = (0..ground.faces().len() as u32).map(|face| face % 2).collect();
+    let kinds = (0..ground.faces().len()).map(|face| (face % 2) as u16).collect();
     let (vertices, faces) = (ground.vertices().to_vec(), ground.faces().to_vec());
     let mesh = Mesh::new(ground.origin(), vertices, faces, kinds, materials).expect("a mesh");
     let camera = Camera {
