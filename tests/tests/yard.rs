@@ -1,0 +1,53 @@
+//! A real ground of half a million triangles, where RAYPENCIL_EXTRA_DATA names the folder that holds it.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_harness::{Counts, JudgeShare, Silent, Subject, Validation, contender, validate};
+use raypencil_scene_io::{Overrides, load};
+
+/// The mesh, or `None` after saying that the test is skipped.
+fn yard() -> Option<PathBuf> {
+    let path =
+        std::env::var_os("RAYPENCIL_EXTRA_DATA").map(|folder| Path::new(&folder).join("marsyard2021.glb"));
+    let found = path.filter(|path| path.exists());
+    if found.is_none() {
+        eprintln!("skipped: RAYPENCIL_EXTRA_DATA names no folder with marsyard2021.glb");
+    }
+    found
+}
+
+fn validated(path: &Path, overrides: Overrides, names: &[&str]) -> Validation {
+    let loaded = load(path.to_str().expect("a path in UTF-8"), &overrides).expect("the yard loads");
+    let subject = Subject {
+        scene: loaded.scene,
+        name: loaded.name,
+        arguments: "marsyard2021.glb".into(),
+        sha256: loaded.source_sha256,
+    };
+    let contenders: Vec<_> = names.iter().map(|name| contender(name).expect("a renderer")).collect();
+    validate(subject, &contenders, JudgeShare::Sample, &Silent)
+}
+
+#[test]
+fn both_renderers_agree_on_the_yard() {
+    let Some(path) = yard() else { return };
+    let found = validated(&path, Overrides::default(), &["scanline", "tracer"]);
+    let Counts { compared, agree, defects, undecided, judged, .. } = found.counts();
+    assert_eq!((compared, defects, undecided), (1_081_344, 0, 0));
+    assert!(agree > 1_081_300 && judged >= compared / 100 + (compared - agree), "{:?}", found.counts());
+}
+
+#[test]
+fn the_papers_errors_on_the_yard_have_causes() {
+    let Some(path) = yard() else { return };
+    let mut last = 0;
+    for thickness_mm in [5.0, 20.0, 80.0] {
+        let overrides = Overrides { thickness_mm: Some(thickness_mm), ..Overrides::default() };
+        let found = validated(&path, overrides, &["scanline-paper", "tracer"]);
+        let Counts { approximation, defects, undecided, .. } = found.counts();
+        assert_eq!((defects, undecided), (0, 0), "{thickness_mm} mm");
+        // The thicker the sheet, the more.
+        assert!(approximation > last, "{thickness_mm} mm: {approximation} after {last}");
+        last = approximation;
+    }
+}
