@@ -34,6 +34,7 @@ mod perspective;
 mod printed;
 mod raster;
 mod scan;
+mod sides;
 mod skip;
 mod stripe;
 mod switches;
