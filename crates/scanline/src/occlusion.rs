@@ -108,3 +108,98 @@ fn holds(occluders: &Occluders<'_>, occluder: &Occluder, point: &Binned, inverse
     let beyond = occluder.plane.distance.abs() * (inverse_t - point.inverse_t);
     !(beyond > error * point.inverse_t)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use raypencil_scene::{Beam, Camera, Lens, Mesh, Mounted, Pose, Profile, Quantities, SensorId};
+    use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin, height_at};
+
+    use crate::cylindrical::Cylindrical;
+    use crate::occluders::Facing;
+    use crate::perspective::Perspective;
+    use crate::points::{self, Pixels};
+    use crate::tables::CameraTables;
+    use crate::{Options, Switches, bands};
+
+    /// What is hidden of the default rig's stripes, its rasters four times coarser and 2 cm thick, if those faces
+    /// occlude.
+    fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
+        let z = height_at(mesh, 0.0, 0.0).expect("ground under the vehicle");
+        let mount = |height: f64, pitch_down_deg: f64| {
+            Pose::from_position(DVec3::new(0.3, 0.0, z + height) - mesh.origin())
+                * Pose::from_axis_angle(DVec3::Y, pitch_down_deg.to_radians())
+                * Pose::VEHICLE_FROM_FORWARD_SENSOR
+        };
+        let camera = Camera {
+            width: 256,
+            height: 256,
+            pixel_pitch: [36e-6; 2],
+            focal_length: 8e-3,
+            principal_point: [128.0; 2],
+            aperture: 2e-3,
+            lens: Lens::CLEAR,
+            max_range: 20.0,
+        };
+        let beam = Beam {
+            columns: 256,
+            rows: 4,
+            thickness: 2e-2,
+            grid_distance: 0.1,
+            half_width: Beam::half_width_of(0.1, 60_f64.to_radians()),
+            max_range: 20.0,
+            power: 1.0,
+            wavelength: 810e-9,
+            profile: Profile::Paper,
+        };
+        let tables = CameraTables::of(&camera);
+        let mounted = Mounted { scene_from_sensor: mount(1.5, 20.0), sensor: camera };
+        let perspective = Perspective::new(&mounted, &tables);
+        let pixels = Pixels::of(&camera);
+        let mut stripes = Vec::new();
+        for (height, down) in [(1.8, 31.0), (2.0, 22.0)] {
+            let beam = Mounted { scene_from_sensor: mount(height, down), sensor: beam };
+            let cylindrical = Cylindrical::new(&beam, Switches::EXACT);
+            let of = SensorId::Beam(0);
+            let map = bands::render(mesh, &cylindrical, of, Quantities::RANGE_MAP, Options::EXACT);
+            let hits = map.face.expect("asked for");
+            stripes.extend(points::of_beam(mesh, &cylindrical, &perspective, pixels, &hits));
+        }
+        let bins = Bins::of(pixels, stripes.iter().map(Option::as_ref));
+        assert!(bins.points().len() > 500);
+        hidden(&Occluders::new(mesh, &perspective, facing, f64::INFINITY), &bins, true)
+    }
+
+    /// Hills, rocks, mushrooms, floating slabs and walls: all of it closed.
+    fn closed(seed: u64) -> RandomGround {
+        RandomGround { slivers: 0, duplicate_faces: 0, zero_area_faces: 0, ..RandomGround::nasty(seed, 4000) }
+    }
+
+    #[test]
+    fn faces_turned_away_suffice_on_closed_ground() {
+        // §6: "a ray from the camera to a stripe is occluded by the terrain if the ray passes through a triangle on
+        // the back side of the terrain." True if the ground is closed, camera and laser are outside of it, the
+        // camera is on the front side of the face hit, and facing is judged from the camera's position: the ray
+        // starts outside and ends at a front from outside, so each time it goes in it must come out by a back.
+        let grounds = (0..6).map(|seed| closed(seed).build());
+        let mut count = 0;
+        for ground in grounds.chain(BUILTIN_NAMES.iter().map(|name| builtin(name, 0.25).unwrap())) {
+            let mesh = ground.into_mesh().unwrap();
+            let hidden = hidden_by(&mesh, Facing::Every);
+            assert_eq!(hidden, hidden_by(&mesh, Facing::AwayFromCamera));
+            count += hidden.iter().filter(|hidden| **hidden).count();
+        }
+        assert!(count > 300, "{count}");
+    }
+
+    #[test]
+    fn faces_turned_away_do_not_suffice_on_open_ground() {
+        // With loose slivers, every second of which shows the camera its front.
+        let differs = |seed| {
+            let mesh = RandomGround { slivers: 600, ..closed(seed) }.build().into_mesh().unwrap();
+            hidden_by(&mesh, Facing::Every) != hidden_by(&mesh, Facing::AwayFromCamera)
+        };
+        assert!((0..6).any(differs));
+    }
+}
