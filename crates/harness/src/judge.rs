@@ -1,6 +1,9 @@
 //! When the referee is asked, and with what tolerance.
 
-use raypencil_referee::{Approximations, Displacement, Explained, Referee, Ruling, SightRuling, Tolerance};
+use raypencil_referee::{
+    Approximations, Displacement, Explained, ExplainedSight, Referee, Ruling, SightApproximations,
+    SightRuling, Tolerance,
+};
 use raypencil_scene::{FaceId, Pixel, Resolution, Scene, SensorId};
 
 use crate::bounds::Bounds;
@@ -85,6 +88,21 @@ impl<'s> Judge<'s> {
     ) -> Option<Vec<Explained>> {
         let tolerance = self.tolerance(place, answer, range, resolution);
         self.referee.explain(place.sensor, place.i, place.j, answer, with, tolerance)
+    }
+
+    /// Explains what one side says of whether the camera sees a pencil's hit; `None` if the approximations do not.
+    pub(crate) fn explain_sight(
+        &self,
+        place: Place,
+        face: FaceId,
+        range: Option<f64>,
+        visible: bool,
+        with: SightApproximations,
+        resolution: Resolution,
+    ) -> Option<Vec<ExplainedSight>> {
+        let SensorId::Beam(beam) = place.sensor else { return None };
+        let tolerance = self.tolerance(place, Some(face), range, resolution);
+        self.referee.explain_sight(beam, place.i, place.j, face, visible, with, tolerance)
     }
 
     /// delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S
