@@ -44,33 +44,13 @@ impl Triangle {
         (b - a).cross(c - a)
     }
 
-    /// The three edge functions of the ray: all of them >= 0 if it passes within the face as one sees its
-    /// front, all of them <= 0 if it does so as one sees its back.
-    #[inline(always)]
-    fn edge_functions(&self, ray: &TracedRay) -> [f64; 3] {
-        let [a0, b0, c0] = self.vertices.map(|v| widen(v) - ray.origin);
-
-        // Project along the ray; both coordinates come out multiplied by its longest component.
-        let [kx, ky, kz] = ray.axes;
-        let (qx, qy, qz) = (ray.direction[kx], ray.direction[ky], ray.direction[kz]);
-        let project = |v: DVec3| (v[kx] * qz - v[kz] * qx, v[ky] * qz - v[kz] * qy);
-        let ((ax, ay), (bx, by), (cx, cy)) = (project(a0), project(b0), project(c0));
-        [ax * by - ay * bx, bx * cy - by * cx, cx * ay - cy * ax]
-    }
-
     /// The t at which `ray` meets the front of this face, on any line of it, edges and vertices included.
     /// Only t says where: that it is at least 1 and within the range is for the caller to ask.
     #[inline]
     pub(crate) fn meets(&self, ray: &TracedRay) -> Option<f64> {
-        // The ray passes on the inner side of all three edges, or on them.
-        let [ab, bc, ca] = self.edge_functions(ray);
-        if !(ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab == 0.0 && bc == 0.0 && ca == 0.0) {
-            return None;
-        }
-
-        // t = n.(a - o) / n.q, for a face whose front the ray meets: n.q < 0.
-        let Crossing { to_plane, along, .. } = self.crossing(ray);
-        if along < 0.0 { Some(to_plane / along) } else { None }
+        // n.q < 0: the ray meets the front.
+        let at = self.crossing::<false>(ray)?;
+        if at.along < 0.0 { Some(at.to_plane / at.along) } else { None }
     }
 
     /// How `ray` meets this face from its front or from its back, edges and vertices included; not if it
@@ -80,22 +60,35 @@ impl Triangle {
     /// has the sign 0 or exactly opposite signs in the two, and 0 is admitted by front and by back.
     #[inline]
     pub(crate) fn crosses(&self, ray: &TracedRay) -> Option<Crossing> {
-        let [ab, bc, ca] = self.edge_functions(ray);
-        let as_front = ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
-        let as_back = ab <= 0.0 && bc <= 0.0 && ca <= 0.0;
-        // Both: all three are 0, it is seen edge-on.
-        if as_front == as_back {
-            return None;
-        }
-        let crossing = self.crossing(ray);
-        (crossing.along != 0.0).then_some(crossing)
+        self.crossing::<true>(ray).filter(|at| at.along != 0.0)
     }
 
+    /// The crossing of the face's plane, if the ray passes on the inner side of all three edges, or on them:
+    /// as one sees the face's front or, with `BACKS`, as one sees either side.
     #[inline(always)]
-    fn crossing(&self, ray: &TracedRay) -> Crossing {
-        let normal = self.normal();
-        let to_plane = normal.dot(widen(self.vertices[0]) - ray.origin);
-        Crossing { normal, to_plane, along: normal.dot(ray.direction) }
+    fn crossing<const BACKS: bool>(&self, ray: &TracedRay) -> Option<Crossing> {
+        let [a, b, c] = self.vertices.map(widen);
+        let [a0, b0, c0] = [a - ray.origin, b - ray.origin, c - ray.origin];
+
+        // Project along the ray; both coordinates come out multiplied by its longest component.
+        let [kx, ky, kz] = ray.axes;
+        let (qx, qy, qz) = (ray.direction[kx], ray.direction[ky], ray.direction[kz]);
+        let project = |v: DVec3| (v[kx] * qz - v[kz] * qx, v[ky] * qz - v[kz] * qy);
+        let ((ax, ay), (bx, by), (cx, cy)) = (project(a0), project(b0), project(c0));
+
+        // All >= 0: inside as seen from the front; all <= 0: from the back; all 0: it is seen edge-on.
+        let ab = ax * by - ay * bx;
+        let bc = bx * cy - by * cx;
+        let ca = cx * ay - cy * ax;
+        let as_front = ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
+        let as_back = BACKS && ab <= 0.0 && bc <= 0.0 && ca <= 0.0;
+        if !(as_front || as_back) || (ab == 0.0 && bc == 0.0 && ca == 0.0) {
+            return None;
+        }
+
+        // t = n.(a - o) / n.q.
+        let normal = (b - a).cross(c - a);
+        Some(Crossing { normal, to_plane: normal.dot(a0), along: normal.dot(ray.direction) })
     }
 }
 
