@@ -161,11 +161,14 @@ fn distance_from_plane(face: &Face, point: DVec3) -> f64 {
     n.dot(point - a) / n.length()
 }
 
-/// Whether a point is within `off` metres of the box around a face.
+/// Whether a point that is on a face's plane, but for rounding, is within `off` metres of the face, corners apart: inside of
+/// every side, or beyond it by no more than that.
 fn is_beside(face: &Face, point: DVec3, off: f64) -> bool {
     let corners = face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
-    let (low, high) = corners.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
-        (low.min(*corner), high.max(*corner))
-    });
-    (low - off).cmple(point).all() && point.cmple(high + off).all()
+    let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    (0..3).all(|k| {
+        let along = corners[(k + 1) % 3] - corners[k];
+        let inward = n.cross(along);
+        inward.dot(point - corners[k]) >= -off * inward.length()
+    })
 }
