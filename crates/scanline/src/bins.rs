@@ -5,7 +5,7 @@ use raypencil_scene::FaceId;
 
 use crate::points::{Pixels, StripePoint};
 use crate::rounding::PointError;
-use crate::scan::Corner;
+use crate::scan::{Corner, Line, SplitTriangle};
 
 /// A point that something may hide.
 #[derive(Debug, Clone, Copy)]
@@ -44,8 +44,25 @@ pub(crate) struct Bins {
     /// Where the points of each pixel start, row by row, and at last their count.
     starts: Vec<u32>,
     points: Vec<Binned>,
-    /// 1/t of the deepest point of each row; infinite if there is none.
-    deepest: Vec<f64>,
+    contents: Vec<Row>,
+}
+
+/// What a row of pixels holds.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    /// 1/t of its deepest point.
+    deepest: f64,
+    /// y of its uppermost and of its lowest point, metres on the SPP.
+    top: f64,
+    bottom: f64,
+}
+
+/// Some points in a row of pixels.
+#[derive(Debug, Clone)]
+pub(crate) struct Touched {
+    row: usize,
+    /// Which of all points.
+    pub(crate) points: std::ops::Range<usize>,
 }
 
 impl Bins {
@@ -75,28 +92,22 @@ impl Bins {
             count += 1;
         }
         if count == 0 {
-            let starts = vec![0];
-            return Self {
-                pixels,
-                first: [0; 2],
-                columns: 0,
-                rows: 0,
-                starts,
-                points: Vec::new(),
-                deepest: Vec::new(),
-            };
+            let (starts, points, contents) = (vec![0], Vec::new(), Vec::new());
+            return Self { pixels, first: [0; 2], columns: 0, rows: 0, starts, points, contents };
         }
         let (columns, rows) = (last[0] - first[0] + 1, last[1] - first[1] + 1);
         let place = |[i, j]: [i64; 2]| ((j - first[1]) * columns + (i - first[0])) as usize;
 
         // Count, add up, put: points of one pixel stay in their order.
         let mut starts = vec![0_u32; (columns * rows) as usize + 1];
-        let mut deepest = vec![f64::INFINITY; rows as usize];
+        let nothing = Row { deepest: f64::INFINITY, top: f64::INFINITY, bottom: f64::NEG_INFINITY };
+        let mut contents = vec![nothing; rows as usize];
         let mut any = None;
         for (cell, point) in landed.clone() {
             starts[place(cell) + 1] += 1;
-            let row = &mut deepest[(cell[1] - first[1]) as usize];
-            *row = row.min(point.inverse_t);
+            let row = &mut contents[(cell[1] - first[1]) as usize];
+            row.deepest = row.deepest.min(point.inverse_t);
+            (row.top, row.bottom) = (row.top.min(point.at.y), row.bottom.max(point.at.y));
             any = Some(point);
         }
         for k in 1..starts.len() {
@@ -110,7 +121,7 @@ impl Bins {
             *next += 1;
         }
         let points = sorted.into_iter().flatten().collect();
-        Self { pixels, first, columns, rows, starts, points, deepest }
+        Self { pixels, first, columns, rows, starts, points, contents }
     }
 
     /// All points, pixel by pixel.
@@ -127,17 +138,13 @@ impl Bins {
         if row < 0 || row >= self.rows {
             return 0..0;
         }
-        self.starts[(row * self.columns + from) as usize] as usize
-            ..self.starts[(row * self.columns + end) as usize] as usize
+        self.in_columns(row, from, end)
     }
 
-    /// For every row of pixels that a face can touch, all of each pixel, the points in it that are not all nearer
-    /// than the face; ranges of all points.
+    /// For every row of pixels that a face can touch, all of each pixel, the points in it, if they are not all
+    /// nearer than the face.
     #[inline]
-    pub(crate) fn touched<'a>(
-        &'a self,
-        reach: &Reach,
-    ) -> impl Iterator<Item = std::ops::Range<usize>> + use<'a> {
+    pub(crate) fn touched<'a>(&'a self, reach: &Reach) -> impl Iterator<Item = Touched> + use<'a> {
         let (low, high) = (self.pixels.cell(reach.low), self.pixels.cell(reach.high));
         let from = (low[0] - self.first[0]).max(0);
         let end = (high[0] - self.first[0] + 1).min(self.columns);
@@ -145,13 +152,35 @@ impl Bins {
         let bottom = if from < end { (high[1] - self.first[1] + 1).min(self.rows) } else { top };
         let nearest = reach.nearest;
         (top..bottom).filter_map(move |row| {
-            if !(nearest > self.deepest[row as usize]) {
+            if !(nearest > self.contents[row as usize].deepest) {
                 return None;
             }
-            let row = row * self.columns;
-            let range =
-                self.starts[(row + from) as usize] as usize..self.starts[(row + end) as usize] as usize;
-            (!range.is_empty()).then_some(range)
+            let points = self.in_columns(row, from, end);
+            (!points.is_empty()).then_some(Touched { row: row as usize, points })
         })
+    }
+
+    /// Those of the points that are in the pixels which a triangle touches in their own row, rather than anywhere.
+    /// A triangle that leans across many rows has few of them.
+    pub(crate) fn narrowed<L: Line>(
+        &self,
+        touched: Touched,
+        triangle: &SplitTriangle<L>,
+    ) -> std::ops::Range<usize> {
+        let Row { top, bottom, .. } = self.contents[touched.row];
+        let (left, right) = triangle.spans(top, bottom);
+        if left > right {
+            return 0..0;
+        }
+        let from = self.pixels.cell(Corner { x: left, y: top })[0] - self.first[0];
+        let end = self.pixels.cell(Corner { x: right, y: top })[0] - self.first[0] + 1;
+        let (from, end) = (from.clamp(0, self.columns), end.clamp(0, self.columns));
+        self.in_columns(touched.row as i64, from, end)
+    }
+
+    #[inline]
+    fn in_columns(&self, row: i64, from: i64, end: i64) -> std::ops::Range<usize> {
+        let row = row * self.columns;
+        self.starts[(row + from) as usize] as usize..self.starts[(row + end) as usize] as usize
     }
 }

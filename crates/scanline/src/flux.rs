@@ -3,6 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_4, LN_2};
 
+use rayon::prelude::*;
 use raypencil_scene::{Beam, Camera, Filter, FluxModel, Mounted, Pixel, Scene};
 
 use crate::points::StripePoint;
@@ -22,22 +23,16 @@ pub(crate) struct PixelTables {
 impl PixelTables {
     pub(crate) fn of(camera: &Camera, tables: &CameraTables, beams: &[Mounted<Beam>]) -> Self {
         // cos(phi) = f_c / |q|.
-        let cos_2_phi = |q_length: &f64| {
+        let cos_4_phi = |q_length: &f64| {
             let cosine = camera.focal_length / q_length;
-            cosine * cosine
+            (cosine * cosine) * (cosine * cosine)
         };
-        let cos_4_phi = tables.q_length.iter().map(cos_2_phi).map(|squared| squared * squared).collect();
+        let cos_4_phi = tables.q_length.par_iter().map(cos_4_phi).collect();
         let mut filters: Vec<(f64, Vec<f64>)> = Vec::new();
         for wavelength in wavelengths(camera, beams) {
-            if filters.iter().any(|(known, _)| *known == wavelength) {
-                continue;
+            if filters.iter().all(|(known, _)| *known != wavelength) {
+                filters.push((wavelength, f_phi(camera, tables, wavelength)));
             }
-            let rows = tables.y.centres().iter().flat_map(|y| tables.x.centres().iter().map(move |x| (x, y)));
-            let of_pixel = |((x, y), q_length): ((&f64, &f64), &f64)| {
-                let sin_squared = (x * x + y * y) / (q_length * q_length);
-                pass(camera.lens.filter, wavelength, sin_squared)
-            };
-            filters.push((wavelength, rows.zip(&tables.q_length).map(of_pixel).collect()));
         }
         Self { camera: *camera, cos_4_phi, filters }
     }
@@ -50,6 +45,21 @@ impl PixelTables {
     fn f_phi(&self, wavelength: f64) -> Option<&[f64]> {
         self.filters.iter().find(|(known, _)| *known == wavelength).map(|(_, table)| &table[..])
     }
+}
+
+/// F(phi) of every pixel's centre, row by row.
+fn f_phi(camera: &Camera, tables: &CameraTables, wavelength: f64) -> Vec<f64> {
+    let mut of_pixels = vec![0.0; tables.q_length.len()];
+    let width = camera.width as usize;
+    of_pixels.par_chunks_mut(width).enumerate().for_each(|(j, row)| {
+        let y = tables.y.centre(j as u32);
+        let q_lengths = &tables.q_length[j * width..][..width];
+        for ((f_phi, x), q_length) in row.iter_mut().zip(tables.x.centres()).zip(q_lengths) {
+            let sin_squared = (x * x + y * y) / (q_length * q_length);
+            *f_phi = pass(camera.lens.filter, wavelength, sin_squared);
+        }
+    });
+    of_pixels
 }
 
 /// The wavelengths that a filter is asked about.
@@ -153,6 +163,9 @@ impl<'a> Flux<'a> {
     }
 
     /// e^(-sigma length).
+    ///
+    /// DIFFERENCE: the paper pre-computes "attenuation factors" too. A table of them over R and r would have to be
+    /// interpolated; only visible points ask.
     fn transmission(&self, length: f64) -> f64 {
         libm::exp(-self.attenuation * length)
     }

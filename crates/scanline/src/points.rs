@@ -129,8 +129,8 @@ fn stripe_point(
 
     let n_length = plane.normal.length();
     // n.q = d / t, so cos(psi) = -n.q / (|n| |q|) needs no direction.
-    let distance_from_plane = beam.row_distance(&plane, y);
-    let incidence = -distance_from_plane * inverse_t / (n_length * q_length);
+    let laser_distance = beam.row_distance(&plane, y);
+    let incidence = -laser_distance * inverse_t / (n_length * q_length);
 
     // Step 3: the point in the camera's frame, and its image.
     let in_beam = beam.row_origin(y) + beam.q(x, y) / inverse_t;

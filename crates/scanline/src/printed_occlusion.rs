@@ -39,8 +39,9 @@ pub(crate) fn upper_extent(
     let height = |beam: &Mounted<Beam>| {
         -camera_from_scene.turn(camera_from_scene.relative(beam.scene_from_sensor.position)).y
     };
-    // The last of equals, as `max_by` has it.
-    let upper = beams.iter().zip(stripes).max_by(|(a, _), (b, _)| height(a).total_cmp(&height(b)));
+    // The last of equals, as `max_by` has it, -0 being equal to +0.
+    let upper =
+        beams.iter().zip(stripes).max_by(|(a, _), (b, _)| (height(a) + 0.0).total_cmp(&(height(b) + 0.0)));
     let depths = upper.iter().flat_map(|(_, points)| points.iter().flatten()).map(|point| point.depth);
     depths.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
