@@ -127,11 +127,15 @@ impl Light<'_, '_> {
                 }
                 FluxModel::Eq1 => {
                     let Values { range, depth, emission, incidence, .. } = values;
-                    // phi of the pixel's centre.
-                    let q = camera.direction(pixel.i, pixel.j);
-                    let across = q.x * q.x + q.y * q.y;
-                    let cos_squared = q.z * q.z / (across + q.z * q.z);
-                    let sin_squared = across / (across + q.z * q.z);
+                    // phi of the pixel's centre, whose tangent is how far that is from the axis over f.
+                    let offset = |index: u32, axis: usize| {
+                        let cells = f64::from(index) + 0.5 - camera.principal_point[axis];
+                        cells * camera.pixel_pitch[axis] / camera.focal_length
+                    };
+                    let (x, y) = (offset(pixel.i, 0), offset(pixel.j, 1));
+                    let tan_squared = x * x + y * y;
+                    let cos_squared = 1.0 / (1.0 + tan_squared);
+                    let sin_squared = tan_squared * cos_squared;
                     let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
                     power * (PI / 4.0) * aperture_squared / (camera.focal_length * camera.focal_length)
                         * self.filter(camera, sin_squared)
