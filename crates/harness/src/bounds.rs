@@ -109,6 +109,8 @@ pub(crate) struct ReturnBounds {
     pub(crate) emission: f64,
     /// The flux, relative.
     pub(crate) flux: f64,
+    /// The flux, watts (`eq1`: W/m): where a share of the power is so small that it has no 53 digits left.
+    pub(crate) least_flux: f64,
 }
 
 /// What the bounds of a return depend on.
@@ -132,7 +134,7 @@ impl ReturnBounds {
     /// The bounds of what comes back to the camera of a hit of `beam`.
     pub(crate) fn of(
         scene: &Scene,
-        beam: usize,
+        (beam, column): (usize, u32),
         hit: &Bounds,
         values: Returned,
         resolution: Resolution,
@@ -147,10 +149,15 @@ impl ReturnBounds {
         let beam = &scene.beams()[beam].sensor;
         let sigma = scene.atmosphere().attenuation;
         // A normalised profile is divided by a sum of as many weights.
+        let weights = f64::from(beam.columns) * f64::from(beam.rows) * u;
         let sum = match beam.profile {
             Profile::Paper => 0.0,
-            Profile::UniformAngle | Profile::Gaussian { .. } => {
-                f64::from(beam.columns) * f64::from(beam.rows) * u
+            Profile::UniformAngle => weights,
+            // An exponential is as relatively wrong as its exponent, 2 (alpha / w)^2, is absolutely: alpha is good
+            // to 4 u, its square to 10 u, and the brightest weight, by which all may be divided, as well.
+            Profile::Gaussian { half_width } => {
+                let alpha = incidence_angle(beam, column) / half_width;
+                weights + 2.0 * alpha * alpha * 20.0 * u
             }
         };
         let shared = (2.0 * point / depth + of_emission / emission).abs() + FLUX * u + sum;
@@ -173,7 +180,18 @@ impl ReturnBounds {
                     + sigma * (range + distance) * 4.0 * u
             }
         };
-        Self { depth: point, off_axis: of_off_axis, emission: of_emission, flux: relative }
+        // What is left of a subnormal share, times all that it is multiplied by.
+        let camera = &scene.camera().sensor;
+        let squares = camera.aperture * camera.aperture / (depth * depth);
+        let gain = match scene.flux_model() {
+            FluxModel::Radiometric => squares,
+            FluxModel::Eq1 => {
+                let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
+                squares * area / (camera.focal_length * camera.focal_length * range)
+            }
+        };
+        let least_flux = f64::MIN_POSITIVE * (1.0 + beam.power) * (1.0 + gain);
+        Self { depth: point, off_axis: of_off_axis, emission: of_emission, flux: relative, least_flux }
     }
 
     /// How far two renderers with these bounds may differ.
@@ -183,22 +201,30 @@ impl ReturnBounds {
             off_axis: self.off_axis + other.off_axis,
             emission: self.emission + other.emission,
             flux: self.flux + other.flux,
+            least_flux: self.least_flux + other.least_flux,
         }
     }
 }
 
-/// The relative error of F(phi) = exp(-4 ln 2 ((wavelength - c') / width)^2), c' = c sqrt(1 - sin(phi)^2 / n^2), where
-/// cos(phi) is off by `of_off_axis`.
+/// alpha of the pencils of a column, roughly.
+fn incidence_angle(beam: &Beam, column: u32) -> f64 {
+    let columns = f64::from(beam.columns);
+    let half_cells = 2.0 * f64::from(column) + 1.0 - columns;
+    libm::atan(beam.half_width * half_cells / (columns * beam.grid_distance))
+}
+
+/// The relative error of F(phi) = exp(-4 ln 2 away^2), away = (wavelength - c') / width, c' = c sqrt(1 - sin(phi)^2 / n^2),
+/// where cos(phi) is off by `of_off_axis`.
 ///
-/// d(ln F) = 8 ln 2 (wavelength - c') / width^2 dc', |dc'| <= c^2 / (c' n^2) |cos(phi)| |d cos(phi)|, and c' and the
-/// difference are rounded: 8 u c.
+/// |dc'| <= c^2 / (c' n^2) |cos(phi)| |d cos(phi)|, c' and the difference are rounded (8 u c), and the exponent
+/// itself (10 u of it): |d ln F| = 4 ln 2 |away| (2 |dc'| / width + 10 u |away|).
 fn filter_bound(scene: &Scene, beam: &Beam, off_axis: f64, of_off_axis: f64, u: f64) -> f64 {
     let Filter::Interference { centre, width, index } = scene.camera().sensor.lens.filter else { return 0.0 };
     let sin_squared = (1.0 - off_axis * off_axis).max(0.0);
     let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
     let of_shifted = centre * centre / (shifted * index * index) * of_off_axis + 8.0 * u * centre;
-    8.0 * std::f64::consts::LN_2 * ((beam.wavelength - shifted).abs() + of_shifted) / (width * width)
-        * of_shifted
+    let away = ((beam.wavelength - shifted).abs() + of_shifted) / width;
+    4.0 * std::f64::consts::LN_2 * away * (2.0 * of_shifted / width + 10.0 * u * away)
 }
 
 #[cfg(test)]

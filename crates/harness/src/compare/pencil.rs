@@ -147,7 +147,7 @@ pub(super) fn compare_pencil(
 
     // What it delivers.
     if let (Some(x), Some(y)) = (of_a.flux, of_b.flux) {
-        let bound = bounds.map_or(0.0, |bounds| bounds.flux * x.abs().max(y.abs()));
+        let bound = bounds.map_or(0.0, |bounds| bounds.flux * x.abs().max(y.abs()) + bounds.least_flux);
         light.bound = bound;
         let difference = (x - y).abs();
         if difference <= bound {
@@ -223,7 +223,7 @@ fn return_bounds(
                 None => (back.depth? / back.off_axis?).abs(),
             },
         };
-        Some(ReturnBounds::of(judge.scene(), beam, &bounds[k], values, sides[k].resolution))
+        Some(ReturnBounds::of(judge.scene(), (beam, place.i), &bounds[k], values, sides[k].resolution))
     };
     Some(of(0)?.plus(&of(1)?))
 }
