@@ -206,6 +206,10 @@ pub(crate) struct Render {
     #[arg(long, value_name = "NAME")]
     pub(crate) with: String,
 
+    /// Draw one ray at random within each pencil, by this seed, instead of its central ray.
+    #[arg(long, value_name = "SEED")]
+    pub(crate) jitter: Option<u64>,
+
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
 

@@ -35,7 +35,7 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use raypencil_scene::{Frame, SensorId, SensorMap};
+use raypencil_scene::{Frame, Sampling, SensorId, SensorMap};
 use raypencil_scene_io::{Attributes, ExrMap, SceneIoError, write_atomically, write_exr};
 
 use crate::run::{Progress, Rendered, Subject, Validation};
@@ -125,7 +125,13 @@ pub fn write_validation(
     for rendered in &validation.rendered {
         progress.stage(&format!("{}: writing maps", rendered.name));
         let folder = folder.join(&rendered.name);
-        maps.extend(write_maps(&rendered.frame, &rendered.name, &validation.subject, &folder)?);
+        maps.extend(write_maps(
+            &rendered.frame,
+            &rendered.name,
+            &validation.subject,
+            Sampling::Centres,
+            &folder,
+        )?);
     }
 
     progress.stage("writing the report");
@@ -146,7 +152,8 @@ pub fn write_validation(
     Ok(Written { maps, report, markdown, junit, summary, time: start.elapsed() })
 }
 
-/// Writes one renderer's maps of every sensor, `camera.exr`, `beam-0.exr` ..., into `folder`.
+/// Writes one renderer's maps of every sensor, `camera.exr`, `beam-0.exr` ..., into `folder`. `sampling` is what the
+/// frame was rendered with.
 ///
 /// # Errors
 /// Names the file or folder that could not be written, and why.
@@ -154,6 +161,7 @@ pub fn write_maps(
     frame: &Frame,
     renderer: &str,
     subject: &Subject,
+    sampling: Sampling,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, OutputError> {
     create(folder)?;
@@ -173,6 +181,11 @@ pub fn write_maps(
                 }
             }
             SensorId::Beam(index) => {
+                if let Sampling::Jittered { seed } = sampling {
+                    let rule =
+                        format!("cell (i, j) is a ray drawn within pencil (i, j), seed {seed}; row 0 on top");
+                    exr.attributes.insert("pixelRule".into(), rule);
+                }
                 if let Some(returns) = frame.returns.get(index) {
                     exr.insert_returns(returns, model);
                 }

@@ -57,6 +57,8 @@ struct RendererSummary<'a> {
     name: &'a str,
     unit_roundoff: Option<f64>,
     seconds: f64,
+    /// The flux of each beam on the camera's image, added up over its pixels.
+    flux: Vec<f64>,
     sensors: Vec<MapSummary>,
 }
 
@@ -183,6 +185,7 @@ fn of_renderer(rendered: &Rendered) -> RendererSummary<'_> {
         name: &rendered.name,
         unit_roundoff: finite(rendered.resolution.unit_roundoff),
         seconds: rendered.time.as_secs_f64(),
+        flux: rendered.frame.flux.iter().map(|image| image.cells().iter().sum()).collect(),
         sensors: sensors.collect(),
     }
 }
