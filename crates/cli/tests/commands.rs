@@ -94,7 +94,17 @@ fn probe_tells_what_both_say_of_one_ray() {
     let output = raypencil(folder.path(), &["probe", "small.toml", "--beam", "0", "--pencil", "20,3"]);
     let said = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    for word in ["beam-0 pencil 20,3", "scanline: face", "tracer: face", "range", "normal"] {
+    let words = [
+        "beam-0 pencil 20,3",
+        "scanline: face",
+        "tracer: face",
+        "range",
+        "normal",
+        "seen by the camera",
+        "cos(theta)",
+        "flux",
+    ];
+    for word in words {
         assert!(said.contains(word), "`{word}` is not in:\n{said}");
     }
     let output = raypencil(folder.path(), &["probe", "small.toml", "--pixel", "63,47", "--json"]);
@@ -136,6 +146,22 @@ fn the_papers_errors_have_causes() {
     let arguments = ["probe", "pyramids", "--thickness", "80", "--switch", "skip-rules=paper"];
     let said = text(&raypencil(folder.path(), &[arguments.as_slice(), &ray].concat()).stdout);
     assert!(said.contains("scanline-paper-skip-rules: face 130 (exact)"), "{said}");
+}
+
+#[test]
+fn jittered_pencils_are_drawn_or_refused() {
+    let folder = folder();
+    let render = |with: &str, seed: &str, to: &str| {
+        raypencil(folder.path(), &["render", "small.toml", "--with", with, "--jitter", seed, "-o", to])
+    };
+    let read = |to: &str| std::fs::read(folder.path().join(to).join("beam-0.exr")).unwrap();
+    for (seed, to) in [("1", "a"), ("1", "b"), ("2", "c")] {
+        let output = render("tracer", seed, to);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    }
+    assert!(read("a") == read("b") && read("a") != read("c"), "a seed is a seed");
+    assert_trouble(&render("scanline", "1", "d"), &["--jitter 1", "scanline", "tracer or referee"]);
+    assert!(!folder.path().join("d").exists());
 }
 
 #[test]

@@ -24,19 +24,29 @@ pub struct Light<'r, 's> {
     sampling: Sampling,
     /// The weights of all pencils, added up; 1 for the paper's own shares.
     whole: f64,
+    /// (alpha / w)^2 of the brightest pencil of a Gaussian, by which all weights are divided: a Gaussian may be so
+    /// narrow that all would vanish.
+    brightest: f64,
 }
 
 impl<'s> Referee<'s> {
     /// The returns of a beam, or `None` if there is no such beam.
     pub fn light(&self, beam: usize, sampling: Sampling) -> Option<Light<'_, 's>> {
         let mounted = *self.scene.beams().get(beam)?;
-        let mut light = Light { referee: self, beam, mounted, sampling, whole: 1.0 };
+        let mut light = Light { referee: self, beam, mounted, sampling, whole: 1.0, brightest: 0.0 };
         let Beam { columns, rows, profile, .. } = mounted.sensor;
         if profile != Profile::Paper {
             // Added with what rounding leaves over. (A. Neumaier, 1974)
             let (mut sum, mut rest) = (0.0_f64, 0.0);
             let rows_alike = sampling == Sampling::Centres;
-            for j in 0..if rows_alike { 1 } else { rows } {
+            let different = if rows_alike { 1 } else { rows };
+            if let Profile::Gaussian { half_width } = profile {
+                let pencils = (0..different).flat_map(|j| (0..columns).map(move |i| (i, j)));
+                light.brightest = pencils
+                    .map(|(i, j)| light.relative_angle(i, j, half_width))
+                    .fold(f64::INFINITY, |least, relative| least.min(relative * relative));
+            }
+            for j in 0..different {
                 for i in 0..columns {
                     let weight = light.weight(i, j);
                     let total = sum + weight;
@@ -64,6 +74,11 @@ impl Light<'_, '_> {
         half_width * half_cells / (f64::from(columns) * grid_distance)
     }
 
+    /// alpha / w.
+    fn relative_angle(&self, i: u32, j: u32, half_width: f64) -> f64 {
+        libm::atan(self.slope(i, j)) / half_width
+    }
+
     /// What of the beam's power goes to a pencil, before it is divided by the whole.
     fn weight(&self, i: u32, j: u32) -> f64 {
         let slope = self.slope(i, j);
@@ -75,8 +90,8 @@ impl Light<'_, '_> {
             }
             Profile::UniformAngle => cos_squared,
             Profile::Gaussian { half_width } => {
-                let relative = libm::atan(slope) / half_width;
-                libm::exp(-2.0 * relative * relative)
+                let relative = self.relative_angle(i, j, half_width);
+                libm::exp(-2.0 * (relative * relative - self.brightest))
             }
         }
     }
@@ -199,12 +214,18 @@ impl Values {
         };
         let minus = |x: &Dyadic| Dyadic::of(0.0).sub(x);
         let scale = pencil.origin_scale.mul(&approach);
+        let is_centre = v_squared.sign() == Some(std::cmp::Ordering::Equal);
         Self {
             range: height.square().mul(&d_squared).over(&scale.square()).sqrt(),
             distance: v_squared.over(&way.scale.square()).sqrt(),
             depth: way.seen.0[2].over(&way.frame_scale.mul(&way.scale)),
-            off_axis: root(&way.seen.0[2], &way.seen.length_squared()),
-            emission: root(&minus(&normal.dot(&way.along)), &n_squared.mul(&v_squared)),
+            // A point in the projection centre itself is seen under no angle. CHOICE: cosines of 0.
+            off_axis: if is_centre { 0.0 } else { root(&way.seen.0[2], &way.seen.length_squared()) },
+            emission: if is_centre {
+                0.0
+            } else {
+                root(&minus(&normal.dot(&way.along)), &n_squared.mul(&v_squared))
+            },
             incidence: root(&minus(&approach), &n_squared.mul(&d_squared)),
         }
     }

@@ -150,7 +150,7 @@ pub(super) fn compare_pencil(
         let bound = bounds.map_or(0.0, |bounds| bounds.flux * x.abs().max(y.abs()) + bounds.least_flux);
         light.bound = bound;
         let difference = (x - y).abs();
-        if difference <= bound {
+        if difference == 0.0 || difference <= bound {
             entry.value(Quantity::PencilFlux, difference, Some(bound));
         } else {
             // It goes with whether and where the point is seen, and with what is hit.

@@ -102,8 +102,11 @@ impl<'a> PixelLight<'a> {
         let bound = pixel.bound + rounding;
         let difference = (a - b).abs();
         let adds_up = [a, b].iter().zip(pixel.sums).all(|(image, sum)| (image - sum).abs() <= rounding);
-        let class =
-            if !adds_up || !(difference <= bound + pixel.unlike) { Class::Defect } else { pixel.class };
+        let class = if !adds_up || !(difference == 0.0 || difference <= bound + pixel.unlike) {
+            Class::Defect
+        } else {
+            pixel.class
+        };
         (difference, bound, class)
     }
 }

@@ -59,7 +59,9 @@ impl Entry<'_> {
 
     /// Enters a difference and the bound it must keep to; without one only exactness agrees.
     pub(super) fn value(&mut self, quantity: Quantity, difference: f64, bound: Option<f64>) -> Class {
-        let class = if difference <= bound.unwrap_or(0.0) { Class::Agree } else { Class::Defect };
+        // The same number agrees even where no bound can be told.
+        let agrees = difference == 0.0 || difference <= bound.unwrap_or(0.0);
+        let class = if agrees { Class::Agree } else { Class::Defect };
         self.class(quantity, class);
         self.extremes(quantity, difference, bound);
         class
