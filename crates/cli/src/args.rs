@@ -125,8 +125,8 @@ fn quoted(word: &str) -> String {
 /// Which sides of the scanline renderer's switches.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SwitchArguments {
-    /// Set a switch of the scanline renderer to the paper's approximation or to exact: beam-edges,
-    /// skip-rules. May be given several times.
+    /// Set a switch of the scanline renderer to the paper's approximation or to exact: beam-edges, skip-rules,
+    /// facing, extent, place. May be given several times.
     #[arg(long = "switch", value_name = "NAME=paper|exact", value_parser = switch)]
     pub(crate) set: Vec<(String, Fidelity)>,
 }
