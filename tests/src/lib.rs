@@ -2,6 +2,7 @@
 
 pub mod lattice;
 pub mod naive;
+pub mod quadrature;
 pub mod random;
 pub mod rig;
 
