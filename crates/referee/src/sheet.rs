@@ -110,6 +110,32 @@ impl Neighbourhood<'_> {
             None => around.all_miss(cap),
         }
     }
+
+    /// Whether every ray of a square of radius `half` around `centre` certainly hits, and all faces, by their
+    /// indices, that may be among its nearest. Without any at `centre` itself nothing is certain.
+    pub(crate) fn possible(&mut self, centre: [f64; 2], nearest: &[usize], half: f64) -> (bool, Vec<usize>) {
+        let mut around = Around { near: self, centre, seen: Vec::new() };
+        if let Some(&first) = nearest.first() {
+            // A sheet without an end covers the square, and has told how far faces matter.
+            let sheet = around.sheet(first, half);
+            if sheet.radius >= half {
+                let mut faces: Vec<usize> = sheet.faces.iter().map(|&(index, _)| index).collect();
+                for index in 0..around.near.faces.len() {
+                    let is_other = !sheet.faces.iter().any(|&(kept, _)| kept == index);
+                    if is_other
+                        && around.seen(index).absent < half
+                        && around.behind(index, &sheet, half) < half
+                    {
+                        faces.push(index);
+                    }
+                }
+                return (true, faces);
+            }
+        }
+        around.near.reach_all();
+        let faces = (0..around.near.faces.len()).filter(|&index| around.seen(index).absent < half).collect();
+        (false, faces)
+    }
 }
 
 impl Around<'_, '_> {
