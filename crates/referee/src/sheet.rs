@@ -111,6 +111,13 @@ impl Neighbourhood<'_> {
         }
     }
 
+    /// The faces of the sheet of a face that is met at `centre`, if it has no end within `half`: every ray there meets
+    /// one of them.
+    pub(crate) fn covering_sheet(&mut self, centre: [f64; 2], start: usize, half: f64) -> Option<Vec<usize>> {
+        let sheet = Around { near: self, centre, seen: Vec::new() }.sheet(start, half);
+        (sheet.radius >= half).then(|| sheet.faces.iter().map(|&(index, _)| index).collect())
+    }
+
     /// Whether every ray of a square of radius `half` around `centre` certainly hits, and all faces, by their
     /// indices, that may be among its nearest. Without any at `centre` itself nothing is certain.
     pub(crate) fn possible(&mut self, centre: [f64; 2], nearest: &[usize], half: f64) -> (bool, Vec<usize>) {

@@ -22,8 +22,9 @@
 //! 3. the plane through the camera and a side of one of them has one face on one side and the other on the other,
 //!    with no points of the other face on it but corners that they share: the way may meet both there, but
 //!    meets either plane once, so both at P; or
-//! 4. all pencils of the part meet the front of G and the camera lies before it: a point that is met first lies at
-//!    G's plane or before it, and so does the way, as in 2.
+//! 4. all pencils of the part meet fronts of some sheet without an end, the camera lies before the planes of all its
+//!    faces, and G is at or behind all of them (it may be one of them): a point that is met first lies at the plane
+//!    of the sheet's face that the same pencil meets, or before it, and so does the way, as in 1 and 2.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -158,6 +159,7 @@ impl<'a> View<'a> {
         if self.visible && !certainly_hit {
             return false;
         }
+        /*DBG*/
         faces.into_iter().all(|index| self.is_alike_on(index, square))
     }
 
@@ -167,11 +169,12 @@ impl<'a> View<'a> {
             let ground = self.ground(index);
             self.grounds.insert(index, ground);
         }
-        let ground = &self.grounds[&index];
+        let Self { referee, near, grounds, .. } = self;
+        let ground = &grounds[&index];
         if !ground.is_front_seen {
             return !self.visible;
         }
-        let own = self.near.faces[index].own().map(|form| form.about(square.middle));
+        let own = near.faces[index].own().map(|form| form.about(square.middle));
         let lands = ground.lands.map(|form| form.about(square.middle));
         // Certainly not all of the first `forms`, where the face is hit.
         let fail = |forms: &[Form]| {
@@ -184,14 +187,34 @@ impl<'a> View<'a> {
         lands.iter().all(|form| form.holds_within() >= square.half || fail(&[form.negated()]))
             && ground.occluders.iter().all(|occluder| {
                 let hides = occluder.hides.map(|form| form.about(square.middle));
-                fail(&hides) || (occluder.turned_to_camera && self.is_met_throughout(occluder.face, square))
+                fail(&hides) || Self::is_before_sheet(referee, near, occluder, square)
             })
     }
 
-    /// Whether all pencils of a part certainly meet a face.
-    fn is_met_throughout(&self, face: &Face, square: &Square) -> bool {
-        let holds = |form: &Form| form.about(square.middle).holds_within() >= square.half;
-        self.near.faces.iter().any(|near| near.face.id == face.id && near.own().iter().all(holds))
+    /// Whether an occluder hides nothing that is met first, for reason 4.
+    fn is_before_sheet(
+        referee: &Referee<'_>,
+        near: &mut Neighbourhood<'_>,
+        occluder: &Occluder<'_>,
+        square: &Square,
+    ) -> bool {
+        let camera = referee.scene.camera().scene_from_sensor.position;
+        let hidden = corners(occluder.face);
+        let is_beyond = |face: &Face| {
+            let [a, b, c] = corners(face);
+            let at_or_behind = |&corner: &DVec3| volume_sign(a, b, c, corner) != Ordering::Greater;
+            volume_sign(a, b, c, camera) == Ordering::Greater
+                && (face.id == occluder.face.id || hidden.iter().all(at_or_behind))
+        };
+        (0..near.faces.len()).any(|start| {
+            let first = &near.faces[start];
+            let is_met = first.own().iter().all(|form| form.is_positive_at(square.middle) == Some(true));
+            is_met
+                && is_beyond(first.face)
+                && near
+                    .covering_sheet(square.middle, start, square.half)
+                    .is_some_and(|sheet| sheet.into_iter().all(|index| is_beyond(near.faces[index].face)))
+        })
     }
 
     /// All about a face that may be hit, and about what may hide it in the unit square.
