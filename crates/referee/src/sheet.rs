@@ -119,29 +119,36 @@ impl Neighbourhood<'_> {
     }
 
     /// Whether every ray of a square of radius `half` around `centre` certainly hits, and all faces, by their
-    /// indices, that may be among its nearest. Without any at `centre` itself nothing is certain.
-    pub(crate) fn possible(&mut self, centre: [f64; 2], nearest: &[usize], half: f64) -> (bool, Vec<usize>) {
-        let mut around = Around { near: self, centre, seen: Vec::new() };
+    /// indices, that may be among its nearest.
+    pub(crate) fn possible(&mut self, centre: [f64; 2], half: f64) -> (bool, Vec<usize>) {
+        // The nearest face's sheet may end, at a silhouette, with another behind it that does not.
+        let nearest = self.nearest_at(centre);
+        let is_met =
+            |face: &FaceForms<'_>| face.own().iter().all(|form| form.is_positive_at(centre) == Some(true));
+        let mut starts = nearest.first().copied().into_iter().collect::<Vec<_>>();
         if let Some(&first) = nearest.first() {
-            // A sheet without an end covers the square, and has told how far faces matter.
-            let sheet = around.sheet(first, half);
-            if sheet.radius >= half {
-                let mut faces: Vec<usize> = sheet.faces.iter().map(|&(index, _)| index).collect();
-                for index in 0..around.near.faces.len() {
-                    let is_other = !sheet.faces.iter().any(|&(kept, _)| kept == index);
-                    if is_other
-                        && around.seen(index).absent < half
-                        && around.behind(index, &sheet, half) < half
-                    {
-                        faces.push(index);
-                    }
-                }
-                return (true, faces);
+            let others = (0..self.faces.len()).filter(|&index| index != first && is_met(&self.faces[index]));
+            starts.extend(others);
+        }
+        let mut around = Around { near: self, centre, seen: Vec::new() };
+        for start in starts {
+            // A sheet without an end covers the square: nothing behind it is nearest.
+            let sheet = around.sheet(start, half);
+            if sheet.radius < half {
+                continue;
             }
+            let mut faces: Vec<usize> = sheet.faces.iter().map(|&(index, _)| index).collect();
+            for index in 0..around.near.faces.len() {
+                let is_other = !sheet.faces.iter().any(|&(kept, _)| kept == index);
+                if is_other && around.seen(index).absent < half && around.behind(index, &sheet, half) < half {
+                    faces.push(index);
+                }
+            }
+            return (true, faces);
         }
         around.near.reach_all();
-        let faces = (0..around.near.faces.len()).filter(|&index| around.seen(index).absent < half).collect();
-        (false, faces)
+        let count = around.near.faces.len();
+        (false, (0..count).filter(|&index| around.seen(index).absent < half).collect())
     }
 }
 

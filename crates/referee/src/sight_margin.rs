@@ -154,12 +154,11 @@ impl<'a> View<'a> {
         if square.half < 1.0 {
             self.near.reach_all();
         }
-        let nearest = self.near.nearest_at(square.middle);
-        let (certainly_hit, faces) = self.near.possible(square.middle, &nearest, square.half);
+        let (certainly_hit, faces) = self.near.possible(square.middle, square.half);
         if self.visible && !certainly_hit {
             return false;
         }
-        /*DBG*/
+
         faces.into_iter().all(|index| self.is_alike_on(index, square))
     }
 
