@@ -132,10 +132,13 @@ impl<'a> View<'a> {
         if lo >= 1.0 { Margin::CAPPED } else { Margin::of(lo, witness) }
     }
 
-    /// The nearest of a part's middle and corners at which the answer is another.
+    /// The nearest of some places in and around a part at which the answer is another: its middle, its corners, and
+    /// places outside of it, for a change may begin right beyond a side.
     fn changed_in(&mut self, square: &Square, lo: f64) -> Option<[f64; 2]> {
-        let mut places: Vec<[f64; 2]> = square.corners().into_iter().chain([square.middle]).collect();
-        places.retain(|&at| size(at) >= lo);
+        let around = Square { half: 1.5 * square.half, ..*square };
+        let mut places: Vec<[f64; 2]> = around.corners().into_iter().chain(square.corners()).collect();
+        places.push(square.middle);
+        places.retain(|&at| size(at) >= lo && size(at) <= 1.0);
         places.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
         places.into_iter().find(|&at| self.visible_at(at) != self.visible)
     }
@@ -158,7 +161,6 @@ impl<'a> View<'a> {
         if self.visible && !certainly_hit {
             return false;
         }
-
         faces.into_iter().all(|index| self.is_alike_on(index, square))
     }
 
