@@ -16,6 +16,7 @@
 //! sheet, divide    where the range is continuous; what to do where one square does not tell
 //! ruling           whether an answer is right, or admissible
 //! sight            what the camera sees of a pencil's hit
+//! sight_margin     how far that is from changing
 //! sight_ruling     whether an answer about that is right, or admissible
 //! light            what comes back of a pencil, as values
 //! paper            whether an approximation of the paper explains an answer
@@ -42,6 +43,7 @@ mod render;
 mod ruling;
 mod sheet;
 mod sight;
+mod sight_margin;
 mod sight_ruling;
 mod surface;
 mod truth;
@@ -55,5 +57,6 @@ pub use paper_sight::{ExplainedSight, SightApproximations, SightReason};
 pub use render::ExactRenderer;
 pub use ruling::{Ruling, Tolerance};
 pub use sight::Sight;
+pub use sight_margin::SightMargins;
 pub use sight_ruling::SightRuling;
 pub use verdict::{Displacement, Referee, Verdict};

@@ -78,6 +78,64 @@ impl<T: Number> Way<T> {
     }
 }
 
+impl Way<Interval> {
+    /// The parts of the way to the plane of `face` as a function of the displacement from an aim, which is bilinear:
+    /// V = V_0 + V_1 dx + V_2 dy + V_3 dx dy, and W and (X, Y, Z) likewise. Every [`Question`] is linear in them, so
+    /// that its values for the four are the coefficients of its own form.
+    pub(crate) fn parts(sensor: &Sensor, aim: Aim, face: &Face, camera: &Mounted<Camera>) -> [Self; 4] {
+        type I = Interval;
+        let ray = sensor.ray::<I>(aim);
+        let [across, down] = sensor.steps::<I>();
+        let pose = camera.scene_from_sensor;
+        let (centre, rotation) = (Vector::<I>::of(pose.position), ScaledRotation::<I>::of(pose.rotation));
+        let focal = I::of(camera.sensor.focal_length).mul(&rotation.norm_squared);
+        let normal = face.normal::<I>();
+        // O - s c and n.a' with their slopes in dy, D and n.D with theirs in dx.
+        let start = [ray.origin.sub(&centre.scaled(&ray.origin_scale)), down.clone()];
+        let height = [face.height(&ray), normal.dot(&down).negated()];
+        let approach = [face.approach(&ray), normal.dot(&across)];
+        let direction = [ray.direction.clone(), across];
+        [0, 1, 2, 3].map(|part: usize| {
+            let (x, y) = (part & 1, part >> 1);
+            let minus = start[y].scaled(&approach[x]).add(&direction[x].scaled(&height[y]));
+            let along = Vector(minus.0.map(Interval::negated));
+            let scale = match y {
+                0 => ray.origin_scale.mul(&approach[x]).negated(),
+                _ => I::of(0.0),
+            };
+            let seen = rotation.apply_inverse(&along);
+            Self { centre: centre.clone(), along, scale, seen, frame_scale: rotation.norm_squared, focal }
+        })
+    }
+
+    /// The coefficients of what the point has to fulfil whatever else there is: to lie beyond the focal length, and
+    /// within each border of the image. All must be positive; 0 will do at the left and upper borders alone.
+    pub(crate) fn lands(parts: &[Self; 4], camera: &Camera) -> [[Interval; 4]; 5] {
+        let border = |axis: usize, border: u32| {
+            let border = Border { camera, axis, border };
+            [0, 1, 2, 3].map(|part: usize| border.value(&parts[part]))
+        };
+        let before = |coefficients: [Interval; 4]| coefficients.map(Interval::negated);
+        [
+            [0, 1, 2, 3].map(|part: usize| BeyondFocal.value(&parts[part])),
+            border(0, 0),
+            before(border(0, camera.width)),
+            border(1, 0),
+            before(border(1, camera.height)),
+        ]
+    }
+
+    /// f N.
+    pub(crate) fn focal(&self) -> Interval {
+        self.focal
+    }
+
+    /// c.
+    pub(crate) fn centre(&self) -> &Vector<Interval> {
+        &self.centre
+    }
+}
+
 /// A polynomial of a way whose sign is asked for.
 trait Question {
     fn value<T: Number>(&self, way: &Way<T>) -> T;
@@ -156,6 +214,22 @@ impl<'a> ExactWay<'a> {
             camera.focal_length * part / z / camera.pixel_pitch[axis] + camera.principal_point[axis]
         };
         [at(x, 0), at(y, 1)]
+    }
+
+    /// How far from the nearest border of its pixel the point lands, in pixels: between two numbers.
+    pub(crate) fn from_border(&self, pixel: Pixel) -> [f64; 2] {
+        let (way, camera) = (self.exact(), &self.camera.sensor);
+        let least = [(0, pixel.i), (1, pixel.j)]
+            .into_iter()
+            .flat_map(|(axis, index)| [(axis, index), (axis, index + 1)])
+            .map(|(axis, border)| {
+                let across = Border { camera, axis, border }.value(way);
+                across.over(&Dyadic::of(camera.pixel_pitch[axis]).mul(&way.seen.0[2])).abs()
+            })
+            .fold(f64::INFINITY, f64::min);
+        // Each quotient is good to 2^-52 of itself, and so is the least of them.
+        let off = 2.0 * f64::EPSILON;
+        [least * (1.0 - off), least * (1.0 + off)]
     }
 
     /// P - c, to f64 rounding, metres.
