@@ -2,7 +2,7 @@
 
 mod words;
 
-use raypencil_referee::{Margin, Margins, Ruling, SightRuling, Verdict};
+use raypencil_referee::{Margin, Margins, Ruling, SightMargins, SightRuling, Verdict};
 use raypencil_scene::{Frame, Hit, Ray, Request, Return, Sampling, SensorId};
 
 use crate::attribution::{Attributions, Cause, SightCause};
@@ -35,6 +35,8 @@ pub struct Probe {
     pub face_margin: Margin,
     /// The least displacement at which the range jumps.
     pub surface_margin: Margin,
+    /// Of a pencil that hits: how far the camera's view of it is from changing.
+    pub sight_margins: Option<SightMargins>,
 }
 
 /// One renderer's answer to a ray, and what it is.
@@ -132,6 +134,10 @@ pub fn probe(
             referee.light(index, Sampling::Centres).and_then(|light| light.returned(i, j))
         }
     };
+    let sight_margins = match sensor {
+        SensorId::Camera => None,
+        SensorId::Beam(index) => referee.sight_margins(index, i, j),
+    };
     let command = probe_command(subject, place);
     Ok(Probe {
         place,
@@ -144,6 +150,7 @@ pub fn probe(
         exact_return,
         face_margin: face,
         surface_margin: surface,
+        sight_margins,
     })
 }
 

@@ -96,6 +96,8 @@ impl Probe {
                 "return": self.exact_return.as_ref().map(of_return),
                 "face_margin": margin(&self.face_margin),
                 "surface_margin": margin(&self.surface_margin),
+                "visibility_margin": self.sight_margins.as_ref().map(|margins| margin(&margins.visibility)),
+                "landing_margin_pixels": self.sight_margins.as_ref().and_then(|margins| margins.landing),
             },
             "answers": answers,
         })
@@ -152,6 +154,12 @@ impl fmt::Display for Probe {
         }
         writeln!(f, "    face margin {}", margin(&self.face_margin))?;
         writeln!(f, "    surface margin {}", margin(&self.surface_margin))?;
+        if let Some(margins) = &self.sight_margins {
+            writeln!(f, "    visibility margin {}", margin(&margins.visibility))?;
+            if let Some([low, _]) = margins.landing {
+                writeln!(f, "    landing margin {low:e} pixels")?;
+            }
+        }
         for answer in &self.answers {
             let said = answer.hit.map_or("no hit".into(), |hit| format!("face {}", hit.face.0));
             let class = match &answer.cause {
