@@ -176,8 +176,11 @@ impl Lit<'_> {
         match scene.flux_model() {
             FluxModel::Radiometric => {
                 let cos_phi = if self.has(Fault::PhiOfPixelCentre) { of_centre } else { off_axis };
-                let power_of_cosine =
-                    if self.has(Fault::FourthPower) { cos_phi.powi(4) } else { cos_phi.powi(3) };
+                let power_of_cosine = if self.has(Fault::FourthPower) {
+                    square(square(cos_phi))
+                } else {
+                    cos_phi * square(cos_phi)
+                };
                 let path = if self.has(Fault::AttenuationOnce) { hit.range } else { hit.range + distance };
                 common
                     * self.filter(beam, cos_phi)
@@ -190,10 +193,10 @@ impl Lit<'_> {
                 let path = if self.has(Fault::AttenuationOnce) { hit.range } else { hit.range + depth };
                 common
                     * (PI / 4.0)
-                    * (d / camera.focal_length).powi(2)
+                    * square(d / camera.focal_length)
                     * self.filter(beam, of_centre)
                     * area
-                    * of_centre.powi(4)
+                    * square(square(of_centre))
                     * hit.incidence
                     / hit.range
                     * libm::exp(-sigma * path)
@@ -207,6 +210,10 @@ impl Lit<'_> {
         };
         let sin_squared = if self.has(Fault::FilterAlongAxis) { 0.0 } else { 1.0 - cos_phi * cos_phi };
         let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
-        libm::exp(-4.0 * LN_2 * ((beam.wavelength - shifted) / width).powi(2))
+        libm::exp(-4.0 * LN_2 * square((beam.wavelength - shifted) / width))
     }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
 }
