@@ -87,7 +87,7 @@ impl Referee<'_> {
         // Only what is hidden by another face, or could be, is a matter of §6.
         let pixel = way.pixel().filter(|_| way.is_front_seen())?;
         let camera = Sensor::Camera(*self.scene.camera());
-        let section = Section6::new(&camera, with, pixel, way.offset().length(), tolerance);
+        let section = Section6::new(&camera, with, pixel, way.centre_to_point().length(), tolerance);
         let occluders = self.occluders(&way);
         let explained: Vec<ExplainedSight> = match (visible, occluders.is_empty()) {
             (true, false) => occluders

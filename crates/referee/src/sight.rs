@@ -217,7 +217,7 @@ impl<'a> ExactWay<'a> {
     }
 
     /// How far from the nearest border of its pixel the point lands, in pixels: between two numbers.
-    pub(crate) fn from_border(&self, pixel: Pixel) -> [f64; 2] {
+    pub(crate) fn border_distance(&self, pixel: Pixel) -> [f64; 2] {
         let (way, camera) = (self.exact(), &self.camera.sensor);
         let least = [(0, pixel.i), (1, pixel.j)]
             .into_iter()
@@ -233,7 +233,7 @@ impl<'a> ExactWay<'a> {
     }
 
     /// P - c, to f64 rounding, metres.
-    pub(crate) fn offset(&self) -> DVec3 {
+    pub(crate) fn centre_to_point(&self) -> DVec3 {
         let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.along.0[k].middle());
         DVec3::new(x, y, z) / self.fast.scale.middle()
     }
@@ -259,7 +259,7 @@ impl<'a> ExactWay<'a> {
 
     /// The faces that may meet the segment.
     pub(crate) fn bundle(&self) -> Bundle {
-        let along = self.offset();
+        let along = self.centre_to_point();
         let length = along.length();
         Bundle {
             origin: self.camera.scene_from_sensor.position,

@@ -73,7 +73,7 @@ impl Referee<'_> {
         let sight = self.sight_of(&sensor, aim, face);
         let ray = ExactRay::new(&sensor, aim);
         let way = ExactWay::new(&ray, face, self.scene.camera());
-        let landing = sight.pixel.map(|pixel| way.from_border(pixel));
+        let landing = sight.pixel.map(|pixel| way.border_distance(pixel));
         let mut view = View {
             referee: self,
             sensor: &sensor,
@@ -259,7 +259,7 @@ impl<'a> View<'a> {
         let mut radius = [a, b, c].into_iter().map(|corner| corner.distance(centroid)).fold(0.0, f64::max);
         let middle = &parts[0];
         let scale = middle.scale.low - parts[1].scale.magnitude();
-        let at = DVec3::from_array(middle.along.0.clone().map(|part| part.middle())) / middle.scale.middle();
+        let at = DVec3::from_array(middle.along.0.map(|part| part.middle())) / middle.scale.middle();
         if scale > 0.0 && at.is_finite() {
             let to_at = Vector::<Interval>::of(at);
             let squared: f64 = (0..3)

@@ -93,7 +93,7 @@ impl Referee<'_> {
 
     /// Whether a point that may be off by `off` metres may be said to be seen, or hidden, against what is exact.
     fn may_see(&self, way: &ExactWay<'_>, face: &Face, exact: Sight, visible: bool, off: f64) -> bool {
-        let from_centre = way.offset();
+        let from_centre = way.centre_to_point();
         let point = self.scene.camera().scene_from_sensor.position + from_centre;
         // The camera lies within rounding of the plane of the face.
         let side = distance_from_plane(face, point - from_centre);

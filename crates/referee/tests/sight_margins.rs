@@ -208,6 +208,14 @@ fn a_shadows_edge_by_hand() {
         assert!(found.sight.visible);
         assert_holds(found.visibility, 0.3125);
     }
+    // The same beside many faces out of the way, between wall and plate in x, so that the tree has the plate in a leaf
+    // that the way from the pencil's own point misses.
+    let aside = (0..64).map(|k| {
+        let x = 0.6 + 0.003 * k as f32;
+        [[x, 10.0, 1.0], [x, 10.5, 1.0], [x + 0.002, 10.0, 1.0]]
+    });
+    let faces: Vec<_> = [WALL, plate].into_iter().chain(aside).collect();
+    assert_holds(margins(&by_hand(&faces, 1.0, centre)).visibility, 0.3125);
     // From 1/4 to 2 it hides the pencil itself, up to dx = -1/4; two halves of it hide as one.
     let [a, b, c, d] = [[0.25, -1.0, 1.0], [0.25, 1.0, 1.0], [2.0, 1.0, 1.0], [2.0, -1.0, 1.0]];
     let found = margins(&by_hand(&[WALL, [a, c, b], [a, d, c]], 1.0, centre));
