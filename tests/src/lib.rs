@@ -1,7 +1,9 @@
 //! Helpers that the whole-house tests share: meshes and scenes from numbers, rigs by pose, both renderers.
 
 pub mod lattice;
+pub mod light;
 pub mod naive;
+pub mod quadrature;
 pub mod random;
 pub mod rig;
 
@@ -125,6 +127,32 @@ pub fn bits(frame: &Frame) -> Vec<u64> {
         bits.extend(cells(&map.point).iter().flat_map(|&value| vector(value)));
         bits.extend(cells(&map.normal).iter().flat_map(|&value| vector(value)));
         bits.extend(cells(&map.incidence).iter().map(|&value| number(value)));
+    }
+    bits
+}
+
+/// The bits of all that a frame says of light, in a fixed order; what is not there is all ones.
+pub fn light_bits(frame: &Frame) -> Vec<u64> {
+    const NOTHING: u64 = u64::MAX;
+    fn numbers(bits: &mut Vec<u64>, image: &Option<Image<Maybe<f64>>>) {
+        let cells = image.iter().flat_map(|image| image.cells());
+        bits.extend(cells.map(|cell| cell.get().map_or(NOTHING, f64::to_bits)));
+    }
+    let mut bits = Vec::new();
+    for returns in &frame.returns {
+        bits.extend([u64::from(returns.columns), u64::from(returns.rows)]);
+        let visible = returns.visible.iter().flat_map(|image| image.cells());
+        bits.extend(visible.map(|&visible| u64::from(visible)));
+        let pixels = returns.pixel.iter().flat_map(|image| image.cells());
+        let index = |pixel: raypencil_scene::Pixel| u64::from(pixel.i) << 32 | u64::from(pixel.j);
+        bits.extend(pixels.map(|pixel| pixel.get().map_or(NOTHING, index)));
+        for image in [&returns.depth, &returns.off_axis, &returns.emission] {
+            numbers(&mut bits, image);
+        }
+        bits.extend(returns.flux.iter().flat_map(|image| image.cells()).map(|flux| flux.to_bits()));
+    }
+    for image in &frame.flux {
+        bits.extend(image.cells().iter().map(|flux| flux.to_bits()));
     }
     bits
 }

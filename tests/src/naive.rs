@@ -5,6 +5,7 @@
 //! planted in it, and a comparison with the other renderers must find it.
 
 mod fault;
+mod light;
 
 use std::time::Instant;
 
@@ -95,7 +96,15 @@ impl Renderer for Naive {
                 }));
             }
         }
-        Frame { camera, beams, stages }
+        let (mut returns, mut flux) = (Vec::new(), Vec::new());
+        if request.returns {
+            for (index, map) in beams.iter().enumerate() {
+                let (of_beam, image) = self.returns(scene, &faces, index, map);
+                returns.push(of_beam);
+                flux.push(image);
+            }
+        }
+        Frame { camera, beams, returns, flux, stages }
     }
 }
 

@@ -7,10 +7,12 @@ use std::sync::Arc;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use proptest::sample::Index;
-use raypencil_scene::{Beam, Camera, Mesh, Mounted, Pose, Scene};
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Mesh, Mounted, Pose, Profile, Scene,
+};
 use raypencil_terrain::RandomGround;
 
-use crate::{rig, scene};
+use crate::rig;
 
 /// A ground and the sensors that look at it.
 #[derive(Debug, Clone)]
@@ -21,6 +23,10 @@ pub struct Case {
     pub camera: (Camera, Place),
     /// The beams and where they are.
     pub beams: Vec<(Beam, Place)>,
+    /// The air's attenuation, 1/m.
+    pub attenuation: f64,
+    /// The equation of flux.
+    pub model: FluxModel,
 }
 
 /// Where a sensor is, by a vertex of the ground.
@@ -59,7 +65,8 @@ impl Case {
             .beams
             .iter()
             .map(|(beam, place)| Mounted { scene_from_sensor: place.pose(placed_on), sensor: *beam });
-        scene(Arc::clone(mesh), camera, beams.collect())
+        let air = Atmosphere { attenuation: self.attenuation };
+        Scene::new(Arc::clone(mesh), camera, beams.collect(), air, self.model).expect("a scene")
     }
 
     /// The whole scene.
@@ -159,5 +166,61 @@ pub fn cases() -> impl Strategy<Value = Case> {
         ground,
         camera,
         beams,
+        attenuation: 0.0,
+        model: FluxModel::Radiometric,
     })
+}
+
+fn profiles() -> impl Strategy<Value = Profile> {
+    prop_oneof![
+        Just(Profile::Paper),
+        Just(Profile::UniformAngle),
+        decades(-2.0, 0.5).prop_map(|half_width| Profile::Gaussian { half_width }),
+    ]
+}
+
+fn lenses() -> impl Strategy<Value = Lens> {
+    let filter = prop_oneof![
+        Just(Filter::None),
+        (790e-9..830e-9, decades(-8.5, -6.0), 1.0..3.0)
+            .prop_map(|(centre, width, index)| Filter::Interference { centre, width, index }),
+    ];
+    (0.0..=1.0, filter).prop_map(|(transmission, filter)| Lens { transmission, filter })
+}
+
+/// Beams that a camera beside them has a chance to see: a rig like a rover's, up to 3 m across, on any ground, in any
+/// air, with any profile, lens and model.
+pub fn lit_cases() -> impl Strategy<Value = Case> {
+    let beside = || {
+        let turn = prop::array::uniform3(-0.3..0.3).prop_map(|[x, y, z]| {
+            Pose::from_axis_angle(DVec3::X, x)
+                * Pose::from_axis_angle(DVec3::Y, y)
+                * Pose::from_axis_angle(DVec3::Z, z)
+        });
+        (beams(), profiles(), decades(-2.0, 1.0), unit_vector(), decades(-2.0, 0.5), turn)
+    };
+    let rig = (cameras(), lenses(), places(), prop::collection::vec(beside(), 2));
+    let air = prop_oneof![Just(0.0), decades(-3.0, 0.0)];
+    let model = prop_oneof![Just(FluxModel::Radiometric), Just(FluxModel::Eq1)];
+    (grounds(), rig, air, model).prop_map(|(ground, (camera, lens, place, beams), attenuation, model)| {
+        let pose = Pose { position: place.away, rotation: place.rotation };
+        let beams = beams.into_iter().map(|(beam, profile, power, direction, distance, turn)| {
+            let beside = pose * Pose::from_position(direction * distance) * turn;
+            let place = Place { away: beside.position, rotation: beside.rotation, ..place.clone() };
+            (Beam { profile, power, ..beam }, place)
+        });
+        Case {
+            ground,
+            beams: beams.collect(),
+            // Pinholes that see widely: a stripe is to land on the image now and then.
+            camera: (Camera { lens, principal_point: centred(&camera), ..camera }, place),
+            attenuation,
+            model,
+        }
+    })
+}
+
+/// The middle of a camera's image.
+fn centred(camera: &Camera) -> [f64; 2] {
+    [0.5 * f64::from(camera.width), 0.5 * f64::from(camera.height)]
 }

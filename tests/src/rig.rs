@@ -1,7 +1,7 @@
 //! Cameras, beams and their poses: the default rig, and plain sensors for derived scenes.
 
 use glam::DVec3;
-use raypencil_scene::{Beam, Camera, Mounted, Pose, Profile};
+use raypencil_scene::{Beam, Camera, Lens, Mounted, Pose, Profile};
 
 /// A camera of dyadic numbers: its principal point is the middle of the image.
 pub fn camera(width: u32, height: u32, pitch: f64, focal_length: f64) -> Camera {
@@ -12,6 +12,7 @@ pub fn camera(width: u32, height: u32, pitch: f64, focal_length: f64) -> Camera 
         focal_length,
         principal_point: [0.5 * f64::from(width), 0.5 * f64::from(height)],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range: 1e3,
     }
 }

@@ -6,9 +6,9 @@
 //! with `cargo test -p raypencil-tests --test digest -- --nocapture`.
 
 use glam::DVec3;
-use raypencil_scene::{Renderer, Request, Scene};
+use raypencil_scene::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request, Sampling, Scene};
 use raypencil_terrain::{RandomGround, builtin, height_at};
-use raypencil_tests::{bits, renderers, rig, scene};
+use raypencil_tests::{bits, light_bits, renderers, rig, scene};
 use sha2::{Digest, Sha256};
 
 /// Scene, renderer and SHA-256 of all bits of all its maps.
@@ -19,6 +19,21 @@ const DIGESTS: &[[&str; 3]] = &[
     ["facets", "tracer", "1905cb7cbc43982c40074f170e880b19e76abe463e25b39d83e80d7ba874070a"],
     ["nasty", "scanline", "86d097bed95fc548bf11874b108a3ec07712782defa47d67fcfa584d29eaf014"],
     ["nasty", "tracer", "bebd1d66b54614459e73653cf8184770ac5d30228a93099da1063a6ba5f2b9c6"],
+];
+
+/// Scene, renderer, sampling and SHA-256 of all bits of its light.
+const DIGESTS_OF_LIGHT: &[[&str; 4]] = &[
+    [
+        "radiometric",
+        "scanline",
+        "centres",
+        "1e118ea2eaa81a549053de75216c4561d4c392b8cd5ceccb100912eb4ac5b14f",
+    ],
+    ["radiometric", "tracer", "centres", "3405c18dbc310eb1f82c887ccc63ee88b56237694603b6416bce0084d8fbf020"],
+    ["radiometric", "tracer", "jittered", "242aacb0aec79b6953310f6305f491ca5cb4eb56a8486e90813ec170f8f6c8d1"],
+    ["eq1", "scanline", "centres", "a75ebcf24ce53b8230b7e6f34ed337296882896e41fd45b0278d3a7d813fe6f0"],
+    ["eq1", "tracer", "centres", "106f35b693623eb7e2cefef535f034275761dd7bdef64142d95b9dab17e592b4"],
+    ["eq1", "tracer", "jittered", "f2bad6dd3b9831a676a414c1d227d221ebbdca2a719f4f0bd5a2d1698499a339"],
 ];
 
 /// The scenes under digest, by name: small, since this runs without optimisation too.
@@ -63,6 +78,54 @@ fn every_number_of_threads_and_every_build_gives_the_committed_bits() {
         }
     }
     assert!(found == DIGESTS, "the digests are now {found:#?}");
+}
+
+/// The pyramids through a filter in thin air, by beams of two profiles, in both models.
+fn lit_scenes() -> Vec<(&'static str, Scene)> {
+    let mesh =
+        std::sync::Arc::new(builtin("pyramids", 0.25).expect("a built-in name").into_mesh().expect("a mesh"));
+    let (mut camera, mut beams) = rig::default_rig(16, DVec3::ZERO, 0.4);
+    let filter = Filter::Interference { centre: 815e-9, width: 15e-9, index: 2.0 };
+    camera.sensor.lens = Lens { transmission: 0.8, filter };
+    beams[0].sensor.profile = Profile::UniformAngle;
+    beams[1].sensor.profile = Profile::Gaussian { half_width: 0.3 };
+    [("radiometric", FluxModel::Radiometric), ("eq1", FluxModel::Eq1)]
+        .map(|(name, model)| {
+            let air = Atmosphere { attenuation: 0.02 };
+            let mesh = std::sync::Arc::clone(&mesh);
+            (name, Scene::new(mesh, camera, beams.clone(), air, model).expect("a scene"))
+        })
+        .into()
+}
+
+#[test]
+fn light_has_the_committed_bits_too() {
+    let mut found = Vec::new();
+    for (name, scene) in lit_scenes() {
+        for renderer in renderers() {
+            for (how, sampling) in
+                [("centres", Sampling::Centres), ("jittered", Sampling::Jittered { seed: 3 })]
+            {
+                // The scanline renderer has no rays to displace.
+                if how == "jittered" && renderer.name() == "scanline" {
+                    continue;
+                }
+                let request = Request { sampling, ..Request::EVERYTHING };
+                let digests = [1, 2, 8].map(|threads| {
+                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+                    let bits = pool.install(|| light_bits(&renderer.render(&scene, &request)));
+                    let bytes: Vec<u8> = bits.iter().flat_map(|bits| bits.to_le_bytes()).collect();
+                    let digest = Sha256::digest(&bytes);
+                    digest.iter().map(|byte| format!("{byte:02x}")).collect::<String>()
+                });
+                assert!(digests.iter().all(|d| *d == digests[0]), "{name}, {}: {digests:?}", renderer.name());
+                let [digest, ..] = digests;
+                println!("    [\"{name}\", \"{}\", \"{how}\", \"{digest}\"],", renderer.name());
+                found.push([name.to_string(), renderer.name().to_string(), how.to_string(), digest]);
+            }
+        }
+    }
+    assert!(found == DIGESTS_OF_LIGHT, "the digests are now {found:#?}");
 }
 
 #[test]

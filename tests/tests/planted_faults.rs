@@ -8,8 +8,8 @@ use proptest::prelude::*;
 use raypencil_harness::{Class, SensorComparison, Side, compare};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Frame, Material, Mesh, Mounted, Pose, Profile, Renderer, Request,
-    Scene, SensorId,
+    Atmosphere, Beam, Camera, FluxModel, Frame, Lens, Material, Mesh, Mounted, Pose, Profile, Renderer,
+    Request, Scene, SensorId,
 };
 use raypencil_terrain::{RandomGround, builtin};
 use raypencil_tests::lattice;
@@ -103,6 +103,7 @@ fn plant(fault: Fault) -> Plant {
         | Fault::NormalNotNormalised
         | Fault::NormalInSensorFrame
         | Fault::IncidenceAgainstAxis => ("pyramids", pyramids(), Everywhere),
+        of_light => panic!("{of_light:?} is planted elsewhere"),
     };
     Plant { name, scene, shows }
 }
@@ -138,6 +139,7 @@ fn rig(mesh: Arc<Mesh>, position: DVec3, heading: f64, length: f64) -> Scene {
         focal_length: 8e-3,
         principal_point: [31.3, 24.8],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range: 20.0,
     };
     let beam = Beam {
@@ -192,6 +194,7 @@ fn along_z(mesh: Arc<Mesh>, size: u32, plane: f64, slope: f64, step: f64, max_ra
         focal_length: plane,
         principal_point: [middle; 2],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range,
     };
     let beam = Beam {
@@ -279,7 +282,7 @@ struct Judges<'a> {
 
 impl<'a> Judges<'a> {
     fn of(scene: &'a Scene) -> Self {
-        let render = |renderer: &dyn Renderer| renderer.render(scene, &Request::EVERYTHING);
+        let render = |renderer: &dyn Renderer| renderer.render(scene, &Request::MAPS);
         Self {
             scene,
             frames: [("scanline", render(&Scanline::default())), ("tracer", render(&Tracer::new()))],
@@ -288,7 +291,7 @@ impl<'a> Judges<'a> {
 
     /// The naive renderer compared with each of them.
     fn compare(&self, naive: Naive) -> [(&'static str, Vec<SensorComparison>); 2] {
-        let frame = naive.render(self.scene, &Request::EVERYTHING);
+        let frame = naive.render(self.scene, &Request::MAPS);
         let resolution = naive.resolution();
         [0, 1].map(|index| {
             let (name, judge) = &self.frames[index];
@@ -328,7 +331,7 @@ impl<'a> Judges<'a> {
 fn every_planted_fault_is_found_where_it_is() {
     println!("{:<28} {:<34} {:<7} {:>8} {:>8}", "fault", "scene", "sensor", "scanline", "tracer");
     let mut wrong = Vec::new();
-    for fault in Fault::ALL {
+    for fault in Fault::ALL.into_iter().filter(|fault| !fault.is_of_light()) {
         let Plant { name, scene, shows } = plant(fault);
         let judges = Judges::of(&scene);
         if let Err(message) = judges.agree() {

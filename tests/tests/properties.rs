@@ -12,8 +12,10 @@ use raypencil_harness::{Attributions, Class, Judge, JudgeShare, Side};
 use raypencil_scanline::{Options, Scanline, Switches};
 use raypencil_scene::{Frame, Mesh, Mounted, Renderer, Request, Scene};
 use raypencil_tests::lattice::hash;
-use raypencil_tests::random::{Case, cases};
-use raypencil_tests::{agreement, bits, first_difference, hit, remeshed, renderers, scene, unindexed};
+use raypencil_tests::random::{Case, cases, lit_cases};
+use raypencil_tests::{
+    agreement, bits, first_difference, hit, light_bits, remeshed, renderers, scene, unindexed,
+};
 use raypencil_tracer::Tracer;
 
 /// Runs `property` on `usually` cases, or on as many as `PROPTEST_CASES` says.
@@ -78,12 +80,16 @@ fn both_renderers_agree_on_every_ray() {
 #[test]
 fn every_error_of_the_paper_has_a_confirmed_cause() {
     let approximated = RefCell::new(BTreeMap::new());
-    check(1500, cases(), |case: Case| {
+    // Half of the rigs are such that the camera sees the stripes.
+    let cases = prop_oneof![cases().boxed(), lit_cases().boxed()];
+    check(1500, (cases, 0..8_usize, 0..32_usize), |(case, few, any): (Case, usize, usize)| {
         let scene = case.scene();
         let tracer = Tracer::new();
         let b = render(&tracer, &scene);
         let judge = Judge::new(&scene, JudgeShare::Sample);
-        for switches in Switches::subsets() {
+        let all: Vec<Switches> = Switches::subsets().collect();
+        // The paper's own, one or a few switches, and any set of them.
+        for switches in [Switches::PAPER, all[[0, 1, 2, 3, 4, 8, 16, 28][few]], all[any]] {
             let scanline = Scanline::new(Options { switches, ..Options::EXACT });
             let a = render(&scanline, &scene);
             let attributions = Attributions::find(&judge, &a, switches, scanline.resolution());
@@ -105,8 +111,27 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
     // Sheets of up to a metre and ranges from 30 cm: the paper errs often enough to be seen.
     let approximated = approximated.into_inner();
     let of = |switches: Switches| approximated.get(&switches).copied().unwrap_or(0);
-    let [_, beam_edges, skip_rules, both] = Switches::subsets().collect::<Vec<_>>()[..] else { panic!() };
-    assert!(of(beam_edges) > 5000 && of(skip_rules) > 5000 && of(both) > 50, "{approximated:?}");
+    let sets: Vec<Switches> = Switches::subsets().collect();
+    for (set, least) in [(1, 5000), (2, 5000), (3, 50), (4, 100), (8, 10), (16, 500)] {
+        assert!(of(sets[set]) > least, "{}: {approximated:?}", sets[set]);
+    }
+}
+
+#[test]
+fn both_renderers_agree_on_what_the_camera_sees() {
+    let (pencils, seen) = (Cell::new(0), Cell::new(0));
+    check(3000, lit_cases(), |case: Case| {
+        let scene = case.scene();
+        let (scanline, tracer) = (Scanline::default(), Tracer::new());
+        let (a, b) = (render(&scanline, &scene), render(&tracer, &scene));
+        for returns in &a.returns {
+            let visible = returns.visible.as_ref().expect("returns were asked for").cells();
+            pencils.set(pencils.get() + visible.len() as u64);
+            seen.set(seen.get() + visible.iter().filter(|visible| **visible).count() as u64);
+        }
+        agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
+    });
+    assert!(20 * seen.get() > pencils.get(), "{} of {} pencils are seen", seen.get(), pencils.get());
 }
 
 #[test]
@@ -219,12 +244,13 @@ fn the_length_of_a_quaternion_does_not_matter() {
 #[test]
 fn rendering_again_gives_the_same_bits() {
     // A renderer keeps tables and trees between frames: they must not be those of another scene.
-    check(600, (cases(), cases()), |(first, second): (Case, Case)| {
+    check(600, (lit_cases(), lit_cases()), |(first, second): (Case, Case)| {
         let scenes = [first.scene(), second.scene()];
         for (kept, fresh) in renderers().into_iter().zip(renderers()) {
             render(&*kept, &scenes[1]);
-            let again = render(&*kept, &scenes[0]);
-            prop_assert!(bits(&again) == bits(&render(&*fresh, &scenes[0])), "{}", kept.name());
+            let (again, anew) = (render(&*kept, &scenes[0]), render(&*fresh, &scenes[0]));
+            prop_assert!(bits(&again) == bits(&anew), "{}", kept.name());
+            prop_assert!(light_bits(&again) == light_bits(&anew), "light of {}", kept.name());
         }
         Ok(())
     });

@@ -41,7 +41,8 @@ fn beam(columns: u32, rows: u32, grid_distance: f64) -> Sensor {
 
 /// Each renderer's range map of `sensor` before a mesh.
 fn maps(sensor: &Sensor, scene_from_sensor: Pose, mesh: Arc<Mesh>) -> Vec<(String, SensorMap)> {
-    let only = |camera| Request { camera, beams: !camera, quantities: Quantities::RANGE_MAP };
+    let only =
+        |camera| Request { camera, beams: !camera, quantities: Quantities::RANGE_MAP, ..Request::MAPS };
     let (scene, request) = match *sensor {
         Sensor::Camera(sensor) => {
             (scene(mesh, Mounted { scene_from_sensor, sensor }, Vec::new()), only(true))

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use raypencil_harness::Fidelity;
+use raypencil_scene::FluxModel;
 use raypencil_scene_io::Overrides;
 
 /// A Mars rover's structured-light vision, simulated twice by two unlike algorithms and compared ray by ray.
@@ -51,6 +52,10 @@ pub(crate) struct SceneArguments {
     #[arg(long, value_name = "MM")]
     pub(crate) thickness: Option<f64>,
 
+    /// Equation of a pencil's flux; the scene's own if not given.
+    #[arg(long, value_name = "MODEL")]
+    pub(crate) flux: Option<FluxWord>,
+
     /// Stand here on the ground: global x,y in metres.
     #[arg(long, value_name = "X,Y", value_parser = pair::<f64>, allow_hyphen_values = true)]
     pub(crate) at: Option<[f64; 2]>,
@@ -62,7 +67,16 @@ pub(crate) struct SceneArguments {
 
 impl SceneArguments {
     pub(crate) fn overrides(&self) -> Overrides {
-        Overrides { at: self.at, heading_deg: self.heading, fan_deg: self.fan, thickness_mm: self.thickness }
+        Overrides {
+            at: self.at,
+            heading_deg: self.heading,
+            fan_deg: self.fan,
+            thickness_mm: self.thickness,
+            flux_model: self.flux.map(|word| match word {
+                FluxWord::Radiometric => FluxModel::Radiometric,
+                FluxWord::Eq1 => FluxModel::Eq1,
+            }),
+        }
     }
 
     /// These arguments again, as one would type them.
@@ -74,6 +88,11 @@ impl SceneArguments {
         if let Some(thickness) = self.thickness {
             words.push(format!("--thickness {thickness}"));
         }
+        match self.flux {
+            Some(FluxWord::Radiometric) => words.push("--flux radiometric".into()),
+            Some(FluxWord::Eq1) => words.push("--flux eq1".into()),
+            None => {}
+        }
         if let Some([x, y]) = self.at {
             words.push(format!("--at {x},{y}"));
         }
@@ -82,6 +101,15 @@ impl SceneArguments {
         }
         words.join(" ")
     }
+}
+
+/// What `--flux` takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FluxWord {
+    /// What a pencil's watts really deliver, in watts.
+    Radiometric,
+    /// Equation (1) of the paper as printed, in W/m.
+    Eq1,
 }
 
 /// A word as a shell takes it for one.
@@ -97,8 +125,8 @@ fn quoted(word: &str) -> String {
 /// Which sides of the scanline renderer's switches.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SwitchArguments {
-    /// Set a switch of the scanline renderer to the paper's approximation or to exact: beam-edges,
-    /// skip-rules. May be given several times.
+    /// Set a switch of the scanline renderer to the paper's approximation or to exact: beam-edges, skip-rules,
+    /// facing, extent, place. May be given several times.
     #[arg(long = "switch", value_name = "NAME=paper|exact", value_parser = switch)]
     pub(crate) set: Vec<(String, Fidelity)>,
 }
@@ -157,6 +185,7 @@ impl Validate {
                 scene: "pyramids".into(),
                 fan: None,
                 thickness: None,
+                flux: None,
                 at: None,
                 heading: None,
             },
@@ -176,6 +205,10 @@ pub(crate) struct Render {
     /// The renderer.
     #[arg(long, value_name = "NAME")]
     pub(crate) with: String,
+
+    /// Draw one ray at random within each pencil, by this seed, instead of its central ray.
+    #[arg(long, value_name = "SEED")]
+    pub(crate) jitter: Option<u64>,
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,

@@ -1,7 +1,7 @@
 //! `raypencil render`: one renderer's maps.
 
 use raypencil_harness::{Progress, write_maps};
-use raypencil_scene::Request;
+use raypencil_scene::{Request, Sampling};
 
 use crate::args::Render;
 use crate::console::{Spinner, say};
@@ -15,9 +15,18 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     let renderer = &contenders[0].renderer;
     let subject = subject(&command.scene, "", &spinner)?;
     spinner.stage(&format!("{}: rendering", renderer.name()));
-    let frame = renderer.render(&subject.scene, &Request::EVERYTHING);
+    let sampling = command.jitter.map_or(Sampling::Centres, |seed| Sampling::Jittered { seed });
+    let frame = renderer.render(&subject.scene, &Request { sampling, ..Request::EVERYTHING });
+    if let Some(seed) = command.jitter
+        && frame.beams.iter().any(|map| map.range.is_none())
+    {
+        return Err(Trouble::Usage(format!(
+            "--jitter {seed}: {} has no rays of its own to displace; expected tracer or referee",
+            renderer.name()
+        )));
+    }
     spinner.stage(&format!("{}: writing", command.output.display()));
-    let files = write_maps(&frame, renderer.name(), &subject, &command.output)?;
+    let files = write_maps(&frame, renderer.name(), &subject, sampling, &command.output)?;
     drop(spinner);
     let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     if json {

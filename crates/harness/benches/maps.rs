@@ -10,7 +10,7 @@ use divan::{Bencher, black_box};
 use glam::DVec3;
 use raypencil_harness::contender;
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Mounted, Pose, Profile, Quantities, Request, Scene,
+    Atmosphere, Beam, Camera, FluxModel, Lens, Mounted, Pose, Profile, Quantities, Request, Scene,
 };
 use raypencil_terrain::{RandomGround, height_at};
 
@@ -36,6 +36,7 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         focal_length: 8e-3,
         principal_point: [512.0; 2],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range: 20.0,
     };
     let beam = Beam {
@@ -56,8 +57,8 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     Scene::new(mesh, camera, beams.to_vec(), air, FluxModel::Radiometric).expect("a valid scene")
 });
 
-const CAMERA: Request = Request { camera: true, beams: false, quantities: Quantities::RANGE_MAP };
-const BEAMS: Request = Request { camera: false, beams: true, quantities: Quantities::RANGE_MAP };
+const CAMERA: Request = Request { beams: false, quantities: Quantities::RANGE_MAP, ..Request::MAPS };
+const BEAMS: Request = Request { camera: false, quantities: Quantities::RANGE_MAP, ..Request::MAPS };
 
 /// Renders over and over on so many threads; 0 is all cores.
 fn frames(bencher: Bencher, name: &str, threads: usize, request: Request, items: u64) {

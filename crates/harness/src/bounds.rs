@@ -23,7 +23,7 @@
 //! the bound, being larger, does not pretend to.
 
 use glam::DVec3;
-use raypencil_scene::{FaceId, Mesh, Ray, Resolution};
+use raypencil_scene::{Beam, FaceId, Filter, FluxModel, Mesh, Profile, Ray, Resolution, Scene};
 
 /// |dR| <= RANGE kappa u S / c.
 const RANGE: f64 = 36.0;
@@ -83,6 +83,148 @@ impl Bounds {
             incidence: self.incidence + other.incidence,
         }
     }
+}
+
+/// Roundings of a point in the camera's frame beside its own error: a subtraction, a rotation by a quaternion or a matrix
+/// formed from it (15 u), of a vector no longer than S' = |P| + |c| + d.
+const SEEN: f64 = 18.0;
+
+/// Roundings of a flux beside those of its lengths and cosines: two dozen products and quotients, a share of the power
+/// (four), an `exp` or two of `libm` (1 ulp, and the rounding of its argument).
+const FLUX: f64 = 64.0;
+
+/// The bounds of what one renderer says comes back of one pencil.
+///
+/// Let dP bound the error of the point as the camera sees it, [`Bounds::point`] + [`SEEN`] u S', and let it be
+/// at distance d from the projection centre, r deep. Then r is off by at most dP, and the direction to it by the
+/// angle dP / d, so cos(phi) and cos(theta) by at most that, and the latter by the error of the normal as well.
+/// The flux is a product of powers of these: its relative error is the sum of theirs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ReturnBounds {
+    /// r, metres.
+    pub(crate) depth: f64,
+    /// cos(phi).
+    pub(crate) off_axis: f64,
+    /// cos(theta).
+    pub(crate) emission: f64,
+    /// The flux, relative.
+    pub(crate) flux: f64,
+    /// The flux, watts (`eq1`: W/m): where a share of the power is so small that it has no 53 digits left.
+    pub(crate) least_flux: f64,
+}
+
+/// What the bounds of a return depend on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Returned {
+    /// R, metres.
+    pub(crate) range: f64,
+    /// cos(psi).
+    pub(crate) incidence: f64,
+    /// r, metres.
+    pub(crate) depth: f64,
+    /// cos(phi).
+    pub(crate) off_axis: f64,
+    /// cos(theta).
+    pub(crate) emission: f64,
+    /// d, metres.
+    pub(crate) distance: f64,
+}
+
+impl ReturnBounds {
+    /// The bounds of what comes back to the camera of a hit of `beam`.
+    pub(crate) fn of(
+        scene: &Scene,
+        (beam, column): (usize, u32),
+        hit: &Bounds,
+        values: Returned,
+        resolution: Resolution,
+    ) -> Self {
+        let u = resolution.unit_roundoff;
+        let Returned { range, incidence, depth, off_axis, emission, distance } = values;
+        let centre = scene.camera().scene_from_sensor.position.length();
+        let point = hit.point + SEEN * u * (2.0 * centre + 2.0 * distance);
+        let direction = point / distance;
+        let (of_off_axis, of_emission) = (direction + 8.0 * u, direction + hit.normal + 8.0 * u);
+
+        let beam = &scene.beams()[beam].sensor;
+        let sigma = scene.atmosphere().attenuation;
+        // A normalised profile is divided by a sum of as many weights.
+        let weights = f64::from(beam.columns) * f64::from(beam.rows) * u;
+        let sum = match beam.profile {
+            Profile::Paper => 0.0,
+            Profile::UniformAngle => weights,
+            // An exponential is as relatively wrong as its exponent, 2 (alpha / w)^2, is absolutely: alpha is good
+            // to 4 u, its square to 10 u, and the brightest weight, by which all may be divided, as well.
+            Profile::Gaussian { half_width } => {
+                let alpha = incidence_angle(beam, column) / half_width;
+                weights + 2.0 * alpha * alpha * 20.0 * u
+            }
+        };
+        let shared = (2.0 * point / depth + of_emission / emission).abs() + FLUX * u + sum;
+        let relative = match scene.flux_model() {
+            FluxModel::Radiometric => {
+                let filter = filter_bound(scene, beam, off_axis, of_off_axis, u);
+                shared
+                    + (3.0 * of_off_axis / off_axis).abs()
+                    + filter
+                    + sigma * (hit.range + point)
+                    + sigma * (range + distance) * 4.0 * u
+            }
+            // phi is the pixel's own: rounding only.
+            FluxModel::Eq1 => {
+                shared
+                    + hit.range / range
+                    + (hit.incidence / incidence).abs()
+                    + filter_bound(scene, beam, off_axis, 8.0 * u, u)
+                    + sigma * (hit.range + point)
+                    + sigma * (range + distance) * 4.0 * u
+            }
+        };
+        // What is left of a subnormal share, times all that it is multiplied by.
+        let camera = &scene.camera().sensor;
+        let squares = camera.aperture * camera.aperture / (depth * depth);
+        let gain = match scene.flux_model() {
+            FluxModel::Radiometric => squares,
+            FluxModel::Eq1 => {
+                let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
+                squares * area / (camera.focal_length * camera.focal_length * range)
+            }
+        };
+        let least_flux = f64::MIN_POSITIVE * (1.0 + beam.power) * (1.0 + gain);
+        Self { depth: point, off_axis: of_off_axis, emission: of_emission, flux: relative, least_flux }
+    }
+
+    /// How far two renderers with these bounds may differ.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self {
+            depth: self.depth + other.depth,
+            off_axis: self.off_axis + other.off_axis,
+            emission: self.emission + other.emission,
+            flux: self.flux + other.flux,
+            least_flux: self.least_flux + other.least_flux,
+        }
+    }
+}
+
+/// alpha of the pencils of a column, roughly.
+fn incidence_angle(beam: &Beam, column: u32) -> f64 {
+    let columns = f64::from(beam.columns);
+    let half_cells = 2.0 * f64::from(column) + 1.0 - columns;
+    libm::atan(beam.half_width * half_cells / (columns * beam.grid_distance))
+}
+
+/// The relative error of F(phi) = exp(-4 ln 2 away^2), away = (wavelength - c') / width, c' = c sqrt(1 - sin(phi)^2 / n^2),
+/// where cos(phi) is off by `of_off_axis`.
+///
+/// |dc'| <= c^2 / (c' n^2) |cos(phi)| |d cos(phi)|, c' and the difference are rounded (8 u c), and the exponent
+/// itself (10 u of it): |d ln F| = 4 ln 2 |away| (2 |dc'| / width + 10 u |away|).
+fn filter_bound(scene: &Scene, beam: &Beam, off_axis: f64, of_off_axis: f64, u: f64) -> f64 {
+    let Filter::Interference { centre, width, index } = scene.camera().sensor.lens.filter else { return 0.0 };
+    let sin_squared = (1.0 - off_axis * off_axis).max(0.0);
+    let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
+    let of_shifted = centre * centre / (shifted * index * index) * of_off_axis + 8.0 * u * centre;
+    let away = ((beam.wavelength - shifted).abs() + of_shifted) / width;
+    4.0 * std::f64::consts::LN_2 * away * (2.0 * of_shifted / width + 10.0 * u * away)
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! When the referee is asked, and with what tolerance.
 
-use raypencil_referee::{Approximations, Explained, Referee, Ruling, Tolerance};
-use raypencil_scene::{FaceId, Resolution, Scene, SensorId};
+use raypencil_referee::{
+    Approximations, Displacement, Explained, ExplainedSight, Referee, Ruling, SightApproximations,
+    SightRuling, Tolerance,
+};
+use raypencil_scene::{FaceId, Pixel, Resolution, Scene, SensorId};
 
 use crate::bounds::Bounds;
 use crate::compare::Place;
@@ -58,6 +61,22 @@ impl<'s> Judge<'s> {
         self.referee.rule(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
     }
 
+    /// Rules on what one side says of the camera's view of a pencil's hit on `face`.
+    pub(crate) fn rule_sight(
+        &self,
+        place: Place,
+        face: FaceId,
+        range: Option<f64>,
+        visible: bool,
+        pixel: Option<Pixel>,
+        resolution: Resolution,
+    ) -> Option<SightRuling> {
+        let SensorId::Beam(beam) = place.sensor else { return None };
+        let tolerance = self.tolerance(place, Some(face), range, resolution);
+        let Place { i, j, .. } = place;
+        self.referee.rule_sight(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
+    }
+
     /// Explains one side's answer to a ray by the approximations it was made with; `None` if they do not.
     pub(crate) fn explain(
         &self,
@@ -69,6 +88,21 @@ impl<'s> Judge<'s> {
     ) -> Option<Vec<Explained>> {
         let tolerance = self.tolerance(place, answer, range, resolution);
         self.referee.explain(place.sensor, place.i, place.j, answer, with, tolerance)
+    }
+
+    /// Explains what one side says of whether the camera sees a pencil's hit; `None` if the approximations do not.
+    pub(crate) fn explain_sight(
+        &self,
+        place: Place,
+        face: FaceId,
+        range: Option<f64>,
+        visible: bool,
+        with: SightApproximations,
+        resolution: Resolution,
+    ) -> Option<Vec<ExplainedSight>> {
+        let SensorId::Beam(beam) = place.sensor else { return None };
+        let tolerance = self.tolerance(place, Some(face), range, resolution);
+        self.referee.explain_sight(beam, place.i, place.j, face, visible, with, tolerance)
     }
 
     /// delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S

@@ -19,7 +19,7 @@ mod probe;
 mod renderers;
 mod run;
 
-pub use attribution::{Attributions, Cause};
+pub use attribution::{Attributions, Cause, SightCause};
 pub use bounds::Bounds;
 pub use compare::{
     ApproximationTallies, ApproximationTally, Class, Defect, Place, Quantity, SensorComparison, Side, Tally,
@@ -29,7 +29,7 @@ pub use judge::{Judge, JudgeShare};
 pub use output::{
     OutputError, Written, one_screen, probe_command, summary_json, write_maps, write_validation,
 };
-pub use probe::{NoSuchRay, Probe, ProbedAnswer, probe};
+pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedReturn, probe};
 pub use raypencil_scanline::{Fidelity, Switches};
 pub use renderers::{Contender, RENDERER_NAMES, contender};
 pub use run::{Counts, Pair, Progress, Rendered, Silent, Subject, Validation, validate};

@@ -10,6 +10,7 @@
 //! ```
 
 mod junit;
+mod light;
 mod markdown;
 mod picture;
 mod plot;
@@ -34,8 +35,8 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use raypencil_scene::{Frame, SensorId, SensorMap};
-use raypencil_scene_io::{Attributes, SceneIoError, write_atomically, write_exr_map};
+use raypencil_scene::{Frame, Sampling, SensorId, SensorMap};
+use raypencil_scene_io::{Attributes, ExrMap, SceneIoError, write_atomically, write_exr};
 
 use crate::run::{Progress, Rendered, Subject, Validation};
 
@@ -124,7 +125,13 @@ pub fn write_validation(
     for rendered in &validation.rendered {
         progress.stage(&format!("{}: writing maps", rendered.name));
         let folder = folder.join(&rendered.name);
-        maps.extend(write_maps(&rendered.frame, &rendered.name, &validation.subject, &folder)?);
+        maps.extend(write_maps(
+            &rendered.frame,
+            &rendered.name,
+            &validation.subject,
+            Sampling::Centres,
+            &folder,
+        )?);
     }
 
     progress.stage("writing the report");
@@ -145,7 +152,8 @@ pub fn write_validation(
     Ok(Written { maps, report, markdown, junit, summary, time: start.elapsed() })
 }
 
-/// Writes one renderer's maps of every sensor, `camera.exr`, `beam-0.exr` ..., into `folder`.
+/// Writes one renderer's maps of every sensor, `camera.exr`, `beam-0.exr` ..., into `folder`. `sampling` is what the
+/// frame was rendered with.
 ///
 /// # Errors
 /// Names the file or folder that could not be written, and why.
@@ -153,6 +161,7 @@ pub fn write_maps(
     frame: &Frame,
     renderer: &str,
     subject: &Subject,
+    sampling: Sampling,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, OutputError> {
     create(folder)?;
@@ -161,9 +170,28 @@ pub fn write_maps(
         scene_sha256: subject.sha256.clone(),
         extra: Vec::new(),
     };
+    let model = subject.scene.flux_model();
     let write = |map: &SensorMap| {
         let path = folder.join(format!("{}.exr", map.sensor));
-        write_exr_map(&path, map, &attributes)?;
+        let mut exr = ExrMap::from_sensor_map(map, &attributes);
+        match map.sensor {
+            SensorId::Camera => {
+                for (beam, image) in frame.flux.iter().enumerate() {
+                    exr.insert_flux(beam, image, model);
+                }
+            }
+            SensorId::Beam(index) => {
+                if let Sampling::Jittered { seed } = sampling {
+                    let rule =
+                        format!("cell (i, j) is a ray drawn within pencil (i, j), seed {seed}; row 0 on top");
+                    exr.attributes.insert("pixelRule".into(), rule);
+                }
+                if let Some(returns) = frame.returns.get(index) {
+                    exr.insert_returns(returns, model);
+                }
+            }
+        }
+        write_exr(&path, &exr)?;
         Ok(path)
     };
     frame.maps().map(write).collect()

@@ -37,6 +37,16 @@ impl<'a> ExactRay<'a> {
         Self { sensor, aim, fast: sensor.ray(aim), exact: OnceCell::new() }
     }
 
+    /// The ray in intervals.
+    pub(crate) fn fast(&self) -> &ScaledRay<Interval> {
+        &self.fast
+    }
+
+    /// The ray without rounding.
+    pub(crate) fn exact(&self) -> &ScaledRay<Dyadic> {
+        self.exact.get_or_init(|| self.sensor.ray(self.aim))
+    }
+
     /// The exact sign: by the interval if that is certain, else by exact arithmetic.
     #[inline]
     fn sign(&self, polynomial: &impl Polynomial) -> Ordering {
@@ -48,8 +58,7 @@ impl<'a> ExactRay<'a> {
 
     #[cold]
     fn exact_sign(&self, polynomial: &impl Polynomial) -> Ordering {
-        let ray = self.exact.get_or_init(|| self.sensor.ray(self.aim));
-        polynomial.value(ray).sign().unwrap_or(Ordering::Equal)
+        polynomial.value(self.exact()).sign().unwrap_or(Ordering::Equal)
     }
 }
 
@@ -72,23 +81,23 @@ impl Face {
     }
 
     /// Corner `k`.
-    fn corner<T: Number>(&self, k: usize) -> Vector<T> {
+    pub(crate) fn corner<T: Number>(&self, k: usize) -> Vector<T> {
         Vector::of_f32(self.corners[k])
     }
 
     /// n.
-    fn normal<T: Number>(&self) -> Vector<T> {
+    pub(crate) fn normal<T: Number>(&self) -> Vector<T> {
         let a = self.corner::<T>(0);
         self.corner(1).sub(&a).cross(&self.corner(2).sub(&a))
     }
 
     /// n.a', which is s n.(a - o).
-    fn height<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+    pub(crate) fn height<T: Number>(&self, ray: &ScaledRay<T>) -> T {
         self.normal().dot(&self.corner(0).scaled(&ray.origin_scale).sub(&ray.origin))
     }
 
     /// n.D, which is sigma n.q.
-    fn approach<T: Number>(&self, ray: &ScaledRay<T>) -> T {
+    pub(crate) fn approach<T: Number>(&self, ray: &ScaledRay<T>) -> T {
         self.normal().dot(&ray.direction)
     }
 
@@ -200,7 +209,7 @@ impl Polynomial for Nearness<'_> {
 mod tests {
     use super::*;
     use glam::{DQuat, DVec3};
-    use raypencil_scene::{Beam, Camera, Mounted, Pose, Profile};
+    use raypencil_scene::{Beam, Camera, Lens, Mounted, Pose, Profile};
 
     /// A number from 0 to 1 that depends on the seed alone (splitmix64).
     fn draw(seed: &mut u64) -> f64 {
@@ -224,6 +233,7 @@ mod tests {
             focal_length: 8e-3,
             principal_point: [31.3, 24.9],
             aperture: 2e-3,
+            lens: Lens::CLEAR,
             max_range: 20.0,
         };
         let beam = Beam {

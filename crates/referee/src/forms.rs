@@ -49,6 +49,7 @@ use glam::{DMat3, DVec3};
 use raypencil_scene::Mounted;
 
 use crate::face::Face;
+use crate::number::Interval;
 use crate::pencil::{Aim, Sensor};
 
 /// 2^-53: the unit roundoff.
@@ -67,6 +68,17 @@ pub(crate) struct Form {
 }
 
 impl Form {
+    /// A form by its coefficients, each known up to an interval.
+    pub(crate) fn of(coefficients: [Interval; 4]) -> Self {
+        let middle = coefficients.map(|range| range.middle());
+        let doubt = |k: usize| (coefficients[k].high - middle[k]).max(middle[k] - coefficients[k].low);
+        let [constant, x, y, xy] = middle;
+        let form = Self { constant, x, y, xy, error: 0.0, bend: 0.0 };
+        let evaluated = 16.0 * U * form.scale() + f64::MIN_POSITIVE;
+        let error = ((doubt(0) + doubt(1)) + (doubt(2) + doubt(3)) + evaluated) * (1.0 + 8.0 * f64::EPSILON);
+        Self { error, ..form }
+    }
+
     /// A radius of at most 1 within which g > 0 for certain; 0 if there is none.
     #[inline]
     pub(crate) fn holds_within(&self) -> f64 {

@@ -15,7 +15,12 @@
 //! margin, surface  how far a verdict is from changing, with a witness
 //! sheet, divide    where the range is continuous; what to do where one square does not tell
 //! ruling           whether an answer is right, or admissible
+//! sight            what the camera sees of a pencil's hit
+//! sight_margin     how far that is from changing
+//! sight_ruling     whether an answer about that is right, or admissible
+//! light            what comes back of a pencil, as values
 //! paper            whether an approximation of the paper explains an answer
+//! paper_sight      the same of what the camera sees
 //! truth            yes, no, or either, of what is known up to an interval
 //! render           the verdicts of a whole sensor
 //! ```
@@ -26,22 +31,32 @@ mod cull;
 mod divide;
 mod face;
 mod forms;
+mod light;
 mod margin;
 mod near;
 mod number;
 mod paper;
+mod paper_sight;
 mod pencil;
 mod region;
 mod render;
 mod ruling;
 mod sheet;
+mod sight;
+mod sight_margin;
+mod sight_ruling;
 mod surface;
 mod truth;
 mod vector;
 mod verdict;
 
+pub use light::Light;
 pub use margin::{Margin, Margins};
 pub use paper::{Approximations, Explained, Reason};
+pub use paper_sight::{ExplainedSight, SightApproximations, SightReason};
 pub use render::ExactRenderer;
 pub use ruling::{Ruling, Tolerance};
+pub use sight::Sight;
+pub use sight_margin::SightMargins;
+pub use sight_ruling::SightRuling;
 pub use verdict::{Displacement, Referee, Verdict};

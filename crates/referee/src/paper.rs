@@ -131,7 +131,7 @@ impl Referee<'_> {
 }
 
 /// A cell's ray in the sensor's frame, with all rays and terrains within the tolerance.
-struct Pencil<'a> {
+pub(crate) struct Pencil<'a> {
     sensor: &'a Sensor,
     with: Approximations,
     position: f64,
@@ -157,7 +157,7 @@ struct Projected {
 type Piece = [Vector<Interval>; 3];
 
 impl<'a> Pencil<'a> {
-    fn new(sensor: &'a Sensor, aim: Aim, with: Approximations, tolerance: Tolerance) -> Self {
+    pub(crate) fn new(sensor: &'a Sensor, aim: Aim, with: Approximations, tolerance: Tolerance) -> Self {
         let of = Interval::of;
         let lateral = tolerance.lateral;
         // Half cells from the middle, or from the axis.
@@ -267,7 +267,7 @@ impl<'a> Pencil<'a> {
     }
 
     /// A vertex in the sensor's frame, metres.
-    fn seen(&self, corner: [f32; 3]) -> Vector<Interval> {
+    pub(crate) fn seen(&self, corner: [f32; 3]) -> Vector<Interval> {
         let relative = Vector::of_f32(corner).sub(&Vector::of(self.sensor.pose().position));
         let Vector(turned) = self.scene_from_sensor.apply_inverse(&relative);
         Vector(turned.map(|part| part.over(self.scene_from_sensor.norm_squared).wider(self.position)))
@@ -377,6 +377,22 @@ impl<'a> Pencil<'a> {
         let apart = Truth::all(beyond.map(Truth::positive))
             | Truth::all(beyond.map(|side| Truth::positive(side.negated())));
         !(beside | apart)
+    }
+
+    /// Whether the ray meets a face, from either side, at or beyond the SPP and nearer than `distance` metres.
+    pub(crate) fn meets_nearer_than(&self, face: &Face, distance: Interval) -> Truth {
+        let [a, b, c] = face.corners.map(|corner| self.seen(corner));
+        let n = b.sub(&a).cross(&c.sub(&a));
+        let (height, approach) = (n.dot(&a.sub(&self.start)), n.dot(&self.q));
+        let length = square_root(self.q.length_squared());
+        let is_met = |height: Interval, approach: Interval| {
+            Truth::positive(height)
+                & Truth::positive(approach)
+                & Truth::not_negative(height.sub(&approach))
+                & Truth::positive(distance.mul(&approach).sub(&height.mul(&length)))
+        };
+        self.is_within_true_sides(face)
+            & (is_met(height, approach) | is_met(height.negated(), approach.negated()))
     }
 
     /// What the ray and the middle of the sheet see of a face's plane.

@@ -121,4 +121,18 @@ impl Sensor {
             }
         }
     }
+
+    /// By how much a cell to the right moves D, and a cell down O, of a beam.
+    pub(crate) fn steps<T: Number>(&self) -> [Vector<T>; 2] {
+        let zero = || T::of(0.0);
+        let rotation = ScaledRotation::<T>::of(self.pose().rotation);
+        match self {
+            Self::Beam(Mounted { sensor, .. }) => {
+                let across = T::of(sensor.half_width).doubled();
+                let down = T::of(sensor.thickness).doubled();
+                [[across, zero(), zero()], [zero(), down, zero()]].map(|v| rotation.apply(&Vector(v)))
+            }
+            Self::Camera(_) => [(); 2].map(|()| Vector([zero(), zero(), zero()])),
+        }
+    }
 }

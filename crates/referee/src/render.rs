@@ -8,10 +8,12 @@ use std::time::Instant;
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{
-    FaceId, Frame, Hit, Mounted, Quantities, Renderer, Request, Resolution, Scene, SensorId, SensorMap, Stage,
+    FaceId, Frame, Hit, Image, Mounted, Pixel, Renderer, Request, Resolution, Return, Returns, Scene,
+    SensorId, SensorMap, Stage,
 };
 
 use crate::face::{ExactRay, Face};
+use crate::light::Light;
 use crate::number::Interval;
 use crate::pencil::{Aim, Sensor};
 use crate::vector::Vector;
@@ -36,15 +38,48 @@ impl Renderer for ExactRenderer {
         let mut stages = vec![Stage { name: "tree".into(), time: start.elapsed() }];
         let mut timed = |id: SensorId| {
             let start = Instant::now();
-            let map = referee.map(id, request.quantities);
+            let map = referee.map(id, request);
             stages.push(Stage { name: id.to_string(), time: start.elapsed() });
             map
         };
         let camera = if request.camera { timed(SensorId::Camera) } else { None };
         let beams = if request.beams { scene.beams().len() } else { 0 };
         let beams = (0..beams).filter_map(|index| timed(SensorId::Beam(index))).collect();
-        Frame { camera, beams, stages }
+        let (mut returns, mut flux) = (Vec::new(), Vec::new());
+        for index in 0..if request.returns { scene.beams().len() } else { 0 } {
+            let start = Instant::now();
+            if let Some(light) = referee.light(index, request.sampling) {
+                let (of_beam, image) = all_returns(scene, &light, index);
+                returns.push(of_beam);
+                flux.push(image);
+            }
+            stages.push(Stage { name: format!("{} returns", SensorId::Beam(index)), time: start.elapsed() });
+        }
+        Frame { camera, beams, returns, flux, stages }
     }
+}
+
+/// The returns of a beam, and the flux that they add up to on the camera's image.
+fn all_returns(scene: &Scene, light: &Light<'_, '_>, index: usize) -> (Returns, Image<f64>) {
+    let beam = &scene.beams()[index].sensor;
+    let camera = &scene.camera().sensor;
+    let mut returns = Returns::empty(beam.columns, beam.rows);
+    let mut image = Image::filled(camera.width, camera.height, 0.0);
+    let rows: Vec<Vec<Option<Return>>> = (0..beam.rows)
+        .into_par_iter()
+        .map(|j| (0..beam.columns).map(|i| light.returned(i, j)).collect())
+        .collect();
+    // In row-major order, whatever thread it came from.
+    for (j, row) in (0..).zip(&rows) {
+        for (i, back) in (0..).zip(row) {
+            let Some(back) = back else { continue };
+            returns.put(i, j, back);
+            if let (true, Some(Pixel { i, j })) = (back.visible, back.pixel) {
+                image.set(i, j, image.at(i, j) + back.flux);
+            }
+        }
+    }
+    (returns, image)
 }
 
 impl Referee<'_> {
@@ -64,13 +99,17 @@ impl Referee<'_> {
     }
 
     /// The maps of one sensor, or `None` if the scene has no such sensor.
-    fn map(&self, id: SensorId, quantities: Quantities) -> Option<SensorMap> {
+    fn map(&self, id: SensorId, request: &Request) -> Option<SensorMap> {
         let sensor = Sensor::of(self.scene, id)?;
         let (width, height) = sensor.size();
-        let mut map = SensorMap::empty(id, width, height, quantities);
+        let mut map = SensorMap::empty(id, width, height, request.quantities);
         map.rows_mut().into_par_iter().for_each(|mut row| {
             for i in 0..width {
-                let aim = Aim { i, j: row.j, dx: 0.0, dy: 0.0 };
+                let [dx, dy] = match id {
+                    SensorId::Camera => [0.0; 2],
+                    SensorId::Beam(index) => request.sampling.offset(index, i, row.j),
+                };
+                let aim = Aim { i, j: row.j, dx, dy };
                 if let Some(face) = self.nearest(&sensor, aim).first() {
                     row.put(i, &hit(&sensor, aim, face));
                 }

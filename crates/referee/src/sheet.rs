@@ -110,6 +110,46 @@ impl Neighbourhood<'_> {
             None => around.all_miss(cap),
         }
     }
+
+    /// The faces of the sheet of a face that is met at `centre`, if it has no end within `half`: every ray there meets
+    /// one of them.
+    pub(crate) fn covering_sheet(&mut self, centre: [f64; 2], start: usize, half: f64) -> Option<Vec<usize>> {
+        let sheet = Around { near: self, centre, seen: Vec::new() }.sheet(start, half);
+        (sheet.radius >= half).then(|| sheet.faces.iter().map(|&(index, _)| index).collect())
+    }
+
+    /// Whether every ray of a square of radius `half` around `centre` certainly hits, and all faces, by their
+    /// indices, that may be among its nearest.
+    pub(crate) fn possible(&mut self, centre: [f64; 2], half: f64) -> (bool, Vec<usize>) {
+        // The nearest face's sheet may end, at a silhouette, with another behind it that does not.
+        let nearest = self.nearest_at(centre);
+        let is_met =
+            |face: &FaceForms<'_>| face.own().iter().all(|form| form.is_positive_at(centre) == Some(true));
+        let mut starts = nearest.first().copied().into_iter().collect::<Vec<_>>();
+        if let Some(&first) = nearest.first() {
+            let others = (0..self.faces.len()).filter(|&index| index != first && is_met(&self.faces[index]));
+            starts.extend(others);
+        }
+        let mut around = Around { near: self, centre, seen: Vec::new() };
+        for start in starts {
+            // A sheet without an end covers the square: nothing behind it is nearest.
+            let sheet = around.sheet(start, half);
+            if sheet.radius < half {
+                continue;
+            }
+            let mut faces: Vec<usize> = sheet.faces.iter().map(|&(index, _)| index).collect();
+            for index in 0..around.near.faces.len() {
+                let is_other = !sheet.faces.iter().any(|&(kept, _)| kept == index);
+                if is_other && around.seen(index).absent < half && around.behind(index, &sheet, half) < half {
+                    faces.push(index);
+                }
+            }
+            return (true, faces);
+        }
+        around.near.reach_all();
+        let count = around.near.faces.len();
+        (false, (0..count).filter(|&index| around.seen(index).absent < half).collect())
+    }
 }
 
 impl Around<'_, '_> {

@@ -61,6 +61,7 @@ fn scene(number: u64) -> Scene {
         focal_length: 8e-3,
         principal_point: [20.3 * f64::from(fine), 14.8 * f64::from(fine)],
         aperture: 2e-3,
+        lens: raypencil_scene::Lens::CLEAR,
         max_range: 20.0,
     };
     let beam = Beam {
@@ -309,6 +310,7 @@ fn a_wall_under_the_ground_hides_no_post_behind_it() {
         focal_length: 0.5,
         principal_point: [4.5; 2],
         aperture: 0.01,
+        lens: raypencil_scene::Lens::CLEAR,
         max_range: 200.0,
     };
     let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };

@@ -6,7 +6,8 @@ use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use raypencil_referee::{Displacement, Referee, Ruling, Tolerance};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FaceId, FluxModel, Material, Mesh, Mounted, Pose, Profile, Scene, SensorId,
+    Atmosphere, Beam, Camera, FaceId, FluxModel, Lens, Material, Mesh, Mounted, Pose, Profile, Scene,
+    SensorId,
 };
 use raypencil_terrain::RandomGround;
 
@@ -21,6 +22,7 @@ fn camera(max_range: f64) -> Camera {
         focal_length: 0.5,
         principal_point: [4.5; 2],
         aperture: 0.01,
+        lens: Lens::CLEAR,
         max_range,
     }
 }
@@ -193,6 +195,7 @@ fn random_scene(seed: u64, size: usize, turn: [f64; 4], at: [f64; 3]) -> Scene {
         focal_length: 8e-3,
         principal_point: [20.3, 14.8],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range: 20.0,
     };
     let beam = Beam {

@@ -11,7 +11,7 @@ use crate::scan::{Line, SplitTriangle};
 use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT};
 use crate::stripe::LARGEST_INVERSE_T;
 use crate::vertices::{self, Vertex, widen};
-use crate::{Fidelity, Options};
+use crate::{Fidelity, Options, sides};
 
 /// Faces that one task sorts into bands.
 const FACES_PER_TASK: usize = 8192;
@@ -186,22 +186,17 @@ impl<T: Transformation> Faces<'_, T> {
         }
     }
 
-    /// The edge of a face from corner k to the next, its ends in the one order that both faces sharing it find.
+    /// The edge of a face from corner k to the next.
     #[inline]
     fn edge(&self, stored: &[[f32; 3]; 3], seen: &[&Vertex; 3], k: usize, next: usize) -> Edge<T::Line> {
-        let reversed = precedes(&stored[next], &stored[k]);
-        let (first, second) = if reversed { (next, k) } else { (k, next) };
-        let along = widen(stored[second]) - widen(stored[first]);
-        let along = self.transformation.sensor_from_scene().turn(along);
-        let (first, second) = (seen[first].position, seen[second].position);
-        Edge { first, second, reversed, line: self.transformation.line(first, second, along) }
+        sides::edge(self.transformation, stored, seen, k, next)
     }
 
     fn edges(&self, id: FaceId) -> [Edge<T::Line>; 3] {
         let face = self.mesh.faces()[id.0 as usize];
         let stored = face.map(|v| self.mesh.vertices()[v as usize]);
         let seen = face.map(|v| &self.vertices[v as usize]);
-        [(0, 1), (1, 2), (2, 0)].map(|(k, next)| self.edge(&stored, &seen, k, next))
+        sides::edges(self.transformation, &stored, &seen)
     }
 
     /// Step 4 for a face that the SPP cuts. Few are: kept out of line of the others.
@@ -292,31 +287,5 @@ impl<T: Transformation> Faces<'_, T> {
                 raster.scan_row(j, columns, x.centres(), inverse_t, largest, id);
             }
         }
-    }
-}
-
-/// The scene's order of vertex *positions*: lexicographic, -0 equal to +0. By position, not by index, so
-/// that meshes without shared indices are watertight too.
-#[inline]
-fn precedes(a: &[f32; 3], b: &[f32; 3]) -> bool {
-    for k in 0..3 {
-        if a[k] != b[k] {
-            return a[k] < b[k];
-        }
-    }
-    false
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_order_of_ends_is_by_position() {
-        assert!(precedes(&[0.0, 1.0, 5.0], &[0.0, 2.0, 0.0]));
-        assert!(!precedes(&[0.0, 2.0, 0.0], &[0.0, 1.0, 5.0]));
-        // -0 and +0 are one position.
-        assert!(!precedes(&[-0.0, 1.0, 2.0], &[0.0, 1.0, 2.0]));
-        assert!(!precedes(&[0.0, 1.0, 2.0], &[-0.0, 1.0, 2.0]));
     }
 }

@@ -49,6 +49,31 @@ impl<L: Line> Side<L> {
         };
         self.line.x_at(y).max(left).min(right)
     }
+
+    /// Bounds of every crossing by rows from `low` to `high`; `None` if none of them crosses this side. For the
+    /// camera's straight lines only.
+    ///
+    /// Exact ones, without room for rounding: where such a line crosses is monotonic in y *as it is computed*, its
+    /// product, sum and quotient each being so; unless it runs along the rows, which shows in what is not finite.
+    fn crossings(&self, low: f64, high: f64) -> Option<(f64, f64)> {
+        let (low, high) = (low.max(self.top.y), high.min(self.bottom.y));
+        if low > high {
+            return None;
+        }
+        let (left, right) = (self.top.x.min(self.bottom.x), self.top.x.max(self.bottom.x));
+        let (at_low, at_high) = (self.line.x_at(low), self.line.x_at(high));
+        if !(at_low.is_finite() && at_high.is_finite()) {
+            return Some((left, right));
+        }
+        let (at_low, at_high) = (at_low.clamp(left, right), at_high.clamp(left, right));
+        let mut bounds = (at_low.min(at_high), at_low.max(at_high));
+        for end in [self.top, self.bottom] {
+            if low <= end.y && end.y <= high {
+                bounds = (bounds.0.min(end.x), bounds.1.max(end.x));
+            }
+        }
+        Some(bounds)
+    }
 }
 
 /// A triangle on the SPP, split at the height of its middle corner. (§4, 4a)
@@ -104,5 +129,62 @@ impl<L: Line> SplitTriangle<L> {
             (left, right) = (left.min(x), right.max(x));
         }
         (left, right)
+    }
+
+    /// Bounds of the spans of all rows from `low` to `high`, for the camera's straight lines; the first is larger if none of them meets the triangle.
+    pub(crate) fn spans(&self, low: f64, high: f64) -> (f64, f64) {
+        let sides = [&self.long, &self.upper, &self.lower];
+        let crossings = sides.into_iter().filter_map(|side| side.crossings(low, high));
+        crossings.fold((f64::INFINITY, f64::NEG_INFINITY), |bounds, (left, right)| {
+            (bounds.0.min(left), bounds.1.max(right))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// As the camera's lines are computed.
+    #[derive(Debug, Clone, Copy)]
+    struct Straight([f64; 3]);
+
+    impl Line for Straight {
+        fn x_at(&self, y: f64) -> f64 {
+            -(self.0[1] * y + self.0[2]) / self.0[0]
+        }
+    }
+
+    fn triangle(points: [[f64; 2]; 3]) -> SplitTriangle<Straight> {
+        let line = |[x, y]: [f64; 2], [x2, y2]: [f64; 2]| Straight([y2 - y, x - x2, x2 * y - x * y2]);
+        let [a, b, c] = points;
+        let corners = points.map(|[x, y]| Corner { x, y });
+        SplitTriangle::new(corners, [line(a, b), line(b, c), line(c, a)])
+    }
+
+    proptest! {
+        // Of triangles as flat as rounding, too: y of the corners in multiples of 2^-52 around 1.
+        #[test]
+        fn no_span_leaves_the_bounds_of_its_rows(
+            x in [-1.0f64..1.0, -1.0..1.0, -1.0..1.0],
+            y in [0u32..9, 0u32..9, 0u32..9],
+            step in prop_oneof![Just(f64::EPSILON), Just(1e-3), Just(0.3)],
+            rows in (-0.1f64..1.1, -0.1f64..1.1),
+            at in 0.0f64..1.0,
+        ) {
+            let y = y.map(|steps| 1.0 + f64::from(steps) * step);
+            let triangle = triangle([[x[0], y[0]], [x[1], y[1]], [x[2], y[2]]]);
+            let height = |part: f64| 1.0 + part * 9.0 * step;
+            let (low, high) = (height(rows.0.min(rows.1)), height(rows.0.max(rows.1)));
+            let (left, right) = triangle.spans(low, high);
+            for y in [low, high, low + at * (high - low), triangle.top(), triangle.bottom(), y[0], y[1], y[2]] {
+                if y < low || y > high || y < triangle.top() || y > triangle.bottom() {
+                    continue;
+                }
+                let span = triangle.span(y);
+                prop_assert!(left <= span.0 && span.1 <= right, "{span:?} {left} {right}");
+            }
+        }
     }
 }

@@ -29,7 +29,7 @@ impl fmt::Display for Fidelity {
 /// let mut switches = Switches::EXACT;
 /// switches.set("beam-edges", Fidelity::Paper)?;
 /// assert_eq!(switches.to_string(), "beam-edges");
-/// assert_eq!(Switches::subsets().count(), 4);
+/// assert_eq!(Switches::subsets().count(), 32);
 /// # Ok::<(), raypencil_scanline::UnknownSwitch>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -55,15 +55,45 @@ pub struct Switches {
     ///   into a beam's screen where the straight lines between their corners do not; never if `beam_edges`
     ///   is `Paper` too.
     pub skip_rules: Fidelity,
+    /// `facing`: which faces may stand between a stripe and the camera. (§6) Maps are not concerned, here and
+    /// below.
+    ///
+    /// * `Exact`: every face, from either side.
+    /// * `Paper`: those whose outward normal "makes an angle of less than 90 degrees with respect to the camera
+    ///   axis vector". It saves little. On closed ground a hidden point lies behind *some* back, so nothing is lost
+    ///   where every ray to a stripe sees the sides of faces that the axis sees: that is wrong off the axis,
+    ///   where a back of the camera's ray may still lean towards its axis, and on ground that is not closed. The
+    ///   rule *loses* shadows and adds none.
+    pub facing: Fidelity,
+    /// `extent`: how deep the faces reach that may stand between a stripe and the camera. (§6)
+    ///
+    /// * `Exact`: however deep; what lies behind all points is skipped, which changes nothing.
+    /// * `Paper`: "only considering triangles with a least one vertex not past the furthest extent of the upper
+    ///   laser beam", the greatest depth, along the camera's axis, of the upper beam's hits in this frame. It
+    ///   loses shadows on points deeper than that: where the other beam reaches beyond the upper one, because
+    ///   that ends at a rock or finds nothing within its range on most of its pencils.
+    pub extent: Fidelity,
+    /// `place`: where a stripe's point is compared with what may hide it. (§6)
+    ///
+    /// * `Exact`: at the point's own position on the image.
+    /// * `Paper`: at the centre of the pixel it lands in, against a range map of the faces turned away (with
+    ///   every face, the stripe's own would hide half of it). Which are turned away `facing` says: from the
+    ///   camera's axis on `paper`, from the ray through its position on `exact`. It is wrong, either way, by up
+    ///   to half a pixel along the outlines of what hides, and loses what is not closed or narrower than a pixel.
+    pub place: Fidelity,
 }
 
 impl Switches {
     /// No approximation.
-    pub const EXACT: Self = Self { beam_edges: Fidelity::Exact, skip_rules: Fidelity::Exact };
+    pub const EXACT: Self = Self::all(Fidelity::Exact);
     /// All of the paper's.
-    pub const PAPER: Self = Self { beam_edges: Fidelity::Paper, skip_rules: Fidelity::Paper };
+    pub const PAPER: Self = Self::all(Fidelity::Paper);
     /// Names of the switches, in the order of the fields.
-    pub const NAMES: [&'static str; 2] = ["beam-edges", "skip-rules"];
+    pub const NAMES: [&'static str; 5] = ["beam-edges", "skip-rules", "facing", "extent", "place"];
+
+    const fn all(on: Fidelity) -> Self {
+        Self { beam_edges: on, skip_rules: on, facing: on, extent: on, place: on }
+    }
 
     /// Sets a switch by its name.
     ///
@@ -108,7 +138,7 @@ impl Switches {
 
     /// Every switch's name and side, in the order of [`Switches::NAMES`].
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, Fidelity)> + use<> {
-        Self::NAMES.into_iter().zip([self.beam_edges, self.skip_rules])
+        Self::NAMES.into_iter().zip([self.beam_edges, self.skip_rules, self.facing, self.extent, self.place])
     }
 
     /// All combinations, from [`Switches::EXACT`] to [`Switches::PAPER`].
@@ -124,8 +154,8 @@ impl Switches {
         })
     }
 
-    fn in_order(&mut self) -> [&mut Fidelity; 2] {
-        [&mut self.beam_edges, &mut self.skip_rules]
+    fn in_order(&mut self) -> [&mut Fidelity; 5] {
+        [&mut self.beam_edges, &mut self.skip_rules, &mut self.facing, &mut self.extent, &mut self.place]
     }
 }
 
@@ -174,13 +204,21 @@ mod tests {
         }
         let mut switches = Switches::EXACT;
         let error = switches.set("beam_edges", Fidelity::Paper).unwrap_err();
-        assert_eq!(error.to_string(), "no switch is called \"beam_edges\"; there are beam-edges, skip-rules");
+        assert_eq!(
+            error.to_string(),
+            "no switch is called \"beam_edges\"; there are beam-edges, skip-rules, facing, extent, place"
+        );
     }
 
     #[test]
     fn every_combination_comes_once() {
         let names: Vec<_> = Switches::subsets().map(|switches| switches.to_string()).collect();
-        assert_eq!(names, ["", "beam-edges", "skip-rules", "beam-edges+skip-rules"]);
+        assert_eq!(names[..5], ["", "beam-edges", "skip-rules", "beam-edges+skip-rules", "facing"]);
+        assert_eq!(names[31], "beam-edges+skip-rules+facing+extent+place");
+        let mut different = names.clone();
+        different.sort();
+        different.dedup();
+        assert_eq!((names.len(), different.len()), (32, 32));
         assert_eq!(Switches::subsets().next(), Some(Switches::EXACT));
         assert_eq!(Switches::subsets().last(), Some(Switches::PAPER));
     }

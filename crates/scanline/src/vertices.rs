@@ -42,10 +42,29 @@ impl SensorFromScene {
         point - self.position
     }
 
+    /// A point `p` of another sensor's frame in this one's. By way of the distance between the sensors, not of
+    /// the scene's origin, which may be far from both.
+    #[inline]
+    pub(crate) fn point_of(&self, other: &Self, p: DVec3) -> DVec3 {
+        self.turn((other.position - self.position) + other.turn_back(p))
+    }
+
+    /// A vector `v` of another sensor's frame in this one's.
+    #[inline]
+    pub(crate) fn vector_of(&self, other: &Self, v: DVec3) -> DVec3 {
+        self.turn(other.turn_back(v))
+    }
+
+    /// A vector of the sensor's frame, turned into the scene's.
+    #[inline]
+    fn turn_back(&self, v: DVec3) -> DVec3 {
+        self.axes.x_axis * v.x + self.axes.y_axis * v.y + self.axes.z_axis * v.z
+    }
+
     /// A point of the sensor's frame in the scene.
     #[inline]
     pub(crate) fn back(&self, p: DVec3) -> DVec3 {
-        self.position + (self.axes.x_axis * p.x + self.axes.y_axis * p.y + self.axes.z_axis * p.z)
+        self.position + self.turn_back(p)
     }
 }
 

@@ -1,6 +1,6 @@
 //! SHA-256 of what a scene comes from, and of what it came to.
 
-use raypencil_scene::{FluxModel, Mesh, Pose, Profile, Scene};
+use raypencil_scene::{Filter, FluxModel, Mesh, Pose, Profile, Scene};
 use sha2::{Digest, Sha256};
 
 /// A SHA-256.
@@ -42,7 +42,14 @@ pub(crate) fn resolved(scene: &Scene) -> Sha {
     hash.count(sensor.height.into());
     hash.reals(&sensor.pixel_pitch);
     hash.reals(&sensor.principal_point);
-    hash.reals(&[sensor.focal_length, sensor.aperture, sensor.max_range]);
+    hash.reals(&[sensor.focal_length, sensor.aperture, sensor.max_range, sensor.lens.transmission]);
+    match sensor.lens.filter {
+        Filter::None => hash.count(0),
+        Filter::Interference { centre, width, index } => {
+            hash.count(1);
+            hash.reals(&[centre, width, index]);
+        }
+    }
     hash.count(scene.beams().len() as u64);
     for beam in scene.beams() {
         hash.pose(&beam.scene_from_sensor);

@@ -57,7 +57,18 @@ pub(crate) struct CameraKeys {
     pub focal_length_mm: Key<f64>,
     pub principal_point_px: Key<Vec<f64>>,
     pub aperture_mm: Key<f64>,
+    pub transmission: Key<f64>,
+    pub filter: Key<FilterKeys>,
     pub max_range_m: Key<f64>,
+}
+
+/// `camera.filter`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FilterKeys {
+    pub centre_nm: Spanned<f64>,
+    pub width_nm: Spanned<f64>,
+    pub index: Key<f64>,
 }
 
 /// `[[beam]]`

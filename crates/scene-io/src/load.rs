@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use raypencil_scene::{Beam, Mesh, Pose, Scene, SceneError};
+use raypencil_scene::{Beam, FluxModel, Mesh, Pose, Scene, SceneError};
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
 use crate::digest::{self, Sha};
@@ -73,6 +73,8 @@ pub struct Overrides {
     pub fan_deg: Option<f64>,
     /// The thickness T of every beam's sheet, millimetres.
     pub thickness_mm: Option<f64>,
+    /// The equation of flux.
+    pub flux_model: Option<FluxModel>,
 }
 
 /// A scene and where it came from.
@@ -275,6 +277,9 @@ fn apply(overrides: &Overrides, plan: &mut Plan) {
         for (_, beam) in &mut plan.beams {
             beam.half_width = Beam::half_width_of(beam.grid_distance, fan_deg.to_radians());
         }
+    }
+    if let Some(flux_model) = overrides.flux_model {
+        plan.flux_model = flux_model;
     }
     if let Some(thickness_mm) = overrides.thickness_mm {
         for (_, beam) in &mut plan.beams {

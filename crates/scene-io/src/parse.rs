@@ -4,15 +4,19 @@ use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use raypencil_scene::{Beam, Camera, FluxModel, Profile};
+use raypencil_scene::{Beam, Camera, Filter, FluxModel, Profile};
 use toml::Spanned;
 
 use crate::gltf_mesh::DEFAULT_REFLECTIVITY;
-use crate::keys::{BeamKeys, CameraKeys, GenerateKeys, Key, SceneKeys, TerrainKeys, VehicleKeys, VersionKey};
+use crate::keys::{
+    BeamKeys, CameraKeys, FilterKeys, GenerateKeys, Key, SceneKeys, TerrainKeys, VehicleKeys, VersionKey,
+};
 use crate::plan::{DEFAULT_FAN_DEG, Mount, Plan, Terrain, default_beam, default_rig};
 use crate::{SceneIoError, TomlProblem};
 
 /// A fan of light, from a thread to just below a half plane, degrees.
+/// CHOICE: the effective index of common interference filters lies around 2.
+const DEFAULT_FILTER_INDEX: f64 = 2.0;
 pub(crate) const FAN_DEG: RangeInclusive<f64> = 0.001..=179.9;
 pub(crate) const THICKNESS_MM: RangeInclusive<f64> = 1e-3..=1e5;
 /// Any turn, either way, degrees.
@@ -166,6 +170,11 @@ impl Source<'_> {
             "millimetres",
             1e3,
         )?;
+        let transmission = &mut camera.lens.transmission;
+        self.number(keys.transmission, "camera.transmission", transmission, 0.0..=1.0, "")?;
+        if let Some(filter) = keys.filter {
+            camera.lens.filter = self.filter(filter.into_inner())?;
+        }
         // The middle of the image, whatever its size.
         camera.principal_point = [camera.width, camera.height].map(|side| 0.5 * f64::from(side));
         if let Some(point) = keys.principal_point_px {
@@ -173,6 +182,17 @@ impl Source<'_> {
             camera.principal_point = [numbers[0], numbers[1]];
         }
         self.number(keys.max_range_m, "camera.max_range_m", &mut camera.max_range, MAX_RANGE_M, "metres")
+    }
+
+    fn filter(&self, keys: FilterKeys) -> Result<Filter, SceneIoError> {
+        let nanometres = |key: Spanned<f64>, name: &str, range| {
+            self.scaled(Some(key), &format!("camera.filter.{name}"), 0.0, range, "nanometres", 1e9)
+        };
+        let centre = nanometres(keys.centre_nm, "centre_nm", 10.0..=1e6)?;
+        let width = nanometres(keys.width_nm, "width_nm", 1e-3..=1e6)?;
+        let mut index = DEFAULT_FILTER_INDEX;
+        self.number(keys.index, "camera.filter.index", &mut index, 1.0..=10.0, "")?;
+        Ok(Filter::Interference { centre, width, index })
     }
 
     fn beam(&self, index: usize, keys: BeamKeys) -> Result<(Mount, Beam), SceneIoError> {

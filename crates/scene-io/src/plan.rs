@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use raypencil_scene::{Beam, Camera, FluxModel, Profile};
+use raypencil_scene::{Beam, Camera, FluxModel, Lens, Profile};
 
 /// Everything a scene needs but its mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +68,7 @@ pub(crate) fn default_rig(terrain: Terrain) -> Plan {
         focal_length: 8.0 / 1e3,
         principal_point: [512.0; 2],
         aperture: 2.0 / 1e3,
+        lens: Lens::CLEAR,
         max_range: 20.0,
     };
     Plan {

@@ -206,6 +206,7 @@ fn overrides_change_the_scene_and_its_digests() {
         heading_deg: Some(180.0),
         fan_deg: Some(90.0),
         thickness_mm: Some(80.0),
+        flux_model: Some(FluxModel::Eq1),
     };
     let moved = load_path(&path, &moved).unwrap();
     near(moved.vehicle.position, DVec3::new(-8.0, 0.5, -2.0), 1e-12);

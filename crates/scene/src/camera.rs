@@ -22,8 +22,41 @@ pub struct Camera {
     pub principal_point: [f64; 2],
     /// Diameter of the aperture, metres. Geometry is a pinhole's; this is for radiometry.
     pub aperture: f64,
+    /// What the lens and its filter let through.
+    pub lens: Lens,
     /// Longest range, along the ray, of the camera's own range map, metres. It does not limit the pencils.
     pub max_range: f64,
+}
+
+/// What of the light that enters the aperture arrives on the image.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// The share C_loss that the lens transmits, 0 to 1.
+    pub transmission: f64,
+    /// The loss F(phi) by the filter before it.
+    pub filter: Filter,
+}
+
+impl Lens {
+    /// It lets everything through.
+    pub const CLEAR: Self = Self { transmission: 1.0, filter: Filter::None };
+}
+
+/// How much of a beam's light a filter lets through, by the angle phi between a ray and the camera's normal axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Filter {
+    /// All of it: F = 1.
+    None,
+    /// An interference filter. Seen aslant its pass band moves to shorter wavelengths, centre(phi) = centre
+    /// sqrt(1 - (sin(phi) / index)^2), and F(phi) = exp(-4 ln 2 ((wavelength - centre(phi)) / width)^2).
+    Interference {
+        /// Wavelength at the middle of the pass band for light along the axis, metres.
+        centre: f64,
+        /// Full width of the pass band at half its height, metres.
+        width: f64,
+        /// Effective refractive index n_eff of its layers.
+        index: f64,
+    },
 }
 
 impl Camera {
@@ -49,6 +82,12 @@ impl Camera {
         }
         check_range(|| name("focal_length"), self.focal_length, 1e-5, 1e2, "m")?;
         check_range(|| name("aperture"), self.aperture, 1e-6, 1e1, "m")?;
+        check_range(|| name("lens.transmission"), self.lens.transmission, 0.0, 1.0, "of 1")?;
+        if let Filter::Interference { centre, width, index } = self.lens.filter {
+            check_range(|| name("lens.filter.centre"), centre, 1e-8, 1e-3, "m")?;
+            check_range(|| name("lens.filter.width"), width, 1e-12, 1e-3, "m")?;
+            check_range(|| name("lens.filter.index"), index, 1.0, 10.0, "of 1")?;
+        }
         check_range(|| name("max_range"), self.max_range, 1e-3, 1e7, "m")
     }
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use glam::DVec3;
 
-use crate::{FaceId, Hit, Image, Maybe, SensorId};
+use crate::{FaceId, Hit, Image, Maybe, Returns, Sampling, SensorId};
 
 /// What to render.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,13 +13,25 @@ pub struct Request {
     pub camera: bool,
     /// The maps of every beam.
     pub beams: bool,
+    /// What the camera sees of the pencils, and the flux that they add up to on its image.
+    pub returns: bool,
+    /// Which ray stands for a pencil, in the beams' maps as in their returns.
+    pub sampling: Sampling,
     /// Which quantities of each map.
     pub quantities: Quantities,
 }
 
 impl Request {
     /// Every quantity of every sensor.
-    pub const EVERYTHING: Self = Self { camera: true, beams: true, quantities: Quantities::ALL };
+    pub const EVERYTHING: Self = Self {
+        camera: true,
+        beams: true,
+        returns: true,
+        sampling: Sampling::Centres,
+        quantities: Quantities::ALL,
+    };
+    /// The range maps of every sensor, of which the camera sees nothing.
+    pub const MAPS: Self = Self { returns: false, ..Self::EVERYTHING };
 }
 
 /// Which quantities of a map to fill; what is left out costs neither time nor memory.
@@ -164,6 +176,11 @@ pub struct Frame {
     pub camera: Option<SensorMap>,
     /// The maps of each beam, in the scene's order; empty if not asked for.
     pub beams: Vec<SensorMap>,
+    /// The returns of each beam, in the scene's order; empty if not asked for.
+    pub returns: Vec<Returns>,
+    /// The flux of each beam on the camera's image, in the scene's order, watts per pixel (`eq1`: W/m); empty if
+    /// not asked for or not known.
+    pub flux: Vec<Image<f64>>,
     /// How long each part of the work took, in order.
     pub stages: Vec<Stage>,
 }

@@ -13,21 +13,42 @@
 //! ```
 //!
 //! A box widened by [`PADDING`] x (largest |coordinate| of the box + reach), u = 2^-24, rounded outward, is
-//! entered at a computed distance <= s and left at one >= s, whatever the rounding. Products of two errors
-//! are of order 2^-46 and are covered by the last rounding outward.
+//! entered at a computed distance <= s and left at one >= s, whatever the rounding. [`PADDING`] is one u more
+//! than the 8 u: it is for the products of two of these errors, of the order of 2^-46, and for the roundings of
+//! the f64 test, of the order of 2^-53, by which it may admit a face that the ray misses by as much.
+//!
+//! # Rays to a point
+//!
+//! The ray from the camera's centre c to a hit P has the f64 direction fl(P - c), and P is rounded too. That
+//! does not count against the boxes: boxes and triangle test are asked about one and the same ray (c, fl(P - c)),
+//! which is all that the bound is about. (It is a ray displaced by some 2^-52 of |P| + |c|: the answer for it
+//! can differ from that for the exact ray by rounding.) What does count is its length: the boxes are wide
+//! enough if |P - c| <= reach, and [`reach_of`] makes it so.
 
 use std::collections::HashMap;
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use raypencil_scene::{FaceId, Mesh};
+use raypencil_scene::{Beam, FaceId, Mesh, Mounted, Scene};
 
 use crate::grouped;
 use crate::triangle::Triangle;
 
-/// Widening of a box in units of (largest |coordinate| + reach): 8 x 2^-24, derived above.
-const PADDING: f64 = 8.0 / (1u32 << 24) as f64;
+/// Widening of a box in units of (largest |coordinate| + reach): 9 x 2^-24, derived above.
+const PADDING: f64 = 9.0 / (1u32 << 24) as f64;
+
+/// The longest way that any ray of this scene is traced, metres: every sensor's own range, and for the ray from
+/// the camera's centre to a hit of a beam, by the triangle inequality, the beam's range, half its thickness, and
+/// the distance between the two.
+pub(crate) fn reach_of(scene: &Scene) -> f64 {
+    let camera = scene.camera();
+    let from_camera = |beam: &Mounted<Beam>| {
+        let apart = (beam.scene_from_sensor.position - camera.scene_from_sensor.position).length();
+        beam.sensor.max_range + 0.5 * beam.sensor.thickness + apart
+    };
+    scene.beams().iter().map(from_camera).fold(camera.sensor.max_range, f64::max)
+}
 
 /// The terrain, ready to be traced.
 pub(crate) struct Hierarchy {

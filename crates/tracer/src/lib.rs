@@ -11,13 +11,23 @@
 //! grouped    the tree's building, in bounded time for any input
 //! triangle   is this face met, and where
 //! nearest    the search: smallest t, lowest face on ties
+//! occlusion  does anything stand between a point and the camera
+//! view       where a point stands for the camera, and on its image
+//! shares     the power of each pencil
+//! flux       what of it arrives in the pixel
+//! returns    all pencils of a beam: the four above, one pencil after another
 //! ```
 
+mod flux;
 mod grouped;
 mod hierarchy;
 mod nearest;
+mod occlusion;
 mod rays;
+mod returns;
+mod shares;
 mod triangle;
+mod view;
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -28,7 +38,11 @@ use raypencil_scene::{
 };
 
 use hierarchy::Hierarchy;
-use rays::SensorRays;
+use rays::{Grid, SensorRays};
+use returns::Met;
+
+/// How much farther than asked a hierarchy is built for.
+const SPARE: f64 = 1.0 + 1.0 / 64.0;
 
 /// The ray tracer. It keeps the hierarchy of the last terrain it saw, so that the frames of a drive build
 /// it once.
@@ -60,7 +74,8 @@ impl Tracer {
         {
             return Arc::clone(hierarchy);
         }
-        let hierarchy = Arc::new(Hierarchy::build(mesh, reach));
+        // A little wider than asked: on a drive the sensors' distances differ by rounding from frame to frame.
+        let hierarchy = Arc::new(Hierarchy::build(mesh, SPARE * reach));
         *kept = Some(Kept { mesh: Arc::clone(mesh), hierarchy: Arc::clone(&hierarchy) });
         hierarchy
     }
@@ -77,44 +92,76 @@ impl Renderer for Tracer {
 
     fn render(&self, scene: &Scene, request: &Request) -> Frame {
         let start = Instant::now();
-        let reach = scene.sensors().filter_map(|sensor| scene.max_range(sensor)).fold(0.0, f64::max);
-        let hierarchy = self.hierarchy(scene.mesh(), reach);
-        let mut stages = vec![Stage { name: "hierarchy".into(), time: start.elapsed() }];
-
-        let mut timed = |sensor, rays: &SensorRays| {
-            let start = Instant::now();
-            let map = trace_sensor(&hierarchy, sensor, rays, request.quantities);
-            stages.push(Stage { name: sensor.to_string(), time: start.elapsed() });
-            map
+        let hierarchy = self.hierarchy(scene.mesh(), hierarchy::reach_of(scene));
+        let mut frame = Frame {
+            camera: None,
+            beams: Vec::new(),
+            returns: Vec::new(),
+            flux: Vec::new(),
+            stages: vec![Stage { name: "hierarchy".into(), time: start.elapsed() }],
         };
-        let camera = request.camera.then(|| timed(SensorId::Camera, &SensorRays::of_camera(scene.camera())));
-        let beams = if request.beams { scene.beams() } else { &[] };
-        let beams = beams
-            .iter()
-            .enumerate()
-            .map(|(index, beam)| timed(SensorId::Beam(index), &SensorRays::of_beam(beam)))
-            .collect();
-        Frame { camera, beams, stages }
+
+        if request.camera {
+            let start = Instant::now();
+            let rays = SensorRays::of_camera(scene.camera());
+            let (map, _) = trace_sensor(&hierarchy, SensorId::Camera, &rays, request.quantities, false);
+            frame.camera = Some(map);
+            frame.stages.push(Stage { name: SensorId::Camera.to_string(), time: start.elapsed() });
+        }
+        let beams = if request.beams || request.returns { scene.beams() } else { &[] };
+        for (index, beam) in beams.iter().enumerate() {
+            // What the pencils hit, for the maps and for the returns.
+            let start = Instant::now();
+            let sensor = SensorId::Beam(index);
+            let grid = Grid::new(beam.sensor, index, request.sampling);
+            let rays = SensorRays::of_beam(beam, grid);
+            let quantities = if request.beams { request.quantities } else { NO_QUANTITIES };
+            let (map, met) = trace_sensor(&hierarchy, sensor, &rays, quantities, request.returns);
+            frame.stages.push(Stage { name: sensor.to_string(), time: start.elapsed() });
+            if request.beams {
+                frame.beams.push(map);
+            }
+            if request.returns {
+                let start = Instant::now();
+                let (returns, flux) = returns::of_beam(scene, &hierarchy, &rays, grid, &met);
+                frame.returns.push(returns);
+                frame.flux.push(flux);
+                frame.stages.push(Stage { name: format!("{sensor} returns"), time: start.elapsed() });
+            }
+        }
+        frame
     }
 }
 
-/// Traces every cell of a sensor. Rows are independent, so threads cannot change a bit.
+/// A map that costs no memory.
+const NO_QUANTITIES: Quantities =
+    Quantities { range: false, depth: false, face: false, point: false, normal: false, incidence: false };
+
+/// Traces every cell of a sensor, into its maps and, if they are to be `kept`, a list of the faces met, row by
+/// row. Rows are independent, so threads cannot change a bit.
 fn trace_sensor(
     hierarchy: &Hierarchy,
     sensor: SensorId,
     rays: &SensorRays,
     quantities: Quantities,
-) -> SensorMap {
+    kept: bool,
+) -> (SensorMap, Vec<Option<Met>>) {
     let (width, height) = rays.size();
     let mut map = SensorMap::empty(sensor, width, height, quantities);
-    map.rows_mut().into_par_iter().for_each(|mut row| {
+    let mut met = vec![None; if kept { map.cell_count() } else { 0 }];
+    let mut rows_met = met.chunks_exact_mut(width as usize);
+    let rows: Vec<_> = map.rows_mut().into_iter().map(|row| (row, rows_met.next())).collect();
+    rows.into_par_iter().for_each(|(mut row, mut met)| {
         let mut search = nearest::Search::new(hierarchy);
         for i in 0..width {
             let ray = rays.ray(i, row.j);
             if let Some(found) = search.nearest(&ray, rays.max_range()) {
                 row.put(i, &found.hit(&ray, rays.depth_per_t()));
+                if let Some(met) = &mut met {
+                    met[i as usize] = Some(Met { face: found.triangle.face, t: found.t });
+                }
             }
         }
     });
-    map
+    (map, met)
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3A};
 use obvhs::ray::Ray as BoxRay;
-use raypencil_scene::{Beam, Camera, Mounted, Pose};
+use raypencil_scene::{Beam, Camera, Mounted, Pose, Sampling};
 
 /// One ray, made ready for many triangle tests.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +42,32 @@ impl TracedRay {
     }
 }
 
+/// Where the rays of a beam's pencils cross its grid plane.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grid {
+    pub(crate) beam: Beam,
+    /// Of the beam in the scene: jittered rays are drawn by it.
+    index: usize,
+    sampling: Sampling,
+}
+
+impl Grid {
+    pub(crate) fn new(beam: Beam, index: usize, sampling: Sampling) -> Self {
+        Self { beam, index, sampling }
+    }
+
+    /// x and y of the ray of pencil (i, j) on the grid plane, beam frame, metres. Its cell's middle, or the
+    /// place drawn in it: offsets are multiples of 2^-33, so i + dx is exact for every i.
+    pub(crate) fn crossing(&self, i: u32, j: u32) -> (f64, f64) {
+        let Beam { half_width, thickness, .. } = self.beam;
+        let (columns, rows) = (f64::from(self.beam.columns), f64::from(self.beam.rows));
+        let [dx, dy] = self.sampling.offset(self.index, i, j);
+        let x = (2.0 * (f64::from(i) + dx) + 1.0 - columns) * half_width / columns;
+        let y = (2.0 * (f64::from(j) + dy) + 1.0 - rows) * thickness / (2.0 * rows);
+        (x, y)
+    }
+}
+
 /// All rays of one sensor.
 #[derive(Debug)]
 pub(crate) struct SensorRays {
@@ -54,7 +80,7 @@ pub(crate) struct SensorRays {
 #[derive(Debug)]
 enum Kind {
     Camera(Camera),
-    Beam(Beam),
+    Beam(Grid),
 }
 
 impl SensorRays {
@@ -62,8 +88,9 @@ impl SensorRays {
         Self::new(mounted.scene_from_sensor, Kind::Camera(mounted.sensor), mounted.sensor.max_range)
     }
 
-    pub(crate) fn of_beam(mounted: &Mounted<Beam>) -> Self {
-        Self::new(mounted.scene_from_sensor, Kind::Beam(mounted.sensor), mounted.sensor.max_range)
+    /// The rays that stand for the pencils of a beam, in its `grid`.
+    pub(crate) fn of_beam(mounted: &Mounted<Beam>, grid: Grid) -> Self {
+        Self::new(mounted.scene_from_sensor, Kind::Beam(grid), mounted.sensor.max_range)
     }
 
     fn new(pose: Pose, kind: Kind, max_range: f64) -> Self {
@@ -74,7 +101,7 @@ impl SensorRays {
     pub(crate) fn size(&self) -> (u32, u32) {
         match &self.kind {
             Kind::Camera(camera) => (camera.width, camera.height),
-            Kind::Beam(beam) => (beam.columns, beam.rows),
+            Kind::Beam(Grid { beam, .. }) => (beam.columns, beam.rows),
         }
     }
 
@@ -87,11 +114,11 @@ impl SensorRays {
     pub(crate) fn depth_per_t(&self) -> f64 {
         match &self.kind {
             Kind::Camera(camera) => camera.focal_length,
-            Kind::Beam(beam) => beam.grid_distance,
+            Kind::Beam(Grid { beam, .. }) => beam.grid_distance,
         }
     }
 
-    /// The central ray of cell (i, j).
+    /// The ray of cell (i, j).
     pub(crate) fn ray(&self, i: u32, j: u32) -> TracedRay {
         match &self.kind {
             // From the projection centre through the middle of the pixel.
@@ -103,13 +130,11 @@ impl SensorRays {
                 let q = DVec3::new(x, y, camera.focal_length);
                 TracedRay::new(self.position, self.scene_from_sensor.apply(q))
             }
-            // From the focal axis at the height of the row, through the middle of the grid cell. The two
-            // are kept apart: the origin of a row is not on the projection centre.
-            Kind::Beam(beam) => {
-                let (columns, rows) = (f64::from(beam.columns), f64::from(beam.rows));
-                let x = (2.0 * f64::from(i) + 1.0 - columns) * beam.half_width / columns;
-                let y = (2.0 * f64::from(j) + 1.0 - rows) * beam.thickness / (2.0 * rows);
-                let q = DVec3::new(x, 0.0, beam.grid_distance);
+            // From the focal axis at the height of the crossing, level through the grid plane. The two are
+            // kept apart: the origin of a ray is not on the projection centre.
+            Kind::Beam(grid) => {
+                let (x, y) = grid.crossing(i, j);
+                let q = DVec3::new(x, 0.0, grid.beam.grid_distance);
                 let start = self.scene_from_sensor.apply(DVec3::new(0.0, y, 0.0));
                 TracedRay::new(self.position + start, self.scene_from_sensor.apply(q))
             }
@@ -120,7 +145,7 @@ impl SensorRays {
 /// The rotation of a pose, (q p q*) / (q . q), expanded as
 /// `((w^2 - u.u) p + 2 (u.p) u + 2 w (u x p)) / (w^2 + u.u)` for q = (u, w).
 #[derive(Debug)]
-struct Turn {
+pub(crate) struct Turn {
     u: DVec3,
     w: f64,
     along: f64,
@@ -128,14 +153,14 @@ struct Turn {
 }
 
 impl Turn {
-    fn of(pose: &Pose) -> Self {
+    pub(crate) fn of(pose: &Pose) -> Self {
         let q = pose.rotation;
         let u = DVec3::new(q.x, q.y, q.z);
         let (ww, uu) = (q.w * q.w, u.dot(u));
         Self { u, w: q.w, along: ww - uu, norm_squared: ww + uu }
     }
 
-    fn apply(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn apply(&self, p: DVec3) -> DVec3 {
         let sum = p * self.along + self.u * (2.0 * self.u.dot(p)) + self.u.cross(p) * (2.0 * self.w);
         sum / self.norm_squared
     }

@@ -1,4 +1,4 @@
-//! Does a ray meet the front of a face, and at which t? Watertight, in f64.
+//! Does a ray meet a face, its front or either side, and at which t? Watertight, in f64.
 //!
 //! After S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: the
 //! vertices are projected along the ray onto the plane of the two shorter axes, and three 2D edge
@@ -48,6 +48,25 @@ impl Triangle {
     /// Only t says where: that it is at least 1 and within the range is for the caller to ask.
     #[inline]
     pub(crate) fn meets(&self, ray: &TracedRay) -> Option<f64> {
+        // n.q < 0: the ray meets the front.
+        let at = self.crossing::<false>(ray)?;
+        if at.along < 0.0 { Some(at.to_plane / at.along) } else { None }
+    }
+
+    /// How `ray` meets this face from its front or from its back, edges and vertices included; not if it
+    /// is parallel to it. A face and the same face reversed answer with the same bits but for the signs.
+    ///
+    /// Nothing slips between two faces here either, whichever sides they show: what lies on their common edge
+    /// has the sign 0 or exactly opposite signs in the two, and 0 is admitted by front and by back.
+    #[inline]
+    pub(crate) fn crosses(&self, ray: &TracedRay) -> Option<Crossing> {
+        self.crossing::<true>(ray).filter(|at| at.along != 0.0)
+    }
+
+    /// The crossing of the face's plane, if the ray passes on the inner side of all three edges, or on them:
+    /// as one sees the face's front or, with `BACKS`, as one sees either side.
+    #[inline(always)]
+    fn crossing<const BACKS: bool>(&self, ray: &TracedRay) -> Option<Crossing> {
         let [a, b, c] = self.vertices.map(widen);
         let [a0, b0, c0] = [a - ray.origin, b - ray.origin, c - ray.origin];
 
@@ -57,19 +76,31 @@ impl Triangle {
         let project = |v: DVec3| (v[kx] * qz - v[kz] * qx, v[ky] * qz - v[kz] * qy);
         let ((ax, ay), (bx, by), (cx, cy)) = (project(a0), project(b0), project(c0));
 
-        // The ray passes on the inner side of all three edges, or on them.
+        // All >= 0: inside as seen from the front; all <= 0: from the back; all 0: it is seen edge-on.
         let ab = ax * by - ay * bx;
         let bc = bx * cy - by * cx;
         let ca = cx * ay - cy * ax;
-        if !(ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab == 0.0 && bc == 0.0 && ca == 0.0) {
+        let as_front = ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
+        let as_back = BACKS && ab <= 0.0 && bc <= 0.0 && ca <= 0.0;
+        if !(as_front || as_back) || (ab == 0.0 && bc == 0.0 && ca == 0.0) {
             return None;
         }
 
-        // t = n.(a - o) / n.q, for a face whose front the ray meets: n.q < 0.
-        let n = (b - a).cross(c - a);
-        let n_dot_q = n.dot(ray.direction);
-        if n_dot_q < 0.0 { Some(n.dot(a0) / n_dot_q) } else { None }
+        // t = n.(a - o) / n.q.
+        let normal = (b - a).cross(c - a);
+        Some(Crossing { normal, to_plane: normal.dot(a0), along: normal.dot(ray.direction) })
     }
+}
+
+/// Where a ray o + t q crosses the plane of a face: at t = `to_plane` / `along`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Crossing {
+    /// n, not a unit.
+    pub(crate) normal: DVec3,
+    /// n.(a - o).
+    pub(crate) to_plane: f64,
+    /// n.q: below 0 if the ray meets the front.
+    pub(crate) along: f64,
 }
 
 pub(crate) fn widen([x, y, z]: [f32; 3]) -> DVec3 {

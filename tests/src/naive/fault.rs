@@ -1,7 +1,7 @@
 //! Faults to plant in the naive renderer, each the likeness of one that real renderers had or could have.
 
 /// A way to be wrong. Each changes one step, at the place that asks for it by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
     /// Cells are sampled at their upper left corner: the forgotten `+ 0.5` of a pixel loop.
     HalfCellShift,
@@ -70,11 +70,54 @@ pub enum Fault {
     NormalInSensorFrame,
     /// The incidence is reckoned against the sensor's axis, not against the ray: right for a distant sun.
     IncidenceAgainstAxis,
+    /// cos(psi) where cos(theta) should be: the light's angle for the camera's.
+    IncidenceForEmission,
+    /// cos(theta) left out: a face as bright from every side.
+    EmissionForgotten,
+    /// The air weakens light on its way to the ground only.
+    AttenuationOnce,
+    /// 1 / R^2 for 1 / r^2: the wrong one of two distances.
+    RangeForCameraDepth,
+    /// Shares of power from a table that was made for the first beam.
+    StaleShares,
+    /// phi of the pixel's centre in the radiometric model too.
+    PhiOfPixelCentre,
+    /// cos^4(phi), the law of a lens's image, where a pencil's flux has cos^3(phi).
+    FourthPower,
+    /// The aperture taken for its radius: four times as bright.
+    ApertureAsRadius,
+    /// The filter's pass band does not move with the angle.
+    FilterAlongAxis,
+    /// A normalised profile is not divided by its sum.
+    ProfileNotNormalised,
+    /// All ground has the reflectivity of the first material.
+    ReflectivityOfFirst,
+    /// Faces within a millimetre of the point do not hide it: the epsilon of a shadow ray.
+    ShadowEpsilon,
+    /// Only fronts cast shadows: culling left on.
+    ShadowsOfFronts,
+    /// Shadow rays go on beyond the point.
+    ShadowsFromBehind,
+    /// What is hidden is lit all the same.
+    HiddenLit,
+    /// The camera's maximum range limits what it sees of the stripes.
+    CameraRangeLimits,
+    /// A pixel's row for its column.
+    PixelTransposed,
+    /// The nearest pixel centre by rounding coordinates that count from corners.
+    PixelRounded,
+    /// A pixel keeps the flux of its last pencil: `=` for `+=`.
+    LastPencilWins,
 }
 
 impl Fault {
+    /// Whether it is of light, not of what a ray meets.
+    pub fn is_of_light(self) -> bool {
+        self >= Self::IncidenceForEmission
+    }
+
     /// All of them.
-    pub const ALL: [Self; 30] = [
+    pub const ALL: [Self; 49] = [
         Self::HalfCellShift,
         Self::ColumnOffByOne,
         Self::RowsBottomUp,
@@ -105,5 +148,24 @@ impl Fault {
         Self::NormalNotNormalised,
         Self::NormalInSensorFrame,
         Self::IncidenceAgainstAxis,
+        Self::IncidenceForEmission,
+        Self::EmissionForgotten,
+        Self::AttenuationOnce,
+        Self::RangeForCameraDepth,
+        Self::StaleShares,
+        Self::PhiOfPixelCentre,
+        Self::FourthPower,
+        Self::ApertureAsRadius,
+        Self::FilterAlongAxis,
+        Self::ProfileNotNormalised,
+        Self::ReflectivityOfFirst,
+        Self::ShadowEpsilon,
+        Self::ShadowsOfFronts,
+        Self::ShadowsFromBehind,
+        Self::HiddenLit,
+        Self::CameraRangeLimits,
+        Self::PixelTransposed,
+        Self::PixelRounded,
+        Self::LastPencilWins,
     ];
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Image, Maybe, Mounted, Pose, Profile, Scene, SensorId,
+    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Profile, Scene, SensorId,
 };
 
 use crate::compare::{Class, Defect, Place, Quantity, Worst};
@@ -29,6 +29,7 @@ pub(crate) fn subject() -> Subject {
             focal_length: 8e-3,
             principal_point: [24.0, 20.0],
             aperture: 2e-3,
+            lens: Lens::CLEAR,
             max_range: 20.0,
         },
     };

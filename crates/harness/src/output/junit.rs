@@ -18,7 +18,7 @@ pub(crate) fn junit(validation: &Validation) -> Result<String, quick_junit::Seri
         let (a, b) = (&validation.rendered[pair.a].name, &validation.rendered[pair.b].name);
         let mut suite = TestSuite::new(format!("{}: {a} against {b}", subject.name));
         for sensor in &pair.sensors {
-            for (quantity, tally) in &sensor.quantities {
+            for (quantity, tally) in sensor.quantities.iter().filter(|(one, _)| one.is_of(sensor.sensor)) {
                 let mut case = TestCase::new(quantity.to_string(), status(subject, sensor, *quantity, tally));
                 case.set_classname(format!("{}.{a}-{b}.{}", subject.name, sensor.sensor));
                 suite.add_test_case(case);
@@ -66,7 +66,7 @@ fn status(subject: &Subject, sensor: &SensorComparison, quantity: Quantity, tall
         lines.push(format!("    {}", probe_command(subject, defect.place)));
     }
     if let Some(worst) = tally.worst_error {
-        let value = super::text::quantity(worst.value, quantity.unit());
+        let value = super::text::quantity(worst.value, quantity.unit(subject.scene.flux_model()));
         lines.push(format!("Worst error: {value} at {}", worst.place));
         lines.push(format!("    {}", probe_command(subject, worst.place)));
     }

@@ -86,6 +86,17 @@ impl Picture {
         })
     }
 
+    /// A map of light: of each block of cells the brightest, so that no lit cell is lost.
+    pub(crate) fn of_light(map: &Image<Maybe<f64>>, scale: Scale, reduction: Reduction) -> Self {
+        let (width, height) = (map.width(), map.height());
+        Self::draw(width, height, reduction, ColourMap::Sequential, |left, top| {
+            let rows = top..(top + reduction.rows).min(height);
+            let cells = rows.flat_map(|j| (left..(left + reduction.columns).min(width)).map(move |i| (i, j)));
+            let brightest = cells.filter_map(|(i, j)| map.at(i, j).get()).reduce(f64::max);
+            brightest.map_or(NO_HIT, |value| index(scale.fraction(value)))
+        })
+    }
+
     /// A map of differences: of each block the cell that differs most, so that no difference is lost. A hit
     /// on one side only differs more than any value.
     pub(crate) fn of_differences(

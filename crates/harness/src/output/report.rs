@@ -3,6 +3,7 @@
 use askama::Template;
 
 use super::VERSION;
+use super::light::{self, Light};
 use super::plot::{self, Plots};
 use super::table::{CauseRow, Row, causes, hits, rows};
 use super::text::{count, counted, list, probe_command, time};
@@ -30,6 +31,7 @@ struct Page<'a> {
     comparisons: Vec<Comparison>,
     causes: Vec<CauseRow>,
     sensors: Vec<Sensor>,
+    light: Light,
     defects: Vec<Defects>,
     stages: Vec<Timed>,
 }
@@ -121,6 +123,7 @@ pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
                 }
             })
             .collect(),
+        light: light::light(validation, most),
         defects: pairs.iter().flat_map(|pair| defects(validation, pair)).collect(),
         stages: stages
             .iter()

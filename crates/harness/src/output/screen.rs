@@ -63,25 +63,41 @@ fn quantities(validation: &Validation) -> String {
             count(tally.of(Class::Rounding)),
             count(tally.of(Class::Approximation)),
             count(tally.of(Class::Defect)),
-            or_dash(worst(tally.worst_error, quantity.unit())),
+            or_dash(worst(tally.worst_error, quantity.unit(validation.subject.scene.flux_model()))),
             or_dash(tally.worst_error.map_or(String::new(), |worst| short(worst.place))),
             or_dash(worst(tally.worst_ratio, "")),
         ]);
     }
-    let lines: Vec<Vec<String>> = lines
-        .into_iter()
-        .map(|line| {
-            let shown = |(column, _): &(usize, String)| has_approximations || *column != APPROXIMATIONS;
-            line.into_iter().enumerate().filter(shown).map(|(_, cell)| cell).collect()
-        })
-        .collect();
+    let without = |lines: Vec<Vec<String>>, out: usize| -> Vec<Vec<String>> {
+        let shown = |line: Vec<String>| {
+            line.into_iter().enumerate().filter(|(column, _)| *column != out).map(|(_, cell)| cell).collect()
+        };
+        lines.into_iter().map(shown).collect()
+    };
+    let mut lines: Vec<Vec<String>> = lines.into_iter().map(Vec::from).collect();
+    if !has_approximations {
+        lines = without(lines, APPROXIMATIONS);
+    }
+    let widths_of = |lines: &[Vec<String>]| -> Vec<usize> {
+        (0..lines[0].len())
+            .map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0))
+            .collect()
+    };
+    let is_too_wide = |widths: &[usize], blanks: usize| {
+        widths.iter().sum::<usize>() + blanks * (widths.len() - 1) > COLUMNS
+    };
     // Text is on the left, numbers on the right.
-    let place = lines[0].iter().position(|head| head == "at");
-    let widths: Vec<usize> = (0..lines[0].len())
-        .map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0))
-        .collect();
-    // Two blanks between columns, one where counts are huge.
-    let blanks = if widths.iter().sum::<usize>() + 2 * (widths.len() - 1) <= COLUMNS { "  " } else { " " };
+    let mut place = lines[0].iter().position(|head| head == "at");
+    let mut widths = widths_of(&lines);
+    if let Some(column) = place
+        && is_too_wide(&widths, 1)
+    {
+        // Where counts are huge the report has the places.
+        lines = without(lines, column);
+        (place, widths) = (None, widths_of(&lines));
+    }
+    // Two blanks between columns, one where there is no room.
+    let blanks = if is_too_wide(&widths, 2) { " " } else { "  " };
     let mut text = String::new();
     for line in lines {
         let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {

@@ -57,6 +57,8 @@ struct RendererSummary<'a> {
     name: &'a str,
     unit_roundoff: Option<f64>,
     seconds: f64,
+    /// The flux of each beam on the camera's image, added up over its pixels.
+    flux: Vec<f64>,
     sensors: Vec<MapSummary>,
 }
 
@@ -83,6 +85,7 @@ struct CauseSummary {
     lost: u64,
     added: u64,
     worst_range_error_m: Option<WorstSummary>,
+    flux_changed: f64,
 }
 
 #[derive(Serialize)]
@@ -182,6 +185,7 @@ fn of_renderer(rendered: &Rendered) -> RendererSummary<'_> {
         name: &rendered.name,
         unit_roundoff: finite(rendered.resolution.unit_roundoff),
         seconds: rendered.time.as_secs_f64(),
+        flux: rendered.frame.flux.iter().map(|image| image.cells().iter().sum()).collect(),
         sensors: sensors.collect(),
     }
 }
@@ -195,7 +199,7 @@ fn of_pair<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'a> {
 fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorComparison) -> SensorSummary<'a> {
     let quantities = comparison.quantities.iter().map(|(quantity, tally)| QuantitySummary {
         quantity: *quantity,
-        unit: quantity.unit(),
+        unit: quantity.unit(subject.scene.flux_model()),
         agree: tally.of(Class::Agree),
         tie: tally.of(Class::Tie),
         rounding: tally.of(Class::Rounding),
@@ -243,6 +247,7 @@ fn of_causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<Ca
         lost: tally.lost,
         added: tally.added,
         worst_range_error_m: worst(subject, tally.worst_range),
+        flux_changed: tally.flux_changed,
     };
     approximations.iter().map(of_cause).collect()
 }

@@ -49,7 +49,7 @@ pub(crate) fn rows<'a>(
             defects: text::count(tally.of(Class::Defect)),
             fails: tally.of(Class::Defect) > 0,
             not_compared: text::count(tally.not_compared),
-            error: extreme(subject, tally.worst_error, quantity.unit()),
+            error: extreme(subject, tally.worst_error, quantity.unit(subject.scene.flux_model())),
             ratio: extreme(subject, tally.worst_ratio, ""),
         })
         .collect()
@@ -91,7 +91,11 @@ pub(crate) fn totals<'a>(sensors: impl IntoIterator<Item = &'a SensorComparison>
     for (quantity, tally) in sensors.into_iter().flat_map(|sensor| &sensor.quantities) {
         totals[*quantity as usize].1.add(tally);
     }
-    totals.into()
+    // A quantity that no sensor has, or that was not asked for, has no row.
+    let is_there = |(_, tally): &(Quantity, Tally)| {
+        tally.not_compared > 0 || tally.by_class.iter().any(|count| *count > 0)
+    };
+    totals.into_iter().filter(is_there).collect()
 }
 
 /// Rays that hit, as the map itself says; `None` if it does not.

@@ -164,9 +164,9 @@ fn every_ray_has_its_command() {
 #[test]
 fn junit_has_a_case_per_quantity_and_fails_on_defects() {
     let agreeing = junit::junit(&fixtures::agreeing()).unwrap();
-    // One suite of two sensors with seven quantities each.
-    assert_eq!(agreeing.matches("<testcase ").count(), 14);
-    assert!(agreeing.contains("tests=\"14\" skipped=\"0\" failures=\"0\" errors=\"0\""), "{agreeing}");
+    // One suite of two sensors: seven quantities each, a pixel's flux, and six of what comes back of a pencil.
+    assert_eq!(agreeing.matches("<testcase ").count(), 21);
+    assert!(agreeing.contains("tests=\"21\" skipped=\"0\" failures=\"0\" errors=\"0\""), "{agreeing}");
 
     let defective = junit::junit(&fixtures::defective()).unwrap();
     assert_eq!(defective.matches("<failure ").count(), 2);
@@ -203,9 +203,10 @@ fn the_report_stands_alone_and_escapes_what_it_quotes() {
     for outside in ["http:", "https:", "<script", "<link", "@import", "url("] {
         assert!(!html.contains(outside), "{outside}");
     }
-    // A range map of each renderer and a difference, of two sensors.
-    assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 6);
-    assert_eq!(html.matches("src=").count(), 6);
+    // A range map of each renderer and a difference, of two sensors; an image of each renderer's light, and a chart.
+    assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 8);
+    assert_eq!(html.matches("src=").count(), 8);
+    assert_eq!(html.matches("<polyline ").count(), 2);
     assert!(html.contains("class=\"ring\" style"));
     assert!(!html.contains("NaN%") && !html.contains("inf%"));
 }

@@ -63,7 +63,7 @@ pub(crate) fn headline(validation: &Validation) -> String {
         Verdict::Defects => format!("{} of {compared} differ", count(counts.defects)),
         Verdict::Agree if counts.compared == 1 => format!("The only {} agrees", &compared[2..]),
         Verdict::Agree if counts.approximation > 0 => format!(
-            "All {compared} agree or are accounted for: {} by the paper's approximations",
+            "All {compared} agree, but for {} that err as the paper does",
             count(counts.approximation)
         ),
         Verdict::Agree => format!("All {compared} agree"),

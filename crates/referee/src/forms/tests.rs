@@ -35,6 +35,7 @@ fn sensor(seed: &mut u64) -> Sensor {
             focal_length: 8e-3,
             principal_point: [31.3, 24.9],
             aperture: 2e-3,
+            lens: raypencil_scene::Lens::CLEAR,
             max_range: 20.0,
         };
         return Sensor::Camera(Mounted { scene_from_sensor, sensor });

@@ -2,11 +2,13 @@
 //! which it loses or adds hits; or, where it can do neither, why.
 
 use raypencil_scanline::Switches;
+use raypencil_scene::FluxModel;
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
 use crate::scenes::{
     BEAM_EDGES, Face, SKIP_RULES, beam_map, camera_map, columns_hit, hits, range, render, render_unskipped,
-    rig_on, same_maps, seen_by_beam, seen_by_camera, square_beam, square_camera, towards_origin,
+    rig_on, same_maps, seen_by_beam, seen_by_both, seen_by_camera, square_beam, square_camera,
+    towards_origin,
 };
 
 /// Farther than any vertex of the grounds here: rule 3b skips nothing.
@@ -117,6 +119,25 @@ fn rule_1b_adds_a_row_that_sees_the_back_where_the_middle_sees_the_front() {
         let cosine = -0.5 / (128.0_f64 * 128.0 + 0.25).sqrt() / length;
         let incidence = paper.incidence.as_ref().unwrap().at(32, 3).get().unwrap();
         assert!((incidence - cosine).abs() < 1e-12, "{incidence} {cosine}");
+    }
+}
+
+#[test]
+fn what_rule_1b_adds_returns_by_its_own_normal_and_not_by_equation_1() {
+    // The same ground. The camera stands at the beam's origin and sees the front, which row 3 meets from below at
+    // z = 2, y = 3/128: it lands in row 64 + 64 (3/256) = 64.75, and cos(theta) > 0.
+    let faces = [floor(2.0 / 128.0, 1.0 / 256.0)];
+    for (model, delivers) in [(FluxModel::Radiometric, true), (FluxModel::Eq1, false)] {
+        let scene = seen_by_both(&faces, &[([0.0; 3], four_rows())], model);
+        let frame = render(&scene, SKIP_RULES);
+        assert!(frame.beams[0].incidence.as_ref().unwrap().at(32, 3).get().unwrap() < 0.0);
+        let returns = &frame.returns[0];
+        assert!(returns.emission.as_ref().unwrap().at(32, 3).get().unwrap() > 0.0);
+        assert!(returns.visible.as_ref().unwrap().at(32, 3));
+        assert_eq!(returns.pixel.as_ref().unwrap().at(32, 3).get().map(|pixel| pixel.j), Some(64));
+        // Equation (1) has cos(psi), and power is not negative; the other model has not.
+        let flux = returns.flux.as_ref().unwrap().at(32, 3);
+        assert_eq!((flux > 0.0, flux == 0.0), (delivers, !delivers));
     }
 }
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Frame, Material, Mesh, Mounted, Pose, Profile, Renderer, Request,
-    Scene, SensorMap,
+    Atmosphere, Beam, Camera, FluxModel, Frame, Lens, Material, Mesh, Mounted, Pose, Profile, Renderer,
+    Request, Scene, SensorMap,
 };
 use raypencil_terrain::{Ground, height_at};
 
@@ -23,6 +23,7 @@ pub(crate) fn square_camera(max_range: f64) -> Camera {
         focal_length: 1.0 / 128.0,
         principal_point: [64.0; 2],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range,
     }
 }
@@ -65,6 +66,17 @@ pub(crate) fn seen_by_beam(faces: &[Face], beam: Beam) -> Scene {
         .expect("a valid scene")
 }
 
+/// `square_camera` at the scene's origin and beams at those places, all looking along z.
+pub(crate) fn seen_by_both(faces: &[Face], beams: &[([f64; 3], Beam)], model: FluxModel) -> Scene {
+    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: square_camera(20.0) };
+    let mounted = |&(position, sensor): &([f64; 3], Beam)| Mounted {
+        scene_from_sensor: Pose::from_position(DVec3::from_array(position)),
+        sensor,
+    };
+    let beams = beams.iter().map(mounted).collect();
+    Scene::new(mesh_of(faces), camera, beams, Atmosphere { attenuation: 0.0 }, model).expect("a valid scene")
+}
+
 /// The default rig on a ground, with another thickness and range.
 pub(crate) fn rig_on(ground: Ground, thickness: f64, max_range: f64) -> Scene {
     let mesh = Arc::new(ground.into_mesh().expect("a valid ground"));
@@ -83,6 +95,7 @@ pub(crate) fn rig_on(ground: Ground, thickness: f64, max_range: f64) -> Scene {
         focal_length: 8e-3,
         principal_point: [128.0; 2],
         aperture: 2e-3,
+        lens: Lens::CLEAR,
         max_range,
     };
     let beam = Beam {
@@ -106,6 +119,9 @@ pub(crate) fn towards_origin([a, b, c]: Face) -> Face {
 
 pub(crate) const BEAM_EDGES: Switches = Switches { beam_edges: Fidelity::Paper, ..Switches::EXACT };
 pub(crate) const SKIP_RULES: Switches = Switches { skip_rules: Fidelity::Paper, ..Switches::EXACT };
+pub(crate) const FACING: Switches = Switches { facing: Fidelity::Paper, ..Switches::EXACT };
+pub(crate) const EXTENT: Switches = Switches { extent: Fidelity::Paper, ..Switches::EXACT };
+pub(crate) const PLACE: Switches = Switches { place: Fidelity::Paper, ..Switches::EXACT };
 
 pub(crate) fn render(scene: &Scene, switches: Switches) -> Frame {
     Scanline::new(Options { switches, ..Options::EXACT }).render(scene, &Request::EVERYTHING)
@@ -126,6 +142,12 @@ pub(crate) fn beam_map(scene: &Scene, switches: Switches) -> SensorMap {
 
 pub(crate) fn same_maps(a: &Frame, b: &Frame) -> bool {
     a.maps().eq(b.maps())
+}
+
+/// Which pencils the camera sees, beam by beam, row by row.
+pub(crate) fn seen(scene: &Scene, switches: Switches) -> Vec<bool> {
+    let frame = render(scene, switches);
+    frame.returns.iter().flat_map(|of| of.visible.as_ref().expect("served").cells().to_vec()).collect()
 }
 
 /// The range of a cell, metres.

@@ -1,61 +1,12 @@
-//! Why a renderer that follows the paper into error differs from the contract, ray by ray.
-//!
-//! A difference is put down to an approximation only if two things hold:
-//!
-//! 1. *It restores.* With the switches of the cause on `exact`, and all others as they are, the same
-//!    algorithm gives an answer that the referee admits.
-//! 2. *It is confirmed.* The referee finds, from the paper's text and by itself, that the approximations lose
-//!    every face of which the answer is silent and add the one that it names
-//!    ([`raypencil_referee::Referee::explain`]), and each switch of the set is the reason for one of them.
-//!    Where one approximation hides what another does (the true face is lost by either alone, say), the reason
-//!    is sought in the answers that are left wrong when only a part of the set is exact.
-//!
-//! Of the sets that do both, one of the smallest is the cause. (A smaller one may restore an answer by luck, as
-//! where the one rule skips what the other adds; it is not confirmed then.) What no set satisfies has no cause,
-//! and is a defect.
-
-use std::collections::HashMap;
+//! Causes of what a ray is said to meet.
 
 use rayon::prelude::*;
 use raypencil_referee::{Approximations, Explained, Ruling};
-use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
-use raypencil_scene::{FaceId, Frame, Quantities, Renderer, Request, Resolution, SensorId, SensorMap};
+use raypencil_scanline::{Fidelity, Switches};
+use raypencil_scene::{FaceId, Frame, Quantities, Request, SensorMap};
 
+use super::{Cause, Court, sets_of};
 use crate::compare::Place;
-use crate::judge::Judge;
-
-/// What explains one answer.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cause {
-    /// The smallest set of switches that restores an exact answer and is confirmed.
-    pub switches: Switches,
-    /// The faces that are seen or not seen against the contract, and why.
-    pub explained: Vec<Explained>,
-    /// The same of the answers that are still wrong with only these switches exact, if it takes them to
-    /// find a reason for each switch.
-    pub explained_without: Vec<(Switches, Vec<Explained>)>,
-    /// The range of the restored answer, metres; `None` if that is a miss.
-    pub restored_range: Option<f64>,
-}
-
-/// The causes of all answers of one frame that the contract does not give.
-#[derive(Debug, Clone, Default)]
-pub struct Attributions {
-    by_ray: HashMap<(SensorId, u32, u32), Cause>,
-}
-
-impl Attributions {
-    /// Finds the causes of `frame`, which the scanline renderer made of the judge's scene with `switches`.
-    pub fn find(judge: &Judge<'_>, frame: &Frame, switches: Switches, resolution: Resolution) -> Self {
-        let by_ray = causes(judge, frame, switches, resolution).into_iter();
-        Self { by_ray: by_ray.map(|(Place { sensor, i, j }, cause)| ((sensor, i, j), cause)).collect() }
-    }
-
-    /// The cause of the answer to one ray, if it has one.
-    pub fn cause(&self, Place { sensor, i, j }: Place) -> Option<&Cause> {
-        self.by_ray.get(&(sensor, i, j))
-    }
-}
 
 /// A ray whose answer is not the contract's.
 struct Wrong {
@@ -82,14 +33,6 @@ impl Answer {
     }
 }
 
-/// Whom to ask about the answers of one renderer.
-#[derive(Clone, Copy)]
-struct Court<'a> {
-    judge: &'a Judge<'a>,
-    switches: Switches,
-    resolution: Resolution,
-}
-
 impl Court<'_> {
     fn is_wrong(&self, place: Place, answer: Answer) -> bool {
         self.judge.rule(place, answer.face, answer.range, self.resolution) == Ruling::Wrong
@@ -103,42 +46,36 @@ impl Court<'_> {
 }
 
 /// The rays of a frame whose errors have a confirmed cause.
-fn causes(
-    judge: &Judge<'_>,
-    frame: &Frame,
-    switches: Switches,
-    resolution: Resolution,
-) -> Vec<(Place, Cause)> {
-    if switches == Switches::EXACT {
+pub(super) fn causes(court: Court<'_>, frame: &Frame) -> Vec<(Place, Cause)> {
+    let of_geometry = court.switches.without(Switches {
+        beam_edges: Fidelity::Exact,
+        skip_rules: Fidelity::Exact,
+        ..Switches::PAPER
+    });
+    if of_geometry == Switches::EXACT {
         return Vec::new();
     }
     let request = Request {
         camera: frame.camera.is_some(),
         beams: !frame.beams.is_empty(),
         quantities: Quantities::RANGE_MAP,
-    };
-    let render = |switches: Switches| {
-        Scanline::new(Options { switches, ..Options::EXACT }).render(judge.scene(), &request)
+        ..Request::MAPS
     };
 
     // What differs from the same algorithm without any approximation, and is wrong.
-    let court = Court { judge, switches, resolution };
-    let exact = render(Switches::EXACT);
+    let exact = court.render(Switches::EXACT, request);
     let mut wrong: Vec<Wrong> = frame
         .maps()
         .filter_map(|map| Some((map, exact.map(map.sensor)?)))
         .flat_map(|(map, of_exact)| wrong_answers(court, map, of_exact))
         .collect();
 
-    // From the smallest sets to the largest, in the order of the switches.
-    let mut causes: Vec<Switches> = Switches::subsets().filter(|cause| switches.contains(*cause)).collect();
-    causes.sort_by_key(|cause| cause.count());
-    for cause in causes.into_iter().filter(|cause| *cause != Switches::EXACT) {
+    for cause in sets_of(of_geometry) {
         let mut open: Vec<&mut Wrong> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
         if open.is_empty() {
             break;
         }
-        let without = render(switches.without(cause));
+        let without = court.render(court.switches.without(cause), request);
         open.par_iter_mut().for_each(|ray| ray.attribute_to(cause, &without, court));
     }
     wrong.into_iter().filter_map(|ray| Some((ray.place, ray.cause?))).collect()
@@ -208,5 +145,5 @@ fn reasons(explained: &[Explained]) -> Switches {
             Fidelity::Exact
         }
     };
-    Switches { beam_edges: any(true), skip_rules: any(false) }
+    Switches { beam_edges: any(true), skip_rules: any(false), ..Switches::EXACT }
 }

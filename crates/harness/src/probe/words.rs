@@ -1,160 +1,12 @@
-//! Everything about one ray, from every renderer.
+//! A probe as text and as JSON.
 
 use std::fmt;
 
-use raypencil_referee::{Explained, Margin, Margins, Ruling, Verdict};
-use raypencil_scene::{Hit, Ray, Request, SensorId};
+use raypencil_referee::{Explained, Margin, Ruling};
+use raypencil_scene::{Hit, Ray, Return};
 use serde::Serialize;
 
-use crate::attribution::{Attributions, Cause};
-use crate::compare::{Class, Place};
-use crate::judge::{Judge, JudgeShare};
-use crate::output::probe_command;
-use crate::renderers::Contender;
-use crate::run::{Progress, Subject};
-
-/// One ray and what each renderer says of it.
-#[derive(Debug, Clone)]
-pub struct Probe {
-    /// Which ray.
-    pub place: Place,
-    /// The command that repeats this.
-    pub command: String,
-    /// The contract's ray, rounded to f64, scene frame.
-    pub ray: Ray,
-    /// The longest range along it, metres.
-    pub max_range: f64,
-    /// Each renderer's answer.
-    pub answers: Vec<ProbedAnswer>,
-    /// The exact verdict.
-    pub verdict: Verdict,
-    /// What is hit exactly, its values rounded; the lowest face of a tie.
-    pub exact: Option<Hit>,
-    /// The least displacement that changes the set of nearest faces.
-    pub face_margin: Margin,
-    /// The least displacement at which the range jumps.
-    pub surface_margin: Margin,
-}
-
-/// One renderer's answer to a ray, and what it is.
-#[derive(Debug, Clone)]
-pub struct ProbedAnswer {
-    /// The renderer's name.
-    pub renderer: String,
-    /// What it says; `None` for a miss.
-    pub hit: Option<Hit>,
-    /// What the referee rules on it.
-    pub ruling: Ruling,
-    /// What `validate` makes of that; an agreeing answer's values may still be out of bounds.
-    pub class: Class,
-    /// Why it is wrong, if a cause is confirmed.
-    pub cause: Option<Cause>,
-}
-
-/// Why there is no such ray.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum NoSuchRay {
-    /// The scene has fewer beams.
-    #[error("there is no beam {index}: the scene has {count}, counted from 0")]
-    Beam {
-        /// The beam asked for.
-        index: usize,
-        /// How many there are.
-        count: usize,
-    },
-    /// The sensor has fewer cells.
-    #[error("{sensor} has no cell {i},{j}: it is {width} x {height}, counted from 0,0")]
-    Cell {
-        /// The sensor asked for.
-        sensor: SensorId,
-        /// The column asked for.
-        i: u32,
-        /// The row asked for.
-        j: u32,
-        /// Its columns.
-        width: u32,
-        /// Its rows.
-        height: u32,
-    },
-}
-
-/// Asks every renderer about one ray.
-///
-/// # Errors
-/// If the scene has no such ray.
-pub fn probe(
-    subject: &Subject,
-    place: Place,
-    contenders: &[Contender],
-    progress: &dyn Progress,
-) -> Result<Probe, NoSuchRay> {
-    let Place { sensor, i, j } = place;
-    let scene = &subject.scene;
-    let Some((width, height)) = scene.size(sensor) else {
-        let SensorId::Beam(index) = sensor else { unreachable!("every scene has a camera") };
-        return Err(NoSuchRay::Beam { index, count: scene.beams().len() });
-    };
-    let no_such_cell = NoSuchRay::Cell { sensor, i, j, width, height };
-    let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
-        return Err(no_such_cell);
-    };
-    progress.stage("referee: preparing");
-    let judge = Judge::new(scene, JudgeShare::Sample);
-    let answers = contenders
-        .iter()
-        .map(|contender| {
-            progress.stage(&format!("{}: rendering", contender.renderer.name()));
-            ask(&judge, place, contender)
-        })
-        .collect();
-    let referee = judge.referee();
-    let Some(Margins { verdict, face, surface }) = referee.margins(sensor, i, j) else {
-        return Err(no_such_cell);
-    };
-    let exact = verdict.faces.first().and_then(|face| referee.hit(sensor, i, j, *face));
-    let command = probe_command(subject, place);
-    Ok(Probe {
-        place,
-        command,
-        ray,
-        max_range,
-        answers,
-        verdict,
-        exact,
-        face_margin: face,
-        surface_margin: surface,
-    })
-}
-
-/// One renderer's answer.
-fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
-    let Place { sensor, i, j } = place;
-    // A whole sensor is rendered for one ray: the answer must be the one that `validate` compares.
-    let request = Request {
-        camera: sensor == SensorId::Camera,
-        beams: sensor != SensorId::Camera,
-        ..Request::EVERYTHING
-    };
-    let renderer = &contender.renderer;
-    let frame = renderer.render(judge.scene(), &request);
-    let hit = frame.map(sensor).and_then(|map| {
-        Some(Hit {
-            face: map.face.as_ref()?.at(i, j).get()?,
-            range: map.range.as_ref()?.at(i, j).get()?,
-            point: map.point.as_ref()?.at(i, j).get()?,
-            normal: map.normal.as_ref()?.at(i, j).get()?,
-            depth: map.depth.as_ref()?.at(i, j).get()?,
-            incidence: map.incidence.as_ref()?.at(i, j).get()?,
-        })
-    });
-    let (face, range) = (hit.map(|hit| hit.face), hit.map(|hit| hit.range));
-    let ruling = judge.rule(place, face, range, renderer.resolution());
-    let cause = (ruling == Ruling::Wrong)
-        .then(|| Attributions::find(judge, &frame, contender.approximations(), renderer.resolution()))
-        .and_then(|attributions| attributions.cause(place).cloned());
-    let class = Class::of(ruling, cause.as_ref());
-    ProbedAnswer { renderer: renderer.name().to_string(), hit, ruling, class, cause }
-}
+use super::{Probe, ProbedReturn};
 
 impl Probe {
     /// The same as a value for `--json`.
@@ -176,6 +28,16 @@ impl Probe {
                 point_m: hit.point.to_array(),
                 normal: hit.normal.to_array(),
                 incidence_cosine: hit.incidence,
+            })
+        };
+        let of_return = |back: &Return| {
+            serde_json::json!({
+                "visible": back.visible,
+                "pixel": back.pixel.map(|pixel| [pixel.i, pixel.j]),
+                "camera_depth_m": back.depth,
+                "off_axis_cosine": back.off_axis,
+                "emission_cosine": back.emission,
+                "flux": back.flux,
             })
         };
         let margin = |margin: &Margin| {
@@ -208,6 +70,14 @@ impl Probe {
                     "ruling": in_words(answer.ruling),
                     "cause": cause,
                     "hit": values(answer.hit),
+                    "return": answer.back.as_ref().map(|back| {
+                        serde_json::json!({
+                            "said": of_return(&back.back),
+                            "visible_ruling": in_words(back.ruling.visible),
+                            "pixel_ruling": in_words(back.ruling.pixel),
+                            "cause": back.cause.as_ref().map(|cause| cause.switches.to_string()),
+                        })
+                    }),
                 })
             })
             .collect();
@@ -223,8 +93,11 @@ impl Probe {
             "exact": {
                 "faces": self.verdict.faces.iter().map(|face| face.0).collect::<Vec<_>>(),
                 "hit": values(self.exact),
+                "return": self.exact_return.as_ref().map(of_return),
                 "face_margin": margin(&self.face_margin),
                 "surface_margin": margin(&self.surface_margin),
+                "visibility_margin": self.sight_margins.as_ref().map(|margins| margin(&margins.visibility)),
+                "landing_margin_pixels": self.sight_margins.as_ref().and_then(|margins| margins.landing),
             },
             "answers": answers,
         })
@@ -276,8 +149,17 @@ impl fmt::Display for Probe {
         if let Some(hit) = &self.exact {
             write_values(f, hit)?;
         }
+        if let Some(back) = &self.exact_return {
+            write_return(f, back)?;
+        }
         writeln!(f, "    face margin {}", margin(&self.face_margin))?;
         writeln!(f, "    surface margin {}", margin(&self.surface_margin))?;
+        if let Some(margins) = &self.sight_margins {
+            writeln!(f, "    visibility margin {}", margin(&margins.visibility))?;
+            if let Some([low, _]) = margins.landing {
+                writeln!(f, "    landing margin {low:e} pixels")?;
+            }
+        }
         for answer in &self.answers {
             let said = answer.hit.map_or("no hit".into(), |hit| format!("face {}", hit.face.0));
             let class = match &answer.cause {
@@ -295,6 +177,9 @@ impl fmt::Display for Probe {
             if let Some(hit) = &answer.hit {
                 write_values(f, hit)?;
             }
+            if let Some(back) = &answer.back {
+                write_ruled_return(f, back)?;
+            }
         }
         writeln!(f, "  again: {}", self.command)
     }
@@ -304,6 +189,33 @@ fn write_values(f: &mut fmt::Formatter<'_>, hit: &Hit) -> fmt::Result {
     writeln!(f, "    range {} m, depth {} m", hit.range, hit.depth)?;
     writeln!(f, "    point {} m", vector(hit.point))?;
     writeln!(f, "    normal {}, cos(psi) {}", vector(hit.normal), hit.incidence)
+}
+
+fn write_return(f: &mut fmt::Formatter<'_>, back: &Return) -> fmt::Result {
+    let seen = if back.visible { "seen" } else { "not seen" };
+    let pixel = back.pixel.map_or("off the image".into(), |pixel| format!("pixel {},{}", pixel.i, pixel.j));
+    writeln!(f, "    {seen} by the camera, {pixel}; depth {} m there", back.depth)?;
+    writeln!(f, "    cos(phi) {}, cos(theta) {}, flux {:e}", back.off_axis, back.emission, back.flux)
+}
+
+fn write_ruled_return(f: &mut fmt::Formatter<'_>, answer: &ProbedReturn) -> fmt::Result {
+    let ProbedReturn { back, ruling, cause } = answer;
+    write_return(f, back)?;
+    if ruling.visible != Ruling::Exact {
+        let ruling = match cause {
+            Some(cause) => format!("approximation: {}", cause.switches),
+            None => in_words(ruling.visible),
+        };
+        writeln!(f, "    whether it is seen ({ruling})")?;
+    }
+    for one in cause.iter().flat_map(|cause| &cause.explained) {
+        let reasons: Vec<String> = one.reasons.iter().map(ToString::to_string).collect();
+        writeln!(f, "      face {}: {}", one.face.0, reasons.join("; "))?;
+    }
+    if ruling.pixel != Ruling::Exact {
+        writeln!(f, "    where it lands ({})", in_words(ruling.pixel))?;
+    }
+    Ok(())
 }
 
 fn vector(v: glam::DVec3) -> String {

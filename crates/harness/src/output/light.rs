@@ -1,0 +1,153 @@
+//! The light of the beams, for the page: what falls on the camera's image, and what the pencils along a stripe
+//! deliver.
+
+use raypencil_scene::{FluxModel, Image, Maybe};
+
+use super::picture::{ColourMap, Picture, Reduction};
+use super::scale::{Scale, Tick};
+use super::text::{number, quantity};
+use crate::run::Validation;
+
+/// One renderer's image of all beams.
+pub(crate) struct FluxImage {
+    pub(crate) title: String,
+    pub(crate) alt: String,
+    pub(crate) source: String,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) note: String,
+}
+
+/// The scale that all images share.
+pub(crate) struct FluxScale {
+    pub(crate) gradient: String,
+    pub(crate) ticks: Vec<Tick>,
+    pub(crate) label: String,
+}
+
+/// What the pencils of a beam's middle row deliver, column by column, by every renderer.
+pub(crate) struct StripeChart {
+    pub(crate) title: String,
+    /// Ticks of the columns and of the flux, places from 0 to 1 (of the flux upwards).
+    pub(crate) columns: Vec<Tick>,
+    pub(crate) values: Vec<Tick>,
+    pub(crate) curves: Vec<Curve>,
+    pub(crate) unit: &'static str,
+}
+
+/// One renderer's line in a [`StripeChart`], in a box of 1000 by 240.
+pub(crate) struct Curve {
+    pub(crate) name: String,
+    pub(crate) colour: &'static str,
+    pub(crate) width: f64,
+    pub(crate) points: String,
+}
+
+/// Everything the page shows of light.
+#[derive(Default)]
+pub(crate) struct Light {
+    pub(crate) images: Vec<FluxImage>,
+    pub(crate) scale: Option<FluxScale>,
+    pub(crate) stripes: Vec<StripeChart>,
+}
+
+/// Width and height of a chart's box.
+const CHART: [f64; 2] = [1000.0, 240.0];
+/// Lines of later renderers are thinner, so that those below show beside them.
+const CURVES: [(&str, f64); 4] = [("#e69f00", 6.0), ("#0072b2", 2.5), ("#009e73", 1.2), ("#cc79a7", 0.8)];
+
+/// The light of a validation; empty if no renderer computed any.
+pub(crate) fn light(validation: &Validation, most: u32) -> Light {
+    let scene = &validation.subject.scene;
+    let unit = match scene.flux_model() {
+        FluxModel::Radiometric => "W",
+        FluxModel::Eq1 => "W/m",
+    };
+    // All beams together: zero is no light.
+    let sums: Vec<(&str, Image<Maybe<f64>>, f64)> = validation
+        .rendered
+        .iter()
+        .filter(|rendered| !rendered.frame.flux.is_empty())
+        .map(|rendered| {
+            let camera = &scene.camera().sensor;
+            let cells = camera.width as usize * camera.height as usize;
+            let mut sum = vec![0.0_f64; cells];
+            for image in &rendered.frame.flux {
+                for (sum, flux) in sum.iter_mut().zip(image.cells()) {
+                    *sum += flux;
+                }
+            }
+            let total = sum.iter().sum();
+            let cells = sum.into_iter().map(|flux| Some(flux).filter(|flux| *flux > 0.0).into()).collect();
+            (rendered.name.as_str(), Image::from_cells(camera.width, camera.height, cells), total)
+        })
+        .collect();
+    let brightest =
+        sums.iter().flat_map(|(_, image, _)| image.cells()).filter_map(|cell| cell.get()).fold(0.0, f64::max);
+    let scale = Scale::linear(0.0, brightest);
+    let images = sums
+        .iter()
+        .map(|(name, image, total)| {
+            let picture =
+                Picture::of_light(image, scale, Reduction::to_fit(image.width(), image.height(), most));
+            let lit = image.cells().iter().filter(|cell| cell.get().is_some()).count();
+            FluxImage {
+                title: (*name).to_string(),
+                alt: format!("Flux of all beams on the camera's image by {name}"),
+                source: picture.data_uri(),
+                width: picture.width,
+                height: picture.height,
+                note: format!("{} in {lit} pixels", quantity(*total, unit)),
+            }
+        })
+        .collect();
+    Light {
+        images,
+        scale: (brightest > 0.0).then(|| FluxScale {
+            gradient: ColourMap::Sequential.css(),
+            ticks: scale.ticks(4),
+            label: format!("flux, {unit} per pixel; black: no light"),
+        }),
+        stripes: (0..scene.beams().len()).filter_map(|beam| stripe(validation, beam, unit)).collect(),
+    }
+}
+
+/// The middle row of one beam.
+fn stripe(validation: &Validation, beam: usize, unit: &'static str) -> Option<StripeChart> {
+    let sensor = &validation.subject.scene.beams()[beam].sensor;
+    let (columns, row) = (sensor.columns, sensor.rows / 2);
+    let lines: Vec<(&str, Vec<f64>)> = validation
+        .rendered
+        .iter()
+        .filter_map(|rendered| {
+            let flux = rendered.frame.returns.get(beam)?.flux.as_ref()?;
+            Some((rendered.name.as_str(), (0..columns).map(|i| flux.at(i, row)).collect()))
+        })
+        .collect();
+    let most = lines.iter().flat_map(|(_, line)| line).fold(0.0, |most: f64, flux| most.max(*flux));
+    if !(most > 0.0) {
+        return None;
+    }
+    let scale = Scale::linear(0.0, most);
+    let [width, height] = CHART;
+    let curve = |(index, (name, line)): (usize, &(&str, Vec<f64>))| {
+        let (colour, stroke) = CURVES[index.min(CURVES.len() - 1)];
+        let points = line.iter().enumerate().map(|(i, flux)| {
+            let x = width * (i as f64 + 0.5) / f64::from(columns);
+            format!("{x:.1},{:.1}", height * (1.0 - scale.fraction(*flux)))
+        });
+        Curve {
+            name: (*name).to_string(),
+            colour,
+            width: stroke,
+            points: points.collect::<Vec<_>>().join(" "),
+        }
+    };
+    Some(StripeChart {
+        title: format!("beam-{beam}, row {row}: at most {} {unit}", number(most)),
+        columns: Scale::linear(-0.5, f64::from(columns) - 0.5).ticks(8.min(columns)),
+        values: scale.ticks(4),
+        curves: lines.iter().enumerate().map(curve).collect(),
+        unit,
+    })
+}

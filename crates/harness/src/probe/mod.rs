@@ -1,0 +1,215 @@
+//! Everything about one ray, from every renderer.
+
+mod words;
+
+use raypencil_referee::{Margin, Margins, Ruling, SightMargins, SightRuling, Verdict};
+use raypencil_scene::{Frame, Hit, Ray, Request, Return, Sampling, SensorId};
+
+use crate::attribution::{Attributions, Cause, SightCause};
+use crate::compare::{Class, Place};
+use crate::judge::{Judge, JudgeShare};
+use crate::output::probe_command;
+use crate::renderers::Contender;
+use crate::run::{Progress, Subject};
+
+/// One ray and what each renderer says of it.
+#[derive(Debug, Clone)]
+pub struct Probe {
+    /// Which ray.
+    pub place: Place,
+    /// The command that repeats this.
+    pub command: String,
+    /// The contract's ray, rounded to f64, scene frame.
+    pub ray: Ray,
+    /// The longest range along it, metres.
+    pub max_range: f64,
+    /// Each renderer's answer.
+    pub answers: Vec<ProbedAnswer>,
+    /// The exact verdict.
+    pub verdict: Verdict,
+    /// What is hit exactly, its values rounded; the lowest face of a tie.
+    pub exact: Option<Hit>,
+    /// What comes back of the exact hit of a pencil.
+    pub exact_return: Option<Return>,
+    /// The least displacement that changes the set of nearest faces.
+    pub face_margin: Margin,
+    /// The least displacement at which the range jumps.
+    pub surface_margin: Margin,
+    /// Of a pencil that hits: how far the camera's view of it is from changing.
+    pub sight_margins: Option<SightMargins>,
+}
+
+/// One renderer's answer to a ray, and what it is.
+#[derive(Debug, Clone)]
+pub struct ProbedAnswer {
+    /// The renderer's name.
+    pub renderer: String,
+    /// What it says; `None` for a miss.
+    pub hit: Option<Hit>,
+    /// What the referee rules on it.
+    pub ruling: Ruling,
+    /// What `validate` makes of that; an agreeing answer's values may still be out of bounds.
+    pub class: Class,
+    /// Why it is wrong, if a cause is confirmed.
+    pub cause: Option<Cause>,
+    /// What it says comes back of a pencil that it says hits.
+    pub back: Option<ProbedReturn>,
+}
+
+/// What one renderer says comes back of a pencil, and what that is.
+#[derive(Debug, Clone)]
+pub struct ProbedReturn {
+    /// What it says.
+    pub back: Return,
+    /// What the referee rules on whether the point is seen, and on where it lands.
+    pub ruling: SightRuling,
+    /// Why it is wrong about being seen, if a cause is confirmed.
+    pub cause: Option<SightCause>,
+}
+
+/// Why there is no such ray.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoSuchRay {
+    /// The scene has fewer beams.
+    #[error("there is no beam {index}: the scene has {count}, counted from 0")]
+    Beam {
+        /// The beam asked for.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// The sensor has fewer cells.
+    #[error("{sensor} has no cell {i},{j}: it is {width} x {height}, counted from 0,0")]
+    Cell {
+        /// The sensor asked for.
+        sensor: SensorId,
+        /// The column asked for.
+        i: u32,
+        /// The row asked for.
+        j: u32,
+        /// Its columns.
+        width: u32,
+        /// Its rows.
+        height: u32,
+    },
+}
+
+/// Asks every renderer about one ray.
+///
+/// # Errors
+/// If the scene has no such ray.
+pub fn probe(
+    subject: &Subject,
+    place: Place,
+    contenders: &[Contender],
+    progress: &dyn Progress,
+) -> Result<Probe, NoSuchRay> {
+    let Place { sensor, i, j } = place;
+    let scene = &subject.scene;
+    let Some((width, height)) = scene.size(sensor) else {
+        let SensorId::Beam(index) = sensor else { unreachable!("every scene has a camera") };
+        return Err(NoSuchRay::Beam { index, count: scene.beams().len() });
+    };
+    let no_such_cell = NoSuchRay::Cell { sensor, i, j, width, height };
+    let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
+        return Err(no_such_cell);
+    };
+    progress.stage("referee: preparing");
+    let judge = Judge::new(scene, JudgeShare::Sample);
+    let answers = contenders
+        .iter()
+        .map(|contender| {
+            progress.stage(&format!("{}: rendering", contender.renderer.name()));
+            ask(&judge, place, contender)
+        })
+        .collect();
+    let referee = judge.referee();
+    let Some(Margins { verdict, face, surface }) = referee.margins(sensor, i, j) else {
+        return Err(no_such_cell);
+    };
+    let exact = verdict.faces.first().and_then(|face| referee.hit(sensor, i, j, *face));
+    let exact_return = match sensor {
+        SensorId::Camera => None,
+        SensorId::Beam(index) => {
+            referee.light(index, Sampling::Centres).and_then(|light| light.returned(i, j))
+        }
+    };
+    let sight_margins = match sensor {
+        SensorId::Camera => None,
+        SensorId::Beam(index) => referee.sight_margins(index, i, j),
+    };
+    let command = probe_command(subject, place);
+    Ok(Probe {
+        place,
+        command,
+        ray,
+        max_range,
+        answers,
+        verdict,
+        exact,
+        exact_return,
+        face_margin: face,
+        surface_margin: surface,
+        sight_margins,
+    })
+}
+
+/// One renderer's answer.
+fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
+    let Place { sensor, i, j } = place;
+    // A whole sensor is rendered for one ray: the answer must be the one that `validate` compares.
+    let request = Request {
+        camera: sensor == SensorId::Camera,
+        beams: sensor != SensorId::Camera,
+        returns: sensor != SensorId::Camera,
+        ..Request::EVERYTHING
+    };
+    let renderer = &contender.renderer;
+    let frame = renderer.render(judge.scene(), &request);
+    let hit = frame.map(sensor).and_then(|map| {
+        Some(Hit {
+            face: map.face.as_ref()?.at(i, j).get()?,
+            range: map.range.as_ref()?.at(i, j).get()?,
+            point: map.point.as_ref()?.at(i, j).get()?,
+            normal: map.normal.as_ref()?.at(i, j).get()?,
+            depth: map.depth.as_ref()?.at(i, j).get()?,
+            incidence: map.incidence.as_ref()?.at(i, j).get()?,
+        })
+    });
+    let (face, range) = (hit.map(|hit| hit.face), hit.map(|hit| hit.range));
+    let ruling = judge.rule(place, face, range, renderer.resolution());
+    let mut back = returned(judge, place, contender, &frame, hit);
+    let is_wrong =
+        ruling == Ruling::Wrong || back.as_ref().is_some_and(|back| back.ruling.visible == Ruling::Wrong);
+    let attributions = is_wrong
+        .then(|| Attributions::find(judge, &frame, contender.approximations(), renderer.resolution()));
+    let cause = attributions.as_ref().and_then(|attributions| attributions.cause(place).cloned());
+    if let Some(back) = &mut back {
+        back.cause = attributions.as_ref().and_then(|attributions| attributions.sight_cause(place).cloned());
+    }
+    let class = Class::of(ruling, cause.is_some());
+    ProbedAnswer { renderer: renderer.name().to_string(), hit, ruling, class, cause, back }
+}
+
+/// What one renderer says comes back of a pencil.
+fn returned(
+    judge: &Judge<'_>,
+    place: Place,
+    contender: &Contender,
+    frame: &Frame,
+    hit: Option<Hit>,
+) -> Option<ProbedReturn> {
+    let Place { sensor: SensorId::Beam(index), i, j } = place else { return None };
+    let (hit, returns) = (hit?, frame.returns.get(index)?);
+    let back = Return {
+        visible: returns.visible.as_ref()?.at(i, j),
+        pixel: returns.pixel.as_ref()?.at(i, j).get(),
+        depth: returns.depth.as_ref()?.at(i, j).get()?,
+        off_axis: returns.off_axis.as_ref()?.at(i, j).get()?,
+        emission: returns.emission.as_ref()?.at(i, j).get()?,
+        flux: returns.flux.as_ref()?.at(i, j),
+    };
+    let resolution = contender.renderer.resolution();
+    let ruling = judge.rule_sight(place, hit.face, Some(hit.range), back.visible, back.pixel, resolution)?;
+    Some(ProbedReturn { back, ruling, cause: None })
+}

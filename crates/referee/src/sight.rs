@@ -1,0 +1,396 @@
+//! What the camera sees of a pencil's hit: whether, and where on its image. Exactly.
+//!
+//! With the pencil's ray (O, s, D, sigma) and the face it meets, P = O / s + (n.a' / (s n.D)) D. Multiplied by
+//! W = -s n.D > 0 it is polynomial, and so is the way to it from the projection centre c:
+//!
+//! ```text
+//! V = W (P - c) = -(O n.D + n.a' D) - W c
+//! ```
+//!
+//! With M^T V = (X, Y, Z) in the camera's frame, which is N W times metres, and a' = a - c for another face:
+//!
+//! | condition | as a sign |
+//! | --- | --- |
+//! | the camera is on the front side of the face | n.V < 0 |
+//! | the point is beyond the focal length | Z - f N W > 0 |
+//! | it lands right of the border at column k, or on it | f X - (k - c_x) p_x Z >= 0 |
+//! | the segment passes between the other face's sides | all V.(a' x (b - a)) <= 0, or all >= 0 |
+//! | the other face is met before the point, u < 1 | n.a' W - n.V has the sign opposite to n.V |
+//! | at or beyond the image plane, u >= f / r | n.a' Z - f N n.V is 0 or has the sign of n.V |
+//!
+//! A face that contains P has u = 1: neither the face that is hit nor one that ties with it, nor a back at the
+//! same point, hides it.
+
+use std::cell::OnceCell;
+use std::cmp::Ordering;
+
+use glam::DVec3;
+use raypencil_scene::{Camera, FaceId, Mounted, Pixel, SensorId};
+
+use crate::cull::Bundle;
+use crate::face::{ExactRay, Face};
+use crate::number::{Dyadic, Interval, Number};
+use crate::pencil::{Aim, ScaledRay, Sensor};
+use crate::vector::{ScaledRotation, Vector};
+use crate::verdict::{Displacement, Referee};
+
+/// What the contract says of the camera's view of a pencil that hits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sight {
+    /// Whether the camera sees the point.
+    pub visible: bool,
+    /// Where it lands on the image, hidden or not.
+    pub pixel: Option<Pixel>,
+    /// A face that meets the segment between the point and the image plane.
+    pub hidden_by: Option<FaceId>,
+}
+
+/// The way from the camera to a point, as polynomials.
+#[derive(Debug, Clone)]
+pub(crate) struct Way<T> {
+    /// c, the projection centre.
+    centre: Vector<T>,
+    /// V.
+    pub(crate) along: Vector<T>,
+    /// W.
+    pub(crate) scale: T,
+    /// (X, Y, Z).
+    pub(crate) seen: Vector<T>,
+    /// N.
+    pub(crate) frame_scale: T,
+    /// f N.
+    focal: T,
+}
+
+impl<T: Number> Way<T> {
+    fn new(ray: &ScaledRay<T>, face: &Face, camera: &Mounted<Camera>) -> Self {
+        let pose = camera.scene_from_sensor;
+        let (centre, rotation) = (Vector::of(pose.position), ScaledRotation::<T>::of(pose.rotation));
+        let (approach, height) = (face.approach(ray), face.height(ray));
+        let minus_scale = approach.mul(&ray.origin_scale);
+        // V = -(O n.D + n.a' D) + s n.D c.
+        let point = ray.origin.scaled(&approach).add(&ray.direction.scaled(&height));
+        let along = centre.scaled(&minus_scale).sub(&point);
+        let seen = rotation.apply_inverse(&along);
+        let scale = T::of(0.0).sub(&minus_scale);
+        let focal = T::of(camera.sensor.focal_length).mul(&rotation.norm_squared);
+        Self { centre, along, scale, seen, focal, frame_scale: rotation.norm_squared }
+    }
+}
+
+impl Way<Interval> {
+    /// The parts of the way to the plane of `face` as a function of the displacement from an aim, which is bilinear:
+    /// V = V_0 + V_1 dx + V_2 dy + V_3 dx dy, and W and (X, Y, Z) likewise. Every [`Question`] is linear in them, so
+    /// that its values for the four are the coefficients of its own form.
+    pub(crate) fn parts(sensor: &Sensor, aim: Aim, face: &Face, camera: &Mounted<Camera>) -> [Self; 4] {
+        type I = Interval;
+        let ray = sensor.ray::<I>(aim);
+        let [across, down] = sensor.steps::<I>();
+        let pose = camera.scene_from_sensor;
+        let (centre, rotation) = (Vector::<I>::of(pose.position), ScaledRotation::<I>::of(pose.rotation));
+        let focal = I::of(camera.sensor.focal_length).mul(&rotation.norm_squared);
+        let normal = face.normal::<I>();
+        // O - s c and n.a' with their slopes in dy, D and n.D with theirs in dx.
+        let start = [ray.origin.sub(&centre.scaled(&ray.origin_scale)), down.clone()];
+        let height = [face.height(&ray), normal.dot(&down).negated()];
+        let approach = [face.approach(&ray), normal.dot(&across)];
+        let direction = [ray.direction.clone(), across];
+        [0, 1, 2, 3].map(|part: usize| {
+            let (x, y) = (part & 1, part >> 1);
+            let minus = start[y].scaled(&approach[x]).add(&direction[x].scaled(&height[y]));
+            let along = Vector(minus.0.map(Interval::negated));
+            let scale = match y {
+                0 => ray.origin_scale.mul(&approach[x]).negated(),
+                _ => I::of(0.0),
+            };
+            let seen = rotation.apply_inverse(&along);
+            Self { centre: centre.clone(), along, scale, seen, frame_scale: rotation.norm_squared, focal }
+        })
+    }
+
+    /// The coefficients of what the point has to fulfil whatever else there is: to lie beyond the focal length, and
+    /// within each border of the image. All must be positive; 0 will do at the left and upper borders alone.
+    pub(crate) fn lands(parts: &[Self; 4], camera: &Camera) -> [[Interval; 4]; 5] {
+        let border = |axis: usize, border: u32| {
+            let border = Border { camera, axis, border };
+            [0, 1, 2, 3].map(|part: usize| border.value(&parts[part]))
+        };
+        let before = |coefficients: [Interval; 4]| coefficients.map(Interval::negated);
+        [
+            [0, 1, 2, 3].map(|part: usize| BeyondFocal.value(&parts[part])),
+            border(0, 0),
+            before(border(0, camera.width)),
+            border(1, 0),
+            before(border(1, camera.height)),
+        ]
+    }
+
+    /// f N.
+    pub(crate) fn focal(&self) -> Interval {
+        self.focal
+    }
+
+    /// c.
+    pub(crate) fn centre(&self) -> &Vector<Interval> {
+        &self.centre
+    }
+}
+
+/// A polynomial of a way whose sign is asked for.
+trait Question {
+    fn value<T: Number>(&self, way: &Way<T>) -> T;
+}
+
+/// A way in both numbers; the exact one is only made when it is needed.
+pub(crate) struct ExactWay<'a> {
+    ray: &'a ExactRay<'a>,
+    face: &'a Face,
+    camera: &'a Mounted<Camera>,
+    fast: Way<Interval>,
+    exact: OnceCell<Way<Dyadic>>,
+}
+
+impl<'a> ExactWay<'a> {
+    /// The way to where `ray` meets `face`, which it does.
+    pub(crate) fn new(ray: &'a ExactRay<'a>, face: &'a Face, camera: &'a Mounted<Camera>) -> Self {
+        Self { ray, face, camera, fast: Way::new(ray.fast(), face, camera), exact: OnceCell::new() }
+    }
+
+    /// The way without rounding.
+    pub(crate) fn exact(&self) -> &Way<Dyadic> {
+        self.exact.get_or_init(|| Way::new(self.ray.exact(), self.face, self.camera))
+    }
+
+    #[inline]
+    fn sign(&self, question: &impl Question) -> Ordering {
+        match question.value(&self.fast).sign() {
+            Some(sign) => sign,
+            None => self.exact_sign(question),
+        }
+    }
+
+    #[cold]
+    fn exact_sign(&self, question: &impl Question) -> Ordering {
+        question.value(self.exact()).sign().unwrap_or(Ordering::Equal)
+    }
+
+    /// Whether the camera is on the front side of the face that is hit.
+    pub(crate) fn is_front_seen(&self) -> bool {
+        self.sign(&Facing(self.face)) == Ordering::Less
+    }
+
+    /// The pixel in which the point lands.
+    pub(crate) fn pixel(&self) -> Option<Pixel> {
+        if self.sign(&BeyondFocal) != Ordering::Greater {
+            return None;
+        }
+        let size = [self.camera.sensor.width, self.camera.sensor.height];
+        let [i, j] = [0, 1].map(|axis: usize| {
+            let is_at_or_after = |border: u32| {
+                let border = Border { camera: &self.camera.sensor, axis, border };
+                self.sign(&border) != Ordering::Less
+            };
+            if !is_at_or_after(0) || is_at_or_after(size[axis]) {
+                return None;
+            }
+            // A guess in f64, and then the exact neighbour of it.
+            let mut index = (self.landing()[axis].max(0.0) as u32).min(size[axis] - 1);
+            while !is_at_or_after(index) {
+                index -= 1;
+            }
+            while is_at_or_after(index + 1) {
+                index += 1;
+            }
+            Some(index)
+        });
+        Some(Pixel { i: i?, j: j? })
+    }
+
+    /// Where the point lands on the image in pixels, to f64 rounding.
+    pub(crate) fn landing(&self) -> [f64; 2] {
+        let camera = &self.camera.sensor;
+        let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.seen.0[k].middle());
+        let at = |part: f64, axis: usize| {
+            camera.focal_length * part / z / camera.pixel_pitch[axis] + camera.principal_point[axis]
+        };
+        [at(x, 0), at(y, 1)]
+    }
+
+    /// How far from the nearest border of its pixel the point lands, in pixels: between two numbers.
+    pub(crate) fn border_distance(&self, pixel: Pixel) -> [f64; 2] {
+        let (way, camera) = (self.exact(), &self.camera.sensor);
+        let least = [(0, pixel.i), (1, pixel.j)]
+            .into_iter()
+            .flat_map(|(axis, index)| [(axis, index), (axis, index + 1)])
+            .map(|(axis, border)| {
+                let across = Border { camera, axis, border }.value(way);
+                across.over(&Dyadic::of(camera.pixel_pitch[axis]).mul(&way.seen.0[2])).abs()
+            })
+            .fold(f64::INFINITY, f64::min);
+        // Each quotient is good to 2^-52 of itself, and so is the least of them.
+        let off = 2.0 * f64::EPSILON;
+        [least * (1.0 - off), least * (1.0 + off)]
+    }
+
+    /// P - c, to f64 rounding, metres.
+    pub(crate) fn centre_to_point(&self) -> DVec3 {
+        let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.along.0[k].middle());
+        DVec3::new(x, y, z) / self.fast.scale.middle()
+    }
+
+    /// r, to f64 rounding, metres.
+    pub(crate) fn depth(&self) -> f64 {
+        let way = &self.fast;
+        way.seen.0[2].middle() / (way.frame_scale.middle() * way.scale.middle())
+    }
+
+    /// Whether `other` meets the segment from the point to the image plane.
+    pub(crate) fn is_hidden_by(&self, other: &Face) -> bool {
+        let facing = self.sign(&Facing(other));
+        if facing == Ordering::Equal {
+            return false;
+        }
+        // All on the inner side, as seen from the side that faces the camera.
+        let outer = facing.reverse();
+        (0..3).all(|k| self.sign(&Side { face: other, k }) != outer)
+            && self.sign(&Before(other)) == outer
+            && self.sign(&AtOrBeyondImage(other)) != outer
+    }
+
+    /// The faces that may meet the segment.
+    pub(crate) fn bundle(&self) -> Bundle {
+        let along = self.centre_to_point();
+        let length = along.length();
+        Bundle {
+            origin: self.camera.scene_from_sensor.position,
+            direction: along / length,
+            // A dozen roundings, each 2^-53, and the tree's own slack.
+            reach: length * (1.0 + 64.0 * f64::EPSILON),
+            start_radius: 0.0,
+            spread: 0.0,
+        }
+    }
+}
+
+/// n.V.
+struct Facing<'a>(&'a Face);
+
+impl Question for Facing<'_> {
+    fn value<T: Number>(&self, way: &Way<T>) -> T {
+        self.0.normal().dot(&way.along)
+    }
+}
+
+/// Z - f N W.
+struct BeyondFocal;
+
+impl Question for BeyondFocal {
+    fn value<T: Number>(&self, way: &Way<T>) -> T {
+        way.seen.0[2].sub(&way.focal.mul(&way.scale))
+    }
+}
+
+/// f X - (k - c_x) p_x Z, or the same in y.
+struct Border<'a> {
+    camera: &'a Camera,
+    axis: usize,
+    border: u32,
+}
+
+impl Question for Border<'_> {
+    fn value<T: Number>(&self, way: &Way<T>) -> T {
+        let from_centre = T::of_integer(self.border).sub(&T::of(self.camera.principal_point[self.axis]));
+        let metres = from_centre.mul(&T::of(self.camera.pixel_pitch[self.axis]));
+        let across = T::of(self.camera.focal_length).mul(&way.seen.0[self.axis]);
+        across.sub(&metres.mul(&way.seen.0[2]))
+    }
+}
+
+/// V.(a' x (b - a)) for the edge from corner k.
+struct Side<'a> {
+    face: &'a Face,
+    k: usize,
+}
+
+impl Question for Side<'_> {
+    #[inline]
+    fn value<T: Number>(&self, way: &Way<T>) -> T {
+        let (a, b) = (self.face.corner::<T>(self.k), self.face.corner::<T>((self.k + 1) % 3));
+        way.along.dot(&a.sub(&way.centre).cross(&b.sub(&a)))
+    }
+}
+
+/// n.a' W - n.V.
+struct Before<'a>(&'a Face);
+
+impl Question for Before<'_> {
+    fn value<T: Number>(&self, way: &Way<T>) -> T {
+        let n = self.0.normal::<T>();
+        let height = n.dot(&self.0.corner(0).sub(&way.centre));
+        height.mul(&way.scale).sub(&n.dot(&way.along))
+    }
+}
+
+/// n.a' Z - f N n.V.
+struct AtOrBeyondImage<'a>(&'a Face);
+
+impl Question for AtOrBeyondImage<'_> {
+    fn value<T: Number>(&self, way: &Way<T>) -> T {
+        let n = self.0.normal::<T>();
+        let height = n.dot(&self.0.corner(0).sub(&way.centre));
+        height.mul(&way.seen.0[2]).sub(&way.focal.mul(&n.dot(&way.along)))
+    }
+}
+
+impl Referee<'_> {
+    /// What the camera sees of the hit of pencil (i, j), displaced by `by`; `None` if there is no such pencil, or
+    /// it does not hit.
+    pub fn sight(&self, beam: usize, i: u32, j: u32, by: Displacement) -> Option<Sight> {
+        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
+        let (columns, rows) = sensor.size();
+        if i >= columns || j >= rows || !by.dx.is_finite() || !by.dy.is_finite() {
+            return None;
+        }
+        let aim = Aim { i, j, dx: by.dx, dy: by.dy };
+        let nearest = self.nearest(&sensor, aim);
+        Some(self.sight_of(&sensor, aim, nearest.first()?))
+    }
+
+    /// What the camera sees of the point in which an aim meets `face`.
+    pub(crate) fn sight_of(&self, sensor: &Sensor, aim: Aim, face: &Face) -> Sight {
+        let ray = ExactRay::new(sensor, aim);
+        let way = ExactWay::new(&ray, face, self.scene.camera());
+        let pixel = way.pixel();
+        let could_be_seen = pixel.is_some() && way.is_front_seen();
+        let hidden_by = if could_be_seen { self.occluder(&way) } else { None };
+        Sight { visible: could_be_seen && hidden_by.is_none(), pixel, hidden_by }
+    }
+
+    /// Some face that hides the end of a way: the lowest of those found in the first leaf that has any.
+    fn occluder(&self, way: &ExactWay<'_>) -> Option<FaceId> {
+        let bundle = way.bundle();
+        let mut found: Option<FaceId> = None;
+        self.tree.visit(&bundle, |face| {
+            if found.is_none() && way.is_hidden_by(face) {
+                found = Some(face.id);
+            }
+            // Nothing more is asked for once one is found.
+            if found.is_some() { f64::NEG_INFINITY } else { bundle.reach }
+        });
+        found
+    }
+
+    /// Every face that hides the end of a way, in ascending order.
+    pub(crate) fn occluders(&self, way: &ExactWay<'_>) -> Vec<Face> {
+        let bundle = way.bundle();
+        let mut found: Vec<Face> = Vec::new();
+        self.tree.visit(&bundle, |face| {
+            if way.is_hidden_by(face) {
+                found.push(*face);
+            }
+            bundle.reach
+        });
+        found.sort_by_key(|face| face.id);
+        found
+    }
+}

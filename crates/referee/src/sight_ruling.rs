@@ -1,0 +1,174 @@
+//! Whether what a renderer says of the camera's view is right, or what an honest renderer of finite resolution may
+//! say.
+//!
+//! A renderer whose ray may be displaced by delta, and whose point may be off by epsilon, may answer as is right for
+//! some ray displaced by no more than delta; and it may take a face that passes within epsilon of the point to lie
+//! on either side of it.
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Pixel, SensorId};
+
+use crate::face::{ExactRay, Face};
+use crate::pencil::{Aim, Sensor};
+use crate::ruling::{Ruling, Tolerance};
+use crate::sight::{ExactWay, Sight};
+use crate::verdict::{Displacement, Referee};
+
+/// What the referee says of one answer about the camera's view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SightRuling {
+    /// Of whether the point is seen.
+    pub visible: Ruling,
+    /// Of where it lands.
+    pub pixel: Ruling,
+}
+
+/// The rays beside a ray that are asked about, in units of the tolerance.
+const BESIDE: [[f64; 2]; 8] =
+    [[-1.0, -1.0], [0.0, -1.0], [1.0, -1.0], [-1.0, 0.0], [1.0, 0.0], [-1.0, 1.0], [0.0, 1.0], [1.0, 1.0]];
+
+impl Referee<'_> {
+    /// Rules on what a renderer says of the camera's view of the point in which pencil (i, j), displaced by `by`,
+    /// meets the plane of `face`; `None` if there is no such pencil or face.
+    #[expect(clippy::too_many_arguments, reason = "a pencil, an answer and a tolerance")]
+    pub fn rule_sight(
+        &self,
+        beam: usize,
+        i: u32,
+        j: u32,
+        by: Displacement,
+        face: FaceId,
+        visible: bool,
+        pixel: Option<Pixel>,
+        tolerance: Tolerance,
+    ) -> Option<SightRuling> {
+        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
+        let (columns, rows) = sensor.size();
+        let mesh = self.scene.mesh();
+        if i >= columns || j >= rows || face.0 as usize >= mesh.faces().len() {
+            return None;
+        }
+        let face = Face::of(mesh, face);
+        let aim = Aim { i, j, dx: by.dx, dy: by.dy };
+        let exact = self.sight_of(&sensor, aim, &face);
+        if exact.visible == visible && exact.pixel == pixel {
+            return Some(SightRuling { visible: Ruling::Exact, pixel: Ruling::Exact });
+        }
+        let lateral = tolerance.lateral.clamp(0.0, 1.0);
+        let beside: Vec<(Displacement, Sight)> = BESIDE
+            .iter()
+            .map(|[x, y]| {
+                let (dx, dy) = (x * lateral, y * lateral);
+                let aim = Aim { dx: aim.dx + dx, dy: aim.dy + dy, ..aim };
+                (Displacement { dx, dy }, self.sight_of(&sensor, aim, &face))
+            })
+            .collect();
+        let witness = |is_so: &dyn Fn(&Sight) -> bool| {
+            beside.iter().find(|(_, sight)| is_so(sight)).map(|(by, _)| Ruling::Rounding(*by))
+        };
+
+        let ray = ExactRay::new(&sensor, aim);
+        let way = ExactWay::new(&ray, &face, self.scene.camera());
+        let off = tolerance.depth + tolerance.position;
+        let of_visible = if exact.visible == visible {
+            Ruling::Exact
+        } else if let Some(witness) = witness(&|sight| sight.visible == visible) {
+            witness
+        } else if self.may_see(&way, &face, exact, visible, off) {
+            Ruling::Rounding(Displacement::ZERO)
+        } else {
+            Ruling::Wrong
+        };
+        let of_pixel = if exact.pixel == pixel {
+            Ruling::Exact
+        } else if let Some(witness) = witness(&|sight| sight.pixel == pixel) {
+            witness
+        } else if self.may_land(&way, pixel, off) {
+            Ruling::Rounding(Displacement::ZERO)
+        } else {
+            Ruling::Wrong
+        };
+        Some(SightRuling { visible: of_visible, pixel: of_pixel })
+    }
+
+    /// Whether a point that may be off by `off` metres may be said to be seen, or hidden, against what is exact.
+    fn may_see(&self, way: &ExactWay<'_>, face: &Face, exact: Sight, visible: bool, off: f64) -> bool {
+        let from_centre = way.centre_to_point();
+        let point = self.scene.camera().scene_from_sensor.position + from_centre;
+        // The camera lies within rounding of the plane of the face.
+        let side = distance_from_plane(face, point - from_centre);
+        if side.abs() <= off {
+            return true;
+        }
+        if visible {
+            // All that hides it does so within rounding of the point.
+            return exact.pixel.is_some()
+                && side > 0.0
+                && self.occluders(way).iter().all(|other| distance_from_plane(other, point).abs() <= off);
+        }
+        // Something passes within rounding of the point that does not hide it.
+        let mut found = false;
+        let bundle = crate::cull::Bundle { start_radius: off, ..way.bundle() };
+        self.tree.visit(&bundle, |other| {
+            found |= other.id != face.id
+                && distance_from_plane(other, point).abs() <= off
+                && is_beside(other, point, off);
+            if found { f64::NEG_INFINITY } else { bundle.reach }
+        });
+        found
+    }
+
+    /// Whether a point that may be off by `off` metres may be said to land in `pixel`.
+    fn may_land(&self, way: &ExactWay<'_>, pixel: Option<Pixel>, off: f64) -> bool {
+        let mounted = self.scene.camera();
+        let camera = &mounted.sensor;
+        let [x, y] = way.landing();
+        let across = [camera.width, camera.height].map(f64::from);
+        let depth = way.depth();
+        // A point off by `off` lands off by that over its depth, and more where it is seen aslant; and the
+        // coordinates themselves are rounded.
+        let slack = [0, 1].map(|axis: usize| {
+            let slope = ([x, y][axis] - camera.principal_point[axis]) * camera.pixel_pitch[axis]
+                / camera.focal_length;
+            let pixels = camera.focal_length / (depth.abs() * camera.pixel_pitch[axis]);
+            off * (1.0 + slope.abs()) * pixels
+                + 8.0
+                    * f64::EPSILON
+                    * ([x, y][axis].abs() + camera.principal_point[axis].abs() + across[axis])
+        });
+        match pixel {
+            Some(Pixel { i, j }) => {
+                let within = |at: f64, index: u32, slack: f64| {
+                    at >= f64::from(index) - slack && at <= f64::from(index) + 1.0 + slack
+                };
+                within(x, i, slack[0]) && within(y, j, slack[1]) && depth > camera.focal_length - off
+            }
+            // It may be said to miss the image if it is as near to its border.
+            None => {
+                let near = |at: f64, side: f64, slack: f64| at <= slack || at >= side - slack;
+                near(x, across[0], slack[0])
+                    || near(y, across[1], slack[1])
+                    || depth <= camera.focal_length + off
+            }
+        }
+    }
+}
+
+/// How far a point is in front of a face's plane, metres, to f64 rounding.
+fn distance_from_plane(face: &Face, point: DVec3) -> f64 {
+    let [a, b, c] = face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
+    let n = (b - a).cross(c - a);
+    n.dot(point - a) / n.length()
+}
+
+/// Whether a point that is on a face's plane, but for rounding, is within `off` metres of the face, corners apart: inside of
+/// every side, or beyond it by no more than that.
+fn is_beside(face: &Face, point: DVec3, off: f64) -> bool {
+    let corners = face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
+    let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    (0..3).all(|k| {
+        let along = corners[(k + 1) % 3] - corners[k];
+        let inward = n.cross(along);
+        inward.dot(point - corners[k]) >= -off * inward.length()
+    })
+}

@@ -1,0 +1,178 @@
+//! The camera's view of a pencil: closed forms by hand, and what hides a point.
+
+use std::f64::consts::{FRAC_PI_4, LN_2};
+use std::sync::Arc;
+
+use glam::DVec3;
+use raypencil_referee::{Displacement, ExactRenderer, Referee};
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pixel, Pose, Profile,
+    Renderer, Request, Return, Sampling, Scene,
+};
+
+/// One pencil at the scene's origin along z, on 2 m of range; a camera 1 m to its right, looking along z too. The
+/// point (0, 0, 2) is at (-1, 0, 2) from the camera: r = 2, d = sqrt 5, cos(phi) = 2 / sqrt 5.
+struct Setting {
+    faces: Vec<[[f32; 3]; 3]>,
+    reflectivity: f64,
+    profile: Profile,
+    model: FluxModel,
+    attenuation: f64,
+    lens: Lens,
+}
+
+/// The plane z = 2, its front to the origin.
+const WALL: [[f32; 3]; 3] = [[-8.0, -8.0, 2.0], [-8.0, 8.0, 2.0], [16.0, 0.0, 2.0]];
+
+impl Setting {
+    fn of(model: FluxModel) -> Self {
+        Self {
+            faces: vec![WALL],
+            reflectivity: 0.5,
+            profile: Profile::Paper,
+            model,
+            attenuation: 0.0,
+            lens: Lens::CLEAR,
+        }
+    }
+
+    fn scene(&self) -> Scene {
+        let vertices = self.faces.iter().flatten().copied().collect();
+        let count = self.faces.len();
+        let faces = (0..count as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let materials = vec![Material { name: "ground".into(), reflectivity: self.reflectivity }];
+        let mesh = Mesh::new(DVec3::ZERO, vertices, faces, vec![0; count], materials).expect("a mesh");
+        // 64 x 64 pixels of 1/64 f: x / z from -1/2 to 1/2. The point lands at x / z = -1/2, on the left border of
+        // column 0; y / z = 0 is the upper border of row 32.
+        let camera = Camera {
+            width: 64,
+            height: 64,
+            pixel_pitch: [1.0 / 8192.0; 2],
+            focal_length: 1.0 / 128.0,
+            principal_point: [32.0; 2],
+            aperture: 1.0 / 512.0,
+            lens: self.lens,
+            max_range: 20.0,
+        };
+        let beam = Beam {
+            columns: 1,
+            rows: 1,
+            thickness: 0.005,
+            grid_distance: 0.1,
+            half_width: 0.05,
+            max_range: 20.0,
+            power: 4.0,
+            wavelength: 810e-9,
+            profile: self.profile,
+        };
+        let at = |x: f64| Pose::from_position(DVec3::new(x, 0.0, 0.0));
+        Scene::new(
+            Arc::new(mesh),
+            Mounted { scene_from_sensor: at(1.0), sensor: camera },
+            vec![Mounted { scene_from_sensor: at(0.0), sensor: beam }],
+            Atmosphere { attenuation: self.attenuation },
+            self.model,
+        )
+        .expect("a scene")
+    }
+
+    fn returned(&self) -> Return {
+        let scene = self.scene();
+        let referee = Referee::new(&scene);
+        let light = referee.light(0, Sampling::Centres).expect("a beam");
+        light.returned(0, 0).expect("the wall is hit")
+    }
+}
+
+fn close(found: f64, derived: f64) {
+    // 120 u, as the module derives.
+    assert!((found / derived - 1.0).abs() <= 120.0 * f64::EPSILON / 2.0, "{found:e}, derived {derived:e}");
+}
+
+#[test]
+fn one_pencil_on_a_wall_by_hand() {
+    // cos(theta) = cos(phi) = 2 / sqrt 5, r = 2, P = 4 W (one pencil, cos(alpha) = 1), r_d = 1/2.
+    let back = Setting::of(FluxModel::Radiometric).returned();
+    assert!(back.visible);
+    assert_eq!(back.pixel, Some(Pixel { i: 0, j: 32 }));
+    assert_eq!(back.depth, 2.0);
+    let cosine = 2.0 / 5.0_f64.sqrt();
+    close(back.off_axis, cosine);
+    close(back.emission, cosine);
+    // I = P r_d (D^2 / 4) cos(theta) cos^3(phi) / r^2 = 4 (1/2) (2^-18 / 4) (16/25) / 4 = 2^-21 16/25.
+    close(back.flux, 16.0 / 25.0 / f64::from(1 << 21));
+    // Equation (1): phi of the centre of pixel (0, 32): x = -31.5/64, y = 1/128, so tan^2 = (63^2 + 1) / 128^2
+    // = 3970 / 16384 and cos^2 = 16384 / 20354.
+    let back = Setting::of(FluxModel::Eq1).returned();
+    let cos_squared = 16384.0 / 20354.0;
+    // P r_d (pi/4) (D/f)^2 A_cp cos^4(phi) cos(theta) / (R r^2), (D/f)^2 = 1/16, A_cp = 2^-26, R r^2 = 8, cos(psi) = 1.
+    let derived = 2.0 * FRAC_PI_4 / 16.0 / f64::from(1 << 26) * cos_squared * cos_squared * cosine / 8.0;
+    close(back.flux, derived);
+}
+
+#[test]
+fn air_filter_and_lens_take_their_shares() {
+    let mut setting = Setting::of(FluxModel::Radiometric);
+    let clear = setting.returned().flux;
+    setting.attenuation = 0.25;
+    // exp(-sigma (R + d)), R = 2, d = sqrt 5; equation (1) has r = 2 for d.
+    close(setting.returned().flux, clear * libm::exp(-0.25 * (2.0 + 5.0_f64.sqrt())));
+    setting.attenuation = 0.0;
+    setting.lens = Lens {
+        transmission: 0.75,
+        filter: Filter::Interference { centre: 820e-9, width: 20e-9, index: 2.0 },
+    };
+    // sin^2(phi) = 1/5: the centre moves to 820 sqrt(1 - 1/20) nm.
+    let relative = (810e-9 - 820e-9 * 0.95_f64.sqrt()) / 20e-9;
+    let loss = libm::exp(-4.0 * LN_2 * relative * relative);
+    // Small numbers are differences of large ones here: 810 - 799 nm loses two digits.
+    assert!((setting.returned().flux / (clear * 0.75 * loss) - 1.0).abs() < 1e-13);
+    setting.reflectivity = 0.0;
+    assert_eq!(setting.returned().flux, 0.0);
+}
+
+#[test]
+fn what_meets_the_segment_hides_the_point() {
+    let visible = |faces: &[[[f32; 3]; 3]]| {
+        let setting = Setting { faces: [&[WALL], faces].concat(), ..Setting::of(FluxModel::Radiometric) };
+        let scene = setting.scene();
+        let referee = Referee::new(&scene);
+        let sight = referee.sight(0, 0, 0, Displacement::ZERO).expect("the wall is hit");
+        assert_eq!(sight.visible, sight.hidden_by.is_none());
+        sight.visible
+    };
+    assert!(visible(&[]));
+    // Duplicates of the wall, from either side, contain the point and do not hide it.
+    assert!(visible(&[WALL, [WALL[0], WALL[2], WALL[1]]]));
+    // The segment passes (1/2, 0, 1). A plate there hides the point, whichever way it faces, also if only its corner
+    // or its edge is touched; a plate beside it does not.
+    let plate = |x: f32| [[x, 0.0, 1.0], [x + 0.25, 0.25, 1.0], [x + 0.25, -0.25, 1.0]];
+    for (face, seen) in
+        [(plate(0.4375), false), (plate(0.5), false), (plate(0.53125), true), (plate(0.1875), true)]
+    {
+        assert_eq!(visible(&[face]), seen, "{face:?}");
+        assert_eq!(visible(&[[face[0], face[2], face[1]]]), seen, "{face:?} turned");
+    }
+    // In the plane that holds the segment: parallel, so it does not count.
+    assert!(visible(&[[[0.25, 0.0, 1.0], [0.75, 0.0, 1.0], [0.5, 0.0, 0.5]]]));
+    // A face on the image plane itself, z = 1/128, where the segment ends: u = f / r counts. Before it none does.
+    let screen = |z: f32| [[0.9375, -0.0625, z], [0.9375, 0.0625, z], [1.0625, 0.0, z]];
+    assert!(!visible(&[screen(1.0 / 128.0)]));
+    assert!(visible(&[screen(1.0 / 256.0)]));
+}
+
+#[test]
+fn the_renderer_adds_up_its_returns() {
+    let mut setting = Setting::of(FluxModel::Radiometric);
+    setting.profile = Profile::UniformAngle;
+    let scene = setting.scene();
+    for sampling in [Sampling::Centres, Sampling::Jittered { seed: 5 }] {
+        let frame = ExactRenderer.render(&scene, &Request { sampling, ..Request::EVERYTHING });
+        let flux = frame.returns[0].flux.as_ref().unwrap().at(0, 0);
+        let total: f64 = frame.flux[0].cells().iter().sum();
+        // Jittered, the point may land left of the image, and then nothing is seen.
+        let visible = frame.returns[0].visible.as_ref().unwrap().at(0, 0);
+        assert_eq!(total, flux);
+        assert_eq!(visible, flux > 0.0);
+    }
+}

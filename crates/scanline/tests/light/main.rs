@@ -1,0 +1,7 @@
+//! What the camera sees of the pencils, on scenes whose numbers are derived beside them.
+
+mod closed_form;
+mod hidden;
+mod requests;
+mod rig;
+mod watertight;

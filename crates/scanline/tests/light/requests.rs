@@ -1,0 +1,84 @@
+//! What is asked for is given, what cannot be given is left out, and the same bits come from any number of
+//! threads.
+
+use raypencil_scanline::{Options, Scanline, Switches};
+use raypencil_scene::{Filter, Lens, Quantities, Renderer, Request, Returns, Sampling};
+use raypencil_terrain::{RandomGround, builtin};
+
+use crate::rig::{Rig, render, rig_on};
+
+#[test]
+fn returns_do_not_depend_on_what_else_is_asked_for() {
+    let scene = rig_on(builtin("pyramids", 0.25).unwrap(), 5e-3);
+    let all = Scanline::exact().render(&scene, &Request::EVERYTHING);
+    assert_eq!((all.returns.len(), all.flux.len(), all.beams.len()), (2, 2, 2));
+    let alone = Request { camera: false, beams: false, ..Request::EVERYTHING };
+    let alone = Scanline::exact().render(&scene, &alone);
+    assert!(alone.camera.is_none() && alone.beams.is_empty());
+    assert_eq!((&alone.returns, &alone.flux), (&all.returns, &all.flux));
+    let range = Quantities { face: false, ..Quantities::RANGE_MAP };
+    let ranges = Scanline::exact().render(&scene, &Request { quantities: range, ..Request::EVERYTHING });
+    assert_eq!(ranges.returns, all.returns);
+    assert!(ranges.beams.iter().all(|map| map.face.is_none() && map.range.is_some()));
+    let maps = Scanline::exact().render(&scene, &Request::MAPS);
+    assert!(maps.returns.is_empty() && maps.flux.is_empty());
+    assert_eq!(maps.beams, all.beams);
+}
+
+#[test]
+fn jittered_pencils_are_not_answered() {
+    let scene = rig_on(builtin("pyramids", 0.25).unwrap(), 5e-3);
+    let jittered = Request { sampling: Sampling::Jittered { seed: 1 }, ..Request::EVERYTHING };
+    let frame = Scanline::exact().render(&scene, &jittered);
+    // The camera's map has no pencils.
+    assert_eq!(frame.camera, Scanline::exact().render(&scene, &Request::MAPS).camera);
+    assert_eq!(frame.returns, [Returns::unsupported(256, 4), Returns::unsupported(256, 4)]);
+    assert!(frame.flux.is_empty());
+    assert_eq!(frame.beams.len(), 2);
+    for map in frame.beams {
+        assert_eq!((map.width, map.height), (256, 4));
+        assert!(map.range.is_none() && map.depth.is_none() && map.face.is_none());
+        assert!(map.point.is_none() && map.normal.is_none() && map.incidence.is_none());
+    }
+    let nothing = Request { beams: false, returns: false, ..jittered };
+    let frame = Scanline::exact().render(&scene, &nothing);
+    assert!(frame.beams.is_empty() && frame.returns.is_empty());
+}
+
+#[test]
+fn one_thread_and_two_give_the_same_bits() {
+    let on = |threads: usize| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let scene = rig_on(RandomGround::nasty(3, 30_000).build(), 0.02);
+    for switches in [Switches::EXACT, Switches::PAPER] {
+        let options = Options { switches, ..Options::EXACT };
+        let [one, two] = [1, 2].map(|threads| on(threads).install(|| render(&scene, options)));
+        assert!(one.returns == two.returns && one.flux == two.flux);
+    }
+}
+
+#[test]
+fn tables_that_are_kept_are_those_of_the_scene() {
+    // One renderer for scenes that differ in one thing after the other, against a new renderer for each.
+    let kept = Scanline::exact();
+    let mut rig = Rig { model: raypencil_scene::FluxModel::Eq1, ..Rig::new() };
+    let check = |rig: &Rig| {
+        let (kept, new) = (kept.render(&rig.scene(), &Request::EVERYTHING), rig.render());
+        assert!(kept.returns == new.returns && kept.flux == new.flux);
+        new.returns[0].flux.clone().unwrap().at(3, 0)
+    };
+    let clear = check(&rig);
+    let filter = Filter::Interference { centre: 820e-9, width: 30e-9, index: 2.0 };
+    rig.camera.lens = Lens { filter, ..rig.camera.lens };
+    let filtered = check(&rig);
+    assert!(filtered < clear);
+    rig.beams[0].sensor.wavelength = 800e-9;
+    assert_ne!(check(&rig), filtered);
+    rig.beams.push(rig.beams[0]);
+    rig.beams[1].sensor.wavelength = 700e-9;
+    rig.beams[1].sensor.power = 9.0;
+    check(&rig);
+    rig.beams.swap(0, 1);
+    check(&rig);
+    rig.camera.width = 200;
+    check(&rig);
+}

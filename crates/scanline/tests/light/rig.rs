@@ -1,0 +1,193 @@
+//! Scenes for these tests: a wall at z = 2 m, pencils across it, and a camera that looks at it.
+
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3};
+use raypencil_scanline::{Options, Scanline};
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, FluxModel, Frame, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
+    Renderer, Request, Return, Scene,
+};
+use raypencil_terrain::{Ground, height_at};
+
+pub(crate) type Face = [[f32; 3]; 3];
+
+/// Everything that a test may want to change.
+#[derive(Clone)]
+pub(crate) struct Rig {
+    pub(crate) faces: Vec<Face>,
+    /// Reflectivity of the faces, of all by turns.
+    pub(crate) reflectivities: Vec<f64>,
+    pub(crate) camera: Camera,
+    pub(crate) scene_from_camera: Pose,
+    pub(crate) beams: Vec<Mounted<Beam>>,
+    pub(crate) attenuation: f64,
+    pub(crate) model: FluxModel,
+}
+
+/// The screen reaches from about -2 to 2 in x/z and y/z. Pixel (i, j) holds x/z from (i - 128.25)/64.
+pub(crate) fn camera() -> Camera {
+    Camera {
+        width: 256,
+        height: 256,
+        pixel_pitch: [1.0 / 8192.0; 2],
+        focal_length: 1.0 / 128.0,
+        principal_point: [128.25; 2],
+        aperture: 2e-3,
+        lens: Lens { transmission: 0.9, ..Lens::CLEAR },
+        max_range: 20.0,
+    }
+}
+
+/// Four pencils in one row, at x/z = -3/4, -1/4, 1/4, 3/4. Its grid is 1/8 m away.
+pub(crate) fn four_pencils() -> Beam {
+    Beam {
+        columns: 4,
+        rows: 1,
+        thickness: 5e-3,
+        grid_distance: 0.125,
+        half_width: 0.125,
+        max_range: 20.0,
+        power: 4.0,
+        wavelength: 810e-9,
+        profile: Profile::Paper,
+    }
+}
+
+/// One pencil straight along its beam's axis.
+pub(crate) fn one_pencil() -> Beam {
+    Beam { columns: 1, power: 1.0, ..four_pencils() }
+}
+
+/// A wall at `z`, its front towards -z.
+pub(crate) fn wall(z: f32) -> Face {
+    [[-40.0, -40.0, z], [0.0, 40.0, z], [40.0, -40.0, z]]
+}
+
+/// The same face seen from the other side.
+pub(crate) fn reversed([a, b, c]: Face) -> Face {
+    [a, c, b]
+}
+
+pub(crate) fn at<S>(x: f64, y: f64, z: f64, sensor: S) -> Mounted<S> {
+    Mounted { scene_from_sensor: Pose::from_position(DVec3::new(x, y, z)), sensor }
+}
+
+impl Rig {
+    /// The camera at (0, -2, 0) and four pencils at (-1/2, 0, 0), all looking along z at a wall at 2 m. The last
+    /// pencil runs at x/z = 3/4 and hits (1, 0, 2), which is (1, 2, 2) from the camera.
+    pub(crate) fn new() -> Self {
+        Self {
+            faces: vec![wall(2.0)],
+            reflectivities: vec![0.25],
+            camera: camera(),
+            scene_from_camera: Pose::from_position(DVec3::new(0.0, -2.0, 0.0)),
+            beams: vec![at(-0.5, 0.0, 0.0, four_pencils())],
+            attenuation: 0.0,
+            model: FluxModel::Radiometric,
+        }
+    }
+
+    /// With more faces.
+    pub(crate) fn and(mut self, faces: &[Face]) -> Self {
+        self.faces.extend(faces);
+        self
+    }
+
+    pub(crate) fn scene(&self) -> Scene {
+        let vertices = self.faces.iter().flatten().copied().collect();
+        let indices: Vec<_> = (0..self.faces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let kinds = self.reflectivities.len() as u16;
+        let materials = (0..indices.len() as u16).map(|k| k % kinds).collect();
+        let kind = |&reflectivity| Material { name: "ground".into(), reflectivity };
+        let kinds = self.reflectivities.iter().map(kind).collect();
+        let mesh = Mesh::new(DVec3::ZERO, vertices, indices, materials, kinds).expect("a valid mesh");
+        let camera = Mounted { scene_from_sensor: self.scene_from_camera, sensor: self.camera };
+        let air = Atmosphere { attenuation: self.attenuation };
+        Scene::new(Arc::new(mesh), camera, self.beams.clone(), air, self.model).expect("a valid scene")
+    }
+
+    pub(crate) fn render(&self) -> Frame {
+        Scanline::exact().render(&self.scene(), &Request::EVERYTHING)
+    }
+
+    /// The return of one pencil of the first beam.
+    pub(crate) fn pencil(&self, i: u32) -> Return {
+        back(&self.render(), 0, i, 0).expect("a hit")
+    }
+}
+
+/// The return of a pencil that hits.
+pub(crate) fn back(frame: &Frame, beam: usize, i: u32, j: u32) -> Option<Return> {
+    let returns = &frame.returns[beam];
+    Some(Return {
+        depth: returns.depth.as_ref()?.at(i, j).get()?,
+        visible: returns.visible.as_ref()?.at(i, j),
+        pixel: returns.pixel.as_ref()?.at(i, j).get(),
+        off_axis: returns.off_axis.as_ref()?.at(i, j).get()?,
+        emission: returns.emission.as_ref()?.at(i, j).get()?,
+        flux: returns.flux.as_ref()?.at(i, j),
+    })
+}
+
+/// The default rig, its rasters four times coarser, on a ground; a sheet of that thickness, metres.
+pub(crate) fn rig_on(ground: Ground, thickness: f64) -> Scene {
+    let mesh = Arc::new(ground.into_mesh().expect("a valid ground"));
+    let z = height_at(&mesh, 0.0, 0.0).expect("ground under the vehicle");
+    let scene_from_vehicle = Pose::from_position(DVec3::new(0.0, 0.0, z) - mesh.origin());
+    let mount = |height: f64, pitch_down_deg: f64| {
+        scene_from_vehicle
+            * Pose::from_position(DVec3::new(0.3, 0.0, height))
+            * Pose::from_axis_angle(DVec3::Y, pitch_down_deg.to_radians())
+            * Pose::VEHICLE_FROM_FORWARD_SENSOR
+    };
+    let camera = Camera {
+        pixel_pitch: [36e-6; 2],
+        focal_length: 8e-3,
+        principal_point: [128.0; 2],
+        max_range: 20.0,
+        ..camera()
+    };
+    let beam = Beam {
+        columns: 256,
+        rows: 4,
+        thickness,
+        grid_distance: 0.1,
+        half_width: Beam::half_width_of(0.1, 60_f64.to_radians()),
+        ..four_pencils()
+    };
+    let camera = Mounted { scene_from_sensor: mount(1.5, 20.0), sensor: camera };
+    let beams = [(1.8, 31.0), (2.0, 22.0)]
+        .map(|(height, down)| Mounted { scene_from_sensor: mount(height, down), sensor: beam });
+    let air = Atmosphere { attenuation: 1e-2 };
+    Scene::new(mesh, camera, beams.to_vec(), air, FluxModel::Radiometric).expect("a valid scene")
+}
+
+/// The rig on a ground, skipping or not.
+pub(crate) fn render(scene: &Scene, options: Options) -> Frame {
+    Scanline::new(options).render(scene, &Request::EVERYTHING)
+}
+
+/// Numbers without a pattern, in -1..1: a linear congruence (D. Knuth's MMIX).
+pub(crate) struct Numbers(pub(crate) u64);
+
+impl Numbers {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    pub(crate) fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+
+    /// Of no particular length.
+    pub(crate) fn rotation(&mut self) -> DQuat {
+        DQuat::from_xyzw(0.2 * self.next(), 0.2 * self.next(), 0.2 * self.next(), 1.0)
+    }
+}
+
+/// The sum of all cells.
+pub(crate) fn sum(image: &Image<f64>) -> f64 {
+    image.cells().iter().sum()
+}

@@ -1,0 +1,131 @@
+//! A bench of plain numbers: the camera at the scene's origin looking along z, x right, y down; a beam beside it
+//! that looks the same way; and screens at right angles to z.
+
+// Each test binary compiles its own copy and uses a part of it.
+#![allow(dead_code)]
+
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3};
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, FluxModel, Frame, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
+    Renderer, Request, Return, Returns, Scene,
+};
+use raypencil_tracer::Tracer;
+
+pub type Corners = [[f32; 3]; 3];
+
+/// A scene to change and then to render.
+#[derive(Clone)]
+pub struct Bench {
+    pub faces: Vec<Corners>,
+    pub reflectivity: f64,
+    pub camera: Camera,
+    pub beam: Beam,
+    /// Of the beam.
+    pub pose: Pose,
+    pub attenuation: f64,
+    pub model: FluxModel,
+}
+
+impl Bench {
+    /// A screen at z = 2 m and three pencils from (3, 0, 0) along (-3/4, 0, 1), (0, 0, 1) and (3/4, 0, 1): g = 1/4 m,
+    /// x_i = w (2i - 2) / 3, w = (9/8) g. They hit at x = 1.5, 3 and 4.5 m. 3 W in all.
+    ///
+    /// The camera has f_c = 1/64 m, pixels of 2^-10 m and an aperture of 1/2 m: x / z = 1 is 16 pixels.
+    pub fn new() -> Self {
+        let camera = Camera {
+            width: 128,
+            height: 64,
+            pixel_pitch: [1.0 / 1024.0; 2],
+            focal_length: 1.0 / 64.0,
+            principal_point: [32.25, 32.5],
+            aperture: 0.5,
+            lens: Lens::CLEAR,
+            max_range: 20.0,
+        };
+        let beam = Beam {
+            columns: 3,
+            rows: 1,
+            thickness: 1.0 / 256.0,
+            grid_distance: 0.25,
+            half_width: 0.28125,
+            max_range: 20.0,
+            power: 3.0,
+            wavelength: 810e-9,
+            profile: Profile::Paper,
+        };
+        Self {
+            faces: screen(2.0, [-16.0, 16.0], [-16.0, 16.0]).to_vec(),
+            reflectivity: 0.25,
+            camera,
+            beam,
+            pose: Pose::from_position(DVec3::new(3.0, 0.0, 0.0)),
+            attenuation: 0.0,
+            model: FluxModel::Radiometric,
+        }
+    }
+
+    /// With more faces.
+    pub fn with(mut self, faces: impl IntoIterator<Item = Corners>) -> Self {
+        self.faces.extend(faces);
+        self
+    }
+
+    pub fn scene(&self) -> Scene {
+        let faces = (0..self.faces.len() as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+        let kinds = vec![Material { name: "screen".into(), reflectivity: self.reflectivity }];
+        let materials = vec![0; self.faces.len()];
+        let mesh = Mesh::new(DVec3::ZERO, self.faces.concat(), faces, materials, kinds).unwrap();
+        let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: self.camera };
+        let beam = Mounted { scene_from_sensor: self.pose, sensor: self.beam };
+        let air = Atmosphere { attenuation: self.attenuation };
+        Scene::new(Arc::new(mesh), camera, vec![beam], air, self.model).unwrap()
+    }
+
+    pub fn frame(&self) -> Frame {
+        Tracer::new().render(&self.scene(), &Request::EVERYTHING)
+    }
+
+    /// What comes back of pencil i.
+    pub fn back(&self, i: u32) -> Return {
+        back(&self.frame().returns[0], i, 0)
+    }
+}
+
+/// A rectangle at z = `z` of two faces that turn their fronts to the origin.
+pub fn screen(z: f32, [left, right]: [f32; 2], [top, bottom]: [f32; 2]) -> [Corners; 2] {
+    // Down the left side first: seen with y down this is counter-clockwise.
+    let (a, b, c, d) = ([left, top, z], [left, bottom, z], [right, bottom, z], [right, top, z]);
+    [[a, b, c], [a, c, d]]
+}
+
+/// The faces with their backs where their fronts were.
+pub fn reversed<const N: usize>(faces: [Corners; N]) -> [Corners; N] {
+    faces.map(|[a, b, c]| [a, c, b])
+}
+
+/// A beam at `position` that looks along -z.
+pub fn looking_back(position: DVec3) -> Pose {
+    Pose { position, rotation: DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0) }
+}
+
+/// What comes back of pencil (i, j), which hits.
+pub fn back(returns: &Returns, i: u32, j: u32) -> Return {
+    fn of<T: Copy>(raster: &Option<Image<T>>, i: u32, j: u32) -> T {
+        raster.as_ref().expect("a quantity").at(i, j)
+    }
+    Return {
+        visible: of(&returns.visible, i, j),
+        pixel: of(&returns.pixel, i, j).get(),
+        depth: of(&returns.depth, i, j).get().expect("a hit"),
+        off_axis: of(&returns.off_axis, i, j).get().expect("a hit"),
+        emission: of(&returns.emission, i, j).get().expect("a hit"),
+        flux: of(&returns.flux, i, j),
+    }
+}
+
+/// Whether two numbers differ by no more than `relative` of the second.
+pub fn close(a: f64, b: f64, relative: f64) -> bool {
+    (a - b).abs() <= relative * b.abs()
+}

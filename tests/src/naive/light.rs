@@ -1,0 +1,219 @@
+//! The naive renderer's light: every formula by its definition, every face asked for every shadow.
+
+use std::f64::consts::{LN_2, PI};
+
+use glam::DVec3;
+use raypencil_scene::{
+    Beam, Filter, FluxModel, Hit, Image, Mounted, Pixel, Profile, Return, Returns, Scene, SensorMap,
+};
+
+use super::{Fault, Naive};
+
+/// What a scene's camera makes of pencils.
+struct Lit<'a> {
+    naive: &'a Naive,
+    scene: &'a Scene,
+    faces: &'a [[DVec3; 3]],
+}
+
+impl Naive {
+    /// What comes back of a beam's pencils, and their flux on the camera's image.
+    pub(super) fn returns(
+        &self,
+        scene: &Scene,
+        faces: &[[DVec3; 3]],
+        index: usize,
+        map: &SensorMap,
+    ) -> (Returns, Image<f64>) {
+        let lit = Lit { naive: self, scene, faces };
+        let Mounted { sensor: beam, .. } = scene.beams()[index];
+        let shares = self.shares(if self.has(Fault::StaleShares) { &scene.beams()[0].sensor } else { &beam });
+        let mut returns = Returns::empty(beam.columns, beam.rows);
+        let camera = &scene.camera().sensor;
+        let mut image = Image::filled(camera.width, camera.height, 0.0);
+        for j in 0..beam.rows {
+            for i in 0..beam.columns {
+                let Some(hit) = crate::hit(map, i, j) else { continue };
+                let power = beam.power * shares[i as usize % shares.len()];
+                let back = lit.back(&hit, &beam, power);
+                returns.put(i, j, &back);
+                let lands = back.visible || (self.has(Fault::HiddenLit) && back.flux > 0.0);
+                if let (true, Some(Pixel { i, j })) = (lands, back.pixel) {
+                    let before = if self.has(Fault::LastPencilWins) { 0.0 } else { image.at(i, j) };
+                    image.set(i, j, before + back.flux);
+                }
+            }
+        }
+        (returns, image)
+    }
+
+    /// The share of the power that each pencil of a row has.
+    fn shares(&self, beam: &Beam) -> Vec<f64> {
+        let (columns, rows) = (f64::from(beam.columns), f64::from(beam.rows));
+        let angle = |i: u32| {
+            let x = beam.half_width * (2.0 * f64::from(i) + 1.0 - columns) / columns;
+            libm::atan2(x, beam.grid_distance)
+        };
+        let weight = |i: u32| match beam.profile {
+            Profile::Paper => libm::cos(angle(i)) / (columns * rows),
+            Profile::UniformAngle => libm::cos(angle(i)) * libm::cos(angle(i)),
+            Profile::Gaussian { half_width } => {
+                libm::exp(-2.0 * (angle(i) / half_width) * (angle(i) / half_width))
+            }
+        };
+        let whole: f64 = match beam.profile {
+            Profile::Paper => 1.0,
+            _ if self.has(Fault::ProfileNotNormalised) => columns * rows,
+            _ => rows * (0..beam.columns).map(weight).sum::<f64>(),
+        };
+        (0..beam.columns).map(|i| weight(i) / whole).collect()
+    }
+}
+
+impl Lit<'_> {
+    fn has(&self, fault: Fault) -> bool {
+        self.naive.has(fault)
+    }
+
+    /// What comes back of one hit.
+    fn back(&self, hit: &Hit, beam: &Beam, power: f64) -> Return {
+        let Mounted { scene_from_sensor, sensor: camera } = self.scene.camera();
+        let centre = scene_from_sensor.position;
+        let to_point = hit.point - centre;
+        let conjugate = super::conjugate(scene_from_sensor.rotation);
+        let seen = self.naive.rotate(conjugate, to_point);
+        let (depth, distance) = (seen.z, seen.length());
+        let off_axis = depth / distance;
+        let emission = -hit.normal.dot(to_point) / distance;
+
+        // Where it lands: pixel (i, j) is [i, i + 1) x [j, j + 1).
+        let place = [0, 1].map(|axis: usize| {
+            let at = camera.focal_length * seen[axis] / depth / camera.pixel_pitch[axis]
+                + camera.principal_point[axis];
+            if self.has(Fault::PixelRounded) { (at - 0.5).floor() + 1.0 } else { at.floor() }
+        });
+        let on_image = depth > camera.focal_length
+            && (0.0..f64::from(camera.width)).contains(&place[0])
+            && (0.0..f64::from(camera.height)).contains(&place[1]);
+        let mut pixel = on_image.then_some(Pixel { i: place[0] as u32, j: place[1] as u32 });
+        if let Some(Pixel { i, j }) = pixel
+            && self.has(Fault::PixelTransposed)
+        {
+            pixel = Some(Pixel { i: j.min(camera.width - 1), j: i.min(camera.height - 1) });
+        }
+        let too_far = self.has(Fault::CameraRangeLimits) && distance > camera.max_range;
+        let visible = emission > 0.0
+            && pixel.is_some()
+            && !too_far
+            && !self.is_hidden(hit, centre, to_point, camera.focal_length / depth);
+
+        let flux = match pixel {
+            Some(pixel) if visible || self.has(Fault::HiddenLit) => {
+                self.flux(hit, beam, power, [depth, distance, off_axis, emission], pixel)
+            }
+            _ => 0.0,
+        };
+        Return { visible, pixel, depth, off_axis, emission, flux }
+    }
+
+    /// Whether a face, front or back, meets the segment c + u (P - c), f_c / r <= u < 1. A face through P does not
+    /// hide it: the hit face, those that tie with it and backs at the same place.
+    fn is_hidden(&self, hit: &Hit, centre: DVec3, to_point: DVec3, nearest: f64) -> bool {
+        let reach = to_point.length();
+        let at_point = 1e-12 * (1.0 + (reach + centre.length()) / reach);
+        let farthest = if self.has(Fault::ShadowsFromBehind) {
+            2.0
+        } else if self.has(Fault::ShadowEpsilon) {
+            1.0 - 1e-3 / reach
+        } else {
+            1.0 - at_point
+        };
+        self.faces.iter().enumerate().any(|(index, &[a, b, c])| {
+            let n = (b - a).cross(c - a);
+            let towards = n.dot(to_point);
+            if index == hit.face.0 as usize
+                || towards == 0.0
+                || (self.has(Fault::ShadowsOfFronts) && towards > 0.0)
+            {
+                return false;
+            }
+            let u = n.dot(a - centre) / towards;
+            let corners = [a - centre, b - centre, c - centre];
+            let sides = [0, 1, 2].map(|k: usize| to_point.dot(corners[k].cross(corners[(k + 1) % 3])));
+            let is_inside = sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0);
+            is_inside && u >= nearest && u < farthest && (u - 1.0).abs() > at_point
+        })
+    }
+
+    fn flux(
+        &self,
+        hit: &Hit,
+        beam: &Beam,
+        power: f64,
+        [depth, distance, off_axis, emission]: [f64; 4],
+        pixel: Pixel,
+    ) -> f64 {
+        let (scene, camera) = (self.scene, &self.scene.camera().sensor);
+        let material = if self.has(Fault::ReflectivityOfFirst) {
+            0
+        } else {
+            scene.mesh().face_materials()[hit.face.0 as usize] as usize
+        };
+        let reflectivity = scene.mesh().materials()[material].reflectivity;
+        let sigma = scene.atmosphere().attenuation;
+        let d = if self.has(Fault::ApertureAsRadius) { 2.0 * camera.aperture } else { camera.aperture };
+        let depth = if self.has(Fault::RangeForCameraDepth) { hit.range } else { depth };
+        let cos_theta = if self.has(Fault::IncidenceForEmission) {
+            hit.incidence
+        } else if self.has(Fault::EmissionForgotten) {
+            1.0
+        } else {
+            emission
+        };
+        let q = camera.direction(pixel.i, pixel.j);
+        let of_centre = q.z / q.length();
+        let common = power * reflectivity * camera.lens.transmission * cos_theta / (depth * depth);
+        match scene.flux_model() {
+            FluxModel::Radiometric => {
+                let cos_phi = if self.has(Fault::PhiOfPixelCentre) { of_centre } else { off_axis };
+                let power_of_cosine = if self.has(Fault::FourthPower) {
+                    square(square(cos_phi))
+                } else {
+                    cos_phi * square(cos_phi)
+                };
+                let path = if self.has(Fault::AttenuationOnce) { hit.range } else { hit.range + distance };
+                common
+                    * self.filter(beam, cos_phi)
+                    * (d * d / 4.0)
+                    * power_of_cosine
+                    * libm::exp(-sigma * path)
+            }
+            FluxModel::Eq1 => {
+                let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
+                let path = if self.has(Fault::AttenuationOnce) { hit.range } else { hit.range + depth };
+                common
+                    * (PI / 4.0)
+                    * square(d / camera.focal_length)
+                    * self.filter(beam, of_centre)
+                    * area
+                    * square(square(of_centre))
+                    * hit.incidence
+                    / hit.range
+                    * libm::exp(-sigma * path)
+            }
+        }
+    }
+
+    fn filter(&self, beam: &Beam, cos_phi: f64) -> f64 {
+        let Filter::Interference { centre, width, index } = self.scene.camera().sensor.lens.filter else {
+            return 1.0;
+        };
+        let sin_squared = if self.has(Fault::FilterAlongAxis) { 0.0 } else { 1.0 - cos_phi * cos_phi };
+        let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
+        libm::exp(-4.0 * LN_2 * square((beam.wavelength - shifted) / width))
+    }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}
