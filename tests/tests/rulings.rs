@@ -4,10 +4,13 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use raypencil_harness::{Class, Judge, JudgeShare, SensorComparison, Side, compare_judged};
-use raypencil_scene::{Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId};
+use raypencil_harness::{Attributions, Class, Judge, JudgeShare, SensorComparison, Side, compare_judged};
+use raypencil_scanline::Scanline;
+use raypencil_scene::{Frame, Maybe, Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId};
+use raypencil_terrain::builtin;
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene};
+use raypencil_tracer::Tracer;
 
 fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorComparison> {
     let frames = [a, b].map(|renderer| renderer.render(scene, &Request::EVERYTHING));
@@ -74,4 +77,57 @@ fn faces_one_ulp_apart_are_rounding() {
     assert!(of(Class::Rounding) > 0, "no ray is close enough: {:?}", found.by_class);
     assert!(of(Class::Agree) > 4000, "{:?}", found.by_class);
     assert_eq!(found.judged, found.compared);
+}
+
+/// The paper's algorithm, with some answers spoiled: of every 97th pencil that hits the hit is lost, of every 89th that
+/// the camera could see it is said the other way.
+fn spoiled(scene: &Scene, paper: &Scanline) -> (Frame, u64) {
+    let mut frame = paper.render(scene, &Request::EVERYTHING);
+    let mut spoilt = 0;
+    for (map, returns) in frame.beams.iter_mut().zip(&mut frame.returns) {
+        for j in 0..map.height {
+            for i in 0..map.width {
+                let index = j * map.width + i;
+                let Some(hit) = hit(map, i, j) else { continue };
+                let visible = returns.visible.as_mut().expect("what is visible is known");
+                let seen = visible.at(i, j);
+                if index % 97 == 0 && !seen {
+                    // Seen or not, it hits: the flux of what is not seen stays as it is.
+                    map.face.as_mut().expect("faces").set(i, j, Maybe::NONE);
+                    map.range.as_mut().expect("ranges").set(i, j, Maybe::NONE);
+                    spoilt += 1;
+                } else if index % 89 == 0 && hit.incidence > 0.1 {
+                    visible.set(i, j, !seen);
+                    spoilt += 1;
+                }
+            }
+        }
+    }
+    (frame, spoilt)
+}
+
+#[test]
+fn an_approximation_is_no_excuse_for_anything_else() {
+    // Thick sheets, so that the paper errs by itself too; the spoiled answers have nothing to do with it.
+    let ground = builtin("facets", 0.25).expect("a built-in name").into_mesh().expect("a mesh");
+    let (camera, mut beams) = rig::default_rig(4, DVec3::ZERO, 0.3);
+    for beam in &mut beams {
+        beam.sensor.thickness = 0.08;
+    }
+    let scene = scene(Arc::new(ground), camera, beams);
+    let (paper, tracer) = (Scanline::paper(), Tracer::new());
+    let (frame, spoilt) = spoiled(&scene, &paper);
+    assert!(spoilt > 15, "{spoilt} answers are spoiled");
+    let honest = tracer.render(&scene, &Request::EVERYTHING);
+    let judge = Judge::new(&scene, JudgeShare::Sample);
+    let attributions = Attributions::find(&judge, &frame, paper.options().switches, paper.resolution());
+    let side =
+        |name, frame, attributions| Side { name, frame, resolution: tracer.resolution(), attributions };
+    let sensors =
+        compare_judged(&judge, side("spoiled", &frame, Some(&attributions)), side("tracer", &honest, None));
+    let beams = &sensors[1..];
+    let defects: u64 = beams.iter().map(|sensor| sensor.of(Class::Defect)).sum();
+    let approximated: u64 = beams.iter().map(|sensor| sensor.of(Class::Approximation)).sum();
+    assert_eq!(defects, spoilt);
+    assert!(approximated > 0, "the paper errs as well");
 }
