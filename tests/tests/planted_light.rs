@@ -92,6 +92,15 @@ fn screened(before: f32, turned_away: bool) -> Scene {
     .expect("a scene")
 }
 
+/// The wall of [`screened`] without a plate, and the same once more, its front the other way: a sheet of two faces.
+fn doubled() -> Scene {
+    let scene = screened(0.25, false);
+    let vertices = scene.mesh().vertices()[..4].to_vec();
+    let mesh = raypencil_tests::mesh(vertices, vec![[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]]);
+    let beams = scene.beams().to_vec();
+    Scene::new(mesh, *scene.camera(), beams, scene.atmosphere(), scene.flux_model()).expect("a scene")
+}
+
 /// The scenes on which a fault must show.
 fn scenes(fault: Fault) -> Vec<(&'static str, Scene)> {
     let both = || [FluxModel::Radiometric, FluxModel::Eq1].map(|model| ("lit pyramids", lit(model))).to_vec();
@@ -99,6 +108,7 @@ fn scenes(fault: Fault) -> Vec<(&'static str, Scene)> {
         // Of one model only.
         Fault::PhiOfPixelCentre | Fault::FourthPower => vec![("lit pyramids", lit(FluxModel::Radiometric))],
         Fault::ShadowEpsilon => vec![("a plate 0.5 mm before a wall", screened(1.0 / 2048.0, false))],
+        Fault::DoublesHide => vec![("a wall of two sheets", doubled())],
         Fault::ShadowsOfFronts => vec![("a plate that shows its back", screened(0.25, true))],
         _ => both(),
     }

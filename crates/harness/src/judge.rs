@@ -4,7 +4,7 @@ use raypencil_referee::{
     Approximations, Displacement, Explained, ExplainedSight, Referee, Ruling, SightApproximations,
     SightRuling, Tolerance,
 };
-use raypencil_scene::{FaceId, Pixel, Resolution, Scene, SensorId};
+use raypencil_scene::{FaceId, Hit, Pixel, Resolution, Return, Sampling, Scene, SensorId};
 
 use crate::bounds::Bounds;
 use crate::compare::Place;
@@ -77,6 +77,25 @@ impl<'s> Judge<'s> {
         self.referee.rule_sight(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
     }
 
+    /// The values of where a ray meets the plane of a face, to f64 rounding; `None` if they are not finite.
+    pub(crate) fn plane_hit(&self, Place { sensor, i, j }: Place, face: FaceId) -> Option<Hit> {
+        let hit = self.referee.plane_hit(sensor, i, j, face)?;
+        (hit.range.is_finite() && hit.range > 0.0 && hit.point.is_finite()).then_some(hit)
+    }
+
+    /// What comes back of a pencil from the plane of a face, seen or not and landing as is said.
+    pub(crate) fn returned_as(
+        &self,
+        place: Place,
+        face: FaceId,
+        visible: bool,
+        pixel: Option<Pixel>,
+    ) -> Option<Return> {
+        let SensorId::Beam(beam) = place.sensor else { return None };
+        let light = self.referee.light(beam, Sampling::Centres)?;
+        light.returned_as(place.i, place.j, face, visible, pixel)
+    }
+
     /// Explains one side's answer to a ray by the approximations it was made with; `None` if they do not.
     pub(crate) fn explain(
         &self,
@@ -111,7 +130,7 @@ impl<'s> Judge<'s> {
         &self,
         Place { sensor, i, j }: Place,
         answer: Option<FaceId>,
-        range: Option<f64>,
+        claimed: Option<f64>,
         resolution: Resolution,
     ) -> Tolerance {
         let scene = self.scene;
@@ -119,8 +138,11 @@ impl<'s> Judge<'s> {
             return Tolerance { lateral: FINEST, depth: 0.0, position: 0.0 };
         };
         let mesh = scene.mesh();
-        let range = range.unwrap_or(max_range);
         let known = answer.filter(|face| (face.0 as usize) < mesh.faces().len());
+        // The range of the face itself: what is claimed must not set the tolerance that it is judged by.
+        let place = Place { sensor, i, j };
+        let range = known.and_then(|face| self.plane_hit(place, face)).map(|hit| hit.range);
+        let range = range.or(claimed.filter(|range| range.is_finite() && *range > 0.0)).unwrap_or(max_range);
         let depth = known.map_or(0.0, |face| Bounds::of(mesh, face, &ray, range, resolution).range);
         let edge = known.map_or(0.0, |face| longest_edge(scene, face));
         let error = DIRECTION * resolution.unit_roundoff * (range + edge + ray.origin.length());

@@ -118,6 +118,12 @@ impl Face {
         (0..3).all(on_plane) && n.dot(&other.normal()).sign() == Some(Ordering::Greater)
     }
 
+    /// Whether all of this face lies in the plane of `other`, exactly, whichever way either faces.
+    pub(crate) fn is_in_plane_of(&self, other: &Self) -> bool {
+        let (n, a) = (other.normal::<Dyadic>(), other.corner::<Dyadic>(0));
+        (0..3).all(|k| n.dot(&self.corner(k).sub(&a)).sign() == Some(Ordering::Equal))
+    }
+
     /// A range that the meeting point certainly does not exceed, metres.
     pub(crate) fn farthest_range(&self, ray: &ExactRay<'_>, max_range: f64) -> f64 {
         // R = n.a' |D| / (s n.D); where n.D may be 0 there is no bound but the sensor's own.

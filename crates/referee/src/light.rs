@@ -5,9 +5,12 @@
 //! two dozen such factors and one or two `exp` and `atan` of `libm` (each within 1 ulp), is good to 100 u of
 //! itself, and a share of a normalised profile to 20 u more (its sum is compensated).
 
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 
-use raypencil_scene::{Beam, Camera, Filter, FluxModel, Mounted, Profile, Return, Sampling, SensorId};
+use raypencil_scene::{
+    Beam, Camera, FaceId, Filter, FluxModel, Mounted, Pixel, Profile, Return, Sampling, SensorId,
+};
 
 use crate::face::{ExactRay, Face};
 use crate::number::{Dyadic, Number};
@@ -114,11 +117,45 @@ impl Light<'_, '_> {
         Some(self.returned_of(&sensor, aim, nearest.first()?))
     }
 
+    /// What comes back of pencil (i, j) from where its ray meets the plane of `face`, if the point is seen or not, and
+    /// lands where, as is said; `None` if there is no such pencil or face, or they are parallel.
+    pub fn returned_as(
+        &self,
+        i: u32,
+        j: u32,
+        face: FaceId,
+        visible: bool,
+        pixel: Option<Pixel>,
+    ) -> Option<Return> {
+        let sensor = Sensor::of(self.referee.scene, SensorId::Beam(self.beam))?;
+        let (columns, rows) = sensor.size();
+        let mesh = self.referee.scene.mesh();
+        if i >= columns || j >= rows || face.0 as usize >= mesh.faces().len() {
+            return None;
+        }
+        let face = Face::of(mesh, face);
+        let Displacement { dx, dy } = self.offset(i, j);
+        let aim = Aim { i, j, dx, dy };
+        let is_parallel = face.approach(ExactRay::new(&sensor, aim).exact()).sign() == Some(Ordering::Equal);
+        (!is_parallel).then(|| self.returned_seen(&sensor, aim, &face, visible, pixel))
+    }
+
     /// What comes back of an aim that meets `face`.
     pub(crate) fn returned_of(&self, sensor: &Sensor, aim: Aim, face: &Face) -> Return {
+        let sight = self.referee.sight_of(sensor, aim, face);
+        self.returned_seen(sensor, aim, face, sight.visible, sight.pixel)
+    }
+
+    fn returned_seen(
+        &self,
+        sensor: &Sensor,
+        aim: Aim,
+        face: &Face,
+        visible: bool,
+        pixel: Option<Pixel>,
+    ) -> Return {
         let scene = self.referee.scene;
         let Mounted { sensor: camera, .. } = scene.camera();
-        let sight = self.referee.sight_of(sensor, aim, face);
         let ray = ExactRay::new(sensor, aim);
         let way = ExactWay::new(&ray, face, scene.camera());
         let values = Values::new(&ray, &way, face);
@@ -128,7 +165,7 @@ impl Light<'_, '_> {
         let power = self.power(aim.i, aim.j) * material.reflectivity * camera.lens.transmission;
         let sigma = scene.atmosphere().attenuation;
         let aperture_squared = camera.aperture * camera.aperture;
-        let flux = match (sight.visible, sight.pixel) {
+        let flux = match (visible, pixel) {
             (true, Some(pixel)) => match scene.flux_model() {
                 FluxModel::Radiometric => {
                     let Values { range, distance, depth, off_axis, emission, .. } = values;
@@ -166,8 +203,8 @@ impl Light<'_, '_> {
             _ => 0.0,
         };
         Return {
-            visible: sight.visible,
-            pixel: sight.pixel,
+            visible,
+            pixel,
             depth: values.depth,
             off_axis: values.off_axis,
             emission: values.emission,
@@ -214,7 +251,7 @@ impl Values {
         };
         let minus = |x: &Dyadic| Dyadic::of(0.0).sub(x);
         let scale = pencil.origin_scale.mul(&approach);
-        let is_centre = v_squared.sign() == Some(std::cmp::Ordering::Equal);
+        let is_centre = v_squared.sign() == Some(Ordering::Equal);
         Self {
             range: height.square().mul(&d_squared).over(&scale.square()).sqrt(),
             distance: v_squared.over(&way.scale.square()).sqrt(),

@@ -98,6 +98,16 @@ impl Referee<'_> {
         is_met.then(|| hit(&sensor, aim, &face))
     }
 
+    /// The values of where the ray of cell (i, j) meets the plane of `face`, in f64, whether or not it passes between its
+    /// sides; `None` if there is no such cell or face. Not finite where they are parallel.
+    pub fn plane_hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<Hit> {
+        let sensor = Sensor::of(self.scene, id)?;
+        let (width, height) = sensor.size();
+        let mesh = self.scene.mesh();
+        let is_there = i < width && j < height && (face.0 as usize) < mesh.faces().len();
+        is_there.then(|| hit(&sensor, Aim { i, j, dx: 0.0, dy: 0.0 }, &Face::of(mesh, face)))
+    }
+
     /// The maps of one sensor, or `None` if the scene has no such sensor.
     fn map(&self, id: SensorId, request: &Request) -> Option<SensorMap> {
         let sensor = Sensor::of(self.scene, id)?;

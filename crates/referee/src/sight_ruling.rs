@@ -110,7 +110,8 @@ impl Referee<'_> {
         let mut found = false;
         let bundle = crate::cull::Bundle { start_radius: off, ..way.bundle() };
         self.tree.visit(&bundle, |other| {
-            found |= other.id != face.id
+            // What lies in the face's own plane never hides it: rounding is no excuse for a shadow of duplicates.
+            found |= !other.is_in_plane_of(face)
                 && distance_from_plane(other, point).abs() <= off
                 && is_beside(other, point, off);
             if found { f64::NEG_INFINITY } else { bundle.reach }
@@ -141,7 +142,11 @@ impl Referee<'_> {
                 let within = |at: f64, index: u32, slack: f64| {
                     at >= f64::from(index) - slack && at <= f64::from(index) + 1.0 + slack
                 };
-                within(x, i, slack[0]) && within(y, j, slack[1]) && depth > camera.focal_length - off
+                i < camera.width
+                    && j < camera.height
+                    && within(x, i, slack[0])
+                    && within(y, j, slack[1])
+                    && depth > camera.focal_length - off
             }
             // It may be said to miss the image if it is as near to its border.
             None => {

@@ -98,6 +98,8 @@ pub enum Fault {
     ShadowsOfFronts,
     /// Shadow rays go on beyond the point.
     ShadowsFromBehind,
+    /// Faces at the point itself hide it: the shadow acne of ground that is doubled.
+    DoublesHide,
     /// What is hidden is lit all the same.
     HiddenLit,
     /// The camera's maximum range limits what it sees of the stripes.
@@ -117,7 +119,7 @@ impl Fault {
     }
 
     /// All of them.
-    pub const ALL: [Self; 49] = [
+    pub const ALL: [Self; 50] = [
         Self::HalfCellShift,
         Self::ColumnOffByOne,
         Self::RowsBottomUp,
@@ -162,6 +164,7 @@ impl Fault {
         Self::ShadowEpsilon,
         Self::ShadowsOfFronts,
         Self::ShadowsFromBehind,
+        Self::DoublesHide,
         Self::HiddenLit,
         Self::CameraRangeLimits,
         Self::PixelTransposed,

@@ -121,8 +121,11 @@ impl Lit<'_> {
     fn is_hidden(&self, hit: &Hit, centre: DVec3, to_point: DVec3, nearest: f64) -> bool {
         let reach = to_point.length();
         let at_point = 1e-12 * (1.0 + (reach + centre.length()) / reach);
+        let doubles_hide = self.has(Fault::DoublesHide);
         let farthest = if self.has(Fault::ShadowsFromBehind) {
             2.0
+        } else if doubles_hide {
+            1.0 + at_point
         } else if self.has(Fault::ShadowEpsilon) {
             1.0 - 1e-3 / reach
         } else {
@@ -141,7 +144,7 @@ impl Lit<'_> {
             let corners = [a - centre, b - centre, c - centre];
             let sides = [0, 1, 2].map(|k: usize| to_point.dot(corners[k].cross(corners[(k + 1) % 3])));
             let is_inside = sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0);
-            is_inside && u >= nearest && u < farthest && (u - 1.0).abs() > at_point
+            is_inside && u >= nearest && u < farthest && (doubles_hide || (u - 1.0).abs() > at_point)
         })
     }
 

@@ -63,10 +63,11 @@ impl Attributions {
     pub fn find(judge: &Judge<'_>, frame: &Frame, switches: Switches, resolution: Resolution) -> Self {
         let court = Court { judge, switches, resolution };
         let key = |Place { sensor, i, j }: Place| (sensor, i, j);
-        Self {
-            by_ray: geometry::causes(court, frame).into_iter().map(|(at, cause)| (key(at), cause)).collect(),
-            of_sight: sight::causes(court, frame).into_iter().map(|(at, cause)| (key(at), cause)).collect(),
-        }
+        let by_ray = geometry::causes(court, frame).into_iter().map(|(at, cause)| (key(at), cause)).collect();
+        let mut found = Self { by_ray, of_sight: HashMap::new() };
+        let of_sight = sight::causes(court, frame, &found);
+        found.of_sight = of_sight.into_iter().map(|(at, cause)| (key(at), cause)).collect();
+        found
     }
 
     /// The cause of the answer about what the camera sees of one pencil's hit, if it has one.

@@ -5,7 +5,7 @@ use raypencil_referee::{ExplainedSight, Ruling, SightApproximations, SightReason
 use raypencil_scanline::{Fidelity, Switches};
 use raypencil_scene::{FaceId, Frame, Pixel, Quantities, Request, SensorId};
 
-use super::{Court, SightCause, sets_of};
+use super::{Attributions, Court, SightCause, sets_of};
 use crate::compare::Place;
 
 /// What a frame says of one pencil's hit.
@@ -31,7 +31,8 @@ impl Answer {
     }
 }
 
-/// A pencil whose visibility is not the contract's, though its face is.
+/// A pencil whose visibility is not the contract's for the face that it is said to hit: the right one, or one that has
+/// a cause.
 struct Wrong {
     place: Place,
     answer: Answer,
@@ -41,7 +42,11 @@ struct Wrong {
 }
 
 /// The pencils of a frame whose visibility is wrong for a confirmed cause.
-pub(super) fn causes(court: Court<'_>, frame: &Frame) -> Vec<(Place, SightCause)> {
+pub(super) fn causes(
+    court: Court<'_>,
+    frame: &Frame,
+    of_geometry: &Attributions,
+) -> Vec<(Place, SightCause)> {
     let Switches { facing, extent, place, .. } = court.switches;
     let of_sight = Switches { facing, extent, place, ..Switches::EXACT };
     if of_sight == Switches::EXACT || frame.returns.is_empty() {
@@ -52,8 +57,11 @@ pub(super) fn causes(court: Court<'_>, frame: &Frame) -> Vec<(Place, SightCause)
 
     // What differs from the same algorithm without any approximation of sight, and is wrong.
     let exact = court.render(court.switches.without(of_sight), request);
-    let mut wrong: Vec<Wrong> =
-        frame.beams.iter().flat_map(|map| wrong_answers(court, frame, &exact, map.sensor)).collect();
+    let mut wrong: Vec<Wrong> = frame
+        .beams
+        .iter()
+        .flat_map(|map| wrong_answers(court, frame, &exact, map.sensor, of_geometry))
+        .collect();
     for cause in sets_of(of_sight) {
         let mut open: Vec<&mut Wrong> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
         if open.is_empty() {
@@ -76,18 +84,25 @@ fn upper_extent(court: Court<'_>, frame: &Frame) -> Option<f64> {
     depths.reduce(f64::max)
 }
 
-fn wrong_answers(court: Court<'_>, frame: &Frame, exact: &Frame, sensor: SensorId) -> Vec<Wrong> {
+fn wrong_answers(
+    court: Court<'_>,
+    frame: &Frame,
+    exact: &Frame,
+    sensor: SensorId,
+    of_geometry: &Attributions,
+) -> Vec<Wrong> {
     let (columns, rows) = court.judge.scene().size(sensor).expect("a sensor of this scene");
     let rows = (0..rows).into_par_iter().flat_map_iter(|j| {
         (0..columns).filter_map(move |i| {
             let place = Place { sensor, i, j };
             let (answer, of_exact) = (Answer::of(frame, place)?, Answer::of(exact, place)?);
             let differs = answer.visible != of_exact.visible;
-            let has_right_face = || {
+            let face_is_accounted_for = || {
                 let (face, range) = (Some(answer.face), answer.range);
-                court.judge.rule(place, face, range, court.resolution) != Ruling::Wrong
+                of_geometry.cause(place).is_some()
+                    || court.judge.rule(place, face, range, court.resolution) != Ruling::Wrong
             };
-            (differs && has_right_face() && court.is_sight_wrong(place, answer)).then(|| Wrong {
+            (differs && face_is_accounted_for() && court.is_sight_wrong(place, answer)).then(|| Wrong {
                 place,
                 answer,
                 without: Vec::new(),

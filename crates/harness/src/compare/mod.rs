@@ -334,7 +334,13 @@ pub fn compare_judged(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>) -> Vec<Sensor
     for index in 0..scene.beams().len() {
         let (comparison, pencils) = compare_sensor(judge, SensorId::Beam(index), a, b, &[]);
         beams.push(comparison);
-        if let (Some(of_a), Some(of_b)) = (a.frame.flux.get(index), b.frame.flux.get(index)) {
+        let tells_pencils = [a, b].iter().all(|side| {
+            let returns = side.frame.returns.get(index);
+            returns.is_some_and(|returns| returns.pixel.is_some() && returns.flux.is_some())
+        });
+        if let (Some(of_a), Some(of_b)) = (a.frame.flux.get(index), b.frame.flux.get(index))
+            && tells_pencils
+        {
             let unit_roundoff = a.resolution.unit_roundoff.max(b.resolution.unit_roundoff);
             light.push(PixelLight::new(scene, [of_a, of_b], pencils, unit_roundoff));
         }

@@ -1,11 +1,11 @@
 //! One pencil of two frames: whether the camera sees its hit, where, and what it delivers.
 
 use raypencil_scanline::Switches;
-use raypencil_scene::{FaceId, Pixel, Returns, SensorId};
+use raypencil_scene::{FaceId, Pixel, Resolution, Returns, SensorId};
 
 use super::ray::{Entry, Geometry};
 use super::{Class, Place, Quantity, Side};
-use crate::bounds::{ReturnBounds, Returned};
+use crate::bounds::{Bounds, ReturnBounds, Returned};
 use crate::judge::Judge;
 
 /// What one side says comes back of a pencil.
@@ -88,28 +88,36 @@ pub(super) fn compare_pencil(
     let both_hit = geometry.answers.iter().all(|answer| answer.hit);
     let is_one_point = both_hit && (geometry.same_face || geometry.class == Class::Tie);
     let differ = of_a.visible != of_b.visible || of_a.pixel != of_b.pixel;
-    let faces = geometry.answers.map(|answer| answer.face);
 
-    // Whether it is seen, and where it lands.
+    // Whether it is seen, and where it lands: each side by the face that it names itself.
     let [mut of_visible, mut of_pixel] = [Class::Agree; 2];
-    if is_one_point {
-        if differ || judge.samples(place) {
-            for ((back, face), (side, answer)) in
-                [of_a, of_b].iter().zip(faces).zip(sides.iter().zip(geometry.answers))
-            {
-                let [visible, pixel] = ruled(judge, entry, *side, face, answer.range, back);
-                (of_visible, of_pixel) = (of_visible.max(visible), of_pixel.max(pixel));
+    if differ || !is_one_point && geometry.answers.iter().any(|answer| answer.hit) || judge.samples(place) {
+        entry.judged();
+        for ((back, answer), side) in [of_a, of_b].iter().zip(geometry.answers).zip(sides) {
+            let Some(face) = answer.face.filter(|_| answer.hit) else { continue };
+            match ruled(judge, entry, side, face, answer.range, back) {
+                Some([visible, pixel]) => {
+                    (of_visible, of_pixel) = (of_visible.max(visible), of_pixel.max(pixel));
+                }
+                // Answers that cannot be named can only be compared by being the same.
+                None if differ => (of_visible, of_pixel) = (Class::Defect, Class::Defect),
+                None => {}
             }
         }
-    } else {
-        // What is said of nothing must be nothing; of another face, it is as right as that face.
-        let unlike = |same: bool| if same { Class::Agree } else { geometry.class };
-        of_visible = unlike(of_a.visible == of_b.visible);
-        of_pixel = unlike(of_a.pixel == of_b.pixel);
-        for (back, answer) in [of_a, of_b].iter().zip(geometry.answers) {
-            if !answer.hit && (back.visible == Some(true) || back.flux.is_some_and(|flux| flux != 0.0)) {
-                of_visible = Class::Defect;
-            }
+    }
+    if !is_one_point {
+        // Two points have nothing to do with each other: what differs goes with what is hit.
+        of_visible = of_visible.max(if of_a.visible == of_b.visible { Class::Agree } else { geometry.class });
+        of_pixel = of_pixel.max(if of_a.pixel == of_b.pixel { Class::Agree } else { geometry.class });
+    }
+    for (back, answer) in [of_a, of_b].iter().zip(geometry.answers) {
+        // What is seen lands somewhere; what is not seen, or not hit, delivers nothing.
+        let delivers = back.flux.is_some_and(|flux| flux != 0.0);
+        let is_seen = back.visible == Some(true);
+        let contradicts = is_seen && (back.pixel == Some(None) || !answer.hit)
+            || delivers && (back.visible == Some(false) || !answer.hit);
+        if contradicts {
+            of_visible = Class::Defect;
         }
     }
     match of_a.visible.zip(of_b.visible) {
@@ -181,24 +189,65 @@ pub(super) fn compare_pencil(
     light
 }
 
-/// The classes of one side's answers about visibility and pixel.
+/// The classes of one side's answers about visibility and pixel; `None` if they cannot be named. Its values are held to
+/// the referee's for the face, the visibility and the pixel that it says.
 fn ruled(
     judge: &Judge<'_>,
-    entry: &Entry<'_>,
+    entry: &mut Entry<'_>,
     side: Side<'_>,
-    face: Option<FaceId>,
+    face: FaceId,
     range: Option<f64>,
     back: &Back,
-) -> [Class; 2] {
-    let (Some(face), Some(visible), Some(pixel)) = (face, back.visible, back.pixel) else {
-        // What cannot be named cannot be ruled on.
-        return [Class::Agree; 2];
-    };
-    let has_cause = side.attributions.is_some_and(|causes| causes.sight_cause(entry.place).is_some());
-    match judge.rule_sight(entry.place, face, range, visible, pixel, side.resolution) {
+) -> Option<[Class; 2]> {
+    let place = entry.place;
+    let (visible, pixel) = (back.visible?, back.pixel?);
+    entry.spoil(off_its_face(judge, place, side, face, back));
+    let has_cause = side.attributions.is_some_and(|causes| causes.sight_cause(place).is_some());
+    Some(match judge.rule_sight(place, face, range, visible, pixel, side.resolution) {
         Some(ruling) => [Class::of(ruling.visible, has_cause), Class::of(ruling.pixel, false)],
         None => [Class::Defect; 2],
-    }
+    })
+}
+
+/// The quantity of what comes back, if any, that is not within its bound of what comes back of the face named.
+fn off_its_face(
+    judge: &Judge<'_>,
+    place: Place,
+    side: Side<'_>,
+    face: FaceId,
+    back: &Back,
+) -> Option<Quantity> {
+    let (scene, SensorId::Beam(beam)) = (judge.scene(), place.sensor) else { return None };
+    let hit = judge.plane_hit(place, face)?;
+    let exact = judge.returned_as(place, face, back.visible?, back.pixel?)?;
+    let ray = scene.ray(place.sensor, place.i, place.j)?;
+    let values = Returned {
+        range: hit.range,
+        incidence: hit.incidence,
+        depth: exact.depth,
+        off_axis: exact.off_axis,
+        emission: exact.emission,
+        distance: hit.point.distance(scene.camera().scene_from_sensor.position),
+    };
+    let bounds = |resolution| {
+        let of_hit = Bounds::of(scene.mesh(), face, &ray, hit.range, resolution);
+        ReturnBounds::of(scene, (beam, place.i), &of_hit, values, resolution)
+    };
+    // The referee's values are rounded to f64.
+    let bounds = bounds(side.resolution).plus(&bounds(Resolution::F64));
+    // A negative cos(psi), of a back that rule 1b adds, delivers nothing by equation (1). CHOICE: see `docs/radiometry.md`.
+    let flux = exact.flux.max(0.0);
+    let all = [
+        (Quantity::CameraDepth, back.depth, exact.depth, bounds.depth),
+        (Quantity::OffAxis, back.off_axis, exact.off_axis, bounds.off_axis),
+        (Quantity::Emission, back.emission, exact.emission, bounds.emission),
+        (Quantity::PencilFlux, back.flux, flux, bounds.flux * flux + bounds.least_flux),
+    ];
+    // What is not a number is off.
+    let off = |said: f64, exact: f64, bound: f64| !(said == exact || (said - exact).abs() <= bound);
+    all.into_iter()
+        .find(|(_, said, exact, bound)| said.is_some_and(|said| off(said, *exact, *bound)))
+        .map(|(quantity, ..)| quantity)
 }
 
 fn return_bounds(

@@ -112,9 +112,12 @@ impl<'a> PixelLight<'a> {
 }
 
 /// Compares the flux of all beams in one pixel.
-pub(super) fn compare_pixel(entry: &mut Entry<'_>, light: &[PixelLight<'_>]) {
-    if light.is_empty() {
+pub(super) fn compare_pixel(entry: &mut Entry<'_>, light: &[PixelLight<'_>], beams: usize) {
+    if light.len() < beams {
+        // A beam without an image or without pencils to judge it by.
         entry.missing(Quantity::PixelFlux);
+    }
+    if light.is_empty() {
         return;
     }
     let mut class = Class::Agree;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use raypencil_scanline::Switches;
-use raypencil_scene::{FaceId, Image, Maybe, SensorId, SensorMap};
+use raypencil_scene::{FaceId, Image, Maybe, Resolution, SensorId, SensorMap};
 
 use super::pencil::compare_pencil;
 use super::pixel::{PixelLight, compare_pixel};
@@ -46,11 +46,16 @@ pub(super) struct Entry<'r> {
     pub(super) place: Place,
     row: &'r mut Gathered,
     worst: (Class, Quantity),
+    /// Whether the referee has ruled on it.
+    is_judged: bool,
+    /// A quantity of which one side says what its own face does not have: a defect, whatever the other says.
+    spoilt: Option<Quantity>,
 }
 
 impl Entry<'_> {
     /// Enters the class of one quantity.
     pub(super) fn class(&mut self, quantity: Quantity, class: Class) {
+        let class = if self.spoilt == Some(quantity) { Class::Defect } else { class };
         self.row.tallies[quantity as usize].by_class[class as usize] += 1;
         if class > self.worst.0 {
             self.worst = (class, quantity);
@@ -83,9 +88,15 @@ impl Entry<'_> {
         self.row.tallies[quantity as usize].not_compared += 1;
     }
 
+    /// Makes a quantity a defect, now or when it is entered.
+    pub(super) fn spoil(&mut self, quantity: Option<Quantity>) {
+        self.spoilt = self.spoilt.or(quantity);
+    }
+
     /// Counts a ray that the referee rules on.
     pub(super) fn judged(&mut self) {
-        self.row.judged += 1;
+        self.row.judged += u64::from(!self.is_judged);
+        self.is_judged = true;
     }
 
     /// The worst class so far.
@@ -118,7 +129,8 @@ pub(super) fn compare_ray(
 ) {
     let Place { sensor, i, j } = place;
     let answers = [Answer::of(map_a, i, j), Answer::of(map_b, i, j)];
-    let mut entry = Entry { place, row, worst: (Class::Agree, Quantity::Hit) };
+    let mut entry =
+        Entry { place, row, worst: (Class::Agree, Quantity::Hit), is_judged: false, spoilt: None };
     let geometry = compare_geometry(judge, &mut entry, answers, [a, b]);
     for quantity in Quantity::ALL {
         let missing = match quantity {
@@ -136,7 +148,7 @@ pub(super) fn compare_ray(
     }
     let mut flux_difference = 0.0;
     match sensor {
-        SensorId::Camera => compare_pixel(&mut entry, light),
+        SensorId::Camera => compare_pixel(&mut entry, light, judge.scene().beams().len()),
         SensorId::Beam(index) => {
             let returns = [a, b].map(|side| side.frame.returns.get(index));
             let delivered = compare_pencil(judge, &mut entry, geometry, returns, [a, b]);
@@ -145,6 +157,12 @@ pub(super) fn compare_ray(
         }
     }
 
+    if let Some(quantity) = entry.spoilt
+        && entry.worst.0 < Class::Defect
+    {
+        // Nothing of that quantity was compared between the sides.
+        entry.class(quantity, Class::Defect);
+    }
     let Entry { worst: (class, quantity), row, .. } = entry;
     row.by_class[class as usize] += 1;
     if class == Class::Approximation {
@@ -220,6 +238,12 @@ fn compare_geometry(
         .zip(bounds_of(&of_b, &of_a, b.resolution))
         .map(|(of_a, of_b)| [of_a, of_b]);
     let bounds = geometry.bounds.map(|[of_a, of_b]| of_a.plus(&of_b));
+    // Each side's values must be those of the face that it names itself, whatever the other says.
+    if ruled.is_some() {
+        for (answer, side) in answers.iter().zip([a, b]) {
+            entry.spoil(off_its_face(judge, place, answer, side));
+        }
+    }
     if same_face.is_some() {
         entry.class(Quantity::Face, class);
     }
@@ -252,6 +276,33 @@ fn compare_geometry(
         }
     }
     geometry
+}
+
+/// The quantity of an answer, if any, that is not within its bound of the values of the face that it names.
+fn off_its_face(judge: &Judge<'_>, place: Place, answer: &Answer, side: Side<'_>) -> Option<Quantity> {
+    let (face, scene) = (answer.face?, judge.scene());
+    let exact = judge.plane_hit(place, face)?;
+    let ray = scene.ray(place.sensor, place.i, place.j)?;
+    let bounds = |resolution| Bounds::of(scene.mesh(), face, &ray, exact.range, resolution);
+    // The values are the referee's in f64.
+    let bounds = bounds(side.resolution).plus(&bounds(Resolution::F64));
+    let scalars = [
+        (Quantity::Range, answer.range, exact.range, bounds.range),
+        (Quantity::Depth, answer.depth, exact.depth, bounds.range),
+        (Quantity::Incidence, answer.incidence, exact.incidence, bounds.incidence),
+    ];
+    let vectors = [
+        (Quantity::Point, answer.point, exact.point, bounds.point),
+        (Quantity::Normal, answer.normal, exact.normal, bounds.normal),
+    ];
+    // What is not a number is off.
+    let scalar = scalars.into_iter().find(|(_, said, exact, bound)| {
+        said.is_some_and(|said| !(said == *exact || (said - exact).abs() <= *bound))
+    });
+    let vector = vectors
+        .into_iter()
+        .find(|(_, said, exact, bound)| said.is_some_and(|said| !((said - *exact).length() <= *bound)));
+    scalar.map(|(quantity, ..)| quantity).or(vector.map(|(quantity, ..)| quantity))
 }
 
 impl ApproximationTally {
