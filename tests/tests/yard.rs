@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_harness::{Counts, JudgeShare, Silent, Subject, Validation, contender, validate};
+use raypencil_scene::FluxModel;
 use raypencil_scene_io::{Overrides, load};
 
 /// The mesh, or `None` after saying that the test is skipped.
@@ -38,14 +39,33 @@ fn both_renderers_agree_on_the_yard() {
 }
 
 #[test]
+fn both_renderers_agree_on_the_light_of_the_yard() {
+    let Some(path) = yard() else { return };
+    for flux_model in [FluxModel::Radiometric, FluxModel::Eq1] {
+        for fan_deg in [60.0, 120.0] {
+            let overrides =
+                Overrides { flux_model: Some(flux_model), fan_deg: Some(fan_deg), ..Overrides::default() };
+            let found = validated(&path, overrides, &["scanline", "tracer"]);
+            let Counts { compared, defects, undecided, .. } = found.counts();
+            assert_eq!(
+                (compared, defects, undecided),
+                (1_081_344, 0, 0),
+                "{flux_model:?}, {fan_deg} degrees"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_papers_errors_on_the_yard_have_causes() {
     let Some(path) = yard() else { return };
     let mut last = 0;
     for thickness_mm in [5.0, 20.0, 80.0] {
         let overrides = Overrides { thickness_mm: Some(thickness_mm), ..Overrides::default() };
         let found = validated(&path, overrides, &["scanline-paper", "tracer"]);
-        let Counts { approximation, defects, undecided, .. } = found.counts();
+        let Counts { compared, agree, approximation, defects, undecided, judged, .. } = found.counts();
         assert_eq!((defects, undecided), (0, 0), "{thickness_mm} mm");
+        assert!(judged >= compared / 100, "{judged} of {compared}, {agree} agree");
         // The thicker the sheet, the more.
         assert!(approximation > last, "{thickness_mm} mm: {approximation} after {last}");
         last = approximation;

@@ -45,11 +45,11 @@ pub(crate) struct SceneArguments {
     pub(crate) scene: String,
 
     /// Full fan angle of every beam, degrees.
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub(crate) fan: Option<f64>,
 
     /// Thickness of every beam's sheet, millimetres.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub(crate) thickness: Option<f64>,
 
     /// Equation of a pencil's flux; the scene's own if not given.
@@ -207,7 +207,7 @@ pub(crate) struct Render {
     pub(crate) with: String,
 
     /// Draw one ray at random within each pencil, by this seed, instead of its central ray.
-    #[arg(long, value_name = "SEED")]
+    #[arg(long, value_name = "SEED", allow_hyphen_values = true)]
     pub(crate) jitter: Option<u64>,
 
     #[command(flatten)]

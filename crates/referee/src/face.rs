@@ -118,6 +118,11 @@ impl Face {
         (0..3).all(on_plane) && n.dot(&other.normal()).sign() == Some(Ordering::Greater)
     }
 
+    /// Whether the ray comes from behind the face's plane.
+    pub(crate) fn shows_back_to(&self, ray: &ExactRay<'_>) -> bool {
+        ray.sign(&Approach(self)) == Ordering::Greater
+    }
+
     /// Whether all of this face lies in the plane of `other`, exactly, whichever way either faces.
     pub(crate) fn is_in_plane_of(&self, other: &Self) -> bool {
         let (n, a) = (other.normal::<Dyadic>(), other.corner::<Dyadic>(0));

@@ -7,6 +7,8 @@
 //! V = W (P - c) = -(O n.D + n.a' D) - W c
 //! ```
 //!
+//! (For the plane of a face that shows the ray its back, which a renderer may name, W and V have the other sign.)
+//!
 //! With M^T V = (X, Y, Z) in the camera's frame, which is N W times metres, and a' = a - c for another face:
 //!
 //! | condition | as a sign |
@@ -63,16 +65,19 @@ pub(crate) struct Way<T> {
 }
 
 impl<T: Number> Way<T> {
-    fn new(ray: &ScaledRay<T>, face: &Face, camera: &Mounted<Camera>) -> Self {
+    fn new(ray: &ScaledRay<T>, face: &Face, camera: &Mounted<Camera>, is_back: bool) -> Self {
         let pose = camera.scene_from_sensor;
         let (centre, rotation) = (Vector::of(pose.position), ScaledRotation::<T>::of(pose.rotation));
         let (approach, height) = (face.approach(ray), face.height(ray));
         let minus_scale = approach.mul(&ray.origin_scale);
         // V = -(O n.D + n.a' D) + s n.D c.
         let point = ray.origin.scaled(&approach).add(&ray.direction.scaled(&height));
-        let along = centre.scaled(&minus_scale).sub(&point);
+        let (along, scale) = if is_back {
+            (point.sub(&centre.scaled(&minus_scale)), minus_scale)
+        } else {
+            (centre.scaled(&minus_scale).sub(&point), T::of(0.0).sub(&minus_scale))
+        };
         let seen = rotation.apply_inverse(&along);
-        let scale = T::of(0.0).sub(&minus_scale);
         let focal = T::of(camera.sensor.focal_length).mul(&rotation.norm_squared);
         Self { centre, along, scale, seen, focal, frame_scale: rotation.norm_squared }
     }
@@ -146,6 +151,8 @@ pub(crate) struct ExactWay<'a> {
     ray: &'a ExactRay<'a>,
     face: &'a Face,
     camera: &'a Mounted<Camera>,
+    /// Whether the ray comes from behind the face: W has the other sign then.
+    is_back: bool,
     fast: Way<Interval>,
     exact: OnceCell<Way<Dyadic>>,
 }
@@ -153,12 +160,14 @@ pub(crate) struct ExactWay<'a> {
 impl<'a> ExactWay<'a> {
     /// The way to where `ray` meets `face`, which it does.
     pub(crate) fn new(ray: &'a ExactRay<'a>, face: &'a Face, camera: &'a Mounted<Camera>) -> Self {
-        Self { ray, face, camera, fast: Way::new(ray.fast(), face, camera), exact: OnceCell::new() }
+        let is_back = face.shows_back_to(ray);
+        let fast = Way::new(ray.fast(), face, camera, is_back);
+        Self { ray, face, camera, is_back, fast, exact: OnceCell::new() }
     }
 
     /// The way without rounding.
     pub(crate) fn exact(&self) -> &Way<Dyadic> {
-        self.exact.get_or_init(|| Way::new(self.ray.exact(), self.face, self.camera))
+        self.exact.get_or_init(|| Way::new(self.ray.exact(), self.face, self.camera, self.is_back))
     }
 
     #[inline]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use raypencil_referee::{Displacement, ExactRenderer, Referee};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pixel, Pose, Profile,
+    Atmosphere, Beam, Camera, FaceId, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pixel, Pose, Profile,
     Renderer, Request, Return, Sampling, Scene,
 };
 
@@ -175,4 +175,22 @@ fn the_renderer_adds_up_its_returns() {
         assert_eq!(total, flux);
         assert_eq!(visible, flux > 0.0);
     }
+}
+
+#[test]
+fn a_plane_met_from_behind_is_seen_where_it_is() {
+    // The wall turned round is never hit; asked for the point on its plane all the same, it is the same point, and
+    // the camera is behind it.
+    let mut setting = Setting::of(FluxModel::Radiometric);
+    setting.faces = vec![[WALL[0], WALL[2], WALL[1]]];
+    let scene = setting.scene();
+    let referee = Referee::new(&scene);
+    let light = referee.light(0, Sampling::Centres).expect("a beam");
+    assert_eq!(light.returned(0, 0), None);
+    let pixel = Some(Pixel { i: 0, j: 32 });
+    let back = light.returned_as(0, 0, FaceId(0), false, pixel).expect("a plane");
+    let cosine = 2.0 / 5.0_f64.sqrt();
+    assert_eq!((back.depth, back.flux), (2.0, 0.0));
+    close(back.off_axis, cosine);
+    close(back.emission, -cosine);
 }

@@ -6,7 +6,7 @@ use raypencil_referee::{Margin, Margins, Ruling, SightMargins, SightRuling, Verd
 use raypencil_scene::{Frame, Hit, Ray, Request, Return, Sampling, SensorId};
 
 use crate::attribution::{Attributions, Cause, SightCause};
-use crate::compare::{Class, Place};
+use crate::compare::{Class, Place, Quantity};
 use crate::judge::{Judge, JudgeShare};
 use crate::output::probe_command;
 use crate::renderers::Contender;
@@ -31,6 +31,8 @@ pub struct Probe {
     pub exact: Option<Hit>,
     /// What comes back of the exact hit of a pencil.
     pub exact_return: Option<Return>,
+    /// Unit of a flux.
+    pub flux_unit: &'static str,
     /// The least displacement that changes the set of nearest faces.
     pub face_margin: Margin,
     /// The least displacement at which the range jumps.
@@ -148,6 +150,7 @@ pub fn probe(
         verdict,
         exact,
         exact_return,
+        flux_unit: Quantity::PencilFlux.unit(scene.flux_model()),
         face_margin: face,
         surface_margin: surface,
         sight_margins,

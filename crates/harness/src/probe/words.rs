@@ -94,6 +94,7 @@ impl Probe {
                 "faces": self.verdict.faces.iter().map(|face| face.0).collect::<Vec<_>>(),
                 "hit": values(self.exact),
                 "return": self.exact_return.as_ref().map(of_return),
+                "flux_unit": self.flux_unit,
                 "face_margin": margin(&self.face_margin),
                 "surface_margin": margin(&self.surface_margin),
                 "visibility_margin": self.sight_margins.as_ref().map(|margins| margin(&margins.visibility)),
@@ -150,7 +151,7 @@ impl fmt::Display for Probe {
             write_values(f, hit)?;
         }
         if let Some(back) = &self.exact_return {
-            write_return(f, back)?;
+            write_return(f, back, self.flux_unit)?;
         }
         writeln!(f, "    face margin {}", margin(&self.face_margin))?;
         writeln!(f, "    surface margin {}", margin(&self.surface_margin))?;
@@ -178,7 +179,7 @@ impl fmt::Display for Probe {
                 write_values(f, hit)?;
             }
             if let Some(back) = &answer.back {
-                write_ruled_return(f, back)?;
+                write_ruled_return(f, back, self.flux_unit)?;
             }
         }
         writeln!(f, "  again: {}", self.command)
@@ -191,16 +192,16 @@ fn write_values(f: &mut fmt::Formatter<'_>, hit: &Hit) -> fmt::Result {
     writeln!(f, "    normal {}, cos(psi) {}", vector(hit.normal), hit.incidence)
 }
 
-fn write_return(f: &mut fmt::Formatter<'_>, back: &Return) -> fmt::Result {
+fn write_return(f: &mut fmt::Formatter<'_>, back: &Return, unit: &str) -> fmt::Result {
     let seen = if back.visible { "seen" } else { "not seen" };
     let pixel = back.pixel.map_or("off the image".into(), |pixel| format!("pixel {},{}", pixel.i, pixel.j));
     writeln!(f, "    {seen} by the camera, {pixel}; depth {} m there", back.depth)?;
-    writeln!(f, "    cos(phi) {}, cos(theta) {}, flux {:e}", back.off_axis, back.emission, back.flux)
+    writeln!(f, "    cos(phi) {}, cos(theta) {}, flux {:e} {unit}", back.off_axis, back.emission, back.flux)
 }
 
-fn write_ruled_return(f: &mut fmt::Formatter<'_>, answer: &ProbedReturn) -> fmt::Result {
+fn write_ruled_return(f: &mut fmt::Formatter<'_>, answer: &ProbedReturn, unit: &str) -> fmt::Result {
     let ProbedReturn { back, ruling, cause } = answer;
-    write_return(f, back)?;
+    write_return(f, back, unit)?;
     if ruling.visible != Ruling::Exact {
         let ruling = match cause {
             Some(cause) => format!("approximation: {}", cause.switches),
