@@ -19,9 +19,9 @@ pub(crate) enum Verdict {
 }
 
 /// What a pass does not say.
-pub(crate) const CAVEAT: &str = "Which face is hit was checked in exact arithmetic, on every ray whose \
-    answers differ and on a sample of the others. The values were not: an error in them that both sides make alike \
-    does not show here.";
+pub(crate) const CAVEAT: &str = "Which face is hit, and what the camera sees of it, was checked in exact \
+    arithmetic on every ray whose answers differ and on a sample of the others, and their values were held to a third \
+    evaluation. An error of a value that both sides make alike on the other rays alone does not show here.";
 
 impl Verdict {
     pub(crate) fn of(validation: &Validation) -> Self {
