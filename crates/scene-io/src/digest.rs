@@ -1,5 +1,9 @@
 //! SHA-256 of what a scene comes from, and of what it came to.
 
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
 use raypencil_scene::{Filter, FluxModel, Mesh, Pose, Profile, Scene};
 use sha2::{Digest, Sha256};
 
@@ -9,6 +13,27 @@ pub(crate) type Sha = [u8; 32];
 /// The SHA-256 of some bytes.
 pub(crate) fn sha(bytes: &[u8]) -> Sha {
     Sha256::digest(bytes).into()
+}
+
+/// The size in bytes and the SHA-256, in hexadecimal digits, of a regular file of any size.
+pub(crate) fn of_file(path: &Path) -> io::Result<(u64, String)> {
+    // Asked before the file is opened: opening a pipe waits for its writer.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
+    }
+    let mut file = File::open(path)?;
+    let mut hash = Sha256::new();
+    let mut part = vec![0; 1 << 16];
+    let mut bytes = 0;
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok((bytes, hex(&hash.finalize().into()))),
+            count => {
+                hash.update(&part[..count]);
+                bytes += count as u64;
+            }
+        }
+    }
 }
 
 /// One digest for several parts: a single part's own (what `sha256sum` prints for that file), else the

@@ -28,6 +28,21 @@ pub enum SceneIoError {
     #[diagnostic(code(raypencil::exr))]
     Exr(Box<Problem>),
 
+    /// A place in an NPY or PFM file.
+    #[error("{0}")]
+    #[diagnostic(code(raypencil::array))]
+    Array(Box<Problem>),
+
+    /// A recording whose files do not go together, or that has none.
+    #[error("{0}")]
+    #[diagnostic(code(raypencil::recording))]
+    Recording(Box<Problem>),
+
+    /// A pack that is none, or is not as it was written.
+    #[error("{0}")]
+    #[diagnostic(code(raypencil::pack))]
+    Pack(Box<Problem>),
+
     /// The file system refused.
     #[error("{}: cannot {action}: {source}", path.display())]
     #[diagnostic(code(raypencil::io))]

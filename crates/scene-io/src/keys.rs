@@ -9,17 +9,18 @@ use toml::Spanned;
 /// A value that remembers its place in the file, if the key is given.
 pub(crate) type Key<T> = Option<Spanned<T>>;
 
-/// Just the version, read before all else so that a newer file fails by its version and not by a key.
+/// What the file is, read before all else.
 #[derive(Deserialize)]
-pub(crate) struct VersionKey {
+pub(crate) struct HeadKeys {
     pub version: Key<toml::Value>,
+    pub kind: Key<toml::Value>,
 }
 
 /// The whole file.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SceneKeys {
-    #[allow(dead_code, reason = "checked by VersionKey; named here so that it is known")]
+    #[allow(dead_code, reason = "checked by HeadKeys; named here so that it is known")]
     pub version: Key<i64>,
     #[serde(default)]
     pub vehicle: VehicleKeys,

@@ -2,9 +2,15 @@
 //!
 //! * [`load`]: a built-in name, a scene TOML or a glTF terrain becomes a [`LoadedScene`]. The keys of a
 //!   scene file are described in `docs/scene.md`.
-//! * [`load_mesh`]: a `.glb` or `.gltf` file becomes a [`raypencil_scene::Mesh`].
+//! * [`write_resolved`]: a scene's own numbers, which [`load`] gives back bit for bit.
+//! * [`load_mesh`]: a `.glb` or `.gltf` file becomes a [`raypencil_scene::Mesh`]; [`write_glb`] and [`mesh_of_offsets`]
+//!   keep one bit for bit.
 //! * [`write_exr_map`], [`read_exr_map`]: the maps of one sensor as OpenEXR; [`ExrMap`] for files of any
 //!   channels. Conventions are in `docs/files.md`.
+//! * [`read_npy`], [`write_npy`], [`read_pfm`], [`write_pfm`]: arrays of numbers, as NumPy and image programs
+//!   have them.
+//! * [`read_channels`]: a recording of any program, in any of these formats, as [`Channels`].
+//! * [`Manifest`]: what belongs to a pack, each file by its digest.
 //! * [`write_atomically`]: a file is either the old one or the whole new one, never a part.
 //!
 //! Every error names the file, the place in it, what was found there and what was expected.
@@ -16,21 +22,38 @@
 //! # Ok::<(), raypencil_scene_io::SceneIoError>(())
 //! ```
 
+mod array;
 mod atomic;
 mod bytes;
+mod channels;
 mod digest;
 mod error;
 mod exr_map;
 mod gltf_mesh;
 mod keys;
 mod load;
+mod manifest;
+mod npy;
 mod parse;
+mod pfm;
 mod plan;
 mod resolve;
+mod resolved;
 
+pub use array::{Array, ArrayNumber, Storage, Values};
 pub use atomic::write_atomically;
+pub use channels::{Channel, Channels, read_channels, read_listed};
 pub use digest::scene_sha256;
 pub use error::{Problem, SceneIoError, TomlProblem};
 pub use exr_map::{Attributes, ExrMap, Limits, Raster, read_exr, read_exr_map, write_exr, write_exr_map};
-pub use gltf_mesh::{DEFAULT_REFLECTIVITY, load_mesh, mesh_from_bytes};
-pub use load::{LoadedScene, Overrides, SceneSource, load};
+pub use gltf_mesh::{
+    DEFAULT_REFLECTIVITY, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
+};
+pub use load::{LoadedScene, Overrides, SceneSource, load, load_text};
+pub use manifest::{
+    ChannelType, FileRole, FileType, FluxWord, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile,
+    ManifestScene, ManifestSensor, PackKind,
+};
+pub use npy::{read_npy, write_npy};
+pub use pfm::{read_pfm, write_pfm};
+pub use resolved::write_resolved;

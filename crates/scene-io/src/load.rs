@@ -1,5 +1,6 @@
 //! From a name or a path to a scene.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,10 +8,10 @@ use raypencil_scene::{Beam, FluxModel, Mesh, Pose, Scene, SceneError};
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
 use crate::digest::{self, Sha};
-use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY};
-use crate::parse::{self, Source};
+use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY, Vertices};
+use crate::parse::{self, Kind, Source};
 use crate::plan::{self, Plan, Terrain};
-use crate::{SceneIoError, bytes, resolve, scene_sha256};
+use crate::{SceneIoError, bytes, resolve, resolved, scene_sha256};
 
 /// A scene file larger than this is none: 1 MiB.
 const LARGEST_TOML: u64 = 1 << 20;
@@ -90,7 +91,8 @@ pub struct LoadedScene {
     pub source_sha256: String,
     /// SHA-256 of the resolved numbers, whatever they came from; see [`scene_sha256`].
     pub scene_sha256: String,
-    /// The vehicle in the global frame: `global_from_vehicle`.
+    /// The vehicle in the global frame: `global_from_vehicle`. A resolved scene has none: of it, this is the
+    /// scene frame.
     pub vehicle: Pose,
     /// What it was made from.
     pub source: SceneSource,
@@ -114,7 +116,7 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
         }
         SceneSource::Gltf(path) => {
             let mut plan = plan::default_rig(Terrain::File(path.clone()));
-            let (mesh, parts) = gltf_mesh::read(path, DEFAULT_REFLECTIVITY)?;
+            let (mesh, parts) = gltf_mesh::read(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
             if overrides.at.is_none() {
                 plan.vehicle.position = resolve::central_place(&mesh).unwrap_or_default();
             }
@@ -132,34 +134,42 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
     }
 }
 
+/// Loads a scene from the text of a scene file that is in no file; `name` is for messages, and its path is that of
+/// files that it refers to.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_text(text: &str, name: &str) -> Result<LoadedScene, SceneIoError> {
+    let path = PathBuf::from(format!("{name}.toml"));
+    load_toml(&SceneSource::Toml(path.clone()), &path, text, &Overrides::default())
+}
+
 fn load_toml(
     source: &SceneSource,
     path: &Path,
     text: &str,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
-    let plan = parse::parse(path, text)?;
-    let mut parts = vec![digest::sha(text.as_bytes())];
     let places = Source { file: path, text };
+    let parts = vec![digest::sha(text.as_bytes())];
+    match places.kind()? {
+        Kind::Rig => load_rig(source, &places, parts, overrides),
+        Kind::Resolved => load_resolved(source, &places, parts, overrides),
+    }
+}
+
+fn load_rig(
+    source: &SceneSource,
+    places: &Source,
+    mut parts: Vec<Sha>,
+    overrides: &Overrides,
+) -> Result<LoadedScene, SceneIoError> {
+    let plan = parse::parse(places)?;
     let mesh = match &plan.terrain {
         Terrain::File(file) => {
-            let terrain = path.parent().unwrap_or(Path::new("")).join(file);
-            let known = |end: &str| terrain.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
-            if !(known("glb") || known("gltf")) {
-                let message = format!(
-                    "`terrain.file` is \"{}\"; expected a file that ends in .glb or .gltf",
-                    file.display()
-                );
-                return Err(places.error(plan.terrain_span.clone(), message));
-            }
-            if !terrain.is_file() {
-                let message = format!(
-                    "`terrain.file`: there is no file \"{}\"; expected a path relative to the scene file",
-                    terrain.display()
-                );
-                return Err(places.error(plan.terrain_span.clone(), message));
-            }
-            let (mesh, more) = gltf_mesh::read(&terrain, plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY))?;
+            let terrain = terrain_file(places, file, &plan.terrain_span)?;
+            let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
+            let (mesh, more) = gltf_mesh::read(&terrain, reflectivity, Vertices::Global)?;
             parts.extend(more);
             Some(mesh)
         }
@@ -176,6 +186,53 @@ fn load_toml(
     })
 }
 
+/// Where `terrain.file` is, if it is a file of a kind that is known.
+fn terrain_file(places: &Source, file: &Path, span: &Range<usize>) -> Result<PathBuf, SceneIoError> {
+    let terrain = places.file.parent().unwrap_or(Path::new("")).join(file);
+    let known = |end: &str| terrain.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
+    if !(known("glb") || known("gltf")) {
+        let message =
+            format!("`terrain.file` is \"{}\"; expected a file that ends in .glb or .gltf", file.display());
+        return Err(places.error(span.clone(), message));
+    }
+    if !terrain.is_file() {
+        let message = format!(
+            "`terrain.file`: there is no file \"{}\"; expected a path relative to the scene file",
+            terrain.display()
+        );
+        return Err(places.error(span.clone(), message));
+    }
+    Ok(terrain)
+}
+
+/// A scene whose numbers stand in the file as they are.
+fn load_resolved(
+    source: &SceneSource,
+    places: &Source,
+    mut parts: Vec<Sha>,
+    overrides: &Overrides,
+) -> Result<LoadedScene, SceneIoError> {
+    let at = overrides.at.map(|[x, y]| ("at", format!("{x},{y}")));
+    let heading = overrides.heading_deg.map(|heading| ("heading", heading.to_string()));
+    if let Some((name, value)) = at.or(heading) {
+        let expected = "none: a resolved scene has no vehicle to place, only sensors".to_string();
+        return Err(SceneIoError::Override { name, value, expected });
+    }
+    let mut resolved = resolved::parse(places)?;
+    let terrain = terrain_file(places, Path::new(resolved.file.get_ref()), &resolved.file.span())?;
+    let vertices = Vertices::OffsetsFrom(resolved.origin);
+    let (mesh, more) = gltf_mesh::read(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
+    parts.extend(more);
+    resolved.beams.iter_mut().for_each(|beam| apply_to_beam(overrides, &mut beam.sensor));
+    let flux_model = overrides.flux_model.unwrap_or(resolved.flux_model);
+    // Nothing is lost by the copies: beams are few and small.
+    let scene =
+        Scene::new(Arc::new(mesh), resolved.camera, resolved.beams.clone(), resolved.atmosphere, flux_model)
+            .map_err(|error| resolved.unfit(places, error))?;
+    let vehicle = Pose::from_position(scene.mesh().origin());
+    Ok(loaded(source, scene, vehicle, parts, overrides))
+}
+
 /// Resolves a plan: makes the ground if it is not loaded yet, stands the vehicle on it, mounts the sensors.
 fn finish(
     source: &SceneSource,
@@ -190,7 +247,7 @@ fn finish(
     };
     let unfit = |source: SceneError| SceneIoError::Scene { origin: origin(), source };
     apply(overrides, &mut plan);
-    let loaded = mesh.is_some();
+    let from_file = mesh.is_some();
     let mesh = match mesh {
         Some(mesh) => mesh,
         None => make(&plan).map_err(unfit)?,
@@ -203,20 +260,31 @@ fn finish(
     // A ground that was made takes part in the digest by its numbers, which its name does not promise.
     match source {
         SceneSource::Builtin(_) => parts.push(digest::resolved(&scene)),
-        _ if !loaded => parts.push(digest::mesh(scene.mesh())),
+        _ if !from_file => parts.push(digest::mesh(scene.mesh())),
         _ => {}
     }
+    Ok(loaded(source, scene, vehicle, parts, overrides))
+}
+
+/// Adds names and digests to a scene.
+fn loaded(
+    source: &SceneSource,
+    scene: Scene,
+    vehicle: Pose,
+    mut parts: Vec<Sha>,
+    overrides: &Overrides,
+) -> LoadedScene {
     if *overrides != Overrides::default() && !matches!(source, SceneSource::Builtin(_)) {
         parts.push(digest::sha(format!("{overrides:?}").as_bytes()));
     }
-    Ok(LoadedScene {
+    LoadedScene {
         name: folder_name(source),
         source_sha256: digest::combine(&parts),
         scene_sha256: scene_sha256(&scene),
         scene,
         vehicle,
         source: source.clone(),
-    })
+    }
 }
 
 /// Makes a ground that comes from no file.
@@ -273,18 +341,19 @@ fn apply(overrides: &Overrides, plan: &mut Plan) {
     if let Some(heading_deg) = overrides.heading_deg {
         plan.vehicle.heading_deg = heading_deg;
     }
-    if let Some(fan_deg) = overrides.fan_deg {
-        for (_, beam) in &mut plan.beams {
-            beam.half_width = Beam::half_width_of(beam.grid_distance, fan_deg.to_radians());
-        }
-    }
+    plan.beams.iter_mut().for_each(|(_, beam)| apply_to_beam(overrides, beam));
     if let Some(flux_model) = overrides.flux_model {
         plan.flux_model = flux_model;
     }
+}
+
+/// Puts the overrides of beams in place of what the file says of one.
+fn apply_to_beam(overrides: &Overrides, beam: &mut Beam) {
+    if let Some(fan_deg) = overrides.fan_deg {
+        beam.half_width = Beam::half_width_of(beam.grid_distance, fan_deg.to_radians());
+    }
     if let Some(thickness_mm) = overrides.thickness_mm {
-        for (_, beam) in &mut plan.beams {
-            beam.thickness = thickness_mm / 1e3;
-        }
+        beam.thickness = thickness_mm / 1e3;
     }
 }
 

@@ -9,14 +9,14 @@ use toml::Spanned;
 
 use crate::gltf_mesh::DEFAULT_REFLECTIVITY;
 use crate::keys::{
-    BeamKeys, CameraKeys, FilterKeys, GenerateKeys, Key, SceneKeys, TerrainKeys, VehicleKeys, VersionKey,
+    BeamKeys, CameraKeys, FilterKeys, GenerateKeys, HeadKeys, Key, SceneKeys, TerrainKeys, VehicleKeys,
 };
 use crate::plan::{DEFAULT_FAN_DEG, Mount, Plan, Terrain, default_beam, default_rig};
 use crate::{SceneIoError, TomlProblem};
 
-/// A fan of light, from a thread to just below a half plane, degrees.
 /// CHOICE: the effective index of common interference filters lies around 2.
 const DEFAULT_FILTER_INDEX: f64 = 2.0;
+/// A fan of light, from a thread to just below a half plane, degrees.
 pub(crate) const FAN_DEG: RangeInclusive<f64> = 0.001..=179.9;
 pub(crate) const THICKNESS_MM: RangeInclusive<f64> = 1e-3..=1e5;
 /// Any turn, either way, degrees.
@@ -33,12 +33,23 @@ const MOST_CELLS: u64 = 1 << 26;
 /// Faces of a generated ground: a gigabyte or so.
 const GENERATED_FACES: RangeInclusive<i64> = 1..=1 << 24;
 
-/// Reads a scene TOML; `file` is for the messages.
-pub(crate) fn parse(file: &Path, text: &str) -> Result<Plan, SceneIoError> {
-    let source = Source { file, text };
-    source.version()?;
+/// The words for the equations of flux.
+pub(crate) const FLUX_MODELS: [(&str, FluxModel); 2] =
+    [("radiometric", FluxModel::Radiometric), ("eq1", FluxModel::Eq1)];
+
+/// Reads a scene TOML of version 1 and no special kind.
+pub(crate) fn parse(source: &Source) -> Result<Plan, SceneIoError> {
     let keys: SceneKeys = source.deserialize()?;
     source.plan(keys)
+}
+
+/// What a scene TOML describes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Kind {
+    /// A rig on a ground: most numbers have defaults.
+    Rig,
+    /// A scene's own numbers.
+    Resolved,
 }
 
 /// The text of a scene file, to which every error points.
@@ -53,16 +64,29 @@ impl Source<'_> {
         SceneIoError::Toml(Box::new(TomlProblem::new(self.file, self.text, span, message)))
     }
 
-    fn deserialize<T: serde::de::DeserializeOwned>(&self) -> Result<T, SceneIoError> {
+    pub(crate) fn deserialize<T: serde::de::DeserializeOwned>(&self) -> Result<T, SceneIoError> {
         toml::from_str(self.text)
             .map_err(|error| self.error(error.span().unwrap_or(0..0), error.message().trim_end()))
     }
 
-    fn version(&self) -> Result<(), SceneIoError> {
+    /// The kind of a file of version 1: asked first, so that a newer file fails by its version and not by
+    /// a key.
+    pub(crate) fn kind(&self) -> Result<Kind, SceneIoError> {
         let wanted = "`version = 1`, the only version there is";
-        match self.deserialize::<VersionKey>()?.version {
+        let head: HeadKeys = self.deserialize()?;
+        match head.version {
             None => Err(self.error(0..0, format!("`version` is missing; expected {wanted}"))),
-            Some(version) if version.get_ref().as_integer() == Some(1) => Ok(()),
+            Some(version) if version.get_ref().as_integer() == Some(1) => match head.kind {
+                None => Ok(Kind::Rig),
+                Some(kind) if kind.get_ref().as_str() == Some("resolved") => Ok(Kind::Resolved),
+                Some(kind) => {
+                    let message = format!(
+                        "`kind` is {}; expected \"resolved\", or no `kind` for a rig on a ground",
+                        kind.get_ref()
+                    );
+                    Err(self.error(kind.span(), message))
+                }
+            },
             Some(version) => {
                 let message = format!("`version` is {}; expected {wanted}", version.get_ref());
                 Err(self.error(version.span(), message))
@@ -91,11 +115,7 @@ impl Source<'_> {
             "per metre",
         )?;
         if let Some(model) = keys.flux.model {
-            plan.flux_model = self.word(
-                &model,
-                "flux.model",
-                &[("radiometric", FluxModel::Radiometric), ("eq1", FluxModel::Eq1)],
-            )?;
+            plan.flux_model = self.word(&model, "flux.model", &FLUX_MODELS)?;
         }
         Ok(plan)
     }
@@ -223,28 +243,43 @@ impl Source<'_> {
 
     /// `profile` and `gaussian_half_width_deg`, which is there exactly when the profile is Gaussian.
     fn profile(&self, beam: &str, profile: Key<String>, width: Key<f64>) -> Result<Profile, SceneIoError> {
-        let (name, width_name) = (format!("{beam}.profile"), format!("{beam}.gaussian_half_width_deg"));
-        let paper = || Spanned::new(0..0, "paper".to_string());
-        let profile = profile.unwrap_or_else(paper);
+        let key = "gaussian_half_width_deg";
+        let profile = profile.unwrap_or_else(|| Spanned::new(0..0, "paper".to_string()));
+        let place = width.as_ref().map_or(0..0, Spanned::span);
+        match self.shape(beam, &profile, width, key)? {
+            Profile::Gaussian { half_width } => {
+                self.check(half_width, place, &format!("{beam}.{key}"), 1e-3..=1e4, "degrees")?;
+                Ok(Profile::Gaussian { half_width: half_width.to_radians() })
+            }
+            other => Ok(other),
+        }
+    }
+
+    /// A profile, with the width of a Gaussian as it is given under `key`.
+    pub(crate) fn shape(
+        &self,
+        beam: &str,
+        profile: &Spanned<String>,
+        width: Key<f64>,
+        key: &str,
+    ) -> Result<Profile, SceneIoError> {
+        let name = format!("{beam}.profile");
         // The Gaussian's width is filled in below.
         let gaussian = Profile::Gaussian { half_width: 0.0 };
         let words =
             [("paper", Profile::Paper), ("uniform_angle", Profile::UniformAngle), ("gaussian", gaussian)];
-        match (self.word(&profile, &name, &words)?, width) {
+        match (self.word(profile, &name, &words)?, width) {
             (Profile::Gaussian { .. }, Some(width)) => {
-                self.check(*width.get_ref(), width.span(), &width_name, 1e-3..=1e4, "degrees")?;
-                Ok(Profile::Gaussian { half_width: width.get_ref().to_radians() })
+                Ok(Profile::Gaussian { half_width: width.into_inner() })
             }
             (Profile::Gaussian { .. }, None) => {
-                let message = format!(
-                    "`{name}` is \"gaussian\" without a width; expected `gaussian_half_width_deg` too"
-                );
+                let message = format!("`{name}` is \"gaussian\" without a width; expected `{key}` too");
                 Err(self.error(profile.span(), message))
             }
             (other, None) => Ok(other),
             (_, Some(width)) => {
                 let message = format!(
-                    "`{width_name}` is given; expected it only with profile = \"gaussian\", not \"{}\"",
+                    "`{beam}.{key}` is given; expected it only with profile = \"gaussian\", not \"{}\"",
                     profile.get_ref()
                 );
                 Err(self.error(width.span(), message))
@@ -333,7 +368,7 @@ impl Source<'_> {
     }
 
     /// Refuses a `value` outside `range`, and NaN and the infinities with it.
-    fn check(
+    pub(crate) fn check(
         &self,
         value: f64,
         span: Range<usize>,
@@ -404,7 +439,7 @@ impl Source<'_> {
     }
 
     /// One of a few words.
-    fn word<T: Copy>(
+    pub(crate) fn word<T: Copy>(
         &self,
         key: &Spanned<String>,
         name: &str,

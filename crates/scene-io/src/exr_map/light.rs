@@ -4,13 +4,17 @@ use std::path::Path;
 
 use raypencil_scene::{FluxModel, Image, Maybe, Pixel, Returns, Sample};
 
-use super::{ExrMap, Raster, channel, convert};
+use super::{ExrMap, NO_VALUE, Raster, channel, convert};
 use crate::SceneIoError;
 use crate::error::Fault;
 
 const VISIBLE: &str = "visible.V";
 const PIXEL: [&str; 2] = ["pixel.I", "pixel.J"];
 const FLUX: &str = "flux.V";
+/// r, cos(phi) and cos(theta): what the flux is made of.
+const VIEW_DEPTH: &str = "view.Z";
+const OFF_AXIS: &str = "offAxis.V";
+const EMISSION: &str = "emission.V";
 
 /// The unit of a flux.
 fn unit(model: FluxModel) -> &'static str {
@@ -21,7 +25,8 @@ fn unit(model: FluxModel) -> &'static str {
 }
 
 impl ExrMap {
-    /// Adds what comes back of a beam's pencils: `visible.V`, `pixel.I`, `pixel.J` and `flux.V`, those that there are.
+    /// Adds what comes back of a beam's pencils: `visible.V`, `pixel.I`, `pixel.J`, `view.Z`, `offAxis.V`, `emission.V`
+    /// and `flux.V`, those that there are.
     ///
     /// # Panics
     /// If they are of another size.
@@ -40,9 +45,13 @@ impl ExrMap {
         if let Some(flux) = &returns.flux {
             self.insert(FLUX, Raster::F32(convert(flux, |flux| flux as f32)));
         }
+        self.scalar(VIEW_DEPTH, returns.depth.as_ref(), f32::INFINITY);
+        self.scalar(OFF_AXIS, returns.off_axis.as_ref(), NO_VALUE);
+        self.scalar(EMISSION, returns.emission.as_ref(), NO_VALUE);
+        let units = "visible: 0 or 1; pixel: index; view: metre; offAxis, emission: 1; flux: ";
         let attributes = [
-            ("returnUnit", format!("visible: 0 or 1; pixel: index; flux: {}", unit(model))),
-            ("noReturn", "visible, flux: 0; pixel: 4294967295".into()),
+            ("returnUnit", format!("{units}{}", unit(model))),
+            ("noReturn", "visible, flux: 0; pixel: 4294967295; view: +Inf; offAxis, emission: NaN".into()),
         ];
         self.attributes.extend(attributes.map(|(name, value)| (name.to_string(), value)));
     }
@@ -56,7 +65,7 @@ impl ExrMap {
         self.attributes.insert("fluxUnit".into(), format!("{} per pixel", unit(model)));
     }
 
-    /// The returns of a beam: each of the four channels that is there.
+    /// The returns of a beam: each of the channels that is there.
     ///
     /// # Errors
     /// Names the channel that is of the wrong type, or absent where its sibling is there.
@@ -68,6 +77,9 @@ impl ExrMap {
         let mut returns = Returns::unsupported(self.width, self.height);
         returns.visible = self.reals(VISIBLE)?.map(|image| convert(image, |cell| cell > 0.5));
         returns.flux = self.reals(FLUX)?.map(|image| convert(image, f64::from));
+        returns.depth = self.scalar_of(VIEW_DEPTH)?;
+        returns.off_axis = self.scalar_of(OFF_AXIS)?;
+        returns.emission = self.scalar_of(EMISSION)?;
         returns.pixel = match [self.wholes(PIXEL[0])?, self.wholes(PIXEL[1])?] {
             [Some(i), Some(j)] => {
                 let cells = i.cells().iter().zip(j.cells());
@@ -111,9 +123,6 @@ mod tests {
     #[test]
     fn returns_come_back_as_they_were_written() {
         let mut returns = Returns::empty(3, 2);
-        returns.depth = None;
-        returns.off_axis = None;
-        returns.emission = None;
         let back = raypencil_scene::Return {
             visible: true,
             pixel: Some(Pixel { i: 7, j: 1023 }),

@@ -4,7 +4,7 @@ mod light;
 mod read;
 mod write;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use glam::DVec3;
@@ -74,6 +74,8 @@ pub struct ExrMap {
     pub channels: BTreeMap<String, Raster>,
     /// The attributes that are texts.
     pub attributes: BTreeMap<String, String>,
+    /// Of the channels, those that were read from half precision. Such a channel is written in single.
+    pub halves: BTreeSet<String>,
 }
 
 /// What a written file says of itself, beside what follows from its channels.
@@ -90,7 +92,13 @@ pub struct Attributes {
 impl ExrMap {
     /// No channels yet.
     pub fn new(width: u32, height: u32) -> Self {
-        Self { width, height, channels: BTreeMap::new(), attributes: BTreeMap::new() }
+        Self {
+            width,
+            height,
+            channels: BTreeMap::new(),
+            attributes: BTreeMap::new(),
+            halves: BTreeSet::new(),
+        }
     }
 
     /// Adds or replaces a channel.
@@ -102,13 +110,11 @@ impl ExrMap {
         self.channels.insert(name.into(), raster);
     }
 
-    /// The quantities that `map` has, rounded to `f32`. A beam has no depth channel: see `docs/files.md`.
+    /// The quantities that `map` has, rounded to `f32`.
     pub fn from_sensor_map(map: &SensorMap, attributes: &Attributes) -> Self {
         let mut exr = Self::new(map.width, map.height);
         exr.scalar(RANGE, map.range.as_ref(), f32::INFINITY);
-        if map.sensor == SensorId::Camera {
-            exr.scalar(DEPTH, map.depth.as_ref(), f32::INFINITY);
-        }
+        exr.scalar(DEPTH, map.depth.as_ref(), f32::INFINITY);
         exr.vector(POINT, map.point.as_ref());
         exr.vector(NORMAL, map.normal.as_ref());
         exr.scalar(INCIDENCE, map.incidence.as_ref(), NO_VALUE);
@@ -243,7 +249,7 @@ pub fn read_exr_map(
     read_exr(path, limits)?.to_sensor_map(sensor, path)
 }
 
-fn convert<A: Copy, B: Copy>(image: &Image<A>, cell: impl Fn(A) -> B) -> Image<B> {
+pub(crate) fn convert<A: Copy, B: Copy>(image: &Image<A>, cell: impl Fn(A) -> B) -> Image<B> {
     let cells = image.cells().iter().map(|&value| cell(value)).collect();
     Image::from_cells(image.width(), image.height(), cells)
 }

@@ -90,6 +90,7 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
             let name = part.name.to_string();
             let raster = match part.sample_data {
                 FlatSamples::F16(cells) => {
+                    map.halves.insert(name.clone());
                     let cells = cells.into_iter().map(|cell| cell.to_f32()).collect();
                     Raster::F32(Image::from_cells(width, height, cells))
                 }

@@ -1,4 +1,4 @@
-//! Terrain from glTF 2.0 and GLB: every reference, length and number is checked before it is used.
+//! Terrain from glTF 2.0 and GLB, and to GLB: every reference, length and number is checked before it is used.
 //!
 //! The `gltf` crate gives the JSON its types. Its own validation is not used: it stops at the first
 //! unknown texture, and does not look at the numbers in the buffers.
@@ -7,6 +7,7 @@ mod accessors;
 mod buffers;
 mod container;
 mod nodes;
+mod write;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -22,6 +23,8 @@ use crate::digest::{Sha, sha};
 use crate::error::Fault;
 use crate::{SceneIoError, bytes};
 use buffers::Buffers;
+
+pub use write::{glb_bytes, write_glb};
 
 /// Reflectivity of ground that brings none of its own. CHOICE: bright Martian dust reflects about this much
 /// in the near infrared.
@@ -39,7 +42,7 @@ const MOST: u64 = 1 << 25;
 /// # Errors
 /// Names the file and the accessor, node, buffer or line of JSON that is wrong.
 pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, SceneIoError> {
-    Ok(read(path.as_ref(), DEFAULT_REFLECTIVITY)?.0)
+    Ok(read(path.as_ref(), DEFAULT_REFLECTIVITY, Vertices::Global)?.0)
 }
 
 /// A mesh from the bytes of a `.glb` or `.gltf` file; `file` is for messages, and buffers in files of their
@@ -48,27 +51,60 @@ pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, SceneIoError> {
 /// # Errors
 /// As [`load_mesh`].
 pub fn mesh_from_bytes(bytes: &[u8], file: &Path, reflectivity: f64) -> Result<Mesh, SceneIoError> {
-    Ok(parse(bytes, file, reflectivity)?.0)
+    Ok(parse(bytes, file, reflectivity, Vertices::Global)?.0)
+}
+
+/// Loads a `.glb` or `.gltf` file whose vertices are offsets, metres, from `origin` in the global frame: the
+/// inverse of [`write_glb`] bit for bit, the signs of zeros included.
+///
+/// # Errors
+/// As [`load_mesh`].
+pub fn mesh_of_offsets(path: impl AsRef<Path>, origin: DVec3) -> Result<Mesh, SceneIoError> {
+    Ok(read(path.as_ref(), DEFAULT_REFLECTIVITY, Vertices::OffsetsFrom(origin))?.0)
+}
+
+/// What the vertices of a file are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Vertices {
+    /// Places in the global frame; the scene origin follows from them.
+    Global,
+    /// Offsets from this scene origin, taken as they are.
+    OffsetsFrom(DVec3),
 }
 
 /// The mesh of a file, and the digests of the file and of the buffers beside it.
-pub(crate) fn read(path: &Path, reflectivity: f64) -> Result<(Mesh, Vec<Sha>), SceneIoError> {
+pub(crate) fn read(path: &Path, reflectivity: f64, kind: Vertices) -> Result<(Mesh, Vec<Sha>), SceneIoError> {
     let bytes =
         bytes::read_file(path, LARGEST_FILE).map_err(|error| SceneIoError::io(path, "read", error))?;
-    let (mesh, external) = parse(&bytes, path, reflectivity)?;
+    let (mesh, external) = parse(&bytes, path, reflectivity, kind)?;
     Ok((mesh, std::iter::once(sha(&bytes)).chain(external).collect()))
 }
 
-fn parse(bytes: &[u8], file: &Path, reflectivity: f64) -> Result<(Mesh, Vec<Sha>), SceneIoError> {
+fn parse(
+    bytes: &[u8],
+    file: &Path,
+    reflectivity: f64,
+    kind: Vertices,
+) -> Result<(Mesh, Vec<Sha>), SceneIoError> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let unfit = |fault: Fault| SceneIoError::Gltf(fault.in_file(file));
     let container = container::split(bytes).map_err(unfit)?;
     let root = root(container.json).map_err(unfit)?;
     let mut buffers = Buffers::new(&root, folder, container.bin);
     let parts = assemble(&root, &mut buffers, reflectivity).map_err(unfit)?;
-    let Parts { vertices, faces, face_materials, materials } = parts;
-    let mesh = Mesh::from_global(&vertices, faces, face_materials, materials)
-        .map_err(|source| SceneIoError::Scene { origin: file.display().to_string(), source })?;
+    let Parts { mut vertices, faces, face_materials, materials } = parts;
+    let mesh = match kind {
+        Vertices::Global => {
+            // A ground at z = 0 of the file is at y = +0, not -0: ordinary files mean nothing by that sign.
+            vertices.iter_mut().for_each(|vertex| vertex.y += 0.0);
+            Mesh::from_global(&vertices, faces, face_materials, materials)
+        }
+        Vertices::OffsetsFrom(origin) => {
+            let offsets = vertices.iter().map(|vertex| vertex.as_vec3().to_array()).collect();
+            Mesh::new(origin, offsets, faces, face_materials, materials)
+        }
+    };
+    let mesh = mesh.map_err(|source| SceneIoError::Scene { origin: file.display().to_string(), source })?;
     Ok((mesh, buffers.digests().collect()))
 }
 
@@ -170,8 +206,8 @@ fn assemble(root: &Root, buffers: &mut Buffers<'_>, reflectivity: f64) -> Result
                             let found = format!("vertex {number} of accessor {accessor} lands at {file}");
                             return Err(Fault::new(nodes::place(root, node), found, "a place within 1e12 m"));
                         }
-                        // y up becomes z up. `0 - z` rather than `-z`: zero stays +0.
-                        parts.vertices.push(DVec3::new(file.x, 0.0 - file.z, file.y));
+                        // y up becomes z up.
+                        parts.vertices.push(DVec3::new(file.x, -file.z, file.y));
                     }
                     *first_vertex.entry(accessor).or_insert((first, positions.len()))
                 }

@@ -1,0 +1,154 @@
+//! A mesh to GLB: one node without a transform, the mesh's own numbers, faces in the order of `FaceId`. (glTF 2.0)
+
+use std::path::Path;
+
+use raypencil_scene::Mesh;
+use serde_json::{Value, json};
+
+use super::MOST;
+use crate::error::Fault;
+use crate::{SceneIoError, write_atomically};
+
+/// The types of a buffer view's contents. (glTF 2.0, §5.11.5)
+const ARRAY_BUFFER: u32 = 34_962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
+/// The types of an accessor's components. (§5.1.3)
+const FLOAT: u32 = 5_126;
+const UNSIGNED_INT: u32 = 5_125;
+/// Most materials that a file may have: one index is left for faces of other files that have none.
+const MOST_MATERIALS: usize = u16::MAX as usize - 1;
+
+/// Writes `mesh` as a GLB file: what [`glb_bytes`] gives.
+///
+/// # Errors
+/// A mesh that no reader would take: without faces, with more than 2^25 faces or vertices, or with more
+/// than 65534 materials; what the file system says.
+pub fn write_glb(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), SceneIoError> {
+    let path = path.as_ref();
+    check(mesh).map_err(|fault| SceneIoError::Gltf(fault.in_file(path)))?;
+    let bytes = glb_bytes(mesh);
+    write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// Refuses what a GLB cannot hold, or what [`crate::load_mesh`] would not read back.
+fn check(mesh: &Mesh) -> Result<(), Fault> {
+    if mesh.faces().is_empty() {
+        return Err(Fault::new("mesh", "no faces", "at least one: glTF has no empty meshes"));
+    }
+    for (name, count) in [("faces", mesh.faces().len()), ("vertices", mesh.vertices().len())] {
+        if count as u64 > MOST {
+            return Err(Fault::new("mesh", format!("{count} {name}"), format!("at most {MOST}")));
+        }
+    }
+    match mesh.materials().len() {
+        count if count > MOST_MATERIALS => {
+            Err(Fault::new("mesh", format!("{count} materials"), format!("at most {MOST_MATERIALS}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The bytes of a GLB file with `mesh`: the same bytes for the same mesh, and valid glTF 2.0.
+///
+/// The vertices are the mesh's very `f32` offsets from its origin, metres, in the axes of glTF (y up): scene
+/// (x, y, z) is (x, z, -y). No node has a transform. The origin, metres in the global frame, stands in
+/// `asset.extras.originM` for people; [`crate::mesh_of_offsets`] is told it and gives back the same mesh bit
+/// for bit, while [`crate::load_mesh`] takes the vertices for global ones. All faces refer to one
+/// list of vertices; each run of faces of one material is a primitive, so that their order is that of
+/// [`raypencil_scene::FaceId`]. A material's reflectivity is its `extras.reflectivity`.
+///
+/// # Panics
+/// If the mesh has so many faces or vertices that a GLB cannot hold them (4 GiB); [`write_glb`] refuses it.
+pub fn glb_bytes(mesh: &Mesh) -> Vec<u8> {
+    let positions = 12 * mesh.vertices().len();
+    let indices = 12 * mesh.faces().len();
+    let mut bin = Vec::with_capacity(positions + indices);
+    for &[x, y, z] in mesh.vertices() {
+        bin.extend([x, z, -y].iter().flat_map(|coordinate| coordinate.to_le_bytes()));
+    }
+    bin.extend(mesh.faces().as_flattened().iter().flat_map(|index| index.to_le_bytes()));
+    container(&serde_json::to_vec(&document(mesh)).expect("JSON of numbers and texts"), &bin)
+}
+
+/// The JSON of the file. Objects have their keys in alphabetical order, so that it is the same for the same mesh.
+fn document(mesh: &Mesh) -> Value {
+    let origin = mesh.origin().to_array();
+    let mut document = json!({
+        "asset": {
+            "version": "2.0",
+            "generator": concat!("raypencil ", env!("CARGO_PKG_VERSION")),
+            "extras": {"originM": origin},
+        },
+        "scene": 0,
+        "scenes": [{"nodes": []}],
+    });
+    // Lists may not be empty in glTF, so what a mesh lacks has no key.
+    if !mesh.materials().is_empty() {
+        let material = |material: &raypencil_scene::Material| json!({"name": material.name, "extras": {"reflectivity": material.reflectivity}});
+        document["materials"] = mesh.materials().iter().map(material).collect();
+    }
+    if mesh.faces().is_empty() {
+        return document;
+    }
+    let vertices = mesh.vertices().len();
+    let [low, high] = bounds(mesh);
+    let mut accessors = vec![json!({
+        "bufferView": 0, "componentType": FLOAT, "type": "VEC3", "count": vertices, "min": low, "max": high,
+    })];
+    let mut primitives = Vec::new();
+    let mut first = 0;
+    for run in mesh.face_materials().chunk_by(|a, b| a == b) {
+        primitives.push(json!({
+            "attributes": {"POSITION": 0}, "indices": accessors.len(), "material": run[0], "mode": 4,
+        }));
+        accessors.push(json!({
+            "bufferView": 1, "byteOffset": 12 * first, "componentType": UNSIGNED_INT, "type": "SCALAR",
+            "count": 3 * run.len(),
+        }));
+        first += run.len();
+    }
+    let (positions, indices) = (12 * vertices, 12 * mesh.faces().len());
+    document["nodes"] = json!([{"mesh": 0, "name": "terrain"}]);
+    document["scenes"] = json!([{"nodes": [0]}]);
+    document["meshes"] = json!([{"name": "terrain", "primitives": primitives}]);
+    document["accessors"] = accessors.into();
+    document["bufferViews"] = json!([
+        {"buffer": 0, "byteOffset": 0, "byteLength": positions, "target": ARRAY_BUFFER},
+        {"buffer": 0, "byteOffset": positions, "byteLength": indices, "target": ELEMENT_ARRAY_BUFFER},
+    ]);
+    document["buffers"] = json!([{"byteLength": positions + indices}]);
+    document
+}
+
+/// The least and greatest coordinates as they stand in the file.
+fn bounds(mesh: &Mesh) -> [[f32; 3]; 2] {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for &[x, y, z] in mesh.vertices() {
+        for (axis, coordinate) in [x, z, -y].into_iter().enumerate() {
+            low[axis] = low[axis].min(coordinate);
+            high[axis] = high[axis].max(coordinate);
+        }
+    }
+    [low, high]
+}
+
+/// The two chunks of a GLB, each padded to 4 bytes: JSON with spaces, binary data with zeros. (§4.4)
+fn container(json: &[u8], bin: &[u8]) -> Vec<u8> {
+    let chunks = [(b"JSON", json, b' '), (b"BIN\0", bin, 0)];
+    // A file without a buffer has no binary chunk.
+    let chunks = &chunks[..if bin.is_empty() { 1 } else { 2 }];
+    let total: usize =
+        12 + chunks.iter().map(|(_, data, _)| 8 + data.len().next_multiple_of(4)).sum::<usize>();
+    let word = |length: usize| u32::try_from(length).expect("a GLB of less than 4 GiB").to_le_bytes();
+    let mut file = Vec::with_capacity(total);
+    file.extend(b"glTF\x02\0\0\0");
+    file.extend(word(total));
+    for &(kind, data, padding) in chunks {
+        let length = data.len().next_multiple_of(4);
+        file.extend(word(length));
+        file.extend(kind);
+        file.extend(data);
+        file.extend(std::iter::repeat_n(padding, length - data.len()));
+    }
+    file
+}
