@@ -18,7 +18,13 @@
 //! sight            what the camera sees of a pencil's hit
 //! sight_margin     how far that is from changing
 //! sight_ruling     whether an answer about that is right, or admissible
-//! light            what comes back of a pencil, as values
+//! values           what a ray meets, correctly rounded
+//! light            what comes back of a pencil, correctly rounded
+//! rounding         exact quotients and roots, rounded
+//! twofold          pairs of f64 with a proven error: the fast way
+//! enclosure        any precision: the certain way
+//! arithmetic       one formula for both
+//! certified        the values of a whole sensor
 //! paper            whether an approximation of the paper explains an answer
 //! paper_sight      the same of what the camera sees
 //! truth            yes, no, or either, of what is known up to an interval
@@ -27,8 +33,11 @@
 //!
 //! It depends on `raypencil-scene` alone, and no renderer may call it.
 
+mod arithmetic;
+mod certified;
 mod cull;
 mod divide;
+mod enclosure;
 mod face;
 mod forms;
 mod light;
@@ -40,6 +49,7 @@ mod paper_sight;
 mod pencil;
 mod region;
 mod render;
+mod rounding;
 mod ruling;
 mod sheet;
 mod sight;
@@ -47,16 +57,22 @@ mod sight_margin;
 mod sight_ruling;
 mod surface;
 mod truth;
+mod twofold;
+mod values;
 mod vector;
 mod verdict;
 
-pub use light::Light;
+pub use arithmetic::Undecided;
+pub use certified::{CertifiedLight, CertifiedMap, PixelSum};
+pub use light::{Contribution, Flux, Light, RoundedReturn};
 pub use margin::{Margin, Margins};
 pub use paper::{Approximations, Explained, Reason};
 pub use paper_sight::{ExplainedSight, SightApproximations, SightReason};
 pub use render::ExactRenderer;
+pub use rounding::{Format, Rounded};
 pub use ruling::{Ruling, Tolerance};
 pub use sight::Sight;
 pub use sight_margin::SightMargins;
 pub use sight_ruling::SightRuling;
+pub use values::RoundedHit;
 pub use verdict::{Displacement, Referee, Verdict};

@@ -1,22 +1,88 @@
-//! What comes back of a pencil, as values: a third evaluation beside the renderers'.
+//! What comes back of a pencil, correctly rounded: a third evaluation beside the renderers'.
 //!
-//! Every length and cosine is a quotient of polynomials, or the root of one, of stored numbers. The polynomials
-//! are exact; a quotient of two is good to 2 u, its root to 3 u, u = 2^-53. So the flux, a product of at most
-//! two dozen such factors and one or two `exp` and `atan` of `libm` (each within 1 ulp), is good to 100 u of
-//! itself, and a share of a normalised profile to 20 u more (its sum is compensated).
+//! Every length and cosine is a quotient of polynomials of stored numbers, or the root of one. So is the flux, in
+//! the radiometric model without air and filter and with the paper's own profile. Otherwise it has factors pi,
+//! exp and atan, or a sum of as many roots as there are pencils; such numbers are enclosed with growing precision until
+//! their rounding is certain. A sum that lies exactly on a midpoint would never be: then the budget
+//! ends, and the value is [`Undecided`].
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
-use std::f64::consts::PI;
+use std::sync::Arc;
 
+use dashu_int::Sign;
 use raypencil_scene::{
     Beam, Camera, FaceId, Filter, FluxModel, Mounted, Pixel, Profile, Return, Sampling, SensorId,
 };
 
+use crate::arithmetic::{Arithmetic, Fast, Undecided, Whole, decide};
 use crate::face::{ExactRay, Face};
 use crate::number::{Dyadic, Number};
-use crate::pencil::{Aim, Sensor};
-use crate::sight::ExactWay;
+use crate::pencil::{Aim, ScaledRay, Sensor};
+use crate::rounding::{Format, Rounded, quotient, root};
+use crate::sight::{ExactWay, Way};
+use crate::twofold::Twofold;
+use crate::values::{Meeting, minus, sign_of};
+use crate::vector::Vector;
 use crate::verdict::{Displacement, Referee};
+
+/// A flux, correctly rounded; an error if the budget ran out.
+pub type Flux = Result<Rounded, Undecided>;
+
+/// A [`Return`] whose values are correctly rounded, its flux by either model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoundedReturn {
+    /// Whether the camera sees the point.
+    pub visible: bool,
+    /// Where it lands.
+    pub pixel: Option<Pixel>,
+    /// r, metres.
+    pub depth: Rounded,
+    /// cos(phi).
+    pub off_axis: Rounded,
+    /// cos(theta).
+    pub emission: Rounded,
+    /// By the model `radiometric`, watts.
+    pub radiometric: Flux,
+    /// By the model `eq1`, W/m.
+    pub eq1: Flux,
+}
+
+impl RoundedReturn {
+    /// The flux by a model.
+    pub fn flux(&self, model: FluxModel) -> Flux {
+        match model {
+            FluxModel::Radiometric => self.radiometric,
+            FluxModel::Eq1 => self.eq1,
+        }
+    }
+
+    /// The nearest numbers of a format; of a flux that is undecided, one of the two nearest.
+    pub fn in_format(&self, format: Format, model: FluxModel) -> Return {
+        let of = |rounded: Rounded| rounded.in_format(format);
+        Return {
+            visible: self.visible,
+            pixel: self.pixel,
+            depth: of(self.depth),
+            off_axis: of(self.off_axis),
+            emission: of(self.emission),
+            flux: of(self.flux(model).unwrap_or_else(|undecided| undecided.0)),
+        }
+    }
+}
+
+/// A pencil that delivers, to be summed: its ray and face, and the pixel that it lands in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contribution {
+    /// Column of the pencil.
+    pub i: u32,
+    /// Row of the pencil.
+    pub j: u32,
+    /// The face it lights.
+    pub face: FaceId,
+    /// The pixel.
+    pub pixel: Pixel,
+}
 
 /// The returns of one beam, pencil by pencil.
 #[derive(Debug)]
@@ -25,39 +91,60 @@ pub struct Light<'r, 's> {
     beam: usize,
     mounted: Mounted<Beam>,
     sampling: Sampling,
-    /// The weights of all pencils, added up; 1 for the paper's own shares.
-    whole: f64,
-    /// (alpha / w)^2 of the brightest pencil of a Gaussian, by which all weights are divided: a Gaussian may be so
-    /// narrow that all would vanish.
+    /// The weights of all pencils, added up.
+    whole: Arc<Whole>,
+    /// Certainly no more than (alpha / w)^2 of any pencil of a Gaussian, and near the least. All weights are divided by
+    /// exp(-2 this), which changes no share: a Gaussian may be so narrow that all would vanish.
     brightest: f64,
+}
+
+/// What of the camera's view the values need.
+struct Seen<T> {
+    /// V^2.
+    along_squared: T,
+    /// -n.V.
+    towards: T,
+    /// Z.
+    axial: T,
+    /// X^2 + Y^2 + Z^2.
+    squared: T,
+    /// W.
+    scale: T,
+    /// N.
+    frame_scale: T,
+}
+
+impl<T: Number> Seen<T> {
+    fn new(way: &Way<T>, normal: &Vector<T>) -> Self {
+        Self {
+            along_squared: way.along.length_squared(),
+            towards: minus(&normal.dot(&way.along)),
+            axial: way.seen.0[2].clone(),
+            squared: way.seen.length_squared(),
+            scale: way.scale.clone(),
+            frame_scale: way.frame_scale.clone(),
+        }
+    }
+}
+
+/// Everything about one pencil's light, in one kind of number.
+struct Lit<T> {
+    meeting: Meeting<T>,
+    seen: Seen<T>,
 }
 
 impl<'s> Referee<'s> {
     /// The returns of a beam, or `None` if there is no such beam.
     pub fn light(&self, beam: usize, sampling: Sampling) -> Option<Light<'_, 's>> {
         let mounted = *self.scene.beams().get(beam)?;
-        let mut light = Light { referee: self, beam, mounted, sampling, whole: 1.0, brightest: 0.0 };
-        let Beam { columns, rows, profile, .. } = mounted.sensor;
-        if profile != Profile::Paper {
-            // Added with what rounding leaves over. (A. Neumaier, 1974)
-            let (mut sum, mut rest) = (0.0_f64, 0.0);
-            let rows_alike = sampling == Sampling::Centres;
-            let different = if rows_alike { 1 } else { rows };
-            if let Profile::Gaussian { half_width } = profile {
-                let pencils = (0..different).flat_map(|j| (0..columns).map(move |i| (i, j)));
-                light.brightest = pencils
-                    .map(|(i, j)| light.relative_angle(i, j, half_width))
-                    .fold(f64::INFINITY, |least, relative| least.min(relative * relative));
-            }
-            for j in 0..different {
-                for i in 0..columns {
-                    let weight = light.weight(i, j);
-                    let total = sum + weight;
-                    rest += if sum >= weight { (sum - total) + weight } else { (weight - total) + sum };
-                    sum = total;
-                }
-            }
-            light.whole = (sum + rest) * if rows_alike { f64::from(rows) } else { 1.0 };
+        // The sum of the central pencils' weights is kept: it is asked for again and again.
+        let whole = match sampling {
+            Sampling::Centres => Arc::clone(&self.wholes[beam]),
+            Sampling::Jittered { .. } => Arc::new(Whole::default()),
+        };
+        let mut light = Light { referee: self, beam, mounted, sampling, whole, brightest: 0.0 };
+        if let Profile::Gaussian { half_width } = mounted.sensor.profile {
+            light.brightest = light.least_exponent(half_width);
         }
         Some(light)
     }
@@ -70,51 +157,85 @@ impl Light<'_, '_> {
         Displacement { dx, dy }
     }
 
-    /// x / g of a pencil's ray.
-    fn slope(&self, i: u32, j: u32) -> f64 {
-        let Beam { columns, half_width, grid_distance, .. } = self.mounted.sensor;
-        let half_cells = 2.0 * f64::from(i) + 1.0 - f64::from(columns) + 2.0 * self.offset(i, j).dx;
-        half_width * half_cells / (f64::from(columns) * grid_distance)
+    fn aim(&self, i: u32, j: u32) -> Aim {
+        let Displacement { dx, dy } = self.offset(i, j);
+        Aim { i, j, dx, dy }
     }
 
-    /// alpha / w.
-    fn relative_angle(&self, i: u32, j: u32, half_width: f64) -> f64 {
-        libm::atan(self.slope(i, j)) / half_width
+    /// x and z of a pencil's ray, in units of 1 / columns: (w (2i + 1 - columns + 2 dx), columns g).
+    fn across_and_ahead<T: Number>(&self, i: u32, j: u32) -> [T; 2] {
+        let Beam { columns, half_width, grid_distance, .. } = self.mounted.sensor;
+        let whole = T::of(2.0 * f64::from(i) + 1.0 - f64::from(columns));
+        let half_cells = whole.add(&T::of(self.offset(i, j).dx).doubled());
+        [T::of(half_width).mul(&half_cells), T::of_integer(columns).mul(&T::of(grid_distance))]
     }
 
     /// What of the beam's power goes to a pencil, before it is divided by the whole.
-    fn weight(&self, i: u32, j: u32) -> f64 {
-        let slope = self.slope(i, j);
-        let cos_squared = 1.0 / (1.0 + slope * slope);
+    fn weight<A: Arithmetic>(&self, a: &A, i: u32, j: u32) -> A::Real {
+        let [x, z] = self.across_and_ahead::<A::Exact>(i, j);
+        let squared = a.size(&x.square().add(&z.square()));
         match self.mounted.sensor.profile {
             Profile::Paper => {
-                let pencils = f64::from(self.mounted.sensor.columns) * f64::from(self.mounted.sensor.rows);
-                cos_squared.sqrt() / pencils
+                let pencils = A::Exact::of_integer(self.mounted.sensor.columns)
+                    .mul(&A::Exact::of_integer(self.mounted.sensor.rows));
+                a.div(&a.size(&z), &a.mul(&a.sqrt(&squared), &a.size(&pencils)))
             }
-            Profile::UniformAngle => cos_squared,
+            Profile::UniformAngle => a.div(&a.size(&z.square()), &squared),
             Profile::Gaussian { half_width } => {
-                let relative = self.relative_angle(i, j, half_width);
-                libm::exp(-2.0 * (relative * relative - self.brightest))
+                let alpha = a.atan(&a.div(&a.size(&x), &a.size(&z)));
+                let relative = a.div(&alpha, &a.exactly(half_width));
+                let beyond = a.distance(&a.mul(&relative, &relative), &a.exactly(self.brightest));
+                a.exp_minus(&a.mul(&a.exactly(2.0), &beyond))
             }
         }
     }
 
-    /// P_k, watts.
-    pub fn power(&self, i: u32, j: u32) -> f64 {
-        self.mounted.sensor.power * self.weight(i, j) / self.whole
+    /// The share of the beam's power that goes to a pencil.
+    fn share<A: Arithmetic>(&self, a: &A, i: u32, j: u32) -> A::Real {
+        let weight = self.weight(a, i, j);
+        if self.mounted.sensor.profile == Profile::Paper {
+            return weight;
+        }
+        let whole = a.whole(&self.whole, || {
+            let Beam { columns, rows, .. } = self.mounted.sensor;
+            // The rows of central pencils are alike.
+            let rows_alike = self.sampling == Sampling::Centres;
+            let different = if rows_alike { 1 } else { rows };
+            let pencils = (0..different).flat_map(|j| (0..columns).map(move |i| (i, j)));
+            let sum = pencils.map(|(i, j)| self.weight(a, i, j)).reduce(|sum, weight| a.add(&sum, &weight));
+            let sum = sum.unwrap_or_else(|| a.exactly(0.0));
+            if rows_alike { a.mul(&sum, &a.size(&A::Exact::of_integer(rows))) } else { sum }
+        });
+        a.div(&weight, &whole)
+    }
+
+    /// The least (alpha / w)^2 of all pencils but for a billionth of it, which is far more than it is off in f64; 0 if
+    /// it is small anyway.
+    fn least_exponent(&self, half_width: f64) -> f64 {
+        let Beam { columns, rows, half_width: w, grid_distance, .. } = self.mounted.sensor;
+        let different = if self.sampling == Sampling::Centres { 1 } else { rows };
+        let pencils = (0..different).flat_map(|j| (0..columns).map(move |i| (i, j)));
+        let half_cells = |(i, j)| 2.0 * f64::from(i) + 1.0 - f64::from(columns) + 2.0 * self.offset(i, j).dx;
+        let nearest = pencils.map(|cell| half_cells(cell).abs()).fold(f64::INFINITY, f64::min);
+        let relative = libm::atan(w * nearest / (f64::from(columns) * grid_distance)) / half_width;
+        let exponent = relative * relative;
+        if exponent < 100.0 { 0.0 } else { exponent * (1.0 - 1e-9) }
     }
 
     /// What comes back of pencil (i, j); `None` if there is no such pencil, or it does not hit.
-    pub fn returned(&self, i: u32, j: u32) -> Option<Return> {
-        let sensor = Sensor::of(self.referee.scene, SensorId::Beam(self.beam))?;
-        let (columns, rows) = sensor.size();
-        if i >= columns || j >= rows {
-            return None;
-        }
-        let Displacement { dx, dy } = self.offset(i, j);
-        let aim = Aim { i, j, dx, dy };
+    pub fn returned(&self, i: u32, j: u32) -> Option<RoundedReturn> {
+        self.returned_of_face(i, j).map(|(_, back)| back)
+    }
+
+    /// The same, and the face.
+    pub(crate) fn returned_of_face(&self, i: u32, j: u32) -> Option<(FaceId, RoundedReturn)> {
+        let sensor = self.sensor_with(i, j)?;
+        let aim = self.aim(i, j);
         let nearest = self.referee.nearest(&sensor, aim);
-        Some(self.returned_of(&sensor, aim, nearest.first()?))
+        let face = nearest.first()?;
+        let sight = self.referee.sight_of(&sensor, aim, face);
+        let back = self.returned_seen(&sensor, aim, face, sight.visible, sight.pixel)?;
+        Some((face.id, back))
     }
 
     /// What comes back of pencil (i, j) from where its ray meets the plane of `face`, if the point is seen or not, and
@@ -126,144 +247,379 @@ impl Light<'_, '_> {
         face: FaceId,
         visible: bool,
         pixel: Option<Pixel>,
-    ) -> Option<Return> {
+    ) -> Option<RoundedReturn> {
+        let sensor = self.sensor_with(i, j)?;
+        let face = self.referee.face(face)?;
+        self.returned_seen(&sensor, self.aim(i, j), &face, visible, pixel)
+    }
+
+    /// What some pencils deliver together; an error if the budget ran out, or there is no such pencil or face.
+    pub fn sum(&self, model: FluxModel, contributions: &[Contribution]) -> Flux {
+        let lit: Option<Vec<(Contribution, Sensor, Face)>> = contributions
+            .iter()
+            .map(|one| Some((*one, self.sensor_with(one.i, one.j)?, self.referee.face(one.face)?)))
+            .collect();
+        let lit = lit.ok_or(Undecided(Rounded::ZERO))?;
+        match lit.as_slice() {
+            [] => Ok(Rounded::ZERO),
+            [(one, sensor, face)] => {
+                let rays = self.rays(sensor, self.aim(one.i, one.j), face);
+                rays.flux(self, model, one.pixel)
+            }
+            several => {
+                let all: Vec<_> = several
+                    .iter()
+                    .map(|(one, sensor, face)| (self.rays(sensor, self.aim(one.i, one.j), face), one.pixel))
+                    .collect();
+                let mut fast = Twofold::of(0.0);
+                for (rays, pixel) in &all {
+                    fast = fast.add(&self.flux(&Fast, &rays.fast(), rays.aim, rays.face, model, *pixel));
+                }
+                decide(fast, |precision| {
+                    let parts = all.iter().map(|(rays, pixel)| {
+                        self.flux(precision, &rays.exact(), rays.aim, rays.face, model, *pixel)
+                    });
+                    parts.fold(precision.exactly(0.0), |sum, part| precision.add(&sum, &part))
+                })
+            }
+        }
+    }
+
+    /// The beam, if it has such a pencil.
+    fn sensor_with(&self, i: u32, j: u32) -> Option<Sensor> {
         let sensor = Sensor::of(self.referee.scene, SensorId::Beam(self.beam))?;
         let (columns, rows) = sensor.size();
-        let mesh = self.referee.scene.mesh();
-        if i >= columns || j >= rows || face.0 as usize >= mesh.faces().len() {
-            return None;
-        }
-        let face = Face::of(mesh, face);
-        let Displacement { dx, dy } = self.offset(i, j);
-        let aim = Aim { i, j, dx, dy };
-        let is_parallel = face.approach(ExactRay::new(&sensor, aim).exact()).sign() == Some(Ordering::Equal);
-        (!is_parallel).then(|| self.returned_seen(&sensor, aim, &face, visible, pixel))
+        (i < columns && j < rows).then_some(sensor)
     }
 
-    /// What comes back of an aim that meets `face`.
-    pub(crate) fn returned_of(&self, sensor: &Sensor, aim: Aim, face: &Face) -> Return {
-        let sight = self.referee.sight_of(sensor, aim, face);
-        self.returned_seen(sensor, aim, face, sight.visible, sight.pixel)
+    fn rays<'a>(&'a self, sensor: &'a Sensor, aim: Aim, face: &'a Face) -> Rays<'a> {
+        Rays { camera: self.referee.scene.camera(), ray: ExactRay::new(sensor, aim), sensor, aim, face }
     }
 
-    fn returned_seen(
+    /// What comes back of an aim that meets the plane of `face`.
+    pub(crate) fn returned_seen(
         &self,
         sensor: &Sensor,
         aim: Aim,
         face: &Face,
         visible: bool,
         pixel: Option<Pixel>,
-    ) -> Return {
-        let scene = self.referee.scene;
-        let Mounted { sensor: camera, .. } = scene.camera();
-        let ray = ExactRay::new(sensor, aim);
-        let way = ExactWay::new(&ray, face, scene.camera());
-        let values = Values::new(&ray, &way, face);
-
-        // P_k r_d C_loss, and what the equations share of the rest.
-        let material = &scene.mesh().materials()[scene.mesh().face_materials()[face.id.0 as usize] as usize];
-        let power = self.power(aim.i, aim.j) * material.reflectivity * camera.lens.transmission;
-        let sigma = scene.atmosphere().attenuation;
-        let aperture_squared = camera.aperture * camera.aperture;
-        let flux = match (visible, pixel) {
-            (true, Some(pixel)) => match scene.flux_model() {
-                FluxModel::Radiometric => {
-                    let Values { range, distance, depth, off_axis, emission, .. } = values;
-                    power
-                        * self.filter(camera, 1.0 - off_axis * off_axis)
-                        * (aperture_squared / 4.0)
-                        * emission
-                        * (off_axis * off_axis * off_axis)
-                        / (depth * depth)
-                        * libm::exp(-sigma * (range + distance))
-                }
-                FluxModel::Eq1 => {
-                    let Values { range, depth, emission, incidence, .. } = values;
-                    // phi of the pixel's centre, whose tangent is how far that is from the axis over f.
-                    let offset = |index: u32, axis: usize| {
-                        let cells = f64::from(index) + 0.5 - camera.principal_point[axis];
-                        cells * camera.pixel_pitch[axis] / camera.focal_length
-                    };
-                    let (x, y) = (offset(pixel.i, 0), offset(pixel.j, 1));
-                    let tan_squared = x * x + y * y;
-                    let cos_squared = 1.0 / (1.0 + tan_squared);
-                    let sin_squared = tan_squared * cos_squared;
-                    let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
-                    power * (PI / 4.0) * aperture_squared / (camera.focal_length * camera.focal_length)
-                        * self.filter(camera, sin_squared)
-                        * area
-                        * (cos_squared * cos_squared)
-                        * emission
-                        * incidence
-                        / (range * depth * depth)
-                        * libm::exp(-sigma * depth)
-                        * libm::exp(-sigma * range)
-                }
-            },
-            _ => 0.0,
+    ) -> Option<RoundedReturn> {
+        let rays = self.rays(sensor, aim, face);
+        let fast = rays.fast();
+        let is_parallel = |exact: &Lit<Dyadic>| exact.meeting.approach.sign() == Some(Ordering::Equal);
+        if fast.meeting.approach.sign().is_none_or(Ordering::is_eq) && is_parallel(&rays.exact()) {
+            return None;
+        }
+        let exact = OnceCell::new();
+        let exact = || exact.get_or_init(|| rays.exact());
+        let Seen { along_squared, towards, axial, squared, scale, frame_scale } = &fast.seen;
+        let depth = axial.over(&frame_scale.mul(scale)).rounded().unwrap_or_else(|| {
+            let Seen { axial, scale, frame_scale, .. } = &exact().seen;
+            quotient(axial, &frame_scale.mul(scale))
+        });
+        let off_axis = axial.over(&squared.sqrt()).rounded().unwrap_or_else(|| {
+            let Seen { axial, squared, .. } = &exact().seen;
+            cosine(axial, squared)
+        });
+        let length = along_squared.mul(&fast.meeting.normal_squared).sqrt();
+        let emission = towards.over(&length).rounded().unwrap_or_else(|| {
+            let Seen { towards, along_squared, .. } = &exact().seen;
+            cosine(towards, &along_squared.mul(&exact().meeting.normal_squared))
+        });
+        let flux = |model| match (visible, pixel) {
+            (true, Some(pixel)) => rays.flux(self, model, pixel),
+            _ => Ok(Rounded::ZERO),
         };
-        Return {
+        Some(RoundedReturn {
             visible,
             pixel,
-            depth: values.depth,
-            off_axis: values.off_axis,
-            emission: values.emission,
-            flux,
+            depth,
+            off_axis,
+            emission,
+            radiometric: flux(FluxModel::Radiometric),
+            eq1: flux(FluxModel::Eq1),
+        })
+    }
+
+    /// What a pencil that meets the plane of `face` delivers to `pixel`.
+    fn flux<A: Arithmetic>(
+        &self,
+        a: &A,
+        lit: &Lit<A::Exact>,
+        aim: Aim,
+        face: &Face,
+        model: FluxModel,
+        pixel: Pixel,
+    ) -> A::Real {
+        let scene = self.referee.scene;
+        let camera = &scene.camera().sensor;
+        let Lit { meeting, seen } = lit;
+        let product = |factors: &[A::Real]| {
+            let rest = factors[1..].iter();
+            rest.fold(factors[0].clone(), |product, factor| a.mul(&product, factor))
+        };
+        let square = |x: &A::Real| a.mul(x, x);
+        // P_k r_d C_loss D^2 / 4.
+        let power = product(&[
+            self.share(a, aim.i, aim.j),
+            a.exactly(self.mounted.sensor.power),
+            a.exactly(self.reflectivity(face)),
+            a.exactly(camera.lens.transmission),
+            square(&a.exactly(camera.aperture)),
+            a.exactly(0.25),
+        ]);
+        let depth = a.div(&a.size(&seen.axial), &a.mul(&a.size(&seen.frame_scale), &a.size(&seen.scale)));
+        // cos(theta).
+        let lengths = a.mul(&a.size(&seen.along_squared), &a.size(&meeting.normal_squared));
+        let emission = a.div(&a.size(&seen.towards), &a.sqrt(&lengths));
+        let range = a.div(
+            &a.mul(&a.size(&meeting.height), &a.sqrt(&a.size(&meeting.direction_squared))),
+            &a.size(&meeting.scale),
+        );
+        match model {
+            FluxModel::Radiometric => {
+                // cos(phi), of the ray itself, and its square.
+                let squared = a.size(&seen.squared);
+                let off_axis = a.div(&a.size(&seen.axial), &a.sqrt(&squared));
+                let cos_squared = a.div(&a.size(&seen.axial.square()), &squared);
+                let sin_squared = a.div(&a.size(&seen.squared.sub(&seen.axial.square())), &squared);
+                let distance = a.div(&a.sqrt(&a.size(&seen.along_squared)), &a.size(&seen.scale));
+                let delivered =
+                    product(&[power, emission, cos_squared, off_axis, self.filter(a, sin_squared)]);
+                let delivered = a.div(&delivered, &square(&depth));
+                self.through_air(a, delivered, || a.add(&range, &distance))
+            }
+            FluxModel::Eq1 => {
+                // phi of the pixel's centre: X, Y are how far that is from the axis on the image.
+                let offset = |index: u32, axis: usize| {
+                    let cells = A::Exact::of_integer(index)
+                        .add(&A::Exact::of(0.5))
+                        .sub(&A::Exact::of(camera.principal_point[axis]));
+                    cells.mul(&A::Exact::of(camera.pixel_pitch[axis])).square()
+                };
+                let f_squared = A::Exact::of(camera.focal_length).square();
+                let aside = offset(pixel.i, 0).add(&offset(pixel.j, 1));
+                let squared = a.size(&aside.add(&f_squared));
+                let f_squared = a.size(&f_squared);
+                let cos_squared = a.div(&f_squared, &squared);
+                let sin_squared = a.div(&a.size(&aside), &squared);
+                let lengths = a.mul(&a.size(&meeting.normal_squared), &a.size(&meeting.direction_squared));
+                let incidence = a.div(&a.size(&meeting.approach), &a.sqrt(&lengths));
+                let delivered = product(&[
+                    power,
+                    a.pi(),
+                    emission,
+                    incidence,
+                    square(&cos_squared),
+                    self.filter(a, sin_squared),
+                    a.exactly(camera.pixel_pitch[0]),
+                    a.exactly(camera.pixel_pitch[1]),
+                ]);
+                let divisor = product(&[f_squared, range.clone(), square(&depth)]);
+                let delivered = a.div(&delivered, &divisor);
+                self.through_air(a, delivered, || a.add(&range, &depth))
+            }
         }
     }
 
+    /// exp(-sigma length) of some flux.
+    fn through_air<A: Arithmetic>(&self, a: &A, flux: A::Real, length: impl FnOnce() -> A::Real) -> A::Real {
+        let sigma = self.referee.scene.atmosphere().attenuation;
+        if sigma == 0.0 {
+            return flux;
+        }
+        a.mul(&flux, &a.exp_minus(&a.mul(&a.exactly(sigma), &length())))
+    }
+
     /// F, by sin(phi)^2.
-    fn filter(&self, camera: &Camera, sin_squared: f64) -> f64 {
-        let Filter::Interference { centre, width, index } = camera.lens.filter else { return 1.0 };
-        let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
-        let relative = (self.mounted.sensor.wavelength - shifted) / width;
-        libm::exp(-4.0 * std::f64::consts::LN_2 * relative * relative)
+    fn filter<A: Arithmetic>(&self, a: &A, sin_squared: A::Real) -> A::Real {
+        let Camera { lens, .. } = &self.referee.scene.camera().sensor;
+        let Filter::Interference { centre, width, index } = lens.filter else { return a.exactly(1.0) };
+        // centre sqrt(1 - (sin(phi) / n_eff)^2).
+        let index = a.exactly(index);
+        let slanted = a.div(&sin_squared, &a.mul(&index, &index));
+        let shifted = a.mul(&a.exactly(centre), &a.sqrt(&a.distance(&a.exactly(1.0), &slanted)));
+        let away = a.distance(&a.exactly(self.mounted.sensor.wavelength), &shifted);
+        let relative = a.div(&away, &a.exactly(width));
+        let squared = a.mul(&relative, &relative);
+        a.exp_minus(&a.mul(&a.mul(&a.exactly(4.0), &a.ln_2()), &squared))
+    }
+
+    fn reflectivity(&self, face: &Face) -> f64 {
+        let mesh = self.referee.scene.mesh();
+        mesh.materials()[mesh.face_materials()[face.id.0 as usize] as usize].reflectivity
+    }
+
+    /// Whether the flux by a model is the root of a quotient of polynomials.
+    fn is_root(&self, model: FluxModel) -> bool {
+        let scene = self.referee.scene;
+        model == FluxModel::Radiometric
+            && scene.atmosphere().attenuation == 0.0
+            && scene.camera().sensor.lens.filter == Filter::None
+            && self.mounted.sensor.profile == Profile::Paper
+    }
+
+    /// That root: with K = I_b r_d C_loss D^2 and the pencil's (x, z),
+    /// flux^2 = (K z (-n.V) Z N^2 W^2)^2 / ((4 columns rows)^2 (x^2 + z^2) n^2 V^2 (X^2 + Y^2 + Z^2)^3).
+    fn root_of(&self, lit: &Lit<Dyadic>, aim: Aim, face: &Face) -> Rounded {
+        let Lit { meeting, seen } = lit;
+        let (beam, camera) = (&self.mounted.sensor, &self.referee.scene.camera().sensor);
+        let product =
+            |factors: &[Dyadic]| factors.iter().fold(Dyadic::of(1.0), |product, one| product.mul(one));
+        let [x, z] = self.across_and_ahead::<Dyadic>(aim.i, aim.j);
+        let squared = seen.frame_scale.mul(&seen.scale).square();
+        let above = product(&[
+            Dyadic::of(beam.power),
+            Dyadic::of(self.reflectivity(face)),
+            Dyadic::of(camera.lens.transmission),
+            Dyadic::of(camera.aperture).square(),
+            z.clone(),
+            seen.towards.clone(),
+            seen.axial.clone(),
+            squared,
+        ]);
+        let pencils =
+            Dyadic::of_integer(beam.columns).mul(&Dyadic::of_integer(beam.rows)).mul(&Dyadic::of(4.0));
+        let below = product(&[
+            pencils.square(),
+            x.square().add(&z.square()),
+            meeting.normal_squared.clone(),
+            seen.along_squared.clone(),
+            seen.squared.square().mul(&seen.squared),
+        ]);
+        root(Sign::Positive, &above.square(), &below)
     }
 }
 
-/// Lengths in metres and cosines of one return.
-#[derive(Debug, Clone, Copy)]
-struct Values {
-    /// R.
-    range: f64,
-    /// d = |P - c|.
-    distance: f64,
-    /// r.
-    depth: f64,
-    /// cos(phi).
-    off_axis: f64,
-    /// cos(theta).
-    emission: f64,
-    /// cos(psi).
-    incidence: f64,
+/// The ray of a pencil and the way from the camera to what it meets.
+struct Rays<'a> {
+    camera: &'a Mounted<Camera>,
+    ray: ExactRay<'a>,
+    sensor: &'a Sensor,
+    aim: Aim,
+    face: &'a Face,
 }
 
-impl Values {
-    fn new(ray: &ExactRay<'_>, way: &ExactWay<'_>, face: &Face) -> Self {
-        let (pencil, way) = (ray.exact(), way.exact());
-        let normal = face.normal::<Dyadic>();
-        let (height, approach) = (face.height(pencil), face.approach(pencil));
-        let (n_squared, d_squared) = (normal.length_squared(), pencil.direction.length_squared());
-        let v_squared = way.along.length_squared();
-        // The root of a quotient of squares, with the sign of `signed`.
-        let root = |signed: &Dyadic, over: &Dyadic| {
-            signed.over(&Dyadic::of(1.0)).signum() * signed.square().over(over).sqrt()
+impl Rays<'_> {
+    fn lit<T: Number>(&self, ray: ScaledRay<T>) -> Lit<T> {
+        let way = Way::new(&ray, self.face, self.camera, self.face.shows_back_to(&self.ray));
+        let meeting = Meeting::new(ray, self.face);
+        Lit { seen: Seen::new(&way, &meeting.normal), meeting }
+    }
+
+    fn fast(&self) -> Lit<Twofold> {
+        self.lit(self.sensor.ray(self.aim))
+    }
+
+    fn exact(&self) -> Lit<Dyadic> {
+        self.lit(self.ray.exact().clone())
+    }
+
+    /// What is delivered to `pixel`. Nothing if the face turns its back to the camera, or (`eq1`) to the pencil.
+    fn flux(&self, light: &Light<'_, '_>, model: FluxModel, pixel: Pixel) -> Flux {
+        let way = ExactWay::new(&self.ray, self.face, self.camera);
+        if !way.is_front_seen() || model == FluxModel::Eq1 && self.face.shows_back_to(&self.ray) {
+            return Ok(Rounded::ZERO);
+        }
+        let fast = light.flux(&Fast, &self.fast(), self.aim, self.face, model, pixel);
+        if light.is_root(model) {
+            return Ok(fast.rounded().unwrap_or_else(|| light.root_of(&self.exact(), self.aim, self.face)));
+        }
+        let exact = OnceCell::new();
+        decide(fast, |precision| {
+            let lit = exact.get_or_init(|| self.exact());
+            light.flux(precision, lit, self.aim, self.face, model, pixel)
+        })
+    }
+}
+
+/// The cosine part / sqrt(squared). A point in the projection centre itself is seen under no angle. CHOICE: cosines of 0.
+fn cosine(part: &Dyadic, squared: &Dyadic) -> Rounded {
+    if squared.sign() == Some(Ordering::Equal) {
+        return Rounded::ZERO;
+    }
+    root(sign_of(part), &part.square(), squared)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use raypencil_scene::{Atmosphere, Lens, Pose, Scene};
+    use raypencil_terrain::builtin;
+
+    /// The pyramids before a small rig like the default one.
+    fn scene(profile: Profile) -> Scene {
+        let mesh = builtin("pyramids", 0.25).expect("a built-in ground").into_mesh().expect("a mesh");
+        let at = |height: f64, pitch_deg: f64| Pose {
+            position: DVec3::new(0.3, 0.0, height),
+            ..Pose::from_axis_angle(DVec3::Y, pitch_deg.to_radians()) * Pose::VEHICLE_FROM_FORWARD_SENSOR
         };
-        let minus = |x: &Dyadic| Dyadic::of(0.0).sub(x);
-        let scale = pencil.origin_scale.mul(&approach);
-        let is_centre = v_squared.sign() == Some(Ordering::Equal);
-        Self {
-            range: height.square().mul(&d_squared).over(&scale.square()).sqrt(),
-            distance: v_squared.over(&way.scale.square()).sqrt(),
-            depth: way.seen.0[2].over(&way.frame_scale.mul(&way.scale)),
-            // A point in the projection centre itself is seen under no angle. CHOICE: cosines of 0.
-            off_axis: if is_centre { 0.0 } else { root(&way.seen.0[2], &way.seen.length_squared()) },
-            emission: if is_centre {
-                0.0
-            } else {
-                root(&minus(&normal.dot(&way.along)), &n_squared.mul(&v_squared))
-            },
-            incidence: root(&minus(&approach), &n_squared.mul(&d_squared)),
+        let camera = Camera {
+            width: 64,
+            height: 64,
+            pixel_pitch: [144e-6; 2],
+            focal_length: 8e-3,
+            principal_point: [32.0; 2],
+            aperture: 2e-3,
+            lens: Lens::CLEAR,
+            max_range: 20.0,
+        };
+        let beam = Beam {
+            columns: 48,
+            rows: 3,
+            thickness: 5e-3,
+            grid_distance: 0.1,
+            half_width: 0.0577,
+            max_range: 20.0,
+            power: 1.0,
+            wavelength: 810e-9,
+            profile,
+        };
+        Scene::new(
+            Arc::new(mesh),
+            Mounted { scene_from_sensor: at(1.5, 20.0), sensor: camera },
+            vec![Mounted { scene_from_sensor: at(1.8, 31.0), sensor: beam }],
+            Atmosphere { attenuation: 0.0 },
+            FluxModel::Radiometric,
+        )
+        .expect("a scene")
+    }
+
+    /// Pairs of f64, enclosures and, where it is one, the exact root: three ways to the same number.
+    #[test]
+    fn all_ways_to_a_flux_agree() {
+        for profile in [Profile::Paper, Profile::UniformAngle] {
+            let scene = scene(profile);
+            let referee = Referee::new(&scene);
+            let light = referee.light(0, Sampling::Centres).expect("a beam");
+            let mut seen = 0;
+            for (i, j) in (0..3).flat_map(|j| (0..48).map(move |i| (i, j))) {
+                let Some((face, back)) = light.returned_of_face(i, j) else { continue };
+                let (true, Some(pixel)) = (back.visible, back.pixel) else { continue };
+                seen += 1;
+                let (sensor, face) = (light.sensor_with(i, j).unwrap(), referee.face(face).unwrap());
+                let rays = light.rays(&sensor, light.aim(i, j), &face);
+                let exact = rays.exact();
+                for model in [FluxModel::Radiometric, FluxModel::Eq1] {
+                    let fast = light.flux(&Fast, &rays.fast(), rays.aim, &face, model, pixel);
+                    let enclosed = decide(Twofold::UNKNOWN, |precision| {
+                        light.flux(precision, &exact, rays.aim, &face, model, pixel)
+                    });
+                    assert_eq!(fast.rounded(), enclosed.ok(), "{i},{j} {model:?}");
+                    assert_eq!(back.flux(model), enclosed);
+                    if light.is_root(model) {
+                        assert_eq!(Ok(light.root_of(&exact, rays.aim, &face)), enclosed, "{i},{j}");
+                    }
+                }
+                let Seen { towards, along_squared, axial, squared, scale, frame_scale } = &exact.seen;
+                assert_eq!(back.depth, quotient(axial, &frame_scale.mul(scale)));
+                assert_eq!(back.off_axis, cosine(axial, squared));
+                let lengths = along_squared.mul(&exact.meeting.normal_squared);
+                assert_eq!(back.emission, cosine(towards, &lengths));
+            }
+            assert!(seen > 60, "{seen} of 144 pencils are seen");
         }
     }
 }

@@ -1,23 +1,16 @@
 //! The referee as a renderer: slow, and right about every face.
 //!
-//! Which face is nearest is exact. The values are formed in f64 from the middles of the intervals that
-//! contain them, a third evaluation beside the two renderers'; they are rounded, not yet correctly rounded.
+//! Which face is nearest is exact, and every value is correctly rounded.
 
 use std::time::Instant;
 
-use glam::DVec3;
-use rayon::prelude::*;
-use raypencil_scene::{
-    FaceId, Frame, Hit, Image, Mounted, Pixel, Renderer, Request, Resolution, Return, Returns, Scene,
-    SensorId, SensorMap, Stage,
-};
+use raypencil_scene::{FaceId, Frame, Renderer, Request, Resolution, Scene, SensorId, Stage};
 
 use crate::face::{ExactRay, Face};
-use crate::light::Light;
-use crate::number::Interval;
 use crate::pencil::{Aim, Sensor};
-use crate::vector::Vector;
-use crate::verdict::Referee;
+use crate::rounding::Format;
+use crate::values::{RoundedHit, values};
+use crate::verdict::{Referee, bundle};
 
 /// The exact verdict on every cell, as maps.
 #[derive(Debug, Clone, Copy, Default)]
@@ -38,7 +31,8 @@ impl Renderer for ExactRenderer {
         let mut stages = vec![Stage { name: "tree".into(), time: start.elapsed() }];
         let mut timed = |id: SensorId| {
             let start = Instant::now();
-            let map = referee.map(id, request);
+            let map = referee.certified_map(id, request.sampling);
+            let map = map.map(|map| map.in_format(Format::Double, request.quantities));
             stages.push(Stage { name: id.to_string(), time: start.elapsed() });
             map
         };
@@ -48,10 +42,10 @@ impl Renderer for ExactRenderer {
         let (mut returns, mut flux) = (Vec::new(), Vec::new());
         for index in 0..if request.returns { scene.beams().len() } else { 0 } {
             let start = Instant::now();
-            if let Some(light) = referee.light(index, request.sampling) {
-                let (of_beam, image) = all_returns(scene, &light, index);
-                returns.push(of_beam);
-                flux.push(image);
+            if let Some(light) = referee.certified_light(index, request.sampling) {
+                let model = scene.flux_model();
+                returns.push(light.returns_in(Format::Double, model));
+                flux.push(light.image_in(Format::Double, model));
             }
             stages.push(Stage { name: format!("{} returns", SensorId::Beam(index)), time: start.elapsed() });
         }
@@ -59,102 +53,47 @@ impl Renderer for ExactRenderer {
     }
 }
 
-/// The returns of a beam, and the flux that they add up to on the camera's image.
-fn all_returns(scene: &Scene, light: &Light<'_, '_>, index: usize) -> (Returns, Image<f64>) {
-    let beam = &scene.beams()[index].sensor;
-    let camera = &scene.camera().sensor;
-    let mut returns = Returns::empty(beam.columns, beam.rows);
-    let mut image = Image::filled(camera.width, camera.height, 0.0);
-    let rows: Vec<Vec<Option<Return>>> = (0..beam.rows)
-        .into_par_iter()
-        .map(|j| (0..beam.columns).map(|i| light.returned(i, j)).collect())
-        .collect();
-    // In row-major order, whatever thread it came from.
-    for (j, row) in (0..).zip(&rows) {
-        for (i, back) in (0..).zip(row) {
-            let Some(back) = back else { continue };
-            returns.put(i, j, back);
-            if let (true, Some(Pixel { i, j })) = (back.visible, back.pixel) {
-                image.set(i, j, image.at(i, j) + back.flux);
-            }
-        }
-    }
-    (returns, image)
-}
-
 impl Referee<'_> {
-    /// The values of the hit of `face` by the ray of cell (i, j), in f64; `None` if there is no such cell or face,
-    /// or the ray does not meet it.
-    pub fn hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<Hit> {
-        let sensor = Sensor::of(self.scene, id)?;
-        let (width, height) = sensor.size();
-        let mesh = self.scene.mesh();
-        if i >= width || j >= height || face.0 as usize >= mesh.faces().len() {
-            return None;
-        }
-        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
-        let face = Face::of(mesh, face);
+    /// The values of the hit of `face` by the ray of cell (i, j); `None` if there is no such cell or face, or the
+    /// ray does not meet it.
+    pub fn hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
+        let (sensor, aim) = self.aim_at(id, i, j)?;
+        let face = self.face(face)?;
         let is_met = face.is_met_by(&ExactRay::new(&sensor, aim), sensor.max_range());
-        is_met.then(|| hit(&sensor, aim, &face))
+        is_met.then(|| values(&sensor, aim, &face)).flatten()
     }
 
-    /// The values of where the ray of cell (i, j) meets the plane of `face`, in f64, whether or not it passes between its
-    /// sides; `None` if there is no such cell or face. Not finite where they are parallel.
-    pub fn plane_hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<Hit> {
-        let sensor = Sensor::of(self.scene, id)?;
-        let (width, height) = sensor.size();
-        let mesh = self.scene.mesh();
-        let is_there = i < width && j < height && (face.0 as usize) < mesh.faces().len();
-        is_there.then(|| hit(&sensor, Aim { i, j, dx: 0.0, dy: 0.0 }, &Face::of(mesh, face)))
+    /// The values of where the ray of cell (i, j) meets the plane of `face`, whether or not it passes between its
+    /// sides; `None` if there is no such cell or face, or they are parallel.
+    pub fn plane_hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
+        let (sensor, aim) = self.aim_at(id, i, j)?;
+        values(&sensor, aim, &self.face(face)?)
     }
 
-    /// The maps of one sensor, or `None` if the scene has no such sensor.
-    fn map(&self, id: SensorId, request: &Request) -> Option<SensorMap> {
-        let sensor = Sensor::of(self.scene, id)?;
-        let (width, height) = sensor.size();
-        let mut map = SensorMap::empty(id, width, height, request.quantities);
-        map.rows_mut().into_par_iter().for_each(|mut row| {
-            for i in 0..width {
-                let [dx, dy] = match id {
-                    SensorId::Camera => [0.0; 2],
-                    SensorId::Beam(index) => request.sampling.offset(index, i, row.j),
-                };
-                let aim = Aim { i, j: row.j, dx, dy };
-                if let Some(face) = self.nearest(&sensor, aim).first() {
-                    row.put(i, &hit(&sensor, aim, face));
-                }
-            }
+    /// The faces that a ray displaced from cell (i, j) by at most `radius` cells may meet, and some more, in ascending
+    /// order; `None` if there is no such cell.
+    pub fn faces_near(&self, id: SensorId, i: u32, j: u32, radius: f64) -> Option<Vec<FaceId>> {
+        let (sensor, aim) = self.aim_at(id, i, j)?;
+        let mut near = Vec::new();
+        let max_range = sensor.max_range();
+        self.tree.visit(&bundle(&sensor, aim, radius), |face| {
+            near.push(face.id);
+            max_range
         });
-        Some(map)
+        near.sort_unstable();
+        Some(near)
     }
-}
 
-/// The hit of `face` by the ray of an aim that meets it.
-fn hit(sensor: &Sensor, aim: Aim, face: &Face) -> Hit {
-    let ray = sensor.ray::<Interval>(aim);
-    let middle = |v: &Vector<Interval>| {
-        let [x, y, z] = &v.0;
-        DVec3::new(x.middle(), y.middle(), z.middle())
-    };
-    let [a, b, c] = face.corners.map(Vector::<Interval>::of_f32);
-    let normal = b.sub(&a).cross(&c.sub(&a));
-    let height = normal.dot(&a.scaled(&ray.origin_scale).sub(&ray.origin)).middle();
-    let approach = normal.dot(&ray.direction).middle();
-    let direction_length = ray.direction.length_squared().middle().sqrt();
-    let normal_length = normal.length_squared().middle().sqrt();
-    let (s, sigma) = (ray.origin_scale.middle(), ray.direction_scale.middle());
-    // t along D: P = O / s + t D.
-    let t = height / (s * approach);
-    let depth_per_t = match sensor {
-        Sensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
-        Sensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
-    };
-    Hit {
-        face: face.id,
-        range: t * direction_length,
-        point: middle(&ray.origin) / s + middle(&ray.direction) * t,
-        normal: middle(&normal) / normal_length,
-        depth: t * sigma * depth_per_t,
-        incidence: -approach / (normal_length * direction_length),
+    /// A sensor and the aim at the middle of its cell (i, j), if there is such a cell.
+    pub(crate) fn aim_at(&self, id: SensorId, i: u32, j: u32) -> Option<(Sensor, Aim)> {
+        let sensor = Sensor::of(self.scene, id)?;
+        let (width, height) = sensor.size();
+        (i < width && j < height).then_some((sensor, Aim { i, j, dx: 0.0, dy: 0.0 }))
+    }
+
+    /// A face of the mesh.
+    pub(crate) fn face(&self, face: FaceId) -> Option<Face> {
+        let mesh = self.scene.mesh();
+        ((face.0 as usize) < mesh.faces().len()).then(|| Face::of(mesh, face))
     }
 }

@@ -33,6 +33,7 @@ use crate::cull::Bundle;
 use crate::face::{ExactRay, Face};
 use crate::number::{Dyadic, Interval, Number};
 use crate::pencil::{Aim, ScaledRay, Sensor};
+use crate::rounding;
 use crate::vector::{ScaledRotation, Vector};
 use crate::verdict::{Displacement, Referee};
 
@@ -65,7 +66,7 @@ pub(crate) struct Way<T> {
 }
 
 impl<T: Number> Way<T> {
-    fn new(ray: &ScaledRay<T>, face: &Face, camera: &Mounted<Camera>, is_back: bool) -> Self {
+    pub(crate) fn new(ray: &ScaledRay<T>, face: &Face, camera: &Mounted<Camera>, is_back: bool) -> Self {
         let pose = camera.scene_from_sensor;
         let (centre, rotation) = (Vector::of(pose.position), ScaledRotation::<T>::of(pose.rotation));
         let (approach, height) = (face.approach(ray), face.height(ray));
@@ -233,11 +234,12 @@ impl<'a> ExactWay<'a> {
             .flat_map(|(axis, index)| [(axis, index), (axis, index + 1)])
             .map(|(axis, border)| {
                 let across = Border { camera, axis, border }.value(way);
-                across.over(&Dyadic::of(camera.pixel_pitch[axis]).mul(&way.seen.0[2])).abs()
+                let per_pixel = Dyadic::of(camera.pixel_pitch[axis]).mul(&way.seen.0[2]);
+                rounding::quotient(&across, &per_pixel).double.abs()
             })
             .fold(f64::INFINITY, f64::min);
-        // Each quotient is good to 2^-52 of itself, and so is the least of them.
-        let off = 2.0 * f64::EPSILON;
+        // Each quotient is good to 2^-53 of itself, and so is the least of them.
+        let off = f64::EPSILON;
         [least * (1.0 - off), least * (1.0 + off)]
     }
 

@@ -1,9 +1,11 @@
 //! The exact answer for one ray: which faces are nearest, or that there is none.
 
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 use raypencil_scene::{FaceId, Scene, SensorId};
 
+use crate::arithmetic::Whole;
 use crate::cull::{Bundle, Tree};
 use crate::face::{ExactRay, Face};
 use crate::forms::MovingRay;
@@ -48,12 +50,15 @@ impl Displacement {
 pub struct Referee<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) tree: Tree,
+    /// Of each beam's central pencils.
+    pub(crate) wholes: Vec<Arc<Whole>>,
 }
 
 impl<'s> Referee<'s> {
     /// Prepares to judge the rays of `scene`.
     pub fn new(scene: &'s Scene) -> Self {
-        Self { scene, tree: Tree::build(scene.mesh()) }
+        let wholes = scene.beams().iter().map(|_| Arc::default()).collect();
+        Self { scene, tree: Tree::build(scene.mesh()), wholes }
     }
 
     /// The exact verdict on the ray of cell (i, j), or `None` if there is no such cell.

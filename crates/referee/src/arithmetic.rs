@@ -1,0 +1,212 @@
+//! One formula, two ways to evaluate it: in pairs of f64, and in enclosures of growing precision.
+
+use std::sync::OnceLock;
+
+use crate::enclosure::{Enclosure, Precision};
+use crate::number::{Dyadic, Number};
+use crate::rounding::Rounded;
+use crate::twofold::Twofold;
+
+/// A value whose rounding is not decided by the whole budget of bits; one of the two nearest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Undecided(pub Rounded);
+
+/// The precisions tried one after the other, in bits. A value that is no midpoint, and was not made to look like
+/// one, is decided by the first but for one in 2^60.
+const BUDGET: [usize; 5] = [128, 256, 512, 1024, 2048];
+
+/// What a formula of positive numbers is made of.
+pub(crate) trait Arithmetic {
+    /// In which the polynomials of rays and faces are evaluated.
+    type Exact: Number;
+    /// In which the formula is.
+    type Real: Clone;
+
+    /// |x|.
+    fn size(&self, x: &Self::Exact) -> Self::Real;
+    fn add(&self, x: &Self::Real, y: &Self::Real) -> Self::Real;
+    /// |x - y|.
+    fn distance(&self, x: &Self::Real, y: &Self::Real) -> Self::Real;
+    fn mul(&self, x: &Self::Real, y: &Self::Real) -> Self::Real;
+    fn div(&self, x: &Self::Real, y: &Self::Real) -> Self::Real;
+    fn sqrt(&self, x: &Self::Real) -> Self::Real;
+    /// exp(-x).
+    fn exp_minus(&self, x: &Self::Real) -> Self::Real;
+    fn atan(&self, x: &Self::Real) -> Self::Real;
+    fn pi(&self) -> Self::Real;
+    fn ln_2(&self) -> Self::Real;
+    /// The sum of a beam's weights, kept once it is formed.
+    fn whole(&self, kept: &Whole, form: impl FnOnce() -> Self::Real) -> Self::Real;
+
+    /// |x|, of an f64.
+    fn exactly(&self, x: f64) -> Self::Real {
+        self.size(&Self::Exact::of(x))
+    }
+}
+
+/// Sums of weights that were formed.
+#[derive(Debug, Default)]
+pub(crate) struct Whole {
+    fast: OnceLock<Twofold>,
+    enclosures: [OnceLock<Enclosure>; BUDGET.len()],
+}
+
+/// Pairs of f64: no exp, no atan.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fast;
+
+impl Arithmetic for Fast {
+    type Exact = Twofold;
+    type Real = Twofold;
+
+    fn size(&self, x: &Twofold) -> Twofold {
+        x.size()
+    }
+
+    fn add(&self, x: &Twofold, y: &Twofold) -> Twofold {
+        x.add(y)
+    }
+
+    fn distance(&self, x: &Twofold, y: &Twofold) -> Twofold {
+        x.sub(y).size()
+    }
+
+    fn mul(&self, x: &Twofold, y: &Twofold) -> Twofold {
+        x.mul(y)
+    }
+
+    fn div(&self, x: &Twofold, y: &Twofold) -> Twofold {
+        x.over(y)
+    }
+
+    fn sqrt(&self, x: &Twofold) -> Twofold {
+        x.sqrt()
+    }
+
+    fn exp_minus(&self, _: &Twofold) -> Twofold {
+        Twofold::UNKNOWN
+    }
+
+    fn atan(&self, _: &Twofold) -> Twofold {
+        Twofold::UNKNOWN
+    }
+
+    fn pi(&self) -> Twofold {
+        Twofold::PI
+    }
+
+    fn ln_2(&self) -> Twofold {
+        Twofold::UNKNOWN
+    }
+
+    fn whole(&self, kept: &Whole, form: impl FnOnce() -> Twofold) -> Twofold {
+        *kept.fast.get_or_init(form)
+    }
+}
+
+/// One of the precisions of the budget.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Level {
+    index: usize,
+    precision: Precision,
+}
+
+impl Arithmetic for Level {
+    type Exact = Dyadic;
+    type Real = Enclosure;
+
+    fn size(&self, x: &Dyadic) -> Enclosure {
+        self.precision.magnitude(x)
+    }
+
+    fn add(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        self.precision.add(x, y)
+    }
+
+    fn distance(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        self.precision.distance(x, y)
+    }
+
+    fn mul(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        self.precision.mul(x, y)
+    }
+
+    fn div(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        self.precision.div(x, y)
+    }
+
+    fn sqrt(&self, x: &Enclosure) -> Enclosure {
+        self.precision.sqrt(x)
+    }
+
+    fn exp_minus(&self, x: &Enclosure) -> Enclosure {
+        self.precision.exp_minus(x)
+    }
+
+    fn atan(&self, x: &Enclosure) -> Enclosure {
+        self.precision.atan(x)
+    }
+
+    fn pi(&self) -> Enclosure {
+        self.precision.pi()
+    }
+
+    fn ln_2(&self) -> Enclosure {
+        self.precision.ln_2()
+    }
+
+    fn whole(&self, kept: &Whole, form: impl FnOnce() -> Enclosure) -> Enclosure {
+        kept.enclosures[self.index].get_or_init(form).clone()
+    }
+}
+
+/// Correctly rounded: by the fast value if that is certain, else with growing precision.
+pub(crate) fn decide(fast: Twofold, enclose: impl Fn(&Level) -> Enclosure) -> Result<Rounded, Undecided> {
+    if let Some(rounded) = fast.rounded() {
+        return Ok(rounded);
+    }
+    let mut last = Rounded::ZERO;
+    for (index, bits) in BUDGET.into_iter().enumerate() {
+        let enclosure = enclose(&Level { index, precision: Precision::new(bits) });
+        match enclosure.rounded() {
+            Some(rounded) => return Ok(rounded),
+            None => last = enclosure.least_rounded(),
+        }
+    }
+    Err(Undecided(last))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_on_a_midpoint_is_undecided_and_what_does_not_is_decided() {
+        // (1 + 2^-53 + more) / 7 times 7, which is rounded on its way: 2^53 + 1 is no multiple of 7 (but of 3).
+        let value = |more: f64| {
+            decide(Twofold::UNKNOWN, |a| {
+                let half_way = a.add(&a.exactly(1.0), &a.exactly(f64::EPSILON / 2.0));
+                let number = a.add(&half_way, &a.exactly(more));
+                a.mul(&a.div(&number, &a.exactly(7.0)), &a.exactly(7.0))
+            })
+        };
+        let one = Rounded { double: 1.0, single: 1.0 };
+        assert_eq!(value(0.0), Err(Undecided(one)));
+        // 2^-600 more takes 1024 bits.
+        let up = Rounded { double: 1.0 + f64::EPSILON, single: 1.0 };
+        assert_eq!(value(libm::scalbn(1.0, -600)), Ok(up));
+    }
+
+    #[test]
+    fn both_arithmetics_agree() {
+        fn formula<A: Arithmetic>(a: &A) -> A::Real {
+            let third = a.div(&a.exactly(1.0), &a.exactly(-3.0));
+            let root = a.sqrt(&a.add(&third, &a.exactly(2.0)));
+            a.mul(&a.pi(), &a.distance(&third, &root))
+        }
+        let fast = formula(&Fast).rounded().expect("decided");
+        assert_eq!(decide(Twofold::UNKNOWN, formula), Ok(fast));
+        // pi |1/3 - sqrt(7/3)| = 3.7516...
+        assert!((fast.double - std::f64::consts::PI * ((7.0f64 / 3.0).sqrt() - 1.0 / 3.0)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,194 @@
+//! Every value of a sensor, correctly rounded: what reference files are made of.
+
+use std::cell::LazyCell;
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use raypencil_scene::{FluxModel, Image, Pixel, Quantities, Returns, Sampling, SensorId, SensorMap};
+
+use crate::light::{Contribution, Flux, Light, RoundedReturn};
+use crate::number::Dyadic;
+use crate::pencil::{Aim, Sensor};
+use crate::rounding::{Format, Rounded, quotient};
+use crate::twofold::Twofold;
+use crate::values::{RoundedHit, values};
+use crate::verdict::Referee;
+
+/// What each ray of a sensor meets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CertifiedMap {
+    /// Whose.
+    pub sensor: SensorId,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// In row-major order.
+    pub hits: Vec<Option<RoundedHit>>,
+}
+
+/// What comes back of each pencil of a beam, and what that adds up to on the camera's image.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CertifiedLight {
+    /// Columns of the beam.
+    pub columns: u32,
+    /// Rows of the beam.
+    pub rows: u32,
+    /// The pencils, in row-major order.
+    pub returns: Vec<Option<RoundedReturn>>,
+    /// Columns and rows of the camera.
+    pub image: (u32, u32),
+    /// The pixels that receive anything, in row-major order, with the sum over their pencils.
+    pub sums: Vec<(Pixel, PixelSum)>,
+}
+
+/// What a pixel receives of one beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PixelSum {
+    /// How many pencils it adds up.
+    pub pencils: u32,
+    /// By the model `radiometric`, watts.
+    pub radiometric: Flux,
+    /// By the model `eq1`, W/m.
+    pub eq1: Flux,
+}
+
+impl PixelSum {
+    /// By a model.
+    pub fn flux(&self, model: FluxModel) -> Flux {
+        match model {
+            FluxModel::Radiometric => self.radiometric,
+            FluxModel::Eq1 => self.eq1,
+        }
+    }
+}
+
+impl CertifiedMap {
+    /// The maps in f64, or in f32 (whose numbers are f64 as well).
+    pub fn in_format(&self, format: Format, quantities: Quantities) -> SensorMap {
+        let mut map = SensorMap::empty(self.sensor, self.width, self.height, quantities);
+        for (mut row, hits) in map.rows_mut().into_iter().zip(self.hits.chunks(self.width as usize)) {
+            for (i, hit) in (0..).zip(hits) {
+                if let Some(hit) = hit {
+                    row.put(i, &hit.in_format(format));
+                }
+            }
+        }
+        map
+    }
+}
+
+impl CertifiedLight {
+    /// The returns in f64, or in f32.
+    pub fn returns_in(&self, format: Format, model: FluxModel) -> Returns {
+        let mut returns = Returns::empty(self.columns, self.rows);
+        let cells = (0..self.rows).flat_map(|j| (0..self.columns).map(move |i| (i, j)));
+        for ((i, j), back) in cells.zip(&self.returns) {
+            if let Some(back) = back {
+                returns.put(i, j, &back.in_format(format, model));
+            }
+        }
+        returns
+    }
+
+    /// What falls on the camera's image, in f64, or in f32.
+    pub fn image_in(&self, format: Format, model: FluxModel) -> Image<f64> {
+        let mut image = Image::filled(self.image.0, self.image.1, 0.0);
+        for (pixel, sum) in &self.sums {
+            let flux = sum.flux(model).unwrap_or_else(|undecided| undecided.0);
+            image.set(pixel.i, pixel.j, flux.in_format(format));
+        }
+        image
+    }
+
+    /// Values that the budget of bits did not decide.
+    pub fn undecided(&self) -> usize {
+        let models = [FluxModel::Radiometric, FluxModel::Eq1];
+        let of =
+            |flux: &dyn Fn(FluxModel) -> Flux| models.iter().filter(|model| flux(**model).is_err()).count();
+        let pencils = self.returns.iter().flatten().map(|back| of(&|model| back.flux(model)));
+        let pixels = self.sums.iter().map(|(_, sum)| of(&|model| sum.flux(model)));
+        pencils.chain(pixels).sum()
+    }
+}
+
+impl Referee<'_> {
+    /// The values of the face that the ray of cell (i, j) meets first; `None` if there is no such cell, or no hit.
+    pub fn values(&self, id: SensorId, i: u32, j: u32) -> Option<RoundedHit> {
+        let (sensor, aim) = self.aim_at(id, i, j)?;
+        let nearest = self.nearest(&sensor, aim);
+        values(&sensor, aim, nearest.first()?)
+    }
+
+    /// The ray of cell (i, j): origin and direction (not a unit: t = 1 is on the SPP), scene frame, metres; `None` if
+    /// there is no such cell.
+    pub fn ray(&self, id: SensorId, i: u32, j: u32) -> Option<[[Rounded; 3]; 2]> {
+        let (sensor, aim) = self.aim_at(id, i, j)?;
+        let (fast, exact) = (sensor.ray::<Twofold>(aim), LazyCell::new(|| sensor.ray::<Dyadic>(aim)));
+        let part = |k: usize| {
+            let rounded = fast.origin.0[k].over(&fast.origin_scale).rounded();
+            rounded.unwrap_or_else(|| quotient(&exact.origin.0[k], &exact.origin_scale))
+        };
+        let along = |k: usize| {
+            let rounded = fast.direction.0[k].over(&fast.direction_scale).rounded();
+            rounded.unwrap_or_else(|| quotient(&exact.direction.0[k], &exact.direction_scale))
+        };
+        Some([[0, 1, 2].map(part), [0, 1, 2].map(along)])
+    }
+
+    /// What every ray of a sensor meets; `None` if there is no such sensor.
+    pub fn certified_map(&self, id: SensorId, sampling: Sampling) -> Option<CertifiedMap> {
+        let sensor = Sensor::of(self.scene, id)?;
+        let (width, height) = sensor.size();
+        let row = |j: u32| {
+            (0..width).map(move |i| {
+                let [dx, dy] = match id {
+                    SensorId::Camera => [0.0; 2],
+                    SensorId::Beam(index) => sampling.offset(index, i, j),
+                };
+                let aim = Aim { i, j, dx, dy };
+                self.nearest(&sensor, aim).first().and_then(|face| values(&sensor, aim, face))
+            })
+        };
+        let hits = (0..height).into_par_iter().flat_map_iter(row).collect();
+        Some(CertifiedMap { sensor: id, width, height, hits })
+    }
+
+    /// What comes back of every pencil of a beam; `None` if there is no such beam.
+    pub fn certified_light(&self, beam: usize, sampling: Sampling) -> Option<CertifiedLight> {
+        let light = self.light(beam, sampling)?;
+        let beam = &self.scene.beams()[beam].sensor;
+        let camera = &self.scene.camera().sensor;
+        let returned = |j: u32| {
+            let light = &light;
+            (0..beam.columns).map(move |i| light.returned_of_face(i, j))
+        };
+        let rows: Vec<_> = (0..beam.rows).into_par_iter().flat_map_iter(returned).collect();
+
+        // The pencils of each pixel, in row-major order.
+        let mut pixels: BTreeMap<(u32, u32), Vec<Contribution>> = BTreeMap::new();
+        let cells = (0..beam.rows).flat_map(|j| (0..beam.columns).map(move |i| (i, j)));
+        for ((i, j), found) in cells.zip(&rows) {
+            if let Some((face, RoundedReturn { visible: true, pixel: Some(pixel), .. })) = found {
+                let pencil = Contribution { i, j, face: *face, pixel: *pixel };
+                pixels.entry((pixel.j, pixel.i)).or_default().push(pencil);
+            }
+        }
+        let sums = pixels.into_par_iter().map(|((j, i), pencils)| (Pixel { i, j }, sum(&light, &pencils)));
+        Some(CertifiedLight {
+            columns: beam.columns,
+            rows: beam.rows,
+            sums: sums.collect(),
+            returns: rows.into_iter().map(|found| found.map(|(_, back)| back)).collect(),
+            image: (camera.width, camera.height),
+        })
+    }
+}
+
+fn sum(light: &Light<'_, '_>, pencils: &[Contribution]) -> PixelSum {
+    PixelSum {
+        pencils: pencils.len() as u32,
+        radiometric: light.sum(FluxModel::Radiometric, pencils),
+        eq1: light.sum(FluxModel::Eq1, pencils),
+    }
+}

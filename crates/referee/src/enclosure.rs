@@ -1,0 +1,213 @@
+//! Enclosures of positive reals at any precision: what decides a rounding that 106 bits did not.
+//!
+//! Both ends are binary numbers of `precision` bits, each operation rounded down at the low end and up at the high
+//! one. That holds because dashu-float rounds correctly in the direction asked for, `exp`, `atan` and pi included (it
+//! repeats with more digits until the rounding is certain). Everything here is positive or 0: signs are kept by
+//! the caller.
+
+use dashu_float::round::mode::{Down, Up};
+use dashu_float::round::{ErrorBounds, Round};
+use dashu_float::{Context, FBig, Repr};
+use dashu_int::{IBig, Sign};
+
+use crate::number::Dyadic;
+use crate::rounding::{Cut, Rounded};
+
+type Real = Repr<2>;
+
+/// low <= x <= high, 0 <= low.
+#[derive(Debug, Clone)]
+pub(crate) struct Enclosure {
+    low: Real,
+    high: Real,
+}
+
+/// exp(-x) is taken for "between 0 and 2^-1000000" beyond this: no flux that has such a factor is anything but 0
+/// in f64, whose smallest number is 2^-1074.
+const NOTHING_LEFT: i64 = 800_000;
+
+/// Operations of a number of bits.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Precision {
+    down: Context<Down>,
+    up: Context<Up>,
+}
+
+/// The value of an operation that is defined for what is given to it.
+fn value<R: Round>(result: dashu_float::FpResult<FBig<R, 2>>) -> Real {
+    result.expect("defined for positive numbers").value().into_repr()
+}
+
+fn zero() -> Real {
+    Repr::zero()
+}
+
+/// 0 where it would be less.
+fn not_negative(x: Real) -> Real {
+    if x.sign() == Sign::Negative { zero() } else { x }
+}
+
+impl Precision {
+    pub(crate) fn new(bits: usize) -> Self {
+        Self { down: Context::new(bits), up: Context::new(bits) }
+    }
+
+    /// The absolute value of an exact number.
+    pub(crate) fn magnitude(&self, x: &Dyadic) -> Enclosure {
+        let (_, magnitude, exponent) = x.parts();
+        let x: Real = Repr::new(IBig::from(magnitude), exponent as isize);
+        Enclosure { low: self.least(&x), high: self.most(&x) }
+    }
+
+    fn least(&self, x: &Real) -> Real {
+        value(self.down.add(x, &zero()))
+    }
+
+    fn most(&self, x: &Real) -> Real {
+        value(self.up.add(x, &zero()))
+    }
+
+    pub(crate) fn add(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        Enclosure { low: value(self.down.add(&x.low, &y.low)), high: value(self.up.add(&x.high, &y.high)) }
+    }
+
+    /// |x - y|.
+    pub(crate) fn distance(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        let below = value(self.down.sub(&x.low, &y.high));
+        let above = value(self.down.sub(&y.low, &x.high));
+        let low = if below.sign() == Sign::Positive { below } else { not_negative(above) };
+        let [one, other] = [(&x.high, &y.low), (&y.high, &x.low)]
+            .map(|(high, low)| not_negative(value(self.up.sub(high, low))));
+        let high = if one > other { one } else { other };
+        Enclosure { low, high }
+    }
+
+    pub(crate) fn mul(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        Enclosure { low: value(self.down.mul(&x.low, &y.low)), high: value(self.up.mul(&x.high, &y.high)) }
+    }
+
+    /// x / y; y is certainly not 0.
+    pub(crate) fn div(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
+        Enclosure { low: value(self.down.div(&x.low, &y.high)), high: value(self.up.div(&x.high, &y.low)) }
+    }
+
+    pub(crate) fn sqrt(&self, x: &Enclosure) -> Enclosure {
+        Enclosure { low: value(self.down.sqrt(&x.low)), high: value(self.up.sqrt(&x.high)) }
+    }
+
+    /// exp(-x).
+    pub(crate) fn exp_minus(&self, x: &Enclosure) -> Enclosure {
+        fn of<R: ErrorBounds>(context: &Context<R>, x: &Real) -> Option<Real> {
+            let far: Real = Repr::new(IBig::from(NOTHING_LEFT), 0);
+            (*x <= far).then(|| value(context.exp(&-x.clone(), None)))
+        }
+        Enclosure {
+            low: of(&self.down, &x.high).unwrap_or_else(zero),
+            high: of(&self.up, &x.low).unwrap_or_else(|| Repr::new(IBig::ONE, -1_000_000)),
+        }
+    }
+
+    pub(crate) fn atan(&self, x: &Enclosure) -> Enclosure {
+        Enclosure { low: value(self.down.atan(&x.low, None)), high: value(self.up.atan(&x.high, None)) }
+    }
+
+    pub(crate) fn pi(&self) -> Enclosure {
+        Enclosure {
+            low: self.down.pi::<2>(None).value().into_repr(),
+            high: self.up.pi::<2>(None).value().into_repr(),
+        }
+    }
+
+    /// ln 2.
+    pub(crate) fn ln_2(&self) -> Enclosure {
+        let two: Real = Repr::new(IBig::from(2), 0);
+        Enclosure { low: value(self.down.ln(&two, None)), high: value(self.up.ln(&two, None)) }
+    }
+}
+
+fn rounded(x: &Real) -> Rounded {
+    let (_, magnitude) = x.significand().clone().into_parts();
+    Cut::of(false, magnitude, x.exponent() as i64, true).rounded()
+}
+
+impl Enclosure {
+    /// Correctly rounded, to f64 and to f32, if that is certain.
+    pub(crate) fn rounded(&self) -> Option<Rounded> {
+        let [low, high] = [&self.low, &self.high].map(rounded);
+        (low == high).then_some(low)
+    }
+
+    /// The lower end, rounded.
+    pub(crate) fn least_rounded(&self) -> Rounded {
+        rounded(&self.low)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Number;
+
+    fn exactly(x: f64) -> Enclosure {
+        Precision::new(128).magnitude(&Dyadic::of(x))
+    }
+
+    /// That the enclosure is narrow and holds `digits` 10^-places: what tables print.
+    fn holds(x: &Enclosure, digits: &str, places: u32) {
+        let units: IBig = digits.parse().expect("digits");
+        let scale = IBig::from(10).pow(places as usize);
+        // low 10^places <= digits + 1 and high 10^places >= digits, as the printed digits are cut off.
+        let scaled = |end: &Real| -> IBig {
+            let product = end.significand() * &scale;
+            match end.exponent() {
+                shift @ 0.. => product << shift as usize,
+                shift => product >> shift.unsigned_abs(),
+            }
+        };
+        assert_eq!(scaled(&x.low), units, "{x:?}");
+        assert!(scaled(&x.high) >= units && scaled(&x.high) <= units + 1, "{x:?}");
+    }
+
+    #[test]
+    fn constants_have_the_digits_of_the_tables() {
+        // Abramowitz and Stegun, tables 1.1 and 4.2: pi, ln 2, e^-1, pi / 4.
+        let precision = Precision::new(128);
+        holds(&precision.pi(), "314159265358979323846264", 23);
+        holds(&precision.ln_2(), "69314718055994530941723", 23);
+        holds(&precision.exp_minus(&exactly(1.0)), "36787944117144232159552", 23);
+        holds(&precision.atan(&exactly(1.0)), "78539816339744830961566", 23);
+    }
+
+    #[test]
+    fn ends_keep_their_sides() {
+        let precision = Precision::new(64);
+        let third = precision.div(&exactly(1.0), &exactly(3.0));
+        assert!(third.low < third.high);
+        let apart = precision.distance(&third, &third);
+        assert!(apart.low == zero() && apart.high.sign() == Sign::Positive);
+        let apart = precision.distance(&exactly(1.0), &third);
+        let same = precision.distance(&third, &exactly(1.0));
+        assert!(apart.low == same.low && apart.high == same.high && apart.low < apart.high);
+        assert_eq!(
+            precision.mul(&third, &exactly(3.0)).rounded(),
+            Some(Rounded { double: 1.0, single: 1.0 })
+        );
+        // 1 + 2^-53 is a midpoint of f64: an enclosure around it decides nothing, its exact self does.
+        let midpoint = precision.add(&exactly(1.0), &exactly(f64::EPSILON / 2.0));
+        assert_eq!(midpoint.rounded().map(|r| r.double), Some(1.0));
+        let around = precision.mul(&third, &precision.mul(&exactly(3.0), &midpoint));
+        assert_eq!(around.rounded(), None);
+    }
+
+    #[test]
+    fn what_vanishes_is_zero() {
+        let precision = Precision::new(128);
+        let nothing = precision.exp_minus(&exactly(4e18));
+        assert_eq!(nothing.rounded(), Some(Rounded::ZERO));
+        assert_eq!(precision.exp_minus(&exactly(0.0)).rounded(), Some(Rounded { double: 1.0, single: 1.0 }));
+        // exp(-740) is subnormal: 4.2e-322 is 85 times the least f64. (exp(740) = 2.4e321, by ln 10 = 2.302585)
+        let small = precision.exp_minus(&exactly(740.0)).rounded().expect("decided");
+        assert_eq!(small, Rounded { double: libm::exp(-740.0), single: 0.0 });
+        assert!((80.0..90.0).contains(&(small.double / f64::from_bits(1))));
+    }
+}

@@ -1,0 +1,317 @@
+//! Pairs of f64 with a proven error: about 106 bits, the fast way to correctly rounded values.
+//!
+//! A number here is hi + lo, known to within `error`. Sums and products are those of double-word arithmetic, whose
+//! relative errors are proven: 3 u^2 / (1 - 4 u) for a sum ("AccurateDWPlusDW") and 7 u^2 for a product ("DWTimesDW1"),
+//! u = 2^-53 (M. Joldes, J.-M. Muller, V. Popescu, 2017, doi:10.1145/3121432; checked formally by Muller and
+//! L. Rideau, 2022). Quotients and roots are checked by multiplying back, so their errors need no theorem. A
+//! product below 1e-250 is bounded by its size alone; above 1e250, and of quotients below 1e-250, nothing is claimed:
+//! the error is infinite, and exact arithmetic takes over.
+
+use std::cmp::Ordering;
+
+use crate::number::Number;
+use crate::rounding::Rounded;
+
+/// hi + lo, with |lo| at most half a unit in the last place of hi; the true number is at most `error` away.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Twofold {
+    high: f64,
+    low: f64,
+    error: f64,
+}
+
+/// 2^-104 = 4 u^2, which exceeds 3 u^2 / (1 - 4 u).
+const SUM: f64 = 1.0 / (1u128 << 104) as f64;
+/// 2^-103 = 8 u^2.
+const PRODUCT: f64 = 2.0 * SUM;
+/// Errors are sums and products of at most a dozen positive roundings, each 2^-53: this is above them.
+const ROUNDED_UP: f64 = 1.0 + 1.0 / (1u64 << 48) as f64;
+/// Where no partial result over- or underflows.
+const LEAST: f64 = 1e-250;
+const MOST: f64 = 1e250;
+
+/// a + b = sum + rest, exactly. (D. Knuth)
+#[inline]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    let of_a = sum - of_b;
+    (sum, (a - of_a) + (b - of_b))
+}
+
+/// The same where |a| >= |b| or a = 0. (T. Dekker)
+#[inline]
+fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    (sum, b - (sum - a))
+}
+
+/// a b = product + rest, exactly, between [`LEAST`] and [`MOST`]. (T. Dekker, G. Veltkamp)
+#[inline]
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    #[inline]
+    fn split(a: f64) -> (f64, f64) {
+        let scaled = 134_217_729.0 * a; // 2^27 + 1
+        let high = scaled - (scaled - a);
+        (high, a - high)
+    }
+    let product = a * b;
+    let ((a1, a2), (b1, b2)) = (split(a), split(b));
+    (product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2)
+}
+
+impl Twofold {
+    /// Nothing is known.
+    pub(crate) const UNKNOWN: Self = Self { high: 0.0, low: 0.0, error: f64::INFINITY };
+    /// pi = 3.14159265358979323846 (its first double) + 1.2246467991473532e-16 (its second) to 3e-33.
+    pub(crate) const PI: Self =
+        Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16, error: 3e-33 };
+
+    /// At least the absolute value of the true number.
+    #[inline]
+    fn most(&self) -> f64 {
+        (self.high.abs() + self.low.abs() + self.error) * ROUNDED_UP
+    }
+
+    /// At most the absolute value of the true number.
+    #[inline]
+    fn least(&self) -> f64 {
+        ((self.high.abs() - self.low.abs()) * (1.0 - f64::EPSILON) - self.error * ROUNDED_UP)
+            * (1.0 - f64::EPSILON)
+    }
+
+    /// The absolute value.
+    #[inline]
+    pub(crate) fn size(&self) -> Self {
+        if self.high < 0.0 { Self { high: -self.high, low: -self.low, ..*self } } else { *self }
+    }
+
+    /// The quotient.
+    pub(crate) fn over(&self, divisor: &Self) -> Self {
+        let least = divisor.least();
+        let first = self.high / divisor.high;
+        // !(a > b) is also what holds for NaN.
+        if !(least > 0.0) || !(first == 0.0 || (LEAST..MOST).contains(&first.abs())) {
+            return Self::UNKNOWN;
+        }
+        // x - z y for the first digits z, and then for all of them.
+        let rest = self.sub(&divisor.mul(&Self::of(first)));
+        let (high, low) = fast_two_sum(first, rest.high / divisor.high);
+        let quotient = Self { high, low, error: 0.0 };
+        let rest = self.sub(&divisor.mul(&quotient));
+        quotient.off_by(rest.most() / least * ROUNDED_UP)
+    }
+
+    /// The square root; nothing is known of that of a number which is not certainly positive.
+    pub(crate) fn sqrt(&self) -> Self {
+        if self.high == 0.0 && self.low == 0.0 && self.error == 0.0 {
+            return *self;
+        }
+        if !(self.least() > 0.0) {
+            return Self::UNKNOWN;
+        }
+        let first = self.high.sqrt();
+        let rest = self.sub(&Self::of(first).square());
+        let (high, low) = fast_two_sum(first, rest.high / (2.0 * first));
+        let root = Self { high, low, error: 0.0 };
+        // |sqrt(x) - z| = |x - z^2| / (sqrt(x) + z).
+        let rest = self.sub(&root.square());
+        root.off_by(rest.most() / root.least() * ROUNDED_UP)
+    }
+
+    #[inline]
+    fn off_by(self, error: f64) -> Self {
+        if error.is_finite() { Self { error, ..self } } else { Self::UNKNOWN }
+    }
+
+    /// Correctly rounded, if that is certain.
+    pub(crate) fn rounded(&self) -> Option<Rounded> {
+        // A sum of two f64 is rounded correctly, and rounding keeps order: if both ends of what the true number
+        // can be round to the same, so does everything between.
+        let doubt = self.error * ROUNDED_UP + self.low.abs() * f64::EPSILON;
+        let (from, to) = (self.low - doubt, self.low + doubt);
+        let double = self.high + from;
+        if !(double == self.high + to) || !double.is_finite() {
+            return None;
+        }
+        // On which side of it the number lies; hi - double is exact, both being neighbours.
+        let beside = self.high - double;
+        let side = if self.error == 0.0 && beside + self.low == 0.0 {
+            Ordering::Equal
+        } else if beside + from > 0.0 {
+            Ordering::Greater
+        } else if beside + to < 0.0 {
+            Ordering::Less
+        } else {
+            // Unknown, which matters on a midpoint of f32 alone.
+            let [below, above] =
+                [Ordering::Less, Ordering::Greater].map(|side| Rounded::beside(double, side));
+            return (below.single == above.single).then_some(below);
+        };
+        // An exact zero has no sign.
+        Some(if double == 0.0 { Rounded::ZERO } else { Rounded::beside(double, side) })
+    }
+}
+
+impl Number for Twofold {
+    #[inline]
+    fn of(value: f64) -> Self {
+        Self { high: value, low: 0.0, error: 0.0 }
+    }
+
+    #[inline]
+    fn add(&self, other: &Self) -> Self {
+        let (sum, rest) = two_sum(self.high, other.high);
+        let (low, last) = two_sum(self.low, other.low);
+        let (sum, rest) = fast_two_sum(sum, rest + low);
+        let (high, low) = fast_two_sum(sum, last + rest);
+        // Two f64 are added exactly.
+        let rounding = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { SUM * high.abs() };
+        let error = (self.error + other.error + rounding) * ROUNDED_UP;
+        if error < MOST && high.abs() < MOST { Self { high, low, error } } else { Self::UNKNOWN }
+    }
+
+    #[inline]
+    fn sub(&self, other: &Self) -> Self {
+        self.add(&Self { high: -other.high, low: -other.low, error: other.error })
+    }
+
+    #[inline]
+    fn mul(&self, other: &Self) -> Self {
+        let is_zero = |x: &Self| x.high == 0.0 && x.error == 0.0;
+        if is_zero(self) || is_zero(other) {
+            return Self::of(0.0);
+        }
+        let size = (self.high * other.high).abs();
+        if !(size < MOST) || self.high.abs() > MOST || other.high.abs() > MOST {
+            return Self::UNKNOWN;
+        }
+        if size < LEAST {
+            // Where one of them is 0 but for its error, or all but: somewhere between -most and most.
+            let most = self.most() * other.most() * ROUNDED_UP + f64::MIN_POSITIVE;
+            return Self::of(0.0).off_by(most);
+        }
+        let (product, rest) = two_product(self.high, other.high);
+        let cross = self.high * other.low + self.low * other.high;
+        let (high, low) = fast_two_sum(product, rest + cross);
+        let rounding = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { PRODUCT * high.abs() };
+        let inherited = if self.error == 0.0 && other.error == 0.0 {
+            0.0
+        } else {
+            // Each product may underflow by less than the last term.
+            self.most() * other.error + other.most() * self.error + f64::MIN_POSITIVE
+        };
+        Self { high, low, error: (inherited + rounding) * ROUNDED_UP }
+    }
+
+    #[inline]
+    fn sign(&self) -> Option<Ordering> {
+        if self.high == 0.0 && self.low == 0.0 && self.error == 0.0 {
+            Some(Ordering::Equal)
+        } else if self.least() > 0.0 {
+            self.high.partial_cmp(&0.0)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Dyadic;
+    use crate::rounding;
+    use dashu_int::Sign;
+    use proptest::prelude::*;
+
+    fn some_number() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            any::<f64>().prop_filter("moderate", |x| x.abs() < 1e40 && (*x == 0.0 || x.abs() > 1e-40)),
+            -4.0f64..4.0,
+            any::<f32>().prop_filter("moderate", |x| x.abs() < 1e20 && x.abs() > 1e-20).prop_map(f64::from),
+            (-8i32..8).prop_map(f64::from),
+        ]
+    }
+
+    /// Whether the exact number is where it is said to be.
+    fn holds(claimed: &Twofold, exact: &Dyadic) -> bool {
+        if claimed.error.is_infinite() {
+            return true;
+        }
+        let off = exact.sub(&Dyadic::of(claimed.high)).sub(&Dyadic::of(claimed.low));
+        off.square().sub(&Dyadic::of(claimed.error).square()).sign() != Some(Ordering::Greater)
+    }
+
+    /// Something with cancellation and every operation but division.
+    fn poly<T: Number>([a, b, c, d]: [f64; 4]) -> T {
+        let [a, b, c, d] = [a, b, c, d].map(T::of);
+        let x = a.mul(&b).sub(&c.mul(&d)).mul(&a.sub(&d));
+        x.add(&b.square().mul(&c)).sub(&x.mul(&d)).sub(&b.square().mul(&c).doubled())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn the_claim_holds_for_polynomials(a in some_number(), b in some_number(), c in some_number(), d in some_number()) {
+            let all = [a, b, c, d];
+            prop_assert!(holds(&poly::<Twofold>(all), &poly::<Dyadic>(all)));
+            let near = [a, b, a * (1.0 + f64::EPSILON), b];
+            prop_assert!(holds(&poly::<Twofold>(near), &poly::<Dyadic>(near)));
+        }
+
+        #[test]
+        fn what_is_rounded_is_what_exact_arithmetic_rounds(
+            a in some_number(), b in some_number(), c in some_number(), d in some_number()
+        ) {
+            let (p, q) = (poly::<Twofold>([a, b, c, d]), poly::<Twofold>([d, a, b, b]));
+            let (exact_p, exact_q) = (poly::<Dyadic>([a, b, c, d]), poly::<Dyadic>([d, a, b, b]));
+            prop_assume!(exact_q.sign() != Some(Ordering::Equal));
+            if let Some(rounded) = p.over(&q).rounded() {
+                prop_assert_eq!(rounded, rounding::quotient(&exact_p, &exact_q));
+            }
+            if let Some(rounded) = p.square().over(&q.square()).sqrt().rounded() {
+                let exact = rounding::root(Sign::Positive, &exact_p.square(), &exact_q.square());
+                prop_assert_eq!(rounded, exact);
+            }
+            if let Some(rounded) = p.square().add(&q.square()).sqrt().rounded() {
+                let sum = exact_p.square().add(&exact_q.square());
+                prop_assert_eq!(rounded, rounding::root(Sign::Positive, &sum, &Dyadic::of(1.0)));
+            }
+        }
+    }
+
+    #[test]
+    fn most_numbers_are_decided() {
+        // Thirds, fifths ... and their roots: not one in a million needs more than this.
+        let undecided = (1..20_000_u32)
+            .filter(|&n| {
+                let third = Twofold::of(f64::from(n)).over(&Twofold::of(f64::from(3 * n + 1)));
+                third.rounded().is_none() || third.sqrt().rounded().is_none()
+            })
+            .count();
+        assert_eq!(undecided, 0);
+    }
+
+    #[test]
+    fn what_cancels_to_nothing_is_still_bounded() {
+        // a b - a b is 0 with some doubt; times another, and added to something, it is a small doubt of that.
+        let (a, b) = (Twofold::of(0.1).over(&Twofold::of(3.0)), Twofold::of(0.7).over(&Twofold::of(11.0)));
+        let nothing = a.mul(&b).sub(&b.mul(&a));
+        assert!(nothing.high == 0.0 && nothing.error > 0.0);
+        let sum = a.add(&nothing.mul(&Twofold::of(1e3)));
+        assert_eq!(sum.rounded(), a.rounded());
+        assert!(sum.rounded().is_some());
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_unknown() {
+        let tiny = Twofold::of(1e-200);
+        assert_eq!(tiny.mul(&tiny).rounded(), None);
+        assert_eq!(Twofold::of(1e200).mul(&Twofold::of(1e200)), Twofold::UNKNOWN);
+        assert_eq!(Twofold::of(1e200).mul(&Twofold::of(1e200)).rounded(), None);
+        assert_eq!(Twofold::of(1.0).over(&Twofold::of(0.0)).rounded(), None);
+        assert_eq!(Twofold::of(-1.0).sqrt().rounded(), None);
+        assert_eq!(Twofold::of(0.0).sqrt().rounded(), Some(Rounded::ZERO));
+    }
+}
