@@ -1,4 +1,4 @@
-//! Exact verdicts with all their margins per second, on one thread and on all.
+//! Exact verdicts with all their margins, and correctly rounded values, per second, on one thread and on all.
 //!
 //! The ground is the yard of half a million triangles if RAYPENCIL_EXTRA_DATA names the folder that holds
 //! `marsyard2021.glb`, under the default rig where the scene puts it; else a generated height field of as many
@@ -73,6 +73,17 @@ fn all_rays<T: Send>(
     let run = || pool.install(|| PLACES.par_iter().filter(|place| ask(black_box(place)).is_some()).count());
     assert_eq!(run(), PLACES.len());
     bencher.counter(ItemsCount::new(RAYS)).bench_local(run);
+}
+
+/// The camera's pixels among them: the verdict and all values, correctly rounded to f64 and f32.
+#[divan::bench(args = [1, 0], sample_count = 11, sample_size = 1)]
+fn certified_camera_pixels(bencher: Bencher, threads: usize) {
+    let pixels: Vec<_> = PLACES.iter().filter(|place| place.0 == SensorId::Camera).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let ask = |place: &&(SensorId, u32, u32)| REFEREE.values(place.0, place.1, place.2).is_some();
+    let run = || pool.install(|| pixels.par_iter().filter(|place| ask(black_box(place))).count());
+    assert!(run() > pixels.len() / 4, "many pixels see the ground");
+    bencher.counter(ItemsCount::new(pixels.len())).bench_local(run);
 }
 
 #[divan::bench(args = [1, 0], sample_count = 11, sample_size = 1)]

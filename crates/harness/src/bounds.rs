@@ -138,6 +138,7 @@ impl ReturnBounds {
         hit: &Bounds,
         values: Returned,
         resolution: Resolution,
+        model: FluxModel,
     ) -> Self {
         let u = resolution.unit_roundoff;
         let Returned { range, incidence, depth, off_axis, emission, distance } = values;
@@ -161,7 +162,7 @@ impl ReturnBounds {
             }
         };
         let shared = (2.0 * point / depth + of_emission / emission).abs() + FLUX * u + sum;
-        let relative = match scene.flux_model() {
+        let relative = match model {
             FluxModel::Radiometric => {
                 let filter = filter_bound(scene, beam, off_axis, of_off_axis, u);
                 shared
@@ -183,14 +184,14 @@ impl ReturnBounds {
         // What is left of a subnormal share, times all that it is multiplied by.
         let camera = &scene.camera().sensor;
         let squares = camera.aperture * camera.aperture / (depth * depth);
-        let gain = match scene.flux_model() {
+        let gain = match model {
             FluxModel::Radiometric => squares,
             FluxModel::Eq1 => {
                 let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
                 squares * area / (camera.focal_length * camera.focal_length * range)
             }
         };
-        let least_flux = f64::MIN_POSITIVE * (1.0 + beam.power) * (1.0 + gain);
+        let least_flux = least_normal(resolution) * (1.0 + beam.power) * (1.0 + gain);
         Self { depth: point, off_axis: of_off_axis, emission: of_emission, flux: relative, least_flux }
     }
 
@@ -204,6 +205,12 @@ impl ReturnBounds {
             least_flux: self.least_flux + other.least_flux,
         }
     }
+}
+
+/// Below this an arithmetic loses digits: its smallest normal number.
+pub(crate) fn least_normal(resolution: Resolution) -> f64 {
+    let is_double = resolution.unit_roundoff <= Resolution::F64.unit_roundoff;
+    if is_double { f64::MIN_POSITIVE } else { f64::from(f32::MIN_POSITIVE) }
 }
 
 /// alpha of the pencils of a column, roughly.

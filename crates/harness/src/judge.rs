@@ -1,8 +1,8 @@
 //! When the referee is asked, and with what tolerance.
 
 use raypencil_referee::{
-    Approximations, Displacement, Explained, ExplainedSight, Referee, Ruling, SightApproximations,
-    SightRuling, Tolerance,
+    Approximations, Displacement, Explained, ExplainedSight, Format, Referee, RoundedReturn, Ruling,
+    SightApproximations, SightRuling, Tolerance,
 };
 use raypencil_scene::{FaceId, Hit, Pixel, Resolution, Return, Sampling, Scene, SensorId};
 
@@ -77,9 +77,9 @@ impl<'s> Judge<'s> {
         self.referee.rule_sight(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
     }
 
-    /// The values of where a ray meets the plane of a face, to f64 rounding; `None` if they are not finite.
+    /// The values of where a ray meets the plane of a face, the nearest f64; `None` if they are not finite.
     pub(crate) fn plane_hit(&self, Place { sensor, i, j }: Place, face: FaceId) -> Option<Hit> {
-        let hit = self.referee.plane_hit(sensor, i, j, face)?;
+        let hit = self.referee.plane_hit(sensor, i, j, face)?.in_format(Format::Double);
         (hit.range.is_finite() && hit.range > 0.0 && hit.point.is_finite()).then_some(hit)
     }
 
@@ -91,9 +91,26 @@ impl<'s> Judge<'s> {
         visible: bool,
         pixel: Option<Pixel>,
     ) -> Option<Return> {
-        let SensorId::Beam(beam) = place.sensor else { return None };
-        let light = self.referee.light(beam, Sampling::Centres)?;
-        light.returned_as(place.i, place.j, face, visible, pixel)
+        let back = self.rounded_return(place, face, visible, pixel)?;
+        Some(back.in_format(Format::Double, self.scene.flux_model()))
+    }
+
+    /// What comes back of a pencil from the plane of a face, by both models, correctly rounded.
+    pub(crate) fn rounded_return(
+        &self,
+        Place { sensor, i, j }: Place,
+        face: FaceId,
+        visible: bool,
+        pixel: Option<Pixel>,
+    ) -> Option<RoundedReturn> {
+        let SensorId::Beam(beam) = sensor else { return None };
+        self.referee.light(beam, Sampling::Centres)?.returned_as(i, j, face, visible, pixel)
+    }
+
+    /// The faces that a ray may meet which is displaced by no more than a renderer may displace it.
+    pub(crate) fn faces_near(&self, place: Place, range: Option<f64>, resolution: Resolution) -> Vec<FaceId> {
+        let Tolerance { lateral, .. } = self.tolerance(place, None, range, resolution);
+        self.referee.faces_near(place.sensor, place.i, place.j, lateral).unwrap_or_default()
     }
 
     /// Explains one side's answer to a ray by the approximations it was made with; `None` if they do not.

@@ -7,31 +7,55 @@
 //! attribution  why the paper's algorithm differs where it does
 //! bounds     how far two honest renderers may differ
 //! probe      everything about one ray
+//! diff       two recordings of anything, channel by channel
+//! minimise   the plainest scene that still shows a difference
 //! output     the folder of a validation: maps, report, summary
 //! ```
 
+mod answers;
 mod attribution;
 mod bounds;
+pub mod campaign;
+pub mod cases;
+mod check;
 mod compare;
+mod diff;
 mod judge;
+mod minimise;
 mod output;
+mod pack;
 mod probe;
+mod recorded;
 mod renderers;
 mod run;
 
+pub use answers::{Answers, BeamLight, Certified};
 pub use attribution::{Attributions, Cause, SightCause};
 pub use bounds::Bounds;
+pub use check::{
+    Check, CheckError, Checked, ItemTally, Largest, SensorCheck, Truth, Wrong, check, check_json, check_pack,
+    check_screen, write_check,
+};
 pub use compare::{
-    ApproximationTallies, ApproximationTally, Class, Defect, Place, Quantity, SensorComparison, Side, Tally,
-    Worst, compare, compare_judged,
+    ApproximationTallies, ApproximationTally, Class, Defect, First, Place, Quantity, SensorComparison, Side,
+    Tally, Worst, class_at, compare, compare_judged, first_of,
+};
+pub use diff::{
+    CellDifference, ChannelDifference, ChannelRuling, DiffError, Difference, RuledCell, Rulings, Sides,
+    Thresholds, WrittenDiff, diff, diff_json, diff_screen, rule, write_diff,
 };
 pub use judge::{Judge, JudgeShare};
-pub use output::{
-    OutputError, Written, one_screen, probe_command, summary_json, write_maps, write_validation,
+pub use minimise::{
+    MINIMISE_BUDGET, Minimised, NotShown, Reproducer, first_shown, minimise, shows_class, write_reproducer,
 };
+pub use output::{
+    OutputError, Written, one_screen, probe_command, quoted, summary_json, write_maps, write_validation,
+};
+pub use pack::{PackError, blind_scene, blind_subject, write_pack};
 pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedReturn, probe};
 pub use raypencil_scanline::{Fidelity, Switches};
-pub use renderers::{Contender, RENDERER_NAMES, contender};
+pub use recorded::{Item, Recorded, RecordingError};
+pub use renderers::{Contender, RENDERER_NAMES, contender, typed_contenders};
 pub use run::{Counts, Pair, Progress, Rendered, Silent, Subject, Validation, validate};
 
 /// The README's example, compiled and run with the documentation tests.

@@ -12,20 +12,20 @@
 mod junit;
 mod light;
 mod markdown;
-mod picture;
-mod plot;
+pub(crate) mod picture;
+pub(crate) mod plot;
 mod report;
-mod scale;
+pub(crate) mod scale;
 mod screen;
 mod summary;
 mod table;
-mod text;
+pub(crate) mod text;
 mod verdict;
 
 #[cfg(test)]
-mod fixtures;
+pub(crate) mod fixtures;
 #[cfg(test)]
-mod schema;
+pub(crate) mod schema;
 #[cfg(test)]
 mod tests;
 
@@ -42,10 +42,10 @@ use crate::run::{Progress, Rendered, Subject, Validation};
 
 pub use screen::one_screen;
 pub use summary::summary_json;
-pub use text::probe_command;
+pub use text::{probe_command, quoted};
 
 /// The version that wrote a folder.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// What [`write_validation`] wrote.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,7 +77,7 @@ pub enum OutputError {
         source: io::Error,
     },
     /// The `summary.json` of an earlier run, which would mark the folder as complete.
-    #[error("{}: cannot remove the summary of an earlier run: {source}", path.display())]
+    #[error("{}: cannot remove what an earlier run left: {source}", path.display())]
     Earlier {
         /// The file.
         path: PathBuf,
@@ -112,14 +112,7 @@ pub fn write_validation(
 ) -> Result<Written, OutputError> {
     let start = Instant::now();
     check_names(&validation.rendered)?;
-    create(folder)?;
-    let summary = folder.join("summary.json");
-    match std::fs::remove_file(&summary) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => {
-            return Err(OutputError::Earlier { path: summary, source });
-        }
-        _ => {}
-    }
+    begin(folder, "summary.json")?;
 
     let mut maps = Vec::new();
     for rendered in &validation.rendered {
@@ -202,7 +195,20 @@ fn map_file(rendered: &Rendered, sensor: SensorId) -> String {
     format!("{}/{sensor}.exr", rendered.name)
 }
 
-fn create(folder: &Path) -> Result<(), OutputError> {
+/// Makes the folder of a run, and takes away the file of an earlier one that would mark the folder as complete. Its
+/// place is returned: it is to be written last.
+pub(crate) fn begin(folder: &Path, last: &str) -> Result<PathBuf, OutputError> {
+    create(folder)?;
+    let last = folder.join(last);
+    match std::fs::remove_file(&last) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(OutputError::Earlier { path: last, source })
+        }
+        _ => Ok(last),
+    }
+}
+
+pub(crate) fn create(folder: &Path) -> Result<(), OutputError> {
     std::fs::create_dir_all(folder)
         .map_err(|source| OutputError::Folder { path: folder.to_path_buf(), source })
 }

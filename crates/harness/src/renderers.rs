@@ -7,6 +7,8 @@ use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
 use raypencil_scene::Renderer;
 use raypencil_tracer::Tracer;
 
+use crate::output::quoted;
+
 /// The names [`contender`] knows.
 pub const RENDERER_NAMES: &[&str] = &["scanline", "scanline-paper", "tracer", "referee"];
 
@@ -42,6 +44,24 @@ impl Contender {
     }
 }
 
+/// The words that choose these renderers on the command line: `--with scanline,tracer --switch beam-edges=paper`.
+/// Switches are meant for every scanline renderer among them.
+pub fn typed_contenders(contenders: &[&Contender]) -> String {
+    let name = |contender: &&Contender| match contender.switches {
+        None => quoted(contender.renderer.name()),
+        Some(Switches::PAPER) => "scanline-paper".into(),
+        Some(_) => "scanline".into(),
+    };
+    let names: Vec<String> = contenders.iter().map(name).collect();
+    let mut words = format!("--with {}", names.join(","));
+    let set = contenders.iter().filter_map(|contender| contender.switches);
+    for switches in set.filter(|switches| *switches != Switches::PAPER) {
+        let on = switches.iter().filter(|(_, fidelity)| *fidelity == Fidelity::Paper);
+        on.for_each(|(name, fidelity)| words += &format!(" --switch {name}={fidelity}"));
+    }
+    words
+}
+
 impl<R: Renderer + 'static> From<R> for Contender {
     /// A renderer that has no switches.
     fn from(renderer: R) -> Self {
@@ -63,5 +83,25 @@ pub fn contender(name: &str) -> Option<Contender> {
         "tracer" => Some(Tracer::new().into()),
         "referee" => Some(ExactRenderer.into()),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contenders_are_typed_as_the_command_line_takes_them() {
+        let named = |name| contender(name).expect("a renderer of this house");
+        assert_eq!(typed_contenders(&[&named("scanline"), &named("tracer")]), "--with scanline,tracer");
+        assert_eq!(
+            typed_contenders(&[&named("tracer"), &named("scanline-paper")]),
+            "--with tracer,scanline-paper"
+        );
+        let switched = named("scanline").with_switch("facing", Fidelity::Paper).expect("a switch");
+        assert_eq!(
+            typed_contenders(&[&switched, &named("referee")]),
+            "--with scanline,referee --switch facing=paper"
+        );
     }
 }

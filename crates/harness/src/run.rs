@@ -204,7 +204,7 @@ pub fn validate(
 }
 
 impl Rendered {
-    fn side(&self) -> Side<'_> {
+    pub(crate) fn side(&self) -> Side<'_> {
         Side {
             name: &self.name,
             frame: &self.frame,

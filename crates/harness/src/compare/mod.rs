@@ -7,6 +7,7 @@
 mod pencil;
 mod pixel;
 mod ray;
+mod single;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,13 +16,14 @@ use rayon::prelude::*;
 use raypencil_referee::Ruling;
 use raypencil_scanline::Switches;
 use raypencil_scene::{FluxModel, Frame, Image, Maybe, Resolution, Scene, SensorId, SensorMap};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::attribution::Attributions;
 use crate::judge::{Judge, JudgeShare};
 use pencil::PencilLight;
 use pixel::PixelLight;
 use ray::compare_ray;
+pub use single::{First, class_at, first_of};
 
 /// What a difference is. In ascending order of badness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -35,7 +37,8 @@ pub enum Class {
     Rounding,
     /// One side follows the paper into error, for a cause that the referee confirms.
     Approximation,
-    /// The referee's budget ran out. Its arithmetic is exact and has none, so this stays 0.
+    /// The referee's budget ran out. Verdicts are exact and have none, so this stays 0 here; a flux by transcendental
+    /// functions may lie on a midpoint as far as thousands of bits tell (`check`).
     Undecided,
     /// Anything else.
     Defect,
@@ -45,7 +48,7 @@ pub enum Class {
 const CLASSES: usize = 6;
 
 /// What is compared of each ray.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Whether there is a hit.
@@ -162,7 +165,7 @@ impl fmt::Display for Quantity {
 }
 
 /// A ray, by its sensor and cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Place {
     /// Whose ray.
     pub sensor: SensorId,
@@ -327,26 +330,42 @@ pub fn compare(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Vec<SensorComparison>
 
 /// Compares two frames of the judge's scene, sensor by sensor, the camera first.
 pub fn compare_judged(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>) -> Vec<SensorComparison> {
-    let scene = judge.scene();
-    // The beams first: a pixel's flux is judged by the pencils that contribute to it.
-    let mut light = Vec::new();
-    let mut beams = Vec::new();
-    for index in 0..scene.beams().len() {
-        let (comparison, pencils) = compare_sensor(judge, SensorId::Beam(index), a, b, &[]);
-        beams.push(comparison);
-        let tells_pencils = [a, b].iter().all(|side| {
-            let returns = side.frame.returns.get(index);
-            returns.is_some_and(|returns| returns.pixel.is_some() && returns.flux.is_some())
-        });
-        if let (Some(of_a), Some(of_b)) = (a.frame.flux.get(index), b.frame.flux.get(index))
-            && tells_pencils
-        {
-            let unit_roundoff = a.resolution.unit_roundoff.max(b.resolution.unit_roundoff);
-            light.push(PixelLight::new(scene, [of_a, of_b], pencils, unit_roundoff));
-        }
-    }
+    let (beams, light) = compare_beams(judge, a, b);
     let (camera, _) = compare_sensor(judge, SensorId::Camera, a, b, &light);
     std::iter::once(camera).chain(beams).collect()
+}
+
+/// The beams, which come first: a pixel's flux is judged by the pencils that contribute to it.
+fn compare_beams<'f>(
+    judge: &Judge<'_>,
+    a: Side<'f>,
+    b: Side<'f>,
+) -> (Vec<SensorComparison>, Vec<PixelLight<'f>>) {
+    let mut light = Vec::new();
+    let mut beams = Vec::new();
+    for index in 0..judge.scene().beams().len() {
+        let (comparison, pencils) = compare_sensor(judge, SensorId::Beam(index), a, b, &[]);
+        beams.push(comparison);
+        light.extend(light_of(judge, index, [a, b], pencils));
+    }
+    (beams, light)
+}
+
+/// The light of a beam on the image, if both sides have an image of it and pencils to judge that by.
+fn light_of<'f>(
+    judge: &Judge<'_>,
+    beam: usize,
+    sides: [Side<'f>; 2],
+    pencils: Vec<PencilLight>,
+) -> Option<PixelLight<'f>> {
+    let tells_pencils = sides.iter().all(|side| {
+        let returns = side.frame.returns.get(beam);
+        returns.is_some_and(|returns| returns.pixel.is_some() && returns.flux.is_some())
+    });
+    let [of_a, of_b] = sides.map(|side| side.frame.flux.get(beam));
+    let images = [of_a?, of_b?];
+    let [a, b] = sides.map(|side| side.resolution.unit_roundoff);
+    tells_pencils.then(|| PixelLight::new(judge.scene(), images, pencils, a.max(b)))
 }
 
 fn compare_sensor(

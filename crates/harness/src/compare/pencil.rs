@@ -231,7 +231,7 @@ fn off_its_face(
     };
     let bounds = |resolution| {
         let of_hit = Bounds::of(scene.mesh(), face, &ray, hit.range, resolution);
-        ReturnBounds::of(scene, (beam, place.i), &of_hit, values, resolution)
+        ReturnBounds::of(scene, (beam, place.i), &of_hit, values, resolution, scene.flux_model())
     };
     // The referee's values are rounded to f64.
     let bounds = bounds(side.resolution).plus(&bounds(Resolution::F64));
@@ -272,7 +272,8 @@ fn return_bounds(
                 None => (back.depth? / back.off_axis?).abs(),
             },
         };
-        Some(ReturnBounds::of(judge.scene(), (beam, place.i), &bounds[k], values, sides[k].resolution))
+        let model = judge.scene().flux_model();
+        Some(ReturnBounds::of(judge.scene(), (beam, place.i), &bounds[k], values, sides[k].resolution, model))
     };
     Some(of(0)?.plus(&of(1)?))
 }

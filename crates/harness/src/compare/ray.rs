@@ -118,7 +118,7 @@ pub(super) struct Geometry {
     pub(super) bounds: Option<[Bounds; 2]>,
 }
 
-/// Compares one ray and enters it into `row`.
+/// Compares one ray and enters it into `row`. Its class, and the quantity that is worst.
 pub(super) fn compare_ray(
     judge: &Judge<'_>,
     place: Place,
@@ -126,7 +126,7 @@ pub(super) fn compare_ray(
     (map_b, b): (&SensorMap, Side<'_>),
     light: &[PixelLight<'_>],
     row: &mut Gathered,
-) {
+) -> (Class, Quantity) {
     let Place { sensor, i, j } = place;
     let answers = [Answer::of(map_a, i, j), Answer::of(map_b, i, j)];
     let mut entry =
@@ -189,6 +189,7 @@ pub(super) fn compare_ray(
         let what = format!("{}: {}; {}: {}", a.name, describe(&of_a), b.name, describe(&of_b));
         row.defects.push(Defect { place, quantity, what });
     }
+    (class, quantity)
 }
 
 /// Compares what one ray meets.

@@ -105,15 +105,36 @@ impl Picture {
         scale: Scale,
         reduction: Reduction,
     ) -> Self {
-        let (width, height) = (differences.width(), differences.height());
-        Self::draw(width, height, reduction, ColourMap::Diverging, |left, top| {
+        Self::farthest(differences, one_sided, scale, reduction, ColourMap::Diverging)
+    }
+
+    /// A map of absolute differences, as [`Picture::of_differences`].
+    pub(crate) fn of_errors(
+        errors: &Image<Maybe<f64>>,
+        one_sided: impl Fn(u32, u32) -> bool,
+        scale: Scale,
+        reduction: Reduction,
+    ) -> Self {
+        Self::farthest(errors, one_sided, scale, reduction, ColourMap::Sequential)
+    }
+
+    /// Of each block the value that is farthest from zero.
+    fn farthest(
+        values: &Image<Maybe<f64>>,
+        one_sided: impl Fn(u32, u32) -> bool,
+        scale: Scale,
+        reduction: Reduction,
+        colours: ColourMap,
+    ) -> Self {
+        let (width, height) = (values.width(), values.height());
+        Self::draw(width, height, reduction, colours, |left, top| {
             let mut worst: Option<f64> = None;
             for j in top..(top + reduction.rows).min(height) {
                 for i in left..(left + reduction.columns).min(width) {
                     if one_sided(i, j) {
                         return ONE_SIDED;
                     }
-                    if let Some(value) = differences.at(i, j).get()
+                    if let Some(value) = values.at(i, j).get()
                         && worst.is_none_or(|worst| value.abs() > worst.abs())
                     {
                         worst = Some(value);

@@ -226,18 +226,18 @@ fn marks(places: impl Iterator<Item = Place>, map: &Image<Maybe<f64>>) -> Vec<Ma
 }
 
 /// Whether a picture takes the width of the page, and how many columns' widths it is high.
-fn shape(width: u32, height: u32) -> (bool, u64) {
+pub(crate) fn shape(width: u32, height: u32) -> (bool, u64) {
     let drawn_height = u64::from(height) * u64::from(stretch(width, height));
     (u64::from(width) >= 3 * drawn_height, drawn_height)
 }
 
 /// How many times as high as columns are wide the rows are drawn.
-fn stretch(width: u32, height: u32) -> u32 {
+pub(crate) fn stretch(width: u32, height: u32) -> u32 {
     (u64::from(width) / (FLATTEST * u64::from(height))).max(1) as u32
 }
 
 /// Indices of cells, each label at the middle of its cell.
-fn cells_axis(cells: u32, most: u32) -> Vec<Tick> {
+pub(crate) fn cells_axis(cells: u32, most: u32) -> Vec<Tick> {
     Scale::linear(-0.5, f64::from(cells) - 0.5).ticks(most.min(cells))
 }
 
@@ -247,14 +247,18 @@ fn note(reduction: Reduction, stretch: u32) -> String {
     if stretch > 1 {
         notes.push(format!("Rows are drawn {stretch} times as high as columns are wide."));
     }
-    let Reduction { columns, rows } = reduction;
-    if columns > 1 || rows > 1 {
-        notes.push(format!(
-            "Reduced to fit: {columns} × {rows} cells become one, the middle one of a range map and the \
-             farthest from zero of a difference."
-        ));
-    }
+    notes.extend(reduced_to(reduction));
     notes.join(" ")
+}
+
+/// What becomes of cells for which there is no room.
+pub(crate) fn reduced_to(Reduction { columns, rows }: Reduction) -> Option<String> {
+    (columns > 1 || rows > 1).then(|| {
+        format!(
+            "Reduced to fit: {columns} × {rows} cells become one, the middle one of a map and the farthest \
+             from zero of a difference."
+        )
+    })
 }
 
 #[cfg(test)]

@@ -19,6 +19,8 @@ pub(crate) enum Spread {
     /// The square root of the size, with the sign, for differences of any size about zero: a hundredth of
     /// the largest is a tenth of the scale and can still be seen.
     SignedRoot,
+    /// The square root, for sizes of differences from 0 on.
+    Root,
 }
 
 /// A labelled place on a scale.
@@ -61,13 +63,18 @@ impl Scale {
         })
     }
 
+    /// From zero to the largest finite value, for sizes of differences.
+    pub(crate) fn from_zero(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        Self::of(values).map(|Self { high, .. }| Self { low: 0.0, high, spread: Spread::Root })
+    }
+
     /// Where a value lies: 0 at the low end, 1 at the high end, and the nearer end outside of both. On a
     /// scale of one value that is the middle.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let even = |value: f64| match self.spread {
             Spread::Linear => value,
             Spread::Reciprocal => -1.0 / value,
-            Spread::SignedRoot => value.abs().sqrt().copysign(value),
+            Spread::SignedRoot | Spread::Root => value.abs().sqrt().copysign(value),
         };
         let span = even(self.high) - even(self.low);
         if span > 0.0 { ((even(value) - even(self.low)) / span).clamp(0.0, 1.0) } else { 0.5 }
@@ -82,6 +89,14 @@ impl Scale {
         match self.spread {
             Spread::Linear => self.even_ticks(most),
             Spread::Reciprocal => self.apart(most, round_numbers(&[1, 2, 3, 5], self.low, self.high)),
+            Spread::Root => {
+                let upper = round_numbers(&[1, 2, 5], self.high * 1e-4, self.high).rev();
+                let mut ticks = self.apart(most, upper);
+                ticks.retain(|tick| tick.at >= 1.0 / f64::from(most));
+                ticks.push(Tick { label: "0".into(), at: 0.0 });
+                ticks.reverse();
+                ticks
+            }
             Spread::SignedRoot => {
                 let limit = self.high;
                 let apart = self.apart(most, round_numbers(&[1, 2, 5], limit * 1e-4, limit).rev());
@@ -218,6 +233,17 @@ mod tests {
         let labels: Vec<&str> = ticks.iter().map(|tick| tick.label.as_str()).collect();
         assert_eq!(labels, ["−5e−14", "−1e−14", "0", "1e−14", "5e−14"]);
         assert!(ticks.is_sorted_by(|a, b| a.at < b.at));
+    }
+
+    #[test]
+    fn sizes_of_differences_begin_at_zero() {
+        let scale = Scale::from_zero([1e-3, 4e-3, f64::INFINITY]).unwrap();
+        assert_eq!((scale.low, scale.high), (0.0, 4e-3));
+        // A quarter of the largest is half way.
+        assert_eq!((scale.fraction(0.0), scale.fraction(1e-3), scale.fraction(4e-3)), (0.0, 0.5, 1.0));
+        let ticks = scale.ticks(5);
+        assert_eq!(ticks[0], Tick { label: "0".into(), at: 0.0 });
+        assert!(ticks.len() >= 3 && ticks.is_sorted_by(|a, b| a.at < b.at), "{ticks:?}");
     }
 
     #[test]

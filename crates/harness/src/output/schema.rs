@@ -7,7 +7,7 @@ use super::{fixtures, summary_json};
 const SCHEMA: &str = include_str!("../../../../docs/summary.schema.json");
 
 /// What `value` has that `schema` does not allow, or lacks that it requires.
-fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
+pub(crate) fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (keyword, rule) in schema.as_object().expect("a schema is an object") {
         match keyword.as_str() {
@@ -30,6 +30,7 @@ fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<Strin
                 found.push(format!("{place}: {value} is below {rule}"));
             }
             "const" | "enum" | "minimum" => {}
+            // Of a value that may be null as well, what is said of objects goes for objects.
             "required" => {
                 let keys = rule.as_array().unwrap().iter().map(|key| key.as_str().unwrap());
                 let lacking = keys.filter(|key| value.is_object() && value.get(key).is_none());
@@ -67,6 +68,7 @@ fn is(name: &str, value: &Value) -> bool {
         "string" => value.is_string(),
         "number" => value.is_number(),
         "integer" => value.is_u64() || value.is_i64(),
+        "boolean" => value.is_boolean(),
         "null" => value.is_null(),
         unknown => panic!("teach this check what a {unknown} is"),
     }
@@ -109,25 +111,27 @@ fn the_check_sees_what_is_wrong() {
     assert_eq!(found.len(), expected.len(), "{found:?}");
 }
 
+/// Asserts that no object of a schema may have other keys than those named, and that all of them are always there:
+/// readers need not ask.
+pub(crate) fn keys_are_closed(schema: &Value) {
+    if let Some(properties) = schema.get("properties").and_then(Value::as_object) {
+        assert_eq!(schema["additionalProperties"], Value::Bool(false));
+        let mut required: Vec<&str> =
+            schema["required"].as_array().unwrap().iter().map(|key| key.as_str().unwrap()).collect();
+        required.sort_unstable();
+        let mut known: Vec<&str> = properties.keys().map(String::as_str).collect();
+        known.sort_unstable();
+        assert_eq!(required, known);
+    }
+    let parts: Vec<&Value> = match schema {
+        Value::Object(parts) => parts.values().collect(),
+        Value::Array(parts) => parts.iter().collect(),
+        _ => Vec::new(),
+    };
+    parts.into_iter().for_each(keys_are_closed);
+}
+
 #[test]
 fn the_schema_allows_no_other_keys() {
-    fn walk(schema: &Value) {
-        if let Some(properties) = schema.get("properties").and_then(Value::as_object) {
-            assert_eq!(schema["additionalProperties"], Value::Bool(false));
-            // All keys are there always: readers need not ask.
-            let mut required: Vec<&str> =
-                schema["required"].as_array().unwrap().iter().map(|key| key.as_str().unwrap()).collect();
-            required.sort_unstable();
-            let mut known: Vec<&str> = properties.keys().map(String::as_str).collect();
-            known.sort_unstable();
-            assert_eq!(required, known);
-        }
-        let parts: Vec<&Value> = match schema {
-            Value::Object(parts) => parts.values().collect(),
-            Value::Array(parts) => parts.iter().collect(),
-            _ => Vec::new(),
-        };
-        parts.into_iter().for_each(walk);
-    }
-    walk(&serde_json::from_str(SCHEMA).unwrap());
+    keys_are_closed(&serde_json::from_str(SCHEMA).unwrap());
 }

@@ -17,6 +17,16 @@ pub fn probe_command(subject: &Subject, place: Place) -> String {
     }
 }
 
+/// A word as a shell takes it for one.
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "._-/+@%:,=".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_string()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
 /// A count with its thousands apart: 1,081,344.
 pub(crate) fn count(value: u64) -> String {
     let digits = value.to_string();

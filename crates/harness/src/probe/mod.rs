@@ -2,7 +2,7 @@
 
 mod words;
 
-use raypencil_referee::{Margin, Margins, Ruling, SightMargins, SightRuling, Verdict};
+use raypencil_referee::{Format, Margin, Margins, Ruling, SightMargins, SightRuling, Verdict};
 use raypencil_scene::{Frame, Hit, Ray, Request, Return, Sampling, SensorId};
 
 use crate::attribution::{Attributions, Cause, SightCause};
@@ -130,10 +130,12 @@ pub fn probe(
         return Err(no_such_cell);
     };
     let exact = verdict.faces.first().and_then(|face| referee.hit(sensor, i, j, *face));
+    let exact = exact.map(|hit| hit.in_format(Format::Double));
     let exact_return = match sensor {
         SensorId::Camera => None,
         SensorId::Beam(index) => {
-            referee.light(index, Sampling::Centres).and_then(|light| light.returned(i, j))
+            let back = referee.light(index, Sampling::Centres).and_then(|light| light.returned(i, j));
+            back.map(|back| back.in_format(Format::Double, scene.flux_model()))
         }
     };
     let sight_margins = match sensor {
