@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use raypencil_harness::Fidelity;
-use raypencil_scene::FluxModel;
+use raypencil_harness::campaign::Shard;
+use raypencil_harness::{Fidelity, quoted};
+use raypencil_scene::{FluxModel, Resolution};
 use raypencil_scene_io::Overrides;
 
 /// A Mars rover's structured-light vision, simulated twice by two unlike algorithms and compared ray by ray.
@@ -35,6 +36,14 @@ pub(crate) enum Command {
     Render(Render),
     /// Everything about one ray, from every renderer.
     Probe(Probe),
+    /// Write a scene, its rays and every answer, correctly rounded, for other renderers to check themselves against.
+    Pack(Pack),
+    /// Judge another program's answers by a pack, ray by ray.
+    Check(Check),
+    /// Look hard: many random terrains, both renderers, every difference judged.
+    Campaign(Campaign),
+    /// Compare two recordings of anything, channel by channel: files or folders of EXR, NPY and PFM.
+    Diff(Diff),
 }
 
 /// Which scene.
@@ -110,16 +119,6 @@ pub(crate) enum FluxWord {
     Radiometric,
     /// Equation (1) of the paper as printed, in W/m.
     Eq1,
-}
-
-/// A word as a shell takes it for one.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "._-/+@%:,=".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_string()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }
 
 /// Which sides of the scanline renderer's switches.
@@ -219,6 +218,148 @@ pub(crate) struct Render {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct Pack {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+
+    /// Write the questions alone, of a hostile scene that this seed makes; `check` makes the answers from it again.
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading"])]
+    pub(crate) blind: Option<u64>,
+
+    /// Folder to write to.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub(crate) struct Campaign {
+    #[command(subcommand)]
+    pub(crate) command: Option<CampaignCommand>,
+
+    #[command(flatten)]
+    pub(crate) run: CampaignRun,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum CampaignCommand {
+    /// Put the results of all shards together, in any order.
+    Merge(CampaignMerge),
+    /// Write a scene of a terrain, to look at one of its rays again.
+    Replay(CampaignReplay),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CampaignRun {
+    /// How many terrains.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) terrains: u64,
+
+    /// Of everything that is drawn: the same seed is the same campaign.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+
+    /// Run part I of N of the campaign, from 1; the parts are put together by `campaign merge`.
+    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
+    pub(crate) shard: Shard,
+
+    /// Folder to write to; a campaign that was broken off there goes on.
+    #[arg(short, long, value_name = "DIR", default_value = "out/campaign")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CampaignMerge {
+    /// Folders with the results of shards.
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+
+    /// Folder to write summary.json to; none is written if not given.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CampaignReplay {
+    /// The campaign's seed.
+    #[arg(long, value_name = "SEED")]
+    pub(crate) seed: u64,
+
+    /// The terrain's number.
+    #[arg(long, value_name = "K")]
+    pub(crate) terrain: u64,
+
+    /// Which of its scenes.
+    #[arg(long, value_name = "PART", default_value = "own")]
+    pub(crate) part: PartWord,
+
+    /// Folder to write scene.toml and its terrain to.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+}
+
+/// What `--part` takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PartWord {
+    /// A random rig's own sensors.
+    Own,
+    /// The same, with the paper's approximations.
+    Paper,
+    /// Narrow sensors at what is hard.
+    Aimed,
+    /// A lattice whose vertices lie exactly on rays.
+    Lattice,
+}
+
+/// `I/N`, from 1.
+fn shard(text: &str) -> Result<Shard, String> {
+    let wrong = || "expected a part and how many there are, such as 2/4".to_string();
+    let (index, count) = text.split_once('/').ok_or_else(wrong)?;
+    let one = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
+    match (one(index)?, one(count)?) {
+        (index, count) if (1..=count).contains(&index) => Ok(Shard { index: index - 1, count }),
+        _ => Err(wrong()),
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// Folder of the pack, with its manifest.json.
+    #[arg(value_name = "PACK")]
+    pub(crate) pack: PathBuf,
+
+    /// Folder of the answers to judge: EXR, NPY or PFM files with the names of docs/files.md.
+    #[arg(value_name = "CANDIDATE")]
+    pub(crate) candidate: PathBuf,
+
+    /// The arithmetic that the answers were computed in, whatever they are stored as.
+    #[arg(long, value_name = "ARITHMETIC", default_value = "f64")]
+    pub(crate) arithmetic: ArithmeticWord,
+
+    /// Folder to write junit.xml and check.json to.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// What `--arithmetic` takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ArithmeticWord {
+    /// Double precision.
+    F64,
+    /// Single precision.
+    F32,
+}
+
+impl ArithmeticWord {
+    pub(crate) fn resolution(self) -> Resolution {
+        match self {
+            Self::F64 => Resolution::F64,
+            Self::F32 => Resolution::F32,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct Probe {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
@@ -241,6 +382,71 @@ pub(crate) struct Probe {
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Diff {
+    /// A file or a folder.
+    #[arg(value_name = "A")]
+    pub(crate) a: PathBuf,
+
+    /// Another one.
+    #[arg(value_name = "B")]
+    pub(crate) b: PathBuf,
+
+    /// Allow an absolute difference of X, in the channel's unit. A cell passes if any of --fail, --fail-relative
+    /// and --fail-ulp allows its difference.
+    #[arg(long, value_name = "X", default_value = "0", value_parser = threshold)]
+    pub(crate) fail: f64,
+
+    /// Allow a difference of X relative to the larger of the two numbers.
+    #[arg(long, value_name = "X", default_value = "0", value_parser = threshold)]
+    pub(crate) fail_relative: f64,
+
+    /// Allow a difference of N units in the last place of the coarser of the two files.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threshold)]
+    pub(crate) fail_ulp: f64,
+
+    /// Allow P percent of a channel's cells to differ.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = percent)]
+    pub(crate) fail_percent: f64,
+
+    /// Fail if any cell differs by more than X, whatever else is allowed.
+    #[arg(long, value_name = "X", value_parser = threshold)]
+    pub(crate) hard_fail: Option<f64>,
+
+    /// Do not fail for channels that only one side has.
+    #[arg(long)]
+    pub(crate) shared_only: bool,
+
+    /// The scene that both recorded: the referee rules on each cell that differs by more than is allowed, and only
+    /// a side that is wrong fails. A built-in ground, a scene .toml (of a pack, too), a .glb or .gltf.
+    #[arg(long, value_name = "SCENE")]
+    pub(crate) scene: Option<String>,
+
+    /// The arithmetic that both were computed in, for the referee.
+    #[arg(long, value_name = "ARITHMETIC", default_value = "f64", requires = "scene")]
+    pub(crate) arithmetic: ArithmeticWord,
+
+    /// Folder for report.html, junit.xml and summary.json; none are written if not given.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// A number that may be allowed to differ: finite and not negative.
+fn threshold(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        _ => Err("expected a number from 0 on, such as 1e-6".into()),
+    }
+}
+
+/// A share of all cells.
+fn percent(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=100.0).contains(&number) => Ok(number),
+        _ => Err("expected a share from 0 to 100 percent".into()),
+    }
 }
 
 /// `NAME=paper` or `NAME=exact`; the name is judged where the switches are known.

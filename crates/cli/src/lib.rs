@@ -3,7 +3,11 @@
 //! Exit codes are those of `diff`: 0 all agree, 1 a defect or difference, 2 trouble.
 
 mod args;
+mod campaign;
+mod check;
 mod console;
+mod diff;
+mod pack;
 mod probe;
 mod render;
 mod subject;
@@ -15,7 +19,8 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
-use raypencil_harness::{Contender, NoSuchRay, OutputError};
+use raypencil_harness::campaign::CampaignError;
+use raypencil_harness::{CheckError, Contender, DiffError, NoSuchRay, OutputError, PackError};
 use raypencil_scene_io::SceneIoError;
 use thiserror::Error;
 
@@ -48,6 +53,22 @@ enum Trouble {
     /// A ray that the scene does not have.
     #[error(transparent)]
     Ray(#[from] NoSuchRay),
+
+    /// A pack that could not be written.
+    #[error(transparent)]
+    Pack(#[from] PackError),
+
+    /// A pack or a candidate that cannot be judged.
+    #[error(transparent)]
+    Check(#[from] CheckError),
+
+    /// Two recordings that do not fit together.
+    #[error(transparent)]
+    Diff(#[from] DiffError),
+
+    /// A campaign that cannot go on.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
 
     /// Words that clap cannot judge.
     #[error("{0}")]
@@ -92,6 +113,10 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
         None => validate::validate(&args::Validate::pyramids(), arguments.json, registry),
         Some(Command::Validate(command)) => validate::validate(command, arguments.json, registry),
         Some(Command::Render(command)) => render::render(command, arguments.json, registry),
+        Some(Command::Pack(command)) => pack::pack(command, arguments.json),
+        Some(Command::Campaign(command)) => campaign::campaign(command, arguments.json),
+        Some(Command::Check(command)) => check::check(command, arguments.json),
+        Some(Command::Diff(command)) => diff::diff(command, arguments.json),
         Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),
     }
 }

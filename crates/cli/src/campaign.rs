@@ -1,0 +1,109 @@
+//! `raypencil campaign`: many random terrains, in shards; `merge` and `replay`.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use raypencil_harness::Progress;
+use raypencil_harness::campaign::{
+    Campaign, CampaignProgress, Merged, PartName, Shard, campaign_json, campaign_screen, merge, run_shard,
+    scene_of, write_campaign,
+};
+use raypencil_scene_io::write_resolved;
+
+use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun, PartWord};
+use crate::console::{Spinner, say};
+use crate::{Outcome, Trouble};
+
+pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, Trouble> {
+    match &command.command {
+        None => run(&command.run, json),
+        Some(CampaignCommand::Merge(command)) => merged(command, json),
+        Some(CampaignCommand::Replay(command)) => replay(command),
+    }
+}
+
+/// Terrains done, rays a second, and the time that is left. Hidden where standard error is no terminal.
+struct Bar {
+    bar: ProgressBar,
+    start: Instant,
+}
+
+impl Bar {
+    fn new(terrains: u64) -> Self {
+        let bar = ProgressBar::new(terrains);
+        let template = "{bar:30} {pos}/{len} terrains  {elapsed} elapsed, {eta} left  {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar, start: Instant::now() }
+    }
+}
+
+impl CampaignProgress for Bar {
+    fn done(&self, terrains: u64, _of: u64, rays: u64) {
+        self.bar.set_position(terrains);
+        let rate = rays as f64 / self.start.elapsed().as_secs_f64().max(1e-3);
+        self.bar.set_message(format!("{:.2} million rays/s", rate / 1e6));
+    }
+}
+
+fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
+    let campaign = Campaign::new(command.seed, command.terrains);
+    let bar = Bar::new(command.shard.terrains(&campaign).count() as u64);
+    let start = Instant::now();
+    let result = run_shard(&campaign, command.shard, &command.output, &bar)?;
+    bar.bar.finish_and_clear();
+    if command.shard != Shard::WHOLE {
+        // Its summary is that of a part: only all parts together are a campaign.
+        let text = match json {
+            true => format!("{:#}\n", serde_json::json!({ "result": result.display().to_string() })),
+            false => format!(
+                "{}: finished in {:.1} s; put together by `raypencil campaign merge`\n",
+                result.display(),
+                start.elapsed().as_secs_f64()
+            ),
+        };
+        say(&text);
+        return Ok(Outcome::Fine);
+    }
+    let merged = merge(std::slice::from_ref(&command.output))?;
+    write_campaign(&merged, &command.output)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let time = format!("{seconds:.1} s, {:.2} million rays/s\n", merged.compared() as f64 / seconds / 1e6);
+    tell(&merged, json, &time)
+}
+
+fn merged(command: &CampaignMerge, json: bool) -> Result<Outcome, Trouble> {
+    let merged = merge(&command.folders)?;
+    if let Some(folder) = &command.output {
+        write_campaign(&merged, folder)?;
+    }
+    tell(&merged, json, "")
+}
+
+fn tell(merged: &Merged, json: bool, time: &str) -> Result<Outcome, Trouble> {
+    say(&if json { campaign_json(merged) } else { campaign_screen(merged) + time });
+    Ok(if merged.passes() { Outcome::Fine } else { Outcome::Differs })
+}
+
+fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
+    let spinner = Spinner::new();
+    spinner.stage(&format!("terrain {}", command.terrain));
+    let part = match command.part {
+        PartWord::Own => PartName::Own,
+        PartWord::Paper => PartName::Paper,
+        PartWord::Aimed => PartName::Aimed,
+        PartWord::Lattice => PartName::Lattice,
+    };
+    // How many terrains there are does not change one of them.
+    let scene = scene_of(&Campaign::new(command.seed, command.terrain + 1), command.terrain, part);
+    let folder = &command.output;
+    std::fs::create_dir_all(folder)
+        .map_err(|source| raypencil_harness::OutputError::Folder { path: folder.clone(), source })?;
+    let file = folder.join("scene.toml");
+    write_resolved(&file, &scene, "terrain.glb")?;
+    drop(spinner);
+    say(&format!("{}\n", file.display()));
+    Ok(Outcome::Fine)
+}

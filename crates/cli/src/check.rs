@@ -1,0 +1,19 @@
+//! `raypencil check`: another program's answers judged by a pack.
+
+use raypencil_harness::{check_json, check_pack, check_screen, write_check};
+
+use crate::args::Check;
+use crate::console::{Spinner, say};
+use crate::{Outcome, Trouble};
+
+pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
+    let spinner = Spinner::new();
+    let resolution = command.arithmetic.resolution();
+    let checked = check_pack(&command.pack, &command.candidate, resolution, &spinner)?;
+    if let Some(folder) = &command.output {
+        write_check(&checked, folder)?;
+    }
+    drop(spinner);
+    say(&if json { check_json(&checked) } else { check_screen(&checked) });
+    Ok(if checked.check.passes() { Outcome::Fine } else { Outcome::Differs })
+}

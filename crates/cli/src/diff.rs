@@ -1,0 +1,68 @@
+//! `raypencil diff`: two recordings, channel by channel.
+
+use std::path::Path;
+
+use raypencil_harness::{
+    CheckError, Progress, Recorded, Sides, Thresholds, Truth, check as judge, diff as compare, diff_json,
+    diff_screen, rule, write_diff,
+};
+use raypencil_scene_io::{Channels, Limits, Overrides, load, read_channels};
+
+use crate::args::Diff;
+use crate::console::{Spinner, say};
+use crate::{Outcome, Trouble};
+
+pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
+    let spinner = Spinner::new();
+    let read = |path: &Path| -> Result<Channels, Trouble> {
+        spinner.stage(&format!("{}: reading", path.display()));
+        Ok(read_channels(path, &Limits::default())?)
+    };
+    if let Some(folder) = &command.output {
+        // A summary of the recording's own, such as that of a validation, would be taken for ours.
+        let same = |path: &Path| {
+            path.canonicalize().ok().is_some_and(|path| folder.canonicalize().ok() == Some(path))
+        };
+        if same(&command.a) || same(&command.b) {
+            let folder = folder.display();
+            return Err(Trouble::Usage(format!(
+                "--output {folder}: is one of the folders to compare; expected a folder of its own"
+            )));
+        }
+    }
+    let (a, b) = (read(&command.a)?, read(&command.b)?);
+    let thresholds = Thresholds {
+        fail: command.fail,
+        fail_relative: command.fail_relative,
+        fail_ulp: command.fail_ulp,
+        fail_percent: command.fail_percent,
+        hard_fail: command.hard_fail,
+        shared_only: command.shared_only,
+    };
+    spinner.stage("comparing");
+    let mut difference = compare(&a, &b, &thresholds)?;
+    let names = [&command.a, &command.b].map(|path| path.display().to_string());
+    let sides = Sides { names: [&names[0], &names[1]], channels: [&a, &b] };
+    if let Some(scene) = &command.scene {
+        spinner.stage(&format!("{scene}: loading"));
+        let scene = load(scene, &Overrides::default())?.scene;
+        let resolution = command.arithmetic.resolution();
+        let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, resolution));
+        let [of_a, of_b] = recorded;
+        let (of_a, of_b) = (of_a.map_err(CheckError::from)?, of_b.map_err(CheckError::from)?);
+        let truth = Truth::certified(&scene, &spinner);
+        let [of_a, of_b] = [of_a, of_b].map(|recorded| judge(&truth, &recorded, &spinner));
+        let rulings = rule(&difference, &sides, &truth, [&of_a, &of_b]);
+        difference = difference.ruled(rulings);
+    }
+    if let Some(folder) = &command.output {
+        write_diff(&difference, &sides, folder, &spinner)?;
+    }
+    drop(spinner);
+    if json {
+        say(&diff_json(&difference, &sides));
+    } else {
+        say(&diff_screen(&difference, &sides, command.output.as_deref()));
+    }
+    Ok(if difference.passes() { Outcome::Fine } else { Outcome::Differs })
+}

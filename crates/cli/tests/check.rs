@@ -1,0 +1,455 @@
+//! `pack` and `check` as their users meet them: what passes, what fails and where, and what is refused.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use raypencil_scene::Image;
+use raypencil_scene_io::{
+    ExrMap, Limits, Raster, Values, read_channels, read_exr, write_exr, write_npy, write_pfm,
+};
+use tempfile::TempDir;
+
+fn raypencil(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_raypencil"))
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the binary runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A pack of this repository.
+fn pack(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs").join(name)
+}
+
+/// A folder with `mine`: what the tracer makes of a pack's scene.
+fn folder(name: &str) -> TempDir {
+    let folder = TempDir::new().expect("a temporary folder");
+    let scene = pack(name).join("scene.toml");
+    let output =
+        raypencil(folder.path(), &["render", &scene.to_string_lossy(), "--with", "tracer", "-o", "mine"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    folder
+}
+
+fn check(folder: &Path, name: &str, more: &[&str]) -> Output {
+    let pack = pack(name);
+    let mut arguments = vec!["check".to_string(), pack.to_string_lossy().into_owned(), "mine".into()];
+    arguments.extend(more.iter().map(ToString::to_string));
+    raypencil(folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// Changes one EXR of the candidate.
+fn edit(folder: &TempDir, file: &str, change: impl FnOnce(&mut ExrMap)) {
+    let path = folder.path().join("mine").join(file);
+    let mut map = read_exr(&path, &Limits::default()).expect("what was rendered");
+    change(&mut map);
+    write_exr(&path, &map).expect("written");
+}
+
+fn reals<'a>(map: &'a mut ExrMap, channel: &str) -> &'a mut Image<f32> {
+    match map.channels.get_mut(channel) {
+        Some(Raster::F32(image)) => image,
+        _ => panic!("no reals in {channel}"),
+    }
+}
+
+#[track_caller]
+fn assert_passes(output: &Output) {
+    assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
+}
+
+#[track_caller]
+fn assert_fails(output: &Output, words: &[&str]) {
+    let screen = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{screen}{}", text(&output.stderr));
+    for word in words {
+        assert!(screen.contains(word), "`{word}` is not in:\n{screen}");
+    }
+}
+
+#[track_caller]
+fn assert_trouble(output: &Output, words: &[&str]) {
+    // Lines of a message are wrapped: compare without their breaks.
+    let message = text(&output.stderr).replace(['\n', '│', '×', '╰', '─', '▶'], " ");
+    let message: Vec<&str> = message.split_whitespace().collect();
+    let message = message.join(" ");
+    assert_eq!(output.status.code(), Some(2), "{message}{}", text(&output.stdout));
+    assert_eq!(text(&output.stdout), "");
+    for word in words {
+        assert!(message.contains(word), "`{word}` is not in:\n{message}");
+    }
+}
+
+#[test]
+fn two_ulp_of_one_range_are_found_and_named() {
+    let folder = folder("pyramids");
+    assert_passes(&check(folder.path(), "pyramids", &[]));
+    edit(&folder, "camera.exr", |map| {
+        let range = reals(map, "range.T");
+        let value = range.at(40, 50);
+        assert!(value.is_finite());
+        range.set(40, 50, value.next_up().next_up());
+    });
+    let output = check(folder.path(), "pyramids", &["--arithmetic", "f64", "-o", "out"]);
+    assert_fails(&output, &["camera pixel 40,50, range", "--pixel 40,50", "1 of 7,936 rays are wrong"]);
+    let probe = format!("raypencil probe {}", pack("pyramids").join("scene.toml").display());
+    assert_fails(&output, &[&probe]);
+
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/check.json")).unwrap()).unwrap();
+    assert_eq!(json["verdict"], "defects");
+    assert_eq!(json["classes"]["defects"], 1);
+    assert_eq!(json["sensors"][0]["first_defects"][0]["quantity"], "range");
+    let junit = fs::read_to_string(folder.path().join("out/junit.xml")).unwrap();
+    assert!(junit.contains("failures=\"1\"") && junit.contains("camera pixel 40,50"), "{junit}");
+    // The command that is named shows the ray.
+    let repro = raypencil(
+        folder.path(),
+        &["probe", &pack("pyramids").join("scene.toml").to_string_lossy(), "--pixel", "40,50"],
+    );
+    assert_passes(&repro);
+    // In single precision a rounding or two are no fault.
+    assert_passes(&check(folder.path(), "pyramids", &["--arithmetic", "f32"]));
+}
+
+#[test]
+fn every_quantity_is_held_to_the_truth() {
+    let spoil: [(&str, &str, f32); 10] = [
+        ("camera.exr", "depth.Z", 1.0 + 1e-6),
+        ("camera.exr", "P.X", 1.0 + 1e-6),
+        ("camera.exr", "N.Z", 1.0 + 1e-6),
+        ("camera.exr", "incidence.V", 1.0 + 1e-6),
+        ("camera.exr", "flux.beam1", 1.0 + 1e-6),
+        ("beam-0.exr", "range.T", 1.0 + 1e-6),
+        ("beam-0.exr", "view.Z", 1.0 + 1e-6),
+        ("beam-1.exr", "offAxis.V", 1.0 + 1e-6),
+        ("beam-1.exr", "emission.V", 1.0 + 1e-6),
+        ("beam-1.exr", "flux.V", 1.0 + 1e-6),
+    ];
+    let folder = folder("facets");
+    let clean = folder.path().join("clean");
+    fs::rename(folder.path().join("mine"), &clean).unwrap();
+    for (file, channel, factor) in spoil {
+        let mine = folder.path().join("mine");
+        let _ = fs::remove_dir_all(&mine);
+        fs::create_dir(&mine).unwrap();
+        for entry in fs::read_dir(&clean).unwrap() {
+            let entry = entry.unwrap();
+            fs::copy(entry.path(), mine.join(entry.file_name())).unwrap();
+        }
+        edit(&folder, file, |map| {
+            let image = reals(map, channel);
+            let at = image.cells().iter().position(|value| value.is_finite() && *value != 0.0).unwrap();
+            image.cells_mut()[at] *= factor;
+        });
+        let output = check(folder.path(), "facets", &[]);
+        assert_fails(&output, &["rays are wrong"]);
+    }
+    // And what is no number: a wrong face, a pixel next to the true one, a hit that is called hidden.
+    for (file, change) in [
+        ("camera.exr", (|map| shift(map, "face.I")) as Change),
+        ("beam-0.exr", |map| shift(map, "pixel.I")),
+        ("beam-0.exr", |map| {
+            let image = reals(map, "visible.V");
+            let at = image.cells().iter().position(|value| *value == 1.0).unwrap();
+            image.cells_mut()[at] = 0.0;
+        }),
+    ] {
+        let mine = folder.path().join("mine");
+        fs::copy(clean.join("camera.exr"), mine.join("camera.exr")).unwrap();
+        fs::copy(clean.join("beam-0.exr"), mine.join("beam-0.exr")).unwrap();
+        fs::copy(clean.join("beam-1.exr"), mine.join("beam-1.exr")).unwrap();
+        edit(&folder, file, change);
+        assert_fails(&check(folder.path(), "facets", &[]), &["rays are wrong"]);
+    }
+}
+
+/// What is done to a recording.
+type Change = fn(&mut ExrMap);
+
+/// Moves the first index that is one to its neighbour.
+fn shift(map: &mut ExrMap, channel: &str) {
+    let Some(Raster::U32(image)) = map.channels.get_mut(channel) else { panic!("no wholes in {channel}") };
+    let at = image.cells().iter().position(|index| *index != u32::MAX).unwrap();
+    let index = &mut image.cells_mut()[at];
+    *index = if *index > 0 { *index - 1 } else { 1 };
+}
+
+#[test]
+fn what_is_not_there_is_not_compared_and_what_is_unknown_is_named() {
+    let folder = folder("pyramids");
+    edit(&folder, "camera.exr", |map| {
+        map.channels.remove("incidence.V");
+        let range = map.channels["range.T"].clone();
+        map.insert("rangeOfMine", range);
+    });
+    fs::remove_file(folder.path().join("mine/beam-1.exr")).unwrap();
+    let output = check(folder.path(), "pyramids", &[]);
+    assert_passes(&output);
+    let screen = text(&output.stdout);
+    assert!(screen.contains("Unknown channel, not compared: camera/rangeOfMine"), "{screen}");
+    // 6,912 pixels without incidence, 512 pencils without anything.
+    let row = |name: &str| screen.lines().find(|line| line.starts_with(name)).unwrap().to_string();
+    assert!(row("incidence").contains("7,424"), "{screen}");
+    assert!(row("range").contains(" 512 "), "{screen}");
+
+    // A name that means nothing here, alone, is nothing to compare: trouble, not a pass.
+    let only = folder.path().join("mine/camera.exr");
+    let mut map = read_exr(&only, &Limits::default()).unwrap();
+    map.channels.retain(|name, _| name == "rangeOfMine");
+    write_exr(&only, &map).unwrap();
+    fs::remove_file(folder.path().join("mine/beam-0.exr")).unwrap();
+    assert_trouble(
+        &check(folder.path(), "pyramids", &[]),
+        &["no channel of this scene", "camera/rangeOfMine"],
+    );
+}
+
+#[test]
+fn conventions_that_are_broken_are_named_with_their_cell() {
+    let cases: [(Change, &[&str]); 6] = [
+        (
+            |map| reals(map, "range.T").set(40, 50, f32::NAN),
+            &["camera.exr", "`range.T` at 40,50", "NaN", "face.I"],
+        ),
+        (|map| reals(map, "P.Y").set(40, 50, f32::NAN), &["`P.Y` at 40,50", "NaN"]),
+        (|map| reals(map, "range.T").set(40, 50, f32::INFINITY), &["`range.T` at 40,50", "inf"]),
+        (|map| reals(map, "range.T").set(0, 0, 3.0), &["`range.T` at 0,0", "3", "+Inf"]),
+        (|map| reals(map, "flux.beam0").set(1, 2, f32::NAN), &["`flux.beam0` at 1,2", "NaN"]),
+        (
+            |map| {
+                map.channels.remove("N.Y");
+            },
+            &["camera/N.Y", "absent", "N.X, N.Y, N.Z"],
+        ),
+    ];
+    let folder = folder("pyramids");
+    let file = folder.path().join("mine/camera.exr");
+    let clean = fs::read(&file).unwrap();
+    for (change, words) in cases {
+        fs::write(&file, &clean).unwrap();
+        edit(&folder, "camera.exr", change);
+        assert_trouble(&check(folder.path(), "pyramids", &[]), words);
+    }
+    // Another size, a file that is cut off, no folder at all.
+    let small = Image::filled(95, 72, 1.0_f32);
+    let mut map = ExrMap::new(95, 72);
+    map.insert("range.T", Raster::F32(small));
+    write_exr(&file, &map).unwrap();
+    assert_trouble(&check(folder.path(), "pyramids", &[]), &["95 x 72", "96 x 72"]);
+    fs::write(&file, &clean[..clean.len() / 2]).unwrap();
+    assert_trouble(&check(folder.path(), "pyramids", &[]), &["camera.exr"]);
+    fs::remove_dir_all(folder.path().join("mine")).unwrap();
+    assert_trouble(&check(folder.path(), "pyramids", &[]), &["mine"]);
+}
+
+#[test]
+fn a_folder_of_several_recordings_is_refused_by_name() {
+    let folder = folder("pyramids");
+    let scene = pack("pyramids").join("scene.toml");
+    let scene = scene.to_string_lossy();
+    fs::rename(folder.path().join("mine"), folder.path().join("tracer")).unwrap();
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    fs::rename(folder.path().join("tracer"), folder.path().join("mine/tracer")).unwrap();
+    raypencil(folder.path(), &["render", &scene, "--with", "scanline", "-o", "mine/scanline"]);
+    assert_trouble(&check(folder.path(), "pyramids", &[]), &["2 recordings, scanline, tracer", "name one"]);
+}
+
+#[test]
+fn a_pack_that_was_changed_is_refused() {
+    let folder = folder("pyramids");
+    let copy = folder.path().join("pack");
+    copy_tree(&pack("pyramids"), &copy);
+    let check = || raypencil(folder.path(), &["check", "pack", "mine"]);
+    // What the manifest does not list is none of the pack's, whatever it is.
+    fs::write(copy.join("camera/rubbish.exr"), b"rubbish").unwrap();
+    fs::write(copy.join("camera/range.T.pfm"), b"rubbish").unwrap();
+    assert_passes(&check());
+    let range = copy.join("camera/range.T.npy");
+    let clean = fs::read(&range).unwrap();
+    let mut bytes = clean.clone();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&range, &bytes).unwrap();
+    assert_trouble(&check(), &["range.T.npy", "changed after it was written"]);
+    fs::remove_file(&range).unwrap();
+    assert_trouble(&check(), &["range.T.npy"]);
+    fs::write(&range, &clean).unwrap();
+
+    // With a manifest that says so itself, the referee notices: every answer of a column is the next number up.
+    let shape = read_channels(&range, &Limits::default()).unwrap();
+    let Values::Reals(image) = &shape.by_key["range.T"].values else { panic!("reals") };
+    let up = image.cells().iter().map(|x| if x.is_finite() { x.next_up() } else { *x }).collect();
+    write_npy(&range, &[&Image::from_cells(96, 72, up)]).unwrap();
+    let manifest = copy.join("manifest.json");
+    let document = fs::read_to_string(&manifest).unwrap();
+    let mut json: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let digest = raypencil_scene_io::ManifestFile::of(
+        &copy,
+        "camera/range.T.npy",
+        raypencil_scene_io::FileRole::Answers,
+    );
+    for file in json["files"].as_array_mut().unwrap() {
+        if file["path"] == "camera/range.T.npy" {
+            file["sha256"] = digest.as_ref().unwrap().sha256.clone().into();
+        }
+    }
+    fs::write(&manifest, json.to_string()).unwrap();
+    assert_trouble(&check(), &["is not the referee's", "camera pixel"]);
+    fs::remove_file(&manifest).unwrap();
+    assert_trouble(&check(), &["manifest.json"]);
+}
+
+fn copy_tree(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy_tree(&entry.path(), &target)
+        } else {
+            fs::copy(entry.path(), target).map(|_| ()).unwrap()
+        }
+    }
+}
+
+#[test]
+fn a_blind_pack_has_no_answers_and_is_judged_all_the_same() {
+    let folder = TempDir::new().unwrap();
+    assert_passes(&raypencil(folder.path(), &["pack", "--blind", "7", "-o", "blind"]));
+    let blind = folder.path().join("blind");
+    let mut names: Vec<String> = fs::read_dir(&blind)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let expected = [
+        "manifest.json",
+        "rays-beam-0.npy",
+        "rays-beam-1.npy",
+        "rays-camera.npy",
+        "scene.toml",
+        "terrain.glb",
+    ];
+    assert_eq!(names, expected);
+    for renderer in ["scanline", "tracer"] {
+        assert_passes(&raypencil(
+            folder.path(),
+            &["render", "blind/scene.toml", "--with", renderer, "-o", renderer],
+        ));
+        let output = raypencil(folder.path(), &["check", "blind", renderer]);
+        assert_passes(&output);
+        assert!(text(&output.stdout).contains("blind-7 (blind)"), "{}", text(&output.stdout));
+    }
+    // A blind pack in the place of one with answers leaves none of them behind.
+    let there = folder.path().join("there");
+    copy_tree(&pack("pyramids"), &there);
+    assert_passes(&raypencil(folder.path(), &["pack", "--blind", "7", "-o", "there"]));
+    assert!(!there.join("camera/range.T.npy").exists() && !there.join("camera.exr").exists());
+    // Another ground with the same seed on its manifest is found out.
+    assert_passes(&raypencil(folder.path(), &["pack", "--blind", "8", "-o", "other"]));
+    let manifest = fs::read_to_string(folder.path().join("other/manifest.json")).unwrap();
+    let lied = manifest.replace("\"blindSeed\": 8", "\"blindSeed\": 7");
+    assert_ne!(lied, manifest);
+    fs::write(folder.path().join("other/manifest.json"), lied).unwrap();
+    assert_trouble(&raypencil(folder.path(), &["check", "other", "tracer"]), &["seed 7"]);
+    assert_trouble(&raypencil(folder.path(), &["pack", "--blind", "8", "facets", "-o", "x"]), &["--blind"]);
+}
+
+#[test]
+fn arrays_of_any_kind_are_judged_by_what_they_store() {
+    let folder = folder("pyramids");
+    let channels = read_channels(pack("pyramids"), &Limits::default()).unwrap();
+    let mine = folder.path().join("mine");
+    fs::remove_dir_all(&mine).unwrap();
+    fs::create_dir_all(mine.join("camera")).unwrap();
+    let reals = |key: &str| match &channels.by_key[key].values {
+        Values::Reals(image) => image.clone(),
+        Values::Wholes(_) => panic!("{key} is whole"),
+    };
+    // The truth in double precision, but for one cell that is an ulp of that off: nothing explains it.
+    let range = reals("camera/range.T");
+    write_npy(mine.join("camera/range.T.npy"), &[&range]).unwrap();
+    assert_passes(&check(folder.path(), "pyramids", &[]));
+    let mut off = range.clone();
+    off.set(40, 50, range.at(40, 50) * (1.0 + 1e-13));
+    write_npy(mine.join("camera/range.T.npy"), &[&off]).unwrap();
+    assert_fails(&check(folder.path(), "pyramids", &[]), &["camera pixel 40,50, range"]);
+    fs::remove_file(mine.join("camera/range.T.npy")).unwrap();
+    // In single precision as PFM, which counts rows from below.
+    let single = |image: &Image<f64>| {
+        Image::from_cells(image.width(), image.height(), image.cells().iter().map(|x| *x as f32).collect())
+    };
+    write_pfm(mine.join("camera/range.T.pfm"), &[&single(&range)]).unwrap();
+    assert_passes(&check(folder.path(), "pyramids", &[]));
+    // The flux image alone, without a pencil: held to the sums of the true ones.
+    fs::remove_file(mine.join("camera/range.T.pfm")).unwrap();
+    let flux = reals("camera/flux.beam0");
+    write_npy(mine.join("camera/flux.beam0.npy"), &[&single(&flux)]).unwrap();
+    let output = check(folder.path(), "pyramids", &[]);
+    assert_passes(&output);
+    let mut off = single(&flux);
+    let at = off.cells().iter().position(|value| *value > 0.0).unwrap();
+    off.cells_mut()[at] *= 1.001;
+    write_npy(mine.join("camera/flux.beam0.npy"), &[&off]).unwrap();
+    assert_fails(&check(folder.path(), "pyramids", &[]), &["pixel flux"]);
+}
+
+#[test]
+fn the_pack_is_a_candidate_for_itself() {
+    let folder = TempDir::new().unwrap();
+    let pack = pack("facets");
+    let output = raypencil(folder.path(), &["check", &pack.to_string_lossy(), &pack.to_string_lossy()]);
+    assert_passes(&output);
+    let screen = text(&output.stdout);
+    // Everything, by both models, and not an ulp off.
+    assert!(!screen.contains("Not compared") && !screen.contains("Unknown"), "{screen}");
+    let range = screen.lines().find(|line| line.starts_with("range")).unwrap();
+    assert!(range.split_whitespace().any(|cell| cell == "0"), "{screen}");
+    let json =
+        raypencil(folder.path(), &["check", &pack.to_string_lossy(), &pack.to_string_lossy(), "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&text(&json.stdout)).unwrap();
+    for sensor in json["sensors"].as_array().unwrap() {
+        for quantity in sensor["quantities"].as_array().unwrap() {
+            let ulps = &quantity["worst_ulp"]["value"];
+            assert!(ulps.is_null() || *ulps == 0.0, "{quantity}");
+            assert_eq!(quantity["not_compared"], 0, "{quantity}");
+        }
+    }
+}
+
+#[test]
+fn a_difference_between_two_recordings_is_ruled_on() {
+    let folder = folder("pyramids");
+    let scene = pack("pyramids").join("scene.toml");
+    let scene = scene.to_string_lossy();
+    raypencil(folder.path(), &["render", &scene, "--with", "scanline", "-o", "theirs"]);
+    let diff = |more: &[&str]| {
+        let all: Vec<&str> = ["diff", "mine", "theirs"].into_iter().chain(more.iter().copied()).collect();
+        raypencil(folder.path(), &all)
+    };
+    // Heights about 0 differ by any number of ulps, and neither side is wrong.
+    assert_fails(&diff(&["--fail-ulp", "1"]), &["P.Z"]);
+    assert_passes(&diff(&["--fail-ulp", "1", "--scene", &scene]));
+    // A range that is off is one side's fault, and it is said whose.
+    edit(&folder, "camera.exr", |map| {
+        let range = reals(map, "range.T");
+        let value = range.at(40, 50);
+        range.set(40, 50, value * 1.001);
+    });
+    // The hard limit holds whoever is right.
+    assert_fails(&diff(&["--fail-ulp", "1e9", "--hard-fail", "0", "--scene", &scene]), &["P.Z"]);
+    let output = diff(&["--fail-ulp", "1", "--scene", &scene, "-o", "out"]);
+    assert_fails(&output, &["referee on camera/range.T: 1 A wrong, B right", "A, camera pixel 40,50"]);
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/summary.json")).unwrap()).unwrap();
+    let ruled = json["rulings"]["channels"].as_array().unwrap();
+    let range = ruled.iter().find(|channel| channel["key"] == "camera/range.T").unwrap();
+    assert_eq!(range["faults"], 1);
+}
