@@ -1,32 +1,22 @@
 //! Helpers that the whole-house tests share: meshes and scenes from numbers, rigs by pose, both renderers.
 
-pub mod lattice;
+pub mod files;
 pub mod light;
 pub mod naive;
+pub mod plants;
 pub mod quadrature;
-pub mod random;
-pub mod rig;
+pub mod reproducers;
 
 use std::sync::Arc;
 
 use glam::DVec3;
+pub use raypencil_harness::cases::{at_origin, lattice, mesh, random, rig, scene};
 use raypencil_harness::{Class, SensorComparison, Side, compare};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FaceId, FluxModel, Frame, Hit, Image, Material, Maybe, Mesh, Mounted, Pose,
-    Renderer, Request, Sample, Scene, SensorId, SensorMap,
+    FaceId, Frame, Hit, Image, Maybe, Mesh, Renderer, Request, Sample, Scene, SensorId, SensorMap,
 };
 use raypencil_tracer::Tracer;
-
-/// A mesh of one material in the scene frame, origin 0.
-///
-/// # Panics
-/// If it is no mesh.
-pub fn mesh(vertices: Vec<[f32; 3]>, faces: Vec<[u32; 3]>) -> Arc<Mesh> {
-    let materials = vec![Material { name: "ground".into(), reflectivity: 0.25 }];
-    let face_materials = vec![0; faces.len()];
-    Arc::new(Mesh::new(DVec3::ZERO, vertices, faces, face_materials, materials).expect("a mesh"))
-}
 
 /// The same ground with other faces on other vertices; materials are of no matter here.
 pub fn remeshed(original: &Mesh, vertices: Vec<[f32; 3]>, faces: Vec<[u32; 3]>) -> Arc<Mesh> {
@@ -41,20 +31,6 @@ pub fn unindexed(original: &Mesh) -> Arc<Mesh> {
     let vertices = corners.map(|&v| original.vertices()[v as usize]).collect();
     let faces = (0..original.faces().len() as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]);
     remeshed(original, vertices, faces.collect())
-}
-
-/// A scene in clear air.
-///
-/// # Panics
-/// If it is no scene.
-pub fn scene(mesh: Arc<Mesh>, camera: Mounted<Camera>, beams: Vec<Mounted<Beam>>) -> Scene {
-    let clear = Atmosphere { attenuation: 0.0 };
-    Scene::new(mesh, camera, beams, clear, FluxModel::Radiometric).expect("a scene")
-}
-
-/// A sensor at the scene's origin, its axes the scene's: z forward, x right, y down.
-pub fn at_origin<S>(sensor: S) -> Mounted<S> {
-    Mounted { scene_from_sensor: Pose::IDENTITY, sensor }
 }
 
 /// Both renderers, fresh.

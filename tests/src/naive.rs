@@ -15,7 +15,7 @@ use raypencil_scene::{
     SensorMap, Stage,
 };
 
-pub use fault::Fault;
+pub use fault::{Fault, Kind};
 
 /// The naive renderer.
 #[derive(Debug, Clone, Copy, Default)]
@@ -208,7 +208,12 @@ impl Naive {
                     ray.q = ray.q.as_vec3().as_dvec3();
                 }
                 if let Some((index, t)) = self.first_hit(&faces, eye, &ray) {
-                    row.put(i, &self.describe(&faces, eye, &ray, index, t));
+                    let mut hit = self.describe(&faces, eye, &ray, index, t);
+                    if self.has(Fault::TieOfTwoRecords) {
+                        let ties = |face: &[DVec3; 3]| self.meets(face, &ray) == Some(t);
+                        hit.face = FaceId(faces.iter().rposition(ties).unwrap_or(index) as u32);
+                    }
+                    row.put(i, &hit);
                 }
             }
         }
@@ -235,6 +240,13 @@ impl Naive {
         for (index, face) in faces.iter().enumerate() {
             let Some(t) = self.meets(face, ray) else { continue };
             if t < least || t * metres > eye.max_range {
+                continue;
+            }
+            if let Some((_, of_best)) = best
+                && self.has(Fault::TiesCancel)
+                && t == of_best
+            {
+                best = None;
                 continue;
             }
             let is_better = match best {

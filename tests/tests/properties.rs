@@ -3,16 +3,18 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
+use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
 
 use glam::DQuat;
 use proptest::prelude::*;
-use proptest::test_runner::{TestCaseError, TestCaseResult, TestRunner};
-use raypencil_harness::{Attributions, Class, Judge, JudgeShare, Side};
+use proptest::test_runner::{RngSeed, TestCaseError, TestCaseResult, TestError, TestRunner};
+use raypencil_harness::{Attributions, Class, Contender, Judge, JudgeShare, Side};
 use raypencil_scanline::{Options, Scanline, Switches};
 use raypencil_scene::{Frame, Mesh, Mounted, Renderer, Request, Scene};
 use raypencil_tests::lattice::hash;
 use raypencil_tests::random::{Case, cases, lit_cases};
+use raypencil_tests::reproducers::{commit, folder, reproduce};
 use raypencil_tests::{
     agreement, bits, first_difference, hit, light_bits, remeshed, renderers, scene, unindexed,
 };
@@ -24,13 +26,45 @@ fn check<S: Strategy<Value: Debug>>(
     strategy: S,
     property: impl Fn(S::Value) -> TestCaseResult,
 ) {
+    check_and_reproduce(usually, strategy, property, |_| {
+        "no reproducer: no defect between two renderers".into()
+    });
+}
+
+/// The same. A case that fails is printed whole, with the seed that leads to it again, the commit, and what
+/// `reproduce` makes of it.
+fn check_and_reproduce<S: Strategy<Value: Debug>>(
+    usually: u32,
+    strategy: S,
+    property: impl Fn(S::Value) -> TestCaseResult,
+    reproduce: impl Fn(&S::Value) -> String,
+) {
     let from_environment = std::env::var_os("PROPTEST_CASES").is_some();
     let default = ProptestConfig::default();
     let cases = if from_environment { default.cases } else { usually };
-    // A failing case is printed whole; no file is kept of it.
-    let config = ProptestConfig { cases, failure_persistence: None, max_shrink_iters: 400, ..default };
+    let seed = match default.rng_seed {
+        RngSeed::Fixed(seed) => seed,
+        // The keys of a hash map are random.
+        RngSeed::Random => RandomState::new().hash_one("seed"),
+    };
+    let rng_seed = RngSeed::Fixed(seed);
+    // No file is kept of a failing case.
+    let config =
+        ProptestConfig { cases, rng_seed, failure_persistence: None, max_shrink_iters: 400, ..default };
     if let Err(failure) = TestRunner::new(config).run(&strategy, property) {
-        panic!("{failure}");
+        let left = match &failure {
+            TestError::Fail(_, case) => reproduce(case),
+            TestError::Abort(_) => "no case".into(),
+        };
+        panic!("{failure}\n{left}\nPROPTEST_RNG_SEED={seed} PROPTEST_CASES={cases}, {}", commit());
+    }
+}
+
+/// What is left of a case on which both renderers do not agree.
+fn of_both(property: &'static str) -> impl Fn(&Case) -> String {
+    move |case| {
+        let [a, b] = [Contender::from(Scanline::default()), Contender::from(Tracer::new())];
+        reproduce(&folder(), property, [&a, &b], &case.scene())
     }
 }
 
@@ -64,7 +98,7 @@ fn count_hits(frame: &Frame) -> [u64; 2] {
 #[test]
 fn both_renderers_agree_on_every_ray() {
     let (rays, hits) = (Cell::new(0), Cell::new(0));
-    check(6000, cases(), |case: Case| {
+    let property = |case: Case| {
         let scene = case.scene();
         let (scanline, tracer) = (Scanline::default(), Tracer::new());
         let (a, b) = (render(&scanline, &scene), render(&tracer, &scene));
@@ -72,7 +106,8 @@ fn both_renderers_agree_on_every_ray() {
         rays.set(rays.get() + of_case);
         hits.set(hits.get() + hits_of_case);
         agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
-    });
+    };
+    check_and_reproduce(6000, cases(), property, of_both("both-renderers-agree"));
     // The rigs are no good if they look past the ground.
     assert!(5 * hits.get() >= rays.get(), "{} of {} rays hit", hits.get(), rays.get());
 }
@@ -82,14 +117,15 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
     let approximated = RefCell::new(BTreeMap::new());
     // Half of the rigs are such that the camera sees the stripes.
     let cases = prop_oneof![cases().boxed(), lit_cases().boxed()];
-    check(1500, (cases, 0..8_usize, 0..32_usize), |(case, few, any): (Case, usize, usize)| {
+    // The paper's own, one or a few switches, and any set of them.
+    let all: Vec<Switches> = Switches::subsets().collect();
+    let sets = |few: usize, any: usize| [Switches::PAPER, all[[0, 1, 2, 3, 4, 8, 16, 28][few]], all[any]];
+    let property = |(case, few, any): (Case, usize, usize)| {
         let scene = case.scene();
         let tracer = Tracer::new();
         let b = render(&tracer, &scene);
         let judge = Judge::new(&scene, JudgeShare::Sample);
-        let all: Vec<Switches> = Switches::subsets().collect();
-        // The paper's own, one or a few switches, and any set of them.
-        for switches in [Switches::PAPER, all[[0, 1, 2, 3, 4, 8, 16, 28][few]], all[any]] {
+        for switches in sets(few, any) {
             let scanline = Scanline::new(Options { switches, ..Options::EXACT });
             let a = render(&scanline, &scene);
             let attributions = Attributions::find(&judge, &a, switches, scanline.resolution());
@@ -107,7 +143,15 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
             }
         }
         Ok(())
-    });
+    };
+    let reproduced = |(case, few, any): &(Case, usize, usize)| {
+        let with_switches = |switches| {
+            let contenders = [Contender::scanline(switches), Contender::from(Tracer::new())];
+            reproduce(&folder(), "errors-have-causes", contenders.each_ref(), &case.scene())
+        };
+        sets(*few, *any).map(with_switches).join("\n")
+    };
+    check_and_reproduce(1500, (cases, 0..8_usize, 0..32_usize), property, reproduced);
     // Sheets of up to a metre and ranges from 30 cm: the paper errs often enough to be seen.
     let approximated = approximated.into_inner();
     let of = |switches: Switches| approximated.get(&switches).copied().unwrap_or(0);
@@ -120,7 +164,7 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
 #[test]
 fn both_renderers_agree_on_what_the_camera_sees() {
     let (pencils, seen) = (Cell::new(0), Cell::new(0));
-    check(3000, lit_cases(), |case: Case| {
+    let property = |case: Case| {
         let scene = case.scene();
         let (scanline, tracer) = (Scanline::default(), Tracer::new());
         let (a, b) = (render(&scanline, &scene), render(&tracer, &scene));
@@ -130,7 +174,8 @@ fn both_renderers_agree_on_what_the_camera_sees() {
             seen.set(seen.get() + visible.iter().filter(|visible| **visible).count() as u64);
         }
         agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
-    });
+    };
+    check_and_reproduce(3000, lit_cases(), property, of_both("both-renderers-see-alike"));
     assert!(20 * seen.get() > pencils.get(), "{} of {} pencils are seen", seen.get(), pencils.get());
 }
 

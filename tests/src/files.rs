@@ -1,0 +1,190 @@
+//! Faults of what is written: right maps, spoilt on the way to a file as programs spoil them.
+
+use std::path::Path;
+
+use raypencil_harness::{
+    Check, Class, Item, Place, Recorded, RecordingError, Silent, Subject, Truth, check, write_maps,
+};
+use raypencil_scene::{Image, Renderer, Request, Resolution, Sampling, Scene};
+use raypencil_scene_io::{ExrMap, Limits, Raster, SceneIoError, read_exr, scene_sha256, write_exr};
+use raypencil_tracer::Tracer;
+
+/// A way to spoil a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FileFault {
+    /// Row 0 is the lowest in every channel.
+    RowsBottomUp,
+    /// The channel of ranges holds depths.
+    DepthAsRange,
+    /// Faces count from 1.
+    FacesFromOne,
+    /// Every real number went through half precision.
+    ThroughHalf,
+    /// No hit has the range -1.
+    MinusOneForNoHit,
+    /// Points have the axes of glTF: y up.
+    PointsOfGltf,
+    /// Normals are stored as colours, from 0 to 1.
+    NormalsAsColours,
+}
+
+/// How a spoilt recording was found out.
+#[derive(Debug)]
+pub enum Caught {
+    /// It breaks the conventions of files: it is not even read.
+    Refused(RecordingError),
+    /// The first wrong ray, the quantity that is worst, and how many rays were compared until then.
+    Wrong(Place, Item, u64),
+}
+
+impl FileFault {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::RowsBottomUp,
+        Self::DepthAsRange,
+        Self::FacesFromOne,
+        Self::ThroughHalf,
+        Self::MinusOneForNoHit,
+        Self::PointsOfGltf,
+        Self::NormalsAsColours,
+    ];
+
+    /// The real mistake that it imitates.
+    pub fn imitates(self) -> &'static str {
+        match self {
+            Self::RowsBottomUp => "a PFM's rows, or OpenGL's, written as they come",
+            Self::DepthAsRange => "a z buffer exported under the name of a range",
+            Self::FacesFromOne => "faces counted from 1, as in OBJ files",
+            Self::ThroughHalf => "the default pixel type of an image writer",
+            Self::MinusOneForNoHit => "the -1 of depth cameras for no return",
+            Self::PointsOfGltf => "points exported along with a mesh, in its file's axes",
+            Self::NormalsAsColours => "a normal pass made to be looked at, n/2 + 1/2",
+        }
+    }
+
+    /// Spoils one sensor's map.
+    fn spoil(self, map: &mut ExrMap) {
+        match self {
+            Self::RowsBottomUp => {
+                for raster in map.channels.values_mut() {
+                    match raster {
+                        Raster::F32(image) => *image = turned(image),
+                        Raster::U32(image) => *image = turned(image),
+                    }
+                }
+            }
+            Self::DepthAsRange => {
+                let depth = map.channels["depth.Z"].clone();
+                map.insert("range.T", depth);
+            }
+            Self::FacesFromOne => {
+                if let Some(Raster::U32(faces)) = map.channels.get_mut("face.I") {
+                    let hit = faces.cells_mut().iter_mut().filter(|face| **face != u32::MAX);
+                    hit.for_each(|face| *face += 1);
+                }
+            }
+            Self::ThroughHalf => {
+                for raster in map.channels.values_mut() {
+                    if let Raster::F32(image) = raster {
+                        image.cells_mut().iter_mut().for_each(|x| *x = through_half(*x));
+                    }
+                }
+            }
+            Self::MinusOneForNoHit => {
+                for name in ["range.T", "depth.Z"] {
+                    let missed = reals(map, name).iter_mut().filter(|range| !range.is_finite());
+                    missed.for_each(|range| *range = -1.0);
+                }
+            }
+            Self::PointsOfGltf => {
+                // Scene (x, y, z) is (x, z, -y).
+                let (y, z) = (reals(map, "P.Y").to_vec(), reals(map, "P.Z").to_vec());
+                reals(map, "P.Y").copy_from_slice(&z);
+                reals(map, "P.Z").iter_mut().zip(y).for_each(|(z, y)| *z = -y);
+            }
+            Self::NormalsAsColours => {
+                for name in ["N.X", "N.Y", "N.Z"] {
+                    reals(map, name).iter_mut().for_each(|x| *x = 0.5 * *x + 0.5);
+                }
+            }
+        }
+    }
+}
+
+/// The cells of a channel of real numbers.
+fn reals<'m>(map: &'m mut ExrMap, name: &str) -> &'m mut [f32] {
+    match map.channels.get_mut(name) {
+        Some(Raster::F32(image)) => image.cells_mut(),
+        _ => panic!("no real numbers in {name}"),
+    }
+}
+
+/// The same rows, the last first.
+fn turned<T: Copy>(image: &Image<T>) -> Image<T> {
+    let rows = image.cells().chunks_exact(image.width() as usize).rev();
+    Image::from_cells(image.width(), image.height(), rows.flatten().copied().collect())
+}
+
+/// Rounded to 11 significant binary digits, and to multiples of 2^-24, as IEEE 754 binary16 has them: ties to even.
+fn through_half(x: f32) -> f32 {
+    if !x.is_finite() || x == 0.0 {
+        return x;
+    }
+    let unit = libm::ldexp(1.0, (libm::ilogb(f64::from(x)) - 10).max(-24));
+    ((f64::from(x) / unit).round_ties_even() * unit) as f32
+}
+
+/// The tracer's maps of a scene, spoilt if there is a fault, as files in a folder.
+///
+/// # Errors
+/// What the file system says.
+pub fn write(scene: &Scene, fault: Option<FileFault>, folder: &Path) -> Result<(), SceneIoError> {
+    let frame = Tracer::new().render(scene, &Request::EVERYTHING);
+    let subject = Subject {
+        scene: scene.clone(),
+        name: "planted".into(),
+        arguments: "planted".into(),
+        sha256: scene_sha256(scene),
+    };
+    let files =
+        write_maps(&frame, "tracer", &subject, Sampling::Centres, folder).expect("a folder to write to");
+    for file in files {
+        let mut map = read_exr(&file, &Limits::default())?;
+        if let Some(fault) = fault {
+            fault.spoil(&mut map);
+        }
+        write_exr(&file, &map)?;
+    }
+    Ok(())
+}
+
+/// What a check says of a recording with a fault, or without; `None` if it passes.
+///
+/// # Panics
+/// If there is no folder to write to.
+pub fn caught(scene: &Scene, fault: Option<FileFault>) -> Option<Caught> {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(scene, fault, folder.path()).expect("files");
+    let recorded = match Recorded::read(folder.path(), scene, Resolution::F64) {
+        Ok(recorded) => recorded,
+        Err(refusal) => return Some(Caught::Refused(refusal)),
+    };
+    let found = check(&Truth::certified(scene, &Silent), &recorded, &Silent);
+    assert_eq!(found.passes(), found.of(Class::Defect) == 0, "a check without doubts");
+    first_wrong(scene, &found)
+}
+
+/// The first wrong ray in the order of checks: the beams, then the camera.
+fn first_wrong(scene: &Scene, found: &Check) -> Option<Caught> {
+    let mut before = 0;
+    for sensor in found.sensors[1..].iter().chain(&found.sensors[..1]) {
+        let (width, height) = scene.size(sensor.sensor).expect("a sensor of this scene");
+        if let Some(wrong) = sensor.wrong.first() {
+            let Place { i, j, .. } = wrong.place;
+            let compared = before + u64::from(j) * u64::from(width) + u64::from(i) + 1;
+            return Some(Caught::Wrong(wrong.place, wrong.item, compared));
+        }
+        before += u64::from(width) * u64::from(height);
+    }
+    None
+}

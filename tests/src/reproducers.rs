@@ -1,0 +1,56 @@
+//! What a failing property leaves behind: the smallest scene that still shows it, the seed and the commit.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use raypencil_harness::{
+    Class, Contender, JudgeShare, MINIMISE_BUDGET, Reproducer, Silent, first_shown, minimise, shows_class,
+    typed_contenders, write_reproducer,
+};
+use raypencil_scene::Scene;
+use raypencil_scene_io::scene_sha256;
+
+/// Where reproducers of tests go: `reproducers` in the folder that cargo builds in.
+pub fn folder() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    target.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target")).join("reproducers")
+}
+
+/// The commit that the tests are run on, or the version of the package where there is no git.
+pub fn commit() -> String {
+    let git = Command::new("git")
+        .args(["rev-parse", "--short", "HEAD"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output();
+    match git {
+        Ok(output) if output.status.success() => {
+            format!("commit {}", String::from_utf8_lossy(&output.stdout).trim())
+        }
+        _ => format!("version {}", env!("CARGO_PKG_VERSION")),
+    }
+}
+
+/// Minimises the first defect between two renderers on a scene, writes what is left into `folder`, and says in a line
+/// where it is, or why there is nothing.
+pub fn reproduce(folder: &Path, property: &str, contenders: [&Contender; 2], scene: &Scene) -> String {
+    let shows = shows_class(contenders, Class::Defect);
+    let minimised = first_shown(contenders, scene, Class::Defect, JudgeShare::Sample)
+        .and_then(|first| minimise(scene, Some(first.place), &shows, MINIMISE_BUDGET, &Silent).ok());
+    let Some(minimised) = minimised else {
+        return "no reproducer: the two renderers show no defect on this scene".into();
+    };
+    // Of another scene or another result another name: one failure does not take the place of another.
+    let [of_scene, of_result] = [scene, &minimised.scene].map(|scene| scene_sha256(scene)[..8].to_string());
+    let name = format!("{property}-{of_scene}-{of_result}");
+    let [a, b] = contenders.map(|contender| contender.renderer.name());
+    let what = format!("The property `{property}` fails at {}: {a} and {b} differ beyond doubt.", commit());
+    let with = typed_contenders(&contenders);
+    let reproducer = Reproducer { name: &name, what: &what, with: &with };
+    match write_reproducer(folder, &minimised, reproducer) {
+        Ok([scene, ..]) => {
+            let (after, before) = (minimised.faces_after, minimised.faces_before);
+            format!("reproducer: {}, {after} of {before} faces", scene.display())
+        }
+        Err(error) => format!("no reproducer: {error}"),
+    }
+}

@@ -1,0 +1,121 @@
+//! The reference packs of `data/packs`: the same bytes wherever they are made, small enough to be cloned, and passed
+//! by both renderers.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use raypencil_harness::{
+    Checked, Class, Quantity, Silent, Subject, check_pack, contender, write_maps, write_pack,
+};
+use raypencil_scene::{Request, Resolution, Sampling};
+use raypencil_scene_io::{Overrides, load};
+
+const PACKS: [&str; 2] = ["pyramids", "facets"];
+
+fn data(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../data").join(path)
+}
+
+/// The scene that a pack of `data/packs` is made of.
+fn subject(pack: &str) -> Subject {
+    let file = data(&format!("scenes/{pack}-small.toml"));
+    let loaded = load(&file.to_string_lossy(), &Overrides::default()).expect("a scene of this repository");
+    let name = loaded.name;
+    Subject { scene: loaded.scene, arguments: name.clone(), name, sha256: loaded.source_sha256 }
+}
+
+/// Every file below a folder, by its path in it.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+        } else {
+            found.insert(name, fs::read(&path).expect("a file"));
+        }
+    }
+    found
+}
+
+#[test]
+fn packs_are_the_same_bytes_for_any_number_of_threads_and_in_any_build() {
+    for pack in PACKS {
+        let committed = files(&data(&format!("packs/{pack}")));
+        let subject = subject(pack);
+        for threads in [1, 3] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| write_pack(&subject, None, folder.path(), &Silent)).expect("a pack");
+            let made = files(folder.path());
+            assert_eq!(made.keys().collect::<Vec<_>>(), committed.keys().collect::<Vec<_>>(), "{pack}");
+            for (name, bytes) in &made {
+                assert!(*bytes == committed[name], "{pack}/{name} differs on {threads} threads");
+            }
+        }
+    }
+}
+
+#[test]
+fn packs_are_small() {
+    for pack in PACKS {
+        let bytes: usize = files(&data(&format!("packs/{pack}"))).values().map(Vec::len).sum();
+        assert!(bytes < 3_000_000, "{pack}: {bytes} bytes");
+    }
+}
+
+/// What a renderer of this house makes of a pack's own scene file, judged by the pack.
+fn judged(pack: &str, renderer: &str) -> Checked {
+    let pack = data(&format!("packs/{pack}"));
+    let scene_file = pack.join("scene.toml");
+    let loaded = load(&scene_file.to_string_lossy(), &Overrides::default()).expect("the pack's scene");
+    let subject = Subject {
+        scene: loaded.scene,
+        name: loaded.name,
+        arguments: String::new(),
+        sha256: loaded.source_sha256,
+    };
+    let contender = contender(renderer).expect("a renderer of this house");
+    let frame = contender.renderer.render(&subject.scene, &Request::EVERYTHING);
+    let folder = tempfile::tempdir().expect("a folder");
+    write_maps(&frame, renderer, &subject, Sampling::Centres, folder.path()).expect("maps");
+    check_pack(&pack, folder.path(), Resolution::F64, &Silent).expect("a candidate as it should be")
+}
+
+#[test]
+fn both_renderers_pass_and_nothing_of_theirs_is_left_out() {
+    for pack in PACKS {
+        for renderer in ["scanline", "tracer", "referee"] {
+            let Checked { check, recorded, .. } = judged(pack, renderer);
+            assert!(check.passes(), "{pack} by {renderer}: {:?}", check.sensors[0].wrong.first());
+            assert_eq!(check.compared(), 96 * 72 + 2 * 128 * 4);
+            assert_eq!(recorded.unknown, [""; 0]);
+            let totals = check.totals();
+            for quantity in Quantity::ALL {
+                let own = totals.iter().filter(|(item, _)| item.quantity == quantity && !item.is_other_model);
+                let own: Vec<_> = own.collect();
+                // The flux on the image is a quantity of each beam.
+                assert_eq!(own.len(), if quantity == Quantity::PixelFlux { 2 } else { 1 });
+                for (_, tally) in own {
+                    assert!(tally.compared() > 900, "{pack} by {renderer}: {quantity} is hardly compared");
+                    assert_eq!(tally.not_compared, 0, "{pack} by {renderer}: {quantity}");
+                    // Stored in single precision: half an ulp and what the arithmetic adds.
+                    if let Some(ulps) = &tally.ulps {
+                        assert!(ulps.value < 0.51, "{pack} by {renderer}: {quantity}, {ulps:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_candidate_with_the_papers_approximations_is_found_out() {
+    // `facets` has sheets of 20 mm and rocks that hide stripes: the paper's visibility is wrong there.
+    let Checked { check, .. } = judged("facets", "scanline-paper");
+    assert!(!check.passes());
+    assert!(check.of(Class::Defect) > 0 && check.of(Class::Defect) < check.compared() / 10);
+    assert!(check.sensors.iter().any(|sensor| !sensor.wrong.is_empty()));
+}

@@ -1,0 +1,79 @@
+//! Does a check find what is wrong with files? Right maps are spoilt on their way to a file, and each fault must be
+//! refused by the reader or found by the check, by the quantity that it is about.
+
+use std::fs;
+
+use raypencil_harness::{CheckError, Quantity, RecordingError, Silent, Subject, check_pack, write_pack};
+use raypencil_scene::{Resolution, Scene};
+use raypencil_tests::files::{Caught, FileFault, caught, write};
+use raypencil_tests::plants::geometry::{pyramids, range_cut_wall};
+
+/// A small scene with rays that miss, on which each fault shows.
+fn wall() -> Scene {
+    range_cut_wall()
+}
+
+#[test]
+fn right_files_pass() {
+    for scene in [pyramids(), wall()] {
+        assert!(caught(&scene, None).is_none());
+    }
+}
+
+#[test]
+fn every_fault_of_files_is_found_by_what_it_spoils() {
+    for fault in FileFault::ALL {
+        for (name, scene) in [("pyramids", pyramids()), ("wall", wall())] {
+            let found = caught(&scene, Some(fault));
+            let quantity = match (&found, fault) {
+                (Some(Caught::Refused(refusal)), FileFault::MinusOneForNoHit) => {
+                    // The first miss: on the wall, beyond the circle that the maximum range cuts, the first cell.
+                    let message = refusal.to_string();
+                    let says = ["`range.T` at", "-1", "+Inf"].iter().all(|word| message.contains(word));
+                    assert!(says, "{name}: {message}");
+                    assert!(matches!(refusal, RecordingError::Channel { cell: Some(_), .. }), "{name}");
+                    continue;
+                }
+                (Some(Caught::Wrong(_, item, _)), _) => item.quantity,
+                _ => panic!("{fault:?} on {name}: {found:?}"),
+            };
+            let expected: &[Quantity] = match fault {
+                FileFault::DepthAsRange => &[Quantity::Range],
+                FileFault::FacesFromOne => &[Quantity::Face],
+                FileFault::PointsOfGltf => &[Quantity::Point],
+                FileFault::NormalsAsColours => &[Quantity::Normal],
+                // The wall is symmetric but for its two faces; 2 m is a half, the range of an oblique ray is none.
+                FileFault::RowsBottomUp => &[Quantity::Range, Quantity::Face, Quantity::Point],
+                FileFault::ThroughHalf => &[Quantity::Range],
+                FileFault::MinusOneForNoHit => &[],
+            };
+            assert!(expected.contains(&quantity), "{fault:?} on {name}: {quantity}");
+        }
+    }
+}
+
+#[test]
+fn a_pack_finds_them_too() {
+    let scene = wall();
+    let folder = tempfile::tempdir().unwrap();
+    let pack = folder.path().join("pack");
+    let subject = Subject {
+        sha256: raypencil_scene_io::scene_sha256(&scene),
+        scene,
+        name: "wall".into(),
+        arguments: "wall.toml".into(),
+    };
+    write_pack(&subject, None, &pack, &Silent).unwrap();
+    for fault in std::iter::once(None).chain(FileFault::ALL.map(Some)) {
+        let candidate = folder.path().join("candidate");
+        let _ = fs::remove_dir_all(&candidate);
+        write(&subject.scene, fault, &candidate).unwrap();
+        let found = check_pack(&pack, &candidate, Resolution::F64, &Silent);
+        match (fault, found) {
+            (None, Ok(checked)) => assert!(checked.check.passes()),
+            (Some(FileFault::MinusOneForNoHit), Err(CheckError::Candidate(_))) => {}
+            (Some(fault), Ok(checked)) => assert!(!checked.check.passes(), "{fault:?}"),
+            (fault, Err(error)) => panic!("{fault:?}: {error}"),
+        }
+    }
+}
