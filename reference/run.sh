@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Runs every reference program against the committed packs, where there is a Python or a C++ compiler to run them
+# with: the exact values once more, and the two small renderers judged by `raypencil check`.
+#
+#     reference/run.sh RAYPENCIL        the binary
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+raypencil=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+packs=(pyramids facets)
+
+# expect CODE COMMAND...: the command must end with that exit code.
+expect() {
+    local wanted=$1 code=0
+    shift
+    "$@" >"$work/output" 2>&1 || code=$?
+    if [[ $code -ne $wanted ]]; then
+        cat "$work/output" >&2
+        printf 'FAILED: exit code %d, expected %d: %s\n' "$code" "$wanted" "$*" >&2
+        exit 1
+    fi
+    printf 'ok (exit code %d): %s\n' "$code" "$*"
+}
+
+python=""
+if python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+    if python3 -m venv "$work/venv" >/dev/null 2>&1 \
+        && "$work/venv/bin/python" -m pip install --quiet --disable-pip-version-check -r reference/requirements.txt; then
+        python="$work/venv/bin/python"
+    fi
+fi
+if [[ -n $python ]]; then
+    for pack in "${packs[@]}"; do
+        expect 0 "$python" reference/exact_values.py "data/packs/$pack" --exr
+        tail -n 2 "$work/output"
+        expect 0 "$python" reference/numpy_candidate.py "data/packs/$pack" "$work/f64/$pack"
+        expect 0 "$raypencil" check "data/packs/$pack" "$work/f64/$pack" --arithmetic f64
+        # In single precision it is right for single precision, and for nothing better.
+        expect 0 "$python" reference/numpy_candidate.py "data/packs/$pack" "$work/f32/$pack" --dtype float32
+        expect 0 "$raypencil" check "data/packs/$pack" "$work/f32/$pack" --arithmetic f32
+        expect 1 "$raypencil" check "data/packs/$pack" "$work/f32/$pack" --arithmetic f64
+    done
+    # Nobody has seen these answers before.
+    for seed in 3 17; do
+        expect 0 "$raypencil" pack --blind "$seed" -o "$work/blind-$seed"
+        expect 0 "$python" reference/numpy_candidate.py "$work/blind-$seed" "$work/f64/blind-$seed"
+        expect 0 "$raypencil" check "$work/blind-$seed" "$work/f64/blind-$seed"
+    done
+else
+    echo "SKIPPED the Python programs: no Python of 3.11 or later with numpy and mpmath to be had"
+fi
+
+if command -v g++ >/dev/null; then
+    expect 0 g++ -O2 -std=c++17 -ffp-contract=off -Wall -Wextra -Werror reference/cpp_candidate.cpp -o "$work/cpp"
+    for pack in "${packs[@]}"; do
+        expect 0 "$work/cpp" "data/packs/$pack" "$work/cpp-out/$pack"
+        expect 0 "$raypencil" check "data/packs/$pack" "$work/cpp-out/$pack"
+    done
+else
+    echo "SKIPPED the C++ program: no g++"
+fi
