@@ -21,10 +21,24 @@ lint:
 deny:
     cargo deny check bans licenses sources
 
-# The committed digest at -O0 and in release: same bits at any optimisation level
+# The committed digest and packs at -O0 and in release: same bits at any optimisation level
 digest:
-    cargo test --profile unoptimised -p raypencil-tests --test digest
-    cargo test --release -p raypencil-tests --test digest
+    cargo test --profile unoptimised -p raypencil-tests --test digest --test packs
+    cargo test --release -p raypencil-tests --test digest --test packs
+
+# The packs of data/packs, made again, and the programs of reference/ against them
+packs:
+    cargo run --release --bin raypencil -- pack data/scenes/pyramids-small.toml -o data/packs/pyramids
+    cargo run --release --bin raypencil -- pack data/scenes/facets-small.toml -o data/packs/facets
+    reference/run.sh target/release/raypencil
+
+# The largest errors in ulp, as docs/results.md; YARD is a mesh of your own
+results YARD:
+    cargo run --release -p raypencil-harness --example results -- pyramids facets {{ quote(YARD) }} > docs/results.md
+
+# What catches each planted fault, and the smallest scene that does: docs/planted-faults.md
+planted-faults:
+    cargo run --release -p raypencil-tests --example planted_faults > docs/planted-faults.md
 
 # All benchmarks
 bench:
