@@ -1,4 +1,5 @@
-//! What must hold for any rig on any ground, by proptest. `PROPTEST_CASES` changes the number of cases.
+//! What must hold for any rig on any ground, by proptest. `PROPTEST_CASES` changes the number of cases,
+//! `PROPTEST_RNG_SEED` the cases.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -20,25 +21,29 @@ use raypencil_tests::{
 };
 use raypencil_tracer::Tracer;
 
+/// The seed of `.cargo/config.toml`.
+const USUAL_SEED: u64 = 1990;
+
 /// Runs `property` on `usually` cases, or on as many as `PROPTEST_CASES` says.
 fn check<S: Strategy<Value: Debug>>(
     usually: u32,
     strategy: S,
     property: impl Fn(S::Value) -> TestCaseResult,
 ) {
-    check_and_reproduce(usually, strategy, property, |_| {
+    let _ = check_and_reproduce(usually, strategy, property, |_| {
         "no reproducer: no defect between two renderers".into()
     });
 }
 
 /// The same. A case that fails is printed whole, with the seed that leads to it again, the commit, and what
-/// `reproduce` makes of it.
+/// `reproduce` makes of it. Returns whether these were the usual cases: only of those is it known how often something
+/// rare comes up.
 fn check_and_reproduce<S: Strategy<Value: Debug>>(
     usually: u32,
     strategy: S,
     property: impl Fn(S::Value) -> TestCaseResult,
     reproduce: impl Fn(&S::Value) -> String,
-) {
+) -> bool {
     let from_environment = std::env::var_os("PROPTEST_CASES").is_some();
     let default = ProptestConfig::default();
     let cases = if from_environment { default.cases } else { usually };
@@ -58,6 +63,7 @@ fn check_and_reproduce<S: Strategy<Value: Debug>>(
         };
         panic!("{failure}\n{left}\nPROPTEST_RNG_SEED={seed} PROPTEST_CASES={cases}, {}", commit());
     }
+    seed == USUAL_SEED && !from_environment
 }
 
 /// What is left of a case on which both renderers do not agree.
@@ -107,9 +113,9 @@ fn both_renderers_agree_on_every_ray() {
         hits.set(hits.get() + hits_of_case);
         agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
     };
-    check_and_reproduce(6000, cases(), property, of_both("both-renderers-agree"));
+    let usual = check_and_reproduce(6000, cases(), property, of_both("both-renderers-agree"));
     // The rigs are no good if they look past the ground.
-    assert!(5 * hits.get() >= rays.get(), "{} of {} rays hit", hits.get(), rays.get());
+    assert!(!usual || 5 * hits.get() >= rays.get(), "{} of {} rays hit", hits.get(), rays.get());
 }
 
 #[test]
@@ -151,13 +157,13 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
         };
         sets(*few, *any).map(with_switches).join("\n")
     };
-    check_and_reproduce(1500, (cases, 0..8_usize, 0..32_usize), property, reproduced);
+    let usual = check_and_reproduce(1500, (cases, 0..8_usize, 0..32_usize), property, reproduced);
     // Sheets of up to a metre and ranges from 30 cm: the paper errs often enough to be seen.
     let approximated = approximated.into_inner();
     let of = |switches: Switches| approximated.get(&switches).copied().unwrap_or(0);
     let sets: Vec<Switches> = Switches::subsets().collect();
     for (set, least) in [(1, 5000), (2, 5000), (3, 50), (4, 100), (8, 10), (16, 500)] {
-        assert!(of(sets[set]) > least, "{}: {approximated:?}", sets[set]);
+        assert!(!usual || of(sets[set]) > least, "{}: {approximated:?}", sets[set]);
     }
 }
 
@@ -175,8 +181,13 @@ fn both_renderers_agree_on_what_the_camera_sees() {
         }
         agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
     };
-    check_and_reproduce(3000, lit_cases(), property, of_both("both-renderers-see-alike"));
-    assert!(20 * seen.get() > pencils.get(), "{} of {} pencils are seen", seen.get(), pencils.get());
+    let usual = check_and_reproduce(3000, lit_cases(), property, of_both("both-renderers-see-alike"));
+    assert!(
+        !usual || 20 * seen.get() > pencils.get(),
+        "{} of {} pencils are seen",
+        seen.get(),
+        pencils.get()
+    );
 }
 
 #[test]

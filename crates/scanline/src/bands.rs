@@ -6,10 +6,9 @@ use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 
 use crate::clip::{Edge, NewLines, Piece, clip_at_plane};
 use crate::printed::Screen;
-use crate::raster::{Plane, Raster, Transformation, scene_plane};
+use crate::raster::{Nearest, Plane, Raster, Transformation, scene_plane};
 use crate::scan::{Line, SplitTriangle};
 use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT};
-use crate::stripe::LARGEST_INVERSE_T;
 use crate::vertices::{self, Vertex, widen};
 use crate::{Fidelity, Options, sides};
 
@@ -180,7 +179,7 @@ impl<T: Transformation> Faces<'_, T> {
                 ],
             };
             // All of the face is at or beyond the SPP.
-            self.scan_piece::<_, BY_RULES_3>(&piece, &plane, f64::MAX, id, rows, raster);
+            self.scan_piece::<_, BY_RULES_3>(&piece, &plane, Nearest::ANY, id, rows, raster);
         } else {
             self.scan_beyond_spp::<BY_RULES_3>(id, &plane, rows, raster);
         }
@@ -217,8 +216,7 @@ impl<T: Transformation> Faces<'_, T> {
         };
         let spp = transformation.plane_distance();
         clip_at_plane(spp, points, corners, &self.edges(id), new_lines, |piece| {
-            // t >= 1: what the cut leaves must not be scanned in front of the SPP by rounding.
-            self.scan_piece::<_, BY_RULES_3>(piece, plane, 1.0, id, rows, raster);
+            self.scan_piece::<_, BY_RULES_3>(piece, plane, Nearest::HELD_AT_SPP, id, rows, raster);
         });
     }
 
@@ -234,7 +232,7 @@ impl<T: Transformation> Faces<'_, T> {
         let points = self.mesh.faces()[id.0 as usize].map(|v| self.vertices[v as usize].position);
         if let Some(stripe) = self.transformation.stripe() {
             stripe.clip(points, &self.edges(id), |piece| {
-                self.scan_piece::<_, BY_RULES_3>(piece, plane, LARGEST_INVERSE_T, id, rows, raster);
+                self.scan_piece::<_, BY_RULES_3>(piece, plane, Nearest::BEYOND_SPP, id, rows, raster);
             });
         }
     }
@@ -245,7 +243,7 @@ impl<T: Transformation> Faces<'_, T> {
         &self,
         piece: &Piece<L>,
         plane: &Plane,
-        largest: f64,
+        nearest: Nearest,
         id: FaceId,
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
@@ -258,7 +256,7 @@ impl<T: Transformation> Faces<'_, T> {
             }
         }
         let triangle = SplitTriangle::new(piece.corners, piece.lines);
-        self.scan_triangle(&triangle, plane, largest, id, rows, raster);
+        self.scan_triangle(&triangle, plane, nearest, id, rows, raster);
     }
 
     /// Step 4b: the rows of one projected triangle.
@@ -267,7 +265,7 @@ impl<T: Transformation> Faces<'_, T> {
         &self,
         triangle: &SplitTriangle<L>,
         plane: &Plane,
-        largest: f64,
+        nearest: Nearest,
         id: FaceId,
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
@@ -284,7 +282,7 @@ impl<T: Transformation> Faces<'_, T> {
                 continue;
             }
             if let Some(inverse_t) = self.transformation.inverse_t(plane, y) {
-                raster.scan_row(j, columns, x.centres(), inverse_t, largest, id);
+                raster.scan_row(j, columns, x.centres(), inverse_t, nearest, id);
             }
         }
     }

@@ -92,6 +92,26 @@ pub(crate) struct Affine {
     pub(crate) start: f64,
 }
 
+/// How near a piece may come: 1/t is kept at most `kept`, and does not count at all beyond `accepted`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearest {
+    pub(crate) accepted: f64,
+    pub(crate) kept: f64,
+}
+
+impl Nearest {
+    /// For a piece whose corners are all at or beyond the SPP: it is nowhere nearer than they are.
+    pub(crate) const ANY: Self = Self { accepted: f64::MAX, kept: f64::MAX };
+    /// For what a cut along the SPP leaves, whose new side is the line 1/t = 1: a cell on that side is met at
+    /// t = 1, whichever way its 1/t was rounded. It must neither come out in front of the SPP nor be lost.
+    pub(crate) const HELD_AT_SPP: Self = Self { accepted: f64::MAX, kept: 1.0 };
+    /// For straight sides, which reach beyond a face: its plane may lie in front of the SPP there. What does is
+    /// not seen.
+    ///
+    /// CHOICE: the paper does not say; a hit on no face at no distance would serve nobody.
+    pub(crate) const BEYOND_SPP: Self = Self { accepted: 1.0, kept: 1.0 };
+}
+
 /// Some rows of a sensor's raster while its faces are scanned.
 pub(crate) struct Raster {
     first_row: u32,
@@ -113,7 +133,7 @@ impl Raster {
     }
 
     /// Scans the cells `columns` of row `j`: the nearer face stays. Faces come in ascending order, so of
-    /// equally near ones the lowest stays. Nothing beyond 1/t = `largest` counts.
+    /// equally near ones the lowest stays.
     #[inline]
     pub(crate) fn scan_row(
         &mut self,
@@ -121,7 +141,7 @@ impl Raster {
         columns: std::ops::Range<u32>,
         centres: &[f64],
         inverse_t: Affine,
-        largest: f64,
+        nearest: Nearest,
         id: FaceId,
     ) {
         let row = (j - self.first_row) as usize * self.width;
@@ -130,8 +150,9 @@ impl Raster {
         let faces = &mut self.face[row..row + self.width][range.clone()];
         for ((kept, face), x) in kept.iter_mut().zip(faces).zip(&centres[range]) {
             let candidate = inverse_t.slope * x + inverse_t.start;
-            if candidate > *kept && candidate <= largest {
-                *kept = candidate;
+            let held = candidate.min(nearest.kept);
+            if held > *kept && candidate <= nearest.accepted {
+                *kept = held;
                 *face = id;
             }
         }

@@ -16,12 +16,6 @@ use glam::DVec3;
 use crate::clip::{Edge, Piece};
 use crate::scan::{Corner, Line};
 
-/// What lies in front of the SPP is not seen. A line that leaves the curve may take a face's plane there
-/// even if the whole face is beyond, so nothing nearer than t = 1 counts.
-///
-/// CHOICE: the paper does not say; a hit on no face at no distance would serve nobody.
-pub(crate) const LARGEST_INVERSE_T: f64 = 1.0;
-
 /// The room between a beam's grid and infinity: z >= g, |y| <= T/2, |x| <= z w/g.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stripe {
