@@ -1,0 +1,229 @@
+//! Everything the referee says of some rays, down to the last bit: digests, committed here. (Contract: same bits)
+//!
+//! A digest changes with any change of a ground, a rig, or the way a margin or a ruling is found; verdicts and values
+//! are exact, so theirs change with scenes alone. When one does, say in the change why.
+
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3};
+use raypencil_referee::{Approximations, Displacement, Referee, SightApproximations, Tolerance};
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, FaceId, Filter, FluxModel, Lens, Mounted, Pose, Profile, Sampling, Scene,
+    SensorId,
+};
+use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
+use sha2::{Digest, Sha256};
+
+/// What is said, and SHA-256 of all that is said of it.
+const DIGESTS: &[[&str; 2]] = &[
+    ["explained", "82acde6d542fdecaad32680ff237e354139e94c866aa4fc9a040e082cd2bf868"],
+    ["explained sights", "1069791694b8b2205057d6f974a6c1eb6e18d10ced543eaa9fb09beaef443887"],
+    ["face margins", "b31aa923f1169b500d862f9bac83f5478b738159c16b53f062ab1b13cdd1000f"],
+    ["light", "1d95c104903cbbe9c5f77e7db2b4a08d270662c3d8009f3cf056d04e12f9c9d8"],
+    ["light on pixels", "d88162a776582d596c31d5bc87ad37c16ee4f9b110c822942b198cee20f68069"],
+    ["rays", "1eacad71f16e54a8f1ed9273a36735ce4a59e3afe420047ae41e479d93242f51"],
+    ["rulings", "3281b9bb0d732431da827f98d8d3114d88fbf7b9de8c128e0c901fc1ab81f96f"],
+    ["sight margins", "a4ede55252cff7fd2ceec06d4db818987cdb34ab13047b0141caebf08006aab5"],
+    ["sight rulings", "cf9b85602fb04c01a646e9a7a19ffb9b73203f2479c04a9b2fe22724bbb540c7"],
+    ["sights", "564e6b2bed35c8f0a5f1ae883c9f3baf0cbd24eccc4ee7e3797ac0ff5b16261a"],
+    ["surface margins", "bcebae7af1a4ec48e02b38d40300a15392984249709da94ad24924e0cdd55f35"],
+    ["values", "4624ad4bbbc45d1f1446c4ce4b7ec38c9e3603552cdc89d98c2f689e0e205231"],
+    ["verdicts", "d43823beccd0fce7e574a6be68567cc1f0eac38edf5e1a2167e970450679ff5c"],
+];
+
+/// Numbers that depend on the seed alone (splitmix64).
+struct Draws(u64);
+
+impl Draws {
+    /// From -1 to 1.
+    fn part(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn below(&mut self, count: u32) -> u32 {
+        ((self.part() + 1.0) * 0.5 * f64::from(count)) as u32
+    }
+}
+
+/// Scene number `number`: built-in and hostile grounds, at the origin and far from it; sheets of 5 mm to half a
+/// metre; every profile, filter and model; cells so coarse that several faces lie in one.
+fn scene(number: u64) -> Scene {
+    let mut draws = Draws(number);
+    let offset = DVec3::splat([0.0, 1e3, 1e6][number as usize / 2 % 3]);
+    let ground = if number.is_multiple_of(2) {
+        builtin(BUILTIN_NAMES[number as usize / 2 % BUILTIN_NAMES.len()], 0.25).expect("a built-in name")
+    } else {
+        RandomGround { offset, ..RandomGround::nasty(number, [150, 700][number as usize / 4 % 2]) }.build()
+    };
+    let mesh = Arc::new(ground.into_mesh().expect("a valid ground"));
+    let origin = mesh.origin();
+    let turned = Pose::from_axis_angle(DVec3::Z, 3.2 * draws.part())
+        * Pose::from_axis_angle(DVec3::Y, 0.45 + 0.25 * draws.part());
+    let position = DVec3::new(3.0 * draws.part(), 3.0 * draws.part(), 2.0 + 0.8 * draws.part());
+    let apart = turned.rotation * DVec3::new(0.2 * draws.part(), 0.3 + draws.part(), 0.7 * draws.part());
+    let rotation = (turned * Pose::VEHICLE_FROM_FORWARD_SENSOR).rotation;
+    let wobble = DQuat::from_xyzw(
+        0.1 * draws.part(),
+        0.1 * draws.part(),
+        0.1 * draws.part(),
+        1.0 + 0.5 * draws.part(),
+    );
+    let filter = match number % 3 {
+        0 => Filter::None,
+        _ => Filter::Interference { centre: 815e-9, width: 15e-9, index: 2.0 },
+    };
+    let camera = Camera {
+        width: 40,
+        height: 30,
+        pixel_pitch: [3.1e-4, 2.9e-4],
+        focal_length: 8e-3,
+        principal_point: [20.3, 14.8],
+        aperture: 2e-3,
+        lens: Lens { transmission: 0.8, filter },
+        max_range: [20.0, 6.0][number as usize % 2],
+    };
+    let beam = Beam {
+        columns: 48,
+        rows: 4,
+        thickness: [0.005, 0.02, 0.5][number as usize / 3 % 3],
+        grid_distance: 0.1,
+        half_width: [0.06, 0.3][number as usize / 5 % 2],
+        max_range: [20.0, 5.0][number as usize / 7 % 2],
+        power: 1.0,
+        wavelength: 810e-9,
+        profile: [Profile::Paper, Profile::UniformAngle, Profile::Gaussian { half_width: 0.2 }]
+            [number as usize / 2 % 3],
+    };
+    let model = [FluxModel::Radiometric, FluxModel::Eq1][number as usize / 4 % 2];
+    let at = |position: DVec3, rotation: DQuat| Pose { position: origin + position, rotation };
+    Scene::new(
+        mesh,
+        Mounted { scene_from_sensor: at(position + apart, wobble * rotation), sensor: camera },
+        vec![Mounted { scene_from_sensor: at(position, rotation), sensor: beam }],
+        Atmosphere { attenuation: [0.0, 0.02][number as usize % 2] },
+        model,
+    )
+    .expect("a valid scene")
+}
+
+/// What was said, by subject.
+#[derive(Default)]
+struct Said(BTreeMap<&'static str, (Sha256, u32)>);
+
+impl Said {
+    /// Debug text tells two f64 apart whenever their bits differ, but for the payload of a NaN.
+    fn say(&mut self, subject: &'static str, what: &impl Debug) {
+        let (sha256, count) = self.0.entry(subject).or_default();
+        let text = format!("{what:?}\n");
+        sha256.update(text.as_bytes());
+        // Not 'None': something was said.
+        *count += u32::from(text != "None\n");
+    }
+}
+
+const TOLERANCES: [Tolerance; 3] = [
+    Tolerance { lateral: 1.0, depth: 1e-12, position: 1e-9 },
+    Tolerance { lateral: 0.3, depth: 0.05, position: 1e-3 },
+    Tolerance { lateral: 1e-9, depth: 1e-12, position: 0.0 },
+];
+
+fn say_of_ray(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut Draws, id: SensorId) {
+    let (width, height) = scene.size(id).expect("a sensor");
+    let (i, j) = (draws.below(width), draws.below(height));
+    let margins = referee.margins(id, i, j).expect("a cell");
+    said.say("verdicts", &margins.verdict);
+    said.say("face margins", &margins.face);
+    said.say("surface margins", &margins.surface);
+    said.say("values", &referee.values(id, i, j));
+    said.say("rays", &referee.ray(id, i, j));
+
+    let mut answers = vec![None, Some(FaceId(draws.below(scene.mesh().faces().len() as u32)))];
+    for reach in [0.2, 1.0, 1.0, 3.0] {
+        let by = Displacement { dx: reach * draws.part(), dy: reach * draws.part() };
+        let beside = referee.verdict_beside(id, i, j, by).expect("a cell");
+        said.say("verdicts", &beside);
+        answers.push(beside.faces.first().copied());
+    }
+    for answer in answers {
+        for tolerance in TOLERANCES {
+            said.say("rulings", &referee.rule(id, i, j, answer, tolerance));
+            for (beam_edges, skip_rules) in [(true, false), (false, true), (true, true)] {
+                let with = Approximations { beam_edges, skip_rules };
+                said.say("explained", &referee.explain(id, i, j, answer, with, tolerance));
+            }
+        }
+    }
+}
+
+fn say_of_pencil(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut Draws) {
+    let Beam { columns, rows, .. } = scene.beams()[0].sensor;
+    let (i, j) = (draws.below(columns), draws.below(rows));
+    let margins = referee.sight_margins(0, i, j);
+    said.say("sight margins", &margins);
+    let Some(face) =
+        referee.verdict(SensorId::Beam(0), i, j).and_then(|verdict| verdict.faces.first().copied())
+    else {
+        return;
+    };
+    for reach in [0.0, 0.5, 2.0] {
+        let by = Displacement { dx: reach * draws.part(), dy: reach * draws.part() };
+        let sight = referee.sight(0, i, j, by);
+        said.say("sights", &sight);
+        let pixel = sight.and_then(|sight| sight.pixel);
+        for (visible, tolerance) in [true, false].into_iter().flat_map(|v| TOLERANCES.map(|t| (v, t))) {
+            let at = Displacement::ZERO;
+            said.say("sight rulings", &referee.rule_sight(0, i, j, at, face, visible, pixel, tolerance));
+            for (facing, extent, place) in [
+                (true, None, false),
+                (false, Some(4.0), false),
+                (false, None, true),
+                (true, Some(3.0), true),
+                (false, Some(2.0), true),
+            ] {
+                let with = SightApproximations { facing, extent, place };
+                let explained = referee.explain_sight(0, i, j, face, visible, with, tolerance);
+                said.say("explained sights", &explained);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_said_of_rays_has_the_committed_bits() {
+    let mut said = Said::default();
+    for number in 0..24 {
+        let scene = scene(number);
+        let referee = Referee::new(&scene);
+        let mut draws = Draws(number ^ 0xabcd);
+        for id in [SensorId::Camera, SensorId::Beam(0)] {
+            for _ in 0..14 {
+                say_of_ray(&mut said, &scene, &referee, &mut draws, id);
+            }
+        }
+        for _ in 0..14 {
+            say_of_pencil(&mut said, &scene, &referee, &mut draws);
+        }
+        for sampling in [Sampling::Centres, Sampling::Jittered { seed: 3 }] {
+            let light = referee.certified_light(0, sampling).expect("a beam");
+            said.say("light", &light.returns);
+            said.say("light on pixels", &light.sums);
+        }
+    }
+    let found: Vec<[String; 2]> = said
+        .0
+        .into_iter()
+        .map(|(subject, (sha256, count))| {
+            assert!(count > 40, "{subject}: said only {count} times");
+            let digest = sha256.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+            println!("    [\"{subject}\", \"{digest}\"],");
+            [subject.to_string(), digest]
+        })
+        .collect();
+    assert!(found == DIGESTS, "the digests are now {found:#?}");
+}

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Mutants of a kernel crate, drawn at random, against its fast tests: tests/mutants.sh CRATE OUT [COUNT [SHARD]]
+#   CRATE  scanline, tracer or referee
+#   OUT    a folder for what cargo-mutants writes (mutants.out)
+#   COUNT  how many mutants to draw, 400 unless told; the same ones every time
+#   SHARD  K/N: part K, from 0, of N parts
+# The sources are mutated in place: run it in a clone of its own, one clone per part.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+crate=$1 out=$2 count=${3:-400} shard=${4:-0/1}
+declare -A tests=(
+    [scanline]="--package raypencil-tests --lib --test light --test paper --test digest --test closed_form"
+    [tracer]="--package raypencil-tests --lib --test flux --test visibility --test digest --test closed_form"
+    [referee]="--lib --test digest --test verdicts --test light --test margins --test sight_margins"
+)
+
+# The same draw every time: shuf reads its randomness from a fixed stream.
+draw() { shuf -n "$count" --random-source=<(yes "$crate"); }
+
+mkdir -p "$out"
+{
+    echo 'examine_re = ['
+    cargo mutants --list --no-shuffle --package "raypencil-$crate" --colors never | sort | draw |
+        sed -e 's/[][\.*^$+?(){}|]/\\&/g' -e "s/.*/'''^&\$''',/"
+    echo ']'
+    cat .cargo/mutants.toml
+} >"$out/mutants.toml"
+
+packages=("raypencil-$crate")
+read -ra set <<<"${tests[$crate]}"
+if [[ "${set[0]}" == --package ]]; then
+    packages+=("${set[1]}")
+    set=("${set[@]:2}")
+fi
+arguments=()
+for argument in "${set[@]}"; do arguments+=("--cargo-test-arg=$argument"); done
+test_packages=$(IFS=, && echo "${packages[*]}")
+exec cargo mutants --config "$out/mutants.toml" --in-place --package "raypencil-$crate" \
+    --test-package "$test_packages" --test-tool nextest --shard "$shard" --output "$out" "${arguments[@]}"
