@@ -34,8 +34,8 @@ if [[ "${set[0]}" == --package ]]; then
     packages+=("${set[1]}")
     set=("${set[@]:2}")
 fi
-arguments=()
-for argument in "${set[@]}"; do arguments+=("--cargo-test-arg=$argument"); done
-test_packages=$(IFS=, && echo "${packages[*]}")
-exec cargo mutants --config "$out/mutants.toml" --in-place --package "raypencil-$crate" \
-    --test-package "$test_packages" --test-tool nextest --shard "$shard" --output "$out" "${arguments[@]}"
+# Without a mutant they must pass. (cargo-mutants would try that in the first package alone.)
+cargo nextest run --cargo-profile mutants "${packages[@]/#/--package=}" "${set[@]}"
+exec cargo mutants --config "$out/mutants.toml" --in-place --package "raypencil-$crate" --baseline skip \
+    --test-package "$(IFS=, && echo "${packages[*]}")" --shard "$shard" --output "$out" \
+    "${set[@]/#/--cargo-test-arg=}"
