@@ -37,5 +37,5 @@ fi
 # Without a mutant they must pass. (cargo-mutants would try that in the first package alone.)
 cargo nextest run --cargo-profile mutants "${packages[@]/#/--package=}" "${set[@]}"
 exec cargo mutants --config "$out/mutants.toml" --in-place --package "raypencil-$crate" --baseline skip \
-    --test-package "$(IFS=, && echo "${packages[*]}")" --shard "$shard" --output "$out" \
+    --timeout 60 --build-timeout 300 --test-package "$(IFS=, && echo "${packages[*]}")" --shard "$shard" --output "$out" \
     "${set[@]/#/--cargo-test-arg=}"
