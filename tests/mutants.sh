@@ -38,4 +38,4 @@ fi
 cargo nextest run --cargo-profile mutants "${packages[@]/#/--package=}" "${set[@]}"
 exec cargo mutants --config "$out/mutants.toml" --in-place --package "raypencil-$crate" --baseline skip \
     --timeout 60 --build-timeout 300 --test-package "$(IFS=, && echo "${packages[*]}")" --shard "$shard" --output "$out" \
-    "${set[@]/#/--cargo-test-arg=}"
+    "${set[@]/#/--cargo-arg=}"
