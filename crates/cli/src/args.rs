@@ -42,6 +42,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Look hard: many random terrains, both renderers, every difference judged.
     Campaign(Campaign),
+    /// Find the smallest scene on which two renderers still differ so. Exit code 1: they do not.
+    Minimise(Minimise),
     /// Compare two recordings of anything, channel by channel: files or folders of EXR, NPY and PFM.
     Diff(Diff),
 }
@@ -320,6 +322,42 @@ fn shard(text: &str) -> Result<Shard, String> {
         (index, count) if (1..=count).contains(&index) => Ok(Shard { index: index - 1, count }),
         _ => Err(wrong()),
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Minimise {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+
+    /// What two renderers must differ by, on one ray at least.
+    #[arg(long, value_name = "CLASS", default_value = "defect")]
+    pub(crate) class: ClassWord,
+
+    /// The two renderers.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = DEFAULT_WITH)]
+    pub(crate) with: Vec<String>,
+
+    #[command(flatten)]
+    pub(crate) switches: SwitchArguments,
+
+    /// Folder to write the smallest scene to.
+    #[arg(short, long, value_name = "DIR", default_value = "out/minimised")]
+    pub(crate) output: PathBuf,
+}
+
+/// What `--class` takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ClassWord {
+    /// One of them is wrong.
+    Defect,
+    /// The referee could not tell.
+    Undecided,
+    /// An approximation of the paper.
+    Approximation,
+    /// Faces nearer to each other, or to the ray, than rounding.
+    Rounding,
+    /// Several faces met at exactly the same point.
+    Tie,
 }
 
 #[derive(Debug, Args)]

@@ -70,7 +70,9 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     let merged = merge(std::slice::from_ref(&command.output))?;
     write_campaign(&merged, &command.output)?;
     let seconds = start.elapsed().as_secs_f64();
-    let time = format!("{seconds:.1} s, {:.2} million rays/s\n", merged.compared() as f64 / seconds / 1e6);
+    let rate = merged.compared() as f64 / seconds / 1e6;
+    let commit = option_env!("RAYPENCIL_COMMIT").map_or(String::new(), |commit| format!(", commit {commit}"));
+    let time = format!("seed {}{commit}; {seconds:.1} s, {rate:.2} million rays/s\n", command.seed);
     tell(&merged, json, &time)
 }
 

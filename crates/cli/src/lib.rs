@@ -7,6 +7,7 @@ mod campaign;
 mod check;
 mod console;
 mod diff;
+mod minimise;
 mod pack;
 mod probe;
 mod render;
@@ -115,6 +116,7 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
         Some(Command::Render(command)) => render::render(command, arguments.json, registry),
         Some(Command::Pack(command)) => pack::pack(command, arguments.json),
         Some(Command::Campaign(command)) => campaign::campaign(command, arguments.json),
+        Some(Command::Minimise(command)) => minimise::minimise(command, arguments.json, registry),
         Some(Command::Check(command)) => check::check(command, arguments.json),
         Some(Command::Diff(command)) => diff::diff(command, arguments.json),
         Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),

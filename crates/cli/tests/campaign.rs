@@ -49,7 +49,9 @@ fn shards_in_any_order_are_the_whole_campaign() {
     let folder = folder.path();
     let screen = passes(folder, "campaign --terrains 4 --seed 11 -o whole");
     assert!(
-        screen.contains("4 terrains of seed 11") && screen.contains("no defect, none undecided"),
+        screen.contains("4 terrains of seed 11")
+            && screen.contains("\nseed 11")
+            && screen.contains("no defect, none undecided"),
         "{screen}"
     );
     let whole = summary(folder, "whole");

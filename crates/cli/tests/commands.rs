@@ -281,3 +281,56 @@ fn a_renderer_with_one_sign_flipped_is_a_defect() {
     let arguments = ["raypencil", "validate", scene.as_str(), "-o", out.as_str()].map(Into::into);
     assert_eq!(raypencil_cli::main_with(arguments, &raypencil_harness::contender), ExitCode::SUCCESS);
 }
+
+#[test]
+fn the_smallest_scene_that_shows_a_defect_is_found_and_replayed() {
+    let folder = folder();
+    let registry = |name: &str| {
+        let contender = raypencil_harness::contender(name)?;
+        Some(if name == "tracer" { Flipped { inner: contender.renderer }.into() } else { contender })
+    };
+    let [scene, out] = ["small.toml", "out"].map(|name| folder.path().join(name).display().to_string());
+    let arguments = ["raypencil", "minimise", scene.as_str(), "-o", out.as_str()].map(Into::into);
+    assert_eq!(raypencil_cli::main_with(arguments, &registry), ExitCode::SUCCESS);
+    let smallest = folder.path().join("out/small-defect.toml");
+    let validate = |registry: &raypencil_cli::Registry| {
+        let [scene, out] = [&smallest, &folder.path().join("again")].map(|path| path.display().to_string());
+        let arguments = ["raypencil", "validate", scene.as_str(), "-o", out.as_str()].map(Into::into);
+        raypencil_cli::main_with(arguments, registry)
+    };
+    assert_eq!(validate(&registry), ExitCode::from(1));
+    // One face; of one fault of one renderer.
+    let text = std::fs::read_to_string(folder.path().join("out/small-defect.md")).unwrap();
+    assert!(text.contains("1 face of 224 is left."), "{text}");
+    assert_eq!(validate(&raypencil_harness::contender), ExitCode::SUCCESS);
+}
+
+#[test]
+fn a_class_may_be_chosen_and_may_not_be_there() {
+    let folder = folder();
+    let output = raypencil(
+        folder.path(),
+        &[
+            "minimise",
+            "small.toml",
+            "--class",
+            "approximation",
+            "--with",
+            "scanline-paper,tracer",
+            "-o",
+            "out",
+        ],
+    );
+    let screen = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{screen}{}", text(&output.stderr));
+    assert!(screen.contains("scanline-paper and tracer differ by an approximation of the paper"), "{screen}");
+    for file in ["small-approximation.toml", "small-approximation.glb", "small-approximation.md"] {
+        assert!(folder.path().join("out").join(file).is_file(), "{file} is missing");
+    }
+    let output = raypencil(folder.path(), &["minimise", "small.toml", "-o", "none"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stdout).contains("nothing to minimise"), "{}", text(&output.stdout));
+    assert!(!folder.path().join("none").exists());
+    let three = ["minimise", "small.toml", "--with", "scanline,tracer,referee"];
+    assert_trouble(&raypencil(folder.path(), &three), &["scanline,tracer,referee", "expected two"]);
+}

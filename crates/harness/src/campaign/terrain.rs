@@ -16,8 +16,10 @@ use crate::cases::random::{Case, campaign_cases};
 use crate::cases::{aimed, at_origin, rig, scene};
 use crate::compare::{Class, Side, compare_judged};
 use crate::judge::{Judge, JudgeShare};
+use crate::minimise::{MINIMISE_BUDGET, Reproducer, first_shown, minimise, shows_class, write_reproducer};
 use crate::output::create;
-use crate::renderers::{Contender, contender};
+use crate::renderers::{Contender, contender, typed_contenders};
+use crate::run::Silent;
 
 /// The case of a terrain.
 fn case(campaign: &Campaign, terrain: u64) -> Case {
@@ -82,21 +84,53 @@ pub fn terrain(
         let record = compared(part, scene, share, &tracer);
         let is_wrong = record.of_class(Class::Defect) + record.of_class(Class::Undecided) > 0;
         if let (true, Some(folder)) = (is_wrong, wrong) {
-            create(folder)?;
-            let name = format!("terrain-{number:06}-{}", part.word());
-            write_resolved(folder.join(format!("{name}.toml")), scene, &format!("{name}.glb"))?;
+            leave(
+                folder,
+                &format!("terrain-{number:06}-{}", part.word()),
+                scene,
+                [&scanline_of(part), &tracer],
+            )?;
         }
         records.push(record);
     }
     Ok(TerrainRecord { terrain: number, faces: mesh.faces().len() as u64, parts: records })
 }
 
-/// Both renderers on one scene.
-fn compared(part: PartName, scene: &Scene, share: JudgeShare, tracer: &Contender) -> PartRecord {
-    let scanline = Contender::scanline(match part {
+/// Leaves a scene with a wrong ray in `folder`: as it is, and the smallest that still shows one.
+pub(super) fn leave(
+    folder: &Path,
+    name: &str,
+    scene: &Scene,
+    contenders: [&Contender; 2],
+) -> Result<(), CampaignError> {
+    create(folder)?;
+    write_resolved(folder.join(format!("{name}.toml")), scene, &format!("{name}.glb"))?;
+    for (class, is) in [(Class::Defect, "differ beyond doubt"), (Class::Undecided, "differ, undecided")] {
+        let Some(first) = first_shown(contenders, scene, class, JudgeShare::All) else { continue };
+        let shows = shows_class(contenders, class);
+        let Ok(minimised) = minimise(scene, Some(first.place), &shows, MINIMISE_BUDGET, &Silent) else {
+            continue;
+        };
+        let [a, b] = contenders.map(|contender| contender.renderer.name());
+        let (name, what) = (format!("{name}-smallest"), format!("{a} and {b} {is}."));
+        let with = typed_contenders(&contenders);
+        write_reproducer(folder, &minimised, Reproducer { name: &name, what: &what, with: &with })?;
+        break;
+    }
+    Ok(())
+}
+
+/// The scanline renderer that looks at a part.
+fn scanline_of(part: PartName) -> Contender {
+    Contender::scanline(match part {
         PartName::Paper => Switches::PAPER,
         _ => Switches::EXACT,
-    });
+    })
+}
+
+/// Both renderers on one scene.
+fn compared(part: PartName, scene: &Scene, share: JudgeShare, tracer: &Contender) -> PartRecord {
+    let scanline = scanline_of(part);
     // Aimed sensors are narrow and blind: nobody asks what the camera sees of them.
     let request = match part {
         PartName::Aimed => Request::MAPS,
@@ -122,4 +156,59 @@ fn compared(part: PartName, scene: &Scene, share: JudgeShare, tracer: &Contender
         sensors.retain(|sensor| sensor.sensor != SensorId::Camera);
     }
     PartRecord::of(part, &sensors)
+}
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene::{Frame, Maybe, Renderer};
+
+    use super::*;
+    use crate::output::fixtures::subject;
+
+    /// The tracer, but for ranges.
+    struct Farther(Contender);
+
+    impl Renderer for Farther {
+        fn name(&self) -> &str {
+            "tracer"
+        }
+
+        fn resolution(&self) -> Resolution {
+            Resolution::F64
+        }
+
+        fn render(&self, scene: &Scene, request: &Request) -> Frame {
+            let mut frame = self.0.renderer.render(scene, request);
+            for map in frame.camera.iter_mut().chain(&mut frame.beams) {
+                for range in map.range.iter_mut().flat_map(|ranges| ranges.cells_mut()) {
+                    *range = range.get().map_or(Maybe::NONE, |range| Maybe::some(1.001 * range));
+                }
+            }
+            frame
+        }
+    }
+
+    #[test]
+    fn a_scene_with_a_wrong_ray_is_left_whole_and_at_its_smallest() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let scene = subject().scene;
+        let farther = Contender::from(Farther(contender("tracer").unwrap()));
+        leave(folder.path(), "terrain-000007-own", &scene, [&scanline_of(PartName::Own), &farther]).unwrap();
+        let load = |name: &str| {
+            let file = folder.path().join(name).display().to_string();
+            raypencil_scene_io::load(&file, &raypencil_scene_io::Overrides::default()).unwrap().scene
+        };
+        assert_eq!(load("terrain-000007-own.toml").mesh().faces(), scene.mesh().faces());
+        assert_eq!(load("terrain-000007-own-smallest.toml").mesh().faces().len(), 1);
+        let words = std::fs::read_to_string(folder.path().join("terrain-000007-own-smallest.md")).unwrap();
+        assert!(words.contains("scanline and tracer differ beyond doubt."), "{words}");
+    }
+
+    #[test]
+    fn a_scene_without_one_has_no_smallest() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let contenders = [&scanline_of(PartName::Own), &contender("tracer").unwrap()];
+        leave(folder.path(), "scene", &subject().scene, contenders).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
 }

@@ -158,15 +158,13 @@ pub(super) fn compare_pencil(
         let bound = bounds.map_or(0.0, |bounds| bounds.flux * x.abs().max(y.abs()) + bounds.least_flux);
         light.bound = bound;
         let difference = (x - y).abs();
-        if difference == 0.0 || difference <= bound {
+        // Tied faces have cosines of their own: by how much their fluxes differ is no error of either.
+        if difference == 0.0 || geometry.same_face && difference <= bound {
             entry.value(Quantity::PencilFlux, difference, Some(bound));
         } else {
             // It goes with whether and where the point is seen, and with what is hit.
-            let excuse = of_visible.max(of_pixel).max(if is_one_point && geometry.same_face {
-                Class::Agree
-            } else {
-                geometry.class
-            });
+            let of_face = if is_one_point && geometry.same_face { Class::Agree } else { geometry.class };
+            let excuse = of_visible.max(of_pixel).max(of_face);
             entry.class(Quantity::PencilFlux, if excuse == Class::Agree { Class::Defect } else { excuse });
         }
     } else {
