@@ -34,8 +34,9 @@ if [[ "${set[0]}" == --package ]]; then
     packages+=("${set[1]}")
     set=("${set[@]:2}")
 fi
-# Without a mutant they must pass. (cargo-mutants would try that in the first package alone.)
-cargo nextest run --cargo-profile mutants "${packages[@]/#/--package=}" "${set[@]}"
+# Without a mutant they must pass. (cargo-mutants would try that in the first package alone. With its
+# flags, or everything is built twice.)
+RUSTFLAGS=--cap-lints=warn cargo nextest run --cargo-profile mutants "${packages[@]/#/--package=}" "${set[@]}"
 exec cargo mutants --config "$out/mutants.toml" --in-place --package "raypencil-$crate" --baseline skip \
     --timeout 60 --build-timeout 300 --test-package "$(IFS=, && echo "${packages[*]}")" --shard "$shard" --output "$out" \
     "${set[@]/#/--cargo-arg=}"

@@ -16,7 +16,7 @@ use crate::{Fidelity, Options, sides};
 const FACES_PER_TASK: usize = 8192;
 
 /// Cells of a band: 1/t and face of that many fit a core's own cache.
-const CELLS_PER_BAND: u32 = 32 * 1024;
+const CELLS_PER_BAND: u32 = 32_768;
 
 /// Renders the maps of one sensor.
 pub(crate) fn render<T: Transformation>(
@@ -284,6 +284,109 @@ impl<T: Transformation> Faces<'_, T> {
             if let Some(inverse_t) = self.transformation.inverse_t(plane, y) {
                 raster.scan_row(j, columns, x.centres(), inverse_t, nearest, id);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use raypencil_scene::{Camera, Lens, Material, Mounted, Pose};
+
+    use super::*;
+    use crate::perspective::Perspective;
+    use crate::tables::CameraTables;
+
+    /// The rows that a face may touch, of eight, for a camera at the origin that looks along +z: x / z and y / z
+    /// from -1 to 1, cells 1/4 wide, the SPP at z = 1, the maximum range 100 m.
+    fn rows_of(corners: [[f32; 3]; 3], skip_unseen: bool) -> Option<std::ops::Range<u32>> {
+        let camera = Camera {
+            width: 8,
+            height: 8,
+            pixel_pitch: [0.25; 2],
+            focal_length: 1.0,
+            principal_point: [4.0; 2],
+            aperture: 0.1,
+            lens: Lens::CLEAR,
+            max_range: 100.0,
+        };
+        let materials = vec![Material { name: "ground".into(), reflectivity: 0.5 }];
+        let mesh = Mesh::new(DVec3::ZERO, corners.to_vec(), vec![[0, 1, 2]], vec![0], materials).unwrap();
+        let mesh = Arc::new(mesh);
+        let tables = CameraTables::of(&camera);
+        let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+        let transformation = Perspective::new(&mounted, &tables);
+        let vertices = vertices::transform(&mesh, |position| Vertex {
+            position,
+            corner: transformation.project(position),
+            outside: transformation.outside(position),
+        });
+        let faces = Faces {
+            mesh: &mesh,
+            vertices: &vertices,
+            transformation: &transformation,
+            skip_unseen,
+            screen: Screen::new(transformation.columns(), transformation.rows()),
+        };
+        faces.rows(FaceId(0))
+    }
+
+    /// A front at depth z; x and y as on the SPP.
+    fn front(z: f32, corners: [[f32; 2]; 3]) -> [[f32; 3]; 3] {
+        corners.map(|[x, y]| [x * z, y * z, z])
+    }
+
+    #[test]
+    fn a_face_is_scanned_in_the_rows_that_it_touches() {
+        // Centres of rows: -7/8, -5/8, ... 7/8. From y = -0.3 to 0.4: those at -1/8, 1/8, 3/8.
+        let face = front(2.0, [[-0.5, -0.3], [0.0, 0.4], [0.5, -0.3]]);
+        for skip_unseen in [true, false] {
+            assert_eq!(rows_of(face, skip_unseen), Some(3..6));
+        }
+        // Between two rows' centres: none, whatever may be skipped.
+        let thin = front(2.0, [[-0.5, -0.3], [0.0, -0.2], [0.5, -0.3]]);
+        assert_eq!((rows_of(thin, true), rows_of(thin, false)), (None, None));
+    }
+
+    #[test]
+    fn what_cannot_be_seen_is_skipped_if_that_may_be() {
+        let across = |x: f32, y: f32| front(2.0, [[x - 0.5, y - 0.3], [x, y + 0.4], [x + 0.5, y - 0.3]]);
+        let [a, b, c] = across(0.0, 0.0);
+        let unseen = [
+            ("left (3a)", across(-1.6, 0.0)),
+            ("right (3a)", across(1.6, 0.0)),
+            ("deeper than the maximum range (3b)", front(101.0, [[-0.5, -0.3], [0.0, 0.4], [0.5, -0.3]])),
+            ("a back (1b)", [a, c, b]),
+            // x from -0.09 to 0.09: between the centres -1/8 and 1/8.
+            ("between two columns", front(2.0, [[-0.09, -0.3], [0.0, 0.4], [0.09, -0.3]])),
+            // Partly above and partly left of the screen's corner (-1, -1), which the side x + y = -2.5 passes by.
+            ("beyond one side (3c)", front(2.0, [[-2.2, -2.2], [-2.2, -0.3], [-0.3, -2.2]])),
+            ("beyond one side (3c)", front(2.0, [[2.2, 2.2], [2.2, 0.3], [0.3, 2.2]])),
+        ];
+        for (why, face) in unseen {
+            assert_eq!(rows_of(face, true), None, "{why}");
+            assert!(rows_of(face, false).is_some(), "{why}");
+        }
+        // Above and below there are no rows anyway.
+        for y in [-1.6, 1.6] {
+            assert_eq!((rows_of(across(0.0, y), true), rows_of(across(0.0, y), false)), (None, None));
+        }
+        // Across the corner of the screen, and partly beyond each of its sides.
+        let corner = front(2.0, [[-2.0, -2.0], [-2.0, 1.5], [1.5, -2.0]]);
+        assert_eq!(rows_of(corner, true), Some(0..8));
+        for (x, y) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
+            assert!(rows_of(across(x, y), true).is_some(), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn what_the_spp_cuts_may_be_in_any_row() {
+        let cut = [[-0.5, -0.3, 2.0], [0.0, 0.4, 0.5], [0.5, -0.3, 2.0]];
+        let behind = [[-0.5, -0.3, 0.9], [0.0, 0.4, 0.5], [0.5, -0.3, 0.9]];
+        for skip_unseen in [true, false] {
+            assert_eq!(rows_of(cut, skip_unseen), Some(0..8));
+            assert_eq!(rows_of(behind, skip_unseen), None);
         }
     }
 }

@@ -56,6 +56,12 @@ impl Axis {
         self.borders
     }
 
+    /// Where `value` lies in cells, their centres at whole numbers: a first guess.
+    #[inline]
+    fn place(&self, value: f64) -> f64 {
+        value * self.cells_per_metre + self.origin
+    }
+
     /// The first cell whose centre is at or after `value`; the count if there is none.
     ///
     /// The comparison is with the centres themselves, so that every face asks the very same question.
@@ -63,7 +69,7 @@ impl Axis {
     pub(crate) fn first_at_or_after(&self, value: f64) -> u32 {
         let count = self.count();
         // `as` saturates, and takes NaN to 0.
-        let mut index = (value * self.cells_per_metre + self.origin).ceil() as u32;
+        let mut index = self.place(value).ceil() as u32;
         index = index.min(count);
         while index > 0 && self.centres[index as usize - 1] >= value {
             index -= 1;
@@ -78,7 +84,7 @@ impl Axis {
     #[inline]
     pub(crate) fn end_at_or_before(&self, value: f64) -> u32 {
         let count = self.count();
-        let mut end = ((value * self.cells_per_metre + self.origin).floor() + 1.0) as u32;
+        let mut end = (self.place(value).floor() + 1.0) as u32;
         end = end.min(count);
         while end > 0 && self.centres[end as usize - 1] > value {
             end -= 1;
@@ -146,6 +152,25 @@ mod tests {
             let end = axis.centres().iter().rposition(|&c| c <= value).map_or(0, |last| last + 1);
             prop_assert_eq!(axis.first_at_or_after(value), first as u32);
             prop_assert_eq!(axis.end_at_or_before(value), end as u32);
+        }
+    }
+
+    #[test]
+    fn the_first_guess_is_the_cell() {
+        // Else the search would find it too, but cell by cell.
+        let axes = [
+            Axis::of_pixels(7, 2.25, 0.5),
+            Axis::of_pixels(640, -300.0, 7.4e-6),
+            Axis::of_grid(5, 0.3),
+            Axis::of_grid(1024, 0.1),
+            Axis::of_rows(3, 0.02),
+            Axis::of_rows(256, 0.005),
+        ];
+        for axis in axes {
+            for index in 0..axis.count() {
+                let off = axis.place(axis.centre(index)) - f64::from(index);
+                assert!(off.abs() < 1e-9, "{axis:?}: cell {index} is guessed {off} cells beside");
+            }
         }
     }
 
