@@ -186,3 +186,59 @@ fn error(
         anywhere: ROUNDING * (range + distance + in_beam.y.abs()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene::{Beam, Lens, Mounted, Pose, Profile};
+
+    use super::*;
+    use crate::Switches;
+    use crate::tables::CameraTables;
+
+    #[test]
+    fn the_error_of_a_point_by_hand() {
+        let camera = Camera {
+            width: 2,
+            height: 2,
+            pixel_pitch: [1.0; 2],
+            focal_length: 1.0,
+            principal_point: [1.0; 2],
+            aperture: 0.1,
+            lens: Lens::CLEAR,
+            max_range: 100.0,
+        };
+        let beam = Beam {
+            columns: 1,
+            rows: 1,
+            thickness: 0.02,
+            grid_distance: 0.1,
+            half_width: 0.1,
+            max_range: 100.0,
+            power: 1.0,
+            wavelength: 8e-7,
+            profile: Profile::Paper,
+        };
+        let at = |position: DVec3| Pose::from_position(position);
+        let tables = CameraTables::of(&camera);
+        let camera = Mounted { scene_from_sensor: at(DVec3::new(9.0, 9.0, 9.0)), sensor: camera };
+        let beam = Mounted { scene_from_sensor: at(DVec3::new(0.0, 0.0, -1.0)), sensor: beam };
+        let beam = Cylindrical::new(&beam, Switches::EXACT);
+        // Sides of 3, 4 and 5 m, the two longest 20 m^2; the corners 1 m, sqrt 10 m and sqrt 17 m from the beam.
+        let corners = [DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 4.0, 0.0)];
+        let found = error(
+            &corners,
+            12.0,
+            0.5,
+            2.0,
+            DVec3::new(1.2, -0.01, 1.6),
+            7.0,
+            &beam,
+            &Perspective::new(&camera, &tables),
+        );
+        // Along (0.6, 0, 0.8) by 64 u (sqrt 17 + 2 + 0.01) 20 / (12 * 0.5); anywhere by 64 u (2 + 7 + 0.01).
+        let along = ROUNDING * (17_f64.sqrt() + 2.01) * 20.0 / 6.0;
+        let off = found.along - DVec3::new(0.6 * along, 0.0, 0.8 * along);
+        assert!(off.length() < 1e-14 * along, "{found:?}");
+        assert!((found.anywhere / (ROUNDING * 9.01) - 1.0).abs() < 1e-14, "{found:?}");
+    }
+}

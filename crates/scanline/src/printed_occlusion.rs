@@ -63,9 +63,9 @@ pub(crate) fn hidden_at_centres(occluders: &Occluders<'_>, bins: &Bins, skip_uns
             let m = occluder.plane.normal_over_distance;
             let start = m.y * y.centre(j) + m.z * camera.plane_distance();
             for i in columns {
-                let inverse_t = m.x * x.centre(i) + start;
-                // t >= 1.
-                if !(inverse_t > 0.0 && inverse_t <= 1.0) {
+                // t >= 1: the face was clipped there, whichever way 1/t is rounded.
+                let inverse_t = (m.x * x.centre(i) + start).min(1.0);
+                if !(inverse_t > 0.0) {
                     continue;
                 }
                 let range = camera.q_lengths(j)[i as usize] / inverse_t;

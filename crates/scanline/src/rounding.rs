@@ -54,3 +54,33 @@ pub(crate) fn largest_product_of_sides([a, b, c]: &[DVec3; 3]) -> f64 {
 pub(crate) fn farthest_corner(corners: &[DVec3; 3], sensor_from_scene: &SensorFromScene) -> f64 {
     corners.iter().map(|a| sensor_from_scene.relative(*a).length_squared()).fold(0.0, f64::max).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raypencil_scene::Pose;
+
+    #[test]
+    fn an_error_across_a_plane_is_that_along_the_pencil_and_that_anywhere() {
+        let error = PointError { along: DVec3::new(1.0, 2.0, 2.0), anywhere: 0.5 };
+        // n.along = 2 - 2 + 4 = 4, |n| = 3.
+        let n = DVec3::new(2.0, -1.0, 2.0);
+        assert_eq!((error.across(n), error.across(-n)), (5.5, 5.5));
+    }
+
+    #[test]
+    fn the_two_longest_sides_count_whichever_they_are() {
+        // 3, 4 and 5 m.
+        let [a, b, c] = [DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 4.0, 0.0)];
+        for corners in [[a, b, c], [b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]] {
+            assert_eq!(largest_product_of_sides(&corners), 20.0, "{corners:?}");
+        }
+    }
+
+    #[test]
+    fn the_farthest_corner_is_seen_from_the_sensor() {
+        let sensor_from_scene = SensorFromScene::of(&Pose::from_position(DVec3::new(1.0, 0.0, 0.0)));
+        let corners = [DVec3::new(1.0, 3.0, 4.0), DVec3::new(2.0, 0.0, 0.0), DVec3::new(5.5, 0.0, 0.0)];
+        assert_eq!(farthest_corner(&corners, &sensor_from_scene), 5.0);
+    }
+}
