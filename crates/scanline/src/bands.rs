@@ -290,30 +290,16 @@ impl<T: Transformation> Faces<'_, T> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use raypencil_scene::{Camera, Lens, Material, Mounted, Pose};
+    use raypencil_scene::{Mounted, Pose};
 
     use super::*;
+    use crate::fixtures::{camera, mesh};
     use crate::perspective::Perspective;
     use crate::tables::CameraTables;
 
-    /// The rows that a face may touch, of eight, for a camera at the origin that looks along +z: x / z and y / z
-    /// from -1 to 1, cells 1/4 wide, the SPP at z = 1, the maximum range 100 m.
+    /// The rows that a face may touch, for a camera at the origin that looks along +z.
     fn rows_of(corners: [[f32; 3]; 3], skip_unseen: bool) -> Option<std::ops::Range<u32>> {
-        let camera = Camera {
-            width: 8,
-            height: 8,
-            pixel_pitch: [0.25; 2],
-            focal_length: 1.0,
-            principal_point: [4.0; 2],
-            aperture: 0.1,
-            lens: Lens::CLEAR,
-            max_range: 100.0,
-        };
-        let materials = vec![Material { name: "ground".into(), reflectivity: 0.5 }];
-        let mesh = Mesh::new(DVec3::ZERO, corners.to_vec(), vec![[0, 1, 2]], vec![0], materials).unwrap();
-        let mesh = Arc::new(mesh);
+        let (camera, mesh) = (camera(), mesh(&[corners]));
         let tables = CameraTables::of(&camera);
         let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
         let transformation = Perspective::new(&mounted, &tables);

@@ -188,23 +188,15 @@ impl Bins {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use raypencil_scene::{Camera, Lens, Pixel};
+    use raypencil_scene::{Camera, Pixel};
 
     use super::*;
+    use crate::fixtures::camera;
     use crate::points::Landing;
 
     /// A camera of 8 x 8 pixels, 1 m wide on its SPP, the principal point in the middle.
     fn pixels() -> Pixels {
-        Pixels::of(&Camera {
-            width: 8,
-            height: 8,
-            pixel_pitch: [1.0; 2],
-            focal_length: 1.0,
-            principal_point: [4.0; 2],
-            aperture: 0.1,
-            lens: Lens::CLEAR,
-            max_range: 100.0,
-        })
+        Pixels::of(&Camera { pixel_pitch: [1.0; 2], ..camera() })
     }
 
     /// A point in the middle of pixel (i, j), at t = 2 + i.

@@ -189,3 +189,38 @@ impl Transformation for Cylindrical {
         &self.q_length
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene::Pose;
+
+    use super::*;
+    use crate::fixtures::beam;
+    use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT, TOO_DEEP};
+
+    #[test]
+    fn a_point_is_outside_of_the_sides_it_is_beyond() {
+        let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: beam() };
+        let exact = Cylindrical::new(&mounted, Switches::EXACT);
+        // On the borders themselves it is not beyond them. The sheet keeps its height.
+        for ([x, y, z], sides) in [
+            ([0.0, 0.0, 2.0], 0),
+            ([-2.0, -0.5, 2.0], 0),
+            ([2.0, 0.5, 2.0], 0),
+            ([-2.1, 0.0, 2.0], LEFT),
+            ([2.1, 0.0, 2.0], RIGHT),
+            ([0.0, -0.6, 2.0], ABOVE),
+            ([0.0, 0.6, 2.0], BELOW),
+            ([2.1, -0.6, 2.0], RIGHT | ABOVE),
+            ([0.0, 0.0, 1.0], 0),
+            ([0.0, 0.0, 0.9], BEHIND_PLANE),
+            ([0.0, 0.0, 100.0], 0),
+            ([0.0, 0.0, 100.1], TOO_DEEP),
+        ] {
+            assert_eq!(exact.outside(DVec3::new(x, y, z)), sides, "{x} {y} {z}");
+        }
+        // With straight sides nothing is known to be too deep.
+        let straight = Cylindrical::new(&mounted, Switches::PAPER);
+        assert_eq!(straight.outside(DVec3::new(0.0, 0.0, 100.1)), 0);
+    }
+}

@@ -48,6 +48,8 @@ mod bands;
 mod bins;
 mod clip;
 mod cylindrical;
+#[cfg(test)]
+mod fixtures;
 mod flux;
 mod occluders;
 mod occlusion;

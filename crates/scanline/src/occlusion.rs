@@ -120,9 +120,11 @@ mod tests {
     use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin, height_at};
 
     use crate::cylindrical::Cylindrical;
+    use crate::fixtures::{camera, mesh};
     use crate::occluders::Facing;
     use crate::perspective::Perspective;
     use crate::points::{self, Pixels};
+    use crate::rounding::PointError;
     use crate::tables::CameraTables;
     use crate::{Options, Switches, bands};
 
@@ -177,6 +179,44 @@ mod tests {
     /// Hills, rocks, mushrooms, floating slabs and walls: all of it closed.
     fn closed(seed: u64) -> RandomGround {
         RandomGround { slivers: 0, duplicate_faces: 0, zero_area_faces: 0, ..RandomGround::nasty(seed, 4000) }
+    }
+
+    #[test]
+    fn a_face_holds_a_point_within_rounding_of_its_plane() {
+        // Sides of 3, 4 and 5 m in the plane z = 2, d = -12 * 2 or 24; the farthest corner (3, 0, 2) or (0, 4, 2) is
+        // sqrt 20 m from the camera.
+        let ground = mesh(&[[[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [0.0, 4.0, 2.0]]]);
+        let tables = CameraTables::of(&camera());
+        let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
+        let perspective = Perspective::new(&mounted, &tables);
+        let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
+        let holds_at = |beyond: f64, error: PointError| {
+            let mut answers = Vec::new();
+            occluders.pieces(
+                FaceId(0),
+                |_| true,
+                |occluder| {
+                    // |d| (1/t - 1/t_P) / (1/t_P) = |d| beyond.
+                    let inverse_t = 0.5;
+                    let point = Binned {
+                        at: Corner { x: 0.0, y: 0.0 },
+                        inverse_t: inverse_t / (1.0 + beyond),
+                        distance: 3.0,
+                        error,
+                        face: FaceId(1),
+                        index: 0,
+                    };
+                    answers.push(holds(&occluders, occluder, &point, inverse_t));
+                },
+            );
+            answers
+        };
+        let exact = PointError { along: DVec3::ZERO, anywhere: 0.0 };
+        let bound = ROUNDING * 20.0 * (20_f64.sqrt() + 3.0) / 24.0;
+        assert_eq!((holds_at(0.99 * bound, exact), holds_at(1.01 * bound, exact)), (vec![true], vec![false]));
+        // And the point's own error, |n| = 12 times 1e-9 m: as much again as 1e-9 12 / 24.
+        let inexact = PointError { along: DVec3::ZERO, anywhere: 1e-9 };
+        assert_eq!((holds_at(4.99e-10, inexact), holds_at(5.01e-10, inexact)), (vec![true], vec![false]));
     }
 
     #[test]

@@ -161,3 +161,36 @@ impl Transformation for Perspective<'_> {
         &self.tables.q_length[j as usize * width..][..width]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene::Pose;
+
+    use super::*;
+    use crate::fixtures::camera;
+    use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT, TOO_DEEP};
+
+    #[test]
+    fn a_point_is_outside_of_the_sides_it_is_beyond() {
+        let tables = CameraTables::of(&camera());
+        let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
+        let camera = Perspective::new(&mounted, &tables);
+        // On the borders themselves it is not beyond them.
+        for ([x, y, z], sides) in [
+            ([0.0, 0.0, 2.0], 0),
+            ([-2.0, -2.0, 2.0], 0),
+            ([2.0, 2.0, 2.0], 0),
+            ([-2.1, 0.0, 2.0], LEFT),
+            ([2.1, 0.0, 2.0], RIGHT),
+            ([0.0, -2.1, 2.0], ABOVE),
+            ([0.0, 2.1, 2.0], BELOW),
+            ([-2.1, 2.1, 2.0], LEFT | BELOW),
+            ([0.0, 0.0, 1.0], 0),
+            ([0.0, 0.0, 0.9], BEHIND_PLANE),
+            ([0.0, 0.0, 100.0], 0),
+            ([0.0, 0.0, 100.1], TOO_DEEP),
+        ] {
+            assert_eq!(camera.outside(DVec3::new(x, y, z)), sides, "{x} {y} {z}");
+        }
+    }
+}

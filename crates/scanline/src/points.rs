@@ -189,35 +189,16 @@ fn error(
 
 #[cfg(test)]
 mod tests {
-    use raypencil_scene::{Beam, Lens, Mounted, Pose, Profile};
+    use raypencil_scene::{Mounted, Pose};
 
     use super::*;
     use crate::Switches;
+    use crate::fixtures::{beam, camera};
     use crate::tables::CameraTables;
 
     #[test]
     fn the_error_of_a_point_by_hand() {
-        let camera = Camera {
-            width: 2,
-            height: 2,
-            pixel_pitch: [1.0; 2],
-            focal_length: 1.0,
-            principal_point: [1.0; 2],
-            aperture: 0.1,
-            lens: Lens::CLEAR,
-            max_range: 100.0,
-        };
-        let beam = Beam {
-            columns: 1,
-            rows: 1,
-            thickness: 0.02,
-            grid_distance: 0.1,
-            half_width: 0.1,
-            max_range: 100.0,
-            power: 1.0,
-            wavelength: 8e-7,
-            profile: Profile::Paper,
-        };
+        let (camera, beam) = (camera(), beam());
         let at = |position: DVec3| Pose::from_position(position);
         let tables = CameraTables::of(&camera);
         let camera = Mounted { scene_from_sensor: at(DVec3::new(9.0, 9.0, 9.0)), sensor: camera };

@@ -72,6 +72,29 @@ fn a_blade_counts_from_the_spp_on() {
 }
 
 #[test]
+fn a_corner_that_touches_the_line_of_sight_hides() {
+    // At z = 1 the camera's ray to the last point is at (1/2, -1). A small face there whose corner, or the middle of
+    // whose side, is exactly that point: its top, bottom, leftmost and rightmost.
+    let at = |x: f32, y: f32| [0.5 + x, -1.0 + y, 1.0];
+    let r = 0.0625;
+    for (touching, beside) in [
+        ([at(0.0, 0.0), at(r, r), at(-r, r)], [0.0, r]),
+        ([at(0.0, 0.0), at(-r, -r), at(r, -r)], [0.0, -r]),
+        ([at(0.0, 0.0), at(r, -r), at(r, r)], [r, 0.0]),
+        ([at(0.0, 0.0), at(-r, r), at(-r, -r)], [-r, 0.0]),
+        ([at(-r, 0.0), at(r, 0.0), at(0.0, r)], [0.0, r]),
+        ([at(-r, 0.0), at(0.0, -r), at(r, 0.0)], [0.0, -r]),
+    ] {
+        let apart = touching.map(|[x, y, z]| [x + 0.0625 * beside[0], y + 0.0625 * beside[1], z]);
+        for (face, seen) in [(touching, false), (apart, true)] {
+            for face in [face, reversed(face)] {
+                assert_eq!(Rig::new().and(&[face]).pencil(3).visible, seen, "{face:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_face_seen_edge_on_hides_nothing() {
     // In the plane x = (z)/2 of the camera's ray to the last point: parallel to the segment.
     let edge_on: Face = [[0.25, -9.0, 0.5], [0.5, 9.0, 1.0], [0.75, -9.0, 1.5]];

@@ -1,0 +1,40 @@
+//! Sensors and grounds of this crate's own tests.
+
+use glam::DVec3;
+use raypencil_scene::{Beam, Camera, Lens, Material, Mesh, Profile};
+
+/// x / z and y / z from -1 to 1 in 8 x 8 cells, each 1/4 m wide on the SPP at z = 1.
+pub(crate) fn camera() -> Camera {
+    Camera {
+        width: 8,
+        height: 8,
+        pixel_pitch: [0.25; 2],
+        focal_length: 1.0,
+        principal_point: [4.0; 2],
+        aperture: 0.1,
+        lens: Lens::CLEAR,
+        max_range: 100.0,
+    }
+}
+
+/// Eight columns, x / z from -1 to 1; two rows, y from -1/2 to 1/2 m; the grid at z = 1.
+pub(crate) fn beam() -> Beam {
+    Beam {
+        columns: 8,
+        rows: 2,
+        thickness: 1.0,
+        grid_distance: 1.0,
+        half_width: 1.0,
+        max_range: 100.0,
+        power: 1.0,
+        wavelength: 8e-7,
+        profile: Profile::Paper,
+    }
+}
+
+/// Faces that share no vertex.
+pub(crate) fn mesh(faces: &[[[f32; 3]; 3]]) -> Mesh {
+    let indices = (0..faces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let materials = vec![Material { name: "ground".into(), reflectivity: 0.5 }];
+    Mesh::new(DVec3::ZERO, faces.concat(), indices, vec![0; faces.len()], materials).expect("a mesh")
+}
