@@ -240,7 +240,7 @@ mod tests {
         let padded = padded_box(&[[1.0, 2.0, 3.0], [-4.0, 5.0, 6.0], [7.0, -8.0, 9.0]], 100.0);
         let padding = 9.0 / f64::from(1 << 24) * 109.0;
         // Rounded outward, by no more than two steps of f32 below 16.
-        let outward = |wider: f64| (padding..=padding + 2.0 * 2_f64.powi(-20)).contains(&wider);
+        let outward = |wider: f64| (padding..=padding + 2.0 / f64::from(1 << 20)).contains(&wider);
         for (axis, low, high) in [(0, -4.0, 7.0), (1, -8.0, 5.0), (2, 3.0, 9.0)] {
             let (min, max) = (f64::from(padded.min[axis]), f64::from(padded.max[axis]));
             assert!(outward(low - min) && outward(max - high), "{axis}: {min} to {max}");
