@@ -12,7 +12,7 @@ crate=$1 out=$2 count=${3:-400} shard=${4:-0/1}
 declare -A tests=(
     [scanline]="--package raypencil-tests --lib --test light --test paper --test digest --test closed_form"
     [tracer]="--package raypencil-tests --lib --test flux --test visibility --test digest --test closed_form"
-    [referee]="--lib --test digest --test verdicts --test light --test margins --test sight_margins"
+    [referee]="--lib --test digest --test verdicts --test light"
 )
 
 # The same draw every time: shuf reads its randomness from a fixed stream.
