@@ -18,6 +18,11 @@ const FACES_PER_TASK: usize = 8192;
 /// Cells of a band: 1/t and face of that many fit a core's own cache.
 const CELLS_PER_BAND: u32 = 32_768;
 
+/// Rows of a band: all of a small raster, one of a very wide one.
+fn rows_per_band(width: u32, height: u32) -> u32 {
+    (CELLS_PER_BAND / width).clamp(1, height)
+}
+
 /// Renders the maps of one sensor.
 pub(crate) fn render<T: Transformation>(
     mesh: &Mesh,
@@ -38,7 +43,7 @@ pub(crate) fn render<T: Transformation>(
     });
 
     // Steps 1 and 3: drop the faces that cannot be seen, sort the others into bands of rows.
-    let rows_per_band = (CELLS_PER_BAND / width).clamp(1, height);
+    let rows_per_band = rows_per_band(width, height);
     let band_count = height.div_ceil(rows_per_band) as usize;
     let as_printed = options.switches.skip_rules == Fidelity::Paper;
     let faces = Faces {
@@ -321,6 +326,15 @@ mod tests {
     /// A front at depth z; x and y as on the SPP.
     fn front(z: f32, corners: [[f32; 2]; 3]) -> [[f32; 3]; 3] {
         corners.map(|[x, y]| [x * z, y * z, z])
+    }
+
+    #[test]
+    fn a_band_has_as_many_rows_as_fit() {
+        for ((width, height), rows) in
+            [((1024, 1024), 32), ((1000, 1000), 32), ((64, 48), 48), ((40_000, 5), 1), ((1, 1), 1)]
+        {
+            assert_eq!(rows_per_band(width, height), rows, "{width} {height}");
+        }
     }
 
     #[test]

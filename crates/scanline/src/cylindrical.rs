@@ -199,6 +199,28 @@ mod tests {
     use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT, TOO_DEEP};
 
     #[test]
+    fn a_row_sees_the_fronts_of_planes_that_its_origin_is_before() {
+        let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: beam() };
+        let of = |switches| Cylindrical::new(&mounted, switches);
+        // A floor at y = 1/4 that faces up, n = (0, -1, 0): d = -1/4. Row 0, at y = -1/4, is above it and parallel to it:
+        // 1/t = (0 x + 0 g) / (-1/4 - 1/4); at y = 1/4 a row lies in it, at 1/2 it is below.
+        let corners = [[0.0, 0.25, 1.0], [1.0, 0.25, 2.0], [1.0, 0.25, 1.0]].map(DVec3::from_array);
+        let (exact, paper) = (of(Switches::EXACT), of(Switches::PAPER));
+        let plane = Plane::of(&corners, exact.sensor_from_scene());
+        assert!(plane.normal.y < 0.0 && plane.distance == 0.25 * plane.normal.y);
+        let seen = |beam: &Cylindrical, plane: &Plane| {
+            [-0.25, 0.25, 0.5].map(|y| beam.inverse_t(plane, y).is_some())
+        };
+        assert_eq!(seen(&exact, &plane), [true, false, false]);
+        // As printed the middle of the sheet sees it for all rows, but for the one that lies in it.
+        assert_eq!(seen(&paper, &plane), [true, false, true]);
+        let [a, b, c] = corners;
+        let ceiling = Plane::of(&[a, c, b], exact.sensor_from_scene());
+        assert_eq!(seen(&exact, &ceiling), [false, false, true]);
+        assert_eq!(seen(&paper, &ceiling), [false; 3]);
+    }
+
+    #[test]
     fn a_point_is_outside_of_the_sides_it_is_beyond() {
         let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: beam() };
         let exact = Cylindrical::new(&mounted, Switches::EXACT);
