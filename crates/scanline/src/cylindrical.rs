@@ -204,7 +204,7 @@ mod tests {
         let of = |switches| Cylindrical::new(&mounted, switches);
         // A floor at y = 1/4 that faces up, n = (0, -1, 0): d = -1/4. Row 0, at y = -1/4, is above it and parallel to it:
         // 1/t = (0 x + 0 g) / (-1/4 - 1/4); at y = 1/4 a row lies in it, at 1/2 it is below.
-        let corners = [[0.0, 0.25, 1.0], [1.0, 0.25, 2.0], [1.0, 0.25, 1.0]].map(DVec3::from_array);
+        let corners = [[0.0, 0.25, 1.0], [1.0, 0.25, 1.0], [1.0, 0.25, 2.0]].map(DVec3::from_array);
         let (exact, paper) = (of(Switches::EXACT), of(Switches::PAPER));
         let plane = Plane::of(&corners, exact.sensor_from_scene());
         assert!(plane.normal.y < 0.0 && plane.distance == 0.25 * plane.normal.y);
