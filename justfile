@@ -40,6 +40,15 @@ results YARD:
 planted-faults:
     cargo run --release -p raypencil-tests --example planted_faults > docs/planted-faults.md
 
+# The property tests on CASES cases each that nobody has tried
+properties CASES:
+    PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test properties
+
+# Mutants of a kernel crate (scanline, tracer, referee) against its fast tests, in a clone: docs/mutants.md
+mutants CRATE:
+    rm -rf out/mutants/clone && git clone --quiet . out/mutants/clone
+    out/mutants/clone/tests/mutants.sh {{ CRATE }} "$PWD/out/mutants/{{ CRATE }}"
+
 # All benchmarks
 bench:
     cargo bench --workspace
