@@ -187,4 +187,29 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn the_bounds_of_rows_are_no_wider_than_they_are() {
+        // From (0, 0) down to (4, 8).
+        let side = triangle([[0.0, 0.0], [4.0, 8.0], [10.0, 12.0]]).upper;
+        for ((low, high), expected) in [
+            ((2.0, 4.0), Some((1.0, 2.0))),
+            ((-1.0, 4.0), Some((0.0, 2.0))),
+            ((6.0, 9.0), Some((3.0, 4.0))),
+            ((8.0, 9.0), Some((4.0, 4.0))),
+            ((-3.0, 0.0), Some((0.0, 0.0))),
+            ((-9.0, 99.0), Some((0.0, 4.0))),
+            ((-3.0, -1.0), None),
+            ((8.5, 9.0), None),
+        ] {
+            assert_eq!(side.crossings(low, high), expected, "{low} to {high}");
+        }
+        // One that falls to the left.
+        let side = triangle([[4.0, 0.0], [0.0, 8.0], [10.0, 12.0]]).upper;
+        assert_eq!(side.crossings(2.0, 4.0), Some((2.0, 3.0)));
+        // One along the rows has no place of its own: all of it.
+        let side = triangle([[1.0, 2.0], [5.0, 2.0], [3.0, 9.0]]).upper;
+        assert_eq!((side.top.y, side.bottom.y), (2.0, 2.0));
+        assert_eq!(side.crossings(1.0, 3.0), Some((1.0, 5.0)));
+    }
 }

@@ -255,6 +255,8 @@ mod tests {
         let mesh = Arc::new(RandomGround::plain(1, 200, 10.0).build().into_mesh().unwrap());
         let tracer = crate::Tracer::new();
         let first = tracer.hierarchy(&mesh, 10.0);
+        // A 64th to spare, exactly.
+        assert_eq!(first.reach(), 10.15625);
         assert!(Arc::ptr_eq(&first, &tracer.hierarchy(&mesh, 5.0)), "a shorter reach needs no new boxes");
         assert!(!Arc::ptr_eq(&first, &tracer.hierarchy(&mesh, 20.0)), "a longer reach needs wider boxes");
         let other = Arc::new(Mesh::clone(&mesh));
