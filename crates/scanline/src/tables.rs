@@ -140,12 +140,17 @@ mod tests {
             pitch in 1e-6f64..1.0,
             at in -2.0f64..3.0,
             on in proptest::option::of(0u32..40),
+            beside in -1i8..=1,
         ) {
             let axis = Axis::of_pixels(count, centre, pitch);
             let [low, high] = axis.borders();
-            // Anywhere around the screen, or exactly on a centre.
+            // Anywhere around the screen, or on a centre, or next to one: there the first guess errs.
             let value = match on {
-                Some(i) if i < count => axis.centre(i),
+                Some(i) if i < count => match beside {
+                    -1 => axis.centre(i).next_down(),
+                    0 => axis.centre(i),
+                    _ => axis.centre(i).next_up(),
+                },
                 _ => low + at * (high - low),
             };
             let first = axis.centres().iter().position(|&c| c >= value).unwrap_or(count as usize);
