@@ -151,3 +151,38 @@ impl Stripe {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shared_side_is_the_same_line_in_both_faces() {
+        let stripe = Stripe { grid_distance: 1.0, half_width: 1.0, half_thickness: 0.5 };
+        let [a, b] = [[0.1, 0.3, 2.0], [0.3, -0.1, 2.2]];
+        let faces = [[a, b, [-0.3, 0.2, 2.1]], [b, a, [0.4, 0.4, 2.4]]];
+        let on_grid = |[x, y, z]: [f64; 3]| Corner { x: x / z, y };
+        let ends = [on_grid(a), on_grid(b)];
+        let mut lines = Vec::new();
+        for [p, q, r] in faces {
+            // Wherever the cycle begins, the shared side is the first, the second or the last.
+            for cycle in [[p, q, r], [q, r, p], [r, p, q]] {
+                let edges = [0, 1, 2].map(|k| {
+                    let (from, to) = (cycle[k], cycle[(k + 1) % 3]);
+                    let reversed = to < from;
+                    let [first, second] = if reversed { [to, from] } else { [from, to] };
+                    Edge { first: first.into(), second: second.into(), reversed, line: () }
+                });
+                stripe.clip(cycle.map(DVec3::from_array), &edges, |piece| {
+                    let shared = piece
+                        .lines
+                        .into_iter()
+                        .filter(|line| ends.contains(&line.first) && ends.contains(&line.second));
+                    lines.extend(shared.map(|line| [line.first, line.second]));
+                });
+            }
+        }
+        // From the end that comes first in the scene, whichever way the face runs.
+        assert_eq!(lines, [ends; 6]);
+    }
+}
