@@ -1,24 +1,11 @@
-//! The command as a user meets it: exit codes, what it prints, what it leaves behind.
+//! Everyday work: `validate`, `render`, `probe`, `minimise`, and trouble.
 
-use std::path::Path;
-use std::process::{Command, ExitCode, Output};
+use std::process::ExitCode;
 
 use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene};
 use tempfile::TempDir;
 
-/// Runs the binary in `folder`.
-fn raypencil(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_raypencil"))
-        .args(arguments)
-        .current_dir(folder)
-        .env("NO_COLOR", "1")
-        .output()
-        .expect("the binary runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
+use crate::{assert_trouble, raypencil, text};
 
 /// A folder with `small.toml`: the pyramids under small sensors, so that a run takes a moment.
 fn folder() -> TempDir {
@@ -29,16 +16,6 @@ fn folder() -> TempDir {
         [terrain]\nbuiltin = \"pyramids\"\n";
     std::fs::write(folder.path().join("small.toml"), scene).expect("a scene file");
     folder
-}
-
-/// Asserts trouble: exit 2, nothing on standard output, and a message with all of `words`.
-fn assert_trouble(output: &Output, words: &[&str]) {
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert_eq!(text(&output.stdout), "");
-    for word in words {
-        assert!(message.contains(word), "`{word}` is not in:\n{message}");
-    }
 }
 
 #[test]

@@ -2,41 +2,25 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Stdio;
 
 use tempfile::TempDir;
 
-fn command(folder: &Path, words: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_raypencil"));
-    command.args(words.split_whitespace()).current_dir(folder).env("NO_COLOR", "1");
-    command
-}
+use crate::{assert_trouble, command, raypencil, screen};
 
-fn raypencil(folder: &Path, words: &str) -> Output {
-    command(folder, words).output().expect("the binary runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+/// The words of a command line that needs no quotes.
+fn words(text: &str) -> Vec<&str> {
+    text.split_whitespace().collect()
 }
 
 #[track_caller]
-fn passes(folder: &Path, words: &str) -> String {
-    let output = raypencil(folder, words);
-    let screen = text(&output.stdout);
-    assert_eq!(output.status.code(), Some(0), "{screen}{}", text(&output.stderr));
-    screen
+fn passes(folder: &Path, line: &str) -> String {
+    screen(folder, &words(line), 0)
 }
 
 #[track_caller]
-fn is_trouble(folder: &Path, words: &str, expected: &[&str]) {
-    let output = raypencil(folder, words);
-    let message: Vec<String> = text(&output.stderr).split_whitespace().map(String::from).collect();
-    let message = message.join(" ");
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    for words in expected {
-        assert!(message.contains(words), "`{words}` is not in: {message}");
-    }
+fn is_trouble(folder: &Path, line: &str, expected: &[&str]) {
+    assert_trouble(&raypencil(folder, &words(line)), expected);
 }
 
 fn summary(folder: &Path, name: &str) -> String {
@@ -90,8 +74,9 @@ fn shards_in_any_order_are_the_whole_campaign() {
 fn an_interrupted_campaign_goes_on_where_it_was() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
-    let words = "campaign --terrains 5 --seed 3 -o broken";
-    let mut child = command(folder, words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let line = "campaign --terrains 5 --seed 3 -o broken";
+    let mut child =
+        command(folder, &words(line)).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     // Killed, as kill -9 does, when the first records are there.
     let records = || fs::read_dir(folder.join("broken/terrains")).map_or(0, Iterator::count);
     while records() < 2 && child.try_wait().unwrap().is_none() {
@@ -106,11 +91,11 @@ fn an_interrupted_campaign_goes_on_where_it_was() {
         let text = fs::read_to_string(last).unwrap();
         fs::write(last, &text[..text.len() - 9]).unwrap();
     }
-    passes(folder, words);
+    passes(folder, line);
     passes(folder, "campaign --terrains 5 --seed 3 -o straight");
     assert_eq!(summary(folder, "broken"), summary(folder, "straight"));
     // A finished one is not run again, and says the same.
-    passes(folder, words);
+    passes(folder, line);
     assert_eq!(summary(folder, "broken"), summary(folder, "straight"));
 }
 

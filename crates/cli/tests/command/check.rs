@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use raypencil_scene::Image;
 use raypencil_scene_io::{
@@ -10,18 +10,7 @@ use raypencil_scene_io::{
 };
 use tempfile::TempDir;
 
-fn raypencil(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_raypencil"))
-        .args(arguments)
-        .current_dir(folder)
-        .env("NO_COLOR", "1")
-        .output()
-        .expect("the binary runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
+use crate::{assert_trouble, raypencil, text};
 
 /// A pack of this repository.
 fn pack(name: &str) -> PathBuf {
@@ -71,19 +60,6 @@ fn assert_fails(output: &Output, words: &[&str]) {
     assert_eq!(output.status.code(), Some(1), "{screen}{}", text(&output.stderr));
     for word in words {
         assert!(screen.contains(word), "`{word}` is not in:\n{screen}");
-    }
-}
-
-#[track_caller]
-fn assert_trouble(output: &Output, words: &[&str]) {
-    // Lines of a message are wrapped: compare without their breaks.
-    let message = text(&output.stderr).replace(['\n', '│', '×', '╰', '─', '▶'], " ");
-    let message: Vec<&str> = message.split_whitespace().collect();
-    let message = message.join(" ");
-    assert_eq!(output.status.code(), Some(2), "{message}{}", text(&output.stdout));
-    assert_eq!(text(&output.stdout), "");
-    for word in words {
-        assert!(message.contains(word), "`{word}` is not in:\n{message}");
     }
 }
 

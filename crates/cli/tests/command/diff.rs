@@ -1,47 +1,12 @@
-//! `raypencil diff` as a user meets it: exit codes, what it prints, what it leaves behind.
+//! `diff`.
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use raypencil_scene::Image;
 use raypencil_scene_io::{Limits, Raster, read_exr, write_exr, write_npy};
 use tempfile::TempDir;
 
-/// Runs the binary in `folder`.
-fn raypencil(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_raypencil"))
-        .args(arguments)
-        .current_dir(folder)
-        .env("NO_COLOR", "1")
-        .output()
-        .expect("the binary runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-/// Asserts the exit code and gives what was printed.
-fn screen(folder: &Path, arguments: &[&str], code: i32) -> String {
-    let output = raypencil(folder, arguments);
-    let screen = text(&output.stdout);
-    assert_eq!(output.status.code(), Some(code), "{screen}{}", text(&output.stderr));
-    screen
-}
-
-/// Asserts trouble: exit 2, nothing on standard output, and a message with all of `words`.
-fn assert_trouble(folder: &Path, arguments: &[&str], words: &[&str]) {
-    let output = raypencil(folder, arguments);
-    // The message may be broken into lines, with a bar before each.
-    let message: Vec<String> =
-        text(&output.stderr).split_whitespace().filter(|word| *word != "│").map(String::from).collect();
-    let message = message.join(" ");
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert_eq!(text(&output.stdout), "");
-    for word in words {
-        assert!(message.contains(word), "`{word}` is not in:\n{message}");
-    }
-}
+use crate::{assert_trouble, raypencil, screen, text};
 
 /// A folder with `scanline/` and `tracer/`, the maps of both renderers on the facets under small sensors.
 fn rendered() -> TempDir {
@@ -168,21 +133,20 @@ fn arrays_and_maps_go_together() {
 #[test]
 fn trouble_is_one_clear_message() {
     let folder = rendered();
-    assert_trouble(folder.path(), &["diff", "nowhere", "tracer"], &["nowhere: cannot read"]);
+    assert_trouble(&raypencil(folder.path(), &["diff", "nowhere", "tracer"]), &["nowhere: cannot read"]);
     assert_trouble(
-        folder.path(),
-        &["diff", "small.toml", "tracer"],
+        &raypencil(folder.path(), &["diff", "small.toml", "tracer"]),
         &["small.toml", "expected a folder, or a file"],
     );
     let none = ["no channel is in both", "A has N.X", "B has beam-0/N.X"];
-    assert_trouble(folder.path(), &["diff", "tracer/camera.exr", "tracer"], &none);
+    assert_trouble(&raypencil(folder.path(), &["diff", "tracer/camera.exr", "tracer"]), &none);
     std::fs::create_dir_all(folder.path().join("mine/camera")).unwrap();
     let small = Image::filled(8, 8, 1.0_f64);
     write_npy(folder.path().join("mine/camera/range.T.npy"), &[&small]).unwrap();
     let sizes = ["camera/range.T.npy has 8 x 8", "tracer/camera.exr has 64 x 48", "expected the same size"];
-    assert_trouble(folder.path(), &["diff", "mine", "tracer"], &sizes);
+    assert_trouble(&raypencil(folder.path(), &["diff", "mine", "tracer"]), &sizes);
     let own = ["--output tracer: is one of the folders to compare"];
-    assert_trouble(folder.path(), &["diff", "scanline", "tracer", "-o", "tracer"], &own);
+    assert_trouble(&raypencil(folder.path(), &["diff", "scanline", "tracer", "-o", "tracer"]), &own);
     let number = "expected a number from 0 on";
     let share = "expected a share from 0 to 100 percent";
     for (option, value, expected) in [

@@ -1,0 +1,47 @@
+//! The command as its users meet it: exit codes, what it prints, what it leaves behind.
+
+mod basics;
+mod campaign;
+mod check;
+mod diff;
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// The binary, to be run in `folder`.
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_raypencil"));
+    command.args(arguments).current_dir(folder).env("NO_COLOR", "1");
+    command
+}
+
+fn raypencil(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().expect("the binary runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Asserts the exit code and gives what was printed.
+#[track_caller]
+fn screen(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let output = raypencil(folder, arguments);
+    let screen = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(code), "{screen}{}", text(&output.stderr));
+    screen
+}
+
+/// Asserts trouble: exit 2, nothing on standard output, and a message with all of `words`.
+#[track_caller]
+fn assert_trouble(output: &Output, words: &[&str]) {
+    // The message may be broken into lines, with a bar before each.
+    let message = text(&output.stderr);
+    let message: Vec<&str> = message.split_whitespace().filter(|word| *word != "│").collect();
+    let message = message.join(" ");
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert_eq!(text(&output.stdout), "");
+    for word in words {
+        assert!(message.contains(word), "`{word}` is not in:\n{message}");
+    }
+}
