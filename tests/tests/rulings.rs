@@ -4,7 +4,10 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use raypencil_harness::{Attributions, Class, Judge, JudgeShare, SensorComparison, Side, compare_judged};
+use raypencil_harness::campaign::{Campaign, PartName, scene_of};
+use raypencil_harness::{
+    Attributions, Class, Judge, JudgeShare, Quantity, SensorComparison, Side, compare_judged,
+};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{Frame, Maybe, Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId};
 use raypencil_terrain::builtin;
@@ -217,4 +220,19 @@ fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
     assert_eq!(face(&*tracer), Some((1, 0.0625)));
     assert_eq!(face(&*scanline), Some((1, 0.0625)));
     assert_eq!(compared(&scene, &*scanline, &*tracer)[0].of(Class::Defect), 0);
+}
+
+/// Found by a campaign. Two faces that tie, each grazed by the pencil, have cosines of their own: their fluxes differ by
+/// nearly what a grazed face's own flux may err by.
+#[test]
+fn by_how_much_tied_faces_differ_is_no_error_of_flux() {
+    let scene = scene_of(&Campaign::new(1, 911), 910, PartName::Lattice);
+    let [a, b] = renderers();
+    let sensors = compared(&scene, &*a, &*b);
+    let beam = sensors.iter().find(|sensor| sensor.sensor == SensorId::Beam(0)).expect("a beam");
+    let flux = beam.quantities.iter().find(|(quantity, _)| *quantity == Quantity::PencilFlux);
+    let (_, flux) = flux.expect("both say what each pencil delivers");
+    assert!(flux.of(Class::Tie) > 20 && flux.of(Class::Defect) == 0, "{flux:?}");
+    let worst = flux.worst_ratio.expect("pencils that agree");
+    assert!(worst.value < 0.1, "{worst:?}");
 }
