@@ -147,6 +147,25 @@ mod tests {
     }
 
     #[test]
+    fn boxes_are_halved_by_their_centres_along_the_axis_on_which_those_spread_most() {
+        let boxes = |along: [[f32; 2]; 2], across: [[f32; 2]; 2]| {
+            let corner = |k: usize, end: usize| Vec3A::new(along[k][end], across[k][end], 0.0);
+            [0, 1].map(|k| Aabb::new(corner(k, 0), corner(k, 1)))
+        };
+        let halved = |boxes: &[Aabb]| {
+            let mut order = [0, 1];
+            halve(boxes, &mut order, 1);
+            order
+        };
+        // Centres 2, -3 along x and 1, 1.5 along y, farther from 0 but nearer each other.
+        assert_eq!(halved(&boxes([[1.0, 3.0], [-4.0, -2.0]], [[0.5, 1.5], [1.0, 2.0]])), [1, 0]);
+        // Centres -6, 4 and 100, 101: y has the larger sum and the larger quotient.
+        assert_eq!(halved(&boxes([[3.0, 5.0], [-7.0, -5.0]], [[99.0, 101.0], [100.0, 102.0]])), [1, 0]);
+        // Centres -2.5, 1.5: the products of the ends, 6 and 2, are the other way round.
+        assert_eq!(halved(&boxes([[1.0, 2.0], [-3.0, -2.0]], [[0.0, 0.0]; 2])), [1, 0]);
+    }
+
+    #[test]
     fn what_is_too_much_for_one_group_is_halved_along_its_longest_axis() {
         let boxes = scattered(9001);
         let tree = build(&boxes);

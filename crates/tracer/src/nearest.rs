@@ -141,6 +141,8 @@ mod tests {
             faces in 2usize..3000,
             offset in prop_oneof![Just(0.0), Just(1e3), Just(1e6)],
             local_offset in prop_oneof![Just(0.0f32), Just(3e4), Just(2e6)],
+            // Metres for each unit of t: of a camera, and so long that a range is no multiple of t to be mistaken for it.
+            length in prop_oneof![Just(0.01), Just(0.7), Just(3.0)],
             aims in prop::collection::vec(
                 (any::<prop::sample::Index>(), 0u8..4, 0.0f64..1.0, 0.0f64..1.0, -1.0f64..1.0, 0.0f64..1.0, 0.1f64..30.0),
                 60,
@@ -174,7 +176,7 @@ mod tests {
                     let r = (1.0 - z * z).sqrt();
                     DVec3::new(r * cos, r * sin, z)
                 };
-                let ray = TracedRay::new(target + away * distance, -away * 0.01);
+                let ray = TracedRay::new(target + away * distance, -away * length);
                 prop_assert_eq!(
                     bits(search.nearest(&ray, max_range)),
                     bits(exhaustive(&mesh, &ray, max_range)),
