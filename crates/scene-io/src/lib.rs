@@ -37,6 +37,7 @@ mod npy;
 mod parse;
 mod pfm;
 mod plan;
+mod provenance;
 mod resolve;
 mod resolved;
 
@@ -56,4 +57,5 @@ pub use manifest::{
 };
 pub use npy::{read_npy, write_npy};
 pub use pfm::{read_pfm, write_pfm};
+pub use provenance::{Arithmetic, Provenance, Total};
 pub use resolved::write_resolved;

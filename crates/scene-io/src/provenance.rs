@@ -1,0 +1,134 @@
+//! `candidate.json`: what made a recording, and of which scene. Optional; `docs/files.md` describes it.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::error::Fault;
+use crate::manifest::ManifestScene;
+use crate::{SceneIoError, bytes};
+
+/// The file's name in the folder of a recording.
+const FILE_NAME: &str = "candidate.json";
+/// The number of its form.
+const FORMAT: u64 = 1;
+/// A note larger than this is none: 1 MiB.
+const LARGEST: u64 = 1 << 20;
+
+/// What a recording says of itself. Other keys, such as versions and seeds, are for people.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Provenance {
+    /// The program that made it, with its version if it likes.
+    pub program: String,
+    /// How finely the program computes.
+    pub arithmetic: Arithmetic,
+    /// The scene that it answers.
+    pub scene: ManifestScene,
+    /// What images by chance add up to.
+    #[serde(default)]
+    pub totals: Vec<Total>,
+}
+
+/// The arithmetic that a program computes in, whatever it stores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Arithmetic {
+    /// IEEE 754 single precision.
+    F32,
+    /// IEEE 754 double precision.
+    F64,
+}
+
+/// The sum over the pixels of an image by chance.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Total {
+    /// The word before the image's name: `direct` of `direct.mean.beam0`.
+    pub way: String,
+    /// Which beam's light.
+    pub beam: usize,
+    /// The mean, watts.
+    pub mean: f64,
+    /// Its standard error, watts.
+    pub error: f64,
+}
+
+impl Provenance {
+    /// Reads the note of a recording in `folder`, if it has one.
+    ///
+    /// # Errors
+    /// Names the file, the place in it, what was found and what was expected.
+    pub fn read(folder: impl AsRef<Path>) -> Result<Option<Self>, SceneIoError> {
+        let path = folder.as_ref().join(FILE_NAME);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let unfit = |fault: Fault| SceneIoError::Recording(fault.in_file(&path));
+        let text =
+            bytes::read_file(&path, LARGEST).map_err(|error| SceneIoError::io(&path, "read", error))?;
+        let invalid = |error: serde_json::Error| {
+            unfit(Fault::new("JSON", error.to_string(), "what docs/files.md describes"))
+        };
+        // A newer format fails by its number and not by a key.
+        #[derive(Deserialize)]
+        struct Head {
+            format: u64,
+        }
+        let Head { format } = serde_json::from_slice(&text).map_err(invalid)?;
+        if format != FORMAT {
+            return Err(unfit(Fault::new("format", format.to_string(), FORMAT.to_string())));
+        }
+        let read: Self = serde_json::from_slice(&text).map_err(invalid)?;
+        let is_flux = |value: f64| value.is_finite() && value >= 0.0;
+        if let Some(index) =
+            read.totals.iter().position(|total| !is_flux(total.mean) || !is_flux(total.error))
+        {
+            let Total { mean, error, .. } = &read.totals[index];
+            let found = format!("mean {mean}, error {error}");
+            return Err(unfit(Fault::new(
+                format!("totals[{index}]"),
+                found,
+                "two finite numbers, not negative",
+            )));
+        }
+        Ok(Some(read))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Option<Provenance>, SceneIoError> {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join(FILE_NAME), text).expect("a file");
+        Provenance::read(folder.path())
+    }
+
+    const GOOD: &str = r#"{"format": 1, "program": "P 1", "arithmetic": "f32", "scene": {"name": "s", "sha256": "ab"},
+        "totals": [{"way": "direct", "beam": 1, "mean": 2e-9, "error": 3e-12}], "seeds": [1, 24]}"#;
+
+    #[test]
+    fn a_note_is_read_and_may_be_absent() {
+        let empty = tempfile::tempdir().expect("a folder");
+        assert_eq!(Provenance::read(empty.path()).expect("no note is fine"), None);
+        let note = read(GOOD).expect("a note").expect("one that is there");
+        assert_eq!((note.program.as_str(), note.arithmetic), ("P 1", Arithmetic::F32));
+        assert_eq!((note.scene.sha256.as_str(), note.totals[0].beam, note.totals[0].mean), ("ab", 1, 2e-9));
+    }
+
+    #[test]
+    fn what_is_no_note_is_refused_by_place() {
+        for (text, words) in [
+            ("{", vec!["candidate.json", "JSON"]),
+            (r#"{"format": 2}"#, vec!["candidate.json", "format", "2", "1"]),
+            (r#"{"format": 1, "program": "P"}"#, vec!["arithmetic"]),
+            (&GOOD.replace("f32", "f16"), vec!["f16"]),
+            (&GOOD.replace("3e-12", "-3e-12"), vec!["totals[0]", "-3e-12"]),
+        ] {
+            let message = read(text).expect_err(text).to_string();
+            for word in words {
+                assert!(message.contains(word), "{message} has no {word}");
+            }
+        }
+    }
+}
