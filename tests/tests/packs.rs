@@ -81,7 +81,7 @@ fn judged(pack: &str, renderer: &str) -> Checked {
     let frame = contender.renderer.render(&subject.scene, &Request::EVERYTHING);
     let folder = tempfile::tempdir().expect("a folder");
     write_maps(&frame, renderer, &subject, Sampling::Centres, folder.path()).expect("maps");
-    check_pack(&pack, folder.path(), Resolution::F64, &Silent).expect("a candidate as it should be")
+    check_pack(&pack, folder.path(), Some(Resolution::F64), &Silent).expect("a candidate as it should be")
 }
 
 #[test]

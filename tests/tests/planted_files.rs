@@ -68,7 +68,7 @@ fn a_pack_finds_them_too() {
         let candidate = folder.path().join("candidate");
         let _ = fs::remove_dir_all(&candidate);
         write(&subject.scene, fault, &candidate).unwrap();
-        let found = check_pack(&pack, &candidate, Resolution::F64, &Silent);
+        let found = check_pack(&pack, &candidate, Some(Resolution::F64), &Silent);
         match (fault, found) {
             (None, Ok(checked)) => assert!(checked.check.passes()),
             (Some(FileFault::MinusOneForNoHit), Err(CheckError::Candidate(_))) => {}

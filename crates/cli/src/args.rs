@@ -173,6 +173,10 @@ pub(crate) struct Validate {
     #[arg(long, value_name = "WHICH", default_value = "sample")]
     pub(crate) judge: JudgeWhich,
 
+    /// A folder with another program's answers to this scene, held to the truth beside ours. May be given several times.
+    #[arg(long = "candidate", value_name = "DIR")]
+    pub(crate) candidates: Vec<PathBuf>,
+
     /// Folder to write to; out/<scene's name> if not given.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
@@ -193,6 +197,7 @@ impl Validate {
             with: DEFAULT_WITH.map(String::from).to_vec(),
             switches: SwitchArguments::default(),
             judge: JudgeWhich::Sample,
+            candidates: Vec::new(),
             output: None,
         }
     }
@@ -370,9 +375,10 @@ pub(crate) struct Check {
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
 
-    /// The arithmetic that the answers were computed in, whatever they are stored as.
-    #[arg(long, value_name = "ARITHMETIC", default_value = "f64")]
-    pub(crate) arithmetic: ArithmeticWord,
+    /// The arithmetic that the answers were computed in, whatever they are stored as. If not given, what their own
+    /// candidate.json says; without one f64.
+    #[arg(long, value_name = "ARITHMETIC")]
+    pub(crate) arithmetic: Option<ArithmeticWord>,
 
     /// Folder to write junit.xml and check.json to.
     #[arg(short, long, value_name = "DIR")]

@@ -2,13 +2,13 @@
 
 use raypencil_harness::{check_json, check_pack, check_screen, write_check};
 
-use crate::args::Check;
+use crate::args::{ArithmeticWord, Check};
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
-    let resolution = command.arithmetic.resolution();
+    let resolution = command.arithmetic.map(ArithmeticWord::resolution);
     let checked = check_pack(&command.pack, &command.candidate, resolution, &spinner)?;
     if let Some(folder) = &command.output {
         write_check(&checked, folder)?;

@@ -21,7 +21,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use raypencil_harness::campaign::CampaignError;
-use raypencil_harness::{CheckError, Contender, DiffError, NoSuchRay, OutputError, PackError};
+use raypencil_harness::{CheckError, Contender, DiffError, NoSuchRay, OutputError, OutsideError, PackError};
 use raypencil_scene_io::SceneIoError;
 use thiserror::Error;
 
@@ -62,6 +62,10 @@ enum Trouble {
     /// A pack or a candidate that cannot be judged.
     #[error(transparent)]
     Check(#[from] CheckError),
+
+    /// What another program recorded of a scene.
+    #[error(transparent)]
+    Outside(#[from] OutsideError),
 
     /// Two recordings that do not fit together.
     #[error(transparent)]

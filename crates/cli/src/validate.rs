@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_harness::{JudgeShare, one_screen, summary_json, validate as run, write_validation};
+use raypencil_harness::{
+    JudgeShare, Outsider, Progress as _, one_screen, summary_json, validate as run, write_validation,
+};
 
 use crate::args::{JudgeWhich, Validate, typed_renderers};
 use crate::console::{Spinner, say};
@@ -22,7 +24,15 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         JudgeWhich::Sample => JudgeShare::Sample,
         JudgeWhich::All => JudgeShare::All,
     };
-    let validation = run(subject, &contenders, share, &spinner);
+    // Others first: what is wrong with their files is said soon.
+    spinner.stage("reading what others recorded");
+    let outsiders: Result<Vec<Outsider>, _> =
+        command.candidates.iter().map(|folder| Outsider::read(folder, &subject.scene)).collect();
+    let outsiders = outsiders?;
+    let mut validation = run(subject, &contenders, share, &spinner);
+    if !outsiders.is_empty() {
+        validation.hold(outsiders, &spinner);
+    }
     write_validation(&validation, &folder, &spinner)?;
     drop(spinner);
     if json {

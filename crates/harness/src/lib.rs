@@ -9,6 +9,7 @@
 //! probe      everything about one ray
 //! diff       two recordings of anything, channel by channel
 //! minimise   the plainest scene that still shows a difference
+//! outside    renderers that others wrote, held to the same truth
 //! output     the folder of a validation: maps, report, summary
 //! ```
 
@@ -23,6 +24,7 @@ mod diff;
 mod judge;
 mod minimise;
 mod output;
+mod outside;
 mod pack;
 mod probe;
 mod recorded;
@@ -50,6 +52,11 @@ pub use minimise::{
 };
 pub use output::{
     OutputError, Written, one_screen, probe_command, quoted, summary_json, write_maps, write_validation,
+};
+pub use outside::{
+    CHANCE_LIMITS, ChanceLimits, Estimate, Held, HeldOutsider, ImageComparison, MissReproducer, OutsideError,
+    Outsider, Panel, RadianceComparison, RadianceMap, WayImage, compare_images, compare_radiance,
+    expected_images, panel, write_misses,
 };
 pub use pack::{PackError, blind_scene, blind_subject, write_pack};
 pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedReturn, probe};

@@ -5,6 +5,7 @@
 //! DIR/<renderer>/camera.exr, beam-N.exr    the maps
 //! DIR/report.html                          for people: one file, pictures inside
 //! DIR/summary.md                           for a comment on a change
+//! DIR/misses/NAME-K/                     a miss of an outsider as a pack of its one ray
 //! DIR/junit.xml                            for CI
 //! DIR/summary.json                         for programs; written last, it marks a complete folder
 //! ```
@@ -12,6 +13,7 @@
 mod junit;
 mod light;
 mod markdown;
+mod outside;
 pub(crate) mod picture;
 pub(crate) mod plot;
 mod report;
@@ -38,6 +40,8 @@ use std::time::{Duration, Instant};
 use raypencil_scene::{Frame, Sampling, SensorId, SensorMap};
 use raypencil_scene_io::{Attributes, ExrMap, SceneIoError, write_atomically, write_exr};
 
+use crate::outside::write_misses;
+use crate::pack::PackError;
 use crate::run::{Progress, Rendered, Subject, Validation};
 
 pub use screen::one_screen;
@@ -87,6 +91,9 @@ pub enum OutputError {
     /// One of the files; the message names it.
     #[error(transparent)]
     File(#[from] SceneIoError),
+    /// The reproducer of an outsider's miss.
+    #[error(transparent)]
+    Miss(Box<PackError>),
     /// A renderer's name that cannot be the name of a folder of its own.
     #[error("renderer name `{name}` {problem}: its maps need a folder of their own")]
     Name {
@@ -95,6 +102,12 @@ pub enum OutputError {
         /// What is wrong with it.
         problem: &'static str,
     },
+}
+
+impl From<PackError> for OutputError {
+    fn from(error: PackError) -> Self {
+        Self::Miss(Box::new(error))
+    }
 }
 
 /// Writes the maps of every renderer, `report.html`, `summary.md`, `junit.xml`, and last `summary.json`.
@@ -125,6 +138,10 @@ pub fn write_validation(
             Sampling::Centres,
             &folder,
         )?);
+    }
+
+    for held in validation.panel.iter().flat_map(|panel| &panel.outsiders) {
+        write_misses(&validation.subject, held, &folder.join("misses"), progress)?;
     }
 
     progress.stage("writing the report");

@@ -12,6 +12,7 @@ use raypencil_scene_io::{Channel, Channels, Limits, SceneIoError, Storage, Value
 
 use crate::answers::{Answers, other};
 use crate::compare::Quantity;
+use crate::outside::is_of_outsiders;
 
 /// Why a recording cannot be judged.
 #[derive(Debug, thiserror::Error)]
@@ -202,6 +203,11 @@ impl Recorded {
     /// # Errors
     /// Names the file, the channel and the cell that breaks the conventions.
     pub fn read(folder: &Path, scene: &Scene, resolution: Resolution) -> Result<Self, RecordingError> {
+        Self::of_folder(folder, scene, resolution, &Self::channels(folder)?)
+    }
+
+    /// The channels of a folder that holds one recording.
+    pub(crate) fn channels(folder: &Path) -> Result<Channels, RecordingError> {
         let several = recordings_in(folder);
         if !several.is_empty() {
             let found = match several.as_slice() {
@@ -210,9 +216,18 @@ impl Recorded {
             };
             return Err(RecordingError::Several { folder: folder.to_path_buf(), found });
         }
-        let channels = read_channels(folder, &Limits::default())?;
+        Ok(read_channels(folder, &Limits::default())?)
+    }
+
+    /// What the channels of a folder say of a scene's sensors.
+    pub(crate) fn of_folder(
+        folder: &Path,
+        scene: &Scene,
+        resolution: Resolution,
+        channels: &Channels,
+    ) -> Result<Self, RecordingError> {
         let name = folder.file_name().map_or("candidate".into(), |name| name.to_string_lossy().into_owned());
-        Self::of_channels(name, folder, scene, resolution, &channels)
+        Self::of_channels(name, folder, scene, resolution, channels)
     }
 
     /// What a renderer of this house says, as it computed it.
@@ -271,13 +286,14 @@ impl Recorded {
             reader.light(beam)?;
         }
         let Reader { answers, storage, used, .. } = reader;
-        // Of packs: what no candidate has to say.
-        let margins = |key: &str| {
+        // Of packs: what no candidate has to say. And what is judged by chance, or not by pencils.
+        let is_known = |key: &str| {
             key.split_once('/').is_some_and(|(_, name)| name.starts_with("margin."))
                 || key.starts_with("rays-")
+                || is_of_outsiders(key)
         };
         let unknown: Vec<String> =
-            channels.by_key.keys().filter(|key| !used.contains(*key) && !margins(key)).cloned().collect();
+            channels.by_key.keys().filter(|key| !used.contains(*key) && !is_known(key)).cloned().collect();
         if storage.is_empty() {
             return Err(RecordingError::Nothing { folder: folder.to_path_buf(), unknown });
         }

@@ -8,6 +8,7 @@ use raypencil_scene::{Frame, Request, Resolution, Scene, Stage};
 use crate::attribution::Attributions;
 use crate::compare::{ApproximationTallies, Class, SensorComparison, Side, compare_judged};
 use crate::judge::{Judge, JudgeShare};
+use crate::outside::{Outsider, Panel, panel};
 use crate::renderers::Contender;
 
 /// The scene under test, and how people name it.
@@ -60,6 +61,8 @@ pub struct Validation {
     pub rendered: Vec<Rendered>,
     /// Every pair.
     pub pairs: Vec<Pair>,
+    /// Everyone's answers held to the truth, if others were asked as well.
+    pub panel: Option<Panel>,
     /// How long each part of the work took, in order.
     pub stages: Vec<Stage>,
 }
@@ -128,6 +131,13 @@ impl Validation {
             }
         }
         all
+    }
+
+    /// Holds the renderers and what others recorded of the same scene to the truth about every ray.
+    pub fn hold(&mut self, outsiders: Vec<Outsider>, progress: &dyn Progress) {
+        let start = Instant::now();
+        self.panel = Some(panel(&self.subject, &self.rendered, outsiders, progress));
+        self.stages.push(Stage { name: "holding all to the truth".into(), time: start.elapsed() });
     }
 
     /// Whether everything that was compared agrees or has a confirmed cause, and something was.
@@ -200,7 +210,7 @@ pub fn validate(
         }
     }
     drop(judge);
-    Validation { subject, rendered, pairs, stages }
+    Validation { subject, rendered, pairs, panel: None, stages }
 }
 
 impl Rendered {

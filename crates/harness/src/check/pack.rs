@@ -11,6 +11,7 @@ use raypencil_scene_io::{
 use super::{Check, Truth, check};
 use crate::compare::{Place, Quantity};
 use crate::output::probe_command;
+use crate::outside::{OutsideError, note, resolution_of};
 use crate::pack::blind_scene;
 use crate::recorded::{Item, Recorded, RecordingError};
 use crate::run::{Progress, Subject};
@@ -25,6 +26,9 @@ pub enum CheckError {
     /// The candidate; the message names the file, the channel and the cell.
     #[error(transparent)]
     Candidate(#[from] RecordingError),
+    /// The note of what made the candidate.
+    #[error(transparent)]
+    Note(#[from] OutsideError),
     /// The pack's answers.
     #[error("{}: {found}; expected {expected}", pack.display())]
     Answers {
@@ -57,14 +61,16 @@ impl Checked {
     }
 }
 
-/// Holds a candidate, whose arithmetic is as fine as `resolution` says, to a pack.
+/// Holds a candidate to a pack. Its arithmetic is as fine as `resolution` says; if nothing is said, as its own
+/// `candidate.json` does, and else that of doubles.
 ///
 /// # Errors
-/// A pack that is not complete and unchanged; a candidate that breaks the conventions.
+/// A pack that is not complete and unchanged; a candidate that breaks the conventions, or that its `candidate.json`
+/// says is of another scene.
 pub fn check_pack(
     pack: &Path,
     candidate: &Path,
-    resolution: Resolution,
+    resolution: Option<Resolution>,
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
     progress.stage("reading the pack");
@@ -83,6 +89,9 @@ pub fn check_pack(
     }
     // The candidate before the truth: what is wrong with it is said soon.
     progress.stage("reading the candidate");
+    let note = note(candidate, &scene)?;
+    let own = note.map(|note| resolution_of(note.arithmetic));
+    let resolution = resolution.or(own).unwrap_or(Resolution::F64);
     let recorded = Recorded::read(candidate, &scene, resolution)?;
 
     let truth = match (manifest.kind, manifest.blind_seed) {

@@ -19,7 +19,7 @@ fn pack() -> PathBuf {
 }
 
 fn of_itself() -> Checked {
-    check_pack(&pack(), &pack(), Resolution::F64, &Silent).expect("a pack as it was written")
+    check_pack(&pack(), &pack(), Some(Resolution::F64), &Silent).expect("a pack as it was written")
 }
 
 #[test]

@@ -47,13 +47,18 @@ impl<'s> Truth<'s> {
         &self.answers
     }
 
+    /// What ray (i, j) of a sensor meets, each value correctly rounded.
+    pub fn hit_at(&self, sensor: SensorId, i: u32, j: u32) -> Option<Hit> {
+        self.hit(Place { sensor, i, j })
+    }
+
     /// What a ray meets.
-    pub(super) fn hit(&self, place: Place) -> Option<Hit> {
+    pub(crate) fn hit(&self, place: Place) -> Option<Hit> {
         hit_of(self.answers.map(place.sensor), place)
     }
 
     /// Whether the camera sees a pencil's hit, and where that lands.
-    pub(super) fn sight(&self, Place { sensor, i, j }: Place) -> (bool, Option<Pixel>) {
+    pub(crate) fn sight(&self, Place { sensor, i, j }: Place) -> (bool, Option<Pixel>) {
         let SensorId::Beam(beam) = sensor else { return (false, None) };
         let returns = &self.answers.light[beam].returns;
         let visible = returns.visible.as_ref().is_some_and(|image| image.at(i, j));

@@ -24,6 +24,14 @@ pub(super) fn coarse(trials: &mut Trials<'_>) {
     }
 }
 
+/// Keeps the faces nearest the ray in question, so many at most, if they show it.
+pub(super) fn nearest(trials: &mut Trials<'_>, count: usize) {
+    let Some(mut kept) = by_nearness(trials.best()).filter(|all| all.len() > count) else { return };
+    kept.truncate(count);
+    kept.sort_unstable();
+    trials.keep(trials.best().with_faces(&kept));
+}
+
 /// ddmin over the faces: parts, then complements of parts, twice as fine whenever neither shows it.
 pub(super) fn fewest(trials: &mut Trials<'_>) {
     trials.stage("fewer faces");

@@ -69,6 +69,26 @@ pub struct Minimised {
 #[error("the scene does not show it as it is: there is nothing to minimise")]
 pub struct NotShown;
 
+/// The scene of one ray of `scene`, the very same, with the `faces` nearest to it, as far as `shows` holds of each step. It
+/// is `scene` itself if `shows` does not hold of that.
+pub(crate) fn single_ray(
+    scene: &Scene,
+    place: Place,
+    faces: usize,
+    shows: &dyn Fn(&Scene, Option<Place>) -> bool,
+    progress: &dyn Progress,
+) -> (Scene, Place) {
+    let Ok(mut trials) = Trials::begin(Draft::of(scene, Some(place)), shows, MINIMISE_BUDGET, progress)
+    else {
+        return (scene.clone(), place);
+    };
+    sensors::cut_to_ray(&mut trials);
+    faces::nearest(&mut trials, faces);
+    sensors::cut_others(&mut trials);
+    let place = trials.best().place.unwrap_or(place);
+    (trials.into_scene(), place)
+}
+
 /// Finds the plainest scene of which `shows` holds, beginning with `scene`.
 ///
 /// `place` is the ray in question, if it is known: then the faces near it are tried first, which takes a few calls on

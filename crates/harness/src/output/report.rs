@@ -4,6 +4,7 @@ use askama::Template;
 
 use super::VERSION;
 use super::light::{self, Light};
+use super::outside::{self, Outside};
 use super::plot::{self, Plots};
 use super::table::{CauseRow, Row, causes, hits, rows};
 use super::text::{count, counted, list, probe_command, time};
@@ -32,6 +33,7 @@ struct Page<'a> {
     causes: Vec<CauseRow>,
     sensors: Vec<Sensor>,
     light: Light,
+    outside: Outside,
     defects: Vec<Defects>,
     stages: Vec<Timed>,
 }
@@ -87,7 +89,7 @@ struct Timed {
 
 /// The whole page.
 pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
-    let Validation { subject, rendered, pairs, stages } = validation;
+    let Validation { subject, rendered, pairs, panel: _, stages } = validation;
     let verdict = Verdict::of(validation);
     let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let longest = stages.iter().map(|stage| stage.time).max().unwrap_or_default().as_secs_f64();
@@ -124,6 +126,7 @@ pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
             })
             .collect(),
         light: light::light(validation, most),
+        outside: outside::outside(validation),
         defects: pairs.iter().flat_map(|pair| defects(validation, pair)).collect(),
         stages: stages
             .iter()

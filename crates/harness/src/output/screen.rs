@@ -5,10 +5,10 @@ use std::path::Path;
 
 use raypencil_scene::{SensorId, Stage};
 
-use super::VERSION;
 use super::table::{hits, totals};
 use super::text::{count, counted, list, probe_command, time, worst};
 use super::verdict::{Verdict, defects, explanation, headline, rays};
+use super::{VERSION, outside};
 use crate::compare::{Class, Place, SensorComparison};
 use crate::run::Validation;
 
@@ -20,6 +20,8 @@ const SENSORS: usize = 5;
 const TIMES: usize = 4;
 /// Causes that get a line.
 const CAUSES: usize = 4;
+/// Outsiders that get a line.
+const OUTSIDERS: usize = 4;
 /// Column of the paper's approximations in the table of quantities.
 const APPROXIMATIONS: usize = 4;
 /// Defects that get their lines.
@@ -32,6 +34,7 @@ pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
         quantities(validation),
         sensors(validation),
         approximations(validation),
+        outsiders(validation),
         times(validation),
         files(validation, folder),
         verdict(validation),
@@ -185,6 +188,12 @@ fn approximations(validation: &Validation) -> String {
         let _ = writeln!(text, "... and {} more causes in the summary", all.len() - CAUSES);
     }
     text
+}
+
+/// How others fare.
+fn outsiders(validation: &Validation) -> String {
+    let lines = validation.panel.iter().flat_map(outside::lines).take(OUTSIDERS);
+    lines.map(|line| format!("{}\n", cut(&line))).collect()
 }
 
 /// Stage times, a renderer a line.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use raypencil_scanline::Switches;
 use serde::Serialize;
 
+use super::outside::{self, PanelSummary};
 use super::table::hits;
 use super::text::probe_command;
 use super::verdict::Verdict;
@@ -28,6 +29,8 @@ struct Summary<'a> {
     scene: SceneName<'a>,
     renderers: Vec<RendererSummary<'a>>,
     pairs: Vec<PairSummary<'a>>,
+    /// Everyone's answers held to the truth; null unless others were asked as well.
+    panel: Option<PanelSummary>,
     stages: Vec<StageSummary<'a>>,
 }
 
@@ -141,7 +144,7 @@ struct StageSummary<'a> {
 
 /// The summary as JSON with line breaks, as it stands in `summary.json`.
 pub fn summary_json(validation: &Validation) -> String {
-    let Validation { subject, rendered, pairs, stages } = validation;
+    let Validation { subject, rendered, pairs, panel: _, stages } = validation;
     let counts = validation.counts();
     let approximations = validation.approximations();
     let summary = Summary {
@@ -163,6 +166,7 @@ pub fn summary_json(validation: &Validation) -> String {
         scene: SceneName { name: &subject.name, sha256: &subject.sha256, arguments: &subject.arguments },
         renderers: rendered.iter().map(of_renderer).collect(),
         pairs: pairs.iter().map(|pair| of_pair(validation, pair)).collect(),
+        panel: outside::summary(validation),
         stages: stages
             .iter()
             .map(|stage| StageSummary { name: &stage.name, seconds: stage.time.as_secs_f64() })

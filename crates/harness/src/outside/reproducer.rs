@@ -1,0 +1,122 @@
+//! A miss of an outsider as a pack of its one ray: whoever has the program can see it again.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_referee::{Format, Referee};
+use raypencil_scene::{Sampling, Scene, SensorId};
+use raypencil_scene_io::{scene_sha256, write_atomically};
+
+use super::HeldOutsider;
+use crate::check::{Wrong, name_of};
+use crate::compare::{Place, Quantity};
+use crate::minimise::single_ray;
+use crate::output::{probe_command, quoted};
+use crate::pack::{PackError, write_pack};
+use crate::run::{Progress, Subject};
+
+/// How many misses of each outsider get a reproducer.
+pub const REPRODUCED: usize = 10;
+/// The most faces of a reproducer's ground: those nearest the ray.
+const FACES: usize = 1000;
+
+/// A reproducer that was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MissReproducer {
+    /// Which ray of the scene.
+    pub place: Place,
+    /// Its folder.
+    pub folder: PathBuf,
+}
+
+/// What is true of a ray, bit for bit: range, and of a pencil whether it is seen and what it delivers.
+type TrueAnswer = (Option<u64>, Option<(bool, u64)>);
+
+fn truth_of(scene: &Scene, Place { sensor, i, j }: Place) -> TrueAnswer {
+    let referee = Referee::new(scene);
+    let range = referee.values(sensor, i, j).map(|hit| hit.in_format(Format::Double).range.to_bits());
+    let visible = match sensor {
+        SensorId::Camera => None,
+        SensorId::Beam(beam) => referee
+            .light(beam, Sampling::Centres)
+            .and_then(|light| light.returned(i, j))
+            .map(|back| back.in_format(Format::Double, scene.flux_model()))
+            .map(|back| (back.visible, back.flux.to_bits())),
+    };
+    (range, visible)
+}
+
+/// Writes a pack of the one ray for each of the first ten misses of an outsider, as `folder/NAME-1`, `NAME-2`, ..., each
+/// with a README.md that says what was said and what is true.
+///
+/// # Errors
+/// Names the file that could not be written.
+pub fn write_misses(
+    subject: &Subject,
+    held: &HeldOutsider,
+    folder: &Path,
+    progress: &dyn Progress,
+) -> Result<Vec<MissReproducer>, PackError> {
+    let mut written = Vec::new();
+    for (index, wrong) in held.misses().take(REPRODUCED).enumerate() {
+        progress.stage(&format!("{}: miss {}", held.outsider.name, index + 1));
+        let name = held.miss_name(index);
+        let folder = folder.join(&name);
+        // A pencil's flux is that of the others too, where the profile is divided by its sum; a pixel's is of many pencils.
+        let is_flux = matches!(wrong.item.quantity, Quantity::PencilFlux | Quantity::PixelFlux);
+        let of_ray = |scene: &Scene, place: Place| {
+            let (range, back) = truth_of(scene, place);
+            (range, back.map(|(visible, flux)| (visible, if is_flux { flux } else { 0 })))
+        };
+        let true_answer = of_ray(&subject.scene, wrong.place);
+        let is_sum = wrong.item.quantity == Quantity::PixelFlux;
+        let shows = |scene: &Scene, place: Option<Place>| {
+            !is_sum && place.is_some_and(|place| of_ray(scene, place) == true_answer)
+        };
+        let (scene, place) = single_ray(&subject.scene, wrong.place, FACES, &shows, progress);
+        let small = Subject { arguments: quoted("scene.toml"), name, sha256: scene_sha256(&scene), scene };
+        write_pack(&small, None, &folder, progress)?;
+        let text = words(subject, held, wrong, &small, place);
+        let readme = folder.join("README.md");
+        write_atomically(&readme, |file| file.write_all(text.as_bytes()))?;
+        written.push(MissReproducer { place: wrong.place, folder });
+    }
+    Ok(written)
+}
+
+/// A name as a folder may be called: letters, digits and `-`.
+pub(super) fn folder_name(name: &str) -> String {
+    let plain: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' }).collect();
+    let parts: Vec<&str> = plain.split('-').filter(|part| !part.is_empty()).collect();
+    if parts.is_empty() { "outsider".into() } else { parts.join("-") }
+}
+
+fn words(subject: &Subject, held: &HeldOutsider, wrong: &Wrong, small: &Subject, place: Place) -> String {
+    let program = &held.outsider.name;
+    let faces = small.scene.mesh().faces().len();
+    let of = subject.scene.mesh().faces().len();
+    format!(
+        "# {program}, {at}\n\n{quantity}: {what}\n\nThis folder is a reference pack of that ray ({place} here) over {faces} of the {of} faces; its answer to the\n\
+         ray is that of the whole scene. To see what is true, and to ask a program again:\n\n```sh\n{probe}\nraypencil check . CANDIDATE\n```\n\n\
+         Of the scene {name}, {sha256}: `{again}`\n",
+        at = wrong.place,
+        quantity = name_of(wrong.item),
+        what = wrong.what,
+        probe = probe_command(small, place),
+        name = subject.name,
+        sha256 = scene_sha256(&subject.scene),
+        again = probe_command(subject, wrong.place),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_is_a_fit_folder() {
+        assert_eq!(folder_name("Mitsuba 3"), "mitsuba-3");
+        assert_eq!(folder_name("../../x"), "x");
+        assert_eq!(folder_name("***"), "outsider");
+    }
+}
