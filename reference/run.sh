@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs every reference program against the committed packs, where there is a Python or a C++ compiler to run them
-# with: the exact values once more, and the two small renderers judged by `raypencil check`.
+# with: the exact values once more, the two small renderers judged by `raypencil check`, and Embree and Mitsuba asked
+# again, which must say what they said when their committed recordings were made.
 #
 #     reference/run.sh RAYPENCIL        the binary
 set -euo pipefail
@@ -47,6 +48,29 @@ if [[ -n $python ]]; then
         expect 0 "$python" reference/numpy_candidate.py "$work/blind-$seed" "$work/f64/blind-$seed"
         expect 0 "$raypencil" check "$work/blind-$seed" "$work/f64/blind-$seed"
     done
+    candidates=data/candidates
+    make=(reference/make.py --pack)
+    for pack in "${packs[@]}"; do
+        expect 0 "$python" "${make[@]}" "data/packs/$pack" --with embree -o "$work/embree/$pack"
+        expect 0 "$python" "${make[@]}" "data/packs/$pack" --with embree -o "$work/embree-again/$pack"
+        expect 0 "$python" reference/agree.py "$work/embree/$pack" "$work/embree-again/$pack"
+        # Another processor takes other instructions.
+        expect 0 "$python" reference/agree.py "$work/embree/$pack" "$candidates/embree/$pack" --maps single
+        expect 0 "$raypencil" check "data/packs/$pack" "$work/embree/$pack"
+    done
+    # Seeds that the committed images have not: independent of them.
+    if PYTHONPATH=reference "$python" -c 'from renderers import llvm; llvm.locate()' 2>"$work/output"; then
+        expect 0 "$python" "${make[@]}" data/packs/pyramids --with mitsuba -o "$work/mitsuba/pyramids" \
+            --images 12 --samples 64 --seed 1001
+        expect 0 "$python" reference/agree.py "$work/mitsuba/pyramids" "$candidates/mitsuba/pyramids" --maps single
+        cat "$work/output"
+        expect 0 "$raypencil" check data/packs/pyramids "$work/mitsuba/pyramids"
+        expect 0 "$raypencil" validate data/packs/pyramids/scene.toml --candidate "$work/mitsuba/pyramids" \
+            --candidate "$work/embree/pyramids" -o "$work/panel"
+        grep -E '^(Embree|Mitsuba)' "$work/output"
+    else
+        echo "SKIPPED Mitsuba: $(tail -n 1 "$work/output")"
+    fi
 else
     echo "SKIPPED the Python programs: no Python of 3.11 or later with numpy and mpmath to be had"
 fi
