@@ -674,4 +674,6 @@ impl Placed {
 }
 
 #[cfg(test)]
+mod by_hand;
+#[cfg(test)]
 mod tests;
