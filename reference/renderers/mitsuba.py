@@ -15,6 +15,8 @@ from . import llvm, maps
 from .pack import NO_HIT, Pack, pose, read
 
 VARIANT = "llvm_ad_mono"
+# So many times fewer samples of `ptracer`.
+PTRACER = 64
 # Correlated multi-jittered samples: a stripe thinner than a pixel is a line in it, on which they err by N^(-3/4) where
 # independent ones err by N^(-1/2). Images of different seeds are independent all the same.
 SAMPLER = "multijitter"
@@ -189,17 +191,23 @@ def images(pack: Pack, beam: int, lit, out: Path, effort: Effort) -> list[dict]:
 
     pixels = pack.camera["width_px"] * pack.camera["height_px"]
     ways = {
-        "direct": ({"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}, 1.0),
+        "direct": ({"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}, effort.samples, 1.0),
         # Its film holds the sum over paths, times pixels over paths: one pixel's share of a unit is what a sensor of
-        # radiance wants. Ours wants the sum over paths itself, of one unit for all of them.
-        "ptracer": ({"type": "ptracer", "max_depth": 2, "hide_emitters": True}, 1.0 / pixels),
+        # radiance wants. Ours wants the sum over paths itself, of one unit for all of them. All of its light falls on a
+        # stripe, so that fewer paths do; and many equal numbers in one pixel of a film in single precision add up
+        # badly.
+        "ptracer": (
+            {"type": "ptracer", "max_depth": 2, "hide_emitters": True},
+            max(1, effort.samples // PTRACER),
+            1.0 / pixels,
+        ),
     }
     totals = []
-    for way, (integrator, unit) in ways.items():
+    for way, (integrator, samples, unit) in ways.items():
         integrator = mi.load_dict(integrator)
         # Every image is a sum in single precision; their mean and scatter are taken in double.
         drawn = np.stack([
-            np.array(mi.render(lit, integrator=integrator, spp=effort.samples, seed=effort.seed + k))[..., 0]
+            np.array(mi.render(lit, integrator=integrator, spp=samples, seed=effort.seed + k))[..., 0]
             for k in range(effort.images)
         ]).astype(float) * unit
         maps.write(out, "camera", {

@@ -87,3 +87,53 @@ fn nearest(corners: &[[f64; 2]]) -> [f64; 2] {
     }
     near
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(constant: f64, x: f64, y: f64) -> Form {
+        Form { constant, x, y, xy: 0.0, error: 0.0, bend: 0.0 }
+    }
+
+    #[test]
+    fn a_square_is_cut_where_conditions_begin() {
+        // dx >= 1/2: the right quarter.
+        let region = Region::of(&[form(-0.5, 1.0, 0.0)]).expect("a part of the square");
+        assert_eq!(region.corners, [[0.5, -1.0], [1.0, -1.0], [1.0, 1.0], [0.5, 1.0]]);
+        // Of many that are as near, the middle of the side.
+        assert_eq!((region.near, region.middle), ([0.5, 0.0], [0.75, 0.0]));
+        let region = Region::of(&[form(-0.5, 0.0, 1.0)]).expect("a part of the square");
+        assert_eq!(region.near, [0.0, 0.5]);
+        // Below it dx + dy >= 1 too: a triangle, and what is left of it above dy = 1/4 is nearest at (3/4, 1/4).
+        let region = Region::of(&[form(-1.0, 1.0, 1.0), form(0.25, 0.0, -1.0)]).expect("a part");
+        assert_eq!(region.corners, [[1.0, 0.0], [1.0, 0.25], [0.75, 0.25]]);
+        assert_eq!(size(region.near), 0.75);
+        assert!(Region::of(&[form(-1.5, 1.0, 0.0)]).is_none());
+        assert!(Region::of(&[form(-0.5, 1.0, 0.0), form(0.25, -1.0, 0.0)]).is_none());
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_polygon_may_be_inside_a_side() {
+        // Where both parts are equal, with like and with unlike signs; and at a corner.
+        assert_eq!(nearest(&[[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]), [0.5, 0.5]);
+        assert_eq!(nearest(&[[-1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]), [-0.5, 0.5]);
+        assert_eq!(nearest(&[[0.25, 0.5], [1.0, 1.0], [0.0, 1.0]]), [0.25, 0.5]);
+        // Through the middle.
+        assert_eq!(size(nearest(&[[-1.0, -0.5], [1.0, 0.5], [1.0, 1.0]])), 0.0);
+    }
+
+    #[test]
+    fn conditions_hold_between_two_places_or_nowhere() {
+        // dx >= -1/2 + dy, dx <= 1/4.
+        let forms = [form(0.5, 1.0, -1.0), form(0.5, -2.0, 0.0)];
+        assert_eq!(holds_between(&forms, 0.0), Some([-0.5, 0.25]));
+        assert_eq!(holds_between(&forms, 0.5), Some([0.0, 0.25]));
+        assert_eq!(holds_between(&forms, 0.75), Some([0.25, 0.25]));
+        assert_eq!(holds_between(&forms, 1.0), None);
+        // Level in dx: everywhere or nowhere.
+        assert_eq!(holds_between(&[form(0.5, 0.0, 1.0)], -0.25), Some([-1.0, 1.0]));
+        assert_eq!(holds_between(&[form(0.5, 0.0, 1.0)], -0.5), Some([-1.0, 1.0]));
+        assert_eq!(holds_between(&[form(0.5, 0.0, 1.0)], -0.75), None);
+    }
+}

@@ -228,3 +228,17 @@ fn a_beam_narrower_than_its_pencils_has_shares_all_the_same() {
     }
     assert!(seen > 0);
 }
+
+#[test]
+fn there_is_no_view_of_what_is_no_pencil() {
+    let scene = Setting::of(FluxModel::Radiometric).scene();
+    let referee = Referee::new(&scene);
+    let by = |dx: f64, dy: f64| Displacement { dx, dy };
+    assert!(referee.sight(0, 0, 0, by(0.25, -0.5)).is_some());
+    assert_eq!(referee.sight(1, 0, 0, Displacement::ZERO), None);
+    assert_eq!(referee.sight(0, 1, 0, Displacement::ZERO), None);
+    assert_eq!(referee.sight(0, 0, 1, Displacement::ZERO), None);
+    for wild in [by(f64::NAN, 0.0), by(0.0, f64::NAN), by(f64::INFINITY, 0.0), by(0.0, f64::NEG_INFINITY)] {
+        assert_eq!(referee.sight(0, 0, 0, wild), None);
+    }
+}

@@ -182,6 +182,48 @@ fn faces_one_ulp_apart_are_rounding_in_depth() {
 }
 
 /// A rig over a random ground: camera and beam, small, at a pose of its own.
+/// No ray is displaced by more than a cell, however coarse somebody's arithmetic is said to be.
+#[test]
+fn a_tolerance_is_a_cell_at_most() {
+    // At depth 2 a cell is 1/4 m: the first face ends 1/8 m, half a cell, to the right of pixel (4, 4), the second begins
+    // 3/8 m, one and a half cells, to the right of it.
+    let vertices = vec![
+        [-1.0, -1.0, 2.0],
+        [0.125, -1.0, 2.0],
+        [0.125, 1.0, 2.0],
+        [-1.0, 1.0, 2.0],
+        [0.375, -1.0, 2.0],
+        [1.5, -1.0, 2.0],
+        [0.375, 1.0, 2.0],
+    ];
+    let scene = looking_along_z(vertices, vec![[0, 2, 1], [0, 3, 2], [4, 6, 5]], 100.0);
+    let referee = Referee::new(&scene);
+    let rule = |answer: Option<FaceId>, lateral: f64| {
+        let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
+        referee.rule(CAMERA, 4, 4, answer, tolerance).expect("a pixel")
+    };
+    assert_eq!(faces(&scene, 4, 4), [0, 1]);
+    for lateral in [0.75, 1.0, 2.0, 1e9] {
+        assert!(matches!(rule(None, lateral), Ruling::Rounding(_)), "the gap is near: {lateral}");
+        assert_eq!(rule(Some(FaceId(2)), lateral), Ruling::Wrong, "{lateral}");
+    }
+    assert_eq!(rule(None, 0.25), Ruling::Wrong);
+    assert_eq!(rule(None, -1.0), Ruling::Wrong);
+}
+
+#[test]
+fn faces_near_a_ray_are_all_that_it_may_meet() {
+    let (vertices, six) = hexagon();
+    let scene = looking_along_z(vertices, six, 100.0);
+    let referee = Referee::new(&scene);
+    let near = |i: u32, j: u32, radius: f64| {
+        let faces = referee.faces_near(CAMERA, i, j, radius)?;
+        Some(faces.into_iter().map(|face| face.0).collect::<Vec<_>>())
+    };
+    assert_eq!(near(4, 4, 0.5), Some(vec![0, 1, 2, 3, 4, 5]));
+    assert_eq!(near(9, 0, 0.5), None, "no such pixel");
+}
+
 fn random_scene(seed: u64, size: usize, turn: [f64; 4], at: [f64; 3]) -> Scene {
     let mesh = Arc::new(RandomGround::nasty(seed, size).build().into_mesh().expect("a valid ground"));
     let pose = Pose {

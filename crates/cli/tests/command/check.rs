@@ -10,7 +10,7 @@ use raypencil_scene_io::{
 };
 use tempfile::TempDir;
 
-use crate::{assert_trouble, raypencil, text};
+use crate::{assert_trouble, raypencil, screen, text};
 
 /// A pack of this repository.
 fn pack(name: &str) -> PathBuf {
@@ -428,4 +428,62 @@ fn a_difference_between_two_recordings_is_ruled_on() {
     let ruled = json["rulings"]["channels"].as_array().unwrap();
     let range = ruled.iter().find(|channel| channel["key"] == "camera/range.T").unwrap();
     assert_eq!(range["faults"], 1);
+}
+
+/// What somebody else's renderer recorded of a pack of this repository.
+fn recording(renderer: &str, pack: &str) -> String {
+    let candidates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/candidates");
+    candidates.join(renderer).join(pack).to_string_lossy().into_owned()
+}
+
+#[test]
+fn a_recordings_note_says_how_finely_it_was_computed() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let (pack, embree) = (pack("pyramids").to_string_lossy().into_owned(), recording("embree", "pyramids"));
+    let found = screen(folder.path(), &["check", &pack, &embree], 0);
+    assert!(found.contains("arithmetic f32"), "{found}");
+    screen(folder.path(), &["check", &pack, &embree, "--arithmetic", "f64"], 1);
+}
+
+#[test]
+fn a_recording_of_another_scene_or_with_a_broken_note_is_refused() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let (pack, facets) = (pack("pyramids").to_string_lossy().into_owned(), recording("embree", "facets"));
+    let other_scene = ["candidates/embree/facets", "candidate.json is of the scene", "expected"];
+    assert_trouble(&raypencil(folder.path(), &["check", &pack, &facets]), &other_scene);
+    let scene = format!("{pack}/scene.toml");
+    let validate = ["validate", &scene, "--candidate", &facets, "-o", "out"];
+    assert_trouble(&raypencil(folder.path(), &validate), &other_scene);
+    assert!(!folder.path().join("out").exists(), "nothing is begun");
+
+    let mine = folder.path().join("mine/camera");
+    fs::create_dir_all(&mine).expect("a folder");
+    fs::copy(
+        Path::new(&recording("embree", "pyramids")).join("camera/range.T.npy"),
+        mine.join("range.T.npy"),
+    )
+    .expect("a file");
+    fs::write(folder.path().join("mine/candidate.json"), r#"{"format": 1, "program": "P"}"#).expect("a file");
+    assert_trouble(
+        &raypencil(folder.path(), &["check", &pack, "mine"]),
+        &["mine/candidate.json", "arithmetic"],
+    );
+}
+
+#[test]
+fn renderers_of_others_are_held_to_the_truth_beside_ours() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let scene = pack("facets").join("scene.toml").to_string_lossy().into_owned();
+    let (embree, mitsuba) = (recording("embree", "facets"), recording("mitsuba", "facets"));
+    let found = screen(
+        folder.path(),
+        &["validate", &scene, "--candidate", &embree, "--candidate", &mitsuba, "-o", "out"],
+        0,
+    );
+    assert!(found.contains("Embree 4: 0 of 7,936 rays wrong"), "{found}");
+    assert!(found.contains("Mitsuba 3: 1 of 7,936 rays wrong; images: "), "{found}");
+    // The one ray as a pack, which can be asked again.
+    let miss = folder.path().join("out/misses/mitsuba-3-1");
+    assert!(miss.join("README.md").exists() && miss.join("manifest.json").exists());
+    assert!(!folder.path().join("out/misses/mitsuba-3-2").exists());
 }

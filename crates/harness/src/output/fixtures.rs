@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Profile, Scene, SensorId,
+    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Profile, Resolution, Scene,
+    SensorId,
 };
 
 use crate::compare::{Class, Defect, Place, Quantity, Worst};
 use crate::judge::JudgeShare;
+use crate::outside::{Estimate, Outsider, RadianceMap, WayImage};
+use crate::recorded::Recorded;
 use crate::renderers::contender;
 use crate::run::{Silent, Subject, Validation, validate};
 
@@ -75,6 +78,44 @@ pub(crate) fn approximate() -> Validation {
     let (mesh, camera) = (Arc::clone(scene.mesh()), *scene.camera());
     subject.scene = Scene::new(mesh, camera, vec![beam], scene.atmosphere(), scene.flux_model()).unwrap();
     of(subject, ["scanline-paper", "tracer"])
+}
+
+/// Where [`with_outsider`]'s is wrong: it says that the camera does not see the point.
+pub(crate) const MISS: Place = Place { sensor: SensorId::Beam(0), i: 30, j: 2 };
+
+/// [`agreeing`], and somebody with an odd name who is right but for one pencil, has an image that is twice too bright and
+/// radiance on all of the ground.
+pub(crate) fn with_outsider() -> Validation {
+    let mut validation = agreeing();
+    let scene = &validation.subject.scene;
+    let frame = &validation.rendered[1].frame;
+    let mut recorded = Recorded::of_frame("odd", scene, frame, Resolution::F64);
+    let seen = recorded.answers.light[0].returns.visible.as_mut().unwrap();
+    assert!(seen.at(MISS.i, MISS.j), "a pencil that is seen");
+    seen.set(MISS.i, MISS.j, false);
+    // What it does not say of the light is no contradiction.
+    recorded.answers.light[0].returns.flux = None;
+    recorded.answers.light[0].image = None;
+    let camera = scene.camera().sensor;
+    let twice = frame.flux[0].cells().iter().map(|flux| 2.0 * flux).collect();
+    let mean = Image::from_cells(camera.width, camera.height, twice);
+    let error = Image::filled(camera.width, camera.height, 1e-12);
+    let image =
+        WayImage { way: "guess".into(), beam: 0, estimate: Estimate::of_independent_pixels(mean, error) };
+    let radiance = RadianceMap {
+        sensor: SensorId::Camera,
+        beam: 0,
+        image: Image::filled(camera.width, camera.height, 1.0),
+    };
+    let outsider = Outsider {
+        name: "Odd <renderer> 1".into(),
+        folder: "odd".into(),
+        recorded,
+        images: vec![image],
+        radiance: vec![radiance],
+    };
+    validation.hold(vec![outsider], &Silent);
+    validation
 }
 
 fn of<const N: usize>(subject: Subject, names: [&str; N]) -> Validation {

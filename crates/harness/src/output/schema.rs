@@ -81,9 +81,13 @@ fn faults_of(summary: &Value) -> Vec<String> {
 
 #[test]
 fn every_summary_keeps_to_the_schema() {
-    for validation in
-        [fixtures::agreeing(), fixtures::defective(), fixtures::approximate(), fixtures::lonely()]
-    {
+    for validation in [
+        fixtures::agreeing(),
+        fixtures::defective(),
+        fixtures::approximate(),
+        fixtures::lonely(),
+        fixtures::with_outsider(),
+    ] {
         let summary: Value = serde_json::from_str(&summary_json(&validation)).unwrap();
         assert_eq!(faults_of(&summary), Vec::<String>::new());
     }

@@ -286,3 +286,52 @@ fn assert_well_formed(xml: &str) {
     }
     assert!(open.is_empty() && rest.trim().is_empty());
 }
+
+#[test]
+fn an_outsiders_misses_are_told_and_reproduced() {
+    let folder = tempfile::tempdir().unwrap();
+    let validation = fixtures::with_outsider();
+    let written = write_validation(&validation, folder.path(), &Silent).unwrap();
+
+    // On the page, its name no tag.
+    let html = fs::read_to_string(written.report).unwrap();
+    for words in [
+        "Renderers of others",
+        "Odd &#60;renderer&#62; 1",
+        "1 wrong",
+        "guess, beam 0",
+        "misses/odd-renderer-1-1",
+    ] {
+        assert!(html.contains(words), "no {words}");
+    }
+    assert!(!html.contains("<renderer>"));
+    let screen = one_screen(&validation, None);
+    assert!(screen.contains("Odd <renderer> 1: 1 of "), "{screen}");
+    assert!(screen.contains("images: 0 of 1 fit; radiances: 0 of 1 fit"), "{screen}");
+
+    // For programs.
+    let summary: Value = serde_json::from_slice(&fs::read(written.summary).unwrap()).unwrap();
+    let panel = summary["panel"]["renderers"].as_array().unwrap();
+    let wrong: Vec<(&str, u64)> =
+        panel.iter().map(|held| (held["name"].as_str().unwrap(), held["wrong"].as_u64().unwrap())).collect();
+    assert_eq!(wrong, [("scanline", 0), ("tracer", 0), ("Odd <renderer> 1", 1)]);
+    let miss = &panel[2]["misses"][0];
+    assert_eq!((miss["i"].as_u64(), miss["j"].as_u64()), (Some(30), Some(2)));
+    assert_eq!(miss["quantity"], "visible");
+    // What the verdict is on: our own.
+    assert_eq!(summary["verdict"], "agree");
+
+    // The reproducer is a pack of the one ray, of which the same is true.
+    let pack = folder.path().join(miss["reproducer"].as_str().unwrap());
+    let readme = fs::read_to_string(pack.join("README.md")).unwrap();
+    assert!(
+        readme.contains("it says not seen") && readme.contains("raypencil probe scene.toml --beam 0"),
+        "{readme}"
+    );
+    let found = crate::check_pack(&pack, &pack, None, &Silent).unwrap();
+    assert!(found.check.passes());
+    let scene = &found.subject.scene;
+    let (columns, rows) = scene.size(raypencil_scene::SensorId::Beam(0)).unwrap();
+    assert!(columns <= 2 && rows <= 2, "{columns} x {rows} pencils");
+    assert!(scene.camera().sensor.width < 48, "a smaller image does");
+}
