@@ -221,17 +221,16 @@ pub(crate) fn lines(panel: &Panel) -> Vec<String> {
 
 fn line(held: &HeldOutsider) -> String {
     let wrong = held.check.of(Class::Defect) + held.check.of(Class::Undecided);
-    let mut line =
+    let rays =
         format!("{}: {} of {} rays wrong", held.outsider.name, count(wrong), count(held.check.compared()));
-    let compared = |kind: &str, within: usize, all: usize| match all {
-        0 => String::new(),
-        all => format!("; {kind}: {within} of {all} fit"),
-    };
+    let of = |kind: &str, fit: usize, all: usize| (all > 0).then(|| format!("{fit} of {all} {kind}"));
     let images = held.images.iter().filter(|image| image.is_within(&CHANCE_LIMITS)).count();
     let radiance = held.radiance.iter().filter(|map| map.wrong == 0).count();
-    line += &compared("images", images, held.images.len());
-    line += &compared("radiances", radiance, held.radiance.len());
-    line
+    let fit = [of("images", images, held.images.len()), of("radiances", radiance, held.radiance.len())];
+    match fit.into_iter().flatten().collect::<Vec<_>>().as_slice() {
+        [] => rays,
+        some => format!("{rays}; {} fit", some.join(", ")),
+    }
 }
 
 /// Everyone in `summary.json`.

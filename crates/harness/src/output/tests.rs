@@ -307,7 +307,7 @@ fn an_outsiders_misses_are_told_and_reproduced() {
     assert!(!html.contains("<renderer>"));
     let screen = one_screen(&validation, None);
     assert!(screen.contains("Odd <renderer> 1: 1 of "), "{screen}");
-    assert!(screen.contains("images: 0 of 1 fit; radiances: 0 of 1 fit"), "{screen}");
+    assert!(screen.contains("; 0 of 1 images, 0 of 1 radiances fit"), "{screen}");
 
     // For programs.
     let summary: Value = serde_json::from_slice(&fs::read(written.summary).unwrap()).unwrap();
