@@ -2,10 +2,10 @@
 
 use askama::Template;
 
-use super::VERSION;
 use super::table::{CauseRow, Row, causes, hits, rows};
 use super::text::{self, count, probe_command};
 use super::verdict::{CAVEAT, Verdict, defects, explanation, headline};
+use super::{VERSION, outside};
 use crate::compare::Class;
 use crate::run::Validation;
 
@@ -26,6 +26,7 @@ struct Page {
     rows: Vec<Row>,
     sensors: Vec<Sensor>,
     causes: Vec<CauseRow>,
+    outsiders: Vec<String>,
     defects: Vec<Listed>,
     more_defects: String,
     stages: Vec<String>,
@@ -93,10 +94,11 @@ pub(crate) fn markdown(validation: &Validation) -> Result<String, askama::Error>
         scene: code(&subject.name),
         sha256: code(&subject.sha256),
         version: VERSION,
-        command: code(&format!("raypencil validate {}", subject.arguments)),
+        command: code(&format!("raypencil validate {}{}", subject.arguments, outside::typed(validation))),
         rows: rows(subject, validation.pairs.iter().flat_map(|pair| &pair.sensors)),
         sensors,
         causes: causes(subject, &validation.approximations()),
+        outsiders: validation.panel.iter().flat_map(outside::lines).map(|line| escaped(&line)).collect(),
         defects: listed,
         more_defects: if more > 0 { text::counted(more, "more is", "more are") } else { String::new() },
         stages: validation
@@ -108,6 +110,16 @@ pub(crate) fn markdown(validation: &Validation) -> Result<String, askama::Error>
     let mut text = page.render()?;
     text.push('\n');
     Ok(text)
+}
+
+/// Text that holds no markup: names of programs are anybody's.
+fn escaped(text: &str) -> String {
+    text.chars()
+        .flat_map(|c| {
+            let is_markup = c.is_ascii_punctuation() && !",.:;-".contains(c);
+            is_markup.then_some('\\').into_iter().chain([if c.is_control() { ' ' } else { c }])
+        })
+        .collect()
 }
 
 /// A code span, fenced wider than any backtick in it.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::text::{count, counted, number, probe_command, quantity};
+use super::text::{count, counted, number, probe_command, quantity, quoted};
 use crate::check::{Check, ItemTally, Largest, key_of, name_of, unit_of};
 use crate::compare::Class;
 use crate::outside::{CHANCE_LIMITS, HeldOutsider, ImageComparison, Panel, RadianceComparison};
@@ -37,7 +37,9 @@ pub(crate) struct Cell {
     pub(crate) is_wrong: bool,
     pub(crate) wrong: String,
     pub(crate) classes: String,
+    /// The worst error, and that as a part of its bound; empty where there is no number.
     pub(crate) error: String,
+    pub(crate) ratio: String,
     pub(crate) place: String,
 }
 
@@ -141,17 +143,14 @@ fn cell(subject: &Subject, item: Item, tally: &ItemTally) -> Option<Cell> {
     }
     let unit = unit_of(subject.scene.flux_model(), item);
     let largest = |largest: &Option<Largest>, unit: &str| largest.as_ref().map(|it| quantity(it.value, unit));
-    let error = match (largest(&tally.error, unit), largest(&tally.ratio, "")) {
-        (Some(error), Some(ratio)) => format!("{error}, {ratio} of its bound"),
-        (Some(error), None) => error,
-        _ => String::new(),
-    };
+    let ratio = largest(&tally.ratio, "").map_or(String::new(), |ratio| format!("{ratio} of its bound"));
     Some(Cell {
         is_wrong: wrong(tally) > 0,
         wrong: format!("{} wrong", count(wrong(tally))),
         classes: classes.join(", "),
+        error: largest(&tally.error, unit).unwrap_or_default(),
+        ratio,
         place: tally.error.as_ref().map_or(String::new(), |it| it.place.to_string()),
-        error,
     })
 }
 
@@ -160,7 +159,9 @@ fn signed(value: f64) -> String {
 }
 
 fn image_row(held: &HeldOutsider, image: &ImageComparison) -> ImageRow {
-    let with_error = |[value, error]: [f64; 2]| format!("{} ± {} W", number(value), number(error));
+    // As a part of it: an absolute error would end beyond the digits that are shown.
+    let with_error =
+        |[value, error]: [f64; 2]| format!("{} W (1 ± {})", number(value), number(error / value));
     let at = image.at.map_or(String::new(), |at| format!(" at {at}"));
     ImageRow {
         who: held.outsider.name.clone(),
@@ -212,6 +213,14 @@ fn misses(subject: &Subject, held: &HeldOutsider) -> Misses {
         listed,
         more: if more > 0 { counted(more, "more ray", "more rays") } else { String::new() },
     }
+}
+
+/// The words that name the recordings again on the command line.
+pub(crate) fn typed(validation: &Validation) -> String {
+    let outsiders = validation.panel.iter().flat_map(|panel| &panel.outsiders);
+    outsiders
+        .map(|held| format!(" --candidate {}", quoted(&held.outsider.folder.to_string_lossy())))
+        .collect()
 }
 
 /// A line of the screen for each outsider.

@@ -107,7 +107,7 @@ pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
         scene: &subject.name,
         sha256: &subject.sha256,
         version: VERSION,
-        command: format!("raypencil validate {}", subject.arguments),
+        command: format!("raypencil validate {}{}", subject.arguments, outside::typed(validation)),
         renderers: list(&names),
         tiles: tiles(validation),
         comparisons: pairs.iter().map(|pair| comparison(validation, pair)).collect(),

@@ -309,6 +309,11 @@ fn an_outsiders_misses_are_told_and_reproduced() {
     assert!(screen.contains("Odd <renderer> 1: 1 of "), "{screen}");
     assert!(screen.contains("; 0 of 1 images, 0 of 1 radiances fit"), "{screen}");
 
+    // In a comment on a change.
+    let text = fs::read_to_string(written.markdown).unwrap();
+    assert!(text.contains("* Odd \\<renderer\\> 1: 1 of 2,176 rays wrong"), "{text}");
+    assert!(text.contains("--candidate odd"), "{text}");
+
     // For programs.
     let summary: Value = serde_json::from_slice(&fs::read(written.summary).unwrap()).unwrap();
     let panel = summary["panel"]["renderers"].as_array().unwrap();
