@@ -83,7 +83,7 @@ pub(crate) fn approximate() -> Validation {
 /// Where [`with_outsider`]'s is wrong: it says that the camera does not see the point.
 pub(crate) const MISS: Place = Place { sensor: SensorId::Beam(0), i: 30, j: 2 };
 
-/// [`agreeing`], and somebody with an odd name who is right but for one pencil, has an image that is twice too bright and
+/// [`agreeing`], and somebody with an odd name who is right but for that pencil and the first one that is hidden, has an image that is twice too bright and
 /// radiance on all of the ground.
 pub(crate) fn with_outsider() -> Validation {
     let mut validation = agreeing();
@@ -93,6 +93,12 @@ pub(crate) fn with_outsider() -> Validation {
     let seen = recorded.answers.light[0].returns.visible.as_mut().unwrap();
     assert!(seen.at(MISS.i, MISS.j), "a pencil that is seen");
     seen.set(MISS.i, MISS.j, false);
+    let lands = &frame.returns[0].pixel.as_ref().unwrap();
+    let (i, j) = (0..seen.height())
+        .flat_map(|j| (0..seen.width()).map(move |i| (i, j)))
+        .find(|&(i, j)| !seen.at(i, j) && (i, j) != (MISS.i, MISS.j) && lands.at(i, j).get().is_some())
+        .expect("a pencil that is hidden");
+    seen.set(i, j, true);
     // What it does not say of the light is no contradiction.
     recorded.answers.light[0].returns.flux = None;
     recorded.answers.light[0].image = None;

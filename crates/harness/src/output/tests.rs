@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
+use raypencil_referee::{Displacement, Referee};
 use serde_json::Value;
 
 use super::{OutputError, fixtures, junit, markdown, one_screen, probe_command, report, summary_json};
@@ -298,7 +299,7 @@ fn an_outsiders_misses_are_told_and_reproduced() {
     for words in [
         "Renderers of others",
         "Odd &#60;renderer&#62; 1",
-        "1 wrong",
+        "2 wrong",
         "guess, beam 0",
         "misses/odd-renderer-1-1",
     ] {
@@ -306,12 +307,12 @@ fn an_outsiders_misses_are_told_and_reproduced() {
     }
     assert!(!html.contains("<renderer>"));
     let screen = one_screen(&validation, None);
-    assert!(screen.contains("Odd <renderer> 1: 1 of "), "{screen}");
+    assert!(screen.contains("Odd <renderer> 1: 2 of "), "{screen}");
     assert!(screen.contains("; 0 of 1 images, 0 of 1 radiances fit"), "{screen}");
 
     // In a comment on a change.
     let text = fs::read_to_string(written.markdown).unwrap();
-    assert!(text.contains("* Odd \\<renderer\\> 1: 1 of 2,176 rays wrong"), "{text}");
+    assert!(text.contains("* Odd \\<renderer\\> 1: 2 of 2,176 rays wrong"), "{text}");
     assert!(text.contains("--candidate odd"), "{text}");
 
     // For programs.
@@ -319,25 +320,47 @@ fn an_outsiders_misses_are_told_and_reproduced() {
     let panel = summary["panel"]["renderers"].as_array().unwrap();
     let wrong: Vec<(&str, u64)> =
         panel.iter().map(|held| (held["name"].as_str().unwrap(), held["wrong"].as_u64().unwrap())).collect();
-    assert_eq!(wrong, [("scanline", 0), ("tracer", 0), ("Odd <renderer> 1", 1)]);
-    let miss = &panel[2]["misses"][0];
-    assert_eq!((miss["i"].as_u64(), miss["j"].as_u64()), (Some(30), Some(2)));
-    assert_eq!(miss["quantity"], "visible");
+    assert_eq!(wrong, [("scanline", 0), ("tracer", 0), ("Odd <renderer> 1", 2)]);
+    let misses = panel[2]["misses"].as_array().unwrap();
+    assert_eq!(misses.len(), 2);
+    assert!(misses.iter().all(|miss| miss["quantity"] == "visible"));
     // What the verdict is on: our own.
     assert_eq!(summary["verdict"], "agree");
 
-    // The reproducer is a pack of the one ray, of which the same is true.
-    let pack = folder.path().join(miss["reproducer"].as_str().unwrap());
-    let readme = fs::read_to_string(pack.join("README.md")).unwrap();
-    assert!(
-        readme.contains("it says not seen") && readme.contains("raypencil probe scene.toml --beam 0"),
-        "{readme}"
-    );
-    let found = crate::check_pack(&pack, &pack, None, &Silent).unwrap();
-    assert!(found.check.passes());
-    let scene = &found.subject.scene;
-    let (columns, rows) = scene.size(raypencil_scene::SensorId::Beam(0)).unwrap();
-    // As few pencils as have the very same ray.
-    assert!(columns * rows < 64 * 4, "{columns} x {rows} pencils");
-    assert!(scene.camera().sensor.width < 48, "a smaller image does");
+    // A reproducer is a pack of the one ray, of which the same is true for the same reason.
+    let of_whole = |i: u32, j: u32| {
+        Referee::new(&validation.subject.scene)
+            .sight(0, i, j, Displacement::ZERO)
+            .unwrap()
+            .hidden_by
+            .is_some()
+    };
+    let mut hidden = Vec::new();
+    for miss in misses {
+        let [i, j] = ["i", "j"].map(|key| miss[key].as_u64().unwrap() as u32);
+        let pack = folder.path().join(miss["reproducer"].as_str().unwrap());
+        let readme = fs::read_to_string(pack.join("README.md")).unwrap();
+        assert!(
+            readme.contains("visible: it says ") && readme.contains("raypencil probe scene.toml --beam 0"),
+            "{readme}"
+        );
+        let found = crate::check_pack(&pack, &pack, None, &Silent).unwrap();
+        assert!(found.check.passes());
+        let scene = &found.subject.scene;
+        let (columns, rows) = scene.size(raypencil_scene::SensorId::Beam(0)).unwrap();
+        // As few pencils as have the very same ray.
+        assert!(columns * rows < 64 * 4, "{columns} x {rows} pencils");
+        assert!(scene.camera().sensor.width < 48, "a smaller image does");
+        let words = readme.split_once("pack of that ray (beam-0 pencil ").unwrap().1;
+        let place = words.split_once(" here").unwrap().0;
+        let (at_i, at_j) = place.split_once(',').unwrap();
+        let sight = Referee::new(scene)
+            .sight(0, at_i.parse().unwrap(), at_j.parse().unwrap(), Displacement::ZERO)
+            .unwrap();
+        assert!(sight.pixel.is_some(), "it still lands on the image");
+        assert_eq!(sight.hidden_by.is_some(), of_whole(i, j));
+        hidden.push(sight.hidden_by.is_some());
+    }
+    hidden.sort_unstable();
+    assert_eq!(hidden, [false, true]);
 }

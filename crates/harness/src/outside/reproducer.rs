@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_referee::{Format, Referee};
+use raypencil_referee::{Displacement, Format, Referee};
 use raypencil_scene::{Sampling, Scene, SensorId};
 use raypencil_scene_io::{scene_sha256, write_atomically};
 
@@ -28,21 +28,29 @@ pub struct MissReproducer {
     pub folder: PathBuf,
 }
 
-/// What is true of a ray, bit for bit: range, and of a pencil whether it is seen and what it delivers.
-type TrueAnswer = (Option<u64>, Option<(bool, u64)>);
+/// What is true of a ray, and for what reason.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct TrueAnswer {
+    /// The bits of its range.
+    range: Option<u64>,
+    /// Of a pencil's hit: whether it is seen, lands on the image, and is hidden by a face.
+    sight: Option<[bool; 3]>,
+    /// The bits of what the pencil delivers.
+    flux: Option<u64>,
+}
 
-fn truth_of(scene: &Scene, Place { sensor, i, j }: Place) -> TrueAnswer {
-    let referee = Referee::new(scene);
-    let range = referee.values(sensor, i, j).map(|hit| hit.in_format(Format::Double).range.to_bits());
-    let visible = match sensor {
-        SensorId::Camera => None,
-        SensorId::Beam(beam) => referee
-            .light(beam, Sampling::Centres)
-            .and_then(|light| light.returned(i, j))
-            .map(|back| back.in_format(Format::Double, scene.flux_model()))
-            .map(|back| (back.visible, back.flux.to_bits())),
-    };
-    (range, visible)
+impl TrueAnswer {
+    fn of(scene: &Scene, Place { sensor, i, j }: Place) -> Self {
+        let referee = Referee::new(scene);
+        let range = referee.values(sensor, i, j).map(|hit| hit.in_format(Format::Double).range.to_bits());
+        let SensorId::Beam(beam) = sensor else { return Self { range, sight: None, flux: None } };
+        let sight = referee.sight(beam, i, j, Displacement::ZERO);
+        let light = referee.light(beam, Sampling::Centres);
+        let back = light.and_then(|light| light.returned(i, j));
+        let flux = back.map(|back| back.in_format(Format::Double, scene.flux_model()).flux.to_bits());
+        let sight = sight.map(|sight| [sight.visible, sight.pixel.is_some(), sight.hidden_by.is_some()]);
+        Self { range, sight, flux }
+    }
 }
 
 /// Writes a pack of the one ray for each of the first ten misses of an outsider, as `folder/NAME-1`, `NAME-2`, ..., each
@@ -62,10 +70,13 @@ pub fn write_misses(
         let name = held.miss_name(index);
         let folder = folder.join(&name);
         // A pencil's flux is that of the others too, where the profile is divided by its sum; a pixel's is of many pencils.
-        let is_flux = matches!(wrong.item.quantity, Quantity::PencilFlux | Quantity::PixelFlux);
         let of_ray = |scene: &Scene, place: Place| {
-            let (range, back) = truth_of(scene, place);
-            (range, back.map(|(visible, flux)| (visible, if is_flux { flux } else { 0 })))
+            let answer = TrueAnswer::of(scene, place);
+            if wrong.item.quantity == Quantity::PencilFlux {
+                answer
+            } else {
+                TrueAnswer { flux: None, ..answer }
+            }
         };
         let true_answer = of_ray(&subject.scene, wrong.place);
         let is_sum = wrong.item.quantity == Quantity::PixelFlux;
@@ -97,7 +108,7 @@ fn words(subject: &Subject, held: &HeldOutsider, wrong: &Wrong, small: &Subject,
     let of = subject.scene.mesh().faces().len();
     format!(
         "# {program}, {at}\n\n{quantity}: {what}\n\nThis folder is a reference pack of that ray ({place} here) over {faces} of the {of} faces; its answer to the\n\
-         ray is that of the whole scene. To see what is true, and to ask a program again:\n\n```sh\n{probe}\nraypencil check . CANDIDATE\n```\n\n\
+         ray is that of the whole scene. To see what is true, and to ask a program again:\n\n```sh\n{probe}\nraypencil check . CANDIDATE    # of Embree and Mitsuba reference/make.py --pack . makes one\n```\n\n\
          Of the scene {name}, {sha256}: `{again}`\n",
         at = wrong.place,
         quantity = name_of(wrong.item),
