@@ -622,4 +622,44 @@ mod tests {
             assert!(seen > 60, "{seen} of 144 pencils are seen");
         }
     }
+
+    #[test]
+    fn the_least_exponent_is_that_of_the_pencil_nearest_the_axis() {
+        // g = 1/10, w = 0.0577...: 30 degrees to either side.
+        let of = |columns: u32, half_width: f64| {
+            let scene = scene(Profile::Gaussian { half_width });
+            let mut beam = scene.beams()[0];
+            beam.sensor.columns = columns;
+            let (mesh, model) = (Arc::clone(scene.mesh()), scene.flux_model());
+            let scene =
+                Scene::new(mesh, *scene.camera(), vec![beam], scene.atmosphere(), model).expect("a scene");
+            let exponent = |sampling: Sampling| {
+                let referee = Referee::new(&scene);
+                referee.light(0, sampling).expect("a beam").least_exponent(half_width)
+            };
+            let Beam { half_width: w, grid_distance, rows, .. } = beam.sensor;
+            let offset = Sampling::Jittered { seed: 5 };
+            // By hand: half cells from the axis.
+            let by_hand = |nearest: f64| {
+                let relative = libm::atan(w * nearest / (f64::from(columns) * grid_distance)) / half_width;
+                relative * relative
+            };
+            let jittered = (0..rows)
+                .flat_map(|j| (0..columns).map(move |i| (i, j)))
+                .map(|(i, j)| {
+                    (f64::from(2 * i + 1) - f64::from(columns) + 2.0 * offset.offset(0, i, j)[0]).abs()
+                })
+                .fold(f64::INFINITY, f64::min);
+            (exponent(Sampling::Centres), by_hand(1.0), exponent(offset), by_hand(jittered))
+        };
+        // Of an even number of columns the nearest is half a cell off: here by more than ten half widths.
+        let (centres, by_hand, jittered, jittered_by_hand) = of(6, 5e-3);
+        assert!(by_hand > 100.0, "{by_hand}");
+        assert!((centres / by_hand - (1.0 - 1e-9)).abs() < 1e-12, "{centres} {by_hand}");
+        let expected = if jittered_by_hand < 100.0 { 0.0 } else { jittered_by_hand * (1.0 - 1e-9) };
+        assert!((jittered - expected).abs() <= 1e-12 * expected, "{jittered} {expected}");
+        // Of an odd number one is on the axis; and a wide profile needs none.
+        assert_eq!(of(7, 5e-3).0, 0.0);
+        assert_eq!(of(6, 0.5).0, 0.0);
+    }
 }

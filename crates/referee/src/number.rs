@@ -263,4 +263,13 @@ mod tests {
             prop_assert_eq!(x.sub(&y).sign(), Some(a.cmp(&b)));
         }
     }
+
+    #[test]
+    fn an_interval_has_a_sign_only_if_all_of_it_has() {
+        let sign = |low: f64, high: f64| Interval::between(low, high).sign();
+        assert_eq!(sign(1e-300, 2.0), Some(Ordering::Greater));
+        assert_eq!(sign(-2.0, -1e-300), Some(Ordering::Less));
+        assert_eq!(sign(0.0, 0.0), Some(Ordering::Equal));
+        assert_eq!([sign(0.0, 1.0), sign(-1.0, 0.0), sign(-1.0, 1.0)], [None; 3]);
+    }
 }

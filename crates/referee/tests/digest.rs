@@ -33,6 +33,13 @@ const DIGESTS: &[[&str; 2]] = &[
     ["verdicts", "d43823beccd0fce7e574a6be68567cc1f0eac38edf5e1a2167e970450679ff5c"],
 ];
 
+/// The same of many margins.
+const MANY: &[[&str; 2]] = &[
+    ["face margins", "681a33bebc97ed28f5fce6317132a58e318c51c7fdecfd5ef3fb79c08b6c5ccd"],
+    ["sight margins", "5e3e4738261762d01409df25e0ab70272bf03df1bfdc2623ac3ecf20fd4a2fb8"],
+    ["surface margins", "fc140398f81976c1cf86cb89e4653836dc849125f7b1a179f1f7a1bfdbecdb7f"],
+];
+
 /// Numbers that depend on the seed alone (splitmix64).
 struct Draws(u64);
 
@@ -215,6 +222,34 @@ fn what_is_said_of_rays_has_the_committed_bits() {
             said.say("light on pixels", &light.sums);
         }
     }
+    assert_digests(said, DIGESTS);
+}
+
+/// Margins of many rays more: where surfaces end, and where the camera's view does, is rarely near a ray.
+#[test]
+fn margins_of_many_rays_have_the_committed_bits() {
+    let mut said = Said::default();
+    for number in 0..24 {
+        let scene = scene(number);
+        let referee = Referee::new(&scene);
+        let mut draws = Draws(number ^ 0x1234);
+        for id in [SensorId::Camera, SensorId::Beam(0)] {
+            let (width, height) = scene.size(id).expect("a sensor");
+            for _ in 0..120 {
+                let margins = referee.margins(id, draws.below(width), draws.below(height)).expect("a cell");
+                said.say("face margins", &margins.face);
+                said.say("surface margins", &margins.surface);
+            }
+        }
+        let Beam { columns, rows, .. } = scene.beams()[0].sensor;
+        for _ in 0..60 {
+            said.say("sight margins", &referee.sight_margins(0, draws.below(columns), draws.below(rows)));
+        }
+    }
+    assert_digests(said, MANY);
+}
+
+fn assert_digests(said: Said, committed: &[[&str; 2]]) {
     let found: Vec<[String; 2]> = said
         .0
         .into_iter()
@@ -225,5 +260,5 @@ fn what_is_said_of_rays_has_the_committed_bits() {
             [subject.to_string(), digest]
         })
         .collect();
-    assert!(found == DIGESTS, "the digests are now {found:#?}");
+    assert!(found == committed, "the digests are now {found:#?}");
 }
