@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-# Of |z| over the bright pixels, of their root mean square, and of the totals' z. With few images z has long tails.
+# Of |z| over the bright pixels, of their root mean square, and of the totals' z. With few images z has long tails; with few
+# samples a pixel that a stripe just touches gets light in too few images to know its own error.
 LARGEST, RMS, TOTAL = 12.0, 2.0, 5.0
 # Relative difference of lengths and radiance in single precision: some 80 roundings.
 SINGLE = 5e-6

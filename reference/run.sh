@@ -61,7 +61,7 @@ if [[ -n $python ]]; then
     # Seeds that the committed images have not: independent of them.
     if PYTHONPATH=reference "$python" -c 'from renderers import llvm; llvm.locate()' 2>"$work/output"; then
         expect 0 "$python" "${make[@]}" data/packs/pyramids --with mitsuba -o "$work/mitsuba/pyramids" \
-            --images 12 --samples 64 --seed 1001
+            --images 12 --samples 1024 --seed 1001
         expect 0 "$python" reference/agree.py "$work/mitsuba/pyramids" "$candidates/mitsuba/pyramids" --maps single
         cat "$work/output"
         expect 0 "$raypencil" check data/packs/pyramids "$work/mitsuba/pyramids"
