@@ -15,7 +15,10 @@ import platform
 import sys
 from pathlib import Path
 
-from renderers import pack as packs
+try:
+    from renderers import pack as packs
+except ImportError as missing:
+    sys.exit(f"error: {missing}; expected what reference/requirements.txt lists")
 
 
 def main() -> None:
@@ -34,14 +37,17 @@ def main() -> None:
     except packs.PackError as error:
         sys.exit(f"error: {error}")
 
-    if options.renderer == "embree":
-        from renderers import embree
+    try:
+        if options.renderer == "embree":
+            from renderers import embree
 
-        made = embree.render(pack, options.out)
-    else:
-        from renderers import mitsuba
+            made = embree.render(pack, options.out)
+        else:
+            from renderers import mitsuba
 
-        made = mitsuba.render(pack, options.out, mitsuba.Effort(options.images, options.samples, options.seed))
+            made = mitsuba.render(pack, options.out, mitsuba.Effort(options.images, options.samples, options.seed))
+    except ImportError as error:
+        sys.exit(f"error: {error}; expected what reference/README.md lists for --with {options.renderer}")
 
     made["versions"]["python"] = platform.python_version()
     manifest = (options.pack / "manifest.json").read_bytes()

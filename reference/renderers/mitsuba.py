@@ -176,6 +176,8 @@ def radiance(pack: Pack, beam: int, lit, out: Path) -> None:
     maps.write(out, "camera", {f"radiance.beam{beam}": found})
 
     points = pack.answer(f"beam-{beam}", "P")
+    if points is None:
+        return
     is_hit = np.isfinite(points[..., 0])
     hit = points[is_hit]
     found = np.full(points.shape[:2], np.nan)

@@ -62,9 +62,10 @@ class Pack:
     def sensors(self) -> dict[str, dict]:
         return {"camera": self.camera} | {f"beam-{k}": beam for k, beam in enumerate(self.beams)}
 
-    def answer(self, sensor: str, channel: str) -> np.ndarray:
-        """What the pack says is right."""
-        return np.load(self.folder / sensor / f"{channel}.npy")
+    def answer(self, sensor: str, channel: str) -> np.ndarray | None:
+        """What the pack says is right; nothing in a blind one."""
+        path = self.folder / sensor / f"{channel}.npy"
+        return np.load(path) if path.exists() else None
 
 
 def pose(sensor: dict) -> Pose:
@@ -84,11 +85,15 @@ def read(folder: Path) -> Pack:
     for name in ("manifest.json", "scene.toml", "terrain.glb"):
         if not (folder / name).is_file():
             raise PackError(f"{folder / name}: no such file; expected a pack, as `raypencil pack` writes it")
-    scene = tomllib.loads((folder / "scene.toml").read_text(encoding="utf-8"))
-    vertices, parts = read_terrain(folder / "terrain.glb")
-    pack = Pack(folder, scene, vertices, parts, {})
-    for sensor in pack.sensors():
-        pack.rays[sensor] = np.load(folder / f"rays-{sensor}.npy")
+    try:
+        scene = tomllib.loads((folder / "scene.toml").read_text(encoding="utf-8"))
+        vertices, parts = read_terrain(folder / "terrain.glb")
+        pack = Pack(folder, scene, vertices, parts, {})
+        for sensor in pack.sensors():
+            pack.rays[sensor] = np.load(folder / f"rays-{sensor}.npy")
+    except (ValueError, KeyError, IndexError, TypeError, OSError) as error:
+        # `raypencil check` says what is wrong with a pack; here it is enough that it is none.
+        raise PackError(f"{folder}: not a pack as it was written ({type(error).__name__}: {error})") from error
     return pack
 
 
