@@ -660,6 +660,7 @@ mod tests {
         assert!((jittered - expected).abs() <= 1e-12 * expected, "{jittered} {expected}");
         // Of an odd number one is on the axis; and a wide profile needs none.
         assert_eq!(of(7, 5e-3).0, 0.0);
+        assert_eq!(of(1, 5e-3).0, 0.0);
         assert_eq!(of(6, 0.5).0, 0.0);
     }
 }
