@@ -272,4 +272,20 @@ mod tests {
         assert_eq!(sign(0.0, 0.0), Some(Ordering::Equal));
         assert_eq!([sign(0.0, 1.0), sign(-1.0, 0.0), sign(-1.0, 1.0)], [None; 3]);
     }
+
+    #[test]
+    fn squares_are_never_negative() {
+        let square = |low: f64, high: f64| Interval::between(low, high).square();
+        for (low, high, most) in
+            [(0.0, 1.0, 1.0), (-2.0, 1.0, 4.0), (-1.0, 0.0, 1.0), (-1e-200, 1e-200, 1e-307)]
+        {
+            let found = square(low, high);
+            assert!(found.low == 0.0 && found.high >= high * high && found.high <= most * 1.001, "{found:?}");
+        }
+        let found = square(-3.0, -2.0);
+        assert!(
+            found.low <= 4.0 && found.low > 3.999 && found.high >= 9.0 && found.high < 9.001,
+            "{found:?}"
+        );
+    }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_4, LN_2};
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_referee::{Displacement, ExactRenderer, Format, Referee};
+use raypencil_referee::{Displacement, ExactRenderer, Format, Referee, Ruling, Tolerance};
 use raypencil_scene::{
     Atmosphere, Beam, Camera, FaceId, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pixel, Pose, Profile,
     Renderer, Request, Return, Sampling, Scene,
@@ -240,5 +240,64 @@ fn there_is_no_view_of_what_is_no_pencil() {
     assert_eq!(referee.sight(0, 0, 1, Displacement::ZERO), None);
     for wild in [by(f64::NAN, 0.0), by(0.0, f64::NAN), by(f64::INFINITY, 0.0), by(0.0, f64::NEG_INFINITY)] {
         assert_eq!(referee.sight(0, 0, 0, wild), None);
+    }
+}
+
+/// The point lands exactly on the upper border of row 32 and on the left one of column 0, which is that of the image. A
+/// position that may be off lands elsewhere by that over the depth, and more aslant: x / z = -1/2 there.
+#[test]
+fn a_landing_is_excused_as_far_as_the_position_explains_it() {
+    let scene = Setting::of(FluxModel::Radiometric).scene();
+    let referee = Referee::new(&scene);
+    let rule = |pixel: Option<Pixel>, position: f64| {
+        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position };
+        let ruling = referee.rule_sight(0, 0, 0, Displacement::ZERO, FaceId(0), true, pixel, tolerance);
+        ruling.expect("a pencil").pixel
+    };
+    let at = |i: u32, j: u32| Some(Pixel { i, j });
+    assert_eq!(rule(at(0, 32), 0.0), Ruling::Exact);
+    // Rounding alone: the row above, or beside the image.
+    for position in [0.0, 1e-9] {
+        assert!(matches!(rule(at(0, 31), position), Ruling::Rounding(_)), "{position}");
+        assert!(matches!(rule(None, position), Ruling::Rounding(_)), "{position}");
+        for wrong in [at(1, 32), at(0, 30), at(0, 33), at(63, 32), at(0, 0)] {
+            assert_eq!(rule(wrong, position), Ruling::Wrong, "{wrong:?} {position}");
+        }
+    }
+    // 1/32 m is a pixel at depth 2: across 3/2 of the way of 1/40 m are 1.2 pixels, down 0.8.
+    let position = 1.0 / 40.0;
+    for near in [at(1, 32), at(0, 31), None] {
+        assert!(matches!(rule(near, position), Ruling::Rounding(_)), "{near:?}");
+    }
+    for far in [at(2, 32), at(0, 33), at(0, 30)] {
+        assert_eq!(rule(far, position), Ruling::Wrong, "{far:?}");
+    }
+    // Past the image there is no pixel, however near.
+    assert_eq!(rule(at(64, 32), 10.0), Ruling::Wrong);
+    assert_eq!(rule(at(0, 64), 10.0), Ruling::Wrong);
+}
+
+/// Pencils of a beam in the camera's own place that land exactly on borders between pixels: n columns over x / z from -1 to
+/// 1, and n pixels to f, so that pencil i lands 2 i + 1 - n pixels from the principal point. In f64 the quotients come out on
+/// either side.
+#[test]
+fn a_landing_on_a_border_is_in_the_pixel_that_begins_there() {
+    for n in (3..200_u32).step_by(2) {
+        let mut scene = Setting::of(FluxModel::Radiometric).scene();
+        let (mut camera, mut beam) = (*scene.camera(), scene.beams()[0]);
+        camera.scene_from_sensor = beam.scene_from_sensor;
+        camera.sensor.width = 2 * n + 2;
+        camera.sensor.pixel_pitch = [1.0 / 8192.0; 2];
+        camera.sensor.focal_length = f64::from(n) / 8192.0;
+        camera.sensor.principal_point = [f64::from(n), 32.0];
+        beam.sensor.columns = n;
+        (beam.sensor.half_width, beam.sensor.grid_distance) = (0.1, 0.1);
+        let (mesh, air, model) = (Arc::clone(scene.mesh()), scene.atmosphere(), scene.flux_model());
+        scene = Scene::new(mesh, camera, vec![beam], air, model).expect("a scene");
+        let referee = Referee::new(&scene);
+        for i in 0..n {
+            let Some(sight) = referee.sight(0, i, 0, Displacement::ZERO) else { continue };
+            assert_eq!(sight.pixel, Some(Pixel { i: 2 * i + 1, j: 32 }), "pencil {i} of {n}");
+        }
     }
 }
