@@ -503,10 +503,17 @@ mod tests {
     /// A camera at (1, 2, 10) and a beam that looks straight down from 8 m, onto level ground of one face. Its middle pencil
     /// meets (0, 0, 0); a cell is 8 `step` m across and `row` m down.
     fn level(size: f32, step: f64, row: f64) -> Scene {
+        level_with(size, step, row, &[])
+    }
+
+    /// The same with other faces.
+    fn level_with(size: f32, step: f64, row: f64, others: &[[[f32; 3]; 3]]) -> Scene {
         let material = Material { name: "ground".into(), reflectivity: 0.25 };
-        let vertices = vec![[-size, -size, 0.0], [2.0 * size, -size, 0.0], [-size, 2.0 * size, 0.0]];
-        let mesh =
-            Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![material]).expect("a mesh");
+        let mut vertices = vec![[-size, -size, 0.0], [2.0 * size, -size, 0.0], [-size, 2.0 * size, 0.0]];
+        vertices.extend(others.iter().flatten());
+        let count = 1 + others.len();
+        let faces = (0..count as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+        let mesh = Mesh::new(DVec3::ZERO, vertices, faces, vec![0; count], vec![material]).expect("a mesh");
         let down = |position: DVec3| Pose { position, rotation: DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0) };
         let camera = Camera {
             width: 8,
@@ -576,5 +583,35 @@ mod tests {
         assert!((bundle.direction + eye / length).length() < 1e-12, "{}", bundle.direction);
         assert!((bundle.reach - (length + radius)).abs() < 1e-6, "{}", bundle.reach);
         assert!((bundle.spread - radius / (length - radius)).abs() < 1e-6, "{}", bundle.spread);
+    }
+
+    /// Two thirds of a lid 1 m above the ground, whose faces meet along a line from its middle to the left. The camera
+    /// sees the ground's (x, y) through (0.9 x + 0.1, 0.9 y + 0.2) of it. Pencils pass its backs. Cells are 1/4 m, and the
+    /// lid's middle is seen one and a half of them to the right of the point: the side of the missing third, drawn on
+    /// beyond the middle, crosses a corner of what a pencil may hit; the side itself does not.
+    #[test]
+    fn a_lid_of_several_faces_hides_as_one() {
+        let (middle, left) = ([0.4375, 0.2, 1.0], [-4.5625, 0.2, 1.0]);
+        let (up, down) = ([2.4375, 3.7, 1.0], [2.4375, -3.3, 1.0]);
+        let of = |lid: &[[[f32; 3]; 3]]| {
+            let scene = level_with(4.0, 0.03125, 0.25, lid);
+            let margins = Referee::new(&scene).sight_margins(0, 1, 1).expect("a pencil");
+            (margins.sight.visible, margins.visibility)
+        };
+        assert_eq!(of(&[]), (true, Margin::CAPPED));
+        let (visible, margin) = of(&[[middle, left, up], [middle, down, left]]);
+        assert!(!visible);
+        assert_eq!(margin, Margin::CAPPED, "hidden all over");
+        // Of the lower half alone the upper side leaves the upper half of the ground open: it lies above y = 0.
+        let (visible, margin) = of(&[[middle, down, left]]);
+        assert!(!visible && margin.lo < 1e-6 && margin.hi < 1e-3, "{margin:?}");
+        // A little higher it hides the point by a part of a cell, 0.1 m / 0.9 of 1/4 m.
+        let higher = |[x, y, z]: [f32; 3]| [x, y + 0.1, z];
+        let (visible, margin) = of(&[[higher(middle), higher(down), higher(left)]]);
+        let edge = 0.1 / 0.9 / 0.25;
+        assert!(
+            !visible && margin.lo <= edge && edge <= margin.hi && margin.hi < 1.5 * margin.lo,
+            "{margin:?}"
+        );
     }
 }
