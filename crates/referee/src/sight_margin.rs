@@ -425,6 +425,8 @@ mod tests {
     };
 
     use super::*;
+    use crate::ruling::{Ruling, Tolerance};
+    use crate::verdict::Displacement;
 
     fn face(corners: [[f32; 3]; 3]) -> Face {
         Face { id: FaceId(0), corners }
@@ -613,5 +615,33 @@ mod tests {
             !visible && margin.lo <= edge && edge <= margin.hi && margin.hi < 1.5 * margin.lo,
             "{margin:?}"
         );
+    }
+
+    /// A lid so small that it hides one displaced ray alone is an excuse as far as that ray is within the tolerance: in each of
+    /// the eight directions that are asked.
+    #[test]
+    fn a_ray_beside_excuses_what_is_true_of_it() {
+        for (x, y) in (-1..=1).flat_map(|x| (-1..=1).map(move |y| (x, y))).filter(|at| *at != (0, 0)) {
+            let (dx, dy) = (f64::from(x), f64::from(y));
+            // A cell is 1/4 m, y down in the beam; seen through the plane 1 m up. A tenth of a cell about it.
+            let [to_x, to_y] = [0.9 * 0.25 * dx + 0.1, -0.9 * 0.25 * dy + 0.2].map(|at| at as f32);
+            let lid = [
+                [to_x - 0.025, to_y - 0.025, 1.0],
+                [to_x, to_y + 0.05, 1.0],
+                [to_x + 0.025, to_y - 0.025, 1.0],
+            ];
+            let scene = level_with(4.0, 0.03125, 0.25, &[lid]);
+            let referee = Referee::new(&scene);
+            let pixel = referee.sight(0, 1, 1, Displacement::ZERO).expect("a pencil").pixel;
+            let rule = |lateral: f64| {
+                let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
+                let ruled =
+                    referee.rule_sight(0, 1, 1, Displacement::ZERO, FaceId(0), false, pixel, tolerance);
+                ruled.expect("a pencil").visible
+            };
+            assert_eq!(rule(1.0), Ruling::Rounding(Displacement { dx, dy }), "{dx},{dy}");
+            assert_eq!(rule(0.5), Ruling::Wrong, "{dx},{dy}");
+            assert_eq!(rule(7.0), rule(1.0), "a cell at most");
+        }
     }
 }

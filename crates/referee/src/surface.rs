@@ -256,3 +256,55 @@ fn outward([x, y]: [f64; 2]) -> Option<[f64; 2]> {
     let length = (x * x + y * y).sqrt();
     (length > 0.0).then(|| [-x / length, -y / length])
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::DVec3;
+    use raypencil_scene::{
+        Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene, SensorId,
+    };
+
+    use super::*;
+    use crate::pencil::{Aim, Sensor};
+    use crate::verdict::Referee;
+
+    /// A face 2 m ahead that ends so many cells to the right of the ray, a cell being 1/4 m.
+    fn jump(cells: f32, lo: f64) -> Option<[f64; 2]> {
+        let end = 0.25 * cells;
+        let vertices = vec![[end, -40.0, 2.0], [end - 90.0, 0.0, 2.0], [end, 40.0, 2.0]];
+        let material = Material { name: "ground".into(), reflectivity: 0.25 };
+        let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![material]);
+        let mesh = mesh.expect("a mesh");
+        let camera = Camera {
+            width: 9,
+            height: 9,
+            pixel_pitch: [0.0625; 2],
+            focal_length: 0.5,
+            principal_point: [4.5; 2],
+            aperture: 0.01,
+            lens: Lens::CLEAR,
+            max_range: 20.0,
+        };
+        let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+        let air = Atmosphere { attenuation: 0.0 };
+        let scene = Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).expect("a scene");
+        let referee = Referee::new(&scene);
+        let sensor = Sensor::of(&scene, SensorId::Camera).expect("a camera");
+        let mut near = Neighbourhood::new(&referee, &sensor, Aim { i: 4, j: 4, dx: 0.0, dy: 0.0 });
+        near.reach_all();
+        near.jump_between([0.0; 2], [1.5, 0.0], lo)
+    }
+
+    #[test]
+    fn a_jump_is_found_between_two_rays_within_a_cell_and_beyond_what_is_known() {
+        for lo in [0.0, 0.7] {
+            let [dx, dy] = jump(0.75, lo).expect("the end of the face");
+            assert!((dx - 0.75).abs() < 1e-6 && dy == 0.0, "{dx}");
+        }
+        assert_eq!(jump(0.75, 0.8), None, "nearer than is known to be without");
+        assert_eq!(jump(1.25, 0.0), None, "farther than a cell");
+        assert_eq!(jump(1.75, 0.0), None, "no jump at all");
+    }
+}

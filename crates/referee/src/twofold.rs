@@ -399,4 +399,18 @@ mod tests {
         let tiny = Twofold::of(1e-200).mul(&Twofold::of(-1e-60));
         assert!(tiny.high == 0.0 && (1e-260..1.1e-260).contains(&tiny.error), "{tiny:?}");
     }
+
+    #[test]
+    fn errors_of_roots_and_quotients_are_what_multiplying_back_leaves() {
+        for x in [2.0, 3.0, 1e-20, 7e30] {
+            let (x, three) = (Twofold::of(x), Twofold::of(3.0));
+            let bare = |of: Twofold| Twofold { error: 0.0, ..of };
+            let root = bare(x.sqrt());
+            let rest = x.sub(&root.square());
+            assert_eq!(x.sqrt().error, rest.most() / root.least() * ROUNDED_UP);
+            let third = bare(x.over(&three));
+            let rest = x.sub(&three.mul(&third));
+            assert_eq!(x.over(&three).error, rest.most() / three.least() * ROUNDED_UP);
+        }
+    }
 }
