@@ -123,7 +123,7 @@ mod tests {
             (r#"{"format": 2}"#, vec!["candidate.json", "format", "2", "1"]),
             (r#"{"format": 1, "program": "P"}"#, vec!["arithmetic"]),
             (&GOOD.replace("f32", "f16"), vec!["f16"]),
-            (&GOOD.replace("3e-12", "-3e-12"), vec!["totals[0]", "-3e-12"]),
+            (&GOOD.replace("3e-12", "-3e-12"), vec!["totals[0]", "error -0.000000000003"]),
         ] {
             let message = read(text).expect_err(text).to_string();
             for word in words {
