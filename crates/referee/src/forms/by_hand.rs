@@ -397,10 +397,10 @@ fn a_corner_that_is_not_certainly_before_the_sensor_may_lie_anywhere() {
         assert!(forms.corners[0].error[1] < 1e-13 && !forms.is_before());
     }
     // z of 2^-40: 32 u S / z is 2^-48 3.x / 2^-40, more than a thousandth.
-    let face = behind(2.0_f32.powi(-40));
+    let face = behind(1.0 / (1_u64 << 40) as f32);
     let ray = MovingRay::new(&camera(DVec3::ZERO), aim(2, 1));
     assert!(!FaceForms::new(&ray, &face).is_before());
-    assert!(FaceForms::new(&ray, &behind(2.0_f32.powi(-36))).is_before());
+    assert!(FaceForms::new(&ray, &behind(1.0 / (1_u64 << 36) as f32)).is_before());
 }
 
 /// A triangle a hair inside or outside of each side of the square: only what is certainly outside is let go. The hair is
