@@ -16,7 +16,7 @@ use crate::check::Truth;
 use crate::compare::Place;
 
 /// How far radiance that was computed in single precision may be off, relative. Tuned: some 80 roundings.
-pub const LARGEST_OFF: f64 = 5e-6;
+const LARGEST_OFF: f64 = 5e-6;
 /// Points nearer than this to the border of the sheet, as a part of their coordinates, may be taken for lit or dark in
 /// single precision: 16 roundings.
 const BORDER: f64 = 16.0 / (1 << 24) as f64;
@@ -38,7 +38,7 @@ pub struct RadianceComparison {
     pub doubtful: u64,
     /// The largest relative error of the lit ones, and where.
     pub worst: Option<(f64, Place)>,
-    /// Rays that are off by more than [`LARGEST_OFF`], or have radiance where there is no light.
+    /// Rays that are off by more than 5e-6 of the radiance, or have radiance where there is no light.
     pub wrong: u64,
 }
 
