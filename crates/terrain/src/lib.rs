@@ -22,9 +22,11 @@ mod builtin;
 mod draws;
 mod ground;
 mod height;
+mod posts;
 mod random;
 
 pub use builtin::{BUILTIN_NAMES, builtin};
 pub use ground::Ground;
 pub use height::height_at;
+pub use posts::Posts;
 pub use random::RandomGround;
