@@ -19,6 +19,13 @@ pub(crate) enum Purpose {
     ZeroAreaFaces = 9,
     UnreferencedVertices = 10,
     Diagonals = 11,
+    Octaves = 12,
+    Craters = 13,
+    Rocks = 14,
+    RockPlaces = 15,
+    RockShapes = 16,
+    Crevasses = 17,
+    Corners = 18,
 }
 
 /// The numbers of one (seed, purpose), in order: the index is the place in the key stream.
@@ -53,6 +60,18 @@ impl Draws {
         self.0.next_u64() >> 63 == 1
     }
 
+    /// Exponential of mean 1: the wait for the next event of a Poisson process of unit rate.
+    pub(crate) fn exponential(&mut self) -> f64 {
+        // 1 - u lies in (0, 1]: the logarithm is finite.
+        -libm::log(1.0 - self.unit())
+    }
+
+    /// Gaussian of mean 0 and standard deviation 1. (Box and Muller, 1958; one of the pair)
+    pub(crate) fn gaussian(&mut self) -> f64 {
+        let radius = (2.0 * self.exponential()).sqrt();
+        radius * libm::cos(std::f64::consts::TAU * self.unit())
+    }
+
     /// A direction, uniform over the sphere: a point of the unit ball, made a unit. (von Neumann, 1951)
     pub(crate) fn direction(&mut self) -> DVec3 {
         loop {
@@ -85,7 +104,28 @@ mod tests {
             assert!((0.0..1.0).contains(&draws.unit()));
             assert!((-2.0..5.0).contains(&draws.between(-2.0, 5.0)));
             assert!(draws.below(3) < 3);
+            assert!(draws.exponential() >= 0.0);
+            assert!(draws.gaussian().is_finite());
             assert!((draws.direction().length() - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn waits_and_gaussians_have_their_moments() {
+        // Of 1e5 draws the mean of x, x^2, x^4 has a standard error of sqrt(var / n): for the exponential
+        // (moments n!) 1, sqrt(20), for the Gaussian 1, sqrt(2), sqrt(96), each over sqrt(1e5). Bounds of 4 of them.
+        let mut draws = Draws::new(5, Purpose::Octaves);
+        let mut sums = [0.0; 5];
+        for _ in 0..100_000 {
+            let (wait, x) = (draws.exponential(), draws.gaussian());
+            for (sum, term) in sums.iter_mut().zip([wait, wait * wait, x, x * x, x * x * x * x]) {
+                *sum += term / 1e5;
+            }
+        }
+        let expected = [(1.0, 1.0), (2.0, 20.0), (0.0, 1.0), (1.0, 2.0), (3.0, 96.0)];
+        for (sum, (mean, variance)) in sums.into_iter().zip(expected) {
+            let z: f64 = (sum - mean) / f64::sqrt(variance / 1e5);
+            assert!(z.abs() < 4.0, "{sum} for {mean}: {z} standard errors");
         }
     }
 }

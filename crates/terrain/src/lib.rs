@@ -22,11 +22,13 @@ mod builtin;
 mod draws;
 mod ground;
 mod height;
+mod mars;
 mod posts;
 mod random;
 
 pub use builtin::{BUILTIN_NAMES, builtin};
 pub use ground::Ground;
 pub use height::height_at;
+pub use mars::{Crater, Craters, Crevasses, MarsGround, PRESET_NAMES, Rocks, Roughness};
 pub use posts::Posts;
 pub use random::RandomGround;

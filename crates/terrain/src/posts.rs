@@ -26,4 +26,10 @@ impl Posts {
         let place = self.corner + self.spacing * DVec2::new(f64::from(column), f64::from(row));
         place.extend(self.heights[row as usize * self.columns as usize + column as usize])
     }
+
+    /// From the first post to the last along x and along y, metres.
+    pub fn extent(&self) -> DVec2 {
+        let steps = |count: u32| f64::from(count.saturating_sub(1));
+        self.spacing * DVec2::new(steps(self.columns), steps(self.rows))
+    }
 }

@@ -1,0 +1,260 @@
+//! Ground as Mars has it: relief at every scale, craters, crevasses and rocks, each by its own law.
+//!
+//! ```text
+//! fractal    relief: stochastic interpolation between coarse posts
+//! craters    bowls, rims and ejecta, added to the posts
+//! crevasses  the courses of cracks, and how the grid makes way for them
+//! surface    the sheet of faces over the posts, cut open at the crevasses
+//! rocks      sizes, places and bodies of rocks
+//! presets    grounds with a source for every number
+//! ```
+
+mod craters;
+mod crevasses;
+mod fractal;
+mod presets;
+mod rocks;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+use glam::{DVec2, DVec3};
+use raypencil_scene::{Material, SceneError};
+
+use crate::{Ground, Posts};
+
+pub use craters::{Crater, Craters};
+pub use crevasses::Crevasses;
+pub use fractal::Roughness;
+pub use presets::PRESET_NAMES;
+pub use rocks::Rocks;
+
+/// The most faces that a ground may be expected to have: as many as files may.
+const MOST_FACES: f64 = (1 << 25) as f64;
+
+/// A ground to be generated. Start from [`MarsGround::preset`] and change fields; the same fields give the same bytes
+/// on every machine.
+///
+/// The middle of the square, 1.5 m about it, is free of rocks and crevasses, so that a rover can stand there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarsGround {
+    /// Which of the grounds with these settings.
+    pub seed: u64,
+    /// Side of the square, metres, to the next whole cell. Of no effect if `coarse` is given.
+    pub extent: f64,
+    /// Posts are this far apart, metres; if `coarse` is given, at most this far.
+    pub post_spacing: f64,
+    /// Posts that the surface passes through, before craters and crevasses are put in. Without them the relief
+    /// starts from four posts at the corners of a square at least as large as the ground.
+    pub coarse: Option<Posts>,
+    /// How rough the surface is.
+    pub roughness: Roughness,
+    /// Rocks; a coverage of 0 for none.
+    pub rocks: Rocks,
+    /// Craters; a density of 0 for none.
+    pub craters: Craters,
+    /// Crevasses; a count of 0 for none.
+    pub crevasses: Crevasses,
+    /// Added to every vertex, metres.
+    pub offset: DVec3,
+}
+
+/// Rocks and crevasses stay this far from the middle, metres.
+const FREE_RADIUS: f64 = 1.5;
+
+impl MarsGround {
+    /// Builds it.
+    ///
+    /// # Errors
+    /// Names the first number that is out of its range, or what makes the ground larger than 2^25 faces.
+    pub fn build(&self) -> Result<Ground, SceneError> {
+        self.check()?;
+        let mut posts = self.relief();
+        let middle = posts.corner + 0.5 * posts.extent();
+        let side = posts.extent().max_element();
+        for crater in self.craters.draw(middle, side, self.seed) {
+            crater.carve(&mut posts);
+        }
+        let cells = [posts.columns - 1, posts.rows - 1];
+        let crevasses = self.crevasses.draw(cells, posts.spacing, self.seed);
+
+        let mut ground = Ground { materials: kinds(), ..Ground::default() };
+        surface::add(&mut ground, &posts, &crevasses, &surface::Kinds { soil: SOIL, wall: WALL }, self.seed);
+        self.add_rocks(&mut ground, &posts, &crevasses);
+        if self.offset != DVec3::ZERO {
+            for vertex in &mut ground.vertices {
+                *vertex += self.offset;
+            }
+        }
+        Ok(ground)
+    }
+
+    /// The posts, without craters.
+    fn relief(&self) -> Posts {
+        if let Some(coarse) = &self.coarse {
+            let octaves = octaves(coarse.spacing.max_element(), self.post_spacing);
+            return fractal::refine(coarse.clone(), octaves, &self.roughness, self.seed);
+        }
+        let cells = self.cells();
+        let octaves = cells.next_power_of_two().ilog2();
+        let whole = 1_u32 << octaves;
+        let start = fractal::corners(f64::from(whole) * self.post_spacing, &self.roughness, self.seed);
+        let posts = fractal::refine(start, octaves, &self.roughness, self.seed);
+        // The ground is a part of it, about the origin.
+        let margin = (whole - cells) / 2;
+        let heights = (0..=cells)
+            .flat_map(|row| {
+                let first = ((margin + row) * posts.columns + margin) as usize;
+                posts.heights[first..=first + cells as usize].iter().copied()
+            })
+            .collect();
+        let corner = DVec2::splat(-0.5 * f64::from(cells) * self.post_spacing);
+        Posts {
+            columns: cells + 1,
+            rows: cells + 1,
+            corner,
+            spacing: DVec2::splat(self.post_spacing),
+            heights,
+        }
+    }
+
+    /// Cells per side of a ground without coarse posts.
+    fn cells(&self) -> u32 {
+        // Below 2^13 after the check.
+        ((self.extent / self.post_spacing).ceil() as u32).max(2)
+    }
+
+    fn add_rocks(&self, ground: &mut Ground, posts: &Posts, crevasses: &[crevasses::Crevasse]) {
+        let extent = posts.extent();
+        let middle = posts.corner + 0.5 * extent;
+        let free_radius = FREE_RADIUS.min(0.125 * extent.min_element());
+        let is_free = |place: DVec2, diameter: f64| {
+            let local = place - middle;
+            let beyond = local.abs().cmpgt(0.5 * extent).any();
+            !beyond
+                && local.length() > free_radius + 0.5 * diameter
+                && !crevasses.iter().any(|crevasse| crevasse.touches(local, 0.6 * diameter))
+        };
+        let diameters = self.rocks.diameters(extent.x * extent.y, self.seed);
+        let sites = rocks::place(&diameters, middle, extent.max_element(), self.seed, is_free);
+        let mut shapes = rocks::Shapes::new(self.seed);
+        for site in sites {
+            let centre = site.place.extend(surface::height(posts, site.place));
+            shapes.add(ground, centre, site.diameter, ROCK);
+        }
+    }
+
+    fn check(&self) -> Result<(), SceneError> {
+        let Self { rocks, craters, crevasses, roughness, .. } = self;
+        let ranges = [
+            ("extent_m", self.extent, 1.0..=1e5),
+            ("post_spacing_m", self.post_spacing, 1e-3..=1e4),
+            ("roughness.hurst", roughness.hurst, 0.01..=0.99),
+            ("roughness.at_1_m", roughness.at_1_m, 0.0..=10.0),
+            ("rocks.coverage", rocks.coverage, 0.0..=0.4),
+            ("rocks.smallest_m", rocks.smallest, 1e-3..=100.0),
+            ("rocks.largest_m", rocks.largest, rocks.smallest..=100.0),
+            ("craters.density", craters.density, 0.0..=0.5),
+            ("craters.smallest_m", craters.smallest, 1e-2..=1e4),
+            ("craters.largest_m", craters.largest, craters.smallest..=1e4),
+            ("crevasses.width_m", crevasses.width, 1e-3..=100.0),
+            ("crevasses.depth_m", crevasses.depth, 1e-3..=1000.0),
+            ("crevasses.overhang_m", crevasses.overhang, 0.0..=100.0),
+            ("offset_m", self.offset.abs().max_element(), 0.0..=1e7),
+        ];
+        for (field, value, range) in ranges {
+            if !range.contains(&value) {
+                let expected = format!("{} to {}", range.start(), range.end());
+                return Err(SceneError::new(format!("terrain.{field}"), value, expected));
+            }
+        }
+        if let Some(gain) = roughness.octave_gains.iter().find(|gain| !(0.0..=100.0).contains(*gain)) {
+            return Err(SceneError::new("terrain.roughness.octave_gains", gain, "0 to 100 each"));
+        }
+        if let Some(coarse) = &self.coarse {
+            check_coarse(coarse)?;
+        }
+        self.check_size()
+    }
+
+    /// Refuses what would take more faces than a file may have.
+    fn check_size(&self) -> Result<(), SceneError> {
+        let (extent, cells) = match &self.coarse {
+            None => {
+                let cells = (self.extent / self.post_spacing).ceil();
+                (DVec2::splat(self.extent), cells * cells)
+            }
+            Some(coarse) => {
+                let finer = libm::exp2(f64::from(octaves(coarse.spacing.max_element(), self.post_spacing)));
+                (coarse.extent(), f64::from(coarse.columns - 1) * f64::from(coarse.rows - 1) * finer * finer)
+            }
+        };
+        let most = format!("at most {MOST_FACES} faces in all");
+        if 2.0 * cells > MOST_FACES {
+            let found = format!("{} m: {} faces", self.post_spacing, 2.0 * cells);
+            return Err(SceneError::new("terrain.post_spacing_m", found, most));
+        }
+        let rocks = self.rocks.expected_faces_at_most(extent.x * extent.y);
+        if 2.0 * cells + rocks > MOST_FACES {
+            let found = format!("{} m: up to {rocks:.0} faces of rocks", self.rocks.smallest);
+            return Err(SceneError::new("terrain.rocks.smallest_m", found, most));
+        }
+        let craters = self.craters.expected(extent.max_element());
+        if craters > 1e5 {
+            let found = format!("{} m: {craters:.0} craters", self.craters.smallest);
+            return Err(SceneError::new("terrain.craters.smallest_m", found, "at most 100000 craters"));
+        }
+        let crevasses = &self.crevasses;
+        if crevasses.count > 1000 {
+            return Err(SceneError::new("terrain.crevasses.count", crevasses.count, "0 to 1000"));
+        }
+        let widest = crevasses.widest(extent.y);
+        if crevasses.count > 0 && crevasses.width > widest {
+            let expected = format!("at most {widest:.3} m for {} of them on {} m", crevasses.count, extent.y);
+            return Err(SceneError::new("terrain.crevasses.width_m", crevasses.width, expected));
+        }
+        Ok(())
+    }
+}
+
+fn check_coarse(coarse: &Posts) -> Result<(), SceneError> {
+    let (columns, rows) = (coarse.columns as usize, coarse.rows as usize);
+    if columns < 2 || rows < 2 || coarse.heights.len() != columns * rows {
+        let found = format!("{columns} x {rows} posts, {} heights", coarse.heights.len());
+        return Err(SceneError::new("terrain.coarse", found, "2 x 2 posts or more, a height for each"));
+    }
+    let finite = |v: DVec2| v.is_finite() && v.abs().max_element() <= 1e12;
+    if !(coarse.spacing.min_element() > 0.0 && finite(coarse.spacing) && finite(coarse.corner)) {
+        let found = format!("spacing {}, corner {}", coarse.spacing, coarse.corner);
+        return Err(SceneError::new("terrain.coarse", found, "positive spacings and places within 1e12 m"));
+    }
+    if let Some(index) = coarse.heights.iter().position(|height| !(height.abs() <= 1e7)) {
+        let found = format!("post ({}, {}) at {} m", index % columns, index / columns, coarse.heights[index]);
+        return Err(SceneError::new("terrain.coarse", found, "heights that are all known, within 1e7 m"));
+    }
+    Ok(())
+}
+
+/// How often to halve the coarse spacing for a spacing that is no larger than the fine one.
+fn octaves(coarse: f64, fine: f64) -> u32 {
+    let mut octaves = 0;
+    let mut spacing = coarse;
+    // 1e12 m at most, to 1e-3 m at least: 50 halvings.
+    while spacing > fine {
+        spacing *= 0.5;
+        octaves += 1;
+    }
+    octaves
+}
+
+const SOIL: u16 = 0;
+const ROCK: u16 = 1;
+const WALL: u16 = 2;
+
+/// CHOICE: soil as bright as all ground that brings no reflectivity of its own; rocks and fresh walls darker, as in
+/// near infrared images of the landing sites dust is brighter than rock.
+fn kinds() -> Vec<Material> {
+    [("soil", 0.25), ("rock", 0.16), ("crevasse wall", 0.2)]
+        .map(|(name, reflectivity)| Material { name: name.into(), reflectivity })
+        .into()
+}

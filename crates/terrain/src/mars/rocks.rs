@@ -1,0 +1,381 @@
+//! Rocks by the law of Golombek and Rapp (1997): how many of each size, where they lie, and their bodies.
+//!
+//! The share of the ground that rocks of diameter D and more cover is F(D) = k exp(-q D), with k the share that all of them
+//! cover and q = 1.79 + 0.152 / k per metre. A rock covers pi D^2 / 4, so that per square metre and metre of diameter
+//! there are -F'(D) / (pi D^2 / 4) = 4 k q exp(-q D) / (pi D^2) rocks: in v = 1/D, 4 k q exp(-q / v) / pi per unit of v.
+//! That is how they are drawn: a Poisson process of rate 4 k q / pi in v, from 1/largest to 1/smallest, each event kept with
+//! probability exp(-q D). A rock's diameter is that of the circle as large as its outline seen from above.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use crate::Ground;
+use crate::draws::{Draws, Purpose};
+
+/// Which rocks lie on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rocks {
+    /// Share k of the ground that rocks of all sizes would cover, 0 to 0.4 (Golombek et al. 2003 give 0.05 to 0.4).
+    pub coverage: f64,
+    /// The smallest diameter D_min, metres: the law goes on below it, to ever more and smaller ones.
+    pub smallest: f64,
+    /// The largest diameter D_max, metres.
+    pub largest: f64,
+}
+
+impl Rocks {
+    /// q of the law, per metre.
+    pub fn decay(&self) -> f64 {
+        1.79 + 0.152 / self.coverage
+    }
+
+    /// Share of the ground that rocks from that diameter up to the largest cover: F(D) - F(D_max).
+    pub fn cumulative_area(&self, diameter: f64) -> f64 {
+        let share = |diameter: f64| self.coverage * libm::exp(-self.decay() * diameter);
+        share(diameter) - share(self.largest)
+    }
+
+    /// No fewer faces than are to be expected of the rocks on that many square metres.
+    pub(super) fn expected_faces_at_most(&self, area: f64) -> f64 {
+        let from = |diameter: f64| {
+            (1.0 / self.smallest.max(diameter) - 1.0 / self.largest).max(0.0) * self.rate(area)
+        };
+        // Those of the least faces, and what larger ones have beyond it.
+        32.0 * from(0.0) + 96.0 * from(ROUND) + 384.0 * from(ROUNDER)
+    }
+
+    /// Events of the process per unit of 1/D.
+    fn rate(&self, area: f64) -> f64 {
+        if self.coverage > 0.0 {
+            area * 4.0 * self.coverage * self.decay() / std::f64::consts::PI
+        } else {
+            0.0
+        }
+    }
+
+    /// The diameters of the rocks on that many square metres, the largest first, metres. A smaller `smallest` of the
+    /// same seed adds more at the end.
+    pub fn diameters(&self, area: f64, seed: u64) -> Vec<f64> {
+        let rate = self.rate(area);
+        let mut diameters = Vec::new();
+        if !(rate > 0.0) {
+            return diameters;
+        }
+        let mut draws = Draws::new(seed, Purpose::Rocks);
+        let mut curvature = 1.0 / self.largest;
+        loop {
+            curvature += draws.exponential() / rate;
+            let diameter = 1.0 / curvature;
+            if !(diameter >= self.smallest) {
+                return diameters;
+            }
+            if draws.unit() < libm::exp(-self.decay() * diameter) {
+                diameters.push(diameter);
+            }
+        }
+    }
+}
+
+/// Where a rock lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Site {
+    pub place: DVec2,
+    pub diameter: f64,
+}
+
+/// Places for rocks of these diameters (the largest first) on the square of side `extent` about `middle`, wherever
+/// `is_free` allows one of that diameter.
+///
+/// CHOICE: rocks do not lie in one another as long as another place is found within a few draws; the law says
+/// nothing of places. The number of rocks does not depend on it.
+pub(super) fn place(
+    diameters: &[f64],
+    middle: DVec2,
+    extent: f64,
+    seed: u64,
+    is_free: impl Fn(DVec2, f64) -> bool,
+) -> Vec<Site> {
+    const TRIES: usize = 24;
+    let mut draws = Draws::new(seed, Purpose::RockPlaces);
+    // Cells as large as the largest rock: two that touch lie in the same or in neighbouring cells.
+    let cell = diameters.first().copied().unwrap_or(1.0);
+    let cell_of = |place: DVec2| ((place - middle) / cell).floor().to_array().map(|index| index as i64);
+    let mut sites: Vec<Site> = Vec::with_capacity(diameters.len());
+    let mut taken: BTreeMap<[i64; 2], Vec<u32>> = BTreeMap::new();
+    for &diameter in diameters {
+        let mut chosen = None;
+        for _ in 0..TRIES {
+            let half = 0.5 * extent;
+            let place = middle + DVec2::new(draws.between(-half, half), draws.between(-half, half));
+            if !is_free(place, diameter) {
+                continue;
+            }
+            chosen = Some(place);
+            let [i, j] = cell_of(place);
+            let near = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| [i, j]));
+            let clear = near.filter_map(|cell| taken.get(&cell)).flatten().all(|&other| {
+                let other = sites[other as usize];
+                place.distance(other.place) > 0.5 * (diameter + other.diameter)
+            });
+            if clear {
+                break;
+            }
+        }
+        // Where nothing is free at all, as on a ground that is all start or crevasse, there is no rock.
+        let Some(place) = chosen else { continue };
+        taken.entry(cell_of(place)).or_default().push(sites.len() as u32);
+        sites.push(Site { place, diameter });
+    }
+    sites
+}
+
+/// Rocks from these diameters on, metres, have 128 and 512 faces; smaller ones have 32. CHOICE: facets of some centimetres.
+const ROUND: f64 = 0.15;
+const ROUNDER: f64 = 0.6;
+
+/// How often the faces of a rock's octahedron are cut in four.
+fn subdivisions(diameter: f64) -> u32 {
+    1 + u32::from(diameter >= ROUND) + u32::from(diameter >= ROUNDER)
+}
+
+/// The bodies of rocks.
+pub(super) struct Shapes {
+    draws: Draws,
+    /// Octahedra whose faces are cut in four once, twice and three times, thrown onto the unit sphere.
+    spheres: [Sphere; 3],
+}
+
+impl Shapes {
+    pub(super) fn new(seed: u64) -> Self {
+        let mut sphere = Sphere::octahedron();
+        let spheres = [(); 3].map(|()| {
+            sphere = sphere.cut();
+            sphere.clone()
+        });
+        Self { draws: Draws::new(seed, Purpose::RockShapes), spheres }
+    }
+
+    /// Adds a closed rock of that diameter, its widest level at `centre`.
+    ///
+    /// The body is a ball that random planes have cut flat, with half axes of its own: the higher of the two vertical ones is
+    /// above ground. Every vertex keeps its direction from the centre, so that faces look outward however it is cut.
+    ///
+    /// CHOICE: half as high above ground as wide (0.3 to 0.7), as rocks at the landing sites stand (Golombek and Rapp
+    /// 1997 find linear relations of height and diameter), and up to 0.35 of the diameter deep in it, so that no side of
+    /// it hangs over a slope of less than 35 degrees.
+    pub(super) fn add(&mut self, ground: &mut Ground, centre: DVec3, diameter: f64, material: u16) {
+        let draws = &mut self.draws;
+        let sphere = &self.spheres[subdivisions(diameter) as usize - 1];
+        // Flat sides: at least half of the radius is left.
+        let planes: Vec<(DVec3, f64)> =
+            (0..8).map(|_| (draws.direction(), draws.between(0.55, 0.95))).collect();
+        let cut = |direction: DVec3| {
+            planes.iter().fold(1.0_f64, |radius, (normal, distance)| {
+                let cosine = normal.dot(direction);
+                if cosine * radius > *distance { distance / cosine } else { radius }
+            })
+        };
+        let slender = draws.between(0.6, 1.0);
+        let (sin, cos) = libm::sincos(draws.between(0.0, std::f64::consts::TAU));
+        let (height, depth) = (diameter * draws.between(0.3, 0.7), 0.35 * diameter);
+        let body: Vec<DVec3> = sphere
+            .vertices
+            .iter()
+            .map(|&direction| {
+                let DVec3 { x, y, z } = direction * cut(direction);
+                let y = slender * y;
+                DVec3::new(cos * x - sin * y, sin * x + cos * y, z)
+            })
+            .collect();
+        // As wide as asked for, and as high.
+        let scale = diameter * (std::f64::consts::FRAC_PI_4 / plan_area(&body, &sphere.faces)).sqrt();
+        let top = body.iter().fold(0.0_f64, |top, v| top.max(v.z));
+        let bottom = body.iter().fold(0.0_f64, |bottom, v| bottom.min(v.z));
+        let first = ground.vertices.len() as u32;
+        for v in body {
+            let z = if v.z > 0.0 { v.z * (height / top) } else { v.z * (depth / -bottom) };
+            ground.vertex(centre + DVec3::new(scale * v.x, scale * v.y, z));
+        }
+        for face in &sphere.faces {
+            ground.face(face.map(|corner| first + corner), material);
+        }
+    }
+}
+
+/// Area of the outline of a closed body seen from above: that of all faces that look up, projected. Where the upper
+/// side folds over itself that part counts twice.
+fn plan_area(vertices: &[DVec3], faces: &[[u32; 3]]) -> f64 {
+    let twice = faces.iter().map(|face| {
+        let [a, b, c] = face.map(|corner| vertices[corner as usize].truncate());
+        (b - a).perp_dot(c - a).max(0.0)
+    });
+    0.5 * twice.sum::<f64>()
+}
+
+/// A triangulated sphere: unit vertices, faces counter-clockwise from outside.
+#[derive(Clone)]
+struct Sphere {
+    vertices: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+}
+
+impl Sphere {
+    fn octahedron() -> Self {
+        let vertices = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]).collect();
+        let face = |octant: u32| {
+            let (a, b, c) = (octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2));
+            // Mirroring one axis turns the order.
+            if octant.count_ones().is_multiple_of(2) { [a, b, c] } else { [a, c, b] }
+        };
+        Self { vertices, faces: (0..8).map(face).collect() }
+    }
+
+    /// Every face cut in four at the middles of its sides.
+    fn cut(&self) -> Self {
+        let mut vertices = self.vertices.clone();
+        let mut middles = BTreeMap::new();
+        let mut middle_of = |a: u32, b: u32| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                vertices.push((self.vertices[a as usize] + self.vertices[b as usize]).normalize());
+                vertices.len() as u32 - 1
+            })
+        };
+        let mut faces = Vec::with_capacity(4 * self.faces.len());
+        for &[a, b, c] in &self.faces {
+            let (ab, bc, ca) = (middle_of(a, b), middle_of(b, c), middle_of(c, a));
+            faces.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        Self { vertices, faces }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::ground::tests::assert_closed_and_outward;
+
+    /// Faces of a rock of that diameter.
+    pub(in crate::mars) fn faces(diameter: f64) -> usize {
+        32 << (2 * (subdivisions(diameter) - 1))
+    }
+
+    const PATHFINDER: Rocks = Rocks { coverage: 0.19, smallest: 0.05, largest: 3.0 };
+
+    #[test]
+    fn the_law_by_hand() {
+        // k = 0.19: q = 1.79 + 0.8 = 2.59 per metre; F(1 m) = 0.19 e^-2.59 = 0.19 * 0.07502 = 0.014254, less that of
+        // 3 m, 0.19 e^-7.77 = 0.0000802.
+        assert!((PATHFINDER.decay() - 2.59).abs() < 1e-12);
+        assert!((PATHFINDER.cumulative_area(1.0) - 0.014_174).abs() < 2e-6);
+    }
+
+    #[test]
+    fn covered_areas_follow_the_law() {
+        // Compound Poisson: the sum of the areas a of all rocks from D on has the variance of the sum of a^2, which
+        // is estimated by the sum itself. As many square metres as make 3 standard errors at most 5 %.
+        for (coverage, seeds) in [(0.069, 320), (0.19, 100), (0.35, 60)] {
+            let rocks = Rocks { coverage, ..PATHFINDER };
+            let area = 120.0 * 120.0;
+            let mut sums = [(0.1, 0.0, 0.0), (0.2, 0.0, 0.0), (0.5, 0.0, 0.0), (1.0, 0.0, 0.0)];
+            for seed in 0..seeds {
+                let tracked = Rocks { smallest: 0.1, ..rocks };
+                for diameter in tracked.diameters(area, seed) {
+                    let covered = std::f64::consts::FRAC_PI_4 * diameter * diameter;
+                    for (least, sum, squares) in &mut sums {
+                        if diameter >= *least {
+                            *sum += covered;
+                            *squares += covered * covered;
+                        }
+                    }
+                }
+            }
+            for (least, sum, squares) in sums {
+                let expected = rocks.cumulative_area(least) * area * seeds as f64;
+                let error = f64::sqrt(squares);
+                let z = (sum - expected) / error;
+                println!(
+                    "k {coverage}, D {least}: {:.4} of the law, 3 errors {:.4}, z {z:.2}",
+                    sum / expected,
+                    3.0 * error / expected
+                );
+                assert!(3.0 * error / expected <= 0.05, "too few rocks above {least} m to tell");
+                assert!(z.abs() < 4.0, "k {coverage}: {sum} m2 above {least} m for {expected}: {z}");
+            }
+        }
+    }
+
+    #[test]
+    fn smaller_rocks_are_added_at_the_end() {
+        let coarse = Rocks { smallest: 0.2, ..PATHFINDER }.diameters(400.0, 3);
+        let fine = PATHFINDER.diameters(400.0, 3);
+        assert!(fine.len() > 2 * coarse.len());
+        assert_eq!(fine[..coarse.len()], coarse);
+        assert!(fine.is_sorted_by(|a, b| a >= b));
+        assert!(Rocks { coverage: 0.0, ..PATHFINDER }.diameters(400.0, 3).is_empty());
+    }
+
+    #[test]
+    fn rocks_keep_apart_and_out_of_what_is_not_free() {
+        let diameters = PATHFINDER.diameters(900.0, 8);
+        let free = |place: DVec2, diameter: f64| place.length() > 2.0 + 0.5 * diameter;
+        let sites = place(&diameters, DVec2::ZERO, 30.0, 8, free);
+        assert_eq!(sites.len(), diameters.len());
+        let touching = |k: usize| {
+            let rock = sites[k];
+            sites[..k]
+                .iter()
+                .any(|other| rock.place.distance(other.place) <= 0.5 * (rock.diameter + other.diameter))
+        };
+        let count = (0..sites.len()).filter(|&k| touching(k)).count();
+        // A place is missed 24 times in a row only where it is very full: with a fifth covered, never.
+        assert_eq!(count, 0);
+        assert!(sites.iter().all(|site| free(site.place, site.diameter)));
+        assert!(place(&diameters, DVec2::ZERO, 30.0, 8, |_, _| false).is_empty());
+    }
+
+    #[test]
+    fn bodies_are_closed_outward_and_as_wide_and_high_as_asked_for() {
+        let mut shapes = Shapes::new(5);
+        for k in 0..200 {
+            let diameter = 0.05 + 0.01 * f64::from(k);
+            let mut ground = Ground::default();
+            let centre = DVec3::new(3.0, -2.0, 0.7);
+            shapes.add(&mut ground, centre, diameter, 0);
+            assert_eq!(ground.faces.len(), faces(diameter));
+            assert_closed_and_outward(&ground, 0..ground.faces.len());
+            let plan = plan_area(&ground.vertices, &ground.faces);
+            let circle = std::f64::consts::FRAC_PI_4 * diameter * diameter;
+            assert!((plan / circle - 1.0).abs() < 1e-9, "{plan} for {circle}");
+            let heights = ground.vertices.iter().map(|v| (v.z - centre.z) / diameter);
+            let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
+            assert!((low + 0.35).abs() < 1e-9 && (0.3..0.7001).contains(&high), "{low} to {high}");
+        }
+    }
+
+    #[test]
+    fn the_outline_is_as_large_as_the_faces_say() {
+        // The upper side folds over itself hardly anywhere: the outline, counted on a raster of 2 % of the diameter, is
+        // as large as the sum of projected faces within 1 % on the mean of 40 rocks.
+        let mut shapes = Shapes::new(6);
+        let mut ratio = 0.0;
+        for _ in 0..40 {
+            let mut ground = Ground::default();
+            shapes.add(&mut ground, DVec3::ZERO, 1.0, 0);
+            let triangles: Vec<[DVec2; 3]> =
+                ground.faces.iter().map(|f| f.map(|v| ground.vertices[v as usize].truncate())).collect();
+            let inside = |p: DVec2| {
+                triangles.iter().any(|[a, b, c]| {
+                    let side = |a: &DVec2, b: &DVec2| (*b - *a).perp_dot(p - *a) >= 0.0;
+                    side(a, b) && side(b, c) && side(c, a)
+                })
+            };
+            let step = 0.02;
+            let raster =
+                (-50..50).flat_map(|i| (-50..50).map(move |j| DVec2::new(f64::from(i), f64::from(j))));
+            let count = raster.filter(|&p| inside((p + 0.5) * step)).count();
+            ratio += count as f64 * step * step / std::f64::consts::FRAC_PI_4 / 40.0;
+        }
+        assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+    }
+}

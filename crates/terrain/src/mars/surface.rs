@@ -1,0 +1,118 @@
+//! The sheet of the ground: a grid over the posts, cut open at the crevasses.
+
+use glam::{DVec2, DVec3};
+
+use super::crevasses::Crevasse;
+use crate::draws::{Draws, Purpose};
+use crate::{Ground, Posts};
+
+/// Points on a wall between its edge and the floor, the latter included.
+const WALL_POINTS: u32 = 5;
+
+/// Height of the posts' surface at a place, bilinear between the four around it; outside, that of the nearest border.
+pub(super) fn height(posts: &Posts, place: DVec2) -> f64 {
+    let locate = |offset: f64, count: u32| {
+        let at = offset.clamp(0.0, f64::from(count - 1));
+        let cell = (at as u32).min(count.saturating_sub(2));
+        (cell, at - f64::from(cell))
+    };
+    let offset = (place - posts.corner) / posts.spacing;
+    let ((i, s), (j, t)) = (locate(offset.x, posts.columns), locate(offset.y, posts.rows));
+    let post = |i: u32, j: u32| posts.at(i, j).z;
+    // A post's own place gives the post's own height, whatever stands beside it.
+    let between = |a: f64, b: f64, share: f64| if share == 0.0 { a } else { a + (b - a) * share };
+    let line = |j: u32| if s == 0.0 { post(i, j) } else { between(post(i, j), post(i + 1, j), s) };
+    if t == 0.0 { line(j) } else { between(line(j), line(j + 1), t) }
+}
+
+/// Materials of the sheet.
+pub(super) struct Kinds {
+    pub soil: u16,
+    pub wall: u16,
+}
+
+/// Adds the sheet to a ground without faces.
+pub(super) fn add(ground: &mut Ground, posts: &Posts, crevasses: &[Crevasse], kinds: &Kinds, seed: u64) {
+    let mut diagonals = Draws::new(seed, Purpose::Diagonals);
+    let mut before: Option<Line> = None;
+    for row in 0..posts.rows {
+        for line in lines(ground, posts, crevasses, row, kinds) {
+            if let Some(before) = &before {
+                join(ground, before, &line, &mut diagonals);
+            }
+            before = Some(line);
+        }
+    }
+}
+
+/// The vertices of a row from left to right, and the material of the cells between it and the row before.
+struct Line {
+    vertices: Vec<u32>,
+    material: u16,
+}
+
+/// The rows that a row of the grid becomes: one, or those of a crevasse from the near edge to the far one.
+fn lines(ground: &mut Ground, posts: &Posts, crevasses: &[Crevasse], row: u32, kinds: &Kinds) -> Vec<Line> {
+    let opened = crevasses.iter().find(|crevasse| crevasse.row == row);
+    let middle = posts.corner
+        + 0.5 * posts.spacing * DVec2::new(f64::from(posts.columns - 1), f64::from(posts.rows - 1));
+    let plain = |ground: &mut Ground, column: u32| {
+        let post = posts.at(column, row);
+        // Crevasses are drawn about the origin.
+        let local = post.truncate() - middle;
+        let shift: f64 = crevasses.iter().map(|crevasse| crevasse.shift(local.x, local.y)).sum();
+        if shift == 0.0 {
+            return ground.vertex(post);
+        }
+        let place = post.truncate() + DVec2::new(0.0, shift);
+        ground.vertex(place.extend(height(posts, place)))
+    };
+    let Some(crevasse) = opened else {
+        let vertices = (0..posts.columns).map(|column| plain(ground, column)).collect();
+        return vec![Line { vertices, material: kinds.soil }];
+    };
+    // From the near edge down, then up to the far edge.
+    let down = (0..=WALL_POINTS).map(|point| (-1.0, point));
+    let up = (0..=WALL_POINTS).rev().map(|point| (1.0, point));
+    let profile: Vec<(f64, u32)> = down.chain(up).collect();
+    let mut columns = Vec::with_capacity(posts.columns as usize);
+    for column in 0..posts.columns {
+        if column <= crevasse.columns.start || column >= crevasse.columns.end {
+            columns.push(vec![plain(ground, column); profile.len()]);
+            continue;
+        }
+        let x = posts.at(column, row).x - middle.x;
+        let edge = |side: f64| {
+            let place = middle + DVec2::new(x, crevasse.wall(column, x, side, 0.0));
+            height(posts, place)
+        };
+        let (near, far) = (edge(-1.0), edge(1.0));
+        let floor = near.min(far) - crevasse.depth(x);
+        let point = |&(side, point): &(f64, u32)| {
+            let share = f64::from(point) / f64::from(WALL_POINTS);
+            let top = if side < 0.0 { near } else { far };
+            let y = middle.y + crevasse.wall(column, x, side, share);
+            ground.vertex(DVec3::new(middle.x + x, y, top + (floor - top) * share))
+        };
+        columns.push(profile.iter().map(point).collect());
+    }
+    let line = |k: usize| Line {
+        vertices: columns.iter().map(|column| column[k]).collect(),
+        material: if k == 0 { kinds.soil } else { kinds.wall },
+    };
+    (0..profile.len()).map(line).collect()
+}
+
+/// Adds the cells between two rows: two faces each, fewer where corners are one vertex.
+fn join(ground: &mut Ground, near: &Line, far: &Line, diagonals: &mut Draws) {
+    for (near, far_pair) in near.vertices.windows(2).zip(far.vertices.windows(2)) {
+        // Counter-clockwise from the near left corner.
+        let (a, b, c, d) = (near[0], near[1], far_pair[1], far_pair[0]);
+        let halves = if diagonals.coin() { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] };
+        for half in halves {
+            if half[0] != half[1] && half[1] != half[2] && half[2] != half[0] {
+                ground.face(half, far.material);
+            }
+        }
+    }
+}

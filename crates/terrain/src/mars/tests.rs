@@ -1,0 +1,313 @@
+//! Whole grounds against their laws: what a mesh holds, not what a list promises.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::ground::tests::{assert_closed_and_outward, normal};
+use crate::height_at;
+
+/// The ground of a preset, small enough for many of them.
+fn small(name: &str, seed: u64) -> MarsGround {
+    let mars = MarsGround::preset(name, seed).expect("a preset");
+    // Four crevasses do not fit on so little.
+    let crevasses = Crevasses { count: mars.crevasses.count.min(2), ..mars.crevasses };
+    MarsGround { extent: 12.0, post_spacing: 0.2, crevasses, ..mars }
+}
+
+/// Faces of the sheet come first; then rocks.
+fn first_rock_face(ground: &Ground) -> usize {
+    ground.face_materials.iter().position(|&kind| kind == ROCK).unwrap_or(ground.faces.len())
+}
+
+/// The closed bodies of the rocks, as ranges of faces: each has vertices of its own.
+fn rocks_of(ground: &Ground) -> Vec<std::ops::Range<usize>> {
+    // Each body's faces name its own vertices alone, all later than those of the body before.
+    let first = first_rock_face(ground);
+    let mut bodies: Vec<std::ops::Range<usize>> = Vec::new();
+    let mut highest = 0;
+    for (face, corners) in ground.faces.iter().enumerate().skip(first) {
+        let new = bodies.is_empty() || *corners.iter().min().unwrap() > highest;
+        match bodies.last_mut() {
+            Some(body) if !new => body.end = face + 1,
+            _ => bodies.push(face..face + 1),
+        }
+        highest = highest.max(*corners.iter().max().unwrap());
+    }
+    bodies
+}
+
+#[test]
+fn every_preset_is_a_mesh_whose_rocks_are_closed_and_outward() {
+    for &name in PRESET_NAMES {
+        for seed in 0..3 {
+            let mars = small(name, seed);
+            let ground = mars.build().unwrap();
+            let bodies = rocks_of(&ground);
+            let promised = mars.rocks.diameters(144.0, seed);
+            assert_eq!(bodies.len(), promised.len(), "{name}");
+            for (body, diameter) in bodies.into_iter().zip(promised) {
+                assert_eq!(body.len(), rocks::tests::faces(diameter));
+                assert_closed_and_outward(&ground, body);
+            }
+            let mesh = ground.into_mesh().unwrap();
+            assert_eq!(mesh.zero_area_faces(), 0, "{name}");
+            assert!(height_at(&mesh, 0.0, 0.0).is_some(), "{name}");
+        }
+    }
+    assert_eq!(MarsGround::preset("viking2", 0), None);
+}
+
+/// How many faces run along each edge of the sheet, one way and the other.
+fn edges(ground: &Ground) -> BTreeMap<[u32; 2], [u32; 2]> {
+    let mut edges: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
+    for &[a, b, c] in &ground.faces[..first_rock_face(ground)] {
+        for [p, q] in [[a, b], [b, c], [c, a]] {
+            edges.entry([p.min(q), p.max(q)]).or_default()[usize::from(p > q)] += 1;
+        }
+    }
+    edges
+}
+
+#[test]
+fn the_sheet_has_no_gap_and_no_fold_however_it_is_cut() {
+    for name in ["smooth", "crevassed", "worst"] {
+        for seed in 0..4 {
+            let mars = small(name, seed);
+            let ground = mars.build().unwrap();
+            let cells = mars.cells();
+            // A closed sheet but for its outer border of four times `cells` edges, all faces the same way round.
+            let border = edges(&ground).values().filter(|uses| **uses != [1, 1]).count();
+            assert_eq!(border, 4 * cells as usize, "{name}, seed {seed}");
+            assert!(edges(&ground).values().all(|uses| uses[0] <= 1 && uses[1] <= 1));
+            // Soil looks up everywhere.
+            let sheet = first_rock_face(&ground);
+            for (face, &kind) in ground.faces[..sheet].iter().zip(&ground.face_materials) {
+                assert!(kind == WALL || normal(&ground, *face).z > 0.0, "{name}, seed {seed}: {face:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn walls_are_walls_and_overhang_only_if_asked_to() {
+    let mars = |overhang| {
+        let plain = small("crevassed", 3);
+        let rocks = Rocks { coverage: 0.0, ..plain.rocks };
+        let crevasses = Crevasses { overhang, ..plain.crevasses };
+        MarsGround { rocks, crevasses, ..plain }.build().unwrap()
+    };
+    let walls = |ground: &Ground| -> Vec<DVec3> {
+        let faces = ground.faces.iter().zip(&ground.face_materials);
+        faces.filter(|(_, kind)| **kind == WALL).map(|(face, _)| normal(ground, *face).normalize()).collect()
+    };
+    let [plain, under] = [0.0, 0.2].map(|overhang| walls(&mars(overhang)));
+    assert!(plain.len() > 500);
+    // Without an overhang hardly any wall looks down (edges are ragged), and half of all are steeper than 70 degrees.
+    let share = |normals: &[DVec3], holds: &dyn Fn(f64) -> bool| {
+        normals.iter().filter(|n| holds(n.z)).count() as f64 / normals.len() as f64
+    };
+    assert!(share(&plain, &|z| z.abs() < 0.342) > 0.5);
+    assert!(share(&plain, &|z| z < -0.1) < 0.05);
+    assert!(share(&under, &|z| z < -0.1) > 0.15);
+    // 1.2 m deep at the deepest, at least 0.7 of that in the middle.
+    let ground = mars(0.0);
+    let lowest = ground.vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
+    let flat = MarsGround {
+        crevasses: Crevasses { count: 0, ..small("crevassed", 3).crevasses },
+        ..small("crevassed", 3)
+    };
+    let relief = flat.build().unwrap();
+    let least = relief.vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
+    assert!(lowest < least - 0.3, "{lowest} against {least}");
+}
+
+#[test]
+fn coarse_posts_are_vertices_of_the_ground() {
+    // 7 x 5 posts each 4 m, at map coordinates of a million metres.
+    let heights = (0..35).map(|k| f64::from(k * k % 13) * 0.37 - 2.0).collect();
+    let coarse = Posts {
+        columns: 7,
+        rows: 5,
+        corner: DVec2::new(1e6 + 0.25, -2e6),
+        spacing: DVec2::new(4.0, 4.0),
+        heights,
+    };
+    let mars = MarsGround { coarse: Some(coarse.clone()), post_spacing: 0.3, ..small("smooth", 6) };
+    let mars = MarsGround { rocks: Rocks { coverage: 0.0, ..mars.rocks }, ..mars };
+    let ground = mars.build().unwrap();
+    // 4 m halved four times is 0.25 m.
+    assert_eq!(ground.vertices.len(), (6 * 16 + 1) * (4 * 16 + 1));
+    for row in 0..5 {
+        for column in 0..7 {
+            let post = coarse.at(column, row);
+            let vertex = ground.vertices[(row * 16 * 97 + column * 16) as usize];
+            assert!((vertex - post).abs().max_element() <= 1e-9, "{vertex} for {post}");
+        }
+    }
+}
+
+#[test]
+fn a_crater_of_the_ground_has_its_depth_and_rim() {
+    // The same ground with and without: the difference at the posts of the largest crater that lies well inside, fresh
+    // or not. Others may lie in it, so it is looked for among seeds in which it is alone.
+    let mut measured = 0;
+    for seed in 0..400 {
+        let mars = MarsGround {
+            extent: 30.0,
+            post_spacing: 0.1,
+            craters: Craters { density: 0.02, smallest: 6.0, largest: 8.0 },
+            ..small("smooth", seed)
+        };
+        let mars = MarsGround { rocks: Rocks { coverage: 0.0, ..mars.rocks }, ..mars };
+        let craters = mars.craters.draw(DVec2::ZERO, 30.0, seed);
+        let inside = |crater: &&Crater| crater.centre.abs().max_element() < 15.0 - crater.diameter;
+        let Some(crater) = craters.iter().find(inside) else { continue };
+        let reach = |other: &Crater| 1.5 * (crater.diameter + other.diameter);
+        let near = |other: &&Crater| other.centre.distance(crater.centre) < reach(other);
+        if craters.iter().filter(near).count() > 1 {
+            continue;
+        }
+        let without = MarsGround { craters: Craters { density: 0.0, ..mars.craters }, ..mars.clone() };
+        let (with, without) = (mars.build().unwrap(), without.build().unwrap());
+        let (mut floor, mut rim) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (a, b) in with.vertices.iter().zip(&without.vertices) {
+            let distance = a.truncate().distance(crater.centre);
+            if distance <= 1.5 * crater.diameter {
+                floor = floor.min(a.z - b.z);
+                rim = rim.max(a.z - b.z);
+            } else {
+                assert!((a.z - b.z).abs() < 1e-12 || craters.len() > 1);
+            }
+        }
+        // Posts lie within 0.07 m of the middle and of any point of the crest: there the bowl, at most 0.8 steep, is at most
+        // 0.06 m lower than the crest, and 0.2 D (2 * 0.07 / D)^2 < 1e-3 m higher than its lowest point.
+        assert!(
+            (0.0..0.06).contains(&(crater.rim_height() - rim + 1e-9)),
+            "{rim} for {}",
+            crater.rim_height()
+        );
+        let depth = crater.rim_height() - floor;
+        assert!((depth - crater.depth()).abs() < 2e-3, "{depth} for {}", crater.depth());
+        measured += 1;
+    }
+    assert!(measured >= 5, "only {measured} lone craters");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
+    for &name in PRESET_NAMES {
+        assert_eq!(small(name, 1).build(), small(name, 1).build());
+        assert_ne!(small(name, 1).build().unwrap().vertices, small(name, 2).build().unwrap().vertices);
+    }
+}
+
+#[test]
+fn the_bytes_are_these() {
+    // A fingerprint (FNV-1a, 64 bits) of all coordinates: changes with any change of what a seed means.
+    let mut digest = 0xcbf2_9ce4_8422_2325_u64;
+    for &name in PRESET_NAMES {
+        let ground = small(name, 2024).build().unwrap();
+        for byte in ground.vertices.iter().flat_map(|v| v.to_array()).flat_map(f64::to_le_bytes) {
+            digest = (digest ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+    assert_eq!(format!("{digest:016x}"), "c21aadf62f8f191a");
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_by_name() {
+    let base = || small("worst", 1);
+    let refused = |mars: MarsGround| mars.build().unwrap_err().to_string();
+    let cases = [
+        (refused(MarsGround { extent: f64::NAN, ..base() }), "extent_m"),
+        (refused(MarsGround { extent: 1e5, post_spacing: 0.01, ..base() }), "post_spacing_m"),
+        (
+            refused(MarsGround {
+                rocks: Rocks { smallest: 1e-3, coverage: 0.4, largest: 1.0 },
+                extent: 1e3,
+                post_spacing: 1.0,
+                ..base()
+            }),
+            "rocks.smallest_m",
+        ),
+        (refused(MarsGround { rocks: Rocks { largest: 0.01, ..base().rocks }, ..base() }), "rocks.largest_m"),
+        (
+            refused(MarsGround {
+                craters: Craters { smallest: 0.01, ..base().craters },
+                rocks: Rocks { coverage: 0.0, ..base().rocks },
+                extent: 1e3,
+                post_spacing: 1.0,
+                ..base()
+            }),
+            "craters.smallest_m",
+        ),
+        (
+            refused(MarsGround { crevasses: Crevasses { count: 50, ..base().crevasses }, ..base() }),
+            "crevasses",
+        ),
+        (
+            refused(MarsGround { crevasses: Crevasses { count: u32::MAX, ..base().crevasses }, ..base() }),
+            "crevasses",
+        ),
+        (
+            refused(MarsGround {
+                roughness: Roughness { octave_gains: vec![f64::INFINITY], ..base().roughness },
+                ..base()
+            }),
+            "octave_gains",
+        ),
+    ];
+    for (message, word) in cases {
+        assert!(message.contains(word), "{message} does not name {word}");
+    }
+    let hole = Posts {
+        columns: 2,
+        rows: 2,
+        corner: DVec2::ZERO,
+        spacing: DVec2::ONE,
+        heights: vec![0.0, 1.0, f64::NAN, 0.0],
+    };
+    let message = refused(MarsGround { coarse: Some(hole), ..base() });
+    assert!(message.contains("post (0, 1)"), "{message}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn grounds_of_any_numbers_are_meshes(
+        seed: u64,
+        extent in 2.0..20.0,
+        spacing in 0.2..2.0,
+        hurst in 0.1..0.95,
+        roughness in 0.0..0.5,
+        coverage in 0.0..0.4,
+        density in 0.0..0.1,
+        (count, width, overhang) in (0_u32..4, 0.05..0.3, 0.0..0.3),
+        far in -1e6..1e6,
+    ) {
+        let base = MarsGround::preset("worst", seed).unwrap();
+        let mars = MarsGround {
+            extent,
+            post_spacing: spacing,
+            roughness: Roughness { hurst, at_1_m: roughness, octave_gains: Vec::new() },
+            rocks: Rocks { coverage, smallest: 0.1, largest: 2.0 },
+            craters: Craters { density, smallest: 1.0, largest: 6.0 },
+            crevasses: Crevasses { count, width, depth: 1.0, overhang },
+            offset: DVec3::new(far, -far, 0.5 * far),
+            ..base
+        };
+        if mars.check_size().is_err() {
+            return Ok(());
+        }
+        let ground = mars.build().unwrap();
+        for body in rocks_of(&ground) {
+            assert_closed_and_outward(&ground, body);
+        }
+        let mesh = ground.into_mesh();
+        prop_assert!(mesh.is_ok(), "{:?}", mesh.err());
+        prop_assert!(height_at(&mesh.unwrap(), far, -far).is_some());
+    }
+}
