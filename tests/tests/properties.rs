@@ -14,7 +14,7 @@ use raypencil_harness::{Attributions, Class, Contender, Judge, JudgeShare, Side}
 use raypencil_scanline::{Options, Scanline, Switches};
 use raypencil_scene::{Frame, Mesh, Mounted, Renderer, Request, Scene};
 use raypencil_tests::lattice::hash;
-use raypencil_tests::random::{Case, cases, lit_cases};
+use raypencil_tests::random::{Case, cases, lit_cases, mars_cases};
 use raypencil_tests::reproducers::{commit, folder, reproduce};
 use raypencil_tests::{
     agreement, bits, first_difference, hit, light_bits, remeshed, renderers, scene, unindexed,
@@ -188,6 +188,22 @@ fn both_renderers_agree_on_what_the_camera_sees() {
         seen.get(),
         pencils.get()
     );
+}
+
+#[test]
+fn both_renderers_agree_on_ground_as_mars_has_it() {
+    let (rays, hits) = (Cell::new(0), Cell::new(0));
+    let property = |case: Case| {
+        let scene = case.scene();
+        let (scanline, tracer) = (Scanline::default(), Tracer::new());
+        let (a, b) = (render(&scanline, &scene), render(&tracer, &scene));
+        let [of_case, hits_of_case] = count_hits(&a);
+        rays.set(rays.get() + of_case);
+        hits.set(hits.get() + hits_of_case);
+        agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
+    };
+    let usual = check_and_reproduce(1000, mars_cases(), property, of_both("both-renderers-agree-on-mars"));
+    assert!(!usual || 5 * hits.get() >= rays.get(), "{} of {} rays hit", hits.get(), rays.get());
 }
 
 #[test]

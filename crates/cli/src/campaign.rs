@@ -1,5 +1,6 @@
 //! `raypencil campaign`: many random terrains, in shards; `merge` and `replay`.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -26,6 +27,8 @@ pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, 
 struct Bar {
     bar: ProgressBar,
     start: Instant,
+    /// Rays of this run: what a run before it left is no work of this one.
+    rays: AtomicU64,
 }
 
 impl Bar {
@@ -36,12 +39,13 @@ impl Bar {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar, start: Instant::now() }
+        Self { bar, start: Instant::now(), rays: AtomicU64::new(0) }
     }
 }
 
 impl CampaignProgress for Bar {
     fn done(&self, terrains: u64, _of: u64, rays: u64) {
+        self.rays.store(rays, Ordering::Relaxed);
         self.bar.set_position(terrains);
         let rate = rays as f64 / self.start.elapsed().as_secs_f64().max(1e-3);
         self.bar.set_message(format!("{:.2} million rays/s", rate / 1e6));
@@ -70,9 +74,12 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     let merged = merge(std::slice::from_ref(&command.output))?;
     write_campaign(&merged, &command.output)?;
     let seconds = start.elapsed().as_secs_f64();
-    let rate = merged.compared() as f64 / seconds / 1e6;
+    let rays = bar.rays.load(Ordering::Relaxed);
+    let rate = rays as f64 / seconds / 1e6;
+    let before = merged.compared() - rays;
+    let before = if before > 0 { format!(" ({before} rays are of earlier runs)") } else { String::new() };
     let commit = option_env!("RAYPENCIL_COMMIT").map_or(String::new(), |commit| format!(", commit {commit}"));
-    let time = format!("seed {}{commit}; {seconds:.1} s, {rate:.2} million rays/s\n", command.seed);
+    let time = format!("seed {}{commit}; {seconds:.1} s, {rate:.2} million rays/s{before}\n", command.seed);
     tell(&merged, json, &time)
 }
 

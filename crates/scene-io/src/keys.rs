@@ -107,10 +107,26 @@ pub(crate) struct TerrainKeys {
 #[serde(deny_unknown_fields)]
 pub(crate) struct GenerateKeys {
     pub kind: Key<String>,
+    pub preset: Key<String>,
     pub seed: Key<i64>,
     pub faces: Key<i64>,
     pub extent_m: Key<f64>,
     pub offset_m: Key<Vec<f64>>,
+    pub post_spacing_m: Key<f64>,
+    pub coarse: Key<String>,
+    pub hurst: Key<f64>,
+    pub roughness_m: Key<f64>,
+    pub octave_gains: Key<Vec<f64>>,
+    pub rock_coverage: Key<f64>,
+    pub rock_smallest_m: Key<f64>,
+    pub rock_largest_m: Key<f64>,
+    pub crater_density: Key<f64>,
+    pub crater_smallest_m: Key<f64>,
+    pub crater_largest_m: Key<f64>,
+    pub crevasses: Key<i64>,
+    pub crevasse_width_m: Key<f64>,
+    pub crevasse_depth_m: Key<f64>,
+    pub crevasse_overhang_m: Key<f64>,
 }
 
 /// `[atmosphere]`

@@ -307,6 +307,16 @@ fn make(plan: &Plan) -> Result<Mesh, SceneError> {
             }
             ground.into_mesh()
         }
+        Terrain::Mars { ground, coarse: None } => {
+            let mut ground = ground.build()?;
+            if let Some(reflectivity) = plan.reflectivity {
+                ground.materials.iter_mut().for_each(|kind| kind.reflectivity = reflectivity);
+            }
+            ground.into_mesh()
+        }
+        Terrain::Mars { coarse: Some((path, _)), .. } => {
+            Err(SceneError::new("terrain.generate.coarse", path.display(), "posts that are loaded already"))
+        }
         Terrain::File(path) => {
             Err(SceneError::new("terrain.file", path.display(), "a terrain that is loaded already"))
         }

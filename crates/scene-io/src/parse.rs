@@ -1,5 +1,7 @@
 //! Scene TOML to a plan: each key is checked by itself, and every error points to its place in the file.
 
+mod generate;
+
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
@@ -8,9 +10,7 @@ use raypencil_scene::{Beam, Camera, Filter, FluxModel, Profile};
 use toml::Spanned;
 
 use crate::gltf_mesh::DEFAULT_REFLECTIVITY;
-use crate::keys::{
-    BeamKeys, CameraKeys, FilterKeys, GenerateKeys, HeadKeys, Key, SceneKeys, TerrainKeys, VehicleKeys,
-};
+use crate::keys::{BeamKeys, CameraKeys, FilterKeys, HeadKeys, Key, SceneKeys, TerrainKeys, VehicleKeys};
 use crate::plan::{DEFAULT_FAN_DEG, Mount, Plan, Terrain, default_beam, default_rig};
 use crate::{SceneIoError, TomlProblem};
 
@@ -30,9 +30,6 @@ const MAX_RANGE_M: RangeInclusive<f64> = 1e-3..=1e7;
 /// Columns or rows of a sensor, and all its cells: 2^20 and 2^26, the limits of the `scene` crate.
 const SIDE: RangeInclusive<i64> = 1..=1 << 20;
 const MOST_CELLS: u64 = 1 << 26;
-/// Faces of a generated ground: a gigabyte or so.
-const GENERATED_FACES: RangeInclusive<i64> = 1..=1 << 24;
-
 /// The words for the equations of flux.
 pub(crate) const FLUX_MODELS: [(&str, FluxModel); 2] =
     [("radiometric", FluxModel::Radiometric), ("eq1", FluxModel::Eq1)];
@@ -306,7 +303,7 @@ impl Source<'_> {
                 plan.terrain_span = file.span();
                 Terrain::File(PathBuf::from(file.into_inner()))
             }
-            (None, None, Some(generate)) => self.generate(generate.into_inner())?,
+            (None, None, Some(generate)) => self.generate(generate)?,
             (None, None, None) => {
                 return Err(self.error(whole, format!("`terrain` has no ground; expected {one}")));
             }
@@ -325,46 +322,6 @@ impl Source<'_> {
             }
         };
         Ok(())
-    }
-
-    fn generate(&self, keys: GenerateKeys) -> Result<Terrain, SceneIoError> {
-        let nasty = match keys.kind {
-            Some(kind) => self.word(&kind, "terrain.generate.kind", &[("plain", false), ("nasty", true)])?,
-            None => false,
-        };
-        let integer = |key: Key<i64>, name: &str, default: i64, range: RangeInclusive<i64>| match key {
-            Some(key) if range.contains(key.get_ref()) => Ok(key.into_inner()),
-            Some(key) => {
-                let (low, high) = (range.start(), range.end());
-                let message =
-                    format!("`terrain.generate.{name}` is {}; expected {low} to {high}", key.get_ref());
-                Err(self.error(key.span(), message))
-            }
-            None => Ok(default),
-        };
-        let seed = integer(keys.seed, "seed", 0, 0..=i64::MAX)?;
-        let faces = integer(keys.faces, "faces", 10_000, GENERATED_FACES)?;
-        let mut extent = keys.extent_m.as_ref().map(|key| *key.get_ref());
-        if let Some(extent) = &mut extent {
-            self.number(keys.extent_m, "terrain.generate.extent_m", extent, 0.1..=1e5, "metres")?;
-        }
-        let offset = match keys.offset_m {
-            Some(offset) => DVec3::from_slice(self.list(
-                &offset,
-                "terrain.generate.offset_m",
-                &[3],
-                -1e7..=1e7,
-                "metres",
-            )?),
-            None => DVec3::ZERO,
-        };
-        Ok(Terrain::Generate {
-            nasty,
-            seed: seed.unsigned_abs(),
-            faces: faces.unsigned_abs() as usize,
-            extent,
-            offset,
-        })
     }
 
     /// Refuses a `value` outside `range`, and NaN and the infinities with it.

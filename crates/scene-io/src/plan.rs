@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use raypencil_scene::{Beam, Camera, FluxModel, Lens, Profile};
+use raypencil_terrain::MarsGround;
 
 /// Everything a scene needs but its mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +56,11 @@ pub(crate) enum Terrain {
         /// `None`: the generator's own.
         extent: Option<f64>,
         offset: DVec3,
+    },
+    Mars {
+        ground: Box<MarsGround>,
+        /// An elevation model whose posts it passes through, relative to the scene file, and where the file says so.
+        coarse: Option<(PathBuf, Range<usize>)>,
     },
 }
 

@@ -28,7 +28,7 @@ fn case(campaign: &Campaign, terrain: u64) -> Case {
     seed[8..16].copy_from_slice(&terrain.to_le_bytes());
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
-    campaign_cases().new_tree(&mut runner).expect("a strategy that rejects little").current()
+    campaign_cases(terrain).new_tree(&mut runner).expect("a strategy that rejects little").current()
 }
 
 /// One of a terrain's scenes.

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! random    any ground before any camera and beams, as strategies of proptest
+//! mars      ground as Mars has it: presets of any size, of which more or less is there
 //! aimed     many narrow sensors at vertices, edges, silhouettes and grazing faces of a ground
 //! lattice   meshes all of whose vertices lie exactly on rays
 //! rig       plain sensors, and the default rig
@@ -10,6 +11,7 @@
 
 pub mod aimed;
 pub mod lattice;
+pub mod mars;
 pub mod random;
 pub mod rig;
 

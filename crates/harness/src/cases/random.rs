@@ -10,15 +10,16 @@ use proptest::sample::Index;
 use raypencil_scene::{
     Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Mesh, Mounted, Pose, Profile, Scene,
 };
-use raypencil_terrain::RandomGround;
+use raypencil_terrain::{MarsGround, PRESET_NAMES, RandomGround};
 
+use super::mars::{mars_grounds, mars_grounds_of};
 use super::rig;
 
 /// A ground and the sensors that look at it.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// The ground, with its seed.
-    pub ground: RandomGround,
+    pub ground: AnyGround,
     /// The camera and where it is.
     pub camera: (Camera, Place),
     /// The beams and where they are.
@@ -27,6 +28,32 @@ pub struct Case {
     pub attenuation: f64,
     /// The equation of flux.
     pub model: FluxModel,
+}
+
+/// A ground that is made from a seed.
+#[derive(Debug, Clone)]
+pub enum AnyGround {
+    /// Hills, and everything that is hard to render.
+    Random(RandomGround),
+    /// As Mars has it.
+    Mars(MarsGround),
+}
+
+impl AnyGround {
+    fn offset(&self) -> DVec3 {
+        match self {
+            Self::Random(ground) => ground.offset,
+            Self::Mars(ground) => ground.offset,
+        }
+    }
+
+    fn mesh(&self) -> Mesh {
+        let ground = match self {
+            Self::Random(ground) => ground.build(),
+            Self::Mars(ground) => ground.build().expect("numbers that were drawn in their ranges"),
+        };
+        ground.into_mesh().expect("a random ground is a mesh")
+    }
 }
 
 /// Where a sensor is, by a vertex of the ground.
@@ -54,7 +81,7 @@ impl Case {
     /// # Panics
     /// If it is none; every strategy here gives one.
     pub fn mesh(&self) -> Arc<Mesh> {
-        Arc::new(self.ground.build().into_mesh().expect("a random ground is a mesh"))
+        Arc::new(self.ground.mesh())
     }
 
     /// The sensors before a mesh: that of [`Case::mesh`], or one with the same vertices first.
@@ -89,16 +116,20 @@ fn unit_vector() -> impl Strategy<Value = DVec3> {
     })
 }
 
-/// Grounds of 50 to 5000 faces: half of them with everything that is nasty, at the origin, 1 km or 1000 km
-/// away from it in any direction.
+/// At the origin, 1 km or 1000 km away from it in any direction.
+fn offsets() -> impl Strategy<Value = DVec3> {
+    (prop_oneof![Just(0.0), Just(1e3), Just(1e6)], unit_vector())
+        .prop_map(|(distance, direction): (f64, DVec3)| direction * distance)
+}
+
+/// Grounds of 50 to 5000 faces: half of them with everything that is nasty, anywhere.
 pub fn grounds() -> impl Strategy<Value = RandomGround> {
-    let offset = (prop_oneof![Just(0.0), Just(1e3), Just(1e6)], unit_vector());
     let ground = (any::<bool>(), any::<u64>(), decades(1.7, 3.7), 2.0..60.0);
-    (ground, offset).prop_map(|((nasty, seed, faces, extent), (distance, direction))| {
+    (ground, offsets()).prop_map(|((nasty, seed, faces, extent), offset)| {
         let faces = faces as usize;
         let ground =
             if nasty { RandomGround::nasty(seed, faces) } else { RandomGround::plain(seed, faces, extent) };
-        RandomGround { offset: direction * distance, ..ground }
+        RandomGround { offset, ..ground }
     })
 }
 
@@ -163,7 +194,7 @@ fn beams() -> impl Strategy<Value = Beam> {
 pub fn cases() -> impl Strategy<Value = Case> {
     let beams = prop::collection::vec((beams(), places()), 2);
     (grounds(), (cameras(), places()), beams).prop_map(|(ground, camera, beams)| Case {
-        ground,
+        ground: AnyGround::Random(ground),
         camera,
         beams,
         attenuation: 0.0,
@@ -210,7 +241,7 @@ pub fn lit_cases() -> impl Strategy<Value = Case> {
             (Beam { profile, power, ..beam }, place)
         });
         Case {
-            ground,
+            ground: AnyGround::Random(ground),
             beams: beams.collect(),
             // Pinholes that see widely: a stripe is to land on the image now and then.
             camera: (Camera { lens, principal_point: centred(&camera), ..camera }, place),
@@ -220,30 +251,57 @@ pub fn lit_cases() -> impl Strategy<Value = Case> {
     })
 }
 
+/// Ground as Mars has it, of up to some thousand faces, anywhere, before the sensors of a lit case.
+pub fn mars_cases() -> impl Strategy<Value = Case> {
+    (lit_cases(), mars_grounds(24), offsets()).prop_map(|(case, ground, offset)| Case {
+        ground: AnyGround::Mars(MarsGround { offset, ..ground }),
+        ..case
+    })
+}
+
 /// What a campaign tries: 2 to a million faces, and sensors of four times as many columns and rows as above, over the
-/// same fields of view.
-pub fn campaign_cases() -> impl Strategy<Value = Case> {
-    let faces = decades(0.301, 6.0).prop_map(|faces| faces as usize);
-    (prop_oneof![2 => lit_cases(), 1 => cases()], faces, any::<bool>()).prop_map(
-        |(mut case, faces, nasty)| {
-            let RandomGround { seed, extent, offset, .. } = case.ground;
-            // What makes a ground nasty has more than a few faces itself.
-            let ground = if nasty && faces >= 200 {
-                RandomGround::nasty(seed, faces)
-            } else {
-                RandomGround::plain(seed, faces, extent)
-            };
-            case.ground = RandomGround { offset, ..ground };
-            let camera = &mut case.camera.0;
-            (camera.width, camera.height) = (MORE * camera.width, MORE * camera.height);
-            camera.pixel_pitch = camera.pixel_pitch.map(|pitch| (pitch / f64::from(MORE)).max(1e-8));
-            camera.principal_point = camera.principal_point.map(|centre| centre * f64::from(MORE));
-            for (beam, _) in &mut case.beams {
-                (beam.columns, beam.rows) = (MORE * beam.columns, MORE * beam.rows);
-            }
-            case
-        },
-    )
+/// same fields of view. Every second terrain is ground as Mars has it, the presets by turns.
+pub fn campaign_cases(terrain: u64) -> BoxedStrategy<Case> {
+    let cases = prop_oneof![2 => lit_cases(), 1 => cases()];
+    if terrain.is_multiple_of(2) {
+        let faces = decades(0.301, 6.0).prop_map(|faces| faces as usize);
+        return (cases, faces, any::<bool>())
+            .prop_map(|(case, faces, nasty)| {
+                let AnyGround::Random(RandomGround { seed, extent, offset, .. }) = case.ground else {
+                    return finer(case);
+                };
+                // What makes a ground nasty has more than a few faces itself.
+                let ground = if nasty && faces >= 200 {
+                    RandomGround::nasty(seed, faces)
+                } else {
+                    RandomGround::plain(seed, faces, extent)
+                };
+                finer(Case { ground: AnyGround::Random(RandomGround { offset, ..ground }), ..case })
+            })
+            .boxed();
+    }
+    let presets = PRESET_NAMES.len() as u64;
+    let name = PRESET_NAMES[(terrain / 2 % presets) as usize];
+    // As many small grounds as large ones.
+    let cells = decades(0.602, 2.6).prop_map(|cells| cells as u32);
+    let grounds = cells.prop_flat_map(move |cells| mars_grounds_of(name, cells));
+    (cases, grounds)
+        .prop_map(|(case, ground)| {
+            let ground = MarsGround { offset: case.ground.offset(), ..ground };
+            finer(Case { ground: AnyGround::Mars(ground), ..case })
+        })
+        .boxed()
+}
+/// A case with finer sensors.
+fn finer(mut case: Case) -> Case {
+    let camera = &mut case.camera.0;
+    (camera.width, camera.height) = (MORE * camera.width, MORE * camera.height);
+    camera.pixel_pitch = camera.pixel_pitch.map(|pitch| (pitch / f64::from(MORE)).max(1e-8));
+    camera.principal_point = camera.principal_point.map(|centre| centre * f64::from(MORE));
+    for (beam, _) in &mut case.beams {
+        (beam.columns, beam.rows) = (MORE * beam.columns, MORE * beam.rows);
+    }
+    case
 }
 
 /// How many times as many columns, and rows, a campaign's sensors have.

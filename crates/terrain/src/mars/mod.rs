@@ -66,9 +66,9 @@ impl MarsGround {
     /// Builds it.
     ///
     /// # Errors
-    /// Names the first number that is out of its range, or what makes the ground larger than 2^25 faces.
+    /// As [`MarsGround::validate`].
     pub fn build(&self) -> Result<Ground, SceneError> {
-        self.check()?;
+        self.validate()?;
         let mut posts = self.relief();
         let middle = posts.corner + 0.5 * posts.extent();
         let side = posts.extent().max_element();
@@ -144,32 +144,36 @@ impl MarsGround {
         }
     }
 
-    fn check(&self) -> Result<(), SceneError> {
+    /// Whether it can be built.
+    ///
+    /// # Errors
+    /// Names the first number that is out of its range, or what makes the ground larger than 2^25 faces.
+    pub fn validate(&self) -> Result<(), SceneError> {
         let Self { rocks, craters, crevasses, roughness, .. } = self;
         let ranges = [
             ("extent_m", self.extent, 1.0..=1e5),
             ("post_spacing_m", self.post_spacing, 1e-3..=1e4),
-            ("roughness.hurst", roughness.hurst, 0.01..=0.99),
-            ("roughness.at_1_m", roughness.at_1_m, 0.0..=10.0),
-            ("rocks.coverage", rocks.coverage, 0.0..=0.4),
-            ("rocks.smallest_m", rocks.smallest, 1e-3..=100.0),
-            ("rocks.largest_m", rocks.largest, rocks.smallest..=100.0),
-            ("craters.density", craters.density, 0.0..=0.5),
-            ("craters.smallest_m", craters.smallest, 1e-2..=1e4),
-            ("craters.largest_m", craters.largest, craters.smallest..=1e4),
-            ("crevasses.width_m", crevasses.width, 1e-3..=100.0),
-            ("crevasses.depth_m", crevasses.depth, 1e-3..=1000.0),
-            ("crevasses.overhang_m", crevasses.overhang, 0.0..=100.0),
+            ("hurst", roughness.hurst, 0.01..=0.99),
+            ("roughness_m", roughness.at_1_m, 0.0..=10.0),
+            ("rock_coverage", rocks.coverage, 0.0..=0.4),
+            ("rock_smallest_m", rocks.smallest, 1e-3..=100.0),
+            ("rock_largest_m", rocks.largest, rocks.smallest..=100.0),
+            ("crater_density", craters.density, 0.0..=0.5),
+            ("crater_smallest_m", craters.smallest, 1e-2..=1e4),
+            ("crater_largest_m", craters.largest, craters.smallest..=1e4),
+            ("crevasse_width_m", crevasses.width, 1e-3..=100.0),
+            ("crevasse_depth_m", crevasses.depth, 1e-3..=1000.0),
+            ("crevasse_overhang_m", crevasses.overhang, 0.0..=100.0),
             ("offset_m", self.offset.abs().max_element(), 0.0..=1e7),
         ];
         for (field, value, range) in ranges {
             if !range.contains(&value) {
                 let expected = format!("{} to {}", range.start(), range.end());
-                return Err(SceneError::new(format!("terrain.{field}"), value, expected));
+                return Err(SceneError::new(field, value, expected));
             }
         }
         if let Some(gain) = roughness.octave_gains.iter().find(|gain| !(0.0..=100.0).contains(*gain)) {
-            return Err(SceneError::new("terrain.roughness.octave_gains", gain, "0 to 100 each"));
+            return Err(SceneError::new("octave_gains", gain, "0 to 100 each"));
         }
         if let Some(coarse) = &self.coarse {
             check_coarse(coarse)?;
@@ -192,26 +196,26 @@ impl MarsGround {
         let most = format!("at most {MOST_FACES} faces in all");
         if 2.0 * cells > MOST_FACES {
             let found = format!("{} m: {} faces", self.post_spacing, 2.0 * cells);
-            return Err(SceneError::new("terrain.post_spacing_m", found, most));
+            return Err(SceneError::new("post_spacing_m", found, most));
         }
         let rocks = self.rocks.expected_faces_at_most(extent.x * extent.y);
         if 2.0 * cells + rocks > MOST_FACES {
             let found = format!("{} m: up to {rocks:.0} faces of rocks", self.rocks.smallest);
-            return Err(SceneError::new("terrain.rocks.smallest_m", found, most));
+            return Err(SceneError::new("rock_smallest_m", found, most));
         }
         let craters = self.craters.expected(extent.max_element());
         if craters > 1e5 {
             let found = format!("{} m: {craters:.0} craters", self.craters.smallest);
-            return Err(SceneError::new("terrain.craters.smallest_m", found, "at most 100000 craters"));
+            return Err(SceneError::new("crater_smallest_m", found, "at most 100000 craters"));
         }
         let crevasses = &self.crevasses;
         if crevasses.count > 1000 {
-            return Err(SceneError::new("terrain.crevasses.count", crevasses.count, "0 to 1000"));
+            return Err(SceneError::new("crevasses", crevasses.count, "0 to 1000"));
         }
         let widest = crevasses.widest(extent.y);
         if crevasses.count > 0 && crevasses.width > widest {
             let expected = format!("at most {widest:.3} m for {} of them on {} m", crevasses.count, extent.y);
-            return Err(SceneError::new("terrain.crevasses.width_m", crevasses.width, expected));
+            return Err(SceneError::new("crevasse_width_m", crevasses.width, expected));
         }
         Ok(())
     }
@@ -221,16 +225,16 @@ fn check_coarse(coarse: &Posts) -> Result<(), SceneError> {
     let (columns, rows) = (coarse.columns as usize, coarse.rows as usize);
     if columns < 2 || rows < 2 || coarse.heights.len() != columns * rows {
         let found = format!("{columns} x {rows} posts, {} heights", coarse.heights.len());
-        return Err(SceneError::new("terrain.coarse", found, "2 x 2 posts or more, a height for each"));
+        return Err(SceneError::new("coarse", found, "2 x 2 posts or more, a height for each"));
     }
     let finite = |v: DVec2| v.is_finite() && v.abs().max_element() <= 1e12;
     if !(coarse.spacing.min_element() > 0.0 && finite(coarse.spacing) && finite(coarse.corner)) {
         let found = format!("spacing {}, corner {}", coarse.spacing, coarse.corner);
-        return Err(SceneError::new("terrain.coarse", found, "positive spacings and places within 1e12 m"));
+        return Err(SceneError::new("coarse", found, "positive spacings and places within 1e12 m"));
     }
     if let Some(index) = coarse.heights.iter().position(|height| !(height.abs() <= 1e7)) {
         let found = format!("post ({}, {}) at {} m", index % columns, index / columns, coarse.heights[index]);
-        return Err(SceneError::new("terrain.coarse", found, "heights that are all known, within 1e7 m"));
+        return Err(SceneError::new("coarse", found, "heights that are all known, within 1e7 m"));
     }
     Ok(())
 }

@@ -230,9 +230,9 @@ fn numbers_out_of_range_are_refused_by_name() {
                 post_spacing: 1.0,
                 ..base()
             }),
-            "rocks.smallest_m",
+            "rock_smallest_m",
         ),
-        (refused(MarsGround { rocks: Rocks { largest: 0.01, ..base().rocks }, ..base() }), "rocks.largest_m"),
+        (refused(MarsGround { rocks: Rocks { largest: 0.01, ..base().rocks }, ..base() }), "rock_largest_m"),
         (
             refused(MarsGround {
                 craters: Craters { smallest: 0.01, ..base().craters },
@@ -241,7 +241,7 @@ fn numbers_out_of_range_are_refused_by_name() {
                 post_spacing: 1.0,
                 ..base()
             }),
-            "craters.smallest_m",
+            "crater_smallest_m",
         ),
         (
             refused(MarsGround { crevasses: Crevasses { count: 50, ..base().crevasses }, ..base() }),
