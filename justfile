@@ -40,6 +40,10 @@ results YARD:
 planted-faults:
     cargo run --release -p raypencil-tests --example planted_faults > docs/planted-faults.md
 
+# Pictures of the presets of generated ground: docs/figures/ground-*.svg
+portraits:
+    cargo run --release -p raypencil-harness --example portraits -- docs/figures
+
 # The property tests on CASES cases each that nobody has tried
 properties CASES:
     PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test properties

@@ -101,6 +101,52 @@ fn numbers_out_of_range_name_the_key_the_value_and_the_unit() {
 }
 
 #[test]
+fn keys_of_generated_ground_are_checked_alone_and_together() {
+    let generate = |keys: &str, marked: &str, message: &str| {
+        third_line("[terrain]", &format!("generate = {{ {keys} }}"), marked, message);
+    };
+    generate(
+        "preset = \"worst\", hurst = 1.5",
+        "1.5",
+        "`terrain.generate.hurst` is 1.5; expected 0.01 to 0.99",
+    );
+    generate(
+        "preset = \"venus\"",
+        "\"venus\"",
+        "`terrain.generate.preset` is \"venus\"; expected one of \"smooth\", \"viking1\", \"pathfinder\", \"crater_field\", \"crevassed\", \"worst\"",
+    );
+    generate(
+        "preset = \"smooth\", kind = \"plain\"",
+        "\"plain\"",
+        "`terrain.generate.kind` beside `preset`; expected one of the two",
+    );
+    generate(
+        "preset = \"smooth\", faces = 100",
+        "100",
+        "`terrain.generate.faces` beside `preset`; expected `post_spacing_m` and `rock_smallest_m`, from which they follow",
+    );
+    generate(
+        "kind = \"plain\", hurst = 0.5",
+        "0.5",
+        "`terrain.generate.hurst` without a `preset`; expected it only with one",
+    );
+    let whole = "{ preset = \"smooth\", rock_smallest_m = 2 }";
+    third_line(
+        "[terrain]",
+        &format!("generate = {whole}"),
+        whole,
+        "`terrain.generate.rock_largest_m` is 0.5; expected 2 to 100",
+    );
+    let whole = "{ preset = \"smooth\", extent_m = 1e5 }";
+    third_line(
+        "[terrain]",
+        &format!("generate = {whole}"),
+        whole,
+        "`terrain.generate.post_spacing_m` is 0.1 m: 2000000000000 faces; expected at most 33554432 faces in all",
+    );
+}
+
+#[test]
 fn words_are_listed() {
     third_line(
         "[flux]",

@@ -145,6 +145,10 @@ fn a_reflectivity_is_for_what_brings_none() {
     let own = ground("generate = { kind = \"nasty\", faces = 500 }");
     assert!(own.iter().any(|kind| kind.reflectivity != own[0].reflectivity));
     assert_eq!(ground("generate = { faces = 500 }").len(), 1);
+    let mars = "generate = { preset = \"worst\", extent_m = 8, post_spacing_m = 0.5, crevasses = 0 }";
+    let names: Vec<String> = ground(mars).into_iter().map(|kind| kind.name).collect();
+    assert_eq!(names, ["soil", "rock", "crevasse wall"]);
+    assert!(ground(&format!("{mars}\nreflectivity = 0.5")).iter().all(|kind| kind.reflectivity == 0.5));
 }
 
 #[test]
