@@ -7,11 +7,12 @@ use glam::DVec3;
 use raypencil_scene::{Beam, Camera, Filter, FluxModel, Profile};
 use toml::Spanned;
 
+use crate::dem;
 use crate::gltf_mesh::DEFAULT_REFLECTIVITY;
 use crate::keys::{
     BeamKeys, CameraKeys, FilterKeys, GenerateKeys, HeadKeys, Key, SceneKeys, TerrainKeys, VehicleKeys,
 };
-use crate::plan::{DEFAULT_FAN_DEG, Mount, Plan, Terrain, default_beam, default_rig};
+use crate::plan::{DEFAULT_FAN_DEG, DemPart, Mount, Plan, Terrain, default_beam, default_rig};
 use crate::{SceneIoError, TomlProblem};
 
 /// CHOICE: the effective index of common interference filters lies around 2.
@@ -295,26 +296,32 @@ impl Source<'_> {
             self.number(Some(given), "terrain.reflectivity", &mut reflectivity, 0.0..=1.0, "")?;
             plan.reflectivity = Some(reflectivity);
         }
-        let one = "exactly one of `builtin`, `file` and `generate`";
-        plan.terrain = match (keys.builtin, keys.file, keys.generate) {
-            (Some(name), None, None) => {
+        let dem = self.dem_part(keys.dem_window_m, keys.dem_max_error_m, keys.dem.as_ref())?;
+        let one = "exactly one of `builtin`, `file`, `dem` and `generate`";
+        plan.terrain = match (keys.builtin, keys.file, keys.dem, keys.generate) {
+            (Some(name), None, None, None) => {
                 let names: Vec<_> =
                     raypencil_terrain::BUILTIN_NAMES.iter().map(|name| (*name, *name)).collect();
                 Terrain::Builtin(self.word(&name, "terrain.builtin", &names)?.to_string())
             }
-            (None, Some(file), None) => {
+            (None, Some(file), None, None) => {
                 plan.terrain_span = file.span();
                 Terrain::File(PathBuf::from(file.into_inner()))
             }
-            (None, None, Some(generate)) => self.generate(generate.into_inner())?,
-            (None, None, None) => {
+            (None, None, Some(file), None) => {
+                plan.terrain_span = file.span();
+                Terrain::Dem(DemPart { file: PathBuf::from(file.into_inner()), ..dem })
+            }
+            (None, None, None, Some(generate)) => self.generate(generate.into_inner())?,
+            (None, None, None, None) => {
                 return Err(self.error(whole, format!("`terrain` has no ground; expected {one}")));
             }
             // The later of the two is the one too many.
-            (builtin, file, generate) => {
+            (builtin, file, dem, generate) => {
                 let named = [
                     ("builtin", builtin.map(|key| key.span())),
                     ("file", file.map(|key| key.span())),
+                    ("dem", dem.map(|key| key.span())),
                     ("generate", generate.map(|key| key.span())),
                 ];
                 let given = named.into_iter().filter_map(|(name, span)| Some((span?, name)));
@@ -325,6 +332,40 @@ impl Source<'_> {
             }
         };
         Ok(())
+    }
+
+    /// What is taken of an elevation model, whose file is filled in later: keys that are there only with `dem`.
+    fn dem_part(
+        &self,
+        window: Key<Vec<f64>>,
+        max_error: Key<f64>,
+        dem: Option<&Spanned<String>>,
+    ) -> Result<DemPart, SceneIoError> {
+        let mut part = DemPart { file: PathBuf::new(), window: None, max_error: None };
+        let spans = [
+            ("dem_window_m", window.as_ref().map(Spanned::span)),
+            ("dem_max_error_m", max_error.as_ref().map(Spanned::span)),
+        ];
+        if let (None, Some((name, span))) =
+            (dem, spans.into_iter().find_map(|(name, span)| Some((name, span?))))
+        {
+            return Err(self.error(span, format!("`terrain.{name}` is given; expected it only with `dem`")));
+        }
+        if let Some(window) = window {
+            let name = "terrain.dem_window_m";
+            if let &[x, y, width, height] = self.list(&window, name, &[4], dem::MAP_M, "metres")?.as_ref() {
+                for side in [width, height] {
+                    self.check(side, window.span(), name, dem::WINDOW_M, "metres, for a width and a height")?;
+                }
+                part.window = Some([x, y, width, height]);
+            }
+        }
+        if let Some(max_error) = max_error {
+            let value = *max_error.get_ref();
+            self.check(value, max_error.span(), "terrain.dem_max_error_m", dem::MAX_ERROR_M, "metres")?;
+            part.max_error = Some(value);
+        }
+        Ok(part)
     }
 
     fn generate(&self, keys: GenerateKeys) -> Result<Terrain, SceneIoError> {

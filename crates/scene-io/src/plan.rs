@@ -48,6 +48,7 @@ pub(crate) enum Terrain {
     Builtin(String),
     /// Relative to the scene file.
     File(PathBuf),
+    Dem(DemPart),
     Generate {
         nasty: bool,
         seed: u64,
@@ -56,6 +57,17 @@ pub(crate) enum Terrain {
         extent: Option<f64>,
         offset: DVec3,
     },
+}
+
+/// What is taken of an elevation model.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct DemPart {
+    /// Relative to the scene file.
+    pub file: PathBuf,
+    /// x and y of the lower left corner, width and height; `None`: all of it.
+    pub window: Option<[f64; 4]>,
+    /// How far the ground may be from a post; `None`: it goes through all.
+    pub max_error: Option<f64>,
 }
 
 /// CHOICE: the paper prints no rig. This one sees stripes about 2.5 and 5 m ahead of a rover of a metre or

@@ -6,6 +6,7 @@ mod tags;
 
 use std::fs::File;
 use std::io::BufReader;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
@@ -13,6 +14,7 @@ use raypencil_scene::{Material, Mesh};
 use raypencil_terrain::{Ground, Posts, indices_within, simplify};
 
 use crate::SceneIoError;
+use crate::digest::{Sha, sha_of_file};
 use crate::error::Fault;
 use blocks::Blocks;
 use georeference::Placement;
@@ -24,8 +26,11 @@ const MOST_CELLS: u64 = 1 << 24;
 const MOST_IMAGES: usize = 64;
 /// The bit of NewSubfileType that says that an image is a mask. (TIFF 6.0, page 36)
 const IS_MASK: u64 = 4;
+/// Map coordinates, and sides of a window, metres.
+pub(crate) const MAP_M: RangeInclusive<f64> = -1e9..=1e9;
+pub(crate) const WINDOW_M: RangeInclusive<f64> = 1e-3..=1e9;
 /// Bounds of simplification, metres.
-pub(crate) const MAX_ERROR_M: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+pub(crate) const MAX_ERROR_M: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// What a pixel of an elevation model is. Posts are at the middles of pixels, whichever it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,6 +88,18 @@ pub fn read_dem(path: impl AsRef<Path>, window: Option<[f64; 4]>) -> Result<Dem,
     }
     let file = BufReader::new(File::open(path).map_err(unreadable)?);
     read(path, file, metadata.len(), window).map_err(|fault| SceneIoError::Dem(fault.in_file(path)))
+}
+
+/// The mesh of a part of an elevation model, and the digest of its whole file.
+pub(crate) fn load(
+    path: &Path,
+    window: Option<[f64; 4]>,
+    max_error: Option<f64>,
+    reflectivity: f64,
+) -> Result<(Mesh, Sha), SceneIoError> {
+    let mesh = read_dem(path, window)?.mesh(max_error, reflectivity)?;
+    let (_, sha) = sha_of_file(path).map_err(|error| SceneIoError::io(path, "read", error))?;
+    Ok((mesh, sha))
 }
 
 fn read(path: &Path, mut file: BufReader<File>, length: u64, window: Option<[f64; 4]>) -> Result<Dem, Fault> {
@@ -169,7 +186,7 @@ impl Lattice {
     }
 
     /// The columns and rows of the posts inside a window.
-    fn within(&self, window: Option<[f64; 4]>) -> Result<[std::ops::RangeInclusive<u32>; 2], Fault> {
+    fn within(&self, window: Option<[f64; 4]>) -> Result<[RangeInclusive<u32>; 2], Fault> {
         let Some([x, y, width, height]) = window else {
             return Ok(self.size.map(|count| 0..=count - 1));
         };

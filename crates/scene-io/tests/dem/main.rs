@@ -3,6 +3,7 @@
 mod hostile;
 mod placement;
 mod samples;
+mod scenes;
 mod write;
 
 use std::path::Path;
