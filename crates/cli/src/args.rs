@@ -46,12 +46,15 @@ pub(crate) enum Command {
     Minimise(Minimise),
     /// Compare two recordings of anything, channel by channel: files or folders of EXR, NPY and PFM.
     Diff(Diff),
+    /// Grounds from elsewhere.
+    #[command(subcommand)]
+    Terrain(TerrainCommand),
 }
 
 /// Which scene.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// A built-in ground (pyramids, facets), a scene .toml, or a terrain .glb or .gltf.
+    /// A built-in ground (pyramids, facets), a scene .toml, a terrain .glb or .gltf, or an elevation model .tif.
     #[arg(value_name = "SCENE", default_value = "pyramids")]
     pub(crate) scene: String,
 
@@ -464,7 +467,7 @@ pub(crate) struct Diff {
     pub(crate) shared_only: bool,
 
     /// The scene that both recorded: the referee rules on each cell that differs by more than is allowed, and only
-    /// a side that is wrong fails. A built-in ground, a scene .toml (of a pack, too), a .glb or .gltf.
+    /// a side that is wrong fails. A built-in ground, a scene .toml (of a pack, too), a .glb or .gltf, a .tif.
     #[arg(long, value_name = "SCENE")]
     pub(crate) scene: Option<String>,
 
@@ -475,6 +478,72 @@ pub(crate) struct Diff {
     /// Folder for report.html, junit.xml and summary.json; none are written if not given.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum TerrainCommand {
+    /// Make ground as Mars has it: relief, rocks, craters and crevasses by their laws.
+    Generate(TerrainGenerate),
+    /// Make a GLB terrain of an elevation model (GeoTIFF).
+    Import(TerrainImport),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TerrainGenerate {
+    /// Where all numbers start from: smooth, viking1, pathfinder, crater_field, crevassed or worst; docs/terrain.md.
+    #[arg(long, value_name = "NAME", default_value = "viking1")]
+    pub(crate) preset: String,
+
+    /// Which of the grounds with these numbers.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// Side of the square, metres.
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) extent: Option<f64>,
+
+    /// Distance of its posts, metres.
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) post_spacing: Option<f64>,
+
+    /// Share of the ground that rocks cover, 0 to 0.4.
+    #[arg(long, value_name = "K", allow_hyphen_values = true)]
+    pub(crate) rock_coverage: Option<f64>,
+
+    /// Diameter of the smallest rocks, metres.
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) rock_smallest: Option<f64>,
+
+    /// An elevation model (GeoTIFF) whose posts the surface passes through; the ground is as large as it is.
+    #[arg(long, value_name = "DEM", conflicts_with = "extent")]
+    pub(crate) coarse: Option<PathBuf>,
+
+    /// The GLB file to write.
+    #[arg(short, long, value_name = "FILE.glb")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TerrainImport {
+    /// A GeoTIFF of one band, in metres.
+    #[arg(value_name = "DEM")]
+    pub(crate) dem: PathBuf,
+
+    /// Take the posts in this part alone: x and y of its lower left corner, width and height, metres of the map.
+    #[arg(long, value_name = "X,Y,W,H", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    pub(crate) window: Option<[f64; 4]>,
+
+    /// Make fewer faces, so that no post is farther from the ground than this along z, metres.
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) max_error: Option<f64>,
+
+    /// Reflectivity of the ground, 0 to 1.
+    #[arg(long, value_name = "R", default_value_t = raypencil_scene_io::DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
+    pub(crate) reflectivity: f64,
+
+    /// The GLB file to write.
+    #[arg(short, long, value_name = "FILE.glb")]
+    pub(crate) output: PathBuf,
 }
 
 /// A number that may be allowed to differ: finite and not negative.
@@ -501,6 +570,14 @@ fn switch(text: &str) -> Result<(String, Fidelity), String> {
         "exact" => Ok((name.into(), Fidelity::Exact)),
         _ => Err("expected a switch and its side, such as beam-edges=paper or skip-rules=exact".into()),
     }
+}
+
+/// As many numbers with commas between them.
+fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let all: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    all.ok()
+        .and_then(|all| all.try_into().ok())
+        .ok_or_else(|| format!("expected {N} numbers with commas between them"))
 }
 
 /// `A,B`.

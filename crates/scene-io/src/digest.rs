@@ -17,6 +17,11 @@ pub(crate) fn sha(bytes: &[u8]) -> Sha {
 
 /// The size in bytes and the SHA-256, in hexadecimal digits, of a regular file of any size.
 pub(crate) fn of_file(path: &Path) -> io::Result<(u64, String)> {
+    sha_of_file(path).map(|(bytes, sha)| (bytes, hex(&sha)))
+}
+
+/// The size in bytes and the SHA-256 of a regular file of any size.
+pub(crate) fn sha_of_file(path: &Path) -> io::Result<(u64, Sha)> {
     // Asked before the file is opened: opening a pipe waits for its writer.
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
@@ -27,7 +32,7 @@ pub(crate) fn of_file(path: &Path) -> io::Result<(u64, String)> {
     let mut bytes = 0;
     loop {
         match file.read(&mut part)? {
-            0 => return Ok((bytes, hex(&hash.finalize().into()))),
+            0 => return Ok((bytes, hash.finalize().into())),
             count => {
                 hash.update(&part[..count]);
                 bytes += count as u64;

@@ -23,6 +23,11 @@ pub enum SceneIoError {
     #[diagnostic(code(raypencil::gltf))]
     Gltf(Box<Problem>),
 
+    /// A place in an elevation model.
+    #[error("{0}")]
+    #[diagnostic(code(raypencil::dem))]
+    Dem(Box<Problem>),
+
     /// A place in an OpenEXR file.
     #[error("{0}")]
     #[diagnostic(code(raypencil::exr))]

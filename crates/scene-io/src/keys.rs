@@ -98,6 +98,9 @@ pub(crate) struct BeamKeys {
 pub(crate) struct TerrainKeys {
     pub builtin: Key<String>,
     pub file: Key<String>,
+    pub dem: Key<String>,
+    pub dem_window_m: Key<Vec<f64>>,
+    pub dem_max_error_m: Key<f64>,
     pub generate: Key<GenerateKeys>,
     pub reflectivity: Key<f64>,
 }

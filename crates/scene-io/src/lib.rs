@@ -4,7 +4,8 @@
 //!   scene file are described in `docs/scene.md`.
 //! * [`write_resolved`]: a scene's own numbers, which [`load`] gives back bit for bit.
 //! * [`load_mesh`]: a `.glb` or `.gltf` file becomes a [`raypencil_scene::Mesh`]; [`write_glb`] and [`mesh_of_offsets`]
-//!   keep one bit for bit.
+//!   keep one bit for bit, [`write_terrain_glb`] does so for people, with the ground where it belongs.
+//! * [`read_dem`]: the heights of a GeoTIFF, all or a part of them, and the mesh that they make.
 //! * [`write_exr_map`], [`read_exr_map`]: the maps of one sensor as OpenEXR; [`ExrMap`] for files of any
 //!   channels. Conventions are in `docs/files.md`.
 //! * [`read_npy`], [`write_npy`], [`read_pfm`], [`write_pfm`]: arrays of numbers, as NumPy and image programs
@@ -26,6 +27,7 @@ mod array;
 mod atomic;
 mod bytes;
 mod channels;
+mod dem;
 mod digest;
 mod error;
 mod exr_map;
@@ -44,11 +46,13 @@ mod resolved;
 pub use array::{Array, ArrayNumber, Storage, Values};
 pub use atomic::write_atomically;
 pub use channels::{Channel, Channels, read_channels, read_listed};
+pub use dem::{Dem, Registration, read_dem};
 pub use digest::scene_sha256;
 pub use error::{Problem, SceneIoError, TomlProblem};
 pub use exr_map::{Attributes, ExrMap, Limits, Raster, read_exr, read_exr_map, write_exr, write_exr_map};
 pub use gltf_mesh::{
     DEFAULT_REFLECTIVITY, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
+    write_terrain_glb,
 };
 pub use load::{LoadedScene, Overrides, SceneSource, load, load_text};
 pub use manifest::{

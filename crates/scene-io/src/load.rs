@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use raypencil_scene::{Beam, FluxModel, Mesh, Pose, Scene, SceneError};
-use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
+use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
 
 use crate::digest::{self, Sha};
 use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY, Vertices};
 use crate::parse::{self, Kind, Source};
-use crate::plan::{self, Plan, Terrain};
-use crate::{SceneIoError, bytes, resolve, resolved, scene_sha256};
+use crate::plan::{self, DemPart, Plan, Terrain};
+use crate::{SceneIoError, bytes, dem, resolve, resolved, scene_sha256};
 
 /// A scene file larger than this is none: 1 MiB.
 const LARGEST_TOML: u64 = 1 << 20;
@@ -28,10 +28,12 @@ pub enum SceneSource {
     Toml(PathBuf),
     /// A terrain, under the default rig.
     Gltf(PathBuf),
+    /// An elevation model, under the default rig.
+    Dem(PathBuf),
 }
 
 impl SceneSource {
-    /// Tells a built-in name, a `.toml` and a `.glb` or `.gltf` apart. A built-in name wins over a file.
+    /// Tells a built-in name, a `.toml`, a `.glb` or `.gltf` and a `.tif` or `.tiff` apart. A built-in name wins over a file.
     ///
     /// # Errors
     /// Lists the built-in names and the extensions if it is none of them, or if there is no such file.
@@ -43,7 +45,7 @@ impl SceneSource {
             given: source.to_string(),
             problem: problem.to_string(),
             expected: format!(
-                "a built-in name ({}) or a file that ends in .toml, .glb or .gltf",
+                "a built-in name ({}) or a file that ends in .toml, .glb, .gltf, .tif or .tiff",
                 BUILTIN_NAMES.join(", ")
             ),
         };
@@ -53,12 +55,14 @@ impl SceneSource {
         }
         let known = |end: &str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
         let exists = path.exists();
-        match (known("toml"), known("glb") || known("gltf")) {
-            (true, _) if exists => Ok(Self::Toml(path)),
-            (_, true) if exists => Ok(Self::Gltf(path)),
-            (false, false) if exists => Err(refuse("is a file of an unknown kind")),
-            (false, false) => Err(refuse("is neither a built-in name nor a file")),
-            _ => Err(refuse("does not exist")),
+        let kinds: [(&[&str], fn(PathBuf) -> Self); 3] =
+            [(&["toml"], Self::Toml), (&["glb", "gltf"], Self::Gltf), (&["tif", "tiff"], Self::Dem)];
+        let kind = kinds.into_iter().find(|(ends, _)| ends.iter().any(|end| known(end)));
+        match kind {
+            Some((_, kind)) if exists => Ok(kind(path)),
+            Some(_) => Err(refuse("does not exist")),
+            None if exists => Err(refuse("is a file of an unknown kind")),
+            None => Err(refuse("is neither a built-in name nor a file")),
         }
     }
 }
@@ -98,7 +102,8 @@ pub struct LoadedScene {
     pub source: SceneSource,
 }
 
-/// Loads a scene from a built-in name, a scene `.toml`, or a terrain `.glb` or `.gltf`.
+/// Loads a scene from a built-in name, a scene `.toml`, a terrain `.glb` or `.gltf`, or an elevation model `.tif`
+/// or `.tiff`.
 ///
 /// A terrain alone, built-in or from a file, gets the default rig. On a terrain from a file the vehicle
 /// stands level at the centre of the ground's bounding box; if there is no ground exactly there, on the
@@ -115,12 +120,13 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish(&source, plan, Vec::new(), None, overrides)
         }
         SceneSource::Gltf(path) => {
-            let mut plan = plan::default_rig(Terrain::File(path.clone()));
             let (mesh, parts) = gltf_mesh::read(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
-            if overrides.at.is_none() {
-                plan.vehicle.position = resolve::central_place(&mesh).unwrap_or_default();
-            }
-            finish(&source, plan, parts, Some(mesh), overrides)
+            finish_alone(&source, Terrain::File(path.clone()), parts, mesh, overrides)
+        }
+        SceneSource::Dem(path) => {
+            let (mesh, sha) = dem::load(path, None, None, DEFAULT_REFLECTIVITY)?;
+            let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
+            finish_alone(&source, terrain, vec![sha], mesh, overrides)
         }
         SceneSource::Toml(path) => {
             let bytes =
@@ -167,11 +173,32 @@ fn load_rig(
     let plan = parse::parse(places)?;
     let mesh = match &plan.terrain {
         Terrain::File(file) => {
-            let terrain = terrain_file(places, file, &plan.terrain_span)?;
+            let terrain = terrain_file(places, "file", &["glb", "gltf"], file, &plan.terrain_span)?;
             let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
             let (mesh, more) = gltf_mesh::read(&terrain, reflectivity, Vertices::Global)?;
             parts.extend(more);
             Some(mesh)
+        }
+        Terrain::Dem(DemPart { file, window, max_error }) => {
+            let terrain = terrain_file(places, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
+            let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
+            let (mesh, sha) = dem::load(&terrain, *window, *max_error, reflectivity)?;
+            parts.push(sha);
+            Some(mesh)
+        }
+        Terrain::Mars { ground, coarse: Some((file, span)) } => {
+            let coarse = terrain_file(places, "generate.coarse", &["tif", "tiff"], file, span)?;
+            let (posts, sha) = dem::posts(&coarse)?;
+            parts.push(sha);
+            let ground = MarsGround { coarse: Some(posts), ..(**ground).clone() };
+            let unfit = |error: SceneError| {
+                let SceneError { field, value, expected } = error;
+                places.error(
+                    span.clone(),
+                    format!("`terrain.generate.{field}` is {value}; expected {expected}"),
+                )
+            };
+            Some(mars_mesh(&ground, plan.reflectivity).map_err(unfit)?)
         }
         _ => None,
     };
@@ -186,23 +213,45 @@ fn load_rig(
     })
 }
 
-/// Where `terrain.file` is, if it is a file of a kind that is known.
-fn terrain_file(places: &Source, file: &Path, span: &Range<usize>) -> Result<PathBuf, SceneIoError> {
+/// Where `terrain.file` or `terrain.dem` is, if it is a file of a kind that is known by its end.
+fn terrain_file(
+    places: &Source,
+    key: &str,
+    ends: &[&str; 2],
+    file: &Path,
+    span: &Range<usize>,
+) -> Result<PathBuf, SceneIoError> {
     let terrain = places.file.parent().unwrap_or(Path::new("")).join(file);
-    let known = |end: &str| terrain.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
-    if !(known("glb") || known("gltf")) {
+    let known = |end: &&str| terrain.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
+    if !ends.iter().any(known) {
+        let [a, b] = ends;
         let message =
-            format!("`terrain.file` is \"{}\"; expected a file that ends in .glb or .gltf", file.display());
+            format!("`terrain.{key}` is \"{}\"; expected a file that ends in .{a} or .{b}", file.display());
         return Err(places.error(span.clone(), message));
     }
     if !terrain.is_file() {
         let message = format!(
-            "`terrain.file`: there is no file \"{}\"; expected a path relative to the scene file",
+            "`terrain.{key}`: there is no file \"{}\"; expected a path relative to the scene file",
             terrain.display()
         );
         return Err(places.error(span.clone(), message));
     }
     Ok(terrain)
+}
+
+/// A terrain without a scene file: the default rig stands in its middle.
+fn finish_alone(
+    source: &SceneSource,
+    terrain: Terrain,
+    parts: Vec<Sha>,
+    mesh: Mesh,
+    overrides: &Overrides,
+) -> Result<LoadedScene, SceneIoError> {
+    let mut plan = plan::default_rig(terrain);
+    if overrides.at.is_none() {
+        plan.vehicle.position = resolve::central_place(&mesh).unwrap_or_default();
+    }
+    finish(source, plan, parts, Some(mesh), overrides)
 }
 
 /// A scene whose numbers stand in the file as they are.
@@ -219,7 +268,13 @@ fn load_resolved(
         return Err(SceneIoError::Override { name, value, expected });
     }
     let mut resolved = resolved::parse(places)?;
-    let terrain = terrain_file(places, Path::new(resolved.file.get_ref()), &resolved.file.span())?;
+    let terrain = terrain_file(
+        places,
+        "file",
+        &["glb", "gltf"],
+        Path::new(resolved.file.get_ref()),
+        &resolved.file.span(),
+    )?;
     let vertices = Vertices::OffsetsFrom(resolved.origin);
     let (mesh, more) = gltf_mesh::read(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
     parts.extend(more);
@@ -243,7 +298,9 @@ fn finish(
 ) -> Result<LoadedScene, SceneIoError> {
     let origin = || match source {
         SceneSource::Builtin(name) => name.clone(),
-        SceneSource::Toml(path) | SceneSource::Gltf(path) => path.display().to_string(),
+        SceneSource::Toml(path) | SceneSource::Gltf(path) | SceneSource::Dem(path) => {
+            path.display().to_string()
+        }
     };
     let unfit = |source: SceneError| SceneIoError::Scene { origin: origin(), source };
     apply(overrides, &mut plan);
@@ -307,20 +364,23 @@ fn make(plan: &Plan) -> Result<Mesh, SceneError> {
             }
             ground.into_mesh()
         }
-        Terrain::Mars { ground, coarse: None } => {
-            let mut ground = ground.build()?;
-            if let Some(reflectivity) = plan.reflectivity {
-                ground.materials.iter_mut().for_each(|kind| kind.reflectivity = reflectivity);
-            }
-            ground.into_mesh()
-        }
+        Terrain::Mars { ground, coarse: None } => mars_mesh(ground, plan.reflectivity),
         Terrain::Mars { coarse: Some((path, _)), .. } => {
             Err(SceneError::new("terrain.generate.coarse", path.display(), "posts that are loaded already"))
         }
-        Terrain::File(path) => {
+        Terrain::File(path) | Terrain::Dem(DemPart { file: path, .. }) => {
             Err(SceneError::new("terrain.file", path.display(), "a terrain that is loaded already"))
         }
     }
+}
+
+/// The mesh of generated ground; a reflectivity in the file is for all of it.
+fn mars_mesh(ground: &MarsGround, reflectivity: Option<f64>) -> Result<Mesh, SceneError> {
+    let mut ground = ground.build()?;
+    if let Some(reflectivity) = reflectivity {
+        ground.materials.iter_mut().for_each(|kind| kind.reflectivity = reflectivity);
+    }
+    ground.into_mesh()
 }
 
 /// Refuses an override out of range.
@@ -372,7 +432,7 @@ fn apply_to_beam(overrides: &Overrides, beam: &mut Beam) {
 fn folder_name(source: &SceneSource) -> String {
     let stem = match source {
         SceneSource::Builtin(name) => name.clone(),
-        SceneSource::Toml(path) | SceneSource::Gltf(path) => {
+        SceneSource::Toml(path) | SceneSource::Gltf(path) | SceneSource::Dem(path) => {
             path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
         }
     };

@@ -1,5 +1,6 @@
 //! Scene TOML to a plan: each key is checked by itself, and every error points to its place in the file.
 
+mod dem;
 mod generate;
 
 use std::ops::{Range, RangeInclusive};
@@ -11,7 +12,7 @@ use toml::Spanned;
 
 use crate::gltf_mesh::DEFAULT_REFLECTIVITY;
 use crate::keys::{BeamKeys, CameraKeys, FilterKeys, HeadKeys, Key, SceneKeys, TerrainKeys, VehicleKeys};
-use crate::plan::{DEFAULT_FAN_DEG, Mount, Plan, Terrain, default_beam, default_rig};
+use crate::plan::{DEFAULT_FAN_DEG, DemPart, Mount, Plan, Terrain, default_beam, default_rig};
 use crate::{SceneIoError, TomlProblem};
 
 /// CHOICE: the effective index of common interference filters lies around 2.
@@ -292,26 +293,32 @@ impl Source<'_> {
             self.number(Some(given), "terrain.reflectivity", &mut reflectivity, 0.0..=1.0, "")?;
             plan.reflectivity = Some(reflectivity);
         }
-        let one = "exactly one of `builtin`, `file` and `generate`";
-        plan.terrain = match (keys.builtin, keys.file, keys.generate) {
-            (Some(name), None, None) => {
+        let dem = self.dem_part(keys.dem_window_m, keys.dem_max_error_m, keys.dem.as_ref())?;
+        let one = "exactly one of `builtin`, `file`, `dem` and `generate`";
+        plan.terrain = match (keys.builtin, keys.file, keys.dem, keys.generate) {
+            (Some(name), None, None, None) => {
                 let names: Vec<_> =
                     raypencil_terrain::BUILTIN_NAMES.iter().map(|name| (*name, *name)).collect();
                 Terrain::Builtin(self.word(&name, "terrain.builtin", &names)?.to_string())
             }
-            (None, Some(file), None) => {
+            (None, Some(file), None, None) => {
                 plan.terrain_span = file.span();
                 Terrain::File(PathBuf::from(file.into_inner()))
             }
-            (None, None, Some(generate)) => self.generate(generate)?,
-            (None, None, None) => {
+            (None, None, Some(file), None) => {
+                plan.terrain_span = file.span();
+                Terrain::Dem(DemPart { file: PathBuf::from(file.into_inner()), ..dem })
+            }
+            (None, None, None, Some(generate)) => self.generate(generate)?,
+            (None, None, None, None) => {
                 return Err(self.error(whole, format!("`terrain` has no ground; expected {one}")));
             }
             // The later of the two is the one too many.
-            (builtin, file, generate) => {
+            (builtin, file, dem, generate) => {
                 let named = [
                     ("builtin", builtin.map(|key| key.span())),
                     ("file", file.map(|key| key.span())),
+                    ("dem", dem.map(|key| key.span())),
                     ("generate", generate.map(|key| key.span())),
                 ];
                 let given = named.into_iter().filter_map(|(name, span)| Some((span?, name)));

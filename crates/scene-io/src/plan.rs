@@ -49,6 +49,7 @@ pub(crate) enum Terrain {
     Builtin(String),
     /// Relative to the scene file.
     File(PathBuf),
+    Dem(DemPart),
     Generate {
         nasty: bool,
         seed: u64,
@@ -62,6 +63,17 @@ pub(crate) enum Terrain {
         /// An elevation model whose posts it passes through, relative to the scene file, and where the file says so.
         coarse: Option<(PathBuf, Range<usize>)>,
     },
+}
+
+/// What is taken of an elevation model.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct DemPart {
+    /// Relative to the scene file.
+    pub file: PathBuf,
+    /// x and y of the lower left corner, width and height; `None`: all of it.
+    pub window: Option<[f64; 4]>,
+    /// How far the ground may be from a post; `None`: it goes through all.
+    pub max_error: Option<f64>,
 }
 
 /// CHOICE: the paper prints no rig. This one sees stripes about 2.5 and 5 m ahead of a rover of a metre or

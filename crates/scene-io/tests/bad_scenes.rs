@@ -180,7 +180,7 @@ fn unknown_keys_are_marked() {
         ("[camera]\nfocal_lenght_mm = 8", "focal_lenght_mm"),
         ("[vehicle]\npitch_deg = 8", "pitch_deg"),
         ("[[beam]]\nfan = 8", "fan"),
-        ("[terrain]\ndem = \"x.tif\"", "dem"),
+        ("[terrain]\ndem_m = \"x.tif\"", "dem_m"),
         ("[terrain]\ngenerate = { size = 3 }", "size"),
         ("[atmosphere]\nsigma = 3", "sigma"),
         ("[flux]\nkind = 3", "kind"),
@@ -252,7 +252,7 @@ fn what_is_no_toml_is_marked() {
 
 #[test]
 fn exactly_one_ground() {
-    let one = "expected exactly one of `builtin`, `file` and `generate`";
+    let one = "expected exactly one of `builtin`, `file`, `dem` and `generate`";
     let none = problem("version = 1\n[terrain]\nreflectivity = 0.1\n");
     assert_eq!((none.message, none.line), (format!("`terrain` has no ground; {one}"), 2));
     let two = problem("version = 1\n[terrain]\nfile = \"a.glb\"\nbuiltin = \"pyramids\"\n");

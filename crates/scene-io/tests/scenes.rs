@@ -242,7 +242,10 @@ fn a_source_that_is_none_lists_what_there_is() {
     let refuse = |source: &str| load(source, &Overrides::default()).unwrap_err().to_string();
     let message = refuse("pyramid");
     assert!(message.starts_with("`pyramid` is neither a built-in name nor a file; expected"), "{message}");
-    assert!(message.contains("pyramids, facets") && message.contains(".toml, .glb or .gltf"), "{message}");
+    assert!(
+        message.contains("pyramids, facets") && message.contains(".toml, .glb, .gltf, .tif or .tiff"),
+        "{message}"
+    );
     assert!(refuse("nowhere/mars.glb").starts_with("`nowhere/mars.glb` does not exist"));
     let folder = tempfile::tempdir().unwrap();
     assert!(refuse(folder.path().to_str().unwrap()).contains("is a folder"));

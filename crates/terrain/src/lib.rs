@@ -1,4 +1,5 @@
-//! Grounds for a rover to look at: the paper's two scenes (§9), random ones, and the height of any.
+//! Grounds for a rover to look at: the paper's two scenes (§9), random ones, those of elevation models, and the
+//! height of any.
 //!
 //! ```
 //! use raypencil_terrain::{RandomGround, builtin, height_at};
@@ -25,10 +26,12 @@ mod height;
 mod mars;
 mod posts;
 mod random;
+mod simplify;
 
 pub use builtin::{BUILTIN_NAMES, builtin};
 pub use ground::Ground;
 pub use height::height_at;
 pub use mars::{Crater, Craters, Crevasses, MarsGround, PRESET_NAMES, Rocks, Roughness};
-pub use posts::Posts;
+pub use posts::{Posts, indices_within};
 pub use random::RandomGround;
+pub use simplify::simplify;

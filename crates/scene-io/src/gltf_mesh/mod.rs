@@ -6,16 +6,18 @@
 mod accessors;
 mod buffers;
 mod container;
+mod materials;
 mod nodes;
+mod stated;
 mod write;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use glam::DVec3;
+use gltf::json::Root;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
-use gltf::json::{Material as MaterialJson, Root};
 use raypencil_scene::{Material, Mesh};
 use serde::Deserialize;
 
@@ -24,7 +26,7 @@ use crate::error::Fault;
 use crate::{SceneIoError, bytes};
 use buffers::Buffers;
 
-pub use write::{glb_bytes, write_glb};
+pub use write::{glb_bytes, write_glb, write_terrain_glb};
 
 /// Reflectivity of ground that brings none of its own. CHOICE: bright Martian dust reflects about this much
 /// in the near infrared.
@@ -91,15 +93,24 @@ fn parse(
     let container = container::split(bytes).map_err(unfit)?;
     let root = root(container.json).map_err(unfit)?;
     let mut buffers = Buffers::new(&root, folder, container.bin);
-    let parts = assemble(&root, &mut buffers, reflectivity).map_err(unfit)?;
+    let placed = nodes::placed(&root).map_err(unfit)?;
+    let materials = materials::read(&root, container.json, reflectivity).map_err(unfit)?;
+    let stated = match kind {
+        Vertices::Global => stated::origin(&root, &placed),
+        Vertices::OffsetsFrom(_) => None,
+    };
+    let parts = Parts { materials, ..Parts::default() };
+    let parts =
+        assemble(&root, placed, &mut buffers, parts, reflectivity, stated.is_some()).map_err(unfit)?;
     let Parts { mut vertices, faces, face_materials, materials } = parts;
-    let mesh = match kind {
-        Vertices::Global => {
+    let mesh = match (kind, stated) {
+        (Vertices::Global, Some(origin)) => stated::mesh(origin, vertices, faces, face_materials, materials),
+        (Vertices::Global, None) => {
             // A ground at z = 0 of the file is at y = +0, not -0: ordinary files mean nothing by that sign.
             vertices.iter_mut().for_each(|vertex| vertex.y += 0.0);
             Mesh::from_global(&vertices, faces, face_materials, materials)
         }
-        Vertices::OffsetsFrom(origin) => {
+        (Vertices::OffsetsFrom(origin), _) => {
             let offsets = vertices.iter().map(|vertex| vertex.as_vec3().to_array()).collect();
             Mesh::new(origin, offsets, faces, face_materials, materials)
         }
@@ -162,9 +173,16 @@ struct Parts {
     materials: Vec<Material>,
 }
 
-/// Faces in the order of nodes, then primitives, then the primitive's own order: this is `FaceId`.
-fn assemble(root: &Root, buffers: &mut Buffers<'_>, reflectivity: f64) -> Result<Parts, Fault> {
-    let placed = nodes::placed(root)?;
+/// Faces in the order of nodes, then primitives, then the primitive's own order: this is `FaceId`. With `as_is`
+/// vertices are left where their node's own axes have them.
+fn assemble(
+    root: &Root,
+    placed: Vec<nodes::Placed>,
+    buffers: &mut Buffers<'_>,
+    mut parts: Parts,
+    reflectivity: f64,
+    as_is: bool,
+) -> Result<Parts, Fault> {
     // How much it will be is known before anything is read: no small file can ask for much memory.
     let mut totals = [0_u64; 2];
     for node in &placed {
@@ -184,13 +202,12 @@ fn assemble(root: &Root, buffers: &mut Buffers<'_>, reflectivity: f64) -> Result
         }
     }
 
-    let mut parts = Parts { materials: materials(root, reflectivity)?, ..Parts::default() };
     let mut bare = None;
     for nodes::Placed { node, file_from_node } in placed {
         // Primitives of one mesh often share their vertices.
         let mut first_vertex = BTreeMap::new();
         let mirrored = file_from_node.matrix3.determinant() < 0.0;
-        let untouched = file_from_node == glam::DAffine3::IDENTITY;
+        let untouched = as_is || file_from_node == glam::DAffine3::IDENTITY;
         for primitive in primitives(root, node)? {
             let Some(drawn) = drawn(root, primitive)? else { continue };
             let accessor = drawn.positions.value();
@@ -316,41 +333,5 @@ fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
         }
         Mode::TriangleFan => (0..c.len().saturating_sub(2)).map(|i| [c[i + 1], c[i + 2], c[0]]).collect(),
         Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
-    }
-}
-
-/// One kind of ground for each material of the file, in its order.
-fn materials(root: &Root, default: f64) -> Result<Vec<Material>, Fault> {
-    if root.materials.len() >= usize::from(u16::MAX) {
-        let found = root.materials.len().to_string();
-        return Err(Fault::new("materials", found, "fewer than 65535"));
-    }
-    let kind = |(index, material): (usize, &MaterialJson)| {
-        let name = material.name.clone().unwrap_or_else(|| format!("material {index}"));
-        let reflectivity = reflectivity(material, index)?.unwrap_or(default);
-        Ok(Material { name, reflectivity })
-    };
-    root.materials.iter().enumerate().map(kind).collect()
-}
-
-/// `extras.reflectivity` of a material, if its extras are an object that has it.
-fn reflectivity(material: &MaterialJson, index: usize) -> Result<Option<f64>, Fault> {
-    #[derive(Deserialize)]
-    struct Extras {
-        reflectivity: Option<serde_json::Value>,
-    }
-    let Some(extras) = &material.extras else { return Ok(None) };
-    if !extras.get().trim_start().starts_with('{') {
-        return Ok(None);
-    }
-    let place = || format!("material {index} {:?}", material.name.as_deref().unwrap_or(""));
-    let unfit = |found: String| Fault::new(place(), found, "extras.reflectivity from 0 to 1");
-    let extras: Extras = serde_json::from_str(extras.get()).map_err(|error| unfit(error.to_string()))?;
-    match extras.reflectivity {
-        None => Ok(None),
-        Some(value) => match value.as_f64() {
-            Some(number) if (0.0..=1.0).contains(&number) => Ok(Some(number)),
-            _ => Err(unfit(value.to_string())),
-        },
     }
 }

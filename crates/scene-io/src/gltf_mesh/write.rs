@@ -1,4 +1,4 @@
-//! A mesh to GLB: one node without a transform, the mesh's own numbers, faces in the order of `FaceId`. (glTF 2.0)
+//! A mesh to GLB: one node, the mesh's own numbers, faces in the order of `FaceId`. (glTF 2.0)
 
 use std::path::Path;
 
@@ -28,6 +28,40 @@ pub fn write_glb(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), SceneIoError
     check(mesh).map_err(|fault| SceneIoError::Gltf(fault.in_file(path)))?;
     let bytes = glb_bytes(mesh);
     write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// Writes `mesh` as a GLB file for people and other programs: as [`write_glb`] does, but its node stands at the
+/// scene origin, so that the ground is where it belongs, and [`crate::load_mesh`] gives back the same mesh bit
+/// for bit. `extras`, a JSON object of anything, becomes the node's `extras`; `asset.extras.units` is `metre`.
+///
+/// # Errors
+/// As [`write_glb`]; an origin that single precision cannot hold, in which glTF has its numbers: all whole metres
+/// below 2^24 can be held.
+pub fn write_terrain_glb(path: impl AsRef<Path>, mesh: &Mesh, extras: &Value) -> Result<(), SceneIoError> {
+    let path = path.as_ref();
+    let bytes = check(mesh)
+        .and_then(|()| terrain_document(mesh, extras))
+        .map(|document| file(mesh, &document))
+        .map_err(|fault| SceneIoError::Gltf(fault.in_file(path)))?;
+    write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// The document of a mesh whose node stands at the scene origin.
+fn terrain_document(mesh: &Mesh, extras: &Value) -> Result<Value, Fault> {
+    let origin = mesh.origin();
+    if let Some(value) = origin.to_array().into_iter().find(|value| f64::from(*value as f32) != *value) {
+        let expected = "a number that single precision holds, such as whole metres below 16777216";
+        return Err(Fault::new("mesh", format!("a scene origin of {origin}, with {value}"), expected));
+    }
+    let mut document = document(mesh);
+    document["asset"]["extras"]["units"] = json!("metre");
+    let node = &mut document["nodes"][0];
+    node["extras"] = extras.clone();
+    if origin != glam::DVec3::ZERO {
+        // z up becomes y up; adding zero makes the minus of -0 go.
+        node["translation"] = json!([origin.x, origin.z, -origin.y + 0.0]);
+    }
+    Ok(document)
 }
 
 /// Refuses what a GLB cannot hold, or what [`crate::load_mesh`] would not read back.
@@ -60,6 +94,11 @@ fn check(mesh: &Mesh) -> Result<(), Fault> {
 /// # Panics
 /// If the mesh has so many faces or vertices that a GLB cannot hold them (4 GiB); [`write_glb`] refuses it.
 pub fn glb_bytes(mesh: &Mesh) -> Vec<u8> {
+    file(mesh, &document(mesh))
+}
+
+/// The file of a mesh and its document.
+fn file(mesh: &Mesh, document: &Value) -> Vec<u8> {
     let positions = 12 * mesh.vertices().len();
     let indices = 12 * mesh.faces().len();
     let mut bin = Vec::with_capacity(positions + indices);
@@ -67,7 +106,7 @@ pub fn glb_bytes(mesh: &Mesh) -> Vec<u8> {
         bin.extend([x, z, -y].iter().flat_map(|coordinate| coordinate.to_le_bytes()));
     }
     bin.extend(mesh.faces().as_flattened().iter().flat_map(|index| index.to_le_bytes()));
-    container(&serde_json::to_vec(&document(mesh)).expect("JSON of numbers and texts"), &bin)
+    container(&serde_json::to_vec(document).expect("JSON of numbers and texts"), &bin)
 }
 
 /// The JSON of the file. Objects have their keys in alphabetical order, so that it is the same for the same mesh.

@@ -36,6 +36,46 @@ fn materials_bring_their_reflectivity() {
 }
 
 #[test]
+fn colours_bring_a_reflectivity_too() {
+    let with = |material: Value| {
+        let mesh = changed(|json| {
+            json["materials"] = json!([material]);
+            json["meshes"][0]["primitives"][0]["material"] = json!(0);
+        });
+        mesh.map(|mesh| mesh.materials()[0].reflectivity)
+    };
+    let coloured =
+        |factor: Value| with(json!({"name": "dust", "pbrMetallicRoughness": {"baseColorFactor": factor}}));
+    // 0.2126 R + 0.7152 G + 0.0722 B = 0.12756 + 0.21456 + 0.00722 = 0.34934; alpha is not asked.
+    let dust = coloured(json!([0.6, 0.3, 0.1, 0.5])).unwrap();
+    assert!((dust - 0.34934).abs() < 1e-15, "{dust}");
+    // A grey is its own luminance, white is 1, the primaries are their weights.
+    for grey in [0.0, 0.1, 0.3, 0.7, 1.0] {
+        assert_eq!(coloured(json!([grey, grey, grey, 1])), Ok(grey));
+    }
+    for (factor, weight) in [([1, 0, 0, 1], 0.2126), ([0, 1, 0, 1], 0.7152), ([0, 0, 1, 1], 0.0722)] {
+        assert!((coloured(json!(factor)).unwrap() - weight).abs() < 1e-15);
+    }
+    // No colour, or one of a texture, is not white.
+    assert_eq!(with(json!({"pbrMetallicRoughness": {"metallicFactor": 0}})), Ok(0.25));
+    let textured =
+        json!({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}});
+    assert_eq!(with(textured), Ok(0.25));
+    // What is said outright wins.
+    let both =
+        json!({"extras": {"reflectivity": 0.5}, "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1]}});
+    assert_eq!(with(both), Ok(0.5));
+    for wrong in [json!([1.5, 0, 0, 1]), json!([-0.1, 0, 0, 1]), json!([0.5, 0.5, 0.5, 7])] {
+        let refusal = coloured(wrong).unwrap_err();
+        assert!(refusal.contains("material 0 \"dust\": ["), "{refusal}");
+        assert!(refusal.contains("expected baseColorFactor of four numbers from 0 to 1"), "{refusal}");
+    }
+    for wrong in [json!([0.5, 0.5]), json!("red"), json!(["a", 0, 0, 1]), json!([null, 0, 0, 1])] {
+        assert!(coloured(wrong).unwrap_err().contains(": JSON: "));
+    }
+}
+
+#[test]
 fn scenes_default_all_or_none() {
     let two = json!([{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0]}]);
     let faces = |change: &dyn Fn(&mut Value)| {

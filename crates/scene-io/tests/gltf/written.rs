@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use raypencil_scene::{Material, Mesh};
-use raypencil_scene_io::{glb_bytes, load_mesh, mesh_of_offsets, write_glb};
-use serde_json::Value;
+use raypencil_scene_io::{glb_bytes, load_mesh, mesh_of_offsets, write_glb, write_terrain_glb};
+use serde_json::{Value, json};
 
 use super::*;
 
@@ -128,4 +128,65 @@ fn what_no_file_can_hold_is_refused() {
     // The bytes alone are an asset without a mesh: valid, and refused when it is read.
     let error = mesh_from_bytes(&glb_bytes(&bare), Path::new("test.glb"), 0.25).map_err(|e| e.to_string());
     refused(error, "scene: no triangles; expected at least one");
+}
+
+#[test]
+fn for_people_a_far_ground_stands_where_it_belongs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.glb");
+    let kinds = || vec![Material { name: "dust".into(), reflectivity: 0.3 }];
+    // The middle of x is 1000000.5 but for rounding: the single precision of the offsets may lead to the next
+    // whole metre. The file says which.
+    for far in [0.0, 1e3, 1e6, -1e6, 8e6] {
+        for width in [0.9, 1.3, 1.1] {
+            let low = far + 0.5 - width / 2.0;
+            let corner = |x: f64, y: f64, z: f64| DVec3::new(low + x, -far + y, z);
+            let vertices = [corner(0.0, -0.05, -0.0), corner(width, 0.0, 0.1), corner(0.0, 0.95, 1e-9)];
+            let mesh = Mesh::from_global(&vertices, vec![[0, 1, 2]], vec![0], kinds()).unwrap();
+            write_terrain_glb(&path, &mesh, &json!({"source": "dem.tif"})).unwrap();
+            let back = load_mesh(&path).unwrap();
+            let bits =
+                |mesh: &Mesh| mesh.vertices().as_flattened().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+            assert_eq!((&back, bits(&back)), (&mesh, bits(&mesh)), "{far} {width}");
+            // For a program that knows nothing of this the node is where the ground is.
+            let bytes = std::fs::read(&path).unwrap();
+            let glb = gltf::Gltf::from_slice(&bytes).unwrap();
+            let node = glb.nodes().next().unwrap();
+            let origin = mesh.origin();
+            let translation = [origin.x as f32, origin.z as f32, -origin.y as f32];
+            assert_eq!(node.transform().decomposed().0, translation);
+            assert_eq!(node.extras().as_ref().unwrap().get(), "{\"source\":\"dem.tif\"}");
+            assert!(glb.as_json().asset.extras.as_ref().unwrap().get().contains("\"units\":\"metre\""));
+        }
+    }
+    // 2^24 + 1 is no single.
+    let far = DVec3::new(16_777_217.0, 0.0, 0.0);
+    let vertices = [far, far + DVec3::X, far + DVec3::Y].map(|v| v - DVec3::new(0.5, 0.5, 0.0));
+    let mesh = Mesh::from_global(&vertices, vec![[0, 1, 2]], vec![0], kinds()).unwrap();
+    assert_eq!(mesh.origin().x, 16_777_217.0);
+    let message = write_terrain_glb(&path, &mesh, &json!({})).unwrap_err().to_string();
+    assert!(
+        message.contains("a scene origin of [16777217, 0, 0]") && message.contains("below 16777216"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_stated_origin_is_not_believed_against_the_vertices() {
+    // Offsets around 5000 m from what the file calls its origin: the rule's own is taken.
+    let mut mesh = Mesh::new(
+        DVec3::new(2e6, 0.0, 0.0),
+        vec![[5000.0, 0.0, 0.0], [5001.0, 0.0, 0.0], [5000.0, 1.0, 0.0]],
+        vec![[0, 1, 2]],
+        vec![0],
+        vec![Material { name: "dust".into(), reflectivity: 0.3 }],
+    )
+    .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.glb");
+    write_terrain_glb(&path, &mesh, &json!({})).unwrap();
+    mesh = load_mesh(&path).unwrap();
+    // Halves round away from zero: x 2005000.5, y 0.5.
+    assert_eq!(mesh.origin(), DVec3::new(2_005_001.0, 1.0, 0.0));
+    assert_eq!(mesh.vertices()[0], [-1.0, -1.0, 0.0]);
 }

@@ -70,9 +70,7 @@ impl MarsGround {
     pub fn build(&self) -> Result<Ground, SceneError> {
         self.validate()?;
         let mut posts = self.relief();
-        let middle = posts.corner + 0.5 * posts.extent();
-        let side = posts.extent().max_element();
-        for crater in self.craters.draw(middle, side, self.seed) {
+        for crater in self.crater_list() {
             crater.carve(&mut posts);
         }
         let cells = [posts.columns - 1, posts.rows - 1];
@@ -87,6 +85,27 @@ impl MarsGround {
             }
         }
         Ok(ground)
+    }
+
+    /// Diameters of its rocks, the largest first, metres.
+    pub fn rock_diameters(&self) -> Vec<f64> {
+        let extent = self.extents();
+        self.rocks.diameters(extent.x * extent.y, self.seed)
+    }
+
+    /// Its craters, the largest first; those outside whose ejecta reach it are among them.
+    pub fn crater_list(&self) -> Vec<Crater> {
+        let corner = self.coarse.as_ref().map_or(-0.5 * self.extents(), |coarse| coarse.corner);
+        let extent = self.extents();
+        self.craters.draw(corner + 0.5 * extent, extent.max_element(), self.seed)
+    }
+
+    /// From border to border along x and y, metres.
+    pub fn extents(&self) -> DVec2 {
+        match &self.coarse {
+            Some(coarse) => coarse.extent(),
+            None => DVec2::splat(f64::from(self.cells()) * self.post_spacing),
+        }
     }
 
     /// The posts, without craters.
@@ -135,8 +154,7 @@ impl MarsGround {
                 && local.length() > free_radius + 0.5 * diameter
                 && !crevasses.iter().any(|crevasse| crevasse.touches(local, 0.6 * diameter))
         };
-        let diameters = self.rocks.diameters(extent.x * extent.y, self.seed);
-        let sites = rocks::place(&diameters, middle, extent.max_element(), self.seed, is_free);
+        let sites = rocks::place(&self.rock_diameters(), middle, extent.max_element(), self.seed, is_free);
         let mut shapes = rocks::Shapes::new(self.seed);
         for site in sites {
             let centre = site.place.extend(surface::height(posts, site.place));

@@ -1,0 +1,118 @@
+//! `raypencil terrain import`: a GLB terrain of an elevation model.
+
+use raypencil_harness::Progress as _;
+use raypencil_scene::Mesh;
+use raypencil_scene_io::{Dem, read_dem, write_terrain_glb};
+use serde_json::{Value, json};
+
+use super::check_output;
+use crate::args::TerrainImport;
+use crate::console::{Spinner, say};
+use crate::{Outcome, Trouble};
+
+pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Trouble> {
+    check_output(&command.output)?;
+    let spinner = Spinner::new();
+    spinner.stage(&format!("{}: reading", command.dem.display()));
+    let dem = read_dem(&command.dem, command.window)?;
+    spinner.stage("making faces");
+    let mesh = dem.mesh(command.max_error, command.reflectivity)?;
+    spinner.stage(&format!("{}: writing", command.output.display()));
+    write_terrain_glb(&command.output, &mesh, &source(command, &dem))?;
+    drop(spinner);
+    let report = report(command, &dem, &mesh);
+    say(&if json { format!("{report:#}\n") } else { screen(&report) });
+    Ok(Outcome::Fine)
+}
+
+/// Where the ground comes from, for the file's own extras. No folder of this machine is part of it.
+fn source(command: &TerrainImport, dem: &Dem) -> Value {
+    json!({
+        "source": command.dem.file_name().map(|name| name.to_string_lossy()),
+        "windowM": command.window,
+        "maxErrorM": command.max_error,
+        "spacingM": dem.posts.spacing.to_array(),
+        "registration": dem.registration.word(),
+    })
+}
+
+/// All that there is to say, for programs; people get the same.
+fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
+    let posts = &dem.posts;
+    let last = posts.at(posts.columns - 1, posts.rows - 1);
+    let known = || posts.heights.iter().copied().filter(|height| !height.is_nan());
+    json!({
+        "dem": command.dem.display().to_string(),
+        "terrain": command.output.display().to_string(),
+        "extent_m": { "x": [posts.corner.x, last.x], "y": [posts.corner.y, last.y] },
+        "spacing_m": posts.spacing.to_array(),
+        "posts": [posts.columns, posts.rows],
+        "unknown_posts": dem.unknown,
+        "nodata": dem.nodata.filter(|nodata| nodata.is_finite()),
+        "registration": dem.registration.word(),
+        "registration_is_stated": dem.registration.is_stated(),
+        "height_m": [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)],
+        "max_error_m": command.max_error,
+        "reflectivity": command.reflectivity,
+        "vertices": mesh.vertices().len(),
+        "faces": mesh.faces().len(),
+        "scene_origin_m": mesh.origin().to_array(),
+    })
+}
+
+/// The report for people.
+fn screen(report: &Value) -> String {
+    let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
+    let at = |pointer: &str| report.pointer(pointer).map_or(String::new(), text);
+    let said = match report["registration_is_stated"] == true {
+        true => "as the file says",
+        false => "by default: the file does not say",
+    };
+    let fitted = match &report["max_error_m"] {
+        Value::Null => "through all posts".to_string(),
+        bound => format!("within {bound} m of every post"),
+    };
+    let lines = [
+        (
+            "extent",
+            format!(
+                "x {} to {}, y {} to {} m",
+                at("/extent_m/x/0"),
+                at("/extent_m/x/1"),
+                at("/extent_m/y/0"),
+                at("/extent_m/y/1")
+            ),
+        ),
+        (
+            "posts",
+            format!(
+                "{} x {}, {} x {} m apart",
+                at("/posts/0"),
+                at("/posts/1"),
+                at("/spacing_m/0"),
+                at("/spacing_m/1")
+            ),
+        ),
+        ("unknown posts", at("/unknown_posts")),
+        (
+            "registration",
+            format!(
+                "a pixel is {}, {said}",
+                if report["registration"] == "area" { "an area" } else { "a point" }
+            ),
+        ),
+        ("heights", format!("{} to {} m", at("/height_m/0"), at("/height_m/1"))),
+        ("faces", format!("{}, {fitted}", at("/faces"))),
+        (
+            "scene origin",
+            format!(
+                "({}, {}, {}) m",
+                at("/scene_origin_m/0"),
+                at("/scene_origin_m/1"),
+                at("/scene_origin_m/2")
+            ),
+        ),
+    ];
+    let lines = lines.map(|(name, value)| format!("  {name:<14} {value}\n"));
+    format!("{}\n{}{}\n", at("/dem"), lines.concat(), at("/terrain"))
+}

@@ -1,0 +1,24 @@
+//! `raypencil terrain`: grounds that are made, grounds from elsewhere.
+
+mod generate;
+mod import;
+
+use std::path::Path;
+
+use crate::args::TerrainCommand;
+use crate::{Outcome, Trouble};
+
+pub(crate) fn terrain(command: &TerrainCommand, json: bool) -> Result<Outcome, Trouble> {
+    match command {
+        TerrainCommand::Generate(command) => generate::generate(command, json),
+        TerrainCommand::Import(command) => import::import(command, json),
+    }
+}
+
+/// Refuses an output that is no GLB by its name: told before the work, not after it.
+fn check_output(output: &Path) -> Result<(), Trouble> {
+    if output.extension().is_some_and(|end| end.eq_ignore_ascii_case("glb")) {
+        return Ok(());
+    }
+    Err(Trouble::Usage(format!("-o {}: expected a file that ends in .glb", output.display())))
+}

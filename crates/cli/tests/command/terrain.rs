@@ -1,0 +1,135 @@
+//! `terrain import`.
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::{assert_trouble, raypencil, screen, text};
+
+/// A folder with `hill.tif`: 5 x 4 pixels of 2 m whose tie point, their north-west corner, is at (1000000, 500), with
+/// heights of 10 column + row and one that is not known.
+fn folder() -> TempDir {
+    let folder = TempDir::new().expect("a temporary folder");
+    let heights: Vec<f32> = (0..20_u8)
+        .map(|k| match k {
+            19 => -9999.0,
+            k => f32::from(10 * (k % 5) + k / 5),
+        })
+        .collect();
+    std::fs::write(folder.path().join("hill.tif"), geotiff(5, 4, &heights)).expect("a file");
+    folder
+}
+
+/// A little-endian TIFF of one strip. (TIFF 6.0, section 2)
+fn geotiff(width: u32, height: u32, heights: &[f32]) -> Vec<u8> {
+    let mut file = b"II*\0\0\0\0\0".to_vec();
+    let samples_at = file.len() as u32;
+    file.extend(heights.iter().flat_map(|height| height.to_le_bytes()));
+    let doubles = |file: &mut Vec<u8>, values: &[f64]| {
+        let at = file.len() as u32;
+        file.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        at
+    };
+    let scale_at = doubles(&mut file, &[2.0, 2.0, 0.0]);
+    let tie_at = doubles(&mut file, &[0.0, 0.0, 0.0, 1e6, 500.0, 0.0]);
+    let nodata_at = file.len() as u32;
+    file.extend(b"-9999\0");
+    let directory_at = file.len() as u32;
+    file[4..8].copy_from_slice(&directory_at.to_le_bytes());
+    let (short, long, double, ascii) = (3_u16, 4_u16, 12_u16, 2_u16);
+    let tags: [(u16, u16, u32, u32); 13] = [
+        (256, long, 1, width),
+        (257, long, 1, height),
+        (258, short, 1, 32),
+        (259, short, 1, 1),
+        (262, short, 1, 1),
+        (273, long, 1, samples_at),
+        (277, short, 1, 1),
+        (278, long, 1, height),
+        (279, long, 1, 4 * width * height),
+        (339, short, 1, 3),
+        (33550, double, 3, scale_at),
+        (33922, double, 6, tie_at),
+        (42113, ascii, 6, nodata_at),
+    ];
+    file.extend((tags.len() as u16).to_le_bytes());
+    for (tag, kind, count, value) in tags {
+        file.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());
+        file.extend([count.to_le_bytes(), value.to_le_bytes()].concat());
+    }
+    file.extend([0; 4]);
+    file
+}
+
+#[test]
+fn an_elevation_model_becomes_a_terrain() {
+    let folder = folder();
+    let out = screen(folder.path(), &["terrain", "import", "hill.tif", "-o", "hill.glb"], 0);
+    // Posts are 1 m inside: x 1000001 to 1000009, y 493 to 499. 12 cells; the one unknown corner takes one: 22 faces.
+    // Heights are 0 to 10 * 4 + 2, the south-east post, 43, is not known. The middle of x is 1000005; of y 496; of z 21.
+    for line in [
+        "extent         x 1000001.0 to 1000009.0, y 493.0 to 499.0 m",
+        "posts          5 x 4, 2.0 x 2.0 m apart",
+        "unknown posts  1",
+        "registration   a pixel is an area, by default: the file does not say",
+        "heights        0.0 to 42.0 m",
+        "faces          22, through all posts",
+        "scene origin   (1000005.0, 496.0, 21.0) m",
+        "hill.glb",
+    ] {
+        assert!(out.contains(line), "{line} is not in:\n{out}");
+    }
+    let json = screen(
+        folder.path(),
+        &[
+            "terrain",
+            "import",
+            "hill.tif",
+            "-o",
+            "part.glb",
+            "--window",
+            "1000000,492,6,20",
+            "--max-error",
+            "100",
+            "--reflectivity",
+            "0.4",
+            "--json",
+        ],
+        0,
+    );
+    let report: Value = serde_json::from_str(&json).expect("JSON");
+    // x 1000001, 3, 5: 2 x 3 cells in squares of 2 x 2, of which one and a half are there.
+    assert_eq!((&report["posts"], &report["unknown_posts"]), (&serde_json::json!([3, 4]), &0.into()));
+    assert_eq!(report["registration_is_stated"], false);
+    assert!(report["faces"].as_u64().is_some_and(|faces| faces < 12), "{report}");
+    // What was written is a terrain like any other.
+    let probe = screen(folder.path(), &["probe", "hill.glb", "--pixel", "512,900", "--with", "tracer"], 0);
+    assert!(probe.contains("hill"), "{probe}");
+}
+
+#[test]
+fn trouble_is_named_and_leaves_nothing() {
+    let folder = folder();
+    let import = |arguments: &[&str]| {
+        let output = raypencil(folder.path(), &[&["terrain", "import"], arguments].concat());
+        assert!(!folder.path().join("out.glb").exists());
+        output
+    };
+    let to = ["-o", "out.glb"];
+    assert_trouble(
+        &import(&[&["hill.tif", "--window", "0,0,5,5"], &to[..]].concat()),
+        &["hill.tif", "window", "no post in x 0 to 5", "x 1000001 to 1000009"],
+    );
+    assert_trouble(&import(&[&["none.tif"], &to[..]].concat()), &["none.tif", "cannot read"]);
+    assert_trouble(
+        &import(&[&["hill.tif", "--max-error", "0"], &to[..]].concat()),
+        &["largest error", "0 m", "1e-6"],
+    );
+    assert_trouble(
+        &import(&[&["hill.tif", "--reflectivity", "2"], &to[..]].concat()),
+        &["reflectivity", "2"],
+    );
+    assert_trouble(&import(&["hill.tif", "-o", "out.obj"]), &["out.obj", ".glb"]);
+    let usage = import(&[&["hill.tif", "--window", "1,2,3"], &to[..]].concat());
+    assert_eq!(usage.status.code(), Some(2));
+    assert!(text(&usage.stderr).contains("expected 4 numbers"), "{}", text(&usage.stderr));
+}
