@@ -1,4 +1,5 @@
-//! Grounds for a rover to look at: the paper's two scenes (§9), random ones, and the height of any.
+//! Grounds for a rover to look at: the paper's two scenes (§9), random ones, the height of any, and what may be
+//! wrong with one.
 //!
 //! ```
 //! use raypencil_terrain::{RandomGround, builtin, height_at};
@@ -22,11 +23,15 @@ mod builtin;
 mod draws;
 mod ground;
 mod height;
+mod inspect;
 mod posts;
 mod random;
+mod repair;
 
 pub use builtin::{BUILTIN_NAMES, builtin};
 pub use ground::Ground;
 pub use height::height_at;
+pub use inspect::{Example, Found, Inspection, Item, OpenEdges, OpenPiece, ZeroAreaKinds, inspect};
 pub use posts::Posts;
 pub use random::RandomGround;
+pub use repair::{Repairs, repair};
