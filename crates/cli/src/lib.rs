@@ -12,6 +12,7 @@ mod pack;
 mod probe;
 mod render;
 mod subject;
+mod terrain;
 mod validate;
 
 use std::ffi::OsString;
@@ -123,6 +124,7 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
         Some(Command::Minimise(command)) => minimise::minimise(command, arguments.json, registry),
         Some(Command::Check(command)) => check::check(command, arguments.json),
         Some(Command::Diff(command)) => diff::diff(command, arguments.json),
+        Some(Command::Terrain(command)) => terrain::terrain(command, arguments.json),
         Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),
     }
 }

@@ -4,6 +4,7 @@ mod basics;
 mod campaign;
 mod check;
 mod diff;
+mod terrain;
 
 use std::path::Path;
 use std::process::{Command, Output};
