@@ -46,7 +46,7 @@ pub(crate) enum Command {
     Minimise(Minimise),
     /// Compare two recordings of anything, channel by channel: files or folders of EXR, NPY and PFM.
     Diff(Diff),
-    /// Grounds from elsewhere.
+    /// Grounds as files: make, import, inspect.
     #[command(subcommand)]
     Terrain(TerrainCommand),
 }
@@ -486,6 +486,24 @@ pub(crate) enum TerrainCommand {
     Generate(TerrainGenerate),
     /// Make a GLB terrain of an elevation model (GeoTIFF).
     Import(TerrainImport),
+    /// Tell what is wrong with a mesh, and mend what needs no guess. Exit code 1: something is.
+    Inspect(TerrainInspect),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TerrainInspect {
+    /// A terrain .glb or .gltf, a scene .toml, or a built-in ground (pyramids, facets).
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: String,
+
+    /// Drop faces without area, copies of faces and unused vertices, weld vertices in one place, turn faces that are
+    /// the wrong way round; the exit code is then that of what is left.
+    #[arg(long, requires = "output")]
+    pub(crate) repair: bool,
+
+    /// The repaired mesh, a .glb file other than MESH.
+    #[arg(short, long, value_name = "OUT.glb", requires = "repair")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -51,7 +51,8 @@ pub use minimise::{
     MINIMISE_BUDGET, Minimised, NotShown, Reproducer, first_shown, minimise, shows_class, write_reproducer,
 };
 pub use output::{
-    OutputError, Written, one_screen, probe_command, quoted, summary_json, write_maps, write_validation,
+    OutputError, Written, count, one_screen, probe_command, quoted, summary_json, write_maps,
+    write_validation,
 };
 pub use outside::{
     CHANCE_LIMITS, ChanceLimits, Estimate, Held, HeldOutsider, ImageComparison, MissReproducer, OutsideError,

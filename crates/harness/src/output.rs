@@ -46,7 +46,7 @@ use crate::run::{Progress, Rendered, Subject, Validation};
 
 pub use screen::one_screen;
 pub use summary::summary_json;
-pub use text::{probe_command, quoted};
+pub use text::{count, probe_command, quoted};
 
 /// The version that wrote a folder.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,5 +1,7 @@
 //! Grounds for a rover to look at: the paper's two scenes (§9), random ones, those of elevation models, and the
 //! height of any.
+//! Grounds for a rover to look at: the paper's two scenes (§9), random ones, the height of any, and what may be
+//! wrong with one.
 //!
 //! ```
 //! use raypencil_terrain::{RandomGround, builtin, height_at};
@@ -23,15 +25,19 @@ mod builtin;
 mod draws;
 mod ground;
 mod height;
+mod inspect;
 mod mars;
 mod posts;
 mod random;
+mod repair;
 mod simplify;
 
 pub use builtin::{BUILTIN_NAMES, builtin};
 pub use ground::Ground;
 pub use height::height_at;
+pub use inspect::{Example, Found, Inspection, Item, OpenEdges, OpenPiece, ZeroAreaKinds, inspect};
 pub use mars::{Crater, Craters, Crevasses, MarsGround, PRESET_NAMES, Rocks, Roughness};
 pub use posts::{Posts, indices_within};
 pub use random::RandomGround;
+pub use repair::{Repairs, repair};
 pub use simplify::simplify;

@@ -2,6 +2,7 @@
 
 mod generate;
 mod import;
+mod inspect;
 
 use std::path::Path;
 
@@ -12,6 +13,7 @@ pub(crate) fn terrain(command: &TerrainCommand, json: bool) -> Result<Outcome, T
     match command {
         TerrainCommand::Generate(command) => generate::generate(command, json),
         TerrainCommand::Import(command) => import::import(command, json),
+        TerrainCommand::Inspect(command) => inspect::inspect(command, json),
     }
 }
 

@@ -28,7 +28,7 @@ pub fn quoted(word: &str) -> String {
 }
 
 /// A count with its thousands apart: 1,081,344.
-pub(crate) fn count(value: u64) -> String {
+pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::new();
     for (index, digit) in digits.char_indices() {

@@ -1,0 +1,87 @@
+//! The same for programs.
+
+use raypencil_terrain::{Example, Found, Inspection, Item, OpenPiece};
+use serde_json::{Value, json};
+
+use super::Report;
+
+pub(super) fn json(report: &Report) -> String {
+    let mut printed = inspection(&report.found);
+    printed["mesh"] = report.mesh.into();
+    if let Some(repaired) = &report.repaired {
+        let repairs = &repaired.repairs;
+        printed["repaired"] = json!({
+            "file": repaired.file.display().to_string(),
+            "zero_area_faces": repairs.zero_area_faces,
+            "duplicate_faces": repairs.duplicate_faces,
+            "duplicates_of_other_material": repairs.duplicates_of_other_material,
+            "turned_faces": repairs.turned_faces,
+            "welded_vertices": repairs.welded_vertices,
+            "unused_vertices": repairs.unused_vertices,
+            "left": inspection(&repaired.left),
+        });
+    }
+    format!("{printed:#}\n")
+}
+
+fn inspection(found: &Inspection) -> Value {
+    let kinds = &found.zero_area_kinds;
+    let open = &found.open_edges;
+    json!({
+        "passes": found.passes(),
+        "kinds_wrong": found.kinds_wrong(),
+        "faces": found.faces,
+        "vertices": found.vertices,
+        "bounds_m": found.bounds.map(|corners| corners.map(|corner| corner.to_array())),
+        "area_m2": found.area,
+        "volume_m3": found.volume,
+        "components": found.components,
+        "closed_components": found.closed_components,
+        "unused_vertices": of(&found.unused_vertices),
+        "split_vertices": of(&found.split_vertices),
+        "zero_area": of(&found.zero_area),
+        "zero_area_kinds": {
+            "repeated_vertex": kinds.repeated_vertex,
+            "coincident_vertices": kinds.coincident_vertices,
+            "collinear": kinds.collinear,
+        },
+        "duplicates": of(&found.duplicates),
+        "duplicates_of_other_material": found.duplicates_of_other_material,
+        "double_sided": of(&found.double_sided),
+        "slender": of(&found.slender),
+        "worst_aspect": found.worst_aspect,
+        "down": of(&found.down),
+        "down_area_m2": found.down_area,
+        "upside_down": found.upside_down,
+        "open_edges": {
+            "count": open.count,
+            "length_m": open.length,
+            "loops": open.loops,
+            "excess_loops": found.excess_loops(),
+            "pieces": open.pieces,
+            "longest": open.longest.iter().map(piece).collect::<Vec<Value>>(),
+        },
+        "crowded_edges": of(&found.crowded_edges),
+        "mismatched_edges": of(&found.mismatched_edges),
+        "inverted": of(&found.inverted),
+        "inside_out_components": found.inside_out,
+        "undecided_patches": of(&found.undecided_patches),
+        "one_sided_patches": of(&found.one_sided_patches),
+    })
+}
+
+fn of(found: &Found) -> Value {
+    json!({ "count": found.count, "examples": found.examples.iter().map(example).collect::<Vec<Value>>() })
+}
+
+fn piece(piece: &OpenPiece) -> Value {
+    json!({ "edges": piece.edges, "length_m": piece.length, "example": example(&piece.example) })
+}
+
+fn example(example: &Example) -> Value {
+    let place = example.place.to_array();
+    match example.item {
+        Item::Face(face) => json!({ "face": face.0, "place_m": place }),
+        Item::Vertex(vertex) => json!({ "vertex": vertex, "place_m": place }),
+    }
+}

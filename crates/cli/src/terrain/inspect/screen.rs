@@ -1,0 +1,216 @@
+//! The screen: at most 40 lines of 100 characters.
+
+use std::fmt::Write as _;
+
+use raypencil_harness::count;
+use raypencil_terrain::{Example, Found, Inspection, Item, Repairs};
+
+use super::Report;
+
+/// Characters of a line.
+const WIDTH: usize = 100;
+
+pub(super) fn screen(report: &Report) -> String {
+    let found = &report.found;
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |words: &str| {
+        let _ = writeln!(text, "{}", words.trim_end());
+    };
+    line(&format!("{}: {} faces, {} vertices", report.mesh, counted(found.faces), counted(found.vertices)));
+    for words in extent(found) {
+        line(&words);
+    }
+    line("");
+    for row in wrong(found) {
+        line(&format!("{} {:>11}  {}", if row.count > 0 { '!' } else { ' ' }, counted(row.count), row.words));
+        if !row.examples.is_empty() {
+            line(&listed(row.examples));
+        }
+    }
+    line("");
+    for words in facts(found) {
+        line(&words);
+    }
+    line("");
+    if let Some(repaired) = &report.repaired {
+        let left = &repaired.left;
+        line(&format!("Repaired: {}.", done(&repaired.repairs)));
+        let (faces, vertices) = (counted(left.faces), counted(left.vertices));
+        line(&format!("Written: {}: {faces} faces, {vertices} vertices", repaired.file.display()));
+    }
+    line(&verdict(report));
+    text
+}
+
+/// Something that may be wrong.
+struct Row<'a> {
+    count: usize,
+    words: String,
+    examples: &'a [Example],
+}
+
+fn row<'a>(words: &str, found: &'a Found) -> Row<'a> {
+    Row { count: found.count, words: words.into(), examples: &found.examples }
+}
+
+/// The same, with more words if there is any.
+fn row_with<'a>(words: &str, more: &str, found: &'a Found) -> Row<'a> {
+    row(&format!("{words}{}", if found.count > 0 { more } else { "" }), found)
+}
+
+/// All that counts as wrong, whether it was found or not.
+fn wrong(found: &Inspection) -> Vec<Row<'_>> {
+    let kinds = &found.zero_area_kinds;
+    let of_kinds = format!(
+        ": {} with a vertex twice, {} with two in one place, {} on a line",
+        counted(kinds.repeated_vertex),
+        counted(kinds.coincident_vertices),
+        counted(kinds.collinear)
+    );
+    let other = format!(", {} of another material", counted(found.duplicates_of_other_material));
+    let inside_out = match found.inside_out {
+        0 => String::new(),
+        some => format!(", closed components that are inside out: {}", counted(some)),
+    };
+    let holes = match found.open_edges.longest.get(1) {
+        Some(piece) if found.excess_loops() > 0 => format!(
+            ": one of {} edges, {:.3} m, at {}",
+            counted(piece.edges),
+            piece.length,
+            at(&piece.example)
+        ),
+        _ => String::new(),
+    };
+    let back = "ground that mostly shows its back to someone above";
+    vec![
+        row("vertices that no face uses", &found.unused_vertices),
+        row_with("faces without area", &of_kinds, &found.zero_area),
+        row_with("copies of other faces", &other, &found.duplicates),
+        row("edges of more than two faces", &found.crowded_edges),
+        row("edges whose two faces contradict each other in winding", &found.mismatched_edges),
+        row_with("faces the wrong way round", &inside_out, &found.inverted),
+        row("patches that have only one side", &found.one_sided_patches),
+        Row {
+            count: found.excess_loops(),
+            words: format!("loops of open edges beside a border{holes}"),
+            examples: &[],
+        },
+        Row { count: usize::from(found.upside_down), words: back.into(), examples: &[] },
+    ]
+}
+
+/// Where the mesh is, and how large.
+fn extent(found: &Inspection) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some([low, high]) = found.bounds {
+        lines.push(format!("  from {} to {} m", place(low.to_array()), place(high.to_array())));
+    }
+    let (down, down_area) = (counted(found.down.count), found.down_area);
+    lines.push(format!("  area {:.3} m2; {down} faces look down, {down_area:.3} m2", found.area));
+    let closed = match found.closed_components {
+        0 => "none of them closed".to_string(),
+        some => format!("{} of them closed, which enclose {:.3} m3", counted(some), found.volume),
+    };
+    lines.push(format!("  components: {}, {closed}", counted(found.components)));
+    lines
+}
+
+/// What is not wrong, but good to know.
+fn facts(found: &Inspection) -> Vec<String> {
+    let open = &found.open_edges;
+    let line = |count: usize, words: String| format!("  {:>11}  {words}", counted(count));
+    let mut facts =
+        vec![line(open.count, format!("open edges, {:.3} m; loops: {}", open.length, counted(open.loops)))];
+    let more = [
+        (&found.split_vertices, "vertices in the place of another".to_string()),
+        (&found.double_sided, "pairs of faces back to back".to_string()),
+        (&found.undecided_patches, "patches of which half contradicts the other half".to_string()),
+        (
+            &found.slender,
+            format!("faces longer than 10,000 times their width, up to {:.3e} times", found.worst_aspect),
+        ),
+    ];
+    for (found, words) in more {
+        if found.count > 0 {
+            facts.push(line(found.count, words));
+        }
+    }
+    facts
+}
+
+/// What a repair did, as a list.
+fn done(repairs: &Repairs) -> String {
+    let Repairs { zero_area_faces, duplicate_faces, turned_faces, welded_vertices, unused_vertices, .. } =
+        *repairs;
+    let all = [
+        (zero_area_faces, "faces without area dropped:"),
+        (duplicate_faces, "copies dropped:"),
+        (turned_faces, "faces turned:"),
+        (welded_vertices, "vertices welded:"),
+        (unused_vertices, "vertices dropped:"),
+    ];
+    let words: Vec<String> = all
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{what} {}", counted(*count)))
+        .collect();
+    if words.is_empty() { "nothing, for there was nothing to repair".into() } else { words.join(", ") }
+}
+
+fn verdict(report: &Report) -> String {
+    let last = report.last();
+    let checks = wrong(last).len();
+    let place = if report.repaired.is_some() { " in the repaired mesh" } else { "" };
+    match last.kinds_wrong() {
+        0 => format!("PASS {checks} checks found nothing{place}."),
+        some => {
+            let would = match &report.repaired {
+                None if mendable(last) => " `--repair -o OUT.glb` mends what needs no guess.",
+                _ => "",
+            };
+            format!("FAIL {some} of {checks} checks found something{place}.{would}")
+        }
+    }
+}
+
+/// Whether a repair would do something about what is wrong.
+fn mendable(found: &Inspection) -> bool {
+    [&found.unused_vertices, &found.zero_area, &found.duplicates, &found.inverted]
+        .iter()
+        .any(|found| found.count > 0)
+}
+
+/// As many examples as a line takes.
+fn listed(examples: &[Example]) -> String {
+    let mut line = " ".repeat(15);
+    for (index, example) in examples.iter().enumerate() {
+        let words = format!("{}{}", if index == 0 { "" } else { "; " }, at(example));
+        if index > 0 && line.chars().count() + words.chars().count() > WIDTH {
+            break;
+        }
+        line.push_str(&words);
+    }
+    line
+}
+
+fn at(example: &Example) -> String {
+    let place = place(example.place.to_array());
+    match example.item {
+        Item::Face(face) => format!("face {} {place}", face.0),
+        Item::Vertex(vertex) => format!("vertex {vertex} {place}"),
+    }
+}
+
+/// A place to a millimetre; -0.000 is 0.000.
+fn place(place: [f64; 3]) -> String {
+    let [x, y, z] = place.map(|coordinate| match format!("{coordinate:.3}") {
+        zero if zero == "-0.000" => "0.000".into(),
+        other => other,
+    });
+    format!("({x}, {y}, {z})")
+}
+
+fn counted(number: usize) -> String {
+    count(number as u64)
+}

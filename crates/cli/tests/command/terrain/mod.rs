@@ -1,0 +1,4 @@
+//! `terrain`: grounds as files.
+
+mod import;
+mod inspect;

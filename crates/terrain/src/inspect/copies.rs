@@ -1,0 +1,57 @@
+//! Faces on the same three places.
+
+use super::shape::Shapes;
+use super::{Fate, Inspection, at_face};
+
+/// Sets copies aside, and counts sheets of two sides.
+pub(super) fn find_copies(shapes: &Shapes, welded: &[u32], fates: &mut [Fate], inspection: &mut Inspection) {
+    // The corners from the lowest on, as [a, b, c] in the face's own sense.
+    let turned = |face: u32| {
+        let mut corners = shapes.mesh.faces()[face as usize].map(|vertex| welded[vertex as usize]);
+        let lowest = (0..3).min_by_key(|&corner| corners[corner]).expect("three corners");
+        corners.rotate_left(lowest);
+        corners
+    };
+    let sense = |face: u32| {
+        let [_, b, c] = turned(face);
+        b < c
+    };
+    let sorted = |face: u32| {
+        let [a, b, c] = turned(face);
+        ([a, b.min(c), b.max(c)], face)
+    };
+    let mut faces: Vec<([u32; 3], u32)> =
+        shapes.faces().filter(|&face| fates[face as usize] == Fate::Sound).map(sorted).collect();
+    faces.sort_unstable();
+    // Faces of each place follow each other by number, so that the first of each sense is the lowest.
+    let mut sheets = Vec::new();
+    for place in faces.chunk_by(|a, b| a.0 == b.0).filter(|place| place.len() > 1) {
+        let mut first: [Option<u32>; 2] = [None; 2];
+        for &(_, face) in place {
+            match &mut first[usize::from(sense(face))] {
+                Some(earlier) => {
+                    let material = |face: u32| shapes.mesh.face_materials()[face as usize];
+                    let same = material(*earlier) == material(face);
+                    fates[face as usize] = if same { Fate::Copy } else { Fate::CopyOfOtherMaterial };
+                }
+                none => *none = Some(face),
+            }
+        }
+        if let [Some(one), Some(other)] = first {
+            sheets.push(one.min(other));
+        }
+    }
+    drop(faces);
+    // Examples in the order of faces.
+    sheets.sort_unstable();
+    for face in sheets {
+        inspection.double_sided.add(|| at_face(face, shapes.middle(face)));
+    }
+    for face in shapes.faces() {
+        let fate = fates[face as usize];
+        if matches!(fate, Fate::Copy | Fate::CopyOfOtherMaterial) {
+            inspection.duplicates.add(|| at_face(face, shapes.middle(face)));
+            inspection.duplicates_of_other_material += usize::from(fate == Fate::CopyOfOtherMaterial);
+        }
+    }
+}
