@@ -62,9 +62,17 @@ impl Provenance {
         if !path.exists() {
             return Ok(None);
         }
-        let unfit = |fault: Fault| SceneIoError::Recording(fault.in_file(&path));
         let text =
             bytes::read_file(&path, LARGEST).map_err(|error| SceneIoError::io(&path, "read", error))?;
+        Self::from_bytes(&text, &path).map(Some)
+    }
+
+    /// A note from the bytes of its file; `file` is for messages.
+    ///
+    /// # Errors
+    /// As [`Provenance::read`].
+    pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Self, SceneIoError> {
+        let unfit = |fault: Fault| SceneIoError::Recording(fault.in_file(file));
         let invalid = |error: serde_json::Error| {
             unfit(Fault::new("JSON", error.to_string(), "what docs/files.md describes"))
         };
@@ -73,11 +81,11 @@ impl Provenance {
         struct Head {
             format: u64,
         }
-        let Head { format } = serde_json::from_slice(&text).map_err(invalid)?;
+        let Head { format } = serde_json::from_slice(bytes).map_err(invalid)?;
         if format != FORMAT {
             return Err(unfit(Fault::new("format", format.to_string(), FORMAT.to_string())));
         }
-        let read: Self = serde_json::from_slice(&text).map_err(invalid)?;
+        let read: Self = serde_json::from_slice(bytes).map_err(invalid)?;
         let is_flux = |value: f64| value.is_finite() && value >= 0.0;
         if let Some(index) =
             read.totals.iter().position(|total| !is_flux(total.mean) || !is_flux(total.error))
@@ -90,7 +98,7 @@ impl Provenance {
                 "two finite numbers, not negative",
             )));
         }
-        Ok(Some(read))
+        Ok(read)
     }
 }
 

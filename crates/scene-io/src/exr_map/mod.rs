@@ -13,7 +13,7 @@ use raypencil_scene::{FaceId, Image, Maybe, Sample, SensorId, SensorMap};
 use crate::SceneIoError;
 use crate::error::Fault;
 
-pub use read::{Limits, read_exr};
+pub use read::{Limits, exr_from_bytes, read_exr};
 pub use write::write_exr;
 
 /// The channel values of a cell without a hit.

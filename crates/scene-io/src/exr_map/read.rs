@@ -50,8 +50,16 @@ impl Limits {
 pub fn read_exr(path: impl AsRef<Path>, limits: &Limits) -> Result<ExrMap, SceneIoError> {
     let path = path.as_ref();
     // A file larger than the decompressed data that is allowed has something else in it.
-    let file = bytes::read_file(path, limits.bytes).map_err(|error| SceneIoError::io(path, "read", error))?;
-    decode(&file, limits).map_err(|fault| SceneIoError::Exr(fault.in_file(path)))
+    let bytes = bytes::read_file(path, limits.bytes).map_err(|error| SceneIoError::io(path, "read", error))?;
+    exr_from_bytes(&bytes, path, limits)
+}
+
+/// As [`read_exr`] from the bytes of a file; `file` is for messages.
+///
+/// # Errors
+/// As [`read_exr`].
+pub fn exr_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<ExrMap, SceneIoError> {
+    decode(bytes, limits).map_err(|fault| SceneIoError::Exr(fault.in_file(file)))
 }
 
 fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {

@@ -12,7 +12,7 @@ use crate::{SceneIoError, bytes, digest};
 /// A manifest larger than this is none: 16 MiB.
 const LARGEST: u64 = 1 << 24;
 
-/// The manifest of `folder` as it stands in its file.
+/// The manifest of `folder`, which does not contradict itself.
 pub(super) fn read(folder: &Path) -> Result<Manifest, SceneIoError> {
     let path = folder.join(FILE_NAME);
     if !path.exists() {
@@ -20,25 +20,41 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, SceneIoError> {
         return Err(unfit(folder, Fault::new("pack", format!("no {FILE_NAME}"), expected)));
     }
     let text = bytes::read_file(&path, LARGEST).map_err(|error| SceneIoError::io(&path, "read", error))?;
+    Manifest::from_bytes(&text, &path)
+}
+
+/// The manifest that a text is, checked by its form alone.
+fn parse(text: &[u8], path: &Path) -> Result<Manifest, SceneIoError> {
     let invalid = |error: serde_json::Error| {
-        unfit(&path, Fault::new("JSON", error.to_string(), "a manifest as docs/pack.schema.json describes"))
+        unfit(path, Fault::new("JSON", error.to_string(), "a manifest as docs/pack.schema.json describes"))
     };
     // A newer format fails by its number and not by a key.
     #[derive(Deserialize)]
     struct Head {
         format: u64,
     }
-    let Head { format } = serde_json::from_slice(&text).map_err(invalid)?;
+    let Head { format } = serde_json::from_slice(text).map_err(invalid)?;
     if format != u64::from(MANIFEST_FORMAT) {
         let newer =
             if format > MANIFEST_FORMAT.into() { " (was it written by a newer version?)" } else { "" };
         let fault = Fault::new("format", format.to_string(), format!("{MANIFEST_FORMAT}{newer}"));
-        return Err(unfit(&path, fault));
+        return Err(unfit(path, fault));
     }
-    serde_json::from_slice(&text).map_err(invalid)
+    serde_json::from_slice(text).map_err(invalid)
 }
 
 impl Manifest {
+    /// A manifest from the bytes of its file, held to its own words but to none of the files that it lists;
+    /// `file` is for messages.
+    ///
+    /// # Errors
+    /// Names the manifest and the place in it, what was found and what was expected.
+    pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Self, SceneIoError> {
+        let manifest = parse(bytes, file)?;
+        manifest.check().map_err(|fault| unfit(file, fault))?;
+        Ok(manifest)
+    }
+
     /// Refuses what contradicts itself.
     pub(super) fn check(&self) -> Result<(), Fault> {
         if self.format != MANIFEST_FORMAT {
