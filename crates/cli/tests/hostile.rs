@@ -31,7 +31,10 @@ struct Run {
 }
 
 fn packs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs").canonicalize().expect("the committed packs")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../data/packs")
+        .canonicalize()
+        .expect("the committed packs")
 }
 
 /// Every path below a folder; links are not followed.
@@ -106,7 +109,9 @@ fn faults(case: &Case) -> Vec<String> {
     let commands = |letter: char| letter.is_control() && letter != '\n';
     hold(!run.message.contains(commands), "a message with codes that command a terminal".into());
     // The message may be broken into lines, anywhere in long words, with a bar before each.
-    let bare = |text: &str| text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│').collect::<String>();
+    let bare = |text: &str| {
+        text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│').collect::<String>()
+    };
     let message = bare(&run.message);
     for word in &case.words {
         hold(message.contains(&bare(word)), format!("no {word:?} in the message"));
@@ -173,5 +178,8 @@ fn good_files_pass_under_the_same_limits() {
 fn the_document_lists_every_case() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/hostile.md");
     let written = fs::read_to_string(path).unwrap_or_default();
-    assert!(written == table(), "docs/hostile.md is not what `cargo run -p raypencil-tests --example hostile` prints");
+    assert!(
+        written == table(),
+        "docs/hostile.md is not what `cargo run -p raypencil-tests --example hostile` prints"
+    );
 }

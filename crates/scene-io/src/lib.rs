@@ -40,12 +40,13 @@ mod plan;
 mod provenance;
 mod resolve;
 mod resolved;
+mod toml_problem;
 
 pub use array::{Array, ArrayNumber, Storage, Values};
 pub use atomic::write_atomically;
 pub use channels::{Channel, Channels, read_channels, read_listed};
 pub use digest::scene_sha256;
-pub use error::{Problem, SceneIoError, TomlProblem};
+pub use error::{Problem, SceneIoError};
 pub use exr_map::{
     Attributes, ExrMap, Limits, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map,
 };
@@ -61,3 +62,4 @@ pub use npy::{npy_from_bytes, read_npy, write_npy};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use provenance::{Arithmetic, Provenance, Total};
 pub use resolved::write_resolved;
+pub use toml_problem::TomlProblem;

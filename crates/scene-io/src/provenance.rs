@@ -15,6 +15,9 @@ const FORMAT: u64 = 1;
 /// A note larger than this is none: 1 MiB.
 const LARGEST: u64 = 1 << 20;
 
+/// The longest text that people are shown, bytes.
+const LONGEST: usize = 1 << 10;
+
 /// What a recording says of itself. Other keys, such as versions and seeds, are for people.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Provenance {
@@ -86,6 +89,20 @@ impl Provenance {
             return Err(unfit(Fault::new("format", format.to_string(), FORMAT.to_string())));
         }
         let read: Self = serde_json::from_slice(bytes).map_err(invalid)?;
+        let texts = [
+            ("program", &read.program, LONGEST),
+            ("scene.name", &read.scene.name, LONGEST),
+            ("scene.sha256", &read.scene.sha256, 64),
+        ];
+        for (place, text, most) in texts {
+            if text.len() > most {
+                return Err(unfit(Fault::new(
+                    place,
+                    format!("{} bytes", text.len()),
+                    format!("at most {most}"),
+                )));
+            }
+        }
         let is_flux = |value: f64| value.is_finite() && value >= 0.0;
         if let Some(index) =
             read.totals.iter().position(|total| !is_flux(total.mean) || !is_flux(total.error))

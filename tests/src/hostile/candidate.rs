@@ -43,8 +43,18 @@ pub(super) fn cases() -> Vec<Case> {
     vec![
         text("empty", "an empty file", "JSON", ""),
         text("words", "a letter, not a file", "JSON", "Dear rover,"),
-        text("not-utf8", "a byte that is no UTF-8", "JSON", b"{\"format\": 1, \"program\": \"\xff\"}".to_vec()),
-        text("deep", "a hundred thousand open brackets", "JSON", format!("{{\"format\": {}", "[".repeat(100_000))),
+        text(
+            "not-utf8",
+            "a byte that is no UTF-8",
+            "JSON",
+            b"{\"format\": 1, \"program\": \"\xff\"}".to_vec(),
+        ),
+        text(
+            "deep",
+            "a hundred thousand open brackets",
+            "JSON",
+            format!("{{\"format\": {}", "[".repeat(100_000)),
+        ),
         text("deep-unknown", "a hundred thousand brackets under a key for people", "JSON", {
             format!("{{\"seeds\": {}{}, \"format\": 1", "[".repeat(100_000), "]".repeat(100_000))
         }),
@@ -59,22 +69,51 @@ pub(super) fn cases() -> Vec<Case> {
         set("mean-negative", "a negative mean", "/totals/0/mean", json!(-1.0), "totals[0]"),
         set("beam-negative", "a beam of index -1", "/totals/0/beam", json!(-1), "JSON"),
         set("beam-beyond", "a beam beyond 2^64", "/totals/0/beam", json!(1e30), "JSON"),
+        set(
+            "digest-long",
+            "a digest of half a million letters",
+            "/scene/sha256",
+            json!("0".repeat(500_000)),
+            "scene.sha256",
+        ),
         Case::new("candidate-other-scene", "a note of another scene", RUN, &["mine", "0000"]).file(FILE, {
             let mut note = note();
             note["scene"]["sha256"] = json!("0".repeat(64));
             note.to_string()
         }),
-        Case::new("candidate-note-folder", "a folder with the name of the note", RUN, &[FILE, "not a regular file"])
-            .item(FILE, Item::Folder),
-        Case::new("candidate-note-pipe", "a pipe with the name of the note", RUN, &[FILE, "not a regular file"])
-            .item(FILE, Item::Pipe),
+        Case::new(
+            "candidate-note-folder",
+            "a folder with the name of the note",
+            RUN,
+            &[FILE, "not a regular file"],
+        )
+        .item(FILE, Item::Folder),
+        Case::new(
+            "candidate-note-pipe",
+            "a pipe with the name of the note",
+            RUN,
+            &[FILE, "not a regular file"],
+        )
+        .item(FILE, Item::Pipe),
         Case::new("candidate-nothing", "an empty folder", RUN, &["mine"]).item("mine", Item::Folder),
         Case::new("candidate-missing", "no folder", RUN, &["mine"]),
         Case::new("candidate-map-pipe", "a pipe as a map", RUN, &["camera.exr", "not a regular file"])
             .item("mine/camera.exr", Item::Pipe),
-        map("huge-map", "a map of 2^26 zeros, truly compressed to a thousandth", &["camera.exr", "data window"], "camera.exr", huge()),
+        map(
+            "huge-map",
+            "a map of 2^26 zeros, truly compressed to a thousandth",
+            &["camera.exr", "data window"],
+            "camera.exr",
+            huge(),
+        ),
         map("map-empty", "a map of no bytes", &["camera.exr", "header"], "camera.exr", Vec::new()),
-        map("array-wrong-size", "an array of another size", &["range.T.npy"], "camera/range.T.npy", super::npy::good()),
+        map(
+            "array-wrong-size",
+            "an array of another size",
+            &["range.T.npy"],
+            "camera/range.T.npy",
+            super::npy::good(),
+        ),
     ]
 }
 

@@ -172,7 +172,12 @@ fn headers(case: Make<'_>) -> Vec<Case> {
         case("step-0", "a sample every 0 cells", "", list(&[("Z", 2, 0)])),
         case("step-2", "a sample every 2 cells", "", list(&[("Z", 2, 2)])),
         case("step-negative", "a sample every -1 cells", "", list(&[("Z", 2, -1)])),
-        case("channel-open", "a list of channels without an end", "header", small().with("channels", b"range.T\0\x02\0".to_vec()).bytes()),
+        case(
+            "channel-open",
+            "a list of channels without an end",
+            "header",
+            small().with("channels", b"range.T\0\x02\0".to_vec()).bytes(),
+        ),
         case("channels-many", "ten thousand channels and no cells", "", {
             let names: Vec<String> = (0..10_000).map(|index| format!("c{index:05}")).collect();
             let all: Vec<(&str, i32, i32)> = names.iter().map(|name| (name.as_str(), 2, 1)).collect();
@@ -180,13 +185,43 @@ fn headers(case: Make<'_>) -> Vec<Case> {
         }),
         case("attribute-negative", "an attribute of -1 bytes", "header", sized(-1)),
         case("attribute-top", "an attribute of 2^31 - 1 bytes", "header", sized(i32::MAX)),
-        case("compression-99", "a compression that is none", "header", small().with("compression", vec![99]).bytes()),
+        case(
+            "compression-99",
+            "a compression that is none",
+            "header",
+            small().with("compression", vec![99]).bytes(),
+        ),
         case("lossy", "a compression that changes numbers", "header", packed(B44, vec![0; 16])),
-        case("line-order", "an order of lines that is none", "header", small().with("lineOrder", vec![9]).bytes()),
-        case("long-name", "a name of a thousand letters", "header", small().more(&"n".repeat(1000), "string", vec![0]).bytes()),
-        case("preview", "a preview of 2^31 x 2^31 in no bytes", "header", small().more("preview", "preview", words(&[-1, -1])).bytes()),
-        case("preview-wraps", "a preview of 2^30 x 4, whose bytes overflow", "header", small().more("preview", "preview", words(&[1 << 30, 4])).bytes()),
-        case("texts", "a list of texts with one of 2^31 - 1 bytes", "header", small().more("t", "stringvector", words(&[i32::MAX])).bytes()),
+        case(
+            "line-order",
+            "an order of lines that is none",
+            "header",
+            small().with("lineOrder", vec![9]).bytes(),
+        ),
+        case(
+            "long-name",
+            "a name of a thousand letters",
+            "header",
+            small().more(&"n".repeat(1000), "string", vec![0]).bytes(),
+        ),
+        case(
+            "preview",
+            "a preview of 2^31 x 2^31 in no bytes",
+            "header",
+            small().more("preview", "preview", words(&[-1, -1])).bytes(),
+        ),
+        case(
+            "preview-wraps",
+            "a preview of 2^30 x 4, whose bytes overflow",
+            "header",
+            small().more("preview", "preview", words(&[1 << 30, 4])).bytes(),
+        ),
+        case(
+            "texts",
+            "a list of texts with one of 2^31 - 1 bytes",
+            "header",
+            small().more("t", "stringvector", words(&[i32::MAX])).bytes(),
+        ),
         case("tiles-0", "tiles of 0 x 0", "header", tiled([0, 0], 0)),
         case("tiles-top", "tiles of 2^32 - 1 cells across", "", tiled([u32::MAX, u32::MAX], 0)),
         case("tiles-mode", "tiles of an unknown mode", "header", tiled([2, 2], 0x77)),
@@ -210,9 +245,19 @@ fn windows(case: Make<'_>) -> Vec<Case> {
         case("tall", "2^26 rows of a cell", "", Exr::new(1, 1 << 26, ZIP).block(0, zlib(&[0; 64])).bytes()),
         case("window-back", "a window that ends before it starts", "", window([3, 1, 0, 0])),
         case("window-empty", "a window of no cells", "", window([0, 0, -1, -1])),
-        case("window-ends", "a window from -2^31 to 2^31 - 1", "", window([i32::MIN, i32::MIN, i32::MAX, i32::MAX])),
+        case(
+            "window-ends",
+            "a window from -2^31 to 2^31 - 1",
+            "",
+            window([i32::MIN, i32::MIN, i32::MAX, i32::MAX]),
+        ),
         case("window-top", "a window at 2^31 - 1", "", window([i32::MAX, i32::MAX, i32::MAX, i32::MAX])),
-        case("crop", "a window that is a part of the picture", "data window", Exr::small().with("displayWindow", words(&[0, 0, 7, 7])).bytes()),
+        case(
+            "crop",
+            "a window that is a part of the picture",
+            "data window",
+            Exr::small().with("displayWindow", words(&[0, 0, 7, 7])).bytes(),
+        ),
     ]
 }
 
@@ -244,21 +289,45 @@ fn blocks(case: Make<'_>) -> Vec<Case> {
         case("line-99", "a block of a line that is not there", "pixels", lines(0, 99)),
         case("line-negative", "a block of line -2^31", "pixels", lines(0, i32::MIN)),
         case("line-twice", "two blocks of one line", "pixels", lines(0, 0)),
+        case(
+            "line-between",
+            "a block of sixteen lines that starts at the second",
+            "pixels",
+            Exr::new(4, 2, ZIP).block(1, zlib(&[0; 32])).bytes(),
+        ),
+        case(
+            "line-before",
+            "a block of sixteen lines that starts a line above the image",
+            "pixels",
+            Exr::new(4, 2, ZIP).block(-1, zlib(&[0; 32])).bytes(),
+        ),
         case("block-negative", "a block of -1 bytes", "pixels", sized(-1)),
         case("block-top", "a block of 2^31 - 1 bytes", "pixels", sized(i32::MAX)),
         case("block-0", "a block of no bytes", "pixels", sized(0)),
         case("block-short", "a block of too few cells", "pixels", sized(12)),
         case("zip-garbage", "a block that is no deflate", "pixels", packed(ZIP, garbage[..31].to_vec())),
         case("zip-short", "deflate of too few cells", "pixels", packed(ZIP, zlib(&[0; 12]))),
-        case("zip-bomb", "sixteen kilobytes of deflate that are sixteen megabytes", "pixels", packed(ZIP, bomb(0, 1 << 24))),
-        case("zip-bomb-large", "a quarter of a megabyte that is a quarter of a gigabyte", "pixels", packed(ZIP, bomb(0, 1 << 28))),
+        case(
+            "zip-bomb",
+            "sixteen kilobytes of deflate that are sixteen megabytes",
+            "pixels",
+            packed(ZIP, bomb(0, 1 << 24)),
+        ),
+        case(
+            "zip-bomb-large",
+            "a quarter of a megabyte that is a quarter of a gigabyte",
+            "pixels",
+            packed(ZIP, bomb(0, 1 << 28)),
+        ),
         case("zip-cut", "deflate that is cut off", "pixels", packed(ZIP, zlib(&[7; 32])[..6].to_vec())),
         case("rle-garbage", "runs of nothing", "pixels", packed(RLE, vec![127, 0, 200])),
         case("rle-bomb", "runs of far too many bytes", "pixels", packed(RLE, [127, 0].repeat(15))),
         case("piz-garbage", "wavelets of noise", "pixels", packed(PIZ, garbage[..31].to_vec())),
         case("piz-range", "wavelets whose values are out of range", "pixels", packed(PIZ, vec![255; 31])),
-        Case::new("exr-folder", "a folder with the name of a file", RUN, &["map.exr"]).item(FILE, Item::Folder),
-        Case::new("exr-pipe", "a pipe with the name of a file", RUN, &["map.exr", "not a regular file"]).item(FILE, Item::Pipe),
+        Case::new("exr-folder", "a folder with the name of a file", RUN, &["map.exr"])
+            .item(FILE, Item::Folder),
+        Case::new("exr-pipe", "a pipe with the name of a file", RUN, &["map.exr", "not a regular file"])
+            .item(FILE, Item::Pipe),
     ]
 }
 

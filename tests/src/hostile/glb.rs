@@ -69,9 +69,24 @@ pub(super) fn cases() -> Vec<Case> {
         word("chunk-0", "a JSON chunk of no bytes", 12, 0, "GLB chunk"),
         word("chunk-short", "a JSON chunk that ends within a word", 12, 3, "GLB chunk"),
         word("bin-top", "a second chunk of 2^32 - 1 bytes", bin_at, u32::MAX, "GLB chunk 1"),
-        case("bin-first", "the numbers before the JSON", "GLB chunk 0", container(&[(b"BIN\0", &bin), (b"JSON", &json)])),
-        case("json-twice", "two JSON chunks", "GLB chunk 1", container(&[(b"JSON", &json), (b"JSON", &json)])),
-        case("bin-twice", "two chunks of numbers", "GLB chunk 2", container(&[(b"JSON", &json), (b"BIN\0", &bin), (b"BIN\0", &bin)])),
+        case(
+            "bin-first",
+            "the numbers before the JSON",
+            "GLB chunk 0",
+            container(&[(b"BIN\0", &bin), (b"JSON", &json)]),
+        ),
+        case(
+            "json-twice",
+            "two JSON chunks",
+            "GLB chunk 1",
+            container(&[(b"JSON", &json), (b"JSON", &json)]),
+        ),
+        case(
+            "bin-twice",
+            "two chunks of numbers",
+            "GLB chunk 2",
+            container(&[(b"JSON", &json), (b"BIN\0", &bin), (b"BIN\0", &bin)]),
+        ),
         case("no-chunk", "no chunk at all", "GLB chunk 0", container(&[])),
         case("no-bin", "no chunk of numbers", "buffer 0", container(&[(b"JSON", &json)])),
         case("trailing", "three bytes after the last chunk", "GLB chunk 2", {

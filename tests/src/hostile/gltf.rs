@@ -84,8 +84,18 @@ fn texts() -> Vec<Case> {
         text("empty", "an empty file", "first bytes", ""),
         text("words", "a letter, not a file", "first bytes", "Dear rover,"),
         text("byte-order-mark", "a byte order mark before the JSON", "first bytes", "\u{feff}{}"),
-        text("not-utf8", "a byte that is no UTF-8", "JSON", b"{\"asset\": {\"version\": \"2.0\xff\"}}".to_vec()),
-        text("lone-surrogate", "half a surrogate pair", "JSON", r#"{"asset": {"version": "2.0", "generator": "\ud800"}}"#),
+        text(
+            "not-utf8",
+            "a byte that is no UTF-8",
+            "JSON",
+            b"{\"asset\": {\"version\": \"2.0\xff\"}}".to_vec(),
+        ),
+        text(
+            "lone-surrogate",
+            "half a surrogate pair",
+            "JSON",
+            r#"{"asset": {"version": "2.0", "generator": "\ud800"}}"#,
+        ),
         text("open", "JSON that never ends", "JSON", r#"{"asset": {"version": "2.0"}, "nodes": [{"#),
         text("deep-extras", "two hundred thousand open brackets in extras", "JSON", {
             format!(r#"{{"asset": {{"version": "2.0"}}, "extras": {}"#, "[".repeat(200_000))
@@ -99,11 +109,13 @@ fn texts() -> Vec<Case> {
         text("key-twice", "a key that is there twice", "JSON", {
             square().0.to_string().replacen('{', r#"{"nodes":[],"#, 1)
         }),
-        Case::new("gltf-folder", "a folder with the name of a file", RUN, &[FILE, "folder"]).item(FILE, Item::Folder),
+        Case::new("gltf-folder", "a folder with the name of a file", RUN, &[FILE, "folder"])
+            .item(FILE, Item::Folder),
         Case::new("gltf-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"])
             .item(FILE, Item::Pipe),
         Case::new("gltf-missing", "no file", RUN, &[FILE, "does not exist"]),
-        Case::new("gltf-link-to-itself", "a link to itself", RUN, &[FILE]).item(FILE, Item::Link(FILE.into())),
+        Case::new("gltf-link-to-itself", "a link to itself", RUN, &[FILE])
+            .item(FILE, Item::Link(FILE.into())),
     ]
 }
 
@@ -113,23 +125,83 @@ fn heads() -> Vec<Case> {
         set("version-1", "glTF 1.0", "/asset/version", json!("1.0"), "asset"),
         set("version-number", "a version that is a number", "/asset/version", json!(2.0), "JSON"),
         set("no-asset", "no asset", "/asset", json!(null), "JSON"),
-        set("draco", "a required compression", "/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "KHR_draco"),
-        set("unknown-extension", "a required extension of nobody", "/extensionsRequired", json!(["EVIL_\u{1b}[31m"]), "EVIL_"),
-        set("instancing", "instances that only an extension knows", "/extensionsUsed", json!(["EXT_mesh_gpu_instancing"]), "EXT_mesh"),
+        set(
+            "draco",
+            "a required compression",
+            "/extensionsRequired",
+            json!(["KHR_draco_mesh_compression"]),
+            "KHR_draco",
+        ),
+        set(
+            "unknown-extension",
+            "a required extension of nobody",
+            "/extensionsRequired",
+            json!(["EVIL_\u{1b}[31m"]),
+            "EVIL_",
+        ),
+        set(
+            "instancing",
+            "instances that only an extension knows",
+            "/extensionsUsed",
+            json!(["EXT_mesh_gpu_instancing"]),
+            "EXT_mesh",
+        ),
         set("nodes-object", "an object where a list belongs", "/nodes", json!({"0": {}}), "JSON"),
         set("mesh-text", "a text where an index belongs", "/nodes/0/mesh", json!("0"), "JSON"),
         set("mode-7", "a primitive of an unknown mode", "/meshes/0/primitives/0/mode", json!(7), "primitive"),
-        set("no-position", "a primitive without positions", "/meshes/0/primitives/0/attributes", json!({}), "primitive"),
+        set(
+            "no-position",
+            "a primitive without positions",
+            "/meshes/0/primitives/0/attributes",
+            json!({}),
+            "primitive",
+        ),
         set("type", "an accessor of an unknown type", "/accessors/0/type", json!("VEC9"), "accessor 0"),
-        set("component", "components of an unknown type", "/accessors/0/componentType", json!(9999), "accessor 0"),
-        set("short-positions", "positions in 16 bits", "/accessors/0/componentType", json!(5123), "accessor 0"),
-        set("float-indices", "indices that are reals", "/accessors/1/componentType", json!(5126), "accessor 1"),
+        set(
+            "component",
+            "components of an unknown type",
+            "/accessors/0/componentType",
+            json!(9999),
+            "accessor 0",
+        ),
+        set(
+            "short-positions",
+            "positions in 16 bits",
+            "/accessors/0/componentType",
+            json!(5123),
+            "accessor 0",
+        ),
+        set(
+            "float-indices",
+            "indices that are reals",
+            "/accessors/1/componentType",
+            json!(5126),
+            "accessor 1",
+        ),
         set("flat", "positions of two numbers", "/accessors/0/type", json!("VEC2"), "accessor 0"),
         set("skin", "a skin", "/nodes/0/skin", json!(0), "node 0"),
         set("weights", "morph weights", "/nodes/0/weights", json!([1.0]), "node 0"),
-        set("reflectivity-2", "ground that reflects twice the light", "/materials", json!([{"extras": {"reflectivity": 2}}]), "material 0"),
-        set("reflectivity-text", "a reflectivity in words", "/materials", json!([{"extras": {"reflectivity": "NaN"}}]), "material 0"),
-        set("materials", "seventy thousand materials", "/materials", Value::Array(vec![json!({}); 70_000]), "materials"),
+        set(
+            "reflectivity-2",
+            "ground that reflects twice the light",
+            "/materials",
+            json!([{"extras": {"reflectivity": 2}}]),
+            "material 0",
+        ),
+        set(
+            "reflectivity-text",
+            "a reflectivity in words",
+            "/materials",
+            json!([{"extras": {"reflectivity": "NaN"}}]),
+            "material 0",
+        ),
+        set(
+            "materials",
+            "seventy thousand materials",
+            "/materials",
+            Value::Array(vec![json!({}); 70_000]),
+            "materials",
+        ),
         set("no-mesh", "no mesh at all", "/nodes/0", json!({}), "no triangles"),
         set("points", "a cloud of points alone", "/meshes/0/primitives/0/mode", json!(0), "no triangles"),
         set("no-scenes", "a scene that is not there", "/scenes", json!([]), "scene 0"),
@@ -145,28 +217,102 @@ fn counts() -> Vec<Case> {
         set("count-0", "no vertices", "/accessors/0/count", json!(0), "accessor 0"),
         set("count-5", "one vertex too many", "/accessors/0/count", json!(5), "accessor 0"),
         set("index-count-5", "corners that make no triangles", "/accessors/1/count", json!(5), "accessor 1"),
-        set("no-view-trillions", "4e12 zeros without a buffer view", "/accessors/0", json!({"componentType": 5126, "count": TRILLIONS, "type": "VEC3"}), "4000000000000"),
-        set("sparse-trillions", "a sparse accessor of 4e12 entries", "/accessors/0", json!({
-            "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {
-                "count": TRILLIONS, "indices": {"bufferView": 1, "componentType": 5125}, "values": {"bufferView": 0}}
-        }), "accessor 0"),
+        set(
+            "no-view-trillions",
+            "4e12 zeros without a buffer view",
+            "/accessors/0",
+            json!({"componentType": 5126, "count": TRILLIONS, "type": "VEC3"}),
+            "4000000000000",
+        ),
+        set(
+            "sparse-trillions",
+            "a sparse accessor of 4e12 entries",
+            "/accessors/0",
+            json!({
+                "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {
+                    "count": TRILLIONS, "indices": {"bufferView": 1, "componentType": 5125}, "values": {"bufferView": 0}}
+            }),
+            "accessor 0",
+        ),
         set("index-trillions", "4e12 indices", "/accessors/1/count", json!(TRILLIONS * 3), "faces"),
-        set("offset-top", "an accessor offset of 2^64 - 4", "/accessors/0/byteOffset", json!(u64::MAX - 3), "accessor 0"),
-        set("view-top", "a view whose end is beyond 2^64", "/bufferViews/0/byteOffset", json!(u64::MAX - 3), "buffer view 0"),
-        set("view-long", "a view longer than its buffer", "/bufferViews/0/byteLength", json!(61), "buffer view 0"),
+        set(
+            "offset-top",
+            "an accessor offset of 2^64 - 4",
+            "/accessors/0/byteOffset",
+            json!(u64::MAX - 3),
+            "accessor 0",
+        ),
+        set(
+            "view-top",
+            "a view whose end is beyond 2^64",
+            "/bufferViews/0/byteOffset",
+            json!(u64::MAX - 3),
+            "buffer view 0",
+        ),
+        set(
+            "view-long",
+            "a view longer than its buffer",
+            "/bufferViews/0/byteLength",
+            json!(61),
+            "buffer view 0",
+        ),
         set("view-negative", "a negative offset", "/bufferViews/0/byteOffset", json!(-4), "JSON"),
         set("buffer-long", "a buffer longer than its chunk", "/buffers/0/byteLength", json!(61), "buffer 0"),
         set("buffer-huge", "a buffer of 2^63 bytes", "/buffers/0/byteLength", json!(1_u64 << 63), "buffer 0"),
         set("beyond-2-64", "a length of 1e30", "/buffers/0/byteLength", json!(1e30), "JSON"),
         set("mesh-missing", "a mesh that is not there", "/nodes/0/mesh", json!(1), "mesh 1"),
-        set("accessor-missing", "an accessor that is not there", "/meshes/0/primitives/0/indices", json!(2), "accessor 2"),
-        set("index-2-32", "an accessor beyond 2^32", "/meshes/0/primitives/0/indices", json!(1_u64 << 32), "JSON"),
+        set(
+            "accessor-missing",
+            "an accessor that is not there",
+            "/meshes/0/primitives/0/indices",
+            json!(2),
+            "accessor 2",
+        ),
+        set(
+            "index-2-32",
+            "an accessor beyond 2^32",
+            "/meshes/0/primitives/0/indices",
+            json!(1_u64 << 32),
+            "JSON",
+        ),
+        set(
+            "index-wraps",
+            "a mesh of index 2^32, which 32 bits take for 0",
+            "/nodes/0/mesh",
+            json!(1_u64 << 32),
+            "JSON",
+        ),
+        set(
+            "child-wraps",
+            "a root of index 2^32, which 32 bits take for 0",
+            "/scenes/0/nodes",
+            json!([1_u64 << 32]),
+            "JSON",
+        ),
         set("view-missing", "a view that is not there", "/accessors/0/bufferView", json!(7), "buffer view 7"),
-        set("buffer-missing", "a buffer that is not there", "/bufferViews/0/buffer", json!(u32::MAX), "buffer 4294967295"),
-        set("material-missing", "a material that is not there", "/meshes/0/primitives/0/material", json!(3), "material 3"),
+        set(
+            "buffer-missing",
+            "a buffer that is not there",
+            "/bufferViews/0/buffer",
+            json!(u32::MAX),
+            "buffer 4294967295",
+        ),
+        set(
+            "material-missing",
+            "a material that is not there",
+            "/meshes/0/primitives/0/material",
+            json!(3),
+            "material 3",
+        ),
     ];
     for (name, count) in [("2-53", (1_u64 << 53) + 1), ("trillions", TRILLIONS), ("2-64", u64::MAX)] {
-        cases.push(set(&format!("count-{name}"), "an absurd count", "/accessors/0/count", json!(count), "vertices"));
+        cases.push(set(
+            &format!("count-{name}"),
+            "an absurd count",
+            "/accessors/0/count",
+            json!(count),
+            "vertices",
+        ));
     }
     cases
 }
@@ -174,22 +320,61 @@ fn counts() -> Vec<Case> {
 /// Nodes that make no tree, and transforms that make no ground.
 fn hierarchies() -> Vec<Case> {
     let nodes = |name: &str, what, nodes: Value, place: &str| set(name, what, "/nodes", nodes, place);
-    let tower: Vec<Value> = (0..5000).map(|level| json!({"children": [level + 1]})).chain([json!({"mesh": 0})]).collect();
+    let tower: Vec<Value> =
+        (0..5000).map(|level| json!({"children": [level + 1]})).chain([json!({"mesh": 0})]).collect();
     let matrix = |last: f64| json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, last]);
     vec![
         nodes("own-child", "a node that is its own child", json!([{"children": [0]}]), "node 0"),
-        nodes("cycle", "two nodes that are each other's children", json!([{"children": [1]}, {"children": [0]}]), "node"),
-        nodes("cycle-aside", "a cycle that no scene shows", json!([{"mesh": 0}, {"children": [2]}, {"children": [1]}]), "node 1"),
-        nodes("two-parents", "a node with two parents", json!([{"children": [1, 2]}, {"children": [2]}, {"mesh": 0}]), "node 2"),
-        nodes("child-twice", "a child that is named twice", json!([{"children": [1, 1]}, {"mesh": 0}]), "node 1"),
+        nodes(
+            "cycle",
+            "two nodes that are each other's children",
+            json!([{"children": [1]}, {"children": [0]}]),
+            "node",
+        ),
+        nodes(
+            "cycle-aside",
+            "a cycle that no scene shows",
+            json!([{"mesh": 0}, {"children": [2]}, {"children": [1]}]),
+            "node 1",
+        ),
+        nodes(
+            "two-parents",
+            "a node with two parents",
+            json!([{"children": [1, 2]}, {"children": [2]}, {"mesh": 0}]),
+            "node 2",
+        ),
+        nodes(
+            "child-twice",
+            "a child that is named twice",
+            json!([{"children": [1, 1]}, {"mesh": 0}]),
+            "node 1",
+        ),
         nodes("child-missing", "a child that is not there", json!([{"children": [9]}]), "node 0"),
         nodes("tower", "five thousand levels of nodes", Value::Array(tower), "levels"),
-        nodes("overflow", "scales whose product is infinite", json!([{"children": [1], "scale": [1e38, 1e38, 1e38]}, {"mesh": 0, "scale": [1e38, 1e38, 1e38]}]), "node 1"),
+        nodes(
+            "overflow",
+            "scales whose product is infinite",
+            json!([{"children": [1], "scale": [1e38, 1e38, 1e38]}, {"mesh": 0, "scale": [1e38, 1e38, 1e38]}]),
+            "node 1",
+        ),
         set("root-missing", "a root that is not there", "/scenes/0/nodes", json!([5]), "scene 0"),
         set("root-negative", "a root of index -1", "/scenes/0/nodes", json!([-1]), "JSON"),
         set("matrix-short", "a matrix of 15 numbers", "/nodes/0/matrix", json!(vec![1.0; 15]), "JSON"),
-        set("matrix-infinite", "a matrix of 1e39, which single precision has not", "/nodes/0/matrix", json!(vec![1e39; 16]), "node 0"),
-        set("matrix-beyond", "a matrix of 1e400, which no double is", "/nodes/0/translation", Value::Null, "JSON").file(FILE, {
+        set(
+            "matrix-infinite",
+            "a matrix of 1e39, which single precision has not",
+            "/nodes/0/matrix",
+            json!(vec![1e39; 16]),
+            "JSON",
+        ),
+        set(
+            "matrix-beyond",
+            "a matrix of 1e400, which no double is",
+            "/nodes/0/translation",
+            Value::Null,
+            "JSON",
+        )
+        .file(FILE, {
             square().0.to_string().replace(r#""mesh":0"#, r#""mesh":0,"translation":[1e400,0,0]"#)
         }),
         set("projective", "a matrix that is not affine", "/nodes/0/matrix", matrix(2.0), "node 0"),
@@ -199,20 +384,34 @@ fn hierarchies() -> Vec<Case> {
             json["nodes"][0]["matrix"] = matrix(1.0);
             json["nodes"][0]["scale"] = json!([1, 1, 1]);
         }),
-        numbers("vertex-nan", "a vertex that is not a number", "accessor 0", |bin| bin[4..8].copy_from_slice(&f32::NAN.to_le_bytes())),
+        numbers("vertex-nan", "a vertex that is not a number", "accessor 0", |bin| {
+            bin[4..8].copy_from_slice(&f32::NAN.to_le_bytes())
+        }),
         numbers("vertex-infinite", "a vertex at infinity", "accessor 0", |bin| {
             bin[0..4].copy_from_slice(&f32::NEG_INFINITY.to_le_bytes());
         }),
-        numbers("vertex-far", "a vertex at 3e38 m", "node 0", |bin| bin[0..4].copy_from_slice(&f32::MAX.to_le_bytes())),
-        numbers("index-beyond", "an index beyond the vertices", "accessor 1", |bin| bin[58..60].copy_from_slice(&[4, 0])),
-        numbers("index-restart", "an index of 65535, which restarts strips elsewhere", "accessor 1", |bin| bin[58..60].fill(255)),
+        numbers("vertex-far", "a vertex at 3e38 m", "node 0", |bin| {
+            bin[0..4].copy_from_slice(&f32::MAX.to_le_bytes())
+        }),
+        numbers("index-beyond", "an index beyond the vertices", "accessor 1", |bin| {
+            bin[58..60].copy_from_slice(&[4, 0])
+        }),
+        numbers("index-restart", "an index of 65535, which restarts strips elsewhere", "accessor 1", |bin| {
+            bin[58..60].fill(255)
+        }),
     ]
 }
 
 /// Strides, alignment and overlaps.
 fn storage() -> Vec<Case> {
     let stride = |name: &str, stride: u64| {
-        set(&format!("stride-{name}"), "a stride that is none", "/bufferViews/0/byteStride", json!(stride), "accessor 0")
+        set(
+            &format!("stride-{name}"),
+            "a stride that is none",
+            "/bufferViews/0/byteStride",
+            json!(stride),
+            "accessor 0",
+        )
     };
     vec![
         stride("0", 0),
@@ -231,7 +430,7 @@ fn storage() -> Vec<Case> {
             json["bufferViews"][1] = json!({"buffer": 0, "byteOffset": 47, "byteLength": 12});
         }),
         changed("overlap", "indices that are the bytes of the vertices", "accessor 1", |json| {
-            json["bufferViews"][1] = json!({"buffer": 0, "byteOffset": 0, "byteLength": 48});
+            json["bufferViews"][1] = json!({"buffer": 0, "byteOffset": 12, "byteLength": 48});
         }),
     ]
 }
@@ -241,8 +440,10 @@ fn uris() -> Vec<Case> {
     let uri = |name: &str, what, uri: &str| with_uri(&format!("uri-{name}"), what, uri);
     vec![
         uri("up", "a buffer in the folder above", "../secret.bin").file("../secret.bin", [0; 60]),
-        uri("up-inside", "a path that goes down and up again", "a/../../secret.bin").file("../secret.bin", [0; 60]),
-        uri("up-escaped", "the folder above, in percent escapes", "%2e%2e/secret.bin").file("../secret.bin", [0; 60]),
+        uri("up-inside", "a path that goes down and up again", "a/../../secret.bin")
+            .file("../secret.bin", [0; 60]),
+        uri("up-escaped", "the folder above, in percent escapes", "%2e%2e/secret.bin")
+            .file("../secret.bin", [0; 60]),
         uri("slash-escaped", "its slash too", "%2E%2E%2fsecret.bin").file("../secret.bin", [0; 60]),
         uri("backslash", "the folder above, as other systems write it", "..%5csecret.bin"),
         uri("absolute", "an absolute path", "/etc/passwd"),
@@ -263,7 +464,8 @@ fn uris() -> Vec<Case> {
         uri("link-folder", "a linked folder that leads out", "down/secret.bin")
             .file("../elsewhere/secret.bin", [0; 60])
             .item("down", Item::Link("../elsewhere".into())),
-        uri("device", "a link to a device without an end", "ground.bin").item("ground.bin", Item::Link("/dev/zero".into())),
+        uri("device", "a link to a device without an end", "ground.bin")
+            .item("ground.bin", Item::Link("/dev/zero".into())),
         uri("short", "a file that is too short", "ground.bin").file("ground.bin", [0; 59]),
         uri("data-letters", "base64 with other letters", "data:application/octet-stream;base64,AAAA*AAA"),
         uri("data-padding", "base64 without its padding", "data:application/octet-stream;base64,AAAAA"),
@@ -282,16 +484,36 @@ fn bombs() -> Vec<Case> {
             json["scenes"][0]["nodes"] = (0..count).collect();
         })
     };
-    let triangles = json!({"attributes": {"POSITION": 0}, "indices": 1});
     let points = json!({"attributes": {"POSITION": 0}, "mode": 0});
     vec![
-        instances("instances", "a mesh of a thousand primitives, drawn twenty thousand times", Value::Array(vec![triangles; 1000]), 20_000, "faces"),
-        instances("primitives", "twenty thousand point clouds, drawn twenty thousand times", Value::Array(vec![points; 20_000]), 20_000, "primitives"),
+        {
+            // A thousand triangles, all on vertex 0.
+            let (mut json, mut bin) = square();
+            bin.resize(60 + 6000, 0);
+            json["buffers"][0]["byteLength"] = json!(bin.len());
+            json["bufferViews"][1]["byteLength"] = json!(6000);
+            json["bufferViews"][1]["byteOffset"] = json!(60);
+            json["accessors"][1]["count"] = json!(3000);
+            json["nodes"] = Value::Array(vec![json!({"mesh": 0}); 100_000]);
+            json["scenes"][0]["nodes"] = (0..100_000).collect();
+            let what = "a thousand faces, drawn a hundred thousand times";
+            Case::of_file("gltf-instances", what, RUN, FILE, glb(&json, &bin), "faces")
+        },
+        instances(
+            "primitives",
+            "twenty thousand point clouds, drawn twenty thousand times",
+            Value::Array(vec![points; 20_000]),
+            20_000,
+            "primitives",
+        ),
         text("objects", "two million empty nodes", "JSON", {
             format!(r#"{{"asset": {{"version": "2.0"}}, "nodes": [{}{{}}]}}"#, "{},".repeat(2_000_000))
         }),
         text("long-name", "an unknown extension with a name of a million letters", "extensionsRequired", {
-            format!(r#"{{"asset": {{"version": "2.0"}}, "extensionsRequired": ["{}"]}}"#, "x".repeat(1_000_000))
+            format!(
+                r#"{{"asset": {{"version": "2.0"}}, "extensionsRequired": ["{}"]}}"#,
+                "x".repeat(1_000_000)
+            )
         }),
     ]
 }

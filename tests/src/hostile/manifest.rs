@@ -63,7 +63,12 @@ fn words() -> Vec<Case> {
         text("null", "null bytes", "JSON", [0; 64]),
         text("list", "a list where an object belongs", "JSON", "[1]"),
         text("not-utf8", "a byte that is no UTF-8", "JSON", b"{\"format\": 1, \"kind\": \"\xff\"}".to_vec()),
-        text("deep", "a hundred thousand open brackets", "JSON", format!("{{\"format\": {}", "[".repeat(100_000))),
+        text(
+            "deep",
+            "a hundred thousand open brackets",
+            "JSON",
+            format!("{{\"format\": {}", "[".repeat(100_000)),
+        ),
         text("large", "seventeen megabytes of blanks", "larger than", vec![b' '; 17 << 20]),
         text("key-twice", "a key that is there twice", "JSON", whole.replacen('{', "{\"format\": 1,", 1)),
         text("after", "something after the object", "JSON", whole.clone() + "{}"),
@@ -71,15 +76,31 @@ fn words() -> Vec<Case> {
         Case::new("manifest-missing", "a folder without a manifest", RUN, &["pack", "manifest.json"])
             .item("pack", Item::Folder)
             .item("mine", Item::Folder),
-        Case::new("manifest-folder", "a folder with the name of the manifest", RUN, &[FILE, "not a regular file"])
-            .item(FILE, Item::Folder),
-        Case::new("manifest-pipe", "a pipe with the name of the manifest", RUN, &[FILE, "not a regular file"])
-            .item(FILE, Item::Pipe),
-        Case::new("manifest-pack-is-file", "a file where the pack's folder belongs", RUN, &["pack"]).file("pack", "no folder"),
+        Case::new(
+            "manifest-folder",
+            "a folder with the name of the manifest",
+            RUN,
+            &[FILE, "not a regular file"],
+        )
+        .item(FILE, Item::Folder),
+        Case::new(
+            "manifest-pipe",
+            "a pipe with the name of the manifest",
+            RUN,
+            &[FILE, "not a regular file"],
+        )
+        .item(FILE, Item::Pipe),
+        Case::new("manifest-pack-is-file", "a file where the pack's folder belongs", RUN, &["pack"])
+            .file("pack", "no folder"),
     ];
     for part in [1, 3, 5, 7] {
         let at = whole.len() * part / 8;
-        cases.push(text(&format!("cut-{part}-eighths"), "a good file, cut off", "JSON", &whole.as_bytes()[..at]));
+        cases.push(text(
+            &format!("cut-{part}-eighths"),
+            "a good file, cut off",
+            "JSON",
+            &whole.as_bytes()[..at],
+        ));
     }
     cases
 }
@@ -108,7 +129,13 @@ fn keys() -> Vec<Case> {
         set("blind-no-seed", "a blind pack without a seed", "/kind", json!("blind"), "blindSeed"),
         set("seed", "a seed of a pack that is not blind", "/blindSeed", json!(1), "blindSeed"),
         set("seed-real", "a seed of 1.5", "/blindSeed", json!(1.5), "JSON"),
-        set("scene-digest", "a digest of the scene that is none", "/scene/sha256", json!("0"), "scene.sha256"),
+        set(
+            "scene-digest",
+            "a digest of the scene that is none",
+            "/scene/sha256",
+            json!("0"),
+            "scene.sha256",
+        ),
         set("no-sensors", "no sensors", "/sensors", json!([]), "sensors"),
         set("columns-2-32", "2^32 columns", "/sensors/0/columns", json!(1_u64 << 32), "JSON"),
         set("bytes-negative", "a file of -1 bytes", "/files/0/bytes", json!(-1), "JSON"),
@@ -156,16 +183,22 @@ fn paths() -> Vec<Case> {
         path("long", "a name of a hundred thousand letters", &"x".repeat(100_000)),
         path("percent", "the folder above, in percent escapes", "%2e%2e/secret.bin").file("secret.bin", ""),
         path("missing", "a file that is not there", "gone.npy"),
-        path("folder", "a folder as a file", "down").item("pack/down", Item::Folder),
-        path("pipe", "a pipe as a file", "pipe").item("pack/pipe", Item::Pipe),
+        path("folder", "a folder as a file", "down")
+            .item("pack/down", Item::Folder)
+            .says(&["pack/down", "not a regular file"]),
+        path("pipe", "a pipe as a file", "pipe")
+            .item("pack/pipe", Item::Pipe)
+            .says(&["pack/pipe", "not a regular file"]),
         path("link-out", "a link that leads out", "out.npy")
             .file("secret.bin", "")
             .item("pack/out.npy", Item::Link("../secret.bin".into())),
         path("link-folder", "a linked folder that leads out", "down/secret.bin")
             .file("down/secret.bin", "")
             .item("pack/down", Item::Link("../down".into())),
-        path("link-to-itself", "a link to itself", "loop.npy").item("pack/loop.npy", Item::Link("loop.npy".into())),
-        path("device", "a link to a device without an end", "zero").item("pack/zero", Item::Link("/dev/zero".into())),
+        path("link-to-itself", "a link to itself", "loop.npy")
+            .item("pack/loop.npy", Item::Link("loop.npy".into())),
+        path("device", "a link to a device without an end", "zero")
+            .item("pack/zero", Item::Link("/dev/zero".into())),
     ]
 }
 
@@ -173,15 +206,43 @@ fn paths() -> Vec<Case> {
 fn files() -> Vec<Case> {
     let file = |bytes: &[u8]| Item::File(bytes.to_vec());
     vec![
-        set("size", "another size than listed", "/files/0/bytes", json!(1), "scene.toml"),
-        set("size-top", "a size of 2^64 - 1", "/files/0/bytes", json!(u64::MAX), "scene.toml"),
-        set("digest", "another digest than listed", "/files/0/sha256", json!("0".repeat(64)), "scene.toml"),
-        set("digest-upper", "a digest in capitals", "/files/0/sha256", json!(NOTHING.to_uppercase()), "files[0]"),
-        changed("scene-empty", "a scene of no bytes, truly listed", "scene.toml", |_| ()),
-        spoiled("map-empty", "a good pack with an empty map", &["camera.exr", "bytes"], &[("camera.exr", file(b""))]),
-        spoiled("map-pipe", "a good pack with a pipe as map", &["camera.exr", "not a regular file"], &[("camera.exr", Item::Pipe)]),
-        spoiled("map-folder", "a good pack with a folder as map", &["camera.exr", "not a regular file"], &[("camera.exr", Item::Folder)]),
+        set("size", "another size than listed", "/files/0/bytes", json!(1), "scene.toml")
+            .says(&["pack/scene.toml"]),
+        set("size-top", "a size of 2^64 - 1", "/files/0/bytes", json!(u64::MAX), "scene.toml")
+            .says(&["pack/scene.toml"]),
+        set("digest", "another digest than listed", "/files/0/sha256", json!("0".repeat(64)), "scene.toml")
+            .says(&["pack/scene.toml"]),
+        set(
+            "digest-upper",
+            "a digest in capitals",
+            "/files/0/sha256",
+            json!(NOTHING.to_uppercase()),
+            "files[0]",
+        ),
+        changed("scene-empty", "a scene of no bytes, truly listed", "scene.toml", |_| ())
+            .says(&["pack/scene.toml"]),
+        spoiled(
+            "map-empty",
+            "a good pack with an empty map",
+            &["camera.exr", "bytes"],
+            &[("camera.exr", file(b""))],
+        ),
+        spoiled(
+            "map-pipe",
+            "a good pack with a pipe as map",
+            &["camera.exr", "not a regular file"],
+            &[("camera.exr", Item::Pipe)],
+        ),
+        spoiled(
+            "map-folder",
+            "a good pack with a folder as map",
+            &["camera.exr", "not a regular file"],
+            &[("camera.exr", Item::Folder)],
+        ),
         ground_outside(),
+        changed("scene-unlisted", "a scene that is there and not listed", "scene.toml", |manifest| {
+            manifest["files"] = json!([]);
+        }),
     ]
 }
 
@@ -197,9 +258,14 @@ fn ground_outside() -> Case {
             entry["sha256"] = json!(super::bytes::sha256(toml.as_bytes()));
         }
     }
-    spoiled("ground-outside", "a good pack on a ground outside of it", &["pack/scene.toml", "../ground.glb"], &[
-        ("scene.toml", Item::File(toml.into_bytes())),
-        ("manifest.json", Item::File(manifest.to_string().into_bytes())),
-    ])
+    spoiled(
+        "ground-outside",
+        "a good pack on a ground outside of it",
+        &["pack/scene.toml", "../ground.glb"],
+        &[
+            ("scene.toml", Item::File(toml.into_bytes())),
+            ("manifest.json", Item::File(manifest.to_string().into_bytes())),
+        ],
+    )
     .file("ground.glb", *glb)
 }

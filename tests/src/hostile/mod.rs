@@ -76,8 +76,21 @@ impl Case {
     }
 
     /// One file, its name first among the words.
-    fn of_file(name: &str, what: &'static str, command: &str, file: &str, bytes: Vec<u8>, place: &str) -> Self {
+    fn of_file(
+        name: &str,
+        what: &'static str,
+        command: &str,
+        file: &str,
+        bytes: Vec<u8>,
+        place: &str,
+    ) -> Self {
         Self::new(name, what, command, &[file, place]).file(file, bytes)
+    }
+
+    /// With other words instead of the file's name and the place.
+    fn says(mut self, words: &[&str]) -> Self {
+        self.words = words.iter().map(ToString::to_string).collect();
+        self
     }
 
     /// Makes everything in `folder`, which is empty. `packs` holds the committed packs.
@@ -174,7 +187,8 @@ pub fn table() -> String {
          (`cargo run -p raypencil-tests --example hostile`).\n\n| case | what it is | words of the message |\n| --- | --- | --- |\n",
     );
     for case in all().iter().chain(&tiffs()) {
-        let words = case.words.iter().map(|word| format!("`{}`", word.replace('|', "\\|"))).collect::<Vec<_>>();
+        let words =
+            case.words.iter().map(|word| format!("`{}`", word.replace('|', "\\|"))).collect::<Vec<_>>();
         text += &format!("| {} | {} | {} |\n", case.name, case.what, words.join(", "));
     }
     text

@@ -28,7 +28,9 @@ pub(super) fn cases() -> Vec<Case> {
         Case::of_file(&format!("npy-{name}"), what, RUN, FILE, bytes, place)
     };
     let text = |name: &str, what, place: &str, header: &str| case(name, what, place, npy(header, &[0; 48]));
-    let kind = |name: &str, what, descr: &str| text(&format!("type-{name}"), what, "descr", &header(descr, "False", "(2, 3)"));
+    let kind = |name: &str, what, descr: &str| {
+        text(&format!("type-{name}"), what, "descr", &header(descr, "False", "(2, 3)"))
+    };
     let shape = |name: &str, what, numbers: &str| {
         text(&format!("shape-{name}"), what, "", &header("'<f8'", "False", numbers))
     };
@@ -50,16 +52,44 @@ pub(super) fn cases() -> Vec<Case> {
         case("header-top", "a header of 2^32 - 1 bytes", "4294967295", long(2, u32::MAX)),
         case("header-beyond", "a header longer than the file", "header", long(3, 60_000)),
         text("code", "Python code to be run", "header", "__import__('os').system('touch owned')"),
-        text("code-in-value", "Python code in a value", "header", "{'descr': eval('1'), 'fortran_order': False, 'shape': (2, 3)}"),
-        text("nested", "a shape of brackets in brackets", "header", &header("'<f8'", "False", &"(".repeat(30_000))),
+        text(
+            "code-in-value",
+            "Python code in a value",
+            "header",
+            "{'descr': eval('1'), 'fortran_order': False, 'shape': (2, 3)}",
+        ),
+        text(
+            "nested",
+            "a shape of brackets in brackets",
+            "header",
+            &header("'<f8'", "False", &"(".repeat(30_000)),
+        ),
         text("open", "a text that does not end", "header", "{'descr"),
         text("escape", "a text with escapes", "header", &header("'\\x3cf8'", "False", "(2, 3)")),
         text("key-twice", "a key that is there twice", "each key once", "{'shape': (2, 3), 'shape': (2, 3)}"),
         text("key-missing", "no shape", "shape", "{'descr': '<f8', 'fortran_order': False}"),
         text("key-unknown", "a key of nobody", "header", "{'descr': '<f8', 'evil': True}"),
-        text("after", "something after the dictionary", "header", &(header("'<f8'", "False", "(2, 3)") + "import os")),
-        text("order-number", "a number where True or False belongs", "header", &header("'<f8'", "1", "(2, 3)")),
-        case("not-utf8", "a header that is no UTF-8", "header", npy(&header("'<f8'", "False", "(2, 3)"), &[0; 48]).iter().map(|&byte| if byte == b'd' { 255 } else { byte }).collect()),
+        text(
+            "after",
+            "something after the dictionary",
+            "header",
+            &(header("'<f8'", "False", "(2, 3)") + "import os"),
+        ),
+        text(
+            "order-number",
+            "a number where True or False belongs",
+            "header",
+            &header("'<f8'", "1", "(2, 3)"),
+        ),
+        case(
+            "not-utf8",
+            "a header that is no UTF-8",
+            "header",
+            npy(&header("'<f8'", "False", "(2, 3)"), &[0; 48])
+                .iter()
+                .map(|&byte| if byte == b'd' { 255 } else { byte })
+                .collect(),
+        ),
         kind("object", "Python objects, which are code to be run", "'|O'"),
         kind("structured", "a structured type", "[('x', '<f8'), ('y', '<f8')]"),
         kind("complex", "complex numbers", "'<c16'"),
@@ -82,14 +112,35 @@ pub(super) fn cases() -> Vec<Case> {
         shape("beyond", "2^64 rows", "(18446744073709551616, 1)"),
         shape("components", "a million components", "(1, 1, 1000000)"),
         shape("fewer", "fewer cells than there are bytes", "(1, 3)"),
-        text("fortran-huge", "Fortran order of 2^40 columns", "", &header("'<f8'", "True", "(1, 1099511627776)")),
-        text("shape-long", "a shape of thirty thousand numbers", "shape", &header("'<f8'", "False", &format!("({})", "1,".repeat(30_000)))),
-        cells("negative", "-2 where an index belongs", "'<i8'", &[[0_i64, -2].map(i64::to_le_bytes).concat()].concat()),
+        text(
+            "fortran-huge",
+            "Fortran order of 2^40 columns",
+            "",
+            &header("'<f8'", "True", "(1, 1099511627776)"),
+        ),
+        text(
+            "shape-long",
+            "a shape of thirty thousand numbers",
+            "shape",
+            &header("'<f8'", "False", &format!("({})", "1,".repeat(30_000))),
+        ),
+        cells(
+            "negative",
+            "-2 where an index belongs",
+            "'<i8'",
+            &[[0_i64, -2].map(i64::to_le_bytes).concat()].concat(),
+        ),
         cells("beyond-2-32", "an index of 2^32", "'<u8'", &[0, 1_u64 << 32].map(u64::to_le_bytes).concat()),
-        cells("beyond-2-53", "an integer beyond 2^53", "'<i8'", &[0, (1_i64 << 53) + 1].map(i64::to_le_bytes).concat()),
+        cells(
+            "beyond-2-53",
+            "an integer beyond 2^53",
+            "'<i8'",
+            &[0, (1_i64 << 53) + 1].map(i64::to_le_bytes).concat(),
+        ),
         cells("truth-2", "a truth value of 2", "'|b1'", &[0, 2]),
         Case::new("npy-folder", "a folder with the name of a file", RUN, &[FILE]).item(FILE, Item::Folder),
-        Case::new("npy-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"]).item(FILE, Item::Pipe),
+        Case::new("npy-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"])
+            .item(FILE, Item::Pipe),
     ];
     let length = good().len();
     for at in cuts(length, &[5, 6, 7, 8, 9, 10, length - 48, length - 1], 4) {

@@ -33,10 +33,20 @@ pub(super) fn cases() -> Vec<Case> {
         text("width-real", "a width of 3.0", "width", "Pf\n3.0 2\n-1\n"),
         text("width-plus", "a width with a sign", "width", "Pf\n+3 2\n-1\n"),
         text("width-beyond", "a width beyond 2^64", "width", "Pf\n99999999999999999999 2\n-1\n"),
-        text("width-long", "a width of a thousand digits", "width", &format!("Pf\n{} 2\n-1\n", "3".repeat(1000))),
+        text(
+            "width-long",
+            "a width of a thousand digits",
+            "width",
+            &format!("Pf\n{} 2\n-1\n", "3".repeat(1000)),
+        ),
         text("height-0", "no rows", "shape", "Pf\n3 0\n-1\n"),
         text("square", "two million cells square", "shape", "Pf\n2000000 2000000\n-1\n"),
-        text("wraps", "2^32 x 2^32 cells, which are 0 in 64 bits", "shape", "PF\n4294967296 4294967296\n-1\n"),
+        text(
+            "wraps",
+            "2^32 x 2^32 cells, which are 0 in 64 bits",
+            "shape",
+            "PF\n4294967296 4294967296\n-1\n",
+        ),
         text("colour", "three components where there are bytes for one", "numbers", "PF\n3 2\n-1\n"),
         case("long", "a byte too many", "numbers", pfm("Pf\n3 2\n-1.0\n", 25)),
         case("blanks", "a hundred thousand blanks", "magic", vec![b' '; 100_000]),
@@ -44,7 +54,8 @@ pub(super) fn cases() -> Vec<Case> {
         case("not-utf8", "a width that is no UTF-8", "width", b"Pf\n\xff\xfe 2\n-1\n".to_vec()),
         text("escape", "codes that would command a terminal", "width", "Pf\n\u{1b}[2J 2\n-1\n"),
         Case::new("pfm-folder", "a folder with the name of a file", RUN, &[FILE]).item(FILE, Item::Folder),
-        Case::new("pfm-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"]).item(FILE, Item::Pipe),
+        Case::new("pfm-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"])
+            .item(FILE, Item::Pipe),
     ];
     let length = good().len();
     for at in cuts(length, &[1, 2, 4, 7, 11, 12, length - 1], 2) {

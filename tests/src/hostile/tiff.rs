@@ -36,7 +36,8 @@ const STRIP_AT: u32 = 8;
 impl Tiff {
     /// 4 x 3 posts of single precision, half a metre apart.
     fn good() -> Self {
-        let doubles = |numbers: &[f64]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
+        let doubles =
+            |numbers: &[f64]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
         let strip: Vec<u8> = (0..12_u8).flat_map(|post| (f32::from(post) / 8.0).to_le_bytes()).collect();
         let plain = [
             (WIDTH, 4),
@@ -115,7 +116,8 @@ pub fn tiffs() -> Vec<Case> {
     let case = |name: &str, what, bytes: Vec<u8>| {
         Case::new(format!("tiff-{name}"), what, RUN, &[FILE]).file(FILE, bytes)
     };
-    let doubles = |numbers: &[f64]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
+    let doubles =
+        |numbers: &[f64]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
     let directory = 8 + good().strip.len();
     let mut big = b"II\x2b\0\x08\0\0\0".to_vec();
     big.extend(u64::MAX.to_le_bytes());
@@ -140,31 +142,85 @@ pub fn tiffs() -> Vec<Case> {
         }),
         case("no-width", "no width", good().without(WIDTH).bytes()),
         case("width-0", "a width of 0", good().with(WIDTH, 0).bytes()),
-        case("square", "two million posts square in a few hundred bytes", good().with(WIDTH, 2_000_000).with(HEIGHT, 2_000_000).with(ROWS, 2_000_000).bytes()),
+        case(
+            "square",
+            "two million posts square in a few hundred bytes",
+            good().with(WIDTH, 2_000_000).with(HEIGHT, 2_000_000).with(ROWS, 2_000_000).bytes(),
+        ),
         case("square-deflate", "the same, compressed", {
-            good().with(WIDTH, 2_000_000).with(HEIGHT, 2_000_000).with(ROWS, 2_000_000).with(COMPRESSION, DEFLATE).strip(zlib(&[0; 48])).bytes()
+            good()
+                .with(WIDTH, 2_000_000)
+                .with(HEIGHT, 2_000_000)
+                .with(ROWS, 2_000_000)
+                .with(COMPRESSION, DEFLATE)
+                .strip(zlib(&[0; 48]))
+                .bytes()
         }),
-        case("wraps", "2^32 - 1 posts square, whose bytes overflow", good().with(WIDTH, u32::MAX).with(HEIGHT, u32::MAX).bytes()),
+        case(
+            "wraps",
+            "2^32 - 1 posts square, whose bytes overflow",
+            good().with(WIDTH, u32::MAX).with(HEIGHT, u32::MAX).bytes(),
+        ),
         case("rows-0", "strips of no rows", good().with(ROWS, 0).bytes()),
-        case("tiles-0", "tiles of 0 x 0", good().with(322, 0).with(323, 0).with(324, 8).with(325, 48).bytes()),
-        case("tiles-top", "tiles of 2^32 - 1", good().with(322, u32::MAX).with(323, u32::MAX).with(324, 8).with(325, 48).bytes()),
+        case(
+            "tiles-0",
+            "tiles of 0 x 0",
+            good().with(322, 0).with(323, 0).with(324, 8).with(325, 48).bytes(),
+        ),
+        case(
+            "tiles-top",
+            "tiles of 2^32 - 1",
+            good().with(322, u32::MAX).with(323, u32::MAX).with(324, 8).with(325, 48).bytes(),
+        ),
         case("strip-beyond", "a strip beyond the file", good().with(OFFSETS, u32::MAX).bytes()),
         case("strip-short", "a strip of too few posts", good().with(COUNTS, 40).bytes()),
         case("strip-long", "a strip of 2^32 - 1 bytes", good().with(COUNTS, u32::MAX).bytes()),
-        case("strips-many", "four milliards of strips", good().entry((OFFSETS, 4, u32::MAX, vec![8; 8])).bytes()),
-        case("bomb", "sixteen kilobytes of deflate that are sixteen megabytes", good().with(COMPRESSION, DEFLATE).strip(bomb(0, 1 << 24)).bytes()),
-        case("deflate-garbage", "a strip that is no deflate", good().with(COMPRESSION, DEFLATE).strip(vec![0x5a; 40]).bytes()),
-        case("deflate-short", "deflate of too few posts", good().with(COMPRESSION, DEFLATE).strip(zlib(&[0; 12])).bytes()),
-        case("lzw-garbage", "a strip that is no LZW", good().with(COMPRESSION, 5).strip(vec![0xff; 40]).bytes()),
+        case(
+            "strips-many",
+            "four milliards of strips",
+            good().entry((OFFSETS, 4, u32::MAX, vec![8; 8])).bytes(),
+        ),
+        case(
+            "bomb",
+            "sixteen kilobytes of deflate that are sixteen megabytes",
+            good().with(COMPRESSION, DEFLATE).strip(bomb(0, 1 << 24)).bytes(),
+        ),
+        case(
+            "deflate-garbage",
+            "a strip that is no deflate",
+            good().with(COMPRESSION, DEFLATE).strip(vec![0x5a; 40]).bytes(),
+        ),
+        case(
+            "deflate-short",
+            "deflate of too few posts",
+            good().with(COMPRESSION, DEFLATE).strip(zlib(&[0; 12])).bytes(),
+        ),
+        case(
+            "lzw-garbage",
+            "a strip that is no LZW",
+            good().with(COMPRESSION, 5).strip(vec![0xff; 40]).bytes(),
+        ),
         case("compression", "a compression that is none", good().with(COMPRESSION, 60_000).bytes()),
         case("samples", "65535 numbers a post", good().with(SAMPLES, 65_535).bytes()),
         case("bits-0", "posts of 0 bits", good().with(BITS, 0).bytes()),
         case("complex", "posts of complex numbers", good().with(FORMAT, 6).bytes()),
-        case("value-type", "a width of an unknown type", good().entry((WIDTH, 99, 1, vec![4, 0, 0, 0])).bytes()),
+        case(
+            "value-type",
+            "a width of an unknown type",
+            good().entry((WIDTH, 99, 1, vec![4, 0, 0, 0])).bytes(),
+        ),
         case("scale-0", "posts 0 m apart", good().entry((SCALE, 12, 3, doubles(&[0.0, 0.0, 0.0]))).bytes()),
-        case("scale-nan", "posts that are not a number apart", good().entry((SCALE, 12, 3, doubles(&[f64::NAN, 0.5, 0.0]))).bytes()),
+        case(
+            "scale-nan",
+            "posts that are not a number apart",
+            good().entry((SCALE, 12, 3, doubles(&[f64::NAN, 0.5, 0.0]))).bytes(),
+        ),
         case("scale-many", "two milliards of scales", good().entry((SCALE, 12, 1 << 31, vec![0; 8])).bytes()),
-        case("tiepoint-far", "a corner at 1e300 m", good().entry((TIEPOINT, 12, 6, doubles(&[0.0, 0.0, 0.0, 1e300, 0.0, 0.0]))).bytes()),
+        case(
+            "tiepoint-far",
+            "a corner at 1e300 m",
+            good().entry((TIEPOINT, 12, 6, doubles(&[0.0, 0.0, 0.0, 1e300, 0.0, 0.0]))).bytes(),
+        ),
         case("all-nan", "posts of which none is a number", {
             good().strip([f32::NAN; 12].iter().flat_map(|post| post.to_le_bytes()).collect()).bytes()
         }),

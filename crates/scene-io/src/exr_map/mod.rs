@@ -1,5 +1,6 @@
 //! The maps of one sensor as named channels, and those as OpenEXR. Conventions: `docs/files.md`.
 
+mod header;
 mod light;
 mod read;
 mod write;

@@ -1,5 +1,6 @@
 //! `manifest.json` of a pack: what it is, and each of its files by size and digest. Schema: `docs/pack.schema.json`.
 
+mod scene;
 mod verify;
 
 use std::path::Path;

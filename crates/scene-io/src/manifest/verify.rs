@@ -1,11 +1,11 @@
 //! A manifest from a file, and the pack held to it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::{FILE_NAME, FileType, MANIFEST_FORMAT, Manifest, ManifestFile, PackKind, unfit};
+use super::{FILE_NAME, FileType, MANIFEST_FORMAT, Manifest, ManifestFile, ManifestSensor, PackKind, unfit};
 use crate::error::Fault;
 use crate::{SceneIoError, bytes, digest};
 
@@ -72,6 +72,8 @@ impl Manifest {
         }
         hexadecimal("scene.sha256", &self.scene.sha256)?;
         self.check_sensors()?;
+        // Looked up, not searched: a manifest may have thousands of both.
+        let sensors = self.sensors.iter().map(|sensor| (sensor.name.as_str(), sensor)).collect();
         let mut paths = BTreeSet::new();
         for (index, file) in self.files.iter().enumerate() {
             let place = format!("files[{index}] {:?}", file.path.chars().take(80).collect::<String>());
@@ -80,7 +82,7 @@ impl Manifest {
                 return Err(Fault::new(place, "there twice", "each file once"));
             }
             hexadecimal(&format!("{place}: sha256"), &file.sha256)?;
-            self.check_shape(&place, file)?;
+            check_shape(&place, file, &sensors)?;
         }
         Ok(())
     }
@@ -107,27 +109,31 @@ impl Manifest {
         }
         Ok(())
     }
+}
 
-    /// A map has the size of the sensor in whose folder, or under whose name, it stands.
-    fn check_shape(&self, place: &str, file: &ManifestFile) -> Result<(), Fault> {
-        let (kind, shape) = match (file.kind, &file.shape) {
-            (None, None) => return Ok(()),
-            (Some(kind), Some(shape)) => (kind, shape),
-            _ => return Err(Fault::new(place, "one of type and shape", "both or neither")),
-        };
-        let lengths = if kind == FileType::Exr { 2..=2 } else { 2..=3 };
-        if !lengths.contains(&shape.len()) {
-            let found = format!("a shape of {} numbers", shape.len());
-            return Err(Fault::new(place, found, "rows and columns, and components of an array"));
+/// A map has the size of the sensor in whose folder, or under whose name, it stands.
+fn check_shape(
+    place: &str,
+    file: &ManifestFile,
+    sensors: &BTreeMap<&str, &ManifestSensor>,
+) -> Result<(), Fault> {
+    let (kind, shape) = match (file.kind, &file.shape) {
+        (None, None) => return Ok(()),
+        (Some(kind), Some(shape)) => (kind, shape),
+        _ => return Err(Fault::new(place, "one of type and shape", "both or neither")),
+    };
+    let lengths = if kind == FileType::Exr { 2..=2 } else { 2..=3 };
+    if !lengths.contains(&shape.len()) {
+        let found = format!("a shape of {} numbers", shape.len());
+        return Err(Fault::new(place, found, "rows and columns, and components of an array"));
+    }
+    let (folder, _) = file.path.split_once('/').unwrap_or((file.path.trim_end_matches(".exr"), ""));
+    match sensors.get(folder) {
+        Some(sensor) if shape[..2] != [sensor.rows, sensor.columns] => {
+            let expected = format!("{} rows of {} columns, as {folder} has", sensor.rows, sensor.columns);
+            Err(Fault::new(place, format!("{} rows of {} columns", shape[0], shape[1]), expected))
         }
-        let (folder, _) = file.path.split_once('/').unwrap_or((file.path.trim_end_matches(".exr"), ""));
-        match self.sensors.iter().find(|sensor| sensor.name == folder) {
-            Some(sensor) if shape[..2] != [sensor.rows, sensor.columns] => {
-                let expected = format!("{} rows of {} columns, as {folder} has", sensor.rows, sensor.columns);
-                Err(Fault::new(place, format!("{} rows of {} columns", shape[0], shape[1]), expected))
-            }
-            _ => Ok(()),
-        }
+        _ => Ok(()),
     }
 }
 
