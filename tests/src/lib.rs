@@ -1,6 +1,7 @@
 //! Helpers that the whole-house tests share: meshes and scenes from numbers, rigs by pose, both renderers.
 
 pub mod files;
+pub mod hostile;
 pub mod light;
 pub mod naive;
 pub mod plants;

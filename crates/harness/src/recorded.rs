@@ -197,17 +197,31 @@ pub(crate) fn word(model: FluxModel) -> &'static str {
     }
 }
 
+/// How much a recording of a scene may ask for: a small file can hold a map of 2^26 zeros, which is no sensor's.
+fn limits(scene: &Scene) -> Limits {
+    let sizes = scene.sensors().filter_map(|sensor| scene.size(sensor));
+    let all: u64 = sizes.map(|(columns, rows)| u64::from(columns) * u64::from(rows)).sum();
+    let most = Limits::default();
+    // CHOICE: a map of a million cells is little, and is refused by its size and its sensor later; a thousand channels of
+    // doubles are more than a recording has.
+    Limits {
+        cells: all.max(1 << 20).min(most.cells),
+        bytes: ((1 << 26) + (all << 13)).min(most.bytes),
+        size: None,
+    }
+}
+
 impl Recorded {
     /// Reads the recording of a scene's sensors from a folder.
     ///
     /// # Errors
     /// Names the file, the channel and the cell that breaks the conventions.
     pub fn read(folder: &Path, scene: &Scene, resolution: Resolution) -> Result<Self, RecordingError> {
-        Self::of_folder(folder, scene, resolution, &Self::channels(folder)?)
+        Self::of_folder(folder, scene, resolution, &Self::channels(folder, scene)?)
     }
 
-    /// The channels of a folder that holds one recording.
-    pub(crate) fn channels(folder: &Path) -> Result<Channels, RecordingError> {
+    /// The channels of a folder that holds one recording of a scene.
+    pub(crate) fn channels(folder: &Path, scene: &Scene) -> Result<Channels, RecordingError> {
         let several = recordings_in(folder);
         if !several.is_empty() {
             let found = match several.as_slice() {
@@ -216,7 +230,7 @@ impl Recorded {
             };
             return Err(RecordingError::Several { folder: folder.to_path_buf(), found });
         }
-        Ok(read_channels(folder, &Limits::default())?)
+        Ok(read_channels(folder, &limits(scene))?)
     }
 
     /// What the channels of a folder say of a scene's sensors.

@@ -2,12 +2,13 @@
 
 use std::fmt;
 use std::io;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use miette::{Diagnostic, NamedSource, SourceSpan};
+use miette::Diagnostic;
 use raypencil_scene::SceneError;
 use thiserror::Error;
+
+use crate::TomlProblem;
 
 /// Why a file could not be read or written.
 #[derive(Debug, Error, Diagnostic)]
@@ -153,56 +154,23 @@ impl Fault {
         Self { place: place.into(), found: found.into(), expected: expected.into() }
     }
 
-    /// Adds the file.
+    /// Adds the file. What the file itself says is shortened: it may be a name of a million letters.
     pub(crate) fn in_file(self, file: &Path) -> Box<Problem> {
-        let Self { place, found, expected } = self;
+        let [place, found, expected] = [self.place, self.found, self.expected].map(shortened);
         Box::new(Problem { file: file.display().to_string(), place, found, expected })
     }
 }
 
-/// A line and column of a scene TOML and what is wrong there.
-#[derive(Debug, Error, Diagnostic)]
-#[error("{file}:{line}:{column}: {message}")]
-#[diagnostic(code(raypencil::toml))]
-pub struct TomlProblem {
-    /// The file.
-    pub file: String,
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// What was found there and what was expected.
-    pub message: String,
-    #[source_code]
-    text: NamedSource<String>,
-    #[label("here")]
-    span: SourceSpan,
-}
+/// The longest part of a message, letters.
+const LONGEST: usize = 400;
 
-impl TomlProblem {
-    /// Marks the bytes `span` of `text`, the contents of `file`.
-    pub(crate) fn new(file: &Path, text: &str, span: Range<usize>, message: impl Into<String>) -> Self {
-        let file = file.display().to_string();
-        // A span past the end (a missing key of an empty file) marks the end.
-        let start = span.start.min(text.len());
-        let before = &text.as_bytes()[..start];
-        let line_start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
-        let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
-        let column = 1 + String::from_utf8_lossy(&before[line_start..]).chars().count();
-        let length = span.end.min(text.len()).saturating_sub(start);
-        Self {
-            text: NamedSource::new(&file, text.to_string()),
-            file,
-            line,
-            column,
-            message: message.into(),
-            span: SourceSpan::new(start.into(), length),
-        }
+/// The start and the end of a text that is too long to read.
+pub(crate) fn shortened(text: String) -> String {
+    let letters = text.chars().count();
+    if letters <= LONGEST {
+        return text;
     }
-
-    /// The bytes of the file that the caret marks.
-    pub fn marked(&self) -> &str {
-        let start = self.span.offset();
-        self.text.inner().get(start..start + self.span.len()).unwrap_or("")
-    }
+    let start: String = text.chars().take(LONGEST / 2).collect();
+    let end: String = text.chars().skip(letters - LONGEST / 2).collect();
+    format!("{start} ... {end}")
 }

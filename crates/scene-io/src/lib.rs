@@ -42,14 +42,17 @@ mod plan;
 mod provenance;
 mod resolve;
 mod resolved;
+mod toml_problem;
 
 pub use array::{Array, ArrayNumber, Storage, Values};
 pub use atomic::write_atomically;
 pub use channels::{Channel, Channels, read_channels, read_listed};
 pub use dem::{Dem, Registration, read_dem};
 pub use digest::scene_sha256;
-pub use error::{Problem, SceneIoError, TomlProblem};
-pub use exr_map::{Attributes, ExrMap, Limits, Raster, read_exr, read_exr_map, write_exr, write_exr_map};
+pub use error::{Problem, SceneIoError};
+pub use exr_map::{
+    Attributes, ExrMap, Limits, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map,
+};
 pub use gltf_mesh::{
     DEFAULT_REFLECTIVITY, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
     write_terrain_glb,
@@ -59,7 +62,8 @@ pub use manifest::{
     ChannelType, FileRole, FileType, FluxWord, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile,
     ManifestScene, ManifestSensor, PackKind,
 };
-pub use npy::{read_npy, write_npy};
-pub use pfm::{read_pfm, write_pfm};
+pub use npy::{npy_from_bytes, read_npy, write_npy};
+pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use provenance::{Arithmetic, Provenance, Total};
 pub use resolved::write_resolved;
+pub use toml_problem::TomlProblem;

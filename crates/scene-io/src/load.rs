@@ -14,7 +14,7 @@ use crate::plan::{self, DemPart, Plan, Terrain};
 use crate::{SceneIoError, bytes, dem, resolve, resolved, scene_sha256};
 
 /// A scene file larger than this is none: 1 MiB.
-const LARGEST_TOML: u64 = 1 << 20;
+pub(crate) const LARGEST_TOML: u64 = 1 << 20;
 
 /// Side of a plain generated ground, metres: the default sensors see 20 m, to every side.
 const PLAIN_EXTENT: f64 = 40.0;

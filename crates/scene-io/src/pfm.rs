@@ -18,8 +18,16 @@ use crate::{Limits, SceneIoError, bytes, write_atomically};
 pub fn read_pfm(path: impl AsRef<Path>, limits: &Limits) -> Result<Array, SceneIoError> {
     let path = path.as_ref();
     let most = limits.bytes.saturating_add(1 << 10);
-    let file = bytes::read_file(path, most).map_err(|error| SceneIoError::io(path, "read", error))?;
-    decode(&file, limits).map_err(|fault| SceneIoError::Array(fault.in_file(path)))
+    let bytes = bytes::read_file(path, most).map_err(|error| SceneIoError::io(path, "read", error))?;
+    pfm_from_bytes(&bytes, path, limits)
+}
+
+/// As [`read_pfm`] from the bytes of a file; `file` is for messages.
+///
+/// # Errors
+/// As [`read_pfm`].
+pub fn pfm_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<Array, SceneIoError> {
+    decode(bytes, limits).map_err(|fault| SceneIoError::Array(fault.in_file(file)))
 }
 
 fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {

@@ -15,6 +15,9 @@ const FORMAT: u64 = 1;
 /// A note larger than this is none: 1 MiB.
 const LARGEST: u64 = 1 << 20;
 
+/// The longest text that people are shown, bytes.
+const LONGEST: usize = 1 << 10;
+
 /// What a recording says of itself. Other keys, such as versions and seeds, are for people.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Provenance {
@@ -62,9 +65,17 @@ impl Provenance {
         if !path.exists() {
             return Ok(None);
         }
-        let unfit = |fault: Fault| SceneIoError::Recording(fault.in_file(&path));
         let text =
             bytes::read_file(&path, LARGEST).map_err(|error| SceneIoError::io(&path, "read", error))?;
+        Self::from_bytes(&text, &path).map(Some)
+    }
+
+    /// A note from the bytes of its file; `file` is for messages.
+    ///
+    /// # Errors
+    /// As [`Provenance::read`].
+    pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Self, SceneIoError> {
+        let unfit = |fault: Fault| SceneIoError::Recording(fault.in_file(file));
         let invalid = |error: serde_json::Error| {
             unfit(Fault::new("JSON", error.to_string(), "what docs/files.md describes"))
         };
@@ -73,11 +84,25 @@ impl Provenance {
         struct Head {
             format: u64,
         }
-        let Head { format } = serde_json::from_slice(&text).map_err(invalid)?;
+        let Head { format } = serde_json::from_slice(bytes).map_err(invalid)?;
         if format != FORMAT {
             return Err(unfit(Fault::new("format", format.to_string(), FORMAT.to_string())));
         }
-        let read: Self = serde_json::from_slice(&text).map_err(invalid)?;
+        let read: Self = serde_json::from_slice(bytes).map_err(invalid)?;
+        let texts = [
+            ("program", &read.program, LONGEST),
+            ("scene.name", &read.scene.name, LONGEST),
+            ("scene.sha256", &read.scene.sha256, 64),
+        ];
+        for (place, text, most) in texts {
+            if text.len() > most {
+                return Err(unfit(Fault::new(
+                    place,
+                    format!("{} bytes", text.len()),
+                    format!("at most {most}"),
+                )));
+            }
+        }
         let is_flux = |value: f64| value.is_finite() && value >= 0.0;
         if let Some(index) =
             read.totals.iter().position(|total| !is_flux(total.mean) || !is_flux(total.error))
@@ -90,7 +115,7 @@ impl Provenance {
                 "two finite numbers, not negative",
             )));
         }
-        Ok(Some(read))
+        Ok(read)
     }
 }
 

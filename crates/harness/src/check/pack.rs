@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use raypencil_scene::{Resolution, Scene};
 use raypencil_scene_io::{
-    FileRole, Limits, LoadedScene, Manifest, Overrides, PackKind, SceneIoError, Storage, load, read_listed,
-    scene_sha256,
+    FileRole, Limits, LoadedScene, Manifest, PackKind, SceneIoError, Storage, read_listed, scene_sha256,
 };
 
 use super::{Check, Truth, check};
@@ -76,7 +75,7 @@ pub fn check_pack(
     progress.stage("reading the pack");
     let manifest = Manifest::read_verified(pack)?;
     let scene_file = pack.join("scene.toml");
-    let LoadedScene { scene, .. } = load(&scene_file.to_string_lossy(), &Overrides::default())?;
+    let LoadedScene { scene, .. } = manifest.load_scene(pack)?;
     let sha256 = scene_sha256(&scene);
     let answers = |found: String, expected: &str| CheckError::Answers {
         pack: pack.to_path_buf(),

@@ -112,7 +112,7 @@ impl Outsider {
     pub fn read(folder: &Path, scene: &Scene) -> Result<Self, OutsideError> {
         let note = note(folder, scene)?;
         let resolution = note.as_ref().map_or(Resolution::F64, |note| resolution_of(note.arithmetic));
-        let channels = Recorded::channels(folder)?;
+        let channels = Recorded::channels(folder, scene)?;
         let recorded = Recorded::of_folder(folder, scene, resolution, &channels)?;
         let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
         let reader = Extras { folder, scene, channels: &channels };

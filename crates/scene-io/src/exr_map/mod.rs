@@ -1,5 +1,6 @@
 //! The maps of one sensor as named channels, and those as OpenEXR. Conventions: `docs/files.md`.
 
+mod header;
 mod light;
 mod read;
 mod write;
@@ -13,7 +14,7 @@ use raypencil_scene::{FaceId, Image, Maybe, Sample, SensorId, SensorMap};
 use crate::SceneIoError;
 use crate::error::Fault;
 
-pub use read::{Limits, read_exr};
+pub use read::{Limits, exr_from_bytes, read_exr};
 pub use write::write_exr;
 
 /// The channel values of a cell without a hit.

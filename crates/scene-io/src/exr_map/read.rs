@@ -13,7 +13,7 @@ use exr::meta::header::Header;
 use exr::prelude::Compression;
 use raypencil_scene::Image;
 
-use super::{ExrMap, Raster, channel};
+use super::{ExrMap, Raster, channel, header};
 use crate::error::Fault;
 use crate::{SceneIoError, bytes};
 
@@ -50,8 +50,17 @@ impl Limits {
 pub fn read_exr(path: impl AsRef<Path>, limits: &Limits) -> Result<ExrMap, SceneIoError> {
     let path = path.as_ref();
     // A file larger than the decompressed data that is allowed has something else in it.
-    let file = bytes::read_file(path, limits.bytes).map_err(|error| SceneIoError::io(path, "read", error))?;
-    decode(&file, limits).map_err(|fault| SceneIoError::Exr(fault.in_file(path)))
+    let bytes =
+        bytes::read_file(path, limits.bytes).map_err(|error| SceneIoError::io(path, "read", error))?;
+    exr_from_bytes(&bytes, path, limits)
+}
+
+/// As [`read_exr`] from the bytes of a file; `file` is for messages.
+///
+/// # Errors
+/// As [`read_exr`].
+pub fn exr_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<ExrMap, SceneIoError> {
+    decode(bytes, limits).map_err(|fault| SceneIoError::Exr(fault.in_file(file)))
 }
 
 fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
@@ -60,6 +69,7 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
             Fault::new(place, error.to_string(), "an OpenEXR file that is complete")
         }
     };
+    header::check(file)?;
     // Headers alone are read here; the offset tables and the pixels wait.
     let reader = exr::block::read(Cursor::new(file), false).map_err(invalid("header"))?;
     let [header] = reader.headers() else {
@@ -67,6 +77,7 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
         return Err(Fault::new("header", found, "one part: split multi-part files first"));
     };
     check(header, file.len() as u64, limits)?;
+    header::blocks(file, header)?;
     let (width, height) = (header.layer_size.width() as u32, header.layer_size.height() as u32);
 
     let image = exr::image::read::read()

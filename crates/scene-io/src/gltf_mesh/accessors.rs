@@ -30,7 +30,7 @@ pub(super) fn positions(
         let found = format!("POSITION of {}", kind_name(component, shape));
         return Err(Fault::new(place(index), found, "VEC3 of F32"));
     }
-    let elements = Elements::of(root, buffers, accessor, index, 12)?;
+    let elements = Elements::of(root, buffers, accessor, index, [12, 4])?;
     let mut vertices = Vec::with_capacity(elements.count);
     for number in 0..elements.count {
         let bytes = elements.bytes(number);
@@ -68,7 +68,7 @@ pub(super) fn indices(
             return Err(Fault::new(place(index), found, "SCALAR of U8, U16 or U32"));
         }
     };
-    let elements = Elements::of(root, buffers, accessor, index, size)?;
+    let elements = Elements::of(root, buffers, accessor, index, [size, size])?;
     let mut indices = Vec::with_capacity(elements.count);
     for number in 0..elements.count {
         // Little-endian: the absent high bytes are zero.
@@ -113,12 +113,13 @@ struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
+    /// The elements of `size` bytes each, made of numbers of `component` bytes.
     fn of(
         root: &Root,
         buffers: &'a mut Buffers<'_>,
         accessor: &Accessor,
         index: usize,
-        size: usize,
+        [size, component]: [usize; 2],
     ) -> Result<Self, Fault> {
         // CHOICE: sparse accessors serve morph targets, and a terrain has none.
         if accessor.sparse.is_some() {
@@ -137,8 +138,18 @@ impl<'a> Elements<'a> {
             let found = format!("a stride of {stride} bytes in buffer view {view_index}");
             return Err(Fault::new(place(index), found, format!("{size} to 252")));
         }
+        // A number at another place is a part of two others: the file was not written for what it says. (§3.6.2.4)
+        let view_offset =
+            root.buffer_views.get(view_index).and_then(|view| view.byte_offset).map_or(0, |at| at.0);
+        let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+        let start = u128::from(view_offset) + u128::from(offset);
+        if !start.is_multiple_of(component as u128) || !stride.is_multiple_of(component) {
+            let found =
+                format!("numbers of {component} bytes from byte {start} of their buffer, {stride} apart");
+            return Err(Fault::new(place(index), found, format!("multiples of {component}")));
+        }
         let view = buffers.view(view_index)?;
-        let (count, offset) = (accessor.count.0, accessor.byte_offset.map_or(0, |offset| offset.0));
+        let count = accessor.count.0;
         // The last element need not be followed by the rest of its stride.
         let end = (u128::from(count).saturating_sub(1)) * stride as u128 + size as u128 + u128::from(offset);
         if count == 0 || end > view.len() as u128 {

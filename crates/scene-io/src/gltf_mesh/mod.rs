@@ -6,6 +6,7 @@
 mod accessors;
 mod buffers;
 mod container;
+mod json;
 mod materials;
 mod nodes;
 mod stated;
@@ -38,6 +39,10 @@ pub(crate) const LARGEST_FILE: u64 = 1 << 30;
 /// The most faces, and the most vertices, of all instances together. A small file can ask for any number of
 /// instances of one mesh; 2^25 of each take about 1.5 GB.
 const MOST: u64 = 1 << 25;
+
+/// The most primitives of all instances together, points and lines too: each takes time, whatever it draws. CHOICE: a
+/// mesh of rocks has a primitive for each rock, so four million.
+const MOST_PRIMITIVES: usize = 1 << 22;
 
 /// Loads a `.glb` or `.gltf` terrain; materials that bring no reflectivity get [`DEFAULT_REFLECTIVITY`].
 ///
@@ -91,7 +96,7 @@ fn parse(
     let folder = file.parent().unwrap_or(Path::new(""));
     let unfit = |fault: Fault| SceneIoError::Gltf(fault.in_file(file));
     let container = container::split(bytes).map_err(unfit)?;
-    let root = root(container.json).map_err(unfit)?;
+    let root = json::root(container.json).map_err(unfit)?;
     let mut buffers = Buffers::new(&root, folder, container.bin);
     let placed = nodes::placed(&root).map_err(unfit)?;
     let materials = materials::read(&root, container.json, reflectivity).map_err(unfit)?;
@@ -119,51 +124,6 @@ fn parse(
     Ok((mesh, buffers.digests().collect()))
 }
 
-/// The parts of the JSON that say whether the rest can be understood.
-#[derive(Deserialize)]
-struct Head {
-    asset: HeadAsset,
-    #[serde(default, rename = "extensionsRequired")]
-    required: Vec<String>,
-    #[serde(default, rename = "extensionsUsed")]
-    used: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct HeadAsset {
-    version: String,
-    #[serde(rename = "minVersion")]
-    min_version: Option<String>,
-}
-
-/// Parses the JSON. Depth is limited by serde_json, which refuses what is nested deeper than 128 and skips
-/// unknown keys without recursion.
-fn root(json: &[u8]) -> Result<Root, Fault> {
-    let unfit = |error: serde_json::Error| Fault::new("JSON", error.to_string(), "a glTF 2.0 asset");
-    let head: Head = serde_json::from_slice(json).map_err(unfit)?;
-    let HeadAsset { version, min_version } = &head.asset;
-    if !version.starts_with("2.") || min_version.as_ref().is_some_and(|least| least != "2.0") {
-        let found = format!("version {version:?}, minVersion {min_version:?}");
-        return Err(Fault::new("asset", found, "glTF 2.0"));
-    }
-    // Extensions of light and colour do not move a vertex.
-    let harmless = |name: &str| {
-        ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"]
-            .iter()
-            .any(|start| name.starts_with(start))
-    };
-    if let Some(name) = head.required.iter().find(|name| !harmless(name)) {
-        let expected =
-            "plain buffers and nodes; extensions are known only for materials, textures and lights";
-        return Err(Fault::new("extensionsRequired", format!("{name:?}"), expected));
-    }
-    // Without it most of the ground would be missing, and nothing would say so.
-    if head.used.iter().any(|name| name == "EXT_mesh_gpu_instancing") {
-        return Err(Fault::new("extensionsUsed", "\"EXT_mesh_gpu_instancing\"", "a node for each instance"));
-    }
-    serde_json::from_slice(json).map_err(unfit)
-}
-
 /// What becomes a mesh, in the global frame.
 #[derive(Default)]
 struct Parts {
@@ -185,9 +145,16 @@ fn assemble(
 ) -> Result<Parts, Fault> {
     // How much it will be is known before anything is read: no small file can ask for much memory.
     let mut totals = [0_u64; 2];
+    let mut visits = 0;
     for node in &placed {
         let mut shared = BTreeSet::new();
-        for primitive in primitives(root, node.node)? {
+        let primitives = primitives(root, node.node)?;
+        visits += primitives.len();
+        if visits > MOST_PRIMITIVES {
+            let found = format!("more than {MOST_PRIMITIVES} primitives in all instances");
+            return Err(Fault::new("nodes", found, "fewer"));
+        }
+        for primitive in primitives {
             let Some(Drawn { mode, positions, corners }) = drawn(root, primitive)? else { continue };
             if shared.insert(positions.value()) {
                 totals[0] = totals[0].saturating_add(accessors::get(root, positions)?.count.0);

@@ -1,18 +1,18 @@
 //! A manifest from a file, and the pack held to it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::{FILE_NAME, FileType, MANIFEST_FORMAT, Manifest, ManifestFile, PackKind, unfit};
+use super::{FILE_NAME, FileType, MANIFEST_FORMAT, Manifest, ManifestFile, ManifestSensor, PackKind, unfit};
 use crate::error::Fault;
 use crate::{SceneIoError, bytes, digest};
 
 /// A manifest larger than this is none: 16 MiB.
 const LARGEST: u64 = 1 << 24;
 
-/// The manifest of `folder` as it stands in its file.
+/// The manifest of `folder`, which does not contradict itself.
 pub(super) fn read(folder: &Path) -> Result<Manifest, SceneIoError> {
     let path = folder.join(FILE_NAME);
     if !path.exists() {
@@ -20,25 +20,41 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, SceneIoError> {
         return Err(unfit(folder, Fault::new("pack", format!("no {FILE_NAME}"), expected)));
     }
     let text = bytes::read_file(&path, LARGEST).map_err(|error| SceneIoError::io(&path, "read", error))?;
+    Manifest::from_bytes(&text, &path)
+}
+
+/// The manifest that a text is, checked by its form alone.
+fn parse(text: &[u8], path: &Path) -> Result<Manifest, SceneIoError> {
     let invalid = |error: serde_json::Error| {
-        unfit(&path, Fault::new("JSON", error.to_string(), "a manifest as docs/pack.schema.json describes"))
+        unfit(path, Fault::new("JSON", error.to_string(), "a manifest as docs/pack.schema.json describes"))
     };
     // A newer format fails by its number and not by a key.
     #[derive(Deserialize)]
     struct Head {
         format: u64,
     }
-    let Head { format } = serde_json::from_slice(&text).map_err(invalid)?;
+    let Head { format } = serde_json::from_slice(text).map_err(invalid)?;
     if format != u64::from(MANIFEST_FORMAT) {
         let newer =
             if format > MANIFEST_FORMAT.into() { " (was it written by a newer version?)" } else { "" };
         let fault = Fault::new("format", format.to_string(), format!("{MANIFEST_FORMAT}{newer}"));
-        return Err(unfit(&path, fault));
+        return Err(unfit(path, fault));
     }
-    serde_json::from_slice(&text).map_err(invalid)
+    serde_json::from_slice(text).map_err(invalid)
 }
 
 impl Manifest {
+    /// A manifest from the bytes of its file, held to its own words but to none of the files that it lists;
+    /// `file` is for messages.
+    ///
+    /// # Errors
+    /// Names the manifest and the place in it, what was found and what was expected.
+    pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Self, SceneIoError> {
+        let manifest = parse(bytes, file)?;
+        manifest.check().map_err(|fault| unfit(file, fault))?;
+        Ok(manifest)
+    }
+
     /// Refuses what contradicts itself.
     pub(super) fn check(&self) -> Result<(), Fault> {
         if self.format != MANIFEST_FORMAT {
@@ -56,6 +72,8 @@ impl Manifest {
         }
         hexadecimal("scene.sha256", &self.scene.sha256)?;
         self.check_sensors()?;
+        // Looked up, not searched: a manifest may have thousands of both.
+        let sensors = self.sensors.iter().map(|sensor| (sensor.name.as_str(), sensor)).collect();
         let mut paths = BTreeSet::new();
         for (index, file) in self.files.iter().enumerate() {
             let place = format!("files[{index}] {:?}", file.path.chars().take(80).collect::<String>());
@@ -64,7 +82,7 @@ impl Manifest {
                 return Err(Fault::new(place, "there twice", "each file once"));
             }
             hexadecimal(&format!("{place}: sha256"), &file.sha256)?;
-            self.check_shape(&place, file)?;
+            check_shape(&place, file, &sensors)?;
         }
         Ok(())
     }
@@ -91,27 +109,31 @@ impl Manifest {
         }
         Ok(())
     }
+}
 
-    /// A map has the size of the sensor in whose folder, or under whose name, it stands.
-    fn check_shape(&self, place: &str, file: &ManifestFile) -> Result<(), Fault> {
-        let (kind, shape) = match (file.kind, &file.shape) {
-            (None, None) => return Ok(()),
-            (Some(kind), Some(shape)) => (kind, shape),
-            _ => return Err(Fault::new(place, "one of type and shape", "both or neither")),
-        };
-        let lengths = if kind == FileType::Exr { 2..=2 } else { 2..=3 };
-        if !lengths.contains(&shape.len()) {
-            let found = format!("a shape of {} numbers", shape.len());
-            return Err(Fault::new(place, found, "rows and columns, and components of an array"));
+/// A map has the size of the sensor in whose folder, or under whose name, it stands.
+fn check_shape(
+    place: &str,
+    file: &ManifestFile,
+    sensors: &BTreeMap<&str, &ManifestSensor>,
+) -> Result<(), Fault> {
+    let (kind, shape) = match (file.kind, &file.shape) {
+        (None, None) => return Ok(()),
+        (Some(kind), Some(shape)) => (kind, shape),
+        _ => return Err(Fault::new(place, "one of type and shape", "both or neither")),
+    };
+    let lengths = if kind == FileType::Exr { 2..=2 } else { 2..=3 };
+    if !lengths.contains(&shape.len()) {
+        let found = format!("a shape of {} numbers", shape.len());
+        return Err(Fault::new(place, found, "rows and columns, and components of an array"));
+    }
+    let (folder, _) = file.path.split_once('/').unwrap_or((file.path.trim_end_matches(".exr"), ""));
+    match sensors.get(folder) {
+        Some(sensor) if shape[..2] != [sensor.rows, sensor.columns] => {
+            let expected = format!("{} rows of {} columns, as {folder} has", sensor.rows, sensor.columns);
+            Err(Fault::new(place, format!("{} rows of {} columns", shape[0], shape[1]), expected))
         }
-        let (folder, _) = file.path.split_once('/').unwrap_or((file.path.trim_end_matches(".exr"), ""));
-        match self.sensors.iter().find(|sensor| sensor.name == folder) {
-            Some(sensor) if shape[..2] != [sensor.rows, sensor.columns] => {
-                let expected = format!("{} rows of {} columns, as {folder} has", sensor.rows, sensor.columns);
-                Err(Fault::new(place, format!("{} rows of {} columns", shape[0], shape[1]), expected))
-            }
-            _ => Ok(()),
-        }
+        _ => Ok(()),
     }
 }
 

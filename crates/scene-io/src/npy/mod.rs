@@ -34,8 +34,16 @@ pub fn read_npy(path: impl AsRef<Path>, limits: &Limits) -> Result<Array, SceneI
     let path = path.as_ref();
     // The header comes on top of the numbers.
     let most = limits.bytes.saturating_add(1 << 16);
-    let file = bytes::read_file(path, most).map_err(|error| SceneIoError::io(path, "read", error))?;
-    decode(&file, limits).map_err(|fault| SceneIoError::Array(fault.in_file(path)))
+    let bytes = bytes::read_file(path, most).map_err(|error| SceneIoError::io(path, "read", error))?;
+    npy_from_bytes(&bytes, path, limits)
+}
+
+/// As [`read_npy`] from the bytes of a file; `file` is for messages.
+///
+/// # Errors
+/// As [`read_npy`].
+pub fn npy_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<Array, SceneIoError> {
+    decode(bytes, limits).map_err(|fault| SceneIoError::Array(fault.in_file(file)))
 }
 
 fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {

@@ -1,0 +1,15 @@
+//! Any bytes as an NPY file.
+
+#![no_main]
+
+use std::path::Path;
+
+use libfuzzer_sys::fuzz_target;
+use raypencil_scene_io::{Limits, npy_from_bytes};
+
+fuzz_target!(|bytes: &[u8]| {
+    if let Ok(array) = npy_from_bytes(bytes, Path::new("any.npy"), &Limits::default()) {
+        let size = array.planes[0].size();
+        assert!(array.planes.iter().all(|plane| plane.size() == size));
+    }
+});
