@@ -51,7 +51,7 @@ pub use minimise::{
     MINIMISE_BUDGET, Minimised, NotShown, Reproducer, first_shown, minimise, shows_class, write_reproducer,
 };
 pub use output::{
-    OutputError, Written, count, one_screen, probe_command, quoted, summary_json, write_maps,
+    OutputError, Written, count, create, one_screen, probe_command, quoted, summary_json, write_maps,
     write_validation,
 };
 pub use outside::{

@@ -225,7 +225,11 @@ pub(crate) fn begin(folder: &Path, last: &str) -> Result<PathBuf, OutputError> {
     }
 }
 
-pub(crate) fn create(folder: &Path) -> Result<(), OutputError> {
+/// Makes a folder, and those that it lies in, unless it is there.
+///
+/// # Errors
+/// What the file system says, with the folder.
+pub fn create(folder: &Path) -> Result<(), OutputError> {
     std::fs::create_dir_all(folder)
         .map_err(|source| OutputError::Folder { path: folder.to_path_buf(), source })
 }

@@ -55,11 +55,17 @@ impl SceneSource {
         }
         let known = |end: &str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
         let exists = path.exists();
-        let kinds: [(&[&str], fn(PathBuf) -> Self); 3] =
-            [(&["toml"], Self::Toml), (&["glb", "gltf"], Self::Gltf), (&["tif", "tiff"], Self::Dem)];
-        let kind = kinds.into_iter().find(|(ends, _)| ends.iter().any(|end| known(end)));
+        let kind: Option<fn(PathBuf) -> Self> = if known("toml") {
+            Some(Self::Toml)
+        } else if known("glb") || known("gltf") {
+            Some(Self::Gltf)
+        } else if known("tif") || known("tiff") {
+            Some(Self::Dem)
+        } else {
+            None
+        };
         match kind {
-            Some((_, kind)) if exists => Ok(kind(path)),
+            Some(kind) if exists => Ok(kind(path)),
             Some(_) => Err(refuse("does not exist")),
             None if exists => Err(refuse("is a file of an unknown kind")),
             None => Err(refuse("is neither a built-in name nor a file")),

@@ -69,26 +69,28 @@ impl Posts {
     /// # Panics
     /// If `heights` are not as many as `columns` and `rows` say, or 2^32 or more.
     pub fn ground(&self, material: Material) -> Ground {
-        let mut faces = Vec::new();
-        for row in 0..self.rows.saturating_sub(1) {
-            for column in 0..self.columns.saturating_sub(1) {
-                // CHOICE: three known corners give no face. One triangle would fill half a cell by a diagonal
-                // that the missing corner chose; without it the ground ends at whole cells, simplified or not.
-                if !self.is_complete(column, row) {
-                    continue;
-                }
-                // Counter-clockwise from the near left corner: a b c d.
-                let a = row * self.columns + column;
-                let (b, c, d) = (a + 1, a + self.columns + 1, a + self.columns);
-                let [za, zb, zc, zd] = [a, b, c, d].map(|post| self.heights[post as usize]);
-                // CHOICE: the diagonal between the corners that differ less in height, which follows ridges and
-                // valleys; of two alike the one from a to c.
-                let halves = match (zb - zd).abs() < (za - zc).abs() {
-                    true => [[a, b, d], [b, c, d]],
-                    false => [[a, b, c], [a, c, d]],
-                };
-                faces.extend(halves);
-            }
+        self.assert_whole();
+        // CHOICE: three known corners give no face. One triangle would fill half a cell by a diagonal that the
+        // missing corner chose; without it the ground ends at whole cells, simplified or not.
+        let complete_cells = || {
+            let [columns, rows] = [self.columns, self.rows].map(|count| count.saturating_sub(1));
+            let cells = (0..rows).flat_map(move |row| (0..columns).map(move |column| (column, row)));
+            cells.filter(|&(column, row)| self.is_complete(column, row))
+        };
+        // Counted first: a list that grows takes up to three times the memory.
+        let mut faces = Vec::with_capacity(2 * complete_cells().count());
+        for (column, row) in complete_cells() {
+            // Counter-clockwise from the near left corner: a b c d.
+            let a = row * self.columns + column;
+            let (b, c, d) = (a + 1, a + self.columns + 1, a + self.columns);
+            let [za, zb, zc, zd] = [a, b, c, d].map(|post| self.heights[post as usize]);
+            // CHOICE: the diagonal between the corners that differ less in height, which follows ridges and
+            // valleys; of two alike the one from a to c.
+            let halves = match (zb - zd).abs() < (za - zc).abs() {
+                true => [[a, b, d], [b, c, d]],
+                false => [[a, b, c], [a, c, d]],
+            };
+            faces.extend(halves);
         }
         self.ground_of(faces, material)
     }

@@ -6,7 +6,7 @@ use raypencil_scene_io::{SceneIoError, read_dem, write_terrain_glb};
 use raypencil_terrain::{MarsGround, PRESET_NAMES};
 use serde_json::{Value, json};
 
-use super::check_output;
+use super::{check_output, create_folder};
 use crate::args::TerrainGenerate;
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
@@ -39,6 +39,7 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     let unfit = |source| SceneIoError::Scene { origin: origin(), source };
     let mesh = ground.build().and_then(raypencil_terrain::Ground::into_mesh).map_err(unfit)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
+    create_folder(&command.output)?;
     write_terrain_glb(&command.output, &mesh, &parameters(command, &ground))?;
     drop(spinner);
     let report = report(command, &ground, &mesh);

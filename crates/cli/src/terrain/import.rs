@@ -5,7 +5,7 @@ use raypencil_scene::Mesh;
 use raypencil_scene_io::{Dem, read_dem, write_terrain_glb};
 use serde_json::{Value, json};
 
-use super::check_output;
+use super::{check_output, create_folder};
 use crate::args::TerrainImport;
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
@@ -18,6 +18,7 @@ pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Tro
     spinner.stage("making faces");
     let mesh = dem.mesh(command.max_error, command.reflectivity)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
+    create_folder(&command.output)?;
     write_terrain_glb(&command.output, &mesh, &source(command, &dem))?;
     drop(spinner);
     let report = report(command, &dem, &mesh);

@@ -6,6 +6,8 @@ mod inspect;
 
 use std::path::Path;
 
+use raypencil_harness::create;
+
 use crate::args::TerrainCommand;
 use crate::{Outcome, Trouble};
 
@@ -14,6 +16,14 @@ pub(crate) fn terrain(command: &TerrainCommand, json: bool) -> Result<Outcome, T
         TerrainCommand::Generate(command) => generate::generate(command, json),
         TerrainCommand::Import(command) => import::import(command, json),
         TerrainCommand::Inspect(command) => inspect::inspect(command, json),
+    }
+}
+
+/// Makes the folder of an output, when there is something to write.
+fn create_folder(output: &Path) -> Result<(), Trouble> {
+    match output.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => Ok(create(folder)?),
+        _ => Ok(()),
     }
 }
 

@@ -20,7 +20,6 @@ use gltf::json::Root;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use raypencil_scene::{Material, Mesh};
-use serde::Deserialize;
 
 use crate::digest::{Sha, sha};
 use crate::error::Fault;

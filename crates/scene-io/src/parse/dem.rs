@@ -29,7 +29,7 @@ impl Source<'_> {
         }
         if let Some(window) = window {
             let name = "terrain.dem_window_m";
-            if let &[x, y, width, height] = self.list(&window, name, &[4], dem::MAP_M, "metres")?.as_ref() {
+            if let &[x, y, width, height] = self.list(&window, name, &[4], dem::MAP_M, "metres")? {
                 for side in [width, height] {
                     self.check(side, window.span(), name, dem::WINDOW_M, "metres, for a width and a height")?;
                 }

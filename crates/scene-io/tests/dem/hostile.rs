@@ -112,7 +112,7 @@ fn a_mask_is_not_overlooked() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..Default::default() })]
 
     /// Bytes changed anywhere: a DEM or a message.
     #[test]

@@ -1,6 +1,8 @@
 //! Scenes on elevation models: alone, and named in a scene file.
 
-use raypencil_scene_io::{LoadedScene, Overrides, SceneIoError, SceneSource, load};
+use raypencil_scene_io::{
+    LoadedScene, Overrides, SceneIoError, SceneSource, load, read_dem, write_terrain_glb,
+};
 
 use crate::assert_names;
 use crate::write::{Double, Tiff};
@@ -35,6 +37,12 @@ fn alone_it_gets_the_default_rig_in_its_middle() {
     assert_eq!(loaded.vehicle.position.to_array(), [120.5, 184.5, 1.0]);
     assert_eq!(loaded.scene.mesh().faces().len(), 2 * 40 * 30);
     assert_eq!(loaded.scene.mesh().materials()[0].reflectivity, 0.25);
+    // Imported as a terrain it is the same scene.
+    let glb = folder.path().join("dem.glb");
+    let mesh = read_dem(&path, None).unwrap().mesh(None, 0.25).unwrap();
+    write_terrain_glb(&glb, &mesh, &serde_json::json!({})).unwrap();
+    let imported = load(glb.to_str().unwrap(), &Overrides::default()).unwrap();
+    assert_eq!(imported.scene_sha256, loaded.scene_sha256);
     // A lone file has its own digest.
     use sha2::Digest;
     let sha = sha2::Sha256::digest(std::fs::read(&path).unwrap());

@@ -12,6 +12,7 @@ use raypencil_scene::Mesh;
 use raypencil_scene_io::{Overrides, SceneSource, load, load_mesh, write_terrain_glb};
 use raypencil_terrain::{Inspection, Repairs, inspect as look, repair};
 
+use super::create_folder;
 use crate::args::TerrainInspect;
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
@@ -71,6 +72,7 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
             let (mended, repairs) = repair(&mesh);
             drop(mesh);
             spinner.stage(&format!("{}: writing", file.display()));
+            create_folder(file)?;
             write_terrain_glb(file, &mended, &of(&command.mesh))?;
             spinner.stage("looking at what is left");
             Some(Repaired { file, repairs, left: look(&mended) })
