@@ -24,8 +24,8 @@ pub(super) fn screen(report: &Report) -> String {
     line("");
     for row in wrong(found) {
         line(&format!("{} {:>11}  {}", if row.count > 0 { '!' } else { ' ' }, counted(row.count), row.words));
-        if !row.examples.is_empty() {
-            line(&listed(row.examples));
+        if !row.places.is_empty() {
+            line(&format!("{:15}{}", "", row.places));
         }
     }
     line("");
@@ -44,26 +44,27 @@ pub(super) fn screen(report: &Report) -> String {
 }
 
 /// Something that may be wrong.
-struct Row<'a> {
+struct Row {
     count: usize,
     words: String,
-    examples: &'a [Example],
+    /// Where to find some of it.
+    places: String,
 }
 
-fn row<'a>(words: &str, found: &'a Found) -> Row<'a> {
-    Row { count: found.count, words: words.into(), examples: &found.examples }
+fn row(words: &str, found: &Found) -> Row {
+    Row { count: found.count, words: words.into(), places: listed(&found.examples) }
 }
 
 /// The same, with more words if there is any.
-fn row_with<'a>(words: &str, more: &str, found: &'a Found) -> Row<'a> {
+fn row_with(words: &str, more: &str, found: &Found) -> Row {
     row(&format!("{words}{}", if found.count > 0 { more } else { "" }), found)
 }
 
 /// All that counts as wrong, whether it was found or not.
-fn wrong(found: &Inspection) -> Vec<Row<'_>> {
+fn wrong(found: &Inspection) -> Vec<Row> {
     let kinds = &found.zero_area_kinds;
     let of_kinds = format!(
-        ": {} with a vertex twice, {} with two in one place, {} on a line",
+        ": {} repeat a vertex, {} a place, {} are lines",
         counted(kinds.repeated_vertex),
         counted(kinds.coincident_vertices),
         counted(kinds.collinear)
@@ -74,12 +75,9 @@ fn wrong(found: &Inspection) -> Vec<Row<'_>> {
         some => format!(", closed components that are inside out: {}", counted(some)),
     };
     let holes = match found.open_edges.longest.get(1) {
-        Some(piece) if found.excess_loops() > 0 => format!(
-            ": one of {} edges, {:.3} m, at {}",
-            counted(piece.edges),
-            piece.length,
-            at(&piece.example)
-        ),
+        Some(piece) if found.excess_loops() > 0 => {
+            format!("one of {} edges, {:.3} m: {}", counted(piece.edges), piece.length, at(&piece.example))
+        }
         _ => String::new(),
     };
     let back = "ground that mostly shows its back to someone above";
@@ -93,10 +91,10 @@ fn wrong(found: &Inspection) -> Vec<Row<'_>> {
         row("patches that have only one side", &found.one_sided_patches),
         Row {
             count: found.excess_loops(),
-            words: format!("loops of open edges beside a border{holes}"),
-            examples: &[],
+            words: "loops of open edges beside a border".into(),
+            places: holes,
         },
-        Row { count: usize::from(found.upside_down), words: back.into(), examples: &[] },
+        Row { count: usize::from(found.upside_down), words: back.into(), places: String::new() },
     ]
 }
 
@@ -183,10 +181,10 @@ fn mendable(found: &Inspection) -> bool {
 
 /// As many examples as a line takes.
 fn listed(examples: &[Example]) -> String {
-    let mut line = " ".repeat(15);
+    let mut line = String::new();
     for (index, example) in examples.iter().enumerate() {
         let words = format!("{}{}", if index == 0 { "" } else { "; " }, at(example));
-        if index > 0 && line.chars().count() + words.chars().count() > WIDTH {
+        if index > 0 && line.chars().count() + words.chars().count() > WIDTH - 15 {
             break;
         }
         line.push_str(&words);

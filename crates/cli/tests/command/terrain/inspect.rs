@@ -43,7 +43,7 @@ fn faults_are_told_on_one_screen() {
         marked(&shown),
         [
             "! 1 vertices that no face uses",
-            "! 1 faces without area: 1 with a vertex twice, 0 with two in one place, 0 on a line",
+            "! 1 faces without area: 1 repeat a vertex, 0 a place, 0 are lines",
             "! 1 copies of other faces, 1 of another material",
             "! 3 edges whose two faces contradict each other in winding",
             "! 1 faces the wrong way round",
@@ -122,6 +122,9 @@ fn any_ground_of_a_scene_can_be_looked_at() {
         (&json!(40), &json!(100))
     );
     assert_eq!(nasty["zero_area"]["count"], 100);
+    let shown = screen(folder.path(), &["terrain", "inspect", "scene.toml"], 1);
+    assert_eq!(marked(&shown).len(), 4, "{shown}");
+    assert!(shown.lines().count() <= 40 && shown.lines().all(|line| line.chars().count() <= 100), "{shown}");
     // Loose slivers have borders of their own, which no repair closes.
     let left = &nasty["repaired"]["left"];
     assert_eq!((&left["kinds_wrong"], &left["duplicates"]["count"]), (&json!(1), &json!(0)));
