@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 use raypencil_scene::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request, Sampling, Scene};
-use raypencil_terrain::{RandomGround, builtin, height_at};
+use raypencil_terrain::{Crevasses, MarsGround, RandomGround, builtin, height_at};
 use raypencil_tests::{bits, light_bits, renderers, rig, scene};
 use sha2::{Digest, Sha256};
 
@@ -42,6 +42,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         ("pyramids", builtin("pyramids", 0.25).expect("a built-in name")),
         ("facets", builtin("facets", 0.25).expect("a built-in name")),
         ("nasty", RandomGround { offset: DVec3::splat(1e6), ..RandomGround::nasty(20, 1500) }.build()),
+        ("worst", worst().build().expect("a ground")),
     ];
     let built = grounds.map(|(name, ground)| {
         let mesh = std::sync::Arc::new(ground.into_mesh().expect("a mesh"));
@@ -51,6 +52,13 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         (name, scene(mesh, camera, beams))
     });
     built.into()
+}
+
+/// Generated ground with everything in it, on 8 m.
+fn worst() -> MarsGround {
+    let worst = MarsGround::preset("worst", 20).expect("a preset");
+    let crevasses = Crevasses { count: 2, width: 0.4, ..worst.crevasses };
+    MarsGround { extent: 8.0, post_spacing: 0.4, crevasses, ..worst }
 }
 
 fn digest(renderer: &dyn Renderer, scene: &Scene) -> String {

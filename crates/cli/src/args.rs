@@ -532,6 +532,10 @@ pub(crate) struct TerrainGenerate {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) rock_smallest: Option<f64>,
 
+    /// How many crevasses.
+    #[arg(long, value_name = "N")]
+    pub(crate) crevasses: Option<u32>,
+
     /// An elevation model (GeoTIFF) whose posts the surface passes through; the ground is as large as it is.
     #[arg(long, value_name = "DEM", conflicts_with = "extent")]
     pub(crate) coarse: Option<PathBuf>,

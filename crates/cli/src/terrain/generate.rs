@@ -30,6 +30,7 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     for (value, slot) in given {
         *slot = value.unwrap_or(*slot);
     }
+    ground.crevasses.count = command.crevasses.unwrap_or(ground.crevasses.count);
     if let Some(coarse) = &command.coarse {
         spinner.stage(&format!("{}: reading", coarse.display()));
         ground.coarse = Some(read_dem(coarse, None)?.posts);

@@ -1,4 +1,5 @@
 //! `terrain`: grounds as files.
 
+mod generate;
 mod import;
 mod inspect;
