@@ -1,5 +1,5 @@
-//! The hostile files: `cargo run -p raypencil-tests --example hostile > docs/hostile.md` prints their table, and with a
-//! folder as its argument the files are made in it, as seeds for the fuzz targets: `just fuzz-seeds`.
+//! The hostile files: `just hostile` prints their table to `docs/hostile.md`. With a folder as its argument the files are
+//! made in it, as seeds for the fuzz targets (`just fuzz`).
 
 use std::fs;
 use std::path::Path;

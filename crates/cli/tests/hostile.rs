@@ -178,8 +178,5 @@ fn good_files_pass_under_the_same_limits() {
 fn the_document_lists_every_case() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/hostile.md");
     let written = fs::read_to_string(path).unwrap_or_default();
-    assert!(
-        written == table(),
-        "docs/hostile.md is not what `cargo run -p raypencil-tests --example hostile` prints"
-    );
+    assert!(written == table(), "docs/hostile.md is not what `just hostile` writes");
 }

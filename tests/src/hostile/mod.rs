@@ -183,8 +183,7 @@ pub fn table() -> String {
     let mut text = String::from(
         "# Hostile files\n\nMade by `tests/src/hostile`, run by `crates/cli/tests/hostile.rs`: each in a process of its own \
          under a limit of 512 MB of\nmemory and 2 s of processor time. Asserted of each: exit code 2, one short message with \
-         these words, nothing on standard\noutput, no file written. `raypencil-tests` writes this page \
-         (`cargo run -p raypencil-tests --example hostile`).\n\n| case | what it is | words of the message |\n| --- | --- | --- |\n",
+         these words, nothing on standard\noutput, no file written. `just hostile` writes this page.\n\n| case | what it is | words of the message |\n| --- | --- | --- |\n",
     );
     for case in all().iter().chain(&tiffs()) {
         let words =

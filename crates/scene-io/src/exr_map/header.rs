@@ -9,22 +9,27 @@ use exr::meta::header::Header;
 
 use crate::error::Fault;
 
+/// What an OpenEXR file starts with.
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The bit of deep data in the second byte of the version.
 const DEEP: u8 = 1 << 3;
 
 /// Refuses a file that calls itself deep, and a window that ends before it starts: the crate believes the part's type
 /// alone, and swaps the ends. What else is wrong it says itself.
 pub(super) fn check(file: &[u8]) -> Result<(), Fault> {
+    if !file.starts_with(&MAGIC) {
+        return Ok(());
+    }
     if file.get(5).is_some_and(|flags| flags & DEEP != 0) {
         return Err(Fault::new("header", "the flag of deep data", "one sample a cell"));
     }
     let mut rest = file.get(8..).unwrap_or_default();
-    while let Some((name, kind, value, after)) = attribute(rest) {
-        if kind == b"box2i"
-            && let Some(&[x0, y0, x1, y1]) = whole_numbers(value).first_chunk()
+    while let Some((attribute, after)) = Attribute::first(rest) {
+        if attribute.kind == b"box2i"
+            && let Some(&[x0, y0, x1, y1]) = whole_numbers(attribute.value).first_chunk()
             && (x1 < x0 || y1 < y0)
         {
-            let place = String::from_utf8_lossy(name).into_owned();
+            let place = String::from_utf8_lossy(attribute.name).into_owned();
             return Err(Fault::new(
                 place,
                 format!("from ({x0}, {y0}) to ({x1}, {y1})"),
@@ -36,14 +41,22 @@ pub(super) fn check(file: &[u8]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The name, type and value of the first attribute, and what follows it; `None` at the end of the header, or where it
-/// is cut off.
-fn attribute(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8], &[u8])> {
-    let (name, rest) = text(bytes)?;
-    let (kind, rest) = text(rest).filter(|_| !name.is_empty())?;
-    let (length, rest) = rest.split_first_chunk()?;
-    let (value, rest) = rest.split_at_checked(usize::try_from(i32::from_le_bytes(*length)).ok()?)?;
-    Some((name, kind, value, rest))
+/// An attribute as its bytes.
+struct Attribute<'a> {
+    name: &'a [u8],
+    kind: &'a [u8],
+    value: &'a [u8],
+}
+
+impl<'a> Attribute<'a> {
+    /// The first attribute, and what follows it; `None` at the end of the header, or where it is cut off.
+    fn first(bytes: &'a [u8]) -> Option<(Self, &'a [u8])> {
+        let (name, rest) = text(bytes)?;
+        let (kind, rest) = text(rest).filter(|_| !name.is_empty())?;
+        let (length, rest) = rest.split_first_chunk()?;
+        let (value, rest) = rest.split_at_checked(usize::try_from(i32::from_le_bytes(*length)).ok()?)?;
+        Some((Self { name, kind, value }, rest))
+    }
 }
 
 /// A text up to its null byte, and what follows it.

@@ -138,24 +138,23 @@ impl<'a> Elements<'a> {
             let found = format!("a stride of {stride} bytes in buffer view {view_index}");
             return Err(Fault::new(place(index), found, format!("{size} to 252")));
         }
-        // A number at another place is a part of two others: the file was not written for what it says. (§3.6.2.4)
-        let view_offset =
-            root.buffer_views.get(view_index).and_then(|view| view.byte_offset).map_or(0, |at| at.0);
-        let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-        let start = u128::from(view_offset) + u128::from(offset);
-        if !start.is_multiple_of(component as u128) || !stride.is_multiple_of(component) {
-            let found =
-                format!("numbers of {component} bytes from byte {start} of their buffer, {stride} apart");
-            return Err(Fault::new(place(index), found, format!("multiples of {component}")));
-        }
         let view = buffers.view(view_index)?;
-        let count = accessor.count.0;
+        let (count, offset) = (accessor.count.0, accessor.byte_offset.map_or(0, |offset| offset.0));
         // The last element need not be followed by the rest of its stride.
         let end = (u128::from(count).saturating_sub(1)) * stride as u128 + size as u128 + u128::from(offset);
         if count == 0 || end > view.len() as u128 {
             let found = format!("{count} elements of {size} bytes, {stride} apart, from byte {offset}");
             let expected = format!("1 or more within buffer view {view_index} of {} bytes", view.len());
             return Err(Fault::new(place(index), found, expected));
+        }
+        // A number at another place is a part of two others: the file was not written for what it says. (§3.6.2.4)
+        let view_offset =
+            root.buffer_views.get(view_index).and_then(|view| view.byte_offset).map_or(0, |at| at.0);
+        let start = u128::from(view_offset) + u128::from(offset);
+        if !start.is_multiple_of(component as u128) || !stride.is_multiple_of(component) {
+            let found =
+                format!("numbers of {component} bytes from byte {start} of their buffer, {stride} apart");
+            return Err(Fault::new(place(index), found, format!("multiples of {component}")));
         }
         // Both are below the view's length now.
         Ok(Self { view, start: offset as usize, stride, size, count: count as usize })

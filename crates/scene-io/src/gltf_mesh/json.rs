@@ -1,6 +1,7 @@
 //! The JSON of a glTF file to the types of the crate `gltf`, as far as they can be trusted. (glTF 2.0, §5)
 
 use gltf::json::Root;
+use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::error::Fault;
@@ -132,6 +133,20 @@ struct Index;
 
 impl<'de> Deserialize<'de> for Index {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        u32::deserialize(deserializer).map(|_| Self)
+        struct Whole;
+        impl Visitor<'_> for Whole {
+            type Value = Index;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("an index below 2^32")
+            }
+
+            fn visit_u64<E: Error>(self, index: u64) -> Result<Index, E> {
+                u32::try_from(index)
+                    .map(|_| Index)
+                    .map_err(|_| E::invalid_value(Unexpected::Unsigned(index), &self))
+            }
+        }
+        deserializer.deserialize_u64(Whole)
     }
 }

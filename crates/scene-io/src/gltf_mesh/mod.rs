@@ -41,7 +41,7 @@ const MOST: u64 = 1 << 25;
 
 /// The most primitives of all instances together, points and lines too: each takes time, whatever it draws. CHOICE: a
 /// mesh of rocks has a primitive for each rock, so four million.
-const MOST_PRIMITIVES: usize = 1 << 22;
+const MOST_PRIMITIVES: u64 = 1 << 22;
 
 /// Loads a `.glb` or `.gltf` terrain; materials that bring no reflectivity get [`DEFAULT_REFLECTIVITY`].
 ///
@@ -142,29 +142,26 @@ fn assemble(
     reflectivity: f64,
     as_is: bool,
 ) -> Result<Parts, Fault> {
-    // How much it will be is known before anything is read: no small file can ask for much memory.
-    let mut totals = [0_u64; 2];
-    let mut visits = 0;
+    // How much it will be is known before anything is read: no small file can ask for much memory. A mesh is counted
+    // once, however often it is drawn.
+    let mut known = BTreeMap::new();
+    let mut totals = [0_u64; 3];
     for node in &placed {
-        let mut shared = BTreeSet::new();
         let primitives = primitives(root, node.node)?;
-        visits += primitives.len();
-        if visits > MOST_PRIMITIVES {
-            let found = format!("more than {MOST_PRIMITIVES} primitives in all instances");
-            return Err(Fault::new("nodes", found, "fewer"));
-        }
-        for primitive in primitives {
-            let Some(Drawn { mode, positions, corners }) = drawn(root, primitive)? else { continue };
-            if shared.insert(positions.value()) {
-                totals[0] = totals[0].saturating_add(accessors::get(root, positions)?.count.0);
-            }
-            totals[1] = totals[1].saturating_add(if mode == Mode::Triangles { corners / 3 } else { corners });
-        }
+        let counts = match root.nodes[node.node].mesh.map(|mesh| mesh.value()) {
+            None => continue,
+            Some(mesh) => match known.get(&mesh) {
+                Some(counts) => *counts,
+                None => *known.entry(mesh).or_insert(counts(root, primitives)?),
+            },
+        };
+        totals = std::array::from_fn(|kind| totals[kind].saturating_add(counts[kind]));
     }
-    for (total, kind) in totals.into_iter().zip(["vertices", "faces"]) {
-        if total > MOST {
+    let kinds = [("vertices", MOST), ("faces", MOST), ("primitives", MOST_PRIMITIVES)];
+    for (total, (kind, most)) in totals.into_iter().zip(kinds) {
+        if total > most {
             let found = format!("{total} {kind} in all instances");
-            return Err(Fault::new("nodes", found, format!("at most {MOST}")));
+            return Err(Fault::new("nodes", found, format!("at most {most}")));
         }
     }
 
@@ -226,6 +223,20 @@ fn assemble(
         return Err(Fault::new("scene", "no triangles", "at least one"));
     }
     Ok(parts)
+}
+
+/// The vertices, faces and primitives of a mesh, by what its accessors claim.
+fn counts(root: &Root, primitives: &[Primitive]) -> Result<[u64; 3], Fault> {
+    let mut shared = BTreeSet::new();
+    let [mut vertices, mut faces] = [0_u64; 2];
+    for primitive in primitives {
+        let Some(Drawn { mode, positions, corners }) = drawn(root, primitive)? else { continue };
+        if shared.insert(positions.value()) {
+            vertices = vertices.saturating_add(accessors::get(root, positions)?.count.0);
+        }
+        faces = faces.saturating_add(if mode == Mode::Triangles { corners / 3 } else { corners });
+    }
+    Ok([vertices, faces, primitives.len() as u64])
 }
 
 /// The primitives of a node's mesh.
