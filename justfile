@@ -57,8 +57,8 @@ mutants CRATE:
 hostile:
     cargo run --release -p raypencil-tests --example hostile > docs/hostile.md
 
-# Any bytes for SECONDS at a reader, starting from the hostile files: scene_toml, resolved_scene, glb, exr, npy, pfm,
-# manifest, candidate. Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
+# Any bytes for SECONDS at a reader, starting from the hostile files: scene_toml, resolved_scene, glb, dem, exr, npy,
+# pfm, manifest, candidate. Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
 fuzz TARGET SECONDS:
     cargo run --release -p raypencil-tests --example hostile fuzz/corpus
     cd fuzz && cargo +nightly fuzz run {{ TARGET }} -- -rss_limit_mb=512 -timeout=5 -max_total_time={{ SECONDS }}

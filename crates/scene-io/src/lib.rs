@@ -47,7 +47,7 @@ mod toml_problem;
 pub use array::{Array, ArrayNumber, Storage, Values};
 pub use atomic::write_atomically;
 pub use channels::{Channel, Channels, read_channels, read_listed};
-pub use dem::{Dem, Registration, read_dem};
+pub use dem::{Dem, Registration, dem_from_bytes, read_dem};
 pub use digest::scene_sha256;
 pub use error::{Problem, SceneIoError};
 pub use exr_map::{

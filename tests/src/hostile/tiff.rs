@@ -182,8 +182,14 @@ pub fn tiffs() -> Vec<Case> {
         ),
         case(
             "bomb",
-            "sixteen kilobytes of deflate that are sixteen megabytes",
-            good().with(COMPRESSION, DEFLATE).strip(bomb(0, 1 << 24)).bytes(),
+            "sixteen kilobytes of deflate that are sixteen megabytes, of sixty-four that are promised",
+            good()
+                .with(WIDTH, 4000)
+                .with(HEIGHT, 4000)
+                .with(ROWS, 4000)
+                .with(COMPRESSION, DEFLATE)
+                .strip(bomb(0, 1 << 24))
+                .bytes(),
         ),
         case(
             "deflate-garbage",

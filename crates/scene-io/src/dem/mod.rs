@@ -5,7 +5,7 @@ mod georeference;
 mod tags;
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Cursor, Read, Seek};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -90,6 +90,15 @@ pub fn read_dem(path: impl AsRef<Path>, window: Option<[f64; 4]>) -> Result<Dem,
     read(path, file, metadata.len(), window).map_err(|fault| SceneIoError::Dem(fault.in_file(path)))
 }
 
+/// The same from the bytes of a file; `file` is for messages.
+///
+/// # Errors
+/// As [`read_dem`].
+pub fn dem_from_bytes(bytes: &[u8], file: &Path, window: Option<[f64; 4]>) -> Result<Dem, SceneIoError> {
+    let length = bytes.len() as u64;
+    read(file, Cursor::new(bytes), length, window).map_err(|fault| SceneIoError::Dem(fault.in_file(file)))
+}
+
 /// The mesh of a part of an elevation model, and the digest of its whole file.
 pub(crate) fn load(
     path: &Path,
@@ -109,7 +118,12 @@ pub(crate) fn posts(path: &Path) -> Result<(Posts, Sha), SceneIoError> {
     Ok((posts, sha))
 }
 
-fn read(path: &Path, mut file: BufReader<File>, length: u64, window: Option<[f64; 4]>) -> Result<Dem, Fault> {
+fn read(
+    path: &Path,
+    mut file: impl Read + Seek,
+    length: u64,
+    window: Option<[f64; 4]>,
+) -> Result<Dem, Fault> {
     let tags = Tags::first(&mut file, length)?;
     let blocks = Blocks::of(&tags, &mut file)?;
     let georeference::Georeference { placement, registration, nodata } =
@@ -162,7 +176,7 @@ fn read(path: &Path, mut file: BufReader<File>, length: u64, window: Option<[f64
 }
 
 /// Refuses a file whose unknown posts are told by a second image: their samples would look like heights.
-fn refuse_masks(tags: &Tags, file: &mut BufReader<File>) -> Result<(), Fault> {
+fn refuse_masks(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<(), Fault> {
     let mut next = tags.next;
     for image in 1..MOST_IMAGES {
         if next == 0 {

@@ -56,7 +56,7 @@ fn a_ground_is_made_told_and_kept_with_its_parameters() {
 fn coarse_posts_of_a_model_are_met() {
     let folder = TempDir::new().expect("a temporary folder");
     // 5 x 4 posts 2 m apart, the north-west one at (1000001, 499); rows from the north.
-    let heights: Vec<f32> = (0..20_u8).map(|k| f32::from(k * k % 7) * 0.25).collect();
+    let heights: Vec<f32> = (0..20_u16).map(|k| f32::from(k * k % 7) * 0.25).collect();
     std::fs::write(folder.path().join("mola.tif"), geotiff(5, 4, &heights)).expect("a file");
     let arguments = [
         "terrain",
