@@ -11,7 +11,11 @@ fuzz_target!(|bytes: &[u8]| {
     if let Ok(manifest) = Manifest::from_bytes(bytes, Path::new("manifest.json")) {
         // What is believed leads nowhere but into the pack's own folder.
         for file in &manifest.files {
-            assert!(!file.path.starts_with('/') && file.path.split('/').all(|part| part != ".."), "{}", file.path);
+            assert!(
+                !file.path.starts_with('/') && file.path.split('/').all(|part| part != ".."),
+                "{}",
+                file.path
+            );
         }
     }
 });
