@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 use raypencil_scene::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request, Sampling, Scene};
-use raypencil_terrain::{Crevasses, MarsGround, RandomGround, builtin, height_at};
+use raypencil_terrain::{Crevasses, MarsGround, RandomGround, Rocks, builtin, height_at};
 use raypencil_tests::{bits, light_bits, renderers, rig, scene};
 use sha2::{Digest, Sha256};
 
@@ -54,11 +54,12 @@ fn scenes() -> Vec<(&'static str, Scene)> {
     built.into()
 }
 
-/// Generated ground with everything in it, on 8 m.
+/// Generated ground with everything in it, as far as the stripes reach.
 fn worst() -> MarsGround {
     let worst = MarsGround::preset("worst", 20).expect("a preset");
     let crevasses = Crevasses { count: 2, width: 0.4, ..worst.crevasses };
-    MarsGround { extent: 8.0, post_spacing: 0.4, crevasses, ..worst }
+    let rocks = Rocks { smallest: 0.2, ..worst.rocks };
+    MarsGround { extent: 16.0, post_spacing: 0.8, crevasses, rocks, ..worst }
 }
 
 fn digest(renderer: &dyn Renderer, scene: &Scene) -> String {

@@ -245,7 +245,7 @@ fn numbers_out_of_range_are_refused_by_name() {
         ),
         (
             refused(MarsGround { crevasses: Crevasses { count: 50, ..base().crevasses }, ..base() }),
-            "crevasses",
+            "crevasse_width_m",
         ),
         (
             refused(MarsGround { crevasses: Crevasses { count: u32::MAX, ..base().crevasses }, ..base() }),
