@@ -23,8 +23,8 @@ impl Sensor {
     /// No noise at all, 16 bits, an electron for each photon, wells without a bottom.
     pub const fn ideal() -> Self {
         Self {
-            // CHOICE: a stripe of the default rig, some 6e-12 W per pixel, gives 30,000 DN.
-            exposure: 5e-3,
+            // CHOICE: a stripe of the default rig, some 1.2e-11 W per pixel, gives 24,000 DN.
+            exposure: 2e-3,
             gain: 0.25,
             wavelength: WAVELENGTH,
             quantum_efficiency: 1.0,
@@ -44,9 +44,9 @@ impl Sensor {
     /// in 1989 (a virtual-phase CCD of 800 x 800 pixels by Texas Instruments).
     pub const fn ccd_1989() -> Self {
         Self {
-            // CHOICE: stripes of the default rig come up to half of the well, and ten frames a second (paper, §7) leave
-            // time for it.
-            exposure: 5e-3,
+            // CHOICE: stripes of the default rig fill a third of the well, and ten frames a second (paper, §7) leave time
+            // for it.
+            exposure: 2e-3,
             wavelength: WAVELENGTH,
             // CHOICE: front-lit silicon of that time has 0.3 to 0.4 there.
             quantum_efficiency: 0.35,
@@ -81,8 +81,8 @@ impl Sensor {
     /// A camera of today with a global shutter, of the class of Sony's IMX250.
     pub const fn cmos() -> Self {
         Self {
-            // CHOICE: stripes of the default rig come up to half of the well.
-            exposure: 1e-3,
+            // CHOICE: stripes of the default rig fill two fifths of the well.
+            exposure: 0.4e-3,
             wavelength: WAVELENGTH,
             // CHOICE: makers' curves for this sensor fall from 0.6 to 0.7 in the green to 0.2 to 0.25 here.
             quantum_efficiency: 0.22,

@@ -68,7 +68,7 @@ fn assert_chi_square(pairs: impl Iterator<Item = (f64, f64)>, what: &str) {
 
 #[test]
 fn poisson_has_its_law() {
-    const DRAWS: u32 = 200_000;
+    const DRAWS: u32 = 1_000_000;
     for (number, expected) in [0.3, 3.0, 9.999, 10.0, 30.0, 300.0, 3e4].into_iter().enumerate() {
         let draws: Vec<f64> = (0..DRAWS)
             .map(|index| poisson(expected, &mut Stream::new(2026, Purpose::Shot, number as u64, index)))
