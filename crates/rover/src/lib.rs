@@ -11,6 +11,8 @@
 //! [`Vehicle`] settles on the ground, [`Route`] says where it drives, [`Sensors`] what it knows of that, [`ScanRule`]
 //! and [`Sweep`] when it stops to pan its beams.
 //!
+//! [`Drive`] puts all of it together, with a renderer for the images.
+//!
 //! Pure: no IO, no clocks, and random numbers keyed by (seed, purpose, index). Every number that the paper does not
 //! print is a named parameter; `docs/rover.md` lists them all, with the sentence of the paper that each belongs to.
 //!
@@ -43,6 +45,7 @@
 
 mod check;
 mod draws;
+mod drive;
 mod gap;
 mod inertial;
 mod local_map;
@@ -57,6 +60,7 @@ mod stripe;
 mod triangulation;
 mod vehicle;
 
+pub use drive::{Develop, Drive, DriveFrame, DrivePlan, Exposure, Exposures};
 pub use gap::GapRule;
 pub use inertial::{Fixes, Sensed, SensorErrors, Sensors};
 pub use local_map::{GridPoint, Inconsistency, LocalMap, MapSize, Source};
