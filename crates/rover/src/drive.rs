@@ -213,27 +213,32 @@ impl Drive {
             return Ok(None);
         };
         let sensed = self.sensors.read(&stance, &self.ground);
-        let mut mapper = match self.mapper.take() {
-            Some(mapper) => mapper,
-            // "Its elevation is given": the true one.
-            None => Mapper::start(self.plan.vehicle, self.plan.map, &sensed, stance.position.z),
-        };
-
-        let scans = self.plan.scans;
-        let scan = scans.and_then(|rule| rule.due(place.driven, self.last_scan, &self.found));
-        let (points, update) = if scan.is_some() {
-            let mut points = Vec::new();
+        let rule = self.plan.scans;
+        let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.found));
+        let mut points = Vec::new();
+        if scan.is_some() {
             for (step, pan) in self.plan.sweep.pans().enumerate() {
                 points.extend(self.look(renderer, develop, &stance, index, Some((step as u32, pan)))?);
             }
-            self.last_scan = Some(place.driven);
-            let forget = scans.is_some_and(|rule| rule.forget);
-            (points.len(), mapper.scan(&sensed, points, forget))
         } else {
-            let points = self.look(renderer, develop, &stance, index, None)?;
-            (points.len(), mapper.frame(&sensed, points))
+            points = self.look(renderer, develop, &stance, index, None)?;
+        }
+
+        let count = points.len();
+        let DrivePlan { vehicle, map, .. } = self.plan;
+        // CHOICE: its first elevation is the true one.
+        let mapper =
+            self.mapper.get_or_insert_with(|| Mapper::start(vehicle, map, &sensed, stance.position.z));
+        let update = if scan.is_some() {
+            self.last_scan = Some(place.driven);
+            // What a scan contradicts it has also mended.
+            self.found = Inconsistency::default();
+            mapper.scan(&sensed, points, rule.is_some_and(|rule| rule.forget))
+        } else {
+            let update = mapper.frame(&sensed, points);
+            self.found = update.inconsistency;
+            update
         };
-        self.found = update.inconsistency;
 
         let obstacles = obstacle_map_due(index, self.plan.obstacles_every).then(|| {
             let DrivePlan { vehicle, rules, grid, vectors, .. } = &self.plan;
@@ -241,9 +246,8 @@ impl Drive {
             let vectors = navigator_map(&obstacles, vectors);
             (obstacles, vectors)
         });
-        self.mapper = Some(mapper);
         self.frame += 1;
-        Ok(Some(DriveFrame { index, place, stance, sensed, scan, points, update, obstacles }))
+        Ok(Some(DriveFrame { index, place, stance, sensed, scan, points: count, update, obstacles }))
     }
 
     /// The points of the stripes that the camera sees from a stance, vehicle frame: beam by beam, each in row-major

@@ -51,8 +51,6 @@ impl Route {
     /// waypoint. Computed from the index alone, so that no error adds up.
     pub fn frame(&self, index: u64) -> Option<RoutePlace> {
         let mut time = index as f64 / self.frame_rate;
-        // The first frame at or after the end is the last.
-        let frame = 1.0 / self.frame_rate;
         let (mut place, mut heading, mut driven) = (self.start, self.heading, 0.0);
         for &waypoint in &self.waypoints {
             let leg = waypoint - place;
@@ -76,7 +74,9 @@ impl Route {
             driven += leg.length();
             place = waypoint;
         }
-        (time < frame).then_some(RoutePlace { place, heading, driven })
+        // The first frame at or after the end is the last; rounding makes no frame more.
+        let frames_over = time * self.frame_rate;
+        (frames_over < 1.0 - 1e-6).then_some(RoutePlace { place, heading, driven })
     }
 
     /// Refuses a route that cannot be driven, naming the field.

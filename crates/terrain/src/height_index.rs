@@ -31,6 +31,9 @@ const PADDING: f64 = 1e-6;
 /// At most this many cells along a side, so that the grid stays within 64 MiB.
 const MOST_CELLS: f64 = 4096.0;
 
+/// At most this many cells for a face, on average. (One that fits a cell may touch four, and counts as four.)
+const MOST_ENTRIES: f64 = 32.0;
+
 impl HeightIndex {
     /// Sorts the faces of a mesh that look up: about one cell for each.
     pub fn new(mesh: &Mesh) -> Self {
@@ -54,7 +57,18 @@ impl HeightIndex {
         }
         let extent = high - low;
         let one_each = (extent.x * extent.y / corners.len().max(1) as f64).sqrt();
-        let cell = one_each.max(extent.max_element() / MOST_CELLS).max(PADDING);
+        let mut cell = one_each.max(extent.max_element() / MOST_CELLS).max(PADDING);
+        // Many large faces over one another would be entered in many cells each: then larger cells will do.
+        let entries = |cell: f64| {
+            let cells = |(from, to): (DVec2, DVec2)| {
+                let span = ((to - from) / cell).floor() + 2.0;
+                span.x * span.y
+            };
+            corners.iter().map(boxes).map(cells).sum::<f64>()
+        };
+        while entries(cell) > MOST_ENTRIES * corners.len() as f64 {
+            cell *= 2.0;
+        }
         let count = |length: f64| (length / cell) as usize + 1;
         let (columns, rows) = (count(extent.x), count(extent.y));
         let mut index = Self {
@@ -140,6 +154,26 @@ mod tests {
         }
         assert_eq!(index.height_at(f64::NAN, 0.0), None);
         assert_eq!(index.height_at(1e9, 0.0), None);
+    }
+
+    #[test]
+    fn faces_over_one_another_take_larger_cells() {
+        // 3000 squares of 10 m, one over the other, 1 mm apart.
+        let mut posts = Vec::new();
+        let mut faces = Vec::new();
+        for layer in 0..3000_u32 {
+            let z = 1e-3 * f64::from(layer);
+            posts.extend(
+                [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(|(x, y)| DVec3::new(x, y, z)),
+            );
+            let a = 4 * layer;
+            faces.extend([[a, a + 1, a + 2], [a, a + 2, a + 3]]);
+        }
+        let materials = vec![raypencil_scene::Material { name: "ground".into(), reflectivity: 0.25 }];
+        let mesh = Mesh::from_global(&posts, faces, vec![0; 6000], materials).unwrap();
+        let index = HeightIndex::new(&mesh);
+        assert!(index.faces.len() <= 32 * 6000, "{} entries", index.faces.len());
+        assert_eq!(index.height_at(3.0, 4.0), height_at(&mesh, 3.0, 4.0));
     }
 
     #[test]
