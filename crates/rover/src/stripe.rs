@@ -3,6 +3,7 @@
 use raypencil_scene::{Image, SceneError};
 
 use crate::check::check_range;
+use crate::otsu::otsu;
 
 /// How light is told from dark. "Finally, thresholding or edge detection is performed to extract the light stripes
 /// from the image." (§3)
@@ -53,47 +54,6 @@ pub struct EdgePoint {
     pub j: u32,
     /// Where the stripe was measured, rows from the image's upper border: j + 1/2 for [`Place::Pixel`].
     pub row: f64,
-}
-
-/// Histogram bins of Otsu's method. CHOICE: 256, as for a camera of 8 bits.
-const BINS: usize = 256;
-
-/// The value at and above which Otsu's method calls a pixel lit, or `None` for an image of one value.
-pub fn otsu<T: Copy + Into<f64>>(image: &Image<T>) -> Option<f64> {
-    let values = || image.cells().iter().map(|&cell| cell.into());
-    let low = values().fold(f64::INFINITY, f64::min);
-    let high = values().fold(f64::NEG_INFINITY, f64::max);
-    if !(high > low) {
-        return None;
-    }
-    let width = (high - low) / BINS as f64;
-    let mut counts = [0_u64; BINS];
-    for value in values() {
-        counts[(((value - low) / width) as usize).min(BINS - 1)] += 1;
-    }
-    let all = image.cells().len() as f64;
-    let sum: f64 = counts.iter().enumerate().map(|(bin, &count)| bin as f64 * count as f64).sum();
-    // The variance between the two classes, w0 w1 (mu0 - mu1)^2, is largest at the best cut.
-    let (mut dark, mut dark_sum) = (0.0, 0.0);
-    let (mut best, mut cuts) = (-1.0, (0, 0));
-    for (bin, &count) in counts.iter().enumerate().take(BINS - 1) {
-        dark += count as f64;
-        dark_sum += bin as f64 * count as f64;
-        let light = all - dark;
-        if light <= 0.0 {
-            break;
-        }
-        let between = dark_sum / dark - (sum - dark_sum) / light;
-        let variance = dark * light * between * between;
-        if variance > best {
-            (best, cuts) = (variance, (bin, bin));
-        } else if variance == best {
-            // No pixel between: any cut there is as good, so the middle one is taken.
-            cuts.1 = bin;
-        }
-    }
-    let cut = 0.5 * (cuts.0 + cuts.1) as f64 + 1.0;
-    Some(low + width * cut)
 }
 
 /// Lit rows `first..=last` of one column, and where the lower edge lies.
@@ -339,15 +299,11 @@ mod tests {
     }
 
     #[test]
-    fn otsu_parts_light_from_dark() {
+    fn otsu_needs_no_level() {
         let image = stripes(|i| vec![(10.0 + f64::from(i), 13.0 + f64::from(i))]);
-        // Two values, 5 and 100: the cut is half way, within a bin of 95 / 256.
-        let level = otsu(&image).unwrap();
-        assert!((level - 52.5).abs() < 0.38, "{level}");
         let extraction = Extraction { detection: Detection::Otsu, ..Extraction::thresholding(0.0) };
         assert_eq!(extraction.edges(&image), Extraction::thresholding(52.5).edges(&image));
         // An image of one value holds no stripe.
-        assert_eq!(otsu(&Image::filled(4, 4, 7_u16)), None);
         assert!(extraction.edges(&Image::filled(4, 4, 7.0)).is_empty());
     }
 
