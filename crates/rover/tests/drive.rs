@@ -77,7 +77,7 @@ fn a_drive_towards_a_wall() {
     // The elevation of the vehicle comes from the map; a pixel's footprint at the stripes is 4 to 6 cm.
     let mapper = drive.mapper().unwrap();
     assert!((mapper.pose().position - DVec3::new(1.5, 0.0, 0.0)).length() < 0.06, "{:?}", mapper.pose());
-    // What was measured is the ground: 95 % of it within 5 cm of one of the two levels at or beside the point.
+    // What was measured is the ground: 95 % of it (tuned) within 5 cm of its level.
     let (mut close, mut all) = (0, 0);
     for point in mapper.map().points() {
         if mapper.map().source(point) == Source::Measured {

@@ -131,7 +131,15 @@ fn a_trench_is_unknown_from_afar_and_an_obstacle_from_nearer() {
     assert_eq!(ahead.label, Label::Unknown);
     assert!((4.0..4.31).contains(&(ahead.radius + 3.1)), "{ahead:?}");
 
-    // A scan from there: the edge is 0.6 m before camera and beams. The camera sees the ground of the trench from
+    // A scan from x = 2.8, the camera 0.9 m before the edge: 0.6 / 1.5 * 0.9 = 0.36 m are hidden from it. 4.1 is
+    // extrapolated from the edge, 4.3 from the first ground seen, which is at 4.36 and so on 4.4; 4.2 remains.
+    let mut farther = mapper.clone();
+    farther.scan(&sensed(2.8), scan(&rig, &mesh, 2.8), true);
+    let ahead = obstacles(&farther).sectors[15];
+    assert_eq!(ahead.label, Label::Unknown);
+    assert!((ahead.radius + 2.8 - 4.2).abs() < 1e-9, "{ahead:?}");
+
+    // A scan from x = 3.1: the edge is 0.6 m before camera and beams. The camera sees the ground of the trench from
     // 0.6 / 1.5 * 0.6 = 0.24 m behind the edge, beam 0 (1.8 m up) lights it from 0.2 m. What is hidden is narrower than
     // the two spacings that are extrapolated from both sides, so the slope is known: 0.6 m over 1.2 m, and 0.35 m is
     // the most.
