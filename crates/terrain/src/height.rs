@@ -9,7 +9,7 @@ use raypencil_scene::Mesh;
 /// Under an overhang this is the overhang's upper surface. Vertical faces and undersides do not count, nor
 /// do faces without area. A point over an edge that two faces share is never missed: see the source.
 ///
-/// Goes through all faces: for a few points, not for a raster.
+/// Goes through all faces: for a few points; [`crate::HeightIndex`] is for many.
 pub fn height_at(mesh: &Mesh, x: f64, y: f64) -> Option<f64> {
     let origin = mesh.origin();
     let point = DVec2::new(x - origin.x, y - origin.y);
@@ -28,7 +28,7 @@ pub fn height_at(mesh: &Mesh, x: f64, y: f64) -> Option<f64> {
 }
 
 /// Height of one closed triangle above a point, all in the scene frame.
-fn height_of([a, b, c]: [DVec3; 3], point: DVec2) -> Option<f64> {
+pub(crate) fn height_of([a, b, c]: [DVec3; 3], point: DVec2) -> Option<f64> {
     // Reject faces that do not look up.
     if !((b - a).perp_dot_xy(c - a) > 0.0) {
         return None;

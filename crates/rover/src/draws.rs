@@ -1,0 +1,78 @@
+//! Random numbers keyed by (seed, purpose, index): the counter-based generator of `scene`'s sampling, Philox4x32-10.
+
+use raypencil_scene::Sampling;
+
+/// What a random number is for. The numbers are part of what a seed means: never reuse or renumber one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// The walk of the inertial position.
+    PositionWalk = 1,
+    /// A fix of the position by the beacons.
+    PositionFix = 2,
+    /// The measured pitch and roll.
+    Tilt = 3,
+    /// The measured heading.
+    Heading = 4,
+    /// The proximity sensor.
+    Proximity = 5,
+}
+
+/// The draws of one seed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Draws {
+    pub seed: u64,
+}
+
+/// A scene has at most 64 beams, whose jittered pencils draw from the same counters: these lie beyond them.
+const BEYOND_THE_BEAMS: usize = 1 << 16;
+
+impl Draws {
+    /// Two independent numbers, uniform in (0, 1).
+    fn uniform(&self, purpose: Purpose, index: u64) -> [f64; 2] {
+        let counter = BEYOND_THE_BEAMS + purpose as usize;
+        let offset =
+            Sampling::Jittered { seed: self.seed }.offset(counter, index as u32, (index >> 32) as u32);
+        // An odd multiple of 2^-33: never 0, never 1.
+        offset.map(|offset| offset + 0.5)
+    }
+
+    /// Two independent Gaussians of mean 0 and standard deviation 1. (Box and Muller, 1958)
+    pub fn gaussians(&self, purpose: Purpose, index: u64) -> [f64; 2] {
+        let [share, turn] = self.uniform(purpose, index);
+        let radius = (-2.0 * libm::log(share)).sqrt();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * turn);
+        [radius * cos, radius * sin]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_differ_by_seed_purpose_and_index() {
+        let draw = |seed, purpose, index| Draws { seed }.gaussians(purpose, index);
+        let first = draw(1, Purpose::Tilt, 7);
+        assert_eq!(first, draw(1, Purpose::Tilt, 7));
+        for other in
+            [draw(2, Purpose::Tilt, 7), draw(1, Purpose::Heading, 7), draw(1, Purpose::Tilt, 7 + (1 << 32))]
+        {
+            assert_ne!(first, other);
+        }
+    }
+
+    #[test]
+    fn gaussians_have_their_moments() {
+        // Of n = 20000 the means of x, x^2 and xy have standard errors 1, sqrt(2) and 1 over sqrt(n); four of them.
+        let draws = Draws { seed: 11 };
+        let mut sums = [0.0; 3];
+        for index in 0..20_000 {
+            let [x, y] = draws.gaussians(Purpose::Proximity, index);
+            for (sum, term) in sums.iter_mut().zip([x, x * x - 1.0, x * y]) {
+                *sum += term / 20_000.0;
+            }
+        }
+        let error = 1.0 / f64::sqrt(20_000.0);
+        assert!(sums[0].abs() < 4.0 * error && sums[1].abs() < 5.66 * error && sums[2].abs() < 4.0 * error);
+    }
+}

@@ -1,0 +1,78 @@
+//! The rover itself: what it makes of its camera's images, and where it may drive.
+//!
+//! Step 9 of the paper (§3) and its §7, in the order of one frame:
+//!
+//! 1. [`Extraction`] finds the lower edges of the light stripes in an image;
+//! 2. [`Triangulation`] turns edge pixels into points of the beam's lower edge plane, vehicle frame;
+//! 3. [`Mapper`] knows the vehicle's elevation, moves the [`LocalMap`] and enters the points;
+//! 4. every [`OBSTACLE_FRAMES`] frames, [`ObstacleMap`] tests a radial grid by [`PassableRules`], and
+//!    [`navigator_map`] joins the ends of its sectors by labelled vectors.
+//!
+//! [`Vehicle`] settles on the ground, [`Route`] says where it drives, [`Sensors`] what it knows of that, [`ScanRule`]
+//! and [`Sweep`] when it stops to pan its beams.
+//!
+//! [`Drive`] puts all of it together, with a renderer for the images.
+//!
+//! Pure: no IO, no clocks, and random numbers keyed by (seed, purpose, index). Every number that the paper does not
+//! print is a named parameter; `docs/rover.md` lists them all, with the sentence of the paper that each belongs to.
+//!
+//! ```
+//! use glam::{DVec2, DVec3};
+//! use raypencil_rover::{
+//!     Attitude, Label, Mapper, MapSize, ObstacleMap, PassableRules, RadialGrid, Sensed, Vehicle, VectorRules,
+//!     navigator_map,
+//! };
+//!
+//! // A vehicle at (0, 0) that sees a wall of 0.4 m from x = 3 on, and level ground before it.
+//! let vehicle = Vehicle::default();
+//! let sensed = Sensed { position: DVec2::ZERO, attitude: Attitude::default(), proximity: Some(0.0) };
+//! let mut mapper = Mapper::start(vehicle, MapSize::default(), &sensed, 0.0);
+//! let seen = (0..60).flat_map(|i| (-40..=40).map(move |j| {
+//!     let (x, y) = (0.1 * f64::from(i), 0.1 * f64::from(j));
+//!     DVec3::new(x, y, if x < 2.95 { 0.0 } else { 0.4 })
+//! }));
+//! mapper.frame(&sensed, seen);
+//!
+//! let grid = RadialGrid::of(&vehicle);
+//! let rules = PassableRules::of(&vehicle);
+//! let obstacles = ObstacleMap::of(mapper.map(), &vehicle, &rules, &grid, &mapper.pose());
+//! let ahead = obstacles.sectors[15];
+//! assert_eq!(ahead.label, Label::Obstacle);
+//! assert!((ahead.radius - 3.0).abs() < 0.11);
+//! let vectors = navigator_map(&obstacles, &VectorRules::of(&vehicle));
+//! assert_eq!(vectors[14].label, Label::Obstacle);
+//! ```
+
+mod check;
+mod draws;
+mod drive;
+mod gap;
+mod inertial;
+mod local_map;
+mod mapper;
+mod navigator_map;
+mod obstacle_map;
+mod otsu;
+mod passable;
+mod rig;
+mod route;
+mod scan;
+mod stripe;
+mod triangulation;
+mod vehicle;
+
+pub use drive::{Develop, Drive, DriveFrame, DrivePlan, Exposure, Exposures};
+pub use gap::GapRule;
+pub use inertial::{Fixes, Sensed, SensorErrors, Sensors};
+pub use local_map::{GridPoint, Inconsistency, LocalMap, MapSize, Source};
+pub use mapper::{FrameUpdate, Mapper};
+pub use navigator_map::{LabelledVector, VectorRules, navigator_map};
+pub use obstacle_map::{Label, OBSTACLE_FRAMES, ObstacleMap, RadialGrid, SectorEnd, obstacle_map_due};
+pub use otsu::otsu;
+pub use passable::{PassableRules, SlopeLimits, Test, Verdict};
+pub use rig::{OnVehicle, Pan, Rig};
+pub use route::{Route, RoutePlace};
+pub use scan::{ScanReason, ScanRule, Sweep};
+pub use stripe::{Detection, EdgePoint, Extraction, Place};
+pub use triangulation::{SheetPlane, Triangulation, TriangulationTable};
+pub use vehicle::{Attitude, Stance, Vehicle};

@@ -1,0 +1,130 @@
+//! The local navigator map: labelled vectors between the ends of neighbouring sectors. (Paper, §7)
+
+use glam::DVec2;
+use raypencil_scene::SceneError;
+
+use crate::check::check_range;
+use crate::obstacle_map::{Label, ObstacleMap, SectorEnd};
+use crate::vehicle::Vehicle;
+
+/// When two radii are near one another. The paper says "not large" and "small", and no number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VectorRules {
+    /// A difference above this is large, metres.
+    pub large: f64,
+    /// A difference up to this is small, metres.
+    pub small: f64,
+}
+
+impl VectorRules {
+    /// CHOICE: large is more than the vehicle's width over all (1.25 m): less of an opening between an obstacle and
+    /// what is behind it lets no vehicle in. Small is half of that.
+    pub fn of(vehicle: &Vehicle) -> Self {
+        Self { large: vehicle.width(), small: 0.5 * vehicle.width() }
+    }
+
+    /// The label of the vector between the ends of two neighbouring sectors.
+    pub fn label(&self, a: &SectorEnd, b: &SectorEnd) -> Label {
+        let difference = (a.radius - b.radius).abs();
+        let either = |label| a.label == label || b.label == label;
+        if a.label == b.label {
+            // "If a vector joins two points with the same label, that vector is labelled with that same label."
+            a.label
+        } else if either(Label::Obstacle) && difference <= self.large {
+            // "The label of a vector joining two points is 'obstacle' if one of the points is labelled 'obstacle' and
+            // if the difference in radial distances between the two points is not large."
+            Label::Obstacle
+        } else if either(Label::Visibility) && difference <= self.small {
+            // "Otherwise, if one of the points is labelled 'visibility' and the radial difference between the points is
+            // small than the vector is labelled 'visibility.'"
+            Label::Visibility
+        } else {
+            // "If none of these conditions hold, the vector is labelled 'unknown.'"
+            Label::Unknown
+        }
+    }
+
+    /// Refuses thresholds that are none, naming the field.
+    pub fn validate(&self, field: &str) -> Result<(), SceneError> {
+        check_range(field, "large", self.large, 0.0, 1e3, "m")?;
+        check_range(field, "small", self.small, 0.0, 1e3, "m")
+    }
+}
+
+/// A labelled vector, global coordinates in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LabelledVector {
+    /// The end of a sector.
+    pub from: DVec2,
+    /// The end of the next sector to the left.
+    pub to: DVec2,
+    /// What lies behind it.
+    pub label: Label,
+}
+
+/// "The Local Navigator Map is a list of labelled global vectors, and is used by the intelligent control and piloting
+/// module, the Navigator. The radial grid is converted into the map by basically connecting the labelled points on each
+/// sector of the radial grid by vectors." (§7) From right to left; one fewer than there are sectors.
+pub fn navigator_map(obstacles: &ObstacleMap, rules: &VectorRules) -> Vec<LabelledVector> {
+    let vector = |pair: &[SectorEnd]| LabelledVector {
+        from: pair[0].point,
+        to: pair[1].point,
+        label: rules.label(&pair[0], &pair[1]),
+    };
+    obstacles.sectors.windows(2).map(vector).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn end(radius: f64, label: Label) -> SectorEnd {
+        SectorEnd { direction: 0.0, radius, point: DVec2::new(radius, 0.0), label, failed: None }
+    }
+
+    #[test]
+    fn every_rule_of_vectors() {
+        use Label::{Obstacle, Unknown, Visibility};
+        // Large is above 1.25 m, small up to 0.625 m for the default vehicle.
+        let rules = VectorRules::of(&Vehicle::default());
+        assert_eq!((rules.large, rules.small), (1.25, 0.625));
+        for (a, b, difference, expected) in [
+            // The same label, however far apart.
+            (Obstacle, Obstacle, 3.0, Obstacle),
+            (Unknown, Unknown, 0.0, Unknown),
+            (Visibility, Visibility, 0.0, Visibility),
+            // One obstacle, not large: an obstacle, whatever the other.
+            (Obstacle, Unknown, 1.25, Obstacle),
+            (Obstacle, Visibility, 0.25, Obstacle),
+            // One obstacle, large: the visibility rule needs a small difference, and no large one is small.
+            (Obstacle, Unknown, 1.5, Unknown),
+            (Obstacle, Visibility, 1.5, Unknown),
+            // No obstacle, one visibility: small or not.
+            (Unknown, Visibility, 0.625, Visibility),
+            (Unknown, Visibility, 0.75, Unknown),
+        ] {
+            let (near, far) = (end(2.0, a), end(2.0 + difference, b));
+            assert_eq!(rules.label(&near, &far), expected, "{a:?} {b:?} {difference}");
+            assert_eq!(rules.label(&far, &near), expected, "{b:?} {a:?} {difference}");
+        }
+    }
+
+    #[test]
+    fn with_small_above_large_an_obstacle_may_become_a_visibility_limit() {
+        // The rules are in the paper's order: an obstacle whose difference is large falls to the next rule.
+        let rules = VectorRules { large: 0.5, small: 1.0 };
+        let (a, b) = (end(2.0, Label::Obstacle), end(2.75, Label::Visibility));
+        assert_eq!(rules.label(&a, &b), Label::Visibility);
+    }
+
+    #[test]
+    fn vectors_join_neighbouring_sectors() {
+        let sectors = vec![end(1.0, Label::Obstacle), end(1.5, Label::Unknown), end(4.0, Label::Unknown)];
+        let obstacles = ObstacleMap { centre: DVec2::ZERO, sectors };
+        let vectors = navigator_map(&obstacles, &VectorRules::of(&Vehicle::default()));
+        let labels: Vec<Label> = vectors.iter().map(|vector| vector.label).collect();
+        assert_eq!(labels, [Label::Obstacle, Label::Unknown]);
+        assert_eq!((vectors[0].to, vectors[1].from), (DVec2::new(1.5, 0.0), DVec2::new(1.5, 0.0)));
+        assert!(VectorRules { small: f64::NAN, large: 1.0 }.validate("vectors").is_err());
+    }
+}

@@ -1,0 +1,145 @@
+//! Where the vehicle is told to drive: waypoints at a speed, cut into frames.
+
+use glam::DVec2;
+use raypencil_scene::SceneError;
+
+use crate::check::check_range;
+
+/// From a start over waypoints in straight legs.
+///
+/// CHOICE: at a waypoint the vehicle turns on the spot; the paper says nothing of steering. Waypoints are driven
+/// whatever the maps say: in the paper's samples "the vehicle was forced to travel its path regardless of unknown
+/// areas and obstacles" (§8).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Route {
+    /// Where it begins, global, metres.
+    pub start: DVec2,
+    /// The heading there, radians to the left of the global x axis.
+    pub heading: f64,
+    /// Where it goes, global, metres.
+    pub waypoints: Vec<DVec2>,
+    /// Metres per second.
+    pub speed: f64,
+    /// Radians per second.
+    pub turn_rate: f64,
+    /// Frames per second: 10, "every tenth of a second" (§7).
+    pub frame_rate: f64,
+}
+
+/// Where a route has the vehicle in one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoutePlace {
+    /// Its middle, global, metres.
+    pub place: DVec2,
+    /// Radians to the left of the global x axis.
+    pub heading: f64,
+    /// The way driven since the start, metres.
+    pub driven: f64,
+}
+
+impl Route {
+    /// A route at 0.3 m/s, turning 0.3 rad/s, at 10 frames a second, first turned towards its first waypoint.
+    ///
+    /// CHOICE: 0.3 m/s moves the stripes on level ground by 3 cm a frame, so that each grid spacing of 0.1 m is
+    /// measured three times.
+    pub fn through(start: DVec2, waypoints: Vec<DVec2>) -> Self {
+        let heading = waypoints.first().map_or(0.0, |&first| direction(first - start).unwrap_or(0.0));
+        Self { start, heading, waypoints, speed: 0.3, turn_rate: 0.3, frame_rate: 10.0 }
+    }
+
+    /// Where the vehicle is in frame `index`, or `None` once the route is over: its last frame is at the last
+    /// waypoint. Computed from the index alone, so that no error adds up.
+    pub fn frame(&self, index: u64) -> Option<RoutePlace> {
+        let mut time = index as f64 / self.frame_rate;
+        let (mut place, mut heading, mut driven) = (self.start, self.heading, 0.0);
+        for &waypoint in &self.waypoints {
+            let leg = waypoint - place;
+            let Some(towards) = direction(leg) else { continue };
+            let turn = shortest_turn(towards - heading);
+            let turning = turn.abs() / self.turn_rate;
+            if time < turning {
+                let turned = time * self.turn_rate;
+                let heading = heading + if turn < 0.0 { -turned } else { turned };
+                return Some(RoutePlace { place, heading, driven });
+            }
+            time -= turning;
+            heading = towards;
+            let driving = leg.length() / self.speed;
+            if time < driving {
+                let way = time * self.speed;
+                let place = place + leg * (way / leg.length());
+                return Some(RoutePlace { place, heading, driven: driven + way });
+            }
+            time -= driving;
+            driven += leg.length();
+            place = waypoint;
+        }
+        // The first frame at or after the end is the last; rounding makes no frame more.
+        let frames_over = time * self.frame_rate;
+        (frames_over < 1.0 - 1e-6).then_some(RoutePlace { place, heading, driven })
+    }
+
+    /// Refuses a route that cannot be driven, naming the field.
+    pub fn validate(&self, field: &str) -> Result<(), SceneError> {
+        for (index, point) in std::iter::once(&self.start).chain(&self.waypoints).enumerate() {
+            if !point.is_finite() || point.abs().max_element() > 1e12 {
+                let name = match index.checked_sub(1) {
+                    None => format!("{field}.start"),
+                    Some(waypoint) => format!("{field}.waypoints[{waypoint}]"),
+                };
+                return Err(SceneError::new(name, point, "two numbers within 1e12 m"));
+            }
+        }
+        check_range(field, "heading", self.heading, -1e3, 1e3, "rad")?;
+        check_range(field, "speed", self.speed, 1e-4, 1e2, "m/s")?;
+        check_range(field, "turn_rate", self.turn_rate, 1e-4, 1e2, "rad/s")?;
+        check_range(field, "frame_rate", self.frame_rate, 1e-3, 1e4, "1/s")
+    }
+}
+
+/// The heading of a way, unless it has no length.
+fn direction(way: DVec2) -> Option<f64> {
+    (way != DVec2::ZERO).then(|| libm::atan2(way.y, way.x))
+}
+
+/// A difference of headings as a turn of at most half a circle.
+fn shortest_turn(turn: f64) -> f64 {
+    use std::f64::consts::TAU;
+    turn - TAU * (turn / TAU).round()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    #[test]
+    fn a_leg_a_turn_and_a_leg() {
+        // 3 m along x at 0.3 m/s: 10 s. A turn of 90 degrees left at 0.3 rad/s: 5.236 s. 1.5 m along y: 5 s. In all
+        // 20.236 s: frames 0 to 202 are on the way, and frame 203 (20.3 s) ends it.
+        let route = Route::through(DVec2::ZERO, vec![DVec2::new(3.0, 0.0), DVec2::new(3.0, 1.5)]);
+        assert!(route.validate("route").is_ok());
+        let place = route.frame(50).unwrap();
+        assert!((place.place - DVec2::new(1.5, 0.0)).length() < 1e-12 && place.heading == 0.0);
+        let place = route.frame(110).unwrap();
+        assert!((place.place - DVec2::new(3.0, 0.0)).length() < 1e-12 && (place.heading - 0.3).abs() < 1e-12);
+        let place = route.frame(200).unwrap();
+        assert!((place.heading - FRAC_PI_2).abs() < 1e-12);
+        assert!((place.driven - (3.0 + 0.3 * (10.0 - FRAC_PI_2 / 0.3))).abs() < 1e-12);
+        let last = route.frame(203).unwrap();
+        assert_eq!((last.place, last.driven), (DVec2::new(3.0, 1.5), 4.5));
+        assert_eq!(route.frame(204), None);
+    }
+
+    #[test]
+    fn a_turn_takes_the_shorter_way() {
+        // From 170 to -170 degrees: 20 to the left.
+        let heading = 170.0_f64.to_radians();
+        let far = DVec2::new(libm::cos(heading), -libm::sin(heading)) * 5.0;
+        let route = Route { heading, ..Route::through(DVec2::ZERO, vec![far]) };
+        assert!((route.frame(1).unwrap().heading - heading - 0.03).abs() < 1e-12);
+        let slow = Route { speed: 0.0, ..route };
+        assert!(slow.validate("route").unwrap_err().to_string().contains("route.speed"));
+    }
+}

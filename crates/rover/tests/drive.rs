@@ -1,0 +1,194 @@
+//! Whole drives, through images: a stand-in renderer of a few triangles makes them.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{extruded, first_hit, from_vehicle, rig, seen_at};
+use glam::{DVec2, DVec3};
+use raypencil_rover::{
+    Detection, Drive, DriveFrame, DrivePlan, Exposures, Extraction, Fixes, Label, OnVehicle, Place, Rig,
+    Route, ScanReason, ScanRule, SensorErrors, Source, Sweep,
+};
+use raypencil_scene::{Frame, Image, Mesh, Pose, Renderer, Request, Resolution, Scene};
+
+/// A watt for every pencil that the camera sees.
+struct StandIn;
+
+impl Renderer for StandIn {
+    fn name(&self) -> &str {
+        "stand-in"
+    }
+
+    fn resolution(&self) -> Resolution {
+        Resolution::F64
+    }
+
+    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+        assert!(request.returns && !request.camera && !request.beams);
+        // As if the vehicle were the scene itself.
+        let rig = Rig::of_scene(scene, Pose::IDENTITY);
+        let faces = from_vehicle(scene.mesh(), Pose::from_position(scene.mesh().origin()));
+        let flux = rig.beams.iter().map(|beam| {
+            let OnVehicle { vehicle_from_sensor, sensor } = beam;
+            let camera = rig.camera.sensor;
+            let mut image = Image::filled(camera.width, camera.height, 0.0);
+            for j in 0..sensor.rows {
+                let origin = *vehicle_from_sensor * sensor.origin(j);
+                for i in 0..sensor.columns {
+                    let direction = vehicle_from_sensor.rotate(sensor.direction(i));
+                    let Some(point) = first_hit(&faces, origin, direction) else { continue };
+                    let Some((u, v)) = seen_at(&rig, &faces, point) else { continue };
+                    image.set(u as u32, v as u32, image.at(u as u32, v as u32) + 1.0);
+                }
+            }
+            image
+        });
+        let flux = flux.collect();
+        Frame { camera: None, beams: Vec::new(), returns: Vec::new(), flux, stages: Vec::new() }
+    }
+}
+
+/// 1.5 m ahead at 0.3 m/s, with coarse beams and a coarse sweep.
+fn plan() -> DrivePlan {
+    let route = Route::through(DVec2::ZERO, vec![DVec2::new(1.5, 0.0)]);
+    let plan = DrivePlan::new(rig(96, 4), route, Extraction::thresholding(0.5));
+    DrivePlan { sweep: Sweep { steps: 51, ..Sweep::default() }, ..plan }
+}
+
+fn drive(plan: DrivePlan, mesh: &Arc<Mesh>) -> (Drive, Vec<DriveFrame>) {
+    let mut drive = Drive::new(plan, Arc::clone(mesh)).unwrap();
+    let mut frames = Vec::new();
+    while let Some(frame) = drive.step(&StandIn, &mut |_, image| image).unwrap() {
+        frames.push(frame);
+    }
+    (drive, frames)
+}
+
+#[test]
+fn a_drive_towards_a_wall() {
+    // Level, and 0.5 m higher from x = 5 on.
+    let mesh = extruded(&[(-20.0, 0.0), (5.0, 0.0), (5.0, 0.5), (20.0, 0.5)]);
+    let (drive, frames) = drive(plan(), &mesh);
+    // 5 s at 10 frames a second, both ends included.
+    assert_eq!(frames.len(), 51);
+    assert_eq!(frames[0].scan, Some(ScanReason::Start));
+    assert!(frames[1..].iter().all(|frame| frame.scan.is_none() && frame.points > 100));
+    // The elevation of the vehicle comes from the map; a pixel's footprint at the stripes is 4 to 6 cm.
+    let mapper = drive.mapper().unwrap();
+    assert!((mapper.pose().position - DVec3::new(1.5, 0.0, 0.0)).length() < 0.06, "{:?}", mapper.pose());
+    // What was measured is the ground: 95 % of it (tuned) within 5 cm of its level.
+    let (mut close, mut all) = (0, 0);
+    for point in mapper.map().points() {
+        if mapper.map().source(point) == Source::Measured {
+            let (x, z) = (mapper.map().place(point).x, mapper.map().elevation(point).unwrap());
+            // A wall's points, and those of a pixel across its edge, are anything between.
+            if (x - 5.0).abs() > 0.16 {
+                all += 1;
+                close += usize::from((z - if x > 5.0 { 0.5 } else { 0.0 }).abs() < 0.05);
+            }
+        }
+    }
+    assert!(all > 1000 && close * 20 > all * 19, "{close} of {all}");
+    // The last obstacle map marks the wall straight ahead, 3.5 m away, and its vectors do.
+    let maps: Vec<_> = frames.iter().filter_map(|frame| frame.obstacles.as_ref()).collect();
+    assert_eq!(maps.len(), 6);
+    let (obstacles, vectors) = maps[5];
+    let ahead = obstacles.sectors[15];
+    assert_eq!(ahead.label, Label::Obstacle);
+    assert!((ahead.point.x - 5.0).abs() < 0.21, "{ahead:?}");
+    assert_eq!(vectors[15].label, Label::Obstacle);
+}
+
+#[test]
+fn one_exposure_of_both_beams_gives_the_same_map_of_level_ground() {
+    let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
+    // Fine beams: a column of the image then holds both stripes.
+    let route = Route::through(DVec2::ZERO, vec![DVec2::new(0.1, 0.0)]);
+    let short = || DrivePlan { route: route.clone(), rig: rig(1024, 2), ..plan() };
+    let (in_turn, frames) = drive(short(), &mesh);
+    let (together, others) = drive(DrivePlan { exposures: Exposures::Together, ..short() }, &mesh);
+    assert_eq!(frames.len(), others.len());
+    // Columns that hold one stripe alone are left out when both are lit: fewer points, none of them new.
+    assert!(
+        others.iter().zip(&frames).all(|(other, frame)| other.points <= frame.points && other.points > 50)
+    );
+    let [a, b] = [in_turn.mapper().unwrap().map(), together.mapper().unwrap().map()];
+    let common = a.points().filter(|&point| b.source(point) == Source::Measured);
+    for point in common {
+        assert!((a.elevation(point).unwrap() - b.elevation(point).unwrap()).abs() < 0.06);
+    }
+}
+
+#[test]
+fn errors_of_the_sensors_call_for_a_scan() {
+    // Noise of 1 degree in pitch lifts and sinks a stripe 5 m away by 9 cm: points contradict one another, and at 5 cm
+    // a scan is due.
+    let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
+    let errors = SensorErrors {
+        attitude_noise: 1.0_f64.to_radians(),
+        fixes: Some(Fixes { every_frames: 10, noise: 0.01 }),
+        ..SensorErrors::default()
+    };
+    let scans = Some(ScanRule { inconsistency: Some(0.05), ..ScanRule::default() });
+    let short = DrivePlan {
+        route: Route::through(DVec2::ZERO, vec![DVec2::new(0.6, 0.0)]),
+        sweep: Sweep { steps: 5, ..Sweep::default() },
+        scans,
+        ..plan()
+    };
+    let noisy = DrivePlan { errors, seed: 3, ..short.clone() };
+    let (_, frames) = drive(noisy.clone(), &mesh);
+    let because = |frames: &[DriveFrame]| {
+        frames.iter().filter(|frame| frame.scan == Some(ScanReason::Inconsistency)).count()
+    };
+    assert!(because(&frames) > 0);
+    // The same seed gives the same drive, another seed another.
+    let (_, again) = drive(noisy.clone(), &mesh);
+    assert_eq!(frames, again);
+    let (_, other) = drive(DrivePlan { seed: 4, ..noisy }, &mesh);
+    assert_ne!(frames, other);
+    let (_, calm) = drive(short, &mesh);
+    assert_eq!(because(&calm), 0);
+}
+
+#[test]
+fn images_may_be_developed() {
+    // Steps 6 to 8 as a digitisation: whole numbers, so many per watt, with a bias; Otsu finds the light.
+    let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
+    let plan = DrivePlan {
+        extraction: Extraction { detection: Detection::Otsu, place: Place::Pixel, least_rows: 1 },
+        scans: None,
+        route: Route::through(DVec2::ZERO, vec![DVec2::new(0.03, 0.0)]),
+        ..plan()
+    };
+    let mut drive = Drive::new(plan, mesh).unwrap();
+    let mut seen = Vec::new();
+    let mut develop = |exposure: raypencil_rover::Exposure, mut image: Image<f64>| {
+        seen.push((exposure.frame, exposure.step, exposure.beam));
+        for value in image.cells_mut() {
+            *value = (*value * 20.0).min(60.0).round() + 12.0;
+        }
+        image
+    };
+    let frame = drive.step(&StandIn, &mut develop).unwrap().unwrap();
+    assert!(frame.points > 100);
+    assert_eq!(seen, [(0, None, Some(0)), (0, None, Some(1))]);
+}
+
+#[test]
+fn a_start_off_the_ground_is_refused_and_a_route_off_it_ends() {
+    let mesh = extruded(&[(-20.0, 0.0), (2.0, 0.0)]);
+    let nowhere = DrivePlan { route: Route::through(DVec2::new(5.0, 0.0), vec![]), ..plan() };
+    let message = Drive::new(nowhere, Arc::clone(&mesh)).unwrap_err().to_string();
+    assert!(message.contains("drive.route.start"), "{message}");
+    let off = DrivePlan {
+        route: Route { speed: 3.0, ..Route::through(DVec2::ZERO, vec![DVec2::new(6.0, 0.0)]) },
+        scans: None,
+        ..plan()
+    };
+    let (_, frames) = drive(off, &mesh);
+    // The front hubs are 0.6 m before the middle, their rims 0.35 m more: some part of a wheel has ground below it up
+    // to x = 2 - 0.6 + 0.35 = 1.75 m, 0.3 m a frame.
+    assert!((5..=7).contains(&frames.len()), "{} frames", frames.len());
+}
