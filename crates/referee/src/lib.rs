@@ -56,6 +56,7 @@ mod sight;
 mod sight_margin;
 mod sight_ruling;
 mod surface;
+mod through;
 mod truth;
 mod twofold;
 mod values;

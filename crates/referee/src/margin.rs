@@ -271,7 +271,7 @@ impl<'a> Search<'a> {
                 break;
             }
             if let What::Enters(index) = event.what {
-                for at in self.threads(index) {
+                for at in self.threads(index).into_iter().chain(self.tips(index)) {
                     if offer(&mut best, at) {
                         return best;
                     }
@@ -295,6 +295,16 @@ impl<'a> Search<'a> {
             }
         }
         points.retain(|&at| size(at) <= 1.0);
+        points.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
+        points
+    }
+
+    /// Points of a face in and near the corner that is nearest: one that the ray all but meets is known better than any
+    /// form.
+    fn tips(&self, index: usize) -> Vec<[f64; 2]> {
+        let mut points = self.near.inside_corners(index, 1.0);
+        let nearest = points.iter().map(|&at| size(at)).fold(1.0, f64::min);
+        points.extend(self.near.inside_corners(index, (2.0 * nearest).min(1.0)));
         points.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
         points
     }

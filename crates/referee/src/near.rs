@@ -11,6 +11,7 @@ use crate::cull::Walk;
 use crate::face::{ExactRay, Face};
 use crate::forms::{Away, FaceForms, Form, MovingRay};
 use crate::pencil::{Aim, Sensor};
+use crate::through::inside_corners;
 use crate::verdict::{Referee, bundle_of};
 
 /// The faces near the ray of one cell.
@@ -81,6 +82,11 @@ impl<'a> Neighbourhood<'a> {
                 self.faces.push(forms);
             }
         }
+    }
+
+    /// Displacements of at most `reach` cells just inside the corners of a face.
+    pub(crate) fn inside_corners(&self, face: usize, reach: f64) -> Vec<[f64; 2]> {
+        inside_corners(self.sensor, self.aim, self.faces[face].face, reach)
     }
 
     /// Sees to it that all that may be met within `range` is known; says whether there is more than before.

@@ -10,6 +10,7 @@ use raypencil_scene::{FaceId, SensorId};
 use crate::face::{ExactRay, Face};
 use crate::forms::{FaceForms, MovingRay};
 use crate::pencil::{Aim, Sensor};
+use crate::through::inside_corners;
 use crate::verdict::{Displacement, Referee};
 
 /// How finely a renderer tells rays and ranges apart.
@@ -127,9 +128,12 @@ impl Referee<'_> {
         let scaled = |at: [f64; 2]| {
             at.map(|part| (part * tolerance.lateral).clamp(-tolerance.lateral, tolerance.lateral))
         };
+        // Lazily, since they are exact and hardly ever needed.
+        let corners = std::iter::once(()).flat_map(|()| inside_corners(sensor, aim, face, tolerance.lateral));
         tried
             .into_iter()
             .map(scaled)
+            .chain(corners)
             .find(|&[dx, dy]| {
                 let aim = Aim { dx, dy, ..aim };
                 let exact = ExactRay::new(sensor, aim);
