@@ -19,7 +19,7 @@ pub(super) struct Figure {
 /// Side of a plot, pixels.
 const PLOT: f64 = 560.0;
 /// Around it: left, above, right, below.
-const MARGIN: [f64; 4] = [64.0, 40.0, 150.0, 56.0];
+const MARGIN: [f64; 4] = [64.0, 40.0, 180.0, 56.0];
 const GRID: Colour = [216, 213, 206];
 
 /// All of them. Without an obstacle map there are two.
@@ -130,7 +130,7 @@ fn camera_view(view: &View, beams: usize) -> Drawing {
         drawing.text([left - 8.0, y + 0.35 * LETTERS], tick.label, Anchor::End, SOFT);
     }
     drawing.text([left + 0.5 * width, above + height + 40.0], "pixel column", Anchor::Middle, INK);
-    drawing.text([left, above - 12.0], "pixel row", Anchor::End, INK);
+    drawing.text([6.0, above - 12.0], "pixel row", Anchor::Start, INK);
     for beam in 0..beams {
         let y = above + 14.0 + 20.0 * beam as f64;
         let x = left + width + 14.0;
@@ -151,6 +151,17 @@ fn known(map: &LocalMap) -> Option<([f64; 2], [GridPoint; 2])> {
         *high = GridPoint { i: high.i.max(point.i), j: high.j.max(point.j) };
     }
     found
+}
+
+/// Lines of a relief's net, along either side; more cannot be told apart.
+const MOST_ACROSS: i64 = 240;
+/// Cells of a map from above, along either side.
+const MOST_CELLS: i64 = 1000;
+
+/// From how many grid points one is drawn, so that there are at most so many along either side.
+fn stride(low: GridPoint, high: GridPoint, most: i64) -> i64 {
+    let longest = (high.i - low.i).max(high.j - low.j).max(0);
+    longest / most + 1
 }
 
 /// Where the relief is looked at from: so far to the right of behind, and so far above the horizon, radians.
@@ -190,9 +201,10 @@ fn relief(map: &LocalMap) -> Drawing {
     rim.push(rim[0]);
     drawing.line(rim, GRID, 1.0);
     let mut cells = Vec::new();
-    for j in low.j..high.j {
-        for i in low.i..high.i {
-            let four = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+    let each = stride(low, high, MOST_ACROSS);
+    for j in (low.j..high.j).step_by(each as usize) {
+        for i in (low.i..high.i).step_by(each as usize) {
+            let four = [(i, j), (i + each, j), (i + each, j + each), (i, j + each)];
             let corners = four.map(|(i, j)| Some(corner(i, j, map.elevation(GridPoint { i, j })?)));
             if let [Some(a), Some(b), Some(c), Some(d)] = corners {
                 cells.push([a, b, c, d]);
@@ -208,7 +220,7 @@ fn relief(map: &LocalMap) -> Drawing {
     }
     // Metres along the two sides that are nearest.
     let (from, to) = (map.place(low), map.place(high));
-    for tick in Scale::linear(from.x, to.x).ticks(6) {
+    for tick in Scale::linear(from.x, to.x).ticks(8) {
         let at = page(DVec3::new(from.x + tick.at * (to.x - from.x), from.y, lowest));
         drawing.text([at[0] + 6.0, at[1] + 14.0], tick.label, Anchor::Start, SOFT);
     }
@@ -246,23 +258,28 @@ impl Top {
 
         let map = &run.map;
         let heights = known(map).map_or([0.0; 2], |(heights, _)| heights);
+        // Whole cells within the frame.
         let (first, last) = (map.nearest(low), map.nearest(high));
+        let first = GridPoint { i: first.i + 1, j: first.j + 1 };
+        let last = GridPoint { i: last.i - 1, j: last.j - 1 };
         let scale = Scale::linear(heights[0], heights[1]);
         let grey = |z: f64| [(150.0 + 100.0 * scale.fraction(z)) as u8; 3];
         let (mut cells, half) = (Vec::new(), DVec2::splat(0.5 * map.size().spacing));
-        for j in (first.j..=last.j).rev() {
-            for i in first.i..=last.i {
-                cells.push(map.elevation(GridPoint { i, j }).map(grey));
+        // Of a fine map some points stand for all; of a coarse one none may be within.
+        let each = stride(first, last, MOST_CELLS);
+        let across = (last.i - first.i).max(-each) / each + 1;
+        for j in (0..=(last.j - first.j).max(-each) / each).rev() {
+            for i in 0..across {
+                let point = GridPoint { i: first.i + i * each, j: first.j + j * each };
+                cells.push(map.elevation(point).map(grey));
             }
         }
         let (corner, opposite) = (map.place(first) - half, map.place(last) + half);
         let (a, b) = (top.page(DVec2::new(corner.x, opposite.y)), top.page(DVec2::new(opposite.x, corner.y)));
-        top.drawing.marks.push(Mark::Cells {
-            at: a,
-            size: [b[0] - a[0], b[1] - a[1]],
-            columns: (last.i - first.i + 1) as usize,
-            cells,
-        });
+        if !cells.is_empty() {
+            let size = [b[0] - a[0], b[1] - a[1]];
+            top.drawing.marks.push(Mark::Cells { at: a, size, columns: across as usize, cells });
+        }
         top.axes(low, high);
         let x = left + size.x + 14.0;
         let words = [
@@ -287,7 +304,6 @@ impl Top {
     /// The frame, and metres along it.
     fn axes(&mut self, low: DVec2, high: DVec2) {
         let (a, b) = (self.page(low), self.page(high));
-        // What of the map is beyond the frame by half a cell.
         self.drawing.line(vec![a, [b[0], a[1]], b, [a[0], b[1]], a], SOFT, 1.0);
         for tick in Scale::linear(low.x, high.x).ticks(7) {
             let x = a[0] + tick.at * (b[0] - a[0]);
@@ -300,7 +316,7 @@ impl Top {
             self.drawing.text([a[0] - 8.0, y + 0.35 * LETTERS], tick.label, Anchor::End, SOFT);
         }
         self.drawing.text([0.5 * (a[0] + b[0]), a[1] + 40.0], "x, m", Anchor::Middle, INK);
-        self.drawing.text([a[0] - 8.0, b[1] - 12.0], "y, m", Anchor::End, INK);
+        self.drawing.text([6.0, b[1] - 12.0], "y, m", Anchor::Start, INK);
     }
 
     fn line(&mut self, points: &[DVec2], colour: Colour, width: f64) {

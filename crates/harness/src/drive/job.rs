@@ -85,6 +85,8 @@ fn builtin(name: &str) -> Option<(DVec2, DriveSettings)> {
         // CHOICE: a frame each 0.1 m, a grid spacing, which its own extrapolation closes; ten frames a second would be one
         // each 3 cm.
         frame_rate: Some(BUILTIN_FRAMES_PER_S),
+        // Twice each metre, and at the very end.
+        obstacles_every: Some(5),
         // CHOICE: no scans: what figures 12 and 15 leave open, stripes alone could not see.
         scans: Some(false),
         ..DriveSettings::default()
