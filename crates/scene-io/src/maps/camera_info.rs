@@ -40,22 +40,22 @@ mod tests {
         let camera = Camera {
             width: 1024,
             height: 768,
-            pixel_pitch: [8e-6, 16e-6],
-            focal_length: 8e-3,
+            pixel_pitch: [1.0 / 131_072.0, 1.0 / 65_536.0],
+            focal_length: 1.0 / 128.0,
             principal_point: [512.0, 384.0],
             aperture: 2e-3,
             lens: Lens::CLEAR,
             max_range: 20.0,
         };
         let text = camera_info(&camera, "rover");
-        // 8 mm over 8 and 16 um: 1000 and 500 pixels.
+        // 2^-7 over 2^-17 and 2^-16: 1024 and 512 pixels.
         for line in [
             "image_width: 1024",
             "image_height: 768",
             "camera_name: rover",
-            "  data: [1000.0, 0.0, 511.5, 0.0, 500.0, 383.5, 0.0, 0.0, 1.0]",
+            "  data: [1024.0, 0.0, 511.5, 0.0, 512.0, 383.5, 0.0, 0.0, 1.0]",
             "distortion_model: plumb_bob",
-            "  data: [1000.0, 0.0, 511.5, 0.0, 0.0, 500.0, 383.5, 0.0, 0.0, 0.0, 1.0, 0.0]",
+            "  data: [1024.0, 0.0, 511.5, 0.0, 0.0, 512.0, 383.5, 0.0, 0.0, 0.0, 1.0, 0.0]",
         ] {
             assert!(text.lines().any(|other| other == line), "{line} is not in:\n{text}");
         }
