@@ -61,14 +61,14 @@ fn both_renderers_drive_alike_and_leave_every_file() {
 #[test]
 fn json_is_the_summary_that_was_written_and_the_folder_has_the_scenes_name() {
     let folder = folder();
-    let said = screen(folder.path(), &["drive", "small.toml", "--with", "scanline", "--json"], 0);
+    let said = screen(folder.path(), &["drive", "small.toml", "--with", "tracer", "--json"], 0);
     let said: serde_json::Value = serde_json::from_str(&said).expect("JSON");
     let written = std::fs::read(folder.path().join("out/small-drive/summary.json")).unwrap();
     let written: serde_json::Value = serde_json::from_slice(&written).expect("JSON");
     assert_eq!(said, written);
-    assert_eq!((&said["frames"], &said["renderers"][0]), (&7.into(), &"scanline".into()));
+    assert_eq!((&said["frames"], &said["renderers"][0]), (&7.into(), &"tracer".into()));
     assert_eq!(said["differences"], serde_json::Value::Null);
-    assert_eq!(said["arguments"], "small.toml --with scanline");
+    assert_eq!(said["arguments"], "small.toml --with tracer");
 }
 
 #[test]

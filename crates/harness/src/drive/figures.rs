@@ -50,13 +50,20 @@ pub(super) fn figures(job: &DriveJob, run: &DriveRun) -> Vec<Figure> {
         };
         let believed =
             run.frames.iter().find(|one| one.index == *frame).map_or(run.believed, |one| one.believed);
-        let mut top = Top::around(run, obstacles.sectors.iter().map(|sector| sector.point), obstacles.centre);
+        // As far as the grid goes, wherever sectors end: figures of one drive have one scale.
+        let unit = |point: DVec2| (point - obstacles.centre).normalize_or_zero();
+        let reach: Vec<DVec2> = obstacles
+            .sectors
+            .iter()
+            .map(|sector| obstacles.centre + unit(sector.point) * job.plan.grid.last)
+            .collect();
+        let mut top = Top::around(run, &reach, obstacles.centre);
         top.drawing.title = format!("Obstacle map {when}");
         top.vehicle(&job.plan.vehicle, obstacles.centre, believed.rotate(DVec3::X).truncate());
         let first = job.plan.grid.first;
         for sector in &obstacles.sectors {
-            let unit = (sector.point - obstacles.centre).normalize_or_zero();
-            let ends = [obstacles.centre + unit * first.min(sector.radius), sector.point];
+            let near = obstacles.centre + unit(sector.point) * first.min(sector.radius);
+            let ends = [near, sector.point];
             top.line(&ends, SOFT, 0.8);
         }
         for sector in &obstacles.sectors {
@@ -69,7 +76,7 @@ pub(super) fn figures(job: &DriveJob, run: &DriveRun) -> Vec<Figure> {
             top.drawing,
         ));
 
-        let mut top = Top::around(run, obstacles.sectors.iter().map(|sector| sector.point), obstacles.centre);
+        let mut top = Top::around(run, &reach, obstacles.centre);
         top.drawing.title = format!("Navigator map {when}");
         top.vehicle(&job.plan.vehicle, obstacles.centre, believed.rotate(DVec3::X).truncate());
         for vector in vectors {
@@ -244,9 +251,9 @@ struct Top {
 }
 
 impl Top {
-    fn around(run: &DriveRun, points: impl Iterator<Item = DVec2>, centre: DVec2) -> Self {
+    fn around(run: &DriveRun, points: &[DVec2], centre: DVec2) -> Self {
         let near = [centre - DVec2::splat(1.2), centre + DVec2::splat(1.2)];
-        let [low, high] = points.fold(near, |[low, high], point| {
+        let [low, high] = points.iter().fold(near, |[low, high], &point| {
             [low.min(point - DVec2::splat(0.6)), high.max(point + DVec2::splat(0.6))]
         });
         let share = PLOT / (high - low).max_element();

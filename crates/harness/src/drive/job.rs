@@ -94,8 +94,9 @@ fn builtin(name: &str) -> Option<(DVec2, DriveSettings)> {
     match name {
         // "The vehicle starts at 7.5 meters from where the view from the camera in Figure 11 was taken." (§8)
         "pyramids" => Some((DVec2::new(-7.5, 0.0), drive([0.0, 0.0]))),
-        // CHOICE: 3 m up to where the ground is calm and the scene's own view is from.
-        "facets" => Some((DVec2::new(-3.0, 0.0), drive([0.0, 0.0]))),
+        // CHOICE: 6 m up to where the ground is calm and the scene's own view is from. The near stripe is 3.3 m ahead and the
+        // vehicle's wheels reach 0.95 m back: only after 4.2 m has it seen what it stands on.
+        "facets" => Some((DVec2::new(-6.0, 0.0), drive([0.0, 0.0]))),
         _ => None,
     }
 }

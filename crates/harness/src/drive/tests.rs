@@ -84,7 +84,7 @@ fn the_built_in_drives_are_the_papers() {
     assert_eq!(pyramids.frames().unwrap(), 76);
     assert_eq!(pyramids.plan.rig.beams[0].sensor.columns, 4106);
     assert!(pyramids.plan.scans.is_none());
-    assert_eq!(of("facets").frames().unwrap(), 31);
+    assert_eq!(of("facets").frames().unwrap(), 61);
 }
 
 #[test]
