@@ -44,6 +44,8 @@ pub(crate) enum Command {
     Campaign(Campaign),
     /// Find the smallest scene on which two renderers still differ so. Exit code 1: they do not.
     Minimise(Minimise),
+    /// Drive a rover: images, stripes, terrain map, obstacle map, navigator map, frame by frame.
+    Drive(Drive),
     /// Compare two recordings of anything, channel by channel: files or folders of EXR, NPY and PFM.
     Diff(Diff),
     /// Grounds as files: make, import, inspect.
@@ -136,7 +138,10 @@ pub(crate) struct SwitchArguments {
 }
 
 /// The renderers that are compared if none are named.
-const DEFAULT_WITH: [&str; 2] = ["scanline", "tracer"];
+pub(crate) const DEFAULT_WITH: [&str; 2] = ["scanline", "tracer"];
+
+/// The renderer of a drive if none is named: it takes half the time of `tracer`, on 224 faces as on 225,280.
+pub(crate) const DRIVE_WITH: &str = "scanline";
 
 /// The words that choose renderers, as one would type them after a scene; nothing for the default.
 pub(crate) fn typed_renderers(with: &[String], switches: &SwitchArguments) -> String {
@@ -225,6 +230,28 @@ pub(crate) struct Render {
     /// Folder to write to.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Drive {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+
+    /// The renderer of the rover's images.
+    #[arg(long, value_name = "NAME", default_value = DRIVE_WITH)]
+    pub(crate) with: String,
+
+    /// Drive scanline and tracer in lockstep, and tell how far a difference of theirs gets. Exit code 1: to a pixel of the
+    /// digital image, or farther.
+    #[arg(long, conflicts_with = "with")]
+    pub(crate) both: bool,
+
+    #[command(flatten)]
+    pub(crate) switches: SwitchArguments,
+
+    /// Folder to write to; out/<scene's name>-drive if not given.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -7,6 +7,7 @@ mod campaign;
 mod check;
 mod console;
 mod diff;
+mod drive;
 mod minimise;
 mod pack;
 mod probe;
@@ -22,7 +23,9 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use raypencil_harness::campaign::CampaignError;
-use raypencil_harness::{CheckError, Contender, DiffError, NoSuchRay, OutputError, OutsideError, PackError};
+use raypencil_harness::{
+    CheckError, Contender, DiffError, DriveError, NoSuchRay, OutputError, OutsideError, PackError,
+};
 use raypencil_scene_io::SceneIoError;
 use thiserror::Error;
 
@@ -76,6 +79,10 @@ enum Trouble {
     #[error(transparent)]
     Campaign(#[from] CampaignError),
 
+    /// A drive that cannot be driven.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
+
     /// Words that clap cannot judge.
     #[error("{0}")]
     Usage(String),
@@ -123,6 +130,7 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
         Some(Command::Campaign(command)) => campaign::campaign(command, arguments.json),
         Some(Command::Minimise(command)) => minimise::minimise(command, arguments.json, registry),
         Some(Command::Check(command)) => check::check(command, arguments.json),
+        Some(Command::Drive(command)) => drive::drive(command, arguments.json, registry),
         Some(Command::Diff(command)) => diff::diff(command, arguments.json),
         Some(Command::Terrain(command)) => terrain::terrain(command, arguments.json),
         Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),

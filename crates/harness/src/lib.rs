@@ -8,6 +8,7 @@
 //! bounds     how far two honest renderers may differ
 //! probe      everything about one ray
 //! diff       two recordings of anything, channel by channel
+//! drive      a whole drive, on one renderer or two in lockstep, and its maps
 //! minimise   the plainest scene that still shows a difference
 //! outside    renderers that others wrote, held to the same truth
 //! output     the folder of a validation: maps, report, summary
@@ -21,6 +22,7 @@ pub mod cases;
 mod check;
 mod compare;
 mod diff;
+mod drive;
 mod judge;
 mod minimise;
 mod output;
@@ -45,6 +47,10 @@ pub use compare::{
 pub use diff::{
     CellDifference, ChannelDifference, ChannelRuling, DiffError, Difference, RuledCell, Rulings, Sides,
     Thresholds, WrittenDiff, diff, diff_json, diff_screen, rule, write_diff,
+};
+pub use drive::{
+    DriveError, DriveJob, DriveProgress, DriveRun, FluxTrace, StageTrace, Trace, WrittenDrive, drive,
+    drive_json, drive_screen, write_drive,
 };
 pub use judge::{Judge, JudgeShare};
 pub use minimise::{

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil_scene::{
-    Atmosphere, FluxModel, Image, Mesh, Quantities, Renderer, Request, Sampling, SceneError,
+    Atmosphere, FluxModel, Image, Mesh, Pose, Quantities, Renderer, Request, Sampling, SceneError,
 };
 use raypencil_terrain::HeightIndex;
 
@@ -18,7 +18,7 @@ use crate::passable::PassableRules;
 use crate::rig::{Pan, Rig};
 use crate::route::{Route, RoutePlace};
 use crate::scan::{ScanReason, ScanRule, Sweep};
-use crate::stripe::Extraction;
+use crate::stripe::{EdgePoint, Extraction};
 use crate::triangulation::{SheetPlane, Triangulation};
 use crate::vehicle::{Stance, Vehicle};
 
@@ -127,6 +127,19 @@ pub struct Exposure {
 /// What turns the ideal image into the camera's: steps 6 to 8 (§3).
 pub type Develop<'a> = dyn FnMut(Exposure, Image<f64>) -> Image<f64> + 'a;
 
+/// One edge point of a stripe, and where it is thought to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// In a vertical scan, which position of the sweep.
+    pub step: Option<u32>,
+    /// The beam whose stripe it is.
+    pub beam: usize,
+    /// Its place in the image.
+    pub edge: EdgePoint,
+    /// Its place on the beam's plane, vehicle frame, metres.
+    pub point: DVec3,
+}
+
 /// One frame of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveFrame {
@@ -142,6 +155,10 @@ pub struct DriveFrame {
     pub scan: Option<ScanReason>,
     /// How many points its stripes gave.
     pub points: usize,
+    /// These points, beam by beam, each in row-major order of its image; those of a scan position after position.
+    pub measured: Vec<Measured>,
+    /// The vehicle as it believes itself to be, `global_from_vehicle`: where the points were entered.
+    pub believed: Pose,
     /// What they did to the map.
     pub update: FrameUpdate,
     /// The obstacle map and the navigator map, in frames that make them.
@@ -215,16 +232,16 @@ impl Drive {
         let sensed = self.sensors.read(&stance, &self.ground);
         let rule = self.plan.scans;
         let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.found));
-        let mut points = Vec::new();
+        let mut measured = Vec::new();
         if scan.is_some() {
             for (step, pan) in self.plan.sweep.pans().enumerate() {
-                points.extend(self.look(renderer, develop, &stance, index, Some((step as u32, pan)))?);
+                measured.extend(self.look(renderer, develop, &stance, index, Some((step as u32, pan)))?);
             }
         } else {
-            points = self.look(renderer, develop, &stance, index, None)?;
+            measured = self.look(renderer, develop, &stance, index, None)?;
         }
 
-        let count = points.len();
+        let points = measured.iter().map(|measured| measured.point);
         let DrivePlan { vehicle, map, .. } = self.plan;
         // CHOICE: its first elevation is the true one.
         let mapper =
@@ -247,11 +264,22 @@ impl Drive {
             (obstacles, vectors)
         });
         self.frame += 1;
-        Ok(Some(DriveFrame { index, place, stance, sensed, scan, points: count, update, obstacles }))
+        let (points, believed) = (measured.len(), mapper.pose());
+        Ok(Some(DriveFrame {
+            index,
+            place,
+            stance,
+            sensed,
+            scan,
+            points,
+            measured,
+            believed,
+            update,
+            obstacles,
+        }))
     }
 
-    /// The points of the stripes that the camera sees from a stance, vehicle frame: beam by beam, each in row-major
-    /// order.
+    /// The points of the stripes that the camera sees from a stance: beam by beam, each in row-major order.
     fn look(
         &self,
         renderer: &dyn Renderer,
@@ -259,7 +287,7 @@ impl Drive {
         stance: &Stance,
         frame: u64,
         scan: Option<(u32, Pan)>,
-    ) -> Result<Vec<DVec3>, SceneError> {
+    ) -> Result<Vec<Measured>, SceneError> {
         let plan = &self.plan;
         let rig = scan.map_or_else(|| plan.rig.clone(), |(_, pan)| plan.rig.panned(pan));
         let mesh = Arc::clone(&self.mesh);
@@ -270,7 +298,8 @@ impl Drive {
             let given = format!("{} images of flux", flux.len());
             return Err(SceneError::new(renderer.name(), given, format!("{}", rig.beams.len())));
         }
-        let exposure = |beam| Exposure { frame, step: scan.map(|(step, _)| step), beam };
+        let step = scan.map(|(step, _)| step);
+        let exposure = |beam| Exposure { frame, step, beam };
         // Steps 6 to 9.
         let stripes = match plan.exposures {
             Exposures::InTurn => {
@@ -291,8 +320,15 @@ impl Drive {
             }
         };
         let plane = SheetPlane::of(plan.extraction.place);
-        let points = stripes.iter().enumerate();
-        Ok(points.flat_map(|(beam, edges)| Triangulation::new(&rig, beam, plane).points(edges)).collect())
+        let mut measured = Vec::new();
+        for (beam, edges) in stripes.iter().enumerate() {
+            let triangulation = Triangulation::new(&rig, beam, plane);
+            measured.extend(edges.iter().filter_map(|&edge| {
+                let point = triangulation.of_edge(&edge)?;
+                Some(Measured { step, beam, edge, point })
+            }));
+        }
+        Ok(measured)
     }
 }
 

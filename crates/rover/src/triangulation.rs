@@ -95,7 +95,12 @@ impl Triangulation {
     /// The points of a stripe's edges, in their order, at the places where they were measured: vehicle frame,
     /// metres.
     pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
-        edges.iter().filter_map(|edge| self.at(f64::from(edge.i) + 0.5, edge.row)).collect()
+        edges.iter().filter_map(|edge| self.of_edge(edge)).collect()
+    }
+
+    /// The point of one edge, at the place where it was measured: vehicle frame, metres.
+    pub fn of_edge(&self, edge: &EdgePoint) -> Option<DVec3> {
+        self.at(f64::from(edge.i) + 0.5, edge.row)
     }
 
     /// The table of all pixels.

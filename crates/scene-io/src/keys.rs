@@ -6,6 +6,8 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use toml::Spanned;
 
+use crate::parse::drive::DriveKeys;
+
 /// A value that remembers its place in the file, if the key is given.
 pub(crate) type Key<T> = Option<Spanned<T>>;
 
@@ -32,6 +34,7 @@ pub(crate) struct SceneKeys {
     pub atmosphere: AtmosphereKeys,
     #[serde(default)]
     pub flux: FluxKeys,
+    pub drive: Option<DriveKeys>,
 }
 
 /// `[vehicle]`

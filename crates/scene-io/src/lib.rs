@@ -11,6 +11,8 @@
 //! * [`read_npy`], [`write_npy`], [`read_pfm`], [`write_pfm`]: arrays of numbers, as NumPy and image programs
 //!   have them.
 //! * [`read_channels`]: a recording of any program, in any of these formats, as [`Channels`].
+//! * [`write_geotiff`], [`write_occupancy`], [`write_ply`], [`vectors_geojson`], [`vectors_csv`], [`camera_info`]: what a
+//!   drive leaves behind, as map servers, geographers and robots have it.
 //! * [`Manifest`]: what belongs to a pack, each file by its digest.
 //! * [`write_atomically`]: a file is either the old one or the whole new one, never a part.
 //!
@@ -29,12 +31,14 @@ mod bytes;
 mod channels;
 mod dem;
 mod digest;
+mod drive_settings;
 mod error;
 mod exr_map;
 mod gltf_mesh;
 mod keys;
 mod load;
 mod manifest;
+mod maps;
 mod npy;
 mod parse;
 mod pfm;
@@ -49,6 +53,7 @@ pub use atomic::write_atomically;
 pub use channels::{Channel, Channels, read_channels, read_listed};
 pub use dem::{Dem, Registration, dem_from_bytes, read_dem};
 pub use digest::scene_sha256;
+pub use drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord};
 pub use error::{Problem, SceneIoError};
 pub use exr_map::{
     Attributes, ExrMap, Limits, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map,
@@ -61,6 +66,10 @@ pub use load::{LoadedScene, Overrides, SceneSource, load, load_text};
 pub use manifest::{
     ChannelType, FileRole, FileType, FluxWord, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile,
     ManifestScene, ManifestSensor, PackKind,
+};
+pub use maps::{
+    MarkedPoint, Occupancy, OccupancyGrid, VectorOnMap, camera_info, occupancy_files, vectors_csv,
+    vectors_geojson, write_geotiff, write_occupancy, write_ply,
 };
 pub use npy::{npy_from_bytes, read_npy, write_npy};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};

@@ -8,6 +8,7 @@ use raypencil_scene::{Beam, FluxModel, Mesh, Pose, Scene, SceneError};
 use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
 
 use crate::digest::{self, Sha};
+use crate::drive_settings::DriveSettings;
 use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY, Vertices};
 use crate::parse::{self, Kind, Source};
 use crate::plan::{self, DemPart, Plan, Terrain};
@@ -106,6 +107,8 @@ pub struct LoadedScene {
     pub vehicle: Pose,
     /// What it was made from.
     pub source: SceneSource,
+    /// Where the vehicle drives, if a scene file says so.
+    pub drive: Option<DriveSettings>,
 }
 
 /// Loads a scene from a built-in name, a scene `.toml`, a terrain `.glb` or `.gltf`, or an elevation model `.tif`
@@ -291,7 +294,7 @@ fn load_resolved(
         Scene::new(Arc::new(mesh), resolved.camera, resolved.beams.clone(), resolved.atmosphere, flux_model)
             .map_err(|error| resolved.unfit(places, error))?;
     let vehicle = Pose::from_position(scene.mesh().origin());
-    Ok(loaded(source, scene, vehicle, parts, overrides))
+    Ok(loaded(source, scene, vehicle, parts, overrides, None))
 }
 
 /// Resolves a plan: makes the ground if it is not loaded yet, stands the vehicle on it, mounts the sensors.
@@ -326,7 +329,7 @@ fn finish(
         _ if !from_file => parts.push(digest::mesh(scene.mesh())),
         _ => {}
     }
-    Ok(loaded(source, scene, vehicle, parts, overrides))
+    Ok(loaded(source, scene, vehicle, parts, overrides, plan.drive))
 }
 
 /// Adds names and digests to a scene.
@@ -336,6 +339,7 @@ fn loaded(
     vehicle: Pose,
     mut parts: Vec<Sha>,
     overrides: &Overrides,
+    drive: Option<DriveSettings>,
 ) -> LoadedScene {
     if *overrides != Overrides::default() && !matches!(source, SceneSource::Builtin(_)) {
         parts.push(digest::sha(format!("{overrides:?}").as_bytes()));
@@ -347,6 +351,7 @@ fn loaded(
         scene,
         vehicle,
         source: source.clone(),
+        drive,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Scene TOML to a plan: each key is checked by itself, and every error points to its place in the file.
 
 mod dem;
+pub(crate) mod drive;
 mod generate;
 
 use std::ops::{Range, RangeInclusive};
@@ -115,6 +116,7 @@ impl Source<'_> {
         if let Some(model) = keys.flux.model {
             plan.flux_model = self.word(&model, "flux.model", &FLUX_MODELS)?;
         }
+        plan.drive = keys.drive.map(|keys| self.drive(keys)).transpose()?;
         Ok(plan)
     }
 

@@ -7,6 +7,8 @@ use glam::DVec3;
 use raypencil_scene::{Beam, Camera, FluxModel, Lens, Profile};
 use raypencil_terrain::MarsGround;
 
+use crate::drive_settings::DriveSettings;
+
 /// Everything a scene needs but its mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Plan {
@@ -18,6 +20,8 @@ pub(crate) struct Plan {
     pub reflectivity: Option<f64>,
     pub attenuation: f64,
     pub flux_model: FluxModel,
+    /// Where the vehicle drives, if the file says so.
+    pub drive: Option<DriveSettings>,
     /// Where the file says where the vehicle and the terrain are.
     pub position_span: Range<usize>,
     pub terrain_span: Range<usize>,
@@ -103,6 +107,7 @@ pub(crate) fn default_rig(terrain: Terrain) -> Plan {
         reflectivity: None,
         attenuation: 0.0,
         flux_model: FluxModel::Radiometric,
+        drive: None,
         position_span: 0..0,
         terrain_span: 0..0,
     }

@@ -340,3 +340,39 @@ fn a_file_that_is_no_text_is_refused() {
     let message = load(path.to_str().unwrap(), &Overrides::default()).unwrap_err().to_string();
     assert!(message.contains("larger than 1048576 bytes"), "{message}");
 }
+
+#[test]
+fn a_drive_names_its_keys() {
+    let bad = |line: &str, marked: &str, message: &str| {
+        third_line("[drive]", line, marked, message);
+    };
+    bad("waypoints_m = [[1, 2], [3]]", "[3]", "`drive.waypoints_m` has 1 numbers; expected 2");
+    bad("waypoints_m = []", "[]", "`drive.waypoints_m` has 0 places; expected 1 to 10000");
+
+    let bad = |line: &str, marked: &str, message: &str| {
+        let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{line}\n"));
+        assert_eq!((problem.message.as_str(), problem.marked()), (message, marked), "{line}");
+        assert_eq!(problem.column, line.find(marked).unwrap() + 1, "{line}");
+    };
+    bad("frames_per_s = 0", "0", "`drive.frames_per_s` is 0; expected 0.001 to 10000 per second");
+    bad(
+        "sensor = \"film\"",
+        "\"film\"",
+        "`drive.sensor` is \"film\"; expected one of \"ideal\", \"ccd_1989\", \"cmos\"",
+    );
+    bad("map_points = 200", "200", "`drive.map_points` is 200; expected an odd number from 3 to 8191");
+    bad("least_rows = 0", "0", "`drive.least_rows` is 0; expected 1 to 1000000");
+    let both = |lines: &str, message: &str| {
+        let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{lines}\n"));
+        assert_eq!((problem.message.as_str(), problem.line), (message, 5), "{lines}");
+    };
+    both(
+        "detection = \"otsu\"\nthreshold_dn = 3",
+        "`drive.threshold_dn` is given; expected none with detection = \"otsu\"",
+    );
+    both("scans = false\nscan_steps = 3", "a scan's number beside `scans = false`; expected one of the two");
+    both(
+        "seed = 1\nfix_noise_m = 0.1",
+        "`drive.fix_noise_m` is given; expected it only with `fix_every_frames`",
+    );
+}

@@ -4,6 +4,7 @@ mod basics;
 mod campaign;
 mod check;
 mod diff;
+mod drive;
 mod terrain;
 
 use std::path::Path;

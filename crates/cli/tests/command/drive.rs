@@ -1,0 +1,159 @@
+//! `raypencil drive`: exit codes, the screen, the folder, trouble.
+
+use std::process::ExitCode;
+
+use raypencil_harness::contender;
+use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene};
+use tempfile::TempDir;
+
+use crate::{assert_trouble, raypencil, screen, text};
+
+/// A folder with `small.toml`: a short drive of a small camera on level ground.
+fn folder() -> TempDir {
+    let folder = TempDir::new().expect("a temporary folder");
+    let scene = "version = 1\n\
+        [vehicle]\nposition_m = [-0.6, 0]\n\
+        [camera]\nwidth_px = 96\nheight_px = 96\npixel_pitch_um = 96\n\
+        [[beam]]\nrows = 2\ncolumns = 16\n[[beam]]\nrows = 2\ncolumns = 16\n\
+        [terrain]\nbuiltin = \"pyramids\"\n\
+        [drive]\nwaypoints_m = [[0, 0]]\nframes_per_s = 3\nscans = false\n";
+    std::fs::write(folder.path().join("small.toml"), scene).expect("a scene file");
+    folder
+}
+
+const FILES: [&str; 20] = [
+    "summary.json",
+    "report.html",
+    "drive.png",
+    "camera-view.svg",
+    "camera-view.png",
+    "local-map.svg",
+    "local-map.png",
+    "obstacle-map.svg",
+    "obstacle-map.png",
+    "navigator-map.svg",
+    "navigator-map.png",
+    "local-map.npy",
+    "local-map-source.npy",
+    "local-map.tif",
+    "obstacle-map-nav2.yaml",
+    "obstacle-map-nav2.pgm",
+    "navigator-map.geojson",
+    "navigator-map.csv",
+    "edge-points.ply",
+    "camera_info.yaml",
+];
+
+#[test]
+fn both_renderers_drive_alike_and_leave_every_file() {
+    let folder = folder();
+    let said = screen(folder.path(), &["drive", "small.toml", "--both", "-o", "here"], 0);
+    assert!(said.contains("Both sides are identical over 7 frames"), "{said}");
+    assert!(said.contains("driven    0.60 m at 0.300 m/s"), "{said}");
+    assert!(said.lines().count() <= 40 && said.lines().all(|line| line.chars().count() <= 120), "{said}");
+    for file in FILES {
+        assert!(folder.path().join("here").join(file).is_file(), "{file} is missing");
+    }
+    let image = std::fs::read_to_string(folder.path().join("here/obstacle-map-nav2.yaml")).unwrap();
+    assert!(image.starts_with("image: obstacle-map-nav2.pgm\nmode: trinary\nresolution: 0.1\n"), "{image}");
+}
+
+#[test]
+fn json_is_the_summary_that_was_written_and_the_folder_has_the_scenes_name() {
+    let folder = folder();
+    let said = screen(folder.path(), &["drive", "small.toml", "--with", "tracer", "--json"], 0);
+    let said: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    let written = std::fs::read(folder.path().join("out/small-drive/summary.json")).unwrap();
+    let written: serde_json::Value = serde_json::from_slice(&written).expect("JSON");
+    assert_eq!(said, written);
+    assert_eq!((&said["frames"], &said["renderers"][0]), (&7.into(), &"tracer".into()));
+    assert_eq!(said["differences"], serde_json::Value::Null);
+    assert_eq!(said["arguments"], "small.toml --with tracer");
+}
+
+#[test]
+fn trouble_leaves_no_folder_that_looks_complete() {
+    let folder = folder();
+    let path = folder.path();
+    let still = "version = 1\n[terrain]\nbuiltin = \"pyramids\"\n";
+    std::fs::write(path.join("still.toml"), still).unwrap();
+    assert_trouble(
+        &raypencil(path, &["drive", "still.toml", "-o", "out"]),
+        &["still has no drive", "[drive] table"],
+    );
+    assert_trouble(&raypencil(path, &["drive", "small.toml", "--flux", "eq1"]), &["eq1 is in W/m"]);
+    assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "--at", "100,0"]),
+        &["no ground under the vehicle"],
+    );
+    assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "--with", "nobody"]),
+        &["there is no such renderer"],
+    );
+    assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "--both", "--with", "tracer"]),
+        &["cannot be used with"],
+    );
+    assert!(!path.join("out").exists());
+    // A file that cannot be put in its place: the summary of an earlier run is gone, and nothing is half written.
+    screen(path, &["drive", "small.toml", "-o", "here"], 0);
+    std::fs::remove_file(path.join("here/local-map.npy")).unwrap();
+    std::fs::create_dir(path.join("here/local-map.npy")).unwrap();
+    assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "-o", "here"]),
+        &["local-map.npy: cannot write"],
+    );
+    assert!(!path.join("here/summary.json").exists());
+    let left = std::fs::read_dir(path.join("here")).unwrap();
+    let names: Vec<_> = left.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    assert!(names.iter().all(|name| !name.ends_with(".part")), "{names:?}");
+}
+
+/// A tracer that sees light where there is none.
+struct Bright(raypencil_harness::Contender);
+
+impl Renderer for Bright {
+    fn name(&self) -> &str {
+        "tracer"
+    }
+
+    fn resolution(&self) -> Resolution {
+        Resolution::F64
+    }
+
+    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+        let mut frame = self.0.renderer.render(scene, request);
+        frame.flux.iter_mut().for_each(|image| image.set(30, 10, 1e-9));
+        frame
+    }
+}
+
+#[test]
+fn a_difference_is_exit_code_1() {
+    let folder = folder();
+    let registry = |name: &str| {
+        let own = contender(name)?;
+        Some(if name == "tracer" { Bright(own).into() } else { own })
+    };
+    let scene = folder.path().join("small.toml");
+    let here = folder.path().join("here");
+    let words = ["raypencil", "drive", scene.to_str().unwrap(), "--both", "-o", here.to_str().unwrap()];
+    let code = raypencil_cli::main_with(words.map(Into::into), &registry);
+    assert_eq!(code, ExitCode::from(1));
+    let summary = std::fs::read(here.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
+    // Two beams in seven frames.
+    assert_eq!(summary["differences"]["pixels"]["differ"], 14);
+    let first = summary["differences"]["pixels"]["first"].as_str().unwrap();
+    assert!(first.starts_with("frame 0, beam 0, pixel 30,10: 0 DN against"), "{first}");
+}
+
+#[test]
+fn a_wrong_drive_is_marked_in_its_file() {
+    let folder = folder();
+    let path = folder.path().join("wrong.toml");
+    std::fs::write(&path, "version = 1\n[drive]\nwaypoints_m = [[0, 0]]\nspeed_m_per_s = -1\n").unwrap();
+    let output = raypencil(folder.path(), &["drive", "wrong.toml"]);
+    assert_trouble(&output, &["wrong.toml:4:17", "`drive.speed_m_per_s` is -1; expected"]);
+    assert!(!text(&output.stderr).contains("panicked"));
+}

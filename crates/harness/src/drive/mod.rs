@@ -1,0 +1,37 @@
+//! Whole drives: images of one renderer or of two in lockstep, developed, extracted and mapped; and the folder that a
+//! drive leaves behind. (Paper, §7 and §8, figures 11 to 16) `docs/drive.md` describes it.
+//!
+//! ```text
+//! job       what is driven: a scene, its [drive] or a built-in drive, as the rover's plan
+//! eye       step 6 around a renderer: the optics
+//! run       frame by frame, one side or two
+//! trace     where the two sides part: pixels, edges, cells, labels
+//! view      what the camera sees, for people
+//! drawing   marks on a page, as SVG and as PNG
+//! figures   figures 11 to 16 of the paper
+//! folder    every file
+//! ```
+
+mod animation;
+mod drawing;
+mod eye;
+mod figures;
+mod folder;
+mod job;
+mod letters;
+mod page;
+mod raster;
+mod run;
+mod screen;
+mod summary;
+#[cfg(test)]
+mod tests;
+mod trace;
+mod view;
+
+pub use folder::{WrittenDrive, write_drive};
+pub use job::{DriveError, DriveJob};
+pub use run::{DriveProgress, DriveRun, drive};
+pub use screen::drive_screen;
+pub use summary::drive_json;
+pub use trace::{FluxTrace, StageTrace, Trace};

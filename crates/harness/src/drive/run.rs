@@ -1,0 +1,245 @@
+//! A drive from its first frame to its last, on one side or on two in lockstep, as one readable pass.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use raypencil_rover::{Drive, DriveFrame, Exposure, LabelledVector, LocalMap, ObstacleMap, Route};
+use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
+use raypencil_scene_io::MarkedPoint;
+
+use super::eye::Eye;
+use super::job::{DriveError, DriveJob};
+use super::trace::{Kept, Trace};
+use super::view::{View, view};
+
+/// The animation has no more pictures: a few megabytes.
+const MOST_PICTURES: u64 = 60;
+/// Columns of the camera's view in the animation, and in the figure.
+const SMALL: u32 = 256;
+const LARGE: u32 = 640;
+
+/// Who wants to hear how far it is.
+pub trait DriveProgress: Sync {
+    /// So many frames of so many are done.
+    fn frames(&self, done: u64, of: u64);
+}
+
+impl DriveProgress for crate::Silent {
+    fn frames(&self, _done: u64, _of: u64) {}
+}
+
+/// One picture of the animation.
+#[derive(Debug, Clone)]
+pub(super) struct Picture {
+    pub view: View,
+    pub map: LocalMap,
+}
+
+/// What a drive found.
+#[derive(Debug)]
+pub struct DriveRun {
+    /// The renderers, the one whose maps these are first.
+    pub renderers: Vec<String>,
+    /// Every frame, without its points.
+    pub frames: Vec<DriveFrame>,
+    /// How many frames the route has: more than were driven if it leads off the ground.
+    pub planned: u64,
+    /// The map at the end.
+    pub map: LocalMap,
+    /// Where the vehicle believes to be at the end.
+    pub believed: Pose,
+    /// The last obstacle map and navigator map, and their frame.
+    pub obstacles: Option<(u64, ObstacleMap, Vec<LabelledVector>)>,
+    /// Every edge point of every frame, global.
+    pub points: Vec<MarkedPoint>,
+    /// Where two sides part, if there were two.
+    pub trace: Option<Trace>,
+    /// How long each part of the work took.
+    pub stages: Vec<Stage>,
+    /// The camera's view at the end.
+    pub(super) last_view: View,
+    pub(super) pictures: Vec<Picture>,
+}
+
+impl DriveRun {
+    /// The way driven, metres.
+    pub fn driven(&self) -> f64 {
+        self.frames.last().map_or(0.0, |frame| frame.place.driven)
+    }
+
+    /// Whether two sides are the same, or there is one side alone.
+    pub fn passes(&self) -> bool {
+        self.trace.as_ref().is_none_or(Trace::is_identical)
+    }
+}
+
+/// One renderer's drive.
+struct Side<'a> {
+    eye: Eye<'a>,
+    drive: Drive,
+    /// How many exposures there were.
+    exposures: u64,
+    exposing: Duration,
+    stepping: Duration,
+}
+
+/// What a side saw in a frame.
+struct Seen {
+    frame: DriveFrame,
+    kept: Vec<Kept>,
+    /// Digital numbers of each exposure, but in a scan.
+    images: Vec<(Option<usize>, Image<u16>)>,
+}
+
+impl<'a> Side<'a> {
+    fn new(job: &'a DriveJob, renderer: &'a dyn Renderer) -> Result<Self, SceneError> {
+        Ok(Self {
+            eye: Eye::new(renderer, &job.optics),
+            drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
+            exposures: 0,
+            exposing: Duration::ZERO,
+            stepping: Duration::ZERO,
+        })
+    }
+
+    fn step(&mut self, job: &DriveJob, keep: bool) -> Result<Option<Seen>, SceneError> {
+        let (mut kept, mut images) = (Vec::new(), Vec::new());
+        let (exposures, exposing) = (&mut self.exposures, &mut self.exposing);
+        let mut develop = |exposure: Exposure, light: Image<f64>| {
+            let start = Instant::now();
+            // Steps 7 and 8.
+            let numbers = job.sensor.expose(&light, None, *exposures).numbers;
+            if keep {
+                kept.push(Kept::new(exposure, *exposures, &light, &numbers));
+            }
+            *exposures += 1;
+            let cells = numbers.cells().iter().map(|&number| f64::from(number)).collect();
+            let image = Image::from_cells(numbers.width(), numbers.height(), cells);
+            if exposure.step.is_none() {
+                images.push((exposure.beam, numbers));
+            }
+            *exposing += start.elapsed();
+            image
+        };
+        let start = Instant::now();
+        let frame = self.drive.step(&self.eye, &mut develop)?;
+        self.stepping += start.elapsed();
+        Ok(frame.map(|frame| Seen { frame, kept, images }))
+    }
+
+    fn map(&self) -> &LocalMap {
+        self.drive.mapper().expect("a frame was driven").map()
+    }
+
+    /// How long each part of its work took.
+    fn stages(&self) -> Vec<Stage> {
+        let times = self.eye.times();
+        let name = self.eye.name();
+        let rest = self.stepping.saturating_sub(times.rendering + times.optics + self.exposing);
+        [
+            ("steps 1 to 5, rendering", times.rendering),
+            ("step 6, optics", times.optics),
+            ("steps 7 and 8, camera", self.exposing),
+            ("step 9, points and maps", rest),
+        ]
+        .map(|(stage, time)| Stage { name: format!("{name}: {stage}"), time })
+        .to_vec()
+    }
+}
+
+/// Drives a job with one renderer, or with two in lockstep: on the same plan and the same seeds.
+///
+/// # Errors
+/// A route that is too long; a start off the ground.
+///
+/// # Panics
+/// If there are no renderers, or more than two.
+pub fn drive(
+    job: &DriveJob,
+    renderers: &[&dyn Renderer],
+    progress: &dyn DriveProgress,
+) -> Result<DriveRun, DriveError> {
+    assert!((1..=2).contains(&renderers.len()), "{} renderers", renderers.len());
+    let planned = job.frames()?;
+    let each = planned.div_ceil(MOST_PICTURES).max(1);
+    let mut first = Side::new(job, renderers[0])?;
+    let mut second = renderers.get(1).map(|&renderer| Side::new(job, renderer)).transpose()?;
+    let mut trace = second.as_ref().map(|_| Trace::default());
+    let (mut frames, mut points, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+    let mut obstacles = None;
+    let mut last: Option<(Seen, Pose)> = None;
+    let (mut comparing, mut drawing) = (Duration::ZERO, Duration::ZERO);
+
+    loop {
+        let seen = first.step(job, second.is_some())?;
+        if let (Some(second), Some(trace)) = (&mut second, &mut trace) {
+            let other = second.step(job, true)?;
+            let start = Instant::now();
+            if let (Some(seen), Some(other)) = (&seen, &other) {
+                trace.exposures(&job.sensor, &seen.kept, &other.kept);
+                trace.frames(&seen.frame, &other.frame, [first.map(), second.map()]);
+            }
+            comparing += start.elapsed();
+        }
+        let Some(mut seen) = seen else { break };
+
+        let frame = &mut seen.frame;
+        let believed = frame.believed;
+        points.extend(frame.measured.iter().map(|measured| MarkedPoint {
+            point: believed * measured.point,
+            frame: frame.index as u32,
+            beam: measured.beam as u8,
+        }));
+        if let Some((map, vectors)) = &frame.obstacles {
+            obstacles = Some((frame.index, map.clone(), vectors.clone()));
+        }
+        let start = Instant::now();
+        if frame.index % each == 0 || frame.index + 1 == planned {
+            let view = view(job, renderers[0], &frame.stance.pose(), SMALL)?.with_edges(&frame.measured);
+            pictures.push(Picture { view, map: first.map().clone() });
+        }
+        drawing += start.elapsed();
+        let index = frame.index;
+        frames.push(DriveFrame { measured: Vec::new(), ..frame.clone() });
+        let pose = frame.stance.pose();
+        last = Some((seen, pose));
+        progress.frames(index + 1, planned);
+    }
+
+    // The first frame is always driven: its stance was tried when the drive was made.
+    let (seen, pose) = last.ok_or(DriveError::Frames)?;
+    let start = Instant::now();
+    let last_view = view(job, renderers[0], &pose, LARGE)?;
+    let last_view = if seen.images.is_empty() {
+        last_view.with_edges(&seen.frame.measured)
+    } else {
+        last_view.with_light(&seen.images, job)
+    };
+    drawing += start.elapsed();
+
+    let mut stages = first.stages();
+    stages.extend(second.iter().flat_map(Side::stages));
+    if second.is_some() {
+        stages.push(Stage { name: "comparing".into(), time: comparing });
+    }
+    stages.push(Stage { name: "views for figures".into(), time: drawing });
+    let mapper = first.drive.mapper().expect("a frame was driven");
+    Ok(DriveRun {
+        renderers: renderers.iter().map(|renderer| renderer.name().to_string()).collect(),
+        frames,
+        planned,
+        map: mapper.map().clone(),
+        believed: mapper.pose(),
+        obstacles,
+        points,
+        trace,
+        stages,
+        last_view,
+        pictures,
+    })
+}
+
+/// How far apart the frames of a route are on a straight leg, metres.
+pub(super) fn frame_step(route: &Route) -> f64 {
+    route.speed / route.frame_rate
+}

@@ -1,0 +1,276 @@
+//! Drives small enough to be known beforehand, and drives of two renderers.
+
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+use raypencil_rover::{Label, LocalMap, MapSize, ObstacleMap, PassableRules, RadialGrid, Vehicle};
+use raypencil_scene::{Frame, Pose, Renderer, Request, Resolution, Scene};
+use raypencil_scene_io::{LoadedScene, Occupancy, SensorWord, load, load_text, read_dem};
+
+use super::folder::{occupancy, posts};
+use super::{DriveError, DriveJob, DriveRun, drive, drive_json, drive_screen, write_drive};
+use crate::{Silent, contender};
+
+/// A small camera, beams to match, and a drive of a few frames.
+fn scene(terrain: &str, drive: &str) -> LoadedScene {
+    let text = format!(
+        "version = 1\n[camera]\nwidth_px = 128\nheight_px = 128\npixel_pitch_um = 72\n\
+         [[beam]]\nrows = 4\ncolumns = 64\n[[beam]]\nrows = 4\ncolumns = 64\n{terrain}\n[drive]\n{drive}\n"
+    );
+    load_text(&text, "small").unwrap()
+}
+
+fn job(terrain: &str, drive: &str) -> DriveJob {
+    DriveJob::new(&scene(terrain, drive), None, "small.toml".into()).unwrap()
+}
+
+fn driven(job: &DriveJob, names: &[&str]) -> DriveRun {
+    let contenders: Vec<_> = names.iter().map(|name| contender(name).unwrap()).collect();
+    let renderers: Vec<_> = contenders.iter().map(|contender| contender.renderer.as_ref()).collect();
+    drive(job, &renderers, &Silent).unwrap()
+}
+
+/// Ground that rises nowhere by a micrometre.
+const FLAT: &str = "[terrain]\ngenerate = { preset = \"viking1\", seed = 3, extent_m = 30, post_spacing_m = 5, \
+                    roughness_m = 1e-9, rock_coverage = 0, crater_density = 0 }";
+const SHORT: &str = "waypoints_m = [[0.6, 0]]\nframes_per_s = 3\nscans = false\nobstacles_every_frames = 3";
+
+#[test]
+fn on_flat_ground_stripes_are_where_trigonometry_has_them() {
+    let job = job(FLAT, SHORT);
+    // 4 pencils to a pixel over 2 tan(30) 8 mm / 72 um = 128.3 pixels.
+    assert_eq!(job.plan.rig.beams.iter().map(|beam| beam.sensor.columns).collect::<Vec<_>>(), [514, 514]);
+    assert!(job.warnings.is_empty() && job.notes.len() == 2, "{:?}", job.notes);
+    let run = driven(&job, &["tracer"]);
+    // 2 s at 3 frames a second, both ends included.
+    assert_eq!((run.frames.len(), run.planned), (7, 7));
+    assert!((run.driven() - 0.6).abs() < 1e-12);
+    // Beam 0 is 1.8 m up and 31 degrees down at x = 0.3: its middle meets the ground at 0.3 + 1.8 / tan 31 = 3.296 m. A
+    // ray of the camera, 0.3 m below, that looks down by a meets the sheet at d = 0.3 / (tan 31 - tan a): a row of pixels,
+    // 9 mrad, is 0.4 m of d there, and the middle of the right one is 0.2 m off at most.
+    let first: Vec<_> = run.points.iter().filter(|point| point.frame == 0 && point.beam == 0).collect();
+    assert!(first.len() > 100, "{} points", first.len());
+    let middle = first.iter().min_by(|a, b| a.point.y.abs().total_cmp(&b.point.y.abs())).unwrap();
+    assert!((middle.point.x - 3.296).abs() < 0.2, "{middle:?}");
+    // All on the ground: by 0.2 m times tan 31 and, of beam 1, by 0.3 m times tan 22.
+    assert!(run.points.iter().all(|point| point.point.z.abs() < 0.2), "off the ground");
+    // The map's last place is the vehicle's.
+    assert!((run.believed.position - DVec3::new(0.6, 0.0, 0.0)).length() < 0.02, "{:?}", run.believed);
+    // Between the wheels and the first stripe nobody has looked.
+    let (frame, obstacles, vectors) = run.obstacles.as_ref().unwrap();
+    assert_eq!((*frame, vectors.len()), (6, obstacles.sectors.len() - 1));
+    assert!(obstacles.sectors.iter().all(|sector| sector.label == Label::Unknown));
+}
+
+#[test]
+fn too_few_pencils_are_warned_of() {
+    let few = job(FLAT, &format!("{SHORT}\npencils_per_pixel = 1"));
+    assert_eq!(few.warnings.len(), 2);
+    assert!(few.warnings[0].contains("beam 0 has 1.01 pencils to a pixel"), "{:?}", few.warnings);
+    // Columns that are enough stay as they are.
+    let own = job(FLAT, &format!("{SHORT}\npencils_per_pixel = 0.3"));
+    assert!(own.notes.is_empty() && own.plan.rig.beams[0].sensor.columns == 64);
+}
+
+#[test]
+fn the_built_in_drives_are_the_papers() {
+    let of = |name: &str| {
+        let loaded = load(name, &Default::default()).unwrap();
+        DriveJob::new(&loaded, None, name.into()).unwrap()
+    };
+    let pyramids = of("pyramids");
+    assert_eq!((pyramids.plan.route.start, pyramids.plan.route.heading), (DVec2::new(-7.5, 0.0), 0.0));
+    assert_eq!(pyramids.plan.route.waypoints, [DVec2::ZERO]);
+    // 7.5 m, a frame each 0.1 m.
+    assert_eq!(pyramids.frames().unwrap(), 76);
+    assert_eq!(pyramids.plan.rig.beams[0].sensor.columns, 4106);
+    assert!(pyramids.plan.scans.is_none());
+    assert_eq!(of("facets").frames().unwrap(), 61);
+}
+
+#[test]
+fn the_file_says_what_is_driven() {
+    let all = "waypoints_m = [[1, 0], [1, 2]]\nspeed_m_per_s = 0.5\nturn_deg_per_s = 90\nframes_per_s = 5\nseed = 9\n\
+        sensor = \"cmos\"\nsensor_seed = 4\nexposures = \"together\"\ndetection = \"gradient\"\nthreshold_dn = 30\n\
+        place = \"sub_pixel\"\nleast_rows = 2\nmap_spacing_m = 0.2\nmap_points = 101\nobstacles_every_frames = 4\n\
+        cross_gaps = true\nscans = true\nscan_every_m = 3\nscan_steps = 21\nwheelbase_m = 1.5\ntrack_m = 1.1\n\
+        wheel_radius_m = 0.4\nwheel_width_m = 0.3\nclearance_m = 0.45\nposition_drift_m_per_s = [0.01, 0]\n\
+        position_walk_m = 0.02\nheading_drift_deg_per_s = 1\nattitude_noise_deg = 2\nproximity_noise_m = 0.03\n\
+        fix_every_frames = 50\nfix_noise_m = 0.1";
+    let job = job(FLAT, all);
+    let plan = &job.plan;
+    let route = &plan.route;
+    assert_eq!((route.speed, route.frame_rate, route.waypoints.len()), (0.5, 5.0, 2));
+    assert_eq!(route.turn_rate, 90.0_f64.to_radians());
+    assert_eq!((job.sensor_word, job.sensor.seed, job.sensor.bits), (SensorWord::Cmos, 4, 12));
+    assert_eq!((plan.seed, plan.map.points, plan.map.spacing, plan.obstacles_every), (9, 101, 0.2, 4));
+    assert_eq!(plan.exposures, raypencil_rover::Exposures::Together);
+    assert_eq!(plan.extraction.detection, raypencil_rover::Detection::Gradient(30.0));
+    assert_eq!((plan.extraction.place, plan.extraction.least_rows), (raypencil_rover::Place::SubPixel, 2));
+    assert_eq!((plan.sweep.steps, plan.scans.unwrap().every), (21, Some(3.0)));
+    assert_eq!((plan.vehicle.wheelbase, plan.vehicle.track, plan.vehicle.clearance), (1.5, 1.1, 0.45));
+    // What follows from the vehicle's measures follows from these.
+    assert_eq!(plan.rules, PassableRules::of(&plan.vehicle).crossing_gaps(&plan.vehicle));
+    assert_eq!(plan.grid, RadialGrid::of(&plan.vehicle));
+    assert_eq!(plan.errors.attitude_noise, 2.0_f64.to_radians());
+    assert_eq!(plan.errors.fixes.map(|fixes| (fixes.every_frames, fixes.noise)), Some((50, 0.1)));
+}
+
+#[test]
+fn what_cannot_be_driven_is_refused() {
+    let still = load_text(&format!("version = 1\n{FLAT}\n"), "still").unwrap();
+    let error = DriveJob::new(&still, None, String::new()).unwrap_err();
+    assert!(
+        error.to_string().starts_with("still has no drive; expected a scene file with a [drive]"),
+        "{error}"
+    );
+    let mut unit = scene(FLAT, SHORT);
+    unit.scene = Scene::new(
+        unit.scene.mesh().clone(),
+        *unit.scene.camera(),
+        unit.scene.beams().to_vec(),
+        unit.scene.atmosphere(),
+        raypencil_scene::FluxModel::Eq1,
+    )
+    .unwrap();
+    assert!(matches!(DriveJob::new(&unit, None, String::new()), Err(DriveError::Unit)));
+    let endless = job(FLAT, "waypoints_m = [[1e9, 0]]\nscans = false");
+    assert!(matches!(endless.frames(), Err(DriveError::Frames)));
+}
+
+#[test]
+fn optics_and_noise_leave_the_stripes_where_they_are() {
+    let clear = driven(&job(FLAT, SHORT), &["tracer"]);
+    let drive = format!("{SHORT}\nsensor = \"cmos\"\n");
+    let noisy = driven(&job(FLAT, &drive), &["tracer"]);
+    // Blur of a fraction of a pixel does not move an edge by more than a row, 0.4 m; and towards it, since pixels of 72 um
+    // gather 64 times the light, of which a low threshold sees the tail.
+    let mean = |run: &DriveRun| {
+        let near: Vec<f64> = run.points.iter().filter(|one| one.beam == 0).map(|one| one.point.x).collect();
+        near.iter().sum::<f64>() / near.len() as f64
+    };
+    assert!((mean(&clear) - mean(&noisy)).abs() < 0.4, "{} and {}", mean(&clear), mean(&noisy));
+    // The same seed is the same drive.
+    let again = driven(&job(FLAT, &drive), &["tracer"]);
+    assert_eq!(noisy.points, again.points);
+}
+
+/// A renderer that sees a little too much light in one frame.
+struct Faulty(crate::Contender);
+
+impl Renderer for Faulty {
+    fn name(&self) -> &str {
+        "faulty"
+    }
+
+    fn resolution(&self) -> Resolution {
+        Resolution::F64
+    }
+
+    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+        let mut frame = self.0.renderer.render(scene, request);
+        let camera_x = scene.camera().scene_from_sensor.position.x;
+        // The third frame: 0.2 m on. Above the stripe, in row 77, light would be of something above the ground.
+        if let Some(image) = frame.flux.first_mut().filter(|_| (camera_x - 0.5).abs() < 0.01) {
+            image.set(40, 70, 1e-9);
+        }
+        frame
+    }
+}
+
+#[test]
+fn a_false_pixel_is_traced_to_the_map() {
+    let job = job(FLAT, SHORT);
+    let (good, bad) = (contender("tracer").unwrap(), Faulty(contender("tracer").unwrap()));
+    let run = drive(&job, &[good.renderer.as_ref(), &bad], &Silent).unwrap();
+    assert!(!run.passes());
+    let trace = run.trace.as_ref().unwrap();
+    assert_eq!((trace.flux.differ, trace.flux.largest_relative), (1, 1.0));
+    assert_eq!(trace.pixels.differ, 1);
+    let first = trace.pixels.first.as_deref().unwrap();
+    assert!(first.starts_with("frame 2, beam 0, pixel 40,70: 0 DN against "), "{first}");
+    assert_eq!(trace.edges.differ, 1);
+    let first = trace.edges.first.as_deref().unwrap();
+    assert!(first.starts_with("frame 2, beam 0, column 40: row 70.5 on the second side only"), "{first}");
+    // It stays on the map in all frames after: nine cells, but for those that are new data points.
+    assert!(trace.cells.differ > 0 && trace.cells.first.as_deref().unwrap().starts_with("frame 2, cell at "));
+    let screen = drive_screen(&job, &run, None);
+    assert!(
+        screen.contains("The two sides differ in 1 pixels of the digital images, 1 edge points, "),
+        "{screen}"
+    );
+    let json: serde_json::Value = serde_json::from_str(&drive_json(&job, &run)).unwrap();
+    assert_eq!((&json["passes"], &json["differences"]["pixels"]["differ"]), (&false.into(), &1.into()));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4, ..ProptestConfig::default() })]
+
+    /// What scanline and tracer make of random ground reaches the map alike.
+    #[test]
+    fn both_renderers_drive_alike(seed in 0_u64..1 << 32, roughness in 0.02..0.2_f64, noisy in any::<bool>()) {
+        let terrain = format!(
+            "[terrain]\ngenerate = {{ preset = \"viking1\", seed = {seed}, extent_m = 16, post_spacing_m = 0.5, \
+             roughness_m = {roughness}, rock_smallest_m = 0.3 }}"
+        );
+        let sensor = if noisy { "cmos" } else { "ideal" };
+        let drive = format!("{SHORT}\nsensor = \"{sensor}\"\nscans = true\nscan_steps = 3");
+        let drive = drive.replace("scans = false\n", "");
+        let run = driven(&job(&terrain, &drive), &["scanline", "tracer"]);
+        let trace = run.trace.as_ref().expect("two sides");
+        prop_assert!(run.passes(), "{trace:#?}");
+        prop_assert!(trace.edges.compared > 100 && trace.labels.compared > 0);
+    }
+}
+
+#[test]
+fn the_folder_holds_everything_and_the_summary_comes_last() {
+    let job = job(FLAT, SHORT);
+    let run = driven(&job, &["scanline", "tracer"]);
+    let folder = tempfile::tempdir().unwrap();
+    let written = write_drive(&job, &run, folder.path(), &Silent).unwrap();
+    let names: Vec<_> =
+        written.files.iter().map(|file| file.file_name().unwrap().to_string_lossy().into_owned()).collect();
+    assert_eq!(names.last().map(String::as_str), Some("summary.json"));
+    for file in &written.files {
+        assert!(file.is_file(), "{}", file.display());
+    }
+    // Nothing else, and nothing half written.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), names.len());
+    let page = std::fs::read_to_string(&written.report).unwrap();
+    assert!(page.contains("Both sides are identical over 7 frames") && page.matches("<svg").count() == 4);
+    assert!(!page.contains("src=\"http") && !page.contains("href=\"http"));
+    // The map reads back as an elevation model of the same posts.
+    let dem = read_dem(folder.path().join("local-map.tif"), None).unwrap();
+    let posts = posts(&run.map);
+    assert_eq!((dem.posts.columns, dem.posts.rows), (201, 201));
+    assert!(dem.posts.heights.iter().zip(&posts.heights).all(|(a, b)| a.to_bits() == b.to_bits()));
+    assert!((dem.posts.corner - posts.corner).length() < 1e-9);
+    // The animation moves: as many pictures as frames.
+    let bytes = std::fs::read(folder.path().join("drive.png")).unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(7));
+}
+
+#[test]
+fn a_wall_is_occupied_what_is_before_it_free_and_what_is_behind_it_unknown() {
+    let mut map = LocalMap::new(MapSize::default(), DVec2::ZERO);
+    for point in map.points() {
+        let z = if map.place(point).x > 2.95 { 1.0 } else { 0.0 };
+        map.give(point, z);
+    }
+    let vehicle = Vehicle::default();
+    let (rules, grid) = (PassableRules::of(&vehicle), RadialGrid::of(&vehicle));
+    let obstacles = ObstacleMap::of(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
+    let cells = occupancy(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY);
+    // 201 cells of 0.1 m about the origin.
+    assert_eq!((cells.columns, cells.resolution), (201, 0.1));
+    assert!((cells.origin[0] + 10.05).abs() < 1e-12 && (cells.origin[1] + 10.05).abs() < 1e-12);
+    let at =
+        |x: f64, y: f64| cells.cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize];
+    assert_eq!(at(0.0, 0.0), Occupancy::Free);
+    assert_eq!(at(2.0, 0.0), Occupancy::Free);
+    assert_eq!(at(3.0, 0.0), Occupancy::Occupied);
+    assert_eq!(at(4.0, 0.0), Occupancy::Unknown);
+    // Beside the fan of 30 degrees to either side, and behind.
+    assert_eq!((at(2.0, 2.0), at(-3.0, 0.0)), (Occupancy::Unknown, Occupancy::Unknown));
+}

@@ -1,0 +1,115 @@
+//! What a scene file says of a drive: `[drive]`, in SI. What it leaves out has the rover's own default.
+
+/// The words for what tells light from dark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DetectionWord {
+    /// A fixed number.
+    Fixed,
+    /// Otsu's.
+    Otsu,
+    /// Differences of neighbours.
+    Gradient,
+}
+
+/// The words for which place of a stripe is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlaceWord {
+    /// The last lit pixel.
+    Pixel,
+    /// The crossing of the threshold.
+    SubPixel,
+    /// The middle of the light.
+    Centroid,
+}
+
+/// The words for sensors with their optics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SensorWord {
+    /// No noise, no blur.
+    Ideal,
+    /// A CCD camera of the paper's time.
+    Ccd1989,
+    /// A camera of today.
+    Cmos,
+}
+
+impl SensorWord {
+    /// The word as files have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Ideal => "ideal",
+            Self::Ccd1989 => "ccd_1989",
+            Self::Cmos => "cmos",
+        }
+    }
+}
+
+/// A drive as a scene file has it: only what was given, each in SI and in range. Where it starts is where the scene's
+/// vehicle stands.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DriveSettings {
+    /// Where it goes, global x and y, metres.
+    pub waypoints: Vec<[f64; 2]>,
+    /// Metres per second.
+    pub speed: Option<f64>,
+    /// Radians per second.
+    pub turn_rate: Option<f64>,
+    /// Frames per second.
+    pub frame_rate: Option<f64>,
+    /// Of what the inertial sensors get wrong.
+    pub seed: Option<u64>,
+    /// How the light becomes numbers.
+    pub sensor: Option<SensorWord>,
+    /// Of the camera's noise.
+    pub sensor_seed: Option<u64>,
+    /// Pencils across each pixel of the camera.
+    pub pencils_per_pixel: Option<f64>,
+    /// Whether all beams are lit in one exposure.
+    pub lit_together: Option<bool>,
+    /// What is lit.
+    pub detection: Option<DetectionWord>,
+    /// The level or the least difference, digital numbers.
+    pub threshold: Option<f64>,
+    /// What is measured of a stripe.
+    pub place: Option<PlaceWord>,
+    /// Fewer lit rows are noise.
+    pub least_rows: Option<u32>,
+    /// Between points of the map, metres.
+    pub map_spacing: Option<f64>,
+    /// Points along a side of the map.
+    pub map_points: Option<u32>,
+    /// An obstacle map every so many frames.
+    pub obstacles_every: Option<u64>,
+    /// Whether gaps no wider than a wheel is thick are crossed.
+    pub cross_gaps: Option<bool>,
+    /// Whether it stops for vertical scans.
+    pub scans: Option<bool>,
+    /// Between scans, metres.
+    pub scan_every: Option<f64>,
+    /// Stripes of each beam in a scan.
+    pub scan_steps: Option<u32>,
+    /// Between the axles, metres.
+    pub wheelbase: Option<f64>,
+    /// Between the sides, metres.
+    pub track: Option<f64>,
+    /// Metres.
+    pub wheel_radius: Option<f64>,
+    /// Metres.
+    pub wheel_width: Option<f64>,
+    /// Under the belly, metres.
+    pub clearance: Option<f64>,
+    /// Metres per second, global.
+    pub position_drift: Option<[f64; 2]>,
+    /// Metres after a second.
+    pub position_walk: Option<f64>,
+    /// Radians per second.
+    pub heading_drift: Option<f64>,
+    /// Radians.
+    pub attitude_noise: Option<f64>,
+    /// Metres.
+    pub proximity_noise: Option<f64>,
+    /// A fix of the position every so many frames.
+    pub fix_every: Option<u64>,
+    /// Of a fix, metres.
+    pub fix_noise: Option<f64>,
+}

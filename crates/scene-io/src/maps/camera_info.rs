@@ -1,0 +1,63 @@
+//! A camera as ROS has it: the YAML of `camera_info`. (ROS REP-104; sensor_msgs/CameraInfo; camera_calibration_parsers)
+
+use raypencil_scene::Camera;
+
+/// The calibration file of a camera. ROS, as OpenCV, has the *middle* of pixel (0, 0) at (0, 0), where we have its outer
+/// corner: the principal point moves by half a pixel. Without distortion the model is `plumb_bob` with zeros.
+pub fn camera_info(camera: &Camera, name: &str) -> String {
+    let [fx, fy] = camera.pixel_pitch.map(|pitch| camera.focal_length / pitch);
+    let [cx, cy] = camera.principal_point.map(|point| point - 0.5);
+    let matrix = |name: &str, rows: u32, columns: u32, data: &[f64]| {
+        let data: Vec<String> = data.iter().map(|&value| real(value)).collect();
+        format!("{name}:\n  rows: {rows}\n  cols: {columns}\n  data: [{}]\n", data.join(", "))
+    };
+    let mut text = format!(
+        "# A pinhole: pixels square to the axis, no distortion. The middle of pixel (0, 0) is at (0, 0).\n\
+         image_width: {}\nimage_height: {}\ncamera_name: {name}\n",
+        camera.width, camera.height
+    );
+    text += &matrix("camera_matrix", 3, 3, &[fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]);
+    text += "distortion_model: plumb_bob\n";
+    text += &matrix("distortion_coefficients", 1, 5, &[0.0; 5]);
+    text += &matrix("rectification_matrix", 3, 3, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+    let projection = [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0];
+    text + &matrix("projection_matrix", 3, 4, &projection)
+}
+
+/// A number that YAML takes for a real one.
+fn real(value: f64) -> String {
+    format!("{value:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene::Lens;
+
+    use super::*;
+
+    #[test]
+    fn the_principal_point_is_that_of_opencv() {
+        let camera = Camera {
+            width: 1024,
+            height: 768,
+            pixel_pitch: [1.0 / 131_072.0, 1.0 / 65_536.0],
+            focal_length: 1.0 / 128.0,
+            principal_point: [512.0, 384.0],
+            aperture: 2e-3,
+            lens: Lens::CLEAR,
+            max_range: 20.0,
+        };
+        let text = camera_info(&camera, "rover");
+        // 2^-7 over 2^-17 and 2^-16: 1024 and 512 pixels.
+        for line in [
+            "image_width: 1024",
+            "image_height: 768",
+            "camera_name: rover",
+            "  data: [1024.0, 0.0, 511.5, 0.0, 512.0, 383.5, 0.0, 0.0, 1.0]",
+            "distortion_model: plumb_bob",
+            "  data: [1024.0, 0.0, 511.5, 0.0, 0.0, 512.0, 383.5, 0.0, 0.0, 0.0, 1.0, 0.0]",
+        ] {
+            assert!(text.lines().any(|other| other == line), "{line} is not in:\n{text}");
+        }
+    }
+}

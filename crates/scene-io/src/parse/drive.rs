@@ -1,0 +1,203 @@
+//! `[drive]`: where the rover goes, and what of it is not as the rover's own defaults have it.
+
+use std::ops::RangeInclusive;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{GLOBAL_M, Source};
+use crate::SceneIoError;
+use crate::drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord};
+use crate::keys::Key;
+
+/// Metres of a vehicle: what the rover itself takes.
+const VEHICLE_M: RangeInclusive<f64> = 1e-2..=1e2;
+/// Waypoints of a route.
+const MOST_WAYPOINTS: usize = 10_000;
+
+/// The keys as they stand in the file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DriveKeys {
+    waypoints_m: Spanned<Vec<Spanned<Vec<f64>>>>,
+    speed_m_per_s: Key<f64>,
+    turn_deg_per_s: Key<f64>,
+    frames_per_s: Key<f64>,
+    seed: Key<i64>,
+    sensor: Key<String>,
+    sensor_seed: Key<i64>,
+    pencils_per_pixel: Key<f64>,
+    exposures: Key<String>,
+    detection: Key<String>,
+    threshold_dn: Key<f64>,
+    place: Key<String>,
+    least_rows: Key<i64>,
+    map_spacing_m: Key<f64>,
+    map_points: Key<i64>,
+    obstacles_every_frames: Key<i64>,
+    cross_gaps: Option<bool>,
+    scans: Option<bool>,
+    scan_every_m: Key<f64>,
+    scan_steps: Key<i64>,
+    wheelbase_m: Key<f64>,
+    track_m: Key<f64>,
+    wheel_radius_m: Key<f64>,
+    wheel_width_m: Key<f64>,
+    clearance_m: Key<f64>,
+    position_drift_m_per_s: Key<Vec<f64>>,
+    position_walk_m: Key<f64>,
+    heading_drift_deg_per_s: Key<f64>,
+    attitude_noise_deg: Key<f64>,
+    proximity_noise_m: Key<f64>,
+    fix_every_frames: Key<i64>,
+    fix_noise_m: Key<f64>,
+}
+
+impl Source<'_> {
+    pub(super) fn drive(&self, keys: DriveKeys) -> Result<DriveSettings, SceneIoError> {
+        let mut drive = DriveSettings { waypoints: self.waypoints(&keys.waypoints_m)?, ..Default::default() };
+        let real = |key: Key<f64>, name: &str, range, unit: &str| self.real(key, name, range, unit);
+        let whole = |key: Key<i64>, name: &str, range| self.whole(key, name, range);
+        let degrees = |value: Option<f64>| value.map(f64::to_radians);
+
+        drive.speed = real(keys.speed_m_per_s, "speed_m_per_s", 1e-4..=1e2, "metres per second")?;
+        let turn = real(keys.turn_deg_per_s, "turn_deg_per_s", 1e-2..=3600.0, "degrees per second")?;
+        drive.turn_rate = degrees(turn);
+        drive.frame_rate = real(keys.frames_per_s, "frames_per_s", 1e-3..=1e4, "per second")?;
+        drive.seed = whole(keys.seed, "seed", 0..=i64::MAX)?;
+
+        let sensors = [SensorWord::Ideal, SensorWord::Ccd1989, SensorWord::Cmos].map(|one| (one.word(), one));
+        drive.sensor = self.one_of(keys.sensor, "sensor", &sensors)?;
+        drive.sensor_seed = whole(keys.sensor_seed, "sensor_seed", 0..=i64::MAX)?;
+        drive.pencils_per_pixel = real(keys.pencils_per_pixel, "pencils_per_pixel", 0.1..=64.0, "pencils")?;
+        let exposures = [("in_turn", false), ("together", true)];
+        drive.lit_together = self.one_of(keys.exposures, "exposures", &exposures)?;
+
+        let detections = [
+            ("fixed", DetectionWord::Fixed),
+            ("otsu", DetectionWord::Otsu),
+            ("gradient", DetectionWord::Gradient),
+        ];
+        drive.detection = self.one_of(keys.detection, "detection", &detections)?;
+        if let (Some(DetectionWord::Otsu), Some(threshold)) = (drive.detection, &keys.threshold_dn) {
+            let message = "`drive.threshold_dn` is given; expected none with detection = \"otsu\"";
+            return Err(self.error(threshold.span(), message));
+        }
+        drive.threshold = real(keys.threshold_dn, "threshold_dn", 1e-3..=65535.0, "digital numbers")?;
+        let places = [
+            ("pixel", PlaceWord::Pixel),
+            ("sub_pixel", PlaceWord::SubPixel),
+            ("centroid", PlaceWord::Centroid),
+        ];
+        drive.place = self.one_of(keys.place, "place", &places)?;
+        drive.least_rows = small(whole(keys.least_rows, "least_rows", 1..=1_000_000)?);
+
+        drive.map_spacing = real(keys.map_spacing_m, "map_spacing_m", 1e-3..=1e3, "metres")?;
+        drive.map_points = self.odd(keys.map_points)?;
+        drive.obstacles_every = whole(keys.obstacles_every_frames, "obstacles_every_frames", 1..=i64::MAX)?;
+        drive.cross_gaps = keys.cross_gaps;
+
+        if let (Some(false), Some(span)) = (
+            keys.scans,
+            keys.scan_every_m.as_ref().map(Spanned::span).or(keys.scan_steps.as_ref().map(Spanned::span)),
+        ) {
+            return Err(self.error(span, "a scan's number beside `scans = false`; expected one of the two"));
+        }
+        drive.scans = keys.scans;
+        drive.scan_every = real(keys.scan_every_m, "scan_every_m", 1e-3..=1e9, "metres")?;
+        drive.scan_steps = small(whole(keys.scan_steps, "scan_steps", 1..=10_000)?);
+
+        drive.wheelbase = real(keys.wheelbase_m, "wheelbase_m", VEHICLE_M, "metres")?;
+        drive.track = real(keys.track_m, "track_m", VEHICLE_M, "metres")?;
+        drive.wheel_radius = real(keys.wheel_radius_m, "wheel_radius_m", VEHICLE_M, "metres")?;
+        drive.wheel_width = real(keys.wheel_width_m, "wheel_width_m", VEHICLE_M, "metres")?;
+        drive.clearance = real(keys.clearance_m, "clearance_m", VEHICLE_M, "metres")?;
+
+        if let Some(drift) = keys.position_drift_m_per_s {
+            let name = "drive.position_drift_m_per_s";
+            let numbers = self.list(&drift, name, &[2], -1e2..=1e2, "metres per second")?;
+            drive.position_drift = Some([numbers[0], numbers[1]]);
+        }
+        drive.position_walk = real(keys.position_walk_m, "position_walk_m", 0.0..=1e2, "metres")?;
+        let drift = keys.heading_drift_deg_per_s;
+        drive.heading_drift =
+            degrees(real(drift, "heading_drift_deg_per_s", -50.0..=50.0, "degrees per second")?);
+        drive.attitude_noise =
+            degrees(real(keys.attitude_noise_deg, "attitude_noise_deg", 0.0..=50.0, "degrees")?);
+        drive.proximity_noise = real(keys.proximity_noise_m, "proximity_noise_m", 0.0..=1e2, "metres")?;
+        if let (None, Some(noise)) = (&keys.fix_every_frames, &keys.fix_noise_m) {
+            let message = "`drive.fix_noise_m` is given; expected it only with `fix_every_frames`";
+            return Err(self.error(noise.span(), message));
+        }
+        drive.fix_every = whole(keys.fix_every_frames, "fix_every_frames", 1..=i64::MAX)?;
+        drive.fix_noise = real(keys.fix_noise_m, "fix_noise_m", 0.0..=1e3, "metres")?;
+        Ok(drive)
+    }
+
+    fn waypoints(&self, list: &Spanned<Vec<Spanned<Vec<f64>>>>) -> Result<Vec<[f64; 2]>, SceneIoError> {
+        let count = list.get_ref().len();
+        if !(1..=MOST_WAYPOINTS).contains(&count) {
+            let message = format!("`drive.waypoints_m` has {count} places; expected 1 to {MOST_WAYPOINTS}");
+            return Err(self.error(list.span(), message));
+        }
+        let place = |key| {
+            let numbers = self.list(key, "drive.waypoints_m", &[2], GLOBAL_M, "metres")?;
+            Ok([numbers[0], numbers[1]])
+        };
+        list.get_ref().iter().map(place).collect()
+    }
+
+    /// A number in range, if it is given.
+    fn real(
+        &self,
+        key: Key<f64>,
+        name: &str,
+        range: RangeInclusive<f64>,
+        unit: &str,
+    ) -> Result<Option<f64>, SceneIoError> {
+        let Some(key) = key else { return Ok(None) };
+        self.check(*key.get_ref(), key.span(), &format!("drive.{name}"), range, unit)?;
+        Ok(Some(key.into_inner()))
+    }
+
+    /// A whole number in range, none of which is below zero.
+    fn whole(
+        &self,
+        key: Key<i64>,
+        name: &str,
+        range: RangeInclusive<i64>,
+    ) -> Result<Option<u64>, SceneIoError> {
+        let Some(key) = key else { return Ok(None) };
+        if !range.contains(key.get_ref()) {
+            let (low, high) = (range.start(), range.end());
+            let message = format!("`drive.{name}` is {}; expected {low} to {high}", key.get_ref());
+            return Err(self.error(key.span(), message));
+        }
+        Ok(Some(key.into_inner().unsigned_abs()))
+    }
+
+    /// Points along a side of the map: an odd number, so that there is a middle one.
+    fn odd(&self, key: Key<i64>) -> Result<Option<u32>, SceneIoError> {
+        let Some(key) = key else { return Ok(None) };
+        let points = *key.get_ref();
+        if !(3..=8191).contains(&points) || points % 2 == 0 {
+            let message = format!("`drive.map_points` is {points}; expected an odd number from 3 to 8191");
+            return Err(self.error(key.span(), message));
+        }
+        Ok(small(Some(points.unsigned_abs())))
+    }
+
+    fn one_of<T: Copy>(
+        &self,
+        key: Key<String>,
+        name: &str,
+        words: &[(&str, T)],
+    ) -> Result<Option<T>, SceneIoError> {
+        key.map(|key| self.word(&key, &format!("drive.{name}"), words)).transpose()
+    }
+}
+
+/// A number that is known to be small.
+fn small(value: Option<u64>) -> Option<u32> {
+    value.map(|value| u32::try_from(value).unwrap_or(u32::MAX))
+}
