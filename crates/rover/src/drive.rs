@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_scene::{
-    Atmosphere, FluxModel, Image, Mesh, Pose, Quantities, Renderer, Request, Sampling, SceneError,
-};
+use raypencil_scene::{Atmosphere, FluxModel, Image, Mesh, Pose, Renderer, Request, SceneError};
 use raypencil_terrain::HeightIndex;
 
 use crate::check::check_count;
@@ -124,8 +122,19 @@ pub struct Exposure {
     pub beam: Option<usize>,
 }
 
+/// What the camera hands on of an exposure.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Exposed {
+    /// The flux itself, watts: of a camera without steps 6 to 8.
+    Flux(Image<f64>),
+    /// Digital numbers.
+    Numbers(Image<u16>),
+    /// Digital numbers less those of an unlit exposure.
+    Difference(Image<i32>),
+}
+
 /// What turns the ideal image into the camera's: steps 6 to 8 (§3).
-pub type Develop<'a> = dyn FnMut(Exposure, Image<f64>) -> Image<f64> + 'a;
+pub type Develop<'a> = dyn FnMut(Exposure, Image<f64>) -> Exposed + 'a;
 
 /// One edge point of a stripe, and where it is thought to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -293,7 +302,7 @@ impl Drive {
         let mesh = Arc::clone(&self.mesh);
         let scene = rig.scene(mesh, stance.pose(), plan.atmosphere, plan.flux_model)?;
         // Steps 1 to 5.
-        let flux = renderer.render(&scene, &ONLY_FLUX).flux;
+        let flux = renderer.render(&scene, &Request::FLUX).flux;
         if flux.len() != rig.beams.len() {
             let given = format!("{} images of flux", flux.len());
             return Err(SceneError::new(renderer.name(), given, format!("{}", rig.beams.len())));
@@ -305,7 +314,11 @@ impl Drive {
             Exposures::InTurn => {
                 let images = flux.into_iter().enumerate();
                 images
-                    .map(|(beam, ideal)| plan.extraction.edges(&develop(exposure(Some(beam)), ideal)))
+                    .map(|(beam, ideal)| match develop(exposure(Some(beam)), ideal) {
+                        Exposed::Flux(image) => plan.extraction.edges(&image),
+                        Exposed::Numbers(image) => plan.extraction.edges(&image),
+                        Exposed::Difference(image) => plan.extraction.edges(&image),
+                    })
                     .collect()
             }
             Exposures::Together => {
@@ -316,7 +329,13 @@ impl Drive {
                         *pixel += more;
                     }
                 }
-                plan.extraction.edges_by_order(&develop(exposure(None), sum), rig.beams.len()).0
+                let beams = rig.beams.len();
+                let (stripes, _) = match develop(exposure(None), sum) {
+                    Exposed::Flux(image) => plan.extraction.edges_by_order(&image, beams),
+                    Exposed::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
+                    Exposed::Difference(image) => plan.extraction.edges_by_order(&image, beams),
+                };
+                stripes
             }
         };
         let plane = SheetPlane::of(plan.extraction.place);
@@ -331,19 +350,3 @@ impl Drive {
         Ok(measured)
     }
 }
-
-/// The flux of every beam on the camera's image, and nothing else.
-const ONLY_FLUX: Request = Request {
-    camera: false,
-    beams: false,
-    returns: true,
-    sampling: Sampling::Centres,
-    quantities: Quantities {
-        range: false,
-        depth: false,
-        face: false,
-        point: false,
-        normal: false,
-        incidence: false,
-    },
-};

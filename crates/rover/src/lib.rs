@@ -61,7 +61,7 @@ mod stripe;
 mod triangulation;
 mod vehicle;
 
-pub use drive::{Develop, Drive, DriveFrame, DrivePlan, Exposure, Exposures, Measured};
+pub use drive::{Develop, Drive, DriveFrame, DrivePlan, Exposed, Exposure, Exposures, Measured};
 pub use gap::GapRule;
 pub use inertial::{Fixes, Sensed, SensorErrors, Sensors};
 pub use local_map::{GridPoint, Inconsistency, LocalMap, MapSize, Source};

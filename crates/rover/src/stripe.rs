@@ -1,5 +1,6 @@
 //! Step 9: the light stripes of an image, extracted column by column. (Paper, §3 and §6)
 
+use rayon::prelude::*;
 use raypencil_scene::{Image, SceneError};
 
 use crate::check::check_range;
@@ -56,6 +57,9 @@ pub struct EdgePoint {
     pub row: f64,
 }
 
+/// How many columns are turned upright at a time. Tuned: a cache holds them.
+const STRIP: usize = 32;
+
 /// Lit rows `first..=last` of one column, and where the lower edge lies.
 struct Run {
     first: usize,
@@ -74,7 +78,7 @@ impl Extraction {
     ///
     /// CHOICE: a column may hold several runs of lit pixels (a rock and the ground behind it); each is an edge of
     /// its own, since each is triangulated by itself. A run that the image's lower border cuts off has none.
-    pub fn edges<T: Copy + Into<f64>>(&self, image: &Image<T>) -> Vec<EdgePoint> {
+    pub fn edges<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<EdgePoint> {
         let mut edges: Vec<EdgePoint> = self.columns(image).into_iter().flatten().collect();
         edges.sort_by_key(|edge| (edge.j, edge.i));
         edges
@@ -85,7 +89,7 @@ impl Extraction {
     ///
     /// CHOICE: nothing is guessed. The order holds as long as no beam meets the ground so near that its stripe
     /// rises above the next one's; exposing the beams in turn has no such limit.
-    pub fn edges_by_order<T: Copy + Into<f64>>(
+    pub fn edges_by_order<T: Copy + Into<f64> + Sync>(
         &self,
         image: &Image<T>,
         beams: usize,
@@ -108,25 +112,34 @@ impl Extraction {
     }
 
     /// The edges of each column, from the top.
-    fn columns<T: Copy + Into<f64>>(&self, image: &Image<T>) -> Vec<Vec<EdgePoint>> {
+    fn columns<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<Vec<EdgePoint>> {
         let level = match self.detection {
             Detection::Fixed(level) | Detection::Gradient(level) => Some(level),
             Detection::Otsu => otsu(image),
         };
         let Some(level) = level else { return vec![Vec::new(); image.width() as usize] };
-        let mut values = vec![0.0; image.height() as usize];
-        let column = |i| {
-            for (j, value) in values.iter_mut().enumerate() {
-                *value = image.at(i, j as u32).into();
-            }
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        let column = |i: usize, values: &[f64]| -> Vec<EdgePoint> {
             let runs = match self.detection {
-                Detection::Gradient(_) => runs_between_edges(&values, level),
-                _ => runs_above(&values, level),
+                Detection::Gradient(_) => runs_between_edges(values, level),
+                _ => runs_above(values, level),
             };
             let long = runs.into_iter().filter(|run| run.last - run.first + 1 >= self.least_rows as usize);
-            long.map(|run| self.measure(&values, i, &run)).collect()
+            long.map(|run| self.measure(values, i as u32, &run)).collect()
         };
-        (0..image.width()).map(column).collect()
+        // Images lie row by row: columns are turned upright some at a time.
+        let strip = |first: usize| -> Vec<Vec<EdgePoint>> {
+            let columns = STRIP.min(width - first);
+            let mut values = vec![0.0; columns * height];
+            for (j, row) in image.cells().chunks_exact(width.max(1)).enumerate() {
+                for (i, &cell) in row[first..first + columns].iter().enumerate() {
+                    values[i * height + j] = cell.into();
+                }
+            }
+            let upright = values.chunks_exact(height.max(1)).enumerate();
+            upright.map(|(i, values)| column(first + i, values)).collect()
+        };
+        (0..width.div_ceil(STRIP)).into_par_iter().flat_map_iter(|n| strip(n * STRIP)).collect()
     }
 
     fn measure(&self, values: &[f64], i: u32, run: &Run) -> EdgePoint {
@@ -249,6 +262,18 @@ mod tests {
         assert_eq!(places(&extraction.edges(&image)), [(11, 1), (16, 0), (20, 1)]);
         // A run of one row is noise if two are asked for.
         assert_eq!(places(&Extraction { least_rows: 2, ..extraction }.edges(&image)), [(11, 1), (16, 0)]);
+    }
+
+    #[test]
+    fn wide_images_are_read_in_strips() {
+        // A stripe that falls by a row for each column, over three strips of which the last is not full.
+        let width = 2 * STRIP as u32 + 5;
+        let mut image = Image::filled(width, width + 3, 0_u16);
+        (0..width).for_each(|i| image.set(i, i + 1, 9));
+        let edges = Extraction::thresholding(5.0).edges(&image);
+        assert_eq!(edges.len(), width as usize);
+        assert!(edges.iter().zip(0..).all(|(edge, i)| (edge.i, edge.j) == (i, i + 1)));
+        assert!(Extraction::thresholding(5.0).edges(&Image::<u16>::from_cells(0, 0, vec![])).is_empty());
     }
 
     #[test]

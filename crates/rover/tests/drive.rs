@@ -7,8 +7,8 @@ use std::sync::Arc;
 use common::{extruded, first_hit, from_vehicle, rig, seen_at};
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Detection, Drive, DriveFrame, DrivePlan, Exposures, Extraction, Fixes, Label, OnVehicle, Place, Rig,
-    Route, ScanReason, ScanRule, SensorErrors, Source, Sweep,
+    Detection, Drive, DriveFrame, DrivePlan, Exposed, Exposures, Extraction, Fixes, Label, OnVehicle, Place,
+    Rig, Route, ScanReason, ScanRule, SensorErrors, Source, Sweep,
 };
 use raypencil_scene::{Frame, Image, Mesh, Pose, Renderer, Request, Resolution, Scene};
 
@@ -59,7 +59,7 @@ fn plan() -> DrivePlan {
 fn drive(plan: DrivePlan, mesh: &Arc<Mesh>) -> (Drive, Vec<DriveFrame>) {
     let mut drive = Drive::new(plan, Arc::clone(mesh)).unwrap();
     let mut frames = Vec::new();
-    while let Some(frame) = drive.step(&StandIn, &mut |_, image| image).unwrap() {
+    while let Some(frame) = drive.step(&StandIn, &mut |_, image| Exposed::Flux(image)).unwrap() {
         frames.push(frame);
     }
     (drive, frames)
@@ -169,7 +169,7 @@ fn images_may_be_developed() {
         for value in image.cells_mut() {
             *value = (*value * 20.0).min(60.0).round() + 12.0;
         }
-        image
+        Exposed::Flux(image)
     };
     let frame = drive.step(&StandIn, &mut develop).unwrap().unwrap();
     assert!(frame.points > 100);

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use common::rig;
 use glam::{DVec2, DVec3};
-use raypencil_rover::{Drive, DrivePlan, Extraction, GridPoint, Label, LocalMap, Place, Route, Source};
+use raypencil_rover::{
+    Drive, DrivePlan, Exposed, Extraction, GridPoint, Label, LocalMap, Place, Route, Source,
+};
 use raypencil_scanline::Scanline;
 use raypencil_terrain::{HeightIndex, builtin};
 
@@ -35,7 +37,7 @@ fn the_map_of_the_pyramids_is_the_ground() {
     let mut drive = Drive::new(DrivePlan::new(rig(1024, 4), route, extraction), Arc::clone(&mesh)).unwrap();
     let renderer = Scanline::exact();
     let (mut frames, mut last) = (0, None);
-    while let Some(frame) = drive.step(&renderer, &mut |_, image| image).unwrap() {
+    while let Some(frame) = drive.step(&renderer, &mut |_, image| Exposed::Flux(image)).unwrap() {
         frames += 1;
         // The plane under the vehicle is level, so the map's elevation of it is 0 but for the pixels.
         assert!(frame.update.elevation_read && frame.stance.position.z.abs() < 1e-9);

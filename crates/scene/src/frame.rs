@@ -32,6 +32,9 @@ impl Request {
     };
     /// The range maps of every sensor, of which the camera sees nothing.
     pub const MAPS: Self = Self { returns: false, ..Self::EVERYTHING };
+    /// The flux of each beam on the camera's image, and no map.
+    pub const FLUX: Self =
+        Self { camera: false, beams: false, quantities: Quantities::NONE, ..Self::EVERYTHING };
 }
 
 /// Which quantities of a map to fill; what is left out costs neither time nor memory.
@@ -52,6 +55,9 @@ pub struct Quantities {
 }
 
 impl Quantities {
+    /// None of them.
+    pub const NONE: Self =
+        Self { range: false, depth: false, face: false, point: false, normal: false, incidence: false };
     /// All of them.
     pub const ALL: Self =
         Self { range: true, depth: true, face: true, point: true, normal: true, incidence: true };

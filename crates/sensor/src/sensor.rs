@@ -94,6 +94,22 @@ pub struct Pair {
     pub difference: Image<i32>,
 }
 
+/// One pixel's part in each image of [`Digital`], before rounding.
+struct Pixel {
+    expected: f64,
+    electrons: f64,
+    signal: f64,
+}
+
+/// What falls on the pixel of an index, watts.
+fn fluxes<'a>(optical: &'a Image<f64>, background: Option<&'a Image<f64>>) -> impl Fn(usize) -> f64 + Sync {
+    if let Some(background) = background {
+        assert_same_size(optical, background, "background");
+    }
+    let (optical, background) = (optical.cells(), background.map(Image::cells));
+    move |index| optical[index] + background.map_or(0.0, |background| background[index])
+}
+
 impl Sensor {
     /// Takes frame number `frame`: `optical` is the flux of the laser on each pixel, watts, `background` that of all
     /// other light. The fixed patterns are the same in every frame.
@@ -101,34 +117,55 @@ impl Sensor {
     /// # Panics
     /// If the images differ in size, or a flux is negative or not finite.
     pub fn expose(&self, optical: &Image<f64>, background: Option<&Image<f64>>, frame: u64) -> Digital {
-        if let Some(background) = background {
-            assert_same_size(optical, background, "background");
-        }
         let (width, height) = (optical.width(), optical.height());
-        let flux = |index: usize| {
-            optical.cells()[index] + background.map_or(0.0, |background| background.cells()[index])
-        };
-        let dark = self.dark_current.electrons_per_second() * self.exposure;
-        let pixels = (0..optical.cells().len()).into_par_iter().map(|index| {
-            let (watts, pixel) = (flux(index), index as u32);
-            assert!(watts >= 0.0 && watts.is_finite(), "flux of pixel {index} is {watts} W");
-            // mu_e + mu_d: the pixel's own sensitivity is in the first.
-            let expected = self.photoelectrons(watts) * self.sensitivity(pixel) + dark;
-            let electrons = self.collected(expected, frame, pixel);
-            let signal = self.signal(electrons, frame, pixel);
-            (expected, electrons, signal)
-        });
-        let pixels: Vec<(f64, f64, f64)> = pixels.collect();
-        let image = |of: fn(&(f64, f64, f64)) -> f64| {
-            Image::from_cells(width, height, pixels.iter().map(of).collect())
-        };
-        let numbers = pixels.iter().map(|(_, _, signal)| self.digitised(*signal)).collect();
+        let flux = fluxes(optical, background);
+        let dark = self.dark_electrons();
+        let pixels = (0..optical.cells().len()).into_par_iter();
+        let pixels: Vec<Pixel> = pixels.map(|index| self.pixel(flux(index), dark, frame, index)).collect();
+        let image = |of: fn(&Pixel) -> f64| Image::from_cells(width, height, pixels.iter().map(of).collect());
+        let numbers = pixels.iter().map(|pixel| self.digitised(pixel.signal)).collect();
         Digital {
-            expected: image(|pixel| pixel.0),
-            electrons: image(|pixel| pixel.1),
-            signal: image(|pixel| pixel.2),
+            expected: image(|pixel| pixel.expected),
+            electrons: image(|pixel| pixel.electrons),
+            signal: image(|pixel| pixel.signal),
             numbers: Image::from_cells(width, height, numbers),
         }
+    }
+
+    /// [`Digital::numbers`] of [`Sensor::expose`] alone, without the images on the way to them.
+    ///
+    /// # Panics
+    /// As [`Sensor::expose`].
+    pub fn numbers(&self, optical: &Image<f64>, background: Option<&Image<f64>>, frame: u64) -> Image<u16> {
+        let flux = fluxes(optical, background);
+        let dark = self.dark_electrons();
+        // Without chance all pixels in the dark are alike, and most pixels are in the dark.
+        let in_the_dark = self.is_noiseless().then(|| self.digitised(self.pixel(0.0, dark, frame, 0).signal));
+        let number = |index| match (flux(index), in_the_dark) {
+            (0.0, Some(number)) => number,
+            (watts, _) => self.digitised(self.pixel(watts, dark, frame, index).signal),
+        };
+        let numbers = (0..optical.cells().len()).into_par_iter().map(number).collect();
+        Image::from_cells(optical.width(), optical.height(), numbers)
+    }
+
+    /// Whether what a pixel gives depends on its light alone.
+    fn is_noiseless(&self) -> bool {
+        !self.shot_noise && self.read_noise == 0.0 && self.prnu == 0.0 && self.dsnu == 0.0
+    }
+
+    /// mu_d of an exposure.
+    fn dark_electrons(&self) -> f64 {
+        self.dark_current.electrons_per_second() * self.exposure
+    }
+
+    fn pixel(&self, watts: f64, dark: f64, frame: u64, index: usize) -> Pixel {
+        assert!(watts >= 0.0 && watts.is_finite(), "flux of pixel {index} is {watts} W");
+        let pixel = index as u32;
+        // mu_e + mu_d: the pixel's own sensitivity is in the first.
+        let expected = self.photoelectrons(watts) * self.sensitivity(pixel) + dark;
+        let electrons = self.collected(expected, frame, pixel);
+        Pixel { expected, electrons, signal: self.signal(electrons, frame, pixel) }
     }
 
     /// Takes frame 2 `pair` with the laser on and frame 2 `pair` + 1 with it off, and subtracts.

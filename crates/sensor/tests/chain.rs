@@ -182,6 +182,32 @@ fn subtraction_leaves_the_stripe() {
 }
 
 #[test]
+fn numbers_alone_are_those_of_the_whole_chain() {
+    // Most pixels dark, some faint, some beyond the full well of every preset; with a background and without.
+    let mut light = Image::filled(67, 41, 0.0);
+    for (index, watts) in light.cells_mut().iter_mut().enumerate().filter(|(index, _)| index % 7 == 0) {
+        *watts = 1e-14 * (index * index) as f64;
+    }
+    let background = Image::filled(67, 41, 3e-13);
+    let dim = DarkCurrent { rate: 5e3, ..DarkCurrent::NONE };
+    let presets = PRESETS.iter().map(|name| preset(name).unwrap().1);
+    // Without chance but not without electrons in the dark; and each chance by itself.
+    let quiet = Sensor { dark_current: dim, bias: 3.0, ..Sensor::ideal() };
+    let alone = [
+        Sensor { shot_noise: true, ..quiet },
+        Sensor { read_noise: 9.0, ..quiet },
+        Sensor { prnu: 0.1, ..quiet },
+        Sensor { dsnu: 20.0, ..quiet },
+        quiet,
+    ];
+    for sensor in presets.chain(alone) {
+        for background in [None, Some(&background)] {
+            assert_eq!(sensor.numbers(&light, background, 5), sensor.expose(&light, background, 5).numbers);
+        }
+    }
+}
+
+#[test]
 fn presets_are_valid() {
     for name in PRESETS {
         let (optics, sensor) = preset(name).expect("a preset");

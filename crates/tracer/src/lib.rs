@@ -115,7 +115,7 @@ impl Renderer for Tracer {
             let sensor = SensorId::Beam(index);
             let grid = Grid::new(beam.sensor, index, request.sampling);
             let rays = SensorRays::of_beam(beam, grid);
-            let quantities = if request.beams { request.quantities } else { NO_QUANTITIES };
+            let quantities = if request.beams { request.quantities } else { Quantities::NONE };
             let (map, met) = trace_sensor(&hierarchy, sensor, &rays, quantities, request.returns);
             frame.stages.push(Stage { name: sensor.to_string(), time: start.elapsed() });
             if request.beams {
@@ -132,10 +132,6 @@ impl Renderer for Tracer {
         frame
     }
 }
-
-/// A map that costs no memory.
-const NO_QUANTITIES: Quantities =
-    Quantities { range: false, depth: false, face: false, point: false, normal: false, incidence: false };
 
 /// Traces every cell of a sensor, into its maps and, if they are to be `kept`, a list of the faces met, row by
 /// row. Rows are independent, so threads cannot change a bit.

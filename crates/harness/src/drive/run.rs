@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use raypencil_rover::{Drive, DriveFrame, Exposure, LabelledVector, LocalMap, ObstacleMap, Route};
+use raypencil_rover::{Drive, DriveFrame, Exposed, Exposure, LabelledVector, LocalMap, ObstacleMap, Route};
 use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
 use raypencil_scene_io::MarkedPoint;
 
@@ -108,18 +108,16 @@ impl<'a> Side<'a> {
         let mut develop = |exposure: Exposure, light: Image<f64>| {
             let start = Instant::now();
             // Steps 7 and 8.
-            let numbers = job.sensor.expose(&light, None, *exposures).numbers;
+            let numbers = job.sensor.numbers(&light, None, *exposures);
             if keep {
                 kept.push(Kept::new(exposure, *exposures, &light, &numbers));
             }
             *exposures += 1;
-            let cells = numbers.cells().iter().map(|&number| f64::from(number)).collect();
-            let image = Image::from_cells(numbers.width(), numbers.height(), cells);
             if exposure.step.is_none() {
-                images.push((exposure.beam, numbers));
+                images.push((exposure.beam, numbers.clone()));
             }
             *exposing += start.elapsed();
-            image
+            Exposed::Numbers(numbers)
         };
         let start = Instant::now();
         let frame = self.drive.step(&self.eye, &mut develop)?;
