@@ -1,6 +1,6 @@
-//! Random numbers keyed by (seed, purpose, index): the counter-based generator of `scene`'s sampling, Philox4x32-10.
+//! Random numbers keyed by (seed, purpose, index): `scene`'s Philox4x32-10.
 
-use raypencil_scene::Sampling;
+use raypencil_scene::philox;
 
 /// What a random number is for. The numbers are part of what a seed means: never reuse or renumber one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,16 +24,15 @@ pub(crate) struct Draws {
 }
 
 /// A scene has at most 64 beams, whose jittered pencils draw from the same counters: these lie beyond them.
-const BEYOND_THE_BEAMS: usize = 1 << 16;
+const BEYOND_THE_BEAMS: u32 = 1 << 16;
 
 impl Draws {
     /// Two independent numbers, uniform in (0, 1).
     fn uniform(&self, purpose: Purpose, index: u64) -> [f64; 2] {
-        let counter = BEYOND_THE_BEAMS + purpose as usize;
-        let offset =
-            Sampling::Jittered { seed: self.seed }.offset(counter, index as u32, (index >> 32) as u32);
+        let counter = [index as u32, (index >> 32) as u32, BEYOND_THE_BEAMS + purpose as u32, 0];
+        let [a, b, _, _] = philox(counter, [self.seed as u32, (self.seed >> 32) as u32]);
         // An odd multiple of 2^-33: never 0, never 1.
-        offset.map(|offset| offset + 0.5)
+        [a, b].map(|word| (f64::from(word) + 0.5) * (1.0 / (1_u64 << 32) as f64))
     }
 
     /// Two independent Gaussians of mean 0 and standard deviation 1. (Box and Muller, 1958)

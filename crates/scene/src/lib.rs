@@ -41,5 +41,5 @@ pub use pose::Pose;
 pub use ray::{FaceId, Hit, Ray, SensorId};
 pub use renderer::{Renderer, Resolution};
 pub use returns::{Pixel, Return, Returns};
-pub use sampling::Sampling;
+pub use sampling::{Sampling, philox};
 pub use world::{Atmosphere, FluxModel, Mounted, Scene};

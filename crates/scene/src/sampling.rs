@@ -29,7 +29,7 @@ impl Sampling {
 
 /// Philox4x32 with ten rounds: random words as a function of a counter and a key. (J. Salmon, M. Moraes,
 /// R. Dror and D. Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011)
-fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+pub fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     let product = |a: u32, b: u32| {
         let product = u64::from(a) * u64::from(b);
         ((product >> 32) as u32, product as u32)

@@ -41,7 +41,7 @@ pub use kernel::{Extent, Kernel, Psf};
 pub use optics::{Imaged, Ledger, Optics};
 pub use poisson::poisson;
 pub use presets::{PRESETS, preset};
-pub use random::{Purpose, Stream, philox};
+pub use random::{Purpose, Stream};
 pub use sensor::{
     DarkCurrent, Digital, PLANCK_CONSTANT, Pair, SPEED_OF_LIGHT, Sensor, difference, photon_energy,
 };

@@ -1,11 +1,11 @@
 //! Where two sides of a drive part: how far a difference of their light gets, stage by stage.
 
 use std::collections::BTreeSet;
-use std::hash::{DefaultHasher, Hasher};
 
 use raypencil_rover::{DriveFrame, Exposure, LocalMap, Measured};
 use raypencil_scene::Image;
 use raypencil_sensor::Sensor;
+use sha2::{Digest, Sha256};
 
 /// What was compared at one stage.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -81,20 +81,25 @@ pub(super) struct Kept {
     size: (u32, u32),
     /// Pixels that are lit, and their watts.
     lit: Vec<(u32, f64)>,
-    digest: u64,
+    digest: [u8; 32],
 }
 
 impl Kept {
     pub(super) fn new(exposure: Exposure, number: u64, light: &Image<f64>, numbers: &Image<u16>) -> Self {
-        let mut hasher = DefaultHasher::new();
-        numbers.cells().iter().for_each(|&number| hasher.write_u16(number));
+        let mut hasher = Sha256::new();
+        let mut bytes = Vec::new();
+        for row in numbers.cells().chunks(numbers.width().max(1) as usize) {
+            bytes.clear();
+            bytes.extend(row.iter().flat_map(|number| number.to_le_bytes()));
+            hasher.update(&bytes);
+        }
         let lit = light.cells().iter().enumerate().filter(|(_, watts)| **watts != 0.0);
         Self {
             exposure,
             number,
             size: (light.width(), light.height()),
             lit: lit.map(|(index, &watts)| (index as u32, watts)).collect(),
-            digest: hasher.finish(),
+            digest: hasher.finalize().into(),
         }
     }
 
