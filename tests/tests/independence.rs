@@ -25,7 +25,7 @@ const HOUSE: &[(&str, u32, &[&str])] = &[
     ("referee", 1, &["scene"]),
     ("sensor", 1, &["scene"]),
     ("terrain", 1, &["scene"]),
-    ("scene-io", 2, &["scene", "terrain"]),
+    ("scene-io", 2, &["scene", "sensor", "terrain"]),
     ("rover", 2, &["scene", "sensor", "terrain"]),
     ("harness", 3, &["scene", "scanline", "tracer", "referee", "sensor", "terrain", "scene-io", "rover"]),
     (

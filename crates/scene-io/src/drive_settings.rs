@@ -1,5 +1,7 @@
 //! What a scene file says of a drive: `[drive]`, in SI. What it leaves out has the rover's own default.
 
+use crate::chain_settings::{ElectronicsSettings, OpticsSettings};
+
 /// The words for what tells light from dark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DetectionWord {
@@ -112,4 +114,8 @@ pub struct DriveSettings {
     pub fix_every: Option<u64>,
     /// Of a fix, metres.
     pub fix_noise: Option<f64>,
+    /// What of the optics is not the preset's.
+    pub optics: OpticsSettings,
+    /// What of the sensor is not the preset's.
+    pub electronics: ElectronicsSettings,
 }

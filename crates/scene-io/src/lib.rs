@@ -28,6 +28,7 @@
 mod array;
 mod atomic;
 mod bytes;
+mod chain_settings;
 mod channels;
 mod dem;
 mod digest;
@@ -50,6 +51,7 @@ mod toml_problem;
 
 pub use array::{Array, ArrayNumber, Storage, Values};
 pub use atomic::write_atomically;
+pub use chain_settings::{BlurSettings, ElectronicsSettings, OpticsSettings};
 pub use channels::{Channel, Channels, read_channels, read_listed};
 pub use dem::{Dem, Registration, dem_from_bytes, read_dem};
 pub use digest::scene_sha256;

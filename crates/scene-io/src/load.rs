@@ -5,17 +5,23 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use raypencil_scene::{Beam, FluxModel, Mesh, Pose, Scene, SceneError};
+use raypencil_sensor::Kernel;
 use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
 
+use crate::chain_settings::BlurSettings;
 use crate::digest::{self, Sha};
 use crate::drive_settings::DriveSettings;
 use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY, Vertices};
+use crate::parse::chain::KernelPart;
 use crate::parse::{self, Kind, Source};
 use crate::plan::{self, DemPart, Plan, Terrain};
-use crate::{SceneIoError, bytes, dem, resolve, resolved, scene_sha256};
+use crate::{Limits, SceneIoError, bytes, dem, npy_from_bytes, resolve, resolved, scene_sha256};
 
 /// A scene file larger than this is none: 1 MiB.
 pub(crate) const LARGEST_TOML: u64 = 1 << 20;
+
+/// A kernel is no larger: 1025 x 1025 real numbers of eight bytes, and a header.
+const MOST_KERNEL_BYTES: u64 = 1025 * 1025 * 8 + (1 << 16);
 
 /// Side of a plain generated ground, metres: the default sensors see 20 m, to every side.
 const PLAIN_EXTENT: f64 = 40.0;
@@ -179,7 +185,13 @@ fn load_rig(
     mut parts: Vec<Sha>,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
-    let plan = parse::parse(places)?;
+    let mut plan = parse::parse(places)?;
+    for part in std::mem::take(&mut plan.kernels) {
+        let (kernel, sha) = kernel_file(places, &part)?;
+        parts.push(sha);
+        let blurs = plan.drive.as_mut().and_then(|drive| drive.optics.blurs.as_mut());
+        blurs.expect("a list that names the file").insert(part.blur, BlurSettings::Kernel(kernel));
+    }
     let mesh = match &plan.terrain {
         Terrain::File(file) => {
             let terrain = terrain_file(places, "file", &["glb", "gltf"], file, &plan.terrain_span)?;
@@ -246,6 +258,36 @@ fn terrain_file(
         return Err(places.error(span.clone(), message));
     }
     Ok(terrain)
+}
+
+/// The kernel of a blur, from the file that a scene file names.
+fn kernel_file(places: &Source, part: &KernelPart) -> Result<(Kernel, Sha), SceneIoError> {
+    let file = places.file.parent().unwrap_or(Path::new("")).join(&part.file);
+    let name = format!("drive.optics.blurs[{}].kernel", part.blur);
+    if !file.is_file() {
+        let message = format!(
+            "`{name}`: there is no file \"{}\"; expected an NPY file, its path relative to the scene file",
+            file.display()
+        );
+        return Err(places.error(part.span.clone(), message));
+    }
+    let bytes =
+        bytes::read_file(&file, MOST_KERNEL_BYTES).map_err(|error| SceneIoError::io(&file, "read", error))?;
+    let array = npy_from_bytes(&bytes, &file, &Limits { bytes: MOST_KERNEL_BYTES, ..Limits::default() })?;
+    let [plane] = array.planes.as_slice() else {
+        let message = format!(
+            "`{name}` has {} numbers in each cell; expected rows and columns alone",
+            array.planes.len()
+        );
+        return Err(places.error(part.span.clone(), message));
+    };
+    let (columns, rows) = plane.size();
+    let weights: Vec<f64> = (0..columns as usize * rows as usize).map(|index| plane.real(index)).collect();
+    let kernel = Kernel::from_numbers(columns as usize, rows as usize, &weights).map_err(|error| {
+        let SceneError { field, value, expected } = error;
+        places.error(part.span.clone(), format!("`{name}`: {field} is {value}; expected {expected}"))
+    })?;
+    Ok((kernel, digest::sha(&bytes)))
 }
 
 /// A terrain without a scene file: the default rig stands in its middle.

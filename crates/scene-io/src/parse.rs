@@ -1,5 +1,6 @@
 //! Scene TOML to a plan: each key is checked by itself, and every error points to its place in the file.
 
+pub(crate) mod chain;
 mod dem;
 pub(crate) mod drive;
 mod generate;
@@ -116,7 +117,10 @@ impl Source<'_> {
         if let Some(model) = keys.flux.model {
             plan.flux_model = self.word(&model, "flux.model", &FLUX_MODELS)?;
         }
-        plan.drive = keys.drive.map(|keys| self.drive(keys)).transpose()?;
+        if let Some(keys) = keys.drive {
+            let (drive, kernels) = self.drive(keys)?;
+            (plan.drive, plan.kernels) = (Some(drive), kernels);
+        }
         Ok(plan)
     }
 

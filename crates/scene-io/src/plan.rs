@@ -8,6 +8,7 @@ use raypencil_scene::{Beam, Camera, FluxModel, Lens, Profile};
 use raypencil_terrain::MarsGround;
 
 use crate::drive_settings::DriveSettings;
+use crate::parse::chain::KernelPart;
 
 /// Everything a scene needs but its mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,8 @@ pub(crate) struct Plan {
     pub flux_model: FluxModel,
     /// Where the vehicle drives, if the file says so.
     pub drive: Option<DriveSettings>,
+    /// The files of kernels that belong among its optics' blurs, in their order.
+    pub kernels: Vec<KernelPart>,
     /// Where the file says where the vehicle and the terrain are.
     pub position_span: Range<usize>,
     pub terrain_span: Range<usize>,
@@ -108,6 +111,7 @@ pub(crate) fn default_rig(terrain: Terrain) -> Plan {
         attenuation: 0.0,
         flux_model: FluxModel::Radiometric,
         drive: None,
+        kernels: Vec::new(),
         position_span: 0..0,
         terrain_span: 0..0,
     }

@@ -1,7 +1,8 @@
 //! Scene files that are wrong: the line, the column, the marked text and the message of each.
 
 use miette::Diagnostic;
-use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem, load};
+use raypencil_scene::Image;
+use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem, load, write_npy};
 
 fn problem(text: &str) -> TomlProblem {
     let folder = tempfile::tempdir().unwrap();
@@ -375,4 +376,63 @@ fn a_drive_names_its_keys() {
         "seed = 1\nfix_noise_m = 0.1",
         "`drive.fix_noise_m` is given; expected it only with `fix_every_frames`",
     );
+}
+
+#[test]
+fn a_camera_of_a_drive_names_its_keys() {
+    let bad = |table: &str, line: &str, marked: &str, message: &str| {
+        let text = format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n[drive.{table}]\n{line}\n");
+        let problem = problem(&text);
+        assert_eq!((problem.message.as_str(), problem.marked()), (message, marked), "{line}");
+        assert_eq!((problem.line, problem.column), (5, line.find(marked).unwrap() + 1), "{line}");
+    };
+    bad("optics", "oversampling = 0", "0", "`drive.optics.oversampling` is 0; expected 1 to 64");
+    bad("optics", "focus_m = -1", "-1", "`drive.optics.focus_m` is -1; expected 0.001 to inf metres");
+    bad(
+        "optics",
+        "blurs = [{ airy_rings = 8 }, { gaussian_px = 101 }]",
+        "101",
+        "`drive.optics.blurs[1].gaussian_px` is 101; expected 0 to 100 pixels",
+    );
+    let one = "expected exactly one of `airy_rings`, `gaussian_px`, `gaussian_um`, `kernel`";
+    bad("optics", "blurs = [{}]", "{}", &format!("`drive.optics.blurs[0]`: {one}"));
+    let two = "{ airy_rings = 8, gaussian_um = 1 }";
+    bad("optics", &format!("blurs = [{two}]"), two, &format!("`drive.optics.blurs[0]`: {one}"));
+    bad(
+        "optics",
+        "dust = { halo_share = 2 }",
+        "2",
+        "`drive.optics.dust.halo_share` is 2; expected 0 to 1 of 1",
+    );
+    bad("electronics", "bits = 17", "17", "`drive.electronics.bits` is 17; expected 1 to 16");
+    bad(
+        "electronics",
+        "temperature_c = -300",
+        "-300",
+        "`drive.electronics.temperature_c` is -300; expected -223.15 to 226.85 degrees Celsius",
+    );
+}
+
+#[test]
+fn a_kernel_file_is_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text =
+        "version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n[drive.optics]\nblurs = [{ kernel = \"k.npy\" }]\n";
+    std::fs::write(&scene, text).unwrap();
+    let kernel = folder.path().join("k.npy");
+    let message = || load(scene.to_str().unwrap(), &Overrides::default()).unwrap_err().to_string();
+    let write = |planes: &[&Image<f64>]| write_npy(&kernel, planes).unwrap();
+    let odd = Image::filled(3, 3, 1.0);
+    assert!(message().contains("`drive.optics.blurs[0].kernel`: there is no file "), "{}", message());
+    write(&[&Image::filled(4, 3, 1.0)]);
+    assert!(message().contains("kernel.columns is 4; expected an odd number up to 1025"), "{}", message());
+    write(&[&Image::filled(3, 3, -1.0)]);
+    assert!(message().contains("kernel.weights[0] is -1"), "{}", message());
+    write(&[&odd, &odd]);
+    assert!(message().contains("has 2 numbers in each cell"), "{}", message());
+    std::fs::write(&kernel, b"not an array").unwrap();
+    assert!(message().contains("k.npy"), "{}", message());
+    write(&[&odd]);
+    assert!(load(scene.to_str().unwrap(), &Overrides::default()).is_ok());
 }

@@ -9,8 +9,9 @@ use raypencil_rover::{
 };
 use raypencil_scene::{Camera, FluxModel, Mesh, Pose, SceneError};
 use raypencil_scene_io::{DetectionWord, DriveSettings, LoadedScene, PlaceWord, SceneSource, SensorWord};
-use raypencil_sensor::{Optics, Sensor, preset};
+use raypencil_sensor::{Optics, Sensor};
 
+use super::chain::{MOST_FINE_CELLS, camera_chain};
 use crate::output::OutputError;
 use crate::output::text::number;
 
@@ -40,6 +41,17 @@ pub enum DriveError {
     /// Light in a unit that no camera can expose.
     #[error("flux model eq1 is in W/m, which no camera can expose; expected radiometric")]
     Unit,
+    /// More memory than a blur is worth.
+    #[error(
+        "drive.optics: the fine image would have {columns} x {rows} cells; expected up to {MOST_FINE_CELLS} in all: a \
+         smaller oversampling, or a camera of fewer pixels"
+    )]
+    FineImage {
+        /// Cells across.
+        columns: u64,
+        /// Cells down.
+        rows: u64,
+    },
     /// A route without end.
     #[error(
         "the route has more than {MOST_FRAMES} frames; expected a shorter way, more speed or fewer frames per second"
@@ -135,11 +147,7 @@ impl DriveJob {
         let heading = libm::atan2(forward.y, forward.x);
 
         let sensor_word = settings.sensor.unwrap_or(SensorWord::Ideal);
-        let (optics, mut sensor) = preset(sensor_word.word()).expect("every word of scene files is a preset");
-        sensor.seed = settings.sensor_seed.unwrap_or(sensor.seed);
-        if let Some(beam) = rig.beams.first() {
-            sensor.wavelength = beam.sensor.wavelength;
-        }
+        let (optics, sensor) = camera_chain(&settings, sensor_word, &rig)?;
 
         let (rig, warnings) =
             with_columns(rig, settings.pencils_per_pixel.unwrap_or(PENCILS_PER_PIXEL), &mut notes);

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! job       what is driven: a scene, its [drive] or a built-in drive, as the rover's plan
+//! chain     its camera: a preset, and what the scene file has in its place
 //! eye       step 6 around a renderer: the optics
 //! run       frame by frame, one side or two
 //! trace     where the two sides part: pixels, edges, cells, labels
@@ -13,6 +14,7 @@
 //! ```
 
 mod animation;
+mod chain;
 mod drawing;
 mod eye;
 mod figures;

@@ -2,9 +2,12 @@
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
-use raypencil_rover::{Label, LocalMap, MapSize, ObstacleMap, PassableRules, RadialGrid, Vehicle};
+use raypencil_rover::{
+    Drive, Exposed, Label, LocalMap, MapSize, ObstacleMap, PassableRules, RadialGrid, Vehicle,
+};
 use raypencil_scene::{Frame, Pose, Renderer, Request, Resolution, Scene};
-use raypencil_scene_io::{LoadedScene, Occupancy, SensorWord, load, load_text, read_dem};
+use raypencil_scene_io::{LoadedScene, Occupancy, SensorWord, load, load_text, read_dem, write_npy};
+use raypencil_sensor::{DarkCurrent, Dust, Extent, Optics, Psf, Sensor};
 
 use super::folder::{occupancy, posts};
 use super::{DriveError, DriveJob, DriveRun, drive, drive_json, drive_screen, write_drive};
@@ -113,6 +116,107 @@ fn the_file_says_what_is_driven() {
     assert_eq!(plan.grid, RadialGrid::of(&plan.vehicle));
     assert_eq!(plan.errors.attitude_noise, 2.0_f64.to_radians());
     assert_eq!(plan.errors.fixes.map(|fixes| (fixes.every_frames, fixes.noise)), Some((50, 0.1)));
+}
+
+#[test]
+fn the_file_says_what_camera_it_is() {
+    // Nothing said: the preset, but for its diffraction, which is that of this camera. Default: 8 mm / 2 mm.
+    let preset = |name| raypencil_sensor::preset(name).unwrap();
+    let plain = job(FLAT, &format!("{SHORT}\nsensor = \"cmos\""));
+    assert_eq!((&plain.optics, plain.sensor), (&preset("cmos").0, preset("cmos").1));
+    let mut loaded = scene(FLAT, &format!("{SHORT}\nsensor = \"cmos\""));
+    let mut camera = *loaded.scene.camera();
+    camera.sensor.aperture = 1e-3;
+    let mesh = loaded.scene.mesh().clone();
+    let (beams, air) = (loaded.scene.beams().to_vec(), loaded.scene.atmosphere());
+    loaded.scene = Scene::new(mesh, camera, beams, air, loaded.scene.flux_model()).unwrap();
+    let small = DriveJob::new(&loaded, None, String::new()).unwrap();
+    assert_eq!(small.optics.blurs[0], Psf::Airy { wavelength: 810e-9, f_number: 8.0, rings: 8 });
+
+    // All of it said.
+    let all = format!(
+        "{SHORT}\nsensor = \"ccd_1989\"\nsensor_seed = 3\n[drive.optics]\noversampling = 2\nfocus_m = 5\n\
+         blurs = [{{ gaussian_um = 2 }}, {{ airy_rings = 3 }}, {{ gaussian_px = 0.5 }}]\n\
+         dust = {{ transmission = 0.8, halo_share = 0.1, halo_px = 7 }}\n[drive.electronics]\nexposure_ms = 3\n\
+         quantum_efficiency = 0.6\nshot_noise = false\ndark_e_per_s = 9\ndark_at_c = 20\ndark_doubling_k = 5\n\
+         temperature_c = -40\nread_noise_e = 4\nprnu = 0.01\ndsnu_e = 2\nfull_well_e = 5e4\ngain_dn_per_e = 0.02\n\
+         bias_dn = 8\nbits = 10"
+    );
+    let own = job(FLAT, &all);
+    let blurs = vec![
+        Psf::Gaussian { sigma: Extent::Metres(1e-6 * 2.0) },
+        Psf::Airy { wavelength: 810e-9, f_number: 4.0, rings: 3 },
+        Psf::Gaussian { sigma: Extent::Pixels(0.5) },
+    ];
+    let dust = Dust { transmission: 0.8, halo_share: 0.1, halo_sigma: Extent::Pixels(7.0) };
+    assert_eq!(own.optics, Optics { oversampling: 2, focus: Some(5.0), blurs, dust: Some(dust) });
+    let dark_current = DarkCurrent { rate: 9.0, at: 293.15, doubling: 5.0, temperature: -40.0 + 273.15 };
+    let sensor = Sensor {
+        exposure: 1e-3 * 3.0,
+        wavelength: 810e-9,
+        quantum_efficiency: 0.6,
+        shot_noise: false,
+        dark_current,
+        read_noise: 4.0,
+        prnu: 0.01,
+        dsnu: 2.0,
+        full_well: 5e4,
+        gain: 0.02,
+        bias: 8.0,
+        bits: 10,
+        seed: 3,
+    };
+    assert_eq!(own.sensor, sensor);
+
+    // A bias that the converter cannot give; a fine image of 8192 x 8192 pixels, each of 8 x 8 cells.
+    let text = format!("{SHORT}\n[drive.electronics]\nbias_dn = 300\nbits = 8");
+    let error = DriveJob::new(&scene(FLAT, &text), None, String::new()).unwrap_err().to_string();
+    assert!(error.contains("drive.electronics.bias") && error.contains("300"), "{error}");
+    let huge = format!("{SHORT}\n[drive.optics]\noversampling = 64\n");
+    let mut loaded = scene(FLAT, &huge);
+    let mut camera = *loaded.scene.camera();
+    (camera.sensor.width, camera.sensor.height) = (1024, 1024);
+    let mesh = loaded.scene.mesh().clone();
+    let (beams, air) = (loaded.scene.beams().to_vec(), loaded.scene.atmosphere());
+    loaded.scene = Scene::new(mesh, camera, beams, air, loaded.scene.flux_model()).unwrap();
+    let error = DriveJob::new(&loaded, None, String::new()).unwrap_err();
+    assert!(matches!(error, DriveError::FineImage { columns: 65536, rows: 65536 }), "{error}");
+}
+
+#[test]
+fn a_kernel_from_a_file_moves_the_stripe() {
+    // All light two rows down, of pixels that are not divided: the image is that without a kernel, two rows lower.
+    let folder = tempfile::tempdir().unwrap();
+    let mut kernel = raypencil_scene::Image::filled(1, 5, 0.0);
+    kernel.set(0, 4, 3.0);
+    write_npy(folder.path().join("down.npy"), &[&kernel]).unwrap();
+    let text = |optics: &str| {
+        format!(
+            "version = 1\n[camera]\nwidth_px = 128\nheight_px = 128\npixel_pitch_um = 72\n\
+             [[beam]]\nrows = 4\ncolumns = 64\n{FLAT}\n[drive]\n{SHORT}\n{optics}"
+        )
+    };
+    let path = folder.path().join("scene.toml");
+    let edges = |optics: &str| {
+        std::fs::write(&path, text(optics)).unwrap();
+        let loaded = load(path.to_str().unwrap(), &Default::default()).unwrap();
+        let job = DriveJob::new(&loaded, None, String::new()).unwrap();
+        let renderer = contender("tracer").unwrap().renderer;
+        let mut drive = Drive::new(job.plan.clone(), job.mesh.clone()).unwrap();
+        let eye = super::eye::Eye::new(renderer.as_ref(), &job.optics);
+        let frame = drive.step(&eye, &mut |_, light| Exposed::Numbers(job.sensor.numbers(&light, None, 0)));
+        let measured = frame.unwrap().unwrap().measured;
+        (measured.iter().map(|one| (one.edge.i, one.edge.j)).collect::<Vec<_>>(), loaded.source_sha256)
+    };
+    let (plain, sha) = edges("");
+    let (moved, other) = edges("[drive.optics]\nblurs = [{ kernel = \"down.npy\" }]");
+    assert!(plain.len() > 100 && moved == plain.iter().map(|&(i, j)| (i, j + 2)).collect::<Vec<_>>());
+    // Other numbers in the file are another scene.
+    assert_ne!(sha, other);
+    kernel.set(0, 4, 4.0);
+    kernel.set(0, 0, 4.0);
+    write_npy(folder.path().join("down.npy"), &[&kernel]).unwrap();
+    assert_ne!(edges("[drive.optics]\nblurs = [{ kernel = \"down.npy\" }]").1, other);
 }
 
 #[test]

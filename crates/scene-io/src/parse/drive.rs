@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::chain::{ElectronicsKeys, KernelPart, OpticsKeys};
 use super::{GLOBAL_M, Source};
 use crate::SceneIoError;
 use crate::drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord};
@@ -51,12 +52,15 @@ pub(crate) struct DriveKeys {
     proximity_noise_m: Key<f64>,
     fix_every_frames: Key<i64>,
     fix_noise_m: Key<f64>,
+    optics: Option<OpticsKeys>,
+    electronics: Option<ElectronicsKeys>,
 }
 
 impl Source<'_> {
-    pub(super) fn drive(&self, keys: DriveKeys) -> Result<DriveSettings, SceneIoError> {
+    /// The drive, and the files of its optics' kernels.
+    pub(super) fn drive(&self, keys: DriveKeys) -> Result<(DriveSettings, Vec<KernelPart>), SceneIoError> {
         let mut drive = DriveSettings { waypoints: self.waypoints(&keys.waypoints_m)?, ..Default::default() };
-        let real = |key: Key<f64>, name: &str, range, unit: &str| self.real(key, name, range, unit);
+        let real = |key: Key<f64>, name: &str, range, unit: &str| self.drive_number(key, name, range, unit);
         let whole = |key: Key<i64>, name: &str, range| self.whole(key, name, range);
         let degrees = |value: Option<f64>| value.map(f64::to_radians);
 
@@ -90,7 +94,7 @@ impl Source<'_> {
             ("centroid", PlaceWord::Centroid),
         ];
         drive.place = self.one_of(keys.place, "place", &places)?;
-        drive.least_rows = small(whole(keys.least_rows, "least_rows", 1..=1_000_000)?);
+        drive.least_rows = self.drive_count(keys.least_rows, "least_rows", 1..=1_000_000)?;
 
         drive.map_spacing = real(keys.map_spacing_m, "map_spacing_m", 1e-3..=1e3, "metres")?;
         drive.map_points = self.odd(keys.map_points)?;
@@ -105,7 +109,7 @@ impl Source<'_> {
         }
         drive.scans = keys.scans;
         drive.scan_every = real(keys.scan_every_m, "scan_every_m", 1e-3..=1e9, "metres")?;
-        drive.scan_steps = small(whole(keys.scan_steps, "scan_steps", 1..=10_000)?);
+        drive.scan_steps = self.drive_count(keys.scan_steps, "scan_steps", 1..=10_000)?;
 
         drive.wheelbase = real(keys.wheelbase_m, "wheelbase_m", VEHICLE_M, "metres")?;
         drive.track = real(keys.track_m, "track_m", VEHICLE_M, "metres")?;
@@ -131,7 +135,14 @@ impl Source<'_> {
         }
         drive.fix_every = whole(keys.fix_every_frames, "fix_every_frames", 1..=i64::MAX)?;
         drive.fix_noise = real(keys.fix_noise_m, "fix_noise_m", 0.0..=1e3, "metres")?;
-        Ok(drive)
+        let mut kernels = Vec::new();
+        if let Some(keys) = keys.optics {
+            (drive.optics, kernels) = self.optics(keys)?;
+        }
+        if let Some(keys) = keys.electronics {
+            drive.electronics = self.electronics(keys)?;
+        }
+        Ok((drive, kernels))
     }
 
     fn waypoints(&self, list: &Spanned<Vec<Spanned<Vec<f64>>>>) -> Result<Vec<[f64; 2]>, SceneIoError> {
@@ -148,7 +159,7 @@ impl Source<'_> {
     }
 
     /// A number in range, if it is given.
-    fn real(
+    pub(super) fn drive_number(
         &self,
         key: Key<f64>,
         name: &str,
@@ -174,6 +185,16 @@ impl Source<'_> {
             return Err(self.error(key.span(), message));
         }
         Ok(Some(key.into_inner().unsigned_abs()))
+    }
+
+    /// A small whole number in range, if it is given.
+    pub(super) fn drive_count(
+        &self,
+        key: Key<i64>,
+        name: &str,
+        range: RangeInclusive<i64>,
+    ) -> Result<Option<u32>, SceneIoError> {
+        Ok(small(self.whole(key, name, range)?))
     }
 
     /// Points along a side of the map: an odd number, so that there is a middle one.
