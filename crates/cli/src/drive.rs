@@ -60,7 +60,8 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let unsaid = command.both || command.with == DRIVE_WITH;
     let said = if unsaid { args::DEFAULT_WITH.map(String::from).to_vec() } else { names };
     words.push_str(&typed_renderers(&said, &command.switches));
-    let job = DriveJob::new(&loaded, command.scene.at, words)?;
+    let trouble = |error| Trouble::Drive { scene: command.scene.scene.clone(), error };
+    let job = DriveJob::new(&loaded, command.scene.at, words).map_err(trouble)?;
     let folder: PathBuf = match &command.output {
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
@@ -68,9 +69,9 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     drop(spinner);
 
     let renderers: Vec<_> = contenders.iter().map(|contender| contender.renderer.as_ref()).collect();
-    let found = run(&job, &renderers, &Bar::new())?;
+    let found = run(&job, &renderers, &Bar::new()).map_err(trouble)?;
     let spinner = Spinner::new();
-    write_drive(&job, &found, &folder, &spinner).map_err(raypencil_harness::DriveError::from)?;
+    write_drive(&job, &found, &folder, &spinner)?;
     drop(spinner);
     say(&if json { drive_json(&job, &found) } else { drive_screen(&job, &found, Some(&folder)) });
     Ok(if found.passes() { Outcome::Fine } else { Outcome::Differs })

@@ -80,8 +80,13 @@ enum Trouble {
     Campaign(#[from] CampaignError),
 
     /// A drive that cannot be driven.
-    #[error(transparent)]
-    Drive(#[from] DriveError),
+    #[error("{scene}: {error}")]
+    Drive {
+        /// As it was given.
+        scene: String,
+        /// Why not.
+        error: DriveError,
+    },
 
     /// Words that clap cannot judge.
     #[error("{0}")]

@@ -7,6 +7,7 @@
 
 pub mod bytes;
 mod candidate;
+mod drive;
 mod exr;
 mod glb;
 mod gltf;
@@ -148,6 +149,7 @@ pub fn all() -> Vec<Case> {
         npy::cases(),
         pfm::cases(),
         scene::cases(),
+        drive::cases(),
         manifest::cases(),
         candidate::cases(),
     ]

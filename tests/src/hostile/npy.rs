@@ -19,6 +19,11 @@ fn header(descr: &str, fortran: &str, shape: &str) -> String {
     format!("{{'descr': {descr}, 'fortran_order': {fortran}, 'shape': {shape}, }}\n")
 }
 
+/// An array in C order, of whatever bytes.
+pub(super) fn array(descr: &str, shape: &str, bytes: &[u8]) -> Vec<u8> {
+    npy(&header(&format!("'{descr}'"), "False", shape), bytes)
+}
+
 pub(super) fn good() -> Vec<u8> {
     npy(&header("'<f8'", "False", "(2, 3)"), &[0; 48])
 }

@@ -79,7 +79,7 @@ fn trouble_leaves_no_folder_that_looks_complete() {
     std::fs::write(path.join("still.toml"), still).unwrap();
     assert_trouble(
         &raypencil(path, &["drive", "still.toml", "-o", "out"]),
-        &["still has no drive", "[drive] table"],
+        &["still.toml: there is no drive", "[drive] table"],
     );
     assert_trouble(&raypencil(path, &["drive", "small.toml", "--flux", "eq1"]), &["eq1 is in W/m"]);
     assert_trouble(

@@ -22,8 +22,8 @@ const PENCILS_PER_PIXEL: f64 = 4.0;
 const FEWEST_PENCILS_PER_PIXEL: f64 = 2.0;
 /// A beam has no more columns. (`scene`)
 const MOST_COLUMNS: f64 = 1_048_576.0;
-/// A drive has no more frames: a day of them at ten a second.
-pub(super) const MOST_FRAMES: u64 = 864_000;
+/// A drive has no more frames: an hour of them at ten a second. Each leaves some two thousand edge points in memory.
+pub(super) const MOST_FRAMES: u64 = 36_000;
 
 /// Why there is no drive.
 #[derive(Debug, thiserror::Error)]
@@ -31,13 +31,10 @@ pub(super) const MOST_FRAMES: u64 = 864_000;
 pub enum DriveError {
     /// A scene that says nothing of where to go.
     #[error(
-        "{name} has no drive; expected a scene file with a [drive] table (docs/drive.md), or a built-in ground: \
-         pyramids, facets"
+        "there is no drive; expected a scene file with a [drive] table (docs/drive.md), or a built-in ground: pyramids, \
+         facets"
     )]
-    NoDrive {
-        /// The scene.
-        name: String,
-    },
+    NoDrive,
     /// Light in a unit that no camera can expose.
     #[error("flux model eq1 is in W/m, which no camera can expose; expected radiometric")]
     Unit,
@@ -54,7 +51,7 @@ pub enum DriveError {
     },
     /// A route without end.
     #[error(
-        "the route has more than {MOST_FRAMES} frames; expected a shorter way, more speed or fewer frames per second"
+        "the route has more than {MOST_FRAMES} frames; expected fewer: a shorter way, more speed or fewer frames per second"
     )]
     Frames,
     /// A number that the rover does not take.
@@ -131,14 +128,13 @@ impl DriveJob {
         let (start, settings) = match (&loaded.drive, &loaded.source) {
             (Some(settings), _) => (vehicle.position.truncate(), settings.clone()),
             (None, SceneSource::Builtin(name)) => {
-                let (start, settings) =
-                    builtin(name).ok_or_else(|| DriveError::NoDrive { name: loaded.name.clone() })?;
+                let (start, settings) = builtin(name).ok_or(DriveError::NoDrive)?;
                 notes.push(
                     "built-in drive: a frame each 0.1 m, not ten a second, and no vertical scans".to_string(),
                 );
                 (at.map_or(start, DVec2::from_array), settings)
             }
-            (None, _) => return Err(DriveError::NoDrive { name: loaded.name.clone() }),
+            (None, _) => return Err(DriveError::NoDrive),
         };
         // Sensors are on the vehicle wherever it stands.
         let position = vehicle.position - scene.mesh().origin();
@@ -171,7 +167,17 @@ impl DriveJob {
 
     /// How many frames the route has.
     pub(super) fn frames(&self) -> Result<u64, DriveError> {
-        (0..=MOST_FRAMES).find(|&index| self.plan.route.frame(index).is_none()).ok_or(DriveError::Frames)
+        let over = |index| self.plan.route.frame(index).is_none();
+        if !over(MOST_FRAMES) {
+            return Err(DriveError::Frames);
+        }
+        // Once it is over it stays so: halving finds the first frame that is not.
+        let (mut driven, mut end) = (0, MOST_FRAMES);
+        while driven < end {
+            let middle = driven + (end - driven) / 2;
+            if over(middle) { end = middle } else { driven = middle + 1 }
+        }
+        Ok(end)
     }
 }
 
