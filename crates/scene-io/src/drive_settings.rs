@@ -84,12 +84,31 @@ pub struct DriveSettings {
     pub obstacles_every: Option<u64>,
     /// Whether gaps no wider than a wheel is thick are crossed.
     pub cross_gaps: Option<bool>,
+    /// Greatest slopes, rise over distance: of the front wheels, the rear wheels, along the vehicle, and of the pair closer
+    /// to its centre.
+    pub slopes: [Option<f64>; 4],
+    /// First and last radius of the radial grid and what is between two, metres.
+    pub grid_radii: [Option<f64>; 3],
+    /// From the heading to the outermost sector, radians.
+    pub grid_half_angle: Option<f64>,
+    /// Sectors of the radial grid.
+    pub grid_sectors: Option<u32>,
+    /// A difference of radii above this is large, metres.
+    pub vector_large: Option<f64>,
+    /// One up to this is small, metres.
+    pub vector_small: Option<f64>,
     /// Whether it stops for vertical scans.
     pub scans: Option<bool>,
     /// Between scans, metres.
     pub scan_every: Option<f64>,
     /// Stripes of each beam in a scan.
     pub scan_steps: Option<u32>,
+    /// First and last turn of the beams in a scan, downwards, radians.
+    pub scan_angles: [Option<f64>; 2],
+    /// A scan when new points contradict old ones by more on average, metres.
+    pub scan_inconsistency: Option<f64>,
+    /// On fewer grid points they do not.
+    pub scan_least_points: Option<u32>,
     /// Between the axles, metres.
     pub wheelbase: Option<f64>,
     /// Between the sides, metres.
@@ -106,6 +125,8 @@ pub struct DriveSettings {
     pub position_walk: Option<f64>,
     /// Radians per second.
     pub heading_drift: Option<f64>,
+    /// Constant errors of heading (to the left), pitch (nose down) and roll (right side down), radians.
+    pub attitude_bias: [Option<f64>; 3],
     /// Radians.
     pub attitude_noise: Option<f64>,
     /// Metres.

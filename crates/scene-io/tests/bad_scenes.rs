@@ -363,6 +363,23 @@ fn a_drive_names_its_keys() {
     );
     bad("map_points = 200", "200", "`drive.map_points` is 200; expected an odd number from 3 to 8191");
     bad("least_rows = 0", "0", "`drive.least_rows` is 0; expected 1 to 1000000");
+    let slope = "is -1; expected 0 to 1000 of rise over distance";
+    for key in ["front", "rear", "length", "closer"] {
+        bad(&format!("slope_{key} = -1"), "-1", &format!("`drive.slope_{key}` {slope}"));
+    }
+    for key in ["grid_first_m", "grid_last_m", "vector_large_m", "vector_small_m", "scan_inconsistency_m"] {
+        bad(&format!("{key} = 2e3"), "2e3", &format!("`drive.{key}` is 2000; expected 0 to 1000 metres"));
+    }
+    bad("grid_step_m = 0", "0", "`drive.grid_step_m` is 0; expected 0.001 to 1000 metres");
+    bad("grid_half_angle_deg = 181", "181", "`drive.grid_half_angle_deg` is 181; expected 0 to 180 degrees");
+    bad("grid_sectors = 0", "0", "`drive.grid_sectors` is 0; expected 1 to 100000");
+    for key in ["scan_from_deg", "scan_to_deg"] {
+        bad(&format!("{key} = 200"), "200", &format!("`drive.{key}` is 200; expected -180 to 180 degrees"));
+    }
+    bad("scan_least_points = 0", "0", "`drive.scan_least_points` is 0; expected 1 to 1000000");
+    for key in ["heading_bias_deg", "pitch_bias_deg", "roll_bias_deg"] {
+        bad(&format!("{key} = 51"), "51", &format!("`drive.{key}` is 51; expected -50 to 50 degrees"));
+    }
     let both = |lines: &str, message: &str| {
         let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{lines}\n"));
         assert_eq!((problem.message.as_str(), problem.line), (message, 5), "{lines}");
@@ -372,6 +389,8 @@ fn a_drive_names_its_keys() {
         "`drive.threshold_dn` is given; expected none with detection = \"otsu\"",
     );
     both("scans = false\nscan_steps = 3", "a scan's number beside `scans = false`; expected one of the two");
+    both("scans = false\nscan_to_deg = 3", "a scan's number beside `scans = false`; expected one of the two");
+    both("grid_first_m = 2\ngrid_last_m = 1", "`drive.grid_last_m` is 1; expected `grid_first_m` or more, 2");
     both(
         "seed = 1\nfix_noise_m = 0.1",
         "`drive.fix_noise_m` is given; expected it only with `fix_every_frames`",

@@ -1,16 +1,17 @@
-//! A page of marks, drawn once and written twice: as SVG, and by `raster` as PNG.
+//! A page of marks, written as SVG; its PNG is that SVG, drawn by `paint`.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::raster::{Canvas, png};
+use super::paint;
 
 /// A colour: red, green, blue.
 pub(super) type Colour = [u8; 3];
 
 pub(super) const INK: Colour = [29, 31, 34];
 pub(super) const SOFT: Colour = [110, 115, 122];
-pub(super) const PAPER: Colour = [255, 255, 255];
+/// The fonts of all text: first the one that `paint` carries along, then what readers of the SVG may have.
+const FONTS: &str = "Ubuntu, 'Noto Sans', 'DejaVu Sans', Helvetica, Arial, sans-serif";
 
 /// Where a text hangs on its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,6 +39,8 @@ pub(super) enum Mark {
         text: String,
         anchor: Anchor,
         colour: Colour,
+        /// About its place, clockwise, degrees.
+        turn: f64,
     },
     /// A picture of `columns` cells to a row, each a rectangle of its own colour; without one it shows what is below.
     Cells {
@@ -74,7 +77,19 @@ impl Drawing {
     }
 
     pub(super) fn text(&mut self, at: [f64; 2], text: impl Into<String>, anchor: Anchor, colour: Colour) {
-        self.marks.push(Mark::Text { at, text: text.into(), anchor, colour });
+        self.turned_text(at, text, anchor, colour, 0.0);
+    }
+
+    /// A text that is turned about its place, clockwise, degrees.
+    pub(super) fn turned_text(
+        &mut self,
+        at: [f64; 2],
+        text: impl Into<String>,
+        anchor: Anchor,
+        colour: Colour,
+        turn: f64,
+    ) {
+        self.marks.push(Mark::Text { at, text: text.into(), anchor, colour, turn });
     }
 
     /// The page as SVG that refers to nothing outside of it.
@@ -82,7 +97,7 @@ impl Drawing {
         let (width, height, title) = (self.width, self.height, escaped(&self.title));
         let mut out = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-             height=\"{height}\" role=\"img\" aria-label=\"{title}\">\n<title>{title}</title>\n\
+             height=\"{height}\" role=\"img\" aria-label=\"{title}\" font-family=\"{FONTS}\" font-size=\"{LETTERS}\">\n<title>{title}</title>\n\
              <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
         );
         for mark in &self.marks {
@@ -100,21 +115,25 @@ impl Drawing {
                         hex(*colour)
                     );
                 }
-                Mark::Text { at: [x, y], text, anchor, colour } => {
+                Mark::Text { at: [x, y], text, anchor, colour, turn } => {
                     let anchor = match anchor {
                         Anchor::Start => "start",
                         Anchor::Middle => "middle",
                         Anchor::End => "end",
                     };
+                    let turn = if *turn == 0.0 {
+                        String::new()
+                    } else {
+                        format!(" transform=\"rotate({turn:.1} {x:.1} {y:.1})\"")
+                    };
                     out += &format!(
-                        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-family=\"sans-serif\" \
-                         font-size=\"{LETTERS}\" fill=\"{}\">{}</text>\n",
+                        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"{}\"{turn}>{}</text>\n",
                         hex(*colour),
                         escaped(text)
                     );
                 }
                 Mark::Cells { at: [x, y], size: [w, h], columns, cells } => {
-                    let picture = STANDARD.encode(png(*columns as u32, cells));
+                    let picture = STANDARD.encode(paint::cells(*columns as u32, cells));
                     out += &format!(
                         "<image x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" \
                          preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
@@ -128,9 +147,7 @@ impl Drawing {
 
     /// The page as PNG.
     pub(super) fn png(&self) -> Vec<u8> {
-        let mut canvas = Canvas::new(self.width, self.height);
-        self.marks.iter().for_each(|mark| canvas.draw(mark));
-        canvas.png()
+        paint::page(&self.svg(), self.width, self.height)
     }
 }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Detection, DrivePlan, Exposures, Extraction, Fixes, MapSize, OnVehicle, PassableRules, Place, RadialGrid,
-    Rig, Route, ScanRule, SensorErrors, Sweep, VectorRules, Vehicle,
+    Attitude, Detection, DrivePlan, Exposures, Extraction, Fixes, MapSize, OnVehicle, PassableRules, Place,
+    RadialGrid, Rig, Route, ScanRule, SensorErrors, SlopeLimits, Sweep, VectorRules, Vehicle,
 };
 use raypencil_scene::{Camera, FluxModel, Mesh, Pose, SceneError};
 use raypencil_scene_io::{DetectionWord, DriveSettings, LoadedScene, PlaceWord, SceneSource, SensorWord};
@@ -263,8 +263,26 @@ fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sensor: 
     let mut plan = DrivePlan::new(rig, route, extraction);
     let rules = PassableRules::of(&vehicle);
     plan.rules = if settings.cross_gaps == Some(true) { rules.crossing_gaps(&vehicle) } else { rules };
-    plan.grid = RadialGrid::of(&vehicle);
-    plan.vectors = VectorRules::of(&vehicle);
+    let ([front, rear, length, closer], usual) = (settings.slopes, plan.rules.slopes);
+    plan.rules.slopes = SlopeLimits {
+        front: front.unwrap_or(usual.front),
+        rear: rear.unwrap_or(usual.rear),
+        length: length.unwrap_or(usual.length),
+        closer: closer.unwrap_or(usual.closer),
+    };
+    let ([first, last, step], usual) = (settings.grid_radii, RadialGrid::of(&vehicle));
+    plan.grid = RadialGrid {
+        sectors: settings.grid_sectors.unwrap_or(usual.sectors),
+        half_angle: settings.grid_half_angle.unwrap_or(usual.half_angle),
+        first: first.unwrap_or(usual.first),
+        step: step.unwrap_or(usual.step),
+        last: last.unwrap_or(usual.last),
+    };
+    let usual = VectorRules::of(&vehicle);
+    plan.vectors = VectorRules {
+        large: settings.vector_large.unwrap_or(usual.large),
+        small: settings.vector_small.unwrap_or(usual.small),
+    };
     plan.vehicle = vehicle;
     plan.seed = settings.seed.unwrap_or(plan.seed);
     if settings.lit_together == Some(true) {
@@ -279,13 +297,26 @@ fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sensor: 
         Some(false) => None,
         _ => {
             let rule = ScanRule::default();
-            Some(ScanRule { every: settings.scan_every.or(rule.every), ..rule })
+            Some(ScanRule {
+                every: settings.scan_every.or(rule.every),
+                inconsistency: settings.scan_inconsistency.or(rule.inconsistency),
+                least_points: settings.scan_least_points.unwrap_or(rule.least_points),
+                ..rule
+            })
         }
     };
-    plan.sweep = Sweep { steps: settings.scan_steps.unwrap_or(plan.sweep.steps), ..plan.sweep };
+    let ([from, to], usual) = (settings.scan_angles, plan.sweep);
+    plan.sweep = Sweep {
+        from: from.unwrap_or(usual.from),
+        to: to.unwrap_or(usual.to),
+        steps: settings.scan_steps.unwrap_or(usual.steps),
+        ..usual
+    };
+    let [heading, pitch_down, roll_right] = settings.attitude_bias.map(|bias| bias.unwrap_or(0.0));
     plan.errors = SensorErrors {
         position_drift: settings.position_drift.map_or(DVec2::ZERO, DVec2::from_array),
         position_walk: settings.position_walk.unwrap_or(0.0),
+        attitude_bias: Attitude { heading, pitch_down, roll_right },
         heading_drift: settings.heading_drift.unwrap_or(0.0),
         attitude_noise: settings.attitude_noise.unwrap_or(0.0),
         proximity_noise: settings.proximity_noise.unwrap_or(0.0),

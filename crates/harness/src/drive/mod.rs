@@ -8,7 +8,8 @@
 //! run       frame by frame, one side or two
 //! trace     where the two sides part: pixels, edges, cells, labels
 //! view      what the camera sees, for people
-//! drawing   marks on a page, as SVG and as PNG
+//! drawing   marks on a page, as SVG
+//! paint     SVG as PNG
 //! figures   figures 11 to 16 of the paper
 //! folder    every file
 //! ```
@@ -20,9 +21,8 @@ mod eye;
 mod figures;
 mod folder;
 mod job;
-mod letters;
 mod page;
-mod raster;
+mod paint;
 mod run;
 mod screen;
 mod summary;

@@ -98,7 +98,10 @@ fn the_file_says_what_is_driven() {
         cross_gaps = true\nscans = true\nscan_every_m = 3\nscan_steps = 21\nwheelbase_m = 1.5\ntrack_m = 1.1\n\
         wheel_radius_m = 0.4\nwheel_width_m = 0.3\nclearance_m = 0.45\nposition_drift_m_per_s = [0.01, 0]\n\
         position_walk_m = 0.02\nheading_drift_deg_per_s = 1\nattitude_noise_deg = 2\nproximity_noise_m = 0.03\n\
-        fix_every_frames = 50\nfix_noise_m = 0.1";
+        fix_every_frames = 50\nfix_noise_m = 0.1\nslope_front = 0.3\nslope_length = 0.25\ngrid_first_m = 0.9\n\
+        grid_last_m = 4\ngrid_step_m = 0.2\ngrid_half_angle_deg = 45\ngrid_sectors = 19\nvector_large_m = 1\n\
+        vector_small_m = 0.4\nscan_from_deg = -5\nscan_to_deg = 30\nscan_inconsistency_m = 0.2\n\
+        scan_least_points = 40\nheading_bias_deg = 1\npitch_bias_deg = -2\nroll_bias_deg = 3";
     let job = job(FLAT, all);
     let plan = &job.plan;
     let route = &plan.route;
@@ -112,8 +115,18 @@ fn the_file_says_what_is_driven() {
     assert_eq!((plan.sweep.steps, plan.scans.unwrap().every), (21, Some(3.0)));
     assert_eq!((plan.vehicle.wheelbase, plan.vehicle.track, plan.vehicle.clearance), (1.5, 1.1, 0.45));
     // What follows from the vehicle's measures follows from these.
-    assert_eq!(plan.rules, PassableRules::of(&plan.vehicle).crossing_gaps(&plan.vehicle));
-    assert_eq!(plan.grid, RadialGrid::of(&plan.vehicle));
+    let mut rules = PassableRules::of(&plan.vehicle).crossing_gaps(&plan.vehicle);
+    (rules.slopes.front, rules.slopes.length) = (0.3, 0.25);
+    assert_eq!(plan.rules, rules);
+    let half_angle = 45.0_f64.to_radians();
+    assert_eq!(plan.grid, RadialGrid { sectors: 19, half_angle, first: 0.9, step: 0.2, last: 4.0 });
+    assert_eq!((plan.vectors.large, plan.vectors.small), (1.0, 0.4));
+    assert_eq!((plan.sweep.from, plan.sweep.to), ((-5.0_f64).to_radians(), 30.0_f64.to_radians()));
+    let scans = plan.scans.unwrap();
+    assert_eq!((scans.inconsistency, scans.least_points), (Some(0.2), 40));
+    let bias = plan.errors.attitude_bias;
+    let degrees = [bias.heading, bias.pitch_down, bias.roll_right].map(f64::to_degrees);
+    assert_eq!(degrees.map(f64::round), [1.0, -2.0, 3.0]);
     assert_eq!(plan.errors.attitude_noise, 2.0_f64.to_radians());
     assert_eq!(plan.errors.fixes.map(|fixes| (fixes.every_frames, fixes.noise)), Some((50, 0.1)));
 }

@@ -13,8 +13,13 @@ use super::job::{DriveError, DriveJob};
 pub(super) const BEAM_COLOURS: [[u8; 3]; 4] = [[226, 35, 26], [0, 104, 201], [0, 140, 60], [170, 60, 190]];
 /// Where there is no ground.
 const SKY: [u8; 3] = [233, 231, 226];
-/// Borders of faces.
-const BORDER: f64 = 0.55;
+/// How dark borders of faces are.
+const BORDER: f64 = 0.45;
+/// Pixels about one on a border, along either side, of which some have to be of its own face: where faces are no larger than
+/// a few pixels, as far away, borders would darken all of the ground.
+const ABOUT: u32 = 5;
+/// With so many no border is drawn, and with so many all of it.
+const OWN: [f64; 2] = [3.0, 10.0];
 
 /// A picture of what the camera sees: some of its pixels become one.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +111,16 @@ pub(super) fn view(
         let grey = 0.35 + 0.6 * normal.normalize_or_zero().dot(light).max(0.0);
         let face = |i: u32, j: u32| faces.at(i.min(camera.width - 1), j.min(camera.height - 1)).get();
         let inside = face(i + 1, j) == face(i, j) && face(i, j + 1) == face(i, j);
-        let grey = if inside { grey } else { grey * BORDER };
+        let border = if inside {
+            0.0
+        } else {
+            let about = (0..ABOUT).flat_map(|dj| (0..ABOUT).map(move |di| (di, dj)));
+            let own = about.filter(|&(di, dj)| {
+                face((i + di).saturating_sub(ABOUT / 2), (j + dj).saturating_sub(ABOUT / 2)) == face(i, j)
+            });
+            BORDER * ((own.count() as f64 - OWN[0]) / (OWN[1] - OWN[0])).clamp(0.0, 1.0)
+        };
+        let grey = grey * (1.0 - border);
         [0.98, 0.9, 0.82].map(|part| (255.0 * (grey * part).clamp(0.0, 1.0)) as u8)
     };
     let pixels = (0..camera.height).flat_map(|j| (0..camera.width).map(move |i| (i, j)));

@@ -37,9 +37,24 @@ pub(crate) struct DriveKeys {
     map_points: Key<i64>,
     obstacles_every_frames: Key<i64>,
     cross_gaps: Option<bool>,
+    slope_front: Key<f64>,
+    slope_rear: Key<f64>,
+    slope_length: Key<f64>,
+    slope_closer: Key<f64>,
+    grid_first_m: Key<f64>,
+    grid_last_m: Key<f64>,
+    grid_step_m: Key<f64>,
+    grid_half_angle_deg: Key<f64>,
+    grid_sectors: Key<i64>,
+    vector_large_m: Key<f64>,
+    vector_small_m: Key<f64>,
     scans: Option<bool>,
     scan_every_m: Key<f64>,
     scan_steps: Key<i64>,
+    scan_from_deg: Key<f64>,
+    scan_to_deg: Key<f64>,
+    scan_inconsistency_m: Key<f64>,
+    scan_least_points: Key<i64>,
     wheelbase_m: Key<f64>,
     track_m: Key<f64>,
     wheel_radius_m: Key<f64>,
@@ -47,6 +62,9 @@ pub(crate) struct DriveKeys {
     clearance_m: Key<f64>,
     position_drift_m_per_s: Key<Vec<f64>>,
     position_walk_m: Key<f64>,
+    heading_bias_deg: Key<f64>,
+    pitch_bias_deg: Key<f64>,
+    roll_bias_deg: Key<f64>,
     heading_drift_deg_per_s: Key<f64>,
     attitude_noise_deg: Key<f64>,
     proximity_noise_m: Key<f64>,
@@ -101,15 +119,56 @@ impl Source<'_> {
         drive.obstacles_every = whole(keys.obstacles_every_frames, "obstacles_every_frames", 1..=i64::MAX)?;
         drive.cross_gaps = keys.cross_gaps;
 
-        if let (Some(false), Some(span)) = (
-            keys.scans,
-            keys.scan_every_m.as_ref().map(Spanned::span).or(keys.scan_steps.as_ref().map(Spanned::span)),
-        ) {
+        let slope = |key, name: &str| real(key, name, 0.0..=1e3, "of rise over distance");
+        drive.slopes = [
+            slope(keys.slope_front, "slope_front")?,
+            slope(keys.slope_rear, "slope_rear")?,
+            slope(keys.slope_length, "slope_length")?,
+            slope(keys.slope_closer, "slope_closer")?,
+        ];
+        if let (Some(first), Some(last)) = (&keys.grid_first_m, &keys.grid_last_m)
+            && last.get_ref() < first.get_ref()
+        {
+            let message = format!(
+                "`drive.grid_last_m` is {}; expected `grid_first_m` or more, {}",
+                last.get_ref(),
+                first.get_ref()
+            );
+            return Err(self.error(last.span(), message));
+        }
+        drive.grid_radii = [
+            real(keys.grid_first_m, "grid_first_m", 0.0..=1e3, "metres")?,
+            real(keys.grid_last_m, "grid_last_m", 0.0..=1e3, "metres")?,
+            real(keys.grid_step_m, "grid_step_m", 1e-3..=1e3, "metres")?,
+        ];
+        let half_angle = real(keys.grid_half_angle_deg, "grid_half_angle_deg", 0.0..=180.0, "degrees")?;
+        drive.grid_half_angle = degrees(half_angle);
+        drive.grid_sectors = self.drive_count(keys.grid_sectors, "grid_sectors", 1..=100_000)?;
+        drive.vector_large = real(keys.vector_large_m, "vector_large_m", 0.0..=1e3, "metres")?;
+        drive.vector_small = real(keys.vector_small_m, "vector_small_m", 0.0..=1e3, "metres")?;
+
+        let of_scans = [
+            span(&keys.scan_every_m),
+            span(&keys.scan_steps),
+            span(&keys.scan_from_deg),
+            span(&keys.scan_to_deg),
+            span(&keys.scan_inconsistency_m),
+            span(&keys.scan_least_points),
+        ];
+        if let (Some(false), Some(span)) = (keys.scans, of_scans.into_iter().flatten().next()) {
             return Err(self.error(span, "a scan's number beside `scans = false`; expected one of the two"));
         }
         drive.scans = keys.scans;
         drive.scan_every = real(keys.scan_every_m, "scan_every_m", 1e-3..=1e9, "metres")?;
         drive.scan_steps = self.drive_count(keys.scan_steps, "scan_steps", 1..=10_000)?;
+        drive.scan_angles = [
+            degrees(real(keys.scan_from_deg, "scan_from_deg", -180.0..=180.0, "degrees")?),
+            degrees(real(keys.scan_to_deg, "scan_to_deg", -180.0..=180.0, "degrees")?),
+        ];
+        drive.scan_inconsistency =
+            real(keys.scan_inconsistency_m, "scan_inconsistency_m", 0.0..=1e3, "metres")?;
+        drive.scan_least_points =
+            self.drive_count(keys.scan_least_points, "scan_least_points", 1..=1_000_000)?;
 
         drive.wheelbase = real(keys.wheelbase_m, "wheelbase_m", VEHICLE_M, "metres")?;
         drive.track = real(keys.track_m, "track_m", VEHICLE_M, "metres")?;
@@ -123,6 +182,12 @@ impl Source<'_> {
             drive.position_drift = Some([numbers[0], numbers[1]]);
         }
         drive.position_walk = real(keys.position_walk_m, "position_walk_m", 0.0..=1e2, "metres")?;
+        let bias = |key, name: &str| real(key, name, -50.0..=50.0, "degrees").map(degrees);
+        drive.attitude_bias = [
+            bias(keys.heading_bias_deg, "heading_bias_deg")?,
+            bias(keys.pitch_bias_deg, "pitch_bias_deg")?,
+            bias(keys.roll_bias_deg, "roll_bias_deg")?,
+        ];
         let drift = keys.heading_drift_deg_per_s;
         drive.heading_drift =
             degrees(real(drift, "heading_drift_deg_per_s", -50.0..=50.0, "degrees per second")?);
@@ -216,6 +281,11 @@ impl Source<'_> {
     ) -> Result<Option<T>, SceneIoError> {
         key.map(|key| self.word(&key, &format!("drive.{name}"), words)).transpose()
     }
+}
+
+/// Where a key's value stands in the file, if it is given.
+fn span<T>(key: &Key<T>) -> Option<std::ops::Range<usize>> {
+    key.as_ref().map(Spanned::span)
 }
 
 /// A number that is known to be small.
