@@ -340,7 +340,6 @@ fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sensor: 
         fixes: settings
             .fix_every
             .map(|every_frames| Fixes { every_frames, noise: settings.fix_noise.unwrap_or(0.0) }),
-        ..SensorErrors::default()
     };
     plan
 }
