@@ -127,10 +127,8 @@ pub struct Exposure {
 pub enum Exposed {
     /// The flux itself, watts: of a camera without steps 6 to 8.
     Flux(Image<f64>),
-    /// Digital numbers.
-    Numbers(Image<u16>),
-    /// Digital numbers less those of an unlit exposure.
-    Difference(Image<i32>),
+    /// Digital numbers; may be less than 0 where those of an unlit exposure are taken off.
+    Numbers(Image<i32>),
 }
 
 /// What turns the ideal image into the camera's: steps 6 to 8 (§3).
@@ -317,7 +315,6 @@ impl Drive {
                     .map(|(beam, ideal)| match develop(exposure(Some(beam)), ideal) {
                         Exposed::Flux(image) => plan.extraction.edges(&image),
                         Exposed::Numbers(image) => plan.extraction.edges(&image),
-                        Exposed::Difference(image) => plan.extraction.edges(&image),
                     })
                     .collect()
             }
@@ -333,7 +330,6 @@ impl Drive {
                 let (stripes, _) = match develop(exposure(None), sum) {
                     Exposed::Flux(image) => plan.extraction.edges_by_order(&image, beams),
                     Exposed::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
-                    Exposed::Difference(image) => plan.extraction.edges_by_order(&image, beams),
                 };
                 stripes
             }

@@ -46,6 +46,19 @@ impl SensorWord {
     }
 }
 
+/// The sun of a drive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SunSettings {
+    /// Above the horizontal, radians.
+    pub elevation: f64,
+    /// To the left of the global x axis, radians.
+    pub azimuth: f64,
+    /// Of the air's dust.
+    pub optical_depth: f64,
+    /// Of the sun above the air near the laser's wavelength, W/m^2 per metre of wavelength; that of Mars if it is not given.
+    pub spectral_irradiance: Option<f64>,
+}
+
 /// A drive as a scene file has it: only what was given, each in SI and in range. Where it starts is where the scene's
 /// vehicle stands.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -64,6 +77,10 @@ pub struct DriveSettings {
     pub sensor: Option<SensorWord>,
     /// Of the camera's noise.
     pub sensor_seed: Option<u64>,
+    /// The sun, if it shines.
+    pub sun: Option<SunSettings>,
+    /// Whether a second image without the laser is taken off each.
+    pub subtract_unlit: Option<bool>,
     /// Pencils across each pixel of the camera.
     pub pencils_per_pixel: Option<f64>,
     /// Whether all beams are lit in one exposure.

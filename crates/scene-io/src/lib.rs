@@ -55,7 +55,7 @@ pub use chain_settings::{BlurSettings, ElectronicsSettings, OpticsSettings};
 pub use channels::{Channel, Channels, read_channels, read_listed};
 pub use dem::{Dem, Registration, dem_from_bytes, read_dem};
 pub use digest::scene_sha256;
-pub use drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord};
+pub use drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord, SunSettings};
 pub use error::{Problem, SceneIoError};
 pub use exr_map::{
     Attributes, ExrMap, Limits, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map,

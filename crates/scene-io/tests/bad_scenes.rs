@@ -372,6 +372,22 @@ fn a_drive_names_its_keys() {
     }
     bad("grid_step_m = 0", "0", "`drive.grid_step_m` is 0; expected 0.001 to 1000 metres");
     bad("grid_half_angle_deg = 181", "181", "`drive.grid_half_angle_deg` is 181; expected 0 to 180 degrees");
+    let sun = "is 91; expected 0 to 90 degrees";
+    bad("sun = { elevation_deg = 91 }", "91", &format!("`drive.sun.elevation_deg` {sun}"));
+    for (key, value, expected) in [
+        ("azimuth_deg", "361", "-360 to 360 degrees"),
+        ("optical_depth", "11", "0 to 10 of dust"),
+        ("irradiance_w_per_m2_nm", "101", "0 to 100 W/m^2 per nm"),
+    ] {
+        let message = format!("`drive.sun.{key}` is {value}; expected {expected}");
+        bad(&format!("sun = {{ elevation_deg = 30, {key} = {value} }}"), value, &message);
+    }
+    let line = "sun = { elevation_deg = 30, colour = 1 }";
+    let unknown = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{line}\n"));
+    assert!(unknown.message.contains("unknown field `colour`"), "{}", unknown.message);
+    let line = "sun = { azimuth_deg = 30 }";
+    let missing = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{line}\n"));
+    assert!(missing.message.contains("missing field `elevation_deg`"), "{}", missing.message);
     bad("grid_sectors = 0", "0", "`drive.grid_sectors` is 0; expected 1 to 100000");
     for key in ["scan_from_deg", "scan_to_deg"] {
         bad(&format!("{key} = 200"), "200", &format!("`drive.{key}` is 200; expected -180 to 180 degrees"));

@@ -132,18 +132,24 @@ impl Sensor {
         }
     }
 
-    /// [`Digital::numbers`] of [`Sensor::expose`] alone, without the images on the way to them.
+    /// [`Digital::numbers`] of [`Sensor::expose`] alone, without the images on the way to them; of any type that holds
+    /// them all.
     ///
     /// # Panics
     /// As [`Sensor::expose`].
-    pub fn numbers(&self, optical: &Image<f64>, background: Option<&Image<f64>>, frame: u64) -> Image<u16> {
+    pub fn numbers<T: Copy + From<u16> + Send + Sync>(
+        &self,
+        optical: &Image<f64>,
+        background: Option<&Image<f64>>,
+        frame: u64,
+    ) -> Image<T> {
         let flux = fluxes(optical, background);
         let dark = self.dark_electrons();
         // Without chance all pixels in the dark are alike, and most pixels are in the dark.
         let in_the_dark = self.is_noiseless().then(|| self.digitised(self.pixel(0.0, dark, frame, 0).signal));
         let number = |index| match (flux(index), in_the_dark) {
-            (0.0, Some(number)) => number,
-            (watts, _) => self.digitised(self.pixel(watts, dark, frame, index).signal),
+            (0.0, Some(number)) => number.into(),
+            (watts, _) => self.digitised(self.pixel(watts, dark, frame, index).signal).into(),
         };
         let numbers = (0..optical.cells().len()).into_par_iter().map(number).collect();
         Image::from_cells(optical.width(), optical.height(), numbers)

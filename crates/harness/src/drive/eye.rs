@@ -3,13 +3,20 @@
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use raypencil_scene::{Frame, Quantities, Renderer, Request, Resolution, Scene};
+use raypencil_scene::{Frame, Image, Quantities, Renderer, Request, Resolution, Scene};
 use raypencil_sensor::{Optics, PointSource};
+
+use super::job::DriveJob;
+use super::sun::Sun;
 
 /// A renderer seen through optics; a renderer itself.
 pub(super) struct Eye<'a> {
     inner: &'a dyn Renderer,
     optics: &'a Optics,
+    /// The last background, and the scene that it is of.
+    behind: Mutex<Option<(Scene, Image<f64>)>>,
+    job: &'a DriveJob,
+    sun: Option<&'a Sun>,
     times: Mutex<Times>,
 }
 
@@ -20,11 +27,18 @@ pub(super) struct Times {
     pub rendering: Duration,
     /// The optics.
     pub optics: Duration,
+    /// The sun behind the stripes.
+    pub sun: Duration,
 }
 
 impl<'a> Eye<'a> {
-    pub(super) fn new(inner: &'a dyn Renderer, optics: &'a Optics) -> Self {
-        Self { inner, optics, times: Mutex::default() }
+    pub(super) fn new(inner: &'a dyn Renderer, job: &'a DriveJob, sun: Option<&'a Sun>) -> Self {
+        Self { inner, optics: &job.optics, behind: Mutex::default(), job, sun, times: Mutex::default() }
+    }
+
+    /// What the sun puts on the image that was rendered last, with its scene; nothing without a sun.
+    pub(super) fn behind(&self) -> Option<(Scene, Image<f64>)> {
+        self.behind.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }
 
     pub(super) fn times(&self) -> Times {
@@ -74,9 +88,17 @@ impl Renderer for Eye<'_> {
             self.through_optics(scene, &mut frame);
         }
         let optics = start.elapsed();
+        let start = Instant::now();
+        if let Some(sun) = self.sun {
+            let background = sun.background(self.job, scene);
+            let mut behind = self.behind.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            *behind = Some((scene.clone(), background));
+        }
+        let sun = start.elapsed();
         let mut times = self.times.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         times.rendering += rendering;
         times.optics += optics;
+        times.sun += sun;
         frame
     }
 }

@@ -7,9 +7,11 @@ use raypencil_rover::{
     Attitude, Detection, DrivePlan, Exposures, Extraction, Fixes, MapSize, OnVehicle, PassableRules, Place,
     RadialGrid, Rig, Route, ScanRule, SensorErrors, SlopeLimits, Sweep, VectorRules, Vehicle,
 };
-use raypencil_scene::{Camera, FluxModel, Mesh, Pose, SceneError};
-use raypencil_scene_io::{DetectionWord, DriveSettings, LoadedScene, PlaceWord, SceneSource, SensorWord};
-use raypencil_sensor::{Optics, Sensor};
+use raypencil_scene::{Camera, FluxModel, Image, Mesh, Pose, SceneError};
+use raypencil_scene_io::{
+    DetectionWord, DriveSettings, LoadedScene, PlaceWord, SceneSource, SensorWord, SunSettings,
+};
+use raypencil_sensor::{MARS_ORBIT, Optics, SOLAR_SPECTRUM_810, Sensor, Sunlight};
 
 use super::chain::{MOST_FINE_CELLS, camera_chain};
 use crate::output::OutputError;
@@ -81,6 +83,10 @@ pub struct DriveJob {
     pub optics: Optics,
     /// Steps 7 and 8.
     pub sensor: Sensor,
+    /// The sun behind the stripes.
+    pub sunlight: Option<Sunlight>,
+    /// Whether a second image without the laser is taken off each.
+    pub subtract_unlit: bool,
     /// What people should know of how it was set up.
     pub notes: Vec<String>,
     /// What may spoil it.
@@ -160,9 +166,24 @@ impl DriveJob {
             sensor_word,
             optics,
             sensor,
+            sunlight: settings.sun.map(sunlight),
+            subtract_unlit: settings.subtract_unlit == Some(true),
             notes,
             warnings,
         })
+    }
+
+    /// Steps 7 and 8: the digital numbers of one exposure, without those of the background if a second one is taken off.
+    pub(super) fn digital(
+        &self,
+        light: &Image<f64>,
+        background: Option<&Image<f64>>,
+        number: u64,
+    ) -> Image<i32> {
+        if self.subtract_unlit {
+            return self.sensor.expose_pair(light, background, number).difference;
+        }
+        self.sensor.numbers(light, background, number)
     }
 
     /// How many frames the route has.
@@ -215,6 +236,14 @@ fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -> (Rig, Vec
         }
     }
     (rig, warnings)
+}
+
+/// Light on Mars, its sun as bright as the file says.
+fn sunlight(settings: SunSettings) -> Sunlight {
+    let mars = Sunlight::mars(settings.elevation, settings.azimuth, settings.optical_depth);
+    let usual = SOLAR_SPECTRUM_810 / (MARS_ORBIT * MARS_ORBIT);
+    let share = settings.spectral_irradiance.map_or(1.0, |irradiance| irradiance / usual);
+    Sunlight { direct: share * mars.direct, sky: share * mars.sky, ..mars }
 }
 
 /// The level that tells light from dark where the file names none, digital numbers.
@@ -323,7 +352,6 @@ fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sensor: 
         fixes: settings
             .fix_every
             .map(|every_frames| Fixes { every_frames, noise: settings.fix_noise.unwrap_or(0.0) }),
-        ..SensorErrors::default()
     };
     plan
 }

@@ -5,6 +5,7 @@
 //! job       what is driven: a scene, its [drive] or a built-in drive, as the rover's plan
 //! chain     its camera: a preset, and what the scene file has in its place
 //! eye       step 6 around a renderer: the optics
+//! sun       the sun behind the stripes
 //! run       frame by frame, one side or two
 //! trace     where the two sides part: pixels, edges, cells, labels
 //! view      what the camera sees, for people
@@ -26,6 +27,7 @@ mod paint;
 mod run;
 mod screen;
 mod summary;
+mod sun;
 #[cfg(test)]
 mod tests;
 mod trace;

@@ -9,6 +9,7 @@ use raypencil_scene_io::MarkedPoint;
 
 use super::eye::Eye;
 use super::job::{DriveError, DriveJob};
+use super::sun::Sun;
 use super::trace::{Kept, Trace};
 use super::view::{View, view};
 
@@ -88,13 +89,13 @@ struct Seen {
     frame: DriveFrame,
     kept: Vec<Kept>,
     /// Digital numbers of each exposure, but in a scan.
-    images: Vec<(Option<usize>, Image<u16>)>,
+    images: Vec<(Option<usize>, Image<i32>)>,
 }
 
 impl<'a> Side<'a> {
-    fn new(job: &'a DriveJob, renderer: &'a dyn Renderer) -> Result<Self, SceneError> {
+    fn new(job: &'a DriveJob, renderer: &'a dyn Renderer, sun: Option<&'a Sun>) -> Result<Self, SceneError> {
         Ok(Self {
-            eye: Eye::new(renderer, &job.optics),
+            eye: Eye::new(renderer, job, sun),
             drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
             exposures: 0,
             exposing: Duration::ZERO,
@@ -105,12 +106,15 @@ impl<'a> Side<'a> {
     fn step(&mut self, job: &DriveJob, keep: bool) -> Result<Option<Seen>, SceneError> {
         let (mut kept, mut images) = (Vec::new(), Vec::new());
         let (exposures, exposing) = (&mut self.exposures, &mut self.exposing);
+        let eye = &self.eye;
         let mut develop = |exposure: Exposure, light: Image<f64>| {
             let start = Instant::now();
             // Steps 7 and 8.
-            let numbers = job.sensor.numbers(&light, None, *exposures);
+            let behind = eye.behind();
+            let numbers = job.digital(&light, behind.as_ref().map(|(_, light)| light), *exposures);
             if keep {
-                kept.push(Kept::new(exposure, *exposures, &light, &numbers));
+                let scene = behind.map(|(scene, _)| scene);
+                kept.push(Kept::new(exposure, *exposures, scene, &light, &numbers));
             }
             *exposures += 1;
             if exposure.step.is_none() {
@@ -133,15 +137,18 @@ impl<'a> Side<'a> {
     fn stages(&self) -> Vec<Stage> {
         let times = self.eye.times();
         let name = self.eye.name();
-        let rest = self.stepping.saturating_sub(times.rendering + times.optics + self.exposing);
+        let rest = self.stepping.saturating_sub(times.rendering + times.optics + times.sun + self.exposing);
         [
             ("steps 1 to 5, rendering", times.rendering),
             ("step 6, optics", times.optics),
+            ("the sun behind the stripes", times.sun),
             ("steps 7 and 8, camera", self.exposing),
             ("step 9, points and maps", rest),
         ]
+        .into_iter()
+        .filter(|(_, time)| *time > Duration::ZERO)
         .map(|(stage, time)| Stage { name: format!("{name}: {stage}"), time })
-        .to_vec()
+        .collect()
     }
 }
 
@@ -160,8 +167,9 @@ pub fn drive(
     assert!((1..=2).contains(&renderers.len()), "{} renderers", renderers.len());
     let planned = job.frames()?;
     let each = planned.div_ceil(MOST_PICTURES).max(1);
-    let mut first = Side::new(job, renderers[0])?;
-    let mut second = renderers.get(1).map(|&renderer| Side::new(job, renderer)).transpose()?;
+    let sun = Sun::of(job)?;
+    let mut first = Side::new(job, renderers[0], sun.as_ref())?;
+    let mut second = renderers.get(1).map(|&renderer| Side::new(job, renderer, sun.as_ref())).transpose()?;
     let mut trace = second.as_ref().map(|_| Trace::default());
     let (mut frames, mut points, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
     let mut obstacles = None;
@@ -174,7 +182,7 @@ pub fn drive(
             let other = second.step(job, true)?;
             let start = Instant::now();
             if let (Some(seen), Some(other)) = (&seen, &other) {
-                trace.exposures(&job.sensor, &seen.kept, &other.kept);
+                trace.exposures(job, sun.as_ref(), &seen.kept, &other.kept);
                 trace.frames(&seen.frame, &other.frame, [first.map(), second.map()]);
             }
             comparing += start.elapsed();

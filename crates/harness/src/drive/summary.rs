@@ -1,4 +1,5 @@
 //! `summary.json`: what was driven and found, for programs. SI throughout, units in the names.
+//! `docs/drive.schema.json` describes it.
 
 use raypencil_rover::{Label, Source};
 use serde_json::{Value, json};
@@ -58,6 +59,13 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "source_sha256": job.sha256,
         "renderers": run.renderers,
         "sensor": job.sensor_word.word(),
+        "sun": job.sunlight.map(|sun| json!({
+            "elevation_rad": sun.elevation,
+            "azimuth_rad": sun.azimuth,
+            "direct_w_per_m3": sun.direct,
+            "sky_w_per_m3": sun.sky,
+        })),
+        "subtract_unlit": job.subtract_unlit,
         "frames": run.frames.len(),
         "frames_planned": run.planned,
         "frames_per_s": route.frame_rate,

@@ -1,16 +1,20 @@
 //! Drives small enough to be known beforehand, and drives of two renderers.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use raypencil_rover::{
     Drive, Exposed, Label, LocalMap, MapSize, ObstacleMap, PassableRules, RadialGrid, Vehicle,
 };
-use raypencil_scene::{Frame, Pose, Renderer, Request, Resolution, Scene};
+use raypencil_scene::{Frame, Material, Mesh, Pose, Renderer, Request, Resolution, Scene};
 use raypencil_scene_io::{LoadedScene, Occupancy, SensorWord, load, load_text, read_dem, write_npy};
 use raypencil_sensor::{DarkCurrent, Dust, Extent, Optics, Psf, Sensor};
 
 use super::folder::{occupancy, posts};
+use super::sun::Sun;
 use super::{DriveError, DriveJob, DriveRun, drive, drive_json, drive_screen, write_drive};
+use crate::output::schema::{faults, keys_are_closed};
 use crate::{Silent, contender};
 
 /// A small camera, beams to match, and a drive of a few frames.
@@ -62,6 +66,84 @@ fn on_flat_ground_stripes_are_where_trigonometry_has_them() {
     let (frame, obstacles, vectors) = run.obstacles.as_ref().unwrap();
     assert_eq!((*frame, vectors.len()), (6, obstacles.sectors.len() - 1));
     assert!(obstacles.sectors.iter().all(|sector| sector.label == Label::Unknown));
+}
+
+/// A mesh of one material.
+pub(super) fn mesh(vertices: &[DVec3], faces: Vec<[u32; 3]>) -> Arc<Mesh> {
+    let materials = vec![Material { name: "ground".into(), reflectivity: 0.25 }];
+    let of_faces = vec![0; faces.len()];
+    Arc::new(Mesh::from_global(vertices, faces, of_faces, materials).unwrap())
+}
+
+/// A filter of 10 nm about the laser's 810.
+const FILTER: &str = "filter = { centre_nm = 810, width_nm = 10, index = 2.0 }";
+/// A sun that leaves the wide pixels of the small camera some room: 2 degrees high, behind.
+const LOW_SUN: &str = "sun = { elevation_deg = 2, azimuth_deg = 180, optical_depth = 1 }";
+
+fn filtered(drive: &str) -> DriveJob {
+    let text = format!(
+        "version = 1\n[camera]\nwidth_px = 128\nheight_px = 128\npixel_pitch_um = 72\n{FILTER}\n\
+         [[beam]]\nrows = 4\ncolumns = 64\n[[beam]]\nrows = 4\ncolumns = 64\n{FLAT}\n[drive]\n{drive}\n"
+    );
+    DriveJob::new(&load_text(&text, "small").unwrap(), None, "small.toml".into()).unwrap()
+}
+
+#[test]
+fn the_sun_hides_stripes_from_a_low_threshold_and_an_unlit_image_brings_them_back() {
+    let dark = driven(&filtered(SHORT), &["tracer"]);
+    let sunny = driven(&filtered(&format!("{SHORT}\n{LOW_SUN}")), &["tracer"]);
+    let cleaned =
+        driven(&filtered(&format!("{SHORT}\n{LOW_SUN}\nsubtract_unlit = true")), &["scanline", "tracer"]);
+    let above = driven(&filtered(&format!("{SHORT}\n{LOW_SUN}\nthreshold_dn = 40000")), &["tracer"]);
+    let dark_above = driven(&filtered(&format!("{SHORT}\nthreshold_dn = 40000")), &["tracer"]);
+    // All of the ground is above 400 DN: its last lit row is that of the image, not of a stripe.
+    assert_ne!(sunny.points, dark.points);
+    // Numbers are whole: rounding moves a pixel at the very threshold.
+    assert!(cleaned.passes(), "{:?}", cleaned.trace);
+    let same = |a: &DriveRun, b: &DriveRun| {
+        let hits = a.points.iter().filter(|point| b.points.contains(point)).count();
+        hits as f64 / a.points.len().max(b.points.len()) as f64
+    };
+    assert!(same(&dark, &cleaned) > 0.95, "{}", same(&dark, &cleaned));
+    // Behind a narrow filter the ground is some 5000 DN and the sky, of which ground throws back a quarter, some 20,000; a
+    // stripe is more than both.
+    // A pixel at the threshold is lit now that was not: an edge moves by a row, 0.4 m, at most.
+    let middle = |run: &DriveRun| {
+        let mut near: Vec<f64> =
+            run.points.iter().filter(|one| one.beam == 0).map(|one| one.point.x).collect();
+        near.sort_by(f64::total_cmp);
+        near[near.len() / 2]
+    };
+    assert!(
+        (middle(&dark_above) - middle(&above)).abs() < 0.4,
+        "{} and {}",
+        middle(&dark_above),
+        middle(&above)
+    );
+    assert!(above.points.len() > 300, "{} points", above.points.len());
+}
+
+#[test]
+fn ground_in_shadow_is_darker() {
+    // The camera is at x = 0.3 m, 1.5 m up, and looks 20 degrees down; the sun is 10 degrees high behind it, a wall of 0.5 m
+    // at x = 3 m: in its shadow, which ends at 3 + 0.5 / tan 10 = 5.84 m.
+    let mut job = job(
+        FLAT,
+        &format!("{SHORT}\nsun = {{ elevation_deg = 10, azimuth_deg = 180, optical_depth = 0.1 }}"),
+    );
+    let p = DVec3::new;
+    let ground = [p(-30.0, -30.0, 0.0), p(30.0, -30.0, 0.0), p(30.0, 30.0, 0.0), p(-30.0, 30.0, 0.0)];
+    let wall = [p(3.0, -9.0, 0.0), p(3.0, 9.0, 0.0), p(3.0, 9.0, 0.5), p(3.0, -9.0, 0.5)];
+    job.mesh = mesh(&[ground, wall].concat(), vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]]);
+    let sun = Sun::of(&job).unwrap().unwrap();
+    let place = Pose::IDENTITY;
+    let scene =
+        job.plan.rig.scene(Arc::clone(&job.mesh), place, job.plan.atmosphere, job.plan.flux_model).unwrap();
+    let background = sun.background(&job, &scene);
+    // x = 5 m is atan(1.5 / 4.7) = 17.7 degrees down: 4.5 rows of 72 um above the middle at 8 mm; x = 8 m 11 degrees, 17.6.
+    let (shadow, lit) = (background.at(64, 59), background.at(64, 46));
+    // Sky alone is 0.35 of sun and sky.
+    assert!(shadow > 0.0 && (0.25..0.45).contains(&(shadow / lit)), "{shadow} and {lit}");
 }
 
 #[test]
@@ -216,7 +298,7 @@ fn a_kernel_from_a_file_moves_the_stripe() {
         let job = DriveJob::new(&loaded, None, String::new()).unwrap();
         let renderer = contender("tracer").unwrap().renderer;
         let mut drive = Drive::new(job.plan.clone(), job.mesh.clone()).unwrap();
-        let eye = super::eye::Eye::new(renderer.as_ref(), &job.optics);
+        let eye = super::eye::Eye::new(renderer.as_ref(), &job, None);
         let frame = drive.step(&eye, &mut |_, light| Exposed::Numbers(job.sensor.numbers(&light, None, 0)));
         let measured = frame.unwrap().unwrap().measured;
         (measured.iter().map(|one| (one.edge.i, one.edge.j)).collect::<Vec<_>>(), loaded.source_sha256)
@@ -363,6 +445,19 @@ fn the_folder_holds_everything_and_the_summary_comes_last() {
     let bytes = std::fs::read(folder.path().join("drive.png")).unwrap();
     let reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
     assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(7));
+}
+
+#[test]
+fn the_summary_keeps_to_its_schema() {
+    let schema: serde_json::Value =
+        serde_json::from_str(include_str!("../../../../docs/drive.schema.json")).unwrap();
+    keys_are_closed(&schema);
+    let sunny = format!("{SHORT}\n{LOW_SUN}\nsubtract_unlit = true");
+    for (drive, names) in [(SHORT, &["tracer"][..]), (sunny.as_str(), &["scanline", "tracer"])] {
+        let job = job(FLAT, drive);
+        let summary = serde_json::from_str(&drive_json(&job, &driven(&job, names))).unwrap();
+        assert_eq!(faults(&schema, &schema, &summary, ""), Vec::<String>::new());
+    }
 }
 
 #[test]

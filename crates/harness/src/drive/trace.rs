@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 
 use raypencil_rover::{DriveFrame, Exposure, LocalMap, Measured};
-use raypencil_scene::Image;
-use raypencil_sensor::Sensor;
+use raypencil_scene::{Image, Scene};
 use sha2::{Digest, Sha256};
+
+use super::job::DriveJob;
+use super::sun::Sun;
 
 /// What was compared at one stage.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -78,6 +80,8 @@ pub(super) struct Kept {
     exposure: Exposure,
     /// Which exposure of the drive: of the camera's noise.
     number: u64,
+    /// What was exposed, if the sun shone on it.
+    scene: Option<Scene>,
     size: (u32, u32),
     /// Pixels that are lit, and their watts.
     lit: Vec<(u32, f64)>,
@@ -85,7 +89,13 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    pub(super) fn new(exposure: Exposure, number: u64, light: &Image<f64>, numbers: &Image<u16>) -> Self {
+    pub(super) fn new(
+        exposure: Exposure,
+        number: u64,
+        scene: Option<Scene>,
+        light: &Image<f64>,
+        numbers: &Image<i32>,
+    ) -> Self {
         let mut hasher = Sha256::new();
         let mut bytes = Vec::new();
         for row in numbers.cells().chunks(numbers.width().max(1) as usize) {
@@ -97,6 +107,7 @@ impl Kept {
         Self {
             exposure,
             number,
+            scene,
             size: (light.width(), light.height()),
             lit: lit.map(|(index, &watts)| (index as u32, watts)).collect(),
             digest: hasher.finalize().into(),
@@ -104,12 +115,13 @@ impl Kept {
     }
 
     /// The digital numbers once more.
-    fn numbers(&self, sensor: &Sensor) -> Image<u16> {
+    fn numbers(&self, job: &DriveJob, sun: Option<&Sun>) -> Image<i32> {
         let mut light = Image::filled(self.size.0, self.size.1, 0.0);
         for &(index, watts) in &self.lit {
             light.cells_mut()[index as usize] = watts;
         }
-        sensor.numbers(&light, None, self.number)
+        let background = self.scene.as_ref().zip(sun).map(|(scene, sun)| sun.background(job, scene));
+        job.digital(&light, background.as_ref(), self.number)
     }
 }
 
@@ -120,7 +132,7 @@ fn moment(frame: u64, step: Option<u32>) -> String {
 
 impl Trace {
     /// One frame's exposures.
-    pub(super) fn exposures(&mut self, sensor: &Sensor, a: &[Kept], b: &[Kept]) {
+    pub(super) fn exposures(&mut self, job: &DriveJob, sun: Option<&Sun>, a: &[Kept], b: &[Kept]) {
         for (a, b) in a.iter().zip(b) {
             self.light(&a.lit, &b.lit);
             let cells = u64::from(a.size.0) * u64::from(a.size.1);
@@ -130,7 +142,7 @@ impl Trace {
                 self.pixels.add(cells, 0, String::new);
                 continue;
             }
-            let (of_a, of_b) = (a.numbers(sensor), b.numbers(sensor));
+            let (of_a, of_b) = (a.numbers(job, sun), b.numbers(job, sun));
             let pairs = || of_a.cells().iter().zip(of_b.cells()).enumerate().filter(|(_, (x, y))| x != y);
             let differ = pairs().count() as u64;
             self.pixels.add(cells, differ, || {

@@ -52,7 +52,7 @@ impl View {
 
     /// With the light itself: every pixel that the extraction's level lets pass, or with no level one in eight of what the
     /// brightest has.
-    pub(super) fn with_light(mut self, images: &[(Option<usize>, Image<u16>)], job: &DriveJob) -> Self {
+    pub(super) fn with_light(mut self, images: &[(Option<usize>, Image<i32>)], job: &DriveJob) -> Self {
         for (beam, image) in images {
             let brightest = image.cells().iter().copied().max().unwrap_or(0);
             let level = match job.plan.extraction.detection {

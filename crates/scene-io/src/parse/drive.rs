@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::chain::{ElectronicsKeys, KernelPart, OpticsKeys};
 use super::{GLOBAL_M, Source};
 use crate::SceneIoError;
-use crate::drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord};
+use crate::drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord, SunSettings};
 use crate::keys::Key;
 
 /// Metres of a vehicle: what the rover itself takes.
@@ -27,6 +27,8 @@ pub(crate) struct DriveKeys {
     seed: Key<i64>,
     sensor: Key<String>,
     sensor_seed: Key<i64>,
+    sun: Option<SunKeys>,
+    subtract_unlit: Option<bool>,
     pencils_per_pixel: Key<f64>,
     exposures: Key<String>,
     detection: Key<String>,
@@ -74,6 +76,16 @@ pub(crate) struct DriveKeys {
     electronics: Option<ElectronicsKeys>,
 }
 
+/// `sun`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SunKeys {
+    elevation_deg: Spanned<f64>,
+    azimuth_deg: Key<f64>,
+    optical_depth: Key<f64>,
+    irradiance_w_per_m2_nm: Key<f64>,
+}
+
 impl Source<'_> {
     /// The drive, and the files of its optics' kernels.
     pub(super) fn drive(&self, keys: DriveKeys) -> Result<(DriveSettings, Vec<KernelPart>), SceneIoError> {
@@ -91,6 +103,8 @@ impl Source<'_> {
         let sensors = [SensorWord::Ideal, SensorWord::Ccd1989, SensorWord::Cmos].map(|one| (one.word(), one));
         drive.sensor = self.one_of(keys.sensor, "sensor", &sensors)?;
         drive.sensor_seed = whole(keys.sensor_seed, "sensor_seed", 0..=i64::MAX)?;
+        drive.sun = keys.sun.map(|sun| self.sun(sun)).transpose()?;
+        drive.subtract_unlit = keys.subtract_unlit;
         drive.pencils_per_pixel = real(keys.pencils_per_pixel, "pencils_per_pixel", 0.1..=64.0, "pencils")?;
         let exposures = [("in_turn", false), ("together", true)];
         drive.lit_together = self.one_of(keys.exposures, "exposures", &exposures)?;
@@ -208,6 +222,22 @@ impl Source<'_> {
             drive.electronics = self.electronics(keys)?;
         }
         Ok((drive, kernels))
+    }
+
+    fn sun(&self, keys: SunKeys) -> Result<SunSettings, SceneIoError> {
+        let elevation = keys.elevation_deg;
+        self.check(*elevation.get_ref(), elevation.span(), "drive.sun.elevation_deg", 0.0..=90.0, "degrees")?;
+        let azimuth = self.drive_number(keys.azimuth_deg, "sun.azimuth_deg", -360.0..=360.0, "degrees")?;
+        let depth = self.drive_number(keys.optical_depth, "sun.optical_depth", 0.0..=10.0, "of dust")?;
+        let name = "sun.irradiance_w_per_m2_nm";
+        let irradiance = self.drive_number(keys.irradiance_w_per_m2_nm, name, 0.0..=100.0, "W/m^2 per nm")?;
+        Ok(SunSettings {
+            elevation: elevation.get_ref().to_radians(),
+            azimuth: azimuth.unwrap_or(0.0).to_radians(),
+            // CHOICE: a clear day on Mars.
+            optical_depth: depth.unwrap_or(0.5),
+            spectral_irradiance: irradiance.map(|watts| watts * 1e9),
+        })
     }
 
     fn waypoints(&self, list: &Spanned<Vec<Spanned<Vec<f64>>>>) -> Result<Vec<[f64; 2]>, SceneIoError> {
