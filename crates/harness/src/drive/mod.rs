@@ -5,6 +5,7 @@
 //! job       what is driven: a scene, its [drive] or a built-in drive, as the rover's plan
 //! eye       step 6 around a renderer: the optics
 //! run       frame by frame, one side or two
+//! truth     obstacle maps against the true ground
 //! trace     where the two sides part: pixels, edges, cells, labels
 //! view      what the camera sees, for people
 //! drawing   marks on a page, as SVG and as PNG
@@ -27,6 +28,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod truth;
 mod view;
 
 pub use folder::{WrittenDrive, write_drive};
@@ -35,3 +37,4 @@ pub use run::{DriveProgress, DriveRun, drive};
 pub use screen::drive_screen;
 pub use summary::drive_json;
 pub use trace::{FluxTrace, StageTrace, Trace};
+pub use truth::{NoiseLevel, Said, TRUTH_HEAD, TruthMatrix};
