@@ -5,21 +5,29 @@
 //! cargo run --release -p raypencil-harness --example truth
 //! ```
 
-use raypencil_harness::{DriveJob, NoiseLevel, Silent, TRUTH_HEAD, TruthMatrix, contender, drive};
+use glam::DVec2;
+use raypencil_harness::{
+    DriveJob, NoiseLevel, Silent, TRUTH_HEAD, TruthMatrix, contender, drive, pointing_table,
+};
 use raypencil_rover::PassableRules;
 use raypencil_scene_io::{Overrides, load};
 
-/// Drives by the name in the table and what is loaded.
-const DRIVES: [(&str, &str); 3] =
-    [("pyramids", "pyramids"), ("facets", "facets"), ("rocky-drive", "data/scenes/rocky-drive.toml")];
+/// Drives by the name in the table, what is loaded, and where they go on to: `rocky-drive` ends before the first obstacle.
+const DRIVES: [(&str, &str, Option<DVec2>); 3] = [
+    ("pyramids", "pyramids", None),
+    ("facets", "facets", None),
+    ("rocky-drive, on to (5, 3)", "data/scenes/rocky-drive.toml", Some(DVec2::new(5.0, 3.0))),
+];
 
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
     let mut jobs = Vec::new();
-    for (name, scene) in DRIVES {
+    for (name, scene, on_to) in DRIVES {
         let loaded = load(scene, &Overrides::default())?;
-        jobs.push((name, DriveJob::new(&loaded, None, scene.into())?));
+        let mut job = DriveJob::new(&loaded, None, scene.into())?;
+        job.plan.route.waypoints.extend(on_to);
+        jobs.push((name, job));
     }
     println!("{TRUTH_HEAD}");
     for (name, job) in &jobs {
@@ -35,6 +43,9 @@ fn main() -> Result<(), Failure> {
         crossing.plan.rules = PassableRules::crossing_gaps(crossing.plan.rules, &crossing.plan.vehicle);
         println!("{}", truth(&crossing)?.row(name, "gaps crossed"));
     }
+    let renderer = contender("scanline").ok_or("a renderer of this house")?.renderer;
+    // The slopes of facets put edges anywhere within a pixel.
+    println!("\n{}", pointing_table(&jobs[1].1, renderer.as_ref())?.trim_end());
     Ok(())
 }
 

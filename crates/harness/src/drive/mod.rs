@@ -6,6 +6,7 @@
 //! eye       step 6 around a renderer: the optics
 //! run       frame by frame, one side or two
 //! truth     obstacle maps against the true ground
+//! pointing  blur against errors of attitude
 //! trace     where the two sides part: pixels, edges, cells, labels
 //! view      what the camera sees, for people
 //! drawing   marks on a page, as SVG and as PNG
@@ -21,6 +22,7 @@ mod folder;
 mod job;
 mod letters;
 mod page;
+mod pointing;
 mod raster;
 mod run;
 mod screen;
@@ -33,6 +35,7 @@ mod view;
 
 pub use folder::{WrittenDrive, write_drive};
 pub use job::{DriveError, DriveJob};
+pub use pointing::{Lever, Moved, pointing_table};
 pub use run::{DriveProgress, DriveRun, drive};
 pub use screen::drive_screen;
 pub use summary::drive_json;

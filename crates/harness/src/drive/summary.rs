@@ -75,6 +75,7 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         },
         "obstacle_map_frame": run.obstacles.as_ref().map(|(frame, _, _)| frame),
         "sectors": labels,
+        "largest_elevation_error_m": elevation_error(run),
         "truth": truth(&run.truth),
         "passes": run.passes(),
         "differences": run.trace.as_ref().map(differences),
@@ -83,6 +84,12 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "stages": seconds,
     });
     format!("{all:#}\n")
+}
+
+/// By how much the vehicle was ever wrong of its own elevation, metres.
+fn elevation_error(run: &DriveRun) -> f64 {
+    let errors = run.frames.iter().map(|frame| (frame.believed.position.z - frame.stance.position.z).abs());
+    errors.fold(0.0, f64::max)
 }
 
 fn truth(matrix: &TruthMatrix) -> Value {

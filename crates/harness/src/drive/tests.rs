@@ -66,6 +66,8 @@ fn on_flat_ground_stripes_are_where_trigonometry_has_them() {
     let screen = drive_screen(&job, &run, None);
     assert!(screen.contains("truth     of 0 obstacle points 0 % found, "), "{screen}");
     let json: serde_json::Value = serde_json::from_str(&drive_json(&job, &run)).unwrap();
+    // It still stands on what the proximity sensor told of the start.
+    assert!(json["largest_elevation_error_m"].as_f64().unwrap() < 1e-6);
     let clear = &json["truth"]["clear_points"];
     assert_eq!(clear["found_unknown"].as_u64().unwrap(), truth.clear.unknown);
 }
