@@ -119,7 +119,21 @@ fn side_of_edge_i128_38_and_40_bits(bencher: Bencher) {
     side::<i128>(bencher, 38, 40);
 }
 
-/// 1/t along a row: an addition for each pixel, and the nearest stays.
+/// 1/t along a row as `scanline` has it: afresh at each pixel, so that no error adds up, and the nearest stays.
+#[divan::bench]
+fn row_of_pixels_f64_afresh(bencher: Bencher) {
+    let nearest: Vec<f64> = operands::<f64>(0, 0).iter().map(|vector| vector[0]).collect();
+    let slope = black_box(1.0 / 1024.0);
+    bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
+        let mut nearest = black_box(&nearest).clone();
+        for (x, pixel) in nearest.iter_mut().enumerate() {
+            *pixel = pixel.largest(slope * (x as f64 + 0.5) + 0.25);
+        }
+        black_box(nearest)
+    });
+}
+
+/// The same by an addition for each pixel.
 fn row<N: Number>(bencher: Bencher, bits: u32) {
     let nearest: Vec<N> = operands::<N>(bits, bits).iter().map(|vector| vector[0]).collect();
     let step = N::new(1.0 / 1024.0, bits);
@@ -135,12 +149,12 @@ fn row<N: Number>(bencher: Bencher, bits: u32) {
 }
 
 #[divan::bench]
-fn row_of_pixels_f64(bencher: Bencher) {
+fn row_of_pixels_f64_stepped(bencher: Bencher) {
     row::<f64>(bencher, 0);
 }
 
 #[divan::bench]
-fn row_of_pixels_i64(bencher: Bencher) {
+fn row_of_pixels_i64_stepped(bencher: Bencher) {
     row::<i64>(bencher, 40);
 }
 
