@@ -9,7 +9,7 @@ use glam::DVec2;
 use raypencil_harness::{
     DriveJob, NoiseLevel, Silent, TRUTH_HEAD, TruthMatrix, contender, drive, pointing_table,
 };
-use raypencil_rover::PassableRules;
+use raypencil_rover::{DrivePlan, MapSize, ScanRule};
 use raypencil_scene_io::{Overrides, load};
 
 /// Drives by the name in the table, what is loaded, and where they go on to: `rocky-drive` ends before the first obstacle.
@@ -38,10 +38,24 @@ fn main() -> Result<(), Failure> {
     println!("\n{TRUTH_HEAD}");
     for (name, job) in &jobs {
         let printed = NoiseLevel::None.applied(job.clone());
-        println!("{}", truth(&printed)?.row(name, "as printed"));
-        let mut crossing = printed;
-        crossing.plan.rules = PassableRules::crossing_gaps(crossing.plan.rules, &crossing.plan.vehicle);
-        println!("{}", truth(&crossing)?.row(name, "gaps crossed"));
+        let coarse = NoiseLevel::Coarse.applied(job.clone()).plan.errors;
+        let row = |what: &str, change: &dyn Fn(&mut DrivePlan)| -> Result<(), Failure> {
+            let mut job = printed.clone();
+            change(&mut job.plan);
+            println!("{}", truth(&job)?.row(name, what));
+            Ok(())
+        };
+        row("as printed", &|_| {})?;
+        row("gaps crossed", &|plan| plan.rules = plan.rules.crossing_gaps(&plan.vehicle))?;
+        if job.plan.scans.is_some() {
+            continue;
+        }
+        row("scans: at the start and each 5 m", &|plan| plan.scans = Some(ScanRule::default()))?;
+        row("map of 401 points 0.05 m apart", &|plan| plan.map = MapSize { spacing: 0.05, points: 401 })?;
+        row("coarse drift of the position alone", &|plan| {
+            plan.errors.position_drift = coarse.position_drift
+        })?;
+        row("all coarse errors, `ideal` sensor", &|plan| plan.errors = coarse)?;
     }
     let renderer = contender("scanline").ok_or("a renderer of this house")?.renderer;
     // The slopes of facets put edges anywhere within a pixel.
