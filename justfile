@@ -32,9 +32,13 @@ packs:
     cargo run --release --bin raypencil -- pack data/scenes/facets-small.toml -o data/packs/facets
     reference/run.sh target/release/raypencil
 
-# The largest errors in ulp, as docs/results.md; YARD is a mesh of your own
+# The largest errors in ulp, as the first half of docs/results.md; YARD is a mesh of your own
 results YARD:
-    cargo run --release -p raypencil-harness --example results -- pyramids facets {{ quote(YARD) }} > docs/results.md
+    cargo run --release -p raypencil-harness --example results -- pyramids facets {{ quote(YARD) }}
+
+# What the rover finds of what is there, as the tables of its second half
+truth:
+    cargo run --release -p raypencil-harness --example truth
 
 # What catches each planted fault, and the smallest scene that does: docs/planted-faults.md
 planted-faults:

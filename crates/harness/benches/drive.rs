@@ -100,7 +100,7 @@ fn exposures(bencher: Bencher<'_, '_>, name: &str) {
     let (_, sensor) = raypencil_sensor::preset(name).expect("a preset");
     bencher.bench_local(|| {
         for (image, exposure) in light.flux.iter().zip(0..) {
-            black_box(sensor.numbers(black_box(image), None, exposure));
+            black_box::<Image<i32>>(sensor.numbers(black_box(image), None, exposure));
         }
     });
 }

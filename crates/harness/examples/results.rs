@@ -1,8 +1,9 @@
 //! How exact each renderer is: its largest error in ulp, quantity by quantity, against correctly rounded values, over
-//! every ray of some scenes, in both models of flux. Writes the page `docs/results.md` to standard output.
+//! every ray of some scenes, in both models of flux. Writes the first half of `docs/results.md`, above its mark, to
+//! standard output; the example `truth` the tables below.
 //!
 //! ```sh
-//! cargo run --release -p raypencil-harness --example results -- pyramids facets marsyard2021.glb > docs/results.md
+//! cargo run --release -p raypencil-harness --example results -- pyramids facets marsyard2021.glb
 //! ```
 
 use std::path::Path;

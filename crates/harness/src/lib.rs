@@ -49,8 +49,9 @@ pub use diff::{
     Thresholds, WrittenDiff, diff, diff_json, diff_screen, rule, write_diff,
 };
 pub use drive::{
-    DriveError, DriveJob, DriveProgress, DriveRun, FluxTrace, StageTrace, Trace, WrittenDrive, drive,
-    drive_json, drive_screen, write_drive,
+    DriveError, DriveJob, DriveProgress, DriveRun, FluxTrace, Lever, Moved, NoiseLevel, Said, StageTrace,
+    TRUTH_HEAD, Trace, TruthMatrix, WrittenDrive, drive, drive_json, drive_screen, pointing_table,
+    write_drive,
 };
 pub use judge::{Judge, JudgeShare};
 pub use minimise::{

@@ -220,6 +220,11 @@ impl Drive {
         &self.plan
     }
 
+    /// The true ground.
+    pub fn ground(&self) -> &HeightIndex {
+        &self.ground
+    }
+
     /// Drives on by a frame. `None` once the route is over, or leads off the ground.
     ///
     /// CHOICE: a scan takes the place of its frame's exposure. Both beams are used in every frame.

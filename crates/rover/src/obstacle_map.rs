@@ -53,6 +53,33 @@ impl RadialGrid {
         self.first + self.step * f64::from(index)
     }
 
+    /// Which way a sector goes from a vehicle at `global_from_vehicle`: from the global x axis to the left, radians, and
+    /// as a unit.
+    pub fn direction(&self, sector: u32, global_from_vehicle: &Pose) -> (f64, DVec2) {
+        let forward = global_from_vehicle.rotate(glam::DVec3::X);
+        let direction = libm::atan2(forward.y, forward.x) + self.angle(sector);
+        let (sin, cos) = libm::sincos(direction);
+        (direction, DVec2::new(cos, sin))
+    }
+
+    /// What the tests say of every point of a sector, outwards: each by itself, whatever the ones before it are. Each
+    /// is judged only when it is asked for.
+    pub fn verdicts(
+        &self,
+        sector: u32,
+        map: &LocalMap,
+        vehicle: &Vehicle,
+        rules: &PassableRules,
+        global_from_vehicle: &Pose,
+    ) -> impl Iterator<Item = (f64, Verdict)> {
+        let (_, unit) = self.direction(sector, global_from_vehicle);
+        let centre = global_from_vehicle.position.truncate();
+        (0..self.radii()).map(move |index| {
+            let radius = self.radius(index);
+            (radius, rules.judge(map, vehicle, centre + unit * radius, unit))
+        })
+    }
+
     /// Refuses a grid that is none, naming the field.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_count(field, "sectors", self.sectors.into(), 1, 100_000)?;
@@ -118,19 +145,15 @@ impl ObstacleMap {
         grid: &RadialGrid,
         global_from_vehicle: &Pose,
     ) -> Self {
-        let forward = global_from_vehicle.rotate(glam::DVec3::X);
-        let heading = libm::atan2(forward.y, forward.x);
         let centre = global_from_vehicle.position.truncate();
         let sector = |index| {
-            let direction = heading + grid.angle(index);
-            let (sin, cos) = libm::sincos(direction);
-            let unit = DVec2::new(cos, sin);
+            let (direction, unit) = grid.direction(index, global_from_vehicle);
             let end = |radius, label, failed| {
                 let point = centre + unit * radius;
                 SectorEnd { direction, radius, point, label, failed }
             };
-            for radius in (0..grid.radii()).map(|radius| grid.radius(radius)) {
-                match rules.judge(map, vehicle, centre + unit * radius, unit) {
+            for (radius, verdict) in grid.verdicts(index, map, vehicle, rules, global_from_vehicle) {
+                match verdict {
                     // "... and testing for that sector stops." (§7)
                     Verdict::Obstacle(test) => return end(radius, Label::Obstacle, Some(test)),
                     Verdict::Unknown => return end(radius, Label::Unknown, None),

@@ -250,7 +250,7 @@ fn sunlight(settings: SunSettings) -> Sunlight {
 ///
 /// CHOICE: about a fiftieth of a stripe of the default rig (24,000, 84 and 1620 DN, docs/sensor.md) above the bias, so that
 /// a stripe 10 m away still passes; several times what noise reaches.
-fn threshold(sensor: SensorWord) -> f64 {
+pub(super) fn threshold(sensor: SensorWord) -> f64 {
     match sensor {
         SensorWord::Ideal => 400.0,
         SensorWord::Ccd1989 => 4.0,

@@ -7,6 +7,8 @@
 //! eye       step 6 around a renderer: the optics
 //! sun       the sun behind the stripes
 //! run       frame by frame, one side or two
+//! truth     obstacle maps against the true ground
+//! pointing  blur against errors of attitude
 //! trace     where the two sides part: pixels, edges, cells, labels
 //! view      what the camera sees, for people
 //! drawing   marks on a page, as SVG
@@ -24,6 +26,7 @@ mod folder;
 mod job;
 mod page;
 mod paint;
+mod pointing;
 mod run;
 mod screen;
 mod summary;
@@ -31,11 +34,14 @@ mod sun;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod truth;
 mod view;
 
 pub use folder::{WrittenDrive, write_drive};
 pub use job::{DriveError, DriveJob};
+pub use pointing::{Lever, Moved, pointing_table};
 pub use run::{DriveProgress, DriveRun, drive};
 pub use screen::drive_screen;
 pub use summary::drive_json;
 pub use trace::{FluxTrace, StageTrace, Trace};
+pub use truth::{NoiseLevel, Said, TRUTH_HEAD, TruthMatrix};

@@ -11,6 +11,7 @@ use super::eye::Eye;
 use super::job::{DriveError, DriveJob};
 use super::sun::Sun;
 use super::trace::{Kept, Trace};
+use super::truth::TruthMatrix;
 use super::view::{View, view};
 
 /// The animation has no more pictures: a few megabytes.
@@ -51,6 +52,8 @@ pub struct DriveRun {
     pub believed: Pose,
     /// The last obstacle map and navigator map, and their frame.
     pub obstacles: Option<(u64, ObstacleMap, Vec<LabelledVector>)>,
+    /// All obstacle maps against the true ground.
+    pub truth: TruthMatrix,
     /// Every edge point of every frame, global.
     pub points: Vec<MarkedPoint>,
     /// Where two sides part, if there were two.
@@ -172,7 +175,7 @@ pub fn drive(
     let mut second = renderers.get(1).map(|&renderer| Side::new(job, renderer, sun.as_ref())).transpose()?;
     let mut trace = second.as_ref().map(|_| Trace::default());
     let (mut frames, mut points, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
-    let mut obstacles = None;
+    let (mut obstacles, mut truth, mut judging) = (None, TruthMatrix::default(), Duration::ZERO);
     let mut last: Option<(Seen, Pose)> = None;
     let (mut comparing, mut drawing) = (Duration::ZERO, Duration::ZERO);
 
@@ -198,6 +201,9 @@ pub fn drive(
         }));
         if let Some((map, vectors)) = &frame.obstacles {
             obstacles = Some((frame.index, map.clone(), vectors.clone()));
+            let start = Instant::now();
+            truth.add(first.map(), first.drive.ground(), &job.plan, &believed);
+            judging += start.elapsed();
         }
         let start = Instant::now();
         if frame.index % each == 0 || frame.index + 1 == planned {
@@ -228,6 +234,7 @@ pub fn drive(
     if second.is_some() {
         stages.push(Stage { name: "comparing".into(), time: comparing });
     }
+    stages.push(Stage { name: "obstacle maps of the true ground".into(), time: judging });
     stages.push(Stage { name: "views for figures".into(), time: drawing });
     let mapper = first.drive.mapper().expect("a frame was driven");
     Ok(DriveRun {
@@ -237,6 +244,7 @@ pub fn drive(
         map: mapper.map().clone(),
         believed: mapper.pose(),
         obstacles,
+        truth,
         points,
         trace,
         stages,

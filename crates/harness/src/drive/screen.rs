@@ -99,6 +99,9 @@ pub(super) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
     if let Some((frame, _, _)) = &run.obstacles {
         facts.push(("sectors", format!("{} (frame {frame})", sectors.join(", "))));
     }
+    if run.truth.maps > 0 {
+        facts.push(("truth", run.truth.words()));
+    }
     facts.extend(job.notes.iter().map(|note| ("note", note.clone())));
     facts
 }

@@ -8,6 +8,7 @@ use super::figures::word;
 use super::job::DriveJob;
 use super::run::DriveRun;
 use super::trace::{StageTrace, Trace};
+use super::truth::{Said, TruthMatrix};
 use crate::output::VERSION;
 
 /// Grid points of a map by what is known of them.
@@ -82,6 +83,8 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         },
         "obstacle_map_frame": run.obstacles.as_ref().map(|(frame, _, _)| frame),
         "sectors": labels,
+        "largest_elevation_error_m": elevation_error(run),
+        "truth": truth(&run.truth),
         "passes": run.passes(),
         "differences": run.trace.as_ref().map(differences),
         "notes": job.notes,
@@ -89,6 +92,24 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "stages": seconds,
     });
     format!("{all:#}\n")
+}
+
+/// By how much the vehicle was ever wrong of its own elevation, metres.
+fn elevation_error(run: &DriveRun) -> f64 {
+    let errors = run.frames.iter().map(|frame| (frame.believed.position.z - frame.stance.position.z).abs());
+    errors.fold(0.0, f64::max)
+}
+
+fn truth(matrix: &TruthMatrix) -> Value {
+    let said = |said: Said| json!({ "found_obstacle": said.obstacle, "found_unknown": said.unknown, "found_clear": said.clear });
+    json!({
+        "obstacle_maps": matrix.maps,
+        "obstacle_points": said(matrix.obstacle),
+        "clear_points": said(matrix.clear),
+        "points_off_the_ground": matrix.beyond,
+        "sectors": matrix.sectors,
+        "sectors_free_past_an_obstacle": matrix.past,
+    })
 }
 
 fn differences(trace: &Trace) -> Value {

@@ -66,6 +66,17 @@ fn on_flat_ground_stripes_are_where_trigonometry_has_them() {
     let (frame, obstacles, vectors) = run.obstacles.as_ref().unwrap();
     assert_eq!((*frame, vectors.len()), (6, obstacles.sectors.len() - 1));
     assert!(obstacles.sectors.iter().all(|sector| sector.label == Label::Unknown));
+    // Maps of frames 0, 3 and 6, each of 31 sectors of 44 points, all clear in truth.
+    let truth = &run.truth;
+    assert_eq!((truth.maps, truth.sectors, truth.past, truth.beyond), (3, 93, 0, 0));
+    assert_eq!((truth.obstacle.points(), truth.clear.points()), (0, 4092));
+    let screen = drive_screen(&job, &run, None);
+    assert!(screen.contains("truth     of 0 obstacle points 0 % found, "), "{screen}");
+    let json: serde_json::Value = serde_json::from_str(&drive_json(&job, &run)).unwrap();
+    // It still stands on what the proximity sensor told of the start.
+    assert!(json["largest_elevation_error_m"].as_f64().unwrap() < 1e-6);
+    let clear = &json["truth"]["clear_points"];
+    assert_eq!(clear["found_unknown"].as_u64().unwrap(), truth.clear.unknown);
 }
 
 /// A mesh of one material.
