@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 
 use divan::{Bencher, black_box};
 use raypencil_harness::{DriveJob, contender};
-use raypencil_rover::{Drive, Exposed};
+use raypencil_rover::{Drive, Exposed, Pan, SheetPlane, Triangulation};
 use raypencil_scene::{Image, Renderer, Request};
 use raypencil_scene_io::{Overrides, load};
 use raypencil_terrain::HeightIndex;
@@ -102,5 +102,16 @@ fn exposures(bencher: Bencher<'_, '_>, name: &str) {
         for (image, exposure) in light.flux.iter().zip(0..) {
             black_box::<Image<i32>>(sensor.numbers(black_box(image), None, exposure));
         }
+    });
+}
+
+/// The table of one beam, which a panned beam needs anew.
+#[divan::bench(sample_count = 11, sample_size = 1)]
+fn triangulation_table(bencher: Bencher<'_, '_>) {
+    let rig = &JOB.plan.rig;
+    let pan = Pan { camera: 0.1, beams: 0.1 };
+    bencher.bench_local(|| {
+        let panned = black_box(rig).panned(black_box(pan));
+        black_box(Triangulation::new(&panned, 0, SheetPlane::LowerEdge).table())
     });
 }

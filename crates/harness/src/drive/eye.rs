@@ -83,18 +83,19 @@ impl Renderer for Eye<'_> {
         let start = Instant::now();
         let mut frame = self.inner.render(scene, &request);
         let rendering = start.elapsed();
-        let start = Instant::now();
+        let (mut optics, mut sun) = (Duration::ZERO, Duration::ZERO);
         if !is_perfect {
+            let start = Instant::now();
             self.through_optics(scene, &mut frame);
+            optics = start.elapsed();
         }
-        let optics = start.elapsed();
-        let start = Instant::now();
-        if let Some(sun) = self.sun {
-            let background = sun.background(self.job, scene);
+        if let Some(shining) = self.sun {
+            let start = Instant::now();
+            let background = shining.background(self.job, scene);
             let mut behind = self.behind.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
             *behind = Some((scene.clone(), background));
+            sun = start.elapsed();
         }
-        let sun = start.elapsed();
         let mut times = self.times.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         times.rendering += rendering;
         times.optics += optics;

@@ -9,7 +9,8 @@ use raypencil_rover::{
 };
 use raypencil_scene::{Camera, FluxModel, Image, Mesh, Pose, SceneError};
 use raypencil_scene_io::{
-    DetectionWord, DriveSettings, LoadedScene, PlaceWord, SceneSource, SensorWord, SunSettings,
+    DetectionWord, DriveSettings, ElectronicsSettings, LoadedScene, PlaceWord, SceneSource, SensorWord,
+    SunSettings,
 };
 use raypencil_sensor::{MARS_ORBIT, Optics, SOLAR_SPECTRUM_810, Sensor, Sunlight};
 
@@ -151,8 +152,9 @@ impl DriveJob {
         let sensor_word = settings.sensor.unwrap_or(SensorWord::Ideal);
         let (optics, sensor) = camera_chain(&settings, sensor_word, &rig)?;
 
-        let (rig, warnings) =
+        let (rig, mut warnings) =
             with_columns(rig, settings.pencils_per_pixel.unwrap_or(PENCILS_PER_PIXEL), &mut notes);
+        warnings.extend(blind_threshold(&settings, sensor_word));
         let mut plan = plan(&settings, rig, start, heading, sensor_word);
         plan.atmosphere = scene.atmosphere();
         plan.flux_model = scene.flux_model();
@@ -256,6 +258,25 @@ pub(super) fn threshold(sensor: SensorWord) -> f64 {
         SensorWord::Ccd1989 => 4.0,
         SensorWord::Cmos => 100.0,
     }
+}
+
+/// A warning where the usual threshold knows nothing of what the file changes.
+fn blind_threshold(settings: &DriveSettings, sensor: SensorWord) -> Option<String> {
+    let sun = settings.sun.is_some() && settings.subtract_unlit != Some(true);
+    let changed = if sun {
+        "a sun behind the stripes"
+    } else if settings.electronics != ElectronicsSettings::default() {
+        "other electronics"
+    } else {
+        return None;
+    };
+    let usual = settings.threshold.is_none() && settings.detection != Some(DetectionWord::Otsu);
+    let level = number(threshold(sensor));
+    usual.then(|| {
+        format!(
+            "the threshold of {level} DN is for the preset alone and knows nothing of {changed}: threshold_dn"
+        )
+    })
 }
 
 /// The rover's plan: its own defaults, but for what the file says.

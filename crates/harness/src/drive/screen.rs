@@ -100,7 +100,7 @@ pub(super) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
         facts.push(("sectors", format!("{} (frame {frame})", sectors.join(", "))));
     }
     if run.truth.maps > 0 {
-        facts.push(("truth", run.truth.words()));
+        facts.extend(run.truth.words().map(|words| ("truth", words)));
     }
     facts.extend(job.notes.iter().map(|note| ("note", note.clone())));
     facts

@@ -162,6 +162,14 @@ fn too_few_pencils_are_warned_of() {
     let few = job(FLAT, &format!("{SHORT}\npencils_per_pixel = 1"));
     assert_eq!(few.warnings.len(), 2);
     assert!(few.warnings[0].contains("beam 0 has 1.01 pencils to a pixel"), "{:?}", few.warnings);
+    // So is a threshold that knows nothing of the light.
+    let warned = |more: &str| job(FLAT, &format!("{SHORT}\n{more}")).warnings;
+    let sun = "sun = { elevation_deg = 45 }";
+    assert!(warned(sun)[0].contains("400 DN is for the preset alone and knows nothing of a sun"));
+    assert!(warned("electronics = { bias_dn = 9 }")[0].contains("other electronics"));
+    for fine in ["threshold_dn = 3000", "detection = \"otsu\"", "subtract_unlit = true"] {
+        assert!(warned(&format!("{sun}\n{fine}")).is_empty(), "{fine}");
+    }
     // Columns that are enough stay as they are.
     let own = job(FLAT, &format!("{SHORT}\npencils_per_pixel = 0.3"));
     assert!(own.notes.is_empty() && own.plan.rig.beams[0].sensor.columns == 64);

@@ -95,23 +95,27 @@ impl TruthMatrix {
         }
     }
 
-    /// The matrix in words.
-    pub(super) fn words(&self) -> String {
+    /// The matrix in words: of what is an obstacle, and of what is none.
+    pub(super) fn words(&self) -> [String; 2] {
         let Self { obstacle, clear, .. } = self;
         let of = |part, all: &Said| percent(part, all.points());
-        format!(
-            "of {} obstacle points {} found, {} unknown, {} missed; of {} clear points {} false obstacles, {} \
-             unknown; {} of {} sectors free past an obstacle",
-            count(obstacle.points()),
-            of(obstacle.obstacle, obstacle),
-            of(obstacle.unknown, obstacle),
-            of(obstacle.clear, obstacle),
-            count(clear.points()),
-            of(clear.obstacle, clear),
-            of(clear.unknown, clear),
-            count(self.past),
-            count(self.sectors),
-        )
+        [
+            format!(
+                "of {} obstacle points {} found, {} unknown, {} missed; {} of {} sectors free past one",
+                count(obstacle.points()),
+                of(obstacle.obstacle, obstacle),
+                of(obstacle.unknown, obstacle),
+                of(obstacle.clear, obstacle),
+                count(self.past),
+                count(self.sectors),
+            ),
+            format!(
+                "of {} clear points {} false obstacles, {} unknown",
+                count(clear.points()),
+                of(clear.obstacle, clear),
+                of(clear.unknown, clear),
+            ),
+        ]
     }
 
     /// A row of [`TRUTH_HEAD`].
