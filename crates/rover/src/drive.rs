@@ -162,6 +162,8 @@ pub struct DriveFrame {
     pub scan: Option<ScanReason>,
     /// How many points its stripes gave.
     pub points: usize,
+    /// With all beams in one exposure: how many columns hold light, but not one run for each beam.
+    pub left_out: usize,
     /// These points, beam by beam, each in row-major order of its image; those of a scan position after position.
     pub measured: Vec<Measured>,
     /// The vehicle as it believes itself to be, `global_from_vehicle`: where the points were entered.
@@ -244,13 +246,15 @@ impl Drive {
         let sensed = self.sensors.read(&stance, &self.ground);
         let rule = self.plan.scans;
         let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.found));
-        let mut measured = Vec::new();
+        let (mut measured, mut left_out) = (Vec::new(), 0);
         if scan.is_some() {
             for (step, pan) in self.plan.sweep.pans().enumerate() {
-                measured.extend(self.look(renderer, develop, &stance, index, Some((step as u32, pan)))?);
+                let seen = self.look(renderer, develop, &stance, index, Some((step as u32, pan)))?;
+                measured.extend(seen.0);
+                left_out += seen.1;
             }
         } else {
-            measured = self.look(renderer, develop, &stance, index, None)?;
+            (measured, left_out) = self.look(renderer, develop, &stance, index, None)?;
         }
 
         let points = measured.iter().map(|measured| measured.point);
@@ -284,6 +288,7 @@ impl Drive {
             sensed,
             scan,
             points,
+            left_out,
             measured,
             believed,
             update,
@@ -291,7 +296,8 @@ impl Drive {
         }))
     }
 
-    /// The points of the stripes that the camera sees from a stance: beam by beam, each in row-major order.
+    /// The points of the stripes that the camera sees from a stance: beam by beam, each in row-major order. And how many
+    /// columns were left out.
     fn look(
         &self,
         renderer: &dyn Renderer,
@@ -299,7 +305,7 @@ impl Drive {
         stance: &Stance,
         frame: u64,
         scan: Option<(u32, Pan)>,
-    ) -> Result<Vec<Measured>, SceneError> {
+    ) -> Result<(Vec<Measured>, usize), SceneError> {
         let plan = &self.plan;
         let rig = scan.map_or_else(|| plan.rig.clone(), |(_, pan)| plan.rig.panned(pan));
         let mesh = Arc::clone(&self.mesh);
@@ -313,6 +319,7 @@ impl Drive {
         let step = scan.map(|(step, _)| step);
         let exposure = |beam| Exposure { frame, step, beam };
         // Steps 6 to 9.
+        let mut left_out = 0;
         let stripes = match plan.exposures {
             Exposures::InTurn => {
                 let images = flux.into_iter().enumerate();
@@ -325,17 +332,18 @@ impl Drive {
             }
             Exposures::Together => {
                 let mut images = flux.into_iter();
-                let Some(mut sum) = images.next() else { return Ok(Vec::new()) };
+                let Some(mut sum) = images.next() else { return Ok((Vec::new(), 0)) };
                 for image in images {
                     for (pixel, more) in sum.cells_mut().iter_mut().zip(image.cells()) {
                         *pixel += more;
                     }
                 }
                 let beams = rig.beams.len();
-                let (stripes, _) = match develop(exposure(None), sum) {
+                let (stripes, columns) = match develop(exposure(None), sum) {
                     Exposed::Flux(image) => plan.extraction.edges_by_order(&image, beams),
                     Exposed::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
                 };
+                left_out = columns;
                 stripes
             }
         };
@@ -348,6 +356,6 @@ impl Drive {
                 Some(Measured { step, beam, edge, point })
             }));
         }
-        Ok(measured)
+        Ok((measured, left_out))
     }
 }

@@ -24,6 +24,9 @@ pub struct RadialGrid {
     pub last: f64,
 }
 
+/// CHOICE: no grid has more points. Each may be judged anew in every obstacle map.
+const MOST_POINTS: u32 = 10_000_000;
+
 impl RadialGrid {
     /// CHOICE: 31 sectors over the 60 degrees of the beams' fan, 2 degrees apart, about the vehicle's origin; radii a
     /// grid spacing of 0.1 m apart, so that no grid point is stepped over; from one step before the front axle to
@@ -86,7 +89,15 @@ impl RadialGrid {
         check_range(field, "half_angle", self.half_angle, 0.0, std::f64::consts::PI, "rad")?;
         check_range(field, "first", self.first, 0.0, 1e3, "m")?;
         check_range(field, "step", self.step, 1e-3, 1e3, "m")?;
-        check_range(field, "last", self.last, self.first, 1e3, "m, at least the first")
+        check_range(field, "last", self.last, self.first, 1e3, "m, at least the first")?;
+        // Each number may be sound and all of them too much together.
+        let radii = self.radii();
+        let most = MOST_POINTS / radii;
+        if self.sectors > most {
+            let expected = format!("1 to {most}: {MOST_POINTS} points at most, {radii} radii each");
+            return Err(SceneError::new(format!("{field}.sectors"), self.sectors, expected));
+        }
+        Ok(())
     }
 }
 
@@ -256,5 +267,22 @@ mod tests {
         assert!(grid.validate("grid").is_ok());
         let short = RadialGrid { last: 0.1, ..grid };
         assert!(short.validate("grid").unwrap_err().to_string().starts_with("grid.last is 0.1"));
+    }
+
+    #[test]
+    fn a_grid_of_too_many_points_is_refused() {
+        // From 1 to 100.75 by 1/4: 400 radii, first and last among them. 25,000 sectors make ten million points.
+        let grid = RadialGrid { sectors: 25_000, half_angle: 1.0, first: 1.0, step: 0.25, last: 100.75 };
+        assert_eq!(grid.radii(), 400);
+        assert!(grid.validate("grid").is_ok());
+        let error = RadialGrid { sectors: 25_001, ..grid }.validate("grid").unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "grid.sectors is 25001: expected 1 to 25000: 10000000 points at most, 400 radii each"
+        );
+        // The most radii, 1,000,001, leave 9 sectors.
+        let long = RadialGrid { sectors: 10, first: 0.0, step: 1e-3, last: 1e3, ..grid };
+        assert!(long.validate("grid").unwrap_err().to_string().contains("expected 1 to 9: "));
+        assert!(RadialGrid { sectors: 9, ..long }.validate("grid").is_ok());
     }
 }

@@ -202,8 +202,9 @@ fn runs_between_edges(values: &[f64], least: f64) -> Vec<Run> {
         if difference >= least && difference > above && difference >= below {
             first = Some(j + 1);
         } else if difference <= -least && difference < above && difference <= below {
-            // Without a rise the image's upper border cuts the light off: its lower edge is one all the same.
-            let first = first.take().unwrap_or(0);
+            // Without a rise the image's upper border cuts the light off: its lower edge is one all the same. Below
+            // another fall the light goes on from there.
+            let first = first.take().unwrap_or(runs.last().map_or(0, |run: &Run| run.last + 1));
             // The vertex of the parabola through the three differences; its curvature is positive here.
             let curvature = above - 2.0 * difference + below;
             let shift = if curvature > 0.0 { 0.5 * (above - below) / curvature } else { 0.0 };
@@ -321,6 +322,25 @@ mod tests {
         // Symmetric differences about the border 13: the vertex is there.
         let fine = Extraction { place: Place::SubPixel, ..extraction }.edges(&image);
         assert!(fine.iter().all(|edge| (edge.row - 13.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_second_fall_without_a_rise_begins_below_the_first() {
+        // Differences 100, -40, -5, -55: a rise into row 1, falls below rows 1 and 3, so runs 1..=1 and 2..=3. The
+        // second's centroid is (60 * 2.5 + 55 * 3.5) / 115.
+        let image = Image::from_cells(1, 5, vec![0.0, 100.0, 60.0, 55.0, 0.0]);
+        let extraction =
+            Extraction { detection: Detection::Gradient(8.0), place: Place::Centroid, least_rows: 1 };
+        let edges = extraction.edges(&image);
+        let expected = [EdgePoint { i: 0, j: 1, row: 1.5 }, EdgePoint { i: 0, j: 2, row: 342.5 / 115.0 }];
+        assert_eq!(edges, expected);
+        // One row and two: the second is not taken for four.
+        let rows = |least_rows| Extraction { least_rows, ..extraction }.edges(&image).len();
+        assert_eq!((rows(2), rows(3)), (1, 0));
+        // Without any rise the first run is the border's: differences -40, -5, -55, rows 0..=0 and 1..=2.
+        let cut_off = Image::from_cells(1, 4, vec![100.0, 60.0, 55.0, 0.0]);
+        let rows: Vec<f64> = extraction.edges(&cut_off).iter().map(|edge| edge.row).collect();
+        assert_eq!(rows, [0.5, 227.5 / 115.0]);
     }
 
     #[test]

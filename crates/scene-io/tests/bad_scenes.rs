@@ -361,7 +361,7 @@ fn a_drive_names_its_keys() {
         "\"film\"",
         "`drive.sensor` is \"film\"; expected one of \"ideal\", \"ccd_1989\", \"cmos\"",
     );
-    bad("map_points = 200", "200", "`drive.map_points` is 200; expected an odd number from 3 to 8191");
+    bad("map_points = 200", "200", "`drive.map_points` is 200; expected an odd number from 3 to 2001");
     bad("least_rows = 0", "0", "`drive.least_rows` is 0; expected 1 to 1000000");
     let slope = "is -1; expected 0 to 1000 of rise over distance";
     for key in ["front", "rear", "length", "closer"] {

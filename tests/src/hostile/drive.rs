@@ -37,6 +37,12 @@ pub(super) fn cases() -> Vec<Case> {
         way("map-large", "a map of 2^62 points", "scene.toml:4:14", "map_points = 2147483647"),
         way("steps", "a scan of 2^63 - 1 stripes", "scene.toml:4:", "scan_steps = 9223372036854775807"),
         way("pencils", "a billion pencils to a pixel", "scene.toml:4:", "pencils_per_pixel = 1e9"),
+        way(
+            "grid",
+            "a radial grid of 9 x 10^9 points",
+            "grid.sectors",
+            "grid_sectors = 100000\ngrid_first_m = 0.7\ngrid_last_m = 900\ngrid_step_m = 0.01",
+        ),
         way("unknown", "a key of nobody", "scene.toml:4:", "evil = 1"),
         way("fine", "a fine image of 2^32 cells", "drive.optics", "optics = { oversampling = 64 }"),
         way(

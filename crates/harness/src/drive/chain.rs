@@ -1,6 +1,7 @@
 //! The camera of a drive, steps 6 to 8: a preset, and what the scene file has in its place.
 
 use raypencil_rover::Rig;
+use raypencil_scene::SceneError;
 use raypencil_scene_io::{BlurSettings, DriveSettings, SensorWord};
 use raypencil_sensor::{Optics, Psf, Sensor, preset};
 
@@ -45,6 +46,10 @@ pub(super) fn camera_chain(
     optics.focus = given.focus.or(optics.focus);
     optics.dust = given.dust.or(optics.dust);
     optics.validate("drive.optics")?;
+    if let Some(focus) = optics.focus.filter(|&focus| focus <= camera.focal_length) {
+        let expected = format!("beyond the focal length, {} m", camera.focal_length);
+        return Err(SceneError::new("drive.optics.focus", focus, expected).into());
+    }
     let fine = [camera.width, camera.height].map(|side| u64::from(side) * u64::from(optics.oversampling));
     if fine[0] * fine[1] > MOST_FINE_CELLS {
         return Err(DriveError::FineImage { columns: fine[0], rows: fine[1] });

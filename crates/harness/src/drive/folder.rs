@@ -155,6 +155,8 @@ pub(super) fn occupancy(
         let end = &obstacles.sectors[sector];
         let radius = way.length();
         match end.label {
+            // Nearer than the grid begins nothing was tested.
+            _ if radius < grid.first - 0.5 * grid.step => Occupancy::Unknown,
             Label::Obstacle if (radius - end.radius).abs() <= reach => Occupancy::Occupied,
             Label::Visibility if radius <= end.radius + 0.5 * grid.step => Occupancy::Free,
             _ if radius < end.radius - 0.5 * grid.step => Occupancy::Free,

@@ -12,7 +12,7 @@ use raypencil_scene_io::{
     DetectionWord, DriveSettings, ElectronicsSettings, LoadedScene, PlaceWord, SceneSource, SensorWord,
     SunSettings,
 };
-use raypencil_sensor::{MARS_ORBIT, Optics, SOLAR_SPECTRUM_810, Sensor, Sunlight};
+use raypencil_sensor::{MARS_ORBIT, Optics, SOLAR_SPECTRUM_810, Sensor, Sunlight, preset};
 
 use super::chain::{MOST_FINE_CELLS, camera_chain};
 use crate::output::OutputError;
@@ -155,6 +155,7 @@ impl DriveJob {
         let (rig, mut warnings) =
             with_columns(rig, settings.pencils_per_pixel.unwrap_or(PENCILS_PER_PIXEL), &mut notes);
         warnings.extend(blind_threshold(&settings, sensor_word));
+        warnings.extend(beams_out_of_order(&settings, &rig));
         let mut plan = plan(&settings, rig, start, heading, sensor_word);
         plan.atmosphere = scene.atmosphere();
         plan.flux_model = scene.flux_model();
@@ -183,7 +184,14 @@ impl DriveJob {
         number: u64,
     ) -> Image<i32> {
         if self.subtract_unlit {
-            return self.sensor.expose_pair(light, background, number).difference;
+            // As `Sensor::expose_pair` has it.
+            let unlit = Image::filled(light.width(), light.height(), 0.0);
+            let mut lit: Image<i32> = self.sensor.numbers(light, background, 2 * number);
+            let unlit: Image<i32> = self.sensor.numbers(&unlit, background, 2 * number + 1);
+            for (lit, unlit) in lit.cells_mut().iter_mut().zip(unlit.cells()) {
+                *lit -= unlit;
+            }
+            return lit;
         }
         self.sensor.numbers(light, background, number)
     }
@@ -260,6 +268,15 @@ pub(super) fn threshold(sensor: SensorWord) -> f64 {
     }
 }
 
+/// A warning where beams that are told apart by their order, the lowest in the image first, look down the other way round.
+fn beams_out_of_order(settings: &DriveSettings, rig: &Rig) -> Option<String> {
+    let down = |beam: &OnVehicle<_>| -beam.vehicle_from_sensor.rotate(DVec3::Z).z;
+    let steeper = rig.beams.windows(2).position(|pair| down(&pair[0]) <= down(&pair[1]))?;
+    (settings.lit_together == Some(true)).then(|| {
+        format!("beam {steeper} looks down no more than beam {}: together, the lowest stripe is taken for beam 0's", steeper + 1)
+    })
+}
+
 /// A warning where the usual threshold knows nothing of what the file changes.
 fn blind_threshold(settings: &DriveSettings, sensor: SensorWord) -> Option<String> {
     let sun = settings.sun.is_some() && settings.subtract_unlit != Some(true);
@@ -296,7 +313,11 @@ fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sensor: 
     route.turn_rate = settings.turn_rate.unwrap_or(route.turn_rate);
     route.frame_rate = settings.frame_rate.unwrap_or(route.frame_rate);
 
-    let level = settings.threshold.unwrap_or(threshold(sensor));
+    let level = settings.threshold.unwrap_or_else(|| {
+        // An unlit image takes the bias along.
+        let bias = preset(sensor.word()).map_or(0.0, |(_, sensor)| sensor.bias);
+        threshold(sensor) - if settings.subtract_unlit == Some(true) { bias } else { 0.0 }
+    });
     let mut extraction = Extraction::thresholding(level);
     extraction.detection = match settings.detection.unwrap_or(DetectionWord::Fixed) {
         DetectionWord::Fixed => Detection::Fixed(level),

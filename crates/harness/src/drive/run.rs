@@ -3,19 +3,24 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use raypencil_rover::{Drive, DriveFrame, Exposed, Exposure, LabelledVector, LocalMap, ObstacleMap, Route};
+use raypencil_rover::{
+    Detection, Drive, DriveFrame, Exposed, Exposure, LabelledVector, LocalMap, ObstacleMap, Route,
+};
 use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
 use raypencil_scene_io::MarkedPoint;
 
+use super::animation::MapPicture;
 use super::eye::Eye;
 use super::job::{DriveError, DriveJob};
 use super::sun::Sun;
-use super::trace::{Kept, Trace};
+use super::trace::{Kept, MOST_LIT, Trace};
 use super::truth::TruthMatrix;
 use super::view::{View, view};
 
 /// The animation has no more pictures: a few megabytes.
 const MOST_PICTURES: u64 = 60;
+/// No more edge points are kept: half a gigabyte.
+pub(super) const MOST_POINTS: usize = 1 << 24;
 /// Columns of the camera's view in the animation, and in the figure.
 const SMALL: u32 = 256;
 const LARGE: u32 = 640;
@@ -34,7 +39,7 @@ impl DriveProgress for crate::Silent {
 #[derive(Debug, Clone)]
 pub(super) struct Picture {
     pub view: View,
-    pub map: LocalMap,
+    pub map: MapPicture,
 }
 
 /// What a drive found.
@@ -42,7 +47,7 @@ pub(super) struct Picture {
 pub struct DriveRun {
     /// The renderers, the one whose maps these are first.
     pub renderers: Vec<String>,
-    /// Every frame, without its points.
+    /// Every frame, without its points and maps.
     pub frames: Vec<DriveFrame>,
     /// How many frames the route has: more than were driven if it leads off the ground.
     pub planned: u64,
@@ -54,7 +59,9 @@ pub struct DriveRun {
     pub obstacles: Option<(u64, ObstacleMap, Vec<LabelledVector>)>,
     /// All obstacle maps against the true ground.
     pub truth: TruthMatrix,
-    /// Every edge point of every frame, global.
+    /// How many edge points there were in all frames.
+    pub edge_points: u64,
+    /// They themselves, global: the first [`MOST_POINTS`].
     pub points: Vec<MarkedPoint>,
     /// Where two sides part, if there were two.
     pub trace: Option<Trace>,
@@ -107,7 +114,7 @@ impl<'a> Side<'a> {
     }
 
     fn step(&mut self, job: &DriveJob, keep: bool) -> Result<Option<Seen>, SceneError> {
-        let (mut kept, mut images) = (Vec::new(), Vec::new());
+        let (mut kept, mut images, mut room) = (Vec::new(), Vec::new(), MOST_LIT);
         let (exposures, exposing) = (&mut self.exposures, &mut self.exposing);
         let eye = &self.eye;
         let mut develop = |exposure: Exposure, light: Image<f64>| {
@@ -117,7 +124,9 @@ impl<'a> Side<'a> {
             let numbers = job.digital(&light, behind.as_ref().map(|(_, light)| light), *exposures);
             if keep {
                 let scene = behind.map(|(scene, _)| scene);
-                kept.push(Kept::new(exposure, *exposures, scene, &light, &numbers));
+                let of_frame = Kept::new(exposure, *exposures, scene, &light, &numbers, room);
+                room -= of_frame.lit();
+                kept.push(of_frame);
             }
             *exposures += 1;
             if exposure.step.is_none() {
@@ -175,7 +184,8 @@ pub fn drive(
     let mut second = renderers.get(1).map(|&renderer| Side::new(job, renderer, sun.as_ref())).transpose()?;
     let mut trace = second.as_ref().map(|_| Trace::default());
     let (mut frames, mut points, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut obstacles, mut truth, mut judging) = (None, TruthMatrix::default(), Duration::ZERO);
+    let (mut obstacles, mut edge_points) = (None, 0);
+    let (mut truth, mut judging) = (TruthMatrix::default(), Duration::ZERO);
     let mut last: Option<(Seen, Pose)> = None;
     let (mut comparing, mut drawing) = (Duration::ZERO, Duration::ZERO);
 
@@ -194,7 +204,9 @@ pub fn drive(
 
         let frame = &mut seen.frame;
         let believed = frame.believed;
-        points.extend(frame.measured.iter().map(|measured| MarkedPoint {
+        edge_points += frame.measured.len() as u64;
+        let room = MOST_POINTS - points.len();
+        points.extend(frame.measured.iter().take(room).map(|measured| MarkedPoint {
             point: believed * measured.point,
             frame: frame.index as u32,
             beam: measured.beam as u8,
@@ -207,12 +219,13 @@ pub fn drive(
         }
         let start = Instant::now();
         if frame.index % each == 0 || frame.index + 1 == planned {
-            let view = view(job, renderers[0], &frame.stance.pose(), SMALL)?.with_edges(&frame.measured);
-            pictures.push(Picture { view, map: first.map().clone() });
+            let view = view(job, renderers[0], &frame.stance.pose(), SMALL)?
+                .with_edges(&job.plan.rig, &frame.measured);
+            pictures.push(Picture { view, map: MapPicture::of(first.map()) });
         }
         drawing += start.elapsed();
         let index = frame.index;
-        frames.push(DriveFrame { measured: Vec::new(), ..frame.clone() });
+        frames.push(DriveFrame { measured: Vec::new(), obstacles: None, ..*frame });
         let pose = frame.stance.pose();
         last = Some((seen, pose));
         progress.frames(index + 1, planned);
@@ -222,10 +235,9 @@ pub fn drive(
     let (seen, pose) = last.ok_or(DriveError::Frames)?;
     let start = Instant::now();
     let last_view = view(job, renderers[0], &pose, LARGE)?;
-    let last_view = if seen.images.is_empty() {
-        last_view.with_edges(&seen.frame.measured)
-    } else {
-        last_view.with_light(&seen.images, job)
+    let last_view = match job.plan.extraction.detection {
+        Detection::Fixed(level) if !seen.images.is_empty() => last_view.with_light(&seen.images, level),
+        _ => last_view.with_edges(&job.plan.rig, &seen.frame.measured),
     };
     drawing += start.elapsed();
 
@@ -245,6 +257,7 @@ pub fn drive(
         believed: mapper.pose(),
         obstacles,
         truth,
+        edge_points,
         points,
         trace,
         stages,

@@ -71,6 +71,11 @@ pub(super) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
     };
     let sectors: Vec<String> =
         sectors(run).iter().map(|(label, sectors)| format!("{sectors} {}", word(*label))).collect();
+    let mut points = format!("{} on stripe edges", count(run.edge_points));
+    if run.edge_points > run.points.len() as u64 {
+        points
+            .push_str(&format!(", the first {} of them in edge-points.ply", count(run.points.len() as u64)));
+    }
     let mut facts = vec![
         (
             "scene",
@@ -84,7 +89,7 @@ pub(super) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
         ("camera", job.sensor_word.word().to_string()),
         ("frames", format!("{}{short}{scans}, one each {} m", run.frames.len(), number(frame_step(route)))),
         ("driven", format!("{:.2} m at {} m/s", run.driven(), number(route.speed))),
-        ("points", format!("{} on stripe edges", count(run.points.len() as u64))),
+        ("points", points),
         (
             "map",
             format!(

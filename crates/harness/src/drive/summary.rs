@@ -73,7 +73,8 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "speed_m_per_s": route.speed,
         "driven_m": run.driven(),
         "vertical_scans": scans,
-        "edge_points": run.points.len(),
+        "edge_points": run.edge_points,
+        "columns_left_out": run.frames.iter().map(|frame| frame.left_out as u64).sum::<u64>(),
         "map": {
             "spacing_m": job.plan.map.spacing,
             "points": job.plan.map.points,

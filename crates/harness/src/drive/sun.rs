@@ -19,6 +19,10 @@ const CELLS: u32 = 2048;
 /// How far off the eye of that map stands, in radii of what it sees: its rays part from the sun's by a 400th, 2.5 mrad, less
 /// than half of the sun's own disc on Mars (6 mrad).
 const AWAY: f64 = 400.0;
+/// A camera sees no farther, metres. (`scene`)
+const FARTHEST: f64 = 1e7;
+/// On more ground than this, metres about its middle, no shadow is looked for: a cell would be a kilometre.
+const LARGEST: f64 = 1e6;
 /// A point is in shadow if something is nearer to the sun by more than two cells' worth of its own slope, no more than this
 /// many cells...
 const STEEPEST: f64 = 20.0;
@@ -40,7 +44,7 @@ struct Shadows {
 impl Shadows {
     /// Of everything in a ball of the scene frame.
     fn new(mesh: &Arc<Mesh>, light: &Sunlight, centre: DVec3, radius: f64) -> Result<Self, SceneError> {
-        let distance = AWAY * radius;
+        let distance = (AWAY * radius).min(FARTHEST - radius);
         let towards = Pose::from_axis_angle(DVec3::Z, light.azimuth + std::f64::consts::PI)
             * Pose::from_axis_angle(DVec3::Y, light.elevation)
             * Pose::VEHICLE_FROM_FORWARD_SENSOR;
@@ -114,7 +118,7 @@ impl Sun {
     pub(super) fn of(job: &DriveJob) -> Result<Option<Self>, SceneError> {
         let Some(light) = job.sunlight else { return Ok(None) };
         let shadows = match ball(job) {
-            Some((centre, radius)) if light.direct > 0.0 => {
+            Some((centre, radius)) if light.direct > 0.0 && radius <= LARGEST => {
                 Some(Shadows::new(&job.mesh, &light, centre, radius)?)
             }
             _ => None,

@@ -5,14 +5,16 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use raypencil_rover::{
-    Drive, Exposed, Label, LocalMap, MapSize, ObstacleMap, PassableRules, RadialGrid, Vehicle,
+    Drive, EdgePoint, Exposed, Label, LocalMap, MapSize, Measured, ObstacleMap, PassableRules, RadialGrid,
+    Vehicle,
 };
-use raypencil_scene::{Frame, Material, Mesh, Pose, Renderer, Request, Resolution, Scene};
+use raypencil_scene::{Frame, Image, Material, Mesh, Pose, Renderer, Request, Resolution, Scene};
 use raypencil_scene_io::{LoadedScene, Occupancy, SensorWord, load, load_text, read_dem, write_npy};
 use raypencil_sensor::{DarkCurrent, Dust, Extent, Optics, Psf, Sensor};
 
 use super::folder::{occupancy, posts};
 use super::sun::Sun;
+use super::view::View;
 use super::{DriveError, DriveJob, DriveRun, drive, drive_json, drive_screen, write_drive};
 use crate::output::schema::{faults, keys_are_closed};
 use crate::{Silent, contender};
@@ -286,6 +288,9 @@ fn the_file_says_what_camera_it_is() {
     let text = format!("{SHORT}\n[drive.electronics]\nbias_dn = 300\nbits = 8");
     let error = DriveJob::new(&scene(FLAT, &text), None, String::new()).unwrap_err().to_string();
     assert!(error.contains("drive.electronics.bias") && error.contains("300"), "{error}");
+    let text = format!("{SHORT}\n[drive.optics]\nfocus_m = 0.008");
+    let error = DriveJob::new(&scene(FLAT, &text), None, String::new()).unwrap_err().to_string();
+    assert!(error.contains("drive.optics.focus") && error.contains("beyond the focal length"), "{error}");
     let huge = format!("{SHORT}\n[drive.optics]\noversampling = 64\n");
     let mut loaded = scene(FLAT, &huge);
     let mut camera = *loaded.scene.camera();
@@ -301,7 +306,7 @@ fn the_file_says_what_camera_it_is() {
 fn a_kernel_from_a_file_moves_the_stripe() {
     // All light two rows down, of pixels that are not divided: the image is that without a kernel, two rows lower.
     let folder = tempfile::tempdir().unwrap();
-    let mut kernel = raypencil_scene::Image::filled(1, 5, 0.0);
+    let mut kernel = Image::filled(1, 5, 0.0);
     kernel.set(0, 4, 3.0);
     write_npy(folder.path().join("down.npy"), &[&kernel]).unwrap();
     let text = |optics: &str| {
@@ -331,6 +336,58 @@ fn a_kernel_from_a_file_moves_the_stripe() {
     kernel.set(0, 0, 4.0);
     write_npy(folder.path().join("down.npy"), &[&kernel]).unwrap();
     assert_ne!(edges("[drive.optics]\nblurs = [{ kernel = \"down.npy\" }]").1, other);
+}
+
+#[test]
+fn points_of_a_scan_are_drawn_where_the_camera_sees_them() {
+    // 4 m along the axis of the camera as it is mounted, measured by one that looked elsewhere: the middle of the view.
+    let job = job(FLAT, SHORT);
+    let mount = job.plan.rig.camera.vehicle_from_sensor;
+    let edge = EdgePoint { i: 3, j: 5, row: 5.5 };
+    let measured = Measured { step: Some(7), beam: 1, edge, point: mount * DVec3::new(1e-6, 1e-6, 4.0) };
+    let behind = Measured { point: mount * DVec3::new(0.0, 0.0, -1.0), ..measured };
+    let blank = [9; 3];
+    let view =
+        View { width: 128, height: 128, pixels: vec![blank; 128 * 128], reduction: 1, camera: [128, 128] };
+    let view = view.with_edges(&job.plan.rig, &[measured, behind]);
+    let painted: Vec<usize> = (0..128 * 128).filter(|&index| view.pixels[index] != blank).collect();
+    assert_eq!(painted, [64 * 128 + 64]);
+}
+
+#[test]
+fn cameras_of_the_widest_pixels_have_figures() {
+    // 512 pixels of 0.1 m: the views for figures have fewer, and none may be wider.
+    let text = format!(
+        "version = 1\n[camera]\nwidth_px = 512\nheight_px = 512\npixel_pitch_um = 100000\n\
+         [[beam]]\nrows = 4\ncolumns = 64\n{FLAT}\n[drive]\nwaypoints_m = [[0.1, 0]]\nscans = false\n"
+    );
+    let job = DriveJob::new(&load_text(&text, "wide").unwrap(), None, String::new()).unwrap();
+    assert!(driven(&job, &["tracer"]).passes());
+}
+
+#[test]
+fn an_unlit_image_takes_the_bias_along() {
+    let job = job(FLAT, &format!("{SHORT}\nsensor = \"cmos\"\nsubtract_unlit = true"));
+    // 100 DN, of which 60 are bias.
+    assert_eq!(job.plan.extraction.detection, raypencil_rover::Detection::Fixed(40.0));
+    let mut light = Image::filled(9, 7, 0.0);
+    light.set(4, 4, 2e-11);
+    let background = Image::filled(9, 7, 1e-12);
+    let pair = job.sensor.expose_pair(&light, Some(&background), 5);
+    assert_eq!(job.digital(&light, Some(&background), 5), pair.difference);
+}
+
+#[test]
+fn beams_out_of_order_are_warned_of() {
+    let beams = |first: f64, second: f64| {
+        let text = format!(
+            "version = 1\n[[beam]]\npitch_down_deg = {first}\n[[beam]]\npitch_down_deg = {second}\n{FLAT}\n[drive]\n{SHORT}\n\
+             exposures = \"together\"\n"
+        );
+        DriveJob::new(&load_text(&text, "beams").unwrap(), None, String::new()).unwrap().warnings
+    };
+    assert!(beams(31.0, 22.0).is_empty());
+    assert!(beams(22.0, 31.0)[0].starts_with("beam 0 looks down no more than beam 1"));
 }
 
 #[test]
@@ -418,7 +475,7 @@ fn a_false_pixel_is_traced_to_the_map() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
 
     /// What scanline and tracer make of random ground reaches the map alike.
     #[test]
@@ -501,4 +558,12 @@ fn a_wall_is_occupied_what_is_before_it_free_and_what_is_behind_it_unknown() {
     assert_eq!(at(4.0, 0.0), Occupancy::Unknown);
     // Beside the fan of 30 degrees to either side, and behind.
     assert_eq!((at(2.0, 2.0), at(-3.0, 0.0)), (Occupancy::Unknown, Occupancy::Unknown));
+    // A grid that begins at 2 m has tested nothing that is nearer.
+    let far = RadialGrid { first: 2.0, ..grid };
+    let obstacles = ObstacleMap::of(&map, &vehicle, &rules, &far, &Pose::IDENTITY);
+    let cells = occupancy(&map, &obstacles, &far, &vehicle, &Pose::IDENTITY);
+    let at =
+        |x: f64, y: f64| cells.cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize];
+    assert_eq!((at(0.0, 0.0), at(1.5, 0.0)), (Occupancy::Free, Occupancy::Unknown));
+    assert_eq!((at(2.5, 0.0), at(3.0, 0.0)), (Occupancy::Free, Occupancy::Occupied));
 }

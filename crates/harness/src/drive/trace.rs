@@ -83,18 +83,23 @@ pub(super) struct Kept {
     /// What was exposed, if the sun shone on it.
     scene: Option<Scene>,
     size: (u32, u32),
-    /// Pixels that are lit, and their watts.
-    lit: Vec<(u32, f64)>,
+    /// Pixels that are lit, and their watts; nothing where a frame has more of them than are kept.
+    lit: Option<Vec<(u32, f64)>>,
     digest: [u8; 32],
 }
 
+/// How many lit pixels of one frame are kept on each side: 128 MiB. A vertical scan behind blurring optics has more.
+pub(super) const MOST_LIT: usize = 1 << 23;
+
 impl Kept {
+    /// `room` is for so many lit pixels.
     pub(super) fn new(
         exposure: Exposure,
         number: u64,
         scene: Option<Scene>,
         light: &Image<f64>,
         numbers: &Image<i32>,
+        room: usize,
     ) -> Self {
         let mut hasher = Sha256::new();
         let mut bytes = Vec::new();
@@ -103,21 +108,27 @@ impl Kept {
             bytes.extend(row.iter().flat_map(|number| number.to_le_bytes()));
             hasher.update(&bytes);
         }
-        let lit = light.cells().iter().enumerate().filter(|(_, watts)| **watts != 0.0);
+        let lit = || light.cells().iter().enumerate().filter(|(_, watts)| **watts != 0.0);
+        let fits = lit().nth(room).is_none();
         Self {
             exposure,
             number,
             scene,
             size: (light.width(), light.height()),
-            lit: lit.map(|(index, &watts)| (index as u32, watts)).collect(),
+            lit: fits.then(|| lit().map(|(index, &watts)| (index as u32, watts)).collect()),
             digest: hasher.finalize().into(),
         }
     }
 
+    /// How many lit pixels are kept.
+    pub(super) fn lit(&self) -> usize {
+        self.lit.as_ref().map_or(0, Vec::len)
+    }
+
     /// The digital numbers once more.
-    fn numbers(&self, job: &DriveJob, sun: Option<&Sun>) -> Image<i32> {
+    fn numbers(&self, lit: &[(u32, f64)], job: &DriveJob, sun: Option<&Sun>) -> Image<i32> {
         let mut light = Image::filled(self.size.0, self.size.1, 0.0);
-        for &(index, watts) in &self.lit {
+        for &(index, watts) in lit {
             light.cells_mut()[index as usize] = watts;
         }
         let background = self.scene.as_ref().zip(sun).map(|(scene, sun)| sun.background(job, scene));
@@ -134,7 +145,10 @@ impl Trace {
     /// One frame's exposures.
     pub(super) fn exposures(&mut self, job: &DriveJob, sun: Option<&Sun>, a: &[Kept], b: &[Kept]) {
         for (a, b) in a.iter().zip(b) {
-            self.light(&a.lit, &b.lit);
+            let lit = a.lit.as_ref().zip(b.lit.as_ref());
+            if let Some((of_a, of_b)) = lit {
+                self.light(of_a, of_b);
+            }
             let cells = u64::from(a.size.0) * u64::from(a.size.1);
             let Exposure { frame, step, beam } = a.exposure;
             let when = moment(frame, step) + &beam.map_or(String::new(), |beam| format!(", beam {beam}"));
@@ -142,7 +156,11 @@ impl Trace {
                 self.pixels.add(cells, 0, String::new);
                 continue;
             }
-            let (of_a, of_b) = (a.numbers(job, sun), b.numbers(job, sun));
+            let Some((lit_a, lit_b)) = lit else {
+                self.pixels.add(cells, 1, || format!("{when}: somewhere, in one pixel or more"));
+                continue;
+            };
+            let (of_a, of_b) = (a.numbers(lit_a, job, sun), b.numbers(lit_b, job, sun));
             let pairs = || of_a.cells().iter().zip(of_b.cells()).enumerate().filter(|(_, (x, y))| x != y);
             let differ = pairs().count() as u64;
             self.pixels.add(cells, differ, || {

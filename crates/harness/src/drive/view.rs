@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_rover::{Detection, Measured, OnVehicle, Rig};
+use raypencil_rover::{Measured, OnVehicle, Rig};
 use raypencil_scene::{Camera, Image, Pose, Quantities, Renderer, Request, SceneError};
+use raypencil_sensor::PointSource;
 
 use super::job::{DriveError, DriveJob};
 
@@ -42,23 +43,25 @@ impl View {
         }
     }
 
-    /// With the edge points of stripes.
-    pub(super) fn with_edges(mut self, measured: &[Measured]) -> Self {
-        for Measured { beam, edge, .. } in measured {
-            self.paint(edge.i, edge.j, *beam);
+    /// With the points of stripes, where the camera as it is mounted sees them: that of a scan is panned.
+    pub(super) fn with_edges(mut self, rig: &Rig, measured: &[Measured]) -> Self {
+        let OnVehicle { vehicle_from_sensor, sensor } = rig.camera;
+        let camera_from_vehicle = vehicle_from_sensor.inverse();
+        for Measured { beam, point, .. } in measured {
+            let seen = camera_from_vehicle * *point;
+            if seen.z > 0.0 {
+                let place = PointSource::project(&sensor, seen, 0.0);
+                if place.x >= 0.0 && place.y >= 0.0 {
+                    self.paint(place.x as u32, place.y as u32, *beam);
+                }
+            }
         }
         self
     }
 
-    /// With the light itself: every pixel that the extraction's level lets pass, or with no level one in eight of what the
-    /// brightest has.
-    pub(super) fn with_light(mut self, images: &[(Option<usize>, Image<i32>)], job: &DriveJob) -> Self {
+    /// With the light itself: every pixel that the extraction's level lets pass.
+    pub(super) fn with_light(mut self, images: &[(Option<usize>, Image<i32>)], level: f64) -> Self {
         for (beam, image) in images {
-            let brightest = image.cells().iter().copied().max().unwrap_or(0);
-            let level = match job.plan.extraction.detection {
-                Detection::Fixed(level) => level,
-                _ => f64::from(brightest) / 8.0,
-            };
             for j in 0..image.height() {
                 for i in 0..image.width() {
                     if f64::from(image.at(i, j)) >= level.max(1.0) {
@@ -76,10 +79,18 @@ fn reduced(camera: &Camera, most: u32) -> (Camera, u32) {
     let k = camera.width.max(camera.height).div_ceil(most);
     let [width, height] = [camera.width, camera.height].map(|side| (side / k).max(1));
     let share = f64::from(k);
+    // The same view by larger pixels, or where a camera may have none as large (0.1 m) by a shorter focal length.
+    let larger = camera.pixel_pitch.map(|pitch| pitch * share);
+    let (pixel_pitch, focal_length) = if larger[0].max(larger[1]) <= 0.1 {
+        (larger, camera.focal_length)
+    } else {
+        (camera.pixel_pitch, camera.focal_length / share)
+    };
     let camera = Camera {
         width,
         height,
-        pixel_pitch: camera.pixel_pitch.map(|pitch| pitch * share),
+        pixel_pitch,
+        focal_length,
         principal_point: camera.principal_point.map(|point| point / share),
         ..*camera
     };

@@ -2,6 +2,8 @@
 
 use raypencil_scene::Camera;
 
+use super::yaml::{quoted, real};
+
 /// The calibration file of a camera. ROS, as OpenCV, has the *middle* of pixel (0, 0) at (0, 0), where we have its outer
 /// corner: the principal point moves by half a pixel. Without distortion the model is `plumb_bob` with zeros.
 pub fn camera_info(camera: &Camera, name: &str) -> String {
@@ -13,8 +15,10 @@ pub fn camera_info(camera: &Camera, name: &str) -> String {
     };
     let mut text = format!(
         "# A pinhole: pixels square to the axis, no distortion. The middle of pixel (0, 0) is at (0, 0).\n\
-         image_width: {}\nimage_height: {}\ncamera_name: {name}\n",
-        camera.width, camera.height
+         image_width: {}\nimage_height: {}\ncamera_name: {}\n",
+        camera.width,
+        camera.height,
+        quoted(name)
     );
     text += &matrix("camera_matrix", 3, 3, &[fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]);
     text += "distortion_model: plumb_bob\n";
@@ -22,11 +26,6 @@ pub fn camera_info(camera: &Camera, name: &str) -> String {
     text += &matrix("rectification_matrix", 3, 3, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
     let projection = [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0];
     text + &matrix("projection_matrix", 3, 4, &projection)
-}
-
-/// A number that YAML takes for a real one.
-fn real(value: f64) -> String {
-    format!("{value:?}")
 }
 
 #[cfg(test)]
@@ -52,12 +51,31 @@ mod tests {
         for line in [
             "image_width: 1024",
             "image_height: 768",
-            "camera_name: rover",
+            "camera_name: \"rover\"",
             "  data: [1024.0, 0.0, 511.5, 0.0, 512.0, 383.5, 0.0, 0.0, 1.0]",
             "distortion_model: plumb_bob",
             "  data: [1024.0, 0.0, 511.5, 0.0, 0.0, 512.0, 383.5, 0.0, 0.0, 0.0, 1.0, 0.0]",
         ] {
             assert!(text.lines().any(|other| other == line), "{line} is not in:\n{text}");
         }
+    }
+
+    #[test]
+    fn every_number_is_one_and_the_name_is_a_text() {
+        // 2^20 over 2^-40 is 2^60, 1152921504606846976; over 2^60 it is 2^-40.
+        let camera = Camera {
+            width: 2,
+            height: 1,
+            pixel_pitch: [2.0_f64.powi(-40), 2.0_f64.powi(60)],
+            focal_length: 2.0_f64.powi(20),
+            principal_point: [1.0, 0.5],
+            aperture: 2e-3,
+            lens: Lens::CLEAR,
+            max_range: 20.0,
+        };
+        let text = camera_info(&camera, "-");
+        assert!(text.contains("\ncamera_name: \"-\"\n"), "{text}");
+        let matrix = "[1.152921504606847e+18, 0.0, 0.5, 0.0, 9.094947017729282e-13, 0.0, 0.0, 0.0, 1.0]";
+        assert!(text.contains(matrix), "{text}");
     }
 }

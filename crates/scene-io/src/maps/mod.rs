@@ -5,6 +5,7 @@ mod geotiff;
 mod occupancy;
 mod ply;
 mod vectors;
+mod yaml;
 
 pub use camera_info::camera_info;
 pub use geotiff::write_geotiff;

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use super::yaml::real;
 use crate::{SceneIoError, write_atomically};
 
 /// What a cell is.
@@ -45,11 +46,11 @@ pub struct OccupancyGrid {
 
 /// The YAML that names `image` (a file beside it), and the image's bytes.
 pub fn occupancy_files(grid: &OccupancyGrid, image: &str) -> (String, Vec<u8>) {
-    let [x, y] = grid.origin;
+    let [x, y] = grid.origin.map(real);
     let yaml = format!(
-        "image: {image}\nmode: trinary\nresolution: {:?}\norigin: [{x:?}, {y:?}, 0.0]\nnegate: 0\n\
+        "image: {image}\nmode: trinary\nresolution: {}\norigin: [{x}, {y}, 0.0]\nnegate: 0\n\
          occupied_thresh: 0.65\nfree_thresh: 0.25\n",
-        grid.resolution
+        real(grid.resolution)
     );
     let mut pgm = format!("P5\n{} {}\n255\n", grid.columns, grid.rows).into_bytes();
     // Images begin on top, with the greatest y.
@@ -101,5 +102,18 @@ mod tests {
             let share = f64::from(255 - cell.pixel()) / 255.0;
             assert_eq!((share > 0.65, share < 0.25), (occupied, free));
         }
+    }
+
+    #[test]
+    fn numbers_far_from_1_are_numbers() {
+        let grid = OccupancyGrid {
+            columns: 1,
+            rows: 1,
+            resolution: 1e-7,
+            origin: [-1e16, 2.5e-6],
+            cells: vec![Occupancy::Free],
+        };
+        let (yaml, _) = occupancy_files(&grid, "map.pgm");
+        assert!(yaml.contains("\nresolution: 1.0e-7\norigin: [-1.0e+16, 2.5e-6, 0.0]\n"), "{yaml}");
     }
 }

@@ -174,7 +174,7 @@ impl Source<'_> {
         }
         drive.scans = keys.scans;
         drive.scan_every = real(keys.scan_every_m, "scan_every_m", 1e-3..=1e9, "metres")?;
-        drive.scan_steps = self.drive_count(keys.scan_steps, "scan_steps", 1..=10_000)?;
+        drive.scan_steps = self.drive_count(keys.scan_steps, "scan_steps", 1..=1000)?;
         drive.scan_angles = [
             degrees(real(keys.scan_from_deg, "scan_from_deg", -180.0..=180.0, "degrees")?),
             degrees(real(keys.scan_to_deg, "scan_to_deg", -180.0..=180.0, "degrees")?),
@@ -296,8 +296,8 @@ impl Source<'_> {
     fn odd(&self, key: Key<i64>) -> Result<Option<u32>, SceneIoError> {
         let Some(key) = key else { return Ok(None) };
         let points = *key.get_ref();
-        if !(3..=8191).contains(&points) || points % 2 == 0 {
-            let message = format!("`drive.map_points` is {points}; expected an odd number from 3 to 8191");
+        if !(3..=2001).contains(&points) || points % 2 == 0 {
+            let message = format!("`drive.map_points` is {points}; expected an odd number from 3 to 2001");
             return Err(self.error(key.span(), message));
         }
         Ok(small(Some(points.unsigned_abs())))
