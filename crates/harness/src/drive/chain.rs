@@ -1,9 +1,9 @@
-//! The camera of a drive, steps 6 to 8: a preset, and what the scene file has in its place.
+//! The camera of a drive, steps 6 to 8: a preset, and what the scene file has in its place; and the sun.
 
 use raypencil_rover::Rig;
 use raypencil_scene::SceneError;
-use raypencil_scene_io::{BlurSettings, DriveSettings, SensorWord};
-use raypencil_sensor::{Optics, Psf, Sensor, preset};
+use raypencil_scene_io::{BlurSettings, DriveSettings, SensorWord, SunSettings};
+use raypencil_sensor::{MARS_ORBIT, Optics, Psf, SOLAR_SPECTRUM_810, Sensor, Sunlight, preset};
 
 use super::job::DriveError;
 
@@ -74,4 +74,12 @@ pub(super) fn camera_chain(
     sensor.seed = settings.sensor_seed.unwrap_or(sensor.seed);
     sensor.validate("drive.electronics")?;
     Ok((optics, sensor))
+}
+
+/// Light on Mars, its sun as bright as the file says.
+pub(super) fn sunlight(settings: SunSettings) -> Sunlight {
+    let mars = Sunlight::mars(settings.elevation, settings.azimuth, settings.optical_depth);
+    let usual = SOLAR_SPECTRUM_810 / (MARS_ORBIT * MARS_ORBIT);
+    let share = settings.spectral_irradiance.map_or(1.0, |irradiance| irradiance / usual);
+    Sunlight { direct: share * mars.direct, sky: share * mars.sky, ..mars }
 }

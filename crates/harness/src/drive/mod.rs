@@ -3,6 +3,8 @@
 //!
 //! ```text
 //! job       what is driven: a scene, its [drive] or a built-in drive, as the rover's plan
+//! plan      what the rover is told
+//! warnings  what may spoil it
 //! chain     its camera: a preset, and what the scene file has in its place
 //! eye       step 6 around a renderer: the optics
 //! sun       the sun behind the stripes
@@ -26,6 +28,7 @@ mod folder;
 mod job;
 mod page;
 mod paint;
+mod plan;
 mod pointing;
 mod run;
 mod screen;
@@ -36,6 +39,7 @@ mod tests;
 mod trace;
 mod truth;
 mod view;
+mod warnings;
 
 pub use folder::{WrittenDrive, write_drive};
 pub use job::{DriveError, DriveJob};

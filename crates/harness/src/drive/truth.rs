@@ -8,7 +8,8 @@ use raypencil_scene_io::SensorWord;
 use raypencil_sensor::preset;
 use raypencil_terrain::HeightIndex;
 
-use super::job::{DriveJob, threshold};
+use super::job::DriveJob;
+use super::plan::threshold;
 use crate::output::text::count;
 
 /// What the rover says of points that are all the same in truth.
