@@ -142,7 +142,7 @@ impl DriveJob {
 
         let (rig, mut warnings) =
             with_columns(rig, settings.pencils_per_pixel.unwrap_or(PENCILS_PER_PIXEL), &mut notes);
-        warnings.extend(blind_threshold(&settings, sensor_word));
+        warnings.extend(blind_threshold(&settings));
         warnings.extend(beams_out_of_order(&settings, &rig));
         let mut plan = plan(&settings, rig, start, heading, sensor_word);
         plan.atmosphere = scene.atmosphere();

@@ -4,9 +4,8 @@
 use glam::DVec3;
 use raypencil_rover::{OnVehicle, Rig};
 use raypencil_scene::Camera;
-use raypencil_scene_io::{DetectionWord, DriveSettings, ElectronicsSettings, SensorWord};
+use raypencil_scene_io::{DetectionWord, DriveSettings, ElectronicsSettings};
 
-use super::plan::threshold;
 use crate::output::text::number;
 
 /// Pencils across each pixel of the camera, along the fan. CHOICE: with fewer than two some columns of the image see no
@@ -62,10 +61,9 @@ pub(super) fn beams_out_of_order(settings: &DriveSettings, rig: &Rig) -> Option<
     })
 }
 
-/// A warning where the usual threshold knows nothing of what the file changes.
-pub(super) fn blind_threshold(settings: &DriveSettings, sensor: SensorWord) -> Option<String> {
-    let sun = settings.sun.is_some() && settings.subtract_unlit != Some(true);
-    let changed = if sun {
+/// A warning where the usual threshold knows nothing of what the file changes. Where a sun is subtracted its noise is not.
+pub(super) fn blind_threshold(settings: &DriveSettings) -> Option<String> {
+    let changed = if settings.sun.is_some() {
         "a sun behind the stripes"
     } else if settings.electronics != ElectronicsSettings::default() {
         "other electronics"
@@ -73,10 +71,9 @@ pub(super) fn blind_threshold(settings: &DriveSettings, sensor: SensorWord) -> O
         return None;
     };
     let usual = settings.threshold.is_none() && settings.detection != Some(DetectionWord::Otsu);
-    let level = number(threshold(sensor));
     usual.then(|| {
         format!(
-            "the threshold of {level} DN is for the preset alone and knows nothing of {changed}: threshold_dn"
+            "the usual threshold is for the preset alone and knows nothing of {changed}: give threshold_dn"
         )
     })
 }
