@@ -61,7 +61,7 @@ pub struct DriveRun {
     pub truth: TruthMatrix,
     /// How many edge points there were in all frames.
     pub edge_points: u64,
-    /// They themselves, global: the first [`MOST_POINTS`].
+    /// They themselves, global: the first 16,777,216.
     pub points: Vec<MarkedPoint>,
     /// Where two sides part, if there were two.
     pub trace: Option<Trace>,

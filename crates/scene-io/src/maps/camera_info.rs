@@ -66,8 +66,8 @@ mod tests {
         let camera = Camera {
             width: 2,
             height: 1,
-            pixel_pitch: [2.0_f64.powi(-40), 2.0_f64.powi(60)],
-            focal_length: 2.0_f64.powi(20),
+            pixel_pitch: [1.0 / (1_u64 << 40) as f64, (1_u64 << 60) as f64],
+            focal_length: (1_u64 << 20) as f64,
             principal_point: [1.0, 0.5],
             aperture: 2e-3,
             lens: Lens::CLEAR,
