@@ -237,6 +237,11 @@ pub(crate) struct Drive {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
+    /// Drive here, in metres of the global frame, in place of where the scene's own drive goes; may be given several times.
+    /// From where the scene's vehicle stands.
+    #[arg(long, value_name = "X,Y", value_parser = pair::<f64>, allow_hyphen_values = true)]
+    pub(crate) to: Vec<[f64; 2]>,
+
     /// The renderer of the rover's images.
     #[arg(long, value_name = "NAME", default_value = DRIVE_WITH)]
     pub(crate) with: String,

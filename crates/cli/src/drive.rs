@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use raypencil_harness::{
     DriveJob, DriveProgress, Progress, drive as run, drive_json, drive_screen, write_drive,
 };
-use raypencil_scene_io::load;
+use raypencil_scene_io::{DriveSettings, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
 use crate::console::{Spinner, say};
@@ -51,8 +51,15 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let contenders = contenders(&names, &command.switches, 1, registry)?;
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.scene.scene));
-    let loaded = load(&command.scene.scene, &command.scene.overrides())?;
+    let mut loaded = load(&command.scene.scene, &command.scene.overrides())?;
     let mut words = command.scene.typed();
+    if !command.to.is_empty() {
+        let settings = loaded.drive.unwrap_or_default();
+        loaded.drive = Some(DriveSettings { waypoints: command.to.clone(), ..settings });
+    }
+    for [x, y] in &command.to {
+        words.push_str(&format!(" --to {x},{y}"));
+    }
     if command.both {
         words.push_str(" --both");
     }

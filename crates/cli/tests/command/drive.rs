@@ -72,6 +72,29 @@ fn json_is_the_summary_that_was_written_and_the_folder_has_the_scenes_name() {
 }
 
 #[test]
+fn any_scene_is_driven_to_where_the_command_line_says() {
+    let folder = folder();
+    let path = folder.path();
+    // The scene's own drive, but for where it goes: from -0.6 to 0.2 and back to 0, half a turn between them.
+    let there = ["drive", "small.toml", "--to", "0.2,0", "--to", "0,0", "--json"];
+    let said: serde_json::Value = serde_json::from_str(&screen(path, &there, 0)).expect("JSON");
+    assert!((said["driven_m"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{}", said["driven_m"]);
+    assert_eq!(
+        (&said["arguments"], &said["frames_per_s"]),
+        (&"small.toml --to 0.2,0 --to 0,0".into(), &3.0.into())
+    );
+    // A scene that has none, by the defaults: ten frames a second, and a vertical scan first.
+    let text = std::fs::read_to_string(path.join("small.toml")).unwrap();
+    let still = text.split("[drive]").next().unwrap();
+    std::fs::write(path.join("still.toml"), still).unwrap();
+    let said = screen(path, &["drive", "still.toml", "--at", "0,0", "--to", "0.06,0", "--json"], 0);
+    let said: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    assert_eq!((&said["frames"], &said["vertical_scans"]), (&3.into(), &1.into()));
+    assert_trouble(&raypencil(path, &["drive", "still.toml", "--to", "inf,0"]), &["waypoints"]);
+    assert_trouble(&raypencil(path, &["drive", "still.toml", "--to", "1"]), &["--to"]);
+}
+
+#[test]
 fn trouble_leaves_no_folder_that_looks_complete() {
     let folder = folder();
     let path = folder.path();

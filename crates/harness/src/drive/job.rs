@@ -22,8 +22,8 @@ pub(super) const MOST_FRAMES: u64 = 36_000;
 pub enum DriveError {
     /// A scene that says nothing of where to go.
     #[error(
-        "there is no drive; expected a scene file with a [drive] table (docs/drive.md), or a built-in ground: pyramids, \
-         facets"
+        "there is no drive; expected --to X,Y, a scene file with a [drive] table (docs/drive.md), or a built-in ground: \
+         pyramids, facets"
     )]
     NoDrive,
     /// Light in a unit that no camera can expose.
