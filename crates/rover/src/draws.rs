@@ -61,6 +61,23 @@ mod tests {
     }
 
     #[test]
+    fn a_draw_is_philoxs_of_its_counters() {
+        // Key: the seed's halves. Counter: the index's halves, 2^16 and the purpose, 0. A word w is (w + 1/2) / 2^32.
+        let draws = Draws { seed: 0x0123_4567_89ab_cdef };
+        let [a, b, _, _] = philox([7, 3, 65_536 + 5, 0], [0x89ab_cdef, 0x0123_4567]);
+        let [share, turn] = draws.uniform(Purpose::Proximity, (3 << 32) | 7);
+        assert_eq!(
+            [share, turn].map(|part| part * 8_589_934_592.0),
+            [a, b].map(|word| 2.0 * f64::from(word) + 1.0)
+        );
+        // Box and Muller: the sum of squares is -2 ln(share), the direction a turn.
+        let [x, y] = draws.gaussians(Purpose::Proximity, (3 << 32) | 7);
+        assert!((x * x + y * y + 2.0 * libm::log(share)).abs() < 1e-14);
+        let angle = libm::atan2(y, x) / std::f64::consts::TAU;
+        assert!((angle - turn + (turn - angle).round()).abs() < 1e-15, "{angle} and {turn}");
+    }
+
+    #[test]
     fn gaussians_have_their_moments() {
         // Of n = 20000 the means of x, x^2 and xy have standard errors 1, sqrt(2) and 1 over sqrt(n); four of them.
         let draws = Draws { seed: 11 };

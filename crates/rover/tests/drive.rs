@@ -177,6 +177,16 @@ fn images_may_be_developed() {
 }
 
 #[test]
+fn a_plan_that_cannot_be_driven_is_refused_by_its_field() {
+    let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
+    let refused = |plan: DrivePlan| Drive::new(plan, Arc::clone(&mesh)).unwrap_err().to_string();
+    let route = Route { frame_rate: 0.0, ..plan().route };
+    assert!(refused(DrivePlan { route, ..plan() }).starts_with("drive.route.frame_rate is 0"));
+    let never = DrivePlan { obstacles_every: 0, ..plan() };
+    assert!(refused(never.clone()).starts_with("drive.obstacles_every is 0"), "{}", refused(never));
+}
+
+#[test]
 fn a_start_off_the_ground_is_refused_and_a_route_off_it_ends() {
     let mesh = extruded(&[(-20.0, 0.0), (2.0, 0.0)]);
     let nowhere = DrivePlan { route: Route::through(DVec2::new(5.0, 0.0), vec![]), ..plan() };
