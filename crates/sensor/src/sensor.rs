@@ -186,6 +186,22 @@ impl Sensor {
         Pair { lit, unlit, difference }
     }
 
+    /// [`Pair::difference`] of [`Sensor::expose_pair`] alone, without the images on the way to it.
+    ///
+    /// # Panics
+    /// As [`Sensor::expose`].
+    pub fn lit_minus_unlit(
+        &self,
+        optical: &Image<f64>,
+        background: Option<&Image<f64>>,
+        pair: u64,
+    ) -> Image<i32> {
+        let off = Image::filled(optical.width(), optical.height(), 0.0);
+        let lit = self.numbers(optical, background, 2 * pair);
+        let unlit = self.numbers(&off, background, 2 * pair + 1);
+        difference(&lit, &unlit)
+    }
+
     /// mu_e = eta mu_p, mu_p = P t / (h c / lambda): electrons expected of a flux in watts.
     pub fn photoelectrons(&self, watts: f64) -> f64 {
         self.quantum_efficiency * (watts * self.exposure / photon_energy(self.wavelength))

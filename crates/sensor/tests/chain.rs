@@ -203,6 +203,8 @@ fn numbers_alone_are_those_of_the_whole_chain() {
     for sensor in presets.chain(alone) {
         for background in [None, Some(&background)] {
             assert_eq!(sensor.numbers(&light, background, 5), sensor.expose(&light, background, 5).numbers);
+            let difference = sensor.expose_pair(&light, background, 5).difference;
+            assert_eq!(sensor.lit_minus_unlit(&light, background, 5), difference);
         }
     }
 }

@@ -172,14 +172,7 @@ impl DriveJob {
         number: u64,
     ) -> Image<i32> {
         if self.subtract_unlit {
-            // As `Sensor::expose_pair` has it.
-            let unlit = Image::filled(light.width(), light.height(), 0.0);
-            let mut lit: Image<i32> = self.sensor.numbers(light, background, 2 * number);
-            let unlit: Image<i32> = self.sensor.numbers(&unlit, background, 2 * number + 1);
-            for (lit, unlit) in lit.cells_mut().iter_mut().zip(unlit.cells()) {
-                *lit -= unlit;
-            }
-            return lit;
+            return self.sensor.lit_minus_unlit(light, background, number);
         }
         self.sensor.numbers(light, background, number)
     }
