@@ -1,11 +1,12 @@
 //! Any bytes as a GeoTIFF, whole and in a window.
 
+use libfuzzer_sys::fuzz_target;
+
+use raypencil_mesh_io::dem_from_bytes;
+
 #![no_main]
 
 use std::path::Path;
-
-use libfuzzer_sys::fuzz_target;
-use raypencil_scene_io::dem_from_bytes;
 
 fuzz_target!(|bytes: &[u8]| {
     let file = Path::new("any.tif");

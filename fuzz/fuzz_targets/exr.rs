@@ -1,12 +1,13 @@
 //! Any bytes as an OpenEXR file, under limits that a fuzzer's memory allows.
 
+use libfuzzer_sys::fuzz_target;
+
+use raypencil_scene::SensorId;
+use raypencil_files::{Limits, exr_from_bytes};
+
 #![no_main]
 
 use std::path::Path;
-
-use libfuzzer_sys::fuzz_target;
-use raypencil_scene::SensorId;
-use raypencil_scene_io::{Limits, exr_from_bytes};
 
 fuzz_target!(|bytes: &[u8]| {
     let file = Path::new("any.exr");

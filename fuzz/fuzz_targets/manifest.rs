@@ -1,11 +1,12 @@
 //! Any bytes as the manifest of a pack, without the files that it lists.
 
+use libfuzzer_sys::fuzz_target;
+
+use raypencil_pack::Manifest;
+
 #![no_main]
 
 use std::path::Path;
-
-use libfuzzer_sys::fuzz_target;
-use raypencil_scene_io::Manifest;
 
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(manifest) = Manifest::from_bytes(bytes, Path::new("manifest.json")) {

@@ -1,9 +1,10 @@
 //! Any text as a scene file.
 
+use raypencil_scene_io::load_text;
+
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use raypencil_scene_io::load_text;
 
 /// A larger ground is well made and slow, which is no finding.
 const MOST_FACES: i64 = 2000;

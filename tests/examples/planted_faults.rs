@@ -9,8 +9,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use raypencil_harness::{Reproducer, write_reproducer};
-use raypencil_scene_io::SceneIoError;
+use raypencil::harness::{Reproducer, write_reproducer};
+use raypencil::io::FileError;
 use raypencil_tests::files::FileFault;
 use raypencil_tests::naive::{Fault, Kind};
 use raypencil_tests::plants::hunt::{Catch, hunt, hunt_file};
@@ -35,7 +35,7 @@ struct Row {
     catch: Option<Catch>,
 }
 
-fn main() -> Result<(), SceneIoError> {
+fn main() -> Result<(), FileError> {
     let mut rows = Vec::new();
     let mut slowest = (0.0, String::new());
     let mut time = |name: &str, hunt: &dyn Fn() -> Option<Catch>| {
@@ -68,7 +68,7 @@ fn main() -> Result<(), SceneIoError> {
 }
 
 /// Leaves the smallest scene in a folder.
-fn write(row: &Row, folder: &Path) -> Result<(), SceneIoError> {
+fn write(row: &Row, folder: &Path) -> Result<(), FileError> {
     let Some(catch) = &row.catch else { return Ok(()) };
     let name = format!("{}-{}", row.kind.to_string().replace(' ', "-"), row.name);
     let what = format!("A planted fault, {}.", row.imitates);

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use raypencil_harness::{
-    Check, Class, Item, Place, Recorded, RecordingError, Silent, Subject, Truth, check, write_maps,
-};
-use raypencil_scene::{Image, Renderer, Request, Resolution, Sampling, Scene};
-use raypencil_scene_io::{ExrMap, Limits, Raster, SceneIoError, read_exr, scene_sha256, write_exr};
-use raypencil_tracer::Tracer;
+use raypencil::harness::write_maps;
+use raypencil::io::Subject;
+use raypencil::io::{ExrMap, Limits, Raster, SceneIoError, read_exr, scene_sha256, write_exr};
+use raypencil::judge::{Check, Class, Item, Recorded, RecordingError, Truth, check};
+use raypencil::tracer::Tracer;
+use raypencil::{Image, Renderer, Request, Resolution, Sampling, Scene};
+use raypencil::{Place, Silent};
 
 /// A way to spoil a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

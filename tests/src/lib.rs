@@ -1,23 +1,26 @@
 //! Helpers that the whole-house tests share: meshes and scenes from numbers, rigs by pose, both renderers.
 
 pub mod files;
+pub mod fixtures;
 pub mod hostile;
 pub mod light;
 pub mod naive;
 pub mod plants;
 pub mod quadrature;
 pub mod reproducers;
+pub mod schema;
 
 use std::sync::Arc;
 
 use glam::DVec3;
-pub use raypencil_harness::cases::{at_origin, lattice, mesh, random, rig, scene};
-use raypencil_harness::{Class, SensorComparison, Side, compare};
-use raypencil_scanline::Scanline;
-use raypencil_scene::{
+pub use raypencil::campaign::cases::{at_origin, lattice, mesh, random, scene};
+use raypencil::judge::{Class, SensorComparison, Side, compare};
+pub use raypencil::rig;
+use raypencil::scanline::Scanline;
+use raypencil::tracer::Tracer;
+use raypencil::{
     FaceId, Frame, Hit, Image, Maybe, Mesh, Renderer, Request, Sample, Scene, SensorId, SensorMap,
 };
-use raypencil_tracer::Tracer;
 
 /// The same ground with other faces on other vertices; materials are of no matter here.
 pub fn remeshed(original: &Mesh, vertices: Vec<[f32; 3]>, faces: Vec<[u32; 3]>) -> Arc<Mesh> {
@@ -121,7 +124,7 @@ pub fn light_bits(frame: &Frame) -> Vec<u64> {
         let visible = returns.visible.iter().flat_map(|image| image.cells());
         bits.extend(visible.map(|&visible| u64::from(visible)));
         let pixels = returns.pixel.iter().flat_map(|image| image.cells());
-        let index = |pixel: raypencil_scene::Pixel| u64::from(pixel.i) << 32 | u64::from(pixel.j);
+        let index = |pixel: raypencil::Pixel| u64::from(pixel.i) << 32 | u64::from(pixel.j);
         bits.extend(pixels.map(|pixel| pixel.get().map_or(NOTHING, index)));
         for image in [&returns.depth, &returns.off_axis, &returns.emission] {
             numbers(&mut bits, image);

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
-use raypencil_harness::contender;
-use raypencil_scene::{Image, Pose, Renderer, Request, Returns};
+use raypencil::harness::contender;
+use raypencil::{Image, Pose, Renderer, Request, Returns};
 
 /// Every way of computing light that there is, fresh.
 pub fn evaluations() -> Vec<Box<dyn Renderer>> {

@@ -10,7 +10,7 @@ mod light;
 use std::time::Instant;
 
 use glam::{DQuat, DVec3};
-use raypencil_scene::{
+use raypencil::{
     Beam, Camera, FaceId, Frame, Hit, Mesh, Pose, Quantities, Renderer, Request, Resolution, Scene, SensorId,
     SensorMap, Stage,
 };

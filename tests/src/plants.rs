@@ -4,7 +4,7 @@ pub mod geometry;
 pub mod hunt;
 pub mod light;
 
-use raypencil_scene::{FluxModel, Scene};
+use raypencil::{FluxModel, Scene};
 
 use crate::lattice;
 use crate::naive::Kind;

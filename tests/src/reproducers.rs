@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use raypencil_harness::{
-    Class, Contender, JudgeShare, MINIMISE_BUDGET, Reproducer, Silent, first_shown, minimise, shows_class,
-    typed_contenders, write_reproducer,
+use raypencil::Scene;
+use raypencil::Silent;
+use raypencil::harness::{
+    Contender, Reproducer, first_shown, shows_class, typed_contenders, write_reproducer,
 };
-use raypencil_scene::Scene;
-use raypencil_scene_io::scene_sha256;
+use raypencil::io::scene_sha256;
+use raypencil::judge::{Class, JudgeShare};
+use raypencil::minimise::{MINIMISE_BUDGET, minimise};
 
 /// Where reproducers of tests go: `reproducers` in the folder that cargo builds in.
 pub fn folder() -> PathBuf {

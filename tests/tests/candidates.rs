@@ -3,15 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_harness::{
-    CHANCE_LIMITS, Checked, Class, Estimate, ImageComparison, Outsider, Quantity, RadianceComparison, Silent,
-    Truth, WayImage, check_pack, compare_images, compare_radiance, expected_images,
+use raypencil::Silent;
+use raypencil::harness::{
+    CHANCE_LIMITS, Estimate, ImageComparison, Outsider, RadianceComparison, WayImage, compare_images,
+    compare_radiance, expected_images,
 };
-use raypencil_scene::{
-    Beam, FluxModel, Image, Mounted, Renderer, Request, Resolution, Sampling, Scene, SensorId,
-};
-use raypencil_scene_io::{Overrides, load};
-use raypencil_tracer::Tracer;
+use raypencil::io::{Overrides, load};
+use raypencil::judge::{Class, Quantity, Truth};
+use raypencil::pack::{Checked, check_pack};
+use raypencil::tracer::Tracer;
+use raypencil::{Beam, FluxModel, Image, Mounted, Renderer, Request, Resolution, Sampling, Scene, SensorId};
 
 const PACKS: [&str; 2] = ["pyramids", "facets"];
 /// How often pencils are drawn.
@@ -26,7 +27,7 @@ fn scene(pack: &str) -> Scene {
     load(&file.to_string_lossy(), &Overrides::default()).expect("the pack's scene").scene
 }
 
-fn with(scene: &Scene, camera: Mounted<raypencil_scene::Camera>, beams: Vec<Mounted<Beam>>) -> Scene {
+fn with(scene: &Scene, camera: Mounted<raypencil::Camera>, beams: Vec<Mounted<Beam>>) -> Scene {
     Scene::new(scene.mesh().clone(), camera, beams, scene.atmosphere(), FluxModel::Radiometric)
         .expect("a scene")
 }
@@ -152,10 +153,10 @@ fn mitsubas_radiance_is_the_closed_form() {
             lit += found.lit;
         }
         // It is compared: 0.1 % more is wrong everywhere.
-        let brighter = |map: &raypencil_harness::RadianceMap| {
+        let brighter = |map: &raypencil::harness::RadianceMap| {
             let cells = map.image.cells().iter().map(|radiance| 1.001 * radiance).collect();
             let image = Image::from_cells(map.image.width(), map.image.height(), cells);
-            compare_radiance(&truth, &raypencil_harness::RadianceMap { image, ..map.clone() })
+            compare_radiance(&truth, &raypencil::harness::RadianceMap { image, ..map.clone() })
         };
         let is_all_wrong = |found: RadianceComparison| found.wrong == found.lit;
         assert!(maps.iter().map(brighter).all(is_all_wrong), "{pack}");

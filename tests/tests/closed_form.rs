@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use approx::assert_abs_diff_eq;
 use glam::{DQuat, DVec3};
-use raypencil_scene::{Beam, Camera, FaceId, Mesh, Mounted, Pose, Scene, SensorId, SensorMap};
+use raypencil::{Beam, Camera, FaceId, Mesh, Mounted, Pose, Scene, SensorId, SensorMap};
 use raypencil_tests::{at_origin, cells_hit, for_each_map, for_each_map_of, hit, mesh, rig, scene};
 
 /// How far a renderer may be from a closed form, metres or 1: the bound 36 kappa u S / c of the comparison
@@ -751,7 +751,7 @@ fn every_pose_puts_the_same_thing_into_the_same_pixel() {
 fn the_scene_s_origin_is_not_the_sensor_s_business() {
     // The same ground 1000 km away: vertices are offsets from a moved origin, and points come out in the
     // scene frame, offsets too.
-    let materials = vec![raypencil_scene::Material { name: "ground".into(), reflectivity: 0.25 }];
+    let materials = vec![raypencil::Material { name: "ground".into(), reflectivity: 0.25 }];
     let near: Vec<DVec3> = screen(2.0, [-4.0, 4.0], [-4.0, 4.0])
         .concat()
         .iter()

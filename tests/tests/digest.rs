@@ -6,8 +6,8 @@
 //! with `cargo test -p raypencil-tests --test digest -- --nocapture`.
 
 use glam::DVec3;
-use raypencil_scene::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request, Sampling, Scene};
-use raypencil_terrain::{Crevasses, MarsGround, RandomGround, Rocks, builtin, height_at};
+use raypencil::terrain::{Crevasses, MarsGround, RandomGround, Rocks, builtin, height_at};
+use raypencil::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request, Sampling, Scene};
 use raypencil_tests::{bits, light_bits, renderers, rig, scene};
 use sha2::{Digest, Sha256};
 

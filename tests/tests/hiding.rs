@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_scene::{Beam, Mesh, Mounted, Pose, Request, Scene};
+use raypencil::{Beam, Mesh, Mounted, Pose, Request, Scene};
 use raypencil_tests::light::{Draws, evaluations, fluxes, is_visible, relative, total};
 use raypencil_tests::{at_origin, cells_hit, hit, rig, scene};
 

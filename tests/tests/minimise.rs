@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_harness::{
-    Class, Contender, JudgeShare, MINIMISE_BUDGET, Minimised, NotShown, Place, Reproducer, Silent, contender,
-    first_shown, minimise, shows_class, typed_contenders, write_reproducer,
+use raypencil::harness::{
+    Contender, Reproducer, contender, first_shown, shows_class, typed_contenders, write_reproducer,
 };
-use raypencil_scene::{FaceId, Frame, Mesh, Renderer, Request, Resolution, Scene, SensorId};
-use raypencil_scene_io::{Overrides, load};
-use raypencil_terrain::RandomGround;
+use raypencil::io::{Overrides, load};
+use raypencil::judge::{Class, JudgeShare};
+use raypencil::minimise::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
+use raypencil::terrain::RandomGround;
+use raypencil::{FaceId, Frame, Mesh, Renderer, Request, Resolution, Scene, SensorId};
+use raypencil::{Place, Silent};
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::plants::geometry::{lattice, ridge, rig};
 use raypencil_tests::plants::hunt::shows_fault;

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use raypencil_harness::{
-    Checked, Class, Quantity, Silent, Subject, check_pack, contender, write_maps, write_pack,
-};
-use raypencil_scene::{Request, Resolution, Sampling};
-use raypencil_scene_io::{Overrides, load};
+use raypencil::Silent;
+use raypencil::harness::{contender, write_maps};
+use raypencil::io::Subject;
+use raypencil::io::{Overrides, load};
+use raypencil::judge::{Class, Quantity};
+use raypencil::pack::{Checked, check_pack, write_pack};
+use raypencil::{Request, Resolution, Sampling};
 
 const PACKS: [&str; 2] = ["pyramids", "facets"];
 

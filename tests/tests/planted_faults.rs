@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use raypencil_harness::{Class, SensorComparison, Side, compare};
-use raypencil_scanline::Scanline;
-use raypencil_scene::{Frame, Renderer, Request, Scene, SensorId};
-use raypencil_terrain::RandomGround;
+use raypencil::judge::{Class, SensorComparison, Side, compare};
+use raypencil::scanline::Scanline;
+use raypencil::terrain::RandomGround;
+use raypencil::tracer::Tracer;
+use raypencil::{Frame, Renderer, Request, Scene, SensorId};
 use raypencil_tests::lattice as lattices;
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::plants::geometry::{
     facets, far_ground, fine_wall, lattice, on_pyramids, plate_beside_rays, plate_turned_away, pyramids,
     ramp_through_spp, range_cut_wall, ridge, rig, screen_before_spp,
 };
-use raypencil_tracer::Tracer;
 
 /// Everything a test needs to plant a fault: where, and which sensors it must show on. On the other sensors
 /// it must not show, for there the renderer is right.

@@ -3,8 +3,11 @@
 
 use std::fs;
 
-use raypencil_harness::{CheckError, Quantity, RecordingError, Silent, Subject, check_pack, write_pack};
-use raypencil_scene::{Resolution, Scene};
+use raypencil::Silent;
+use raypencil::io::Subject;
+use raypencil::judge::{Quantity, RecordingError};
+use raypencil::pack::{CheckError, check_pack, write_pack};
+use raypencil::{Resolution, Scene};
 use raypencil_tests::files::{Caught, FileFault, caught, write};
 use raypencil_tests::plants::geometry::{pyramids, range_cut_wall};
 
@@ -58,7 +61,7 @@ fn a_pack_finds_them_too() {
     let folder = tempfile::tempdir().unwrap();
     let pack = folder.path().join("pack");
     let subject = Subject {
-        sha256: raypencil_scene_io::scene_sha256(&scene),
+        sha256: raypencil::io::scene_sha256(&scene),
         scene,
         name: "wall".into(),
         arguments: "wall.toml".into(),

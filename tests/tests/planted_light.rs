@@ -1,12 +1,12 @@
 //! Faults of light, planted in the naive renderer one by one: each must show as defects against both renderers,
 //! and nothing without it.
 
-use raypencil_harness::{Class, SensorComparison, Side, compare};
-use raypencil_scanline::Scanline;
-use raypencil_scene::{FluxModel, Frame, Renderer, Request, Scene, SensorId};
+use raypencil::judge::{Class, SensorComparison, Side, compare};
+use raypencil::scanline::Scanline;
+use raypencil::tracer::Tracer;
+use raypencil::{FluxModel, Frame, Renderer, Request, Scene, SensorId};
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::plants::light::{doubled, lit, screened};
-use raypencil_tracer::Tracer;
 
 /// The scenes on which a fault must show.
 fn scenes(fault: Fault) -> Vec<(&'static str, Scene)> {

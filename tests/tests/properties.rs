@@ -10,16 +10,17 @@ use std::sync::Arc;
 use glam::DQuat;
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError, TestCaseResult, TestError, TestRunner};
-use raypencil_harness::{Attributions, Class, Contender, Judge, JudgeShare, Side};
-use raypencil_scanline::{Options, Scanline, Switches};
-use raypencil_scene::{Frame, Mesh, Mounted, Renderer, Request, Scene};
+use raypencil::harness::Contender;
+use raypencil::judge::{Class, Judge, JudgeShare, Side};
+use raypencil::scanline::{Options, Scanline, Switches};
+use raypencil::tracer::Tracer;
+use raypencil::{Frame, Mesh, Mounted, Renderer, Request, Scene};
 use raypencil_tests::lattice::hash;
 use raypencil_tests::random::{Case, cases, lit_cases, mars_cases};
 use raypencil_tests::reproducers::{commit, folder, reproduce};
 use raypencil_tests::{
     agreement, bits, first_difference, hit, light_bits, remeshed, renderers, scene, unindexed,
 };
-use raypencil_tracer::Tracer;
 
 /// The seed of `.cargo/config.toml`.
 const USUAL_SEED: u64 = 1990;
@@ -144,7 +145,7 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
         for switches in sets(few, any) {
             let scanline = Scanline::new(Options { switches, ..Options::EXACT });
             let a = render(&scanline, &scene);
-            let attributions = Attributions::find(&judge, &a, switches, scanline.resolution());
+            let attributions = raypencil::harness::attribute(&judge, &a, switches, scanline.resolution());
             let a = Side { attributions: Some(&attributions), ..side(&scanline, &a) };
             let sensors = agreement(&scene, a, side(&tracer, &b))
                 .map_err(|error| TestCaseError::fail(format!("{}: {error}", scanline.name())))?;

@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_4, FRAC_PI_6, LN_2, PI, TAU};
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_harness::contender;
-use raypencil_scene::{
+use raypencil::harness::contender;
+use raypencil::{
     Atmosphere, Beam, Camera, Filter, FluxModel, Frame, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
     Renderer, Request, Returns, Sampling, Scene, SensorId,
 };
@@ -601,7 +601,7 @@ fn jittered_rays_are_the_same_for_all() {
         let request = Request { sampling: Sampling::Jittered { seed }, ..Request::EVERYTHING };
         contender(name).expect("a renderer of this house").renderer.render(scene, &request)
     };
-    let ground = raypencil_terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh();
+    let ground = raypencil::terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh();
     let (mesh, (plane, _)) =
         (Arc::new(ground.expect("a mesh")), slope(96, 12, 0.02, 0.25, 0.05, FluxModel::Radiometric));
     let pyramids =

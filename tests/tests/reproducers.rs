@@ -1,7 +1,8 @@
 //! What a failing property leaves behind: a fault planted for the purpose must come out as a scene of one face.
 
-use raypencil_harness::{Class, Contender, contender, shows_class};
-use raypencil_scene_io::{Overrides, load};
+use raypencil::harness::{Contender, contender, shows_class};
+use raypencil::io::{Overrides, load};
+use raypencil::judge::Class;
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::plants::geometry::pyramids;
 use raypencil_tests::reproducers::{commit, reproduce};

@@ -4,16 +4,14 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use raypencil_harness::campaign::{Campaign, PartName, scene_of};
-use raypencil_harness::{
-    Attributions, Class, Judge, JudgeShare, Quantity, SensorComparison, Side, compare_judged,
-};
-use raypencil_scanline::Scanline;
-use raypencil_scene::{Frame, Maybe, Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId};
-use raypencil_terrain::builtin;
+use raypencil::campaign::{Campaign, PartName, scene_of};
+use raypencil::judge::{Class, Judge, JudgeShare, Quantity, SensorComparison, Side, compare_judged};
+use raypencil::scanline::Scanline;
+use raypencil::terrain::builtin;
+use raypencil::tracer::Tracer;
+use raypencil::{Frame, Maybe, Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId};
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene};
-use raypencil_tracer::Tracer;
 
 fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorComparison> {
     let frames = [a, b].map(|renderer| renderer.render(scene, &Request::EVERYTHING));
@@ -123,7 +121,8 @@ fn an_approximation_is_no_excuse_for_anything_else() {
     assert!(spoilt > 15, "{spoilt} answers are spoiled");
     let honest = tracer.render(&scene, &Request::EVERYTHING);
     let judge = Judge::new(&scene, JudgeShare::Sample);
-    let attributions = Attributions::find(&judge, &frame, paper.options().switches, paper.resolution());
+    let attributions =
+        raypencil::harness::attribute(&judge, &frame, paper.options().switches, paper.resolution());
     let side =
         |name, frame, attributions| Side { name, frame, resolution: tracer.resolution(), attributions };
     let sensors =
@@ -148,7 +147,8 @@ fn an_approximation_is_no_excuse_for_a_wrong_value() {
     let frame = paper.render(&scene, &Request::EVERYTHING);
     let honest = tracer.render(&scene, &Request::EVERYTHING);
     let judge = Judge::new(&scene, JudgeShare::Sample);
-    let attributions = Attributions::find(&judge, &frame, paper.options().switches, paper.resolution());
+    let attributions =
+        raypencil::harness::attribute(&judge, &frame, paper.options().switches, paper.resolution());
     let resolution = tracer.resolution();
     let compared = |frame: &Frame| {
         let sensors = compare_judged(
@@ -169,7 +169,7 @@ fn an_approximation_is_no_excuse_for_a_wrong_value() {
     for index in 0..scene.beams().len() {
         let (columns, rows) = scene.size(SensorId::Beam(index)).expect("a beam");
         for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
-            let place = raypencil_harness::Place { sensor: SensorId::Beam(index), i, j };
+            let place = raypencil::Place { sensor: SensorId::Beam(index), i, j };
             if attributions.cause(place).is_none() && attributions.sight_cause(place).is_none() {
                 continue;
             }
@@ -207,10 +207,8 @@ fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
         [0.0, -0.0078125, 0.125],
     ];
     let ground = mesh(vertices, vec![[0, 2, 1], [3, 4, 5]]);
-    let camera = raypencil_scene::Camera {
-        principal_point: [12.5, 12.5],
-        ..rig::camera(1, 1, 1.0 / 1024.0, 1.0 / 16.0)
-    };
+    let camera =
+        raypencil::Camera { principal_point: [12.5, 12.5], ..rig::camera(1, 1, 1.0 / 1024.0, 1.0 / 16.0) };
     let scene = scene(ground, raypencil_tests::at_origin(camera), Vec::new());
     let [scanline, tracer] = renderers();
     let face = |renderer: &dyn Renderer| {

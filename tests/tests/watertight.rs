@@ -4,9 +4,7 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use raypencil_scene::{
-    Beam, Camera, Mesh, Mounted, Pose, Quantities, Renderer, Request, SensorId, SensorMap,
-};
+use raypencil::{Beam, Camera, Mesh, Mounted, Pose, Quantities, Renderer, Request, SensorId, SensorMap};
 use raypencil_tests::lattice::{Fate, Lattice, Sensor, hash, hash_unit};
 use raypencil_tests::{at_origin, cells_missed, mesh, renderers, rig, scene, unindexed};
 

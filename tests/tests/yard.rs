@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_harness::{Counts, JudgeShare, Silent, Subject, Validation, contender, validate};
-use raypencil_scene::FluxModel;
-use raypencil_scene_io::{Overrides, load};
+use raypencil::FluxModel;
+use raypencil::Silent;
+use raypencil::harness::{Counts, Validation, contender, validate};
+use raypencil::io::Subject;
+use raypencil::io::{Overrides, load};
+use raypencil::judge::JudgeShare;
 
 /// The mesh, or `None` after saying that the test is skipped.
 fn yard() -> Option<PathBuf> {

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use raypencil_harness::campaign::Shard;
-use raypencil_harness::{Fidelity, quoted};
-use raypencil_scene::{FluxModel, Resolution};
-use raypencil_scene_io::Overrides;
+use raypencil::Fidelity;
+use raypencil::campaign::Shard;
+use raypencil::io::Overrides;
+use raypencil::io::quoted;
+use raypencil::{FluxModel, Resolution};
 
 /// A Mars rover's structured-light vision, simulated twice by two unlike algorithms and compared ray by ray.
 ///
@@ -592,7 +593,7 @@ pub(crate) struct TerrainImport {
     pub(crate) max_error: Option<f64>,
 
     /// Reflectivity of the ground, 0 to 1.
-    #[arg(long, value_name = "R", default_value_t = raypencil_scene_io::DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
+    #[arg(long, value_name = "R", default_value_t = raypencil::io::DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
     pub(crate) reflectivity: f64,
 
     /// The GLB file to write.

@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use raypencil_harness::Progress;
-use raypencil_harness::campaign::{
+use raypencil::Progress;
+use raypencil::campaign::{
     Campaign, CampaignProgress, Merged, PartName, Shard, campaign_json, campaign_screen, merge, run_shard,
     scene_of, write_campaign,
 };
-use raypencil_scene_io::write_resolved;
+use raypencil::io::{create, write_resolved};
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun, PartWord};
 use crate::console::{Spinner, say};
@@ -108,8 +108,7 @@ fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
     // How many terrains there are does not change one of them.
     let scene = scene_of(&Campaign::new(command.seed, command.terrain + 1), command.terrain, part);
     let folder = &command.output;
-    std::fs::create_dir_all(folder)
-        .map_err(|source| raypencil_harness::OutputError::Folder { path: folder.clone(), source })?;
+    create(folder)?;
     let file = folder.join("scene.toml");
     write_resolved(&file, &scene, "terrain.glb")?;
     drop(spinner);

@@ -1,6 +1,6 @@
 //! `raypencil check`: another program's answers judged by a pack.
 
-use raypencil_harness::{check_json, check_pack, check_screen, write_check};
+use raypencil::pack::{check_json, check_pack, check_screen, write_check};
 
 use crate::args::{ArithmeticWord, Check};
 use crate::console::{Spinner, say};

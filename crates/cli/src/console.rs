@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use raypencil_harness::Progress;
+use raypencil::Progress;
 
 /// Prints to standard output. A reader that has gone away (`| head`) is no trouble of ours.
 pub(crate) fn say(text: &str) {

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use raypencil_harness::{
-    CheckError, Progress, Recorded, Sides, Thresholds, Truth, check as judge, diff as compare, diff_json,
-    diff_screen, rule, write_diff,
-};
-use raypencil_scene_io::{Channels, Limits, Overrides, load, read_channels};
+use raypencil::Progress;
+use raypencil::diff::{Sides, Thresholds, diff as compare, diff_json, diff_screen, rule, write_diff};
+use raypencil::io::{Channels, Limits, Overrides, load, read_channels};
+use raypencil::judge::{Recorded, Truth, check as judge};
+use raypencil::pack::CheckError;
 
 use crate::args::Diff;
 use crate::console::{Spinner, say};

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use raypencil_harness::{
-    DriveJob, DriveProgress, Progress, drive as run, drive_json, drive_screen, write_drive,
-};
-use raypencil_scene_io::{DriveSettings, load};
+use raypencil::Progress;
+use raypencil::drive::{DriveJob, DriveProgress, drive as run, drive_json, drive_screen, write_drive};
+use raypencil::io::{DriveSettings, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
 use crate::console::{Spinner, say};

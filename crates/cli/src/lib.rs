@@ -22,11 +22,12 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
-use raypencil_harness::campaign::CampaignError;
-use raypencil_harness::{
-    CheckError, Contender, DiffError, DriveError, NoSuchRay, OutputError, OutsideError, PackError,
-};
-use raypencil_scene_io::SceneIoError;
+use raypencil::campaign::CampaignError;
+use raypencil::diff::DiffError;
+use raypencil::drive::DriveError;
+use raypencil::harness::{CandidateError, Contender, HarnessError, NoSuchRay};
+use raypencil::io::{FileError, FolderError, SceneIoError};
+use raypencil::pack::{CheckError, PackError};
 use thiserror::Error;
 
 use args::{Arguments, Command};
@@ -46,14 +47,23 @@ enum Outcome {
 /// Why a command could not do its work.
 #[derive(Debug, Error, Diagnostic)]
 enum Trouble {
-    /// A file or a scene.
+    /// A scene, or a file that it needs.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scene(#[from] SceneIoError),
 
+    /// A file of another kind.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] FileError),
+
     /// The output folder.
     #[error(transparent)]
-    Output(#[from] OutputError),
+    Folder(#[from] FolderError),
+
+    /// The folder of a validation.
+    #[error(transparent)]
+    Validation(#[from] HarnessError),
 
     /// A ray that the scene does not have.
     #[error(transparent)]
@@ -69,7 +79,7 @@ enum Trouble {
 
     /// What another program recorded of a scene.
     #[error(transparent)]
-    Outside(#[from] OutsideError),
+    Candidate(#[from] CandidateError),
 
     /// Two recordings that do not fit together.
     #[error(transparent)]

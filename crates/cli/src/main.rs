@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    raypencil_cli::main_with(std::env::args_os(), &raypencil_harness::contender)
+    raypencil_cli::main_with(std::env::args_os(), &raypencil::harness::contender)
 }

@@ -1,10 +1,10 @@
 //! `raypencil minimise`: the smallest scene on which two renderers still differ so.
 
 use clap::ValueEnum as _;
-use raypencil_harness::{
-    Class, JudgeShare, MINIMISE_BUDGET, Progress as _, Reproducer, first_shown, minimise as search,
-    shows_class, typed_contenders, write_reproducer,
-};
+use raypencil::Progress as _;
+use raypencil::harness::{Reproducer, first_shown, shows_class, typed_contenders, write_reproducer};
+use raypencil::judge::{Class, JudgeShare};
+use raypencil::minimise::{MINIMISE_BUDGET, minimise as search};
 use serde_json::json;
 
 use crate::args::{ClassWord, Minimise, typed_renderers};

@@ -1,6 +1,6 @@
 //! `raypencil pack`: the reference pack of a scene, or the questions of a blind one.
 
-use raypencil_harness::{blind_subject, write_pack};
+use raypencil::pack::{blind_subject, write_pack};
 
 use crate::args::Pack;
 use crate::console::{Spinner, say};

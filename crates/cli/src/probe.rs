@@ -1,7 +1,8 @@
 //! `raypencil probe`: one ray.
 
-use raypencil_harness::{Place, probe as ask};
-use raypencil_scene::SensorId;
+use raypencil::Place;
+use raypencil::SensorId;
+use raypencil::harness::probe as ask;
 
 use crate::args::{Probe, typed_renderers};
 use crate::console::{Spinner, say};

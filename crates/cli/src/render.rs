@@ -1,7 +1,8 @@
 //! `raypencil render`: one renderer's maps.
 
-use raypencil_harness::{Progress, write_maps};
-use raypencil_scene::{Request, Sampling};
+use raypencil::Progress;
+use raypencil::harness::write_maps;
+use raypencil::{Request, Sampling};
 
 use crate::args::Render;
 use crate::console::{Spinner, say};

@@ -1,7 +1,9 @@
 //! From words to a scene and renderers.
 
-use raypencil_harness::{Contender, Progress, RENDERER_NAMES, Subject};
-use raypencil_scene_io::load;
+use raypencil::Progress;
+use raypencil::harness::{Contender, RENDERER_NAMES};
+use raypencil::io::Subject;
+use raypencil::io::load;
 
 use crate::args::{SceneArguments, SwitchArguments};
 use crate::{Registry, Trouble};

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_harness::{
-    JudgeShare, Outsider, Progress as _, one_screen, summary_json, validate as run, write_validation,
-};
+use raypencil::Progress as _;
+use raypencil::harness::{Outsider, one_screen, summary_json, validate as run, write_validation};
+use raypencil::judge::JudgeShare;
 
 use crate::args::{JudgeWhich, Validate, typed_renderers};
 use crate::console::{Spinner, say};

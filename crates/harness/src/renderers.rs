@@ -2,12 +2,12 @@
 
 use std::fmt;
 
+use raypencil_judge::{Attributions, Judge};
 use raypencil_referee::ExactRenderer;
-use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
-use raypencil_scene::Renderer;
+use raypencil_scanline::{Options, Scanline};
+use raypencil_scene::{Fidelity, Frame, Renderer, Request, Resolution, Switches};
+use raypencil_scene_io::quoted;
 use raypencil_tracer::Tracer;
-
-use crate::output::quoted;
 
 /// The names [`contender`] knows.
 pub const RENDERER_NAMES: &[&str] = &["scanline", "scanline-paper", "tracer", "referee"];
@@ -73,6 +73,19 @@ impl fmt::Debug for Contender {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Contender").field(&self.renderer.name()).finish()
     }
+}
+
+/// Finds the causes of what `frame` has wrong, which the scanline renderer made of the judge's scene with `switches`.
+pub fn attribute(
+    judge: &Judge<'_>,
+    frame: &Frame,
+    switches: Switches,
+    resolution: Resolution,
+) -> Attributions {
+    let rerender = |switches: Switches, request: Request| {
+        Scanline::new(Options { switches, ..Options::EXACT }).render(judge.scene(), &request)
+    };
+    Attributions::find(judge, frame, switches, resolution, &rerender)
 }
 
 /// A renderer by its name.

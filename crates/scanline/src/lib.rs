@@ -65,7 +65,7 @@ mod shares;
 mod sides;
 mod skip;
 mod stripe;
-mod switches;
+
 mod tables;
 mod vertices;
 
@@ -80,8 +80,8 @@ use raypencil_scene::{
 use cylindrical::Cylindrical;
 use flux::PixelTables;
 use perspective::Perspective;
+pub use raypencil_scene::{Fidelity, Switches, UnknownSwitch};
 use shares::Shares;
-pub use switches::{Fidelity, Switches, UnknownSwitch};
 use tables::CameraTables;
 
 /// The scanline renderer. It keeps the tables of the last camera and beams it saw: they depend on those alone.

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use toml::Spanned;
 
-use crate::parse::drive::DriveKeys;
+use crate::drive::keys::DriveKeys;
 
 /// A value that remembers its place in the file, if the key is given.
 pub(crate) type Key<T> = Option<Spanned<T>>;

@@ -25,56 +25,25 @@
 //! # Ok::<(), raypencil_scene_io::SceneIoError>(())
 //! ```
 
-mod array;
-mod atomic;
-mod bytes;
-mod chain_settings;
-mod channels;
-mod dem;
-mod digest;
-mod drive_settings;
-mod error;
-mod exr_map;
-mod gltf_mesh;
+pub mod digest;
+mod drive;
 mod keys;
 mod load;
-mod manifest;
-mod maps;
-mod npy;
 mod parse;
-mod pfm;
 mod plan;
-mod provenance;
 mod resolve;
 mod resolved;
+mod scene_error;
+mod subject;
 mod toml_problem;
 
-pub use array::{Array, ArrayNumber, Storage, Values};
-pub use atomic::write_atomically;
-pub use chain_settings::{BlurSettings, ElectronicsSettings, OpticsSettings};
-pub use channels::{Channel, Channels, read_channels, read_listed};
-pub use dem::{Dem, Registration, dem_from_bytes, read_dem};
 pub use digest::scene_sha256;
-pub use drive_settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord, SunSettings};
-pub use error::{Problem, SceneIoError};
-pub use exr_map::{
-    Attributes, ExrMap, Limits, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map,
-};
-pub use gltf_mesh::{
-    DEFAULT_REFLECTIVITY, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
-    write_terrain_glb,
-};
-pub use load::{LoadedScene, Overrides, SceneSource, load, load_text};
-pub use manifest::{
-    ChannelType, FileRole, FileType, FluxWord, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile,
-    ManifestScene, ManifestSensor, PackKind,
-};
-pub use maps::{
-    MarkedPoint, Occupancy, OccupancyGrid, VectorOnMap, camera_info, occupancy_files, vectors_csv,
-    vectors_geojson, write_geotiff, write_occupancy, write_ply,
-};
-pub use npy::{npy_from_bytes, read_npy, write_npy};
-pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
-pub use provenance::{Arithmetic, Provenance, Total};
-pub use resolved::write_resolved;
+pub use drive::camera::{MOST_FINE_CELLS, camera_chain, sunlight};
+pub use drive::camera_settings::{BlurSettings, ElectronicsSettings, OpticsSettings};
+pub use drive::plan::{plan, threshold};
+pub use drive::settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord, SunSettings};
+pub use load::{LoadedScene, MAX_TOML_BYTES, Overrides, SceneSource, load, load_text};
+pub use resolved::write::write_resolved;
+pub use scene_error::SceneIoError;
+pub use subject::{Subject, probe_command, quoted};
 pub use toml_problem::TomlProblem;

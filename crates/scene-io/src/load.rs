@@ -4,21 +4,24 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::digest::scene_sha256;
+use crate::drive::camera_keys::KernelPart;
+use crate::drive::camera_settings::BlurSettings;
+use crate::drive::settings::DriveSettings;
+use crate::parse::{self, Kind, Source};
+use crate::plan::{DemPart, Plan, Terrain};
+use crate::scene_error::SceneIoError;
+use crate::{digest, plan};
+use crate::{resolve, resolved};
+use raypencil_files::{Limits, Sha, npy_from_bytes};
+use raypencil_files::{bytes, combine, sha};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, Vertices, dem, gltf};
 use raypencil_scene::{Beam, FluxModel, Mesh, Pose, Scene, SceneError};
 use raypencil_sensor::Kernel;
 use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
 
-use crate::chain_settings::BlurSettings;
-use crate::digest::{self, Sha};
-use crate::drive_settings::DriveSettings;
-use crate::gltf_mesh::{self, DEFAULT_REFLECTIVITY, Vertices};
-use crate::parse::chain::KernelPart;
-use crate::parse::{self, Kind, Source};
-use crate::plan::{self, DemPart, Plan, Terrain};
-use crate::{Limits, SceneIoError, bytes, dem, npy_from_bytes, resolve, resolved, scene_sha256};
-
 /// A scene file larger than this is none: 1 MiB.
-pub(crate) const LARGEST_TOML: u64 = 1 << 20;
+pub const MAX_TOML_BYTES: u64 = 1 << 20;
 
 /// A kernel is no larger: 1025 x 1025 real numbers of eight bytes, and a header.
 const MOST_KERNEL_BYTES: u64 = 1025 * 1025 * 8 + (1 << 16);
@@ -135,7 +138,7 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish(&source, plan, Vec::new(), None, overrides)
         }
         SceneSource::Gltf(path) => {
-            let (mesh, parts) = gltf_mesh::read(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
+            let (mesh, parts) = gltf::read(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
             finish_alone(&source, Terrain::File(path.clone()), parts, mesh, overrides)
         }
         SceneSource::Dem(path) => {
@@ -145,7 +148,7 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
         }
         SceneSource::Toml(path) => {
             let bytes =
-                bytes::read_file(path, LARGEST_TOML).map_err(|e| SceneIoError::io(path, "read", e))?;
+                bytes::read_file(path, MAX_TOML_BYTES).map_err(|e| SceneIoError::io(path, "read", e))?;
             let text = String::from_utf8(bytes).map_err(|error| {
                 let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
                 SceneIoError::io(path, "read", error)
@@ -172,7 +175,7 @@ fn load_toml(
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let places = Source { file: path, text };
-    let parts = vec![digest::sha(text.as_bytes())];
+    let parts = vec![sha(text.as_bytes())];
     match places.kind()? {
         Kind::Rig => load_rig(source, &places, parts, overrides),
         Kind::Resolved => load_resolved(source, &places, parts, overrides),
@@ -196,7 +199,7 @@ fn load_rig(
         Terrain::File(file) => {
             let terrain = terrain_file(places, "file", &["glb", "gltf"], file, &plan.terrain_span)?;
             let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
-            let (mesh, more) = gltf_mesh::read(&terrain, reflectivity, Vertices::Global)?;
+            let (mesh, more) = gltf::read(&terrain, reflectivity, Vertices::Global)?;
             parts.extend(more);
             Some(mesh)
         }
@@ -287,7 +290,7 @@ fn kernel_file(places: &Source, part: &KernelPart) -> Result<(Kernel, Sha), Scen
         let SceneError { field, value, expected } = error;
         places.error(part.span.clone(), format!("`{name}`: {field} is {value}; expected {expected}"))
     })?;
-    Ok((kernel, digest::sha(&bytes)))
+    Ok((kernel, sha(&bytes)))
 }
 
 /// A terrain without a scene file: the default rig stands in its middle.
@@ -327,7 +330,7 @@ fn load_resolved(
         &resolved.file.span(),
     )?;
     let vertices = Vertices::OffsetsFrom(resolved.origin);
-    let (mesh, more) = gltf_mesh::read(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
+    let (mesh, more) = gltf::read(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
     parts.extend(more);
     resolved.beams.iter_mut().for_each(|beam| apply_to_beam(overrides, &mut beam.sensor));
     let flux_model = overrides.flux_model.unwrap_or(resolved.flux_model);
@@ -353,7 +356,7 @@ fn finish(
             path.display().to_string()
         }
     };
-    let unfit = |source: SceneError| SceneIoError::Scene { origin: origin(), source };
+    let unfit = |source: SceneError| SceneIoError::scene(origin(), source);
     apply(overrides, &mut plan);
     let from_file = mesh.is_some();
     let mesh = match mesh {
@@ -384,11 +387,11 @@ fn loaded(
     drive: Option<DriveSettings>,
 ) -> LoadedScene {
     if *overrides != Overrides::default() && !matches!(source, SceneSource::Builtin(_)) {
-        parts.push(digest::sha(format!("{overrides:?}").as_bytes()));
+        parts.push(sha(format!("{overrides:?}").as_bytes()));
     }
     LoadedScene {
         name: folder_name(source),
-        source_sha256: digest::combine(&parts),
+        source_sha256: combine(&parts),
         scene_sha256: scene_sha256(&scene),
         scene,
         vehicle,

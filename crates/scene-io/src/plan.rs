@@ -1,14 +1,13 @@
 //! A scene as numbers, before any terrain is loaded; and the default rig.
 
+use glam::DVec3;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use glam::DVec3;
+use crate::drive::camera_keys::KernelPart;
+use crate::drive::settings::DriveSettings;
 use raypencil_scene::{Beam, Camera, FluxModel, Lens, Profile};
 use raypencil_terrain::MarsGround;
-
-use crate::drive_settings::DriveSettings;
-use crate::parse::chain::KernelPart;
 
 /// Everything a scene needs but its mesh.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,10 @@
 //! From checked numbers and a mesh to a scene: poses are composed here, and rounded once.
 
+use glam::DVec3;
 use std::sync::Arc;
 
-use glam::DVec3;
-use raypencil_scene::{Atmosphere, Mesh, Mounted, Pose, Scene, SceneError};
-
 use crate::plan::{Mount, Plan, Vehicle};
+use raypencil_scene::{Atmosphere, Mesh, Mounted, Pose, Scene, SceneError};
 
 /// A turn about z, then y, then x, each about the axis that the turns before it left: yaw (or heading) to
 /// the left, pitch down, roll to the right. In a frame with x forward, y left and z up all three are

@@ -1,13 +1,12 @@
 //! A place in a scene TOML and what is wrong there, with the line to look at.
 
+use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
-
-use miette::{Diagnostic, NamedSource, SourceSpan};
 use thiserror::Error;
 
-use crate::error::shortened;
+use raypencil_files::shortened;
 
 /// The longest line that is shown, and the longest part of a file that is marked, bytes.
 const LONGEST: usize = 200;

@@ -1,8 +1,10 @@
 //! Scene files that are wrong: the line, the column, the marked text and the message of each.
 
 use miette::Diagnostic;
+
+use raypencil_files::write_npy;
 use raypencil_scene::Image;
-use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem, load, write_npy};
+use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem, load};
 
 fn problem(text: &str) -> TomlProblem {
     let folder = tempfile::tempdir().unwrap();

@@ -1,10 +1,10 @@
 //! Resolved scenes: what is written is read back bit for bit; what is wrong is marked.
 
+use glam::{DQuat, DVec3};
+use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::{DQuat, DVec3};
-use proptest::prelude::*;
 use raypencil_scene::{
     Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pose, Profile, Scene,
 };

@@ -1,8 +1,8 @@
 //! Scenes from files and names: what the numbers of a file become, by hand-derived values.
 
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
 use raypencil_scene::{FluxModel, Profile, SensorId};
 use raypencil_scene_io::{LoadedScene, Overrides, SceneIoError, SceneSource, load};
 

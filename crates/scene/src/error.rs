@@ -21,8 +21,12 @@ impl SceneError {
     }
 }
 
-/// Refuses a `value` outside `low..=high` (and NaN, which is outside of everything).
-pub(crate) fn check_range(
+/// Refuses a `value` outside `low..=high` (and NaN, which is outside of everything). `field` is asked for the name
+/// only if the value is refused.
+///
+/// # Errors
+/// Names the field, the value, the limits and their unit.
+pub fn check_range(
     field: impl FnOnce() -> String,
     value: f64,
     low: f64,
@@ -33,4 +37,20 @@ pub(crate) fn check_range(
         return Ok(());
     }
     Err(SceneError::new(field(), value, format!("{low} to {high} {unit}").trim_end()))
+}
+
+/// Refuses a `count` outside `low..=high`. `field` is asked for the name only if the count is refused.
+///
+/// # Errors
+/// Names the field, the count and the limits.
+pub fn check_count(
+    field: impl FnOnce() -> String,
+    count: u64,
+    low: u64,
+    high: u64,
+) -> Result<(), SceneError> {
+    if (low..=high).contains(&count) {
+        return Ok(());
+    }
+    Err(SceneError::new(field(), count, format!("{low} to {high}")))
 }

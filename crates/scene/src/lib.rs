@@ -18,26 +18,33 @@
 //! * *sensor* (camera and beam alike): z forward along the normal axis, x right, y down. In a beam, y is
 //!   the focal axis of the cylindrical lens and x runs across the fan.
 
+mod approximations;
 mod beam;
 mod camera;
 mod error;
 mod frame;
 mod image;
 mod mesh;
+mod place;
 mod pose;
+mod progress;
 mod ray;
 mod renderer;
 mod returns;
+pub mod rig;
 mod sampling;
 mod world;
 
+pub use approximations::{Fidelity, Switches, UnknownSwitch};
 pub use beam::{Beam, Profile};
 pub use camera::{Camera, Filter, Lens};
-pub use error::SceneError;
+pub use error::{SceneError, check_count, check_range};
 pub use frame::{Frame, Quantities, Request, SensorMap, SensorRow, Stage};
 pub use image::{Image, Maybe, Sample};
 pub use mesh::{Material, Mesh};
+pub use place::Place;
 pub use pose::Pose;
+pub use progress::{Progress, Silent};
 pub use ray::{FaceId, Hit, Ray, SensorId};
 pub use renderer::{Renderer, Resolution};
 pub use returns::{Pixel, Return, Returns};

@@ -30,6 +30,24 @@ pub enum FluxModel {
     Eq1,
 }
 
+impl FluxModel {
+    /// The other of the two models.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Radiometric => Self::Eq1,
+            Self::Eq1 => Self::Radiometric,
+        }
+    }
+
+    /// The model's name in files and on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Radiometric => "radiometric",
+            Self::Eq1 => "eq1",
+        }
+    }
+}
+
 /// Everything a renderer needs to know, checked once when it is built.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {

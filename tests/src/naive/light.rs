@@ -3,7 +3,7 @@
 use std::f64::consts::{LN_2, PI};
 
 use glam::DVec3;
-use raypencil_scene::{
+use raypencil::{
     Beam, Filter, FluxModel, Hit, Image, Mounted, Pixel, Profile, Return, Returns, Scene, SensorMap,
 };
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use raypencil_scene::{Beam, Camera, Lens, Mesh, Mounted, Pose, Profile, Scene};
-use raypencil_terrain::{RandomGround, builtin};
+use raypencil::terrain::{RandomGround, builtin};
+use raypencil::{Beam, Camera, Lens, Mesh, Mounted, Pose, Profile, Scene};
 
 use crate::{mesh, scene};
 

@@ -1,11 +1,11 @@
 //! A planted fault from the first scene that catches it to the smallest that does.
 
-use raypencil_harness::{
-    Class, Contender, JudgeShare, MINIMISE_BUDGET, Minimised, Place, Quantity, Silent, first_shown, minimise,
-    shows_class,
-};
-use raypencil_scene::Scene;
-use raypencil_tracer::Tracer;
+use raypencil::Scene;
+use raypencil::harness::{Contender, first_shown, shows_class};
+use raypencil::judge::{Class, JudgeShare, Quantity};
+use raypencil::minimise::{MINIMISE_BUDGET, Minimised, minimise};
+use raypencil::tracer::Tracer;
+use raypencil::{Place, Silent};
 
 use super::scenes_of;
 use crate::files::{self, FileFault};

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_scene::{
+use raypencil::terrain::builtin;
+use raypencil::{
     Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Material, Mesh, Mounted, Pose, Profile, Scene,
 };
-use raypencil_terrain::builtin;
 
 use crate::{mesh, rig};
 

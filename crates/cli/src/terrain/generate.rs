@@ -1,9 +1,9 @@
 //! `raypencil terrain generate`: a GLB terrain of ground as Mars has it.
 
-use raypencil_harness::Progress as _;
-use raypencil_scene::Mesh;
-use raypencil_scene_io::{SceneIoError, read_dem, write_terrain_glb};
-use raypencil_terrain::{MarsGround, PRESET_NAMES};
+use raypencil::Mesh;
+use raypencil::Progress as _;
+use raypencil::io::{FileError, read_dem, write_terrain_glb};
+use raypencil::terrain::{MarsGround, PRESET_NAMES};
 use serde_json::{Value, json};
 
 use super::{check_output, create_folder};
@@ -37,8 +37,8 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     }
     spinner.stage(&format!("{}, seed {}: making faces", command.preset, command.seed));
     let origin = || format!("terrain generate --preset {}", command.preset);
-    let unfit = |source| SceneIoError::Scene { origin: origin(), source };
-    let mesh = ground.build().and_then(raypencil_terrain::Ground::into_mesh).map_err(unfit)?;
+    let unfit = |source| FileError::Scene { origin: origin(), source };
+    let mesh = ground.build().and_then(raypencil::terrain::Ground::into_mesh).map_err(unfit)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
     create_folder(&command.output)?;
     write_terrain_glb(&command.output, &mesh, &parameters(command, &ground))?;

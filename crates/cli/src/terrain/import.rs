@@ -1,8 +1,8 @@
 //! `raypencil terrain import`: a GLB terrain of an elevation model.
 
-use raypencil_harness::Progress as _;
-use raypencil_scene::Mesh;
-use raypencil_scene_io::{Dem, read_dem, write_terrain_glb};
+use raypencil::Mesh;
+use raypencil::Progress as _;
+use raypencil::io::{Dem, read_dem, write_terrain_glb};
 use serde_json::{Value, json};
 
 use super::{check_output, create_folder};

@@ -6,7 +6,7 @@ mod inspect;
 
 use std::path::Path;
 
-use raypencil_harness::create;
+use raypencil::io::create;
 
 use crate::args::TerrainCommand;
 use crate::{Outcome, Trouble};

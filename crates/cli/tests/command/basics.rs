@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene};
+use raypencil::{Frame, Renderer, Request, Resolution, Scene};
 use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, text};
@@ -244,7 +244,7 @@ impl Renderer for Flipped {
 fn a_renderer_with_one_sign_flipped_is_a_defect() {
     let folder = folder();
     let registry = |name: &str| {
-        let contender = raypencil_harness::contender(name)?;
+        let contender = raypencil::harness::contender(name)?;
         Some(if name == "tracer" { Flipped { inner: contender.renderer }.into() } else { contender })
     };
     let scene = folder.path().join("small.toml").display().to_string();
@@ -256,14 +256,14 @@ fn a_renderer_with_one_sign_flipped_is_a_defect() {
     assert!(summary["defects"].as_u64() > Some(100), "{summary:#}");
     // And the same arguments with the honest renderers agree.
     let arguments = ["raypencil", "validate", scene.as_str(), "-o", out.as_str()].map(Into::into);
-    assert_eq!(raypencil_cli::main_with(arguments, &raypencil_harness::contender), ExitCode::SUCCESS);
+    assert_eq!(raypencil_cli::main_with(arguments, &raypencil::harness::contender), ExitCode::SUCCESS);
 }
 
 #[test]
 fn the_smallest_scene_that_shows_a_defect_is_found_and_replayed() {
     let folder = folder();
     let registry = |name: &str| {
-        let contender = raypencil_harness::contender(name)?;
+        let contender = raypencil::harness::contender(name)?;
         Some(if name == "tracer" { Flipped { inner: contender.renderer }.into() } else { contender })
     };
     let [scene, out] = ["small.toml", "out"].map(|name| folder.path().join(name).display().to_string());
@@ -279,7 +279,7 @@ fn the_smallest_scene_that_shows_a_defect_is_found_and_replayed() {
     // One face; of one fault of one renderer.
     let text = std::fs::read_to_string(folder.path().join("out/small-defect.md")).unwrap();
     assert!(text.contains("1 face of 224 is left."), "{text}");
-    assert_eq!(validate(&raypencil_harness::contender), ExitCode::SUCCESS);
+    assert_eq!(validate(&raypencil::harness::contender), ExitCode::SUCCESS);
 }
 
 #[test]

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use raypencil_scene::Image;
-use raypencil_scene_io::{
+use raypencil::Image;
+use raypencil::io::{
     ExrMap, Limits, Raster, Values, read_channels, read_exr, write_exr, write_npy, write_pfm,
 };
 use tempfile::TempDir;
@@ -266,11 +266,8 @@ fn a_pack_that_was_changed_is_refused() {
     let manifest = copy.join("manifest.json");
     let document = fs::read_to_string(&manifest).unwrap();
     let mut json: serde_json::Value = serde_json::from_str(&document).unwrap();
-    let digest = raypencil_scene_io::ManifestFile::of(
-        &copy,
-        "camera/range.T.npy",
-        raypencil_scene_io::FileRole::Answers,
-    );
+    let digest =
+        raypencil::pack::ManifestFile::of(&copy, "camera/range.T.npy", raypencil::pack::FileRole::Answers);
     for file in json["files"].as_array_mut().unwrap() {
         if file["path"] == "camera/range.T.npy" {
             file["sha256"] = digest.as_ref().unwrap().sha256.clone().into();

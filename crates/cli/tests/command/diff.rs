@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use raypencil_scene::Image;
-use raypencil_scene_io::{Limits, Raster, read_exr, write_exr, write_npy};
+use raypencil::Image;
+use raypencil::io::{Limits, Raster, read_exr, write_exr, write_npy};
 use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, screen, text};

@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-use raypencil_harness::contender;
-use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene};
+use raypencil::harness::contender;
+use raypencil::{Frame, Renderer, Request, Resolution, Scene};
 use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, screen, text};
@@ -133,7 +133,7 @@ fn trouble_leaves_no_folder_that_looks_complete() {
 }
 
 /// A tracer that sees light where there is none.
-struct Bright(raypencil_harness::Contender);
+struct Bright(raypencil::harness::Contender);
 
 impl Renderer for Bright {
     fn name(&self) -> &str {

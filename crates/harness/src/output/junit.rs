@@ -2,16 +2,17 @@
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-use super::text::{count, counted, probe_command};
-use super::verdict::{Verdict, explanation, headline};
-use crate::compare::{Class, Defect, Quantity, SensorComparison, Tally};
-use crate::run::{Subject, Validation};
+use crate::output::verdict::{Verdict, explanation, headline};
+use crate::validation::Validation;
+use raypencil_judge::{Class, Defect, Quantity, SensorComparison, Tally};
+use raypencil_report::{count, counted};
+use raypencil_scene_io::{Subject, probe_command};
 
 /// How many defects a failure lists.
 const LISTED: usize = 5;
 
 /// The whole document.
-pub(crate) fn junit(validation: &Validation) -> Result<String, quick_junit::SerializeError> {
+pub fn junit(validation: &Validation) -> Result<String, quick_junit::SerializeError> {
     let subject = &validation.subject;
     let mut report = Report::new(format!("raypencil validate {}", subject.arguments));
     for pair in &validation.pairs {
@@ -66,7 +67,7 @@ fn status(subject: &Subject, sensor: &SensorComparison, quantity: Quantity, tall
         lines.push(format!("    {}", probe_command(subject, defect.place)));
     }
     if let Some(worst) = tally.worst_error {
-        let value = super::text::quantity(worst.value, quantity.unit(subject.scene.flux_model()));
+        let value = raypencil_report::quantity(worst.value, quantity.unit(subject.scene.flux_model()));
         lines.push(format!("Worst error: {value} at {}", worst.place));
         lines.push(format!("    {}", probe_command(subject, worst.place)));
     }

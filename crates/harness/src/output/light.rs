@@ -1,12 +1,9 @@
 //! The light of the beams, for the page: what falls on the camera's image, and what the pencils along a stripe
 //! deliver.
 
+use crate::validation::Validation;
+use raypencil_report::{ColourMap, Picture, Reduction, Scale, Tick, number, quantity};
 use raypencil_scene::{FluxModel, Image, Maybe};
-
-use super::picture::{ColourMap, Picture, Reduction};
-use super::scale::{Scale, Tick};
-use super::text::{number, quantity};
-use crate::run::Validation;
 
 /// One renderer's image of all beams.
 pub(crate) struct FluxImage {
@@ -53,6 +50,7 @@ pub(crate) struct Light {
 
 /// Width and height of a chart's box.
 const CHART: [f64; 2] = [1000.0, 240.0];
+
 /// Lines of later renderers are thinner, so that those below show beside them.
 const CURVES: [(&str, f64); 4] = [("#e69f00", 6.0), ("#0072b2", 2.5), ("#009e73", 1.2), ("#cc79a7", 0.8)];
 

@@ -1,13 +1,16 @@
 //! `summary.md`: the validation in a comment on a change.
 
+use crate::output::panel;
 use askama::Template;
 
-use super::table::{CauseRow, Row, causes, hits, rows};
-use super::text::{self, count, probe_command};
-use super::verdict::{CAVEAT, Verdict, defects, explanation, headline};
-use super::{VERSION, outside};
-use crate::compare::Class;
-use crate::run::Validation;
+use crate::output::VERSION;
+use crate::output::table::{CauseRow, Row, causes, hits, rows};
+use crate::output::verdict::{CAVEAT, Verdict, defects, explanation, headline};
+use crate::validation::Validation;
+use raypencil_judge::Class;
+use raypencil_report as text;
+use raypencil_report::count;
+use raypencil_scene_io::probe_command;
 
 /// How many defects are listed.
 const LISTED: usize = 10;
@@ -50,14 +53,14 @@ struct Listed {
 }
 
 /// The whole text.
-pub(crate) fn markdown(validation: &Validation) -> Result<String, askama::Error> {
+pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     let subject = &validation.subject;
     let verdict = Verdict::of(validation);
     let mut sensors = Vec::new();
     for pair in &validation.pairs {
         let [a, b] = [pair.a, pair.b].map(|index| &validation.rendered[index]);
         for sensor in &pair.sensors {
-            let of = |side: &crate::run::Rendered| {
+            let of = |side: &crate::rendered::Rendered| {
                 side.frame.map(sensor.sensor).and_then(hits).map_or("unknown".into(), count)
             };
             sensors.push(Sensor {
@@ -94,11 +97,11 @@ pub(crate) fn markdown(validation: &Validation) -> Result<String, askama::Error>
         scene: code(&subject.name),
         sha256: code(&subject.sha256),
         version: VERSION,
-        command: code(&format!("raypencil validate {}{}", subject.arguments, outside::typed(validation))),
+        command: code(&format!("raypencil validate {}{}", subject.arguments, panel::typed(validation))),
         rows: rows(subject, validation.pairs.iter().flat_map(|pair| &pair.sensors)),
         sensors,
         causes: causes(subject, &validation.approximations()),
-        outsiders: validation.panel.iter().flat_map(outside::lines).map(|line| escaped(&line)).collect(),
+        outsiders: validation.panel.iter().flat_map(panel::lines).map(|line| escaped(&line)).collect(),
         defects: listed,
         more_defects: if more > 0 { text::counted(more, "more is", "more are") } else { String::new() },
         stages: validation

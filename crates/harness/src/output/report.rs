@@ -1,16 +1,18 @@
 //! `report.html`: the validation for people, as one file that links to nothing.
 
+use crate::output::panel;
 use askama::Template;
 
-use super::VERSION;
-use super::light::{self, Light};
-use super::outside::{self, Outside};
-use super::plot::{self, Plots};
-use super::table::{CauseRow, Row, causes, hits, rows};
-use super::text::{count, counted, list, probe_command, time};
-use super::verdict::{CAVEAT, Verdict, explanation, headline};
-use crate::compare::{Class, SensorComparison};
-use crate::run::{Pair, Validation};
+use crate::output::light::{Light, light};
+use crate::output::panel::{Outside, outside};
+use crate::output::plots;
+use crate::output::plots::Plots;
+use crate::output::table::{CauseRow, Row, causes, hits, rows};
+use crate::output::verdict::{CAVEAT, Verdict, explanation, headline};
+use crate::validation::{Pair, Validation};
+use raypencil_judge::{Class, SensorComparison};
+use raypencil_report::{VERSION, count, counted, list, page_head, time};
+use raypencil_scene_io::probe_command;
 
 /// How many defects of a sensor are listed.
 const LISTED: usize = 10;
@@ -18,6 +20,8 @@ const LISTED: usize = 10;
 #[derive(Template)]
 #[template(path = "report.html")]
 struct Page<'a> {
+    /// The start of the page.
+    head: String,
     verdict: &'static str,
     sign: &'static str,
     headline: String,
@@ -88,26 +92,29 @@ struct Timed {
 }
 
 /// The whole page.
-pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
+pub fn html(validation: &Validation) -> Result<String, askama::Error> {
     let Validation { subject, rendered, pairs, panel: _, stages } = validation;
     let verdict = Verdict::of(validation);
     let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let longest = stages.iter().map(|stage| stage.time).max().unwrap_or_default().as_secs_f64();
-    let most = plot::most_across(validation);
+    let most = plots::most_across(validation);
+    let headline = headline(validation);
+    let head = page_head(&format!("{} {headline}: {}", verdict.sign(), subject.name), "");
     let page = Page {
+        head,
         verdict: match verdict {
             Verdict::Agree => "agree",
             Verdict::Defects => "defects",
             Verdict::NothingCompared => "nothing",
         },
         sign: verdict.sign(),
-        headline: headline(validation),
+        headline,
         explanation: explanation(validation),
         caveat: if verdict == Verdict::Agree { CAVEAT } else { "" },
         scene: &subject.name,
         sha256: &subject.sha256,
         version: VERSION,
-        command: format!("raypencil validate {}{}", subject.arguments, outside::typed(validation)),
+        command: format!("raypencil validate {}{}", subject.arguments, panel::typed(validation)),
         renderers: list(&names),
         tiles: tiles(validation),
         comparisons: pairs.iter().map(|pair| comparison(validation, pair)).collect(),
@@ -121,12 +128,12 @@ pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
                     name: id.to_string(),
                     size: format!("{width} × {height}"),
                     numbers: numbers(validation, id),
-                    plots: plot::plots(validation, id, most),
+                    plots: plots::plots(validation, id, most),
                 }
             })
             .collect(),
-        light: light::light(validation, most),
-        outside: outside::outside(validation),
+        light: light(validation, most),
+        outside: outside(validation),
         defects: pairs.iter().flat_map(|pair| defects(validation, pair)).collect(),
         stages: stages
             .iter()
@@ -137,9 +144,7 @@ pub(crate) fn html(validation: &Validation) -> Result<String, askama::Error> {
             })
             .collect(),
     };
-    let mut html = page.render()?;
-    html.push('\n');
-    Ok(html)
+    page.render()
 }
 
 fn tiles(validation: &Validation) -> Vec<Tile> {

@@ -1,33 +1,41 @@
 //! What the command prints: a validation on one screen of 80 columns and 40 lines.
 
+use crate::output::panel;
 use std::fmt::Write;
 use std::path::Path;
 
+use crate::output::VERSION;
+use crate::output::table::{hits, totals, worst};
+use crate::output::verdict::{Verdict, defects, explanation, headline, rays};
+use crate::validation::Validation;
+use raypencil_judge::{Class, SensorComparison};
+use raypencil_report::{count, counted, list, time};
+use raypencil_scene::Place;
 use raypencil_scene::{SensorId, Stage};
-
-use super::table::{hits, totals};
-use super::text::{count, counted, list, probe_command, time, worst};
-use super::verdict::{Verdict, defects, explanation, headline, rays};
-use super::{VERSION, outside};
-use crate::compare::{Class, Place, SensorComparison};
-use crate::run::Validation;
+use raypencil_scene_io::probe_command;
 
 /// Columns of the screen. Only paths and commands, which are there to be copied, may be longer.
 const COLUMNS: usize = 80;
+
 /// Sensors that get a line.
 const SENSORS: usize = 5;
+
 /// Lines of stage times.
 const TIMES: usize = 4;
+
 /// Causes that get a line.
 const CAUSES: usize = 4;
+
 /// Outsiders that get a line.
 const OUTSIDERS: usize = 4;
+
 /// Column of the paper's approximations in the table of quantities.
 const APPROXIMATIONS: usize = 4;
+
 /// Defects that get their lines.
 const DEFECTS: usize = 5;
 
-/// The validation on one terminal screen; `folder` is where [`crate::write_validation`] put its files.
+/// The validation on one terminal screen; `folder` is where [`crate::output::write_validation`] put its files.
 pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
     let blocks = [
         head(validation),
@@ -192,7 +200,7 @@ fn approximations(validation: &Validation) -> String {
 
 /// How others fare.
 fn outsiders(validation: &Validation) -> String {
-    let lines = validation.panel.iter().flat_map(outside::lines).take(OUTSIDERS);
+    let lines = validation.panel.iter().flat_map(panel::lines).take(OUTSIDERS);
     lines.map(|line| format!("{}\n", cut(&line))).collect()
 }
 

@@ -1,17 +1,18 @@
 //! `summary.json`: the validation for programs. Its schema is `docs/summary.schema.json`.
 
+use crate::output::panel;
+use serde::Serialize;
 use std::collections::BTreeMap;
 
-use raypencil_scanline::Switches;
-use serde::Serialize;
-
-use super::outside::{self, PanelSummary};
-use super::table::hits;
-use super::text::probe_command;
-use super::verdict::Verdict;
-use super::{VERSION, map_file};
-use crate::compare::{ApproximationTallies, ApproximationTally, Class, Quantity, SensorComparison, Worst};
-use crate::run::{Pair, Rendered, Subject, Validation};
+use crate::output::panel::PanelSummary;
+use crate::output::table::hits;
+use crate::output::verdict::Verdict;
+use crate::output::{VERSION, map_file};
+use crate::rendered::Rendered;
+use crate::validation::{Pair, Validation};
+use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Quantity, SensorComparison, Worst};
+use raypencil_scene::Switches;
+use raypencil_scene_io::{Subject, probe_command};
 
 /// The number of the schema; it grows when a key changes its meaning or goes away.
 const FORMAT: u32 = 1;
@@ -166,7 +167,7 @@ pub fn summary_json(validation: &Validation) -> String {
         scene: SceneName { name: &subject.name, sha256: &subject.sha256, arguments: &subject.arguments },
         renderers: rendered.iter().map(of_renderer).collect(),
         pairs: pairs.iter().map(|pair| of_pair(validation, pair)).collect(),
-        panel: outside::summary(validation),
+        panel: panel::summary(validation),
         stages: stages
             .iter()
             .map(|stage| StageSummary { name: &stage.name, seconds: stage.time.as_secs_f64() })

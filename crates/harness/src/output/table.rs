@@ -1,13 +1,12 @@
 //! The table of quantities and classes, ready to be printed by anything.
 
-use raypencil_scanline::Switches;
-use raypencil_scene::SensorMap;
-
-use super::text::{self, probe_command};
-use crate::compare::{
+use raypencil_judge::{
     ApproximationTallies, ApproximationTally, Class, Quantity, SensorComparison, Tally, Worst,
 };
-use crate::run::Subject;
+use raypencil_report as text;
+use raypencil_report::quantity;
+use raypencil_scene::{SensorMap, Switches};
+use raypencil_scene_io::{Subject, probe_command};
 
 /// One quantity over one or more sensors.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +78,7 @@ pub(crate) fn causes(subject: &Subject, approximations: &ApproximationTallies) -
 
 fn extreme(subject: &Subject, worst: Option<Worst>, unit: &str) -> Option<Extreme> {
     worst.map(|Worst { value, place }| Extreme {
-        value: text::quantity(value, unit),
+        value: quantity(value, unit),
         place: place.to_string(),
         command: probe_command(subject, place),
     })
@@ -105,4 +104,9 @@ pub(crate) fn hits(map: &SensorMap) -> Option<u64> {
     let faces =
         || map.face.as_ref().map(|map| map.cells().iter().filter(|cell| cell.get().is_some()).count());
     ranges().or_else(faces).map(|hits| hits as u64)
+}
+
+/// The worst of something without its place; nothing if there is none.
+pub(crate) fn worst(worst: Option<Worst>, unit: &str) -> String {
+    worst.map_or(String::new(), |worst| quantity(worst.value, unit))
 }

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::text::{count, counted, list, number};
-use crate::compare::{Class, Defect, Quantity, Worst};
-use crate::run::Validation;
+use crate::validation::Validation;
+use raypencil_judge::{Class, Defect, Quantity, Worst};
+use raypencil_report::{count, counted, list, number};
 
 /// What came of it all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

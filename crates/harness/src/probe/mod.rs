@@ -1,16 +1,13 @@
 //! Everything about one ray, from every renderer.
 
-mod words;
+pub(crate) mod words;
 
+use crate::renderers::{Contender, attribute};
+use raypencil_judge::{Cause, Class, Judge, JudgeShare, Quantity, SightCause};
 use raypencil_referee::{Format, Margin, Margins, Ruling, SightMargins, SightRuling, Verdict};
-use raypencil_scene::{Frame, Hit, Ray, Request, Return, Sampling, SensorId};
-
-use crate::attribution::{Attributions, Cause, SightCause};
-use crate::compare::{Class, Place, Quantity};
-use crate::judge::{Judge, JudgeShare};
-use crate::output::probe_command;
-use crate::renderers::Contender;
-use crate::run::{Progress, Subject};
+use raypencil_scene::Place;
+use raypencil_scene::{Frame, Hit, Progress, Ray, Request, Return, Sampling, SensorId};
+use raypencil_scene_io::{Subject, probe_command};
 
 /// One ray and what each renderer says of it.
 #[derive(Debug, Clone)]
@@ -186,8 +183,8 @@ fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
     let mut back = returned(judge, place, contender, &frame, hit);
     let is_wrong =
         ruling == Ruling::Wrong || back.as_ref().is_some_and(|back| back.ruling.visible == Ruling::Wrong);
-    let attributions = is_wrong
-        .then(|| Attributions::find(judge, &frame, contender.approximations(), renderer.resolution()));
+    let attributions =
+        is_wrong.then(|| attribute(judge, &frame, contender.approximations(), renderer.resolution()));
     let cause = attributions.as_ref().and_then(|attributions| attributions.cause(place).cloned());
     if let Some(back) = &mut back {
         back.cause = attributions.as_ref().and_then(|attributions| attributions.sight_cause(place).cloned());

@@ -1,12 +1,11 @@
 //! A probe as text and as JSON.
 
+use serde::Serialize;
 use std::fmt;
 
+use crate::probe::{Probe, ProbedReturn};
 use raypencil_referee::{Explained, Margin, Ruling};
 use raypencil_scene::{Hit, Ray, Return};
-use serde::Serialize;
-
-use super::{Probe, ProbedReturn};
 
 impl Probe {
     /// The same as a value for `--json`.

@@ -1,13 +1,13 @@
 //! `dem`, and the keys that are there only with it.
 
 use std::path::PathBuf;
-
 use toml::Spanned;
 
-use super::Source;
 use crate::keys::Key;
+use crate::parse::Source;
 use crate::plan::DemPart;
-use crate::{SceneIoError, dem};
+use crate::scene_error::SceneIoError;
+use raypencil_mesh_io::dem;
 
 impl Source<'_> {
     /// What is taken of an elevation model, whose file is filled in later: keys that are there only with `dem`.

@@ -1,19 +1,19 @@
 //! `generate = { ... }`: random grounds of tests by `kind`, ground as Mars has it by `preset`.
 
+use glam::DVec3;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
-
-use glam::DVec3;
-use raypencil_terrain::{MarsGround, PRESET_NAMES};
 use toml::Spanned;
 
-use super::Source;
-use crate::SceneIoError;
 use crate::keys::{GenerateKeys, Key};
+use crate::parse::Source;
 use crate::plan::Terrain;
+use crate::scene_error::SceneIoError;
+use raypencil_terrain::{MarsGround, PRESET_NAMES};
 
 /// Faces of a random ground: a gigabyte or so.
 const GENERATED_FACES: RangeInclusive<i64> = 1..=1 << 24;
+
 /// Whole metres and parts of one, of anything that is generated.
 const LENGTH_M: RangeInclusive<f64> = 1e-3..=1e4;
 

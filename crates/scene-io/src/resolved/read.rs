@@ -1,14 +1,13 @@
 //! TOML of `kind = "resolved"` to sensors and poses; every error points to its place in the file.
 
-use std::ops::Range;
-
 use glam::{DQuat, DVec3};
-use raypencil_scene::{Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Mounted, Pose, SceneError};
 use serde::Deserialize;
+use std::ops::Range;
 use toml::Spanned;
 
-use crate::SceneIoError;
 use crate::parse::{FLUX_MODELS, GLOBAL_M, Source};
+use crate::scene_error::SceneIoError;
+use raypencil_scene::{Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Mounted, Pose, SceneError};
 
 /// Everything of a scene but its mesh.
 pub(crate) struct Resolved {
@@ -252,8 +251,7 @@ fn beam(
 
 /// An error with its place, if the field stands in the file.
 fn placed(places: &Places, source: &Source, error: SceneError) -> SceneIoError {
-    places.error(source, error).unwrap_or_else(|error| SceneIoError::Scene {
-        origin: source.file.display().to_string(),
-        source: error,
-    })
+    places
+        .error(source, error)
+        .unwrap_or_else(|error| SceneIoError::scene(source.file.display().to_string(), error))
 }

@@ -3,30 +3,26 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use raypencil_files::FileError;
+use raypencil_files::{Fault, write_atomically};
+use raypencil_mesh_io::write_glb;
 use raypencil_scene::{Filter, FluxModel, Pose, Profile, Scene};
 
-use crate::error::Fault;
-use crate::{SceneIoError, write_atomically, write_glb};
-
 /// Writes `scene` as a resolved scene file `path` and, beside it, its mesh as the GLB `mesh_file_name`.
-/// [`crate::load`] gives back the same scene bit for bit: the same [`crate::scene_sha256`]. The same scene
+/// [`crate::load::load`] gives back the same scene bit for bit: the same [`crate::digest::scene_sha256`]. The same scene
 /// gives the same bytes.
 ///
 /// # Errors
 /// A mesh file name with a folder in it or without `.glb` at its end; as [`write_glb`]; what the file system
 /// says.
-pub fn write_resolved(
-    path: impl AsRef<Path>,
-    scene: &Scene,
-    mesh_file_name: &str,
-) -> Result<(), SceneIoError> {
+pub fn write_resolved(path: impl AsRef<Path>, scene: &Scene, mesh_file_name: &str) -> Result<(), FileError> {
     let path = path.as_ref();
     // The name stands in the file, between quotes, and must mean the same on any system.
     let plain = |c: char| c.is_ascii_alphanumeric() || "._- ".contains(c);
     if !mesh_file_name.ends_with(".glb") || !mesh_file_name.chars().all(plain) {
         let expected = "a plain file name that ends in .glb";
         let fault = Fault::new("terrain.file", format!("{mesh_file_name:?}"), expected);
-        return Err(SceneIoError::Gltf(fault.in_file(path)));
+        return Err(FileError::Gltf(fault.in_file(path)));
     }
     // The mesh first: a scene file that is there has its ground.
     write_glb(path.with_file_name(mesh_file_name), scene.mesh())?;

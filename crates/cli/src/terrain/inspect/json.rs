@@ -1,6 +1,6 @@
 //! The same for programs.
 
-use raypencil_terrain::{Example, Found, Inspection, Item, OpenPiece};
+use raypencil::terrain::{Example, Found, Inspection, Item, OpenPiece};
 use serde_json::{Value, json};
 
 use super::Report;

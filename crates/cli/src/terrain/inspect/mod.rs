@@ -7,10 +7,10 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
-use raypencil_harness::Progress as _;
-use raypencil_scene::Mesh;
-use raypencil_scene_io::{Overrides, SceneSource, load, load_mesh, write_terrain_glb};
-use raypencil_terrain::{Inspection, Repairs, inspect as look, repair};
+use raypencil::Mesh;
+use raypencil::Progress as _;
+use raypencil::io::{Overrides, SceneSource, load, load_mesh, write_terrain_glb};
+use raypencil::terrain::{Inspection, Repairs, inspect as look, repair};
 
 use super::create_folder;
 use crate::args::TerrainInspect;

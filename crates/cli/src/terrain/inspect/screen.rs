@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use raypencil_harness::count;
-use raypencil_terrain::{Example, Found, Inspection, Item, Repairs};
+use raypencil::report::count;
+use raypencil::terrain::{Example, Found, Inspection, Item, Repairs};
 
 use super::Report;
 

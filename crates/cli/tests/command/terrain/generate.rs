@@ -1,7 +1,7 @@
 //! `terrain generate`.
 
-use raypencil_scene_io::load_mesh;
-use raypencil_terrain::height_at;
+use raypencil::io::load_mesh;
+use raypencil::terrain::height_at;
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use raypencil_scene::{Material, Mesh};
-use raypencil_scene_io::{load_mesh, write_glb};
+use raypencil::io::{load_mesh, write_glb};
+use raypencil::{Material, Mesh};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

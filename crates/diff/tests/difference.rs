@@ -1,0 +1,242 @@
+//! Thresholds by hand-derived numbers, and what becomes of sides that do not fit together.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use raypencil_diff::*;
+use raypencil_files::{Channel, Channels, Storage, Values};
+use raypencil_scene::Image;
+
+/// One row of reals as a file of that storage would hold them.
+fn reals(storage: Storage, cells: &[f64]) -> Channel {
+    let values = Values::Reals(Image::from_cells(cells.len() as u32, 1, cells.to_vec()));
+    Channel { file: PathBuf::from("f.exr"), name: "range.T".into(), storage, values }
+}
+
+fn wholes(cells: &[u32]) -> Channel {
+    let values = Values::Wholes(Image::from_cells(cells.len() as u32, 1, cells.to_vec()));
+    Channel { file: PathBuf::from("w.npy"), name: String::new(), storage: Storage::Whole, values }
+}
+
+fn recording(channels: impl IntoIterator<Item = (&'static str, Channel)>) -> Channels {
+    let by_key = channels.into_iter().map(|(key, channel)| (key.to_string(), channel)).collect();
+    Channels { by_key, ..Channels::default() }
+}
+
+/// The difference of one channel.
+fn one(a: Channel, b: Channel, thresholds: &Thresholds) -> ChannelDifference {
+    let difference = diff(&recording([("x", a)]), &recording([("x", b)]), thresholds).unwrap();
+    difference.channels.into_iter().next().unwrap()
+}
+
+fn singles(a: &[f64], b: &[f64], thresholds: &Thresholds) -> ChannelDifference {
+    one(reals(Storage::F32, a), reals(Storage::F32, b), thresholds)
+}
+
+const NONE: Thresholds = Thresholds {
+    fail: 0.0,
+    fail_relative: 0.0,
+    fail_ulp: 0.0,
+    fail_percent: 0.0,
+    hard_fail: None,
+    shared_only: false,
+};
+
+#[test]
+fn the_numbers_of_a_channel_are_those_by_hand() {
+    // Differences 0, 0.5, 0.25, 0: mean 0.1875, mean square (0.25 + 0.0625) / 4 = 0.078125.
+    let found = singles(&[1.0, 1.5, 4.25, -0.0], &[1.0, 2.0, 4.0, 0.0], &NONE);
+    assert_eq!((found.cells(), found.unequal, found.differing, found.incomparable), (4, 2, 2, 0));
+    assert_eq!((found.largest, found.mean), (Some(0.5), Some(0.1875)));
+    assert_eq!(found.rms, Some(0.078_125_f64.sqrt()));
+    assert_eq!(found.worst, Some(CellDifference { i: 1, j: 0, a: 1.5, b: 2.0 }));
+    // At 2 an ulp of single precision is 2^-22, at 4 it is 2^-21: 0.5 is 2^21 ulp, 0.25 is 2^19.
+    assert_eq!(found.largest_ulp, Some(2_097_152.0));
+    assert_eq!(found.percent(), 50.0);
+    assert!(found.fails);
+}
+
+#[test]
+fn any_of_three_thresholds_lets_a_cell_pass() {
+    // 8 and 8.5: 0.5 absolute, 0.5 / 8.5 relative, and an ulp at 8 is 2^-20: 2^19 ulp.
+    let differing = |thresholds: Thresholds| singles(&[8.0], &[8.5], &thresholds).differing;
+    assert_eq!(differing(NONE), 1);
+    assert_eq!(differing(Thresholds { fail: 0.5, ..NONE }), 0);
+    assert_eq!(differing(Thresholds { fail: 0.499, ..NONE }), 1);
+    // 1 / 17 = 0.0588...
+    assert_eq!(differing(Thresholds { fail_relative: 0.058_9, ..NONE }), 0);
+    assert_eq!(differing(Thresholds { fail_relative: 0.058_8, ..NONE }), 1);
+    assert_eq!(differing(Thresholds { fail_ulp: 524_288.0, ..NONE }), 0);
+    assert_eq!(differing(Thresholds { fail_ulp: 524_287.0, ..NONE }), 1);
+    let mixed = Thresholds { fail: 1e-9, fail_relative: 1e-9, fail_ulp: 524_288.0, ..NONE };
+    assert_eq!(differing(mixed), 0);
+}
+
+#[test]
+fn ulps_are_those_of_the_coarser_file() {
+    // One step of single precision at 1: 2^-23, which is 2^29 steps of double precision.
+    let step = 1.0 + 1.0 / 8_388_608.0;
+    let ulps = |a, b| one(reals(a, &[1.0]), reals(b, &[step]), &NONE).largest_ulp.unwrap();
+    assert_eq!(ulps(Storage::F32, Storage::F64), 1.0);
+    assert_eq!(ulps(Storage::F64, Storage::F64), 536_870_912.0);
+    // Of half precision it is 2^-10 at 1.
+    assert_eq!(ulps(Storage::F16, Storage::F64), 1.0 / 8192.0);
+    let allowed = |a, b| one(reals(a, &[1.0]), reals(b, &[step]), &Thresholds { fail_ulp: 1.0, ..NONE });
+    assert!(!allowed(Storage::F32, Storage::F64).fails);
+    assert!(allowed(Storage::F64, Storage::F64).fails);
+}
+
+#[test]
+fn nan_is_nan_and_nothing_else() {
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    let all = Thresholds { fail: inf, fail_relative: inf, fail_ulp: inf, ..NONE };
+    let same = singles(&[nan, inf, -inf, 0.0], &[nan, inf, -inf, -0.0], &NONE);
+    assert_eq!((same.unequal, same.fails, same.worst), (0, false, None));
+    // One number beside them that is finite: the means are over it alone.
+    assert_eq!((same.largest, same.mean), (Some(0.0), Some(0.0)));
+    for (a, b) in [(nan, 1.0), (1.0, nan), (inf, 1.0), (inf, -inf), (nan, inf)] {
+        let found = singles(&[1.0, a], &[1.5, b], &all);
+        assert_eq!((found.unequal, found.differing, found.incomparable), (2, 1, 1), "{a} {b}");
+        assert!(found.fails);
+        // It is looked at before any number.
+        assert_eq!(found.worst.unwrap().i, 1);
+        assert_eq!(found.largest, Some(0.5));
+    }
+    let nothing = singles(&[nan], &[1.0], &NONE);
+    assert_eq!((nothing.largest, nothing.rms, nothing.largest_ulp), (None, None, None));
+}
+
+#[test]
+fn a_share_of_cells_may_differ_but_none_beyond_the_hard_limit() {
+    let (a, b) = ([0.0; 8], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 3.0]);
+    let fails = |thresholds: Thresholds| singles(&a, &b, &thresholds).fails;
+    // Two of eight cells are 25 percent.
+    assert!(!fails(Thresholds { fail_percent: 25.0, ..NONE }));
+    assert!(fails(Thresholds { fail_percent: 24.9, ..NONE }));
+    let hard = |most| Thresholds { fail_percent: 25.0, hard_fail: Some(most), ..NONE };
+    assert!(!fails(hard(3.0)));
+    assert!(fails(hard(2.9)));
+    // It holds for cells that another threshold allows, too.
+    assert!(fails(Thresholds { fail: 5.0, hard_fail: Some(2.9), ..NONE }));
+    let nan = singles(&[f64::NAN, 1.0], &[1.0; 2], &hard(1e300));
+    assert_eq!((nan.beyond_hard, nan.fails), (1, true));
+}
+
+#[test]
+fn wholes_are_equal_or_not() {
+    let thresholds = Thresholds { fail: 100.0, fail_ulp: 100.0, hard_fail: Some(0.5), ..NONE };
+    let found = one(wholes(&[1, 2, u32::MAX]), wholes(&[1, 3, u32::MAX]), &thresholds);
+    assert_eq!((found.differing, found.largest, found.largest_ulp, found.rms), (1, None, None, None));
+    assert_eq!(found.worst, Some(CellDifference { i: 1, j: 0, a: 2.0, b: 3.0 }));
+    assert!(found.fails);
+    // A share of them may differ: how far is no question.
+    let share = Thresholds { fail_percent: 34.0, ..thresholds };
+    assert!(!one(wholes(&[1, 2, 7]), wholes(&[1, 3, 7]), &share).fails);
+    // Beside reals they are reals: truth values as bytes and as an EXR's floats.
+    let found = one(wholes(&[0, 1]), reals(Storage::F32, &[0.0, 1.0]), &NONE);
+    assert_eq!((found.unequal, found.storage), (0, Storage::F32));
+}
+
+#[test]
+fn channels_on_one_side_fail_unless_only_shared_ones_count() {
+    let cell = || reals(Storage::F32, &[1.0]);
+    let a = recording([("a", cell()), ("x", cell())]);
+    let b = recording([("b", cell()), ("c", cell()), ("x", cell())]);
+    let found = diff(&a, &b, &NONE).unwrap();
+    assert_eq!(found.only, [vec!["a".to_string()], vec!["b".to_string(), "c".to_string()]]);
+    assert!(!found.passes() && found.failing().next().is_none());
+    assert!(diff(&a, &b, &Thresholds { shared_only: true, ..NONE }).unwrap().passes());
+    let nothing = diff(&recording([("a", cell())]), &recording([("b", cell())]), &NONE).unwrap_err();
+    let expected =
+        "no channel is in both: A has a, B has b; expected the same names, as of two folders or two files";
+    assert_eq!(nothing.to_string(), expected);
+}
+
+#[test]
+fn sizes_that_differ_name_both_files() {
+    let error =
+        diff(&recording([("x", reals(Storage::F32, &[1.0, 2.0]))]), &recording([("x", wholes(&[1]))]), &NONE);
+    assert_eq!(
+        error.unwrap_err().to_string(),
+        "channel `x`: f.exr has 2 x 1 cells, w.npy has 1 x 1; expected the same size"
+    );
+}
+
+#[test]
+fn the_unit_is_what_either_file_says() {
+    let mut a = recording([("camera/range.T", reals(Storage::F32, &[1.0]))]);
+    let b = a.clone();
+    assert_eq!(diff(&b, &a, &NONE).unwrap().channels[0].unit, "");
+    let texts = BTreeMap::from([("unit".to_string(), "range, P: metre; N: 1".to_string())]);
+    a.attributes.insert("f.exr".into(), texts);
+    assert_eq!(diff(&b, &a, &NONE).unwrap().channels[0].unit, "m");
+    assert_eq!(diff(&a, &b, &NONE).unwrap().channels[0].unit, "m");
+}
+
+#[test]
+fn a_screen_stays_one_screen() {
+    let many: Vec<(String, Channel)> = (0..60)
+        .map(|k| {
+            (format!("a-folder-with-a-name/channel-{k:02}.and-a-name"), reals(Storage::F64, &[f64::from(k)]))
+        })
+        .collect();
+    let recording = |shift: f64| Channels {
+        by_key: many
+            .iter()
+            .map(|(key, channel)| {
+                let cell = channel.values.real(0) + shift / 3.0;
+                (key.clone(), reals(Storage::F64, &[cell]))
+            })
+            .collect(),
+        ..Channels::default()
+    };
+    let (a, b) = (recording(-1e200), recording(1e-3));
+    let difference = diff(&a, &b, &NONE).unwrap();
+    let long = "x/".repeat(200);
+    let sides = Sides { names: [&long, "b"], channels: [&a, &b] };
+    let screen = diff_screen(&difference, &sides, None);
+    assert!(screen.lines().count() <= 40, "{screen}");
+    assert!(screen.lines().all(|line| line.chars().count() <= 100), "{screen}");
+    assert!(screen.contains("and 48 channels that are not the same"), "{screen}");
+    assert!(screen.contains("FAIL 60 of 60 channels differ."), "{screen}");
+    let same = diff_screen(&diff(&a, &a, &NONE).unwrap(), &sides, None);
+    assert!(same.contains("PASS 60 channels compared, the same in every cell."), "{same}");
+    assert!(same.contains("Allowed: no difference."), "{same}");
+}
+
+#[test]
+fn a_folder_is_complete_and_its_page_escapes_names() {
+    let a = recording([
+        ("<b>", reals(Storage::F32, &[1.0, f64::NAN, 2.0])),
+        ("face.I", wholes(&[1, 2, u32::MAX])),
+        ("same", wholes(&[1, 1, 1])),
+    ]);
+    let b = recording([
+        ("<b>", reals(Storage::F32, &[1.0, 1.0, 2.5])),
+        ("face.I", wholes(&[1, 3, u32::MAX])),
+        ("same", wholes(&[1, 1, 1])),
+    ]);
+    let difference = diff(&a, &b, &NONE).unwrap();
+    let sides = Sides { names: ["left & <right>", "b"], channels: [&a, &b] };
+    let folder = tempfile::tempdir().unwrap();
+    let written = write_diff(&difference, &sides, folder.path(), &raypencil_scene::Silent).unwrap();
+    let html = std::fs::read_to_string(&written.report).unwrap();
+    assert!(html.contains("<h3>&#60;b&#62; "), "names are escaped");
+    assert!(html.contains("left &#38; &#60;right&#62;"), "{}", &html[..2000]);
+    // Three pictures of each of two channels.
+    assert_eq!(html.matches("data:image/png;base64,").count(), 6);
+    assert!(!html.contains("http://") && !html.contains("src=\"/"), "links to nothing");
+    assert!(html.contains("NaN or infinite on one side") && html.contains("not the same"));
+    let junit = std::fs::read_to_string(&written.junit).unwrap();
+    assert!(junit.contains("failures=\"2\"") && junit.contains("tests=\"3\""), "{junit}");
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&written.summary).unwrap()).unwrap();
+    assert_eq!(summary["verdict"], "differs");
+    let channel = &summary["channels"][0];
+    assert_eq!((&channel["worst"]["a"], &channel["worst"]["b"]), (&"NaN".into(), &1.0.into()));
+    assert_eq!(
+        (&channel["differing"], &channel["incomparable"], &channel["largest"]),
+        (&2.into(), &1.into(), &0.5.into())
+    );
+    assert_eq!(summary["channels"][1]["largest"], serde_json::Value::Null);
+}

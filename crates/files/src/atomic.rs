@@ -1,0 +1,82 @@
+//! Writing a file so that nobody ever sees a part of it.
+
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use crate::error::FileError;
+
+/// Writes a file beside `path` and renames it to `path` when it is complete, replacing what was there.
+///
+/// After an error the old file, if any, is untouched and the partial one is gone. The folder must exist.
+/// There is no `fsync`: the promise is about other readers and about failing writers, not about power cuts.
+///
+/// # Errors
+/// What the file system or `write` itself says, with the path.
+pub fn write_atomically(
+    path: impl AsRef<Path>,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<(), FileError> {
+    let path = path.as_ref();
+    let attempt = || {
+        // A bare file name has the empty path as its parent.
+        let folder = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".raypencil-").suffix(".part");
+        // A temporary file is private by default; the finished one is as readable as any other output.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut temporary = builder.tempfile_in(folder)?;
+        let mut writer = BufWriter::new(temporary.as_file_mut());
+        write(&mut writer)?;
+        writer.flush()?;
+        drop(writer);
+        temporary.persist(path).map_err(|error| error.error)?;
+        Ok(())
+    };
+    attempt().map_err(|error| FileError::io(path, "write", error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failing_writer_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.txt");
+        write_atomically(&path, |file| file.write_all(b"old")).unwrap();
+        let error = write_atomically(&path, |file| {
+            file.write_all(b"half of the n")?;
+            Err(std::io::Error::other("the pen broke"))
+        });
+        let message = error.unwrap_err().to_string();
+        assert!(message.contains("out.txt: cannot write: the pen broke"), "{message}");
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        write_atomically(&path, |file| file.write_all(b"new")).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_missing_folder_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let message =
+            write_atomically(folder.path().join("no/such.txt"), |_| Ok(())).unwrap_err().to_string();
+        assert!(message.contains("such.txt: cannot write"), "{message}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_file_is_as_readable_as_any_other() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, plain) = (folder.path().join("ours"), folder.path().join("plain"));
+        write_atomically(&ours, |file| file.write_all(b"1")).unwrap();
+        std::fs::write(&plain, b"1").unwrap();
+        let mode = |path| std::fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(ours), mode(plain));
+    }
+}

@@ -1,0 +1,182 @@
+//! OpenEXR to named channels, from any program. What the header claims is checked before memory is asked for.
+
+use exr::image::FlatSamples;
+use exr::image::read::image::ReadLayers;
+use exr::image::read::layers::ReadChannels;
+use exr::math::Vec2;
+use exr::meta::attribute::AttributeValue;
+use exr::meta::header::Header;
+use exr::prelude::Compression;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::Path;
+
+use crate::bytes;
+use crate::error::{Fault, FileError};
+use crate::exr::{ExrMap, Raster, channel, header};
+use crate::limits::Limits;
+use raypencil_scene::Image;
+
+/// Reads all channels of an OpenEXR file with one part. Tiles are welcome, and of several resolutions the
+/// largest is read; several parts, deep data and subsampled channels are refused.
+///
+/// # Errors
+/// Names the file, the channel or other place in it, what was found and what was expected.
+pub fn read_exr(path: impl AsRef<Path>, limits: &Limits) -> Result<ExrMap, FileError> {
+    let path = path.as_ref();
+    // A file larger than the decompressed data that is allowed has something else in it.
+    let bytes = bytes::read_file(path, limits.bytes).map_err(|error| FileError::io(path, "read", error))?;
+    exr_from_bytes(&bytes, path, limits)
+}
+
+/// As [`read_exr`] from the bytes of a file; `file` is for messages.
+///
+/// # Errors
+/// As [`read_exr`].
+pub fn exr_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<ExrMap, FileError> {
+    decode(bytes, limits).map_err(|fault| FileError::Exr(fault.in_file(file)))
+}
+
+fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
+    let invalid = |place: &'static str| {
+        move |error: exr::error::Error| {
+            Fault::new(place, error.to_string(), "an OpenEXR file that is complete")
+        }
+    };
+    header::check(file)?;
+    // Headers alone are read here; the offset tables and the pixels wait.
+    let reader = exr::block::read(Cursor::new(file), false).map_err(invalid("header"))?;
+    let [header] = reader.headers() else {
+        let found = format!("{} parts", reader.headers().len());
+        return Err(Fault::new("header", found, "one part: split multi-part files first"));
+    };
+    check(header, file.len() as u64, limits)?;
+    header::blocks(file, header)?;
+    let (width, height) = (header.layer_size.width() as u32, header.layer_size.height() as u32);
+
+    let image = exr::image::read::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        // On one thread: a damaged block then ends in an error and nowhere else.
+        .non_parallel()
+        // Of the blocks, not of the header: an offset table with gaps would leave cells unset.
+        .pedantic()
+        .from_chunks(reader)
+        .map_err(invalid("pixels"))?;
+
+    let mut map = ExrMap::new(width, height);
+    map.attributes = texts(&image.attributes.other);
+    for layer in image.layer_data {
+        map.attributes.extend(texts(&layer.attributes.other));
+        for part in layer.channel_data.list {
+            let name = part.name.to_string();
+            let raster = match part.sample_data {
+                FlatSamples::F16(cells) => {
+                    map.halves.insert(name.clone());
+                    let cells = cells.into_iter().map(|cell| cell.to_f32()).collect();
+                    Raster::F32(Image::from_cells(width, height, cells))
+                }
+                FlatSamples::F32(cells) => Raster::F32(Image::from_cells(width, height, cells)),
+                FlatSamples::U32(cells) => Raster::U32(Image::from_cells(width, height, cells)),
+            };
+            if map.channels.insert(name.clone(), raster).is_some() {
+                return Err(Fault::new(channel(&name), "there twice", "each channel once"));
+            }
+        }
+    }
+    Ok(map)
+}
+
+/// Refuses a header whose claims are too large, or too large for the file that they stand in.
+fn check(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(), Fault> {
+    let Vec2(width, height) = header.layer_size;
+    let (width, height) = (width as u64, height as u64);
+    let refuse =
+        |expected: String| Err(Fault::new("data window", format!("{width} x {height} cells"), expected));
+    if width == 0 || height == 0 || width.saturating_mul(height) > limits.cells {
+        return refuse(format!("1 to {} cells", limits.cells));
+    }
+    if let Some((columns, rows)) = limits.size
+        && (width, height) != (columns.into(), rows.into())
+    {
+        return refuse(format!("{columns} x {rows}"));
+    }
+    // A crop would shift every cell against the sensor's.
+    let (data, display) = (header.data_window(), header.shared_attributes.display_window);
+    if data != display {
+        let found = format!("{}", Window(data));
+        return Err(Fault::new("data window", found, format!("the display window, {}", Window(display))));
+    }
+    if header.deep {
+        return Err(Fault::new("header", "deep data", "one sample a cell"));
+    }
+    let mut bytes_per_cell = 0_u64;
+    for description in &header.channels.list {
+        let name = description.name.to_string();
+        if description.sampling != Vec2(1, 1) {
+            let Vec2(x, y) = description.sampling;
+            return Err(Fault::new(channel(&name), format!("a sample every {x} x {y} cells"), "one a cell"));
+        }
+        bytes_per_cell += description.sample_type.bytes_per_sample() as u64;
+    }
+    let bytes = width * height * bytes_per_cell;
+    if bytes > limits.bytes {
+        return Err(Fault::new("channels", format!("{bytes} bytes"), format!("at most {}", limits.bytes)));
+    }
+    // Every block has 8 bytes in the offset table and 8 of its own, so many blocks need a long file.
+    let blocks = header.chunk_count as u64;
+    let Some(shrinkage) = shrinkage(header.compression) else {
+        let expected = "none, RLE, ZIPS, ZIP or PIZ, which keep every bit";
+        return Err(Fault::new("header", header.compression.to_string(), expected));
+    };
+    let most = shrinkage.saturating_mul(file_bytes);
+    if blocks.saturating_mul(16) > file_bytes || bytes > most {
+        let found =
+            format!("{width} x {height} cells of {bytes_per_cell} bytes in a file of {file_bytes} bytes");
+        return Err(Fault::new("data window", found, "a size that the file can hold (is it cut off?)"));
+    }
+    Ok(())
+}
+
+/// How many bytes of cells a byte of the file can hold at most, rounded up generously; `None` for the
+/// compressions that change values.
+///
+/// CHOICE: those are refused. Maps are compared to the last bit, which a lossy file no longer has; and the
+/// decoders of B44 and DWA ask for memory by numbers that nobody has checked.
+fn shrinkage(compression: Compression) -> Option<u64> {
+    match compression {
+        Compression::Uncompressed => Some(1),
+        // Runs of at most 128 in two bytes.
+        Compression::RLE => Some(64),
+        // Deflate codes 258 bytes in no less than two bits: 1032.
+        Compression::ZIP1 | Compression::ZIP16 => Some(1032),
+        // After a wavelet transform, Huffman codes for runs of at most 261 values of two bytes, of ten bits
+        // at the least.
+        Compression::PIZ => Some(1032),
+        _ => None,
+    }
+}
+
+/// A rectangle in words.
+struct Window(exr::meta::attribute::IntegerBounds);
+
+impl std::fmt::Display for Window {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (Vec2(x, y), Vec2(width, height)) = (self.0.position, self.0.size);
+        write!(f, "{width} x {height} at ({x}, {y})")
+    }
+}
+
+/// The attributes that are texts.
+fn texts<'a>(
+    attributes: impl IntoIterator<Item = (&'a exr::meta::attribute::Text, &'a AttributeValue)>,
+) -> BTreeMap<String, String> {
+    let text = |(name, value): (&exr::meta::attribute::Text, &AttributeValue)| match value {
+        AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+        _ => None,
+    };
+    attributes.into_iter().filter_map(text).collect()
+}

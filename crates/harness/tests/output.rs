@@ -1,0 +1,367 @@
+//! The folder as a whole.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use raypencil_files::FolderError;
+use raypencil_harness::{
+    HarnessError, Validation, junit_xml, one_screen, report_html, summary_json, summary_markdown,
+    write_validation,
+};
+use raypencil_referee::{Displacement, Referee};
+use raypencil_scene::{Place, Silent};
+use raypencil_scene_io::probe_command;
+use raypencil_tests::fixtures;
+
+/// Every file below a folder, by its path from there.
+fn files(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_string();
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|file| format!("{name}/{file}")));
+        } else {
+            found.push(name);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// A validation whose times are those of any other run.
+fn timeless(mut validation: Validation) -> Validation {
+    for stage in &mut validation.stages {
+        stage.time = Duration::from_millis(5);
+    }
+    for rendered in &mut validation.rendered {
+        rendered.time = Duration::from_millis(9);
+        for stage in &mut rendered.frame.stages {
+            stage.time = Duration::from_millis(3);
+        }
+    }
+    validation
+}
+
+#[test]
+fn a_folder_has_every_file_and_the_same_bytes_each_time() {
+    let (first, second) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    // A folder below one that does not exist yet.
+    let (first, second) = (first.path().join("out/a"), second.path().to_path_buf());
+    let written = write_validation(&timeless(fixtures::agreeing()), &first, &Silent).unwrap();
+    write_validation(&timeless(fixtures::agreeing()), &second, &Silent).unwrap();
+    let expected = [
+        "junit.xml",
+        "report.html",
+        "scanline/beam-0.exr",
+        "scanline/camera.exr",
+        "summary.json",
+        "summary.md",
+        "tracer/beam-0.exr",
+        "tracer/camera.exr",
+    ];
+    assert_eq!(files(&first), expected);
+    for file in expected {
+        assert_eq!(fs::read(first.join(file)).unwrap(), fs::read(second.join(file)).unwrap(), "{file}");
+    }
+    assert_eq!(written.maps.len(), 4);
+    let summary: Value = serde_json::from_slice(&fs::read(written.summary).unwrap()).unwrap();
+    for renderer in summary["renderers"].as_array().unwrap() {
+        for sensor in renderer["sensors"].as_array().unwrap() {
+            assert!(first.join(sensor["file"].as_str().unwrap()).exists());
+        }
+    }
+}
+
+#[test]
+fn an_error_in_the_middle_leaves_no_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    let summary = folder.path().join("summary.json");
+    write_validation(&fixtures::agreeing(), folder.path(), &Silent).unwrap();
+    assert!(summary.exists());
+    // Where the report should go there is now a folder with something in it.
+    let report = folder.path().join("report.html");
+    fs::remove_file(&report).unwrap();
+    fs::create_dir_all(report.join("occupied")).unwrap();
+    let error = write_validation(&fixtures::agreeing(), folder.path(), &Silent).unwrap_err();
+    assert!(error.to_string().contains("report.html: cannot write: "), "{error}");
+    assert!(!summary.exists());
+}
+
+#[test]
+fn a_folder_that_cannot_be_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "not a folder").unwrap();
+    let error = write_validation(&fixtures::agreeing(), &file.join("out"), &Silent).unwrap_err();
+    assert!(matches!(error, HarnessError::Folder(FolderError::Create { .. })));
+    let message = error.to_string();
+    assert!(message.contains("file/out: cannot create the folder: "), "{message}");
+}
+
+#[test]
+fn a_summary_that_cannot_be_removed_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("summary.json")).unwrap();
+    let error = write_validation(&fixtures::agreeing(), folder.path(), &Silent).unwrap_err();
+    assert!(matches!(error, HarnessError::Folder(FolderError::RemoveEarlier { .. })));
+    // Nothing was written beside it.
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn renderers_need_folders_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["", ".", "..", "../up", "a/b", "a/", "/tmp", "scanline"] {
+        let mut validation = fixtures::agreeing();
+        validation.rendered[1].name = name.into();
+        let error = write_validation(&validation, folder.path(), &Silent).unwrap_err();
+        assert!(matches!(error, HarnessError::Name { .. }), "{name}: {error}");
+    }
+    assert!(files(folder.path()).is_empty());
+}
+
+#[test]
+fn the_summary_adds_up() {
+    for (validation, defects) in [(fixtures::agreeing(), 0), (fixtures::defective(), 2)] {
+        let summary: Value = serde_json::from_str(&summary_json(&validation)).unwrap();
+        let classes = ["agree", "tie", "rounding", "undecided", "defects"];
+        let of = |value: &Value, key: &str| value[key].as_u64().unwrap();
+        let sum = |value: &Value| classes.iter().map(|class| of(value, class)).sum::<u64>();
+        // The camera's 48 x 40 pixels and the beam's 64 x 4 pencils.
+        assert_eq!(of(&summary, "compared"), 48 * 40 + 64 * 4);
+        assert_eq!(sum(&summary), of(&summary, "compared"));
+        assert_eq!(of(&summary, "defects"), defects);
+        let sensors = summary["pairs"][0]["sensors"].as_array().unwrap();
+        for sensor in sensors {
+            assert_eq!(sum(sensor), of(sensor, "compared"));
+            let hit = &sensor["quantities"][0];
+            let judged: u64 = ["agree", "tie", "defects"].iter().map(|class| of(hit, class)).sum();
+            assert_eq!(judged + of(hit, "not_compared"), of(sensor, "compared"));
+        }
+        for class in ["compared"].iter().chain(&classes) {
+            assert_eq!(sensors.iter().map(|sensor| of(sensor, class)).sum::<u64>(), of(&summary, class));
+        }
+    }
+}
+
+#[test]
+fn what_is_not_finite_is_null_and_keeps_its_place() {
+    let summary: Value = serde_json::from_str(&summary_json(&fixtures::defective())).unwrap();
+    let range = &summary["pairs"][0]["sensors"][1]["quantities"][2];
+    for worst in ["worst_error", "worst_ratio"] {
+        assert_eq!(range[worst]["value"], Value::Null);
+        assert_eq!(range[worst]["probe"], "raypencil probe pyramids --fan 60 --beam 0 --pencil 9,2");
+    }
+}
+
+#[test]
+fn every_ray_has_its_command() {
+    let subject = fixtures::subject();
+    let pixel = Place { sensor: raypencil_scene::SensorId::Camera, i: 4, j: 5 };
+    assert_eq!(probe_command(&subject, pixel), "raypencil probe pyramids --fan 60 --pixel 4,5");
+    let pencil = "raypencil probe pyramids --fan 60 --beam 0 --pencil 7,1";
+    assert_eq!(probe_command(&subject, fixtures::DEFECTS[0]), pencil);
+}
+
+#[test]
+fn junit_has_a_case_per_quantity_and_fails_on_defects() {
+    let agreeing = junit_xml(&fixtures::agreeing()).unwrap();
+    // One suite of two sensors: seven quantities each, a pixel's flux, and six of what comes back of a pencil.
+    assert_eq!(agreeing.matches("<testcase ").count(), 21);
+    assert!(agreeing.contains("tests=\"21\" skipped=\"0\" failures=\"0\" errors=\"0\""), "{agreeing}");
+
+    let defective = junit_xml(&fixtures::defective()).unwrap();
+    assert_eq!(defective.matches("<failure ").count(), 2);
+    assert!(defective.contains("raypencil probe pyramids --fan 60 --beam 0 --pencil 7,1"), "{defective}");
+    assert!(defective.contains("&lt;no&gt; &amp;"), "{defective}");
+    for text in [&agreeing, &defective, &junit_xml(&fixtures::lonely()).unwrap()] {
+        assert_well_formed(text);
+    }
+}
+
+#[test]
+fn nothing_compared_is_no_pass_anywhere() {
+    let validation = fixtures::lonely();
+    assert!(junit_xml(&validation).unwrap().contains("<failure message=\"Nothing was compared\""));
+    assert!(summary_json(&validation).contains("\"verdict\": \"nothing_compared\""));
+    for text in [
+        one_screen(&validation, None),
+        summary_markdown(&validation).unwrap(),
+        report_html(&validation).unwrap(),
+    ] {
+        assert!(text.contains("Nothing was compared"), "{text}");
+        assert!(!text.contains("All "), "{text}");
+    }
+}
+
+#[test]
+fn the_report_stands_alone_and_escapes_what_it_quotes() {
+    let html = report_html(&fixtures::defective()).unwrap();
+    assert!(html.contains("2 of 2,176 rays differ"));
+    assert!(html.contains("raypencil probe pyramids --fan 60 --beam 0 --pencil 9,2"));
+    assert!(html.contains(&"0123456789abcdef".repeat(4)));
+    assert!(html.contains("&#60;no&#62; &#38;") && !html.contains("<no>"));
+    assert!(html.contains("hit on one side only"));
+    for outside in ["http:", "https:", "<script", "<link", "@import", "url("] {
+        assert!(!html.contains(outside), "{outside}");
+    }
+    // A range map of each renderer and a difference, of two sensors; an image of each renderer's light, and a chart.
+    assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 8);
+    assert_eq!(html.matches("src=").count(), 8);
+    assert_eq!(html.matches("<polyline ").count(), 2);
+    assert!(html.contains("class=\"ring\" style"));
+    assert!(!html.contains("NaN%") && !html.contains("inf%"));
+}
+
+#[test]
+fn the_page_says_how_a_flat_sensor_is_stretched() {
+    // 64 x 4: twice as high is an eighth as high as wide.
+    let html = report_html(&fixtures::agreeing()).unwrap();
+    assert!(html.contains("Rows are drawn 2 times as high as columns are wide."));
+    assert!(html.contains("aspect-ratio:64 / 8"));
+}
+
+#[test]
+fn the_markdown_names_scene_verdict_and_defects() {
+    let text = summary_markdown(&fixtures::defective()).unwrap();
+    assert!(text.starts_with("### ❌ 2 of 2,176 rays differ\n\n"), "{text}");
+    assert!(text.contains("<br>`raypencil probe pyramids --fan 60 --beam 0 --pencil 7,1`\n"), "{text}");
+    let agreeing = summary_markdown(&fixtures::agreeing()).unwrap();
+    assert!(agreeing.starts_with("### ✅ All 2,176 rays agree\n\n"), "{agreeing}");
+    // Every line of a table has as many cells as its head.
+    for table in agreeing.split("\n\n").filter(|block| block.starts_with('|')) {
+        let cells: Vec<usize> = table.lines().map(|line| line.matches('|').count()).collect();
+        assert!(cells.len() > 3 && cells.iter().all(|&count| count == cells[0]), "{table}");
+    }
+}
+
+#[test]
+fn one_screen_is_one_screen() {
+    let mut crowded = fixtures::defective();
+    // As many defects, stages and counts as there can be.
+    let first = crowded.pairs[0].sensors[1].defects[0].clone();
+    crowded.pairs[0].sensors[1].defects = vec![first; 100];
+    for sensor in &mut crowded.pairs[0].sensors {
+        for (_, tally) in &mut sensor.quantities {
+            tally.by_class = [67_108_864, 1_000_000, 55_555, 0, 0, 99_999];
+        }
+    }
+    let stage = crowded.stages[0].clone();
+    crowded.stages.extend(vec![stage; 60]);
+    for validation in [fixtures::agreeing(), fixtures::defective(), fixtures::lonely(), crowded] {
+        let text = one_screen(&validation, Some(Path::new("out/pyramids")));
+        assert!(text.lines().count() <= 40, "{text}");
+        for line in text.lines() {
+            assert!(line.chars().count() <= 80, "{line}");
+        }
+        assert!(text.contains("out/pyramids/report.html\n"), "{text}");
+        assert!(text.ends_with('\n') && !text.contains("\n\n\n"));
+    }
+}
+
+#[test]
+fn the_screen_ends_with_the_verdict_or_the_defects() {
+    let agreeing = one_screen(&timeless(fixtures::agreeing()), None);
+    assert!(agreeing.ends_with("\nAll 2,176 rays agree.\n"), "{agreeing}");
+    assert!(!agreeing.contains("report.html"));
+    let defective = one_screen(&fixtures::defective(), None);
+    let expected = "\n2 of 2,176 rays differ.\n  \
+        raypencil probe pyramids --fan 60 --beam 0 --pencil 7,1\n      \
+        hit/miss: scanline: <no> & \"hit\"; tracer: face 3\n";
+    assert!(defective.contains(expected), "{defective}");
+}
+
+/// Tags that open and close in pairs, and text without stray markup: enough for what `quick-junit` writes.
+fn assert_well_formed(xml: &str) {
+    let mut open = Vec::new();
+    let mut rest = xml.strip_prefix("<?xml version=\"1.0\" encoding=\"UTF-8\"?>").expect("a declaration");
+    while let Some((text, after)) = rest.split_once('<') {
+        assert!(!text.contains('>') || !text.contains("]]>"), "{text}");
+        let (tag, after) = after.split_once('>').expect("a tag that ends");
+        assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
+        if let Some(name) = tag.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(name), "{xml}");
+        } else if !tag.ends_with('/') {
+            open.push(tag.split_whitespace().next().unwrap());
+        }
+        rest = after;
+    }
+    assert!(open.is_empty() && rest.trim().is_empty());
+}
+
+#[test]
+fn an_outsiders_misses_are_told_and_reproduced() {
+    let folder = tempfile::tempdir().unwrap();
+    let validation = fixtures::with_outsider();
+    let written = write_validation(&validation, folder.path(), &Silent).unwrap();
+
+    // On the page, its name no tag.
+    let html = fs::read_to_string(written.report).unwrap();
+    for words in [
+        "Renderers of others",
+        "Odd &#60;renderer&#62; 1",
+        "2 wrong",
+        "guess, beam 0",
+        "misses/odd-renderer-1-1",
+    ] {
+        assert!(html.contains(words), "no {words}");
+    }
+    assert!(!html.contains("<renderer>"));
+    let screen = one_screen(&validation, None);
+    assert!(screen.contains("Odd <renderer> 1: 2 of "), "{screen}");
+    assert!(screen.contains("; 0 of 1 images, 0 of 1 radiances fit"), "{screen}");
+
+    // In a comment on a change.
+    let text = fs::read_to_string(written.markdown).unwrap();
+    assert!(text.contains("* Odd \\<renderer\\> 1: 2 of 2,176 rays wrong"), "{text}");
+    assert!(text.contains("--candidate odd"), "{text}");
+
+    // For programs.
+    let summary: Value = serde_json::from_slice(&fs::read(written.summary).unwrap()).unwrap();
+    let panel = summary["panel"]["renderers"].as_array().unwrap();
+    let wrong: Vec<(&str, u64)> =
+        panel.iter().map(|held| (held["name"].as_str().unwrap(), held["wrong"].as_u64().unwrap())).collect();
+    assert_eq!(wrong, [("scanline", 0), ("tracer", 0), ("Odd <renderer> 1", 2)]);
+    let misses = panel[2]["misses"].as_array().unwrap();
+    assert_eq!(misses.len(), 2);
+    assert!(misses.iter().all(|miss| miss["quantity"] == "visible"));
+    // What the verdict is on: our own.
+    assert_eq!(summary["verdict"], "agree");
+
+    // A reproducer is a pack of the one ray, of which the same is true for the same reason.
+    let of_whole = |i: u32, j: u32| {
+        Referee::new(&validation.subject.scene)
+            .sight(0, i, j, Displacement::ZERO)
+            .unwrap()
+            .hidden_by
+            .is_some()
+    };
+    let mut hidden = Vec::new();
+    for miss in misses {
+        let [i, j] = ["i", "j"].map(|key| miss[key].as_u64().unwrap() as u32);
+        let pack = folder.path().join(miss["reproducer"].as_str().unwrap());
+        let readme = fs::read_to_string(pack.join("README.md")).unwrap();
+        assert!(
+            readme.contains("visible: it says ") && readme.contains("raypencil probe scene.toml --beam 0"),
+            "{readme}"
+        );
+        let found = raypencil_pack::check_pack(&pack, &pack, None, &Silent).unwrap();
+        assert!(found.check.passes());
+        let scene = &found.subject.scene;
+        assert!(scene.camera().sensor.width < 48, "a smaller image does");
+        let words = readme.split_once("pack of that ray (beam-0 pencil ").unwrap().1;
+        let place = words.split_once(" here").unwrap().0;
+        let (at_i, at_j) = place.split_once(',').unwrap();
+        let sight = Referee::new(scene)
+            .sight(0, at_i.parse().unwrap(), at_j.parse().unwrap(), Displacement::ZERO)
+            .unwrap();
+        assert!(sight.pixel.is_some(), "it still lands on the image");
+        assert_eq!(sight.hidden_by.is_some(), of_whole(i, j));
+        hidden.push(sight.hidden_by.is_some());
+    }
+    hidden.sort_unstable();
+    assert_eq!(hidden, [false, true]);
+}

@@ -1,0 +1,146 @@
+//! All answers about a scene, by whoever gives them: the referee, correctly rounded, or a recording.
+
+use std::time::Instant;
+
+use raypencil_referee::{CertifiedLight, CertifiedMap, Format, Referee};
+use raypencil_scene::{
+    FluxModel, Frame, Image, Progress, Quantities, Returns, Sampling, Scene, SensorId, SensorMap, Stage,
+};
+
+/// What somebody says of each ray of a scene. Every quantity is optional.
+#[derive(Debug, Clone)]
+pub struct Answers {
+    /// The maps of each sensor, the camera first.
+    pub maps: Vec<SensorMap>,
+    /// What comes back of each beam.
+    pub light: Vec<BeamLight>,
+}
+
+/// What comes back of one beam.
+#[derive(Debug, Clone)]
+pub struct BeamLight {
+    /// Pencil by pencil, the flux by the scene's model.
+    pub returns: Returns,
+    /// The flux on the camera's image by the scene's model.
+    pub image: Option<Image<f64>>,
+    /// The flux of the pencils by the other model.
+    pub other_flux: Option<Image<f64>>,
+    /// The flux on the camera's image by the other model.
+    pub other_image: Option<Image<f64>>,
+}
+
+impl Answers {
+    /// Nothing said of a scene's sensors.
+    pub(crate) fn none(scene: &Scene) -> Self {
+        let nothing = Quantities {
+            range: false,
+            depth: false,
+            face: false,
+            point: false,
+            normal: false,
+            incidence: false,
+        };
+        let maps = scene.sensors().map(|sensor| {
+            let (width, height) = scene.size(sensor).expect("a sensor of this scene");
+            SensorMap::empty(sensor, width, height, nothing)
+        });
+        let light = scene.beams().iter().map(|beam| BeamLight {
+            returns: Returns::unsupported(beam.sensor.columns, beam.sensor.rows),
+            image: None,
+            other_flux: None,
+            other_image: None,
+        });
+        Self { maps: maps.collect(), light: light.collect() }
+    }
+
+    /// What a renderer's frame says.
+    pub fn of_frame(scene: &Scene, frame: &Frame) -> Self {
+        let mut answers = Self::none(scene);
+        for (mine, sensor) in answers.maps.iter_mut().zip(scene.sensors()) {
+            if let Some(map) = frame.map(sensor) {
+                *mine = map.clone();
+            }
+        }
+        for (index, light) in answers.light.iter_mut().enumerate() {
+            if let Some(returns) = frame.returns.get(index) {
+                light.returns = returns.clone();
+            }
+            light.image = frame.flux.get(index).cloned();
+        }
+        answers
+    }
+
+    /// The same as a frame, as far as a frame holds it: an image that one beam does not have leaves out those of
+    /// later beams.
+    pub(crate) fn to_frame(&self) -> Frame {
+        Frame {
+            camera: self.maps.first().cloned(),
+            beams: self.maps.iter().skip(1).cloned().collect(),
+            returns: self.light.iter().map(|light| light.returns.clone()).collect(),
+            flux: self.light.iter().map_while(|light| light.image.clone()).collect(),
+            stages: Vec::new(),
+        }
+    }
+
+    /// The maps of a sensor.
+    pub fn map(&self, sensor: SensorId) -> &SensorMap {
+        match sensor {
+            SensorId::Camera => &self.maps[0],
+            SensorId::Beam(index) => &self.maps[index + 1],
+        }
+    }
+}
+
+/// Every answer of the referee, correctly rounded.
+#[derive(Debug)]
+pub struct Certified {
+    maps: Vec<CertifiedMap>,
+    light: Vec<CertifiedLight>,
+    /// How long each sensor took.
+    pub stages: Vec<Stage>,
+}
+
+impl Certified {
+    /// Asks about every ray.
+    pub fn new(scene: &Scene, progress: &dyn Progress) -> Self {
+        let mut stages = Vec::new();
+        let mut start = Instant::now();
+        let mut done = |name: &str| {
+            stages.push(Stage { name: format!("certified: {name}"), time: start.elapsed() });
+            start = Instant::now();
+        };
+        let referee = Referee::new(scene);
+        done("tree");
+        let (mut maps, mut light) = (Vec::new(), Vec::new());
+        for sensor in scene.sensors() {
+            progress.stage(&format!("{sensor}: exact values"));
+            maps.extend(referee.certified_map(sensor, Sampling::Centres));
+            done(&sensor.to_string());
+        }
+        for beam in 0..scene.beams().len() {
+            progress.stage(&format!("{}: exact flux", SensorId::Beam(beam)));
+            light.extend(referee.certified_light(beam, Sampling::Centres));
+            done(&format!("{} light", SensorId::Beam(beam)));
+        }
+        Self { maps, light, stages }
+    }
+
+    /// All of it in one format, the flux of the returns by `model`.
+    pub fn in_format(&self, format: Format, model: FluxModel) -> Answers {
+        let light = self.light.iter().map(|light| BeamLight {
+            returns: light.returns_in(format, model),
+            image: Some(light.image_in(format, model)),
+            other_flux: light.returns_in(format, model.other()).flux,
+            other_image: Some(light.image_in(format, model.other())),
+        });
+        Answers {
+            maps: self.maps.iter().map(|map| map.in_format(format, Quantities::ALL)).collect(),
+            light: light.collect(),
+        }
+    }
+
+    /// Values that the budget of bits did not decide.
+    pub fn undecided(&self) -> usize {
+        self.light.iter().map(CertifiedLight::undecided).sum()
+    }
+}

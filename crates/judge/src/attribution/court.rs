@@ -1,0 +1,34 @@
+//! Whom to ask about the answers of one renderer that follows the paper.
+
+use raypencil_scene::{Frame, Request, Resolution, Switches};
+
+use crate::judge::Judge;
+
+/// Renders the judge's scene as the paper's renderer does with these switches.
+///
+/// The judge knows no renderer: whoever asks for causes hands in the one whose answers are to be explained.
+pub type Rerender<'a> = dyn Fn(Switches, Request) -> Frame + Sync + 'a;
+
+/// The judge, and how the renderer whose answers are explained computes.
+#[derive(Clone, Copy)]
+pub(super) struct Court<'a> {
+    pub(super) judge: &'a Judge<'a>,
+    pub(super) switches: Switches,
+    pub(super) resolution: Resolution,
+    pub(super) rerender: &'a Rerender<'a>,
+}
+
+impl Court<'_> {
+    /// Renders the scene as the renderer would with these switches.
+    pub(super) fn render(&self, switches: Switches, request: Request) -> Frame {
+        (self.rerender)(switches, request)
+    }
+}
+
+/// The non-empty sets of some switches, from the smallest to the largest.
+pub(super) fn sets_of(switches: Switches) -> Vec<Switches> {
+    let mut sets: Vec<Switches> =
+        Switches::subsets().filter(|set| *set != Switches::EXACT && switches.contains(*set)).collect();
+    sets.sort_by_key(|set| set.count());
+    sets
+}

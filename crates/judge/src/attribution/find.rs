@@ -1,0 +1,29 @@
+//! Finds the causes of one frame, first of what is hit, then of what the camera sees.
+
+use std::collections::HashMap;
+
+use raypencil_scene::{Frame, Place, Resolution, Switches};
+
+use crate::attribution::cause::Attributions;
+use crate::attribution::court::{Court, Rerender};
+use crate::attribution::{geometry, sight};
+use crate::judge::Judge;
+
+impl Attributions {
+    /// Finds the causes of `frame`, which the scanline renderer made of the judge's scene with `switches`.
+    pub fn find(
+        judge: &Judge<'_>,
+        frame: &Frame,
+        switches: Switches,
+        resolution: Resolution,
+        rerender: &Rerender<'_>,
+    ) -> Self {
+        let court = Court { judge, switches, resolution, rerender };
+        let key = |Place { sensor, i, j }: Place| (sensor, i, j);
+        let by_ray = geometry::causes(court, frame).into_iter().map(|(at, cause)| (key(at), cause)).collect();
+        let mut found = Self { by_ray, of_sight: HashMap::new() };
+        let of_sight = sight::causes(court, frame, &found);
+        found.of_sight = of_sight.into_iter().map(|(at, cause)| (key(at), cause)).collect();
+        found
+    }
+}

@@ -1,0 +1,21 @@
+//! Why a renderer that follows the paper into error differs from the contract, ray by ray.
+//!
+//! A difference is put down to an approximation only if two things hold:
+//!
+//! 1. *It restores.* With the switches of the cause on `exact`, and all others as they are, the same
+//!    algorithm gives an answer that the referee admits.
+//! 2. *It is confirmed.* The referee finds, from the paper's text and by itself, that the approximations lose
+//!    every face of which the answer is silent and add the one that it names
+//!    ([`raypencil_referee::Referee::explain`]), and each switch of the set is the reason for one of them.
+//!    Where one approximation hides what another does (the true face is lost by either alone, say), the reason
+//!    is sought in the answers that are left wrong when only a part of the set is exact.
+//!
+//! Of the sets that do both, one of the smallest is the cause. (A smaller one may restore an answer by luck, as
+//! where the one rule skips what the other adds; it is not confirmed then.) What no set satisfies has no cause,
+//! and is a defect.
+
+pub(crate) mod cause;
+pub(crate) mod court;
+mod find;
+pub(crate) mod geometry;
+pub(crate) mod sight;

@@ -1,0 +1,182 @@
+//! Causes of what the camera is said to see of a pencil's hit.
+
+use rayon::prelude::*;
+
+use crate::attribution::cause::{Attributions, SightCause};
+use crate::attribution::court::{Court, sets_of};
+use raypencil_referee::{ExplainedSight, Ruling, SightApproximations, SightReason};
+use raypencil_scene::Place;
+use raypencil_scene::{FaceId, Fidelity, Frame, Pixel, Quantities, Request, SensorId, Switches};
+
+/// What a frame says of one pencil's hit.
+#[derive(Debug, Clone, Copy)]
+struct Answer {
+    face: FaceId,
+    range: Option<f64>,
+    visible: bool,
+    pixel: Option<Pixel>,
+}
+
+impl Answer {
+    /// `None` where there is no hit, or the frame does not say.
+    fn of(frame: &Frame, Place { sensor, i, j }: Place) -> Option<Self> {
+        let SensorId::Beam(index) = sensor else { return None };
+        let (map, returns) = (frame.map(sensor)?, frame.returns.get(index)?);
+        Some(Self {
+            face: map.face.as_ref()?.at(i, j).get()?,
+            range: map.range.as_ref().and_then(|ranges| ranges.at(i, j).get()),
+            visible: returns.visible.as_ref()?.at(i, j),
+            pixel: returns.pixel.as_ref()?.at(i, j).get(),
+        })
+    }
+}
+
+/// A pencil whose visibility is not the contract's for the face that it is said to hit: the right one, or one that has
+/// a cause.
+struct Wrong {
+    place: Place,
+    answer: Answer,
+    /// The answers that are wrong with other switches on `exact`, by which.
+    without: Vec<(Switches, Answer)>,
+    cause: Option<SightCause>,
+}
+
+/// The pencils of a frame whose visibility is wrong for a confirmed cause.
+pub(super) fn causes(
+    court: Court<'_>,
+    frame: &Frame,
+    of_geometry: &Attributions,
+) -> Vec<(Place, SightCause)> {
+    let Switches { facing, extent, place, .. } = court.switches;
+    let of_sight = Switches { facing, extent, place, ..Switches::EXACT };
+    if of_sight == Switches::EXACT || frame.returns.is_empty() {
+        return Vec::new();
+    }
+    let request = Request { camera: false, quantities: Quantities::RANGE_MAP, ..Request::EVERYTHING };
+    let reach = upper_extent(court, frame);
+
+    // What differs from the same algorithm without any approximation of sight, and is wrong.
+    let exact = court.render(court.switches.without(of_sight), request);
+    let mut wrong: Vec<Wrong> = frame
+        .beams
+        .iter()
+        .flat_map(|map| wrong_answers(court, frame, &exact, map.sensor, of_geometry))
+        .collect();
+    for cause in sets_of(of_sight) {
+        let mut open: Vec<&mut Wrong> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
+        if open.is_empty() {
+            break;
+        }
+        let without = court.render(court.switches.without(cause), request);
+        open.par_iter_mut().for_each(|ray| ray.attribute_to(cause, &without, reach, court));
+    }
+    wrong.into_iter().filter_map(|ray| Some((ray.place, ray.cause?))).collect()
+}
+
+/// The greatest camera depth of the upper beam's hits in a frame: that of the beam whose origin is highest in the
+/// camera's image, of several the last.
+fn upper_extent(court: Court<'_>, frame: &Frame) -> Option<f64> {
+    let scene = court.judge.scene();
+    let camera_from_scene = scene.camera().scene_from_sensor.inverse();
+    let down = |index: usize| (camera_from_scene * scene.beams()[index].scene_from_sensor.position).y;
+    let upper = (0..scene.beams().len()).min_by(|&a, &b| down(a).total_cmp(&down(b)).then(b.cmp(&a)))?;
+    let depths = frame.returns.get(upper)?.depth.as_ref()?.cells().iter().filter_map(|depth| depth.get());
+    depths.reduce(f64::max)
+}
+
+fn wrong_answers(
+    court: Court<'_>,
+    frame: &Frame,
+    exact: &Frame,
+    sensor: SensorId,
+    of_geometry: &Attributions,
+) -> Vec<Wrong> {
+    let (columns, rows) = court.judge.scene().size(sensor).expect("a sensor of this scene");
+    let rows = (0..rows).into_par_iter().flat_map_iter(|j| {
+        (0..columns).filter_map(move |i| {
+            let place = Place { sensor, i, j };
+            let (answer, of_exact) = (Answer::of(frame, place)?, Answer::of(exact, place)?);
+            let differs = answer.visible != of_exact.visible;
+            let face_is_accounted_for = || {
+                let (face, range) = (Some(answer.face), answer.range);
+                of_geometry.cause(place).is_some()
+                    || court.judge.rule(place, face, range, court.resolution) != Ruling::Wrong
+            };
+            (differs && face_is_accounted_for() && court.is_sight_wrong(place, answer)).then(|| Wrong {
+                place,
+                answer,
+                without: Vec::new(),
+                cause: None,
+            })
+        })
+    });
+    rows.collect()
+}
+
+impl Court<'_> {
+    /// Whether what is said of a pencil's visibility is wrong.
+    fn is_sight_wrong(&self, place: Place, answer: Answer) -> bool {
+        let Answer { face, range, visible, pixel } = answer;
+        let ruling = self.judge.rule_sight(place, face, range, visible, pixel, self.resolution);
+        ruling.is_none_or(|ruling| ruling.visible == Ruling::Wrong)
+    }
+
+    /// Explains an answer that was made with the renderer's switches but for `exact`.
+    fn explain_sight(
+        &self,
+        place: Place,
+        answer: Answer,
+        exact: Switches,
+        reach: Option<f64>,
+    ) -> Option<Vec<ExplainedSight>> {
+        let switches = self.switches.without(exact);
+        let with = SightApproximations {
+            facing: switches.facing == Fidelity::Paper,
+            extent: reach.filter(|_| switches.extent == Fidelity::Paper),
+            place: switches.place == Fidelity::Paper,
+        };
+        self.judge.explain_sight(place, answer.face, answer.range, answer.visible, with, self.resolution)
+    }
+}
+
+impl Wrong {
+    /// Takes `cause` for the cause if the frame `without` it restores this pencil and the referee confirms it.
+    fn attribute_to(&mut self, cause: Switches, without: &Frame, reach: Option<f64>, court: Court<'_>) {
+        let Some(restored) = Answer::of(without, self.place) else { return };
+        if court.is_sight_wrong(self.place, restored) {
+            self.without.push((cause, restored));
+            return;
+        }
+        let Some(explained) = court.explain_sight(self.place, self.answer, Switches::EXACT, reach) else {
+            return;
+        };
+        let mut open = cause.without(reasons(&explained));
+        let mut explained_without = Vec::new();
+        for &(part, answer) in &self.without {
+            if open != Switches::EXACT
+                && cause.contains(part)
+                && let Some(explained) = court.explain_sight(self.place, answer, part, reach)
+            {
+                open = open.without(reasons(&explained));
+                explained_without.push((part, explained));
+            }
+        }
+        if open == Switches::EXACT {
+            self.cause = Some(SightCause { switches: cause, explained, explained_without });
+        }
+    }
+}
+
+/// The switches that are a reason for one of the faces.
+fn reasons(explained: &[ExplainedSight]) -> Switches {
+    let has = |reason: SightReason| {
+        let any = explained.iter().any(|one| one.reasons.contains(&reason));
+        if any { Fidelity::Paper } else { Fidelity::Exact }
+    };
+    Switches {
+        facing: has(SightReason::Facing),
+        extent: has(SightReason::Extent),
+        place: has(SightReason::Place),
+        ..Switches::EXACT
+    }
+}

@@ -1,0 +1,265 @@
+//! How far two honest renderers may differ, per quantity: derived bounds on rounding.
+//!
+//! Let u be the unit roundoff, and for the face hit: e1 = b - a, e2 = c - a, n = e1 x e2,
+//! kappa = |e1| |e2| / |n| (its aspect: at most longest edge / smallest altitude), L its longest edge.
+//! Let the ray start at o, run along q, meet the face at range R under the cosine c = cos(psi), and let
+//! S = R + L + |o|, which is at least the length of every vector that is subtracted or dotted on the way.
+//!
+//! Both renderers form n from edges of the scene frame, t from a quotient of n.(a - o) and n.q. To first
+//! order in u:
+//!
+//! * n: differences of f32 numbers (u each), two products and a difference per component:
+//!   |dn| <= 5 u |e1| |e2| = 5 kappa u |n|.
+//! * n.(a - o): n's error, the subtraction (u S, and u |o| where o had to be formed), a dot product (3 u):
+//!   <= (5 kappa + 6) u |n| S.
+//! * n.q: n's error, the rotation of q by a quaternion or a matrix formed from it (12 u), a dot product
+//!   (3 u): <= (5 kappa + 15) u |n| |q|.
+//! * |n.(a - o)| = |n| R c and |n.q| = |n| |q| c, so the relative error of t is at most
+//!   ((5 kappa + 6) S / R + 5 kappa + 15 + 3) u / c <= 34 kappa u S / (R c), as kappa >= 1 and S >= R.
+//! * R = t |q|, or |q| / (1/t): two more roundings at most, and a square root.
+//!
+//! [`RANGE`] = 36 rounds this up. The other quantities follow. Two renderers may differ by the sum of
+//! their bounds. Where the bound reaches the size of the quantity itself the first order says nothing, and
+//! the bound, being larger, does not pretend to.
+
+use glam::DVec3;
+
+use raypencil_scene::{Beam, FaceId, Filter, FluxModel, Mesh, Profile, Ray, Resolution, Scene};
+
+/// |dR| <= RANGE kappa u S / c.
+const RANGE: f64 = 36.0;
+
+/// Roundings of a point along a known range: rotation (12 u R), origin (4 u |o|), sum (u |P|), |P| <= S.
+const POINT: f64 = 18.0;
+
+/// |dn^| <= 2 |dn| / |n| + 3 u <= 13 kappa u.
+const NORMAL: f64 = 13.0;
+
+/// The longer of the two ways to cos(psi), -n.(a - o) (1/t) / (|n| |q|): the relative errors of
+/// n.(a - o) and of 1/t, each of which carries 1/c, times c: (11 + 34) kappa u S / R, and a few roundings.
+const INCIDENCE: f64 = 48.0;
+
+/// The bounds of one hit by one renderer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Range and depth, metres.
+    pub range: f64,
+    /// Distance of the point, metres.
+    pub point: f64,
+    /// Distance of the unit normal.
+    pub normal: f64,
+    /// Cosine of incidence.
+    pub incidence: f64,
+}
+
+impl Bounds {
+    /// The bounds for a hit on `face` at `range` metres along `ray`.
+    pub fn of(mesh: &Mesh, face: FaceId, ray: &Ray, range: f64, resolution: Resolution) -> Self {
+        let u = resolution.unit_roundoff;
+        let [a, b, c] = mesh.faces()[face.0 as usize].map(|v| {
+            let [x, y, z] = mesh.vertices()[v as usize];
+            DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+        });
+        let (e1, e2) = (b - a, c - a);
+        let n = e1.cross(e2);
+        let aspect = e1.length() * e2.length() / n.length();
+        let longest_edge = e1.length().max(e2.length()).max((c - b).length());
+        let scale = range + longest_edge + ray.origin.length();
+        let cosine = (n.dot(ray.direction) / (n.length() * ray.direction.length())).abs();
+        let range_bound = RANGE * aspect * u * scale / cosine;
+        Self {
+            range: range_bound,
+            point: range_bound + POINT * u * scale,
+            normal: NORMAL * aspect * u,
+            incidence: INCIDENCE * aspect * u * scale / range,
+        }
+    }
+
+    /// How far two renderers with these bounds may differ.
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            range: self.range + other.range,
+            point: self.point + other.point,
+            normal: self.normal + other.normal,
+            incidence: self.incidence + other.incidence,
+        }
+    }
+}
+
+/// Roundings of a point in the camera's frame beside its own error: a subtraction, a rotation by a quaternion or a matrix
+/// formed from it (15 u), of a vector no longer than S' = |P| + |c| + d.
+const SEEN: f64 = 18.0;
+
+/// Roundings of a flux beside those of its lengths and cosines: two dozen products and quotients, a share of the power
+/// (four), an `exp` or two of `libm` (1 ulp, and the rounding of its argument).
+const FLUX: f64 = 64.0;
+
+/// The bounds of what one renderer says comes back of one pencil.
+///
+/// Let dP bound the error of the point as the camera sees it, [`Bounds::point`] + [`SEEN`] u S', and let it be
+/// at distance d from the projection centre, r deep. Then r is off by at most dP, and the direction to it by the
+/// angle dP / d, so cos(phi) and cos(theta) by at most that, and the latter by the error of the normal as well.
+/// The flux is a product of powers of these: its relative error is the sum of theirs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ReturnBounds {
+    /// r, metres.
+    pub(crate) depth: f64,
+    /// cos(phi).
+    pub(crate) off_axis: f64,
+    /// cos(theta).
+    pub(crate) emission: f64,
+    /// The flux, relative.
+    pub(crate) flux: f64,
+    /// The flux, watts (`eq1`: W/m): where a share of the power is so small that it has no 53 digits left.
+    pub(crate) least_flux: f64,
+}
+
+/// What the bounds of a return depend on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Returned {
+    /// R, metres.
+    pub(crate) range: f64,
+    /// cos(psi).
+    pub(crate) incidence: f64,
+    /// r, metres.
+    pub(crate) depth: f64,
+    /// cos(phi).
+    pub(crate) off_axis: f64,
+    /// cos(theta).
+    pub(crate) emission: f64,
+    /// d, metres.
+    pub(crate) distance: f64,
+}
+
+impl ReturnBounds {
+    /// The bounds of what comes back to the camera of a hit of `beam`.
+    pub(crate) fn of(
+        scene: &Scene,
+        (beam, column): (usize, u32),
+        hit: &Bounds,
+        values: Returned,
+        resolution: Resolution,
+        model: FluxModel,
+    ) -> Self {
+        let u = resolution.unit_roundoff;
+        let Returned { range, incidence, depth, off_axis, emission, distance } = values;
+        let centre = scene.camera().scene_from_sensor.position.length();
+        let point = hit.point + SEEN * u * (2.0 * centre + 2.0 * distance);
+        let direction = point / distance;
+        let (of_off_axis, of_emission) = (direction + 8.0 * u, direction + hit.normal + 8.0 * u);
+
+        let beam = &scene.beams()[beam].sensor;
+        let sigma = scene.atmosphere().attenuation;
+        // A normalised profile is divided by a sum of as many weights.
+        let weights = f64::from(beam.columns) * f64::from(beam.rows) * u;
+        let sum = match beam.profile {
+            Profile::Paper => 0.0,
+            Profile::UniformAngle => weights,
+            // An exponential is as relatively wrong as its exponent, 2 (alpha / w)^2, is absolutely: alpha is good
+            // to 4 u, its square to 10 u, and the brightest weight, by which all may be divided, as well.
+            Profile::Gaussian { half_width } => {
+                let alpha = incidence_angle(beam, column) / half_width;
+                weights + 2.0 * alpha * alpha * 20.0 * u
+            }
+        };
+        let shared = (2.0 * point / depth + of_emission / emission).abs() + FLUX * u + sum;
+        let relative = match model {
+            FluxModel::Radiometric => {
+                let filter = filter_bound(scene, beam, off_axis, of_off_axis, u);
+                shared
+                    + (3.0 * of_off_axis / off_axis).abs()
+                    + filter
+                    + sigma * (hit.range + point)
+                    + sigma * (range + distance) * 4.0 * u
+            }
+            // phi is the pixel's own: rounding only.
+            FluxModel::Eq1 => {
+                shared
+                    + hit.range / range
+                    + (hit.incidence / incidence).abs()
+                    + filter_bound(scene, beam, off_axis, 8.0 * u, u)
+                    + sigma * (hit.range + point)
+                    + sigma * (range + distance) * 4.0 * u
+            }
+        };
+        // What is left of a subnormal share, times all that it is multiplied by.
+        let camera = &scene.camera().sensor;
+        let squares = camera.aperture * camera.aperture / (depth * depth);
+        let gain = match model {
+            FluxModel::Radiometric => squares,
+            FluxModel::Eq1 => {
+                let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
+                squares * area / (camera.focal_length * camera.focal_length * range)
+            }
+        };
+        let least_flux = least_normal(resolution) * (1.0 + beam.power) * (1.0 + gain);
+        Self { depth: point, off_axis: of_off_axis, emission: of_emission, flux: relative, least_flux }
+    }
+
+    /// How far two renderers with these bounds may differ.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self {
+            depth: self.depth + other.depth,
+            off_axis: self.off_axis + other.off_axis,
+            emission: self.emission + other.emission,
+            flux: self.flux + other.flux,
+            least_flux: self.least_flux + other.least_flux,
+        }
+    }
+}
+
+/// Below this an arithmetic loses digits: its smallest normal number.
+pub(crate) fn least_normal(resolution: Resolution) -> f64 {
+    let is_double = resolution.unit_roundoff <= Resolution::F64.unit_roundoff;
+    if is_double { f64::MIN_POSITIVE } else { f64::from(f32::MIN_POSITIVE) }
+}
+
+/// alpha of the pencils of a column, roughly.
+fn incidence_angle(beam: &Beam, column: u32) -> f64 {
+    let columns = f64::from(beam.columns);
+    let half_cells = 2.0 * f64::from(column) + 1.0 - columns;
+    libm::atan(beam.half_width * half_cells / (columns * beam.grid_distance))
+}
+
+/// The relative error of F(phi) = exp(-4 ln 2 away^2), away = (wavelength - c') / width, c' = c sqrt(1 - sin(phi)^2 / n^2),
+/// where cos(phi) is off by `of_off_axis`.
+///
+/// |dc'| <= c^2 / (c' n^2) |cos(phi)| |d cos(phi)|, c' and the difference are rounded (8 u c), and the exponent
+/// itself (10 u of it): |d ln F| = 4 ln 2 |away| (2 |dc'| / width + 10 u |away|).
+fn filter_bound(scene: &Scene, beam: &Beam, off_axis: f64, of_off_axis: f64, u: f64) -> f64 {
+    let Filter::Interference { centre, width, index } = scene.camera().sensor.lens.filter else { return 0.0 };
+    let sin_squared = (1.0 - off_axis * off_axis).max(0.0);
+    let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
+    let of_shifted = centre * centre / (shifted * index * index) * of_off_axis + 8.0 * u * centre;
+    let away = ((beam.wavelength - shifted).abs() + of_shifted) / width;
+    4.0 * std::f64::consts::LN_2 * away * (2.0 * of_shifted / width + 10.0 * u * away)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raypencil_scene::Material;
+
+    #[test]
+    fn the_bound_of_a_right_triangle_seen_head_on() {
+        // Legs of 1 m: kappa = 1, L = sqrt 2. From 3 m above its corner at the origin, straight down:
+        // R = 3, |o| = 3, c = 1, so |dR| <= 36 u (6 + sqrt 2), u = 2^-53.
+        let mesh = Mesh::new(
+            DVec3::ZERO,
+            vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            vec![[0, 1, 2]],
+            vec![0],
+            vec![Material { name: "ground".into(), reflectivity: 0.25 }],
+        )
+        .unwrap();
+        let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: DVec3::new(0.0, 0.0, -0.5) };
+        let bounds = Bounds::of(&mesh, FaceId(0), &ray, 3.0, Resolution::F64);
+        let u = 2.0_f64.recip() * f64::EPSILON;
+        let scale = 6.0 + 2.0_f64.sqrt();
+        // To a few roundings of the bound itself.
+        let close = |bound: f64, derived: f64| (bound / derived - 1.0).abs() < 1e-15;
+        assert!(close(bounds.range, 36.0 * u * scale));
+        assert!(close(bounds.point, 54.0 * u * scale));
+        assert!(close(bounds.normal, 13.0 * u));
+    }
+}

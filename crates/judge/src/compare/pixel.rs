@@ -1,0 +1,130 @@
+//! The flux of one beam on the camera's image, pixel by pixel, judged by the pencils that contribute to it.
+//!
+//! A pixel's flux is a sum in a fixed order of what its pencils deliver, n of them. Two sums differ by no more
+//! than the differences of their parts may add up to, and the roundings of both, n u Sigma each. Where a pencil
+//! is not alike on both sides (it rounds to another pixel, say) the pixel is of that pencil's class, and may
+//! differ by what the pencil delivers; anything more is a defect.
+
+use crate::class::{Class, Quantity};
+use crate::compare::entry::Entry;
+use crate::compare::light::PencilLight;
+use raypencil_scene::{Image, Scene, Switches};
+
+/// The light of one beam on the image, from both sides.
+pub(crate) struct PixelLight<'a> {
+    images: [&'a Image<f64>; 2],
+    pixels: Vec<Contributions>,
+    /// u, of the coarser of the two arithmetics.
+    unit_roundoff: f64,
+}
+
+/// What the pencils that land in one pixel have to say.
+#[derive(Debug, Clone, Copy)]
+struct Contributions {
+    /// How many there are on either side.
+    count: u32,
+    /// The worst class of those that are not alike.
+    class: Class,
+    causes: Switches,
+    /// What those deliver that are alike, summed over both sides; and how far these sums may differ.
+    total: f64,
+    bound: f64,
+    /// What the others deliver.
+    unlike: f64,
+    /// What each side's pencils add up to.
+    sums: [f64; 2],
+}
+
+impl Default for Contributions {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            class: Class::Agree,
+            causes: Switches::EXACT,
+            total: 0.0,
+            bound: 0.0,
+            unlike: 0.0,
+            sums: [0.0; 2],
+        }
+    }
+}
+
+impl<'a> PixelLight<'a> {
+    /// `pencils` in row-major order.
+    pub(super) fn new(
+        scene: &Scene,
+        images: [&'a Image<f64>; 2],
+        pencils: Vec<PencilLight>,
+        unit_roundoff: f64,
+    ) -> Self {
+        let camera = &scene.camera().sensor;
+        let mut pixels = vec![Contributions::default(); camera.width as usize * camera.height as usize];
+        for pencil in pencils {
+            let index = |k: usize| {
+                pencil.delivered[k]
+                    .filter(|(pixel, _)| pixel.i < camera.width && pixel.j < camera.height)
+                    .map(|(pixel, flux)| (pixel.j as usize * camera.width as usize + pixel.i as usize, flux))
+            };
+            let [a, b] = [index(0), index(1)];
+            let is_alike = a.map(|(at, _)| at) == b.map(|(at, _)| at) && pencil.class == Class::Agree;
+            for (k, landed) in [a, b].into_iter().enumerate() {
+                let Some((at, flux)) = landed else { continue };
+                let pixel = &mut pixels[at];
+                pixel.count += 1;
+                pixel.sums[k] += flux;
+                if is_alike {
+                    pixel.total += flux;
+                    // Once for both sides.
+                    pixel.bound += if k == 0 { pencil.bound } else { 0.0 };
+                } else {
+                    pixel.class = pixel.class.max(pencil.class);
+                    pixel.causes = pixel.causes.union(pencil.causes);
+                    pixel.unlike += flux;
+                }
+            }
+        }
+        Self { images, pixels, unit_roundoff }
+    }
+
+    /// The causes of what is not alike in a pixel.
+    pub(super) fn causes(&self, i: u32, j: u32) -> Switches {
+        self.pixels[j as usize * self.images[0].width() as usize + i as usize].causes
+    }
+
+    /// How far the two sums of a pixel are apart, how far they may be, and its class.
+    fn compare(&self, i: u32, j: u32) -> (f64, f64, Class) {
+        let [a, b] = self.images.map(|image| image.at(i, j));
+        let pixel = &self.pixels[j as usize * self.images[0].width() as usize + i as usize];
+        // n u Sigma of each sum, and of the sums formed here.
+        let rounding = 2.0 * f64::from(pixel.count) * self.unit_roundoff * (pixel.total + pixel.unlike);
+        let bound = pixel.bound + rounding;
+        let difference = (a - b).abs();
+        let adds_up = [a, b].iter().zip(pixel.sums).all(|(image, sum)| (image - sum).abs() <= rounding);
+        let class = if !adds_up || !(difference == 0.0 || difference <= bound + pixel.unlike) {
+            Class::Defect
+        } else {
+            pixel.class
+        };
+        (difference, bound, class)
+    }
+}
+
+/// Compares the flux of all beams in one pixel.
+pub(crate) fn compare_pixel(entry: &mut Entry<'_>, light: &[PixelLight<'_>], beams: usize) {
+    if light.len() < beams {
+        // A beam without an image or without pencils to judge it by.
+        entry.missing(Quantity::PixelFlux);
+    }
+    if light.is_empty() {
+        return;
+    }
+    let mut class = Class::Agree;
+    for of_beam in light {
+        let (difference, bound, of_pixel) = of_beam.compare(entry.place.i, entry.place.j);
+        class = class.max(of_pixel);
+        if matches!(of_pixel, Class::Agree | Class::Defect) {
+            entry.extremes(Quantity::PixelFlux, difference, Some(bound));
+        }
+    }
+    entry.class(Quantity::PixelFlux, class);
+}

@@ -1,0 +1,16 @@
+
+use crate::attribution::cause::Attributions;
+use raypencil_scene::{Frame, Resolution};
+
+/// One side of a comparison.
+#[derive(Debug, Clone, Copy)]
+pub struct Side<'a> {
+    /// The renderer's name.
+    pub name: &'a str,
+    /// What it rendered.
+    pub frame: &'a Frame,
+    /// How finely it computes.
+    pub resolution: Resolution,
+    /// The causes of its errors, if it follows the paper into some.
+    pub attributions: Option<&'a Attributions>,
+}

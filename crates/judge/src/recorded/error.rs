@@ -1,0 +1,65 @@
+//! Why a recording cannot be judged.
+
+use std::path::PathBuf;
+
+use raypencil_files::FileError;
+
+/// Why a recording cannot be judged.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// A file; the message names it.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A cell that breaks the conventions, or a channel that does not fit the scene.
+    #[error("{}: `{channel}`{}: {found}; expected {expected}", file.display(), at(cell))]
+    Channel {
+        /// The file.
+        file: PathBuf,
+        /// The channel.
+        channel: String,
+        /// Column and row of the cell, if it is one.
+        cell: Option<(u32, u32)>,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+    /// A channel of which there is a part only.
+    #[error("{}: `{channel}` is absent; expected all of {all}", folder.display())]
+    Part {
+        /// The recording.
+        folder: PathBuf,
+        /// The absent part.
+        channel: String,
+        /// All parts.
+        all: String,
+    },
+    /// A folder of several recordings.
+    #[error("{}: holds {found}; expected one recording: name one of them", folder.display())]
+    Several {
+        /// The folder.
+        folder: PathBuf,
+        /// What it holds, by name.
+        found: String,
+    },
+    /// Nothing in it is known.
+    #[error("{}: holds no channel of this scene; expected files such as camera.exr or beam-0/range.T.npy with the names of docs/files.md{}", folder.display(), there(unknown))]
+    Nothing {
+        /// The folder.
+        folder: PathBuf,
+        /// The names that it does hold.
+        unknown: Vec<String>,
+    },
+}
+
+fn at(cell: &Option<(u32, u32)>) -> String {
+    cell.map_or(String::new(), |(i, j)| format!(" at {i},{j}"))
+}
+
+fn there(unknown: &[String]) -> String {
+    match unknown {
+        [] => String::new(),
+        some => format!(" (found {})", some[..some.len().min(8)].join(", ")),
+    }
+}

@@ -1,0 +1,103 @@
+//! Names of the channels of a recording, as `docs/files.md` lists them.
+
+use crate::class::{Item, Quantity};
+use raypencil_scene::{FluxModel, Scene, SensorId};
+
+pub(crate) const RANGE: &str = "range.T";
+pub(crate) const DEPTH: &str = "depth.Z";
+pub(crate) const FACE: &str = "face.I";
+pub(crate) const POINT: [&str; 3] = ["P.X", "P.Y", "P.Z"];
+pub(crate) const NORMAL: [&str; 3] = ["N.X", "N.Y", "N.Z"];
+pub(crate) const INCIDENCE: &str = "incidence.V";
+pub(crate) const VISIBLE: &str = "visible.V";
+pub(crate) const PIXEL: [&str; 2] = ["pixel.I", "pixel.J"];
+pub(crate) const VIEW: &str = "view.Z";
+pub(crate) const OFF_AXIS: &str = "offAxis.V";
+pub(crate) const EMISSION: &str = "emission.V";
+pub(crate) const FLUX: &str = "flux.V";
+
+/// Whether a channel holds something that only another kind of renderer has.
+pub fn is_of_outsiders(key: &str) -> bool {
+    let Some((sensor, name)) = key.split_once('/') else { return false };
+    let is_camera = sensor == SensorId::Camera.to_string();
+    let parts: Vec<&str> = name.split('.').collect();
+    match parts[..] {
+        ["radiance", "V"] => !is_camera,
+        ["radiance", beam] => is_camera && beam.starts_with("beam"),
+        [_, "mean" | "error", beam] => is_camera && beam.starts_with("beam"),
+        _ => false,
+    }
+}
+
+/// `flux.V`, or `flux.eq1.V` for the model that is not the scene's.
+pub fn flux_channel(model: Option<FluxModel>) -> String {
+    match model {
+        None => FLUX.into(),
+        Some(model) => format!("flux.{}.V", model.word()),
+    }
+}
+
+/// `flux.beam0`, or `flux.eq1.beam0`.
+pub fn image_channel(beam: usize, model: Option<FluxModel>) -> String {
+    match model {
+        None => format!("flux.beam{beam}"),
+        Some(model) => format!("flux.{}.beam{beam}", model.word()),
+    }
+}
+
+/// What a channel of a sensor holds, if its name means anything.
+pub fn item_of_channel(scene: &Scene, sensor: SensorId, name: &str) -> Option<Item> {
+    let second = scene.flux_model().other();
+    let of_flux = |item: Item, own: &str, others: &str| {
+        let is_other_model = name == others;
+        (name == own || is_other_model).then_some(Item { is_other_model, ..item })
+    };
+    if sensor == SensorId::Camera {
+        let image = (0..scene.beams().len()).find_map(|beam| {
+            of_flux(Item::of_image(beam), &image_channel(beam, None), &image_channel(beam, Some(second)))
+        });
+        if image.is_some() {
+            return image;
+        }
+    } else if let flux @ Some(_) =
+        of_flux(Quantity::PencilFlux.into(), &flux_channel(None), &flux_channel(Some(second)))
+    {
+        return flux;
+    }
+    let quantity = match name {
+        RANGE => Quantity::Range,
+        DEPTH => Quantity::Depth,
+        FACE => Quantity::Face,
+        name if POINT.contains(&name) => Quantity::Point,
+        name if NORMAL.contains(&name) => Quantity::Normal,
+        INCIDENCE => Quantity::Incidence,
+        VISIBLE => Quantity::Visible,
+        name if PIXEL.contains(&name) => Quantity::Pixel,
+        VIEW => Quantity::CameraDepth,
+        OFF_AXIS => Quantity::OffAxis,
+        EMISSION => Quantity::Emission,
+        _ => return None,
+    };
+    quantity.is_of(sensor).then(|| quantity.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_images_and_radiance_are_known() {
+        for (key, is_known) in [
+            ("camera/direct.mean.beam0", true),
+            ("camera/direct.error.beam1", true),
+            ("camera/radiance.beam0", true),
+            ("beam-1/radiance.V", true),
+            ("beam-1/direct.mean.beam0", false),
+            ("camera/radiance.V", false),
+            ("camera/range.T", false),
+            ("direct.mean.beam0", false),
+        ] {
+            assert_eq!(is_of_outsiders(key), is_known, "{key}");
+        }
+    }
+}

@@ -1,0 +1,425 @@
+//! Reads the channels of a recording into answers: names, sizes and conventions are checked, and nothing is guessed.
+
+use crate::answers::Answers;
+use crate::class::{Item, Quantity};
+use crate::recorded::error::RecordingError;
+use crate::recorded::names;
+use crate::recorded::names::{flux_channel, image_channel};
+use glam::DVec3;
+use raypencil_files::{Channel, Channels, Limits, Storage, Values};
+use raypencil_scene::{
+    FaceId, Image, Maybe, Pixel, Renderer, Sample, Scene, SensorId,
+};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// How much a recording of a scene may ask for: a small file can hold a map of 2^26 zeros, which is no sensor's.
+pub(super) fn limits(scene: &Scene) -> Limits {
+    let sizes = scene.sensors().filter_map(|sensor| scene.size(sensor));
+    let all: u64 = sizes.map(|(columns, rows)| u64::from(columns) * u64::from(rows)).sum();
+    let most = Limits::default();
+    // CHOICE: a map of a million cells is little, and is refused by its size and its sensor later; a thousand channels of
+    // doubles are more than a recording has.
+    Limits {
+        cells: all.max(1 << 20).min(most.cells),
+        bytes: ((1 << 26) + (all << 13)).min(most.bytes),
+        size: None,
+    }
+}
+
+/// Names of folders in a folder that each hold maps, if it holds none itself.
+pub(super) fn recordings_in(folder: &Path) -> Vec<String> {
+    let is_map = |path: &Path| {
+        let stem = path.file_stem().is_some_and(|stem| {
+            let stem = stem.to_string_lossy();
+            stem == "camera" || stem.starts_with("beam-")
+        });
+        stem && (path.is_dir() || path.extension().is_some_and(|ending| ending == "exr"))
+    };
+    let entries = |folder: &Path| -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(folder).into_iter().flatten();
+        let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        paths.sort();
+        paths
+    };
+    let own = entries(folder);
+    if own.iter().any(|path| is_map(path)) {
+        return Vec::new();
+    }
+    let holds_maps = |path: &&PathBuf| path.is_dir() && entries(path).iter().any(|path| is_map(path));
+    let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
+    own.iter().filter(holds_maps).filter_map(name).collect()
+}
+
+pub(super) struct Reader<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) folder: &'a Path,
+    pub(super) channels: &'a Channels,
+    pub(super) answers: Answers,
+    pub(super) storage: BTreeMap<(SensorId, Item), Storage>,
+    pub(super) used: Vec<String>,
+    /// Of each sensor, what says which rays hit, and which.
+    pub(super) hits: Vec<Option<(String, Vec<bool>)>>,
+}
+
+/// Real numbers of a channel, and where they come from.
+#[derive(Clone, Copy)]
+pub(super) struct Reals<'a> {
+    /// The channel's name, also where the file gives it none.
+    name: &'a str,
+    channel: &'a Channel,
+    image: &'a Image<f64>,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn fault(
+        (name, channel): (&str, &Channel),
+        cell: Option<(u32, u32)>,
+        found: String,
+        expected: &str,
+    ) -> RecordingError {
+        RecordingError::Channel {
+            file: channel.file.clone(),
+            channel: name.to_string(),
+            cell,
+            found,
+            expected: expected.into(),
+        }
+    }
+
+    /// A channel of a sensor, of the right size, and its name.
+    pub(super) fn channel(
+        &mut self,
+        sensor: SensorId,
+        name: &str,
+    ) -> Result<Option<(&'a str, &'a Channel)>, RecordingError> {
+        let key = format!("{sensor}/{name}");
+        let Some((key_there, channel)) = self.channels.by_key.get_key_value(&key) else { return Ok(None) };
+        let name = key_there.split_once('/').map_or(key_there.as_str(), |(_, name)| name);
+        let (width, height) = self.scene.size(sensor).expect("a sensor of this scene");
+        let size = match &channel.values {
+            Values::Reals(image) => (image.width(), image.height()),
+            Values::Wholes(image) => (image.width(), image.height()),
+        };
+        if size != (width, height) {
+            let found = format!("{} x {} cells", size.0, size.1);
+            let expected = format!("{width} x {height}, as the scene's {sensor} has");
+            return Err(Self::fault((name, channel), None, found, &expected));
+        }
+        self.used.push(key);
+        Ok(Some((name, channel)))
+    }
+
+    pub(super) fn reals(
+        &mut self,
+        sensor: SensorId,
+        name: &str,
+    ) -> Result<Option<Reals<'a>>, RecordingError> {
+        match self.channel(sensor, name)? {
+            None => Ok(None),
+            Some((name, channel)) => match &channel.values {
+                Values::Reals(image) => Ok(Some(Reals { name, channel, image })),
+                Values::Wholes(_) => {
+                    Err(Self::fault((name, channel), None, "whole numbers".into(), "floating-point numbers"))
+                }
+            },
+        }
+    }
+
+    /// Whole numbers, also if they are stored as floating-point ones; what is not finite or -1 is "none".
+    pub(super) fn wholes(
+        &mut self,
+        sensor: SensorId,
+        name: &str,
+    ) -> Result<Option<Image<u32>>, RecordingError> {
+        let Some((name, channel)) = self.channel(sensor, name)? else { return Ok(None) };
+        let image = match &channel.values {
+            Values::Wholes(image) => return Ok(Some(image.clone())),
+            Values::Reals(image) => image,
+        };
+        let mut cells = Vec::with_capacity(image.cells().len());
+        for (index, &value) in image.cells().iter().enumerate() {
+            // Singles hold whole numbers up to 2^24 only; the one for "none" is 2^32 there.
+            let none = !value.is_finite() || value == -1.0 || value >= f64::from(u32::MAX);
+            if !none && (value < 0.0 || value != value.trunc()) {
+                let cell = Some(cell(image, index));
+                return Err(Self::fault(
+                    (name, channel),
+                    cell,
+                    value.to_string(),
+                    "a whole number, or 4294967295 for none",
+                ));
+            }
+            cells.push(if none { u32::MAX } else { value as u32 });
+        }
+        Ok(Some(Image::from_cells(image.width(), image.height(), cells)))
+    }
+
+    pub(super) fn store(&mut self, sensor: SensorId, item: impl Into<Item>, storage: Storage) {
+        self.storage.insert((sensor, item.into()), storage);
+    }
+
+    /// What each ray of a sensor meets.
+    pub(super) fn geometry(&mut self, index: usize, sensor: SensorId) -> Result<(), RecordingError> {
+        let faces = self.wholes(sensor, names::FACE)?;
+        let (range, depth) = (self.reals(sensor, names::RANGE)?, self.reals(sensor, names::DEPTH)?);
+        let incidence = self.reals(sensor, names::INCIDENCE)?;
+        let (point, normal) = (self.vector(sensor, names::POINT)?, self.vector(sensor, names::NORMAL)?);
+
+        // Whether each ray hits: the first of these that is there says so, and the others must agree.
+        let hits: Option<(String, Vec<bool>)> = if let Some(faces) = &faces {
+            Some((names::FACE.into(), faces.cells().iter().map(|face| *face != u32::MAX).collect()))
+        } else {
+            let speaker = range.or(depth).or(point.map(|p| p[0])).or(normal.map(|n| n[0])).or(incidence);
+            speaker.map(|reals| {
+                (reals.name.to_string(), reals.image.cells().iter().map(|x| x.is_finite()).collect())
+            })
+        };
+        let Some((speaker, hits)) = hits else { return Ok(()) };
+        self.hits[index] = Some((speaker.clone(), hits.clone()));
+        let (width, height) = self.scene.size(sensor).expect("a sensor of this scene");
+        if let Some(faces) = faces {
+            let face = |index: &u32| Some(FaceId(*index)).filter(|face| !face.is_nothing()).into();
+            let cells = faces.cells().iter().map(face).collect();
+            self.answers.maps[index].face = Some(Image::from_cells(width, height, cells));
+            self.store(sensor, Quantity::Face, Storage::Whole);
+        }
+        let scalars = [
+            (range, Quantity::Range, true),
+            (depth, Quantity::Depth, true),
+            (incidence, Quantity::Incidence, false),
+        ];
+        for (reals, quantity, is_length) in scalars {
+            let Some(reals) = reals else { continue };
+            let image = maybe(reals, &hits, &speaker, is_length)?;
+            self.store(sensor, quantity, reals.channel.storage);
+            let map = &mut self.answers.maps[index];
+            match quantity {
+                Quantity::Range => map.range = Some(image),
+                Quantity::Depth => map.depth = Some(image),
+                _ => map.incidence = Some(image),
+            }
+        }
+        for (parts, quantity) in [(point, Quantity::Point), (normal, Quantity::Normal)] {
+            let Some(parts) = parts else { continue };
+            let mut images = Vec::new();
+            for part in parts {
+                images.push(maybe(part, &hits, &speaker, false)?);
+            }
+            let cells = (0..hits.len()).map(|at| {
+                let part = |k: usize| images[k].cells()[at].get();
+                let vector = part(0).zip(part(1)).zip(part(2)).map(|((x, y), z)| DVec3::new(x, y, z));
+                Maybe::from(vector)
+            });
+            let image = Image::from_cells(width, height, cells.collect());
+            self.store(
+                sensor,
+                quantity,
+                parts.map(|part| part.channel.storage).into_iter().min().unwrap_or(Storage::F64),
+            );
+            let map = &mut self.answers.maps[index];
+            if quantity == Quantity::Point { map.point = Some(image) } else { map.normal = Some(image) }
+        }
+        Ok(())
+    }
+
+    pub(super) fn vector(
+        &mut self,
+        sensor: SensorId,
+        names: [&str; 3],
+    ) -> Result<Option<[Reals<'a>; 3]>, RecordingError> {
+        let mut parts = Vec::new();
+        let mut absent = None;
+        for name in names {
+            match self.reals(sensor, name)? {
+                Some(part) => parts.push(part),
+                None => absent = Some(name),
+            }
+        }
+        match (<[Reals<'a>; 3]>::try_from(parts), absent) {
+            (Ok(parts), _) => Ok(Some(parts)),
+            (Err(parts), Some(absent)) if !parts.is_empty() => Err(RecordingError::Part {
+                folder: self.folder.to_path_buf(),
+                channel: format!("{sensor}/{absent}"),
+                all: names.join(", "),
+            }),
+            _ => Ok(None),
+        }
+    }
+
+    /// What comes back of a beam.
+    pub(super) fn light(&mut self, beam: usize) -> Result<(), RecordingError> {
+        let sensor = SensorId::Beam(beam);
+        let (width, height) = self.scene.size(sensor).expect("a sensor of this scene");
+        // Whether each pencil hits, as far as the geometry says.
+        let hits = self.hits[beam + 1].clone();
+
+        if let Some((name, channel)) = self.channel(sensor, names::VISIBLE)? {
+            let mut cells = Vec::new();
+            let at = |index: usize| (index as u32 % width, index as u32 / width);
+            let mut take = |index: usize, value: f64| {
+                if value != 0.0 && value != 1.0 {
+                    return Err(Self::fault((name, channel), Some(at(index)), value.to_string(), "0 or 1"));
+                }
+                cells.push(value == 1.0);
+                Ok(())
+            };
+            match &channel.values {
+                Values::Reals(image) => {
+                    image.cells().iter().enumerate().try_for_each(|(index, value)| take(index, *value))?;
+                }
+                Values::Wholes(image) => {
+                    let cells = image.cells().iter().enumerate();
+                    cells.into_iter().try_for_each(|(index, value)| take(index, f64::from(*value)))?;
+                }
+            }
+            self.answers.light[beam].returns.visible = Some(Image::from_cells(width, height, cells));
+            self.store(sensor, Quantity::Visible, Storage::Whole);
+        }
+
+        let [columns, rows] = [self.wholes(sensor, names::PIXEL[0])?, self.wholes(sensor, names::PIXEL[1])?];
+        match [columns, rows] {
+            [Some(columns), Some(rows)] => {
+                let camera = &self.scene.camera().sensor;
+                let mut cells = Vec::new();
+                for (index, (&i, &j)) in columns.cells().iter().zip(rows.cells()).enumerate() {
+                    let is_none = i == u32::MAX && j == u32::MAX;
+                    if !is_none && (i >= camera.width || j >= camera.height) {
+                        let key = format!("{sensor}/{}", names::PIXEL[0]);
+                        let at = Some(cell(&columns, index));
+                        let expected = format!(
+                            "a pixel of the camera's {} x {}, or 4294967295,4294967295 for none",
+                            camera.width, camera.height
+                        );
+                        let found = format!("pixel {i},{j}");
+                        let channel = (names::PIXEL[0], &self.channels.by_key[&key]);
+                        return Err(Self::fault(channel, at, found, &expected));
+                    }
+                    cells.push(Maybe::from((!is_none).then_some(Pixel { i, j })));
+                }
+                self.answers.light[beam].returns.pixel = Some(Image::from_cells(width, height, cells));
+                self.store(sensor, Quantity::Pixel, Storage::Whole);
+            }
+            [None, None] => {}
+            [columns, _] => {
+                let absent = names::PIXEL[usize::from(columns.is_some())];
+                return Err(RecordingError::Part {
+                    folder: self.folder.to_path_buf(),
+                    channel: format!("{sensor}/{absent}"),
+                    all: names::PIXEL.join(", "),
+                });
+            }
+        }
+
+        let scalars = [
+            (names::VIEW, Quantity::CameraDepth, true),
+            (names::OFF_AXIS, Quantity::OffAxis, false),
+            (names::EMISSION, Quantity::Emission, false),
+        ];
+        for (name, quantity, is_length) in scalars {
+            let Some(reals) = self.reals(sensor, name)? else { continue };
+            let image = match &hits {
+                Some((speaker, hits)) => maybe_signed(reals, hits, speaker, is_length)?,
+                None => {
+                    // Nothing else says what is hit: the truth will.
+                    let own: Vec<bool> = reals.image.cells().iter().map(|x| x.is_finite()).collect();
+                    maybe_signed(reals, &own, name, is_length)?
+                }
+            };
+            self.store(sensor, quantity, reals.channel.storage);
+            let returns = &mut self.answers.light[beam].returns;
+            match quantity {
+                Quantity::CameraDepth => returns.depth = Some(image),
+                Quantity::OffAxis => returns.off_axis = Some(image),
+                _ => returns.emission = Some(image),
+            }
+        }
+
+        let second = self.scene.flux_model().other();
+        for model in [None, Some(second)] {
+            if let Some(reals) = self.reals(sensor, &flux_channel(model))? {
+                let image = flux(reals)?;
+                let item = Item { is_other_model: model.is_some(), ..Quantity::PencilFlux.into() };
+                self.store(sensor, item, reals.channel.storage);
+                let light = &mut self.answers.light[beam];
+                if model.is_none() {
+                    light.returns.flux = Some(image)
+                } else {
+                    light.other_flux = Some(image)
+                }
+            }
+            if let Some(reals) = self.reals(SensorId::Camera, &image_channel(beam, model))? {
+                let image = flux(reals)?;
+                let item = Item { is_other_model: model.is_some(), ..Item::of_image(beam) };
+                self.store(SensorId::Camera, item, reals.channel.storage);
+                let light = &mut self.answers.light[beam];
+                if model.is_none() { light.image = Some(image) } else { light.other_image = Some(image) }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Column and row of the cell of that index.
+pub(super) fn cell<T: Copy>(image: &Image<T>, index: usize) -> (u32, u32) {
+    (index as u32 % image.width(), index as u32 / image.width())
+}
+
+/// Numbers where there are hits and none elsewhere; lengths are not negative, and +Inf where nothing is hit.
+pub(super) fn maybe(
+    reals: Reals<'_>,
+    hits: &[bool],
+    speaker: &str,
+    is_length: bool,
+) -> Result<Image<Maybe<f64>>, RecordingError> {
+    let image = maybe_signed(reals, hits, speaker, is_length)?;
+    if is_length && let Some(index) = image.cells().iter().position(|x| x.get().is_some_and(|x| x < 0.0)) {
+        let found = reals.image.cells()[index].to_string();
+        return Err(Reader::fault(
+            (reals.name, reals.channel),
+            Some(cell(reals.image, index)),
+            found,
+            "no negative length",
+        ));
+    }
+    Ok(image)
+}
+
+/// The same, of any sign: a point may lie behind the camera.
+pub(super) fn maybe_signed(
+    Reals { name, channel, image }: Reals<'_>,
+    hits: &[bool],
+    speaker: &str,
+    is_length: bool,
+) -> Result<Image<Maybe<f64>>, RecordingError> {
+    let mut cells = Vec::with_capacity(hits.len());
+    for (index, (&value, &hit)) in image.cells().iter().zip(hits).enumerate() {
+        let wrong = |expected: String| {
+            Err(Reader::fault((name, channel), Some(cell(image, index)), value.to_string(), &expected))
+        };
+        let nothing = if is_length { "+Inf" } else { "NaN" };
+        if hit && !value.is_finite() {
+            return wrong(format!("a number, as {speaker} says that something is hit"));
+        }
+        let is_nothing = if is_length { value == f64::INFINITY } else { value.is_nan() };
+        if !hit && !is_nothing {
+            return wrong(if name == speaker {
+                format!("a number, or {nothing} where nothing is hit")
+            } else {
+                format!("{nothing}, as {speaker} says that nothing is hit")
+            });
+        }
+        cells.push(Maybe::from(hit.then_some(value)));
+    }
+    Ok(Image::from_cells(image.width(), image.height(), cells))
+}
+
+/// Flux: never negative, never infinite, 0 where there is none.
+pub(super) fn flux(Reals { name, channel, image }: Reals<'_>) -> Result<Image<f64>, RecordingError> {
+    if let Some(index) = image.cells().iter().position(|flux| !(*flux >= 0.0 && flux.is_finite())) {
+        let found = image.cells()[index].to_string();
+        let expected = "a flux that is not negative, and 0 where there is none";
+        return Err(Reader::fault((name, channel), Some(cell(image, index)), found, expected));
+    }
+    Ok(image.clone())
+}

@@ -1,0 +1,312 @@
+//! The samples of a TIFF: its strips or tiles, only those that are needed, each checked before it is decoded.
+
+use std::io::{Read, Seek};
+use std::ops::RangeInclusive;
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+
+use crate::dem::tags::{Tags, name};
+use raypencil_files::Fault;
+
+/// Pixels along a side: more than any model has that is one file.
+const MOST_SIDE: u64 = 1 << 24;
+
+/// Strips or tiles of one file.
+const MOST_BLOCKS: u64 = 1 << 22;
+
+/// Bytes of a decoded strip or tile: some writers put a whole picture into one.
+const LARGEST_BLOCK: u64 = 1 << 29;
+
+/// What a block is allowed to be longer than its compression can make it.
+const SLACK: u64 = 4096;
+
+/// Heights beyond this, metres, are none: the limit of a mesh.
+const HIGHEST: f64 = 1e7;
+
+/// What a sample is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Sample {
+    Unsigned(u64),
+    Signed(u64),
+    Float(u64),
+}
+
+impl Sample {
+    fn bits(self) -> u64 {
+        match self {
+            Self::Unsigned(bits) | Self::Signed(bits) | Self::Float(bits) => bits,
+        }
+    }
+
+    /// The sample that a file means by a nodata value, which is written in decimal and rounded to its type.
+    fn nodata(self, value: f64) -> f64 {
+        match self {
+            Self::Float(32) => f64::from(value as f32),
+            _ => value,
+        }
+    }
+}
+
+/// How the pixels lie in the file.
+pub(crate) struct Blocks {
+    pub width: u32,
+    pub height: u32,
+    sample: Sample,
+    /// "strip" or "tile".
+    kind: &'static str,
+    /// Pixels along the sides of a block; the last ones may reach beyond the picture.
+    block: [u64; 2],
+    /// Blocks along a row of them.
+    across: u64,
+    offsets: u16,
+    byte_counts: u16,
+    /// The most that a byte of the file can become.
+    expansion: u64,
+}
+
+impl Blocks {
+    /// Reads and checks what the tags say; nothing is larger than it should be, and nothing is read yet.
+    pub fn of(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<Self, Fault> {
+        let mut required = |tag: u16, range: RangeInclusive<u64>| match tags.integer(file, tag)? {
+            Some(value) if range.contains(&value) => Ok(value),
+            found => {
+                let found = found.map_or("missing".to_string(), |value| value.to_string());
+                Err(Fault::new(name(tag), found, format!("{} to {}", range.start(), range.end())))
+            }
+        };
+        let (width, height) = (required(256, 1..=MOST_SIDE)?, required(257, 1..=MOST_SIDE)?);
+        let is_tiled = tags.count(322) > 0 || tags.count(324) > 0;
+        let tile = match is_tiled {
+            true => Some([required(322, 1..=1 << 16)?, required(323, 1..=1 << 16)?]),
+            false => None,
+        };
+        required(262, 0..=u64::from(u16::MAX))?;
+
+        let mut word = |tag: u16, default: u64, known: &[u64], meaning: &str| {
+            let value = tags.integer(file, tag)?.unwrap_or(default);
+            match known.contains(&value) {
+                true => Ok(value),
+                false => Err(Fault::new(name(tag), value.to_string(), meaning)),
+            }
+        };
+        word(277, 1, &[1], "1: one band, of heights (gdal_translate -b takes one out of several)")?;
+        word(262, 1, &[1], "1 (BlackIsZero), whose samples are the heights themselves")?;
+        word(266, 1, &[1], "1, the highest bit first")?;
+        word(274, 1, &[1], "1, the first row on top")?;
+        let codecs = "1 (none), 5 (LZW), 8 or 32946 (deflate) or 32773 (PackBits)";
+        let compression = word(259, 1, &[1, 5, 8, 32946, 32773], codecs)?;
+        let predictor = word(317, 1, &[1, 2, 3], "1 (none), 2 (horizontal) or 3 (floating point)")?;
+        let bits = word(258, 1, &[8, 16, 32, 64], "8, 16, 32 or 64")?;
+        let sample = match (word(339, 1, &[1, 2, 3], "1 (unsigned), 2 (signed) or 3 (floating point)")?, bits)
+        {
+            (1, 8 | 16 | 32) => Sample::Unsigned(bits),
+            (2, 8 | 16 | 32) => Sample::Signed(bits),
+            (3, 32 | 64) => Sample::Float(bits),
+            (format, _) => {
+                let found = format!("samples of format {format} and {bits} bits");
+                let expected = "whole numbers of 8, 16 or 32 bits, or floating point of 32 or 64";
+                return Err(Fault::new(format!("{} and {}", name(258), name(339)), found, expected));
+            }
+        };
+        if predictor == 3 && !matches!(sample, Sample::Float(_)) {
+            return Err(Fault::new(name(317), "3 (floating point)", "1 or 2: the samples are whole numbers"));
+        }
+
+        let (kind, block, offsets, byte_counts) = match tile {
+            Some(tile) => ("tile", tile, 324, 325),
+            None => {
+                let rows = tags.integer(file, 278)?.unwrap_or(height).min(height);
+                if rows == 0 {
+                    return Err(Fault::new(name(278), "0", "one row or more"));
+                }
+                ("strip", [width, rows], 273, 279)
+            }
+        };
+        let across = width.div_ceil(block[0]);
+        let count = across * height.div_ceil(block[1]);
+        for tag in [offsets, byte_counts] {
+            if tags.count(tag) != count || count > MOST_BLOCKS {
+                let found = format!("{} values", tags.count(tag));
+                let expected =
+                    format!("{count}, one for each {kind}, of which at most {MOST_BLOCKS} are read");
+                return Err(Fault::new(name(tag), found, expected));
+            }
+        }
+        // A deflate code of two bits stands for 258 bytes at most. An LZW code of nine or more stands for as many
+        // bytes as there are codes, 4096. PackBits makes 128 bytes of two.
+        let expansion = match compression {
+            1 => 1,
+            5 => 4096,
+            32773 => 64,
+            _ => 1032,
+        };
+        // Both are at most 2^24.
+        let (width, height) = (width as u32, height as u32);
+        Ok(Self { width, height, sample, kind, block, across, offsets, byte_counts, expansion })
+    }
+
+    /// Which of a row of blocks have samples, from block `first` of the file on. All of them lie within the file
+    /// and can be as long as they should be; a block of no bytes is one that nobody wrote.
+    fn row(
+        &self,
+        tags: &Tags,
+        file: &mut (impl Read + Seek),
+        length: u64,
+        first: u64,
+        count: u64,
+    ) -> Result<Vec<bool>, Fault> {
+        let offsets = tags.run(file, self.offsets, first, count)?;
+        let byte_counts = tags.run(file, self.byte_counts, first, count)?;
+        let mut has_samples = Vec::new();
+        for (index, (offset, bytes)) in (first..).zip(offsets.into_iter().zip(byte_counts)) {
+            has_samples.push(bytes > 0);
+            if bytes == 0 {
+                continue;
+            }
+            let fault = |found: String, expected: String| Err(Fault::new(self.place(index), found, expected));
+            if offset.checked_add(bytes).is_none_or(|end| end > length) {
+                let found = format!("{bytes} bytes from byte {offset}");
+                return fault(found, format!("bytes within the file of {length} bytes"));
+            }
+            // Sides are at most 2^24 and 2^16, or 2^24 both: no product overflows.
+            let rows = self.block[1].min(u64::from(self.height) - index / self.across * self.block[1]);
+            let needed = self.block[0] * rows * (self.sample.bits() / 8);
+            if needed > LARGEST_BLOCK {
+                return fault(format!("{needed} bytes of samples"), format!("at most {LARGEST_BLOCK}"));
+            }
+            let slack = if self.expansion == 1 { 0 } else { SLACK };
+            if needed > bytes.saturating_mul(self.expansion) + slack {
+                return fault(format!("{bytes} bytes"), format!("enough for {needed} bytes of samples"));
+            }
+        }
+        Ok(has_samples)
+    }
+
+    fn place(&self, index: u64) -> String {
+        format!("{} {index}", self.kind)
+    }
+
+    /// The samples of the pixels in these columns and rows, row by row from the first; NaN where they are not
+    /// known. Reads the blocks that these pixels touch and no others.
+    pub fn read<R: Read + Seek>(
+        &self,
+        tags: &Tags,
+        mut file: R,
+        length: u64,
+        [columns, rows]: [RangeInclusive<u32>; 2],
+        nodata: Option<f64>,
+    ) -> Result<Vec<f64>, Fault> {
+        let part = |range: &RangeInclusive<u32>, axis: usize| {
+            (u64::from(*range.start()) / self.block[axis], u64::from(*range.end()) / self.block[axis])
+        };
+        let ((left, right), (top, bottom)) = (part(&columns, 0), part(&rows, 1));
+        let count = right - left + 1;
+        // All blocks are checked before memory is taken for what they hold.
+        let mut has_any = false;
+        for down in top..=bottom {
+            let has_samples = self.row(tags, &mut file, length, down * self.across + left, count)?;
+            if let Some(absent) = has_samples.iter().position(|has| !has).filter(|_| nodata.is_none()) {
+                let place = self.place(down * self.across + left + absent as u64);
+                let expected = "samples, or a value in tag 42113 GDAL_NODATA that stands for them";
+                return Err(Fault::new(place, "no bytes", expected));
+            }
+            has_any |= has_samples.contains(&true);
+        }
+        if !has_any {
+            let found = format!("no bytes in any {} that is asked for", self.kind);
+            return Err(Fault::new(name(self.byte_counts), found, "some heights"));
+        }
+
+        let unfit = |place: String| {
+            move |error: tiff::TiffError| Fault::new(place, error.to_string(), "samples that can be decoded")
+        };
+        file.rewind().map_err(|error| Fault::new("first bytes", error.to_string(), "a readable file"))?;
+        let mut limits = Limits::default();
+        limits.decoding_buffer_size = LARGEST_BLOCK as usize;
+        limits.intermediate_buffer_size = LARGEST_BLOCK as usize;
+        let mut decoder = Decoder::new(file).map_err(unfit("tags".to_string()))?.with_limits(limits);
+        let mut target = Target {
+            nodata: nodata.map(|value| self.sample.nodata(value)),
+            heights: vec![f64::NAN; columns.clone().count() * rows.clone().count()],
+            columns,
+            rows,
+        };
+        for down in top..=bottom {
+            let first = down * self.across + left;
+            let has_samples = self.row(tags, decoder.inner(), length, first, count)?;
+            for index in (first..).zip(has_samples).filter(|(_, has)| *has).map(|(index, _)| index) {
+                let samples = decoder.read_chunk(index as u32).map_err(unfit(self.place(index)))?;
+                let corner = [index % self.across * self.block[0], index / self.across * self.block[1]];
+                let size = [
+                    self.block[0].min(u64::from(self.width) - corner[0]),
+                    self.block[1].min(u64::from(self.height) - corner[1]),
+                ];
+                match samples {
+                    DecodingResult::U8(samples) => target.take(corner, size, &samples),
+                    DecodingResult::I8(samples) => target.take(corner, size, &samples),
+                    DecodingResult::U16(samples) => target.take(corner, size, &samples),
+                    DecodingResult::I16(samples) => target.take(corner, size, &samples),
+                    DecodingResult::U32(samples) => target.take(corner, size, &samples),
+                    DecodingResult::I32(samples) => target.take(corner, size, &samples),
+                    DecodingResult::F32(samples) => target.take(corner, size, &samples),
+                    DecodingResult::F64(samples) => target.take(corner, size, &samples),
+                    _ => Err(Fault::new(self.place(index), "other samples", "those of the tags")),
+                }?;
+            }
+        }
+        Ok(target.heights)
+    }
+}
+
+/// The pixels that are asked for.
+struct Target {
+    columns: RangeInclusive<u32>,
+    rows: RangeInclusive<u32>,
+    nodata: Option<f64>,
+    heights: Vec<f64>,
+}
+
+impl Target {
+    /// Takes from a block, whose first pixel is at `corner`, what is asked for.
+    fn take<T: Copy + Into<f64>>(
+        &mut self,
+        corner: [u64; 2],
+        [across, down]: [u64; 2],
+        samples: &[T],
+    ) -> Result<(), Fault> {
+        let width = self.columns.end() - self.columns.start() + 1;
+        for y in 0..down {
+            let row = corner[1] + y;
+            if row < u64::from(*self.rows.start()) || row > u64::from(*self.rows.end()) {
+                continue;
+            }
+            let low = u64::from(*self.columns.start()).max(corner[0]);
+            let end = (u64::from(*self.columns.end()) + 1).min(corner[0] + across);
+            for column in low..end {
+                let at = (y * across + (column - corner[0])) as usize;
+                let Some(&sample) = samples.get(at) else {
+                    let found = format!("{} samples in its block", samples.len());
+                    return Err(Fault::new(
+                        format!("pixel ({column}, {row})"),
+                        found,
+                        format!("{}", across * down),
+                    ));
+                };
+                let sample: f64 = sample.into();
+                let is_unknown = sample.is_nan() || self.nodata == Some(sample);
+                if !is_unknown && !(sample.abs() <= HIGHEST) {
+                    let expected = "a height within 1e7 m, NaN, or the value of tag 42113 GDAL_NODATA";
+                    return Err(Fault::new(
+                        format!("pixel ({column}, {row})"),
+                        format!("{sample:?}"),
+                        expected,
+                    ));
+                }
+                let place = (row - u64::from(*self.rows.start())) * u64::from(width)
+                    + (column - u64::from(*self.columns.start()));
+                // Adding zero makes the minus of -0 go.
+                self.heights[place as usize] = if is_unknown { f64::NAN } else { sample + 0.0 };
+            }
+        }
+        Ok(())
+    }
+}

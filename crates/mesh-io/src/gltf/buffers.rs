@@ -1,0 +1,152 @@
+//! The bytes that a glTF file refers to: its binary chunk, data URIs, files beside it. (glTF 2.0, §3.6.1)
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use gltf::json::Root;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::gltf::LARGEST_FILE;
+use raypencil_files::bytes;
+use raypencil_files::{Fault, Sha, sha};
+
+/// Buffers, loaded when they are first needed: textures and animations never are.
+pub(crate) struct Buffers<'a> {
+    root: &'a Root,
+    folder: &'a Path,
+    bin: Option<&'a [u8]>,
+    loaded: BTreeMap<usize, Cow<'a, [u8]>>,
+    external: BTreeMap<usize, Sha>,
+    external_bytes: u64,
+}
+
+impl<'a> Buffers<'a> {
+    pub(super) fn new(root: &'a Root, folder: &'a Path, bin: Option<&'a [u8]>) -> Self {
+        let (loaded, external) = (BTreeMap::new(), BTreeMap::new());
+        Self { root, folder, bin, loaded, external, external_bytes: 0 }
+    }
+
+    /// The digests of the files that were read, in the order of their buffers.
+    pub(super) fn digests(&self) -> impl Iterator<Item = Sha> + '_ {
+        self.external.values().copied()
+    }
+
+    /// The bytes of a buffer view, which lie within its buffer, which lies within what is there.
+    pub(super) fn view(&mut self, index: usize) -> Result<&[u8], Fault> {
+        let place = || format!("buffer view {index}");
+        let count = self.root.buffer_views.len();
+        let view = self.root.buffer_views.get(index).ok_or_else(|| missing(place(), count))?;
+        let (offset, length) = (view.byte_offset.map_or(0, |offset| offset.0), view.byte_length.0);
+        let buffer = self.buffer(view.buffer.value())?;
+        let range = offset
+            .checked_add(length)
+            .and_then(|end| Some(usize::try_from(offset).ok()?..usize::try_from(end).ok()?));
+        range.and_then(|range| buffer.get(range)).ok_or_else(|| {
+            let found = format!("{length} bytes from byte {offset}");
+            let buffer_index = view.buffer.value();
+            Fault::new(place(), found, format!("a part of buffer {buffer_index} of {} bytes", buffer.len()))
+        })
+    }
+
+    fn buffer(&mut self, index: usize) -> Result<&[u8], Fault> {
+        let place = || format!("buffer {index}");
+        let count = self.root.buffers.len();
+        let buffer = self.root.buffers.get(index).ok_or_else(|| missing(place(), count))?;
+        if !self.loaded.contains_key(&index) {
+            let bytes = match &buffer.uri {
+                Some(uri) => match uri.strip_prefix("data:") {
+                    Some(data) => Cow::Owned(data_uri(data, &place())?),
+                    None => Cow::Owned(self.external(index, uri)?),
+                },
+                None => match (index, self.bin) {
+                    (0, Some(bin)) => Cow::Borrowed(bin),
+                    _ => {
+                        return Err(Fault::new(
+                            place(),
+                            "no uri",
+                            "a uri, or buffer 0 of a GLB with a BIN chunk",
+                        ));
+                    }
+                },
+            };
+            self.loaded.insert(index, bytes);
+        }
+        let bytes: &[u8] = self.loaded.get(&index).map_or(&[], |bytes| bytes);
+        // A BIN chunk may be longer than its buffer by its padding.
+        usize::try_from(buffer.byte_length.0).ok().and_then(|length| bytes.get(..length)).ok_or_else(|| {
+            let found = format!("{} bytes", bytes.len());
+            Fault::new(place(), found, format!("the {} bytes of its byteLength", buffer.byte_length.0))
+        })
+    }
+
+    /// A file in the folder of the glTF file, or below it.
+    fn external(&mut self, index: usize, uri: &str) -> Result<Vec<u8>, Fault> {
+        let place = format!("buffer {index}");
+        let quoted: String = uri.chars().take(80).collect();
+        let refuse = |why: &str| {
+            Fault::new(
+                &place,
+                format!("uri \"{}\" {why}", quoted.escape_debug()),
+                "a file in the folder of this one, or below it",
+            )
+        };
+        let relative = percent_decoded(uri).ok_or_else(|| refuse("has a broken % escape"))?;
+        // Backslashes and colons separate folders and drives on some systems, schemes and streams on others.
+        if relative.contains([':', '\\', '\0']) {
+            return Err(refuse("has a scheme, a drive or a backslash"));
+        }
+        if relative.is_empty() || relative.split('/').any(|part| part.is_empty() || part == "..") {
+            return Err(refuse("is absolute, leads out of the folder or names no file"));
+        }
+        let path = self.folder.join(PathBuf::from(&relative));
+        // A symbolic link may lead out of the folder where the name does not.
+        let inside = |folder: &Path| Some(path.canonicalize().ok()?.starts_with(folder.canonicalize().ok()?));
+        let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
+        match inside(folder) {
+            Some(true) => {}
+            Some(false) => return Err(refuse("leads out of the folder by a link")),
+            None => return Err(refuse("does not exist")),
+        }
+        let bytes = bytes::read_file(&path, LARGEST_FILE - self.external_bytes)
+            .map_err(|error| refuse(&format!("cannot be read: {error}")))?;
+        self.external_bytes += bytes.len() as u64;
+        self.external.insert(index, sha(&bytes));
+        Ok(bytes)
+    }
+}
+
+/// A reference to something that is not in the file.
+pub(crate) fn missing(place: String, count: usize) -> Fault {
+    Fault::new(place, "does not exist", format!("an index below {count}"))
+}
+
+/// The bytes of `data:[<type>];base64,<digits>`, without its `data:`.
+fn data_uri(data: &str, place: &str) -> Result<Vec<u8>, Fault> {
+    let digits = data
+        .split_once(',')
+        .filter(|(head, _)| head.ends_with(";base64"))
+        .map(|(_, digits)| digits)
+        .ok_or_else(|| {
+            Fault::new(place, "a data URI without base64", "data:application/octet-stream;base64,...")
+        })?;
+    STANDARD
+        .decode(digits)
+        .map_err(|error| Fault::new(place, format!("a data URI: {error}"), "base64 with padding (RFC 4648)"))
+}
+
+/// `a%20b` as `a b`; `None` if an escape is broken or what comes out is not UTF-8.
+fn percent_decoded(uri: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.bytes();
+    while let Some(byte) = rest.next() {
+        bytes.push(match byte {
+            b'%' => {
+                let mut digit = || char::from(rest.next()?).to_digit(16);
+                u8::try_from(digit()? * 16 + digit()?).ok()?
+            }
+            plain => plain,
+        });
+    }
+    String::from_utf8(bytes).ok()
+}

@@ -1,0 +1,152 @@
+//! The JSON of a glTF file to the types of the crate `gltf`, as far as they can be trusted. (glTF 2.0, §5)
+
+use gltf::json::Root;
+use serde::de::{Error, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use raypencil_files::Fault;
+
+/// The parts of the JSON that say whether the rest can be understood.
+#[derive(Deserialize)]
+struct Head {
+    asset: HeadAsset,
+    #[serde(default, rename = "extensionsRequired")]
+    required: Vec<String>,
+    #[serde(default, rename = "extensionsUsed")]
+    used: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct HeadAsset {
+    version: String,
+    #[serde(rename = "minVersion")]
+    min_version: Option<String>,
+}
+
+/// The most objects of the JSON. CHOICE: two bytes of text become half a kilobyte of memory each, and a ground has a few
+/// dozen to a few thousand.
+const MOST_OBJECTS: usize = 1 << 19;
+
+/// Parses the JSON. Depth is limited by serde_json, which refuses what is nested deeper than 128 and skips
+/// unknown keys without recursion.
+pub(super) fn root(json: &[u8]) -> Result<Root, Fault> {
+    let unfit = |error: serde_json::Error| Fault::new("JSON", error.to_string(), "a glTF 2.0 asset");
+    // Those within texts are counted as well: few, and it is the memory that counts.
+    let objects = json.iter().filter(|&&byte| byte == b'{').count();
+    if objects > MOST_OBJECTS {
+        return Err(Fault::new("JSON", format!("{objects} objects"), format!("at most {MOST_OBJECTS}")));
+    }
+    let head: Head = serde_json::from_slice(json).map_err(unfit)?;
+    let HeadAsset { version, min_version } = &head.asset;
+    if !version.starts_with("2.") || min_version.as_ref().is_some_and(|least| least != "2.0") {
+        let found = format!("version {version:?}, minVersion {min_version:?}");
+        return Err(Fault::new("asset", found, "glTF 2.0"));
+    }
+    // Extensions of light and colour do not move a vertex.
+    let harmless = |name: &str| {
+        ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"]
+            .iter()
+            .any(|start| name.starts_with(start))
+    };
+    if let Some(name) = head.required.iter().find(|name| !harmless(name)) {
+        let expected =
+            "plain buffers and nodes; extensions are known only for materials, textures and lights";
+        return Err(Fault::new("extensionsRequired", format!("{name:?}"), expected));
+    }
+    // Without it most of the ground would be missing, and nothing would say so.
+    if head.used.iter().any(|name| name == "EXT_mesh_gpu_instancing") {
+        return Err(Fault::new("extensionsUsed", "\"EXT_mesh_gpu_instancing\"", "a node for each instance"));
+    }
+    let _: References = serde_json::from_slice(json).map_err(unfit)?;
+    serde_json::from_slice(json).map_err(unfit)
+}
+
+/// Every index that is followed, for what it is: the crate keeps the lowest 32 bits of each, so that 2^32 means 0.
+/// Nothing of it is kept but what reading it says.
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct References {
+    scene: Option<Index>,
+    #[serde(default)]
+    scenes: Vec<SceneReferences>,
+    #[serde(default)]
+    nodes: Vec<NodeReferences>,
+    #[serde(default)]
+    meshes: Vec<MeshReferences>,
+    #[serde(default)]
+    accessors: Vec<AccessorReferences>,
+    #[serde(default, rename = "bufferViews")]
+    views: Vec<ViewReferences>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct SceneReferences {
+    #[serde(default)]
+    nodes: Vec<Index>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct NodeReferences {
+    children: Option<Vec<Index>>,
+    mesh: Option<Index>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct MeshReferences {
+    #[serde(default)]
+    primitives: Vec<PrimitiveReferences>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct PrimitiveReferences {
+    attributes: Option<AttributeReferences>,
+    indices: Option<Index>,
+    material: Option<Index>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct AttributeReferences {
+    #[serde(rename = "POSITION")]
+    position: Option<Index>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct AccessorReferences {
+    #[serde(rename = "bufferView")]
+    view: Option<Index>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct ViewReferences {
+    buffer: Option<Index>,
+}
+
+/// A number from 0 to 2^32 - 1, which takes no memory.
+struct Index;
+
+impl<'de> Deserialize<'de> for Index {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Whole;
+        impl Visitor<'_> for Whole {
+            type Value = Index;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("an index below 2^32")
+            }
+
+            fn visit_u64<E: Error>(self, index: u64) -> Result<Index, E> {
+                u32::try_from(index)
+                    .map(|_| Index)
+                    .map_err(|_| E::invalid_value(Unexpected::Unsigned(index), &self))
+            }
+        }
+        deserializer.deserialize_u64(Whole)
+    }
+}

@@ -1,0 +1,195 @@
+//! A mesh to GLB: one node, the mesh's own numbers, faces in the order of `FaceId`. (glTF 2.0)
+
+use serde_json::{Value, json};
+use std::path::Path;
+
+use crate::gltf::MOST;
+use raypencil_files::{Fault, FileError, write_atomically};
+use raypencil_scene::Mesh;
+
+/// The types of a buffer view's contents. (glTF 2.0, §5.11.5)
+const ARRAY_BUFFER: u32 = 34_962;
+
+const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
+
+/// The types of an accessor's components. (§5.1.3)
+const FLOAT: u32 = 5_126;
+
+const UNSIGNED_INT: u32 = 5_125;
+
+/// Most materials that a file may have: one index is left for faces of other files that have none.
+const MOST_MATERIALS: usize = u16::MAX as usize - 1;
+
+/// Writes `mesh` as a GLB file: what [`glb_bytes`] gives.
+///
+/// # Errors
+/// A mesh that no reader would take: without faces, with more than 2^25 faces or vertices, or with more
+/// than 65534 materials; what the file system says.
+pub fn write_glb(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), FileError> {
+    let path = path.as_ref();
+    check(mesh).map_err(|fault| FileError::Gltf(fault.in_file(path)))?;
+    let bytes = glb_bytes(mesh);
+    write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// Writes `mesh` as a GLB file for people and other programs: as [`write_glb`] does, but its node stands at the
+/// scene origin, so that the ground is where it belongs, and [`crate::gltf::load_mesh`] gives back the same mesh bit
+/// for bit. `extras`, a JSON object of anything, becomes the node's `extras`; `asset.extras.units` is `metre`.
+///
+/// # Errors
+/// As [`write_glb`]; an origin that single precision cannot hold, in which glTF has its numbers: all whole metres
+/// below 2^24 can be held.
+pub fn write_terrain_glb(path: impl AsRef<Path>, mesh: &Mesh, extras: &Value) -> Result<(), FileError> {
+    let path = path.as_ref();
+    let bytes = check(mesh)
+        .and_then(|()| terrain_document(mesh, extras))
+        .map(|document| file(mesh, &document))
+        .map_err(|fault| FileError::Gltf(fault.in_file(path)))?;
+    write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// The document of a mesh whose node stands at the scene origin.
+fn terrain_document(mesh: &Mesh, extras: &Value) -> Result<Value, Fault> {
+    let origin = mesh.origin();
+    if let Some(value) = origin.to_array().into_iter().find(|value| f64::from(*value as f32) != *value) {
+        let expected = "a number that single precision holds, such as whole metres below 16777216";
+        return Err(Fault::new("mesh", format!("a scene origin of {origin}, with {value}"), expected));
+    }
+    let mut document = document(mesh);
+    document["asset"]["extras"]["units"] = json!("metre");
+    let node = &mut document["nodes"][0];
+    node["extras"] = extras.clone();
+    if origin != glam::DVec3::ZERO {
+        // z up becomes y up; adding zero makes the minus of -0 go.
+        node["translation"] = json!([origin.x, origin.z, -origin.y + 0.0]);
+    }
+    Ok(document)
+}
+
+/// Refuses what a GLB cannot hold, or what [`crate::gltf::load_mesh`] would not read back.
+fn check(mesh: &Mesh) -> Result<(), Fault> {
+    if mesh.faces().is_empty() {
+        return Err(Fault::new("mesh", "no faces", "at least one: glTF has no empty meshes"));
+    }
+    for (name, count) in [("faces", mesh.faces().len()), ("vertices", mesh.vertices().len())] {
+        if count as u64 > MOST {
+            return Err(Fault::new("mesh", format!("{count} {name}"), format!("at most {MOST}")));
+        }
+    }
+    match mesh.materials().len() {
+        count if count > MOST_MATERIALS => {
+            Err(Fault::new("mesh", format!("{count} materials"), format!("at most {MOST_MATERIALS}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The bytes of a GLB file with `mesh`: the same bytes for the same mesh, and valid glTF 2.0.
+///
+/// The vertices are the mesh's very `f32` offsets from its origin, metres, in the axes of glTF (y up): scene
+/// (x, y, z) is (x, z, -y). No node has a transform. The origin, metres in the global frame, stands in
+/// `asset.extras.originM` for people; [`crate::gltf::mesh_of_offsets`] is told it and gives back the same mesh bit
+/// for bit, while [`crate::gltf::load_mesh`] takes the vertices for global ones. All faces refer to one
+/// list of vertices; each run of faces of one material is a primitive, so that their order is that of
+/// [`raypencil_scene::FaceId`]. A material's reflectivity is its `extras.reflectivity`.
+///
+/// # Panics
+/// If the mesh has so many faces or vertices that a GLB cannot hold them (4 GiB); [`write_glb`] refuses it.
+pub fn glb_bytes(mesh: &Mesh) -> Vec<u8> {
+    file(mesh, &document(mesh))
+}
+
+/// The file of a mesh and its document.
+fn file(mesh: &Mesh, document: &Value) -> Vec<u8> {
+    let positions = 12 * mesh.vertices().len();
+    let indices = 12 * mesh.faces().len();
+    let mut bin = Vec::with_capacity(positions + indices);
+    for &[x, y, z] in mesh.vertices() {
+        bin.extend([x, z, -y].iter().flat_map(|coordinate| coordinate.to_le_bytes()));
+    }
+    bin.extend(mesh.faces().as_flattened().iter().flat_map(|index| index.to_le_bytes()));
+    container(&serde_json::to_vec(document).expect("JSON of numbers and texts"), &bin)
+}
+
+/// The JSON of the file. Objects have their keys in alphabetical order, so that it is the same for the same mesh.
+fn document(mesh: &Mesh) -> Value {
+    let origin = mesh.origin().to_array();
+    let mut document = json!({
+        "asset": {
+            "version": "2.0",
+            "generator": concat!("raypencil ", env!("CARGO_PKG_VERSION")),
+            "extras": {"originM": origin},
+        },
+        "scene": 0,
+        "scenes": [{"nodes": []}],
+    });
+    // Lists may not be empty in glTF, so what a mesh lacks has no key.
+    if !mesh.materials().is_empty() {
+        let material = |material: &raypencil_scene::Material| json!({"name": material.name, "extras": {"reflectivity": material.reflectivity}});
+        document["materials"] = mesh.materials().iter().map(material).collect();
+    }
+    if mesh.faces().is_empty() {
+        return document;
+    }
+    let vertices = mesh.vertices().len();
+    let [low, high] = bounds(mesh);
+    let mut accessors = vec![json!({
+        "bufferView": 0, "componentType": FLOAT, "type": "VEC3", "count": vertices, "min": low, "max": high,
+    })];
+    let mut primitives = Vec::new();
+    let mut first = 0;
+    for run in mesh.face_materials().chunk_by(|a, b| a == b) {
+        primitives.push(json!({
+            "attributes": {"POSITION": 0}, "indices": accessors.len(), "material": run[0], "mode": 4,
+        }));
+        accessors.push(json!({
+            "bufferView": 1, "byteOffset": 12 * first, "componentType": UNSIGNED_INT, "type": "SCALAR",
+            "count": 3 * run.len(),
+        }));
+        first += run.len();
+    }
+    let (positions, indices) = (12 * vertices, 12 * mesh.faces().len());
+    document["nodes"] = json!([{"mesh": 0, "name": "terrain"}]);
+    document["scenes"] = json!([{"nodes": [0]}]);
+    document["meshes"] = json!([{"name": "terrain", "primitives": primitives}]);
+    document["accessors"] = accessors.into();
+    document["bufferViews"] = json!([
+        {"buffer": 0, "byteOffset": 0, "byteLength": positions, "target": ARRAY_BUFFER},
+        {"buffer": 0, "byteOffset": positions, "byteLength": indices, "target": ELEMENT_ARRAY_BUFFER},
+    ]);
+    document["buffers"] = json!([{"byteLength": positions + indices}]);
+    document
+}
+
+/// The least and greatest coordinates as they stand in the file.
+fn bounds(mesh: &Mesh) -> [[f32; 3]; 2] {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for &[x, y, z] in mesh.vertices() {
+        for (axis, coordinate) in [x, z, -y].into_iter().enumerate() {
+            low[axis] = low[axis].min(coordinate);
+            high[axis] = high[axis].max(coordinate);
+        }
+    }
+    [low, high]
+}
+
+/// The two chunks of a GLB, each padded to 4 bytes: JSON with spaces, binary data with zeros. (§4.4)
+fn container(json: &[u8], bin: &[u8]) -> Vec<u8> {
+    let chunks = [(b"JSON", json, b' '), (b"BIN\0", bin, 0)];
+    // A file without a buffer has no binary chunk.
+    let chunks = &chunks[..if bin.is_empty() { 1 } else { 2 }];
+    let total: usize =
+        12 + chunks.iter().map(|(_, data, _)| 8 + data.len().next_multiple_of(4)).sum::<usize>();
+    let word = |length: usize| u32::try_from(length).expect("a GLB of less than 4 GiB").to_le_bytes();
+    let mut file = Vec::with_capacity(total);
+    file.extend(b"glTF\x02\0\0\0");
+    file.extend(word(total));
+    for &(kind, data, padding) in chunks {
+        let length = data.len().next_multiple_of(4);
+        file.extend(word(length));
+        file.extend(kind);
+        file.extend(data);
+        file.extend(std::iter::repeat_n(padding, length - data.len()));
+    }
+    file
+}

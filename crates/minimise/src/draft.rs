@@ -1,0 +1,81 @@
+//! A scene taken apart, to be changed piece by piece and put together again.
+
+use std::sync::Arc;
+
+use raypencil_scene::Place;
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Scene, SceneError, SensorId,
+};
+
+/// The parts of a scene, and the ray in question.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draft {
+    pub(super) mesh: Arc<Mesh>,
+    pub(super) camera: Mounted<Camera>,
+    pub(super) beams: Vec<Mounted<Beam>>,
+    pub(super) atmosphere: Atmosphere,
+    pub(super) flux_model: FluxModel,
+    pub(super) place: Option<Place>,
+}
+
+impl Draft {
+    pub(super) fn of(scene: &Scene, place: Option<Place>) -> Self {
+        Self {
+            mesh: Arc::clone(scene.mesh()),
+            camera: *scene.camera(),
+            beams: scene.beams().to_vec(),
+            atmosphere: scene.atmosphere(),
+            flux_model: scene.flux_model(),
+            place,
+        }
+    }
+
+    /// The scene, if the parts make one.
+    pub(super) fn scene(&self) -> Result<Scene, SceneError> {
+        let mesh = Arc::clone(&self.mesh);
+        Scene::new(mesh, self.camera, self.beams.clone(), self.atmosphere, self.flux_model)
+    }
+
+    /// This with only those faces of its mesh, in the order of `kept`, and only the vertices that they use.
+    pub(super) fn with_faces(&self, kept: &[u32]) -> Self {
+        let old = &self.mesh;
+        let mut is_used = vec![false; old.vertices().len()];
+        for &face in kept {
+            old.faces()[face as usize].iter().for_each(|&vertex| is_used[vertex as usize] = true);
+        }
+        let mut renamed = vec![0; is_used.len()];
+        let mut vertices = Vec::new();
+        for (index, _) in is_used.iter().enumerate().filter(|(_, is_used)| **is_used) {
+            renamed[index] = vertices.len() as u32;
+            vertices.push(old.vertices()[index]);
+        }
+        let faces = kept.iter().map(|&face| old.faces()[face as usize].map(|v| renamed[v as usize]));
+        let kinds = kept.iter().map(|&face| old.face_materials()[face as usize]);
+        let mesh =
+            Mesh::new(old.origin(), vertices, faces.collect(), kinds.collect(), old.materials().to_vec());
+        Self { mesh: Arc::new(mesh.expect("a part of a mesh is one")), ..self.clone() }
+    }
+
+    /// This with its vertices moved; `None` if they make no mesh any more.
+    pub(super) fn with_vertices(&self, mut moved: impl FnMut(usize, [f32; 3]) -> [f32; 3]) -> Option<Self> {
+        let old = &self.mesh;
+        let vertices = old.vertices().iter().enumerate().map(|(index, &at)| moved(index, at)).collect();
+        let (faces, kinds) = (old.faces().to_vec(), old.face_materials().to_vec());
+        let mesh = Mesh::new(old.origin(), vertices, faces, kinds, old.materials().to_vec()).ok()?;
+        Some(Self { mesh: Arc::new(mesh), ..self.clone() })
+    }
+
+    /// Where the sensor of the ray in question stands, or the camera if no ray is.
+    pub(super) fn pose(&self) -> Pose {
+        match self.place.map(|place| place.sensor) {
+            Some(SensorId::Beam(index)) if index < self.beams.len() => self.beams[index].scene_from_sensor,
+            _ => self.camera.scene_from_sensor,
+        }
+    }
+
+    /// All poses.
+    pub(super) fn poses_mut(&mut self) -> impl Iterator<Item = &mut Pose> {
+        let beams = self.beams.iter_mut().map(|beam| &mut beam.scene_from_sensor);
+        std::iter::once(&mut self.camera.scene_from_sensor).chain(beams)
+    }
+}

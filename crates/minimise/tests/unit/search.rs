@@ -1,0 +1,194 @@
+//! Searches with plain predicates, whose minimum is known.
+
+use glam::DVec3;
+use std::cell::Cell;
+use std::sync::{Arc, Mutex};
+
+use crate::draft::Draft;
+use crate::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
+use raypencil_scene::Place;
+use raypencil_scene::{
+    Beam, Filter, FluxModel, Lens, Mesh, Mounted, Pose, Profile, Progress, Scene, SensorId, Silent,
+};
+use raypencil_tests::fixtures::subject;
+
+fn search(
+    scene: &Scene,
+    place: Option<Place>,
+    shows: impl Fn(&Scene, Option<Place>) -> bool,
+) -> Result<Minimised, NotShown> {
+    minimise(scene, place, &shows, MINIMISE_BUDGET, &Silent)
+}
+
+/// The corners of a scene's faces.
+fn triangles(scene: &Scene) -> Vec<[[f32; 3]; 3]> {
+    let mesh = scene.mesh();
+    mesh.faces().iter().map(|face| face.map(|v| mesh.vertices()[v as usize])).collect()
+}
+
+/// A wall of 60 x 40 squares of two faces each.
+fn wall() -> Scene {
+    let vertices = (0..=40).flat_map(|v| (0..=60).map(move |u| [u as f32, v as f32, 9.0])).collect();
+    let squares = (0..40).flat_map(|v| (0..60).map(move |u| v * 61 + u));
+    let faces: Vec<[u32; 3]> = squares.flat_map(|a| [[a, a + 61, a + 62], [a, a + 62, a + 1]]).collect();
+    let materials = subject().scene.mesh().materials().to_vec();
+    let kinds = vec![0; faces.len()];
+    let mesh = Mesh::new(DVec3::ZERO, vertices, faces, kinds, materials).unwrap();
+    Scene::new(
+        Arc::new(mesh),
+        *subject().scene.camera(),
+        Vec::new(),
+        subject().scene.atmosphere(),
+        FluxModel::Eq1,
+    )
+    .unwrap()
+}
+
+#[test]
+fn what_is_not_shown_is_refused() {
+    assert_eq!(search(&subject().scene, None, |_, _| false).unwrap_err(), NotShown);
+}
+
+#[test]
+fn the_faces_that_matter_are_found_wherever_they_are() {
+    let scene = wall();
+    for wanted in [vec![0], vec![4799], vec![17, 18], vec![3, 1900, 4711]] {
+        let corners: Vec<_> = wanted.iter().map(|&face: &usize| triangles(&scene)[face]).collect();
+        let shows = |scene: &Scene, _: Option<Place>| {
+            let there = triangles(scene);
+            corners.iter().all(|face| there.contains(face))
+        };
+        let Minimised { scene: found, faces_before, faces_after, is_finished, calls, .. } =
+            search(&scene, None, shows).unwrap();
+        assert_eq!((faces_before, faces_after, is_finished), (4800, wanted.len(), true), "{wanted:?}");
+        // In the order of the ground, on no vertex more.
+        assert_eq!(triangles(&found), corners);
+        assert!(found.mesh().vertices().len() <= 3 * wanted.len());
+        // 2 log2(4800) = 25 for one face; each further one adds a few times that.
+        assert!(calls < 150 + 150 * wanted.len() as u64, "{wanted:?}: {calls} calls");
+    }
+}
+
+#[test]
+fn where_the_ray_is_known_its_faces_come_first() {
+    let scene = wall();
+    // A camera before (30.2, 20.1): the ray meets face 2 (20 * 60 + 30) + 1 there, for 0.2 > 0.1.
+    let mut draft = Draft::of(&scene, Some(Place { sensor: SensorId::Camera, i: 24, j: 20 }));
+    draft.camera.scene_from_sensor = Pose::from_position(DVec3::new(30.2, 20.1, 0.0));
+    draft.camera.sensor.principal_point = [24.5, 20.5];
+    let scene = draft.scene().unwrap();
+    let face = triangles(&scene)[2 * (20 * 60 + 30) + 1];
+    let sizes = std::cell::RefCell::new(Vec::new());
+    let shows = |scene: &Scene, _: Option<Place>| {
+        sizes.borrow_mut().push(scene.mesh().faces().len());
+        triangles(scene).contains(&face)
+    };
+    let found = search(&scene, draft.place, shows).unwrap();
+    assert_eq!(triangles(&found.scene), [face]);
+    // Once the faces are cut, they are one; the whole ground was asked about only while the sensor was cut.
+    let sizes = sizes.into_inner();
+    assert!(sizes.iter().all(|size| [1, 4800].contains(size)), "{sizes:?}");
+}
+
+#[test]
+fn a_predicate_that_always_holds_leaves_the_plainest_scene() {
+    let subject = subject();
+    let mut draft = Draft::of(&subject.scene, None);
+    draft.atmosphere.attenuation = 0.1;
+    draft.flux_model = FluxModel::Eq1;
+    let filter = Filter::Interference { centre: 8e-7, width: 1e-8, index: 2.0 };
+    draft.camera.sensor.lens = Lens { transmission: 0.5, filter };
+    let found = search(&draft.scene().unwrap(), None, |_, _| true).unwrap();
+    let (scene, camera) = (&found.scene, found.scene.camera());
+    assert_eq!((scene.mesh().faces().len(), scene.mesh().vertices().len(), scene.beams().len()), (1, 3, 0));
+    assert_eq!((camera.sensor.width, camera.sensor.height, camera.sensor.lens), (1, 1, Lens::CLEAR));
+    assert_eq!((scene.atmosphere().attenuation, scene.flux_model()), (0.0, FluxModel::Radiometric));
+    assert_eq!(camera.scene_from_sensor, Pose::IDENTITY);
+    assert!(triangles(scene)[0].as_flattened().iter().all(|x| *x == 0.0));
+}
+
+#[test]
+fn the_budget_is_kept_and_what_comes_out_shows_it() {
+    for budget in [0, 1, 7, 100] {
+        let calls = Cell::new(0);
+        let shows = |scene: &Scene, _: Option<Place>| {
+            calls.set(calls.get() + 1);
+            let faces = scene.mesh().faces().len();
+            faces.is_multiple_of(2) && faces > 8
+        };
+        let found = minimise(&wall(), None, &shows, budget, &Silent).unwrap();
+        assert_eq!((found.calls, found.is_finished), (calls.get(), false), "{budget}");
+        assert!(found.calls <= budget.max(1), "{budget}: {}", found.calls);
+        assert!(shows(&found.scene, None));
+    }
+}
+
+#[test]
+fn a_pixel_keeps_its_very_ray_when_the_image_shrinks_to_it() {
+    let scene = subject().scene;
+    let place = Place { sensor: SensorId::Camera, i: 17, j: 23 };
+    let ray = scene.ray(place.sensor, place.i, place.j);
+    let shows = |scene: &Scene, place: Option<Place>| {
+        place.is_some_and(|Place { sensor, i, j }| scene.ray(sensor, i, j) == ray)
+    };
+    let found = search(&scene, Some(place), shows).unwrap();
+    assert!(shows(&found.scene, found.place));
+    let camera = &found.scene.camera().sensor;
+    // 24 - 17 and 20 - 23.
+    assert_eq!((camera.width, camera.height, camera.principal_point), (1, 1, [7.0, -3.0]));
+    assert_eq!(found.place, Some(Place { i: 0, j: 0, ..place }));
+    assert!(found.scene.beams().is_empty());
+}
+
+#[test]
+fn a_pencil_keeps_its_very_ray_and_its_beam() {
+    // The last of three beams; half widths of 1/16 m are exact over 64 columns, 0.0577 m are not.
+    let base = subject().scene;
+    let Mounted { scene_from_sensor, sensor } = base.beams()[0];
+    for (half_width, columns) in [(0.0625, 2), (Beam::half_width_of(0.1, 1.0471975511965976), 64)] {
+        let mut draft = Draft::of(&base, Some(Place { sensor: SensorId::Beam(2), i: 41, j: 0 }));
+        let own = Beam { half_width, thickness: 0.0078125, profile: Profile::UniformAngle, ..sensor };
+        draft.beams = vec![draft.beams[0]; 2];
+        draft.beams.push(Mounted { scene_from_sensor, sensor: own });
+        let scene = draft.scene().unwrap();
+        let ray = scene.ray(SensorId::Beam(2), 41, 0);
+        let shows = |scene: &Scene, place: Option<Place>| {
+            place.is_some_and(|Place { sensor, i, j }| scene.ray(sensor, i, j) == ray)
+        };
+        let found = search(&scene, draft.place, shows).unwrap();
+        assert!(shows(&found.scene, found.place), "{:?}", found.place);
+        assert_eq!(found.place.map(|place| place.sensor), Some(SensorId::Beam(0)));
+        let beam = &found.scene.beams()[0].sensor;
+        assert_eq!((beam.columns, beam.rows, beam.profile), (columns, 2, Profile::Paper));
+        assert_eq!(found.scene.beams().len(), 1);
+    }
+}
+
+#[test]
+fn the_same_search_gives_the_same_scene() {
+    let scene = subject().scene;
+    let place = Some(Place { sensor: SensorId::Beam(0), i: 30, j: 2 });
+    let shows = |scene: &Scene, place: Option<Place>| {
+        let Some(Place { sensor, i, j }) = place else { return false };
+        let Some(ray) = scene.ray(sensor, i, j) else { return false };
+        ray.direction.x > 0.05 && scene.mesh().faces().len() >= 5
+    };
+    let [a, b] = [(); 2].map(|()| search(&scene, place, shows).unwrap());
+    assert_eq!((a.scene, a.place, a.calls), (b.scene, b.place, b.calls));
+    assert_eq!(a.faces_after, 5);
+}
+
+#[test]
+fn progress_hears_how_far_it_has_come() {
+    struct Heard(Mutex<Vec<String>>);
+    impl Progress for Heard {
+        fn stage(&self, what: &str) {
+            self.0.lock().unwrap().push(what.into());
+        }
+    }
+    let heard = Heard(Mutex::new(Vec::new()));
+    minimise(&wall(), None, &|_, _| true, MINIMISE_BUDGET, &heard).unwrap();
+    let heard = heard.0.into_inner().unwrap();
+    assert!(heard[0].starts_with("minimising, 4800 faces after 1 trials: "), "{heard:?}");
+    assert!(heard.iter().any(|what| what.contains(" 1 faces after ") && what.ends_with("shorter numbers")));
+}

@@ -1,0 +1,110 @@
+//! How exact each renderer is: its largest error in ulp, quantity by quantity, against correctly rounded values, over
+//! every ray of some scenes, in both models of flux. Writes the first half of `docs/results.md`, above its mark, to
+//! standard output; the example `truth` the tables below.
+//!
+//! ```sh
+//! cargo run --release -p raypencil-harness --example results -- pyramids facets marsyard2021.glb
+//! ```
+
+use std::path::Path;
+
+use raypencil::harness::contender;
+use raypencil::io::{Overrides, load};
+use raypencil::judge::{Check, Class, Quantity, Recorded, Truth, check};
+use raypencil::{FluxModel, Progress, Request};
+
+struct Stages;
+
+impl Progress for Stages {
+    fn stage(&self, what: &str) {
+        eprintln!("{what}");
+    }
+}
+
+const RENDERERS: [&str; 2] = ["scanline", "tracer"];
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let scenes: Vec<String> = std::env::args().skip(1).collect();
+    if scenes.is_empty() {
+        return Err("expected scenes: built-in names, .toml or .glb files".into());
+    }
+    let names: Vec<String> = scenes.iter().map(|scene| name(scene)).collect();
+    println!("# How exact the renderers are\n");
+    println!(
+        "Every ray of each scene under the default rig, as each renderer computes it in double precision, against the\n\
+         referee's correctly rounded values: the largest error in units of the last place (ulp) of the latter, and\n\
+         where. 0 would be correctly rounded throughout. Of a vector it is the error of a part in ulp of the largest\n\
+         part. The large errors of ranges are those of rays that graze a face, where a bound grows as 1 / cos(psi)\n\
+         (`crates/harness/src/bounds.rs`). Which face is hit, which pixel and what is seen are judged exactly.\n"
+    );
+    println!(
+        "Made by `cargo run --release -p raypencil-harness --example results -- {}`; the last is the Mars\n\
+         yard of half a million triangles, which is no part of this repository. The same numbers come out on any\n\
+         machine.\n",
+        names.join(" ")
+    );
+    for (scene, name) in scenes.iter().zip(&names) {
+        page(scene, name)?;
+    }
+    Ok(())
+}
+
+fn name(scene: &str) -> String {
+    Path::new(scene).file_name().map_or(scene.into(), |name| name.to_string_lossy().into_owned())
+}
+
+fn page(scene: &str, name: &str) -> Result<(), Box<dyn std::error::Error>> {
+    println!("## {name}\n");
+    let mut columns: Vec<(String, Check)> = Vec::new();
+    for flux_model in [FluxModel::Radiometric, FluxModel::Eq1] {
+        let overrides = Overrides { flux_model: Some(flux_model), ..Overrides::default() };
+        let loaded = load(scene, &overrides)?;
+        let truth = Truth::certified(&loaded.scene, &Stages);
+        for renderer in RENDERERS {
+            let contender = contender(renderer).ok_or("a renderer of this house")?;
+            let frame = contender.renderer.render(&loaded.scene, &Request::EVERYTHING);
+            let resolution = contender.renderer.resolution();
+            let recorded = Recorded::of_frame(renderer, &loaded.scene, &frame, resolution);
+            let model = if flux_model == FluxModel::Eq1 { "eq1" } else { "radiometric" };
+            columns.push((format!("{renderer} {model}"), check(&truth, &recorded, &Stages)));
+        }
+    }
+
+    println!("| | compared | agree | tie | rounding | defect |\n| --- | ---: | ---: | ---: | ---: | ---: |");
+    for (title, found) in &columns {
+        let of = |class| found.of(class);
+        println!(
+            "| {title} | {} | {} | {} | {} | {} |",
+            found.compared(),
+            of(Class::Agree),
+            of(Class::Tie),
+            of(Class::Rounding),
+            of(Class::Defect)
+        );
+    }
+    println!("\n| largest error, ulp | values | scanline | tracer |\n| --- | ---: | --- | --- |");
+    let valued = Quantity::ALL.into_iter().filter(|quantity| {
+        !matches!(quantity, Quantity::Hit | Quantity::Face | Quantity::Visible | Quantity::Pixel)
+    });
+    for quantity in valued {
+        let is_flux = matches!(quantity, Quantity::PencilFlux | Quantity::PixelFlux);
+        // Geometry is the same in both models.
+        for pair in columns.chunks(RENDERERS.len()).take(if is_flux { 2 } else { 1 }) {
+            let model = pair[0].0.split_once(' ').map_or("", |(_, model)| model);
+            let title = if is_flux { format!("{quantity}, {model}") } else { quantity.to_string() };
+            let cells = pair.iter().map(|(_, found)| {
+                let totals = found.totals();
+                let of_quantity = totals.iter().filter(|(item, _)| item.quantity == quantity);
+                let largest = of_quantity.filter_map(|(_, tally)| tally.ulps.clone());
+                let largest = largest.max_by(|a, b| a.value.total_cmp(&b.value));
+                largest.map_or("none".into(), |one| format!("{:.0}, {}", one.value, one.place))
+            });
+            let totals = pair[0].1.totals();
+            let of_quantity = totals.iter().filter(|(item, _)| item.quantity == quantity);
+            let values: u64 = of_quantity.map(|(_, tally)| tally.compared()).sum();
+            println!("| {title} | {values} | {} |", cells.collect::<Vec<_>>().join(" | "));
+        }
+    }
+    println!();
+    Ok(())
+}

@@ -1,0 +1,2 @@
+/// A colour: red, green, blue.
+pub type Colour = [u8; 3];

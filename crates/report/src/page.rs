@@ -1,0 +1,40 @@
+//! The frame that every HTML report stands in: one file that links to nothing.
+
+use crate::VERSION;
+use crate::text::escaped;
+
+/// The style of every report.
+const STYLE: &str = include_str!("../templates/style.css");
+
+/// The start of a page, up to and including `<main>`: title, style and the version that wrote it.
+///
+/// `title` is plain text; `more_style` is CSS that only this page needs. The page ends with [`PAGE_END`].
+///
+/// ```
+/// let page = raypencil_report::page_head("a < b", "") + raypencil_report::PAGE_END;
+/// assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"));
+/// // A title is text: what would be read as a tag is escaped.
+/// assert!(page.contains("<title>a &lt; b</title>"));
+/// ```
+pub fn page_head(title: &str, more_style: &str) -> String {
+    let title = escaped(title);
+    format!(
+        r#"<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="raypencil {VERSION}">
+<title>{title}</title>
+<style>
+{STYLE}{more_style}</style>
+</head>
+<body>
+<main>
+"#
+    )
+}
+
+/// The end of a page that [`page_head`] began.
+pub const PAGE_END: &str = "</main>\n</body>\n</html>\n";

@@ -1,0 +1,158 @@
+//! Small validations: one that agrees, one with defects, one with approximations, one with a candidate.
+
+use glam::DVec3;
+use std::sync::Arc;
+
+use raypencil::Place;
+use raypencil::harness::{Estimate, Outsider, RadianceMap, Validation, WayImage, contender, validate};
+use raypencil::io::Subject;
+use raypencil::judge::{Class, Defect, JudgeShare, Quantity, Recorded, Worst};
+use raypencil::{
+    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Profile, Resolution, Scene,
+    SensorId, Silent,
+};
+
+/// The pyramids through a small camera and one small beam.
+pub fn subject() -> Subject {
+    let mesh = Arc::new(raypencil::terrain::builtin("pyramids", 0.25).unwrap().into_mesh().unwrap());
+    let mount = |height: f64, down: f64| {
+        Pose::from_position(DVec3::new(0.3, 0.0, height))
+            * Pose::from_axis_angle(DVec3::Y, down.to_radians())
+            * Pose::VEHICLE_FROM_FORWARD_SENSOR
+    };
+    let camera = Mounted {
+        scene_from_sensor: mount(1.5, 20.0),
+        sensor: Camera {
+            width: 48,
+            height: 40,
+            pixel_pitch: [200e-6; 2],
+            focal_length: 8e-3,
+            principal_point: [24.0, 20.0],
+            aperture: 2e-3,
+            lens: Lens::CLEAR,
+            max_range: 20.0,
+        },
+    };
+    let beam = Mounted {
+        scene_from_sensor: mount(1.8, 31.0),
+        sensor: Beam {
+            columns: 64,
+            rows: 4,
+            thickness: 5e-3,
+            grid_distance: 0.1,
+            half_width: Beam::half_width_of(0.1, 60_f64.to_radians()),
+            max_range: 20.0,
+            power: 1.0,
+            wavelength: 810e-9,
+            profile: Profile::Paper,
+        },
+    };
+    let air = Atmosphere { attenuation: 0.0 };
+    Subject {
+        scene: Scene::new(mesh, camera, vec![beam], air, FluxModel::Radiometric).unwrap(),
+        name: "pyramids".into(),
+        arguments: "pyramids --fan 60".into(),
+        sha256: "0123456789abcdef".repeat(4),
+    }
+}
+
+/// Both renderers, in agreement.
+pub fn agreeing() -> Validation {
+    of(subject(), ["scanline", "tracer"])
+}
+
+/// One renderer, and so nothing to compare.
+pub fn lonely() -> Validation {
+    of(subject(), ["tracer"])
+}
+
+/// The paper's algorithm with a sheet of 80 mm against the tracer.
+pub fn approximate() -> Validation {
+    let mut subject = subject();
+    let scene = &subject.scene;
+    let mut beam = scene.beams()[0];
+    beam.sensor.thickness = 0.08;
+    let (mesh, camera) = (Arc::clone(scene.mesh()), *scene.camera());
+    subject.scene = Scene::new(mesh, camera, vec![beam], scene.atmosphere(), scene.flux_model()).unwrap();
+    of(subject, ["scanline-paper", "tracer"])
+}
+
+/// Where [`with_outsider`]'s is wrong: it says that the camera does not see the point.
+pub const MISS: Place = Place { sensor: SensorId::Beam(0), i: 30, j: 2 };
+
+/// [`agreeing`], and somebody with an odd name who is right but for that pencil and the first one that is hidden, has an image that is twice too bright and
+/// radiance on all of the ground.
+pub fn with_outsider() -> Validation {
+    let mut validation = agreeing();
+    let scene = &validation.subject.scene;
+    let frame = &validation.rendered[1].frame;
+    let mut recorded = Recorded::of_frame("odd", scene, frame, Resolution::F64);
+    let seen = recorded.answers.light[0].returns.visible.as_mut().unwrap();
+    assert!(seen.at(MISS.i, MISS.j), "a pencil that is seen");
+    seen.set(MISS.i, MISS.j, false);
+    let lands = &frame.returns[0].pixel.as_ref().unwrap();
+    let (i, j) = (0..seen.height())
+        .flat_map(|j| (0..seen.width()).map(move |i| (i, j)))
+        .find(|&(i, j)| !seen.at(i, j) && (i, j) != (MISS.i, MISS.j) && lands.at(i, j).get().is_some())
+        .expect("a pencil that is hidden");
+    seen.set(i, j, true);
+    // What it does not say of the light is no contradiction.
+    recorded.answers.light[0].returns.flux = None;
+    recorded.answers.light[0].image = None;
+    let camera = scene.camera().sensor;
+    let twice = frame.flux[0].cells().iter().map(|flux| 2.0 * flux).collect();
+    let mean = Image::from_cells(camera.width, camera.height, twice);
+    let error = Image::filled(camera.width, camera.height, 1e-12);
+    let image =
+        WayImage { way: "guess".into(), beam: 0, estimate: Estimate::of_independent_pixels(mean, error) };
+    let radiance = RadianceMap {
+        sensor: SensorId::Camera,
+        beam: 0,
+        image: Image::filled(camera.width, camera.height, 1.0),
+    };
+    let outsider = Outsider {
+        name: "Odd <renderer> 1".into(),
+        folder: "odd".into(),
+        recorded,
+        images: vec![image],
+        radiance: vec![radiance],
+    };
+    validation.hold(vec![outsider], &Silent);
+    validation
+}
+
+fn of<const N: usize>(subject: Subject, names: [&str; N]) -> Validation {
+    let contenders = names.map(|name| contender(name).unwrap());
+    validate(subject, &contenders, JudgeShare::Sample, &Silent)
+}
+
+/// Where [`defective`] has its defects: a hit on one side only, and an error that is no number.
+pub const DEFECTS: [Place; 2] =
+    [Place { sensor: SensorId::Beam(0), i: 7, j: 1 }, Place { sensor: SensorId::Beam(0), i: 9, j: 2 }];
+
+/// [`agreeing`], and two defects in the beam with text that no format must take for its own.
+pub fn defective() -> Validation {
+    let mut validation = agreeing();
+    let sensor = validation.pairs[0].sensors.last_mut().unwrap();
+    sensor.by_class[Class::Agree as usize] -= 2;
+    sensor.by_class[Class::Defect as usize] += 2;
+    for (quantity, tally) in &mut sensor.quantities {
+        if matches!(quantity, Quantity::Hit | Quantity::Range) {
+            tally.by_class[Class::Agree as usize] -= 1;
+            tally.by_class[Class::Defect as usize] += 1;
+        }
+        if *quantity == Quantity::Range {
+            tally.worst_error = Some(Worst { value: f64::INFINITY, place: DEFECTS[1] });
+            tally.worst_ratio = Some(Worst { value: f64::NAN, place: DEFECTS[1] });
+        }
+    }
+    let described = ["scanline: <no> & \"hit\"; tracer: face 3", "scanline: face 3; tracer: face 3"];
+    for ((place, quantity), what) in DEFECTS.into_iter().zip([Quantity::Hit, Quantity::Range]).zip(described)
+    {
+        sensor.defects.push(Defect { place, quantity, what: what.into() });
+    }
+    let map = validation.rendered[1].frame.beams[0].range.as_mut().unwrap();
+    let image: &mut Image<Maybe<f64>> = map;
+    image.set(7, 1, Maybe::NONE);
+    validation
+}

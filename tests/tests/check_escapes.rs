@@ -1,0 +1,328 @@
+//! What must not escape a check, and what must not be blamed: recordings that are spoilt, or say little.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use raypencil::Place;
+use raypencil::harness::contender;
+use raypencil::io::Storage;
+use raypencil::io::{Overrides, load};
+use raypencil::judge::{Check, Class, Item, Quantity, Recorded, Truth, check};
+use raypencil::pack::blind_scene;
+use raypencil::referee::Format;
+use raypencil::{FluxModel, Image, Maybe, Pixel, Request, Resolution, Scene, SensorId, Silent};
+
+fn scene_of(pack: &str) -> Scene {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/packs").join(pack).join("scene.toml");
+    load(&file.to_string_lossy(), &Overrides::default()).expect("a pack's scene").scene
+}
+
+/// What the tracer says, declared to be of this arithmetic.
+pub fn recorded(scene: &Scene, resolution: Resolution) -> Recorded {
+    let frame = contender("tracer").unwrap().renderer.render(scene, &Request::EVERYTHING);
+    Recorded::of_frame("tracer", scene, &frame, resolution)
+}
+
+/// Leaves only some quantities of a recording.
+fn keep(recorded: &mut Recorded, kept: &[Quantity]) {
+    // Values that no test here is about are never kept.
+    let is_kept = |quantity: Quantity| {
+        let is_other = matches!(
+            quantity,
+            Quantity::Depth
+                | Quantity::Point
+                | Quantity::Normal
+                | Quantity::Incidence
+                | Quantity::OffAxis
+                | Quantity::Emission
+        );
+        kept.contains(&quantity) && !is_other
+    };
+    recorded.storage.retain(|(_, item), _| is_kept(item.quantity));
+    for map in &mut recorded.answers.maps {
+        if !is_kept(Quantity::Face) {
+            map.face = None;
+        }
+        if !is_kept(Quantity::Range) {
+            map.range = None;
+        }
+        (map.depth, map.point, map.normal, map.incidence) = (None, None, None, None);
+    }
+    for light in &mut recorded.answers.light {
+        let returns = &mut light.returns;
+        if !is_kept(Quantity::Visible) {
+            returns.visible = None;
+        }
+        if !is_kept(Quantity::Pixel) {
+            returns.pixel = None;
+        }
+        if !is_kept(Quantity::CameraDepth) {
+            returns.depth = None;
+        }
+        (returns.off_axis, returns.emission) = (None, None);
+        if !is_kept(Quantity::PencilFlux) {
+            returns.flux = None;
+        }
+        if !is_kept(Quantity::PixelFlux) {
+            light.image = None;
+        }
+    }
+}
+
+fn judged(scene: &Scene, recorded: &Recorded) -> Check {
+    check(&Truth::certified(scene, &Silent), recorded, &Silent)
+}
+
+#[track_caller]
+fn assert_passes(found: &Check) {
+    let wrong = found.sensors.iter().find_map(|sensor| sensor.wrong.first());
+    assert!(found.passes(), "{wrong:?}");
+}
+
+fn cells(image: &Image<f64>) -> impl Iterator<Item = (u32, u32)> + use<> {
+    let (width, height) = (image.width(), image.height());
+    (0..height).flat_map(move |j| (0..width).map(move |i| (i, j)))
+}
+
+#[test]
+fn a_pencil_near_a_border_is_not_lost_unseen() {
+    let scene = scene_of("pyramids");
+    let truth = Truth::certified(&scene, &Silent);
+    let referee = truth.judge().referee();
+    let mut image_only = recorded(&scene, Resolution::F64);
+    let flux = image_only.answers.light[0].returns.flux.clone().unwrap();
+    keep(&mut image_only, &[Quantity::PixelFlux]);
+    assert_passes(&check(&truth, &image_only, &Silent));
+    // Near, but thousands of times as far as any arithmetic reaches.
+    let near = cells(&flux).find(|&(i, j)| {
+        let sight = referee.sight_margins(0, i, j);
+        sight.is_some_and(|sight| {
+            sight.sight.visible && sight.landing.is_some_and(|[lo, _]| lo > 1e-3 && lo < 1e-2)
+        })
+    });
+    let (i, j) = near.expect("such a pencil is in this pack");
+    let (_, pixel) = truth.sight(Place { sensor: SensorId::Beam(0), i, j });
+    let Pixel { i: column, j: row } = pixel.unwrap();
+    let image = image_only.answers.light[0].image.as_mut().unwrap();
+    image.set(column, row, (image.at(column, row) - flux.at(i, j)).max(0.0));
+    for resolution in [Resolution::F64, Resolution::F32] {
+        image_only.resolution = resolution;
+        let found = check(&truth, &image_only, &Silent);
+        assert_eq!(found.of(Class::Defect), 1);
+        assert_eq!(found.of(Class::Rounding), 0);
+    }
+}
+
+/// The scene with the camera's principal point moved so that a pencil lands 1e-7 pixels right of a border; and that
+/// pencil.
+fn on_a_border() -> (Scene, Place) {
+    let scene = scene_of("pyramids");
+    let place = Place { sensor: SensorId::Beam(0), i: 37, j: 2 };
+    let truth = Truth::certified(&scene, &Silent);
+    let hit = truth.hit(place).unwrap();
+    assert!(truth.sight(place).0);
+    let mut camera = *scene.camera();
+    let seen = camera.scene_from_sensor.inverse() * hit.point;
+    let sensor = &mut camera.sensor;
+    let landing = sensor.principal_point[0] + sensor.focal_length * seen.x / (seen.z * sensor.pixel_pitch[0]);
+    sensor.principal_point[0] -= landing - landing.floor() - 1e-7;
+    let moved = Scene::new(
+        Arc::clone(scene.mesh()),
+        camera,
+        scene.beams().to_vec(),
+        scene.atmosphere(),
+        scene.flux_model(),
+    );
+    (moved.unwrap(), place)
+}
+
+#[test]
+fn a_pencil_that_rounds_over_a_border_is_no_fault_of_either_pixel() {
+    let (scene, Place { i, j, .. }) = on_a_border();
+    let truth = Truth::certified(&scene, &Silent);
+    let mut moved = recorded(&scene, Resolution::F32);
+    let light = &mut moved.answers.light[0];
+    let flux = light.returns.flux.as_ref().unwrap().at(i, j);
+    let from = light.returns.pixel.as_ref().unwrap().at(i, j).get().unwrap();
+    let to = Pixel { i: from.i - 1, j: from.j };
+    light.returns.pixel.as_mut().unwrap().set(i, j, Maybe::some(to));
+    let image = light.image.as_mut().unwrap();
+    image.set(from.i, from.j, (image.at(from.i, from.j) - flux).max(0.0));
+    image.set(to.i, to.j, image.at(to.i, to.j) + flux);
+    let found = check(&truth, &moved, &Silent);
+    assert_passes(&found);
+    // The pencil and the two pixels.
+    assert_eq!(found.of(Class::Rounding), 3);
+
+    // The image alone, a little off as single precision is.
+    keep(&mut moved, &[Quantity::PixelFlux]);
+    for flux in moved.answers.light[0].image.as_mut().unwrap().cells_mut() {
+        *flux *= 1.0 + 1e-7;
+    }
+    let found = check(&truth, &moved, &Silent);
+    assert_passes(&found);
+    assert_eq!(found.of(Class::Rounding), 2);
+    // A part of a pencil is never what goes over.
+    let image = moved.answers.light[0].image.as_mut().unwrap();
+    image.set(to.i, to.j, image.at(to.i, to.j) - 0.4 * flux);
+    assert_eq!(check(&truth, &moved, &Silent).of(Class::Defect), 1);
+    // And by double precision nothing went over.
+    moved.answers.light[0].image.as_mut().unwrap().set(to.i, to.j, image_at(&truth, to) + flux);
+    moved.resolution = Resolution::F64;
+    assert!(!check(&truth, &moved, &Silent).passes());
+}
+
+fn image_at(truth: &Truth<'_>, pixel: Pixel) -> f64 {
+    truth.answers().light[0].image.as_ref().unwrap().at(pixel.i, pixel.j)
+}
+
+#[test]
+fn light_off_the_image_is_nothing() {
+    let scene = scene_of("facets");
+    let truth = Truth::certified(&scene, &Silent);
+    let off = (0..4)
+        .flat_map(|j| (0..128).map(move |i| Place { sensor: SensorId::Beam(1), i, j }))
+        .find(|place| truth.hit(*place).is_some() && truth.sight(*place) == (false, None))
+        .expect("some pencils of this pack land off the image");
+    for without in [[].as_slice(), &[Quantity::Visible], &[Quantity::Visible, Quantity::Pixel]] {
+        let mut lying = recorded(&scene, Resolution::F64);
+        let all = Quantity::ALL.into_iter().filter(|quantity| !without.contains(quantity));
+        keep(&mut lying, &all.collect::<Vec<_>>());
+        assert_passes(&check(&truth, &lying, &Silent));
+        lying.answers.light[1].returns.flux.as_mut().unwrap().set(off.i, off.j, 1e3);
+        let found = check(&truth, &lying, &Silent);
+        assert_eq!(found.of(Class::Defect), 1, "without {without:?}");
+    }
+}
+
+#[test]
+fn a_hit_that_is_seen_lands_somewhere() {
+    let scene = scene_of("pyramids");
+    let mut lying = recorded(&scene, Resolution::F64);
+    keep(&mut lying, &[Quantity::Face, Quantity::Range, Quantity::Pixel, Quantity::PencilFlux]);
+    let pixels = lying.answers.light[0].returns.pixel.as_mut().unwrap();
+    let landed = pixels.cells().iter().filter(|pixel| pixel.get().is_some()).count() as u64;
+    pixels.cells_mut().fill(Maybe::NONE);
+    let found = judged(&scene, &lying);
+    let of_pixel = &found.totals()[&Quantity::Pixel.into()];
+    assert_eq!(of_pixel.of(Class::Defect), landed);
+}
+
+#[test]
+fn a_value_is_there_exactly_where_something_is_hit() {
+    let scene = scene_of("facets");
+    let truth = Truth::certified(&scene, &Silent);
+    let mut lying = recorded(&scene, Resolution::F64);
+    keep(&mut lying, &[Quantity::CameraDepth]);
+    assert_passes(&check(&truth, &lying, &Silent));
+    let depth = lying.answers.light[0].returns.depth.clone().unwrap();
+    let places: Vec<_> = (0..4).flat_map(|j| (0..128).map(move |i| (i, j))).collect();
+    let hit = places.iter().copied().find(|&(i, j)| depth.at(i, j).get().is_some()).unwrap();
+    let beam = usize::from(places.iter().all(|&(i, j)| depth.at(i, j).get().is_some()));
+    let depth = lying.answers.light[beam].returns.depth.clone().unwrap();
+    let miss = places.iter().copied().find(|&(i, j)| depth.at(i, j).get().is_none()).expect("a miss");
+    for ((beam, (i, j)), value) in [((0, hit), Maybe::NONE), ((beam, miss), Maybe::some(3.0))] {
+        let mut lying = lying.clone();
+        lying.answers.light[beam].returns.depth.as_mut().unwrap().set(i, j, value);
+        assert_eq!(check(&truth, &lying, &Silent).of(Class::Defect), 1);
+    }
+}
+
+#[test]
+fn each_beams_image_is_judged_by_its_own_type() {
+    let scene = scene_of("pyramids");
+    let mut lying = recorded(&scene, Resolution::F64);
+    lying.answers.light[0].image.as_mut().unwrap().cells_mut().fill(0.0);
+    lying.storage.insert((SensorId::Camera, Item::of_image(1)), Storage::F16);
+    let found = judged(&scene, &lying);
+    assert!(found.of(Class::Defect) > 50);
+    let totals = found.totals();
+    assert!(totals[&Item::of_image(0)].of(Class::Defect) > 50);
+    // Half precision holds no flux as small as these: none is compared, but those that are exactly 0.
+    let second = &totals[&Item::of_image(1)];
+    assert!(second.not_compared > 50 && second.not_compared == second.unjudged.len() as u64);
+    assert_eq!(second.of(Class::Defect), 0);
+    // One that is far too large for the truth is wrong all the same.
+    let image = lying.answers.light[1].image.as_mut().unwrap();
+    image.set(3, 3, 0.5);
+    assert!(judged(&scene, &lying).totals()[&Item::of_image(1)].of(Class::Defect) == 1);
+}
+
+#[test]
+fn faces_that_tie_may_deliver_unlike_light() {
+    // Copies of faces in other materials: whoever names none may have taken either.
+    let (scene, place, face) = (1..40)
+        .find_map(|seed| {
+            let scene = blind_scene(seed).unwrap();
+            let found = {
+                let truth = Truth::certified(&scene, &Silent);
+                tied(&truth)
+            };
+            found.map(|(place, face)| (scene, place, face))
+        })
+        .expect("some seed has such a pencil");
+    let truth = Truth::certified(&scene, &Silent);
+    let SensorId::Beam(beam) = place.sensor else { panic!("a pencil") };
+    let Place { i, j, .. } = place;
+    let (visible, pixel) = truth.sight(place);
+    let back = truth.judge().rounded_return(place, face, visible, pixel).unwrap();
+    let other = back.in_format(Format::Double, scene.flux_model()).flux;
+    for kept in [
+        [Quantity::Range, Quantity::PencilFlux, Quantity::Pixel, Quantity::PixelFlux].as_slice(),
+        &[Quantity::PencilFlux],
+        &[Quantity::PixelFlux],
+    ] {
+        let mut taken = recorded(&scene, Resolution::F64);
+        let light = &mut taken.answers.light[beam];
+        let flux = light.returns.flux.as_mut().unwrap();
+        let own = flux.at(i, j);
+        flux.set(i, j, other);
+        let Pixel { i: column, j: row } = pixel.unwrap();
+        let image = light.image.as_mut().unwrap();
+        image.set(column, row, image.at(column, row) - own + other);
+        keep(&mut taken, kept);
+        assert_passes(&check(&truth, &taken, &Silent));
+    }
+}
+
+/// A pencil that is seen, and a face that ties with the one it hits and delivers unlike light.
+fn tied(truth: &Truth<'_>) -> Option<(Place, raypencil::FaceId)> {
+    let model: FluxModel = truth.scene().flux_model();
+    for beam in 0..truth.scene().beams().len() {
+        let sensor = SensorId::Beam(beam);
+        for place in (0..4).flat_map(|j| (0..128).map(move |i| Place { sensor, i, j })) {
+            let (true, Some(pixel)) = truth.sight(place) else { continue };
+            let verdict = truth.judge().referee().verdict(sensor, place.i, place.j)?;
+            for face in verdict.faces.into_iter().skip(1) {
+                let back = truth.judge().rounded_return(place, face, true, Some(pixel))?;
+                let flux = back.in_format(Format::Double, model).flux;
+                if flux > 0.0 && (flux / truth.flux(place)[0] - 1.0).abs() > 0.1 {
+                    return Some((place, face));
+                }
+            }
+        }
+    }
+    None
+}
+
+#[test]
+fn what_single_precision_loses_is_not_called_hidden() {
+    // A narrow Gaussian: the light of outer pencils is below the least single.
+    let scene = scene_of("pyramids");
+    let mut beams = scene.beams().to_vec();
+    beams[0].sensor.profile = raypencil::Profile::Gaussian { half_width: 0.03 };
+    let scene =
+        Scene::new(Arc::clone(scene.mesh()), *scene.camera(), beams, scene.atmosphere(), scene.flux_model())
+            .unwrap();
+    let mut single = recorded(&scene, Resolution::F32);
+    keep(&mut single, &[Quantity::Face, Quantity::Range, Quantity::PencilFlux]);
+    let flux = single.answers.light[0].returns.flux.as_mut().unwrap();
+    flux.cells_mut().iter_mut().for_each(|flux| *flux = f64::from(*flux as f32));
+    assert!(flux.cells().iter().filter(|flux| **flux == 0.0).count() > 100);
+    for (_, storage) in
+        single.storage.iter_mut().filter(|((_, item), _)| item.quantity == Quantity::PencilFlux)
+    {
+        *storage = Storage::F32;
+    }
+    assert_passes(&judged(&scene, &single));
+}
