@@ -674,6 +674,8 @@ impl Placed {
 }
 
 #[cfg(test)]
+#[path = "../tests/unit/forms_by_hand.rs"]
 mod by_hand;
 #[cfg(test)]
+#[path = "../tests/unit/forms.rs"]
 mod tests;
