@@ -1,16 +1,14 @@
 //! Every value of a sensor, correctly rounded: what reference files are made of.
 
-use std::cell::LazyCell;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use raypencil_scene::{FluxModel, Image, Pixel, Quantities, Returns, Sampling, SensorId, SensorMap};
 
-use crate::light::{Contribution, Flux, Light, RoundedReturn};
-use crate::number::Dyadic;
-use crate::pencil::{Aim, Sensor};
-use crate::rounding::{Format, Rounded, quotient};
-use crate::twofold::Twofold;
+use crate::flux::Flux;
+use crate::light::{Contribution, Light, RoundedReturn};
+use crate::ray::{Aim, MountedSensor};
+use crate::rounding::Format;
 use crate::values::{RoundedHit, values};
 use crate::verdict::Referee;
 
@@ -113,32 +111,9 @@ impl CertifiedLight {
 }
 
 impl Referee<'_> {
-    /// The values of the face that the ray of cell (i, j) meets first; `None` if there is no such cell, or no hit.
-    pub fn values(&self, id: SensorId, i: u32, j: u32) -> Option<RoundedHit> {
-        let (sensor, aim) = self.aim_at(id, i, j)?;
-        let nearest = self.nearest(&sensor, aim);
-        values(&sensor, aim, nearest.first()?)
-    }
-
-    /// The ray of cell (i, j): origin and direction (not a unit: t = 1 is on the SPP), scene frame, metres; `None` if
-    /// there is no such cell.
-    pub fn ray(&self, id: SensorId, i: u32, j: u32) -> Option<[[Rounded; 3]; 2]> {
-        let (sensor, aim) = self.aim_at(id, i, j)?;
-        let (fast, exact) = (sensor.ray::<Twofold>(aim), LazyCell::new(|| sensor.ray::<Dyadic>(aim)));
-        let part = |k: usize| {
-            let rounded = fast.origin.0[k].over(&fast.origin_scale).rounded();
-            rounded.unwrap_or_else(|| quotient(&exact.origin.0[k], &exact.origin_scale))
-        };
-        let along = |k: usize| {
-            let rounded = fast.direction.0[k].over(&fast.direction_scale).rounded();
-            rounded.unwrap_or_else(|| quotient(&exact.direction.0[k], &exact.direction_scale))
-        };
-        Some([[0, 1, 2].map(part), [0, 1, 2].map(along)])
-    }
-
     /// What every ray of a sensor meets; `None` if there is no such sensor.
     pub fn certified_map(&self, id: SensorId, sampling: Sampling) -> Option<CertifiedMap> {
-        let sensor = Sensor::of(self.scene, id)?;
+        let sensor = MountedSensor::of(self.scene, id)?;
         let (width, height) = sensor.size();
         let row = |j: u32| {
             (0..width).map(move |i| {

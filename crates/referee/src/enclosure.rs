@@ -11,7 +11,7 @@ use dashu_float::{Context, FBig, Repr};
 use dashu_int::{IBig, Sign};
 
 use crate::number::Dyadic;
-use crate::rounding::{Cut, Rounded};
+use crate::rounding::{LeadingBits, Rounded};
 
 type Real = Repr<2>;
 
@@ -24,7 +24,7 @@ pub(crate) struct Enclosure {
 
 /// exp(-x) is taken for "between 0 and 2^-1000000" beyond this: no flux that has such a factor is anything but 0
 /// in f64, whose smallest number is 2^-1074.
-const NOTHING_LEFT: i64 = 800_000;
+const EXP_UNDERFLOW: i64 = 800_000;
 
 /// Operations of a number of bits.
 #[derive(Debug, Clone, Copy)]
@@ -56,14 +56,14 @@ impl Precision {
     pub(crate) fn magnitude(&self, x: &Dyadic) -> Enclosure {
         let (_, magnitude, exponent) = x.parts();
         let x: Real = Repr::new(IBig::from(magnitude), exponent as isize);
-        Enclosure { low: self.least(&x), high: self.most(&x) }
+        Enclosure { low: self.round_down(&x), high: self.round_up(&x) }
     }
 
-    fn least(&self, x: &Real) -> Real {
+    fn round_down(&self, x: &Real) -> Real {
         value(self.down.add(x, &zero()))
     }
 
-    fn most(&self, x: &Real) -> Real {
+    fn round_up(&self, x: &Real) -> Real {
         value(self.up.add(x, &zero()))
     }
 
@@ -98,7 +98,7 @@ impl Precision {
     /// exp(-x).
     pub(crate) fn exp_minus(&self, x: &Enclosure) -> Enclosure {
         fn of<R: ErrorBounds>(context: &Context<R>, x: &Real) -> Option<Real> {
-            let far: Real = Repr::new(IBig::from(NOTHING_LEFT), 0);
+            let far: Real = Repr::new(IBig::from(EXP_UNDERFLOW), 0);
             (*x <= far).then(|| value(context.exp(&-x.clone(), None)))
         }
         Enclosure {
@@ -127,7 +127,7 @@ impl Precision {
 
 fn rounded(x: &Real) -> Rounded {
     let (_, magnitude) = x.significand().clone().into_parts();
-    Cut::of(false, magnitude, x.exponent() as i64, true).rounded()
+    LeadingBits::of(false, magnitude, x.exponent() as i64, true).rounded()
 }
 
 impl Enclosure {
@@ -138,7 +138,7 @@ impl Enclosure {
     }
 
     /// The lower end, rounded.
-    pub(crate) fn least_rounded(&self) -> Rounded {
+    pub(crate) fn low_rounded(&self) -> Rounded {
         rounded(&self.low)
     }
 }

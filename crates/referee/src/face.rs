@@ -16,7 +16,7 @@ use std::cmp::Ordering;
 use raypencil_scene::{FaceId, Mesh};
 
 use crate::number::{Dyadic, Interval, Number};
-use crate::pencil::{Aim, ScaledRay, Sensor};
+use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::vector::Vector;
 
 /// A polynomial of a ray whose sign is asked for.
@@ -26,14 +26,14 @@ trait Polynomial {
 
 /// One ray, in both numbers; the exact one is only made when it is needed.
 pub(crate) struct ExactRay<'a> {
-    sensor: &'a Sensor,
+    sensor: &'a MountedSensor,
     aim: Aim,
     fast: ScaledRay<Interval>,
     exact: OnceCell<ScaledRay<Dyadic>>,
 }
 
 impl<'a> ExactRay<'a> {
-    pub(crate) fn new(sensor: &'a Sensor, aim: Aim) -> Self {
+    pub(crate) fn new(sensor: &'a MountedSensor, aim: Aim) -> Self {
         Self { sensor, aim, fast: sensor.ray(aim), exact: OnceCell::new() }
     }
 

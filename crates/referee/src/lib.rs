@@ -33,47 +33,66 @@
 //!
 //! It depends on `raypencil-scene` alone, and no renderer may call it.
 
+mod approximations;
 mod arithmetic;
+mod bvh;
 mod certified;
-mod cull;
-mod divide;
+mod displacement;
+mod double_double;
 mod enclosure;
 mod face;
-mod forms;
+mod face_forms;
+mod face_margin;
+mod flux;
+mod form;
+mod intersection;
+mod kleene;
 mod light;
+mod line_of_sight;
 mod margin;
-mod near;
+mod margins;
+mod moving_ray;
+mod neighbourhood;
 mod number;
+mod occluder;
 mod paper;
-mod paper_sight;
-mod pencil;
+mod paper_raster;
+mod paper_visibility;
+mod ray;
 mod region;
 mod render;
 mod rounding;
 mod ruling;
+mod shares;
 mod sheet;
-mod sight;
-mod sight_margin;
-mod sight_ruling;
-mod surface;
-mod through;
-mod truth;
-mod twofold;
+mod subdivision;
+mod surface_margin;
+mod through_point;
 mod values;
 mod vector;
 mod verdict;
+mod visibility;
+mod visibility_margin;
+mod visibility_ruling;
 
+#[cfg(test)]
+#[path = "../tests/common/splitmix.rs"]
+mod splitmix;
+
+pub use approximations::{Approximations, Explained, Reason};
 pub use arithmetic::Undecided;
 pub use certified::{CertifiedLight, CertifiedMap, PixelSum};
-pub use light::{Contribution, Flux, Light, RoundedReturn};
-pub use margin::{Margin, Margins};
-pub use paper::{Approximations, Explained, Reason};
-pub use paper_sight::{ExplainedSight, SightApproximations, SightReason};
+pub use displacement::Displacement;
+pub use flux::Flux;
+pub use light::{Contribution, Light, RoundedReturn};
+pub use margin::Margin;
+pub use margins::Margins;
+pub use paper_visibility::{ExplainedSight, SightApproximations, SightReason};
 pub use render::ExactRenderer;
 pub use rounding::{Format, Rounded};
 pub use ruling::{Ruling, Tolerance};
-pub use sight::Sight;
-pub use sight_margin::SightMargins;
-pub use sight_ruling::SightRuling;
 pub use values::RoundedHit;
-pub use verdict::{Displacement, Referee, Verdict};
+pub use verdict::{Referee, Verdict};
+pub use visibility::Visibility;
+pub use visibility_margin::SightMargins;
+pub use visibility_ruling::SightRuling;

@@ -1,6 +1,7 @@
 //! The part of a small square of displacements where all conditions of a face hold.
 
-use crate::forms::Form;
+use crate::displacement::max_norm;
+use crate::form::Form;
 
 /// A convex polygon in the square |dx|, |dy| <= 1, from the linear parts of some forms: good enough to say
 /// where to look, not to prove.
@@ -59,11 +60,6 @@ pub(crate) fn holds_between(forms: &[Form], dy: f64) -> Option<[f64; 2]> {
     if from <= to { Some([from, to]) } else { None }
 }
 
-/// The larger of |dx| and |dy|.
-pub(crate) fn size(at: [f64; 2]) -> f64 {
-    at[0].abs().max(at[1].abs())
-}
-
 /// The point of least [`size`] on the sides of a polygon.
 fn nearest(corners: &[[f64; 2]]) -> [f64; 2] {
     let mut near = corners[0];
@@ -80,7 +76,7 @@ fn nearest(corners: &[[f64; 2]]) -> [f64; 2] {
         ];
         for s in cuts.into_iter().filter(|s| (0.0..=1.0).contains(s)) {
             let at = [here[0] + s * ux, here[1] + s * uy];
-            if size(at) < size(near) {
+            if max_norm(at) < max_norm(near) {
                 near = at;
             }
         }
@@ -108,7 +104,7 @@ mod tests {
         // Below it dx + dy >= 1 too: a triangle, and what is left of it above dy = 1/4 is nearest at (3/4, 1/4).
         let region = Region::of(&[form(-1.0, 1.0, 1.0), form(0.25, 0.0, -1.0)]).expect("a part");
         assert_eq!(region.corners, [[1.0, 0.0], [1.0, 0.25], [0.75, 0.25]]);
-        assert_eq!(size(region.near), 0.75);
+        assert_eq!(max_norm(region.near), 0.75);
         assert!(Region::of(&[form(-1.5, 1.0, 0.0)]).is_none());
         assert!(Region::of(&[form(-0.5, 1.0, 0.0), form(0.25, -1.0, 0.0)]).is_none());
     }
@@ -120,7 +116,7 @@ mod tests {
         assert_eq!(nearest(&[[-1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]), [-0.5, 0.5]);
         assert_eq!(nearest(&[[0.25, 0.5], [1.0, 1.0], [0.0, 1.0]]), [0.25, 0.5]);
         // Through the middle.
-        assert_eq!(size(nearest(&[[-1.0, -0.5], [1.0, 0.5], [1.0, 1.0]])), 0.0);
+        assert_eq!(max_norm(nearest(&[[-1.0, -0.5], [1.0, 0.5], [1.0, 1.0]])), 0.0);
     }
 
     #[test]

@@ -64,9 +64,9 @@ impl Rounded {
 
 /// The leading bits of a real number, and whether they are all of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Cut {
+pub(crate) struct LeadingBits {
     is_negative: bool,
-    /// At least [`BITS`] of them if the number is not exact.
+    /// At least [`MIN_BITS`] of them if the number is not exact.
     bits: u128,
     /// Of the last bit.
     exponent: i64,
@@ -74,12 +74,12 @@ pub(crate) struct Cut {
 }
 
 /// Bits that decide any rounding to 53, with room to spare.
-const BITS: usize = 70;
+const MIN_BITS: usize = 70;
 
-impl Cut {
-    /// (magnitude + some part of 1 unless it is exact) 2^exponent. What is not exact has [`BITS`] bits or more.
+impl LeadingBits {
+    /// (magnitude + some part of 1 unless it is exact) 2^exponent. What is not exact has [`MIN_BITS`] bits or more.
     pub(crate) fn of(is_negative: bool, magnitude: UBig, exponent: i64, is_exact: bool) -> Self {
-        debug_assert!(is_exact || magnitude.bit_len() >= BITS, "bits of a number that was cut off");
+        debug_assert!(is_exact || magnitude.bit_len() >= MIN_BITS, "bits of a number that was cut off");
         let dropped = magnitude.bit_len().saturating_sub(128);
         let is_exact = is_exact && magnitude.trailing_zeros().is_none_or(|zeros| zeros >= dropped);
         let bits = u128::try_from(magnitude >> dropped).unwrap_or(u128::MAX);
@@ -136,10 +136,10 @@ pub(crate) fn quotient(p: &Dyadic, q: &Dyadic) -> Rounded {
         return Rounded::ZERO;
     }
     // As many bits more than q as it takes.
-    let shift = (q.bit_len() + BITS).saturating_sub(p.bit_len());
+    let shift = (q.bit_len() + MIN_BITS).saturating_sub(p.bit_len());
     let (whole, rest) = (p << shift).div_rem(q);
     let exponent = exponent_p - exponent_q - shift as i64;
-    Cut::of(sign_p != sign_q, whole, exponent, rest.is_zero()).rounded()
+    LeadingBits::of(sign_p != sign_q, whole, exponent, rest.is_zero()).rounded()
 }
 
 /// The square root of p / q, neither of them negative and q not 0, with this sign; correctly rounded.
@@ -148,14 +148,14 @@ pub(crate) fn root(sign: Sign, p: &Dyadic, q: &Dyadic) -> Rounded {
     if p.is_zero() {
         return Rounded::ZERO;
     }
-    let shift = (q.bit_len() + 2 * BITS + 1).saturating_sub(p.bit_len());
+    let shift = (q.bit_len() + 2 * MIN_BITS + 1).saturating_sub(p.bit_len());
     // The exponent of the square must be even.
     let exponent = exponent_p - exponent_q - shift as i64;
     let odd = exponent.rem_euclid(2);
     let (square, rest) = (p << (shift + odd as usize)).div_rem(q);
     let (root, remainder) = square.sqrt_rem();
     let is_exact = rest.is_zero() && remainder.is_zero();
-    Cut::of(sign == Sign::Negative, root, (exponent - odd) / 2, is_exact).rounded()
+    LeadingBits::of(sign == Sign::Negative, root, (exponent - odd) / 2, is_exact).rounded()
 }
 
 #[cfg(test)]

@@ -7,11 +7,14 @@
 
 use raypencil_scene::{FaceId, SensorId};
 
+use crate::displacement::Displacement;
 use crate::face::{ExactRay, Face};
-use crate::forms::{FaceForms, MovingRay};
-use crate::pencil::{Aim, Sensor};
-use crate::through::inside_corners;
-use crate::verdict::{Displacement, Referee};
+use crate::face_forms::FaceForms;
+use crate::moving_ray::MovingRay;
+use crate::ray::{Aim, MountedSensor};
+use crate::region::Region;
+use crate::through_point::displacements_inside_corners;
+use crate::verdict::Referee;
 
 /// How finely a renderer tells rays and ranges apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +51,7 @@ impl Referee<'_> {
         answer: Option<FaceId>,
         tolerance: Tolerance,
     ) -> Option<Ruling> {
-        let sensor = Sensor::of(self.scene, sensor)?;
+        let sensor = MountedSensor::of(self.scene, sensor)?;
         let (width, height) = sensor.size();
         if i >= width || j >= height {
             return None;
@@ -80,7 +83,7 @@ impl Referee<'_> {
     /// A ray within `lateral` that misses everything, found where a nearest face comes to an end.
     fn displaced_miss(
         &self,
-        sensor: &Sensor,
+        sensor: &MountedSensor,
         aim: Aim,
         nearest: &[&Face],
         lateral: f64,
@@ -108,7 +111,7 @@ impl Referee<'_> {
     /// A ray within the tolerance that meets `face` first, or within epsilon of what it meets first.
     fn displaced_hit(
         &self,
-        sensor: &Sensor,
+        sensor: &MountedSensor,
         aim: Aim,
         face: &Face,
         tolerance: Tolerance,
@@ -116,7 +119,7 @@ impl Referee<'_> {
         let ray = MovingRay::new(sensor, aim);
         let forms = FaceForms::new(&ray, face).own().map(|form| form.scaled(tolerance.lateral));
         let mut tried = vec![[0.0, 0.0]];
-        if let Some(region) = crate::region::Region::of(&forms) {
+        if let Some(region) = Region::of(&forms) {
             // Its nearest point may be judged outside by a hair: try on towards its middle, and its corners.
             for inward in [0.0, 1e-6, 1e-3, 0.1, 1.0] {
                 tried.push(
@@ -129,7 +132,8 @@ impl Referee<'_> {
             at.map(|part| (part * tolerance.lateral).clamp(-tolerance.lateral, tolerance.lateral))
         };
         // Lazily, since they are exact and hardly ever needed.
-        let corners = std::iter::once(()).flat_map(|()| inside_corners(sensor, aim, face, tolerance.lateral));
+        let corners = std::iter::once(())
+            .flat_map(|()| displacements_inside_corners(sensor, aim, face, tolerance.lateral));
         tried
             .into_iter()
             .map(scaled)

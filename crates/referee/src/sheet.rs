@@ -41,12 +41,13 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::forms::{FaceForms, Form, beside, certainly_fails, line_leaves};
-use crate::near::{Mate, Neighbourhood};
+use crate::face_forms::{FaceForms, beside};
+use crate::form::{Form, certainly_fails, line_leaves};
+use crate::neighbourhood::{EdgeMate, Neighbourhood};
 
 /// What is asked of one face about one centre: the largest squares that can be shown.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct ProvenRadii {
     edges: [Form; 3],
     /// In which the face is not possible.
     absent: f64,
@@ -56,7 +57,7 @@ struct Seen {
     edge_absent: [f64; 3],
 }
 
-impl Seen {
+impl ProvenRadii {
     fn of(face: &FaceForms<'_>, centre: [f64; 2]) -> Self {
         let own = face.own().map(|form| form.about(centre));
         let [a, b, c, front, plane, range] = own;
@@ -94,17 +95,17 @@ struct Sheet {
 }
 
 /// What is known about one centre.
-struct Around<'n, 'a> {
+struct ContinuityProof<'n, 'a> {
     near: &'n mut Neighbourhood<'a>,
     centre: [f64; 2],
-    seen: Vec<Option<Seen>>,
+    seen: Vec<Option<ProvenRadii>>,
 }
 
 impl Neighbourhood<'_> {
     /// A radius of at most `cap` up to which the nearest range is certainly continuous around `centre`: a square
     /// that must lie within a cell of the ray. 0 if there is none.
     pub(crate) fn continuous_within(&mut self, centre: [f64; 2], nearest: &[usize], cap: f64) -> f64 {
-        let mut around = Around { near: self, centre, seen: Vec::new() };
+        let mut around = ContinuityProof { near: self, centre, seen: Vec::new() };
         match nearest.first() {
             Some(&first) => around.continuous(first, cap),
             None => around.all_miss(cap),
@@ -114,7 +115,7 @@ impl Neighbourhood<'_> {
     /// The faces of the sheet of a face that is met at `centre`, if it has no end within `half`: every ray there meets
     /// one of them.
     pub(crate) fn covering_sheet(&mut self, centre: [f64; 2], start: usize, half: f64) -> Option<Vec<usize>> {
-        let sheet = Around { near: self, centre, seen: Vec::new() }.sheet(start, half);
+        let sheet = ContinuityProof { near: self, centre, seen: Vec::new() }.sheet(start, half);
         (sheet.radius >= half).then(|| sheet.faces.iter().map(|&(index, _)| index).collect())
     }
 
@@ -130,7 +131,7 @@ impl Neighbourhood<'_> {
             let others = (0..self.faces.len()).filter(|&index| index != first && is_met(&self.faces[index]));
             starts.extend(others);
         }
-        let mut around = Around { near: self, centre, seen: Vec::new() };
+        let mut around = ContinuityProof { near: self, centre, seen: Vec::new() };
         for start in starts {
             // A sheet without an end covers the square: nothing behind it is nearest.
             let sheet = around.sheet(start, half);
@@ -146,22 +147,22 @@ impl Neighbourhood<'_> {
             }
             return (true, faces);
         }
-        around.near.reach_all();
+        around.near.extend_to_max_range();
         let count = around.near.faces.len();
         (false, (0..count).filter(|&index| around.seen(index).absent < half).collect())
     }
 }
 
-impl Around<'_, '_> {
-    fn seen(&mut self, index: usize) -> Seen {
+impl ContinuityProof<'_, '_> {
+    fn seen(&mut self, index: usize) -> ProvenRadii {
         if self.seen.len() <= index {
             self.seen.resize(self.near.faces.len(), None);
         }
-        *self.seen[index].get_or_insert_with(|| Seen::of(&self.near.faces[index], self.centre))
+        *self.seen[index].get_or_insert_with(|| ProvenRadii::of(&self.near.faces[index], self.centre))
     }
 
     fn all_miss(&mut self, cap: f64) -> f64 {
-        self.near.reach_all();
+        self.near.extend_to_max_range();
         (0..self.near.faces.len())
             .fold(cap, |r, index| if r > 0.0 { r.min(self.seen(index).absent) } else { r })
     }
@@ -222,7 +223,7 @@ impl Around<'_, '_> {
             }
             faces.push((index, d));
             // What lies behind it, up to its far end, may be its mates or hidden by it.
-            if self.near.reach_to(self.near.faces[index].farthest) {
+            if self.near.extend_to(self.near.faces[index].farthest) {
                 enters.resize(self.near.faces.len(), f64::INFINITY);
                 done.resize(self.near.faces.len(), false);
             }
@@ -235,8 +236,8 @@ impl Around<'_, '_> {
                 }
                 match self.mate(index, k) {
                     None => r = r.min(at),
-                    Some(Mate::Beside) => {}
-                    Some(Mate::Near(mate)) => {
+                    Some(EdgeMate::Beside) => {}
+                    Some(EdgeMate::Near(mate)) => {
                         if at < enters[mate] {
                             enters[mate] = at;
                             waiting.push(Reverse((at.to_bits(), mate)));
@@ -250,16 +251,16 @@ impl Around<'_, '_> {
 
     /// The face on the other side of edge `k`. Where more than two faces share an edge, any front will do: the one
     /// that goes on farthest.
-    fn mate(&mut self, index: usize, k: usize) -> Option<Mate> {
+    fn mate(&mut self, index: usize, k: usize) -> Option<EdgeMate> {
         let mates = self.near.mates(index, k);
-        if mates.len() <= 1 || mates.contains(&Mate::Beside) {
-            return mates.into_iter().max_by_key(|mate| *mate == Mate::Beside);
+        if mates.len() <= 1 || mates.contains(&EdgeMate::Beside) {
+            return mates.into_iter().max_by_key(|mate| *mate == EdgeMate::Beside);
         }
-        let goes_on = |mate: &Mate, around: &mut Self| match mate {
-            Mate::Near(mate) => around.seen(*mate).holds,
-            Mate::Beside => 1.0,
+        let goes_on = |mate: &EdgeMate, around: &mut Self| match mate {
+            EdgeMate::Near(mate) => around.seen(*mate).holds,
+            EdgeMate::Beside => 1.0,
         };
-        let mut best: Option<(Mate, f64)> = None;
+        let mut best: Option<(EdgeMate, f64)> = None;
         for mate in mates {
             let far = goes_on(&mate, self);
             if best.is_none_or(|(_, best)| far > best) {

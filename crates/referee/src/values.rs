@@ -13,19 +13,19 @@
 //! Each is first evaluated in pairs of f64 with a proven error; where that does not decide the rounding, the
 //! exact polynomials do (`rounding`).
 
-use std::cell::OnceCell;
+use std::cell::{LazyCell, OnceCell};
 use std::cmp::Ordering;
 
-use dashu_int::Sign;
 use glam::DVec3;
-use raypencil_scene::{FaceId, Hit, Mounted};
+use raypencil_scene::{FaceId, Hit, Mounted, SensorId};
 
+use crate::double_double::DoubleDouble;
 use crate::face::{ExactRay, Face};
+use crate::intersection::{Intersection, minus};
 use crate::number::{Dyadic, Number};
-use crate::pencil::{Aim, ScaledRay, Sensor};
-use crate::rounding::{Format, Rounded, quotient, root};
-use crate::twofold::Twofold;
-use crate::vector::Vector;
+use crate::ray::{Aim, MountedSensor};
+use crate::rounding::{Format, Rounded, quotient};
+use crate::verdict::Referee;
 
 /// A [`Hit`] whose values are correctly rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,94 +59,25 @@ impl RoundedHit {
     }
 }
 
-/// A ray and a face's plane, as the values need them.
-#[derive(Debug, Clone)]
-pub(crate) struct Meeting<T> {
-    pub(crate) ray: ScaledRay<T>,
-    pub(crate) normal: Vector<T>,
-    /// h.
-    pub(crate) height: T,
-    /// a.
-    pub(crate) approach: T,
-    /// s a.
-    pub(crate) scale: T,
-    /// D^2.
-    pub(crate) direction_squared: T,
-    /// n^2.
-    pub(crate) normal_squared: T,
-}
-
-impl<T: Number> Meeting<T> {
-    pub(crate) fn new(ray: ScaledRay<T>, face: &Face) -> Self {
-        let (normal, height, approach) = (face.normal::<T>(), face.height(&ray), face.approach(&ray));
-        Self {
-            scale: ray.origin_scale.mul(&approach),
-            direction_squared: ray.direction.length_squared(),
-            normal_squared: normal.length_squared(),
-            ray,
-            normal,
-            height,
-            approach,
-        }
-    }
-
-    /// s a P.
-    fn point(&self) -> Vector<T> {
-        self.ray.origin.scaled(&self.approach).add(&self.ray.direction.scaled(&self.height))
-    }
-}
-
-/// The values without any doubt, and slowly.
-impl Meeting<Dyadic> {
-    fn range(&self) -> Rounded {
-        let sign = sign_of(&self.height.mul(&self.scale));
-        root(sign, &self.height.square().mul(&self.direction_squared), &self.scale.square())
-    }
-
-    fn depth(&self, spp: f64) -> Rounded {
-        quotient(&self.height.mul(&self.ray.direction_scale).mul(&Dyadic::of(spp)), &self.scale)
-    }
-
-    fn normal_part(&self, k: usize) -> Rounded {
-        let part = &self.normal.0[k];
-        root(sign_of(part), &part.square(), &self.normal_squared)
-    }
-
-    fn incidence(&self) -> Rounded {
-        let lengths = self.normal_squared.mul(&self.direction_squared);
-        root(sign_of(&minus(&self.approach)), &self.approach.square(), &lengths)
-    }
-}
-
-/// The sign of a root with the sign of `x`.
-pub(crate) fn sign_of(x: &Dyadic) -> Sign {
-    if x.sign() == Some(Ordering::Less) { Sign::Negative } else { Sign::Positive }
-}
-
-/// Minus a number.
-pub(crate) fn minus<T: Number>(x: &T) -> T {
-    T::of(0.0).sub(x)
-}
-
 /// Where the ray of an aim meets the plane of `face`, whether or not it passes between its sides; `None` if they are
 /// parallel, or the face has no area.
-pub(crate) fn values(sensor: &Sensor, aim: Aim, face: &Face) -> Option<RoundedHit> {
-    let fast = Meeting::new(sensor.ray::<Twofold>(aim), face);
+pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<RoundedHit> {
+    let fast = Intersection::new(sensor.ray::<DoubleDouble>(aim), face);
     let exact_ray = ExactRay::new(sensor, aim);
     let exact = OnceCell::new();
-    let exact = || exact.get_or_init(|| Meeting::new(exact_ray.exact().clone(), face));
+    let exact = || exact.get_or_init(|| Intersection::new(exact_ray.exact().clone(), face));
     if fast.approach.sign().is_none_or(Ordering::is_eq) && exact().approach.sign() == Some(Ordering::Equal) {
         return None;
     }
 
     let spp = match sensor {
-        Sensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
-        Sensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
+        MountedSensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
+        MountedSensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
     };
     let along = fast.height.over(&fast.scale);
     let length = fast.direction_squared.sqrt();
     let range = along.mul(&length).rounded().unwrap_or_else(|| exact().range());
-    let depth_per_length = fast.ray.direction_scale.mul(&Twofold::of(spp));
+    let depth_per_length = fast.ray.direction_scale.mul(&DoubleDouble::of(spp));
     let depth = along.mul(&depth_per_length).rounded().unwrap_or_else(|| exact().depth(spp));
     let point = fast.point();
     let exact_point = OnceCell::new();
@@ -163,6 +94,47 @@ pub(crate) fn values(sensor: &Sensor, aim: Aim, face: &Face) -> Option<RoundedHi
     let towards = minus(&fast.approach).over(&normal_length.mul(&length));
     let incidence = towards.rounded().unwrap_or_else(|| exact().incidence());
     Some(RoundedHit { face: face.id, range, point, normal, depth, incidence })
+}
+
+impl Referee<'_> {
+    /// The values of the face that the ray of cell (i, j) meets first; `None` if there is no such cell, or no hit.
+    pub fn values(&self, id: SensorId, i: u32, j: u32) -> Option<RoundedHit> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        let nearest = self.nearest(&sensor, aim);
+        values(&sensor, aim, nearest.first()?)
+    }
+
+    /// The ray of cell (i, j): origin and direction (not a unit: t = 1 is on the SPP), scene frame, metres; `None` if
+    /// there is no such cell.
+    pub fn ray(&self, id: SensorId, i: u32, j: u32) -> Option<[[Rounded; 3]; 2]> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        let (fast, exact) = (sensor.ray::<DoubleDouble>(aim), LazyCell::new(|| sensor.ray::<Dyadic>(aim)));
+        let part = |k: usize| {
+            let rounded = fast.origin.0[k].over(&fast.origin_scale).rounded();
+            rounded.unwrap_or_else(|| quotient(&exact.origin.0[k], &exact.origin_scale))
+        };
+        let along = |k: usize| {
+            let rounded = fast.direction.0[k].over(&fast.direction_scale).rounded();
+            rounded.unwrap_or_else(|| quotient(&exact.direction.0[k], &exact.direction_scale))
+        };
+        Some([[0, 1, 2].map(part), [0, 1, 2].map(along)])
+    }
+
+    /// The values of the hit of `face` by the ray of cell (i, j); `None` if there is no such cell or face, or the
+    /// ray does not meet it.
+    pub fn hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        let face = self.face(face)?;
+        let is_met = face.is_met_by(&ExactRay::new(&sensor, aim), sensor.max_range());
+        is_met.then(|| values(&sensor, aim, &face)).flatten()
+    }
+
+    /// The values of where the ray of cell (i, j) meets the plane of `face`, whether or not it passes between its
+    /// sides; `None` if there is no such cell or face, or they are parallel.
+    pub fn plane_hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        values(&sensor, aim, &self.face(face)?)
+    }
 }
 
 #[cfg(test)]

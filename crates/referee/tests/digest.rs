@@ -3,10 +3,13 @@
 //! A digest changes with any change of a ground, a rig, or the way a margin or a ruling is found; verdicts and values
 //! are exact, so theirs change with scenes alone. When one does, say in the change why.
 
+mod common;
+
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use common::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Approximations, Displacement, Referee, SightApproximations, Tolerance};
 use raypencil_scene::{
@@ -40,28 +43,10 @@ const MANY: &[[&str; 2]] = &[
     ["surface margins", "fc140398f81976c1cf86cb89e4653836dc849125f7b1a179f1f7a1bfdbecdb7f"],
 ];
 
-/// Numbers that depend on the seed alone (splitmix64).
-struct Draws(u64);
-
-impl Draws {
-    /// From -1 to 1.
-    fn part(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn below(&mut self, count: u32) -> u32 {
-        ((self.part() + 1.0) * 0.5 * f64::from(count)) as u32
-    }
-}
-
 /// Scene number `number`: built-in and hostile grounds, at the origin and far from it; sheets of 5 mm to half a
 /// metre; every profile, filter and model; cells so coarse that several faces lie in one.
 fn scene(number: u64) -> Scene {
-    let mut draws = Draws(number);
+    let mut random = SplitMix64(number);
     let offset = DVec3::splat([0.0, 1e3, 1e6][number as usize / 2 % 3]);
     let ground = if number.is_multiple_of(2) {
         builtin(BUILTIN_NAMES[number as usize / 2 % BUILTIN_NAMES.len()], 0.25).expect("a built-in name")
@@ -70,16 +55,16 @@ fn scene(number: u64) -> Scene {
     };
     let mesh = Arc::new(ground.into_mesh().expect("a valid ground"));
     let origin = mesh.origin();
-    let turned = Pose::from_axis_angle(DVec3::Z, 3.2 * draws.part())
-        * Pose::from_axis_angle(DVec3::Y, 0.45 + 0.25 * draws.part());
-    let position = DVec3::new(3.0 * draws.part(), 3.0 * draws.part(), 2.0 + 0.8 * draws.part());
-    let apart = turned.rotation * DVec3::new(0.2 * draws.part(), 0.3 + draws.part(), 0.7 * draws.part());
+    let turned = Pose::from_axis_angle(DVec3::Z, 3.2 * random.part())
+        * Pose::from_axis_angle(DVec3::Y, 0.45 + 0.25 * random.part());
+    let position = DVec3::new(3.0 * random.part(), 3.0 * random.part(), 2.0 + 0.8 * random.part());
+    let apart = turned.rotation * DVec3::new(0.2 * random.part(), 0.3 + random.part(), 0.7 * random.part());
     let rotation = (turned * Pose::VEHICLE_FROM_FORWARD_SENSOR).rotation;
     let wobble = DQuat::from_xyzw(
-        0.1 * draws.part(),
-        0.1 * draws.part(),
-        0.1 * draws.part(),
-        1.0 + 0.5 * draws.part(),
+        0.1 * random.part(),
+        0.1 * random.part(),
+        0.1 * random.part(),
+        1.0 + 0.5 * random.part(),
     );
     let filter = match number % 3 {
         0 => Filter::None,
@@ -140,9 +125,9 @@ const TOLERANCES: [Tolerance; 3] = [
     Tolerance { lateral: 1e-9, depth: 1e-12, position: 0.0 },
 ];
 
-fn say_of_ray(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut Draws, id: SensorId) {
+fn say_of_ray(said: &mut Said, scene: &Scene, referee: &Referee<'_>, random: &mut SplitMix64, id: SensorId) {
     let (width, height) = scene.size(id).expect("a sensor");
-    let (i, j) = (draws.below(width), draws.below(height));
+    let (i, j) = (random.below(width), random.below(height));
     let margins = referee.margins(id, i, j).expect("a cell");
     said.say("verdicts", &margins.verdict);
     said.say("face margins", &margins.face);
@@ -150,9 +135,9 @@ fn say_of_ray(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut
     said.say("values", &referee.values(id, i, j));
     said.say("rays", &referee.ray(id, i, j));
 
-    let mut answers = vec![None, Some(FaceId(draws.below(scene.mesh().faces().len() as u32)))];
+    let mut answers = vec![None, Some(FaceId(random.below(scene.mesh().faces().len() as u32)))];
     for reach in [0.2, 1.0, 1.0, 3.0] {
-        let by = Displacement { dx: reach * draws.part(), dy: reach * draws.part() };
+        let by = Displacement { dx: reach * random.part(), dy: reach * random.part() };
         let beside = referee.verdict_beside(id, i, j, by).expect("a cell");
         said.say("verdicts", &beside);
         answers.push(beside.faces.first().copied());
@@ -168,9 +153,9 @@ fn say_of_ray(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut
     }
 }
 
-fn say_of_pencil(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut Draws) {
+fn say_of_pencil(said: &mut Said, scene: &Scene, referee: &Referee<'_>, random: &mut SplitMix64) {
     let Beam { columns, rows, .. } = scene.beams()[0].sensor;
-    let (i, j) = (draws.below(columns), draws.below(rows));
+    let (i, j) = (random.below(columns), random.below(rows));
     let margins = referee.sight_margins(0, i, j);
     said.say("sight margins", &margins);
     let Some(face) =
@@ -179,7 +164,7 @@ fn say_of_pencil(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &
         return;
     };
     for reach in [0.0, 0.5, 2.0] {
-        let by = Displacement { dx: reach * draws.part(), dy: reach * draws.part() };
+        let by = Displacement { dx: reach * random.part(), dy: reach * random.part() };
         let sight = referee.sight(0, i, j, by);
         said.say("sights", &sight);
         let pixel = sight.and_then(|sight| sight.pixel);
@@ -207,14 +192,14 @@ fn what_is_said_of_rays_has_the_committed_bits() {
     for number in 0..24 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(number ^ 0xabcd);
+        let mut random = SplitMix64(number ^ 0xabcd);
         for id in [SensorId::Camera, SensorId::Beam(0)] {
             for _ in 0..14 {
-                say_of_ray(&mut said, &scene, &referee, &mut draws, id);
+                say_of_ray(&mut said, &scene, &referee, &mut random, id);
             }
         }
         for _ in 0..14 {
-            say_of_pencil(&mut said, &scene, &referee, &mut draws);
+            say_of_pencil(&mut said, &scene, &referee, &mut random);
         }
         for sampling in [Sampling::Centres, Sampling::Jittered { seed: 3 }] {
             let light = referee.certified_light(0, sampling).expect("a beam");
@@ -232,18 +217,18 @@ fn margins_of_many_rays_have_the_committed_bits() {
     for number in 0..24 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(number ^ 0x1234);
+        let mut random = SplitMix64(number ^ 0x1234);
         for id in [SensorId::Camera, SensorId::Beam(0)] {
             let (width, height) = scene.size(id).expect("a sensor");
             for _ in 0..120 {
-                let margins = referee.margins(id, draws.below(width), draws.below(height)).expect("a cell");
+                let margins = referee.margins(id, random.below(width), random.below(height)).expect("a cell");
                 said.say("face margins", &margins.face);
                 said.say("surface margins", &margins.surface);
             }
         }
         let Beam { columns, rows, .. } = scene.beams()[0].sensor;
         for _ in 0..60 {
-            said.say("sight margins", &referee.sight_margins(0, draws.below(columns), draws.below(rows)));
+            said.say("sight margins", &referee.sight_margins(0, random.below(columns), random.below(rows)));
         }
     }
     assert_digests(said, MANY);

@@ -145,7 +145,7 @@ fn what_meets_the_segment_hides_the_point() {
     assert!(visible(&[]));
     // Duplicates of the wall, from either side, contain the point and do not hide it.
     assert!(visible(&[WALL, [WALL[0], WALL[2], WALL[1]]]));
-    // The segment passes (1/2, 0, 1). A plate there hides the point, whichever way it faces, also if only its corner
+    // The segment passes (1/2, 0, 1). A plate there hides the point, whichever line it faces, also if only its corner
     // or its edge is touched; a plate beside it does not.
     let plate = |x: f32| [[x, 0.0, 1.0], [x + 0.25, 0.25, 1.0], [x + 0.25, -0.25, 1.0]];
     for (face, seen) in
@@ -264,7 +264,7 @@ fn a_landing_is_excused_as_far_as_the_position_explains_it() {
             assert_eq!(rule(wrong, position), Ruling::Wrong, "{wrong:?} {position}");
         }
     }
-    // 1/32 m is a pixel at depth 2: across 3/2 of the way of 1/40 m are 1.2 pixels, down 0.8.
+    // 1/32 m is a pixel at depth 2: across 3/2 of the line of 1/40 m are 1.2 pixels, down 0.8.
     let position = 1.0 / 40.0;
     for near in [at(1, 32), at(0, 31), None] {
         assert!(matches!(rule(near, position), Ruling::Rounding(_)), "{near:?}");

@@ -1,39 +1,20 @@
 //! The margins of many rays over hostile grounds: that they hold, that they are witnessed, that they are tight.
 
+mod common;
+
 use std::sync::Arc;
 
+use common::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Displacement, Margin, Referee};
 use raypencil_scene::{Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Profile, Scene, SensorId};
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
-/// Numbers that depend on the seed alone (splitmix64).
-struct Draws(u64);
-
-impl Draws {
-    /// From 0 to 1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn below(&mut self, count: u32) -> u32 {
-        ((self.unit() * f64::from(count)) as u32).min(count - 1)
-    }
-}
-
 /// Scene number `number`: a built-in or a random ground of everything nasty, seen by a rover's rig or from
 /// anywhere, in cells as fine as a camera's or so coarse that many faces fit in one, and with a beam that is thin,
 /// thick, or half a metre thick.
 fn scene(number: u64) -> Scene {
-    let mut draws = Draws(number);
+    let mut random = SplitMix64(number);
     let mesh: Mesh = match number % 4 {
         0 => builtin(BUILTIN_NAMES[number as usize / 4 % BUILTIN_NAMES.len()], 0.25)
             .expect("a built-in name")
@@ -43,15 +24,15 @@ fn scene(number: u64) -> Scene {
         _ => RandomGround::nasty(number, 1500).build().into_mesh(),
     }
     .expect("a valid ground");
-    let mut part = || draws.between(-1.0, 1.0);
+    let mut part = || random.between(-1.0, 1.0);
     let mut rotation = DQuat::from_xyzw(part(), part(), part(), part() + 0.1);
     if number.is_multiple_of(2) {
-        let turned = Pose::from_axis_angle(DVec3::Z, draws.between(0.0, 6.3))
-            * Pose::from_axis_angle(DVec3::Y, draws.between(0.1, 0.6))
+        let turned = Pose::from_axis_angle(DVec3::Z, random.between(0.0, 6.3))
+            * Pose::from_axis_angle(DVec3::Y, random.between(0.1, 0.6))
             * Pose::VEHICLE_FROM_FORWARD_SENSOR;
         rotation = turned.rotation;
     }
-    let position = DVec3::new(draws.between(-4.0, 4.0), draws.between(-4.0, 4.0), draws.between(0.5, 3.5));
+    let position = DVec3::new(random.between(-4.0, 4.0), random.between(-4.0, 4.0), random.between(0.5, 3.5));
     let scene_from_sensor = Pose { position, rotation };
     let fine = if number.is_multiple_of(3) { 1 } else { 25 };
     let camera = Camera {
@@ -86,10 +67,10 @@ fn scene(number: u64) -> Scene {
 }
 
 /// A cell of one of the two sensors.
-fn cell(scene: &Scene, draws: &mut Draws) -> (SensorId, u32, u32) {
-    let sensor = if draws.unit() < 0.5 { SensorId::Camera } else { SensorId::Beam(0) };
+fn cell(scene: &Scene, random: &mut SplitMix64) -> (SensorId, u32, u32) {
+    let sensor = if random.unit() < 0.5 { SensorId::Camera } else { SensorId::Beam(0) };
     let (width, height) = scene.size(sensor).expect("a sensor");
-    (sensor, draws.below(width), draws.below(height))
+    (sensor, random.below(width), random.below(height))
 }
 
 /// The range of a displaced ray in plain f64, by the face that the referee names.
@@ -155,10 +136,10 @@ fn step_between(range: impl Fn([f64; 2]) -> Option<f64>, a: [f64; 2], b: [f64; 2
 }
 
 /// In [-1, 1]^2, mostly near its border.
-fn in_square(draws: &mut Draws) -> [f64; 2] {
-    let at = [draws.between(-1.0, 1.0), draws.between(-1.0, 1.0)];
+fn in_square(random: &mut SplitMix64) -> [f64; 2] {
+    let at = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
     let size = at[0].abs().max(at[1].abs());
-    if draws.unit() < 0.7 { at.map(|part| (part / size).clamp(-1.0, 1.0)) } else { at }
+    if random.unit() < 0.7 { at.map(|part| (part / size).clamp(-1.0, 1.0)) } else { at }
 }
 
 #[test]
@@ -167,9 +148,9 @@ fn no_pair_of_displacements_within_lo_has_a_jump_between_and_the_witness_has() {
     for number in 0..170 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(1000 + number);
+        let mut random = SplitMix64(1000 + number);
         for _ in 0..60 {
-            let cell = cell(&scene, &mut draws);
+            let cell = cell(&scene, &mut random);
             let (sensor, i, j) = cell;
             let margins = referee.margins(sensor, i, j).unwrap();
             let is_hit = margins.verdict.is_hit();
@@ -182,7 +163,7 @@ fn no_pair_of_displacements_within_lo_has_a_jump_between_and_the_witness_has() {
             );
             let range = |at: [f64; 2]| range(&scene, &referee, cell, at);
             for _ in 0..10 {
-                let [a, b] = [in_square(&mut draws), in_square(&mut draws)].map(|at| at.map(|x| x * lo));
+                let [a, b] = [in_square(&mut random), in_square(&mut random)].map(|at| at.map(|x| x * lo));
                 assert_eq!(step_between(range, a, b), 0.0, "{number} {cell:?} {lo} {a:?} {b:?}");
                 pairs += 1;
             }
@@ -220,9 +201,9 @@ fn both_margins_are_tight() {
     for number in 0..200 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(2000 + number);
+        let mut random = SplitMix64(2000 + number);
         for _ in 0..100 {
-            let (sensor, i, j) = cell(&scene, &mut draws);
+            let (sensor, i, j) = cell(&scene, &mut random);
             let margins = referee.margins(sensor, i, j).unwrap();
             for (name, margin) in [("face", margins.face), ("surface", margins.surface)] {
                 if loose(&margin) {
@@ -240,9 +221,9 @@ fn both_margins_are_tight() {
 fn one_call_answers_as_three_do() {
     let scene = scene(1);
     let referee = Referee::new(&scene);
-    let mut draws = Draws(5);
+    let mut random = SplitMix64(5);
     for _ in 0..300 {
-        let (sensor, i, j) = cell(&scene, &mut draws);
+        let (sensor, i, j) = cell(&scene, &mut random);
         let margins = referee.margins(sensor, i, j).unwrap();
         assert_eq!(Some(margins.verdict), referee.verdict(sensor, i, j));
         assert_eq!(Some(margins.face), referee.face_margin(sensor, i, j));
@@ -271,9 +252,9 @@ fn faces_need_no_common_vertices_to_be_one_surface() {
         let apart =
             Scene::new(Arc::new(apart), *scene.camera(), beams, air, scene.flux_model()).expect("valid");
         let (one, other) = (Referee::new(&scene), Referee::new(&apart));
-        let mut draws = Draws(7);
+        let mut random = SplitMix64(7);
         for _ in 0..200 {
-            let (sensor, i, j) = cell(&scene, &mut draws);
+            let (sensor, i, j) = cell(&scene, &mut random);
             assert_eq!(one.margins(sensor, i, j), other.margins(sensor, i, j), "{number} {sensor} {i},{j}");
         }
     }

@@ -157,7 +157,7 @@ fn an_answer_just_beyond_an_edge_is_rounding_with_its_witness() {
         |lateral| referee.rule(CAMERA, 4, 4, None, Tolerance { lateral, depth: 0.0, position: 0.0 }).unwrap();
     assert_eq!(rule(1e-9), Ruling::Wrong);
     let Ruling::Rounding(by) = rule(1e-8) else { panic!("{:?}", rule(1e-8)) };
-    assert!(by.size() <= 1e-8);
+    assert!(by.max_norm() <= 1e-8);
     assert!(!referee.verdict_beside(CAMERA, 4, 4, by).unwrap().is_hit());
     // The margin says the same: 2^-28 cells.
     let margin = referee.face_margin(CAMERA, 4, 4).unwrap();
@@ -282,11 +282,11 @@ proptest! {
                 // Most of them at the border of what is proven.
                 let scale = margin.lo / dx.abs().max(dy.abs()).max(1e-3);
                 let by = Displacement { dx: dx * scale.min(margin.lo), dy: dy * scale.min(margin.lo) };
-                prop_assert!(by.size() <= margin.lo);
+                prop_assert!(by.max_norm() <= margin.lo);
                 prop_assert_eq!(&referee.verdict_beside(sensor, i, j, by).unwrap(), &verdict, "{:?}", by);
             }
             if let Some(by) = margin.witness {
-                prop_assert!(by.size() <= margin.hi);
+                prop_assert!(by.max_norm() <= margin.hi);
                 prop_assert_ne!(&referee.verdict_beside(sensor, i, j, by).unwrap(), &verdict);
                 prop_assert!(margin.hi <= 2.0 * margin.lo || margin.hi <= 1e-9, "{:?} at {} {},{}", margin, sensor, i, j);
             } else {

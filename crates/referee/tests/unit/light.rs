@@ -1,6 +1,6 @@
 use super::*;
 use glam::DVec3;
-use raypencil_scene::{Atmosphere, Lens, Pose, Scene};
+use raypencil_scene::{Atmosphere, Beam, Camera, Lens, Mounted, Pose, Profile, Scene};
 use raypencil_terrain::builtin;
 
 /// The pyramids before a small rig like the default one.
@@ -53,24 +53,25 @@ fn all_ways_to_a_flux_agree() {
             let Some((face, back)) = light.returned_of_face(i, j) else { continue };
             let (true, Some(pixel)) = (back.visible, back.pixel) else { continue };
             seen += 1;
-            let (sensor, face) = (light.sensor_with(i, j).unwrap(), referee.face(face).unwrap());
-            let rays = light.rays(&sensor, light.aim(i, j), &face);
-            let exact = rays.exact();
+            let (sensor, face) = (light.beam_with(i, j).unwrap(), referee.face(face).unwrap());
+            let point = light.lit_point(&sensor, light.shares.aim(i, j), &face);
+            let exact = point.exact();
             for model in [FluxModel::Radiometric, FluxModel::Eq1] {
-                let fast = light.flux(&Fast, &rays.fast(), rays.aim, &face, model, pixel);
-                let enclosed = decide(Twofold::UNKNOWN, |precision| {
-                    light.flux(precision, &exact, rays.aim, &face, model, pixel)
+                let fast = light.formula().flux(&Fast, &point.fast(), point.aim, &face, model, pixel);
+                let enclosed = decide_rounding(DoubleDouble::UNKNOWN, |precision| {
+                    light.formula().flux(precision, &exact, point.aim, &face, model, pixel)
                 });
                 assert_eq!(fast.rounded(), enclosed.ok(), "{i},{j} {model:?}");
                 assert_eq!(back.flux(model), enclosed);
-                if light.is_root(model) {
-                    assert_eq!(Ok(light.root_of(&exact, rays.aim, &face)), enclosed, "{i},{j}");
+                if light.formula().is_root(model) {
+                    assert_eq!(Ok(light.formula().root_of(&exact, point.aim, &face)), enclosed, "{i},{j}");
                 }
             }
-            let Seen { towards, along_squared, axial, squared, scale, frame_scale } = &exact.seen;
+            let CameraTerms { towards, direction_squared, axial, squared, scale, frame_scale } =
+                &exact.camera;
             assert_eq!(back.depth, quotient(axial, &frame_scale.mul(scale)));
             assert_eq!(back.off_axis, cosine(axial, squared));
-            let lengths = along_squared.mul(&exact.meeting.normal_squared);
+            let lengths = direction_squared.mul(&exact.intersection.normal_squared);
             assert_eq!(back.emission, cosine(towards, &lengths));
         }
         assert!(seen > 60, "{seen} of 144 pencils are seen");
@@ -89,7 +90,7 @@ fn the_least_exponent_is_that_of_the_pencil_nearest_the_axis() {
             Scene::new(mesh, *scene.camera(), vec![beam], scene.atmosphere(), model).expect("a scene");
         let exponent = |sampling: Sampling| {
             let referee = Referee::new(&scene);
-            referee.light(0, sampling).expect("a beam").least_exponent(half_width)
+            referee.light(0, sampling).expect("a beam").shares.least_exponent(half_width)
         };
         let Beam { half_width: w, grid_distance, rows, .. } = beam.sensor;
         let offset = Sampling::Jittered { seed: 5 };

@@ -46,7 +46,7 @@ proptest! {
 
     #[test]
     fn ordinary_sums_and_products_are_exact(a in -1_000_000i64..1_000_000, b in -1_000_000i64..1_000_000) {
-        // Whole numbers: what i64 says, Dyadic says.
+        // WeightSum numbers: what i64 says, Dyadic says.
         let (x, y) = (Dyadic::of(a as f64), Dyadic::of(b as f64));
         prop_assert_eq!(x.mul(&y).sub(&Dyadic::of((a * b) as f64)).sign(), Some(Ordering::Equal));
         prop_assert_eq!(x.add(&y).sign(), Some((a + b).cmp(&0)));

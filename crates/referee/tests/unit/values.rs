@@ -3,8 +3,8 @@ use glam::DQuat;
 use proptest::prelude::*;
 use raypencil_scene::{Camera, Lens, Pose};
 
-fn camera(position: [f64; 3], rotation: [f64; 4], centre: f64) -> Sensor {
-    Sensor::Camera(Mounted {
+fn camera(position: [f64; 3], rotation: [f64; 4], centre: f64) -> MountedSensor {
+    MountedSensor::Camera(Mounted {
         scene_from_sensor: Pose {
             position: DVec3::from_array(position),
             rotation: DQuat::from_array(rotation),
@@ -23,8 +23,8 @@ fn camera(position: [f64; 3], rotation: [f64; 4], centre: f64) -> Sensor {
 }
 
 /// By exact arithmetic alone.
-fn exactly(sensor: &Sensor, aim: Aim, face: &Face, focal_length: f64) -> RoundedHit {
-    let exact = Meeting::new(sensor.ray::<Dyadic>(aim), face);
+fn exactly(sensor: &MountedSensor, aim: Aim, face: &Face, focal_length: f64) -> RoundedHit {
+    let exact = Intersection::new(sensor.ray::<Dyadic>(aim), face);
     let point = exact.point();
     RoundedHit {
         face: face.id,

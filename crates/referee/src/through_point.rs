@@ -18,14 +18,14 @@ use std::cmp::Ordering;
 
 use raypencil_scene::Mounted;
 
+use crate::displacement::max_norm;
 use crate::face::Face;
 use crate::number::{Dyadic, Number};
-use crate::pencil::{Aim, Sensor};
-use crate::region::size;
+use crate::ray::{Aim, MountedSensor};
 use crate::rounding::quotient;
 use crate::vector::{ScaledRotation, Vector};
 
-impl Sensor {
+impl MountedSensor {
     /// The displacement of the ray of cell (i, j) that goes through a point, in cells; `None` if the point lies in
     /// the plane through the sensor. Correctly rounded; infinite where f64 ends.
     fn displacement_through(&self, aim: Aim, point: &Vector<Dyadic>) -> Option<[f64; 2]> {
@@ -66,7 +66,12 @@ impl Sensor {
 ///
 /// The points are those of the face, not of the square of displacements: a beam bends straight lines, and a point on the
 /// straight way to the middle of a thin face may lie beside it.
-pub(crate) fn inside_corners(sensor: &Sensor, aim: Aim, face: &Face, reach: f64) -> Vec<[f64; 2]> {
+pub(crate) fn displacements_inside_corners(
+    sensor: &MountedSensor,
+    aim: Aim,
+    face: &Face,
+    reach: f64,
+) -> Vec<[f64; 2]> {
     let corners: [Vector<Dyadic>; 3] = std::array::from_fn(|k| face.corner(k));
     let mut inside = Vec::new();
     for k in 0..3 {
@@ -76,18 +81,18 @@ pub(crate) fn inside_corners(sensor: &Sensor, aim: Aim, face: &Face, reach: f64)
         let within = |share: f64| {
             sensor
                 .displacement_through(aim, &a.add(&both.scaled(&Dyadic::of(share))))
-                .filter(|at| size(*at) <= reach)
+                .filter(|at| max_norm(*at) <= reach)
         };
-        let Some(corner) = sensor.displacement_through(aim, a).filter(|at| size(*at) <= reach) else {
+        let Some(corner) = sensor.displacement_through(aim, a).filter(|at| max_norm(*at) <= reach) else {
             continue;
         };
         let Some(quarter) = sensor.displacement_through(aim, &a.add(&both.scaled(&Dyadic::of(0.25)))) else {
             continue;
         };
-        let length = size([quarter[0] - corner[0], quarter[1] - corner[1]]);
+        let length = max_norm([quarter[0] - corner[0], quarter[1] - corner[1]]);
         inside.push(corner);
         if length > 0.0 && length.is_finite() {
-            let room = ((reach - size(corner)) / length).min(1.0);
+            let room = ((reach - max_norm(corner)) / length).min(1.0);
             let shares = [1e-9, 1e-6, 1e-3, 0.03, 0.3, 0.9];
             inside.extend(shares.into_iter().filter_map(|share| within(0.25 * share * room)));
         }
@@ -96,5 +101,5 @@ pub(crate) fn inside_corners(sensor: &Sensor, aim: Aim, face: &Face, reach: f64)
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/through.rs"]
+#[path = "../tests/unit/through_point.rs"]
 mod tests;

@@ -9,14 +9,15 @@ use std::fmt;
 
 use raypencil_scene::{FaceId, Pixel, SensorId};
 
-use crate::cull::Bundle;
+use crate::approximations::Approximations;
+use crate::bvh::RayBundle;
 use crate::face::{ExactRay, Face};
+use crate::kleene::Kleene;
+use crate::line_of_sight::ExactLineOfSight;
 use crate::number::{Interval, Number};
-use crate::paper::{Approximations, Pencil};
-use crate::pencil::{Aim, Sensor};
+use crate::paper_raster::PaperRay;
+use crate::ray::{Aim, MountedSensor};
 use crate::ruling::Tolerance;
-use crate::sight::ExactWay;
-use crate::truth::Truth;
 use crate::verdict::{Referee, bundle};
 
 /// Which of the paper's approximations an answer about the camera's view was made with. (§6)
@@ -75,7 +76,7 @@ impl Referee<'_> {
         with: SightApproximations,
         tolerance: Tolerance,
     ) -> Option<Vec<ExplainedSight>> {
-        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
+        let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         let mesh = self.scene.mesh();
         if i >= columns || j >= rows || face.0 as usize >= mesh.faces().len() {
@@ -83,12 +84,12 @@ impl Referee<'_> {
         }
         let face = Face::of(mesh, face);
         let ray = ExactRay::new(&sensor, Aim { i, j, dx: 0.0, dy: 0.0 });
-        let way = ExactWay::new(&ray, &face, self.scene.camera());
+        let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
         // Only what is hidden by another face, or could be, is a matter of §6.
-        let pixel = way.pixel().filter(|_| way.is_front_seen())?;
-        let camera = Sensor::Camera(*self.scene.camera());
-        let section = Section6::new(&camera, with, pixel, way.centre_to_point().length(), tolerance);
-        let occluders = self.occluders(&way);
+        let pixel = line.pixel().filter(|_| line.is_front_seen())?;
+        let camera = MountedSensor::Camera(*self.scene.camera());
+        let section = Section6::new(&camera, with, pixel, line.centre_to_point().length(), tolerance);
+        let occluders = self.occluders(&line);
         let explained: Vec<ExplainedSight> = match (visible, occluders.is_empty()) {
             (true, false) => occluders
                 .iter()
@@ -96,8 +97,8 @@ impl Referee<'_> {
                 .collect(),
             (false, true) if with.place => {
                 let mut found: Vec<ExplainedSight> = Vec::new();
-                self.tree.visit(&section.at_centre(&camera, pixel), |other| {
-                    if section.hides(other).may_be {
+                self.bvh.visit(&section.bundle_at_centre(&camera, pixel), |other| {
+                    if section.hides(other).may_hold {
                         found.push(ExplainedSight { face: other.id, reasons: vec![SightReason::Place] });
                     }
                     section.distance * 2.0
@@ -116,7 +117,7 @@ impl Referee<'_> {
 struct Section6<'a> {
     with: SightApproximations,
     /// The ray through the centre of the pixel.
-    centre: Pencil<'a>,
+    centre: PaperRay<'a>,
     /// Of the point from the projection centre, metres.
     distance: f64,
     /// How far a point may be off, metres.
@@ -125,7 +126,7 @@ struct Section6<'a> {
 
 impl<'a> Section6<'a> {
     fn new(
-        camera: &'a Sensor,
+        camera: &'a MountedSensor,
         with: SightApproximations,
         pixel: Pixel,
         distance: f64,
@@ -135,54 +136,57 @@ impl<'a> Section6<'a> {
         let off = tolerance.depth + tolerance.position;
         // The pixel's ray is displaced by rounding only: a point that is off by `off` near the image plane.
         let tolerance = Tolerance { lateral: 1e-9, depth: off, position: off };
-        let centre = Pencil::new(camera, aim, Approximations::default(), tolerance);
+        let centre = PaperRay::new(camera, aim, Approximations::default(), tolerance);
         Self { with, centre, distance, off }
     }
 
     /// The reasons for which a face that hides the point is not found to.
     fn overlooks(&self, face: &Face) -> Vec<SightReason> {
         let mut reasons = Vec::new();
-        if self.with.facing && self.is_turned_away(face).may_not {
+        if self.with.facing && self.is_turned_away(face).may_fail {
             reasons.push(SightReason::Facing);
         }
-        if self.is_within_extent(face).may_not {
+        if self.is_within_extent(face).may_fail {
             reasons.push(SightReason::Extent);
         }
         let is_asked_at_centre = self.is_turned_away(face) & self.is_nearer_at_centre(face);
-        if self.with.place && is_asked_at_centre.may_not {
+        if self.with.place && is_asked_at_centre.may_fail {
             reasons.push(SightReason::Place);
         }
         reasons
     }
 
     /// Whether a face is found to hide the point at the centre of its pixel.
-    fn hides(&self, face: &Face) -> Truth {
+    fn hides(&self, face: &Face) -> Kleene {
         self.is_turned_away(face) & self.is_within_extent(face) & self.is_nearer_at_centre(face)
     }
 
     /// Whether a face is turned away: from the axis, or else from the camera.
-    fn is_turned_away(&self, face: &Face) -> Truth {
-        let [a, b, c] = face.corners.map(|corner| self.centre.seen(corner));
+    fn is_turned_away(&self, face: &Face) -> Kleene {
+        let [a, b, c] = face.corners.map(|corner| self.centre.in_sensor_frame(corner));
         let normal = b.sub(&a).cross(&c.sub(&a));
-        if self.with.facing { Truth::positive(normal.0[2]) } else { Truth::positive(normal.dot(&a)) }
+        if self.with.facing { Kleene::positive(normal.0[2]) } else { Kleene::positive(normal.dot(&a)) }
     }
 
     /// Whether some vertex is no deeper than the extent.
-    fn is_within_extent(&self, face: &Face) -> Truth {
-        let Some(extent) = self.with.extent else { return Truth::YES };
+    fn is_within_extent(&self, face: &Face) -> Kleene {
+        let Some(extent) = self.with.extent else { return Kleene::TRUE };
         let extent = Interval::of(extent).wider(self.off);
-        Truth::any(face.corners.map(|corner| Truth::not_negative(extent.sub(&self.centre.seen(corner).0[2]))))
+        Kleene::any(
+            face.corners
+                .map(|corner| Kleene::not_negative(extent.sub(&self.centre.in_sensor_frame(corner).0[2]))),
+        )
     }
 
     /// Whether the ray through the pixel's centre meets a face, from either side, nearer than the point.
-    fn is_nearer_at_centre(&self, face: &Face) -> Truth {
+    fn is_nearer_at_centre(&self, face: &Face) -> Kleene {
         self.centre.meets_nearer_than(face, Interval::of(self.distance).wider(self.off))
     }
 
     /// The faces that the ray through the pixel's centre may meet.
-    fn at_centre(&self, camera: &Sensor, pixel: Pixel) -> Bundle {
+    fn bundle_at_centre(&self, camera: &MountedSensor, pixel: Pixel) -> RayBundle {
         let mut around = bundle(camera, Aim { i: pixel.i, j: pixel.j, dx: 0.0, dy: 0.0 }, 1e-6);
-        around.reach = self.distance * 2.0;
+        around.max_range = self.distance * 2.0;
         around.start_radius = self.off;
         around
     }

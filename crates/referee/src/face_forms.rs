@@ -45,286 +45,11 @@
 //!
 //! "Evaluating": adding up the at most four terms of a form somewhere in the square, and moving its origin.
 
-use glam::{DMat3, DVec3};
-use raypencil_scene::Mounted;
+use glam::DVec3;
 
 use crate::face::Face;
-use crate::number::Interval;
-use crate::pencil::{Aim, Sensor};
-
-/// 2^-53: the unit roundoff.
-const U: f64 = 0.5 * f64::EPSILON;
-
-/// `constant + x dx + y dy + xy dx dy`: anywhere in |dx|, |dy| <= 1 off by at most `error`, evaluation
-/// included, and within |dx|, |dy| <= r by at most `bend` r^2 more.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Form {
-    pub(crate) constant: f64,
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) xy: f64,
-    pub(crate) error: f64,
-    pub(crate) bend: f64,
-}
-
-impl Form {
-    /// A form by its coefficients, each known up to an interval.
-    pub(crate) fn of(coefficients: [Interval; 4]) -> Self {
-        let middle = coefficients.map(|range| range.middle());
-        let doubt = |k: usize| (coefficients[k].high - middle[k]).max(middle[k] - coefficients[k].low);
-        let [constant, x, y, xy] = middle;
-        let form = Self { constant, x, y, xy, error: 0.0, bend: 0.0 };
-        let evaluated = 16.0 * U * form.scale() + f64::MIN_POSITIVE;
-        let error = ((doubt(0) + doubt(1)) + (doubt(2) + doubt(3)) + evaluated) * (1.0 + 8.0 * f64::EPSILON);
-        Self { error, ..form }
-    }
-
-    /// A radius of at most 1 within which g > 0 for certain; 0 if there is none.
-    #[inline]
-    pub(crate) fn holds_within(&self) -> f64 {
-        self.radius(self.constant - self.error)
-    }
-
-    /// A radius of at most 1 within which g < 0 for certain; 0 if there is none.
-    #[inline]
-    pub(crate) fn fails_within(&self) -> f64 {
-        self.radius(-self.constant - self.error)
-    }
-
-    /// Up to which r `room - r (|x| + |y|) - r^2 (|xy| + bend)` stays positive.
-    ///
-    /// The positive root of b r^2 + a r = c is 2 c / (a + sqrt(a^2 + 4 b c)); a dozen roundings up to that are
-    /// far less than the 2^-40 of itself by which the result is made smaller.
-    #[inline]
-    fn radius(&self, room: f64) -> f64 {
-        if !(room > 0.0) {
-            return 0.0;
-        }
-        let a = self.x.abs() + self.y.abs();
-        let b = self.xy.abs() + self.bend;
-        if room > (a + b) * (1.0 + 8.0 * f64::EPSILON) {
-            return 1.0;
-        }
-        let r = 2.0 * room / (a + (a * a + 4.0 * b * room).sqrt());
-        // NaN (infinite coefficients) certifies nothing.
-        if r > 0.0 { (r * (1.0 - 1.0 / (1u64 << 40) as f64)).min(1.0) } else { 0.0 }
-    }
-
-    /// The sum of the sizes of the coefficients: the scale of what evaluating it may round away.
-    fn scale(&self) -> f64 {
-        self.constant.abs() + self.x.abs() + self.y.abs() + self.xy.abs()
-    }
-
-    /// `self + weight other`: for a positive weight negative wherever both are.
-    pub(crate) fn plus(&self, other: &Self, weight: f64) -> Self {
-        let sum = Self {
-            constant: self.constant + weight * other.constant,
-            x: self.x + weight * other.x,
-            y: self.y + weight * other.y,
-            xy: self.xy + weight * other.xy,
-            error: 0.0,
-            bend: (self.bend + weight.abs() * other.bend) * (1.0 + 4.0 * f64::EPSILON),
-        };
-        // Two roundings of each coefficient, and the evaluation of the sum where slopes cancel.
-        let rounded = 16.0 * U * (self.scale() + weight.abs() * other.scale());
-        let error = (self.error + weight.abs() * other.error + rounded) * (1.0 + 4.0 * f64::EPSILON);
-        Self { error, ..sum }
-    }
-
-    /// The same function of the displacement from `centre`, which lies in the square |dx|, |dy| <= 1, as does
-    /// all that is asked about afterwards.
-    pub(crate) fn about(&self, [cx, cy]: [f64; 2]) -> Self {
-        if cx == 0.0 && cy == 0.0 {
-            return *self;
-        }
-        Self {
-            constant: self.constant + self.x * cx + self.y * cy + self.xy * cx * cy,
-            x: self.x + self.xy * cy,
-            y: self.y + self.xy * cx,
-            xy: self.xy,
-            error: (self.error + self.bend + 16.0 * U * self.scale()) * (1.0 + 4.0 * f64::EPSILON),
-            bend: 0.0,
-        }
-    }
-
-    /// The value at a displacement, to within `error` and the bend.
-    #[inline]
-    pub(crate) fn at(&self, [dx, dy]: [f64; 2]) -> f64 {
-        self.constant + self.x * dx + self.y * dy + self.xy * dx * dy
-    }
-
-    /// Whether g > 0 at a displacement in the square, or g < 0; `None` if it is not certain.
-    #[inline]
-    pub(crate) fn is_positive_at(&self, at: [f64; 2]) -> Option<bool> {
-        let value = self.at(at);
-        // Sizes are at most 1: the bend's r^2 too.
-        let doubt = self.error + self.bend;
-        if value > doubt {
-            Some(true)
-        } else if value < -doubt {
-            Some(false)
-        } else {
-            None
-        }
-    }
-
-    /// -g.
-    pub(crate) fn negated(&self) -> Self {
-        Self { constant: -self.constant, x: -self.x, y: -self.y, xy: -self.xy, ..*self }
-    }
-
-    /// The same form for displacements in units of `unit` cells, at most 1.
-    pub(crate) fn scaled(&self, unit: f64) -> Self {
-        Self {
-            x: self.x * unit,
-            y: self.y * unit,
-            xy: self.xy * unit * unit,
-            bend: self.bend * unit * unit,
-            ..*self
-        }
-    }
-}
-
-/// A square in which the forms certainly do not all hold, by one of them or by two combined: the largest that
-/// can be shown, or one of at least `enough`. Of the first `apart` no two are combined.
-pub(crate) fn certainly_fails(forms: &[Form], apart: usize, enough: f64) -> f64 {
-    let mut best = forms.iter().map(Form::fails_within).fold(0.0, f64::max);
-    for (k, a) in forms.iter().enumerate() {
-        for b in &forms[(k + 1).max(apart.min(forms.len()))..] {
-            if best >= enough {
-                return best;
-            }
-            best = best.max(both_fail(a, b));
-        }
-    }
-    best
-}
-
-/// A square in which two forms certainly do not both hold, by their combinations.
-///
-/// Where both hold, so does their sum with any positive weight; those that make the sum level in dx or in dy
-/// are the best for a square.
-fn both_fail(a: &Form, b: &Form) -> f64 {
-    let mut best = 0.0;
-    for (slope_a, slope_b) in [(a.x, b.x), (a.y, b.y)] {
-        let weight = -slope_a / slope_b;
-        if weight > 0.0 && weight.is_finite() {
-            best = a.plus(b, weight).fails_within().max(best);
-        }
-    }
-    best
-}
-
-/// A square in which the line of `edge` certainly does not meet where `other` holds: on the line the form is 0,
-/// so it may be added with a weight of either sign.
-pub(crate) fn line_leaves(edge: &Form, other: &Form) -> f64 {
-    let mut best = 0.0;
-    for (slope, slope_edge) in [(other.x, edge.x), (other.y, edge.y)] {
-        let weight = -slope / slope_edge;
-        if weight.is_finite() {
-            best = other.plus(edge, weight).fails_within().max(best);
-        }
-    }
-    best
-}
-
-/// A cell's ray and how displacement moves it, in the sensor's frame.
-#[derive(Debug, Clone)]
-pub(crate) struct MovingRay {
-    position: DVec3,
-    /// M, from the sensor's frame to the scene's.
-    rotation: DMat3,
-    /// Height of the ray's start on the focal axis, and its change by a cell.
-    height: f64,
-    height_step: f64,
-    /// (q_x, q_y) and (p_x, p_y).
-    q: [f64; 2],
-    step: [f64; 2],
-    /// z of the sensor plane.
-    plane: f64,
-    max_range: f64,
-    /// Q.
-    q_size: f64,
-    /// |q| as a form without its bend, and the bend.
-    length: [f64; 3],
-    length_bend: f64,
-}
-
-impl MovingRay {
-    /// The ray of an aim. The errors above are those of a cell's own ray, that is, of one not displaced.
-    pub(crate) fn new(sensor: &Sensor, aim: Aim) -> Self {
-        let pose = sensor.pose();
-        let [x, y, z, w] = pose.rotation.to_array();
-        let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
-        let norm = xx + yy + zz + ww;
-        let rows = [
-            [ww + xx - yy - zz, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), ww - xx + yy - zz, 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), ww - xx - yy + zz],
-        ];
-        let rotation = DMat3::from_cols_array_2d(&rows.map(|row| row.map(|part| part / norm))).transpose();
-        let (q, step, height, height_step, plane) = match sensor {
-            Sensor::Camera(Mounted { sensor, .. }) => {
-                let step = sensor.pixel_pitch.map(|pitch| pitch / sensor.focal_length);
-                let along = |index: u32, by: f64, axis: usize| {
-                    (f64::from(index) + 0.5 + by - sensor.principal_point[axis]) * step[axis]
-                };
-                ([along(aim.i, aim.dx, 0), along(aim.j, aim.dy, 1)], step, 0.0, 0.0, sensor.focal_length)
-            }
-            Sensor::Beam(Mounted { sensor, .. }) => {
-                let half_cells =
-                    |index: u32, by: f64, count: f64| 2.0 * f64::from(index) + 1.0 - count + 2.0 * by;
-                let (columns, rows) = (f64::from(sensor.columns), f64::from(sensor.rows));
-                let half_step = sensor.half_width / (columns * sensor.grid_distance);
-                (
-                    [half_cells(aim.i, aim.dx, columns) * half_step, 0.0],
-                    [2.0 * half_step, 0.0],
-                    sensor.thickness * half_cells(aim.j, aim.dy, rows) / (2.0 * rows),
-                    sensor.thickness / rows,
-                    sensor.grid_distance,
-                )
-            }
-        };
-        let (steps, q_size) = (step[0] + step[1], q[0].abs() + q[1].abs() + 1.0 + step[0] + step[1]);
-        // |q| is convex: at least its tangent, and at most (p_x + p_y)^2 r^2 / (2 min |q|) more; |q| >= 1.
-        let length = (q[0] * q[0] + q[1] * q[1] + 1.0).sqrt();
-        let shortest = (length - steps).max(1.0);
-        Self {
-            position: pose.position,
-            rotation,
-            height,
-            height_step,
-            q,
-            step,
-            plane,
-            max_range: sensor.max_range(),
-            q_size: q_size * (1.0 + 8.0 * f64::EPSILON),
-            length: [length, q[0] * step[0] / length, q[1] * step[1] / length],
-            length_bend: steps * steps / (2.0 * shortest) * (1.0 + 32.0 * f64::EPSILON),
-        }
-    }
-
-    /// Where the ray starts and its direction, not a unit: scene frame, to a few roundings.
-    pub(crate) fn line(&self) -> (DVec3, DVec3) {
-        let origin = self.position + self.rotation.y_axis * self.height;
-        (origin, self.rotation * DVec3::new(self.q[0], self.q[1], 1.0))
-    }
-
-    /// How far the start may move, metres, and the direction, in units of a direction of this length, where
-    /// the ray is displaced by at most `radius` cells.
-    pub(crate) fn spread(&self, radius: f64) -> (f64, f64) {
-        let moved = radius * (self.step[0] * self.step[0] + self.step[1] * self.step[1]).sqrt();
-        // Two directions of lengths L and L' that differ by d have units that differ by at most
-        // d / min(L, L'): cut to the shorter length they lie no farther apart. And every q is at least 1.
-        (radius * self.height_step, moved / (self.length[0] - moved).max(1.0))
-    }
-
-    /// |q| at a displacement, to a few roundings.
-    fn length_at(&self, [dx, dy]: [f64; 2]) -> f64 {
-        let q = [self.q[0] + dx * self.step[0], self.q[1] + dy * self.step[1]];
-        (q[0] * q[0] + q[1] * q[1] + 1.0).sqrt()
-    }
-}
+use crate::form::{Form, UNIT_ROUNDOFF as U};
+use crate::moving_ray::MovingRay;
 
 /// Where a corner lies among the displaced rays: the displacement of the ray through it, per axis, and by
 /// how much that may be off, infinitely where the corner is not certainly before the sensor.
@@ -353,7 +78,7 @@ pub(crate) fn beside<const N: usize>(corners: [&Corner; N], centre: [f64; 2]) ->
 
 /// Why a face is not met in the unit square of displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Away {
+pub(crate) enum Exclusion {
     /// No ray of the square meets its triangle between the SPP and the longest range.
     Beside,
     /// No ray of the square meets its front; its edges may lie anywhere.
@@ -392,19 +117,19 @@ impl<'a> FaceForms<'a> {
     ///
     /// An edge's form is negative outside of a triangle that shows its front, and *inside* of one that shows
     /// its back: only with the front is it known where the triangle lies.
-    pub(crate) fn in_square(ray: &MovingRay, face: &'a Face) -> Result<Self, Away> {
+    pub(crate) fn in_square(ray: &MovingRay, face: &'a Face) -> Result<Self, Exclusion> {
         let placed = Placed::of(ray, face);
         if placed.is_beside(ray) {
-            return Err(Away::Beside);
+            return Err(Exclusion::Beside);
         }
         let forms = Self::of_edges(ray, face, &placed);
         // Where the ray lies in the face's plane all forms vanish: ask how far away the triangle is.
         if forms.closest(ray) > ray.max_range {
-            return Err(Away::Beside);
+            return Err(Exclusion::Beside);
         }
         if forms.edges().iter().any(|edge| edge.fails_within() >= 1.0) {
             let shows_front = forms.own[3].holds_within() >= 1.0;
-            return Err(if shows_front { Away::Beside } else { Away::Back });
+            return Err(if shows_front { Exclusion::Beside } else { Exclusion::Back });
         }
         Ok(forms)
     }
@@ -581,19 +306,6 @@ fn range_form(
     }
 }
 
-impl MovingRay {
-    /// The displacement of the ray through a point of the sensor's frame.
-    fn through(&self, v: DVec3) -> [f64; 2] {
-        let x = (v.x - self.q[0] * v.z) / (self.step[0] * v.z);
-        let y = if self.height_step > 0.0 {
-            v.y / self.height_step
-        } else {
-            (v.y - self.q[1] * v.z) / (self.step[1] * v.z)
-        };
-        [x, y]
-    }
-}
-
 /// A face's corners in the sensor's frame, before its ray's start.
 struct Placed {
     corners: [DVec3; 3],
@@ -674,8 +386,8 @@ impl Placed {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/forms_by_hand.rs"]
+#[path = "../tests/unit/face_forms_by_hand.rs"]
 mod by_hand;
 #[cfg(test)]
-#[path = "../tests/unit/forms.rs"]
+#[path = "../tests/unit/face_forms.rs"]
 mod tests;

@@ -4,6 +4,8 @@ use glam::DVec3;
 use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene, SensorId};
 
 use super::*;
+use crate::ray::{Aim, MountedSensor};
+use crate::verdict::Referee;
 
 #[test]
 fn threads_lie_in_the_face_by_a_part_of_its_width() {
@@ -26,13 +28,13 @@ fn threads_lie_in_the_face_by_a_part_of_its_width() {
     let air = Atmosphere { attenuation: 0.0 };
     let scene = Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).expect("a scene");
     let referee = Referee::new(&scene);
-    let sensor = Sensor::of(&scene, SensorId::Camera).expect("a camera");
+    let sensor = MountedSensor::of(&scene, SensorId::Camera).expect("a camera");
     let near = Neighbourhood::new(&referee, &sensor, Aim { i: 4, j: 4, dx: 0.0, dy: 0.0 });
     assert_eq!(near.faces.len(), 1);
     let nearest = near.nearest_at([0.0; 2]);
-    let threads = Search::of(&near, &nearest, [0.0; 2], 1.0).threads(0);
+    let threads = FaceMarginSearch::of(&near, &nearest, [0.0; 2], 1.0).threads(0);
     assert_eq!(threads.len(), 3 * 15 * 3);
-    assert!(threads.windows(2).all(|two| size(two[0]) <= size(two[1])));
+    assert!(threads.windows(2).all(|two| max_norm(two[0]) <= max_norm(two[1])));
     // Along each side from each corner, by weights that add up to 1.
     for k in 0..3 {
         for (s, inward) in [(0.0, 0.03), (0.5, 1e-3), (0.96, 1e-6), (0.2, 0.03)] {

@@ -37,12 +37,12 @@ pub(crate) struct ScaledRay<T> {
 
 /// One sensor of a scene, as its rays need it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Sensor {
+pub(crate) enum MountedSensor {
     Camera(Mounted<Camera>),
     Beam(Mounted<Beam>),
 }
 
-impl Sensor {
+impl MountedSensor {
     pub(crate) fn of(scene: &Scene, id: SensorId) -> Option<Self> {
         match id {
             SensorId::Camera => Some(Self::Camera(*scene.camera())),

@@ -14,21 +14,21 @@ use crate::rounding::Rounded;
 
 /// hi + lo, with |lo| at most half a unit in the last place of hi; the true number is at most `error` away.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Twofold {
+pub(crate) struct DoubleDouble {
     high: f64,
     low: f64,
     error: f64,
 }
 
 /// 2^-104 = 4 u^2, which exceeds 3 u^2 / (1 - 4 u).
-const SUM: f64 = 1.0 / (1u128 << 104) as f64;
+const SUM_ERROR: f64 = 1.0 / (1u128 << 104) as f64;
 /// 2^-103 = 8 u^2.
-const PRODUCT: f64 = 2.0 * SUM;
+const PRODUCT_ERROR: f64 = 2.0 * SUM_ERROR;
 /// Errors are sums and products of at most a dozen positive roundings, each 2^-53: this is above them.
 const ROUNDED_UP: f64 = 1.0 + 1.0 / (1u64 << 48) as f64;
 /// Where no partial result over- or underflows.
-const LEAST: f64 = 1e-250;
-const MOST: f64 = 1e250;
+const MIN_MAGNITUDE: f64 = 1e-250;
+const MAX_MAGNITUDE: f64 = 1e250;
 
 /// a + b = sum + rest, exactly. (D. Knuth)
 #[inline]
@@ -46,7 +46,7 @@ fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, b - (sum - a))
 }
 
-/// a b = product + rest, exactly, between [`LEAST`] and [`MOST`]. (T. Dekker, G. Veltkamp)
+/// a b = product + rest, exactly, between [`MIN_MAGNITUDE`] and [`MAX_MAGNITUDE`]. (T. Dekker, G. Veltkamp)
 #[inline]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     #[inline]
@@ -60,7 +60,7 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2)
 }
 
-impl Twofold {
+impl DoubleDouble {
     /// Nothing is known.
     pub(crate) const UNKNOWN: Self = Self { high: 0.0, low: 0.0, error: f64::INFINITY };
     /// pi = 3.14159265358979323846 (its first double) + 1.2246467991473532e-16 (its second) to 3e-33.
@@ -69,29 +69,29 @@ impl Twofold {
 
     /// At least the absolute value of the true number.
     #[inline]
-    fn most(&self) -> f64 {
+    fn upper_bound(&self) -> f64 {
         (self.high.abs() + self.low.abs() + self.error) * ROUNDED_UP
     }
 
     /// At most the absolute value of the true number.
     #[inline]
-    fn least(&self) -> f64 {
+    fn lower_bound(&self) -> f64 {
         ((self.high.abs() - self.low.abs()) * (1.0 - f64::EPSILON) - self.error * ROUNDED_UP)
             * (1.0 - f64::EPSILON)
     }
 
     /// The absolute value.
     #[inline]
-    pub(crate) fn size(&self) -> Self {
+    pub(crate) fn abs(&self) -> Self {
         if self.high < 0.0 { Self { high: -self.high, low: -self.low, ..*self } } else { *self }
     }
 
     /// The quotient.
     pub(crate) fn over(&self, divisor: &Self) -> Self {
-        let least = divisor.least();
+        let least = divisor.lower_bound();
         let first = self.high / divisor.high;
         // !(a > b) is also what holds for NaN.
-        if !(least > 0.0) || !(first == 0.0 || (LEAST..MOST).contains(&first.abs())) {
+        if !(least > 0.0) || !(first == 0.0 || (MIN_MAGNITUDE..MAX_MAGNITUDE).contains(&first.abs())) {
             return Self::UNKNOWN;
         }
         // x - z y for the first digits z, and then for all of them.
@@ -99,7 +99,7 @@ impl Twofold {
         let (high, low) = fast_two_sum(first, rest.high / divisor.high);
         let quotient = Self { high, low, error: 0.0 };
         let rest = self.sub(&divisor.mul(&quotient));
-        quotient.off_by(rest.most() / least * ROUNDED_UP)
+        quotient.with_error(rest.upper_bound() / least * ROUNDED_UP)
     }
 
     /// The square root; nothing is known of that of a number which is not certainly positive.
@@ -107,7 +107,7 @@ impl Twofold {
         if self.high == 0.0 && self.low == 0.0 && self.error == 0.0 {
             return *self;
         }
-        if !(self.least() > 0.0) {
+        if !(self.lower_bound() > 0.0) {
             return Self::UNKNOWN;
         }
         let first = self.high.sqrt();
@@ -116,11 +116,11 @@ impl Twofold {
         let root = Self { high, low, error: 0.0 };
         // |sqrt(x) - z| = |x - z^2| / (sqrt(x) + z).
         let rest = self.sub(&root.square());
-        root.off_by(rest.most() / root.least() * ROUNDED_UP)
+        root.with_error(rest.upper_bound() / root.lower_bound() * ROUNDED_UP)
     }
 
     #[inline]
-    fn off_by(self, error: f64) -> Self {
+    fn with_error(self, error: f64) -> Self {
         if error.is_finite() { Self { error, ..self } } else { Self::UNKNOWN }
     }
 
@@ -153,7 +153,7 @@ impl Twofold {
     }
 }
 
-impl Number for Twofold {
+impl Number for DoubleDouble {
     #[inline]
     fn of(value: f64) -> Self {
         Self { high: value, low: 0.0, error: 0.0 }
@@ -166,9 +166,13 @@ impl Number for Twofold {
         let (sum, rest) = fast_two_sum(sum, rest + low);
         let (high, low) = fast_two_sum(sum, last + rest);
         // Two f64 are added exactly.
-        let rounding = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { SUM * high.abs() };
+        let rounding = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { SUM_ERROR * high.abs() };
         let error = (self.error + other.error + rounding) * ROUNDED_UP;
-        if error < MOST && high.abs() < MOST { Self { high, low, error } } else { Self::UNKNOWN }
+        if error < MAX_MAGNITUDE && high.abs() < MAX_MAGNITUDE {
+            Self { high, low, error }
+        } else {
+            Self::UNKNOWN
+        }
     }
 
     #[inline]
@@ -183,23 +187,23 @@ impl Number for Twofold {
             return Self::of(0.0);
         }
         let size = (self.high * other.high).abs();
-        if !(size < MOST) || self.high.abs() > MOST || other.high.abs() > MOST {
+        if !(size < MAX_MAGNITUDE) || self.high.abs() > MAX_MAGNITUDE || other.high.abs() > MAX_MAGNITUDE {
             return Self::UNKNOWN;
         }
-        if size < LEAST {
+        if size < MIN_MAGNITUDE {
             // Where one of them is 0 but for its error, or all but: somewhere between -most and most.
-            let most = self.most() * other.most() * ROUNDED_UP + f64::MIN_POSITIVE;
-            return Self::of(0.0).off_by(most);
+            let most = self.upper_bound() * other.upper_bound() * ROUNDED_UP + f64::MIN_POSITIVE;
+            return Self::of(0.0).with_error(most);
         }
         let (product, rest) = two_product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
         let (high, low) = fast_two_sum(product, rest + cross);
-        let rounding = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { PRODUCT * high.abs() };
+        let rounding = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { PRODUCT_ERROR * high.abs() };
         let inherited = if self.error == 0.0 && other.error == 0.0 {
             0.0
         } else {
             // Each product may underflow by less than the last term.
-            self.most() * other.error + other.most() * self.error + f64::MIN_POSITIVE
+            self.upper_bound() * other.error + other.upper_bound() * self.error + f64::MIN_POSITIVE
         };
         Self { high, low, error: (inherited + rounding) * ROUNDED_UP }
     }
@@ -208,7 +212,7 @@ impl Number for Twofold {
     fn sign(&self) -> Option<Ordering> {
         if self.high == 0.0 && self.low == 0.0 && self.error == 0.0 {
             Some(Ordering::Equal)
-        } else if self.least() > 0.0 {
+        } else if self.lower_bound() > 0.0 {
             self.high.partial_cmp(&0.0)
         } else {
             None
@@ -217,5 +221,5 @@ impl Number for Twofold {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/twofold.rs"]
+#[path = "../tests/unit/double_double.rs"]
 mod tests;

@@ -1,4 +1,4 @@
-//! Which faces a ray may meet: a tree of boxes of the referee's own, in f64.
+//! Which faces a ray may meet: a bvh of boxes of the referee's own, in f64.
 //!
 //! It only has to be complete. A median split over the faces' centres, boxes exact in f64, and a slab test
 //! that is widened by far more than its rounding and by the displacement that is asked about.
@@ -9,14 +9,14 @@ use raypencil_scene::{FaceId, Mesh};
 use crate::face::Face;
 
 /// Faces in a leaf.
-const LEAF: usize = 4;
+const MAX_LEAF_FACES: usize = 4;
 
 /// Relative slack of a slab test: 2^-40, where its rounding is a few 2^-53.
-const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
+const RELATIVE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// The terrain's faces in a tree.
+/// The terrain's faces in a bvh.
 #[derive(Debug)]
-pub(crate) struct Tree {
+pub(crate) struct Bvh {
     nodes: Vec<Node>,
     faces: Vec<Face>,
 }
@@ -33,13 +33,13 @@ struct Node {
 
 /// The line that is asked about: a ray in f64, and how wide the bundle around it is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bundle {
+pub(crate) struct RayBundle {
     /// Where the ray starts, scene frame, metres.
     pub(crate) origin: DVec3,
     /// Its unit direction.
     pub(crate) direction: DVec3,
     /// How far along it faces matter, metres.
-    pub(crate) reach: f64,
+    pub(crate) max_range: f64,
     /// How far a ray of the bundle may start from the origin, metres.
     pub(crate) start_radius: f64,
     /// How far apart the unit directions of two of its rays may be from the middle one's: metres per metre of
@@ -47,7 +47,7 @@ pub(crate) struct Bundle {
     pub(crate) spread: f64,
 }
 
-impl Tree {
+impl Bvh {
     pub(crate) fn build(mesh: &Mesh) -> Self {
         let mut faces: Vec<Face> = (0..mesh.faces().len())
             .map(|index| Face::of(mesh, FaceId(index as u32)))
@@ -60,7 +60,7 @@ impl Tree {
             let mut waiting = vec![0usize];
             while let Some(index) = waiting.pop() {
                 let Node { low, high, first, count } = nodes[index];
-                if count as usize <= LEAF {
+                if count as usize <= MAX_LEAF_FACES {
                     continue;
                 }
                 // Halves of equal number, however the faces lie: the depth is logarithmic for any input.
@@ -84,25 +84,25 @@ impl Tree {
         Self { nodes, faces }
     }
 
-    /// Calls `visit` with every face that a ray of the bundle may meet within its reach, and perhaps with
-    /// others. `visit` answers with the reach from there on: nearer faces are asked about first.
-    pub(crate) fn visit<'t>(&'t self, bundle: &Bundle, mut visit: impl FnMut(&'t Face) -> f64) {
-        let mut walk = Walk::new(self, bundle);
-        let mut reach = bundle.reach;
-        while let Some(leaf) = walk.next_leaf(reach) {
+    /// Calls `visit` with every face that a ray of the bundle may meet within its max_range, and perhaps with
+    /// others. `visit` answers with the max_range from there on: nearer faces are asked about first.
+    pub(crate) fn visit<'t>(&'t self, bundle: &RayBundle, mut visit: impl FnMut(&'t Face) -> f64) {
+        let mut walk = Traversal::new(self, bundle);
+        let mut max_range = bundle.max_range;
+        while let Some(leaf) = walk.next_leaf(max_range) {
             for face in leaf {
-                reach = visit(face).min(reach);
+                max_range = visit(face).min(max_range);
             }
         }
     }
 }
 
-/// A way through the tree along a bundle, leaf by leaf, roughly from near to far. Parts beyond the reach are
+/// A way through the bvh along a bundle, leaf by leaf, roughly from near to far. Parts beyond the max_range are
 /// kept for later, should it grow again.
 #[derive(Debug)]
-pub(crate) struct Walk<'t> {
-    tree: &'t Tree,
-    bundle: Bundle,
+pub(crate) struct Traversal<'t> {
+    bvh: &'t Bvh,
+    bundle: RayBundle,
     inverse: DVec3,
     /// How much a box is widened wherever it lies.
     widened: f64,
@@ -111,34 +111,34 @@ pub(crate) struct Walk<'t> {
     beyond: Vec<(f64, u32)>,
 }
 
-impl<'t> Walk<'t> {
-    pub(crate) fn new(tree: &'t Tree, bundle: &Bundle) -> Self {
+impl<'t> Traversal<'t> {
+    pub(crate) fn new(bvh: &'t Bvh, bundle: &RayBundle) -> Self {
         let mut walk = Self {
-            tree,
+            bvh,
             bundle: *bundle,
             inverse: bundle.direction.recip(),
-            widened: bundle.start_radius * (1.0 + bundle.spread) + SLACK * bundle.origin.length(),
+            widened: bundle.start_radius * (1.0 + bundle.spread) + RELATIVE_SLACK * bundle.origin.length(),
             waiting: Vec::with_capacity(64),
             beyond: Vec::new(),
         };
-        if let Some(entry) = tree.nodes.first().and_then(|root| walk.entry(root)) {
+        if let Some(entry) = bvh.nodes.first().and_then(|root| walk.entry(root)) {
             walk.waiting.push((entry, 0));
         }
         walk
     }
 
-    /// The faces of the next leaf that the bundle enters within `reach`; `None` if there is no other.
-    pub(crate) fn next_leaf(&mut self, reach: f64) -> Option<&'t [Face]> {
+    /// The faces of the next leaf that the bundle enters within `max_range`; `None` if there is no other.
+    pub(crate) fn next_leaf(&mut self, max_range: f64) -> Option<&'t [Face]> {
         while let Some((entry, index)) = self.waiting.pop() {
-            if entry > reach {
+            if entry > max_range {
                 self.beyond.push((entry, index));
                 continue;
             }
-            let node = &self.tree.nodes[index as usize];
+            let node = &self.bvh.nodes[index as usize];
             if node.count > 0 {
-                return Some(&self.tree.faces[node.first as usize..(node.first + node.count) as usize]);
+                return Some(&self.bvh.faces[node.first as usize..(node.first + node.count) as usize]);
             }
-            let child = |child: u32| (self.entry(&self.tree.nodes[child as usize]), child);
+            let child = |child: u32| (self.entry(&self.bvh.nodes[child as usize]), child);
             let mut children = [child(node.first), child(node.first + 1)];
             // The nearer child is taken from the stack first.
             if children[0].0 < children[1].0 {
@@ -149,7 +149,7 @@ impl<'t> Walk<'t> {
         None
     }
 
-    /// Takes up what had been beyond the reach.
+    /// Takes up what had been beyond the max_range.
     pub(crate) fn resume(&mut self) {
         self.waiting.append(&mut self.beyond);
     }
@@ -164,11 +164,11 @@ impl<'t> Walk<'t> {
     fn entry(&self, node: &Node) -> Option<f64> {
         let bundle = &self.bundle;
         let (low, high) = (node.low - bundle.origin, node.high - bundle.origin);
-        let farthest = low.abs().max(high.abs()).length();
+        let far = low.abs().max(high.abs()).length();
         let size = node.low.abs().max(node.high.abs()).max_element();
-        let margin = DVec3::splat(self.widened + bundle.spread * farthest + SLACK * (farthest + size));
+        let margin = DVec3::splat(self.widened + bundle.spread * far + RELATIVE_SLACK * (far + size));
         let (low, high) = (low - margin, high + margin);
-        let (mut enter, mut leave) = (0.0_f64, bundle.reach);
+        let (mut enter, mut leave) = (0.0_f64, bundle.max_range);
         for k in 0..3 {
             if bundle.direction[k] == 0.0 {
                 if low[k] > 0.0 || high[k] < 0.0 {

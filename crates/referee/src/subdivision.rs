@@ -1,4 +1,4 @@
-//! The unit square of displacements, divided where a margin cannot be told from its middle alone.
+//! The unit square of displacements, subdivide where a margin cannot be told from its middle alone.
 //!
 //! The square is cut in four, and each part again, where it cannot be proven to be without a change from its own
 //! middle. The parts are closed and cover the square; taken in the order of their distance from the ray, by the
@@ -7,16 +7,16 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::region::size;
+use crate::displacement::max_norm;
 
 /// Parts that are looked at before the division gives up. CHOICE: a line across the square passes through a few
 /// parts of each size on its way to where it is nearest, so that tens are enough for any of the 40 sizes; an edge
 /// hidden closely behind a surface has to be followed with parts as small as it is close, which may take thousands. At
 /// 2 to 7 microseconds each this bounds a single ray to less than a tenth of a second.
-const PARTS: u32 = 10_000;
+const MAX_SQUARES: u32 = 10_000;
 
-/// Half sides below this, in cells, are not divided: the parts could only stay unproven.
-const SMALLEST: f64 = 1.0 / (1u64 << 40) as f64;
+/// Half sides below this, in cells, are not subdivide: the parts could only stay unproven.
+const MIN_HALF_SIDE_CELLS: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// A part of the unit square. Its numbers are multiples of its half side, at most 1: exact.
 #[derive(Debug, Clone, Copy)]
@@ -33,7 +33,7 @@ impl Square {
     }
 
     fn farthest(&self) -> f64 {
-        size(self.middle) + self.half
+        max_norm(self.middle) + self.half
     }
 
     pub(crate) fn corners(&self) -> [[f64; 2]; 4] {
@@ -49,7 +49,7 @@ impl Square {
 
 /// Whether a witness is near enough: less than twice lo, with room for rounding.
 pub(crate) fn is_tight(lo: f64, witness: Option<[f64; 2]>) -> bool {
-    witness.is_some_and(|at| size(at) <= 1.9 * lo || size(at) <= 1e-9)
+    witness.is_some_and(|at| max_norm(at) <= 1.9 * lo || max_norm(at) <= 1e-9)
 }
 
 /// Divides the square, whose part within `lo` is proven, until the first part that cannot be proven is no nearer
@@ -57,7 +57,7 @@ pub(crate) fn is_tight(lo: f64, witness: Option<[f64; 2]>) -> bool {
 ///
 /// `look` is asked about a part, and how far all is proven: `None` if the part is proven as well, else perhaps a
 /// witness in it.
-pub(crate) fn divided(
+pub(crate) fn subdivide(
     mut lo: f64,
     mut witness: Option<[f64; 2]>,
     mut look: impl FnMut(&Square, f64) -> Option<Option<[f64; 2]>>,
@@ -70,7 +70,7 @@ pub(crate) fn divided(
     while let Some(Reverse((bits, index))) = waiting.pop() {
         let square = squares[index];
         lo = lo.max(f64::from_bits(bits));
-        if is_tight(lo, witness) || looked == PARTS {
+        if is_tight(lo, witness) || looked == MAX_SQUARES {
             return (lo, witness);
         }
         if square.farthest() <= lo {
@@ -79,11 +79,11 @@ pub(crate) fn divided(
         looked += 1;
         let Some(found) = look(&square, lo) else { continue };
         if let Some(at) = found
-            && witness.is_none_or(|best| size(at) < size(best))
+            && witness.is_none_or(|best| max_norm(at) < max_norm(best))
         {
             witness = Some(at);
         }
-        if square.half < SMALLEST {
+        if square.half < MIN_HALF_SIDE_CELLS {
             return (lo, witness);
         }
         for part in square.parts() {
@@ -102,19 +102,19 @@ mod tests {
     /// Divides where the change is known: a part is proven if it certainly has none of it, a witness is a corner
     /// or the middle.
     fn margin(changed: impl Fn([f64; 2]) -> bool, free: impl Fn(&Square) -> bool) -> (f64, Option<f64>) {
-        let (lo, witness) = divided(0.0, None, |square, _| {
+        let (lo, witness) = subdivide(0.0, None, |square, _| {
             if free(square) {
                 return None;
             }
             let places = square.corners().into_iter().chain([square.middle]).filter(|&at| changed(at));
-            Some(places.min_by(|a, b| size(*a).total_cmp(&size(*b))))
+            Some(places.min_by(|a, b| max_norm(*a).total_cmp(&max_norm(*b))))
         });
-        (lo, witness.map(size))
+        (lo, witness.map(max_norm))
     }
 
     /// The distance of a square from a point, by the larger of both parts.
     fn apart(square: &Square, point: [f64; 2]) -> f64 {
-        size([square.middle[0] - point[0], square.middle[1] - point[1]]) - square.half
+        max_norm([square.middle[0] - point[0], square.middle[1] - point[1]]) - square.half
     }
 
     #[test]
@@ -123,7 +123,7 @@ mod tests {
         let (speck, small) = ([0.37, -0.21], 1.0 / 1024.0);
         let begins = 0.37 - small;
         let (lo, hi) = margin(
-            |at| size([at[0] - speck[0], at[1] - speck[1]]) <= small,
+            |at| max_norm([at[0] - speck[0], at[1] - speck[1]]) <= small,
             |square| apart(square, speck) > small,
         );
         let hi = hi.expect("found");

@@ -4,11 +4,11 @@
 //!
 //! A part of the unit square of displacements changes nothing if every face that may be hit there gives the same
 //! answer wherever it is hit; to be seen everywhere it must also be hit everywhere (`sheet`). While the hit stays
-//! on the plane of one face F, all that `sight` asks is bilinear in the displacement (`Way::parts`).
+//! on the plane of one face F, all that `sight` asks is bilinear in the displacement (`LineOfSight::parts`).
 //!
 //! *Not seen*: the camera lies behind F's plane, or one condition of the landing certainly fails, or the point is
 //! certainly hidden by a sheet of faces. As in `sheet`, a walk over the edges that may be met in the part leads from a
-//! face that hides its middle to faces that have the same edge the other way round and turn the same side to the
+//! face that hides its middle to faces that have the same edge the other line round and turn the same side to the
 //! camera; if it finds one at each such edge, and all are met before the point and at or beyond the image plane over
 //! all of the part, then their images cover it: a watertight surface hides as one.
 //!
@@ -17,14 +17,14 @@
 //! F and G touch, all these vanish at once, and no error bound helps. There it is known by exact signs alone
 //! that G does not hide any point P of F, if
 //!
-//! 1. G lies at or behind F's plane: the way from P to the camera leaves that plane at once; or
-//! 2. F lies at or on the camera's side of G's plane: the way can be on that plane at P only; or
+//! 1. G lies at or behind F's plane: the line from P to the camera leaves that plane at once; or
+//! 2. F lies at or on the camera's side of G's plane: the line can be on that plane at P only; or
 //! 3. the plane through the camera and a side of one of them has one face on one side and the other on the other,
-//!    with no points of the other face on it but corners that they share: the way may meet both there, but
+//!    with no points of the other face on it but corners that they share: the line may meet both there, but
 //!    meets either plane once, so both at P; or
 //! 4. all pencils of the part meet fronts of some sheet without an end, the camera lies before the planes of all its
 //!    faces, and G is at or behind all of them (it may be one of them): a point that is met first lies at the plane
-//!    of the sheet's face that the same pencil meets, or before it, and so does the way, as in 1 and 2.
+//!    of the sheet's face that the same pencil meets, or before it, and so does the line, as in 1 and 2.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -32,24 +32,26 @@ use std::collections::HashMap;
 use glam::DVec3;
 use raypencil_scene::SensorId;
 
-use crate::cull::Bundle;
-use crate::divide::{Square, divided};
+use crate::bvh::RayBundle;
+use crate::displacement::max_norm;
 use crate::face::{ExactRay, Face};
-use crate::forms::{Form, certainly_fails, line_leaves};
+use crate::form::{Form, certainly_fails, line_leaves};
+use crate::line_of_sight::{ExactLineOfSight, LineOfSight};
 use crate::margin::Margin;
-use crate::near::Neighbourhood;
-use crate::number::{Dyadic, Interval, Number};
-use crate::pencil::{Aim, Sensor};
-use crate::region::size;
-use crate::sight::{ExactWay, Sight, Way};
+use crate::neighbourhood::Neighbourhood;
+use crate::number::{Interval, Number};
+use crate::occluder::{Occluder, corners, never_occludes, volume_sign};
+use crate::ray::{Aim, MountedSensor};
+use crate::subdivision::{Square, subdivide};
 use crate::vector::Vector;
 use crate::verdict::Referee;
+use crate::visibility::Visibility;
 
 /// What the camera sees of a pencil, and how far that is from changing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SightMargins {
     /// Of the pencil itself.
-    pub sight: Sight,
+    pub sight: Visibility,
     /// The least displacement at which `visible` changes; a pencil that misses is not visible.
     pub visibility: Margin,
     /// How far from the nearest border of its pixel the point lands, in pixels: between these two numbers. `None`
@@ -61,7 +63,7 @@ impl Referee<'_> {
     /// What the camera sees of the hit of pencil (i, j), and how far it is from changing; `None` if there is no such
     /// pencil, or it does not hit.
     pub fn sight_margins(&self, beam: usize, i: u32, j: u32) -> Option<SightMargins> {
-        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
+        let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         if i >= columns || j >= rows {
             return None;
@@ -70,39 +72,39 @@ impl Referee<'_> {
         let near = Neighbourhood::new(self, &sensor, aim);
         let nearest = near.nearest_at([0.0; 2]);
         let face = near.faces[*nearest.first()?].face;
-        let sight = self.sight_of(&sensor, aim, face);
+        let sight = self.visibility_of(&sensor, aim, face);
         let ray = ExactRay::new(&sensor, aim);
-        let way = ExactWay::new(&ray, face, self.scene.camera());
-        let landing = sight.pixel.map(|pixel| way.border_distance(pixel));
-        let mut view = View {
+        let line = ExactLineOfSight::new(&ray, face, self.scene.camera());
+        let landing = sight.pixel.map(|pixel| line.border_distance(pixel));
+        let mut view = VisibilitySearch {
             referee: self,
             sensor: &sensor,
             aim,
             near,
             visible: sight.visible,
-            grounds: HashMap::new(),
-            judged: HashMap::new(),
+            hit_faces: HashMap::new(),
+            known_displacements: HashMap::new(),
         };
         Some(SightMargins { sight, visibility: view.margin(), landing })
     }
 }
 
 /// The camera's view of the points that the displaced pencils of one cell hit.
-struct View<'a> {
+struct VisibilitySearch<'a> {
     referee: &'a Referee<'a>,
-    sensor: &'a Sensor,
+    sensor: &'a MountedSensor,
     aim: Aim,
     near: Neighbourhood<'a>,
     /// Whether the cell's own pencil is seen.
     visible: bool,
     /// What is known of the faces that may be hit, by their indices in the neighbourhood.
-    grounds: HashMap<usize, Ground<'a>>,
-    /// Displacements that have been judged exactly, by their bits.
-    judged: HashMap<[u64; 2], bool>,
+    hit_faces: HashMap<usize, HitFace<'a>>,
+    /// Displacements that have been known_displacements exactly, by their bits.
+    known_displacements: HashMap<[u64; 2], bool>,
 }
 
 /// A face that may be hit, as the camera sees points of it.
-struct Ground<'a> {
+struct HitFace<'a> {
     /// Whether the camera is on its front side.
     is_front_seen: bool,
     /// The conditions of the landing.
@@ -110,25 +112,11 @@ struct Ground<'a> {
     occluders: Vec<Occluder<'a>>,
 }
 
-/// A face that may hide points of another.
-struct Occluder<'a> {
-    face: &'a Face,
-    /// Whether the camera lies before its plane.
-    turned_to_camera: bool,
-    /// Positive where it hides: the three sides, front or back, before the point, beyond the image plane.
-    hides: [Form; 6],
-}
-
-impl<'a> View<'a> {
+impl<'a> VisibilitySearch<'a> {
     fn margin(&mut self) -> Margin {
-        let (lo, witness) =
-            divided(
-                0.0,
-                None,
-                |square, lo| {
-                    if self.is_proven(square) { None } else { Some(self.changed_in(square, lo)) }
-                },
-            );
+        let (lo, witness) = subdivide(0.0, None, |square, lo| {
+            if self.is_proven(square) { None } else { Some(self.changed_in(square, lo)) }
+        });
         if lo >= 1.0 { Margin::CAPPED } else { Margin::of(lo, witness) }
     }
 
@@ -138,24 +126,24 @@ impl<'a> View<'a> {
         let around = Square { half: 1.5 * square.half, ..*square };
         let mut places: Vec<[f64; 2]> = around.corners().into_iter().chain(square.corners()).collect();
         places.push(square.middle);
-        places.retain(|&at| size(at) >= lo && size(at) <= 1.0);
-        places.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
+        places.retain(|&at| max_norm(at) >= lo && max_norm(at) <= 1.0);
+        places.sort_by(|a, b| max_norm(*a).total_cmp(&max_norm(*b)));
         places.into_iter().find(|&at| self.visible_at(at) != self.visible)
     }
 
     /// Whether the displaced pencil's hit is seen, exactly.
     fn visible_at(&mut self, [dx, dy]: [f64; 2]) -> bool {
         let (referee, sensor, aim) = (self.referee, self.sensor, Aim { dx, dy, ..self.aim });
-        *self.judged.entry([dx, dy].map(f64::to_bits)).or_insert_with(|| {
+        *self.known_displacements.entry([dx, dy].map(f64::to_bits)).or_insert_with(|| {
             let nearest = referee.nearest(sensor, aim);
-            nearest.first().is_some_and(|face| referee.sight_of(sensor, aim, face).visible)
+            nearest.first().is_some_and(|face| referee.visibility_of(sensor, aim, face).visible)
         })
     }
 
     /// Whether it is proven that the answer is the same in all of a part.
     fn is_proven(&mut self, square: &Square) -> bool {
         if square.half < 1.0 {
-            self.near.reach_all();
+            self.near.extend_to_max_range();
         }
         let (certainly_hit, faces) = self.near.possible(square.middle, square.half);
         if self.visible && !certainly_hit {
@@ -166,12 +154,12 @@ impl<'a> View<'a> {
 
     /// Whether all points of one face that are hit in a part have the answer of the cell's own.
     fn is_alike_on(&mut self, index: usize, square: &Square) -> bool {
-        if !self.grounds.contains_key(&index) {
+        if !self.hit_faces.contains_key(&index) {
             let ground = self.ground(index);
-            self.grounds.insert(index, ground);
+            self.hit_faces.insert(index, ground);
         }
-        let Self { referee, near, grounds, .. } = self;
-        let ground = &grounds[&index];
+        let Self { referee, near, hit_faces, .. } = self;
+        let ground = &hit_faces[&index];
         if !ground.is_front_seen {
             return !self.visible;
         }
@@ -219,12 +207,12 @@ impl<'a> View<'a> {
     }
 
     /// All about a face that may be hit, and about what may hide it in the unit square.
-    fn ground(&self, index: usize) -> Ground<'a> {
+    fn ground(&self, index: usize) -> HitFace<'a> {
         let camera = self.referee.scene.camera();
         let face = self.near.faces[index].face;
         let centre = camera.scene_from_sensor.position;
-        let parts = Way::parts(self.sensor, self.aim, face, camera);
-        let lands = Way::lands(&parts, &camera.sensor).map(Form::of);
+        let parts = LineOfSight::parts(self.sensor, self.aim, face, camera);
+        let lands = LineOfSight::lands(&parts, &camera.sensor).map(Form::of);
         let [a, b, c] = corners(face);
         let is_front_seen = volume_sign(a, b, c, centre) == Ordering::Greater;
         let mut occluders = Vec::new();
@@ -232,26 +220,26 @@ impl<'a> View<'a> {
         if is_front_seen && !cannot_land {
             let own = self.near.faces[index].own();
             let bundle = self.ways(face, &parts);
-            self.referee.tree.visit(&bundle, |other| {
+            self.referee.bvh.visit(&bundle, |other| {
                 if other.id != face.id
                     && let Some(occluder) = Occluder::of(other, &parts, centre)
                     && !occluder.hides.iter().any(|form| form.fails_within() >= 1.0)
                     && !(certainly_fails(&[&occluder.hides[..], own].concat(), 0, 1.0) >= 1.0)
-                    && !never_hides(other, face, centre)
+                    && !never_occludes(other, face, centre)
                 {
                     occluders.push(occluder);
                 }
-                bundle.reach
+                bundle.max_range
             });
         }
-        Ground { is_front_seen, lands, occluders }
+        HitFace { is_front_seen, lands, occluders }
     }
 
     /// The ways from the camera to all points of a face that are hit in the unit square.
     ///
     /// They lie in a ball around some point p, whichever is smaller: of radius |V - W (p - c)| / W with p the
     /// middle's own, or the face's own around its centroid.
-    fn ways(&self, face: &Face, parts: &[Way<Interval>; 4]) -> Bundle {
+    fn ways(&self, face: &Face, parts: &[LineOfSight<Interval>; 4]) -> RayBundle {
         let origin = self.referee.scene.camera().scene_from_sensor.position;
         let [a, b, c] = corners(face);
         let centroid = (a + b + c) / 3.0;
@@ -259,12 +247,13 @@ impl<'a> View<'a> {
         let mut radius = [a, b, c].into_iter().map(|corner| corner.distance(centroid)).fold(0.0, f64::max);
         let middle = &parts[0];
         let scale = middle.scale.low - parts[1].scale.magnitude();
-        let at = DVec3::from_array(middle.along.0.map(|part| part.middle())) / middle.scale.middle();
+        let at = DVec3::from_array(middle.direction.0.map(|part| part.middle())) / middle.scale.middle();
         if scale > 0.0 && at.is_finite() {
             let to_at = Vector::<Interval>::of(at);
             let squared: f64 = (0..3)
                 .map(|k| {
-                    let moved = |part: &Way<Interval>| part.along.0[k].sub(&part.scale.mul(&to_at.0[k]));
+                    let moved =
+                        |part: &LineOfSight<Interval>| part.direction.0[k].sub(&part.scale.mul(&to_at.0[k]));
                     parts.iter().map(|part| moved(part).magnitude()).sum::<f64>()
                 })
                 .map(|moved| moved * moved)
@@ -280,55 +269,17 @@ impl<'a> View<'a> {
         // Units of directions that differ by `radius` differ by at most that over the shorter one, and by 2.
         let spread = if radius < length { (radius / (length - radius)).min(2.0) } else { 2.0 };
         let direction = if length > 0.0 { to / length } else { DVec3::X };
-        Bundle {
+        RayBundle {
             origin,
             direction,
-            reach: (length + radius) * (1.0 + 64.0 * f64::EPSILON),
+            max_range: (length + radius) * (1.0 + 64.0 * f64::EPSILON),
             start_radius: 0.0,
             spread,
         }
     }
 }
 
-impl<'a> Occluder<'a> {
-    /// The conditions under which a face hides, or `None` if it does not hide anything: the camera is in its plane.
-    ///
-    /// To be met between point and camera, the plane has the camera on the side that the way comes from: the side
-    /// is known once and for all.
-    fn of(face: &'a Face, parts: &[Way<Interval>; 4], centre: DVec3) -> Option<Self> {
-        let [a, b, c] = corners(face);
-        // The sign of n.V where it is met: that of n.(a - c).
-        let is_behind = match volume_sign(a, b, c, centre) {
-            Ordering::Equal => return None,
-            Ordering::Less => true,
-            Ordering::Greater => false,
-        };
-        let signed = |value: Interval| if is_behind { value } else { value.negated() };
-        let from_centre = |k: usize| face.corner::<Interval>(k % 3).sub(parts[0].centre());
-        let normal = face.normal::<Interval>();
-        let height = normal.dot(&from_centre(0));
-        let coefficients = |value: &dyn Fn(&Way<Interval>) -> Interval| {
-            Form::of([0, 1, 2, 3].map(|part: usize| signed(value(&parts[part]))))
-        };
-        let side = |k: usize| {
-            let along = face.corner::<Interval>((k + 1) % 3).sub(&face.corner(k));
-            let moment = from_centre(k).cross(&along);
-            coefficients(&|way| way.along.dot(&moment))
-        };
-        let facing = |way: &Way<Interval>| normal.dot(&way.along);
-        let hides = [
-            side(0),
-            side(1),
-            side(2),
-            coefficients(&facing),
-            coefficients(&|way| facing(way).sub(&height.mul(&way.scale))),
-            coefficients(&|way| height.mul(&way.seen.0[2]).sub(&way.focal().mul(&facing(way)))),
-        ];
-        Some(Self { face, turned_to_camera: !is_behind, hides })
-    }
-}
-
-impl Ground<'_> {
+impl HitFace<'_> {
     /// Whether all of a part is certainly hidden behind one sheet.
     fn is_covered(&self, square: &Square) -> bool {
         let holds = |form: &Form| form.about(square.middle).holds_within() >= square.half;
@@ -372,49 +323,6 @@ impl Ground<'_> {
     }
 }
 
-/// A face's corners, unrounded.
-fn corners(face: &Face) -> [DVec3; 3] {
-    face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)))
-}
-
-/// The exact sign of (b - a) x (c - a) . (d - a).
-fn volume_sign(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
-    fn volume<T: Number>([a, b, c, d]: [DVec3; 4]) -> T {
-        let [a, b, c, d] = [a, b, c, d].map(Vector::<T>::of);
-        b.sub(&a).cross(&c.sub(&a)).dot(&d.sub(&a))
-    }
-    if d == a || d == b || d == c {
-        return Ordering::Equal;
-    }
-    let exact = || volume::<Dyadic>([a, b, c, d]).sign().unwrap_or(Ordering::Equal);
-    volume::<Interval>([a, b, c, d]).sign().unwrap_or_else(exact)
-}
-
-/// Whether a face certainly hides no point of `ground`, before whose plane the camera lies: one of the reasons 1 to
-/// 3, by exact signs. The camera is not in the plane of `face`.
-fn never_hides(face: &Face, ground: &Face, camera: DVec3) -> bool {
-    let (other, own) = (corners(face), corners(ground));
-    let side = |[a, b, c]: [DVec3; 3], point: DVec3| volume_sign(a, b, c, point);
-    if other.iter().all(|&corner| side(own, corner) != Ordering::Greater) {
-        return true;
-    }
-    let beyond = side(other, camera).reverse();
-    if own.iter().all(|&corner| side(other, corner) != beyond) {
-        return true;
-    }
-    let separates = |of: &[DVec3; 3], from: &[DVec3; 3]| {
-        (0..3).any(|k| {
-            let (a, b, third) = (of[k], of[(k + 1) % 3], of[(k + 2) % 3]);
-            let inner = volume_sign(camera, a, b, third);
-            from.iter().all(|corner| match volume_sign(camera, a, b, *corner) {
-                Ordering::Equal => of.contains(corner),
-                side => side != inner,
-            })
-        })
-    };
-    separates(&own, &other) || separates(&other, &own)
-}
-
 #[cfg(test)]
-#[path = "../tests/unit/sight_margin.rs"]
+#[path = "../tests/unit/visibility_margin.rs"]
 mod tests;

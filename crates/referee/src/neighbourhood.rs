@@ -2,38 +2,40 @@
 //! and the exact verdict on any of these rays.
 //!
 //! One walk through the tree finds the faces. It takes the whole bundle of displaced rays, and leaves out at once
-//! what lies beside it; what lies farther than is asked about is left for later (`reach_to`).
+//! what lies beside it; what lies farther than is asked about is left for later (`extend_to`).
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
-use crate::cull::Walk;
+use crate::bvh::Traversal;
 use crate::face::{ExactRay, Face};
-use crate::forms::{Away, FaceForms, Form, MovingRay};
-use crate::pencil::{Aim, Sensor};
-use crate::through::inside_corners;
+use crate::face_forms::{Exclusion, FaceForms};
+use crate::form::Form;
+use crate::moving_ray::MovingRay;
+use crate::ray::{Aim, MountedSensor};
+use crate::through_point::displacements_inside_corners;
 use crate::verdict::{Referee, bundle_of};
 
 /// The faces near the ray of one cell.
 #[derive(Debug)]
 pub(crate) struct Neighbourhood<'a> {
-    sensor: &'a Sensor,
+    sensor: &'a MountedSensor,
     aim: Aim,
     pub(crate) ray: MovingRay,
-    walk: Walk<'a>,
+    walk: Traversal<'a>,
     /// All that may be met within this range, metres, is in `faces`.
-    reach: f64,
+    known_range: f64,
     pub(crate) faces: Vec<FaceForms<'a>>,
     /// Their bounds in the square, side by side: most faces are not met by most rays.
     bounds: Vec<[[f64; 2]; 2]>,
     /// Faces whose triangles lie beside the square: the other sides of edges that cannot lie in it either.
     beside: Vec<&'a Face>,
-    edges: Edges,
+    edges: EdgeIndex,
 }
 
 /// Who lies on the other side of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Mate {
+pub(crate) enum EdgeMate {
     /// A face of the neighbourhood, by its index.
     Near(usize),
     /// A face whose triangle lies beside the square, and so does the edge.
@@ -42,41 +44,41 @@ pub(crate) enum Mate {
 
 impl<'a> Neighbourhood<'a> {
     /// All faces that may be met before, or together with, a face that the ray itself meets.
-    pub(crate) fn new(referee: &'a Referee<'_>, sensor: &'a Sensor, aim: Aim) -> Self {
+    pub(crate) fn new(referee: &'a Referee<'_>, sensor: &'a MountedSensor, aim: Aim) -> Self {
         let ray = MovingRay::new(sensor, aim);
         let max_range = sensor.max_range();
-        let walk = Walk::new(&referee.tree, &bundle_of(&ray, max_range, 1.0));
+        let walk = Traversal::new(&referee.bvh, &bundle_of(&ray, max_range, 1.0));
         let mut near = Self {
             sensor,
             aim,
             ray,
             walk,
-            reach: max_range,
+            known_range: max_range,
             faces: Vec::with_capacity(16),
             bounds: Vec::with_capacity(16),
             beside: Vec::with_capacity(32),
-            edges: Edges::default(),
+            edges: EdgeIndex::default(),
         };
         near.gather(true);
         near
     }
 
-    /// Gathers faces up to `self.reach`, which falls on the way if a face that is certainly met may lower it.
+    /// Gathers faces up to `self.known_range`, which falls on the way if a face that is certainly met may lower it.
     fn gather(&mut self, lowers: bool) {
-        while let Some(leaf) = self.walk.next_leaf(self.reach) {
+        while let Some(leaf) = self.walk.next_leaf(self.known_range) {
             for face in leaf {
                 let forms = match FaceForms::in_square(&self.ray, face) {
                     Ok(forms) => forms,
-                    Err(Away::Beside) => {
+                    Err(Exclusion::Beside) => {
                         self.beside.push(face);
                         continue;
                     }
                     // No front in the square: neither to be met nor to go on with.
-                    Err(Away::Back) => continue,
+                    Err(Exclusion::Back) => continue,
                 };
                 let met = |form: &Form| form.is_positive_at([0.0; 2]) == Some(true);
-                if lowers && forms.farthest < self.reach && forms.own().iter().all(met) {
-                    self.reach = forms.farthest;
+                if lowers && forms.farthest < self.known_range && forms.own().iter().all(met) {
+                    self.known_range = forms.farthest;
                 }
                 self.bounds.push(forms.bounds());
                 self.faces.push(forms);
@@ -85,16 +87,16 @@ impl<'a> Neighbourhood<'a> {
     }
 
     /// Displacements of at most `reach` cells just inside the corners of a face.
-    pub(crate) fn inside_corners(&self, face: usize, reach: f64) -> Vec<[f64; 2]> {
-        inside_corners(self.sensor, self.aim, self.faces[face].face, reach)
+    pub(crate) fn displacements_inside_corners(&self, face: usize, reach: f64) -> Vec<[f64; 2]> {
+        displacements_inside_corners(self.sensor, self.aim, self.faces[face].face, reach)
     }
 
     /// Sees to it that all that may be met within `range` is known; says whether there is more than before.
-    pub(crate) fn reach_to(&mut self, range: f64) -> bool {
-        if range <= self.reach {
+    pub(crate) fn extend_to(&mut self, range: f64) -> bool {
+        if range <= self.known_range {
             return false;
         }
-        self.reach = range;
+        self.known_range = range;
         self.walk.resume();
         let before = self.faces.len() + self.beside.len();
         self.gather(false);
@@ -102,8 +104,8 @@ impl<'a> Neighbourhood<'a> {
     }
 
     /// Sees to it that all that may be met is known.
-    pub(crate) fn reach_all(&mut self) {
-        self.reach_to(self.sensor.max_range());
+    pub(crate) fn extend_to_max_range(&mut self) {
+        self.extend_to(self.sensor.max_range());
     }
 
     /// The faces that the ray displaced so (by at most a cell) meets first, exactly, by their indices and in
@@ -173,7 +175,7 @@ impl<'a> Neighbourhood<'a> {
     }
 
     /// The faces on the other side of edge `k` of a face, of those that are known.
-    pub(crate) fn mates(&mut self, index: usize, k: usize) -> Vec<Mate> {
+    pub(crate) fn mates(&mut self, index: usize, k: usize) -> Vec<EdgeMate> {
         self.edges.catch_up(&self.faces, &self.beside);
         let corners = self.faces[index].face.corners;
         self.edges.find(corners[(k + 1) % 3], corners[k], &self.faces, &self.beside)
@@ -183,7 +185,7 @@ impl<'a> Neighbourhood<'a> {
 /// The edges of faces by the positions of their ends: meshes need no common indices for their faces to be
 /// neighbours.
 #[derive(Debug, Default)]
-struct Edges {
+struct EdgeIndex {
     /// (hash of both ends in order, face, edge), sorted; the face counts through `faces` or, with the highest
     /// bit set, through `beside`.
     sorted: Vec<(u64, u32, u32)>,
@@ -191,7 +193,7 @@ struct Edges {
     beside: usize,
 }
 
-const BESIDE: u32 = 1 << 31;
+const BESIDE_BIT: u32 = 1 << 31;
 
 /// A position as a key: -0 and +0 are one.
 fn key(corner: [f32; 3]) -> [u32; 3] {
@@ -204,7 +206,7 @@ fn hash(from: [f32; 3], to: [f32; 3]) -> u64 {
     parts.fold(0, |hash, part| (hash ^ u64::from(part)).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29))
 }
 
-impl Edges {
+impl EdgeIndex {
     /// Takes in the faces that came since.
     fn catch_up(&mut self, faces: &[FaceForms<'_>], beside: &[&Face]) {
         if (self.faces, self.beside) == (faces.len(), beside.len()) {
@@ -212,7 +214,7 @@ impl Edges {
         }
         let fresh = faces[self.faces..].iter().enumerate().map(|(k, f)| ((self.faces + k) as u32, f.face));
         let aside = beside[self.beside..].iter().enumerate();
-        let fresh = fresh.chain(aside.map(|(k, &face)| ((self.beside + k) as u32 | BESIDE, face)));
+        let fresh = fresh.chain(aside.map(|(k, &face)| ((self.beside + k) as u32 | BESIDE_BIT, face)));
         for (index, face) in fresh {
             let corners = face.corners;
             for k in 0..3 {
@@ -223,15 +225,15 @@ impl Edges {
         (self.faces, self.beside) = (faces.len(), beside.len());
     }
 
-    fn find(&self, from: [f32; 3], to: [f32; 3], faces: &[FaceForms<'_>], beside: &[&Face]) -> Vec<Mate> {
+    fn find(&self, from: [f32; 3], to: [f32; 3], faces: &[FaceForms<'_>], beside: &[&Face]) -> Vec<EdgeMate> {
         let hash = hash(from, to);
         let start = self.sorted.partition_point(|&(other, ..)| other < hash);
         let same = self.sorted[start..].iter().take_while(|&&(other, ..)| other == hash);
         same.filter_map(|&(_, index, k)| {
-            let (face, mate) = if index & BESIDE != 0 {
-                (beside[(index & !BESIDE) as usize], Mate::Beside)
+            let (face, mate) = if index & BESIDE_BIT != 0 {
+                (beside[(index & !BESIDE_BIT) as usize], EdgeMate::Beside)
             } else {
-                (faces[index as usize].face, Mate::Near(index as usize))
+                (faces[index as usize].face, EdgeMate::Near(index as usize))
             };
             let ends = [face.corners[k as usize], face.corners[(k as usize + 1) % 3]];
             (ends.map(key) == [key(from), key(to)]).then_some(mate)
@@ -241,5 +243,5 @@ impl Edges {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/near.rs"]
+#[path = "../tests/unit/neighbourhood.rs"]
 mod tests;

@@ -6,8 +6,8 @@ use raypencil_scene::{
 };
 
 use super::*;
+use crate::displacement::Displacement;
 use crate::ruling::{Ruling, Tolerance};
-use crate::verdict::Displacement;
 
 fn face(corners: [[f32; 3]; 3]) -> Face {
     Face { id: FaceId(0), corners }
@@ -24,19 +24,23 @@ const EYE: DVec3 = DVec3::new(0.0, 0.0, 10.0);
 fn a_face_that_hides_something_is_never_let_go() {
     // Above the middle, either side up.
     let lid = [[0.5, 0.5, 5.0], [1.0, 0.5, 5.0], [0.5, 1.0, 5.0]];
-    assert!(!never_hides(&face(lid), &ground(), EYE));
-    assert!(!never_hides(&face([lid[0], lid[2], lid[1]]), &ground(), EYE));
+    assert!(!never_occludes(&face(lid), &ground(), EYE));
+    assert!(!never_occludes(&face([lid[0], lid[2], lid[1]]), &ground(), EYE));
     // Leaning on a corner of the ground, over it; and half of it below the ground.
-    assert!(!never_hides(&face([[0.0, 0.0, 0.0], [1.0, 0.0, 3.0], [0.0, 1.0, 3.0]]), &ground(), EYE));
-    assert!(!never_hides(&face([[1.0, 1.0, -2.0], [1.0, 2.0, -2.0], [0.25, 1.0, 4.0]]), &ground(), EYE));
+    assert!(!never_occludes(&face([[0.0, 0.0, 0.0], [1.0, 0.0, 3.0], [0.0, 1.0, 3.0]]), &ground(), EYE));
+    assert!(!never_occludes(&face([[1.0, 1.0, -2.0], [1.0, 2.0, -2.0], [0.25, 1.0, 4.0]]), &ground(), EYE));
     // Wider than the ground, on all sides of it.
-    assert!(!never_hides(&face([[-9.0, -9.0, 2.0], [19.0, -9.0, 2.0], [-9.0, 19.0, 2.0]]), &ground(), EYE));
+    assert!(!never_occludes(
+        &face([[-9.0, -9.0, 2.0], [19.0, -9.0, 2.0], [-9.0, 19.0, 2.0]]),
+        &ground(),
+        EYE
+    ));
 }
 
 #[test]
 fn reason_1_a_face_at_or_behind_the_grounds_plane_hides_nothing() {
     for z in [0.0, -1.0] {
-        assert!(never_hides(&face([[1.0, 1.0, z], [2.0, 1.0, -1.0], [1.0, 2.0, -2.0]]), &ground(), EYE));
+        assert!(never_occludes(&face([[1.0, 1.0, z], [2.0, 1.0, -1.0], [1.0, 2.0, -2.0]]), &ground(), EYE));
     }
 }
 
@@ -45,11 +49,11 @@ fn reason_2_a_face_behind_whose_plane_no_ground_lies_hides_nothing() {
     // A wall that cuts the ground's plane beside it, leaning outward: camera and ground on one side of it. In the
     // camera's image it crosses the ground's sides drawn on, and the ground the wall's.
     let wall = [[6.0, -20.0, -1.0], [6.0, 20.0, -1.0], [6.0, 1.0, 9.0]];
-    assert!(never_hides(&face(wall), &ground(), EYE));
-    assert!(never_hides(&face([wall[0], wall[2], wall[1]]), &ground(), EYE));
+    assert!(never_occludes(&face(wall), &ground(), EYE));
+    assert!(never_occludes(&face([wall[0], wall[2], wall[1]]), &ground(), EYE));
     // Touching the ground with an edge is no hiding either.
     let on_edge = [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [4.0, 4.0, 5.0]];
-    assert!(never_hides(&face(on_edge), &ground(), EYE));
+    assert!(never_occludes(&face(on_edge), &ground(), EYE));
 }
 
 #[test]
@@ -61,21 +65,21 @@ fn reason_3_a_plane_through_the_camera_and_a_side_keeps_them_apart() {
         [[0.0, -1.0, 5.0], [1.0, -1.0, 5.0], [0.0, -0.5, 5.0]],
         [[-1.0, 0.0, 5.0], [-0.5, 1.0, 5.0], [-1.0, 1.0, 5.0]],
     ] {
-        assert!(never_hides(&face(beside), &ground(), EYE), "{beside:?}");
-        assert!(never_hides(&face([beside[0], beside[2], beside[1]]), &ground(), EYE), "{beside:?}");
+        assert!(never_occludes(&face(beside), &ground(), EYE), "{beside:?}");
+        assert!(never_occludes(&face([beside[0], beside[2], beside[1]]), &ground(), EYE), "{beside:?}");
     }
     // By a side of its own alone: every side of the ground, drawn on, crosses its image, of which one side is the line
     // y = 5 - 0.9 x. Whichever of its corners comes first.
     let bar = [[-10.0, 11.5, 5.0], [15.0, -11.0, 5.0], [15.0, 15.0, 5.0]];
     for k in 0..3 {
         let turned = [bar[k], bar[(k + 1) % 3], bar[(k + 2) % 3]];
-        assert!(never_hides(&face(turned), &ground(), EYE), "{k}");
+        assert!(never_occludes(&face(turned), &ground(), EYE), "{k}");
     }
     // One that shares a corner with the ground and rises away from it: the corner is in the plane, and shared.
-    assert!(never_hides(&face([[4.0, 0.0, 0.0], [6.0, 0.0, 4.0], [6.0, 1.0, 4.0]]), &ground(), EYE));
-    // One with a corner in that plane that is not shared: the way may meet both.
+    assert!(never_occludes(&face([[4.0, 0.0, 0.0], [6.0, 0.0, 4.0], [6.0, 1.0, 4.0]]), &ground(), EYE));
+    // One with a corner in that plane that is not shared: the line may meet both.
     let touching = [[2.0, 0.0, 5.0], [4.0, 0.0, 5.0], [4.0, 2.0, 5.0]];
-    let by_own_sides_too = never_hides(&face(touching), &ground(), EYE);
+    let by_own_sides_too = never_occludes(&face(touching), &ground(), EYE);
     assert!(!by_own_sides_too, "its corner's image is the ground's corner");
 }
 
@@ -121,21 +125,21 @@ fn level_with(size: f32, step: f64, row: f64, others: &[[[f32; 3]; 3]]) -> Scene
         .expect("a scene")
 }
 
-fn ways_of(scene: &Scene) -> Bundle {
+fn ways_of(scene: &Scene) -> RayBundle {
     let referee = Referee::new(scene);
-    let sensor = Sensor::of(scene, SensorId::Beam(0)).expect("a beam");
+    let sensor = MountedSensor::of(scene, SensorId::Beam(0)).expect("a beam");
     let aim = Aim { i: 1, j: 1, dx: 0.0, dy: 0.0 };
     let near = Neighbourhood::new(&referee, &sensor, aim);
     let face = near.faces[0].face;
-    let parts = Way::parts(&sensor, aim, face, scene.camera());
-    let view = View {
+    let parts = LineOfSight::parts(&sensor, aim, face, scene.camera());
+    let view = VisibilitySearch {
         referee: &referee,
         sensor: &sensor,
         aim,
         near,
         visible: true,
-        grounds: HashMap::new(),
-        judged: HashMap::new(),
+        hit_faces: HashMap::new(),
+        known_displacements: HashMap::new(),
     };
     view.ways(face, &parts)
 }
@@ -148,13 +152,13 @@ fn the_ways_to_what_is_hit_are_a_narrow_bundle() {
     let (length, radius) = (eye.length(), libm::hypot(0.5, 0.25));
     assert_eq!(bundle.origin, eye);
     assert!((bundle.direction + eye / length).length() < 1e-12, "{}", bundle.direction);
-    assert!((bundle.reach - (length + radius)).abs() < 1e-6, "{}", bundle.reach);
+    assert!((bundle.max_range - (length + radius)).abs() < 1e-6, "{}", bundle.max_range);
     assert!((bundle.spread - radius / (length - radius)).abs() < 1e-6, "{}", bundle.spread);
     // Cells so large that the face itself is smaller: about its centre, (0, 0, 0) as well, to its farthest corner.
     let bundle = ways_of(&level(0.5, 0.5, 2.0));
     let radius = libm::hypot(1.0, 0.5);
     assert!((bundle.direction + eye / length).length() < 1e-12, "{}", bundle.direction);
-    assert!((bundle.reach - (length + radius)).abs() < 1e-6, "{}", bundle.reach);
+    assert!((bundle.max_range - (length + radius)).abs() < 1e-6, "{}", bundle.max_range);
     assert!((bundle.spread - radius / (length - radius)).abs() < 1e-6, "{}", bundle.spread);
 }
 

@@ -8,11 +8,14 @@
 use glam::DVec3;
 use raypencil_scene::{FaceId, Pixel, SensorId};
 
+use crate::bvh::RayBundle;
+use crate::displacement::Displacement;
 use crate::face::{ExactRay, Face};
-use crate::pencil::{Aim, Sensor};
+use crate::line_of_sight::ExactLineOfSight;
+use crate::ray::{Aim, MountedSensor};
 use crate::ruling::{Ruling, Tolerance};
-use crate::sight::{ExactWay, Sight};
-use crate::verdict::{Displacement, Referee};
+use crate::verdict::Referee;
+use crate::visibility::Visibility;
 
 /// What the referee says of one answer about the camera's view.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +45,7 @@ impl Referee<'_> {
         pixel: Option<Pixel>,
         tolerance: Tolerance,
     ) -> Option<SightRuling> {
-        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
+        let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         let mesh = self.scene.mesh();
         if i >= columns || j >= rows || face.0 as usize >= mesh.faces().len() {
@@ -50,31 +53,31 @@ impl Referee<'_> {
         }
         let face = Face::of(mesh, face);
         let aim = Aim { i, j, dx: by.dx, dy: by.dy };
-        let exact = self.sight_of(&sensor, aim, &face);
+        let exact = self.visibility_of(&sensor, aim, &face);
         if exact.visible == visible && exact.pixel == pixel {
             return Some(SightRuling { visible: Ruling::Exact, pixel: Ruling::Exact });
         }
         let lateral = tolerance.lateral.clamp(0.0, 1.0);
-        let beside: Vec<(Displacement, Sight)> = BESIDE
+        let beside: Vec<(Displacement, Visibility)> = BESIDE
             .iter()
             .map(|[x, y]| {
                 let (dx, dy) = (x * lateral, y * lateral);
                 let aim = Aim { dx: aim.dx + dx, dy: aim.dy + dy, ..aim };
-                (Displacement { dx, dy }, self.sight_of(&sensor, aim, &face))
+                (Displacement { dx, dy }, self.visibility_of(&sensor, aim, &face))
             })
             .collect();
-        let witness = |is_so: &dyn Fn(&Sight) -> bool| {
+        let witness = |is_so: &dyn Fn(&Visibility) -> bool| {
             beside.iter().find(|(_, sight)| is_so(sight)).map(|(by, _)| Ruling::Rounding(*by))
         };
 
         let ray = ExactRay::new(&sensor, aim);
-        let way = ExactWay::new(&ray, &face, self.scene.camera());
+        let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
         let off = tolerance.depth + tolerance.position;
         let of_visible = if exact.visible == visible {
             Ruling::Exact
         } else if let Some(witness) = witness(&|sight| sight.visible == visible) {
             witness
-        } else if self.may_see(&way, &face, exact, visible, off) {
+        } else if self.may_see(&line, &face, exact, visible, off) {
             Ruling::Rounding(Displacement::ZERO)
         } else {
             Ruling::Wrong
@@ -83,7 +86,7 @@ impl Referee<'_> {
             Ruling::Exact
         } else if let Some(witness) = witness(&|sight| sight.pixel == pixel) {
             witness
-        } else if self.may_land(&way, pixel, off) {
+        } else if self.may_land(&line, pixel, off) {
             Ruling::Rounding(Displacement::ZERO)
         } else {
             Ruling::Wrong
@@ -92,8 +95,15 @@ impl Referee<'_> {
     }
 
     /// Whether a point that may be off by `off` metres may be said to be seen, or hidden, against what is exact.
-    fn may_see(&self, way: &ExactWay<'_>, face: &Face, exact: Sight, visible: bool, off: f64) -> bool {
-        let from_centre = way.centre_to_point();
+    fn may_see(
+        &self,
+        line: &ExactLineOfSight<'_>,
+        face: &Face,
+        exact: Visibility,
+        visible: bool,
+        off: f64,
+    ) -> bool {
+        let from_centre = line.centre_to_point();
         let point = self.scene.camera().scene_from_sensor.position + from_centre;
         // The camera lies within rounding of the plane of the face.
         let side = distance_from_plane(face, point - from_centre);
@@ -104,28 +114,28 @@ impl Referee<'_> {
             // All that hides it does so within rounding of the point.
             return exact.pixel.is_some()
                 && side > 0.0
-                && self.occluders(way).iter().all(|other| distance_from_plane(other, point).abs() <= off);
+                && self.occluders(line).iter().all(|other| distance_from_plane(other, point).abs() <= off);
         }
         // Something passes within rounding of the point that does not hide it.
         let mut found = false;
-        let bundle = crate::cull::Bundle { start_radius: off, ..way.bundle() };
-        self.tree.visit(&bundle, |other| {
+        let bundle = RayBundle { start_radius: off, ..line.bundle() };
+        self.bvh.visit(&bundle, |other| {
             // What lies in the face's own plane never hides it: rounding is no excuse for a shadow of duplicates.
             found |= !other.is_in_plane_of(face)
                 && distance_from_plane(other, point).abs() <= off
                 && is_beside(other, point, off);
-            if found { f64::NEG_INFINITY } else { bundle.reach }
+            if found { f64::NEG_INFINITY } else { bundle.max_range }
         });
         found
     }
 
     /// Whether a point that may be off by `off` metres may be said to land in `pixel`.
-    fn may_land(&self, way: &ExactWay<'_>, pixel: Option<Pixel>, off: f64) -> bool {
+    fn may_land(&self, line: &ExactLineOfSight<'_>, pixel: Option<Pixel>, off: f64) -> bool {
         let mounted = self.scene.camera();
         let camera = &mounted.sensor;
-        let [x, y] = way.landing();
+        let [x, y] = line.landing();
         let across = [camera.width, camera.height].map(f64::from);
-        let depth = way.depth();
+        let depth = line.depth();
         // A point off by `off` lands off by that over its depth, and more where it is seen aslant; and the
         // coordinates themselves are rounded.
         let slack = [0, 1].map(|axis: usize| {

@@ -1,0 +1,66 @@
+//! Margins.
+
+use raypencil_scene::SensorId;
+
+use crate::face_margin::face_margin;
+use crate::margin::Margin;
+use crate::neighbourhood::Neighbourhood;
+use crate::ray::{Aim, MountedSensor};
+use crate::verdict::{Referee, Verdict};
+
+/// The verdict on a ray, and how far it is from changing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Margins {
+    /// The nearest faces.
+    pub verdict: Verdict,
+    /// The least displacement that changes the set of nearest faces.
+    pub face: Margin,
+    /// The least displacement at which the ray comes to hit or to miss, or its range jumps.
+    pub surface: Margin,
+}
+
+impl Referee<'_> {
+    /// The verdict on cell (i, j) and both of its margins, or `None` if there is no such cell. Quicker than to
+    /// ask for them one by one.
+    pub fn margins(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margins> {
+        let sensor = self.sensor_with(sensor, i, j)?;
+        let (mut near, nearest, face) = self.with_face_margin(&sensor, i, j);
+        let verdict = Verdict { faces: nearest.iter().map(|&index| near.faces[index].face.id).collect() };
+        let surface = near.surface_margin(&nearest, &face);
+        Some(Margins { verdict, face, surface })
+    }
+
+    /// The margin of the set of nearest faces of cell (i, j), or `None` if there is no such cell.
+    pub fn face_margin(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margin> {
+        let sensor = self.sensor_with(sensor, i, j)?;
+        Some(self.with_face_margin(&sensor, i, j).2)
+    }
+
+    /// The margin of the surface of cell (i, j), or `None` if there is no such cell.
+    pub fn surface_margin(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margin> {
+        self.margins(sensor, i, j).map(|margins| margins.surface)
+    }
+
+    /// The sensor, if it has such a cell.
+    fn sensor_with(&self, sensor: SensorId, i: u32, j: u32) -> Option<MountedSensor> {
+        let sensor = MountedSensor::of(self.scene, sensor)?;
+        let (width, height) = sensor.size();
+        (i < width && j < height).then_some(sensor)
+    }
+
+    /// EventKind all margins start from: the neighbourhood, the nearest faces in it, and their margin.
+    fn with_face_margin<'a>(
+        &'a self,
+        sensor: &'a MountedSensor,
+        i: u32,
+        j: u32,
+    ) -> (Neighbourhood<'a>, Vec<usize>, Margin) {
+        let mut near = Neighbourhood::new(self, sensor, Aim { i, j, dx: 0.0, dy: 0.0 });
+        let nearest = near.nearest_at([0.0; 2]);
+        if let Some(&first) = nearest.first() {
+            near.extend_to(near.faces[first].farthest);
+        }
+        let face = face_margin(&near, &nearest);
+        (near, nearest, face)
+    }
+}

@@ -1,0 +1,73 @@
+//! Visibility.
+
+use raypencil_scene::{FaceId, Pixel, SensorId};
+
+use crate::displacement::Displacement;
+use crate::face::{ExactRay, Face};
+use crate::line_of_sight::ExactLineOfSight;
+use crate::ray::{Aim, MountedSensor};
+use crate::verdict::Referee;
+
+/// What the contract says of the camera's view of a pencil that hits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Visibility {
+    /// Whether the camera sees the point.
+    pub visible: bool,
+    /// Where it lands on the image, hidden or not.
+    pub pixel: Option<Pixel>,
+    /// A face that meets the segment between the point and the image plane.
+    pub hidden_by: Option<FaceId>,
+}
+
+impl Referee<'_> {
+    /// What the camera sees of the hit of pencil (i, j), displaced by `by`; `None` if there is no such pencil, or
+    /// it does not hit.
+    pub fn sight(&self, beam: usize, i: u32, j: u32, by: Displacement) -> Option<Visibility> {
+        let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
+        let (columns, rows) = sensor.size();
+        if i >= columns || j >= rows || !by.dx.is_finite() || !by.dy.is_finite() {
+            return None;
+        }
+        let aim = Aim { i, j, dx: by.dx, dy: by.dy };
+        let nearest = self.nearest(&sensor, aim);
+        Some(self.visibility_of(&sensor, aim, nearest.first()?))
+    }
+
+    /// What the camera sees of the point in which an aim meets `face`.
+    pub(crate) fn visibility_of(&self, sensor: &MountedSensor, aim: Aim, face: &Face) -> Visibility {
+        let ray = ExactRay::new(sensor, aim);
+        let line = ExactLineOfSight::new(&ray, face, self.scene.camera());
+        let pixel = line.pixel();
+        let could_be_seen = pixel.is_some() && line.is_front_seen();
+        let hidden_by = if could_be_seen { self.occluder(&line) } else { None };
+        Visibility { visible: could_be_seen && hidden_by.is_none(), pixel, hidden_by }
+    }
+
+    /// Some face that hides the end of a line: the lowest of those found in the first leaf that has any.
+    fn occluder(&self, line: &ExactLineOfSight<'_>) -> Option<FaceId> {
+        let bundle = line.bundle();
+        let mut found: Option<FaceId> = None;
+        self.bvh.visit(&bundle, |face| {
+            if found.is_none() && line.is_hidden_by(face) {
+                found = Some(face.id);
+            }
+            // Nothing more is asked for once one is found.
+            if found.is_some() { f64::NEG_INFINITY } else { bundle.max_range }
+        });
+        found
+    }
+
+    /// Every face that hides the end of a line, in ascending order.
+    pub(crate) fn occluders(&self, line: &ExactLineOfSight<'_>) -> Vec<Face> {
+        let bundle = line.bundle();
+        let mut found: Vec<Face> = Vec::new();
+        self.bvh.visit(&bundle, |face| {
+            if line.is_hidden_by(face) {
+                found.push(*face);
+            }
+            bundle.max_range
+        });
+        found.sort_by_key(|face| face.id);
+        found
+    }
+}
