@@ -1,4 +1,4 @@
-//! One formula, two ways to evaluate it: in pairs of f64, and in enclosures of growing precision.
+//! One formula, evaluated in either of two arithmetics: pairs of f64, or enclosures of growing precision.
 
 use std::sync::OnceLock;
 
@@ -7,19 +7,19 @@ use crate::enclosure::{Enclosure, Precision};
 use crate::number::{Dyadic, Number};
 use crate::rounding::Rounded;
 
-/// A value whose rounding is not decided by the whole budget of bits; one of the two nearest.
+/// A value whose rounding no tried precision decides; it holds one of the two nearest numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Undecided(pub Rounded);
 
-/// The precisions tried one after the other, in bits. A value that is no midpoint, and was not made to look like
-/// one, is decided by the first but for one in 2^60.
+/// The precisions tried one after the other, in bits. A value that neither is a midpoint of two f64 nor was
+/// constructed to lie near one needs the second of them once in 2^60 cases.
 const PRECISIONS_BITS: [usize; 5] = [128, 256, 512, 1024, 2048];
 
-/// What a formula of positive numbers is made of.
+/// The operations of a formula in positive numbers.
 pub(crate) trait Arithmetic {
-    /// In which the polynomials of rays and faces are evaluated.
+    /// The numbers in which polynomials of rays and faces are evaluated.
     type Exact: Number;
-    /// In which the formula is.
+    /// The numbers in which the formula is evaluated.
     type Real: Clone;
 
     /// |x|.
@@ -38,20 +38,20 @@ pub(crate) trait Arithmetic {
     /// The sum of a beam's weights, kept once it is formed.
     fn weight_sum(&self, cache: &WeightSum, form: impl FnOnce() -> Self::Real) -> Self::Real;
 
-    /// |x|, of an f64.
+    /// |x| of an f64.
     fn exact(&self, x: f64) -> Self::Real {
         self.abs(&Self::Exact::of(x))
     }
 }
 
-/// Sums of weights that were formed.
+/// The sum of a beam's weights, cached for each arithmetic.
 #[derive(Debug, Default)]
 pub(crate) struct WeightSum {
     fast: OnceLock<DoubleDouble>,
     enclosures: [OnceLock<Enclosure>; PRECISIONS_BITS.len()],
 }
 
-/// Pairs of f64: no exp, no atan.
+/// Pairs of f64. They have no exp, ln and atan: these are unknown.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fast;
 
@@ -104,7 +104,7 @@ impl Arithmetic for Fast {
     }
 }
 
-/// One of the precisions of the budget.
+/// Enclosures with one of the precisions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PrecisionLevel {
     index: usize,
@@ -160,7 +160,7 @@ impl Arithmetic for PrecisionLevel {
     }
 }
 
-/// Correctly rounded: by the fast value if that is certain, else with growing precision.
+/// Rounds a value correctly: by its pair of f64 if that is certain, else by enclosures of growing precision.
 pub(crate) fn decide_rounding(
     fast: DoubleDouble,
     enclose: impl Fn(&PrecisionLevel) -> Enclosure,

@@ -1,9 +1,8 @@
-//! Enclosures of positive reals at any precision: what decides a rounding that 106 bits did not.
+//! Enclosures of positive reals at any precision: they decide the roundings that 106 bits leave open.
 //!
-//! Both ends are binary numbers of `precision` bits, each operation rounded down at the low end and up at the high
-//! one. That holds because dashu-float rounds correctly in the direction asked for, `exp`, `atan` and pi included (it
-//! repeats with more digits until the rounding is certain). Everything here is positive or 0: signs are kept by
-//! the caller.
+//! Both ends are binary numbers of `precision` bits. Each operation rounds the low end down and the high end up.
+//! dashu-float rounds correctly in the direction asked for, also `exp`, `atan` and pi (it repeats with more digits
+//! until the rounding is certain). All numbers here are positive or 0: the caller keeps the signs.
 
 use dashu_float::round::mode::{Down, Up};
 use dashu_float::round::{ErrorBounds, Round};
@@ -15,25 +14,25 @@ use crate::rounding::{LeadingBits, Rounded};
 
 type Real = Repr<2>;
 
-/// low <= x <= high, 0 <= low.
+/// An interval that contains a real number x >= 0: low <= x <= high, 0 <= low.
 #[derive(Debug, Clone)]
 pub(crate) struct Enclosure {
     low: Real,
     high: Real,
 }
 
-/// exp(-x) is taken for "between 0 and 2^-1000000" beyond this: no flux that has such a factor is anything but 0
-/// in f64, whose smallest number is 2^-1074.
-const EXP_UNDERFLOW: i64 = 800_000;
+/// Largest argument of exp(-x) that is evaluated; beyond it the enclosure is from 0 to 2^-1000000. A flux with such a
+/// factor is 0 in f64, whose smallest number is 2^-1074.
+const MAX_EXP_ARGUMENT: i64 = 800_000;
 
-/// Operations of a number of bits.
+/// The operations at one precision.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Precision {
     down: Context<Down>,
     up: Context<Up>,
 }
 
-/// The value of an operation that is defined for what is given to it.
+/// The value of an operation that is defined for its arguments.
 fn value<R: Round>(result: dashu_float::FpResult<FBig<R, 2>>) -> Real {
     result.expect("defined for positive numbers").value().into_repr()
 }
@@ -42,7 +41,7 @@ fn zero() -> Real {
     Repr::zero()
 }
 
-/// 0 where it would be less.
+/// The larger of x and 0.
 fn not_negative(x: Real) -> Real {
     if x.sign() == Sign::Negative { zero() } else { x }
 }
@@ -86,7 +85,7 @@ impl Precision {
         Enclosure { low: value(self.down.mul(&x.low, &y.low)), high: value(self.up.mul(&x.high, &y.high)) }
     }
 
-    /// x / y; y is certainly not 0.
+    /// x / y; y must not contain 0.
     pub(crate) fn div(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
         Enclosure { low: value(self.down.div(&x.low, &y.high)), high: value(self.up.div(&x.high, &y.low)) }
     }
@@ -98,8 +97,8 @@ impl Precision {
     /// exp(-x).
     pub(crate) fn exp_minus(&self, x: &Enclosure) -> Enclosure {
         fn of<R: ErrorBounds>(context: &Context<R>, x: &Real) -> Option<Real> {
-            let far: Real = Repr::new(IBig::from(EXP_UNDERFLOW), 0);
-            (*x <= far).then(|| value(context.exp(&-x.clone(), None)))
+            let limit: Real = Repr::new(IBig::from(MAX_EXP_ARGUMENT), 0);
+            (*x <= limit).then(|| value(context.exp(&-x.clone(), None)))
         }
         Enclosure {
             low: of(&self.down, &x.high).unwrap_or_else(zero),
@@ -131,7 +130,7 @@ fn rounded(x: &Real) -> Rounded {
 }
 
 impl Enclosure {
-    /// Correctly rounded, to f64 and to f32, if that is certain.
+    /// The number correctly rounded to f64 and f32, if both ends round alike.
     pub(crate) fn rounded(&self) -> Option<Rounded> {
         let [low, high] = [&self.low, &self.high].map(rounded);
         (low == high).then_some(low)

@@ -1,14 +1,14 @@
-//! The questions of the contract about one ray and one face, as signs of polynomials.
+//! The contract's conditions on one ray and one face, as signs of polynomials.
 //!
-//! With a' = s a - O for a vertex a (which is s (a - o)), n = (b - a) x (c - a):
+//! With a' = s a - O for a vertex a (which is s (a - o)) and n = (b - a) x (c - a):
 //!
 //! * the ray passes on the inner side of the edge from a to b, or on it: D.(a' x b') <= 0
-//! * it meets the front: n.D < 0
+//! * the ray meets the front: n.D < 0
 //! * t = sigma n.a' / (s n.D), so t >= 1 is sigma n.a' <= s n.D (both negative)
 //! * R = n.a' |D| / (s n.D), so R <= M is (n.a')^2 |D|^2 <= (M s n.D)^2
 //! * t < t' is n.a' n'.D < n'.a'' n.D (each the product of two negative numbers)
 //!
-//! a' x b' is formed as a' x s (b - a), whose terms are smaller where the edge is short.
+//! a' x b' is evaluated as a' x s (b - a), whose terms are smaller where the edge is short.
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
@@ -19,12 +19,12 @@ use crate::number::{Dyadic, Interval, Number};
 use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::vector::Vector;
 
-/// A polynomial of a ray whose sign is asked for.
+/// A polynomial of a ray, of which only the sign matters.
 trait Polynomial {
     fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T;
 }
 
-/// One ray, in both numbers; the exact one is only made when it is needed.
+/// One ray in both numbers; the exact one is formed when it is first needed.
 pub(crate) struct ExactRay<'a> {
     sensor: &'a MountedSensor,
     aim: Aim,
@@ -74,7 +74,7 @@ impl Face {
         Self { id, corners: mesh.faces()[id.0 as usize].map(|v| mesh.vertices()[v as usize]) }
     }
 
-    /// Whether the face has any area, exactly. One that has none is never met.
+    /// Whether the face has an area, exactly. A face without one is never met.
     pub(crate) fn has_area(&self) -> bool {
         let certainly = self.normal::<Interval>().0.iter().any(|part| part.low > 0.0 || part.high < 0.0);
         certainly || self.normal::<Dyadic>().0.iter().any(|part| part.sign() != Some(Ordering::Equal))
@@ -85,33 +85,33 @@ impl Face {
         Vector::of_f32(self.corners[k])
     }
 
-    /// n.
+    /// The normal n, not a unit vector.
     pub(crate) fn normal<T: Number>(&self) -> Vector<T> {
         let a = self.corner::<T>(0);
         self.corner(1).sub(&a).cross(&self.corner(2).sub(&a))
     }
 
-    /// n.a', which is s n.(a - o).
+    /// n.a' = s n.(a - o).
     pub(crate) fn height<T: Number>(&self, ray: &ScaledRay<T>) -> T {
         self.normal().dot(&self.corner(0).scaled(&ray.origin_scale).sub(&ray.origin))
     }
 
-    /// n.D, which is sigma n.q.
+    /// n.D = sigma n.q.
     pub(crate) fn approach<T: Number>(&self, ray: &ScaledRay<T>) -> T {
         self.normal().dot(&ray.direction)
     }
 
     /// Whether the ray meets this face's front, edges and corners included, at or beyond the SPP and within
-    /// `max_range`: the whole question of the contract but for other faces.
+    /// `max_range`. Other faces are not considered.
     pub(crate) fn is_met_by(&self, ray: &ExactRay<'_>, max_range: f64) -> bool {
-        // From the cheapest and likeliest to fail.
+        // The cheapest conditions, and those most likely to fail, come first.
         (0..3).all(|k| ray.sign(&EdgeSide { face: self, k }) != Ordering::Greater)
             && ray.sign(&Approach(self)) == Ordering::Less
             && ray.sign(&BeforePlane(self)) != Ordering::Greater
             && ray.sign(&BeyondRange { face: self, max_range }) != Ordering::Greater
     }
 
-    /// Whether `other` lies in this face's plane, facing the same way, exactly.
+    /// Whether `other` lies in this face's plane and faces the same way, exactly.
     pub(crate) fn is_coplanar_with(&self, other: &Self) -> bool {
         let (n, a) = (self.normal::<Dyadic>(), self.corner::<Dyadic>(0));
         let on_plane = |k: usize| n.dot(&other.corner(k).sub(&a)).sign() == Some(Ordering::Equal);
@@ -123,15 +123,15 @@ impl Face {
         ray.sign(&Approach(self)) == Ordering::Greater
     }
 
-    /// Whether all of this face lies in the plane of `other`, exactly, whichever way either faces.
+    /// Whether this face lies in the plane of `other`, exactly, whichever way either faces.
     pub(crate) fn is_in_plane_of(&self, other: &Self) -> bool {
         let (n, a) = (other.normal::<Dyadic>(), other.corner::<Dyadic>(0));
         (0..3).all(|k| n.dot(&self.corner(k).sub(&a)).sign() == Some(Ordering::Equal))
     }
 
-    /// A range that the meeting point certainly does not exceed, metres.
+    /// An upper bound of the range at which the ray meets the face, metres.
     pub(crate) fn farthest_range(&self, ray: &ExactRay<'_>, max_range: f64) -> f64 {
-        // R = n.a' |D| / (s n.D); where n.D may be 0 there is no bound but the sensor's own.
+        // R = n.a' |D| / (s n.D). Where n.D may be 0, only the sensor's own range bounds it.
         let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
         let scale = ray.fast.origin_scale.low * -approach.high;
         if !(scale > 0.0) {
@@ -142,14 +142,14 @@ impl Face {
         (height.magnitude() * length / scale * (1.0 + 8.0 * f64::EPSILON)).min(max_range)
     }
 
-    /// The range of the meeting point, metres, to f64 rounding.
+    /// The range at which the ray meets the face's plane, metres, to f64 rounding.
     pub(crate) fn range(&self, ray: &ExactRay<'_>) -> f64 {
         let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
         let length = ray.fast.direction.length_squared().middle().sqrt();
         height.middle() * length / (approach.middle() * ray.fast.origin_scale.middle())
     }
 
-    /// Which of two faces that `ray` meets it meets first.
+    /// The order in which `ray` meets two faces; it must meet both.
     pub(crate) fn compare(&self, other: &Self, ray: &ExactRay<'_>) -> Ordering {
         ray.sign(&Nearness { face: self, other })
     }

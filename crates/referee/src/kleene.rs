@@ -1,15 +1,15 @@
-//! Answers to yes-or-no questions about numbers that are known up to an interval.
+//! Three-valued logic (Kleene's): answers to yes-or-no questions about numbers that are known up to an interval.
 
 use std::ops::{BitAnd, BitOr, Not};
 
 use crate::number::Interval;
 
-/// Yes, no, or either, as far as intervals tell.
+/// A truth value: true, false, or unknown. Unknown is `may_hold` and `may_fail` together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Kleene {
-    /// Whether it may be so.
+    /// Whether the statement may be true.
     pub(crate) may_hold: bool,
-    /// Whether it may be otherwise.
+    /// Whether the statement may be false.
     pub(crate) may_fail: bool,
 }
 
@@ -17,23 +17,23 @@ impl Kleene {
     pub(crate) const TRUE: Self = Self { may_hold: true, may_fail: false };
     pub(crate) const FALSE: Self = Self { may_hold: false, may_fail: true };
 
-    /// x >= 0.
+    /// Whether x >= 0.
     pub(crate) fn not_negative(x: Interval) -> Self {
-        // A bound that is not a number bounds nothing.
+        // A bound that is NaN decides nothing.
         Self { may_hold: !(x.high < 0.0), may_fail: !(x.low >= 0.0) }
     }
 
-    /// x > 0.
+    /// Whether x > 0.
     pub(crate) fn positive(x: Interval) -> Self {
         Self { may_hold: !(x.high <= 0.0), may_fail: !(x.low > 0.0) }
     }
 
-    /// Whether all are true.
+    /// The conjunction of some values; true for none.
     pub(crate) fn all(truths: impl IntoIterator<Item = Self>) -> Self {
         truths.into_iter().fold(Self::TRUE, Self::bitand)
     }
 
-    /// Whether any is true.
+    /// The disjunction of some values; false for none.
     pub(crate) fn any(truths: impl IntoIterator<Item = Self>) -> Self {
         truths.into_iter().fold(Self::FALSE, Self::bitor)
     }
