@@ -1,9 +1,9 @@
-//! The contract's conditions as functions of a small displacement of the ray, in f64 with proven errors.
+//! The contract's conditions on one face, as forms in a small displacement of the ray: in f64 with proven errors.
 //!
-//! In the sensor's frame, z = 1 along its axis, a ray displaced by (dx, dy) cells starts at (0, dy h, 0) and
-//! runs along q = (q_x + dx p_x, q_y + dy p_y, 1); in the camera h = 0, in a beam q_y = p_y = 0. For a vertex a,
-//! V = M^T (a - start) with the pose's rotation M; for an edge E = M^T (b - a); n = E x E'. The contract's signs
-//! (`face`) are then those of
+//! In the sensor's frame, z = 1 along its axis, a ray displaced by (dx, dy) cells starts at (0, dy h, 0) and runs
+//! along q = (q_x + dx p_x, q_y + dy p_y, 1). In the camera h = 0; in a beam q_y = p_y = 0. For a vertex a, V = M^T
+//! (a - start) with the pose's rotation M; for an edge, E = M^T (b - a); n = E x E'. The contract's signs (`face`)
+//! are then those of
 //!
 //! | condition | form, >= 0 where it holds |
 //! | --- | --- |
@@ -13,37 +13,36 @@
 //! | within the range | M (-n.q) + n.V L, with L the length of q |
 //! | at or before the other face, primed | n'.V' n.q - n.V n'.q |
 //!
-//! each a positive multiple of the one there. All are bilinear in (dx, dy), but for the range, whose L is
-//! bent a little.
+//! each a positive multiple of the polynomial there. All are bilinear in (dx, dy), except the range: its L is convex.
 //!
 //! # The errors
 //!
-//! u = 2^-53. |x|_1 is the sum of the absolute values; it is at least the length of x and at least any part of
-//! it. Terms of order u^2 are covered where a bound is rounded up. The limits on what a scene may hold (vertices
-//! and positions within 1e7 m, pitches and distances from 1e-8 to 1e3) keep all products far from overflow,
-//! and underflow far below the errors.
+//! u = 2^-53. |x|_1 is the sum of the absolute values; it is at least the length of x and at least any part of it.
+//! Terms of order u^2 are covered where a bound is rounded up. The limits of a scene (vertices and positions within
+//! 1e7 m, pitches and distances from 1e-8 to 1e3) keep all products far from overflow, and underflow far below the
+//! errors.
 //!
-//! M: its parts are quotients of sums of four products by q.q, each sum within 4 u q.q: off by at most 10 u.
+//! M: its parts are quotients of sums of four products by q.q, each sum within 4 u q.q. Error at most 10 u.
 //!
-//! V: a - start, u of itself before it is turned; a sum of three products, 3 u. So it is off by at most
-//! 10 u |d|_1 + (1 + 3) u |d| <= 14 u |d|_1 in each part; in a beam, the row's height adds 4 u of itself and the
-//! subtraction u of the result: in all at most 20 u S, with S = |d|_1 + height + h. E likewise: 14 u e, with
+//! V: a - start has an error of u of itself before the rotation, and a sum of three products adds 3 u. So each part
+//! has an error of at most 10 u |d|_1 + (1 + 3) u |d| <= 14 u |d|_1. In a beam, the row's height adds 4 u of itself
+//! and the subtraction u of the result: in all at most 20 u S, with S = |d|_1 + height + h. Likewise E: 14 u e, with
 //! e = |b - a|_1.
 //!
 //! q_x, q_y, p_x, p_y, h: at most 3 u of themselves. Q = |q_x| + |q_y| + 1 + p_x + p_y bounds |q| over the square.
 //!
-//! V x E: each part 2 (20 + 14) u S e from the factors, 4 u S e from its own three roundings: 72 u S e. The edge
-//! form, of size Q S e: 72 u from V x E, 4 u from q, 3 u from the sum, and 16 u for evaluating it (below): less than
-//! 128 u Q S e.
+//! V x E: each part has 2 (20 + 14) u S e from the factors and 4 u S e from its own three roundings: 72 u S e. The
+//! edge form, of size Q S e, has 72 u from V x E, 4 u from q, 3 u from the sum, and 16 u from its evaluation (below):
+//! less than 128 u Q S e.
 //!
-//! n: 2 (14 + 14) u K + 4 u K with K = e e': 60 u K each part. n.q: 60 u K Q + 7 u K Q, with 16 u for evaluating it
+//! n: 2 (14 + 14) u K + 4 u K with K = e e': 60 u K each part. n.q: 60 u K Q + 7 u K Q, with 16 u for its evaluation
 //! less than 128 u K Q. n.V: 60 u K times |V|_1 <= 1.8 S, 20 u S times |n|_1 <= 1.8 K, and 3 u: less than 160 u K S.
 //!
-//! SPP: 67 u f K Q + 160 u K S + 2 u and 16 u of the sum: less than 256 u K (f Q + S). Range: 67 u M K Q +
-//! 160 u K S Q, 12 u from |q| and its slopes, 16 u: less than 256 u K Q (M + S). Order: (67 + 160 + 3 + 16) u for each
-//! of two products of sizes K K' S' Q and K K' S Q: less than 256 u K K' Q (S + S').
+//! SPP: 67 u f K Q + 160 u K S + 2 u and 16 u of the sum: less than 256 u K (f Q + S). Range: 67 u M K Q + 160 u K S
+//! Q, 12 u from |q| and its slopes, 16 u: less than 256 u K Q (M + S). Order: (67 + 160 + 3 + 16) u for each of two
+//! products of sizes K K' S' Q and K K' S Q: less than 256 u K K' Q (S + S').
 //!
-//! "Evaluating": adding up the at most four terms of a form somewhere in the square, and moving its origin.
+//! "Evaluation" is the sum of the at most four terms of a form somewhere in the square, and the move of its origin.
 
 use glam::DVec3;
 
@@ -51,17 +50,16 @@ use crate::face::Face;
 use crate::form::{Form, UNIT_ROUNDOFF as U};
 use crate::moving_ray::MovingRay;
 
-/// Where a corner lies among the displaced rays: the displacement of the ray through it, per axis, and by
-/// how much that may be off, infinitely where the corner is not certainly before the sensor.
+/// A corner among the displaced rays: the displacement of the ray through it, per axis, and its error. The error is
+/// infinite where the corner is not certainly before the sensor.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Corner {
     pub(crate) at: [f64; 2],
     error: [f64; 2],
 }
 
-/// A square beside which all `corners` certainly lie on one of its four sides, about a centre. All rays that
-/// meet the hull of the corners lie on that side too: the side is a plane through the rays' start, or, for
-/// the rows of a beam, parallel to them.
+/// A radius about a centre: all `corners` certainly lie beyond one side of this square. So do all rays that meet the
+/// hull of the corners: the side is a plane through the rays' start or, for the rows of a beam, parallel to them.
 pub(crate) fn beside<const N: usize>(corners: [&Corner; N], centre: [f64; 2]) -> f64 {
     let mut best = 0.0_f64;
     for axis in 0..2 {
@@ -76,54 +74,58 @@ pub(crate) fn beside<const N: usize>(corners: [&Corner; N], centre: [f64; 2]) ->
     best.min(1.0)
 }
 
-/// Why a face is not met in the unit square of displacements.
+/// The reason why a face is not met in the unit square of displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exclusion {
-    /// No ray of the square meets its triangle between the SPP and the longest range.
+    /// No ray of the square meets the triangle between the SPP and the maximum range.
     Beside,
-    /// No ray of the square meets its front; its edges may lie anywhere.
+    /// No ray of the square meets the front; the edges may lie anywhere.
     Back,
 }
 
-/// The conditions of one face.
+/// The conditions of one face as forms.
 #[derive(Debug, Clone)]
 pub(crate) struct FaceForms<'a> {
     pub(crate) face: &'a Face,
     own: [Form; 6],
     pub(crate) corners: [Corner; 3],
-    /// The corners before the sensor, and the edges, in its frame.
-    places: [DVec3; 3],
-    along: [DVec3; 3],
+    /// V of each corner: relative to the ray's start, sensor frame, metres.
+    vertices: [DVec3; 3],
+    /// E of each edge.
+    edge_vectors: [DVec3; 3],
     /// n.V: constant and dy.
     height: [f64; 2],
     /// n.q: constant, dx, dy.
     approach: [f64; 3],
-    /// K, S and Q of the errors.
+    /// K of the errors.
     area_size: f64,
+    /// S of the errors.
     distance: f64,
+    /// Q of the errors.
     q_size: f64,
-    /// How far the lengths of the places may be off, metres.
+    /// Error of the lengths of V, metres.
     off: f64,
-    /// A range in metres that no point met in the unit square exceeds.
+    /// An upper bound of the range of all points met in the unit square, metres.
     pub(crate) farthest: f64,
 }
 
 impl<'a> FaceForms<'a> {
+    /// The conditions of any face.
     pub(crate) fn new(ray: &MovingRay, face: &'a Face) -> Self {
-        Self::of_edges(ray, face, &Placed::of(ray, face))
+        Self::of_edges(ray, face, &FaceInSensorFrame::of(ray, face))
     }
 
     /// The conditions of a face that may be met in the unit square.
     ///
-    /// An edge's form is negative outside of a triangle that shows its front, and *inside* of one that shows
-    /// its back: only with the front is it known where the triangle lies.
+    /// An edge's form is negative outside of a triangle that shows its front, and *inside* of one that shows its
+    /// back: the edges tell where the triangle lies only if the front shows.
     pub(crate) fn in_square(ray: &MovingRay, face: &'a Face) -> Result<Self, Exclusion> {
-        let placed = Placed::of(ray, face);
+        let placed = FaceInSensorFrame::of(ray, face);
         if placed.is_beside(ray) {
             return Err(Exclusion::Beside);
         }
         let forms = Self::of_edges(ray, face, &placed);
-        // Where the ray lies in the face's plane all forms vanish: ask how far away the triangle is.
+        // Where the ray lies in the face's plane all forms vanish: only the distance of the triangle decides.
         if forms.closest(ray) > ray.max_range {
             return Err(Exclusion::Beside);
         }
@@ -134,9 +136,9 @@ impl<'a> FaceForms<'a> {
         Ok(forms)
     }
 
-    fn of_edges(ray: &MovingRay, face: &'a Face, placed: &Placed) -> Self {
+    fn of_edges(ray: &MovingRay, face: &'a Face, placed: &FaceInSensorFrame) -> Self {
         let [a, b, c] = face.corners.map(|corner| glam::Vec3::from_array(corner).as_dvec3());
-        // Differences of f32 numbers, u of themselves.
+        // Differences of f32 numbers: error u of themselves.
         let differences = [b - a, c - b, a - c];
         let along = differences.map(|d| ray.rotation.transpose() * d);
         let sizes = differences.map(|d| d.abs().element_sum());
@@ -178,7 +180,7 @@ impl<'a> FaceForms<'a> {
             error: rounded * (ray.plane * ray.q_size + distance),
             bend: 0.0,
         };
-        // The point met lies in the triangle, no farther from a displaced start than a corner is.
+        // The point met lies in the triangle: no farther from a displaced start than a corner is.
         let to_corners = placed.corners.map(DVec3::length).into_iter().fold(0.0, f64::max);
         let off = 128.0 * U * placed.sizes.into_iter().fold(0.0, f64::max);
         let range = range_form(ray, height, approach, area_size, distance, ray.max_range);
@@ -196,8 +198,8 @@ impl<'a> FaceForms<'a> {
             face,
             own: [edge(0), edge(1), edge(2), front, plane, range],
             corners: placed.corners_among(ray),
-            places: placed.corners,
-            along,
+            vertices: placed.corners,
+            edge_vectors: along,
             height,
             approach,
             area_size,
@@ -208,30 +210,30 @@ impl<'a> FaceForms<'a> {
         }
     }
 
-    /// The six conditions that concern this face alone: three edges, front, plane, range.
-    pub(crate) fn own(&self) -> &[Form; 6] {
+    /// The six conditions of this face alone: three edges, front, plane, range.
+    pub(crate) fn conditions(&self) -> &[Form; 6] {
         &self.own
     }
 
-    /// Inside the edges, each from the corner of its index.
+    /// The edge conditions, each of the edge from the corner of its index.
     pub(crate) fn edges(&self) -> &[Form] {
         &self.own[..3]
     }
 
-    /// Met within the range `limit`, metres, which is not beyond the sensor's own.
+    /// The condition to be met within the range `limit`, metres; it is not beyond the sensor's own.
     pub(crate) fn within(&self, ray: &MovingRay, limit: f64) -> Form {
         range_form(ray, self.height, self.approach, self.area_size, self.distance, limit)
     }
 
-    /// A range in metres than which no point of the triangle is met nearer, perhaps negative.
+    /// A lower bound of the range of all points of the triangle, metres; it may be negative.
     pub(crate) fn closest(&self, ray: &MovingRay) -> f64 {
-        // The part of the way to a point along any unit vector is no longer than the way.
+        // The component of a vector along any unit vector is at most its length.
         let along = DVec3::new(ray.q[0], ray.q[1], 1.0) / ray.length[0];
-        let least = self.places.into_iter().map(|v| v.dot(along)).fold(f64::INFINITY, f64::min);
+        let least = self.vertices.into_iter().map(|v| v.dot(along)).fold(f64::INFINITY, f64::min);
         least - ray.height_step - self.off - least.abs() * 64.0 * f64::EPSILON
     }
 
-    /// This face is met at or before `other`, where both are met from the front.
+    /// The condition to be met at or before `other`, where both are met from the front.
     pub(crate) fn at_or_before(&self, other: &Self) -> Form {
         let ([g, gy], [f, fy]) = (self.height, other.height);
         let ([p, px, py], [q, qx, qy]) = (self.approach, other.approach);
@@ -246,7 +248,7 @@ impl<'a> FaceForms<'a> {
         }
     }
 
-    /// The range at a displacement at which the face is met, and how far it may be off, relatively.
+    /// The range at a displacement at which the face is met, metres, and its relative error.
     pub(crate) fn range_at(&self, ray: &MovingRay, at: [f64; 2]) -> (f64, f64) {
         let height = self.height[0] + self.height[1] * at[1];
         let approach = self.approach[0] + self.approach[1] * at[0] + self.approach[2] * at[1];
@@ -255,19 +257,19 @@ impl<'a> FaceForms<'a> {
         (height / approach * ray.length_at(at), doubt)
     }
 
-    /// The displacement of the ray through the point of edge `k` that lies `s` of the way along it.
+    /// The displacement of the ray through the point at the fraction `s` of edge `k`.
     pub(crate) fn edge_point(&self, ray: &MovingRay, k: usize, s: f64) -> [f64; 2] {
-        ray.through(self.places[k] + s * self.along[k])
+        ray.through(self.vertices[k] + s * self.edge_vectors[k])
     }
 
-    /// The displacement of the ray through a point of the triangle, given by its corners' weights.
+    /// The displacement of the ray through a point of the triangle, given by the weights of its corners.
     pub(crate) fn point(&self, ray: &MovingRay, weights: [f64; 3]) -> [f64; 2] {
-        let [a, b, c] = self.places;
+        let [a, b, c] = self.vertices;
         ray.through(a * weights[0] + b * weights[1] + c * weights[2])
     }
 
-    /// The least and the greatest displacement, per axis, of rays that meet the triangle: they lie between those
-    /// of its corners, as `beside` says.
+    /// The least and the greatest displacement, per axis, of rays that meet the triangle: they lie between those of
+    /// its corners, as in [`beside`].
     pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for corner in &self.corners {
@@ -279,7 +281,7 @@ impl<'a> FaceForms<'a> {
         bounds
     }
 
-    /// Whether all corners lie certainly before the sensor, so that `beside` knows of them.
+    /// Whether all corners lie certainly before the sensor. Only then does [`beside`] know of them.
     pub(crate) fn is_before(&self) -> bool {
         self.corners.iter().all(|corner| corner.error[0] < f64::INFINITY)
     }
@@ -306,14 +308,14 @@ fn range_form(
     }
 }
 
-/// A face's corners in the sensor's frame, before its ray's start.
-struct Placed {
+/// A face's corners in the sensor's frame, relative to the ray's start.
+struct FaceInSensorFrame {
     corners: [DVec3; 3],
-    /// S of each.
+    /// S of each corner.
     sizes: [f64; 3],
 }
 
-impl Placed {
+impl FaceInSensorFrame {
     fn of(ray: &MovingRay, face: &Face) -> Self {
         let from = face.corners.map(|corner| glam::Vec3::from_array(corner).as_dvec3() - ray.position);
         Self {
@@ -325,13 +327,13 @@ impl Placed {
         }
     }
 
-    /// How far a part of V less z times q's, or that of a side of the square, may be off: 20 u S for the one,
-    /// 20 u S and 4 u S for the other, times the slope, and 3 u S Q for the roundings. All slopes and 1 are within Q.
+    /// The error of a part of V minus z times that of q, or of a side of the square: 20 u S for V, 20 u S and 4 u S
+    /// for z, times the slope, and 3 u S Q for the roundings. All slopes and 1 are within Q.
     fn off(&self, ray: &MovingRay, k: usize) -> f64 {
         32.0 * U * self.sizes[k] * ray.q_size * (1.0 + 8.0 * f64::EPSILON)
     }
 
-    /// Whether all corners certainly lie on one side of the unit square, or before the SPP.
+    /// Whether all corners certainly lie beyond one side of the unit square, or before the SPP.
     fn is_beside(&self, ray: &MovingRay) -> bool {
         let all = |test: &dyn Fn(usize) -> bool| (0..3).all(test);
         let v = &self.corners;
@@ -354,17 +356,17 @@ impl Placed {
         }
     }
 
-    /// Where the corners lie among the displaced rays.
+    /// The corners among the displaced rays.
     fn corners_among(&self, ray: &MovingRay) -> [Corner; 3] {
         [0, 1, 2].map(|k: usize| {
             let (v, size) = (self.corners[k], self.sizes[k]);
             let mut at = ray.through(v);
-            // z is off by at most 20 u S. Where that is less than 2^-10 of it, the quotient's error is no more
-            // than 1 + 2^-8 times the first-order one.
+            // z has an error of at most 20 u S. Where that is less than 2^-10 of z, the quotient's error is at most 1
+            // + 2^-8 times the first-order one.
             let doubt = 32.0 * U * size / v.z;
             let known = v.z > 0.0 && doubt < 1.0 / 1024.0;
             if !known {
-                // Nothing that could be added up to NaN.
+                // No number that could sum to NaN.
                 at[0] = 0.0;
                 at[1] = if ray.height_step > 0.0 { at[1] } else { 0.0 };
             }
@@ -378,7 +380,7 @@ impl Placed {
             } else {
                 f64::INFINITY
             };
-            // Subtracting the centre, at most 1, rounds once more.
+            // The subtraction of the centre, at most 1, rounds once more.
             let at_centre = |x: f64| x + 4.0 * U * (1.0 + x.abs());
             Corner { at, error: [at_centre(across), at_centre(down) + 4.0 * U * at[1].abs()] }
         })

@@ -1,23 +1,22 @@
-//! How far a verdict is from changing: the margins, and the one that is called `face`.
+//! The margin `face`: the least displacement that changes the set of nearest faces.
 //!
-//! Displacements are measured by the larger of |dx| and |dy|, in cells. A margin is the least displacement
-//! that changes something; it is given as [lo, hi]: within lo no displaced ray changes it (proven), at hi one does
-//! (the witness is judged exactly). Both are capped at 1. Here it is the set of nearest faces; `surface` has the
-//! other.
+//! Displacements are measured by the larger of |dx| and |dy|, in cells. Within lo no displaced ray changes the set
+//! (proven); at hi one does (the witness is judged exactly). Both are capped at 1.
 //!
 //! # The proof of lo
 //!
-//! A square |dx|, |dy| <= r changes nothing if over all of it the nearest face F meets its own conditions and
-//! every other face G breaks one: an edge, front, plane or range of its own, or to be met at or before F.
-//! Each condition is a form g (see `forms`), so a radius up to which it holds, or fails, is the root of a
-//! quadratic. Where a corner of G points at the ray no single condition fails for long, though G lies on the far
-//! side of one side of the square: of two convex polygons that do not meet, a side of one separates them. For
-//! G's edges that is seen from its corners. For its other conditions it takes two together: if g1 >= 0 and
-//! g2 >= 0 then g1 + w g2 >= 0 for any w > 0, and the weights that make the combined slope in x or in y vanish
-//! are the best there are for a square.
+//! A square |dx|, |dy| <= r changes nothing if, over all of it, the nearest face F meets its own conditions and every
+//! other face G breaks one: an edge, the front, the plane or the range of its own, or the condition to be met at or
+//! before F. Each condition is a form g (see `form`), so a radius up to which it holds, or fails, is the root of a
+//! quadratic.
 //!
-//! A face that lies beyond all that F's triangle or plane reaches over the unit square need not be asked: it is
-//! met after F wherever F is met.
+//! Where a corner of G points at the ray, no single condition fails for long, though G lies beside the square. Of two
+//! convex polygons that do not meet, a side of one separates them. For G's edges this is decided by its corners
+//! (`face_forms::beside`). For its other conditions it takes two together: if g1 >= 0 and g2 >= 0, then g1 + w g2 >=
+//! 0 for any w > 0. The weights that make the combined slope in x or in y vanish are the best for a square.
+//!
+//! A face that lies beyond all points of F's triangle or plane over the unit square need not be examined: it is met
+//! after F wherever F is met.
 
 use crate::displacement::max_norm;
 use crate::face::Face;
@@ -39,7 +38,7 @@ pub(crate) fn face_margin(near: &Neighbourhood<'_>, nearest: &[usize]) -> Margin
     if is_tight(lo, witness) || lo <= 0.0 {
         return Margin::of(lo, witness);
     }
-    // A part that shows the same faces at its middle, and keeps them, is without a change.
+    // A part with the same faces at its middle, and which keeps them, is free of a change.
     let (lo, witness) = subdivide(lo, witness, |square, _| {
         let differs = |at: [f64; 2]| near.nearest_at(at) != nearest;
         let changed = differs(square.middle);
@@ -53,7 +52,7 @@ pub(crate) fn face_margin(near: &Neighbourhood<'_>, nearest: &[usize]) -> Margin
     Margin::of(lo, witness)
 }
 
-/// The search for the margin of the set of nearest faces, about a centre at which they are the nearest.
+/// The search for the margin, about a centre at which `nearest` are the nearest faces.
 struct FaceMarginSearch<'a> {
     near: &'a Neighbourhood<'a>,
     nearest: &'a [usize],
@@ -62,26 +61,27 @@ struct FaceMarginSearch<'a> {
     events: Vec<Event>,
 }
 
-/// EventKind may end the verdict first, and the radius at which it may.
+/// An event that may change the verdict first, and the radius at which it may happen.
 struct Event {
     radius: f64,
     kind: EventKind,
 }
 
+/// The kinds of events.
 enum EventKind {
-    /// A condition of a nearest face comes to fail.
+    /// A condition of a nearest face begins to fail.
     Fails(Form),
-    /// All conditions of another face come to hold together.
+    /// All conditions of another face, given by its index, begin to hold together.
     Enters(usize),
 }
 
 impl<'a> FaceMarginSearch<'a> {
-    /// Finds `lo`, at most `cap`, and what it depends on.
+    /// Finds `lo`, at most `cap`, and the events that limit it.
     fn of(near: &'a Neighbourhood<'a>, nearest: &'a [usize], centre: [f64; 2], cap: f64) -> Self {
         let mut search = Self { near, nearest, centre, lo: cap, events: Vec::new() };
         let faces = &near.faces;
-        // The nearest faces must stay what they are.
-        for form in nearest.iter().flat_map(|&index| faces[index].own()) {
+        // The nearest faces must keep their own conditions.
+        for form in nearest.iter().flat_map(|&index| faces[index].conditions()) {
             let form = form.about(centre);
             let radius = form.holds_within();
             if radius < cap {
@@ -89,14 +89,14 @@ impl<'a> FaceMarginSearch<'a> {
                 search.events.push(Event { radius, kind: EventKind::Fails(form) });
             }
         }
-        // Several at one point stay together only if they lie in one plane.
+        // Several faces at one point stay together only if they lie in one plane.
         let of = |index: usize| -> &Face { faces[index].face };
         if let [first, others @ ..] = nearest
             && others.iter().any(|&other| !of(*first).is_coplanar_with(of(other)))
         {
             search.lo = 0.0;
         }
-        // Every other face that could come to be met must stay out of it.
+        // Every other face must stay out.
         for index in 0..faces.len() {
             if !nearest.contains(&index) {
                 search.keep_out(index);
@@ -111,7 +111,7 @@ impl<'a> FaceMarginSearch<'a> {
         let (face, centre) = (&self.near.faces[index], self.centre);
         let fails = face.edges().iter().map(|edge| edge.about(centre).fails_within());
         let clear = fails.fold(0.0, f64::max);
-        // An edge that it shares with the nearest face gives the same radius but for rounding: no event.
+        // An edge shared with the nearest face gives the same radius but for rounding: no event.
         let enough = self.lo * (1.0 - 1.0 / (1u64 << 20) as f64);
         if clear >= enough {
             self.lo = self.lo.min(clear);
@@ -132,25 +132,25 @@ impl<'a> FaceMarginSearch<'a> {
         }
     }
 
-    /// The conditions of a face that comes to be met first, its edges first of all, but for those others that hold
-    /// within `r` anyway.
+    /// The conditions for a face to be met first, edges first. Conditions that hold within `r` anyway are left out,
+    /// except the edges.
     fn conditions(&self, index: usize, r: f64) -> Vec<Form> {
         let face = &self.near.faces[index];
         let mut forms = Vec::with_capacity(7);
         forms.extend(face.edges().iter().map(|edge| edge.about(self.centre)));
         let before = self.nearest.first().map(|&nearest| face.at_or_before(&self.near.faces[nearest]));
-        let others = face.own()[3..].iter().copied().chain(before).map(|form| form.about(self.centre));
+        let others = face.conditions()[3..].iter().copied().chain(before).map(|form| form.about(self.centre));
         forms.extend(others.filter(|form| form.holds_within() < r));
         forms
     }
 
-    /// A displaced ray whose verdict differs, as near as it can be found.
+    /// A displaced ray with another verdict, as near as it can be found.
     fn witness(&self) -> Option<[f64; 2]> {
-        // All that the nearest faces could be hidden by is known. Where none of the known is met, or another one is,
-        // the verdict is another, whatever lies beyond.
+        // All faces that could hide the nearest ones are known. Where no known face is met, or another one is, the
+        // verdict differs, whatever lies beyond.
         let differs = |at: [f64; 2]| self.near.nearest_at(at) != self.nearest;
         let mut best: Option<[f64; 2]> = None;
-        // Keeps a nearer witness; says whether it is near enough to stop.
+        // Keeps a nearer witness; returns whether it is near enough to stop.
         let try_witness = |best: &mut Option<[f64; 2]>, at: [f64; 2]| {
             let nearer = best.is_none_or(|best| max_norm(at) < max_norm(best));
             if nearer && max_norm(at) <= 1.0 && differs(at) {
@@ -164,7 +164,7 @@ impl<'a> FaceMarginSearch<'a> {
                     // The corner of the square at which the form vanishes first.
                     let away = |slope: f64| if slope > 0.0 { -1.0 } else { 1.0 };
                     let corner = [away(form.x), away(form.y)];
-                    // Beyond it by what the form may be off, twice, and then farther.
+                    // Beyond the root by twice the form's error, and then farther.
                     let doubt = 2.25 * form.error / (form.x.abs() + form.y.abs());
                     for further in [1e-9, 1e-6, 1e-3, 0.1, 0.7] {
                         let r = event.radius * (1.0 + further) + doubt * (1.0 + further * 1e2);
@@ -183,7 +183,7 @@ impl<'a> FaceMarginSearch<'a> {
                 return best;
             }
         }
-        // Threads that a beam bends by more than their width: from points of the triangles themselves.
+        // Faces so thin that a beam bends them by more than their width: try points of the triangles themselves.
         for event in &self.events {
             if is_tight(event.radius, best) {
                 break;
@@ -199,7 +199,7 @@ impl<'a> FaceMarginSearch<'a> {
         best
     }
 
-    /// Points of a face near its corners and along its sides, in it by a part of its width, the nearest first.
+    /// Points of a face near its corners and along its sides, inside by a part of its width, the nearest first.
     fn threads(&self, index: usize) -> Vec<[f64; 2]> {
         let mut points = Vec::new();
         for k in 0..3 {
@@ -217,8 +217,8 @@ impl<'a> FaceMarginSearch<'a> {
         points
     }
 
-    /// Points of a face in and near the corner that is nearest: one that the ray all but meets is known better than any
-    /// form.
+    /// Points of a face in and near its nearest corner. A corner that the ray all but meets is known more exactly
+    /// than any form.
     fn tips(&self, index: usize) -> Vec<[f64; 2]> {
         let mut points = self.near.displacements_inside_corners(index, 1.0);
         let nearest = points.iter().map(|&at| max_norm(at)).fold(1.0, f64::min);
@@ -227,8 +227,9 @@ impl<'a> FaceMarginSearch<'a> {
         points
     }
 
-    /// Offers points from the nearest one of the region where all forms hold towards its middle, until one is
-    /// taken. At one dy the forms are linear in dx, so that thin regions, which a beam bends, are met as well.
+    /// Tries points from the region where all forms hold, from its nearest point towards its middle, until
+    /// `try_witness` accepts one. At one dy the forms are linear in dx, so that thin regions bent by a beam are met
+    /// as well.
     fn towards(&self, forms: &[Form], mut try_witness: impl FnMut([f64; 2]) -> bool) -> bool {
         let Some(Region { near, middle, .. }) = Region::of(forms) else { return false };
         [0.0, 1e-9, 1e-6, 1e-3, 0.03, 0.3, 1.0].into_iter().any(|inward| {

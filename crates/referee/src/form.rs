@@ -1,12 +1,15 @@
-//! Form.
+//! Bilinear forms in the displacement (dx, dy), in f64 with proven errors.
+//!
+//! A condition of the contract holds where its form g is positive. From its coefficients follow the squares of
+//! displacements in which g certainly holds, or certainly fails.
 
 use crate::number::Interval;
 
-/// 2^-53: the unit roundoff.
+/// u = 2^-53: the unit roundoff of f64.
 pub(crate) const UNIT_ROUNDOFF: f64 = 0.5 * f64::EPSILON;
 
-/// `constant + x dx + y dy + xy dx dy`: anywhere in |dx|, |dy| <= 1 off by at most `error`, evaluation
-/// included, and within |dx|, |dy| <= r by at most `bend` r^2 more.
+/// The function `constant + x dx + y dy + xy dx dy`. Anywhere in |dx|, |dy| <= 1 it is wrong by at most `error`,
+/// evaluation included, and within |dx|, |dy| <= r by at most `bend` r^2 more.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Form {
     pub(crate) constant: f64,
@@ -18,7 +21,7 @@ pub(crate) struct Form {
 }
 
 impl Form {
-    /// A form by its coefficients, each known up to an interval.
+    /// A form from its coefficients, each known up to an interval.
     pub(crate) fn of(coefficients: [Interval; 4]) -> Self {
         let middle = coefficients.map(|range| range.middle());
         let doubt = |k: usize| (coefficients[k].high - middle[k]).max(middle[k] - coefficients[k].low);
@@ -29,22 +32,22 @@ impl Form {
         Self { error, ..form }
     }
 
-    /// A radius of at most 1 within which g > 0 for certain; 0 if there is none.
+    /// A radius of at most 1 within which g > 0 certainly; 0 if there is none.
     #[inline]
     pub(crate) fn holds_within(&self) -> f64 {
         self.radius(self.constant - self.error)
     }
 
-    /// A radius of at most 1 within which g < 0 for certain; 0 if there is none.
+    /// A radius of at most 1 within which g < 0 certainly; 0 if there is none.
     #[inline]
     pub(crate) fn fails_within(&self) -> f64 {
         self.radius(-self.constant - self.error)
     }
 
-    /// Up to which r `room - r (|x| + |y|) - r^2 (|xy| + bend)` stays positive.
+    /// The largest r up to which `room - r (|x| + |y|) - r^2 (|xy| + bend)` stays positive, at most 1.
     ///
-    /// The positive root of b r^2 + a r = c is 2 c / (a + sqrt(a^2 + 4 b c)); a dozen roundings up to that are
-    /// far less than the 2^-40 of itself by which the result is made smaller.
+    /// The positive root of b r^2 + a r = c is 2 c / (a + sqrt(a^2 + 4 b c)). The result is made smaller by 2^-40 of
+    /// itself, far more than a dozen roundings.
     #[inline]
     fn radius(&self, room: f64) -> f64 {
         if !(room > 0.0) {
@@ -56,16 +59,16 @@ impl Form {
             return 1.0;
         }
         let r = 2.0 * room / (a + (a * a + 4.0 * b * room).sqrt());
-        // NaN (infinite coefficients) certifies nothing.
+        // NaN, from infinite coefficients, certifies nothing.
         if r > 0.0 { (r * (1.0 - 1.0 / (1u64 << 40) as f64)).min(1.0) } else { 0.0 }
     }
 
-    /// The sum of the sizes of the coefficients: the scale of what evaluating it may round away.
+    /// The sum of the absolute coefficients: the scale of the rounding of an evaluation.
     fn scale(&self) -> f64 {
         self.constant.abs() + self.x.abs() + self.y.abs() + self.xy.abs()
     }
 
-    /// `self + weight other`: for a positive weight negative wherever both are.
+    /// `self + weight other`. For a positive weight it is negative wherever both are.
     pub(crate) fn plus(&self, other: &Self, weight: f64) -> Self {
         let sum = Self {
             constant: self.constant + weight * other.constant,
@@ -81,8 +84,8 @@ impl Form {
         Self { error, ..sum }
     }
 
-    /// The same function of the displacement from `centre`, which lies in the square |dx|, |dy| <= 1, as does
-    /// all that is asked about afterwards.
+    /// The same function of the displacement from `centre`. The centre and all later arguments lie in |dx|, |dy| <=
+    /// 1.
     pub(crate) fn about(&self, [cx, cy]: [f64; 2]) -> Self {
         if cx == 0.0 && cy == 0.0 {
             return *self;
@@ -104,11 +107,11 @@ impl Form {
         self.constant + self.x * dx + self.y * dy + self.xy * dx * dy
     }
 
-    /// Whether g > 0 at a displacement in the square, or g < 0; `None` if it is not certain.
+    /// Whether g > 0 at a displacement in the unit square; `None` if the sign is not certain.
     #[inline]
     pub(crate) fn is_positive_at(&self, at: [f64; 2]) -> Option<bool> {
         let value = self.at(at);
-        // Sizes are at most 1: the bend's r^2 too.
+        // r is at most 1, so r^2 is too.
         let doubt = self.error + self.bend;
         if value > doubt {
             Some(true)
@@ -136,8 +139,8 @@ impl Form {
     }
 }
 
-/// A square in which the forms certainly do not all hold, by one of them or by two combined: the largest that
-/// can be shown, or one of at least `enough`. Of the first `apart` no two are combined.
+/// A radius within which the forms certainly do not all hold, shown by one of them or by two combined: the largest
+/// that can be shown, or one of at least `enough`. No two of the first `apart` forms are combined.
 pub(crate) fn certainly_fails(forms: &[Form], apart: usize, enough: f64) -> f64 {
     let mut best = forms.iter().map(Form::fails_within).fold(0.0, f64::max);
     for (k, a) in forms.iter().enumerate() {
@@ -151,9 +154,9 @@ pub(crate) fn certainly_fails(forms: &[Form], apart: usize, enough: f64) -> f64 
     best
 }
 
-/// A square in which two forms certainly do not both hold, by their combinations.
+/// A radius within which two forms certainly do not both hold, shown by their combinations.
 ///
-/// Where both hold, so does their sum with any positive weight; those that make the sum level in dx or in dy
+/// Where both hold, so does their sum with any positive weight. The weights that make the sum level in dx or in dy
 /// are the best for a square.
 fn both_fail(a: &Form, b: &Form) -> f64 {
     let mut best = 0.0;
@@ -166,8 +169,8 @@ fn both_fail(a: &Form, b: &Form) -> f64 {
     best
 }
 
-/// A square in which the line of `edge` certainly does not meet where `other` holds: on the line the form is 0,
-/// so it may be added with a weight of either sign.
+/// A radius within which `other` certainly holds nowhere on the line of `edge`. On the line the form is 0, so it may
+/// be added with a weight of either sign.
 pub(crate) fn line_leaves(edge: &Form, other: &Form) -> f64 {
     let mut best = 0.0;
     for (slope, slope_edge) in [(other.x, edge.x), (other.y, edge.y)] {

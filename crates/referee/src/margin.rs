@@ -1,23 +1,24 @@
-//! Margin.
+//! Margin: an interval that contains the least displacement which changes an answer.
 
 use crate::displacement::{Displacement, max_norm};
 
-/// The least displacement that changes a verdict, in cells, somewhere in `lo..=hi`.
+/// The least displacement that changes an answer lies in `lo..=hi`, cells by the larger of |dx| and |dy|, capped at
+/// 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
-    /// No displaced ray within this changes the verdict.
+    /// Proven: no ray displaced by less than this changes the answer.
     pub lo: f64,
-    /// The witness's displacement; 1 if there is none because the margin is capped.
+    /// The witness's displacement; 1 if there is no witness.
     pub hi: f64,
-    /// A displaced ray whose verdict is another.
+    /// A displaced ray with another answer, judged exactly.
     pub witness: Option<Displacement>,
 }
 
 impl Margin {
-    /// A verdict that does not change within a cell.
+    /// The margin of an answer that does not change within a cell.
     pub(crate) const CAPPED: Self = Self { lo: 1.0, hi: 1.0, witness: None };
 
-    /// EventKind is proven, and the nearest displacement that was found to change the verdict.
+    /// A margin from the proven radius and the nearest witness found.
     pub(crate) fn of(lo: f64, witness: Option<[f64; 2]>) -> Self {
         match witness {
             Some(at) => {

@@ -1,4 +1,4 @@
-//! Margins.
+//! Both margins of a ray in one call: how far its verdict and its surface are from changing.
 
 use raypencil_scene::SensorId;
 
@@ -15,13 +15,13 @@ pub struct Margins {
     pub verdict: Verdict,
     /// The least displacement that changes the set of nearest faces.
     pub face: Margin,
-    /// The least displacement at which the ray comes to hit or to miss, or its range jumps.
+    /// The least displacement at which the ray changes between hit and miss, or at which its range jumps.
     pub surface: Margin,
 }
 
 impl Referee<'_> {
-    /// The verdict on cell (i, j) and both of its margins, or `None` if there is no such cell. Quicker than to
-    /// ask for them one by one.
+    /// The verdict on cell (i, j) and both of its margins; `None` if there is no such cell. Faster than three
+    /// separate calls.
     pub fn margins(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margins> {
         let sensor = self.sensor_with(sensor, i, j)?;
         let (mut near, nearest, face) = self.with_face_margin(&sensor, i, j);
@@ -30,13 +30,13 @@ impl Referee<'_> {
         Some(Margins { verdict, face, surface })
     }
 
-    /// The margin of the set of nearest faces of cell (i, j), or `None` if there is no such cell.
+    /// The margin of the set of nearest faces of cell (i, j); `None` if there is no such cell.
     pub fn face_margin(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margin> {
         let sensor = self.sensor_with(sensor, i, j)?;
         Some(self.with_face_margin(&sensor, i, j).2)
     }
 
-    /// The margin of the surface of cell (i, j), or `None` if there is no such cell.
+    /// The margin of the surface of cell (i, j); `None` if there is no such cell.
     pub fn surface_margin(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margin> {
         self.margins(sensor, i, j).map(|margins| margins.surface)
     }
@@ -48,7 +48,7 @@ impl Referee<'_> {
         (i < width && j < height).then_some(sensor)
     }
 
-    /// EventKind all margins start from: the neighbourhood, the nearest faces in it, and their margin.
+    /// The start of every margin: the neighbourhood, the nearest faces in it, and their margin.
     fn with_face_margin<'a>(
         &'a self,
         sensor: &'a MountedSensor,

@@ -1,34 +1,39 @@
-//! Moving ray.
+//! A cell's ray and its change with the displacement, in the sensor's frame and in f64.
 
 use glam::{DMat3, DVec3};
 use raypencil_scene::Mounted;
 
 use crate::ray::{Aim, MountedSensor};
 
-/// A cell's ray and how displacement moves it, in the sensor's frame.
+/// A cell's ray and its change with the displacement, in the sensor's frame.
 #[derive(Debug, Clone)]
 pub(crate) struct MovingRay {
+    /// Position of the sensor, scene frame, metres.
     pub(crate) position: DVec3,
-    /// M, from the sensor's frame to the scene's.
+    /// M: the rotation from the sensor's frame to the scene's.
     pub(crate) rotation: DMat3,
-    /// Height of the ray's start on the focal axis, and its change by a cell.
+    /// Height of the ray's start on the focal axis, metres.
     pub(crate) height: f64,
+    /// Change of that height by a cell, metres; 0 in a camera.
     pub(crate) height_step: f64,
-    /// (q_x, q_y) and (p_x, p_y).
+    /// (q_x, q_y).
     pub(crate) q: [f64; 2],
+    /// (p_x, p_y): the change of q by a cell.
     pub(crate) step: [f64; 2],
-    /// z of the sensor plane.
+    /// z of the SPP, metres.
     pub(crate) plane: f64,
+    /// Maximum range of the sensor, metres.
     pub(crate) max_range: f64,
-    /// Q.
+    /// Q: a bound of |q| over the unit square.
     pub(crate) q_size: f64,
-    /// |q| as a form without its bend, and the bend.
+    /// |q| as a form without its bend: constant, dx, dy.
     pub(crate) length: [f64; 3],
+    /// The bend of |q|.
     pub(crate) length_bend: f64,
 }
 
 impl MovingRay {
-    /// The ray of an aim. The errors above are those of a cell's own ray, that is, of one not displaced.
+    /// The ray of an aim.
     pub(crate) fn new(sensor: &MountedSensor, aim: Aim) -> Self {
         let pose = sensor.pose();
         let [x, y, z, w] = pose.rotation.to_array();
@@ -81,18 +86,18 @@ impl MovingRay {
         }
     }
 
-    /// Where the ray starts and its direction, not a unit: scene frame, to a few roundings.
+    /// The ray's start and its direction, not a unit vector: scene frame, to a few roundings.
     pub(crate) fn line(&self) -> (DVec3, DVec3) {
         let origin = self.position + self.rotation.y_axis * self.height;
         (origin, self.rotation * DVec3::new(self.q[0], self.q[1], 1.0))
     }
 
-    /// How far the start may move, metres, and the direction, in units of a direction of this length, where
-    /// the ray is displaced by at most `radius` cells.
+    /// Bounds over displacements of at most `radius` cells: the distance of the start from this ray's, metres, and
+    /// that of the unit direction.
     pub(crate) fn spread(&self, radius: f64) -> (f64, f64) {
         let moved = radius * (self.step[0] * self.step[0] + self.step[1] * self.step[1]).sqrt();
-        // Two directions of lengths L and L' that differ by d have units that differ by at most
-        // d / min(L, L'): cut to the shorter length they lie no farther apart. And every q is at least 1.
+        // Two directions of lengths L and L' that differ by d have unit vectors that differ by at most d / min(L,
+        // L'): cut to the shorter length they are no farther apart. Every q has length at least 1.
         (radius * self.height_step, moved / (self.length[0] - moved).max(1.0))
     }
 

@@ -1,8 +1,8 @@
-//! The neighbourhood of a ray: every face that a ray displaced by at most a cell may meet, with its conditions,
-//! and the exact verdict on any of these rays.
+//! The neighbourhood of a ray: every face that a ray displaced by at most a cell may meet, with its conditions, and
+//! the exact verdict on any of these rays.
 //!
-//! One walk through the tree finds the faces. It takes the whole bundle of displaced rays, and leaves out at once
-//! what lies beside it; what lies farther than is asked about is left for later (`extend_to`).
+//! One traversal of the hierarchy finds the faces. It follows the whole bundle of displaced rays. Faces beside the
+//! bundle are left out at once, faces farther than the known range are left for later (`extend_to`).
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
@@ -23,27 +23,27 @@ pub(crate) struct Neighbourhood<'a> {
     aim: Aim,
     pub(crate) ray: MovingRay,
     walk: Traversal<'a>,
-    /// All that may be met within this range, metres, is in `faces`.
+    /// All faces that may be met within this range, metres, are in `faces`.
     known_range: f64,
     pub(crate) faces: Vec<FaceForms<'a>>,
-    /// Their bounds in the square, side by side: most faces are not met by most rays.
+    /// The bounds of the faces in the square, in a contiguous list: most rays miss most faces.
     bounds: Vec<[[f64; 2]; 2]>,
-    /// Faces whose triangles lie beside the square: the other sides of edges that cannot lie in it either.
+    /// Faces whose triangles lie beside the square: the other sides of edges that cannot lie in the square either.
     beside: Vec<&'a Face>,
     edges: EdgeIndex,
 }
 
-/// Who lies on the other side of an edge.
+/// The other side of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EdgeMate {
     /// A face of the neighbourhood, by its index.
     Near(usize),
-    /// A face whose triangle lies beside the square, and so does the edge.
+    /// A face whose triangle lies beside the square, and with it the edge.
     Beside,
 }
 
 impl<'a> Neighbourhood<'a> {
-    /// All faces that may be met before, or together with, a face that the ray itself meets.
+    /// All faces that may be met before a face that the ray itself meets, or together with it.
     pub(crate) fn new(referee: &'a Referee<'_>, sensor: &'a MountedSensor, aim: Aim) -> Self {
         let ray = MovingRay::new(sensor, aim);
         let max_range = sensor.max_range();
@@ -63,7 +63,7 @@ impl<'a> Neighbourhood<'a> {
         near
     }
 
-    /// Gathers faces up to `self.known_range`, which falls on the way if a face that is certainly met may lower it.
+    /// Gathers faces up to `known_range`. If `lowers`, a face that is certainly met lowers that range.
     fn gather(&mut self, lowers: bool) {
         while let Some(leaf) = self.walk.next_leaf(self.known_range) {
             for face in leaf {
@@ -73,11 +73,11 @@ impl<'a> Neighbourhood<'a> {
                         self.beside.push(face);
                         continue;
                     }
-                    // No front in the square: neither to be met nor to go on with.
+                    // No front in the square: the face is neither met nor part of a sheet.
                     Err(Exclusion::Back) => continue,
                 };
                 let met = |form: &Form| form.is_positive_at([0.0; 2]) == Some(true);
-                if lowers && forms.farthest < self.known_range && forms.own().iter().all(met) {
+                if lowers && forms.farthest < self.known_range && forms.conditions().iter().all(met) {
                     self.known_range = forms.farthest;
                 }
                 self.bounds.push(forms.bounds());
@@ -86,12 +86,12 @@ impl<'a> Neighbourhood<'a> {
         }
     }
 
-    /// Displacements of at most `reach` cells just inside the corners of a face.
-    pub(crate) fn displacements_inside_corners(&self, face: usize, reach: f64) -> Vec<[f64; 2]> {
-        displacements_inside_corners(self.sensor, self.aim, self.faces[face].face, reach)
+    /// Displacements of at most `max_cells` cells, just inside the corners of a face.
+    pub(crate) fn displacements_inside_corners(&self, face: usize, max_cells: f64) -> Vec<[f64; 2]> {
+        displacements_inside_corners(self.sensor, self.aim, self.faces[face].face, max_cells)
     }
 
-    /// Sees to it that all that may be met within `range` is known; says whether there is more than before.
+    /// Extends the known faces to `range`, metres; returns whether there are new ones.
     pub(crate) fn extend_to(&mut self, range: f64) -> bool {
         if range <= self.known_range {
             return false;
@@ -103,14 +103,14 @@ impl<'a> Neighbourhood<'a> {
         before < self.faces.len() + self.beside.len()
     }
 
-    /// Sees to it that all that may be met is known.
+    /// Extends the known faces to the sensor's maximum range.
     pub(crate) fn extend_to_max_range(&mut self) {
         self.extend_to(self.sensor.max_range());
     }
 
-    /// The faces that the ray displaced so (by at most a cell) meets first, exactly, by their indices and in
-    /// ascending order of their identities: of the known ones, hence of all if one of them is met within the
-    /// reach.
+    /// The faces that the ray displaced by `at` (at most a cell) meets first, exactly: indices in ascending order of
+    /// the face ids. Only known faces count; if one of them is met within the known range, these are the nearest of
+    /// all.
     pub(crate) fn nearest_at(&self, at: [f64; 2]) -> Vec<usize> {
         let exact = OnceCell::new();
         let exact =
@@ -152,7 +152,7 @@ impl<'a> Neighbourhood<'a> {
     /// Whether a displaced ray meets a face.
     fn is_met<'r>(&self, forms: &FaceForms<'_>, at: [f64; 2], exact: impl Fn() -> &'r ExactRay<'r>) -> bool {
         let mut certain = true;
-        for form in forms.own() {
+        for form in forms.conditions() {
             match form.is_positive_at(at) {
                 Some(true) => {}
                 Some(false) => return false,
@@ -162,11 +162,11 @@ impl<'a> Neighbourhood<'a> {
         certain || forms.face.is_met_by(exact(), self.sensor.max_range())
     }
 
-    /// The range of a displaced ray, metres, or `None` for a miss. All must be known.
+    /// The range of a displaced ray, metres, or `None` for a miss. All faces must be known.
     pub(crate) fn range_at(&self, at: [f64; 2]) -> Option<f64> {
         let nearest = *self.nearest_at(at).first()?;
         let (range, doubt) = self.faces[nearest].range_at(&self.ray, at);
-        // Far finer than the jumps that are looked for; else from the exact polynomials.
+        // An f64 is far finer than the jumps searched for; otherwise the exact polynomials decide.
         if doubt < 1.0 / (1u64 << 30) as f64 {
             return Some(range);
         }
@@ -174,7 +174,7 @@ impl<'a> Neighbourhood<'a> {
         Some(self.faces[nearest].face.range(&exact))
     }
 
-    /// The faces on the other side of edge `k` of a face, of those that are known.
+    /// The known faces on the other side of edge `k` of a face.
     pub(crate) fn mates(&mut self, index: usize, k: usize) -> Vec<EdgeMate> {
         self.edges.catch_up(&self.faces, &self.beside);
         let corners = self.faces[index].face.corners;
@@ -182,17 +182,17 @@ impl<'a> Neighbourhood<'a> {
     }
 }
 
-/// The edges of faces by the positions of their ends: meshes need no common indices for their faces to be
-/// neighbours.
+/// The edges of faces, found by the positions of their ends: neighbouring faces need no common vertex indices.
 #[derive(Debug, Default)]
 struct EdgeIndex {
-    /// (hash of both ends in order, face, edge), sorted; the face counts through `faces` or, with the highest
-    /// bit set, through `beside`.
+    /// (hash of both ends in order, face, edge), sorted. The face is an index into `faces` or, with [`BESIDE_BIT`]
+    /// set, into `beside`.
     sorted: Vec<(u64, u32, u32)>,
     faces: usize,
     beside: usize,
 }
 
+/// The bit that marks a face as one of `beside`.
 const BESIDE_BIT: u32 = 1 << 31;
 
 /// A position as a key: -0 and +0 are one.
@@ -200,14 +200,14 @@ fn key(corner: [f32; 3]) -> [u32; 3] {
     corner.map(|coordinate| (coordinate + 0.0).to_bits())
 }
 
-/// Mixes both ends of an edge, in order.
+/// A hash of both ends of an edge, in order.
 fn hash(from: [f32; 3], to: [f32; 3]) -> u64 {
     let parts = key(from).into_iter().chain(key(to));
     parts.fold(0, |hash, part| (hash ^ u64::from(part)).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29))
 }
 
 impl EdgeIndex {
-    /// Takes in the faces that came since.
+    /// Adds the faces that are new since the last call.
     fn catch_up(&mut self, faces: &[FaceForms<'_>], beside: &[&Face]) {
         if (self.faces, self.beside) == (faces.len(), beside.len()) {
             return;
@@ -225,6 +225,7 @@ impl EdgeIndex {
         (self.faces, self.beside) = (faces.len(), beside.len());
     }
 
+    /// The faces with an edge from `from` to `to`.
     fn find(&self, from: [f32; 3], to: [f32; 3], faces: &[FaceForms<'_>], beside: &[&Face]) -> Vec<EdgeMate> {
         let hash = hash(from, to);
         let start = self.sorted.partition_point(|&(other, ..)| other < hash);

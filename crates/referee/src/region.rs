@@ -3,19 +3,19 @@
 use crate::displacement::max_norm;
 use crate::form::Form;
 
-/// A convex polygon in the square |dx|, |dy| <= 1, from the linear parts of some forms: good enough to say
-/// where to look, not to prove.
+/// A convex polygon in the square |dx|, |dy| <= 1, from the linear parts of some forms. It says where to search; it
+/// proves nothing.
 #[derive(Debug)]
 pub(crate) struct Region {
     pub(crate) corners: Vec<[f64; 2]>,
-    /// Its point nearest to the origin by the larger of |dx| and |dy|.
+    /// The point of least max norm.
     pub(crate) near: [f64; 2],
-    /// The mean of its corners.
+    /// The mean of the corners.
     pub(crate) middle: [f64; 2],
 }
 
 impl Region {
-    /// `None` if it is empty.
+    /// The region where all forms hold; `None` if it is empty.
     pub(crate) fn of(forms: &[Form]) -> Option<Self> {
         let mut corners = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         for form in forms {
@@ -43,7 +43,7 @@ impl Region {
     }
 }
 
-/// Between which dx all forms hold at `dy`, or `None` if nowhere in |dx| <= 1.
+/// The interval of dx in which all forms hold at `dy`; `None` if it is empty in |dx| <= 1.
 pub(crate) fn holds_between(forms: &[Form], dy: f64) -> Option<[f64; 2]> {
     let (mut from, mut to) = (-1.0_f64, 1.0_f64);
     for form in forms {
@@ -60,13 +60,13 @@ pub(crate) fn holds_between(forms: &[Form], dy: f64) -> Option<[f64; 2]> {
     if from <= to { Some([from, to]) } else { None }
 }
 
-/// The point of least [`size`] on the sides of a polygon.
+/// The point of least [`max_norm`] on the sides of a polygon.
 fn nearest(corners: &[[f64; 2]]) -> [f64; 2] {
     let mut near = corners[0];
     for (k, &here) in corners.iter().enumerate() {
         let next = corners[(k + 1) % corners.len()];
         let (ux, uy) = (next[0] - here[0], next[1] - here[1]);
-        // On a side it is least at an end, where a part vanishes, or where both are equal.
+        // On a side the norm is least at an end, where a part vanishes, or where both are equal.
         let cuts = [
             0.0,
             -here[0] / ux,

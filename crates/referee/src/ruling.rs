@@ -91,7 +91,7 @@ impl Referee<'_> {
         let ray = MovingRay::new(sensor, aim);
         let mut tried = vec![];
         for face in nearest {
-            for form in FaceForms::new(&ray, face).own() {
+            for form in FaceForms::new(&ray, face).conditions() {
                 if form.holds_within() < lateral {
                     let away = |slope: f64| if slope > 0.0 { -lateral } else { lateral };
                     tried.push([away(form.x), away(form.y)]);
@@ -117,7 +117,7 @@ impl Referee<'_> {
         tolerance: Tolerance,
     ) -> Option<Displacement> {
         let ray = MovingRay::new(sensor, aim);
-        let forms = FaceForms::new(&ray, face).own().map(|form| form.scaled(tolerance.lateral));
+        let forms = FaceForms::new(&ray, face).conditions().map(|form| form.scaled(tolerance.lateral));
         let mut tried = vec![[0.0, 0.0]];
         if let Some(region) = Region::of(&forms) {
             // Its nearest point may be judged outside by a hair: try on towards its middle, and its corners.

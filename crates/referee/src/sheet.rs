@@ -59,7 +59,7 @@ struct ProvenRadii {
 
 impl ProvenRadii {
     fn of(face: &FaceForms<'_>, centre: [f64; 2]) -> Self {
-        let own = face.own().map(|form| form.about(centre));
+        let own = face.conditions().map(|form| form.about(centre));
         let [a, b, c, front, plane, range] = own;
         let edges = [a, b, c];
         let others = [front, plane, range];
@@ -124,8 +124,9 @@ impl Neighbourhood<'_> {
     pub(crate) fn possible(&mut self, centre: [f64; 2], half: f64) -> (bool, Vec<usize>) {
         // The nearest face's sheet may end, at a silhouette, with another behind it that does not.
         let nearest = self.nearest_at(centre);
-        let is_met =
-            |face: &FaceForms<'_>| face.own().iter().all(|form| form.is_positive_at(centre) == Some(true));
+        let is_met = |face: &FaceForms<'_>| {
+            face.conditions().iter().all(|form| form.is_positive_at(centre) == Some(true))
+        };
         let mut starts = nearest.first().copied().into_iter().collect::<Vec<_>>();
         if let Some(&first) = nearest.first() {
             let others = (0..self.faces.len()).filter(|&index| index != first && is_met(&self.faces[index]));

@@ -116,7 +116,7 @@ impl Neighbourhood<'_> {
     /// The place on edge `k` of a face, `s` of the way along it.
     fn end_at(&self, (index, k): (usize, usize), s: f64) -> Option<SurfaceEnd> {
         let face = &self.faces[index];
-        let edge = &face.own()[k];
+        let edge = &face.conditions()[k];
         let at = face.edge_point(&self.ray, k, s);
         let slope = [edge.x + edge.xy * at[1], edge.y + edge.xy * at[0]];
         outward(slope).map(|outward| SurfaceEnd { at, outward, edge: Some((index, k)), s })
@@ -126,13 +126,13 @@ impl Neighbourhood<'_> {
     fn ends(&mut self) -> Vec<SurfaceEnd> {
         let mut ends = Vec::new();
         for index in 0..self.faces.len() {
-            if self.faces[index].own().iter().any(|form| form.fails_within() >= 1.0) {
+            if self.faces[index].conditions().iter().any(|form| form.fails_within() >= 1.0) {
                 continue;
             }
             for k in 0..3 {
                 let mates = self.mates(index, k);
                 let shows_front = |mate: &EdgeMate| match mate {
-                    EdgeMate::Near(mate) => self.faces[*mate].own()[3].holds_within() >= 1.0,
+                    EdgeMate::Near(mate) => self.faces[*mate].conditions()[3].holds_within() >= 1.0,
                     EdgeMate::Beside => true,
                 };
                 if !mates.iter().any(shows_front) {
@@ -194,7 +194,7 @@ impl Neighbourhood<'_> {
 
     /// Points where a condition other than an edge ends a face.
     fn points_of_limit(&self, index: usize, part: usize, ends: &mut Vec<SurfaceEnd>) {
-        let all = self.faces[index].own();
+        let all = self.faces[index].conditions();
         let limit = &all[part];
         if limit.holds_within() >= 1.0 {
             return;

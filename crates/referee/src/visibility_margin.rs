@@ -163,7 +163,7 @@ impl<'a> VisibilitySearch<'a> {
         if !ground.is_front_seen {
             return !self.visible;
         }
-        let own = near.faces[index].own().map(|form| form.about(square.middle));
+        let own = near.faces[index].conditions().map(|form| form.about(square.middle));
         let lands = ground.lands.map(|form| form.about(square.middle));
         // Certainly not all of the first `forms`, where the face is hit.
         let fail = |forms: &[Form]| {
@@ -197,7 +197,8 @@ impl<'a> VisibilitySearch<'a> {
         };
         (0..near.faces.len()).any(|start| {
             let first = &near.faces[start];
-            let is_met = first.own().iter().all(|form| form.is_positive_at(square.middle) == Some(true));
+            let is_met =
+                first.conditions().iter().all(|form| form.is_positive_at(square.middle) == Some(true));
             is_met
                 && is_beyond(first.face)
                 && near
@@ -218,7 +219,7 @@ impl<'a> VisibilitySearch<'a> {
         let mut occluders = Vec::new();
         let cannot_land = lands.iter().any(|form| form.fails_within() >= 1.0);
         if is_front_seen && !cannot_land {
-            let own = self.near.faces[index].own();
+            let own = self.near.faces[index].conditions();
             let bundle = self.ways(face, &parts);
             self.referee.bvh.visit(&bundle, |other| {
                 if other.id != face.id

@@ -99,7 +99,7 @@ fn what_a_form_is_certain_of_is_exact() {
         }
         let [one, other] = [&faces[0], &faces[1]].map(|face| FaceForms::new(&ray, face));
         let limit = other.closest(&ray).clamp(0.1, 20.0);
-        let mut forms = one.own().to_vec();
+        let mut forms = one.conditions().to_vec();
         forms.extend([one.at_or_before(&other), one.within(&ray, limit)]);
         for (kind, form) in forms.iter().enumerate() {
             let centre = [random.part(), random.part()];

@@ -138,7 +138,7 @@ fn errors_and_bends_are_those_of_the_page() {
         let normal = e[2].cross(e[0]);
         for k in 0..3 {
             let moment = v[k].cross(e[k]);
-            let edge = one.own()[k];
+            let edge = one.conditions()[k];
             near(edge.constant, -q.dot(moment));
             near(edge.x, -ray.step[0] * moment.x);
             // The start moves by h along y: V by -h, V x E by -h (E_z, 0, -E_x).
@@ -150,7 +150,7 @@ fn errors_and_bends_are_those_of_the_page() {
         let (k, s0) = (sum(e[2]) * sum(e[0]), s[0]);
         let (nv, nv_y) = (normal.dot(v[0]), -normal.y * h);
         let (nq, nq_x, nq_y) = (normal.dot(q), normal.x * ray.step[0], normal.y * ray.step[1]);
-        let [_, _, _, front, plane, range] = *one.own();
+        let [_, _, _, front, plane, range] = *one.conditions();
         assert_eq!([front.constant, front.x, front.y, front.xy], [-nq, -nq_x, -nq_y, 0.0]);
         let f = ray.plane;
         near(plane.constant, f * nq - nv);
@@ -171,7 +171,7 @@ fn errors_and_bends_are_those_of_the_page() {
         loose(plane.error, 256.0 * U * k * (f * big_q + s0));
         loose(range.error, 256.0 * U * k * big_q * (m + s0));
         loose(range.bend, (nv.abs() + nv_y.abs() + 256.0 * U * k * s0) * ray.length_bend);
-        assert_eq!([front.bend, plane.bend, one.own()[0].bend], [0.0; 3]);
+        assert_eq!([front.bend, plane.bend, one.conditions()[0].bend], [0.0; 3]);
         assert_eq!(one.within(&ray, m).constant, range.constant);
         near(one.within(&ray, 5.0).constant, nv * l - 5.0 * nq);
 
@@ -295,7 +295,7 @@ fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
         let is_beside = |hair: f64| {
             let position = DVec3::new(-hair * f64::from(dx), -hair * f64::from(dy), 0.0);
             let ray = MovingRay::new(&camera(position), aim(2, 1));
-            Placed::of(&ray, &face).is_beside(&ray)
+            FaceInSensorFrame::of(&ray, &face).is_beside(&ray)
         };
         assert!(!is_beside(-10.0 * error) && !is_beside(0.0) && !is_beside(0.8 * error), "{x} {y}");
         assert!(is_beside(1.2 * error) && is_beside(1.0), "{x} {y}");
@@ -310,7 +310,7 @@ fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
         let is_beside = |hair: f64| {
             let position = DVec3::new(-hair * f64::from(dx), -hair * f64::from(dy), 0.0);
             let ray = MovingRay::new(&beam(position), aim(2, 3));
-            Placed::of(&ray, &face).is_beside(&ray)
+            FaceInSensorFrame::of(&ray, &face).is_beside(&ray)
         };
         assert!(!is_beside(-10.0 * error) && !is_beside(0.0) && !is_beside(0.8 * error), "{x} {y}");
         assert!(is_beside(1.2 * error) && is_beside(1.0), "{x} {y}");
@@ -320,7 +320,7 @@ fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
     let error = 32.0 * U * (3.0 + 2.0);
     let is_beside = |hair: f64| {
         let ray = MovingRay::new(&camera(DVec3::new(0.0, 0.0, hair)), aim(2, 1));
-        Placed::of(&ray, &face).is_beside(&ray)
+        FaceInSensorFrame::of(&ray, &face).is_beside(&ray)
     };
     assert!(!is_beside(0.0) && !is_beside(0.8 * error) && is_beside(1.2 * error));
 }
