@@ -1,4 +1,14 @@
-//! Intersection.
+//! The intersection of a ray with a face's plane, as polynomials, and its exact values.
+//!
+//! With the ray (O, s, D, sigma) of `ray`, h = n.a' and a = n.D of `face`, and k the distance of the SPP:
+//!
+//! | | | exactly |
+//! | --- | --- | --- |
+//! | range | R = h / (s a) abs(D) | root of h^2 D^2 / (s a)^2 |
+//! | depth | t k, t = h sigma / (s a) | quotient |
+//! | point | P = (O a + h D) / (s a) | quotients |
+//! | normal | n / abs(n) | roots of n_k^2 / n^2 |
+//! | incidence | cos(psi) = -a / (abs(n) abs(D)) | root of a^2 / (n^2 D^2) |
 
 use std::cmp::Ordering;
 
@@ -10,7 +20,7 @@ use crate::ray::ScaledRay;
 use crate::rounding::{Rounded, quotient, root};
 use crate::vector::Vector;
 
-/// A ray and a face's plane, as the values need them.
+/// The polynomials of a ray and a face's plane from which all values follow.
 #[derive(Debug, Clone)]
 pub(crate) struct Intersection<T> {
     pub(crate) ray: ScaledRay<T>,
@@ -47,7 +57,7 @@ impl<T: Number> Intersection<T> {
     }
 }
 
-/// The values without any doubt, and slowly.
+/// The values by exact arithmetic alone, which is slow.
 impl Intersection<Dyadic> {
     pub(crate) fn range(&self) -> Rounded {
         let sign = sign_of(&self.height.mul(&self.scale));
@@ -69,12 +79,12 @@ impl Intersection<Dyadic> {
     }
 }
 
-/// The sign of a root with the sign of `x`.
+/// The sign of `x`, for a root; 0 counts as positive.
 pub(crate) fn sign_of(x: &Dyadic) -> Sign {
     if x.sign() == Some(Ordering::Less) { Sign::Negative } else { Sign::Positive }
 }
 
-/// Minus a number.
+/// -x.
 pub(crate) fn minus<T: Number>(x: &T) -> T {
     T::of(0.0).sub(x)
 }

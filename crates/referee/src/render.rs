@@ -1,6 +1,4 @@
-//! The referee as a renderer: slow, and right about every face.
-//!
-//! Which face is nearest is exact, and every value is correctly rounded.
+//! The referee as a renderer: slow, exact about every face, and correctly rounded in every value.
 
 use std::time::Instant;
 
@@ -9,7 +7,7 @@ use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, SensorId, Sta
 use crate::rounding::Format;
 use crate::verdict::Referee;
 
-/// The exact verdict on every cell, as maps.
+/// A [`Renderer`] that gives the referee's own answers.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ExactRenderer;
 

@@ -1,9 +1,8 @@
 //! Exact quotients and square roots, correctly rounded to f64 and to f32. Nothing here is approximate.
 //!
-//! p / q is cut off after at least 70 bits, and whether anything was cut off is known from the remainder; the root
-//! likewise: R = floor(sqrt(p / q)) in units of its last place, and it is exact if R^2 = p / q. With 70 bits and
-//! that one more piece of knowledge every rounding to 53 or fewer bits is decided, a number exactly between two
-//! neighbours included.
+//! p / q is cut off after at least 70 bits, and the remainder tells whether it is exact. The same holds for the root:
+//! R = floor(sqrt(p / q)) in units of its last place is exact if R^2 = p / q. 70 bits and this flag decide every
+//! rounding to 53 or fewer bits, also that of a number exactly between two neighbours.
 
 use std::cmp::Ordering;
 
@@ -12,17 +11,17 @@ use dashu_int::{Sign, UBig};
 
 use crate::number::Dyadic;
 
-/// The f64 nearest to a real number, and the f32 nearest to that same number (not to the f64); ties go to the
-/// even one, as IEEE 754 has it.
+/// A real number, correctly rounded: the nearest f64, and the f32 nearest to the number itself (not to the f64). Ties
+/// go to the even neighbour, as in IEEE 754.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rounded {
-    /// Nearest f64.
+    /// The nearest f64.
     pub double: f64,
-    /// Nearest f32.
+    /// The nearest f32.
     pub single: f32,
 }
 
-/// One of the two formats.
+/// A floating-point format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// IEEE 754 binary64.
@@ -32,10 +31,10 @@ pub enum Format {
 }
 
 impl Rounded {
-    /// Exactly 0.
+    /// The number 0.
     pub const ZERO: Self = Self { double: 0.0, single: 0.0 };
 
-    /// The nearest number of a format, which is an f64 either way.
+    /// The number in a format; an f32 is returned as f64.
     pub fn in_format(&self, format: Format) -> f64 {
         match format {
             Format::Double => self.double,
@@ -43,12 +42,12 @@ impl Rounded {
         }
     }
 
-    /// The f64 nearest to a number and on which side of it the number lies, which settles the f32: the midpoints
-    /// between f32 numbers are f64 numbers, so only where the f64 is one of them the side matters.
+    /// The rounding of a number from its nearest f64 and the side of that f64 on which the number lies. The side
+    /// matters only where the f64 is a midpoint of two f32.
     pub(crate) fn beside(double: f64, side: Ordering) -> Self {
         let single = double as f32;
         let away = double - f64::from(single);
-        // The neighbour that is as near, if there is one.
+        // The other neighbour, if it is as near.
         let other = if away > 0.0 { single.next_up() } else { single.next_down() };
         let is_midpoint = away != 0.0 && f64::from(other) - double == away;
         let upper = if away > 0.0 { other } else { single };
@@ -62,22 +61,22 @@ impl Rounded {
     }
 }
 
-/// The leading bits of a real number, and whether they are all of it.
+/// The leading bits of a real number, and whether they are the whole number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct LeadingBits {
     is_negative: bool,
-    /// At least [`MIN_BITS`] of them if the number is not exact.
+    /// At least [`MIN_BITS`] bits if the number is not exact.
     bits: u128,
-    /// Of the last bit.
+    /// The exponent of the last bit.
     exponent: i64,
     is_exact: bool,
 }
 
-/// Bits that decide any rounding to 53, with room to spare.
+/// Number of bits that decides any rounding to 53, with room to spare.
 const MIN_BITS: usize = 70;
 
 impl LeadingBits {
-    /// (magnitude + some part of 1 unless it is exact) 2^exponent. What is not exact has [`MIN_BITS`] bits or more.
+    /// (magnitude + a part of 1, unless it is exact) 2^exponent. An inexact magnitude has at least [`MIN_BITS`] bits.
     pub(crate) fn of(is_negative: bool, magnitude: UBig, exponent: i64, is_exact: bool) -> Self {
         debug_assert!(is_exact || magnitude.bit_len() >= MIN_BITS, "bits of a number that was cut off");
         let dropped = magnitude.bit_len().saturating_sub(128);
@@ -86,17 +85,17 @@ impl LeadingBits {
         Self { is_negative, bits, exponent: exponent + dropped as i64, is_exact }
     }
 
-    /// Rounded to both formats.
+    /// The number rounded to both formats.
     pub(crate) fn rounded(&self) -> Rounded {
-        // Exact: an f32 is an f64.
+        // Exact, because every f32 is an f64.
         Rounded { double: self.nearest(53, -1022, 1023), single: self.nearest(24, -126, 127) as f32 }
     }
 
-    /// To the nearest number of so many bits with exponents from `least` to `most`, subnormal below, ties to even.
+    /// The nearest number of `digits` bits with exponents from `least` to `most`, subnormal below, ties to even.
     fn nearest(&self, digits: i64, least: i64, most: i64) -> f64 {
         let signed = |x: f64| if self.is_negative { -x } else { x };
         if self.bits == 0 {
-            // Only 0 itself has no leading bit.
+            // Only 0 has no leading bit.
             return 0.0;
         }
         let leading = self.exponent + 127 - i64::from(self.bits.leading_zeros());
@@ -107,7 +106,7 @@ impl LeadingBits {
         let last = (leading - digits + 1).max(least - digits + 1);
         let dropped = last - self.exponent;
         if dropped <= 0 {
-            // Short, so exact, and it fits.
+            // All bits fit: exact.
             return signed(libm::scalbn(self.bits as f64, self.exponent as i32));
         }
         if dropped > 128 {
@@ -123,7 +122,7 @@ impl LeadingBits {
         };
         let kept = kept + u128::from(up);
         let value = libm::scalbn(kept as f64, last as i32);
-        // One more may have carried it beyond the largest.
+        // The carry may have gone beyond the largest number.
         let too_large = libm::scalbn(1.0, most as i32) * 2.0;
         signed(if value >= too_large { f64::INFINITY } else { value })
     }
@@ -135,14 +134,14 @@ pub(crate) fn quotient(p: &Dyadic, q: &Dyadic) -> Rounded {
     if p.is_zero() {
         return Rounded::ZERO;
     }
-    // As many bits more than q as it takes.
+    // Shift p so that the quotient has enough bits.
     let shift = (q.bit_len() + MIN_BITS).saturating_sub(p.bit_len());
     let (whole, rest) = (p << shift).div_rem(q);
     let exponent = exponent_p - exponent_q - shift as i64;
     LeadingBits::of(sign_p != sign_q, whole, exponent, rest.is_zero()).rounded()
 }
 
-/// The square root of p / q, neither of them negative and q not 0, with this sign; correctly rounded.
+/// The square root of p / q with the given sign, correctly rounded; p >= 0 and q > 0.
 pub(crate) fn root(sign: Sign, p: &Dyadic, q: &Dyadic) -> Rounded {
     let ((_, p, exponent_p), (_, q, exponent_q)) = (p.parts(), q.parts());
     if p.is_zero() {

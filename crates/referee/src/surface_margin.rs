@@ -1,12 +1,11 @@
-//! How far a ray is from a jump of the range: the margin `surface`.
+//! The margin `surface`: the least displacement at which the nearest surface is not one continuous sheet any more.
 //!
-//! The margin is the least displacement, in cells, within which the nearest surface does not stay one
-//! continuous sheet: the ray comes to miss, or to hit, or its range jumps. Edges *inside* a surface do not
-//! count, nor lines where two surfaces pass through one another: there the range is continuous.
+//! There the ray changes between hit and miss, or its range jumps. Edges *inside* a surface do not count, nor lines
+//! where two surfaces intersect: there the range is continuous.
 //!
-//! lo starts as the largest square that `sheet` proves, or the margin of the face if that is larger. A witness is
-//! looked for where surfaces end. If it is not found within twice lo, the unit square is subdivide (`divide`), and
-//! its parts are proven from their own middles. A range that is continuous on each of two closed squares that
+//! lo starts as the largest square that `sheet` proves, or as the margin of the face if that is larger. A witness is
+//! searched for where surfaces end. If none is found within twice lo, the unit square is subdivided (`subdivision`),
+//! and its parts are proven from their own middles. A range that is continuous on each of two closed squares that
 //! share a side is continuous on both, so a jump can only be in a part that is not proven.
 
 use crate::displacement::max_norm;
@@ -16,35 +15,37 @@ use crate::neighbourhood::{EdgeMate, Neighbourhood};
 use crate::region::Region;
 use crate::subdivision::{Square, is_tight, subdivide};
 
-/// Two ranges at almost one displacement whose ratio differs from 1 by more than this have a jump between
-/// them. CHOICE: 2^-20 is tuned: far below any step that matters, and far above what a slope does over `MAX_JUMP_WIDTH_CELLS`.
+/// Two ranges at almost the same displacement with a greater relative difference have a jump between them. CHOICE:
+/// 2^-20 is tuned. It is far below any step that matters, and far above the change of range by a slope over
+/// [`MAX_JUMP_WIDTH_CELLS`].
 const MIN_RELATIVE_JUMP: f64 = 1.0 / (1u32 << 20) as f64;
 
-/// How far to both sides of an end a witness looks first, in cells.
+/// Distance to both sides of an end at which a witness is searched for first, cells.
 const WITNESS_OFFSET_CELLS: f64 = 1.0 / (1u32 << 30) as f64;
 
-/// A jump is one that is left between two rays so close, in cells. A face seen edge-on whose range grows by
-/// thousands per cell has none.
+/// A step between two rays is a jump if it remains when they are this close, cells. A face seen edge-on, whose range
+/// grows by thousands of metres per cell, has none.
 const MAX_JUMP_WIDTH_CELLS: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Points of an edge at which a witness is looked for.
+/// Number of evenly spaced points of an edge at which a witness is searched for.
 const POINTS_PER_EDGE: u32 = 16;
 
 /// A place where a surface may end.
 #[derive(Debug, Clone, Copy)]
 struct SurfaceEnd {
     at: [f64; 2],
-    /// A unit vector across.
+    /// The unit vector across the end.
     outward: [f64; 2],
-    /// The edge that it lies on, if any, as (face, corner), and where.
+    /// The edge that it lies on, if any, as (face, corner).
     edge: Option<(usize, usize)>,
+    /// The fraction of the edge at which it lies.
     s: f64,
 }
 
 impl Neighbourhood<'_> {
-    /// The margin of the surface, from the nearest faces and theirs.
+    /// The margin of the surface, from the nearest faces and their margin.
     pub(crate) fn surface_margin(&mut self, nearest: &[usize], face: &Margin) -> Margin {
-        // Whatever ends a miss is a hit.
+        // A miss ends with a hit: both margins are the same.
         if face.lo >= 1.0 || nearest.is_empty() {
             return *face;
         }
@@ -84,8 +85,8 @@ impl Neighbourhood<'_> {
         self.jump_between(aside(-1.0), aside(1.0), lo)
     }
 
-    /// A nearer witness, where an edge that is hidden at one place and not at the next comes out from behind
-    /// another surface, or through it: there its jump begins.
+    /// A nearer witness at the place where a jump begins: an edge hidden at one place and visible at the next comes
+    /// out from behind another surface, or through it.
     fn where_it_begins(&self, ends: &[SurfaceEnd], lo: f64, witness: Option<[f64; 2]>) -> Option<[f64; 2]> {
         let mut best = witness;
         for pair in ends.windows(2) {
@@ -113,7 +114,7 @@ impl Neighbourhood<'_> {
         best
     }
 
-    /// The place on edge `k` of a face, `s` of the way along it.
+    /// The place at the fraction `s` of edge `k` of a face.
     fn end_at(&self, (index, k): (usize, usize), s: f64) -> Option<SurfaceEnd> {
         let face = &self.faces[index];
         let edge = &face.conditions()[k];
@@ -122,7 +123,7 @@ impl Neighbourhood<'_> {
         outward(slope).map(|outward| SurfaceEnd { at, outward, edge: Some((index, k)), s })
     }
 
-    /// Places on the ends of surfaces: on edges that no front shares, and where the plane or the range ends a face.
+    /// Places on the ends of surfaces: on edges without a second front, and where the plane or the range ends a face.
     fn ends(&mut self) -> Vec<SurfaceEnd> {
         let mut ends = Vec::new();
         for index in 0..self.faces.len() {
@@ -146,10 +147,10 @@ impl Neighbourhood<'_> {
         ends
     }
 
-    /// Points of an edge, and among them those that may be nearest: where it crosses an axis or a diagonal.
+    /// Points of an edge, among them those that may be nearest: where it crosses an axis or a diagonal.
     fn points_of_edge(&self, index: usize, k: usize, ends: &mut Vec<SurfaceEnd>) {
         let at = |s: f64| self.faces[index].edge_point(&self.ray, k, s);
-        // The part of it in the square, by the sides that a straight line crosses. A beam bends it but little.
+        // The part of the edge in the square, by the sides that a straight line crosses. A beam bends it but little.
         let (a, b) = (at(0.0), at(1.0));
         let mut cuts: Vec<f64> = vec![0.0, 1.0];
         let across = |f: &dyn Fn([f64; 2]) -> f64| {
@@ -186,7 +187,7 @@ impl Neighbourhood<'_> {
             (0..POINTS_PER_EDGE)
                 .map(|step| from + length * (f64::from(step) + 0.5) / f64::from(POINTS_PER_EDGE)),
         );
-        // Tips: a jump begins at nothing where an edge comes out of another surface, or at a corner.
+        // Ends of the edge: a jump grows from zero where an edge comes out of another surface, or at a corner.
         cuts.extend([1e-6, 1e-4, 1e-2].into_iter().flat_map(|s| [from + s * length, to - s * length]));
         cuts.sort_by(f64::total_cmp);
         ends.extend(cuts.into_iter().filter_map(|s| self.end_at((index, k), s)));
@@ -199,7 +200,7 @@ impl Neighbourhood<'_> {
         if limit.holds_within() >= 1.0 {
             return;
         }
-        // A thin region along the end, from which its points are taken.
+        // The points are taken from a thin region along the end.
         let mut forms: Vec<Form> = all.to_vec();
         forms.push(limit.negated());
         let Some(region) = Region::of(&forms) else { return };
@@ -215,7 +216,7 @@ impl Neighbourhood<'_> {
         }
     }
 
-    /// The farther of two displaced rays with a jump between them, if there is one beyond `lo`. All must be known.
+    /// The farther of two displaced rays with a jump between them, if it lies beyond `lo`. All faces must be known.
     fn jump_between(&self, a: [f64; 2], b: [f64; 2], lo: f64) -> Option<[f64; 2]> {
         let (mut a, mut b) = (a, b);
         let (mut range_a, mut range_b) = (self.range_at(a), self.range_at(b));
@@ -229,7 +230,7 @@ impl Neighbourhood<'_> {
             }
             let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
             let range = self.range_at(middle);
-            // On with the half that holds the greater step.
+            // Continue with the half that holds the greater step.
             if relative_step(range_a, range) >= relative_step(range, range_b) {
                 (b, range_b) = (middle, range);
             } else {
@@ -248,7 +249,7 @@ impl Neighbourhood<'_> {
     }
 }
 
-/// How much two ranges differ, relatively; infinitely if one is a miss and the other is not.
+/// The relative difference of two ranges; infinite if exactly one is a miss.
 fn relative_step(a: Option<f64>, b: Option<f64>) -> f64 {
     match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() / a.min(b),
@@ -257,7 +258,7 @@ fn relative_step(a: Option<f64>, b: Option<f64>) -> f64 {
     }
 }
 
-/// A unit vector against a slope.
+/// The unit vector against a slope.
 fn outward([x, y]: [f64; 2]) -> Option<[f64; 2]> {
     let length = (x * x + y * y).sqrt();
     (length > 0.0).then(|| [-x / length, -y / length])

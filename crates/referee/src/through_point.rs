@@ -1,10 +1,10 @@
-//! The displacement whose ray goes through a given point, correctly rounded; and displacements just inside the
+//! The displacement whose ray passes through a given point, correctly rounded, and displacements just inside the
 //! corners of a face.
 //!
-//! The forms of a face are linear in f64: near a corner that the ray all but meets, they are as uncertain as the
-//! ray is far from it, and where the face is thin there as well, they cannot say where it is. The corner itself is
-//! known without rounding. With N the square of the pose's quaternion and (X, Y, Z) the point in the sensor's
-//! frame times N,
+//! The forms of a face are linear in f64. Near a corner that the ray all but meets, their error is as large as the
+//! ray's distance from it; where the face is also thin, they cannot tell where it is. The corner itself is known
+//! without rounding. With N the square of the pose's quaternion and (X, Y, Z) the point in the sensor's frame times
+//! N,
 //!
 //! ```text
 //! camera   dx = (f_c X - (i + 1/2 - c_x) p_x Z) / (p_x Z)        dy likewise
@@ -12,7 +12,7 @@
 //!          dy = (2 rows Y - (2j + 1 - rows) N T) / (2 N T)
 //! ```
 //!
-//! so that a displacement of 1e-12 cells is known to sixteen places like any other.
+//! so even a displacement of 1e-12 cells is known to sixteen digits.
 
 use std::cmp::Ordering;
 
@@ -26,8 +26,8 @@ use crate::rounding::quotient;
 use crate::vector::{ScaledRotation, Vector};
 
 impl MountedSensor {
-    /// The displacement of the ray of cell (i, j) that goes through a point, in cells; `None` if the point lies in
-    /// the plane through the sensor. Correctly rounded; infinite where f64 ends.
+    /// The displacement of cell (i, j)'s ray that passes through a point, cells, correctly rounded; infinite beyond
+    /// the range of f64. `None` if the point lies in the plane through the sensor.
     fn displacement_through(&self, aim: Aim, point: &Vector<Dyadic>) -> Option<[f64; 2]> {
         let pose = self.pose();
         let rotation = ScaledRotation::<Dyadic>::of(pose.rotation);
@@ -61,29 +61,29 @@ impl MountedSensor {
     }
 }
 
-/// Displacements whose rays go through points of a face near those of its corners that are within `reach`: at the corner
-/// itself, and ever farther into the face, about as far as `reach` allows.
+/// Displacements whose rays pass through points of a face near its corners: each corner within `max_cells` of the
+/// cell's ray, and points farther and farther inside the face, about as far as `max_cells` allows.
 ///
-/// The points are those of the face, not of the square of displacements: a beam bends straight lines, and a point on the
-/// straight way to the middle of a thin face may lie beside it.
+/// The points are chosen on the face, not in the square of displacements: a beam bends straight lines, and a point on
+/// the straight way to the middle of a thin face may lie beside it.
 pub(crate) fn displacements_inside_corners(
     sensor: &MountedSensor,
     aim: Aim,
     face: &Face,
-    reach: f64,
+    max_cells: f64,
 ) -> Vec<[f64; 2]> {
     let corners: [Vector<Dyadic>; 3] = std::array::from_fn(|k| face.corner(k));
     let mut inside = Vec::new();
     for k in 0..3 {
         let [a, b, c] = [0, 1, 2].map(|turn| &corners[(k + turn) % 3]);
         let both = b.sub(a).add(&c.sub(a));
-        // In the face for shares of up to a half.
+        // Inside the face for shares of up to a half.
         let within = |share: f64| {
             sensor
                 .displacement_through(aim, &a.add(&both.scaled(&Dyadic::of(share))))
-                .filter(|at| max_norm(*at) <= reach)
+                .filter(|at| max_norm(*at) <= max_cells)
         };
-        let Some(corner) = sensor.displacement_through(aim, a).filter(|at| max_norm(*at) <= reach) else {
+        let Some(corner) = sensor.displacement_through(aim, a).filter(|at| max_norm(*at) <= max_cells) else {
             continue;
         };
         let Some(quarter) = sensor.displacement_through(aim, &a.add(&both.scaled(&Dyadic::of(0.25)))) else {
@@ -92,7 +92,7 @@ pub(crate) fn displacements_inside_corners(
         let length = max_norm([quarter[0] - corner[0], quarter[1] - corner[1]]);
         inside.push(corner);
         if length > 0.0 && length.is_finite() {
-            let room = ((reach - max_norm(corner)) / length).min(1.0);
+            let room = ((max_cells - max_norm(corner)) / length).min(1.0);
             let shares = [1e-9, 1e-6, 1e-3, 0.03, 0.3, 0.9];
             inside.extend(shares.into_iter().filter_map(|share| within(0.25 * share * room)));
         }

@@ -1,17 +1,7 @@
-//! What a ray meets, as values that are correctly rounded to f64 and to f32.
+//! Values of a hit, correctly rounded to f64 and to f32.
 //!
-//! With the ray (O, s, D, sigma) of `pencil`, h = n.a' and a = n.D of `face`, and k the distance of the SPP:
-//!
-//! | | | exactly |
-//! | --- | --- | --- |
-//! | range | R = h / (s a) abs(D) | root of h^2 D^2 / (s a)^2 |
-//! | depth | t k, t = h sigma / (s a) | quotient |
-//! | point | P = (O a + h D) / (s a) | quotients |
-//! | normal | n / abs(n) | roots of n_k^2 / n^2 |
-//! | incidence | cos(psi) = -a / (abs(n) abs(D)) | root of a^2 / (n^2 D^2) |
-//!
-//! Each is first evaluated in pairs of f64 with a proven error; where that does not decide the rounding, the
-//! exact polynomials do (`rounding`).
+//! Each is first evaluated in pairs of f64 with a proven error. Where that does not decide the rounding, the exact
+//! polynomials of `intersection` do.
 
 use std::cell::{LazyCell, OnceCell};
 use std::cmp::Ordering;
@@ -45,7 +35,7 @@ pub struct RoundedHit {
 }
 
 impl RoundedHit {
-    /// The nearest numbers of a format.
+    /// The values in a format.
     pub fn in_format(&self, format: Format) -> Hit {
         let of = |rounded: Rounded| rounded.in_format(format);
         Hit {
@@ -59,7 +49,7 @@ impl RoundedHit {
     }
 }
 
-/// Where the ray of an aim meets the plane of `face`, whether or not it passes between its sides; `None` if they are
+/// The values where the ray of an aim meets the plane of `face`, inside its edges or not; `None` if they are
 /// parallel, or the face has no area.
 pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<RoundedHit> {
     let fast = Intersection::new(sensor.ray::<DoubleDouble>(aim), face);
@@ -97,15 +87,15 @@ pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<Ro
 }
 
 impl Referee<'_> {
-    /// The values of the face that the ray of cell (i, j) meets first; `None` if there is no such cell, or no hit.
+    /// The values of the first hit of cell (i, j)'s ray; `None` if there is no such cell, or no hit.
     pub fn values(&self, id: SensorId, i: u32, j: u32) -> Option<RoundedHit> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         let nearest = self.nearest(&sensor, aim);
         values(&sensor, aim, nearest.first()?)
     }
 
-    /// The ray of cell (i, j): origin and direction (not a unit: t = 1 is on the SPP), scene frame, metres; `None` if
-    /// there is no such cell.
+    /// The ray of cell (i, j): origin, metres, and direction, scene frame. The direction is not a unit vector: t = 1
+    /// is on the SPP. `None` if there is no such cell.
     pub fn ray(&self, id: SensorId, i: u32, j: u32) -> Option<[[Rounded; 3]; 2]> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         let (fast, exact) = (sensor.ray::<DoubleDouble>(aim), LazyCell::new(|| sensor.ray::<Dyadic>(aim)));
@@ -120,8 +110,8 @@ impl Referee<'_> {
         Some([[0, 1, 2].map(part), [0, 1, 2].map(along)])
     }
 
-    /// The values of the hit of `face` by the ray of cell (i, j); `None` if there is no such cell or face, or the
-    /// ray does not meet it.
+    /// The values where the ray of cell (i, j) meets `face`; `None` if there is no such cell or face, or the ray does
+    /// not meet it. The face need not be the nearest.
     pub fn hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         let face = self.face(face)?;
@@ -129,8 +119,8 @@ impl Referee<'_> {
         is_met.then(|| values(&sensor, aim, &face)).flatten()
     }
 
-    /// The values of where the ray of cell (i, j) meets the plane of `face`, whether or not it passes between its
-    /// sides; `None` if there is no such cell or face, or they are parallel.
+    /// The values where the ray of cell (i, j) meets the plane of `face`, inside its edges or not; `None` if there is
+    /// no such cell or face, or they are parallel.
     pub fn plane_hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         values(&sensor, aim, &self.face(face)?)

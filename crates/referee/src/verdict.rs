@@ -1,4 +1,4 @@
-//! The exact answer for one ray: which faces are nearest, or that there is none.
+//! The referee and its exact verdict on one ray: which faces are nearest, or that there is none.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -12,11 +12,11 @@ use crate::face::{ExactRay, Face};
 use crate::moving_ray::MovingRay;
 use crate::ray::{Aim, MountedSensor};
 
-/// What the contract says of a ray, without rounding.
+/// The contract's answer to a ray, without rounding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verdict {
-    /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same
-    /// point, none if the ray meets no front within its range.
+    /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same point, none
+    /// if the ray meets no front within its range.
     pub faces: Vec<FaceId>,
 }
 
@@ -27,17 +27,17 @@ impl Verdict {
     }
 }
 
-/// Knows the true answer for every ray of a scene.
+/// The exact answers to every ray of a scene.
 #[derive(Debug)]
 pub struct Referee<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) bvh: Bvh,
-    /// Of each beam's central pencils.
+    /// The sum of the weights of each beam's central pencils.
     pub(crate) weight_sums: Vec<Arc<WeightSum>>,
 }
 
 impl<'s> Referee<'s> {
-    /// Prepares to judge the rays of `scene`.
+    /// A referee for `scene`; it builds a bounding volume hierarchy.
     pub fn new(scene: &'s Scene) -> Self {
         let weight_sums = scene.beams().iter().map(|_| Arc::default()).collect();
         Self { scene, bvh: Bvh::build(scene.mesh()), weight_sums }
@@ -48,7 +48,8 @@ impl<'s> Referee<'s> {
         self.verdict_beside(sensor, i, j, Displacement::ZERO)
     }
 
-    /// The exact verdict on the ray that is displaced from cell (i, j) by any finite number of cells.
+    /// The exact verdict on the ray of cell (i, j) displaced by any finite number of cells; `None` if there is no
+    /// such cell.
     pub fn verdict_beside(&self, sensor: SensorId, i: u32, j: u32, by: Displacement) -> Option<Verdict> {
         let sensor = MountedSensor::of(self.scene, sensor)?;
         let (width, height) = sensor.size();
@@ -59,8 +60,8 @@ impl<'s> Referee<'s> {
         Some(Verdict { faces: nearest.iter().map(|face| face.id).collect() })
     }
 
-    /// The faces that a ray displaced from cell (i, j) by at most `radius` cells may meet, and some more, in ascending
-    /// order; `None` if there is no such cell.
+    /// The faces that a ray displaced from cell (i, j) by at most `radius` cells may meet, and possibly others, in
+    /// ascending order; `None` if there is no such cell.
     pub fn faces_near(&self, id: SensorId, i: u32, j: u32, radius: f64) -> Option<Vec<FaceId>> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         let mut near = Vec::new();
@@ -73,14 +74,14 @@ impl<'s> Referee<'s> {
         Some(near)
     }
 
-    /// A sensor and the aim at the middle of its cell (i, j), if there is such a cell.
+    /// The sensor and the aim at the centre of its cell (i, j), if there is such a cell.
     pub(crate) fn sensor_and_aim(&self, id: SensorId, i: u32, j: u32) -> Option<(MountedSensor, Aim)> {
         let sensor = MountedSensor::of(self.scene, id)?;
         let (width, height) = sensor.size();
         (i < width && j < height).then_some((sensor, Aim { i, j, dx: 0.0, dy: 0.0 }))
     }
 
-    /// A face of the mesh.
+    /// A face of the mesh, if the mesh has it.
     pub(crate) fn face(&self, face: FaceId) -> Option<Face> {
         let mesh = self.scene.mesh();
         ((face.0 as usize) < mesh.faces().len()).then(|| Face::of(mesh, face))
@@ -99,7 +100,7 @@ impl<'s> Referee<'s> {
                     Some(Ordering::Greater) => {}
                 }
             }
-            // Nothing farther than the nearest matters from here on.
+            // From here on only faces up to the nearest matter.
             nearest.first().map_or(max_range, |kept| kept.farthest_range(&ray, max_range))
         });
         nearest.sort_by_key(|face| face.id);
@@ -107,12 +108,12 @@ impl<'s> Referee<'s> {
     }
 }
 
-/// The rays that are displaced by at most `radius` cells from an aim, for the tree.
+/// The rays displaced from an aim by at most `radius` cells.
 pub(crate) fn bundle(sensor: &MountedSensor, aim: Aim, radius: f64) -> RayBundle {
     bundle_of(&MovingRay::new(sensor, aim), sensor.max_range(), radius)
 }
 
-/// The same for a ray in f64: good to a few 2^-53, and the tree's slack is far wider.
+/// The same for a ray in f64, whose error is a few 2^-53: the hierarchy's slack is far wider.
 pub(crate) fn bundle_of(ray: &MovingRay, max_range: f64, radius: f64) -> RayBundle {
     let (origin, direction) = ray.line();
     let (start_radius, spread) = ray.spread(radius);
