@@ -22,22 +22,22 @@ use crate::rounding::{Format, Rounded, quotient, root};
 use crate::shares::Shares;
 use crate::verdict::Referee;
 
-/// A [`Return`] whose values are correctly rounded, its flux by either model.
+/// A [`Return`] whose values are correctly rounded, with its flux by either model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoundedReturn {
     /// Whether the camera sees the point.
     pub visible: bool,
-    /// Where it lands.
+    /// The pixel in which the point lands.
     pub pixel: Option<Pixel>,
-    /// r, metres.
+    /// Depth r of the point in the camera, metres.
     pub depth: Rounded,
     /// cos(phi).
     pub off_axis: Rounded,
     /// cos(theta).
     pub emission: Rounded,
-    /// By the model `radiometric`, watts.
+    /// Flux by the model `radiometric`, watts.
     pub radiometric: Flux,
-    /// By the model `eq1`, W/m.
+    /// Flux by the model `eq1`, W/m.
     pub eq1: Flux,
 }
 
@@ -50,7 +50,7 @@ impl RoundedReturn {
         }
     }
 
-    /// The nearest numbers of a format; of a flux that is undecided, one of the two nearest.
+    /// The values in a format; of an undecided flux, one of the two nearest numbers.
     pub fn in_format(&self, format: Format, model: FluxModel) -> Return {
         let of = |rounded: Rounded| rounded.in_format(format);
         Return {
@@ -64,7 +64,7 @@ impl RoundedReturn {
     }
 }
 
-/// A pencil that delivers, to be summed: its ray and face, and the pixel that it lands in.
+/// A pencil that contributes to a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contribution {
     /// Column of the pencil.
@@ -73,7 +73,7 @@ pub struct Contribution {
     pub j: u32,
     /// The face it lights.
     pub face: FaceId,
-    /// The pixel.
+    /// The pixel in which it lands.
     pub pixel: Pixel,
 }
 
@@ -108,12 +108,12 @@ impl Light<'_, '_> {
         FluxFormula { scene: self.referee.scene, shares: &self.shares }
     }
 
-    /// What comes back of pencil (i, j); `None` if there is no such pencil, or it does not hit.
+    /// The return of pencil (i, j); `None` if there is no such pencil, or it does not hit.
     pub fn returned(&self, i: u32, j: u32) -> Option<RoundedReturn> {
         self.returned_of_face(i, j).map(|(_, back)| back)
     }
 
-    /// The same, and the face.
+    /// The return of pencil (i, j), and the face that it hits.
     pub(crate) fn returned_of_face(&self, i: u32, j: u32) -> Option<(FaceId, RoundedReturn)> {
         let sensor = self.beam_with(i, j)?;
         let aim = self.shares.aim(i, j);
@@ -124,8 +124,8 @@ impl Light<'_, '_> {
         Some((face.id, back))
     }
 
-    /// What comes back of pencil (i, j) from where its ray meets the plane of `face`, if the point is seen or not, and
-    /// lands where, as is said; `None` if there is no such pencil or face, or they are parallel.
+    /// The return of pencil (i, j) under the hypothesis that it hits the plane of `face`, with this visibility and
+    /// pixel; `None` if there is no such pencil or face, or they are parallel.
     pub fn returned_as(
         &self,
         i: u32,
@@ -139,7 +139,8 @@ impl Light<'_, '_> {
         self.returned_seen(&sensor, self.shares.aim(i, j), &face, visible, pixel)
     }
 
-    /// What some pencils deliver together; an error if the budget ran out, or there is no such pencil or face.
+    /// The flux that some pencils deliver together; an error if its rounding stays undecided, or if there is no such
+    /// pencil or face.
     pub fn sum(&self, model: FluxModel, contributions: &[Contribution]) -> Flux {
         let lit: Option<Vec<(Contribution, MountedSensor, Face)>> = contributions
             .iter()
@@ -182,11 +183,12 @@ impl Light<'_, '_> {
         (i < columns && j < rows).then_some(sensor)
     }
 
+    /// The point where an aim meets the plane of `face`.
     fn lit_point<'a>(&'a self, sensor: &'a MountedSensor, aim: Aim, face: &'a Face) -> LitPoint<'a> {
         LitPoint { camera: self.referee.scene.camera(), ray: ExactRay::new(sensor, aim), sensor, aim, face }
     }
 
-    /// What comes back of an aim that meets the plane of `face`.
+    /// The return of an aim that meets the plane of `face`, with this visibility and pixel.
     pub(crate) fn returned_seen(
         &self,
         sensor: &MountedSensor,
@@ -234,7 +236,8 @@ impl Light<'_, '_> {
     }
 }
 
-/// The cosine part / sqrt(squared). A point in the projection centre itself is seen under no angle. CHOICE: cosines of 0.
+/// The cosine part / sqrt(squared). CHOICE: a point in the projection centre itself, which has no angle, has cosines
+/// of 0.
 fn cosine(part: &Dyadic, squared: &Dyadic) -> Rounded {
     if squared.sign() == Some(Ordering::Equal) {
         return Rounded::ZERO;

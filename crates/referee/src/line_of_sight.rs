@@ -1,7 +1,8 @@
-//! What the camera sees of a pencil's hit: whether, and where on its image. Exactly.
+//! Line of sight from the camera to a point of a pencil's hit, as polynomials: the contract's conditions for
+//! visibility, and the pixel.
 //!
-//! With the pencil's ray (O, s, D, sigma) and the face it meets, P = O / s + (n.a' / (s n.D)) D. Multiplied by
-//! W = -s n.D > 0 it is polynomial, and so is the line to it from the projection centre c:
+//! With the pencil's ray (O, s, D, sigma) and the face it meets, P = O / s + (n.a' / (s n.D)) D. Multiplied by W = -s
+//! n.D > 0 it is polynomial, and so is the vector to it from the projection centre c:
 //!
 //! ```text
 //! V = W (P - c) = -(O n.D + n.a' D) - W c
@@ -20,8 +21,8 @@
 //! | the other face is met before the point, u < 1 | n.a' W - n.V has the sign opposite to n.V |
 //! | at or beyond the image plane, u >= f / r | n.a' Z - f N n.V is 0 or has the sign of n.V |
 //!
-//! A face that contains P has u = 1: neither the face that is hit nor one that ties with it, nor a back at the
-//! same point, hides it.
+//! A face that contains P has u = 1. So neither the face that is hit, nor one that ties with it, nor a back at the
+//! same point hides P.
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
@@ -36,7 +37,7 @@ use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::rounding;
 use crate::vector::{ScaledRotation, Vector};
 
-/// The line from the camera to a point, as polynomials.
+/// The line of sight from the camera to a point, as polynomials.
 #[derive(Debug, Clone)]
 pub(crate) struct LineOfSight<T> {
     /// c, the projection centre.
@@ -74,8 +75,8 @@ impl<T: Number> LineOfSight<T> {
 
 impl LineOfSight<Interval> {
     /// The parts of the line to the plane of `face` as a function of the displacement from an aim, which is bilinear:
-    /// V = V_0 + V_1 dx + V_2 dy + V_3 dx dy, and W and (X, Y, Z) likewise. Every [`LinePolynomial`] is linear in them, so
-    /// that its values for the four are the coefficients of its own form.
+    /// V = V_0 + V_1 dx + V_2 dy + V_3 dx dy, and W and (X, Y, Z) likewise. Every [`LinePolynomial`] is linear in
+    /// them, so its values for the four parts are the coefficients of its form.
     pub(crate) fn parts(
         sensor: &MountedSensor,
         aim: Aim,
@@ -114,8 +115,8 @@ impl LineOfSight<Interval> {
         })
     }
 
-    /// The coefficients of what the point has to fulfil whatever else there is: to lie beyond the focal length, and
-    /// within each border of the image. All must be positive; 0 will do at the left and upper borders alone.
+    /// The coefficients of the landing conditions: the point lies beyond the focal length and within each border of
+    /// the image. It lands if all are positive; 0 suffices at the left and upper borders alone.
     pub(crate) fn lands(parts: &[Self; 4], camera: &Camera) -> [[Interval; 4]; 5] {
         let border = |axis: usize, border: u32| {
             let border = Border { camera, axis, border };
@@ -142,12 +143,12 @@ impl LineOfSight<Interval> {
     }
 }
 
-/// A polynomial of a line whose sign is asked for.
+/// A polynomial of a line of sight, of which only the sign matters.
 trait LinePolynomial {
     fn value<T: Number>(&self, line: &LineOfSight<T>) -> T;
 }
 
-/// A line in both numbers; the exact one is only made when it is needed.
+/// A line of sight in both numbers; the exact one is formed when it is first needed.
 pub(crate) struct ExactLineOfSight<'a> {
     ray: &'a ExactRay<'a>,
     face: &'a Face,
@@ -159,7 +160,7 @@ pub(crate) struct ExactLineOfSight<'a> {
 }
 
 impl<'a> ExactLineOfSight<'a> {
-    /// The line to where `ray` meets `face`, which it does.
+    /// The line to the point where `ray` meets `face`; it must meet it.
     pub(crate) fn new(ray: &'a ExactRay<'a>, face: &'a Face, camera: &'a Mounted<Camera>) -> Self {
         let is_back = face.shows_back_to(ray);
         let fast = LineOfSight::new(ray.fast(), face, camera, is_back);
@@ -189,7 +190,7 @@ impl<'a> ExactLineOfSight<'a> {
         self.sign(&Facing(self.face)) == Ordering::Less
     }
 
-    /// The pixel in which the point lands.
+    /// The pixel in which the point lands, if any.
     pub(crate) fn pixel(&self) -> Option<Pixel> {
         if self.sign(&BeyondFocal) != Ordering::Greater {
             return None;
@@ -203,7 +204,7 @@ impl<'a> ExactLineOfSight<'a> {
             if !is_at_or_after(0) || is_at_or_after(size[axis]) {
                 return None;
             }
-            // A guess in f64, and then the exact neighbour of it.
+            // Start at the index in f64, and step to the exact one.
             let mut index = (self.landing()[axis].max(0.0) as u32).min(size[axis] - 1);
             while !is_at_or_after(index) {
                 index -= 1;
@@ -216,7 +217,7 @@ impl<'a> ExactLineOfSight<'a> {
         Some(Pixel { i: i?, j: j? })
     }
 
-    /// Where the point lands on the image in pixels, to f64 rounding.
+    /// The point's image in pixels, to f64 rounding.
     pub(crate) fn landing(&self) -> [f64; 2] {
         let camera = &self.camera.sensor;
         let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.in_camera.0[k].middle());
@@ -226,7 +227,7 @@ impl<'a> ExactLineOfSight<'a> {
         [at(x, 0), at(y, 1)]
     }
 
-    /// How far from the nearest border of its pixel the point lands, in pixels: between two numbers.
+    /// The distance of the point's image from the nearest border of its pixel, pixels: an interval.
     pub(crate) fn border_distance(&self, pixel: Pixel) -> [f64; 2] {
         let (line, camera) = (self.exact(), &self.camera.sensor);
         let least = [(0, pixel.i), (1, pixel.j)]
@@ -238,7 +239,7 @@ impl<'a> ExactLineOfSight<'a> {
                 rounding::quotient(&across, &per_pixel).double.abs()
             })
             .fold(f64::INFINITY, f64::min);
-        // Each quotient is good to 2^-53 of itself, and so is the least of them.
+        // Each quotient is correct to 2^-53 of itself, and so is the least of them.
         let off = f64::EPSILON;
         [least * (1.0 - off), least * (1.0 + off)]
     }
@@ -261,21 +262,21 @@ impl<'a> ExactLineOfSight<'a> {
         if facing == Ordering::Equal {
             return false;
         }
-        // All on the inner side, as seen from the side that faces the camera.
+        // The line is on the inner side of every edge, as seen from the side that faces the camera.
         let outer = facing.reverse();
         (0..3).all(|k| self.sign(&Side { face: other, k }) != outer)
             && self.sign(&Before(other)) == outer
             && self.sign(&AtOrBeyondImage(other)) != outer
     }
 
-    /// The faces that may meet the segment.
+    /// The ray bundle of the segment, for the hierarchy.
     pub(crate) fn bundle(&self) -> RayBundle {
         let along = self.centre_to_point();
         let length = along.length();
         RayBundle {
             origin: self.camera.scene_from_sensor.position,
             direction: along / length,
-            // A dozen roundings, each 2^-53, and the tree's own slack.
+            // Covers a dozen roundings of 2^-53 each; the hierarchy has its own slack.
             max_range: length * (1.0 + 64.0 * f64::EPSILON),
             start_radius: 0.0,
             spread: 0.0,

@@ -1,4 +1,4 @@
-//! Occluder.
+//! Faces that may hide points of another face from the camera, and exact proofs that they do not.
 
 use std::cmp::Ordering;
 
@@ -15,15 +15,17 @@ pub(crate) struct Occluder<'a> {
     pub(crate) face: &'a Face,
     /// Whether the camera lies before its plane.
     pub(crate) turned_to_camera: bool,
-    /// Positive where it hides: the three sides, front or back, before the point, beyond the image plane.
+    /// The conditions under which it hides a point, positive where they hold: three sides, front or back, before the
+    /// point, at or beyond the image plane.
     pub(crate) hides: [Form; 6],
 }
 
 impl<'a> Occluder<'a> {
-    /// The conditions under which a face hides, or `None` if it does not hide anything: the camera is in its plane.
+    /// The conditions under which a face hides a point, or `None` if it hides nothing because the camera is in its
+    /// plane.
     ///
-    /// To be met between point and camera, the plane has the camera on the side that the line comes from: the side
-    /// is known once and for all.
+    /// To be met between point and camera, the plane must have the camera on the side that the line comes from. That
+    /// side does not depend on the point.
     pub(crate) fn of(face: &'a Face, parts: &[LineOfSight<Interval>; 4], centre: DVec3) -> Option<Self> {
         let [a, b, c] = corners(face);
         // The sign of n.V where it is met: that of n.(a - c).
@@ -57,7 +59,7 @@ impl<'a> Occluder<'a> {
     }
 }
 
-/// A face's corners, unrounded.
+/// A face's corners in f64, unrounded.
 pub(crate) fn corners(face: &Face) -> [DVec3; 3] {
     face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)))
 }
@@ -75,8 +77,8 @@ pub(crate) fn volume_sign(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
     volume::<Interval>([a, b, c, d]).sign().unwrap_or_else(exact)
 }
 
-/// Whether a face certainly hides no point of `ground`, before whose plane the camera lies: one of the reasons 1 to
-/// 3, by exact signs. The camera is not in the plane of `face`.
+/// Whether a face certainly hides no point of `ground`, by reasons 1 to 3 of `visibility_margin` and by exact signs.
+/// The camera lies before the plane of `ground` and not in the plane of `face`.
 pub(crate) fn never_occludes(face: &Face, ground: &Face, camera: DVec3) -> bool {
     let (other, own) = (corners(face), corners(ground));
     let side = |[a, b, c]: [DVec3; 3], point: DVec3| volume_sign(a, b, c, point);

@@ -1,15 +1,12 @@
-//! Whether an approximation of the paper explains an answer that is not the contract's.
+//! Explanations of wrong hits: whether an approximation of the paper accounts for an answer against the contract.
 //!
-//! A renderer that clips a beam's faces to the stripe, draws straight sides, and skips faces by the rules as
-//! printed (§4, §5) loses some faces at some pencils and adds others. Its answer is *explained* if
+//! A renderer that clips a beam's faces to the stripe, draws straight sides, and skips faces by the rules as printed
+//! (§4, §5) loses some faces at some pencils and adds others. Its answer is *explained* if
 //!
 //! * the face that it names, where the ray does not meet it, is one that the approximations add here, and
-//! * every face that the ray does meet, before that, is one that they lose here,
+//! * every face that the ray does meet before that one is lost by them here,
 //!
-//! each for a [`Reason`]. The image that an approximation gives a face is worked out from the paper, in
-//! intervals that contain what any renderer computes that misplaces points by no more than its tolerance and
-//! whose ray is displaced by no more than that: so a [`Kleene`] that says no is a proof, and one that says
-//! either lies within rounding of a side or a limit.
+//! each for a [`Reason`](crate::Reason).
 
 use raypencil_scene::{FaceId, SensorId};
 
@@ -21,7 +18,7 @@ use crate::ruling::Tolerance;
 use crate::verdict::{Referee, bundle};
 
 impl Referee<'_> {
-    /// Explains `answer`, a face or a miss, to the ray of cell (i, j) by approximations it was made with; `None`
+    /// Explains `answer`, a face or a miss, to the ray of cell (i, j) by the approximations it was made with; `None`
     /// if they do not explain it.
     pub fn explain(
         &self,

@@ -1,4 +1,8 @@
-//! Paper raster.
+//! The image that the paper's approximations give a face, in intervals.
+//!
+//! The intervals contain the result of any renderer that misplaces points by at most its tolerance and whose ray is
+//! displaced by at most that. So a [`Kleene`] value that is false is a proof, and an unknown one lies within rounding
+//! of a side or a limit.
 
 use raypencil_scene::Mounted;
 
@@ -10,19 +14,19 @@ use crate::ray::{Aim, MountedSensor};
 use crate::ruling::Tolerance;
 use crate::vector::{ScaledRotation, Vector};
 
-/// A cell's ray in the sensor's frame, with all rays and terrains within the tolerance.
+/// A cell's ray in the sensor's frame, in intervals that contain all rays and terrains within the tolerance.
 pub(crate) struct PaperRay<'a> {
     sensor: &'a MountedSensor,
     with: Approximations,
     position: f64,
     scene_from_sensor: ScaledRotation<Interval>,
-    /// Where the ray starts.
+    /// The ray's start.
     start: Vector<Interval>,
-    /// q; its x and y are where the ray crosses the SPP, but for a beam, whose y is that of the start.
+    /// q. Its x and y are where the ray crosses the SPP; in a beam, y is that of the start.
     q: Vector<Interval>,
-    /// The point of the screen.
+    /// The cell's centre on the screen.
     at: Projected,
-    /// Left, right, top and bottom of the screen.
+    /// Left, right, top and bottom border of the screen.
     screen: [Interval; 4],
 }
 
@@ -33,7 +37,7 @@ struct Projected {
     y: Interval,
 }
 
-/// A triangle of what clipping leaves of a face: its vertices, sensor frame.
+/// A triangle of a clipped face: its vertices, sensor frame.
 type Piece = [Vector<Interval>; 3];
 
 impl<'a> PaperRay<'a> {
@@ -45,7 +49,7 @@ impl<'a> PaperRay<'a> {
     ) -> Self {
         let of = Interval::of;
         let lateral = tolerance.lateral;
-        // Half cells from the middle, or from the axis.
+        // The cell's centre and the borders of the screen, on the SPP in metres.
         let (x, y, screen) = match sensor {
             MountedSensor::Camera(Mounted { sensor, .. }) => {
                 let metres = |cells: Interval, axis: usize| {
@@ -122,7 +126,7 @@ impl<'a> PaperRay<'a> {
         reasons
     }
 
-    /// Whether sides are straight on the screen that in truth are not.
+    /// Whether sides are drawn straight that are curved in truth.
     fn draws_straight_sides(&self) -> bool {
         self.with.beam_edges && matches!(self.sensor, MountedSensor::Beam(_))
     }
@@ -132,7 +136,7 @@ impl<'a> PaperRay<'a> {
         self.with.skip_rules && matches!(self.sensor, MountedSensor::Beam(_))
     }
 
-    /// Whether some piece of a face that the rules leave covers the cell's centre.
+    /// Whether a piece of the face that the rules do not skip covers the cell's centre.
     fn is_drawn(&self, face: &Face) -> Kleene {
         let pieces = self.pieces(face, self.draws_straight_sides());
         Kleene::any(pieces.iter().map(|piece| {
@@ -158,8 +162,8 @@ impl<'a> PaperRay<'a> {
         Vector(turned.map(|part| part.over(self.scene_from_sensor.norm_squared).wider(self.position)))
     }
 
-    /// What clipping leaves of a face, as a fan of triangles from its first vertex: the part with z >= g (figure
-    /// 9), and of that, within the `stripe`, with |y| <= T/2, then |x| <= z w/g (figure 8).
+    /// The clipped face as a fan of triangles from its first vertex: the part with z >= g (figure 9); with `stripe`,
+    /// also |y| <= T/2 and then |x| <= z w/g (figure 8).
     fn pieces(&self, face: &Face, stripe: bool) -> Vec<Piece> {
         let spp = Interval::of(spp(self.sensor));
         let mut polygon = face.corners.map(|corner| self.in_sensor_frame(corner)).to_vec();
@@ -194,7 +198,7 @@ impl<'a> PaperRay<'a> {
         }
     }
 
-    /// Whether a piece covers the cell's centre, as its sides are drawn.
+    /// Whether a piece, as its sides are drawn, covers the cell's centre.
     fn is_within(&self, piece: &Piece) -> Kleene {
         if self.draws_straight_sides() {
             is_within_lines(&self.at, &piece.each_ref().map(|point| self.project(point)))
@@ -203,8 +207,8 @@ impl<'a> PaperRay<'a> {
         }
     }
 
-    /// Whether the ray passes between the planes through its start and the sides of a piece: all of
-    /// q.(a' x (b - a)) have one sign, a' = a - start.
+    /// Whether the ray passes between the planes through its start and the sides of a piece: all q.(a' x (b - a))
+    /// have one sign, a' = a - start.
     fn is_within_planes(&self, piece: &Piece) -> Kleene {
         let sides = [0, 1, 2].map(|k: usize| {
             let (a, b) = (&piece[k], &piece[(k + 1) % 3]);
@@ -214,7 +218,7 @@ impl<'a> PaperRay<'a> {
             | Kleene::all(sides.map(|side| Kleene::not_negative(side.negated())))
     }
 
-    /// Rule 3b.
+    /// Rule 3b: all vertices are in the screen and beyond the maximum range.
     fn is_in_but_too_far(&self, piece: &Piece) -> Kleene {
         let max_range = Interval::of(self.sensor.max_range());
         Kleene::all(piece.iter().map(|point| {
@@ -228,7 +232,7 @@ impl<'a> PaperRay<'a> {
         }))
     }
 
-    /// Rule 3c: no vertex or side in the screen, nor the screen's centre in the triangle.
+    /// Rule 3c: no vertex or side is in the screen, nor the screen's centre in the triangle.
     fn is_off_screen(&self, piece: &Piece) -> Kleene {
         let corners = piece.each_ref().map(|point| self.project(point));
         let [left, right, top, bottom] = self.screen;
@@ -239,7 +243,7 @@ impl<'a> PaperRay<'a> {
             & !is_within_lines(&centre, &corners)
     }
 
-    /// Whether the screen, closed, holds a point.
+    /// Whether the screen, closed, contains a point.
     fn holds(&self, p: &Projected) -> Kleene {
         let [left, right, top, bottom] = self.screen;
         Kleene::all(
@@ -247,7 +251,7 @@ impl<'a> PaperRay<'a> {
         )
     }
 
-    /// Whether a straight side comes into the screen: nothing separates the two.
+    /// Whether a straight side meets the screen: no line separates the two.
     fn meets_side(&self, from: &Projected, to: &Projected) -> Kleene {
         let [left, right, top, bottom] = self.screen;
         let both = |a: Interval, b: Interval| Kleene::positive(a) & Kleene::positive(b);
@@ -280,7 +284,7 @@ impl<'a> PaperRay<'a> {
             & (is_met(height, approach) | is_met(height.negated(), approach.negated()))
     }
 
-    /// What the ray and the middle of the sheet see of a face's plane.
+    /// The sides of a face's plane on which the ray and the middle of the sheet lie.
     fn plane(&self, face: &Face) -> PlaneSides {
         let [a, b, c] = face.corners.map(|corner| self.in_sensor_frame(corner));
         let n = b.sub(&a).cross(&c.sub(&a));
@@ -288,7 +292,7 @@ impl<'a> PaperRay<'a> {
         let approach = n.dot(&self.q);
         let length = square_root(self.q.length_squared());
         let max_range = Interval::of(self.sensor.max_range());
-        // t = n.a' / n.q, at least 1, and R = t |q| within the range; both signs alike.
+        // t = n.a' / n.q is at least 1, and R = t |q| is within the range; both products have the same sign.
         let is_met = |height: Interval, approach: Interval| {
             Kleene::positive(height)
                 & Kleene::positive(approach)
@@ -309,13 +313,13 @@ impl<'a> PaperRay<'a> {
     }
 }
 
-/// What is seen of a face's plane.
+/// The sides of a face's plane that are seen.
 struct PlaneSides {
-    /// From where the ray starts.
+    /// Whether the ray's start lies before the plane.
     row_sees_front: Kleene,
-    /// From (0, 0, 0).
+    /// Whether (0, 0, 0) lies before the plane.
     middle_sees_front: Kleene,
-    /// Whether the ray meets it within the range, from the side that the approximations ask for.
+    /// Whether the ray meets the plane within the range, from the side that the approximations accept.
     is_met_as_asked: Kleene,
 }
 
@@ -327,8 +331,8 @@ fn spp(sensor: &MountedSensor) -> f64 {
     }
 }
 
-/// The part of a convex polygon where `distance` is not negative. A corner that is within rounding of the cut is
-/// taken as its middle says: either is within rounding of the other.
+/// The part of a convex polygon where `distance` is not negative. A corner within rounding of the limit is classified
+/// by its middle: both choices are within rounding of each other.
 fn clip(
     polygon: &[Vector<Interval>],
     distance: impl Fn(&Vector<Interval>) -> Interval,
@@ -353,7 +357,7 @@ fn clip(
     part
 }
 
-/// from / (from - to) for from >= 0 >= to: it grows with both.
+/// from / (from - to) for from >= 0 >= to; it increases with both.
 fn crossing_fraction(from: Interval, to: Interval) -> Interval {
     let at = |from: f64, to: f64| {
         let (from, to) = (Interval::of(from.max(0.0)), Interval::of(to.min(0.0)));
@@ -369,10 +373,10 @@ fn signed_double_area(a: &Projected, b: &Projected, c: &Projected) -> Interval {
     b.x.sub(&a.x).mul(&c.y.sub(&a.y)).sub(&b.y.sub(&a.y).mul(&c.x.sub(&a.x)))
 }
 
-/// Whether a point is in a closed triangle, whichever way round that runs.
+/// Whether a point is in a closed triangle of either orientation.
 fn is_within_lines(p: &Projected, corners: &[Projected; 3]) -> Kleene {
     let turns = [0, 1, 2].map(|k: usize| signed_double_area(&corners[k], &corners[(k + 1) % 3], p));
-    // What is known of the sides alone leaves a thin triangle open far beyond its ends.
+    // The sides alone leave a thin triangle undecided far beyond its ends: test the bounding box too.
     let not_beyond = |of: fn(&Projected) -> Interval| {
         let part = corners.each_ref().map(of);
         let low = part.iter().fold(f64::INFINITY, |low, part| low.min(part.low));
@@ -386,8 +390,8 @@ fn is_within_lines(p: &Projected, corners: &[Projected; 3]) -> Kleene {
         | Kleene::all(turns.map(|turn| Kleene::not_negative(turn.negated())))
 }
 
-/// An interval around the square root.
+/// An interval that contains the square root.
 fn square_root(x: Interval) -> Interval {
-    // Correctly rounded, so half a unit in the last place.
+    // The roots are correctly rounded: an error of half a unit in the last place.
     Interval::between(x.low.max(0.0).sqrt(), x.high.max(0.0).sqrt()).wider(0.0)
 }

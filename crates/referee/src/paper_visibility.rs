@@ -1,9 +1,10 @@
-//! Whether an approximation of the paper's §6 explains what a renderer says the camera sees of a pencil's hit.
+//! Explanations of wrong visibility: whether an approximation of the paper's §6 accounts for an answer against the
+//! contract.
 //!
-//! "Removing stripe sections occluded by terrain" asks only faces that are turned away, only those with a vertex
-//! not past the furthest extent of the upper beam, and only at the centre of a pixel. So it may say *seen* of a
-//! point if every face that hides it in truth is one that is not asked or not met there, and *hidden* of a point that
-//! is seen if some face that is asked is met nearer than the point at the centre of its pixel.
+//! "Removing stripe sections occluded by terrain" examines only faces that are turned away, only those with a vertex
+//! not past the furthest extent of the upper beam, and only at the centre of a pixel. So it may call a hidden point
+//! *seen* if every face that hides it is one that is not examined, or not met there. It may call a seen point
+//! *hidden* if some face that is examined is met nearer than the point at the centre of its pixel.
 
 use std::fmt;
 
@@ -20,18 +21,18 @@ use crate::ray::{Aim, MountedSensor};
 use crate::ruling::Tolerance;
 use crate::verdict::{Referee, bundle};
 
-/// Which of the paper's approximations an answer about the camera's view was made with. (§6)
+/// The paper's approximations that an answer about the camera's view was made with. (§6)
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SightApproximations {
     /// Only faces turned away from the camera's *axis* occlude.
     pub facing: bool,
     /// Only faces with a vertex no deeper than this occlude, metres along the camera's axis.
     pub extent: Option<f64>,
-    /// Faces turned away occlude at the centre of a pixel; from the camera's position unless `facing` holds.
+    /// Faces turned away occlude at the centre of a pixel; away from the camera's position unless `facing` holds.
     pub place: bool,
 }
 
-/// Why a point is said to be seen, or hidden, where the contract says otherwise.
+/// The reason why an approximation calls a hidden point seen, or a seen point hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SightReason {
     /// The face is not turned away from the camera's axis.
@@ -39,7 +40,7 @@ pub enum SightReason {
     /// All vertices of the face are deeper than the furthest extent of the upper beam.
     Extent,
     /// At the centre of the pixel the face is not met nearer than the point though it hides the point, or the
-    /// reverse; or it is no back, which alone are asked there.
+    /// reverse; or the face shows the camera its front, and only backs are examined there.
     Place,
 }
 
@@ -56,15 +57,15 @@ impl fmt::Display for SightReason {
 /// A face that hides a point, or does not, against the contract, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExplainedSight {
-    /// Which face.
+    /// The face.
     pub face: FaceId,
     /// All reasons that hold; at least one.
     pub reasons: Vec<SightReason>,
 }
 
 impl Referee<'_> {
-    /// Explains what a renderer says of whether the camera sees the point in which pencil (i, j) meets the plane of
-    /// `face`, by approximations it was made with; `None` if they do not explain it.
+    /// Explains a renderer's answer on whether the camera sees the point where pencil (i, j) meets the plane of
+    /// `face`, by the approximations it was made with; `None` if they do not explain it.
     #[expect(clippy::too_many_arguments, reason = "a pencil, an answer, its making and a tolerance")]
     pub fn explain_sight(
         &self,
@@ -85,7 +86,7 @@ impl Referee<'_> {
         let face = Face::of(mesh, face);
         let ray = ExactRay::new(&sensor, Aim { i, j, dx: 0.0, dy: 0.0 });
         let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
-        // Only what is hidden by another face, or could be, is a matter of §6.
+        // §6 concerns only points that a face hides, or could hide.
         let pixel = line.pixel().filter(|_| line.is_front_seen())?;
         let camera = MountedSensor::Camera(*self.scene.camera());
         let section = Section6::new(&camera, with, pixel, line.centre_to_point().length(), tolerance);
@@ -113,14 +114,14 @@ impl Referee<'_> {
     }
 }
 
-/// What §6 asks of a face, for one point.
+/// The tests of §6, for one point.
 struct Section6<'a> {
     with: SightApproximations,
     /// The ray through the centre of the pixel.
     centre: PaperRay<'a>,
-    /// Of the point from the projection centre, metres.
+    /// Distance of the point from the projection centre, metres.
     distance: f64,
-    /// How far a point may be off, metres.
+    /// Error of a point's position, metres.
     off: f64,
 }
 
@@ -134,13 +135,13 @@ impl<'a> Section6<'a> {
     ) -> Self {
         let aim = Aim { i: pixel.i, j: pixel.j, dx: 0.0, dy: 0.0 };
         let off = tolerance.depth + tolerance.position;
-        // The pixel's ray is displaced by rounding only: a point that is off by `off` near the image plane.
+        // The pixel's ray is displaced by rounding only; points near the image plane have the error `off`.
         let tolerance = Tolerance { lateral: 1e-9, depth: off, position: off };
         let centre = PaperRay::new(camera, aim, Approximations::default(), tolerance);
         Self { with, centre, distance, off }
     }
 
-    /// The reasons for which a face that hides the point is not found to.
+    /// The reasons for which a face that hides the point is not found.
     fn overlooks(&self, face: &Face) -> Vec<SightReason> {
         let mut reasons = Vec::new();
         if self.with.facing && self.is_turned_away(face).may_fail {
@@ -161,7 +162,7 @@ impl<'a> Section6<'a> {
         self.is_turned_away(face) & self.is_within_extent(face) & self.is_nearer_at_centre(face)
     }
 
-    /// Whether a face is turned away: from the axis, or else from the camera.
+    /// Whether a face is turned away from the axis, or without `facing` from the camera.
     fn is_turned_away(&self, face: &Face) -> Kleene {
         let [a, b, c] = face.corners.map(|corner| self.centre.in_sensor_frame(corner));
         let normal = b.sub(&a).cross(&c.sub(&a));
@@ -183,7 +184,7 @@ impl<'a> Section6<'a> {
         self.centre.meets_nearer_than(face, Interval::of(self.distance).wider(self.off))
     }
 
-    /// The faces that the ray through the pixel's centre may meet.
+    /// The ray bundle through the pixel's centre.
     fn bundle_at_centre(&self, camera: &MountedSensor, pixel: Pixel) -> RayBundle {
         let mut around = bundle(camera, Aim { i: pixel.i, j: pixel.j, dx: 0.0, dy: 0.0 }, 1e-6);
         around.max_range = self.distance * 2.0;

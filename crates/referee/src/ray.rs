@@ -6,7 +6,7 @@
 //! | | s | sigma | O | D |
 //! | --- | --- | --- | --- | --- |
 //! | camera | 1 | N | p | M ((i + 1/2 + dx - c_x) p_x, (j + 1/2 + dy - c_y) p_y, f_c) |
-//! | beam | 2 rows N | columns N | s p + M (0, T (2j + 1 - rows + 2 dy), 0) | M (w (2i + 1 - columns + 2 dx), 0, columns g) |
+//! | beam |2 rows N | columns N | s p + M (0, T (2j + 1 - rows + 2 dy), 0) | M (w (2i + 1 - columns + 2 dx), 0, columns g) |
 //!
 //! p and q are the pose's position and quaternion, N = q . q, and M is the matrix of q p q*, which is N times the
 //! rotation. (dx, dy) displaces the ray in cells: in a beam, dy moves its origin along the focal axis.

@@ -1,4 +1,4 @@
-//! Visibility.
+//! Visibility: whether the camera sees a pencil's hit, and in which pixel. Exactly.
 
 use raypencil_scene::{FaceId, Pixel, SensorId};
 
@@ -8,20 +8,20 @@ use crate::line_of_sight::ExactLineOfSight;
 use crate::ray::{Aim, MountedSensor};
 use crate::verdict::Referee;
 
-/// What the contract says of the camera's view of a pencil that hits.
+/// The contract's answer about the camera's view of a pencil's hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Visibility {
     /// Whether the camera sees the point.
     pub visible: bool,
-    /// Where it lands on the image, hidden or not.
+    /// The pixel in which the point lands, hidden or not.
     pub pixel: Option<Pixel>,
     /// A face that meets the segment between the point and the image plane.
     pub hidden_by: Option<FaceId>,
 }
 
 impl Referee<'_> {
-    /// What the camera sees of the hit of pencil (i, j), displaced by `by`; `None` if there is no such pencil, or
-    /// it does not hit.
+    /// The camera's view of the hit of pencil (i, j), displaced by `by`; `None` if there is no such pencil, or it
+    /// does not hit.
     pub fn sight(&self, beam: usize, i: u32, j: u32, by: Displacement) -> Option<Visibility> {
         let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
@@ -33,7 +33,7 @@ impl Referee<'_> {
         Some(self.visibility_of(&sensor, aim, nearest.first()?))
     }
 
-    /// What the camera sees of the point in which an aim meets `face`.
+    /// The camera's view of the point where an aim meets `face`.
     pub(crate) fn visibility_of(&self, sensor: &MountedSensor, aim: Aim, face: &Face) -> Visibility {
         let ray = ExactRay::new(sensor, aim);
         let line = ExactLineOfSight::new(&ray, face, self.scene.camera());
@@ -43,7 +43,7 @@ impl Referee<'_> {
         Visibility { visible: could_be_seen && hidden_by.is_none(), pixel, hidden_by }
     }
 
-    /// Some face that hides the end of a line: the lowest of those found in the first leaf that has any.
+    /// One face that hides the end of a line of sight: the lowest in the first leaf that has any.
     fn occluder(&self, line: &ExactLineOfSight<'_>) -> Option<FaceId> {
         let bundle = line.bundle();
         let mut found: Option<FaceId> = None;
@@ -51,13 +51,13 @@ impl Referee<'_> {
             if found.is_none() && line.is_hidden_by(face) {
                 found = Some(face.id);
             }
-            // Nothing more is asked for once one is found.
+            // One occluder suffices.
             if found.is_some() { f64::NEG_INFINITY } else { bundle.max_range }
         });
         found
     }
 
-    /// Every face that hides the end of a line, in ascending order.
+    /// Every face that hides the end of a line of sight, in ascending order.
     pub(crate) fn occluders(&self, line: &ExactLineOfSight<'_>) -> Vec<Face> {
         let bundle = line.bundle();
         let mut found: Vec<Face> = Vec::new();

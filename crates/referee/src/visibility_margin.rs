@@ -1,27 +1,28 @@
-//! How far the camera's view of a pencil's hit is from changing.
+//! Margins of visibility: how far the camera's view of a pencil's hit is from changing.
 //!
 //! # The proof of lo
 //!
 //! A part of the unit square of displacements changes nothing if every face that may be hit there gives the same
-//! answer wherever it is hit; to be seen everywhere it must also be hit everywhere (`sheet`). While the hit stays
-//! on the plane of one face F, all that `sight` asks is bilinear in the displacement (`LineOfSight::parts`).
+//! answer wherever it is hit; to be seen everywhere, the pencil must also hit everywhere (`sheet`). While the hit
+//! stays on the plane of one face F, all conditions of `line_of_sight` are bilinear in the displacement
+//! (`LineOfSight::parts`).
 //!
-//! *Not seen*: the camera lies behind F's plane, or one condition of the landing certainly fails, or the point is
-//! certainly hidden by a sheet of faces. As in `sheet`, a walk over the edges that may be met in the part leads from a
-//! face that hides its middle to faces that have the same edge the other line round and turn the same side to the
-//! camera; if it finds one at each such edge, and all are met before the point and at or beyond the image plane over
-//! all of the part, then their images cover it: a watertight surface hides as one.
+//! *Not seen*: the camera lies behind F's plane, or one condition of the landing certainly fails, or a sheet of faces
+//! certainly hides the point. As in `sheet`, a walk over the edges that may be met in the part leads from a face that
+//! hides its middle to faces that have the same edge the other way round and turn the same side to the camera. If it
+//! finds one at each such edge, and all are met before the point and at or beyond the image plane over all of the
+//! part, then their images cover it: a watertight surface hides as one.
 //!
-//! *Seen*: the camera lies before F's plane, all conditions of the landing hold, and every face G that the
-//! camera's ways to points of F may meet breaks a condition of its own, or two combined, F's own among them. Where
-//! F and G touch, all these vanish at once, and no error bound helps. There it is known by exact signs alone
-//! that G does not hide any point P of F, if
+//! *Seen*: the camera lies before F's plane, all conditions of the landing hold, and every face G that the camera's
+//! lines to points of F may meet breaks a condition of its own, or two combined, F's own among them. Where F and G
+//! touch, all these forms vanish at once, and no error bound helps. There exact signs alone prove that G does not
+//! hide any point P of F, if
 //!
 //! 1. G lies at or behind F's plane: the line from P to the camera leaves that plane at once; or
 //! 2. F lies at or on the camera's side of G's plane: the line can be on that plane at P only; or
 //! 3. the plane through the camera and a side of one of them has one face on one side and the other on the other,
-//!    with no points of the other face on it but corners that they share: the line may meet both there, but
-//!    meets either plane once, so both at P; or
+//!    with no points of the other face on it but corners that they share: the line may meet both there, but meets
+//!    either plane once, so both at P; or
 //! 4. all pencils of the part meet fronts of some sheet without an end, the camera lies before the planes of all its
 //!    faces, and G is at or behind all of them (it may be one of them): a point that is met first lies at the plane
 //!    of the sheet's face that the same pencil meets, or before it, and so does the line, as in 1 and 2.
@@ -47,20 +48,20 @@ use crate::vector::Vector;
 use crate::verdict::Referee;
 use crate::visibility::Visibility;
 
-/// What the camera sees of a pencil, and how far that is from changing.
+/// The camera's view of a pencil's hit, and how far it is from changing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SightMargins {
-    /// Of the pencil itself.
+    /// The view of the pencil itself.
     pub sight: Visibility,
     /// The least displacement at which `visible` changes; a pencil that misses is not visible.
     pub visibility: Margin,
-    /// How far from the nearest border of its pixel the point lands, in pixels: between these two numbers. `None`
-    /// if it lands on none.
+    /// The distance of the point's image from the nearest border of its pixel, pixels: an interval. `None` if it
+    /// lands in no pixel.
     pub landing: Option<[f64; 2]>,
 }
 
 impl Referee<'_> {
-    /// What the camera sees of the hit of pencil (i, j), and how far it is from changing; `None` if there is no such
+    /// The camera's view of the hit of pencil (i, j), and how far it is from changing; `None` if there is no such
     /// pencil, or it does not hit.
     pub fn sight_margins(&self, beam: usize, i: u32, j: u32) -> Option<SightMargins> {
         let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
@@ -89,21 +90,21 @@ impl Referee<'_> {
     }
 }
 
-/// The camera's view of the points that the displaced pencils of one cell hit.
+/// The search for the margin of one cell: the camera's view of the points that the displaced pencils hit.
 struct VisibilitySearch<'a> {
     referee: &'a Referee<'a>,
     sensor: &'a MountedSensor,
     aim: Aim,
     near: Neighbourhood<'a>,
-    /// Whether the cell's own pencil is seen.
+    /// Whether the camera sees the cell's own pencil.
     visible: bool,
-    /// What is known of the faces that may be hit, by their indices in the neighbourhood.
+    /// The faces that may be hit, by their indices in the neighbourhood.
     hit_faces: HashMap<usize, HitFace<'a>>,
-    /// Displacements that have been known_displacements exactly, by their bits.
+    /// Exact answers for displacements, by the bits of these.
     known_displacements: HashMap<[u64; 2], bool>,
 }
 
-/// A face that may be hit, as the camera sees points of it.
+/// A face that may be hit, and how the camera sees points of it.
 struct HitFace<'a> {
     /// Whether the camera is on its front side.
     is_front_seen: bool,
@@ -120,8 +121,8 @@ impl<'a> VisibilitySearch<'a> {
         if lo >= 1.0 { Margin::CAPPED } else { Margin::of(lo, witness) }
     }
 
-    /// The nearest of some places in and around a part at which the answer is another: its middle, its corners, and
-    /// places outside of it, for a change may begin right beyond a side.
+    /// The nearest place in and around a part at which the answer differs. Tried are its middle, its corners, and
+    /// places outside of it, because a change may begin right beyond a side.
     fn changed_in(&mut self, square: &Square, lo: f64) -> Option<[f64; 2]> {
         let around = Square { half: 1.5 * square.half, ..*square };
         let mut places: Vec<[f64; 2]> = around.corners().into_iter().chain(square.corners()).collect();
@@ -140,7 +141,7 @@ impl<'a> VisibilitySearch<'a> {
         })
     }
 
-    /// Whether it is proven that the answer is the same in all of a part.
+    /// Whether the answer is proven to be the same in all of a part.
     fn is_proven(&mut self, square: &Square) -> bool {
         if square.half < 1.0 {
             self.near.extend_to_max_range();
@@ -152,35 +153,35 @@ impl<'a> VisibilitySearch<'a> {
         faces.into_iter().all(|index| self.is_alike_on(index, square))
     }
 
-    /// Whether all points of one face that are hit in a part have the answer of the cell's own.
+    /// Whether all points of one face that are hit in a part have the cell's own answer.
     fn is_alike_on(&mut self, index: usize, square: &Square) -> bool {
         if !self.hit_faces.contains_key(&index) {
-            let ground = self.ground(index);
-            self.hit_faces.insert(index, ground);
+            let hit = self.hit_face(index);
+            self.hit_faces.insert(index, hit);
         }
         let Self { referee, near, hit_faces, .. } = self;
-        let ground = &hit_faces[&index];
-        if !ground.is_front_seen {
+        let hit = &hit_faces[&index];
+        if !hit.is_front_seen {
             return !self.visible;
         }
         let own = near.faces[index].conditions().map(|form| form.about(square.middle));
-        let lands = ground.lands.map(|form| form.about(square.middle));
-        // Certainly not all of the first `forms`, where the face is hit.
+        let lands = hit.lands.map(|form| form.about(square.middle));
+        // Whether the face is certainly not hit where all of `forms` hold.
         let fail = |forms: &[Form]| {
             forms.iter().any(|form| form.fails_within() >= square.half)
                 || certainly_fails(&[forms, &own].concat(), 0, square.half) >= square.half
         };
         if !self.visible {
-            return fail(&lands) || ground.is_covered(square);
+            return fail(&lands) || hit.is_covered(square);
         }
         lands.iter().all(|form| form.holds_within() >= square.half || fail(&[form.negated()]))
-            && ground.occluders.iter().all(|occluder| {
+            && hit.occluders.iter().all(|occluder| {
                 let hides = occluder.hides.map(|form| form.about(square.middle));
                 fail(&hides) || Self::is_before_sheet(referee, near, occluder, square)
             })
     }
 
-    /// Whether an occluder hides nothing that is met first, for reason 4.
+    /// Whether an occluder hides no point that is met first, by reason 4.
     fn is_before_sheet(
         referee: &Referee<'_>,
         near: &mut Neighbourhood<'_>,
@@ -207,8 +208,8 @@ impl<'a> VisibilitySearch<'a> {
         })
     }
 
-    /// All about a face that may be hit, and about what may hide it in the unit square.
-    fn ground(&self, index: usize) -> HitFace<'a> {
+    /// A face that may be hit, with the faces that may hide it in the unit square.
+    fn hit_face(&self, index: usize) -> HitFace<'a> {
         let camera = self.referee.scene.camera();
         let face = self.near.faces[index].face;
         let centre = camera.scene_from_sensor.position;
@@ -220,7 +221,7 @@ impl<'a> VisibilitySearch<'a> {
         let cannot_land = lands.iter().any(|form| form.fails_within() >= 1.0);
         if is_front_seen && !cannot_land {
             let own = self.near.faces[index].conditions();
-            let bundle = self.ways(face, &parts);
+            let bundle = self.lines_to(face, &parts);
             self.referee.bvh.visit(&bundle, |other| {
                 if other.id != face.id
                     && let Some(occluder) = Occluder::of(other, &parts, centre)
@@ -236,11 +237,11 @@ impl<'a> VisibilitySearch<'a> {
         HitFace { is_front_seen, lands, occluders }
     }
 
-    /// The ways from the camera to all points of a face that are hit in the unit square.
+    /// The lines of sight from the camera to all points of a face that are hit in the unit square.
     ///
-    /// They lie in a ball around some point p, whichever is smaller: of radius |V - W (p - c)| / W with p the
-    /// middle's own, or the face's own around its centroid.
-    fn ways(&self, face: &Face, parts: &[LineOfSight<Interval>; 4]) -> RayBundle {
+    /// The points lie in a ball around some point p. Its radius is the largest |V - W (p - c)| / W, with p the
+    /// middle's own point, or else the face's own radius around its centroid: whichever is smaller.
+    fn lines_to(&self, face: &Face, parts: &[LineOfSight<Interval>; 4]) -> RayBundle {
         let origin = self.referee.scene.camera().scene_from_sensor.position;
         let [a, b, c] = corners(face);
         let centroid = (a + b + c) / 3.0;
@@ -264,10 +265,11 @@ impl<'a> VisibilitySearch<'a> {
                 (to, radius) = (at, around);
             }
         }
-        // A few roundings of either, each 2^-53 of the sizes, and the tree's own slack.
+        // Covers a few roundings of 2^-53 of the sizes; the hierarchy has its own slack.
         let radius = radius * (1.0 + 1e-9) + (to.length() + origin.length()) * 64.0 * f64::EPSILON;
         let length = to.length();
-        // Units of directions that differ by `radius` differ by at most that over the shorter one, and by 2.
+        // Unit vectors of directions that differ by `radius` differ by at most that over the shorter length, and by
+        // at most 2.
         let spread = if radius < length { (radius / (length - radius)).min(2.0) } else { 2.0 };
         let direction = if length > 0.0 { to / length } else { DVec3::X };
         RayBundle {

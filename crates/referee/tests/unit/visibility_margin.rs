@@ -141,7 +141,7 @@ fn ways_of(scene: &Scene) -> RayBundle {
         hit_faces: HashMap::new(),
         known_displacements: HashMap::new(),
     };
-    view.ways(face, &parts)
+    view.lines_to(face, &parts)
 }
 
 #[test]
