@@ -35,7 +35,7 @@ pub(crate) trait Arithmetic {
     fn atan(&self, x: &Self::Real) -> Self::Real;
     fn pi(&self) -> Self::Real;
     fn ln_2(&self) -> Self::Real;
-    /// The sum of a beam's weights, kept once it is formed.
+    /// The sum of a beam's weights: from the cache, or computed by `form`.
     fn weight_sum(&self, cache: &WeightSum, form: impl FnOnce() -> Self::Real) -> Self::Real;
 
     /// |x| of an f64.

@@ -112,6 +112,19 @@ impl CertifiedLight {
 
 impl Referee<'_> {
     /// The hits of all rays of a sensor; `None` if there is no such sensor.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    /// use raypencil_scene::{Sampling, SensorId};
+    ///
+    /// let scene = wall_scene();
+    /// let map = Referee::new(&scene).certified_map(SensorId::Camera, Sampling::Centres).unwrap();
+    /// // The wall covers the columns 0 to 4 of all nine rows, at a depth of 2 m.
+    /// assert_eq!(map.hits.iter().flatten().count(), 5 * 9);
+    /// assert!(map.hits.iter().flatten().all(|hit| hit.depth.double == 2.0));
+    /// ```
     pub fn certified_map(&self, id: SensorId, sampling: Sampling) -> Option<CertifiedMap> {
         let sensor = MountedSensor::of(self.scene, id)?;
         let (width, height) = sensor.size();

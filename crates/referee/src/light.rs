@@ -87,6 +87,22 @@ pub struct Light<'r, 's> {
 
 impl<'s> Referee<'s> {
     /// The returns of a beam, or `None` if there is no such beam.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    /// use raypencil_scene::Sampling;
+    ///
+    /// let scene = wall_scene();
+    /// let referee = Referee::new(&scene);
+    /// let light = referee.light(0, Sampling::Centres).unwrap();
+    /// let back = light.returned(0, 0).unwrap();
+    /// // P = 4 W, r_d = 1/2, D = 1/512 m, r = 2 m, and cos(theta) = cos(phi) = 2 / sqrt(5):
+    /// // P r_d (D^2 / 4) cos(theta) cos^3(phi) / r^2 = 2^-21 16/25 W.
+    /// let watts = 16.0 / 25.0 / f64::from(1 << 21);
+    /// assert_eq!(back.radiometric.unwrap().double, watts);
+    /// ```
     pub fn light(&self, beam: usize, sampling: Sampling) -> Option<Light<'_, 's>> {
         let sensor = self.scene.beams().get(beam)?.sensor;
         // Without jitter the sum of the weights is the same for every call: the referee caches it.

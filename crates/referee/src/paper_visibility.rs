@@ -49,7 +49,7 @@ impl fmt::Display for SightReason {
         f.write_str(match self {
             Self::Facing => "it is not turned away from the camera's axis",
             Self::Extent => "all its vertices are deeper than the upper beam's furthest extent",
-            Self::Place => "the pixel's centre and the point's own place differ, or it is no back",
+            Self::Place => "the centre of the pixel and the point itself give different answers, or the face is not a back",
         })
     }
 }

@@ -8,6 +8,18 @@ use crate::rounding::Format;
 use crate::verdict::Referee;
 
 /// A [`Renderer`] that gives the referee's own answers.
+///
+/// ```
+/// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+/// # use wall::wall_scene;
+/// use raypencil_referee::ExactRenderer;
+/// use raypencil_scene::{Renderer, Request};
+///
+/// let frame = ExactRenderer.render(&wall_scene(), &Request::EVERYTHING);
+/// // One pencil: the image on the camera sums to its flux, 2^-21 16/25 W (see `Referee::light`).
+/// let watts: f64 = frame.flux[0].cells().iter().sum();
+/// assert_eq!(watts, 16.0 / 25.0 / f64::from(1 << 21));
+/// ```
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ExactRenderer;
 

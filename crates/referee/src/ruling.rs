@@ -24,8 +24,8 @@ pub struct Tolerance {
     pub lateral: f64,
     /// epsilon: error of a range, metres.
     pub depth: f64,
-    /// Error of a terrain point's position, metres. Only the paper's approximations use it, whose sides and limits
-    /// are computed themselves.
+    /// Error of a terrain point's position, metres. Rulings on visibility use it, and explanations by the paper's
+    /// approximations, whose sides and limits are computed themselves.
     pub position: f64,
 }
 
@@ -44,6 +44,23 @@ pub enum Ruling {
 
 impl Referee<'_> {
     /// The ruling on `answer`, a face or a miss, to the ray of cell (i, j); `None` if there is no such cell or face.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::{Referee, Ruling, Tolerance};
+    /// use raypencil_scene::SensorId;
+    ///
+    /// let scene = wall_scene();
+    /// let referee = Referee::new(&scene);
+    /// let rule_on_miss = |lateral: f64| {
+    ///     let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
+    ///     referee.rule(SensorId::Camera, 4, 4, None, tolerance).unwrap()
+    /// };
+    /// // Pixel (4, 4) hits the wall, which ends half a cell to the right: a miss is excused only beyond that.
+    /// assert_eq!(rule_on_miss(0.4), Ruling::Wrong);
+    /// assert!(matches!(rule_on_miss(0.6), Ruling::Rounding(by) if by.dx > 0.5));
+    /// ```
     pub fn rule(
         &self,
         sensor: SensorId,
@@ -52,12 +69,7 @@ impl Referee<'_> {
         answer: Option<FaceId>,
         tolerance: Tolerance,
     ) -> Option<Ruling> {
-        let sensor = MountedSensor::of(self.scene, sensor)?;
-        let (width, height) = sensor.size();
-        if i >= width || j >= height {
-            return None;
-        }
-        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
+        let (sensor, aim) = self.sensor_and_aim(sensor, i, j)?;
         let nearest = self.nearest(&sensor, aim);
         match answer {
             None if nearest.is_empty() => return Some(Ruling::Exact),

@@ -87,7 +87,23 @@ pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<Ro
 }
 
 impl Referee<'_> {
-    /// The values of the first hit of cell (i, j)'s ray; `None` if there is no such cell, or no hit.
+    /// The values of the first hit of cell (i, j)'s ray, correctly rounded; `None` if there is no such cell, or no
+    /// hit.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    /// use raypencil_scene::SensorId;
+    ///
+    /// let scene = wall_scene();
+    /// let hit = Referee::new(&scene).values(SensorId::Camera, 0, 4).unwrap();
+    /// // q = (-4/16, 0, 1/2): at a depth of 2 m the ray is at x = -1 m.
+    /// assert_eq!(hit.point.map(|part| part.double), [-1.0, 0.0, 2.0]);
+    /// assert_eq!(hit.depth.double, 2.0);
+    /// // R = sqrt(1 + 4) m, to the nearest f64.
+    /// assert_eq!(hit.range.double, 5.0_f64.sqrt());
+    /// ```
     pub fn values(&self, id: SensorId, i: u32, j: u32) -> Option<RoundedHit> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         let nearest = self.nearest(&sensor, aim);
@@ -96,6 +112,19 @@ impl Referee<'_> {
 
     /// The ray of cell (i, j): origin, metres, and direction, scene frame. The direction is not a unit vector: t = 1
     /// is on the SPP. `None` if there is no such cell.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    /// use raypencil_scene::SensorId;
+    ///
+    /// let scene = wall_scene();
+    /// let [origin, direction] = Referee::new(&scene).ray(SensorId::Camera, 0, 4).unwrap();
+    /// assert_eq!(origin.map(|part| part.double), [0.0; 3]);
+    /// // ((i + 1/2 - c_x) p_x, (j + 1/2 - c_y) p_y, f) = (-4/16, 0, 1/2).
+    /// assert_eq!(direction.map(|part| part.double), [-0.25, 0.0, 0.5]);
+    /// ```
     pub fn ray(&self, id: SensorId, i: u32, j: u32) -> Option<[[Rounded; 3]; 2]> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         let (fast, exact) = (sensor.ray::<DoubleDouble>(aim), LazyCell::new(|| sensor.ray::<Dyadic>(aim)));

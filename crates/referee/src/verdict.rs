@@ -28,6 +28,22 @@ impl Verdict {
 }
 
 /// The exact answers to every ray of a scene.
+///
+/// ```
+/// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+/// # use wall::wall_scene;
+/// use raypencil_referee::Referee;
+/// use raypencil_scene::{FaceId, SensorId};
+///
+/// // The wall of the crate's first page: face 0, at z = 2 m, ends at x = 1/8 m.
+/// let scene = wall_scene();
+/// let referee = Referee::new(&scene);
+/// // Pixel (4, 4) looks exactly along z: it meets the wall at (0, 0, 2).
+/// let verdict = referee.verdict(SensorId::Camera, 4, 4).unwrap();
+/// assert_eq!(verdict.faces, [FaceId(0)]);
+/// // There is no column 9.
+/// assert_eq!(referee.verdict(SensorId::Camera, 9, 4), None);
+/// ```
 #[derive(Debug)]
 pub struct Referee<'s> {
     pub(crate) scene: &'s Scene,

@@ -63,13 +63,21 @@ pub struct SightMargins {
 impl Referee<'_> {
     /// The camera's view of the hit of pencil (i, j), and how far it is from changing; `None` if there is no such
     /// pencil, or it does not hit.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    ///
+    /// let scene = wall_scene();
+    /// let margins = Referee::new(&scene).sight_margins(0, 0, 0).unwrap();
+    /// // The point lands at (0.5, 4.5), half a pixel from each border.
+    /// assert_eq!(margins.landing.map(|range| range.map(|pixels| pixels as f32)), Some([0.5; 2]));
+    /// // The image ends half a pixel, 1/8 m on the wall, to the left. The pencil's cell is 1 m wide.
+    /// assert!(margins.visibility.lo <= 0.125 && 0.125 <= margins.visibility.hi);
+    /// ```
     pub fn sight_margins(&self, beam: usize, i: u32, j: u32) -> Option<SightMargins> {
-        let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
-        let (columns, rows) = sensor.size();
-        if i >= columns || j >= rows {
-            return None;
-        }
-        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
+        let (sensor, aim) = self.sensor_and_aim(SensorId::Beam(beam), i, j)?;
         let near = Neighbourhood::new(self, &sensor, aim);
         let nearest = near.nearest_at([0.0; 2]);
         let face = near.faces[*nearest.first()?].face;
