@@ -181,12 +181,11 @@ fn faces_one_ulp_apart_are_rounding_in_depth() {
     assert_eq!(rule(3e-7), Ruling::Rounding(Displacement::ZERO));
 }
 
-/// A rig over a random ground: camera and beam, small, at a pose of its own.
-/// No ray is displaced by more than a cell, however coarse somebody's arithmetic is said to be.
+/// No ray is displaced by more than a cell, however coarse a renderer's arithmetic is.
 #[test]
 fn a_tolerance_is_a_cell_at_most() {
-    // At depth 2 a cell is 1/4 m: the first face ends 1/8 m, half a cell, to the right of pixel (4, 4), the second begins
-    // 3/8 m, one and a half cells, to the right of it.
+    // At depth 2 a cell is 1/4 m. The first face ends 1/8 m, half a cell, to the right of pixel (4, 4); the second
+    // begins 3/8 m, one and a half cells, to the right of it.
     let vertices = vec![
         [-1.0, -1.0, 2.0],
         [0.125, -1.0, 2.0],
@@ -224,6 +223,7 @@ fn faces_near_a_ray_are_all_that_it_may_meet() {
     assert_eq!(near(9, 0, 0.5), None, "no such pixel");
 }
 
+/// A camera and a beam with few cells, both at one pose over a random ground.
 fn random_scene(seed: u64, size: usize, turn: [f64; 4], at: [f64; 3]) -> Scene {
     let mesh = Arc::new(RandomGround::nasty(seed, size).build().into_mesh().expect("a valid ground"));
     let pose = Pose {
@@ -290,13 +290,13 @@ proptest! {
                 prop_assert_ne!(&referee.verdict_beside(sensor, i, j, by).unwrap(), &verdict);
                 prop_assert!(margin.hi <= 2.0 * margin.lo || margin.hi <= 1e-9, "{:?} at {} {},{}", margin, sensor, i, j);
             } else {
-// Only where the cap of one cell stands in for a witness.
+                // Only where the cap of one cell stands in for a witness.
                 prop_assert!(margin.lo >= 0.5, "{:?} without a witness: {} {},{}", margin, sensor, i, j);
             }
         }
     }
 
-    // Names are only names: the same faces are met whatever their indices and first corners.
+    // Indices carry no meaning: the same faces are met whatever their indices and first corners.
     #[test]
     fn relabelling_changes_nothing(
         seed in any::<u64>(),

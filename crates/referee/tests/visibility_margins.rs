@@ -1,4 +1,4 @@
-//! The margins of the camera's view: that they hold, that they are witnessed, and two by hand.
+//! Margins of visibility: they hold, they have witnesses, and two are derived by hand.
 
 mod common;
 
@@ -13,7 +13,7 @@ use raypencil_scene::{
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
 /// Scene number `number`: a built-in ground seen from a mast that carries camera and beam apart, as the default rig
-/// does, or a ground of everything nasty with both anywhere near each other.
+/// does, or a malformed ground with both sensors at random places.
 fn scene(number: u64) -> Scene {
     let mut random = SplitMix64(number);
     let is_random = number % 3 == 2;
@@ -97,7 +97,7 @@ fn margins_hold_are_witnessed_and_are_tight() {
                 }
                 None => *if lo >= 1.0 { &mut capped } else { &mut without } += 1,
             }
-            // In all of the square, and on its sides, where a change would begin. More where there is one.
+            // Draw from the whole square and from its sides, where a change would begin; more if there is a change.
             for draw in 0..if lo >= 1.0 { 6 } else { 60 } {
                 let mut part = || lo * random.between(-1.0, 1.0);
                 let (mut dx, mut dy) = (part(), part());
@@ -120,15 +120,16 @@ fn margins_hold_are_witnessed_and_are_tight() {
          without; {drawn} drawn"
     );
     assert!(drawn > 80_000 && hidden > 500 && witnessed > 400, "the scenes hold enough: {drawn} {hidden}");
-    // What no proof is found for: points where an edge that the beam sees from behind comes out of a surface.
+    // Without a proof remain points where an edge that the beam sees from behind comes out of a surface.
     assert!(loose == 0 && without < 20, "{loose} {without}");
 }
 
-/// The plane z = 2, its front to the origin.
+/// The plane z = 2, its front towards the origin.
 const WALL: [[f32; 3]; 3] = [[-8.0, -8.0, 2.0], [-8.0, 8.0, 2.0], [16.0, 0.0, 2.0]];
 
-/// One pencil at the scene's origin along z, and a camera `apart` metres to its right that looks along z too, with 128
-/// x 64 pixels of 1/64 f. A cell is 1 m wide at z = 1: displaced by dx the pencil meets the wall at (2 dx, dy / 256, 2).
+/// One pencil at the scene's origin along z, and a camera `apart` metres to its right that also looks along z, with
+/// 128 x 64 pixels of 1/64 f. A cell is 1 m wide at z = 1: displaced by dx, the pencil meets the wall at (2 dx, dy /
+/// 256, 2).
 fn by_hand(faces: &[[[f32; 3]; 3]], apart: f64, principal_point: [f64; 2]) -> Scene {
     let vertices = faces.iter().flatten().copied().collect();
     let count = faces.len();
@@ -171,7 +172,7 @@ fn margins(scene: &Scene) -> SightMargins {
     Referee::new(scene).sight_margins(0, 0, 0).expect("the wall is hit")
 }
 
-/// That a margin holds the number that was derived, and is tight.
+/// Asserts that a margin contains the derived number, and is tight.
 fn assert_holds(margin: Margin, derived: f64) {
     let Margin { lo, hi, witness } = margin;
     assert!(witness.is_some() && lo <= derived && derived <= hi && hi <= 2.0 * lo, "{margin:?} {derived}");
@@ -189,8 +190,8 @@ fn a_shadows_edge_by_hand() {
         assert!(found.sight.visible);
         assert_holds(found.visibility, 0.3125);
     }
-    // The same beside many faces out of the way, between wall and plate in x, so that the tree has the plate in a leaf
-    // that the way from the pencil's own point misses.
+    // The same with many faces between wall and plate in x, beside the rays, so that the hierarchy has the plate in a
+    // leaf that the line from the pencil's own point misses.
     let aside = (0..64).map(|k| {
         let x = 0.6 + 0.003 * k as f32;
         [[x, 10.0, 1.0], [x, 10.5, 1.0], [x + 0.002, 10.0, 1.0]]

@@ -1,3 +1,5 @@
+//! Claimed errors against exact arithmetic, and roundings.
+
 use super::*;
 use crate::number::Dyadic;
 use crate::rounding;
@@ -13,7 +15,7 @@ fn some_number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Whether the exact number is where it is said to be.
+/// Whether the exact number lies within the claimed error.
 fn holds(claimed: &DoubleDouble, exact: &Dyadic) -> bool {
     if claimed.error.is_infinite() {
         return true;
@@ -22,7 +24,7 @@ fn holds(claimed: &DoubleDouble, exact: &Dyadic) -> bool {
     off.square().sub(&Dyadic::of(claimed.error).square()).sign() != Some(Ordering::Greater)
 }
 
-/// Something with cancellation and every operation but division.
+/// A polynomial with cancellation and every operation but division.
 fn poly<T: Number>([a, b, c, d]: [f64; 4]) -> T {
     let [a, b, c, d] = [a, b, c, d].map(T::of);
     let x = a.mul(&b).sub(&c.mul(&d)).mul(&a.sub(&d));

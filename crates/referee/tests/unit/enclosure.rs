@@ -1,3 +1,5 @@
+//! Enclosures against tables of constants, and their ends.
+
 use super::*;
 use crate::number::Number;
 

@@ -1,3 +1,5 @@
+//! Signs by intervals against signs by exact arithmetic.
+
 use super::*;
 use crate::splitmix::SplitMix64;
 use glam::{DQuat, DVec3};
@@ -36,8 +38,8 @@ fn sensors(random: &mut SplitMix64) -> [MountedSensor; 2] {
     ]
 }
 
-/// The interval is never wrong about a sign: a million edges through points of rays, rounded to f32, so
-/// that every ray passes within rounding of an edge, and the exact arithmetic is needed now and then.
+/// The interval is never wrong about a sign. A million edges pass through points of rays, rounded to f32: every ray
+/// passes within rounding of an edge, so some need exact arithmetic.
 #[test]
 fn the_filter_agrees_with_exact_arithmetic_on_a_million_edges() {
     let mut random = SplitMix64(7);

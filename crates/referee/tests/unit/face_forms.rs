@@ -1,4 +1,4 @@
-//! The forms against exact arithmetic, where they vanish, and what a face says of where it may be met.
+//! Forms against exact arithmetic where they vanish, and the bounds of where a face may be met.
 
 use super::*;
 use crate::displacement::max_norm;
@@ -57,8 +57,8 @@ fn point(ray: &MovingRay, random: &mut SplitMix64) -> DVec3 {
     }
 }
 
-/// A triangle around a point of a ray: well shaped or thin, large or small, or with the ray in its plane but
-/// for a cell's width.
+/// A triangle around a point of a ray: well shaped or thin, large or small, or with the ray in its plane up to a
+/// cell's width.
 fn face(ray: &MovingRay, at: DVec3, random: &mut SplitMix64) -> Face {
     let (origin, q) = ray.line();
     let scale = (at - origin).length() / 10.0;
@@ -71,7 +71,7 @@ fn face(ray: &MovingRay, at: DVec3, random: &mut SplitMix64) -> Face {
     Face { id: FaceId(0), corners: corners.map(|v| v.as_vec3().to_array()) }
 }
 
-/// The exact (n.a', n.D), and the three edges' D.(a' x (b - a)).
+/// The exact (n.a', n.D), and D.(a' x (b - a)) of the three edges.
 fn exact(ray: &ScaledRay<Dyadic>, face: &Face) -> ([Dyadic; 2], [Dyadic; 3]) {
     let v = face.corners.map(Vector::<Dyadic>::of_f32);
     let relative = |k: usize| v[k].scaled(&ray.origin_scale).sub(&ray.origin);
@@ -81,8 +81,7 @@ fn exact(ray: &ScaledRay<Dyadic>, face: &Face) -> ([Dyadic; 2], [Dyadic; 3]) {
     ([normal.dot(&relative(0)), normal.dot(&ray.direction)], [edge(0), edge(1), edge(2)])
 }
 
-/// No form is ever certain of a wrong sign: at displacements where it is as good as 0, from a third of its
-/// error to three times of it, and anywhere else.
+/// No form is ever certain of a wrong sign: neither near its zero, within three times its error, nor elsewhere.
 #[test]
 fn what_a_form_is_certain_of_is_exact() {
     let (mut random, mut certain, mut asked, mut close) = (SplitMix64(11), 0, 0, [0; 8]);
@@ -119,7 +118,7 @@ fn what_a_form_is_certain_of_is_exact() {
                 4 => p.mul(s).sub(&h.mul(sigma)),
                 6 => g.mul(&p).sub(&h.mul(&q)),
                 _ => {
-                    // Squared, which tells the same only before the sensor and from the front.
+                    // The squared condition is equivalent only before the sensor and from the front.
                     if h.sign() != Some(Ordering::Less) || p.sign() != Some(Ordering::Less) {
                         continue;
                     }
@@ -146,7 +145,7 @@ fn what_a_form_is_certain_of_is_exact() {
     assert!(close.iter().all(|&count| count > 300), "{close:?}");
 }
 
-/// Rays that meet a face do so neither nearer nor farther than it says, nor where it is beside them.
+/// Rays meet a face neither nearer nor farther than its bounds, and not where it is beside them.
 #[test]
 fn a_face_is_met_where_it_says_it_may_be() {
     let (mut random, mut met) = (SplitMix64(5), 0);
@@ -186,7 +185,7 @@ fn a_face_is_met_where_it_says_it_may_be() {
         }
     }
     assert!(met > 10_000, "{met}");
-    // A corner that lies in the plane of the sensor tells nothing.
+    // A corner in the plane of the sensor bounds nothing.
     let corner = Corner { at: [0.0; 2], error: [f64::INFINITY; 2] };
     assert_eq!(beside([&corner], [0.0; 2]), 0.0);
 }

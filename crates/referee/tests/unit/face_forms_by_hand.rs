@@ -1,4 +1,4 @@
-//! Forms of numbers that one can follow on paper, and the errors that the page derives, with its letters.
+//! Forms of numbers that can be followed on paper, and the errors that the page derives, in its letters.
 
 use super::*;
 use crate::ray::{Aim, MountedSensor};
@@ -15,7 +15,7 @@ fn aim(i: u32, j: u32) -> Aim {
     Aim { i, j, dx: 0.0, dy: 0.0 }
 }
 
-/// f = 2 m, p = (1/4, 1/2), looking along z from `position`. Pixel (2, 1): q = (1/4, -1/4, 1).
+/// f = 2 m, p = (1/4, 1/2), looking along z from `position`. Pixel (2, 1) has q = (1/4, -1/4, 1).
 fn camera(position: DVec3) -> MountedSensor {
     let sensor = Camera {
         width: 16,
@@ -30,8 +30,8 @@ fn camera(position: DVec3) -> MountedSensor {
     MountedSensor::Camera(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
 }
 
-/// g = 1/2 m, p = (1/4, 0), rows 1/2 m apart, looking along z from `position`. Pencil (2, 3): q = (1/8, 0, 1), 1/2 + 1/4 m
-/// below the axis.
+/// g = 1/2 m, p = (1/4, 0), rows 1/2 m apart, looking along z from `position`. Pencil (2, 3) has q = (1/8, 0, 1) and
+/// starts 1/2 + 1/4 m below the axis.
 fn beam(position: DVec3) -> MountedSensor {
     let sensor = Beam {
         columns: 4,
@@ -47,7 +47,7 @@ fn beam(position: DVec3) -> MountedSensor {
     MountedSensor::Beam(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
 }
 
-/// A triangle 4 to 6 m ahead whose front is seen.
+/// A triangle 4 to 6 m ahead that shows its front.
 fn triangle(id: u32, far: f32) -> Face {
     let corners = [[-1.0, -2.0, 4.0 + far], [0.5, 3.0, 5.0 + far], [2.0, -1.0, 6.0 + far]];
     Face { id: FaceId(id), corners }
@@ -273,8 +273,8 @@ fn a_corner_that_is_not_certainly_before_the_sensor_may_lie_anywhere() {
     assert!(FaceForms::new(&ray, &behind(1.0 / (1_u64 << 36) as f32)).is_before());
 }
 
-/// A triangle a hair inside or outside of each side of the square: only what is certainly outside is let go. The hair is
-/// too fine for f32 corners; the sensor stands off by it.
+/// A triangle slightly inside or outside of each side of the square: only one that is certainly outside is excluded.
+/// The offset is too small for f32 corners, so the sensor is moved by it.
 #[test]
 fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
     // At z = 4: x from q_x - p_x = 0 to q_x + p_x = 1/2 times 4, y from -3/4 to 1/4 times 4.

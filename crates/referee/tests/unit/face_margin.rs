@@ -1,3 +1,5 @@
+//! Points at which the search for a face margin looks for witnesses.
+
 use std::sync::Arc;
 
 use glam::DVec3;

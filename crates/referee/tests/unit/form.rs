@@ -1,3 +1,5 @@
+//! Forms by hand: radii, sums, moves and combinations.
+
 use super::*;
 
 const U: f64 = UNIT_ROUNDOFF;

@@ -1,3 +1,5 @@
+//! Fluxes by three ways of evaluation, and the factor of narrow Gaussians.
+
 use super::*;
 use glam::DVec3;
 use raypencil_scene::{Atmosphere, Beam, Camera, Lens, Mounted, Pose, Profile, Scene};

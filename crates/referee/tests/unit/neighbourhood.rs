@@ -1,3 +1,5 @@
+//! Ranges of grazing rays.
+
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
@@ -5,8 +7,8 @@ use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mount
 
 use super::*;
 
-/// A camera 2^-13 m above level ground that looks along x: its middle pixel meets the ground at a slope of 2^-14, 2 m
-/// away, too aslant for f64 to tell how far.
+/// A camera 2^-13 m above level ground looks along x. Its middle pixel meets the ground 2 m away at a slope of 2^-14,
+/// too oblique for f64 to tell the range.
 #[test]
 fn the_range_of_a_grazing_ray_is_that_of_the_displaced_ray() {
     let material = Material { name: "ground".into(), reflectivity: 0.25 };

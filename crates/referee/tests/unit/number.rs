@@ -1,3 +1,5 @@
+//! Intervals and dyadic rationals against each other and against integers.
+
 use super::*;
 use proptest::prelude::*;
 

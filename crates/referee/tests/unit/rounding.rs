@@ -1,3 +1,5 @@
+//! Exact quotients and roots against IEEE 754.
+
 use super::*;
 use crate::number::Number;
 use proptest::prelude::*;

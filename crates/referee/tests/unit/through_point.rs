@@ -1,3 +1,5 @@
+//! Displacements through points, by hand, and the tip of a thin triangle.
+
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
@@ -8,7 +10,7 @@ use raypencil_scene::{
 use super::*;
 use crate::{Referee, Ruling, Tolerance};
 
-/// A camera that looks along z of the scene from (1, 2, 3): pixels of 1/64, focal length 1/16, the middle at pixel (2, 2).
+/// A camera at (1, 2, 3) that looks along z: pixels of 1/64, focal length 1/16, principal point (2, 2).
 fn camera() -> Mounted<Camera> {
     let sensor = Camera {
         width: 4,
@@ -50,15 +52,15 @@ fn through_a_point_by_hand() {
     let sensor = MountedSensor::Camera(camera());
     assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -1.0]));
     assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 3.0)), None);
-    // A beam of one cell, 2 w = 1/2 wide at g = 1 and T = 1/8 thick, at the same place: x/z = 1/4 is half a cell, y = -1/2
-    // is 4 cells up.
+    // A beam of one cell at the same place, 2 w = 1/2 wide at g = 1 and T = 1/8 thick: x/z = 1/4 is half a cell, y =
+    // -1/2 is 4 cells up.
     let beam = MountedSensor::Beam(beam(camera().scene_from_sensor, 0.25, 0.125, 1.0));
     let aim = Aim { i: 0, j: 0, dx: 0.0, dy: 0.0 };
     assert_eq!(beam.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -4.0]));
 }
 
-/// A pencil of 5e-5 radians that is aimed at the tip of a thin triangle, as nearly as an f64 can say. It misses
-/// the tip by some 1e-12 cells, and the linear forms of the triangle's sides cross before they are in the triangle.
+/// A pencil of 5e-5 radians aimed at the tip of a thin triangle as exactly as f64 allows. It misses the tip by some
+/// 1e-12 cells, and the linear forms of the triangle's sides cross before they reach the triangle.
 #[allow(clippy::excessive_precision, reason = "these are exact: parts of 1024 and 512")]
 fn needle() -> Scene {
     let vertices = vec![
@@ -88,15 +90,15 @@ fn the_tip_of_a_needle_is_met_by_a_ray_next_to_it() {
     let referee = Referee::new(&scene);
     let beam = SensorId::Beam(0);
     assert!(!referee.verdict(beam, 0, 0).expect("a pencil").is_hit());
-    // Whoever says that it is met is wrong by no more than the rounding of an f64.
+    // An answer that it is met is wrong by no more than the rounding of f64.
     let tolerance = Tolerance { lateral: 1e-9, depth: 1e-9, position: 0.0 };
     let ruling = referee.rule(beam, 0, 0, Some(FaceId(0)), tolerance);
     let Some(Ruling::Rounding(witness)) = ruling else { panic!("{ruling:?}") };
     assert!(witness.max_norm() <= 1e-9, "{witness:?}");
-    // Not so for one who tells rays apart more finely.
+    // It is wrong for a renderer with a finer tolerance.
     let finer = Tolerance { lateral: 1e-16, ..tolerance };
     assert_eq!(referee.rule(beam, 0, 0, Some(FaceId(0)), finer), Some(Ruling::Wrong));
-    // The margins know of it.
+    // The margins show it too.
     let margins = referee.margins(beam, 0, 0).expect("a pencil");
     assert!(margins.face.hi <= 1e-9, "{:?}", margins.face);
     assert!(margins.surface.hi <= 1e-9, "{:?}", margins.surface);

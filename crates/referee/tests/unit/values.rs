@@ -1,3 +1,5 @@
+//! Values in pairs of f64 against exact arithmetic, and by hand.
+
 use super::*;
 use glam::DQuat;
 use proptest::prelude::*;

@@ -1,3 +1,5 @@
+//! Faces that never hide others, and margins of visibility by hand.
+
 use std::sync::Arc;
 
 use glam::DQuat;
@@ -83,13 +85,13 @@ fn reason_3_a_plane_through_the_camera_and_a_side_keeps_them_apart() {
     assert!(!by_own_sides_too, "its corner's image is the ground's corner");
 }
 
-/// A camera at (1, 2, 10) and a beam that looks straight down from 8 m, onto level ground of one face. Its middle pencil
-/// meets (0, 0, 0); a cell is 8 `step` m across and `row` m down.
+/// A camera at (1, 2, 10) and a beam that looks straight down from 8 m onto level ground of one face. Its middle
+/// pencil meets (0, 0, 0); a cell is 8 `step` m across and `row` m down.
 fn level(size: f32, step: f64, row: f64) -> Scene {
     level_with(size, step, row, &[])
 }
 
-/// The same with other faces.
+/// The same with more faces.
 fn level_with(size: f32, step: f64, row: f64, others: &[[[f32; 3]; 3]]) -> Scene {
     let material = Material { name: "ground".into(), reflectivity: 0.25 };
     let mut vertices = vec![[-size, -size, 0.0], [2.0 * size, -size, 0.0], [-size, 2.0 * size, 0.0]];
@@ -162,10 +164,10 @@ fn the_ways_to_what_is_hit_are_a_narrow_bundle() {
     assert!((bundle.spread - radius / (length - radius)).abs() < 1e-6, "{}", bundle.spread);
 }
 
-/// Two thirds of a lid 1 m above the ground, whose faces meet along a line from its middle to the left. The camera
-/// sees the ground's (x, y) through (0.9 x + 0.1, 0.9 y + 0.2) of it. Pencils pass its backs. Cells are 1/4 m, and the
-/// lid's middle is seen one and a half of them to the right of the point: the side of the missing third, drawn on
-/// beyond the middle, crosses a corner of what a pencil may hit; the side itself does not.
+/// Two thirds of a lid 1 m above the ground, whose two faces meet along a line from its middle to the left. The
+/// camera sees the ground's (x, y) through the lid's (0.9 x + 0.1, 0.9 y + 0.2). Pencils pass the lid from behind.
+/// Cells are 1/4 m, and the camera sees the lid's middle one and a half cells to the right of the point. The line of
+/// the missing third's side crosses a corner of the region that a pencil may hit; the side itself does not.
 #[test]
 fn a_lid_of_several_faces_hides_as_one() {
     let (middle, left) = ([0.4375, 0.2, 1.0], [-4.5625, 0.2, 1.0]);
@@ -189,8 +191,8 @@ fn a_lid_of_several_faces_hides_as_one() {
     assert!(!visible && margin.lo <= edge && edge <= margin.hi && margin.hi < 1.5 * margin.lo, "{margin:?}");
 }
 
-/// A lid so small that it hides one displaced ray alone is an excuse as far as that ray is within the tolerance: in each of
-/// the eight directions that are asked.
+/// A lid so small that it hides one displaced ray alone excuses an answer if that ray is within the tolerance: in
+/// each of the eight directions that are tried.
 #[test]
 fn a_ray_beside_excuses_what_is_true_of_it() {
     for (x, y) in (-1..=1).flat_map(|x| (-1..=1).map(move |y| (x, y))).filter(|at| *at != (0, 0)) {
