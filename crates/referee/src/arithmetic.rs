@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn what_lies_on_a_midpoint_is_undecided_and_what_does_not_is_decided() {
-        // (1 + 2^-53 + more) / 7 times 7, which is rounded on its way: 2^53 + 1 is no multiple of 7 (but of 3).
+        // (1 + 2^-53 + more) / 7 times 7. The quotient is rounded: 2^53 + 1 is no multiple of 7 (but of 3).
         let value = |more: f64| {
             decide_rounding(DoubleDouble::UNKNOWN, |a| {
                 let half_way = a.add(&a.exact(1.0), &a.exact(f64::EPSILON / 2.0));

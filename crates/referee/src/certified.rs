@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use raypencil_scene::{FluxModel, Image, Pixel, Quantities, Returns, Sampling, SensorId, SensorMap};
 
+use crate::beam_returns::{BeamReturns, Contribution, RoundedReturn};
 use crate::flux::Flux;
-use crate::light::{Contribution, Light, RoundedReturn};
 use crate::ray::{Aim, MountedSensor};
 use crate::rounding::Format;
 use crate::values::{RoundedHit, values};
@@ -173,7 +173,7 @@ impl Referee<'_> {
     }
 }
 
-fn sum(light: &Light<'_, '_>, pencils: &[Contribution]) -> PixelSum {
+fn sum(light: &BeamReturns<'_, '_>, pencils: &[Contribution]) -> PixelSum {
     PixelSum {
         pencils: pencils.len() as u32,
         radiometric: light.sum(FluxModel::Radiometric, pencils),

@@ -159,7 +159,7 @@ impl FluxFormula<'_> {
                 self.through_air(a, delivered, || a.add(&range, &distance))
             }
             FluxModel::Eq1 => {
-                // phi of the pixel's centre: X, Y are how far that is from the axis on the image.
+                // phi is that of the pixel's centre; `offset` is its squared distance from the axis on the image.
                 let offset = |index: u32, axis: usize| {
                     let cells = A::Exact::of_integer(index)
                         .add(&A::Exact::of(0.5))

@@ -69,7 +69,8 @@
 //! paper, paper_raster   whether they explain a wrong hit, and how they draw a face
 //! paper_visibility      whether they explain a wrong visibility
 //! intersection, values  values of a hit, correctly rounded
-//! shares, flux, light   values of a pencil's return, correctly rounded
+//! shares, flux          a pencil's share of the power, and its flux
+//! beam_returns          values of a pencil's return, correctly rounded
 //! certified, render     the answers of a whole sensor, and as a renderer
 //! ```
 //!
@@ -77,6 +78,7 @@
 
 mod approximations;
 mod arithmetic;
+mod beam_returns;
 mod bvh;
 mod certified;
 mod displacement;
@@ -89,7 +91,6 @@ mod flux;
 mod form;
 mod intersection;
 mod kleene;
-mod light;
 mod line_of_sight;
 mod margin;
 mod margins;
@@ -127,10 +128,10 @@ struct Readme;
 
 pub use approximations::{Approximations, Explained, Reason};
 pub use arithmetic::Undecided;
+pub use beam_returns::{BeamReturns, Contribution, RoundedReturn};
 pub use certified::{CertifiedLight, CertifiedMap, PixelSum};
 pub use displacement::Displacement;
 pub use flux::Flux;
-pub use light::{Contribution, Light, RoundedReturn};
 pub use margin::Margin;
 pub use margins::Margins;
 pub use paper_visibility::{ExplainedSight, SightApproximations, SightReason};

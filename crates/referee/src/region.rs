@@ -97,11 +97,11 @@ mod tests {
         // dx >= 1/2: the right quarter.
         let region = Region::of(&[form(-0.5, 1.0, 0.0)]).expect("a part of the square");
         assert_eq!(region.corners, [[0.5, -1.0], [1.0, -1.0], [1.0, 1.0], [0.5, 1.0]]);
-        // Of many that are as near, the middle of the side.
+        // Many points are as near: the middle of the side is chosen.
         assert_eq!((region.near, region.middle), ([0.5, 0.0], [0.75, 0.0]));
         let region = Region::of(&[form(-0.5, 0.0, 1.0)]).expect("a part of the square");
         assert_eq!(region.near, [0.0, 0.5]);
-        // Below it dx + dy >= 1 too: a triangle, and what is left of it above dy = 1/4 is nearest at (3/4, 1/4).
+        // dx + dy >= 1 and dy <= 1/4: a triangle, nearest at (3/4, 1/4).
         let region = Region::of(&[form(-1.0, 1.0, 1.0), form(0.25, 0.0, -1.0)]).expect("a part");
         assert_eq!(region.corners, [[1.0, 0.0], [1.0, 0.25], [0.75, 0.25]]);
         assert_eq!(max_norm(region.near), 0.75);

@@ -277,7 +277,7 @@ mod tests {
     use crate::ray::{Aim, MountedSensor};
     use crate::verdict::Referee;
 
-    /// A face 2 m ahead that ends so many cells to the right of the ray, a cell being 1/4 m.
+    /// A face 2 m ahead that ends `cells` cells to the right of the ray; a cell is 1/4 m.
     fn jump(cells: f32, lo: f64) -> Option<[f64; 2]> {
         let end = 0.25 * cells;
         let vertices = vec![[end, -40.0, 2.0], [end - 90.0, 0.0, 2.0], [end, 40.0, 2.0]];

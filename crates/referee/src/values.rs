@@ -30,7 +30,7 @@ pub struct RoundedHit {
     pub normal: [Rounded; 3],
     /// Distance along the sensor's normal axis, metres.
     pub depth: Rounded,
-    /// cos(psi).
+    /// cos(psi), psi being the angle between the normal and the reversed ray.
     pub incidence: Rounded,
 }
 

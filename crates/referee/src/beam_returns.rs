@@ -31,9 +31,9 @@ pub struct RoundedReturn {
     pub pixel: Option<Pixel>,
     /// Depth r of the point in the camera, metres.
     pub depth: Rounded,
-    /// cos(phi).
+    /// cos(phi), phi being the angle between the camera's axis and the line to the point.
     pub off_axis: Rounded,
-    /// cos(theta).
+    /// cos(theta), theta being the angle between the normal and the line to the camera.
     pub emission: Rounded,
     /// Flux by the model `radiometric`, watts.
     pub radiometric: Flux,
@@ -79,7 +79,7 @@ pub struct Contribution {
 
 /// The returns of one beam, pencil by pencil.
 #[derive(Debug)]
-pub struct Light<'r, 's> {
+pub struct BeamReturns<'r, 's> {
     referee: &'r Referee<'s>,
     beam: usize,
     shares: Shares,
@@ -103,18 +103,18 @@ impl<'s> Referee<'s> {
     /// let watts = 16.0 / 25.0 / f64::from(1 << 21);
     /// assert_eq!(back.radiometric.unwrap().double, watts);
     /// ```
-    pub fn light(&self, beam: usize, sampling: Sampling) -> Option<Light<'_, 's>> {
+    pub fn light(&self, beam: usize, sampling: Sampling) -> Option<BeamReturns<'_, 's>> {
         let sensor = self.scene.beams().get(beam)?.sensor;
         // Without jitter the sum of the weights is the same for every call: the referee caches it.
         let weight_sum = match sampling {
             Sampling::Centres => Arc::clone(&self.weight_sums[beam]),
             Sampling::Jittered { .. } => Arc::new(WeightSum::default()),
         };
-        Some(Light { referee: self, beam, shares: Shares::new(beam, sensor, sampling, weight_sum) })
+        Some(BeamReturns { referee: self, beam, shares: Shares::new(beam, sensor, sampling, weight_sum) })
     }
 }
 
-impl Light<'_, '_> {
+impl BeamReturns<'_, '_> {
     /// The displacement of a pencil's ray from the centre of its cell, cells.
     pub fn offset(&self, i: u32, j: u32) -> Displacement {
         self.shares.offset(i, j)
@@ -262,5 +262,5 @@ fn cosine(part: &Dyadic, squared: &Dyadic) -> Rounded {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/light.rs"]
+#[path = "../tests/unit/beam_returns.rs"]
 mod tests;
