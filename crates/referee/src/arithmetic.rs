@@ -1,29 +1,29 @@
-//! One formula, two ways to evaluate it: in pairs of f64, and in enclosures of growing precision.
+//! One formula, evaluated in either of two arithmetics: pairs of f64, or enclosures of growing precision.
 
 use std::sync::OnceLock;
 
+use crate::double_double::DoubleDouble;
 use crate::enclosure::{Enclosure, Precision};
 use crate::number::{Dyadic, Number};
 use crate::rounding::Rounded;
-use crate::twofold::Twofold;
 
-/// A value whose rounding is not decided by the whole budget of bits; one of the two nearest.
+/// A value whose rounding no tried precision decides; it holds one of the two nearest numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Undecided(pub Rounded);
 
-/// The precisions tried one after the other, in bits. A value that is no midpoint, and was not made to look like
-/// one, is decided by the first but for one in 2^60.
-const BUDGET: [usize; 5] = [128, 256, 512, 1024, 2048];
+/// The precisions tried one after the other, in bits. A value that neither is a midpoint of two f64 nor was
+/// constructed to lie near one needs the second of them once in 2^60 cases.
+const PRECISIONS_BITS: [usize; 5] = [128, 256, 512, 1024, 2048];
 
-/// What a formula of positive numbers is made of.
+/// The operations of a formula in positive numbers.
 pub(crate) trait Arithmetic {
-    /// In which the polynomials of rays and faces are evaluated.
+    /// The numbers in which polynomials of rays and faces are evaluated.
     type Exact: Number;
-    /// In which the formula is.
+    /// The numbers in which the formula is evaluated.
     type Real: Clone;
 
     /// |x|.
-    fn size(&self, x: &Self::Exact) -> Self::Real;
+    fn abs(&self, x: &Self::Exact) -> Self::Real;
     fn add(&self, x: &Self::Real, y: &Self::Real) -> Self::Real;
     /// |x - y|.
     fn distance(&self, x: &Self::Real, y: &Self::Real) -> Self::Real;
@@ -35,87 +35,87 @@ pub(crate) trait Arithmetic {
     fn atan(&self, x: &Self::Real) -> Self::Real;
     fn pi(&self) -> Self::Real;
     fn ln_2(&self) -> Self::Real;
-    /// The sum of a beam's weights, kept once it is formed.
-    fn whole(&self, kept: &Whole, form: impl FnOnce() -> Self::Real) -> Self::Real;
+    /// The sum of a beam's weights: from the cache, or computed by `form`.
+    fn weight_sum(&self, cache: &WeightSum, form: impl FnOnce() -> Self::Real) -> Self::Real;
 
-    /// |x|, of an f64.
-    fn exactly(&self, x: f64) -> Self::Real {
-        self.size(&Self::Exact::of(x))
+    /// |x| of an f64.
+    fn exact(&self, x: f64) -> Self::Real {
+        self.abs(&Self::Exact::of(x))
     }
 }
 
-/// Sums of weights that were formed.
+/// The sum of a beam's weights, cached for each arithmetic.
 #[derive(Debug, Default)]
-pub(crate) struct Whole {
-    fast: OnceLock<Twofold>,
-    enclosures: [OnceLock<Enclosure>; BUDGET.len()],
+pub(crate) struct WeightSum {
+    fast: OnceLock<DoubleDouble>,
+    enclosures: [OnceLock<Enclosure>; PRECISIONS_BITS.len()],
 }
 
-/// Pairs of f64: no exp, no atan.
+/// Pairs of f64. They have no exp, ln and atan: these are unknown.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fast;
 
 impl Arithmetic for Fast {
-    type Exact = Twofold;
-    type Real = Twofold;
+    type Exact = DoubleDouble;
+    type Real = DoubleDouble;
 
-    fn size(&self, x: &Twofold) -> Twofold {
-        x.size()
+    fn abs(&self, x: &DoubleDouble) -> DoubleDouble {
+        x.abs()
     }
 
-    fn add(&self, x: &Twofold, y: &Twofold) -> Twofold {
+    fn add(&self, x: &DoubleDouble, y: &DoubleDouble) -> DoubleDouble {
         x.add(y)
     }
 
-    fn distance(&self, x: &Twofold, y: &Twofold) -> Twofold {
-        x.sub(y).size()
+    fn distance(&self, x: &DoubleDouble, y: &DoubleDouble) -> DoubleDouble {
+        x.sub(y).abs()
     }
 
-    fn mul(&self, x: &Twofold, y: &Twofold) -> Twofold {
+    fn mul(&self, x: &DoubleDouble, y: &DoubleDouble) -> DoubleDouble {
         x.mul(y)
     }
 
-    fn div(&self, x: &Twofold, y: &Twofold) -> Twofold {
+    fn div(&self, x: &DoubleDouble, y: &DoubleDouble) -> DoubleDouble {
         x.over(y)
     }
 
-    fn sqrt(&self, x: &Twofold) -> Twofold {
+    fn sqrt(&self, x: &DoubleDouble) -> DoubleDouble {
         x.sqrt()
     }
 
-    fn exp_minus(&self, _: &Twofold) -> Twofold {
-        Twofold::UNKNOWN
+    fn exp_minus(&self, _: &DoubleDouble) -> DoubleDouble {
+        DoubleDouble::UNKNOWN
     }
 
-    fn atan(&self, _: &Twofold) -> Twofold {
-        Twofold::UNKNOWN
+    fn atan(&self, _: &DoubleDouble) -> DoubleDouble {
+        DoubleDouble::UNKNOWN
     }
 
-    fn pi(&self) -> Twofold {
-        Twofold::PI
+    fn pi(&self) -> DoubleDouble {
+        DoubleDouble::PI
     }
 
-    fn ln_2(&self) -> Twofold {
-        Twofold::UNKNOWN
+    fn ln_2(&self) -> DoubleDouble {
+        DoubleDouble::UNKNOWN
     }
 
-    fn whole(&self, kept: &Whole, form: impl FnOnce() -> Twofold) -> Twofold {
-        *kept.fast.get_or_init(form)
+    fn weight_sum(&self, cache: &WeightSum, form: impl FnOnce() -> DoubleDouble) -> DoubleDouble {
+        *cache.fast.get_or_init(form)
     }
 }
 
-/// One of the precisions of the budget.
+/// Enclosures with one of the precisions.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Level {
+pub(crate) struct PrecisionLevel {
     index: usize,
     precision: Precision,
 }
 
-impl Arithmetic for Level {
+impl Arithmetic for PrecisionLevel {
     type Exact = Dyadic;
     type Real = Enclosure;
 
-    fn size(&self, x: &Dyadic) -> Enclosure {
+    fn abs(&self, x: &Dyadic) -> Enclosure {
         self.precision.magnitude(x)
     }
 
@@ -155,22 +155,25 @@ impl Arithmetic for Level {
         self.precision.ln_2()
     }
 
-    fn whole(&self, kept: &Whole, form: impl FnOnce() -> Enclosure) -> Enclosure {
-        kept.enclosures[self.index].get_or_init(form).clone()
+    fn weight_sum(&self, cache: &WeightSum, form: impl FnOnce() -> Enclosure) -> Enclosure {
+        cache.enclosures[self.index].get_or_init(form).clone()
     }
 }
 
-/// Correctly rounded: by the fast value if that is certain, else with growing precision.
-pub(crate) fn decide(fast: Twofold, enclose: impl Fn(&Level) -> Enclosure) -> Result<Rounded, Undecided> {
+/// Rounds a value correctly: by its pair of f64 if that is certain, else by enclosures of growing precision.
+pub(crate) fn decide_rounding(
+    fast: DoubleDouble,
+    enclose: impl Fn(&PrecisionLevel) -> Enclosure,
+) -> Result<Rounded, Undecided> {
     if let Some(rounded) = fast.rounded() {
         return Ok(rounded);
     }
     let mut last = Rounded::ZERO;
-    for (index, bits) in BUDGET.into_iter().enumerate() {
-        let enclosure = enclose(&Level { index, precision: Precision::new(bits) });
+    for (index, bits) in PRECISIONS_BITS.into_iter().enumerate() {
+        let enclosure = enclose(&PrecisionLevel { index, precision: Precision::new(bits) });
         match enclosure.rounded() {
             Some(rounded) => return Ok(rounded),
-            None => last = enclosure.least_rounded(),
+            None => last = enclosure.low_rounded(),
         }
     }
     Err(Undecided(last))
@@ -182,12 +185,12 @@ mod tests {
 
     #[test]
     fn what_lies_on_a_midpoint_is_undecided_and_what_does_not_is_decided() {
-        // (1 + 2^-53 + more) / 7 times 7, which is rounded on its way: 2^53 + 1 is no multiple of 7 (but of 3).
+        // (1 + 2^-53 + more) / 7 times 7. The quotient is rounded: 2^53 + 1 is no multiple of 7 (but of 3).
         let value = |more: f64| {
-            decide(Twofold::UNKNOWN, |a| {
-                let half_way = a.add(&a.exactly(1.0), &a.exactly(f64::EPSILON / 2.0));
-                let number = a.add(&half_way, &a.exactly(more));
-                a.mul(&a.div(&number, &a.exactly(7.0)), &a.exactly(7.0))
+            decide_rounding(DoubleDouble::UNKNOWN, |a| {
+                let half_way = a.add(&a.exact(1.0), &a.exact(f64::EPSILON / 2.0));
+                let number = a.add(&half_way, &a.exact(more));
+                a.mul(&a.div(&number, &a.exact(7.0)), &a.exact(7.0))
             })
         };
         let one = Rounded { double: 1.0, single: 1.0 };
@@ -200,12 +203,12 @@ mod tests {
     #[test]
     fn both_arithmetics_agree() {
         fn formula<A: Arithmetic>(a: &A) -> A::Real {
-            let third = a.div(&a.exactly(1.0), &a.exactly(-3.0));
-            let root = a.sqrt(&a.add(&third, &a.exactly(2.0)));
+            let third = a.div(&a.exact(1.0), &a.exact(-3.0));
+            let root = a.sqrt(&a.add(&third, &a.exact(2.0)));
             a.mul(&a.pi(), &a.distance(&third, &root))
         }
         let fast = formula(&Fast).rounded().expect("decided");
-        assert_eq!(decide(Twofold::UNKNOWN, formula), Ok(fast));
+        assert_eq!(decide_rounding(DoubleDouble::UNKNOWN, formula), Ok(fast));
         // pi |1/3 - sqrt(7/3)| = 3.7516...
         assert!((fast.double - std::f64::consts::PI * ((7.0f64 / 3.0).sqrt() - 1.0 / 3.0)).abs() < 1e-15);
     }

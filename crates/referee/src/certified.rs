@@ -1,60 +1,58 @@
-//! Every value of a sensor, correctly rounded: what reference files are made of.
+//! Correctly rounded values of a whole sensor: the content of reference files.
 
-use std::cell::LazyCell;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use raypencil_scene::{FluxModel, Image, Pixel, Quantities, Returns, Sampling, SensorId, SensorMap};
 
-use crate::light::{Contribution, Flux, Light, RoundedReturn};
-use crate::number::Dyadic;
-use crate::pencil::{Aim, Sensor};
-use crate::rounding::{Format, Rounded, quotient};
-use crate::twofold::Twofold;
+use crate::beam_returns::{BeamReturns, Contribution, RoundedReturn};
+use crate::flux::Flux;
+use crate::ray::{Aim, MountedSensor};
+use crate::rounding::Format;
 use crate::values::{RoundedHit, values};
 use crate::verdict::Referee;
 
-/// What each ray of a sensor meets.
+/// The hit of each ray of a sensor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CertifiedMap {
-    /// Whose.
+    /// The sensor.
     pub sensor: SensorId,
     /// Columns.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// In row-major order.
+    /// The hits, in row-major order; `None` for a miss.
     pub hits: Vec<Option<RoundedHit>>,
 }
 
-/// What comes back of each pencil of a beam, and what that adds up to on the camera's image.
+/// The return of each pencil of a beam, and their sums on the camera's image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CertifiedLight {
     /// Columns of the beam.
     pub columns: u32,
     /// Rows of the beam.
     pub rows: u32,
-    /// The pencils, in row-major order.
+    /// The returns of the pencils, in row-major order; `None` for a miss.
     pub returns: Vec<Option<RoundedReturn>>,
-    /// Columns and rows of the camera.
+    /// Columns and rows of the camera's image.
     pub image: (u32, u32),
-    /// The pixels that receive anything, in row-major order, with the sum over their pencils.
+    /// The pixels that receive light, in row-major order, with the sum over their pencils.
     pub sums: Vec<(Pixel, PixelSum)>,
 }
 
-/// What a pixel receives of one beam.
+/// The flux that one pixel receives from one beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelSum {
-    /// How many pencils it adds up.
+    /// Number of pencils in the sum.
     pub pencils: u32,
-    /// By the model `radiometric`, watts.
+    /// Flux by the model `radiometric`, watts.
     pub radiometric: Flux,
-    /// By the model `eq1`, W/m.
+    /// Flux by the model `eq1`, W/m.
     pub eq1: Flux,
 }
 
 impl PixelSum {
-    /// By a model.
+    /// The flux by a model.
     pub fn flux(&self, model: FluxModel) -> Flux {
         match model {
             FluxModel::Radiometric => self.radiometric,
@@ -64,7 +62,7 @@ impl PixelSum {
 }
 
 impl CertifiedMap {
-    /// The maps in f64, or in f32 (whose numbers are f64 as well).
+    /// The map with values rounded to f64, or to f32 and stored as f64.
     pub fn in_format(&self, format: Format, quantities: Quantities) -> SensorMap {
         let mut map = SensorMap::empty(self.sensor, self.width, self.height, quantities);
         for (mut row, hits) in map.rows_mut().into_iter().zip(self.hits.chunks(self.width as usize)) {
@@ -79,7 +77,7 @@ impl CertifiedMap {
 }
 
 impl CertifiedLight {
-    /// The returns in f64, or in f32.
+    /// The returns with values rounded to f64 or f32.
     pub fn returns_in(&self, format: Format, model: FluxModel) -> Returns {
         let mut returns = Returns::empty(self.columns, self.rows);
         let cells = (0..self.rows).flat_map(|j| (0..self.columns).map(move |i| (i, j)));
@@ -91,7 +89,7 @@ impl CertifiedLight {
         returns
     }
 
-    /// What falls on the camera's image, in f64, or in f32.
+    /// The flux on the camera's image, rounded to f64 or f32.
     pub fn image_in(&self, format: Format, model: FluxModel) -> Image<f64> {
         let mut image = Image::filled(self.image.0, self.image.1, 0.0);
         for (pixel, sum) in &self.sums {
@@ -101,7 +99,7 @@ impl CertifiedLight {
         image
     }
 
-    /// Values that the budget of bits did not decide.
+    /// Number of values whose rounding stayed [`Undecided`](crate::Undecided).
     pub fn undecided(&self) -> usize {
         let models = [FluxModel::Radiometric, FluxModel::Eq1];
         let of =
@@ -113,32 +111,22 @@ impl CertifiedLight {
 }
 
 impl Referee<'_> {
-    /// The values of the face that the ray of cell (i, j) meets first; `None` if there is no such cell, or no hit.
-    pub fn values(&self, id: SensorId, i: u32, j: u32) -> Option<RoundedHit> {
-        let (sensor, aim) = self.aim_at(id, i, j)?;
-        let nearest = self.nearest(&sensor, aim);
-        values(&sensor, aim, nearest.first()?)
-    }
-
-    /// The ray of cell (i, j): origin and direction (not a unit: t = 1 is on the SPP), scene frame, metres; `None` if
-    /// there is no such cell.
-    pub fn ray(&self, id: SensorId, i: u32, j: u32) -> Option<[[Rounded; 3]; 2]> {
-        let (sensor, aim) = self.aim_at(id, i, j)?;
-        let (fast, exact) = (sensor.ray::<Twofold>(aim), LazyCell::new(|| sensor.ray::<Dyadic>(aim)));
-        let part = |k: usize| {
-            let rounded = fast.origin.0[k].over(&fast.origin_scale).rounded();
-            rounded.unwrap_or_else(|| quotient(&exact.origin.0[k], &exact.origin_scale))
-        };
-        let along = |k: usize| {
-            let rounded = fast.direction.0[k].over(&fast.direction_scale).rounded();
-            rounded.unwrap_or_else(|| quotient(&exact.direction.0[k], &exact.direction_scale))
-        };
-        Some([[0, 1, 2].map(part), [0, 1, 2].map(along)])
-    }
-
-    /// What every ray of a sensor meets; `None` if there is no such sensor.
+    /// The hits of all rays of a sensor; `None` if there is no such sensor.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    /// use raypencil_scene::{Sampling, SensorId};
+    ///
+    /// let scene = wall_scene();
+    /// let map = Referee::new(&scene).certified_map(SensorId::Camera, Sampling::Centres).unwrap();
+    /// // The wall covers the columns 0 to 4 of all nine rows, at a depth of 2 m.
+    /// assert_eq!(map.hits.iter().flatten().count(), 5 * 9);
+    /// assert!(map.hits.iter().flatten().all(|hit| hit.depth.double == 2.0));
+    /// ```
     pub fn certified_map(&self, id: SensorId, sampling: Sampling) -> Option<CertifiedMap> {
-        let sensor = Sensor::of(self.scene, id)?;
+        let sensor = MountedSensor::of(self.scene, id)?;
         let (width, height) = sensor.size();
         let row = |j: u32| {
             (0..width).map(move |i| {
@@ -154,7 +142,7 @@ impl Referee<'_> {
         Some(CertifiedMap { sensor: id, width, height, hits })
     }
 
-    /// What comes back of every pencil of a beam; `None` if there is no such beam.
+    /// The returns of all pencils of a beam; `None` if there is no such beam.
     pub fn certified_light(&self, beam: usize, sampling: Sampling) -> Option<CertifiedLight> {
         let light = self.light(beam, sampling)?;
         let beam = &self.scene.beams()[beam].sensor;
@@ -165,7 +153,7 @@ impl Referee<'_> {
         };
         let rows: Vec<_> = (0..beam.rows).into_par_iter().flat_map_iter(returned).collect();
 
-        // The pencils of each pixel, in row-major order.
+        // Group the contributing pencils by pixel, each group in row-major order.
         let mut pixels: BTreeMap<(u32, u32), Vec<Contribution>> = BTreeMap::new();
         let cells = (0..beam.rows).flat_map(|j| (0..beam.columns).map(move |i| (i, j)));
         for ((i, j), found) in cells.zip(&rows) {
@@ -185,7 +173,7 @@ impl Referee<'_> {
     }
 }
 
-fn sum(light: &Light<'_, '_>, pencils: &[Contribution]) -> PixelSum {
+fn sum(light: &BeamReturns<'_, '_>, pencils: &[Contribution]) -> PixelSum {
     PixelSum {
         pencils: pencils.len() as u32,
         radiometric: light.sum(FluxModel::Radiometric, pencils),

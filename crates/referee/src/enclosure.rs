@@ -1,9 +1,8 @@
-//! Enclosures of positive reals at any precision: what decides a rounding that 106 bits did not.
+//! Enclosures of positive reals at any precision: they decide the roundings that 106 bits leave open.
 //!
-//! Both ends are binary numbers of `precision` bits, each operation rounded down at the low end and up at the high
-//! one. That holds because dashu-float rounds correctly in the direction asked for, `exp`, `atan` and pi included (it
-//! repeats with more digits until the rounding is certain). Everything here is positive or 0: signs are kept by
-//! the caller.
+//! Both ends are binary numbers of `precision` bits. Each operation rounds the low end down and the high end up.
+//! dashu-float rounds correctly in the direction asked for, also `exp`, `atan` and pi (it repeats with more digits
+//! until the rounding is certain). All numbers here are positive or 0: the caller keeps the signs.
 
 use dashu_float::round::mode::{Down, Up};
 use dashu_float::round::{ErrorBounds, Round};
@@ -11,29 +10,29 @@ use dashu_float::{Context, FBig, Repr};
 use dashu_int::{IBig, Sign};
 
 use crate::number::Dyadic;
-use crate::rounding::{Cut, Rounded};
+use crate::rounding::{LeadingBits, Rounded};
 
 type Real = Repr<2>;
 
-/// low <= x <= high, 0 <= low.
+/// An interval that contains a real number x >= 0: low <= x <= high, 0 <= low.
 #[derive(Debug, Clone)]
 pub(crate) struct Enclosure {
     low: Real,
     high: Real,
 }
 
-/// exp(-x) is taken for "between 0 and 2^-1000000" beyond this: no flux that has such a factor is anything but 0
-/// in f64, whose smallest number is 2^-1074.
-const NOTHING_LEFT: i64 = 800_000;
+/// Largest argument of exp(-x) that is evaluated; beyond it the enclosure is from 0 to 2^-1000000. A flux with such a
+/// factor is 0 in f64, whose smallest number is 2^-1074.
+const MAX_EXP_ARGUMENT: i64 = 800_000;
 
-/// Operations of a number of bits.
+/// The operations at one precision.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Precision {
     down: Context<Down>,
     up: Context<Up>,
 }
 
-/// The value of an operation that is defined for what is given to it.
+/// The value of an operation that is defined for its arguments.
 fn value<R: Round>(result: dashu_float::FpResult<FBig<R, 2>>) -> Real {
     result.expect("defined for positive numbers").value().into_repr()
 }
@@ -42,7 +41,7 @@ fn zero() -> Real {
     Repr::zero()
 }
 
-/// 0 where it would be less.
+/// The larger of x and 0.
 fn not_negative(x: Real) -> Real {
     if x.sign() == Sign::Negative { zero() } else { x }
 }
@@ -56,14 +55,14 @@ impl Precision {
     pub(crate) fn magnitude(&self, x: &Dyadic) -> Enclosure {
         let (_, magnitude, exponent) = x.parts();
         let x: Real = Repr::new(IBig::from(magnitude), exponent as isize);
-        Enclosure { low: self.least(&x), high: self.most(&x) }
+        Enclosure { low: self.round_down(&x), high: self.round_up(&x) }
     }
 
-    fn least(&self, x: &Real) -> Real {
+    fn round_down(&self, x: &Real) -> Real {
         value(self.down.add(x, &zero()))
     }
 
-    fn most(&self, x: &Real) -> Real {
+    fn round_up(&self, x: &Real) -> Real {
         value(self.up.add(x, &zero()))
     }
 
@@ -86,7 +85,7 @@ impl Precision {
         Enclosure { low: value(self.down.mul(&x.low, &y.low)), high: value(self.up.mul(&x.high, &y.high)) }
     }
 
-    /// x / y; y is certainly not 0.
+    /// x / y; y must not contain 0.
     pub(crate) fn div(&self, x: &Enclosure, y: &Enclosure) -> Enclosure {
         Enclosure { low: value(self.down.div(&x.low, &y.high)), high: value(self.up.div(&x.high, &y.low)) }
     }
@@ -98,8 +97,8 @@ impl Precision {
     /// exp(-x).
     pub(crate) fn exp_minus(&self, x: &Enclosure) -> Enclosure {
         fn of<R: ErrorBounds>(context: &Context<R>, x: &Real) -> Option<Real> {
-            let far: Real = Repr::new(IBig::from(NOTHING_LEFT), 0);
-            (*x <= far).then(|| value(context.exp(&-x.clone(), None)))
+            let limit: Real = Repr::new(IBig::from(MAX_EXP_ARGUMENT), 0);
+            (*x <= limit).then(|| value(context.exp(&-x.clone(), None)))
         }
         Enclosure {
             low: of(&self.down, &x.high).unwrap_or_else(zero),
@@ -127,87 +126,22 @@ impl Precision {
 
 fn rounded(x: &Real) -> Rounded {
     let (_, magnitude) = x.significand().clone().into_parts();
-    Cut::of(false, magnitude, x.exponent() as i64, true).rounded()
+    LeadingBits::of(false, magnitude, x.exponent() as i64, true).rounded()
 }
 
 impl Enclosure {
-    /// Correctly rounded, to f64 and to f32, if that is certain.
+    /// The number correctly rounded to f64 and f32, if both ends round alike.
     pub(crate) fn rounded(&self) -> Option<Rounded> {
         let [low, high] = [&self.low, &self.high].map(rounded);
         (low == high).then_some(low)
     }
 
     /// The lower end, rounded.
-    pub(crate) fn least_rounded(&self) -> Rounded {
+    pub(crate) fn low_rounded(&self) -> Rounded {
         rounded(&self.low)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::number::Number;
-
-    fn exactly(x: f64) -> Enclosure {
-        Precision::new(128).magnitude(&Dyadic::of(x))
-    }
-
-    /// That the enclosure is narrow and holds `digits` 10^-places: what tables print.
-    fn holds(x: &Enclosure, digits: &str, places: u32) {
-        let units: IBig = digits.parse().expect("digits");
-        let scale = IBig::from(10).pow(places as usize);
-        // low 10^places <= digits + 1 and high 10^places >= digits, as the printed digits are cut off.
-        let scaled = |end: &Real| -> IBig {
-            let product = end.significand() * &scale;
-            match end.exponent() {
-                shift @ 0.. => product << shift as usize,
-                shift => product >> shift.unsigned_abs(),
-            }
-        };
-        assert_eq!(scaled(&x.low), units, "{x:?}");
-        assert!(scaled(&x.high) >= units && scaled(&x.high) <= units + 1, "{x:?}");
-    }
-
-    #[test]
-    fn constants_have_the_digits_of_the_tables() {
-        // Abramowitz and Stegun, tables 1.1 and 4.2: pi, ln 2, e^-1, pi / 4.
-        let precision = Precision::new(128);
-        holds(&precision.pi(), "314159265358979323846264", 23);
-        holds(&precision.ln_2(), "69314718055994530941723", 23);
-        holds(&precision.exp_minus(&exactly(1.0)), "36787944117144232159552", 23);
-        holds(&precision.atan(&exactly(1.0)), "78539816339744830961566", 23);
-    }
-
-    #[test]
-    fn ends_keep_their_sides() {
-        let precision = Precision::new(64);
-        let third = precision.div(&exactly(1.0), &exactly(3.0));
-        assert!(third.low < third.high);
-        let apart = precision.distance(&third, &third);
-        assert!(apart.low == zero() && apart.high.sign() == Sign::Positive);
-        let apart = precision.distance(&exactly(1.0), &third);
-        let same = precision.distance(&third, &exactly(1.0));
-        assert!(apart.low == same.low && apart.high == same.high && apart.low < apart.high);
-        assert_eq!(
-            precision.mul(&third, &exactly(3.0)).rounded(),
-            Some(Rounded { double: 1.0, single: 1.0 })
-        );
-        // 1 + 2^-53 is a midpoint of f64: an enclosure around it decides nothing, its exact self does.
-        let midpoint = precision.add(&exactly(1.0), &exactly(f64::EPSILON / 2.0));
-        assert_eq!(midpoint.rounded().map(|r| r.double), Some(1.0));
-        let around = precision.mul(&third, &precision.mul(&exactly(3.0), &midpoint));
-        assert_eq!(around.rounded(), None);
-    }
-
-    #[test]
-    fn what_vanishes_is_zero() {
-        let precision = Precision::new(128);
-        let nothing = precision.exp_minus(&exactly(4e18));
-        assert_eq!(nothing.rounded(), Some(Rounded::ZERO));
-        assert_eq!(precision.exp_minus(&exactly(0.0)).rounded(), Some(Rounded { double: 1.0, single: 1.0 }));
-        // exp(-740) is subnormal: 4.2e-322 is 85 times the least f64. (exp(740) = 2.4e321, by ln 10 = 2.302585)
-        let small = precision.exp_minus(&exactly(740.0)).rounded().expect("decided");
-        assert_eq!(small, Rounded { double: libm::exp(-740.0), single: 0.0 });
-        assert!((80.0..90.0).contains(&(small.double / f64::from_bits(1))));
-    }
-}
+#[path = "../tests/unit/enclosure.rs"]
+mod tests;

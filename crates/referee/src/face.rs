@@ -1,14 +1,14 @@
-//! The questions of the contract about one ray and one face, as signs of polynomials.
+//! The contract's conditions on one ray and one face, as signs of polynomials.
 //!
-//! With a' = s a - O for a vertex a (which is s (a - o)), n = (b - a) x (c - a):
+//! With a' = s a - O for a vertex a (which is s (a - o)) and n = (b - a) x (c - a):
 //!
 //! * the ray passes on the inner side of the edge from a to b, or on it: D.(a' x b') <= 0
-//! * it meets the front: n.D < 0
+//! * the ray meets the front: n.D < 0
 //! * t = sigma n.a' / (s n.D), so t >= 1 is sigma n.a' <= s n.D (both negative)
 //! * R = n.a' |D| / (s n.D), so R <= M is (n.a')^2 |D|^2 <= (M s n.D)^2
 //! * t < t' is n.a' n'.D < n'.a'' n.D (each the product of two negative numbers)
 //!
-//! a' x b' is formed as a' x s (b - a), whose terms are smaller where the edge is short.
+//! a' x b' is evaluated as a' x s (b - a), whose terms are smaller where the edge is short.
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
@@ -16,24 +16,24 @@ use std::cmp::Ordering;
 use raypencil_scene::{FaceId, Mesh};
 
 use crate::number::{Dyadic, Interval, Number};
-use crate::pencil::{Aim, ScaledRay, Sensor};
+use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::vector::Vector;
 
-/// A polynomial of a ray whose sign is asked for.
+/// A polynomial of a ray, of which only the sign matters.
 trait Polynomial {
     fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T;
 }
 
-/// One ray, in both numbers; the exact one is only made when it is needed.
+/// One ray in both numbers; the exact one is formed when it is first needed.
 pub(crate) struct ExactRay<'a> {
-    sensor: &'a Sensor,
+    sensor: &'a MountedSensor,
     aim: Aim,
     fast: ScaledRay<Interval>,
     exact: OnceCell<ScaledRay<Dyadic>>,
 }
 
 impl<'a> ExactRay<'a> {
-    pub(crate) fn new(sensor: &'a Sensor, aim: Aim) -> Self {
+    pub(crate) fn new(sensor: &'a MountedSensor, aim: Aim) -> Self {
         Self { sensor, aim, fast: sensor.ray(aim), exact: OnceCell::new() }
     }
 
@@ -74,7 +74,7 @@ impl Face {
         Self { id, corners: mesh.faces()[id.0 as usize].map(|v| mesh.vertices()[v as usize]) }
     }
 
-    /// Whether the face has any area, exactly. One that has none is never met.
+    /// Whether the face has an area, exactly. A face without one is never met.
     pub(crate) fn has_area(&self) -> bool {
         let certainly = self.normal::<Interval>().0.iter().any(|part| part.low > 0.0 || part.high < 0.0);
         certainly || self.normal::<Dyadic>().0.iter().any(|part| part.sign() != Some(Ordering::Equal))
@@ -85,33 +85,33 @@ impl Face {
         Vector::of_f32(self.corners[k])
     }
 
-    /// n.
+    /// The normal n, not a unit vector.
     pub(crate) fn normal<T: Number>(&self) -> Vector<T> {
         let a = self.corner::<T>(0);
         self.corner(1).sub(&a).cross(&self.corner(2).sub(&a))
     }
 
-    /// n.a', which is s n.(a - o).
+    /// n.a' = s n.(a - o).
     pub(crate) fn height<T: Number>(&self, ray: &ScaledRay<T>) -> T {
         self.normal().dot(&self.corner(0).scaled(&ray.origin_scale).sub(&ray.origin))
     }
 
-    /// n.D, which is sigma n.q.
+    /// n.D = sigma n.q.
     pub(crate) fn approach<T: Number>(&self, ray: &ScaledRay<T>) -> T {
         self.normal().dot(&ray.direction)
     }
 
     /// Whether the ray meets this face's front, edges and corners included, at or beyond the SPP and within
-    /// `max_range`: the whole question of the contract but for other faces.
+    /// `max_range`. Other faces are not considered.
     pub(crate) fn is_met_by(&self, ray: &ExactRay<'_>, max_range: f64) -> bool {
-        // From the cheapest and likeliest to fail.
+        // The cheapest conditions, and those most likely to fail, come first.
         (0..3).all(|k| ray.sign(&EdgeSide { face: self, k }) != Ordering::Greater)
             && ray.sign(&Approach(self)) == Ordering::Less
             && ray.sign(&BeforePlane(self)) != Ordering::Greater
             && ray.sign(&BeyondRange { face: self, max_range }) != Ordering::Greater
     }
 
-    /// Whether `other` lies in this face's plane, facing the same way, exactly.
+    /// Whether `other` lies in this face's plane and faces the same way, exactly.
     pub(crate) fn is_coplanar_with(&self, other: &Self) -> bool {
         let (n, a) = (self.normal::<Dyadic>(), self.corner::<Dyadic>(0));
         let on_plane = |k: usize| n.dot(&other.corner(k).sub(&a)).sign() == Some(Ordering::Equal);
@@ -123,15 +123,15 @@ impl Face {
         ray.sign(&Approach(self)) == Ordering::Greater
     }
 
-    /// Whether all of this face lies in the plane of `other`, exactly, whichever way either faces.
+    /// Whether this face lies in the plane of `other`, exactly, whichever way either faces.
     pub(crate) fn is_in_plane_of(&self, other: &Self) -> bool {
         let (n, a) = (other.normal::<Dyadic>(), other.corner::<Dyadic>(0));
         (0..3).all(|k| n.dot(&self.corner(k).sub(&a)).sign() == Some(Ordering::Equal))
     }
 
-    /// A range that the meeting point certainly does not exceed, metres.
+    /// An upper bound of the range at which the ray meets the face, metres.
     pub(crate) fn farthest_range(&self, ray: &ExactRay<'_>, max_range: f64) -> f64 {
-        // R = n.a' |D| / (s n.D); where n.D may be 0 there is no bound but the sensor's own.
+        // R = n.a' |D| / (s n.D). Where n.D may be 0, only the sensor's own range bounds it.
         let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
         let scale = ray.fast.origin_scale.low * -approach.high;
         if !(scale > 0.0) {
@@ -142,14 +142,14 @@ impl Face {
         (height.magnitude() * length / scale * (1.0 + 8.0 * f64::EPSILON)).min(max_range)
     }
 
-    /// The range of the meeting point, metres, to f64 rounding.
+    /// The range at which the ray meets the face's plane, metres, to f64 rounding.
     pub(crate) fn range(&self, ray: &ExactRay<'_>) -> f64 {
         let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
         let length = ray.fast.direction.length_squared().middle().sqrt();
         height.middle() * length / (approach.middle() * ray.fast.origin_scale.middle())
     }
 
-    /// Which of two faces that `ray` meets it meets first.
+    /// The order in which `ray` meets two faces; it must meet both.
     pub(crate) fn compare(&self, other: &Self, ray: &ExactRay<'_>) -> Ordering {
         ray.sign(&Nearness { face: self, other })
     }
@@ -217,92 +217,5 @@ impl Polynomial for Nearness<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::{DQuat, DVec3};
-    use raypencil_scene::{Beam, Camera, Lens, Mounted, Pose, Profile};
-
-    /// A number from 0 to 1 that depends on the seed alone (splitmix64).
-    fn draw(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = *seed;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (x ^ (x >> 31)) as f64 / u64::MAX as f64
-    }
-
-    fn sensors(seed: &mut u64) -> [Sensor; 2] {
-        let mut part = |scale: f64| scale * (draw(seed) - 0.5);
-        let pose = Pose {
-            position: DVec3::new(part(10.0), part(10.0), part(10.0)),
-            rotation: DQuat::from_xyzw(part(2.0), part(2.0), part(2.0), part(2.0) + 1.5),
-        };
-        let camera = Camera {
-            width: 64,
-            height: 48,
-            pixel_pitch: [1.1e-4, 0.9e-4],
-            focal_length: 8e-3,
-            principal_point: [31.3, 24.9],
-            aperture: 2e-3,
-            lens: Lens::CLEAR,
-            max_range: 20.0,
-        };
-        let beam = Beam {
-            columns: 65,
-            rows: 7,
-            thickness: 0.01,
-            grid_distance: 0.1,
-            half_width: 0.09,
-            max_range: 20.0,
-            power: 1.0,
-            wavelength: 8e-7,
-            profile: Profile::Paper,
-        };
-        [
-            Sensor::Camera(Mounted { scene_from_sensor: pose, sensor: camera }),
-            Sensor::Beam(Mounted { scene_from_sensor: pose, sensor: beam }),
-        ]
-    }
-
-    /// The interval is never wrong about a sign: a million edges through points of rays, rounded to f32, so
-    /// that every ray passes within rounding of an edge, and the exact arithmetic is needed now and then.
-    #[test]
-    fn the_filter_agrees_with_exact_arithmetic_on_a_million_edges() {
-        let mut seed = 7;
-        let (mut certain, mut uncertain) = (0u32, 0u32);
-        while certain + uncertain < 1_000_000 {
-            for sensor in sensors(&mut seed) {
-                let (width, height) = sensor.size();
-                for _ in 0..50 {
-                    let cell = |count: u32, by: f64| ((by * f64::from(count)) as u32).min(count - 1);
-                    let (i, j) = (cell(width, draw(&mut seed)), cell(height, draw(&mut seed)));
-                    let ray = ExactRay::new(&sensor, Aim { i, j, dx: 0.0, dy: 0.0 });
-                    let middle = |v: &Vector<Interval>, scale: &Interval| {
-                        DVec3::new(v.0[0].middle(), v.0[1].middle(), v.0[2].middle()) / scale.middle()
-                    };
-                    let origin = middle(&ray.fast.origin, &ray.fast.origin_scale);
-                    let q = middle(&ray.fast.direction, &ray.fast.direction_scale);
-                    for _ in 0..20 {
-                        // Two ends with a point of the ray half-way between them.
-                        let point = origin + q * (10.0 + 100.0 * draw(&mut seed));
-                        let part = |seed: &mut u64| draw(seed) - 0.5;
-                        let half = DVec3::new(part(&mut seed), part(&mut seed), part(&mut seed));
-                        let narrow = |v: DVec3| v.as_vec3().to_array();
-                        let corners = [narrow(point - half), narrow(point + half), narrow(point)];
-                        let face = Face { id: FaceId(0), corners };
-                        let edge = EdgeSide { face: &face, k: 0 };
-                        let exact = ray.exact_sign(&edge);
-                        match edge.value(&ray.fast).sign() {
-                            Some(sign) => {
-                                certain += 1;
-                                assert_eq!(sign, exact, "{sensor:?} {i},{j} {corners:?}");
-                            }
-                            None => uncertain += 1,
-                        }
-                    }
-                }
-            }
-        }
-        assert!(certain > 900_000, "the filter decides most: {certain}");
-    }
-}
+#[path = "../tests/unit/face.rs"]
+mod tests;

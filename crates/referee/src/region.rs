@@ -1,20 +1,21 @@
 //! The part of a small square of displacements where all conditions of a face hold.
 
-use crate::forms::Form;
+use crate::displacement::max_norm;
+use crate::form::Form;
 
-/// A convex polygon in the square |dx|, |dy| <= 1, from the linear parts of some forms: good enough to say
-/// where to look, not to prove.
+/// A convex polygon in the square |dx|, |dy| <= 1, from the linear parts of some forms. It says where to search; it
+/// proves nothing.
 #[derive(Debug)]
 pub(crate) struct Region {
     pub(crate) corners: Vec<[f64; 2]>,
-    /// Its point nearest to the origin by the larger of |dx| and |dy|.
+    /// The point of least max norm.
     pub(crate) near: [f64; 2],
-    /// The mean of its corners.
+    /// The mean of the corners.
     pub(crate) middle: [f64; 2],
 }
 
 impl Region {
-    /// `None` if it is empty.
+    /// The region where all forms hold; `None` if it is empty.
     pub(crate) fn of(forms: &[Form]) -> Option<Self> {
         let mut corners = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         for form in forms {
@@ -42,7 +43,7 @@ impl Region {
     }
 }
 
-/// Between which dx all forms hold at `dy`, or `None` if nowhere in |dx| <= 1.
+/// The interval of dx in which all forms hold at `dy`; `None` if it is empty in |dx| <= 1.
 pub(crate) fn holds_between(forms: &[Form], dy: f64) -> Option<[f64; 2]> {
     let (mut from, mut to) = (-1.0_f64, 1.0_f64);
     for form in forms {
@@ -59,18 +60,13 @@ pub(crate) fn holds_between(forms: &[Form], dy: f64) -> Option<[f64; 2]> {
     if from <= to { Some([from, to]) } else { None }
 }
 
-/// The larger of |dx| and |dy|.
-pub(crate) fn size(at: [f64; 2]) -> f64 {
-    at[0].abs().max(at[1].abs())
-}
-
-/// The point of least [`size`] on the sides of a polygon.
+/// The point of least [`max_norm`] on the sides of a polygon.
 fn nearest(corners: &[[f64; 2]]) -> [f64; 2] {
     let mut near = corners[0];
     for (k, &here) in corners.iter().enumerate() {
         let next = corners[(k + 1) % corners.len()];
         let (ux, uy) = (next[0] - here[0], next[1] - here[1]);
-        // On a side it is least at an end, where a part vanishes, or where both are equal.
+        // On a side the norm is least at an end, where a part vanishes, or where both are equal.
         let cuts = [
             0.0,
             -here[0] / ux,
@@ -80,7 +76,7 @@ fn nearest(corners: &[[f64; 2]]) -> [f64; 2] {
         ];
         for s in cuts.into_iter().filter(|s| (0.0..=1.0).contains(s)) {
             let at = [here[0] + s * ux, here[1] + s * uy];
-            if size(at) < size(near) {
+            if max_norm(at) < max_norm(near) {
                 near = at;
             }
         }
@@ -101,14 +97,14 @@ mod tests {
         // dx >= 1/2: the right quarter.
         let region = Region::of(&[form(-0.5, 1.0, 0.0)]).expect("a part of the square");
         assert_eq!(region.corners, [[0.5, -1.0], [1.0, -1.0], [1.0, 1.0], [0.5, 1.0]]);
-        // Of many that are as near, the middle of the side.
+        // Many points are as near: the middle of the side is chosen.
         assert_eq!((region.near, region.middle), ([0.5, 0.0], [0.75, 0.0]));
         let region = Region::of(&[form(-0.5, 0.0, 1.0)]).expect("a part of the square");
         assert_eq!(region.near, [0.0, 0.5]);
-        // Below it dx + dy >= 1 too: a triangle, and what is left of it above dy = 1/4 is nearest at (3/4, 1/4).
+        // dx + dy >= 1 and dy <= 1/4: a triangle, nearest at (3/4, 1/4).
         let region = Region::of(&[form(-1.0, 1.0, 1.0), form(0.25, 0.0, -1.0)]).expect("a part");
         assert_eq!(region.corners, [[1.0, 0.0], [1.0, 0.25], [0.75, 0.25]]);
-        assert_eq!(size(region.near), 0.75);
+        assert_eq!(max_norm(region.near), 0.75);
         assert!(Region::of(&[form(-1.5, 1.0, 0.0)]).is_none());
         assert!(Region::of(&[form(-0.5, 1.0, 0.0), form(0.25, -1.0, 0.0)]).is_none());
     }
@@ -120,7 +116,7 @@ mod tests {
         assert_eq!(nearest(&[[-1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]), [-0.5, 0.5]);
         assert_eq!(nearest(&[[0.25, 0.5], [1.0, 1.0], [0.0, 1.0]]), [0.25, 0.5]);
         // Through the middle.
-        assert_eq!(size(nearest(&[[-1.0, -0.5], [1.0, 0.5], [1.0, 1.0]])), 0.0);
+        assert_eq!(max_norm(nearest(&[[-1.0, -0.5], [1.0, 0.5], [1.0, 1.0]])), 0.0);
     }
 
     #[test]

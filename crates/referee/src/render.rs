@@ -1,18 +1,25 @@
-//! The referee as a renderer: slow, and right about every face.
-//!
-//! Which face is nearest is exact, and every value is correctly rounded.
+//! The referee as a renderer: slow, exact about every face, and correctly rounded in every value.
 
 use std::time::Instant;
 
-use raypencil_scene::{FaceId, Frame, Renderer, Request, Resolution, Scene, SensorId, Stage};
+use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, SensorId, Stage};
 
-use crate::face::{ExactRay, Face};
-use crate::pencil::{Aim, Sensor};
 use crate::rounding::Format;
-use crate::values::{RoundedHit, values};
-use crate::verdict::{Referee, bundle};
+use crate::verdict::Referee;
 
-/// The exact verdict on every cell, as maps.
+/// A [`Renderer`] that gives the referee's own answers.
+///
+/// ```
+/// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+/// # use wall::wall_scene;
+/// use raypencil_referee::ExactRenderer;
+/// use raypencil_scene::{Renderer, Request};
+///
+/// let frame = ExactRenderer.render(&wall_scene(), &Request::EVERYTHING);
+/// // One pencil: the image on the camera sums to its flux, 2^-21 16/25 W (see `Referee::light`).
+/// let watts: f64 = frame.flux[0].cells().iter().sum();
+/// assert_eq!(watts, 16.0 / 25.0 / f64::from(1 << 21));
+/// ```
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ExactRenderer;
 
@@ -50,50 +57,5 @@ impl Renderer for ExactRenderer {
             stages.push(Stage { name: format!("{} returns", SensorId::Beam(index)), time: start.elapsed() });
         }
         Frame { camera, beams, returns, flux, stages }
-    }
-}
-
-impl Referee<'_> {
-    /// The values of the hit of `face` by the ray of cell (i, j); `None` if there is no such cell or face, or the
-    /// ray does not meet it.
-    pub fn hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
-        let (sensor, aim) = self.aim_at(id, i, j)?;
-        let face = self.face(face)?;
-        let is_met = face.is_met_by(&ExactRay::new(&sensor, aim), sensor.max_range());
-        is_met.then(|| values(&sensor, aim, &face)).flatten()
-    }
-
-    /// The values of where the ray of cell (i, j) meets the plane of `face`, whether or not it passes between its
-    /// sides; `None` if there is no such cell or face, or they are parallel.
-    pub fn plane_hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
-        let (sensor, aim) = self.aim_at(id, i, j)?;
-        values(&sensor, aim, &self.face(face)?)
-    }
-
-    /// The faces that a ray displaced from cell (i, j) by at most `radius` cells may meet, and some more, in ascending
-    /// order; `None` if there is no such cell.
-    pub fn faces_near(&self, id: SensorId, i: u32, j: u32, radius: f64) -> Option<Vec<FaceId>> {
-        let (sensor, aim) = self.aim_at(id, i, j)?;
-        let mut near = Vec::new();
-        let max_range = sensor.max_range();
-        self.tree.visit(&bundle(&sensor, aim, radius), |face| {
-            near.push(face.id);
-            max_range
-        });
-        near.sort_unstable();
-        Some(near)
-    }
-
-    /// A sensor and the aim at the middle of its cell (i, j), if there is such a cell.
-    pub(crate) fn aim_at(&self, id: SensorId, i: u32, j: u32) -> Option<(Sensor, Aim)> {
-        let sensor = Sensor::of(self.scene, id)?;
-        let (width, height) = sensor.size();
-        (i < width && j < height).then_some((sensor, Aim { i, j, dx: 0.0, dy: 0.0 }))
-    }
-
-    /// A face of the mesh.
-    pub(crate) fn face(&self, face: FaceId) -> Option<Face> {
-        let mesh = self.scene.mesh();
-        ((face.0 as usize) < mesh.faces().len()).then(|| Face::of(mesh, face))
     }
 }

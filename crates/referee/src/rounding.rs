@@ -1,9 +1,8 @@
 //! Exact quotients and square roots, correctly rounded to f64 and to f32. Nothing here is approximate.
 //!
-//! p / q is cut off after at least 70 bits, and whether anything was cut off is known from the remainder; the root
-//! likewise: R = floor(sqrt(p / q)) in units of its last place, and it is exact if R^2 = p / q. With 70 bits and
-//! that one more piece of knowledge every rounding to 53 or fewer bits is decided, a number exactly between two
-//! neighbours included.
+//! p / q is cut off after at least 70 bits, and the remainder tells whether it is exact. The same holds for the root:
+//! R = floor(sqrt(p / q)) in units of its last place is exact if R^2 = p / q. 70 bits and this flag decide every
+//! rounding to 53 or fewer bits, also that of a number exactly between two neighbours.
 
 use std::cmp::Ordering;
 
@@ -12,17 +11,17 @@ use dashu_int::{Sign, UBig};
 
 use crate::number::Dyadic;
 
-/// The f64 nearest to a real number, and the f32 nearest to that same number (not to the f64); ties go to the
-/// even one, as IEEE 754 has it.
+/// A real number, correctly rounded: the nearest f64, and the f32 nearest to the number itself (not to the f64). Ties
+/// go to the even neighbour, as in IEEE 754.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rounded {
-    /// Nearest f64.
+    /// The nearest f64.
     pub double: f64,
-    /// Nearest f32.
+    /// The nearest f32.
     pub single: f32,
 }
 
-/// One of the two formats.
+/// A floating-point format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// IEEE 754 binary64.
@@ -32,10 +31,10 @@ pub enum Format {
 }
 
 impl Rounded {
-    /// Exactly 0.
+    /// The number 0.
     pub const ZERO: Self = Self { double: 0.0, single: 0.0 };
 
-    /// The nearest number of a format, which is an f64 either way.
+    /// The number in a format; an f32 is returned as f64.
     pub fn in_format(&self, format: Format) -> f64 {
         match format {
             Format::Double => self.double,
@@ -43,12 +42,12 @@ impl Rounded {
         }
     }
 
-    /// The f64 nearest to a number and on which side of it the number lies, which settles the f32: the midpoints
-    /// between f32 numbers are f64 numbers, so only where the f64 is one of them the side matters.
+    /// The rounding of a number from its nearest f64 and the side of that f64 on which the number lies. The side
+    /// matters only where the f64 is a midpoint of two f32.
     pub(crate) fn beside(double: f64, side: Ordering) -> Self {
         let single = double as f32;
         let away = double - f64::from(single);
-        // The neighbour that is as near, if there is one.
+        // The other neighbour, if it is as near.
         let other = if away > 0.0 { single.next_up() } else { single.next_down() };
         let is_midpoint = away != 0.0 && f64::from(other) - double == away;
         let upper = if away > 0.0 { other } else { single };
@@ -62,41 +61,41 @@ impl Rounded {
     }
 }
 
-/// The leading bits of a real number, and whether they are all of it.
+/// The leading bits of a real number, and whether they are the whole number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Cut {
+pub(crate) struct LeadingBits {
     is_negative: bool,
-    /// At least [`BITS`] of them if the number is not exact.
+    /// At least [`MIN_BITS`] bits if the number is not exact.
     bits: u128,
-    /// Of the last bit.
+    /// The exponent of the last bit.
     exponent: i64,
     is_exact: bool,
 }
 
-/// Bits that decide any rounding to 53, with room to spare.
-const BITS: usize = 70;
+/// Number of bits that decides any rounding to 53, with room to spare.
+const MIN_BITS: usize = 70;
 
-impl Cut {
-    /// (magnitude + some part of 1 unless it is exact) 2^exponent. What is not exact has [`BITS`] bits or more.
+impl LeadingBits {
+    /// (magnitude + a part of 1, unless it is exact) 2^exponent. An inexact magnitude has at least [`MIN_BITS`] bits.
     pub(crate) fn of(is_negative: bool, magnitude: UBig, exponent: i64, is_exact: bool) -> Self {
-        debug_assert!(is_exact || magnitude.bit_len() >= BITS, "bits of a number that was cut off");
+        debug_assert!(is_exact || magnitude.bit_len() >= MIN_BITS, "bits of a number that was cut off");
         let dropped = magnitude.bit_len().saturating_sub(128);
         let is_exact = is_exact && magnitude.trailing_zeros().is_none_or(|zeros| zeros >= dropped);
         let bits = u128::try_from(magnitude >> dropped).unwrap_or(u128::MAX);
         Self { is_negative, bits, exponent: exponent + dropped as i64, is_exact }
     }
 
-    /// Rounded to both formats.
+    /// The number rounded to both formats.
     pub(crate) fn rounded(&self) -> Rounded {
-        // Exact: an f32 is an f64.
+        // Exact, because every f32 is an f64.
         Rounded { double: self.nearest(53, -1022, 1023), single: self.nearest(24, -126, 127) as f32 }
     }
 
-    /// To the nearest number of so many bits with exponents from `least` to `most`, subnormal below, ties to even.
+    /// The nearest number of `digits` bits with exponents from `least` to `most`, subnormal below, ties to even.
     fn nearest(&self, digits: i64, least: i64, most: i64) -> f64 {
         let signed = |x: f64| if self.is_negative { -x } else { x };
         if self.bits == 0 {
-            // Only 0 itself has no leading bit.
+            // Only 0 has no leading bit.
             return 0.0;
         }
         let leading = self.exponent + 127 - i64::from(self.bits.leading_zeros());
@@ -107,7 +106,7 @@ impl Cut {
         let last = (leading - digits + 1).max(least - digits + 1);
         let dropped = last - self.exponent;
         if dropped <= 0 {
-            // Short, so exact, and it fits.
+            // All bits fit: exact.
             return signed(libm::scalbn(self.bits as f64, self.exponent as i32));
         }
         if dropped > 128 {
@@ -123,7 +122,7 @@ impl Cut {
         };
         let kept = kept + u128::from(up);
         let value = libm::scalbn(kept as f64, last as i32);
-        // One more may have carried it beyond the largest.
+        // The carry may have gone beyond the largest number.
         let too_large = libm::scalbn(1.0, most as i32) * 2.0;
         signed(if value >= too_large { f64::INFINITY } else { value })
     }
@@ -135,110 +134,29 @@ pub(crate) fn quotient(p: &Dyadic, q: &Dyadic) -> Rounded {
     if p.is_zero() {
         return Rounded::ZERO;
     }
-    // As many bits more than q as it takes.
-    let shift = (q.bit_len() + BITS).saturating_sub(p.bit_len());
+    // Shift p so that the quotient has enough bits.
+    let shift = (q.bit_len() + MIN_BITS).saturating_sub(p.bit_len());
     let (whole, rest) = (p << shift).div_rem(q);
     let exponent = exponent_p - exponent_q - shift as i64;
-    Cut::of(sign_p != sign_q, whole, exponent, rest.is_zero()).rounded()
+    LeadingBits::of(sign_p != sign_q, whole, exponent, rest.is_zero()).rounded()
 }
 
-/// The square root of p / q, neither of them negative and q not 0, with this sign; correctly rounded.
+/// The square root of p / q with the given sign, correctly rounded; p >= 0 and q > 0.
 pub(crate) fn root(sign: Sign, p: &Dyadic, q: &Dyadic) -> Rounded {
     let ((_, p, exponent_p), (_, q, exponent_q)) = (p.parts(), q.parts());
     if p.is_zero() {
         return Rounded::ZERO;
     }
-    let shift = (q.bit_len() + 2 * BITS + 1).saturating_sub(p.bit_len());
+    let shift = (q.bit_len() + 2 * MIN_BITS + 1).saturating_sub(p.bit_len());
     // The exponent of the square must be even.
     let exponent = exponent_p - exponent_q - shift as i64;
     let odd = exponent.rem_euclid(2);
     let (square, rest) = (p << (shift + odd as usize)).div_rem(q);
     let (root, remainder) = square.sqrt_rem();
     let is_exact = rest.is_zero() && remainder.is_zero();
-    Cut::of(sign == Sign::Negative, root, (exponent - odd) / 2, is_exact).rounded()
+    LeadingBits::of(sign == Sign::Negative, root, (exponent - odd) / 2, is_exact).rounded()
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::number::Number;
-    use proptest::prelude::*;
-
-    fn exactly(x: f64) -> Dyadic {
-        Dyadic::of(x)
-    }
-
-    proptest! {
-        #[test]
-        fn a_quotient_is_what_ieee_754_says(a in any::<f64>(), b in any::<f64>()) {
-            // The machine's division is correctly rounded, subnormal results and overflow included.
-            prop_assume!(a.is_finite() && b.is_finite() && b != 0.0);
-            let rounded = quotient(&exactly(a), &exactly(b));
-            prop_assert_eq!(rounded.double, a / b);
-        }
-
-        #[test]
-        fn a_quotient_of_singles_is_what_ieee_754_says(a in any::<f32>(), b in any::<f32>()) {
-            prop_assume!(a.is_finite() && b.is_finite() && b != 0.0);
-            let rounded = quotient(&exactly(a.into()), &exactly(b.into()));
-            prop_assert_eq!(rounded.single, a / b);
-        }
-
-        #[test]
-        fn a_root_is_what_ieee_754_says(a in any::<f64>(), b in any::<f32>()) {
-            prop_assume!(a.is_finite() && b.is_finite());
-            let rounded = root(Sign::Positive, &exactly(a.abs()), &exactly(1.0));
-            prop_assert_eq!(rounded.double, a.abs().sqrt());
-            let rounded = root(Sign::Negative, &exactly(b.abs().into()), &exactly(1.0));
-            prop_assert_eq!(rounded.single, -b.abs().sqrt());
-        }
-
-        #[test]
-        fn a_root_of_a_square_is_exact(a in any::<f64>(), b in any::<f64>()) {
-            prop_assume!(a.is_finite() && b.is_finite() && b != 0.0);
-            // Every f64 quotient, decided where it lies exactly on a midpoint of f32 as well.
-            let (a, b) = (exactly(a), exactly(b));
-            let rounded = root(Sign::Positive, &a.square(), &b.square());
-            let expected = quotient(&a, &b);
-            prop_assert_eq!(rounded.double, expected.double.abs());
-            prop_assert_eq!(rounded.single, expected.single.abs());
-        }
-
-        #[test]
-        fn the_side_settles_a_single(a in any::<f64>(), half in any::<bool>()) {
-            prop_assume!(a.is_finite());
-            // A midpoint of two f32 half the time, and something very near it otherwise.
-            let single = a as f32;
-            prop_assume!(single.is_finite() && single.next_up().is_finite());
-            let midpoint = 0.5 * f64::from(single) + 0.5 * f64::from(single.next_up());
-            let double = if half { midpoint } else { midpoint.next_up() };
-            let tiny = exactly(f64::from_bits(1));
-            for (side, number) in [
-                (Ordering::Less, exactly(double).sub(&tiny)),
-                (Ordering::Equal, exactly(double)),
-                (Ordering::Greater, exactly(double).add(&tiny)),
-            ] {
-                let expected = quotient(&number, &exactly(1.0));
-                prop_assume!(expected.double == double);
-                prop_assert_eq!(Rounded::beside(double, side), expected);
-            }
-        }
-    }
-
-    #[test]
-    fn midpoints_go_to_the_even_neighbour() {
-        // 1 + 2^-53 lies between 1 and 1 + 2^-52; 1 + 3 2^-53 between that and 1 + 2^-51.
-        let unit = exactly(f64::EPSILON / 2.0);
-        let one = exactly(1.0);
-        let at = |units: u32| quotient(&one.add(&unit.mul(&Dyadic::of_integer(units))), &one).double;
-        assert_eq!(at(1), 1.0);
-        assert_eq!(at(3), 1.0 + 2.0 * f64::EPSILON);
-        // The same as roots of their squares.
-        let square = |units: u32| one.add(&unit.mul(&Dyadic::of_integer(units))).square();
-        assert_eq!(root(Sign::Positive, &square(1), &one).double, 1.0);
-        assert_eq!(root(Sign::Positive, &square(3), &one).double, 1.0 + 2.0 * f64::EPSILON);
-        // A hair more than the midpoint goes up.
-        let hair = exactly(1e-300);
-        assert_eq!(root(Sign::Positive, &square(1).add(&hair), &one).double, 1.0 + f64::EPSILON);
-    }
-}
+#[path = "../tests/unit/rounding.rs"]
+mod tests;

@@ -1,45 +1,66 @@
-//! Whether an answer is right, or one that an honest renderer of finite resolution may give.
+//! Rulings on a hit or a miss: whether an answer is right, or one that a correct renderer of finite precision may
+//! give.
 //!
-//! A renderer of lateral resolution delta and depth resolution epsilon may give the exact answer of *some* ray
-//! displaced by at most delta, or name a face that such a ray meets within epsilon of its true range. The
-//! ruling exhibits that ray. A miss through an edge that two faces share is therefore never admissible: no
-//! displaced ray misses there.
+//! A renderer with lateral tolerance delta and depth tolerance epsilon may give the exact answer of *some* ray
+//! displaced by at most delta, or name a face that such a ray meets within epsilon of its true range. The ruling
+//! contains that displacement. So a miss at an edge shared by two faces is never admissible: no displaced ray misses
+//! there.
 
 use raypencil_scene::{FaceId, SensorId};
 
+use crate::displacement::Displacement;
 use crate::face::{ExactRay, Face};
-use crate::forms::{FaceForms, MovingRay};
-use crate::pencil::{Aim, Sensor};
-use crate::through::inside_corners;
-use crate::verdict::{Displacement, Referee};
+use crate::face_forms::FaceForms;
+use crate::moving_ray::MovingRay;
+use crate::ray::{Aim, MountedSensor};
+use crate::region::Region;
+use crate::through_point::displacements_inside_corners;
+use crate::verdict::Referee;
 
-/// How finely a renderer tells rays and ranges apart.
+/// The tolerances that follow from a renderer's arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// delta, in cells of the sensor, at most 1.
+    /// delta: displacement of a ray, cells of the sensor; clamped to 0..=1.
     pub lateral: f64,
-    /// epsilon, metres.
+    /// epsilon: error of a range, metres.
     pub depth: f64,
-    /// How far the renderer may misplace a point of the terrain, metres; only asked of the paper's
-    /// approximations, whose sides and limits are themselves computed.
+    /// Error of a terrain point's position, metres. Rulings on visibility use it, and explanations by the paper's
+    /// approximations, whose sides and limits are computed themselves.
     pub position: f64,
 }
 
-/// What the referee says of one answer to one ray.
+/// The referee's ruling on one answer to one ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ruling {
-    /// It is the exact answer.
+    /// The exact answer.
     Exact,
-    /// It is one of several faces met at exactly the same point.
+    /// One of several faces met at exactly the same point.
     Tie,
-    /// It is the answer to the ray displaced so, or a face which that ray meets within epsilon of its range.
+    /// The answer of the ray displaced by this, or a face which that ray meets within epsilon of its range.
     Rounding(Displacement),
     /// No ray within the tolerance has this answer.
     Wrong,
 }
 
 impl Referee<'_> {
-    /// Rules on `answer`, a face or a miss, to the ray of cell (i, j); `None` if there is no such cell or face.
+    /// The ruling on `answer`, a face or a miss, to the ray of cell (i, j); `None` if there is no such cell or face.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::{Referee, Ruling, Tolerance};
+    /// use raypencil_scene::SensorId;
+    ///
+    /// let scene = wall_scene();
+    /// let referee = Referee::new(&scene);
+    /// let rule_on_miss = |lateral: f64| {
+    ///     let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
+    ///     referee.rule(SensorId::Camera, 4, 4, None, tolerance).unwrap()
+    /// };
+    /// // Pixel (4, 4) hits the wall, which ends half a cell to the right: a miss is excused only beyond that.
+    /// assert_eq!(rule_on_miss(0.4), Ruling::Wrong);
+    /// assert!(matches!(rule_on_miss(0.6), Ruling::Rounding(by) if by.dx > 0.5));
+    /// ```
     pub fn rule(
         &self,
         sensor: SensorId,
@@ -48,12 +69,7 @@ impl Referee<'_> {
         answer: Option<FaceId>,
         tolerance: Tolerance,
     ) -> Option<Ruling> {
-        let sensor = Sensor::of(self.scene, sensor)?;
-        let (width, height) = sensor.size();
-        if i >= width || j >= height {
-            return None;
-        }
-        let aim = Aim { i, j, dx: 0.0, dy: 0.0 };
+        let (sensor, aim) = self.sensor_and_aim(sensor, i, j)?;
         let nearest = self.nearest(&sensor, aim);
         match answer {
             None if nearest.is_empty() => return Some(Ruling::Exact),
@@ -77,10 +93,10 @@ impl Referee<'_> {
         Some(witness.map_or(Ruling::Wrong, Ruling::Rounding))
     }
 
-    /// A ray within `lateral` that misses everything, found where a nearest face comes to an end.
+    /// A ray within `lateral` cells that misses everything; searched for where a nearest face ends.
     fn displaced_miss(
         &self,
-        sensor: &Sensor,
+        sensor: &MountedSensor,
         aim: Aim,
         nearest: &[&Face],
         lateral: f64,
@@ -88,7 +104,7 @@ impl Referee<'_> {
         let ray = MovingRay::new(sensor, aim);
         let mut tried = vec![];
         for face in nearest {
-            for form in FaceForms::new(&ray, face).own() {
+            for form in FaceForms::new(&ray, face).conditions() {
                 if form.holds_within() < lateral {
                     let away = |slope: f64| if slope > 0.0 { -lateral } else { lateral };
                     tried.push([away(form.x), away(form.y)]);
@@ -105,19 +121,20 @@ impl Referee<'_> {
         tried.into_iter().find(missed).map(|[dx, dy]| Displacement { dx, dy })
     }
 
-    /// A ray within the tolerance that meets `face` first, or within epsilon of what it meets first.
+    /// A ray within the tolerance that meets `face` first, or within epsilon of the face that it meets first.
     fn displaced_hit(
         &self,
-        sensor: &Sensor,
+        sensor: &MountedSensor,
         aim: Aim,
         face: &Face,
         tolerance: Tolerance,
     ) -> Option<Displacement> {
         let ray = MovingRay::new(sensor, aim);
-        let forms = FaceForms::new(&ray, face).own().map(|form| form.scaled(tolerance.lateral));
+        let forms = FaceForms::new(&ray, face).conditions().map(|form| form.scaled(tolerance.lateral));
         let mut tried = vec![[0.0, 0.0]];
-        if let Some(region) = crate::region::Region::of(&forms) {
-            // Its nearest point may be judged outside by a hair: try on towards its middle, and its corners.
+        if let Some(region) = Region::of(&forms) {
+            // Rounding may put the region's nearest point just outside: also try points towards its middle, and its
+            // corners.
             for inward in [0.0, 1e-6, 1e-3, 0.1, 1.0] {
                 tried.push(
                     [0, 1].map(|k: usize| region.near[k] + inward * (region.middle[k] - region.near[k])),
@@ -128,8 +145,9 @@ impl Referee<'_> {
         let scaled = |at: [f64; 2]| {
             at.map(|part| (part * tolerance.lateral).clamp(-tolerance.lateral, tolerance.lateral))
         };
-        // Lazily, since they are exact and hardly ever needed.
-        let corners = std::iter::once(()).flat_map(|()| inside_corners(sensor, aim, face, tolerance.lateral));
+        // Lazily: they are exact and hardly ever needed.
+        let corners = std::iter::once(())
+            .flat_map(|()| displacements_inside_corners(sensor, aim, face, tolerance.lateral));
         tried
             .into_iter()
             .map(scaled)

@@ -1,31 +1,21 @@
-//! What a ray meets, as values that are correctly rounded to f64 and to f32.
+//! Values of a hit, correctly rounded to f64 and to f32.
 //!
-//! With the ray (O, s, D, sigma) of `pencil`, h = n.a' and a = n.D of `face`, and k the distance of the SPP:
-//!
-//! | | | exactly |
-//! | --- | --- | --- |
-//! | range | R = h / (s a) abs(D) | root of h^2 D^2 / (s a)^2 |
-//! | depth | t k, t = h sigma / (s a) | quotient |
-//! | point | P = (O a + h D) / (s a) | quotients |
-//! | normal | n / abs(n) | roots of n_k^2 / n^2 |
-//! | incidence | cos(psi) = -a / (abs(n) abs(D)) | root of a^2 / (n^2 D^2) |
-//!
-//! Each is first evaluated in pairs of f64 with a proven error; where that does not decide the rounding, the
-//! exact polynomials do (`rounding`).
+//! Each is first evaluated in pairs of f64 with a proven error. Where that does not decide the rounding, the exact
+//! polynomials of `intersection` do.
 
-use std::cell::OnceCell;
+use std::cell::{LazyCell, OnceCell};
 use std::cmp::Ordering;
 
-use dashu_int::Sign;
 use glam::DVec3;
-use raypencil_scene::{FaceId, Hit, Mounted};
+use raypencil_scene::{FaceId, Hit, Mounted, SensorId};
 
+use crate::double_double::DoubleDouble;
 use crate::face::{ExactRay, Face};
+use crate::intersection::{Intersection, minus};
 use crate::number::{Dyadic, Number};
-use crate::pencil::{Aim, ScaledRay, Sensor};
-use crate::rounding::{Format, Rounded, quotient, root};
-use crate::twofold::Twofold;
-use crate::vector::Vector;
+use crate::ray::{Aim, MountedSensor};
+use crate::rounding::{Format, Rounded, quotient};
+use crate::verdict::Referee;
 
 /// A [`Hit`] whose values are correctly rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,12 +30,12 @@ pub struct RoundedHit {
     pub normal: [Rounded; 3],
     /// Distance along the sensor's normal axis, metres.
     pub depth: Rounded,
-    /// cos(psi).
+    /// cos(psi), psi being the angle between the normal and the reversed ray.
     pub incidence: Rounded,
 }
 
 impl RoundedHit {
-    /// The nearest numbers of a format.
+    /// The values in a format.
     pub fn in_format(&self, format: Format) -> Hit {
         let of = |rounded: Rounded| rounded.in_format(format);
         Hit {
@@ -59,94 +49,25 @@ impl RoundedHit {
     }
 }
 
-/// A ray and a face's plane, as the values need them.
-#[derive(Debug, Clone)]
-pub(crate) struct Meeting<T> {
-    pub(crate) ray: ScaledRay<T>,
-    pub(crate) normal: Vector<T>,
-    /// h.
-    pub(crate) height: T,
-    /// a.
-    pub(crate) approach: T,
-    /// s a.
-    pub(crate) scale: T,
-    /// D^2.
-    pub(crate) direction_squared: T,
-    /// n^2.
-    pub(crate) normal_squared: T,
-}
-
-impl<T: Number> Meeting<T> {
-    pub(crate) fn new(ray: ScaledRay<T>, face: &Face) -> Self {
-        let (normal, height, approach) = (face.normal::<T>(), face.height(&ray), face.approach(&ray));
-        Self {
-            scale: ray.origin_scale.mul(&approach),
-            direction_squared: ray.direction.length_squared(),
-            normal_squared: normal.length_squared(),
-            ray,
-            normal,
-            height,
-            approach,
-        }
-    }
-
-    /// s a P.
-    fn point(&self) -> Vector<T> {
-        self.ray.origin.scaled(&self.approach).add(&self.ray.direction.scaled(&self.height))
-    }
-}
-
-/// The values without any doubt, and slowly.
-impl Meeting<Dyadic> {
-    fn range(&self) -> Rounded {
-        let sign = sign_of(&self.height.mul(&self.scale));
-        root(sign, &self.height.square().mul(&self.direction_squared), &self.scale.square())
-    }
-
-    fn depth(&self, spp: f64) -> Rounded {
-        quotient(&self.height.mul(&self.ray.direction_scale).mul(&Dyadic::of(spp)), &self.scale)
-    }
-
-    fn normal_part(&self, k: usize) -> Rounded {
-        let part = &self.normal.0[k];
-        root(sign_of(part), &part.square(), &self.normal_squared)
-    }
-
-    fn incidence(&self) -> Rounded {
-        let lengths = self.normal_squared.mul(&self.direction_squared);
-        root(sign_of(&minus(&self.approach)), &self.approach.square(), &lengths)
-    }
-}
-
-/// The sign of a root with the sign of `x`.
-pub(crate) fn sign_of(x: &Dyadic) -> Sign {
-    if x.sign() == Some(Ordering::Less) { Sign::Negative } else { Sign::Positive }
-}
-
-/// Minus a number.
-pub(crate) fn minus<T: Number>(x: &T) -> T {
-    T::of(0.0).sub(x)
-}
-
-/// Where the ray of an aim meets the plane of `face`, whether or not it passes between its sides; `None` if they are
+/// The values where the ray of an aim meets the plane of `face`, inside its edges or not; `None` if they are
 /// parallel, or the face has no area.
-pub(crate) fn values(sensor: &Sensor, aim: Aim, face: &Face) -> Option<RoundedHit> {
-    let fast = Meeting::new(sensor.ray::<Twofold>(aim), face);
+pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<RoundedHit> {
+    let fast = Intersection::new(sensor.ray::<DoubleDouble>(aim), face);
     let exact_ray = ExactRay::new(sensor, aim);
     let exact = OnceCell::new();
-    let exact = || exact.get_or_init(|| Meeting::new(exact_ray.exact().clone(), face));
+    let exact = || exact.get_or_init(|| Intersection::new(exact_ray.exact().clone(), face));
     if fast.approach.sign().is_none_or(Ordering::is_eq) && exact().approach.sign() == Some(Ordering::Equal) {
         return None;
     }
 
     let spp = match sensor {
-        Sensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
-        Sensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
+        MountedSensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
+        MountedSensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
     };
     let along = fast.height.over(&fast.scale);
     let length = fast.direction_squared.sqrt();
     let range = along.mul(&length).rounded().unwrap_or_else(|| exact().range());
-    let depth_per_length = fast.ray.direction_scale.mul(&Twofold::of(spp));
+    let depth_per_length = fast.ray.direction_scale.mul(&DoubleDouble::of(spp));
     let depth = along.mul(&depth_per_length).rounded().unwrap_or_else(|| exact().depth(spp));
     let point = fast.point();
     let exact_point = OnceCell::new();
@@ -165,92 +86,76 @@ pub(crate) fn values(sensor: &Sensor, aim: Aim, face: &Face) -> Option<RoundedHi
     Some(RoundedHit { face: face.id, range, point, normal, depth, incidence })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DQuat;
-    use proptest::prelude::*;
-    use raypencil_scene::{Camera, Lens, Pose};
-
-    fn camera(position: [f64; 3], rotation: [f64; 4], centre: f64) -> Sensor {
-        Sensor::Camera(Mounted {
-            scene_from_sensor: Pose {
-                position: DVec3::from_array(position),
-                rotation: DQuat::from_array(rotation),
-            },
-            sensor: Camera {
-                width: 64,
-                height: 48,
-                pixel_pitch: [9e-6, 11e-6],
-                focal_length: 8e-3,
-                principal_point: [centre, 24.25],
-                aperture: 2e-3,
-                lens: Lens::CLEAR,
-                max_range: 20.0,
-            },
-        })
+impl Referee<'_> {
+    /// The values of the first hit of cell (i, j)'s ray, correctly rounded; `None` if there is no such cell, or no
+    /// hit.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    /// use raypencil_scene::SensorId;
+    ///
+    /// let scene = wall_scene();
+    /// let hit = Referee::new(&scene).values(SensorId::Camera, 0, 4).unwrap();
+    /// // q = (-4/16, 0, 1/2): at a depth of 2 m the ray is at x = -1 m.
+    /// assert_eq!(hit.point.map(|part| part.double), [-1.0, 0.0, 2.0]);
+    /// assert_eq!(hit.depth.double, 2.0);
+    /// // R = sqrt(1 + 4) m, to the nearest f64.
+    /// assert_eq!(hit.range.double, 5.0_f64.sqrt());
+    /// ```
+    pub fn values(&self, id: SensorId, i: u32, j: u32) -> Option<RoundedHit> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        let nearest = self.nearest(&sensor, aim);
+        values(&sensor, aim, nearest.first()?)
     }
 
-    /// By exact arithmetic alone.
-    fn exactly(sensor: &Sensor, aim: Aim, face: &Face, focal_length: f64) -> RoundedHit {
-        let exact = Meeting::new(sensor.ray::<Dyadic>(aim), face);
-        let point = exact.point();
-        RoundedHit {
-            face: face.id,
-            range: exact.range(),
-            point: [0, 1, 2].map(|k: usize| quotient(&point.0[k], &exact.scale)),
-            normal: [0, 1, 2].map(|k: usize| exact.normal_part(k)),
-            depth: exact.depth(focal_length),
-            incidence: exact.incidence(),
-        }
+    /// The ray of cell (i, j): origin, metres, and direction, scene frame. The direction is not a unit vector: t = 1
+    /// is on the SPP. `None` if there is no such cell.
+    ///
+    /// ```
+    /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+    /// # use wall::wall_scene;
+    /// use raypencil_referee::Referee;
+    /// use raypencil_scene::SensorId;
+    ///
+    /// let scene = wall_scene();
+    /// let [origin, direction] = Referee::new(&scene).ray(SensorId::Camera, 0, 4).unwrap();
+    /// assert_eq!(origin.map(|part| part.double), [0.0; 3]);
+    /// // ((i + 1/2 - c_x) p_x, (j + 1/2 - c_y) p_y, f) = (-4/16, 0, 1/2).
+    /// assert_eq!(direction.map(|part| part.double), [-0.25, 0.0, 0.5]);
+    /// ```
+    pub fn ray(&self, id: SensorId, i: u32, j: u32) -> Option<[[Rounded; 3]; 2]> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        let (fast, exact) = (sensor.ray::<DoubleDouble>(aim), LazyCell::new(|| sensor.ray::<Dyadic>(aim)));
+        let part = |k: usize| {
+            let rounded = fast.origin.0[k].over(&fast.origin_scale).rounded();
+            rounded.unwrap_or_else(|| quotient(&exact.origin.0[k], &exact.origin_scale))
+        };
+        let along = |k: usize| {
+            let rounded = fast.direction.0[k].over(&fast.direction_scale).rounded();
+            rounded.unwrap_or_else(|| quotient(&exact.direction.0[k], &exact.direction_scale))
+        };
+        Some([[0, 1, 2].map(part), [0, 1, 2].map(along)])
     }
 
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(2000))]
-
-        /// The fast way never differs from the exact one, on grounds near and far, flat and askew.
-        #[test]
-        fn values_are_those_of_exact_arithmetic(
-            position in prop::array::uniform3(-3.0f64..3.0),
-            rotation in prop::array::uniform4(-1.0f64..1.0),
-            corners in prop::array::uniform3(prop::array::uniform3(-20.0f32..20.0)),
-            is_flat in any::<bool>(),
-            far in prop::sample::select(vec![0.0, 1e3, 1e6]),
-            i in 0u32..64,
-            j in 0u32..48,
-        ) {
-            prop_assume!(rotation.iter().map(|x| x * x).sum::<f64>() > 0.01);
-            let mut corners = corners;
-            if is_flat {
-                // Heights of 0 and right angles: exact zeros and cancellations.
-                corners = corners.map(|[x, y, _]| [x.round(), y.round(), 0.0]);
-            }
-            corners.iter_mut().for_each(|corner| corner[0] += far as f32);
-            let sensor = camera([position[0] + far, position[1], position[2]], rotation, 31.5);
-            let (aim, face) = (Aim { i, j, dx: 0.0, dy: 0.0 }, Face { id: FaceId(3), corners });
-            if let Some(found) = values(&sensor, aim, &face) {
-                prop_assert_eq!(found, exactly(&sensor, aim, &face, 8e-3));
-            }
-        }
+    /// The values where the ray of cell (i, j) meets `face`; `None` if there is no such cell or face, or the ray does
+    /// not meet it. The face need not be the nearest.
+    pub fn hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        let face = self.face(face)?;
+        let is_met = face.is_met_by(&ExactRay::new(&sensor, aim), sensor.max_range());
+        is_met.then(|| values(&sensor, aim, &face)).flatten()
     }
 
-    #[test]
-    fn a_plane_square_to_the_axis_has_exact_values() {
-        // From (1, 2, 0) along +z, pixel (31, 24): (i + 1/2 - 31.5) = 0 and (24.5 - 24.25) 11e-6 m to the side.
-        let sensor = camera([1.0, 2.0, 0.0], [0.0, 0.0, 0.0, 1.0], 31.5);
-        let corners = [[-9.0, -9.0, 4.0], [0.0, 9.0, 4.0], [9.0, -9.0, 4.0]];
-        let face = Face { id: FaceId(0), corners };
-        let found = values(&sensor, Aim { i: 31, j: 24, dx: 0.0, dy: 0.0 }, &face).expect("it is met");
-        assert_eq!(found.depth.double, 4.0);
-        assert_eq!(found.normal.map(|part| part.double), [0.0, 0.0, -1.0]);
-        assert_eq!(found.point[0].double, 1.0);
-        assert_eq!(found.point[2], Rounded { double: 4.0, single: 4.0 });
-        // t = 4 / 8e-3 in y: 2 + 0.25 11e-6 500 = 2.001375, but for the rounding of 11e-6 and 8e-3.
-        assert!((found.point[1].double - 2.001375).abs() < 1e-15);
-        // R^2 = 16 + 0.001375^2.
-        assert!((found.range.double - (16.0f64 + 0.001375 * 0.001375).sqrt()).abs() < 2e-15);
-        // Parallel to a ray: no point.
-        let edge_on = Face { id: FaceId(0), corners: [[1.0, 0.0, 0.0], [1.0, 9.0, 4.0], [1.0, -9.0, 4.0]] };
-        assert_eq!(values(&sensor, Aim { i: 31, j: 24, dx: 0.0, dy: 0.0 }, &edge_on), None);
+    /// The values where the ray of cell (i, j) meets the plane of `face`, inside its edges or not; `None` if there is
+    /// no such cell or face, or they are parallel.
+    pub fn plane_hit(&self, id: SensorId, i: u32, j: u32, face: FaceId) -> Option<RoundedHit> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        values(&sensor, aim, &self.face(face)?)
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/values.rs"]
+mod tests;

@@ -1,10 +1,10 @@
-//! Vectors of any [`Number`], and the rotation of a quaternion without its division.
+//! Vectors of any [`Number`], and the rotation by a quaternion without its division.
 
 use glam::{DQuat, DVec3};
 
 use crate::number::Number;
 
-/// Three numbers.
+/// Three coordinates.
 #[derive(Debug, Clone)]
 pub(crate) struct Vector<T>(pub(crate) [T; 3]);
 
@@ -52,11 +52,12 @@ impl<T: Number> Vector<T> {
     }
 }
 
-/// The rotation q p q*, which is (q . q) times that of the pose, as a matrix: a polynomial of the stored
-/// quaternion. `norm_squared` is that factor.
+/// The rotation p -> q p q* as a matrix: a polynomial of the stored quaternion q. It is q . q times the pose's
+/// rotation.
 #[derive(Debug, Clone)]
 pub(crate) struct ScaledRotation<T> {
     rows: [Vector<T>; 3],
+    /// q . q: the factor to the pose's rotation.
     pub(crate) norm_squared: T,
 }
 
@@ -82,7 +83,7 @@ impl<T: Number> ScaledRotation<T> {
         Vector(std::array::from_fn(|k| self.rows[k].dot(v)))
     }
 
-    /// The opposite rotation, with the same factor.
+    /// Applies the inverse rotation, times the same factor.
     pub(crate) fn apply_inverse(&self, v: &Vector<T>) -> Vector<T> {
         let [a, b, c] = std::array::from_fn(|k| self.rows[k].scaled(&v.0[k]));
         a.add(&b).add(&c)

@@ -1,21 +1,22 @@
-//! The exact answer for one ray: which faces are nearest, or that there is none.
+//! The referee and its exact verdict on one ray: which faces are nearest, or that there is none.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
 
 use raypencil_scene::{FaceId, Scene, SensorId};
 
-use crate::arithmetic::Whole;
-use crate::cull::{Bundle, Tree};
+use crate::arithmetic::WeightSum;
+use crate::bvh::{Bvh, RayBundle};
+use crate::displacement::Displacement;
 use crate::face::{ExactRay, Face};
-use crate::forms::MovingRay;
-use crate::pencil::{Aim, Sensor};
+use crate::moving_ray::MovingRay;
+use crate::ray::{Aim, MountedSensor};
 
-/// What the contract says of a ray, without rounding.
+/// The contract's answer to a ray, without rounding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verdict {
-    /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same
-    /// point, none if the ray meets no front within its range.
+    /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same point, none
+    /// if the ray meets no front within its range.
     pub faces: Vec<FaceId>,
 }
 
@@ -26,39 +27,36 @@ impl Verdict {
     }
 }
 
-/// A ray beside a cell's own.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Displacement {
-    /// To the right, in cells of the sensor.
-    pub dx: f64,
-    /// Downwards, in cells of the sensor; in a beam this moves the ray's origin along the focal axis.
-    pub dy: f64,
-}
-
-impl Displacement {
-    /// None.
-    pub const ZERO: Self = Self { dx: 0.0, dy: 0.0 };
-
-    /// The larger of the two parts: the norm in which margins are measured.
-    pub fn size(&self) -> f64 {
-        self.dx.abs().max(self.dy.abs())
-    }
-}
-
-/// Knows the true answer for every ray of a scene.
+/// The exact answers to every ray of a scene.
+///
+/// ```
+/// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+/// # use wall::wall_scene;
+/// use raypencil_referee::Referee;
+/// use raypencil_scene::{FaceId, SensorId};
+///
+/// // The wall of the crate's first page: face 0, at z = 2 m, ends at x = 1/8 m.
+/// let scene = wall_scene();
+/// let referee = Referee::new(&scene);
+/// // Pixel (4, 4) looks exactly along z: it meets the wall at (0, 0, 2).
+/// let verdict = referee.verdict(SensorId::Camera, 4, 4).unwrap();
+/// assert_eq!(verdict.faces, [FaceId(0)]);
+/// // There is no column 9.
+/// assert_eq!(referee.verdict(SensorId::Camera, 9, 4), None);
+/// ```
 #[derive(Debug)]
 pub struct Referee<'s> {
     pub(crate) scene: &'s Scene,
-    pub(crate) tree: Tree,
-    /// Of each beam's central pencils.
-    pub(crate) wholes: Vec<Arc<Whole>>,
+    pub(crate) bvh: Bvh,
+    /// The sum of the weights of each beam's central pencils.
+    pub(crate) weight_sums: Vec<Arc<WeightSum>>,
 }
 
 impl<'s> Referee<'s> {
-    /// Prepares to judge the rays of `scene`.
+    /// A referee for `scene`; it builds a bounding volume hierarchy.
     pub fn new(scene: &'s Scene) -> Self {
-        let wholes = scene.beams().iter().map(|_| Arc::default()).collect();
-        Self { scene, tree: Tree::build(scene.mesh()), wholes }
+        let weight_sums = scene.beams().iter().map(|_| Arc::default()).collect();
+        Self { scene, bvh: Bvh::build(scene.mesh()), weight_sums }
     }
 
     /// The exact verdict on the ray of cell (i, j), or `None` if there is no such cell.
@@ -66,9 +64,10 @@ impl<'s> Referee<'s> {
         self.verdict_beside(sensor, i, j, Displacement::ZERO)
     }
 
-    /// The exact verdict on the ray that is displaced from cell (i, j) by any finite number of cells.
+    /// The exact verdict on the ray of cell (i, j) displaced by any finite number of cells; `None` if there is no
+    /// such cell.
     pub fn verdict_beside(&self, sensor: SensorId, i: u32, j: u32, by: Displacement) -> Option<Verdict> {
-        let sensor = Sensor::of(self.scene, sensor)?;
+        let sensor = MountedSensor::of(self.scene, sensor)?;
         let (width, height) = sensor.size();
         if i >= width || j >= height || !by.dx.is_finite() || !by.dy.is_finite() {
             return None;
@@ -77,12 +76,39 @@ impl<'s> Referee<'s> {
         Some(Verdict { faces: nearest.iter().map(|face| face.id).collect() })
     }
 
+    /// The faces that a ray displaced from cell (i, j) by at most `radius` cells may meet, and possibly others, in
+    /// ascending order; `None` if there is no such cell.
+    pub fn faces_near(&self, id: SensorId, i: u32, j: u32, radius: f64) -> Option<Vec<FaceId>> {
+        let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
+        let mut near = Vec::new();
+        let max_range = sensor.max_range();
+        self.bvh.visit(&bundle(&sensor, aim, radius), |face| {
+            near.push(face.id);
+            max_range
+        });
+        near.sort_unstable();
+        Some(near)
+    }
+
+    /// The sensor and the aim at the centre of its cell (i, j), if there is such a cell.
+    pub(crate) fn sensor_and_aim(&self, id: SensorId, i: u32, j: u32) -> Option<(MountedSensor, Aim)> {
+        let sensor = MountedSensor::of(self.scene, id)?;
+        let (width, height) = sensor.size();
+        (i < width && j < height).then_some((sensor, Aim { i, j, dx: 0.0, dy: 0.0 }))
+    }
+
+    /// A face of the mesh, if the mesh has it.
+    pub(crate) fn face(&self, face: FaceId) -> Option<Face> {
+        let mesh = self.scene.mesh();
+        ((face.0 as usize) < mesh.faces().len()).then(|| Face::of(mesh, face))
+    }
+
     /// The nearest faces of one aim, in ascending order.
-    pub(crate) fn nearest(&self, sensor: &Sensor, aim: Aim) -> Vec<&Face> {
+    pub(crate) fn nearest(&self, sensor: &MountedSensor, aim: Aim) -> Vec<&Face> {
         let ray = ExactRay::new(sensor, aim);
         let max_range = sensor.max_range();
         let mut nearest: Vec<&Face> = Vec::new();
-        self.tree.visit(&bundle(sensor, aim, 0.0), |face| {
+        self.bvh.visit(&bundle(sensor, aim, 0.0), |face| {
             if face.is_met_by(&ray, max_range) {
                 match nearest.first().map(|kept| face.compare(kept, &ray)) {
                     None | Some(Ordering::Less) => nearest = vec![face],
@@ -90,7 +116,7 @@ impl<'s> Referee<'s> {
                     Some(Ordering::Greater) => {}
                 }
             }
-            // Nothing farther than the nearest matters from here on.
+            // From here on only faces up to the nearest matter.
             nearest.first().map_or(max_range, |kept| kept.farthest_range(&ray, max_range))
         });
         nearest.sort_by_key(|face| face.id);
@@ -98,14 +124,14 @@ impl<'s> Referee<'s> {
     }
 }
 
-/// The rays that are displaced by at most `radius` cells from an aim, for the tree.
-pub(crate) fn bundle(sensor: &Sensor, aim: Aim, radius: f64) -> Bundle {
+/// The rays displaced from an aim by at most `radius` cells.
+pub(crate) fn bundle(sensor: &MountedSensor, aim: Aim, radius: f64) -> RayBundle {
     bundle_of(&MovingRay::new(sensor, aim), sensor.max_range(), radius)
 }
 
-/// The same for a ray in f64: good to a few 2^-53, and the tree's slack is far wider.
-pub(crate) fn bundle_of(ray: &MovingRay, max_range: f64, radius: f64) -> Bundle {
+/// The same for a ray in f64, whose error is a few 2^-53: the hierarchy's slack is far wider.
+pub(crate) fn bundle_of(ray: &MovingRay, max_range: f64, radius: f64) -> RayBundle {
     let (origin, direction) = ray.line();
     let (start_radius, spread) = ray.spread(radius);
-    Bundle { origin, direction: direction.normalize(), reach: max_range, start_radius, spread }
+    RayBundle { origin, direction: direction.normalize(), max_range, start_radius, spread }
 }

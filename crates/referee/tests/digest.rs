@@ -1,12 +1,15 @@
-//! Everything the referee says of some rays, down to the last bit: digests, committed here. (Contract: same bits)
+//! Digests of the referee's answers to some rays, down to the last bit, committed here. (Contract: same bits)
 //!
-//! A digest changes with any change of a ground, a rig, or the way a margin or a ruling is found; verdicts and values
-//! are exact, so theirs change with scenes alone. When one does, say in the change why.
+//! A digest changes with any change of a ground, a rig, or the way in which a margin or a ruling is found. Verdicts
+//! and values are exact, so theirs change with scenes alone. When a digest changes, the commit must say why.
+
+mod common;
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use common::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Approximations, Displacement, Referee, SightApproximations, Tolerance};
 use raypencil_scene::{
@@ -16,7 +19,7 @@ use raypencil_scene::{
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 use sha2::{Digest, Sha256};
 
-/// What is said, and SHA-256 of all that is said of it.
+/// Subject and SHA-256 of all answers about it.
 const DIGESTS: &[[&str; 2]] = &[
     ["explained", "82acde6d542fdecaad32680ff237e354139e94c866aa4fc9a040e082cd2bf868"],
     ["explained sights", "1069791694b8b2205057d6f974a6c1eb6e18d10ced543eaa9fb09beaef443887"],
@@ -33,35 +36,17 @@ const DIGESTS: &[[&str; 2]] = &[
     ["verdicts", "d43823beccd0fce7e574a6be68567cc1f0eac38edf5e1a2167e970450679ff5c"],
 ];
 
-/// The same of many margins.
+/// The same for margins of more rays.
 const MANY: &[[&str; 2]] = &[
     ["face margins", "681a33bebc97ed28f5fce6317132a58e318c51c7fdecfd5ef3fb79c08b6c5ccd"],
     ["sight margins", "5e3e4738261762d01409df25e0ab70272bf03df1bfdc2623ac3ecf20fd4a2fb8"],
     ["surface margins", "fc140398f81976c1cf86cb89e4653836dc849125f7b1a179f1f7a1bfdbecdb7f"],
 ];
 
-/// Numbers that depend on the seed alone (splitmix64).
-struct Draws(u64);
-
-impl Draws {
-    /// From -1 to 1.
-    fn part(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn below(&mut self, count: u32) -> u32 {
-        ((self.part() + 1.0) * 0.5 * f64::from(count)) as u32
-    }
-}
-
-/// Scene number `number`: built-in and hostile grounds, at the origin and far from it; sheets of 5 mm to half a
+/// Scene number `number`: built-in and malformed grounds, at the origin and far from it; sheets of 5 mm to half a
 /// metre; every profile, filter and model; cells so coarse that several faces lie in one.
 fn scene(number: u64) -> Scene {
-    let mut draws = Draws(number);
+    let mut random = SplitMix64(number);
     let offset = DVec3::splat([0.0, 1e3, 1e6][number as usize / 2 % 3]);
     let ground = if number.is_multiple_of(2) {
         builtin(BUILTIN_NAMES[number as usize / 2 % BUILTIN_NAMES.len()], 0.25).expect("a built-in name")
@@ -70,16 +55,16 @@ fn scene(number: u64) -> Scene {
     };
     let mesh = Arc::new(ground.into_mesh().expect("a valid ground"));
     let origin = mesh.origin();
-    let turned = Pose::from_axis_angle(DVec3::Z, 3.2 * draws.part())
-        * Pose::from_axis_angle(DVec3::Y, 0.45 + 0.25 * draws.part());
-    let position = DVec3::new(3.0 * draws.part(), 3.0 * draws.part(), 2.0 + 0.8 * draws.part());
-    let apart = turned.rotation * DVec3::new(0.2 * draws.part(), 0.3 + draws.part(), 0.7 * draws.part());
+    let turned = Pose::from_axis_angle(DVec3::Z, 3.2 * random.part())
+        * Pose::from_axis_angle(DVec3::Y, 0.45 + 0.25 * random.part());
+    let position = DVec3::new(3.0 * random.part(), 3.0 * random.part(), 2.0 + 0.8 * random.part());
+    let apart = turned.rotation * DVec3::new(0.2 * random.part(), 0.3 + random.part(), 0.7 * random.part());
     let rotation = (turned * Pose::VEHICLE_FROM_FORWARD_SENSOR).rotation;
     let wobble = DQuat::from_xyzw(
-        0.1 * draws.part(),
-        0.1 * draws.part(),
-        0.1 * draws.part(),
-        1.0 + 0.5 * draws.part(),
+        0.1 * random.part(),
+        0.1 * random.part(),
+        0.1 * random.part(),
+        1.0 + 0.5 * random.part(),
     );
     let filter = match number % 3 {
         0 => Filter::None,
@@ -119,17 +104,27 @@ fn scene(number: u64) -> Scene {
     .expect("a valid scene")
 }
 
-/// What was said, by subject.
-#[derive(Default)]
-struct Said(BTreeMap<&'static str, (Sha256, u32)>);
+/// Names of types and fields, today's and those of the day on which the digests were committed. A digest is of Debug
+/// text, which holds names: a new name is no new answer.
+const NAMES: [[&str; 2]; 4] = [
+    ["Visibility", "Sight"],
+    ["cos_incidence:", "incidence:"],
+    ["cos_off_axis:", "off_axis:"],
+    ["cos_view:", "emission:"],
+];
 
-impl Said {
-    /// Debug text tells two f64 apart whenever their bits differ, but for the payload of a NaN.
-    fn say(&mut self, subject: &'static str, what: &impl Debug) {
+/// The digest of the answers and their number, by subject.
+#[derive(Default)]
+struct Transcript(BTreeMap<&'static str, (Sha256, u32)>);
+
+impl Transcript {
+    /// Adds an answer. Debug text tells two f64 apart whenever their bits differ, except for the payload of a NaN.
+    fn record(&mut self, subject: &'static str, what: &impl Debug) {
         let (sha256, count) = self.0.entry(subject).or_default();
         let text = format!("{what:?}\n");
+        let text = NAMES.iter().fold(text, |text, [now, then]| text.replace(now, then));
         sha256.update(text.as_bytes());
-        // Not 'None': something was said.
+        // Count answers other than 'None'.
         *count += u32::from(text != "None\n");
     }
 }
@@ -140,52 +135,59 @@ const TOLERANCES: [Tolerance; 3] = [
     Tolerance { lateral: 1e-9, depth: 1e-12, position: 0.0 },
 ];
 
-fn say_of_ray(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut Draws, id: SensorId) {
+fn record_ray(
+    transcript: &mut Transcript,
+    scene: &Scene,
+    referee: &Referee<'_>,
+    random: &mut SplitMix64,
+    id: SensorId,
+) {
     let (width, height) = scene.size(id).expect("a sensor");
-    let (i, j) = (draws.below(width), draws.below(height));
+    let (i, j) = (random.below(width), random.below(height));
     let margins = referee.margins(id, i, j).expect("a cell");
-    said.say("verdicts", &margins.verdict);
-    said.say("face margins", &margins.face);
-    said.say("surface margins", &margins.surface);
-    said.say("values", &referee.values(id, i, j));
-    said.say("rays", &referee.ray(id, i, j));
+    transcript.record("verdicts", &margins.verdict);
+    transcript.record("face margins", &margins.face);
+    transcript.record("surface margins", &margins.surface);
+    transcript.record("values", &referee.values(id, i, j));
+    transcript.record("rays", &referee.ray(id, i, j));
 
-    let mut answers = vec![None, Some(FaceId(draws.below(scene.mesh().faces().len() as u32)))];
+    let mut answers = vec![None, Some(FaceId(random.below(scene.mesh().faces().len() as u32)))];
     for reach in [0.2, 1.0, 1.0, 3.0] {
-        let by = Displacement { dx: reach * draws.part(), dy: reach * draws.part() };
+        let by = Displacement { dx: reach * random.part(), dy: reach * random.part() };
         let beside = referee.verdict_beside(id, i, j, by).expect("a cell");
-        said.say("verdicts", &beside);
+        transcript.record("verdicts", &beside);
         answers.push(beside.faces.first().copied());
     }
     for answer in answers {
         for tolerance in TOLERANCES {
-            said.say("rulings", &referee.rule(id, i, j, answer, tolerance));
+            transcript.record("rulings", &referee.rule(id, i, j, answer, tolerance));
             for (beam_edges, skip_rules) in [(true, false), (false, true), (true, true)] {
                 let with = Approximations { beam_edges, skip_rules };
-                said.say("explained", &referee.explain(id, i, j, answer, with, tolerance));
+                transcript.record("explained", &referee.explain(id, i, j, answer, with, tolerance));
             }
         }
     }
 }
 
-fn say_of_pencil(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &mut Draws) {
+fn record_pencil(transcript: &mut Transcript, scene: &Scene, referee: &Referee<'_>, random: &mut SplitMix64) {
     let Beam { columns, rows, .. } = scene.beams()[0].sensor;
-    let (i, j) = (draws.below(columns), draws.below(rows));
+    let (i, j) = (random.below(columns), random.below(rows));
     let margins = referee.sight_margins(0, i, j);
-    said.say("sight margins", &margins);
+    transcript.record("sight margins", &margins);
     let Some(face) =
         referee.verdict(SensorId::Beam(0), i, j).and_then(|verdict| verdict.faces.first().copied())
     else {
         return;
     };
     for reach in [0.0, 0.5, 2.0] {
-        let by = Displacement { dx: reach * draws.part(), dy: reach * draws.part() };
+        let by = Displacement { dx: reach * random.part(), dy: reach * random.part() };
         let sight = referee.sight(0, i, j, by);
-        said.say("sights", &sight);
+        transcript.record("sights", &sight);
         let pixel = sight.and_then(|sight| sight.pixel);
         for (visible, tolerance) in [true, false].into_iter().flat_map(|v| TOLERANCES.map(|t| (v, t))) {
             let at = Displacement::ZERO;
-            said.say("sight rulings", &referee.rule_sight(0, i, j, at, face, visible, pixel, tolerance));
+            transcript
+                .record("sight rulings", &referee.rule_sight(0, i, j, at, face, visible, pixel, tolerance));
             for (facing, extent, place) in [
                 (true, None, false),
                 (false, Some(4.0), false),
@@ -195,66 +197,69 @@ fn say_of_pencil(said: &mut Said, scene: &Scene, referee: &Referee<'_>, draws: &
             ] {
                 let with = SightApproximations { facing, extent, place };
                 let explained = referee.explain_sight(0, i, j, face, visible, with, tolerance);
-                said.say("explained sights", &explained);
+                transcript.record("explained sights", &explained);
             }
         }
     }
 }
 
 #[test]
-fn what_is_said_of_rays_has_the_committed_bits() {
-    let mut said = Said::default();
+fn answers_to_rays_have_the_committed_bits() {
+    let mut transcript = Transcript::default();
     for number in 0..24 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(number ^ 0xabcd);
+        let mut random = SplitMix64(number ^ 0xabcd);
         for id in [SensorId::Camera, SensorId::Beam(0)] {
             for _ in 0..14 {
-                say_of_ray(&mut said, &scene, &referee, &mut draws, id);
+                record_ray(&mut transcript, &scene, &referee, &mut random, id);
             }
         }
         for _ in 0..14 {
-            say_of_pencil(&mut said, &scene, &referee, &mut draws);
+            record_pencil(&mut transcript, &scene, &referee, &mut random);
         }
         for sampling in [Sampling::Centres, Sampling::Jittered { seed: 3 }] {
             let light = referee.certified_light(0, sampling).expect("a beam");
-            said.say("light", &light.returns);
-            said.say("light on pixels", &light.sums);
+            transcript.record("light", &light.returns);
+            transcript.record("light on pixels", &light.sums);
         }
     }
-    assert_digests(said, DIGESTS);
+    assert_digests(transcript, DIGESTS);
 }
 
-/// Margins of many rays more: where surfaces end, and where the camera's view does, is rarely near a ray.
+/// More margins: only few rays lie near the end of a surface, or near a change of visibility.
 #[test]
 fn margins_of_many_rays_have_the_committed_bits() {
-    let mut said = Said::default();
+    let mut transcript = Transcript::default();
     for number in 0..24 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(number ^ 0x1234);
+        let mut random = SplitMix64(number ^ 0x1234);
         for id in [SensorId::Camera, SensorId::Beam(0)] {
             let (width, height) = scene.size(id).expect("a sensor");
             for _ in 0..120 {
-                let margins = referee.margins(id, draws.below(width), draws.below(height)).expect("a cell");
-                said.say("face margins", &margins.face);
-                said.say("surface margins", &margins.surface);
+                let margins = referee.margins(id, random.below(width), random.below(height)).expect("a cell");
+                transcript.record("face margins", &margins.face);
+                transcript.record("surface margins", &margins.surface);
             }
         }
         let Beam { columns, rows, .. } = scene.beams()[0].sensor;
         for _ in 0..60 {
-            said.say("sight margins", &referee.sight_margins(0, draws.below(columns), draws.below(rows)));
+            transcript.record(
+                "sight margins",
+                &referee.sight_margins(0, random.below(columns), random.below(rows)),
+            );
         }
     }
-    assert_digests(said, MANY);
+    assert_digests(transcript, MANY);
 }
 
-fn assert_digests(said: Said, committed: &[[&str; 2]]) {
-    let found: Vec<[String; 2]> = said
+fn assert_digests(transcript: Transcript, committed: &[[&str; 2]]) {
+    let found: Vec<[String; 2]> = transcript
         .0
         .into_iter()
         .map(|(subject, (sha256, count))| {
-            assert!(count > 40, "{subject}: said only {count} times");
+            assert!(count > 40, "{subject}: only {count} answers");
             let digest = sha256.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
             println!("    [\"{subject}\", \"{digest}\"],");
             [subject.to_string(), digest]

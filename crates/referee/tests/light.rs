@@ -1,4 +1,4 @@
-//! The camera's view of a pencil: closed forms by hand, and what hides a point.
+//! The camera's view of a pencil and its flux: closed forms derived by hand, and what hides a point.
 
 use std::f64::consts::{FRAC_PI_4, LN_2};
 use std::sync::Arc;
@@ -10,8 +10,9 @@ use raypencil_scene::{
     Renderer, Request, Return, Sampling, Scene,
 };
 
-/// One pencil at the scene's origin along z, on 2 m of range; a camera 1 m to its right, looking along z too. The
-/// point (0, 0, 2) is at (-1, 0, 2) from the camera: r = 2, d = sqrt 5, cos(phi) = 2 / sqrt 5.
+/// One pencil that starts at the scene's origin, runs along z and hits a wall at z = 2 m; a camera 1 m to its right
+/// that also looks along z. The point (0, 0, 2) is at (-1, 0, 2) from the camera: r = 2, d = sqrt 5, cos(phi) = 2 /
+/// sqrt 5.
 struct Setting {
     faces: Vec<[[f32; 3]; 3]>,
     reflectivity: f64,
@@ -21,7 +22,7 @@ struct Setting {
     lens: Lens,
 }
 
-/// The plane z = 2, its front to the origin.
+/// The plane z = 2, its front towards the origin.
 const WALL: [[f32; 3]; 3] = [[-8.0, -8.0, 2.0], [-8.0, 8.0, 2.0], [16.0, 0.0, 2.0]];
 
 impl Setting {
@@ -86,7 +87,7 @@ impl Setting {
 }
 
 fn close(found: f64, derived: f64) {
-    // What is found is rounded once; what is derived here, a dozen times.
+    // The result is rounded once, the derivation here a dozen times.
     assert!((found / derived - 1.0).abs() <= 12.0 * f64::EPSILON, "{found:e}, derived {derived:e}");
 }
 
@@ -126,7 +127,7 @@ fn air_filter_and_lens_take_their_shares() {
     // sin^2(phi) = 1/5: the centre moves to 820 sqrt(1 - 1/20) nm.
     let relative = (810e-9 - 820e-9 * 0.95_f64.sqrt()) / 20e-9;
     let loss = libm::exp(-4.0 * LN_2 * relative * relative);
-    // Small numbers are differences of large ones here: 810 - 799 nm loses two digits.
+    // Cancellation: 810 - 799 nm loses two digits.
     assert!((setting.returned().flux / (clear * 0.75 * loss) - 1.0).abs() < 1e-13);
     setting.reflectivity = 0.0;
     assert_eq!(setting.returned().flux, 0.0);
@@ -143,9 +144,9 @@ fn what_meets_the_segment_hides_the_point() {
         sight.visible
     };
     assert!(visible(&[]));
-    // Duplicates of the wall, from either side, contain the point and do not hide it.
+    // Duplicates of the wall, facing either way, contain the point and do not hide it.
     assert!(visible(&[WALL, [WALL[0], WALL[2], WALL[1]]]));
-    // The segment passes (1/2, 0, 1). A plate there hides the point, whichever way it faces, also if only its corner
+    // The segment passes (1/2, 0, 1). A plate there hides the point, whichever line it faces, also if only its corner
     // or its edge is touched; a plate beside it does not.
     let plate = |x: f32| [[x, 0.0, 1.0], [x + 0.25, 0.25, 1.0], [x + 0.25, -0.25, 1.0]];
     for (face, seen) in
@@ -171,7 +172,7 @@ fn the_renderer_adds_up_its_returns() {
         let frame = ExactRenderer.render(&scene, &Request { sampling, ..Request::EVERYTHING });
         let flux = frame.returns[0].flux.as_ref().unwrap().at(0, 0);
         let total: f64 = frame.flux[0].cells().iter().sum();
-        // Jittered, the point may land left of the image, and then nothing is seen.
+        // With jitter the point may land left of the image. Then it is not seen.
         let visible = frame.returns[0].visible.as_ref().unwrap().at(0, 0);
         assert_eq!(total, flux);
         assert_eq!(visible, flux > 0.0);
@@ -180,8 +181,8 @@ fn the_renderer_adds_up_its_returns() {
 
 #[test]
 fn a_plane_met_from_behind_is_seen_where_it_is() {
-    // The wall turned round is never hit; asked for the point on its plane all the same, it is the same point, and
-    // the camera is behind it.
+    // The wall is turned round, so it is never hit. The point on its plane is the same, and the camera is behind the
+    // plane.
     let mut setting = Setting::of(FluxModel::Radiometric);
     setting.faces = vec![[WALL[0], WALL[2], WALL[1]]];
     let scene = setting.scene();
@@ -199,8 +200,8 @@ fn a_plane_met_from_behind_is_seen_where_it_is() {
 
 #[test]
 fn a_beam_narrower_than_its_pencils_has_shares_all_the_same() {
-    // No pencil lies within hundreds of half widths of the middle: every weight alone vanishes, even at 2^-1074, but
-    // two pencils as near to it as can be share the light, and the others get none.
+    // No pencil lies within hundreds of half widths of the middle: every weight alone underflows, even at 2^-1074.
+    // The pencils nearest the middle share the light, and the others get none.
     let flux = |profile: Profile| -> Vec<f64> {
         let setting = Setting { profile, ..Setting::of(FluxModel::Radiometric) };
         let scene = setting.scene();
@@ -243,8 +244,9 @@ fn there_is_no_view_of_what_is_no_pencil() {
     }
 }
 
-/// The point lands exactly on the upper border of row 32 and on the left one of column 0, which is that of the image. A
-/// position that may be off lands elsewhere by that over the depth, and more aslant: x / z = -1/2 there.
+/// The point lands exactly on the upper border of row 32 and on the left border of column 0, which is that of the
+/// image. An error of its position moves the image by that over the depth, and by more where the line is oblique: x /
+/// z = -1/2.
 #[test]
 fn a_landing_is_excused_as_far_as_the_position_explains_it() {
     let scene = Setting::of(FluxModel::Radiometric).scene();
@@ -264,7 +266,7 @@ fn a_landing_is_excused_as_far_as_the_position_explains_it() {
             assert_eq!(rule(wrong, position), Ruling::Wrong, "{wrong:?} {position}");
         }
     }
-    // 1/32 m is a pixel at depth 2: across 3/2 of the way of 1/40 m are 1.2 pixels, down 0.8.
+    // 1/32 m is a pixel at depth 2: across 3/2 of the line of 1/40 m are 1.2 pixels, down 0.8.
     let position = 1.0 / 40.0;
     for near in [at(1, 32), at(0, 31), None] {
         assert!(matches!(rule(near, position), Ruling::Rounding(_)), "{near:?}");
@@ -277,9 +279,9 @@ fn a_landing_is_excused_as_far_as_the_position_explains_it() {
     assert_eq!(rule(at(0, 64), 10.0), Ruling::Wrong);
 }
 
-/// Pencils of a beam in the camera's own place that land exactly on borders between pixels: n columns over x / z from -1 to
-/// 1, and n pixels to f, so that pencil i lands 2 i + 1 - n pixels from the principal point. In f64 the quotients come out on
-/// either side.
+/// Pencils of a beam in the camera's own place that land exactly on borders between pixels. n columns span x / z from
+/// -1 to 1 and n pixels span f, so pencil i lands 2 i + 1 - n pixels from the principal point. In f64 the quotients
+/// come out on either side.
 #[test]
 fn a_landing_on_a_border_is_in_the_pixel_that_begins_there() {
     for n in (3..200_u32).step_by(2) {

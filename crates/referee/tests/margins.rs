@@ -1,39 +1,19 @@
-//! The margins of many rays over hostile grounds: that they hold, that they are witnessed, that they are tight.
+//! Margins of many rays over malformed grounds: they hold, they have witnesses, and they are tight.
+
+mod common;
 
 use std::sync::Arc;
 
+use common::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Displacement, Margin, Referee};
 use raypencil_scene::{Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Profile, Scene, SensorId};
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
-/// Numbers that depend on the seed alone (splitmix64).
-struct Draws(u64);
-
-impl Draws {
-    /// From 0 to 1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn below(&mut self, count: u32) -> u32 {
-        ((self.unit() * f64::from(count)) as u32).min(count - 1)
-    }
-}
-
-/// Scene number `number`: a built-in or a random ground of everything nasty, seen by a rover's rig or from
-/// anywhere, in cells as fine as a camera's or so coarse that many faces fit in one, and with a beam that is thin,
-/// thick, or half a metre thick.
+/// Scene number `number`: a built-in or a malformed random ground, seen by a rover's rig or from anywhere. Cells are
+/// as fine as a camera's or so coarse that many faces fit in one; the beam is thin, thick, or half a metre thick.
 fn scene(number: u64) -> Scene {
-    let mut draws = Draws(number);
+    let mut random = SplitMix64(number);
     let mesh: Mesh = match number % 4 {
         0 => builtin(BUILTIN_NAMES[number as usize / 4 % BUILTIN_NAMES.len()], 0.25)
             .expect("a built-in name")
@@ -43,15 +23,15 @@ fn scene(number: u64) -> Scene {
         _ => RandomGround::nasty(number, 1500).build().into_mesh(),
     }
     .expect("a valid ground");
-    let mut part = || draws.between(-1.0, 1.0);
+    let mut part = || random.between(-1.0, 1.0);
     let mut rotation = DQuat::from_xyzw(part(), part(), part(), part() + 0.1);
     if number.is_multiple_of(2) {
-        let turned = Pose::from_axis_angle(DVec3::Z, draws.between(0.0, 6.3))
-            * Pose::from_axis_angle(DVec3::Y, draws.between(0.1, 0.6))
+        let turned = Pose::from_axis_angle(DVec3::Z, random.between(0.0, 6.3))
+            * Pose::from_axis_angle(DVec3::Y, random.between(0.1, 0.6))
             * Pose::VEHICLE_FROM_FORWARD_SENSOR;
         rotation = turned.rotation;
     }
-    let position = DVec3::new(draws.between(-4.0, 4.0), draws.between(-4.0, 4.0), draws.between(0.5, 3.5));
+    let position = DVec3::new(random.between(-4.0, 4.0), random.between(-4.0, 4.0), random.between(0.5, 3.5));
     let scene_from_sensor = Pose { position, rotation };
     let fine = if number.is_multiple_of(3) { 1 } else { 25 };
     let camera = Camera {
@@ -86,13 +66,13 @@ fn scene(number: u64) -> Scene {
 }
 
 /// A cell of one of the two sensors.
-fn cell(scene: &Scene, draws: &mut Draws) -> (SensorId, u32, u32) {
-    let sensor = if draws.unit() < 0.5 { SensorId::Camera } else { SensorId::Beam(0) };
+fn cell(scene: &Scene, random: &mut SplitMix64) -> (SensorId, u32, u32) {
+    let sensor = if random.unit() < 0.5 { SensorId::Camera } else { SensorId::Beam(0) };
     let (width, height) = scene.size(sensor).expect("a sensor");
-    (sensor, draws.below(width), draws.below(height))
+    (sensor, random.below(width), random.below(height))
 }
 
-/// The range of a displaced ray in plain f64, by the face that the referee names.
+/// The range of a displaced ray in plain f64, from the face that the referee names.
 fn range(scene: &Scene, referee: &Referee<'_>, cell: (SensorId, u32, u32), by: [f64; 2]) -> Option<f64> {
     let (sensor, i, j) = cell;
     let verdict = referee.verdict_beside(sensor, i, j, Displacement { dx: by[0], dy: by[1] });
@@ -123,7 +103,7 @@ fn range(scene: &Scene, referee: &Referee<'_>, cell: (SensorId, u32, u32), by: [
     Some(normal.dot(a - origin) / normal.dot(q) * q.length())
 }
 
-/// How much two ranges differ, relatively; infinitely if one is a miss and the other is not.
+/// The relative difference of two ranges; infinite if exactly one is a miss.
 fn step(a: Option<f64>, b: Option<f64>) -> f64 {
     match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() / a.min(b),
@@ -134,8 +114,8 @@ fn step(a: Option<f64>, b: Option<f64>) -> f64 {
 
 const JUMP: f64 = 1.0 / (1u32 << 20) as f64;
 
-/// The step that is left where two displacements are brought together, each time on the side of the greater
-/// step, until they are 2^-42 cells apart.
+/// The step that remains when two displacements are brought together to 2^-42 cells, each time on the side of the
+/// greater step; 0 if there is none.
 fn step_between(range: impl Fn([f64; 2]) -> Option<f64>, a: [f64; 2], b: [f64; 2]) -> f64 {
     let (mut a, mut b) = (a, b);
     let (mut range_a, mut range_b) = (range(a), range(b));
@@ -154,11 +134,11 @@ fn step_between(range: impl Fn([f64; 2]) -> Option<f64>, a: [f64; 2], b: [f64; 2
     0.0
 }
 
-/// In [-1, 1]^2, mostly near its border.
-fn in_square(draws: &mut Draws) -> [f64; 2] {
-    let at = [draws.between(-1.0, 1.0), draws.between(-1.0, 1.0)];
+/// A random point of [-1, 1]^2, mostly on its border.
+fn in_square(random: &mut SplitMix64) -> [f64; 2] {
+    let at = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
     let size = at[0].abs().max(at[1].abs());
-    if draws.unit() < 0.7 { at.map(|part| (part / size).clamp(-1.0, 1.0)) } else { at }
+    if random.unit() < 0.7 { at.map(|part| (part / size).clamp(-1.0, 1.0)) } else { at }
 }
 
 #[test]
@@ -167,9 +147,9 @@ fn no_pair_of_displacements_within_lo_has_a_jump_between_and_the_witness_has() {
     for number in 0..170 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(1000 + number);
+        let mut random = SplitMix64(1000 + number);
         for _ in 0..60 {
-            let cell = cell(&scene, &mut draws);
+            let cell = cell(&scene, &mut random);
             let (sensor, i, j) = cell;
             let margins = referee.margins(sensor, i, j).unwrap();
             let is_hit = margins.verdict.is_hit();
@@ -182,14 +162,14 @@ fn no_pair_of_displacements_within_lo_has_a_jump_between_and_the_witness_has() {
             );
             let range = |at: [f64; 2]| range(&scene, &referee, cell, at);
             for _ in 0..10 {
-                let [a, b] = [in_square(&mut draws), in_square(&mut draws)].map(|at| at.map(|x| x * lo));
+                let [a, b] = [in_square(&mut random), in_square(&mut random)].map(|at| at.map(|x| x * lo));
                 assert_eq!(step_between(range, a, b), 0.0, "{number} {cell:?} {lo} {a:?} {b:?}");
                 pairs += 1;
             }
             if let Some(Displacement { dx, dy }) = witness {
                 assert!(dx.abs().max(dy.abs()) <= hi, "{number} {cell:?}");
-                // It hits where the ray misses, or on the other side of the jump, in some direction, lies another
-                // range: up to 2^-29 cells away.
+                // Either the witness hits where the ray misses, or it lies at a jump: at most 2^-29 cells away, in
+                // some direction, the range differs.
                 let around = (-38..=-29).flat_map(|exponent| {
                     let far = 1.0 / (1u64 << -exponent) as f64;
                     [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]]
@@ -206,8 +186,7 @@ fn no_pair_of_displacements_within_lo_has_a_jump_between_and_the_witness_has() {
     assert!(pairs >= 100_000 && witnesses > 500, "{pairs} pairs, {witnesses} witnesses");
 }
 
-/// The rays whose hi is more than twice lo though it is more than 1e-9, or that have neither a witness nor the
-/// cap.
+/// Whether hi is more than twice lo though it is more than 1e-9, or there is neither a witness nor the cap.
 fn loose(margin: &Margin) -> bool {
     let capped = margin.lo >= 1.0;
     !capped && (margin.witness.is_none() || margin.hi > 1e-9 && margin.hi > 2.0 * margin.lo)
@@ -220,9 +199,9 @@ fn both_margins_are_tight() {
     for number in 0..200 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(2000 + number);
+        let mut random = SplitMix64(2000 + number);
         for _ in 0..100 {
-            let (sensor, i, j) = cell(&scene, &mut draws);
+            let (sensor, i, j) = cell(&scene, &mut random);
             let margins = referee.margins(sensor, i, j).unwrap();
             for (name, margin) in [("face", margins.face), ("surface", margins.surface)] {
                 if loose(&margin) {
@@ -240,9 +219,9 @@ fn both_margins_are_tight() {
 fn one_call_answers_as_three_do() {
     let scene = scene(1);
     let referee = Referee::new(&scene);
-    let mut draws = Draws(5);
+    let mut random = SplitMix64(5);
     for _ in 0..300 {
-        let (sensor, i, j) = cell(&scene, &mut draws);
+        let (sensor, i, j) = cell(&scene, &mut random);
         let margins = referee.margins(sensor, i, j).unwrap();
         assert_eq!(Some(margins.verdict), referee.verdict(sensor, i, j));
         assert_eq!(Some(margins.face), referee.face_margin(sensor, i, j));
@@ -252,7 +231,7 @@ fn one_call_answers_as_three_do() {
     assert_eq!(referee.margins(SensorId::Beam(1), 0, 0), None);
 }
 
-/// Neighbours are told by where their corners are, not by indices, and -0 is where 0 is.
+/// Neighbours are found by the positions of their corners, not by indices, and -0 equals 0.
 #[test]
 fn faces_need_no_common_vertices_to_be_one_surface() {
     for number in [0, 5, 6] {
@@ -271,15 +250,15 @@ fn faces_need_no_common_vertices_to_be_one_surface() {
         let apart =
             Scene::new(Arc::new(apart), *scene.camera(), beams, air, scene.flux_model()).expect("valid");
         let (one, other) = (Referee::new(&scene), Referee::new(&apart));
-        let mut draws = Draws(7);
+        let mut random = SplitMix64(7);
         for _ in 0..200 {
-            let (sensor, i, j) = cell(&scene, &mut draws);
+            let (sensor, i, j) = cell(&scene, &mut random);
             assert_eq!(one.margins(sensor, i, j), other.margins(sensor, i, j), "{number} {sensor} {i},{j}");
         }
     }
 }
 
-/// A hidden wall must not end the search for what hides the ground farther away.
+/// A hidden wall must not end the search for faces that hide the ground farther away.
 #[test]
 fn a_wall_under_the_ground_hides_no_post_behind_it() {
     // Pixel (4, 4) looks along +z, y is down, rays are 1/64 m apart per metre of depth. The ground y = 0.02 (2 - z) is
@@ -291,7 +270,7 @@ fn a_wall_under_the_ground_hides_no_post_behind_it() {
     let corners = [
         [ground(-8.0, 1.0), ground(8.0, 1.0), ground(0.0, 19.0)],
         upright(2.2, -0.003, 1.0),
-        // Beside all rays, so that the post comes to lie in another leaf of the tree than the wall.
+        // Beside all rays: this puts the post in another leaf of the hierarchy than the wall.
         upright(4.1, -2.0, -2.1),
         upright(2.5, 2.0, 2.1),
         upright(4.0, -0.03, -1.0),
@@ -320,6 +299,6 @@ fn a_wall_under_the_ground_hides_no_post_behind_it() {
     // To the rounding of the corners to f32.
     let is_there = |x: f64| (x - 0.64).abs() < 1e-5;
     assert!(is_there(margins.face.lo) && is_there(margins.face.hi), "{:?}", margins.face);
-    // Where the ground and the post pass through one another nothing jumps, and the post ends farther away.
+    // Where the ground and the post intersect nothing jumps, and the post ends farther away.
     assert_eq!(margins.surface.lo, 1.0);
 }

@@ -157,7 +157,7 @@ fn an_answer_just_beyond_an_edge_is_rounding_with_its_witness() {
         |lateral| referee.rule(CAMERA, 4, 4, None, Tolerance { lateral, depth: 0.0, position: 0.0 }).unwrap();
     assert_eq!(rule(1e-9), Ruling::Wrong);
     let Ruling::Rounding(by) = rule(1e-8) else { panic!("{:?}", rule(1e-8)) };
-    assert!(by.size() <= 1e-8);
+    assert!(by.max_norm() <= 1e-8);
     assert!(!referee.verdict_beside(CAMERA, 4, 4, by).unwrap().is_hit());
     // The margin says the same: 2^-28 cells.
     let margin = referee.face_margin(CAMERA, 4, 4).unwrap();
@@ -181,12 +181,11 @@ fn faces_one_ulp_apart_are_rounding_in_depth() {
     assert_eq!(rule(3e-7), Ruling::Rounding(Displacement::ZERO));
 }
 
-/// A rig over a random ground: camera and beam, small, at a pose of its own.
-/// No ray is displaced by more than a cell, however coarse somebody's arithmetic is said to be.
+/// No ray is displaced by more than a cell, however coarse a renderer's arithmetic is.
 #[test]
 fn a_tolerance_is_a_cell_at_most() {
-    // At depth 2 a cell is 1/4 m: the first face ends 1/8 m, half a cell, to the right of pixel (4, 4), the second begins
-    // 3/8 m, one and a half cells, to the right of it.
+    // At depth 2 a cell is 1/4 m. The first face ends 1/8 m, half a cell, to the right of pixel (4, 4); the second
+    // begins 3/8 m, one and a half cells, to the right of it.
     let vertices = vec![
         [-1.0, -1.0, 2.0],
         [0.125, -1.0, 2.0],
@@ -224,6 +223,7 @@ fn faces_near_a_ray_are_all_that_it_may_meet() {
     assert_eq!(near(9, 0, 0.5), None, "no such pixel");
 }
 
+/// A camera and a beam with few cells, both at one pose over a random ground.
 fn random_scene(seed: u64, size: usize, turn: [f64; 4], at: [f64; 3]) -> Scene {
     let mesh = Arc::new(RandomGround::nasty(seed, size).build().into_mesh().expect("a valid ground"));
     let pose = Pose {
@@ -282,21 +282,21 @@ proptest! {
                 // Most of them at the border of what is proven.
                 let scale = margin.lo / dx.abs().max(dy.abs()).max(1e-3);
                 let by = Displacement { dx: dx * scale.min(margin.lo), dy: dy * scale.min(margin.lo) };
-                prop_assert!(by.size() <= margin.lo);
+                prop_assert!(by.max_norm() <= margin.lo);
                 prop_assert_eq!(&referee.verdict_beside(sensor, i, j, by).unwrap(), &verdict, "{:?}", by);
             }
             if let Some(by) = margin.witness {
-                prop_assert!(by.size() <= margin.hi);
+                prop_assert!(by.max_norm() <= margin.hi);
                 prop_assert_ne!(&referee.verdict_beside(sensor, i, j, by).unwrap(), &verdict);
                 prop_assert!(margin.hi <= 2.0 * margin.lo || margin.hi <= 1e-9, "{:?} at {} {},{}", margin, sensor, i, j);
             } else {
-// Only where the cap of one cell stands in for a witness.
+                // Only where the cap of one cell stands in for a witness.
                 prop_assert!(margin.lo >= 0.5, "{:?} without a witness: {} {},{}", margin, sensor, i, j);
             }
         }
     }
 
-    // Names are only names: the same faces are met whatever their indices and first corners.
+    // Indices carry no meaning: the same faces are met whatever their indices and first corners.
     #[test]
     fn relabelling_changes_nothing(
         seed in any::<u64>(),

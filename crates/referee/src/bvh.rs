@@ -1,22 +1,22 @@
-//! Which faces a ray may meet: a tree of boxes of the referee's own, in f64.
+//! Bounding volume hierarchy of the referee's own: the faces that a ray may meet, in f64.
 //!
-//! It only has to be complete. A median split over the faces' centres, boxes exact in f64, and a slab test
-//! that is widened by far more than its rounding and by the displacement that is asked about.
+//! It only has to be complete. Faces are split at the median of their centres, boxes are exact in f64, and the slab
+//! test is widened by far more than its rounding, and by the displacement that is asked about.
 
 use glam::DVec3;
 use raypencil_scene::{FaceId, Mesh};
 
 use crate::face::Face;
 
-/// Faces in a leaf.
-const LEAF: usize = 4;
+/// Maximum faces in a leaf.
+const MAX_LEAF_FACES: usize = 4;
 
-/// Relative slack of a slab test: 2^-40, where its rounding is a few 2^-53.
-const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
+/// Relative slack of the slab test: 2^-40, where its rounding is a few 2^-53.
+const RELATIVE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// The terrain's faces in a tree.
+/// The terrain's faces in a hierarchy of boxes.
 #[derive(Debug)]
-pub(crate) struct Tree {
+pub(crate) struct Bvh {
     nodes: Vec<Node>,
     faces: Vec<Face>,
 }
@@ -25,29 +25,28 @@ pub(crate) struct Tree {
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Of a leaf, its faces; of an inner node, its two children lie at `first` and `first + 1`.
+    /// Leaf: index of its first face. Inner node: its children are the nodes `first` and `first + 1`.
     first: u32,
-    /// 0 for an inner node.
+    /// Number of faces; 0 for an inner node.
     count: u32,
 }
 
-/// The line that is asked about: a ray in f64, and how wide the bundle around it is.
+/// A ray in f64 and all rays near it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bundle {
-    /// Where the ray starts, scene frame, metres.
+pub(crate) struct RayBundle {
+    /// Start of the middle ray, scene frame, metres.
     pub(crate) origin: DVec3,
-    /// Its unit direction.
+    /// Unit direction of the middle ray.
     pub(crate) direction: DVec3,
-    /// How far along it faces matter, metres.
-    pub(crate) reach: f64,
-    /// How far a ray of the bundle may start from the origin, metres.
+    /// Largest range of interest, metres.
+    pub(crate) max_range: f64,
+    /// Largest distance of a ray's start from `origin`, metres.
     pub(crate) start_radius: f64,
-    /// How far apart the unit directions of two of its rays may be from the middle one's: metres per metre of
-    /// range.
+    /// Largest distance of a ray's unit direction from `direction`: metres per metre of range.
     pub(crate) spread: f64,
 }
 
-impl Tree {
+impl Bvh {
     pub(crate) fn build(mesh: &Mesh) -> Self {
         let mut faces: Vec<Face> = (0..mesh.faces().len())
             .map(|index| Face::of(mesh, FaceId(index as u32)))
@@ -60,10 +59,10 @@ impl Tree {
             let mut waiting = vec![0usize];
             while let Some(index) = waiting.pop() {
                 let Node { low, high, first, count } = nodes[index];
-                if count as usize <= LEAF {
+                if count as usize <= MAX_LEAF_FACES {
                     continue;
                 }
-                // Halves of equal number, however the faces lie: the depth is logarithmic for any input.
+                // Halves of equal number: the depth is logarithmic for any input.
                 let axis = (high - low).max_position();
                 let range = &mut faces[first as usize..(first + count) as usize];
                 let middle = range.len() / 2;
@@ -84,63 +83,64 @@ impl Tree {
         Self { nodes, faces }
     }
 
-    /// Calls `visit` with every face that a ray of the bundle may meet within its reach, and perhaps with
-    /// others. `visit` answers with the reach from there on: nearer faces are asked about first.
-    pub(crate) fn visit<'t>(&'t self, bundle: &Bundle, mut visit: impl FnMut(&'t Face) -> f64) {
-        let mut walk = Walk::new(self, bundle);
-        let mut reach = bundle.reach;
-        while let Some(leaf) = walk.next_leaf(reach) {
+    /// Calls `visit` with every face that a ray of the bundle may meet within its range, and possibly with others.
+    /// `visit` returns the range to search from then on. Nearer leaves come first.
+    pub(crate) fn visit<'t>(&'t self, bundle: &RayBundle, mut visit: impl FnMut(&'t Face) -> f64) {
+        let mut walk = Traversal::new(self, bundle);
+        let mut max_range = bundle.max_range;
+        while let Some(leaf) = walk.next_leaf(max_range) {
             for face in leaf {
-                reach = visit(face).min(reach);
+                max_range = visit(face).min(max_range);
             }
         }
     }
 }
 
-/// A way through the tree along a bundle, leaf by leaf, roughly from near to far. Parts beyond the reach are
-/// kept for later, should it grow again.
+/// A traversal of the hierarchy along a bundle, leaf by leaf, roughly from near to far. Nodes beyond the range are
+/// kept, in case the range grows again.
 #[derive(Debug)]
-pub(crate) struct Walk<'t> {
-    tree: &'t Tree,
-    bundle: Bundle,
+pub(crate) struct Traversal<'t> {
+    bvh: &'t Bvh,
+    bundle: RayBundle,
     inverse: DVec3,
-    /// How much a box is widened wherever it lies.
+    /// Widening of every box, metres, wherever it lies.
     widened: f64,
-    /// Where the bundle enters a node, and the node.
+    /// Nodes to visit, with the range at which the bundle enters each.
     waiting: Vec<(f64, u32)>,
+    /// Nodes entered beyond the range.
     beyond: Vec<(f64, u32)>,
 }
 
-impl<'t> Walk<'t> {
-    pub(crate) fn new(tree: &'t Tree, bundle: &Bundle) -> Self {
+impl<'t> Traversal<'t> {
+    pub(crate) fn new(bvh: &'t Bvh, bundle: &RayBundle) -> Self {
         let mut walk = Self {
-            tree,
+            bvh,
             bundle: *bundle,
             inverse: bundle.direction.recip(),
-            widened: bundle.start_radius * (1.0 + bundle.spread) + SLACK * bundle.origin.length(),
+            widened: bundle.start_radius * (1.0 + bundle.spread) + RELATIVE_SLACK * bundle.origin.length(),
             waiting: Vec::with_capacity(64),
             beyond: Vec::new(),
         };
-        if let Some(entry) = tree.nodes.first().and_then(|root| walk.entry(root)) {
+        if let Some(entry) = bvh.nodes.first().and_then(|root| walk.entry(root)) {
             walk.waiting.push((entry, 0));
         }
         walk
     }
 
-    /// The faces of the next leaf that the bundle enters within `reach`; `None` if there is no other.
-    pub(crate) fn next_leaf(&mut self, reach: f64) -> Option<&'t [Face]> {
+    /// The faces of the next leaf that the bundle enters within `max_range`; `None` if there is none.
+    pub(crate) fn next_leaf(&mut self, max_range: f64) -> Option<&'t [Face]> {
         while let Some((entry, index)) = self.waiting.pop() {
-            if entry > reach {
+            if entry > max_range {
                 self.beyond.push((entry, index));
                 continue;
             }
-            let node = &self.tree.nodes[index as usize];
+            let node = &self.bvh.nodes[index as usize];
             if node.count > 0 {
-                return Some(&self.tree.faces[node.first as usize..(node.first + node.count) as usize]);
+                return Some(&self.bvh.faces[node.first as usize..(node.first + node.count) as usize]);
             }
-            let child = |child: u32| (self.entry(&self.tree.nodes[child as usize]), child);
+            let child = |child: u32| (self.entry(&self.bvh.nodes[child as usize]), child);
             let mut children = [child(node.first), child(node.first + 1)];
-            // The nearer child is taken from the stack first.
+            // The nearer child goes on top of the stack.
             if children[0].0 < children[1].0 {
                 children.swap(0, 1);
             }
@@ -149,26 +149,26 @@ impl<'t> Walk<'t> {
         None
     }
 
-    /// Takes up what had been beyond the reach.
+    /// Puts the nodes that were beyond the range back on the stack.
     pub(crate) fn resume(&mut self) {
         self.waiting.append(&mut self.beyond);
     }
 
-    /// Where the bundle enters a node's box, widened, or `None` if it does not.
+    /// The range at which the bundle enters a node's widened box; `None` if it does not.
     ///
-    /// A ray of the bundle meets a point P of the box at its own range R. It starts at most `start_radius` from the
-    /// bundle's start, and its direction is at most `spread` from the bundle's: so the point of the bundle's
-    /// middle at R lies within `start_radius + spread R` of P, and R is at most the distance of P and
-    /// `start_radius`. The widened box contains that point, hence it is entered at R or before.
+    /// A ray of the bundle meets a point P of the box at its own range R. The ray starts at most `start_radius` from
+    /// the bundle's origin, and its direction is at most `spread` from the bundle's. So the middle ray's point at R
+    /// lies within `start_radius + spread R` of P, and R is at most the distance of P plus `start_radius`. The
+    /// widened box contains that point, hence it is entered at R or before.
     #[inline]
     fn entry(&self, node: &Node) -> Option<f64> {
         let bundle = &self.bundle;
         let (low, high) = (node.low - bundle.origin, node.high - bundle.origin);
-        let farthest = low.abs().max(high.abs()).length();
+        let far = low.abs().max(high.abs()).length();
         let size = node.low.abs().max(node.high.abs()).max_element();
-        let margin = DVec3::splat(self.widened + bundle.spread * farthest + SLACK * (farthest + size));
+        let margin = DVec3::splat(self.widened + bundle.spread * far + RELATIVE_SLACK * (far + size));
         let (low, high) = (low - margin, high + margin);
-        let (mut enter, mut leave) = (0.0_f64, bundle.reach);
+        let (mut enter, mut leave) = (0.0_f64, bundle.max_range);
         for k in 0..3 {
             if bundle.direction[k] == 0.0 {
                 if low[k] > 0.0 || high[k] < 0.0 {
@@ -184,7 +184,7 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// The box around some faces.
+/// The bounding box of some faces.
 fn bounds(faces: &[Face]) -> (DVec3, DVec3) {
     let widen = |[x, y, z]: [f32; 3]| DVec3::new(f64::from(x), f64::from(y), f64::from(z));
     faces

@@ -1,7 +1,8 @@
-//! What the camera sees of a pencil's hit: whether, and where on its image. Exactly.
+//! Line of sight from the camera to a point of a pencil's hit, as polynomials: the contract's conditions for
+//! visibility, and the pixel.
 //!
-//! With the pencil's ray (O, s, D, sigma) and the face it meets, P = O / s + (n.a' / (s n.D)) D. Multiplied by
-//! W = -s n.D > 0 it is polynomial, and so is the way to it from the projection centre c:
+//! With the pencil's ray (O, s, D, sigma) and the face it meets, P = O / s + (n.a' / (s n.D)) D. Multiplied by W = -s
+//! n.D > 0 it is polynomial, and so is the vector to it from the projection centre c:
 //!
 //! ```text
 //! V = W (P - c) = -(O n.D + n.a' D) - W c
@@ -20,52 +21,40 @@
 //! | the other face is met before the point, u < 1 | n.a' W - n.V has the sign opposite to n.V |
 //! | at or beyond the image plane, u >= f / r | n.a' Z - f N n.V is 0 or has the sign of n.V |
 //!
-//! A face that contains P has u = 1: neither the face that is hit nor one that ties with it, nor a back at the
-//! same point, hides it.
+//! A face that contains P has u = 1. So neither the face that is hit, nor one that ties with it, nor a back at the
+//! same point hides P.
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use raypencil_scene::{Camera, FaceId, Mounted, Pixel, SensorId};
+use raypencil_scene::{Camera, Mounted, Pixel};
 
-use crate::cull::Bundle;
+use crate::bvh::RayBundle;
 use crate::face::{ExactRay, Face};
 use crate::number::{Dyadic, Interval, Number};
-use crate::pencil::{Aim, ScaledRay, Sensor};
+use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::rounding;
 use crate::vector::{ScaledRotation, Vector};
-use crate::verdict::{Displacement, Referee};
 
-/// What the contract says of the camera's view of a pencil that hits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sight {
-    /// Whether the camera sees the point.
-    pub visible: bool,
-    /// Where it lands on the image, hidden or not.
-    pub pixel: Option<Pixel>,
-    /// A face that meets the segment between the point and the image plane.
-    pub hidden_by: Option<FaceId>,
-}
-
-/// The way from the camera to a point, as polynomials.
+/// The line of sight from the camera to a point, as polynomials.
 #[derive(Debug, Clone)]
-pub(crate) struct Way<T> {
+pub(crate) struct LineOfSight<T> {
     /// c, the projection centre.
     centre: Vector<T>,
     /// V.
-    pub(crate) along: Vector<T>,
+    pub(crate) direction: Vector<T>,
     /// W.
     pub(crate) scale: T,
     /// (X, Y, Z).
-    pub(crate) seen: Vector<T>,
+    pub(crate) in_camera: Vector<T>,
     /// N.
     pub(crate) frame_scale: T,
     /// f N.
     focal: T,
 }
 
-impl<T: Number> Way<T> {
+impl<T: Number> LineOfSight<T> {
     pub(crate) fn new(ray: &ScaledRay<T>, face: &Face, camera: &Mounted<Camera>, is_back: bool) -> Self {
         let pose = camera.scene_from_sensor;
         let (centre, rotation) = (Vector::of(pose.position), ScaledRotation::<T>::of(pose.rotation));
@@ -73,22 +62,27 @@ impl<T: Number> Way<T> {
         let minus_scale = approach.mul(&ray.origin_scale);
         // V = -(O n.D + n.a' D) + s n.D c.
         let point = ray.origin.scaled(&approach).add(&ray.direction.scaled(&height));
-        let (along, scale) = if is_back {
+        let (direction, scale) = if is_back {
             (point.sub(&centre.scaled(&minus_scale)), minus_scale)
         } else {
             (centre.scaled(&minus_scale).sub(&point), T::of(0.0).sub(&minus_scale))
         };
-        let seen = rotation.apply_inverse(&along);
+        let in_camera = rotation.apply_inverse(&direction);
         let focal = T::of(camera.sensor.focal_length).mul(&rotation.norm_squared);
-        Self { centre, along, scale, seen, focal, frame_scale: rotation.norm_squared }
+        Self { centre, direction, scale, in_camera, focal, frame_scale: rotation.norm_squared }
     }
 }
 
-impl Way<Interval> {
-    /// The parts of the way to the plane of `face` as a function of the displacement from an aim, which is bilinear:
-    /// V = V_0 + V_1 dx + V_2 dy + V_3 dx dy, and W and (X, Y, Z) likewise. Every [`Question`] is linear in them, so
-    /// that its values for the four are the coefficients of its own form.
-    pub(crate) fn parts(sensor: &Sensor, aim: Aim, face: &Face, camera: &Mounted<Camera>) -> [Self; 4] {
+impl LineOfSight<Interval> {
+    /// The parts of the line to the plane of `face` as a function of the displacement from an aim, which is bilinear:
+    /// V = V_0 + V_1 dx + V_2 dy + V_3 dx dy, and W and (X, Y, Z) likewise. Every [`LinePolynomial`] is linear in
+    /// them, so its values for the four parts are the coefficients of its form.
+    pub(crate) fn parts(
+        sensor: &MountedSensor,
+        aim: Aim,
+        face: &Face,
+        camera: &Mounted<Camera>,
+    ) -> [Self; 4] {
         type I = Interval;
         let ray = sensor.ray::<I>(aim);
         let [across, down] = sensor.steps::<I>();
@@ -100,22 +94,29 @@ impl Way<Interval> {
         let start = [ray.origin.sub(&centre.scaled(&ray.origin_scale)), down.clone()];
         let height = [face.height(&ray), normal.dot(&down).negated()];
         let approach = [face.approach(&ray), normal.dot(&across)];
-        let direction = [ray.direction.clone(), across];
+        let ray_direction = [ray.direction.clone(), across];
         [0, 1, 2, 3].map(|part: usize| {
             let (x, y) = (part & 1, part >> 1);
-            let minus = start[y].scaled(&approach[x]).add(&direction[x].scaled(&height[y]));
-            let along = Vector(minus.0.map(Interval::negated));
+            let minus = start[y].scaled(&approach[x]).add(&ray_direction[x].scaled(&height[y]));
+            let direction = Vector(minus.0.map(Interval::negated));
             let scale = match y {
                 0 => ray.origin_scale.mul(&approach[x]).negated(),
                 _ => I::of(0.0),
             };
-            let seen = rotation.apply_inverse(&along);
-            Self { centre: centre.clone(), along, scale, seen, frame_scale: rotation.norm_squared, focal }
+            let in_camera = rotation.apply_inverse(&direction);
+            Self {
+                centre: centre.clone(),
+                direction,
+                scale,
+                in_camera,
+                frame_scale: rotation.norm_squared,
+                focal,
+            }
         })
     }
 
-    /// The coefficients of what the point has to fulfil whatever else there is: to lie beyond the focal length, and
-    /// within each border of the image. All must be positive; 0 will do at the left and upper borders alone.
+    /// The coefficients of the landing conditions: the point lies beyond the focal length and within each border of
+    /// the image. It lands if all are positive; 0 suffices at the left and upper borders alone.
     pub(crate) fn lands(parts: &[Self; 4], camera: &Camera) -> [[Interval; 4]; 5] {
         let border = |axis: usize, border: u32| {
             let border = Border { camera, axis, border };
@@ -142,37 +143,37 @@ impl Way<Interval> {
     }
 }
 
-/// A polynomial of a way whose sign is asked for.
-trait Question {
-    fn value<T: Number>(&self, way: &Way<T>) -> T;
+/// A polynomial of a line of sight, of which only the sign matters.
+trait LinePolynomial {
+    fn value<T: Number>(&self, line: &LineOfSight<T>) -> T;
 }
 
-/// A way in both numbers; the exact one is only made when it is needed.
-pub(crate) struct ExactWay<'a> {
+/// A line of sight in both numbers; the exact one is formed when it is first needed.
+pub(crate) struct ExactLineOfSight<'a> {
     ray: &'a ExactRay<'a>,
     face: &'a Face,
     camera: &'a Mounted<Camera>,
     /// Whether the ray comes from behind the face: W has the other sign then.
     is_back: bool,
-    fast: Way<Interval>,
-    exact: OnceCell<Way<Dyadic>>,
+    fast: LineOfSight<Interval>,
+    exact: OnceCell<LineOfSight<Dyadic>>,
 }
 
-impl<'a> ExactWay<'a> {
-    /// The way to where `ray` meets `face`, which it does.
+impl<'a> ExactLineOfSight<'a> {
+    /// The line to the point where `ray` meets `face`; it must meet it.
     pub(crate) fn new(ray: &'a ExactRay<'a>, face: &'a Face, camera: &'a Mounted<Camera>) -> Self {
         let is_back = face.shows_back_to(ray);
-        let fast = Way::new(ray.fast(), face, camera, is_back);
+        let fast = LineOfSight::new(ray.fast(), face, camera, is_back);
         Self { ray, face, camera, is_back, fast, exact: OnceCell::new() }
     }
 
-    /// The way without rounding.
-    pub(crate) fn exact(&self) -> &Way<Dyadic> {
-        self.exact.get_or_init(|| Way::new(self.ray.exact(), self.face, self.camera, self.is_back))
+    /// The line without rounding.
+    pub(crate) fn exact(&self) -> &LineOfSight<Dyadic> {
+        self.exact.get_or_init(|| LineOfSight::new(self.ray.exact(), self.face, self.camera, self.is_back))
     }
 
     #[inline]
-    fn sign(&self, question: &impl Question) -> Ordering {
+    fn sign(&self, question: &impl LinePolynomial) -> Ordering {
         match question.value(&self.fast).sign() {
             Some(sign) => sign,
             None => self.exact_sign(question),
@@ -180,7 +181,7 @@ impl<'a> ExactWay<'a> {
     }
 
     #[cold]
-    fn exact_sign(&self, question: &impl Question) -> Ordering {
+    fn exact_sign(&self, question: &impl LinePolynomial) -> Ordering {
         question.value(self.exact()).sign().unwrap_or(Ordering::Equal)
     }
 
@@ -189,7 +190,7 @@ impl<'a> ExactWay<'a> {
         self.sign(&Facing(self.face)) == Ordering::Less
     }
 
-    /// The pixel in which the point lands.
+    /// The pixel in which the point lands, if any.
     pub(crate) fn pixel(&self) -> Option<Pixel> {
         if self.sign(&BeyondFocal) != Ordering::Greater {
             return None;
@@ -203,7 +204,7 @@ impl<'a> ExactWay<'a> {
             if !is_at_or_after(0) || is_at_or_after(size[axis]) {
                 return None;
             }
-            // A guess in f64, and then the exact neighbour of it.
+            // Start at the index in f64, and step to the exact one.
             let mut index = (self.landing()[axis].max(0.0) as u32).min(size[axis] - 1);
             while !is_at_or_after(index) {
                 index -= 1;
@@ -216,43 +217,43 @@ impl<'a> ExactWay<'a> {
         Some(Pixel { i: i?, j: j? })
     }
 
-    /// Where the point lands on the image in pixels, to f64 rounding.
+    /// The point's image in pixels, to f64 rounding.
     pub(crate) fn landing(&self) -> [f64; 2] {
         let camera = &self.camera.sensor;
-        let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.seen.0[k].middle());
+        let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.in_camera.0[k].middle());
         let at = |part: f64, axis: usize| {
             camera.focal_length * part / z / camera.pixel_pitch[axis] + camera.principal_point[axis]
         };
         [at(x, 0), at(y, 1)]
     }
 
-    /// How far from the nearest border of its pixel the point lands, in pixels: between two numbers.
+    /// The distance of the point's image from the nearest border of its pixel, pixels: an interval.
     pub(crate) fn border_distance(&self, pixel: Pixel) -> [f64; 2] {
-        let (way, camera) = (self.exact(), &self.camera.sensor);
+        let (line, camera) = (self.exact(), &self.camera.sensor);
         let least = [(0, pixel.i), (1, pixel.j)]
             .into_iter()
             .flat_map(|(axis, index)| [(axis, index), (axis, index + 1)])
             .map(|(axis, border)| {
-                let across = Border { camera, axis, border }.value(way);
-                let per_pixel = Dyadic::of(camera.pixel_pitch[axis]).mul(&way.seen.0[2]);
+                let across = Border { camera, axis, border }.value(line);
+                let per_pixel = Dyadic::of(camera.pixel_pitch[axis]).mul(&line.in_camera.0[2]);
                 rounding::quotient(&across, &per_pixel).double.abs()
             })
             .fold(f64::INFINITY, f64::min);
-        // Each quotient is good to 2^-53 of itself, and so is the least of them.
+        // Each quotient is correct to 2^-53 of itself, and so is the least of them.
         let off = f64::EPSILON;
         [least * (1.0 - off), least * (1.0 + off)]
     }
 
     /// P - c, to f64 rounding, metres.
     pub(crate) fn centre_to_point(&self) -> DVec3 {
-        let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.along.0[k].middle());
+        let [x, y, z] = [0, 1, 2].map(|k: usize| self.fast.direction.0[k].middle());
         DVec3::new(x, y, z) / self.fast.scale.middle()
     }
 
     /// r, to f64 rounding, metres.
     pub(crate) fn depth(&self) -> f64 {
-        let way = &self.fast;
-        way.seen.0[2].middle() / (way.frame_scale.middle() * way.scale.middle())
+        let line = &self.fast;
+        line.in_camera.0[2].middle() / (line.frame_scale.middle() * line.scale.middle())
     }
 
     /// Whether `other` meets the segment from the point to the image plane.
@@ -261,22 +262,22 @@ impl<'a> ExactWay<'a> {
         if facing == Ordering::Equal {
             return false;
         }
-        // All on the inner side, as seen from the side that faces the camera.
+        // The line is on the inner side of every edge, as seen from the side that faces the camera.
         let outer = facing.reverse();
         (0..3).all(|k| self.sign(&Side { face: other, k }) != outer)
             && self.sign(&Before(other)) == outer
             && self.sign(&AtOrBeyondImage(other)) != outer
     }
 
-    /// The faces that may meet the segment.
-    pub(crate) fn bundle(&self) -> Bundle {
+    /// The ray bundle of the segment, for the hierarchy.
+    pub(crate) fn bundle(&self) -> RayBundle {
         let along = self.centre_to_point();
         let length = along.length();
-        Bundle {
+        RayBundle {
             origin: self.camera.scene_from_sensor.position,
             direction: along / length,
-            // A dozen roundings, each 2^-53, and the tree's own slack.
-            reach: length * (1.0 + 64.0 * f64::EPSILON),
+            // Covers a dozen roundings of 2^-53 each; the hierarchy has its own slack.
+            max_range: length * (1.0 + 64.0 * f64::EPSILON),
             start_radius: 0.0,
             spread: 0.0,
         }
@@ -286,18 +287,18 @@ impl<'a> ExactWay<'a> {
 /// n.V.
 struct Facing<'a>(&'a Face);
 
-impl Question for Facing<'_> {
-    fn value<T: Number>(&self, way: &Way<T>) -> T {
-        self.0.normal().dot(&way.along)
+impl LinePolynomial for Facing<'_> {
+    fn value<T: Number>(&self, line: &LineOfSight<T>) -> T {
+        self.0.normal().dot(&line.direction)
     }
 }
 
 /// Z - f N W.
 struct BeyondFocal;
 
-impl Question for BeyondFocal {
-    fn value<T: Number>(&self, way: &Way<T>) -> T {
-        way.seen.0[2].sub(&way.focal.mul(&way.scale))
+impl LinePolynomial for BeyondFocal {
+    fn value<T: Number>(&self, line: &LineOfSight<T>) -> T {
+        line.in_camera.0[2].sub(&line.focal.mul(&line.scale))
     }
 }
 
@@ -308,12 +309,12 @@ struct Border<'a> {
     border: u32,
 }
 
-impl Question for Border<'_> {
-    fn value<T: Number>(&self, way: &Way<T>) -> T {
+impl LinePolynomial for Border<'_> {
+    fn value<T: Number>(&self, line: &LineOfSight<T>) -> T {
         let from_centre = T::of_integer(self.border).sub(&T::of(self.camera.principal_point[self.axis]));
         let metres = from_centre.mul(&T::of(self.camera.pixel_pitch[self.axis]));
-        let across = T::of(self.camera.focal_length).mul(&way.seen.0[self.axis]);
-        across.sub(&metres.mul(&way.seen.0[2]))
+        let across = T::of(self.camera.focal_length).mul(&line.in_camera.0[self.axis]);
+        across.sub(&metres.mul(&line.in_camera.0[2]))
     }
 }
 
@@ -323,85 +324,32 @@ struct Side<'a> {
     k: usize,
 }
 
-impl Question for Side<'_> {
+impl LinePolynomial for Side<'_> {
     #[inline]
-    fn value<T: Number>(&self, way: &Way<T>) -> T {
+    fn value<T: Number>(&self, line: &LineOfSight<T>) -> T {
         let (a, b) = (self.face.corner::<T>(self.k), self.face.corner::<T>((self.k + 1) % 3));
-        way.along.dot(&a.sub(&way.centre).cross(&b.sub(&a)))
+        line.direction.dot(&a.sub(&line.centre).cross(&b.sub(&a)))
     }
 }
 
 /// n.a' W - n.V.
 struct Before<'a>(&'a Face);
 
-impl Question for Before<'_> {
-    fn value<T: Number>(&self, way: &Way<T>) -> T {
+impl LinePolynomial for Before<'_> {
+    fn value<T: Number>(&self, line: &LineOfSight<T>) -> T {
         let n = self.0.normal::<T>();
-        let height = n.dot(&self.0.corner(0).sub(&way.centre));
-        height.mul(&way.scale).sub(&n.dot(&way.along))
+        let height = n.dot(&self.0.corner(0).sub(&line.centre));
+        height.mul(&line.scale).sub(&n.dot(&line.direction))
     }
 }
 
 /// n.a' Z - f N n.V.
 struct AtOrBeyondImage<'a>(&'a Face);
 
-impl Question for AtOrBeyondImage<'_> {
-    fn value<T: Number>(&self, way: &Way<T>) -> T {
+impl LinePolynomial for AtOrBeyondImage<'_> {
+    fn value<T: Number>(&self, line: &LineOfSight<T>) -> T {
         let n = self.0.normal::<T>();
-        let height = n.dot(&self.0.corner(0).sub(&way.centre));
-        height.mul(&way.seen.0[2]).sub(&way.focal.mul(&n.dot(&way.along)))
-    }
-}
-
-impl Referee<'_> {
-    /// What the camera sees of the hit of pencil (i, j), displaced by `by`; `None` if there is no such pencil, or
-    /// it does not hit.
-    pub fn sight(&self, beam: usize, i: u32, j: u32, by: Displacement) -> Option<Sight> {
-        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
-        let (columns, rows) = sensor.size();
-        if i >= columns || j >= rows || !by.dx.is_finite() || !by.dy.is_finite() {
-            return None;
-        }
-        let aim = Aim { i, j, dx: by.dx, dy: by.dy };
-        let nearest = self.nearest(&sensor, aim);
-        Some(self.sight_of(&sensor, aim, nearest.first()?))
-    }
-
-    /// What the camera sees of the point in which an aim meets `face`.
-    pub(crate) fn sight_of(&self, sensor: &Sensor, aim: Aim, face: &Face) -> Sight {
-        let ray = ExactRay::new(sensor, aim);
-        let way = ExactWay::new(&ray, face, self.scene.camera());
-        let pixel = way.pixel();
-        let could_be_seen = pixel.is_some() && way.is_front_seen();
-        let hidden_by = if could_be_seen { self.occluder(&way) } else { None };
-        Sight { visible: could_be_seen && hidden_by.is_none(), pixel, hidden_by }
-    }
-
-    /// Some face that hides the end of a way: the lowest of those found in the first leaf that has any.
-    fn occluder(&self, way: &ExactWay<'_>) -> Option<FaceId> {
-        let bundle = way.bundle();
-        let mut found: Option<FaceId> = None;
-        self.tree.visit(&bundle, |face| {
-            if found.is_none() && way.is_hidden_by(face) {
-                found = Some(face.id);
-            }
-            // Nothing more is asked for once one is found.
-            if found.is_some() { f64::NEG_INFINITY } else { bundle.reach }
-        });
-        found
-    }
-
-    /// Every face that hides the end of a way, in ascending order.
-    pub(crate) fn occluders(&self, way: &ExactWay<'_>) -> Vec<Face> {
-        let bundle = way.bundle();
-        let mut found: Vec<Face> = Vec::new();
-        self.tree.visit(&bundle, |face| {
-            if way.is_hidden_by(face) {
-                found.push(*face);
-            }
-            bundle.reach
-        });
-        found.sort_by_key(|face| face.id);
-        found
+        let height = n.dot(&self.0.corner(0).sub(&line.centre));
+        height.mul(&line.in_camera.0[2]).sub(&line.focal.mul(&n.dot(&line.direction)))
     }
 }

@@ -1,15 +1,14 @@
-//! The contract's ray of a cell, and the rays beside it, without any division.
+//! The contract's ray of a cell, and the rays displaced from it, without any division.
 //!
-//! All that the contract says of a ray is rational in stored f64 numbers; multiplied by its positive
-//! denominators it is polynomial. A ray here is (O, s, D, sigma), s > 0 and sigma > 0, and means the ray from
-//! O / s along q = D / sigma:
+//! All that the contract says of a ray is rational in stored f64 numbers; multiplied by its positive denominators it
+//! is polynomial. A ray here is (O, s, D, sigma) with s > 0 and sigma > 0: the ray from O / s along q = D / sigma.
 //!
 //! | | s | sigma | O | D |
 //! | --- | --- | --- | --- | --- |
 //! | camera | 1 | N | p | M ((i + 1/2 + dx - c_x) p_x, (j + 1/2 + dy - c_y) p_y, f_c) |
-//! | beam | 2 rows N | columns N | s p + M (0, T (2j + 1 - rows + 2 dy), 0) | M (w (2i + 1 - columns + 2 dx), 0, columns g) |
+//! | beam |2 rows N | columns N | s p + M (0, T (2j + 1 - rows + 2 dy), 0) | M (w (2i + 1 - columns + 2 dx), 0, columns g) |
 //!
-//! with the pose's position p and quaternion q, N = q . q and M = the matrix of q p q*, which is N times the
+//! p and q are the pose's position and quaternion, N = q . q, and M is the matrix of q p q*, which is N times the
 //! rotation. (dx, dy) displaces the ray in cells: in a beam, dy moves its origin along the focal axis.
 
 use raypencil_scene::{Beam, Camera, Mounted, Pose, Scene, SensorId};
@@ -17,7 +16,7 @@ use raypencil_scene::{Beam, Camera, Mounted, Pose, Scene, SensorId};
 use crate::number::Number;
 use crate::vector::{ScaledRotation, Vector};
 
-/// A cell of a sensor and a displacement from its centre, in cells of that sensor.
+/// A cell of a sensor and a displacement from its centre, cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Aim {
     pub(crate) i: u32,
@@ -26,7 +25,7 @@ pub(crate) struct Aim {
     pub(crate) dy: f64,
 }
 
-/// A ray as above.
+/// The ray (O, s, D, sigma).
 #[derive(Debug, Clone)]
 pub(crate) struct ScaledRay<T> {
     pub(crate) origin: Vector<T>,
@@ -35,14 +34,15 @@ pub(crate) struct ScaledRay<T> {
     pub(crate) direction_scale: T,
 }
 
-/// One sensor of a scene, as its rays need it.
+/// One sensor of a scene with its pose.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Sensor {
+pub(crate) enum MountedSensor {
     Camera(Mounted<Camera>),
     Beam(Mounted<Beam>),
 }
 
-impl Sensor {
+impl MountedSensor {
+    /// The sensor, if the scene has it.
     pub(crate) fn of(scene: &Scene, id: SensorId) -> Option<Self> {
         match id {
             SensorId::Camera => Some(Self::Camera(*scene.camera())),
@@ -65,7 +65,7 @@ impl Sensor {
         }
     }
 
-    /// Longest range along a ray, metres.
+    /// Maximum range along a ray, metres.
     pub(crate) fn max_range(&self) -> f64 {
         match self {
             Self::Camera(mounted) => mounted.sensor.max_range,
@@ -122,7 +122,7 @@ impl Sensor {
         }
     }
 
-    /// By how much a cell to the right moves D, and a cell down O, of a beam.
+    /// The change of D by a cell to the right and of O by a cell down, in a beam; 0 in a camera.
     pub(crate) fn steps<T: Number>(&self) -> [Vector<T>; 2] {
         let zero = || T::of(0.0);
         let rotation = ScaledRotation::<T>::of(self.pose().rotation);

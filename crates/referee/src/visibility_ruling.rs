@@ -1,35 +1,38 @@
-//! Whether what a renderer says of the camera's view is right, or what an honest renderer of finite resolution may
-//! say.
+//! Rulings on visibility: whether an answer about the camera's view is right, or one that a correct renderer of
+//! finite precision may give.
 //!
-//! A renderer whose ray may be displaced by delta, and whose point may be off by epsilon, may answer as is right for
-//! some ray displaced by no more than delta; and it may take a face that passes within epsilon of the point to lie
-//! on either side of it.
+//! A renderer's ray may be displaced by delta, and its point may be wrong by epsilon. Then it may give the right
+//! answer of some ray displaced by at most delta, and it may take a face that passes within epsilon of the point to
+//! lie on either side of it.
 
 use glam::DVec3;
 use raypencil_scene::{FaceId, Pixel, SensorId};
 
+use crate::bvh::RayBundle;
+use crate::displacement::Displacement;
 use crate::face::{ExactRay, Face};
-use crate::pencil::{Aim, Sensor};
+use crate::line_of_sight::ExactLineOfSight;
+use crate::ray::{Aim, MountedSensor};
 use crate::ruling::{Ruling, Tolerance};
-use crate::sight::{ExactWay, Sight};
-use crate::verdict::{Displacement, Referee};
+use crate::verdict::Referee;
+use crate::visibility::Visibility;
 
-/// What the referee says of one answer about the camera's view.
+/// The referee's ruling on one answer about the camera's view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SightRuling {
-    /// Of whether the point is seen.
+    /// The ruling on whether the point is seen.
     pub visible: Ruling,
-    /// Of where it lands.
+    /// The ruling on where it lands.
     pub pixel: Ruling,
 }
 
-/// The rays beside a ray that are asked about, in units of the tolerance.
-const BESIDE: [[f64; 2]; 8] =
+/// The displacements that are tried, in units of the lateral tolerance.
+const TRIED_DISPLACEMENTS: [[f64; 2]; 8] =
     [[-1.0, -1.0], [0.0, -1.0], [1.0, -1.0], [-1.0, 0.0], [1.0, 0.0], [-1.0, 1.0], [0.0, 1.0], [1.0, 1.0]];
 
 impl Referee<'_> {
-    /// Rules on what a renderer says of the camera's view of the point in which pencil (i, j), displaced by `by`,
-    /// meets the plane of `face`; `None` if there is no such pencil or face.
+    /// The ruling on a renderer's answer about the point where pencil (i, j), displaced by `by`, meets the plane of
+    /// `face`; `None` if there is no such pencil or face.
     #[expect(clippy::too_many_arguments, reason = "a pencil, an answer and a tolerance")]
     pub fn rule_sight(
         &self,
@@ -42,7 +45,7 @@ impl Referee<'_> {
         pixel: Option<Pixel>,
         tolerance: Tolerance,
     ) -> Option<SightRuling> {
-        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
+        let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         let mesh = self.scene.mesh();
         if i >= columns || j >= rows || face.0 as usize >= mesh.faces().len() {
@@ -50,31 +53,31 @@ impl Referee<'_> {
         }
         let face = Face::of(mesh, face);
         let aim = Aim { i, j, dx: by.dx, dy: by.dy };
-        let exact = self.sight_of(&sensor, aim, &face);
+        let exact = self.visibility_of(&sensor, aim, &face);
         if exact.visible == visible && exact.pixel == pixel {
             return Some(SightRuling { visible: Ruling::Exact, pixel: Ruling::Exact });
         }
         let lateral = tolerance.lateral.clamp(0.0, 1.0);
-        let beside: Vec<(Displacement, Sight)> = BESIDE
+        let beside: Vec<(Displacement, Visibility)> = TRIED_DISPLACEMENTS
             .iter()
             .map(|[x, y]| {
                 let (dx, dy) = (x * lateral, y * lateral);
                 let aim = Aim { dx: aim.dx + dx, dy: aim.dy + dy, ..aim };
-                (Displacement { dx, dy }, self.sight_of(&sensor, aim, &face))
+                (Displacement { dx, dy }, self.visibility_of(&sensor, aim, &face))
             })
             .collect();
-        let witness = |is_so: &dyn Fn(&Sight) -> bool| {
+        let witness = |is_so: &dyn Fn(&Visibility) -> bool| {
             beside.iter().find(|(_, sight)| is_so(sight)).map(|(by, _)| Ruling::Rounding(*by))
         };
 
         let ray = ExactRay::new(&sensor, aim);
-        let way = ExactWay::new(&ray, &face, self.scene.camera());
+        let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
         let off = tolerance.depth + tolerance.position;
         let of_visible = if exact.visible == visible {
             Ruling::Exact
         } else if let Some(witness) = witness(&|sight| sight.visible == visible) {
             witness
-        } else if self.may_see(&way, &face, exact, visible, off) {
+        } else if self.may_see(&line, &face, exact, visible, off) {
             Ruling::Rounding(Displacement::ZERO)
         } else {
             Ruling::Wrong
@@ -83,7 +86,7 @@ impl Referee<'_> {
             Ruling::Exact
         } else if let Some(witness) = witness(&|sight| sight.pixel == pixel) {
             witness
-        } else if self.may_land(&way, pixel, off) {
+        } else if self.may_land(&line, pixel, off) {
             Ruling::Rounding(Displacement::ZERO)
         } else {
             Ruling::Wrong
@@ -91,43 +94,50 @@ impl Referee<'_> {
         Some(SightRuling { visible: of_visible, pixel: of_pixel })
     }
 
-    /// Whether a point that may be off by `off` metres may be said to be seen, or hidden, against what is exact.
-    fn may_see(&self, way: &ExactWay<'_>, face: &Face, exact: Sight, visible: bool, off: f64) -> bool {
-        let from_centre = way.centre_to_point();
+    /// Whether a point with an error of `off` metres may be called seen, or hidden, against the exact answer.
+    fn may_see(
+        &self,
+        line: &ExactLineOfSight<'_>,
+        face: &Face,
+        exact: Visibility,
+        visible: bool,
+        off: f64,
+    ) -> bool {
+        let from_centre = line.centre_to_point();
         let point = self.scene.camera().scene_from_sensor.position + from_centre;
-        // The camera lies within rounding of the plane of the face.
+        // The camera lies within rounding of the face's plane.
         let side = distance_from_plane(face, point - from_centre);
         if side.abs() <= off {
             return true;
         }
         if visible {
-            // All that hides it does so within rounding of the point.
+            // All occluders pass within rounding of the point.
             return exact.pixel.is_some()
                 && side > 0.0
-                && self.occluders(way).iter().all(|other| distance_from_plane(other, point).abs() <= off);
+                && self.occluders(line).iter().all(|other| distance_from_plane(other, point).abs() <= off);
         }
-        // Something passes within rounding of the point that does not hide it.
+        // A face that does not hide the point passes within rounding of it.
         let mut found = false;
-        let bundle = crate::cull::Bundle { start_radius: off, ..way.bundle() };
-        self.tree.visit(&bundle, |other| {
-            // What lies in the face's own plane never hides it: rounding is no excuse for a shadow of duplicates.
+        let bundle = RayBundle { start_radius: off, ..line.bundle() };
+        self.bvh.visit(&bundle, |other| {
+            // A face in the hit face's own plane never hides it: rounding does not excuse the shadow of a duplicate.
             found |= !other.is_in_plane_of(face)
                 && distance_from_plane(other, point).abs() <= off
                 && is_beside(other, point, off);
-            if found { f64::NEG_INFINITY } else { bundle.reach }
+            if found { f64::NEG_INFINITY } else { bundle.max_range }
         });
         found
     }
 
-    /// Whether a point that may be off by `off` metres may be said to land in `pixel`.
-    fn may_land(&self, way: &ExactWay<'_>, pixel: Option<Pixel>, off: f64) -> bool {
+    /// Whether a point with an error of `off` metres may be said to land in `pixel`.
+    fn may_land(&self, line: &ExactLineOfSight<'_>, pixel: Option<Pixel>, off: f64) -> bool {
         let mounted = self.scene.camera();
         let camera = &mounted.sensor;
-        let [x, y] = way.landing();
+        let [x, y] = line.landing();
         let across = [camera.width, camera.height].map(f64::from);
-        let depth = way.depth();
-        // A point off by `off` lands off by that over its depth, and more where it is seen aslant; and the
-        // coordinates themselves are rounded.
+        let depth = line.depth();
+        // An error of `off` moves the image by that over the depth, and more where the line is oblique. The
+        // coordinates themselves are rounded too.
         let slack = [0, 1].map(|axis: usize| {
             let slope = ([x, y][axis] - camera.principal_point[axis]) * camera.pixel_pitch[axis]
                 / camera.focal_length;
@@ -148,7 +158,7 @@ impl Referee<'_> {
                     && within(y, j, slack[1])
                     && depth > camera.focal_length - off
             }
-            // It may be said to miss the image if it is as near to its border.
+            // It may be said to miss the image if it lands that near to its border.
             None => {
                 let near = |at: f64, side: f64, slack: f64| at <= slack || at >= side - slack;
                 near(x, across[0], slack[0])
@@ -159,15 +169,15 @@ impl Referee<'_> {
     }
 }
 
-/// How far a point is in front of a face's plane, metres, to f64 rounding.
+/// The signed distance of a point from a face's plane, metres, positive in front, to f64 rounding.
 fn distance_from_plane(face: &Face, point: DVec3) -> f64 {
     let [a, b, c] = face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
     let n = (b - a).cross(c - a);
     n.dot(point - a) / n.length()
 }
 
-/// Whether a point that is on a face's plane, but for rounding, is within `off` metres of the face, corners apart: inside of
-/// every side, or beyond it by no more than that.
+/// Whether a point near a face's plane is within `off` metres of the face, except near its corners: inside of every
+/// side, or beyond it by at most `off`.
 fn is_beside(face: &Face, point: DVec3, off: f64) -> bool {
     let corners = face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
     let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);

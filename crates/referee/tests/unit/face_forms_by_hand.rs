@@ -1,13 +1,9 @@
-//! Forms of numbers that one can follow on paper, and the errors that the page derives, with its letters.
+//! Forms of numbers that can be followed on paper, and the errors that the page derives, in its letters.
 
 use super::*;
+use crate::ray::{Aim, MountedSensor};
 use glam::DQuat;
-use raypencil_scene::{Beam, Camera, FaceId, Lens, Pose, Profile};
-
-/// A form without an error of its own.
-fn form(constant: f64, x: f64, y: f64, xy: f64) -> Form {
-    Form { constant, x, y, xy, error: 0.0, bend: 0.0 }
-}
+use raypencil_scene::{Beam, Camera, FaceId, Lens, Mounted, Pose, Profile};
 
 /// As near as a few roundings of `expected`.
 #[track_caller]
@@ -19,8 +15,8 @@ fn aim(i: u32, j: u32) -> Aim {
     Aim { i, j, dx: 0.0, dy: 0.0 }
 }
 
-/// f = 2 m, p = (1/4, 1/2), looking along z from `position`. Pixel (2, 1): q = (1/4, -1/4, 1).
-fn camera(position: DVec3) -> Sensor {
+/// f = 2 m, p = (1/4, 1/2), looking along z from `position`. Pixel (2, 1) has q = (1/4, -1/4, 1).
+fn camera(position: DVec3) -> MountedSensor {
     let sensor = Camera {
         width: 16,
         height: 4,
@@ -31,12 +27,12 @@ fn camera(position: DVec3) -> Sensor {
         lens: Lens::CLEAR,
         max_range: 16.0,
     };
-    Sensor::Camera(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
+    MountedSensor::Camera(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
 }
 
-/// g = 1/2 m, p = (1/4, 0), rows 1/2 m apart, looking along z from `position`. Pencil (2, 3): q = (1/8, 0, 1), 1/2 + 1/4 m
-/// below the axis.
-fn beam(position: DVec3) -> Sensor {
+/// g = 1/2 m, p = (1/4, 0), rows 1/2 m apart, looking along z from `position`. Pencil (2, 3) has q = (1/8, 0, 1) and
+/// starts 1/2 + 1/4 m below the axis.
+fn beam(position: DVec3) -> MountedSensor {
     let sensor = Beam {
         columns: 4,
         rows: 4,
@@ -48,10 +44,10 @@ fn beam(position: DVec3) -> Sensor {
         wavelength: 8e-7,
         profile: Profile::Paper,
     };
-    Sensor::Beam(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
+    MountedSensor::Beam(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
 }
 
-/// A triangle 4 to 6 m ahead whose front is seen.
+/// A triangle 4 to 6 m ahead that shows its front.
 fn triangle(id: u32, far: f32) -> Face {
     let corners = [[-1.0, -2.0, 4.0 + far], [0.5, 3.0, 5.0 + far], [2.0, -1.0, 6.0 + far]];
     Face { id: FaceId(id), corners }
@@ -59,132 +55,6 @@ fn triangle(id: u32, far: f32) -> Face {
 
 fn sum(v: DVec3) -> f64 {
     v.abs().element_sum()
-}
-
-#[test]
-fn a_form_of_intervals_has_their_doubts_and_its_evaluation_for_an_error() {
-    let range = |low: f64, high: f64| Interval { low, high };
-    let found = Form::of([range(1.0, 1.5), range(2.0, 2.25), range(-1.0, -0.875), range(0.5, 0.5625)]);
-    assert_eq!([found.constant, found.x, found.y, found.xy], [1.25, 2.125, -0.9375, 0.53125]);
-    assert_eq!(found.bend, 0.0);
-    // 1/4 + 1/8 + 1/16 + 1/32, and 16 u of 4.84375.
-    near(found.error, (0.46875 + 16.0 * U * 4.84375) * (1.0 + 16.0 * U));
-    let exactly = |value: f64| range(value, value);
-    let found = Form::of([exactly(1.0), exactly(-2.0), exactly(4.0), exactly(0.0)]);
-    near(found.error, 16.0 * U * 7.0 * (1.0 + 16.0 * U));
-    // Of nothing at all there is still a doubt, so that 0 is never certain.
-    assert!(Form::of([exactly(0.0); 4]).error > 0.0);
-}
-
-#[test]
-fn radii_are_roots() {
-    // b r^2 + a r = c: 1 and 2 make 3 at r = 1, which is not beyond it.
-    let tiny = 1.0 / (1u64 << 40) as f64;
-    let unit = form(3.0, 1.0, -1.0, -1.0);
-    near(unit.holds_within(), 1.0 - tiny);
-    assert_eq!(unit.fails_within(), 0.0);
-    assert_eq!(form(-3.0 - 1e-14, 1.0, -1.0, -1.0).fails_within(), 1.0);
-    near(form(-3.0, 1.0, -1.0, -1.0).fails_within(), 1.0 - tiny);
-    // r^2 / 2 + r = 3/4, half of the square from the bend.
-    let half = Form { bend: 0.25, ..form(0.75, -0.5, 0.5, 0.25) };
-    near(half.holds_within(), (2.5_f64.sqrt() - 1.0) * (1.0 - tiny));
-    // The error is taken off first.
-    near(Form { error: 0.25, ..form(0.75, 1.0, 0.0, 0.0) }.holds_within(), 0.5 * (1.0 - tiny));
-    near(Form { error: 0.25, ..form(-0.75, 1.0, 0.0, 0.0) }.fails_within(), 0.5 * (1.0 - tiny));
-    // A level form holds everywhere, or nowhere for certain; what is infinite tells nothing.
-    assert_eq!(form(1e-300, 0.0, 0.0, 0.0).holds_within(), 1.0);
-    assert_eq!(form(0.0, 0.0, 0.0, 0.0).holds_within(), 0.0);
-    assert_eq!(form(f64::INFINITY, f64::INFINITY, 0.0, 0.0).holds_within(), 0.0);
-}
-
-#[test]
-fn sums_moves_and_signs_by_hand() {
-    let a = Form { error: 0.5, bend: 0.25, ..form(1.0, 2.0, -3.0, 4.0) };
-    let b = Form { error: 0.125, bend: 2.0, ..form(-5.0, 6.0, 7.0, -8.0) };
-    for weight in [0.5, -0.5] {
-        let found = a.plus(&b, weight);
-        let by_hand = [1.0 - 5.0 * weight, 2.0 + 6.0 * weight, -3.0 + 7.0 * weight, 4.0 - 8.0 * weight];
-        assert_eq!([found.constant, found.x, found.y, found.xy], by_hand);
-        // |weight| 2 and 1/4; 1/2 and |weight| 1/8, and 16 u of 10 and |weight| 26.
-        near(found.bend, 1.25 * (1.0 + 8.0 * U));
-        near(found.error, (0.5625 + 16.0 * U * 23.0) * (1.0 + 8.0 * U));
-    }
-    near(
-        form(1.0, 2.0, -3.0, 4.0).plus(&form(-5.0, 6.0, 7.0, -8.0), -0.5).error,
-        16.0 * U * 23.0 * (1.0 + 8.0 * U),
-    );
-
-    let moved = a.about([0.5, -0.25]);
-    // 1 + 2/2 + 3/4 - 4/8; 2 - 4/4; -3 + 4/2.
-    assert_eq!([moved.constant, moved.x, moved.y, moved.xy, moved.bend], [2.25, 1.0, -1.0, 4.0, 0.0]);
-    near(moved.error, (0.75 + 16.0 * U * 10.0) * (1.0 + 8.0 * U));
-    near(form(1.0, 2.0, -3.0, 4.0).about([0.5, -0.25]).error, 16.0 * U * 10.0 * (1.0 + 8.0 * U));
-    // About the ray itself nothing changes, nor is anything rounded.
-    assert_eq!((a.about([0.0; 2]).error, a.about([0.0; 2]).bend), (0.5, 0.25));
-    assert_eq!(a.about([0.0, 1.0]).constant, -2.0);
-    assert_eq!(a.about([1.0, 0.0]).constant, 3.0);
-
-    // 1 + 2/2 + 3/4 - 4/8 at (1/2, -1/4); certain beyond error and bend together.
-    assert_eq!(a.at([0.5, -0.25]), 2.25);
-    let doubt = |constant: f64| Form { error: 0.5, bend: 0.25, ..form(constant, 0.0, 0.0, 0.0) };
-    let asked =
-        [0.75 + 1e-9, 0.75, 0.0, -0.75, -0.75 - 1e-9].map(|value| doubt(value).is_positive_at([0.3, 0.1]));
-    assert_eq!(asked, [Some(true), None, None, None, Some(false)]);
-
-    let back = a.negated();
-    assert_eq!(
-        [back.constant, back.x, back.y, back.xy, back.error, back.bend],
-        [-1.0, -2.0, 3.0, -4.0, 0.5, 0.25]
-    );
-    let scaled = a.scaled(0.5);
-    let by_hand = [1.0, 1.0, -1.5, 1.0, 0.5, 0.0625];
-    assert_eq!([scaled.constant, scaled.x, scaled.y, scaled.xy, scaled.error, scaled.bend], by_hand);
-}
-
-#[test]
-fn two_conditions_that_exclude_each_other_fail_together() {
-    let all_but = 1.0 - 2.0 / (1u64 << 40) as f64;
-    // dx >= 3/4 and dx <= 1/2, and the same along dy.
-    for (along, against) in [
-        (form(-0.75, 1.0, 0.0, 0.0), form(0.5, -1.0, 0.0, 0.0)),
-        (form(-0.75, 0.0, 1.0, 0.0), form(0.5, 0.0, -1.0, 0.0)),
-    ] {
-        for (a, b) in [(along, against), (against, along)] {
-            assert!(certainly_fails(&[a, b], 0, 1.0) >= all_but);
-            // Kept apart, only the first alone; and so if that is enough.
-            near(certainly_fails(&[a, b], 2, 1.0), 0.75 * (1.0 - 1.0 / (1u64 << 40) as f64));
-            assert!(certainly_fails(&[a, b], 0, 0.7) < 0.76);
-            assert!(certainly_fails(&[a, b], 1, 1.0) >= all_but);
-        }
-    }
-    // Both hold at dx = 0.6: no square but that of the first.
-    let found = certainly_fails(&[form(-0.6, 1.0, 0.0, 0.0), form(0.75, -1.0, 0.0, 0.0)], 0, 1.0);
-    assert!((0.599..0.601).contains(&found), "{found}");
-    // With the same slope a sum is never level.
-    let found = certainly_fails(&[form(-0.5, 1.0, 0.0, 0.0), form(-0.25, 1.0, 0.0, 0.0)], 0, 1.0);
-    assert!((0.499..0.501).contains(&found), "{found}");
-    // Of three, the last two.
-    let forms = [form(9.0, 0.0, 0.0, 0.0), form(-0.75, 1.0, 0.0, 0.0), form(0.5, -1.0, 0.0, 0.0)];
-    assert!(certainly_fails(&forms, 1, 1.0) >= all_but);
-    assert!(certainly_fails(&forms, 2, 1.0) >= all_but);
-    assert!(certainly_fails(&forms, 3, 1.0) < 0.76);
-}
-
-#[test]
-fn a_line_leaves_where_another_condition_holds() {
-    // The line dx = 0 or dy = 0, of either sign; the other holds from 1/2 on.
-    for (edge, other) in [
-        (form(0.0, 1.0, 0.0, 0.0), form(-0.5, 1.0, 0.0, 0.0)),
-        (form(0.0, -2.0, 0.0, 0.0), form(-0.5, 1.0, 0.0, 0.0)),
-        (form(0.0, 0.0, 1.0, 0.0), form(-0.5, 0.0, 1.0, 0.0)),
-        (form(0.0, 0.0, -2.0, 0.0), form(-0.5, 0.0, 1.0, 0.0)),
-    ] {
-        assert_eq!(line_leaves(&edge, &other), 1.0);
-    }
-    // On the line dx = 1/2 the other, dx >= 1/4, holds.
-    assert_eq!(line_leaves(&form(-0.5, 1.0, 0.0, 0.0), &form(-0.25, 1.0, 0.0, 0.0)), 0.0);
-    // No quotient: nothing.
-    assert_eq!(line_leaves(&form(-0.5, 0.0, 0.0, 0.0), &form(-0.25, 1.0, 0.0, 0.0)), 0.0);
 }
 
 #[test]
@@ -248,8 +118,8 @@ fn a_ray_moves_as_its_cells_do() {
 fn errors_and_bends_are_those_of_the_page() {
     for sensor in [camera(DVec3::ZERO), beam(DVec3::ZERO)] {
         let at = match sensor {
-            Sensor::Camera(_) => aim(2, 1),
-            Sensor::Beam(_) => aim(2, 3),
+            MountedSensor::Camera(_) => aim(2, 1),
+            MountedSensor::Beam(_) => aim(2, 3),
         };
         let ray = MovingRay::new(&sensor, at);
         let (height, h) = (ray.height, ray.height_step);
@@ -268,7 +138,7 @@ fn errors_and_bends_are_those_of_the_page() {
         let normal = e[2].cross(e[0]);
         for k in 0..3 {
             let moment = v[k].cross(e[k]);
-            let edge = one.own()[k];
+            let edge = one.conditions()[k];
             near(edge.constant, -q.dot(moment));
             near(edge.x, -ray.step[0] * moment.x);
             // The start moves by h along y: V by -h, V x E by -h (E_z, 0, -E_x).
@@ -280,7 +150,7 @@ fn errors_and_bends_are_those_of_the_page() {
         let (k, s0) = (sum(e[2]) * sum(e[0]), s[0]);
         let (nv, nv_y) = (normal.dot(v[0]), -normal.y * h);
         let (nq, nq_x, nq_y) = (normal.dot(q), normal.x * ray.step[0], normal.y * ray.step[1]);
-        let [_, _, _, front, plane, range] = *one.own();
+        let [_, _, _, front, plane, range] = *one.conditions();
         assert_eq!([front.constant, front.x, front.y, front.xy], [-nq, -nq_x, -nq_y, 0.0]);
         let f = ray.plane;
         near(plane.constant, f * nq - nv);
@@ -301,7 +171,7 @@ fn errors_and_bends_are_those_of_the_page() {
         loose(plane.error, 256.0 * U * k * (f * big_q + s0));
         loose(range.error, 256.0 * U * k * big_q * (m + s0));
         loose(range.bend, (nv.abs() + nv_y.abs() + 256.0 * U * k * s0) * ray.length_bend);
-        assert_eq!([front.bend, plane.bend, one.own()[0].bend], [0.0; 3]);
+        assert_eq!([front.bend, plane.bend, one.conditions()[0].bend], [0.0; 3]);
         assert_eq!(one.within(&ray, m).constant, range.constant);
         near(one.within(&ray, 5.0).constant, nv * l - 5.0 * nq);
 
@@ -403,8 +273,8 @@ fn a_corner_that_is_not_certainly_before_the_sensor_may_lie_anywhere() {
     assert!(FaceForms::new(&ray, &behind(1.0 / (1_u64 << 36) as f32)).is_before());
 }
 
-/// A triangle a hair inside or outside of each side of the square: only what is certainly outside is let go. The hair is
-/// too fine for f32 corners; the sensor stands off by it.
+/// A triangle slightly inside or outside of each side of the square: only one that is certainly outside is excluded.
+/// The offset is too small for f32 corners, so the sensor is moved by it.
 #[test]
 fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
     // At z = 4: x from q_x - p_x = 0 to q_x + p_x = 1/2 times 4, y from -3/4 to 1/4 times 4.
@@ -425,7 +295,7 @@ fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
         let is_beside = |hair: f64| {
             let position = DVec3::new(-hair * f64::from(dx), -hair * f64::from(dy), 0.0);
             let ray = MovingRay::new(&camera(position), aim(2, 1));
-            Placed::of(&ray, &face).is_beside(&ray)
+            FaceInSensorFrame::of(&ray, &face).is_beside(&ray)
         };
         assert!(!is_beside(-10.0 * error) && !is_beside(0.0) && !is_beside(0.8 * error), "{x} {y}");
         assert!(is_beside(1.2 * error) && is_beside(1.0), "{x} {y}");
@@ -440,7 +310,7 @@ fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
         let is_beside = |hair: f64| {
             let position = DVec3::new(-hair * f64::from(dx), -hair * f64::from(dy), 0.0);
             let ray = MovingRay::new(&beam(position), aim(2, 3));
-            Placed::of(&ray, &face).is_beside(&ray)
+            FaceInSensorFrame::of(&ray, &face).is_beside(&ray)
         };
         assert!(!is_beside(-10.0 * error) && !is_beside(0.0) && !is_beside(0.8 * error), "{x} {y}");
         assert!(is_beside(1.2 * error) && is_beside(1.0), "{x} {y}");
@@ -450,7 +320,7 @@ fn a_face_is_beside_if_it_is_by_more_than_the_errors() {
     let error = 32.0 * U * (3.0 + 2.0);
     let is_beside = |hair: f64| {
         let ray = MovingRay::new(&camera(DVec3::new(0.0, 0.0, hair)), aim(2, 1));
-        Placed::of(&ray, &face).is_beside(&ray)
+        FaceInSensorFrame::of(&ray, &face).is_beside(&ray)
     };
     assert!(!is_beside(0.0) && !is_beside(0.8 * error) && is_beside(1.2 * error));
 }

@@ -1,7 +1,10 @@
-//! The margins of the camera's view: that they hold, that they are witnessed, and two by hand.
+//! Margins of visibility: they hold, they have witnesses, and two are derived by hand.
+
+mod common;
 
 use std::sync::Arc;
 
+use common::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Displacement, Margin, Referee, SightMargins};
 use raypencil_scene::{
@@ -9,32 +12,10 @@ use raypencil_scene::{
 };
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin};
 
-/// Numbers that depend on the seed alone (splitmix64).
-struct Draws(u64);
-
-impl Draws {
-    /// From 0 to 1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn below(&mut self, count: u32) -> u32 {
-        ((self.unit() * f64::from(count)) as u32).min(count - 1)
-    }
-}
-
 /// Scene number `number`: a built-in ground seen from a mast that carries camera and beam apart, as the default rig
-/// does, or a ground of everything nasty with both anywhere near each other.
+/// does, or a malformed ground with both sensors at random places.
 fn scene(number: u64) -> Scene {
-    let mut draws = Draws(number);
+    let mut random = SplitMix64(number);
     let is_random = number % 3 == 2;
     let mesh: Mesh = if is_random {
         RandomGround::nasty(number, [200, 1500][number as usize % 2]).build().into_mesh()
@@ -44,10 +25,10 @@ fn scene(number: u64) -> Scene {
             .into_mesh()
     }
     .expect("a valid ground");
-    let turned = Pose::from_axis_angle(DVec3::Z, draws.between(0.0, 6.3))
-        * Pose::from_axis_angle(DVec3::Y, draws.between(0.2, 0.7));
+    let turned = Pose::from_axis_angle(DVec3::Z, random.between(0.0, 6.3))
+        * Pose::from_axis_angle(DVec3::Y, random.between(0.2, 0.7));
     let reach = [0.3, 1.5, 3.0][number as usize / 5 % 3];
-    let mut part = |size: f64| draws.between(-size, size);
+    let mut part = |size: f64| random.between(-size, size);
     let wobble = DQuat::from_xyzw(part(0.1), part(0.1), part(0.1), 1.0).normalize();
     let position = DVec3::new(part(3.0), part(3.0), 2.0 + part(0.8));
     let apart = turned.rotation * DVec3::new(part(0.2), part(reach), part(0.7));
@@ -92,10 +73,10 @@ fn margins_hold_are_witnessed_and_are_tight() {
     for number in 0..90 {
         let scene = scene(number);
         let referee = Referee::new(&scene);
-        let mut draws = Draws(number ^ 0xabcd);
+        let mut random = SplitMix64(number ^ 0xabcd);
         let Beam { columns, rows, .. } = scene.beams()[0].sensor;
         for _ in 0..160 {
-            let (i, j) = (draws.below(columns), draws.below(rows));
+            let (i, j) = (random.below(columns), random.below(rows));
             let margins = referee.sight_margins(0, i, j);
             let own = referee.sight(0, i, j, Displacement::ZERO);
             assert_eq!(margins.map(|margins| margins.sight), own);
@@ -109,16 +90,16 @@ fn margins_hold_are_witnessed_and_are_tight() {
             };
             match witness {
                 Some(by) => {
-                    assert_eq!(by.size(), hi);
+                    assert_eq!(by.max_norm(), hi);
                     assert_ne!(visible(by.dx, by.dy), sight.visible, "scene {number} {i},{j} {visibility:?}");
                     witnessed += 1;
                     loose += u32::from(hi > 2.0 * lo && hi > 1e-9);
                 }
                 None => *if lo >= 1.0 { &mut capped } else { &mut without } += 1,
             }
-            // In all of the square, and on its sides, where a change would begin. More where there is one.
+            // Draw from the whole square and from its sides, where a change would begin; more if there is a change.
             for draw in 0..if lo >= 1.0 { 6 } else { 60 } {
-                let mut part = || lo * draws.between(-1.0, 1.0);
+                let mut part = || lo * random.between(-1.0, 1.0);
                 let (mut dx, mut dy) = (part(), part());
                 match draw % 4 {
                     0 => dx = lo.copysign(dx),
@@ -139,15 +120,16 @@ fn margins_hold_are_witnessed_and_are_tight() {
          without; {drawn} drawn"
     );
     assert!(drawn > 80_000 && hidden > 500 && witnessed > 400, "the scenes hold enough: {drawn} {hidden}");
-    // What no proof is found for: points where an edge that the beam sees from behind comes out of a surface.
+    // Without a proof remain points where an edge that the beam sees from behind comes out of a surface.
     assert!(loose == 0 && without < 20, "{loose} {without}");
 }
 
-/// The plane z = 2, its front to the origin.
+/// The plane z = 2, its front towards the origin.
 const WALL: [[f32; 3]; 3] = [[-8.0, -8.0, 2.0], [-8.0, 8.0, 2.0], [16.0, 0.0, 2.0]];
 
-/// One pencil at the scene's origin along z, and a camera `apart` metres to its right that looks along z too, with 128
-/// x 64 pixels of 1/64 f. A cell is 1 m wide at z = 1: displaced by dx the pencil meets the wall at (2 dx, dy / 256, 2).
+/// One pencil at the scene's origin along z, and a camera `apart` metres to its right that also looks along z, with
+/// 128 x 64 pixels of 1/64 f. A cell is 1 m wide at z = 1: displaced by dx, the pencil meets the wall at (2 dx, dy /
+/// 256, 2).
 fn by_hand(faces: &[[[f32; 3]; 3]], apart: f64, principal_point: [f64; 2]) -> Scene {
     let vertices = faces.iter().flatten().copied().collect();
     let count = faces.len();
@@ -190,7 +172,7 @@ fn margins(scene: &Scene) -> SightMargins {
     Referee::new(scene).sight_margins(0, 0, 0).expect("the wall is hit")
 }
 
-/// That a margin holds the number that was derived, and is tight.
+/// Asserts that a margin contains the derived number, and is tight.
 fn assert_holds(margin: Margin, derived: f64) {
     let Margin { lo, hi, witness } = margin;
     assert!(witness.is_some() && lo <= derived && derived <= hi && hi <= 2.0 * lo, "{margin:?} {derived}");
@@ -208,8 +190,8 @@ fn a_shadows_edge_by_hand() {
         assert!(found.sight.visible);
         assert_holds(found.visibility, 0.3125);
     }
-    // The same beside many faces out of the way, between wall and plate in x, so that the tree has the plate in a leaf
-    // that the way from the pencil's own point misses.
+    // The same with many faces between wall and plate in x, beside the rays, so that the hierarchy has the plate in a
+    // leaf that the line from the pencil's own point misses.
     let aside = (0..64).map(|k| {
         let x = 0.6 + 0.003 * k as f32;
         [[x, 10.0, 1.0], [x, 10.5, 1.0], [x + 0.002, 10.0, 1.0]]
@@ -246,14 +228,14 @@ fn a_landing_by_hand() {
 
 #[test]
 fn the_landing_contains_the_exact_distance() {
-    let mut draws = Draws(11);
+    let mut random = SplitMix64(11);
     for _ in 0..2000 {
         // -32 apart from the principal point, in whole 1/2^20: all of it is exact in f64.
-        let whole = |draws: &mut Draws, from: u32, to: u32| {
-            f64::from((from << 20) + draws.below((to - from) << 20)) / f64::from(1 << 20)
+        let whole = |random: &mut SplitMix64, from: u32, to: u32| {
+            f64::from((from << 20) + random.below((to - from) << 20)) / f64::from(1 << 20)
         };
-        let apart = whole(&mut draws, 0, 1);
-        let centre = [whole(&mut draws, 40, 90), whole(&mut draws, 5, 60)];
+        let apart = whole(&mut random, 0, 1);
+        let centre = [whole(&mut random, 40, 90), whole(&mut random, 5, 60)];
         let found = margins(&by_hand(&[WALL], apart, centre));
         let from_border = |at: f64| (at - at.floor()).min(at.ceil() - at);
         let exact = from_border(centre[0] - 32.0 * apart).min(from_border(centre[1]));

@@ -1,36 +1,38 @@
-//! Whether an approximation of the paper's §6 explains what a renderer says the camera sees of a pencil's hit.
+//! Explanations of wrong visibility: whether an approximation of the paper's §6 accounts for an answer against the
+//! contract.
 //!
-//! "Removing stripe sections occluded by terrain" asks only faces that are turned away, only those with a vertex
-//! not past the furthest extent of the upper beam, and only at the centre of a pixel. So it may say *seen* of a
-//! point if every face that hides it in truth is one that is not asked or not met there, and *hidden* of a point that
-//! is seen if some face that is asked is met nearer than the point at the centre of its pixel.
+//! "Removing stripe sections occluded by terrain" examines only faces that are turned away, only those with a vertex
+//! not past the furthest extent of the upper beam, and only at the centre of a pixel. So it may call a hidden point
+//! *seen* if every face that hides it is one that is not examined, or not met there. It may call a seen point
+//! *hidden* if some face that is examined is met nearer than the point at the centre of its pixel.
 
 use std::fmt;
 
 use raypencil_scene::{FaceId, Pixel, SensorId};
 
-use crate::cull::Bundle;
+use crate::approximations::Approximations;
+use crate::bvh::RayBundle;
 use crate::face::{ExactRay, Face};
+use crate::kleene::Kleene;
+use crate::line_of_sight::ExactLineOfSight;
 use crate::number::{Interval, Number};
-use crate::paper::{Approximations, Pencil};
-use crate::pencil::{Aim, Sensor};
+use crate::paper_raster::PaperRay;
+use crate::ray::{Aim, MountedSensor};
 use crate::ruling::Tolerance;
-use crate::sight::ExactWay;
-use crate::truth::Truth;
 use crate::verdict::{Referee, bundle};
 
-/// Which of the paper's approximations an answer about the camera's view was made with. (§6)
+/// The paper's approximations that an answer about the camera's view was made with. (§6)
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SightApproximations {
     /// Only faces turned away from the camera's *axis* occlude.
     pub facing: bool,
     /// Only faces with a vertex no deeper than this occlude, metres along the camera's axis.
     pub extent: Option<f64>,
-    /// Faces turned away occlude at the centre of a pixel; from the camera's position unless `facing` holds.
+    /// Faces turned away occlude at the centre of a pixel; away from the camera's position unless `facing` holds.
     pub place: bool,
 }
 
-/// Why a point is said to be seen, or hidden, where the contract says otherwise.
+/// The reason why an approximation calls a hidden point seen, or a seen point hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SightReason {
     /// The face is not turned away from the camera's axis.
@@ -38,7 +40,7 @@ pub enum SightReason {
     /// All vertices of the face are deeper than the furthest extent of the upper beam.
     Extent,
     /// At the centre of the pixel the face is not met nearer than the point though it hides the point, or the
-    /// reverse; or it is no back, which alone are asked there.
+    /// reverse; or the face shows the camera its front, and only backs are examined there.
     Place,
 }
 
@@ -47,7 +49,7 @@ impl fmt::Display for SightReason {
         f.write_str(match self {
             Self::Facing => "it is not turned away from the camera's axis",
             Self::Extent => "all its vertices are deeper than the upper beam's furthest extent",
-            Self::Place => "the pixel's centre and the point's own place differ, or it is no back",
+            Self::Place => "the centre of the pixel and the point itself give different answers, or the face is not a back",
         })
     }
 }
@@ -55,15 +57,15 @@ impl fmt::Display for SightReason {
 /// A face that hides a point, or does not, against the contract, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExplainedSight {
-    /// Which face.
+    /// The face.
     pub face: FaceId,
     /// All reasons that hold; at least one.
     pub reasons: Vec<SightReason>,
 }
 
 impl Referee<'_> {
-    /// Explains what a renderer says of whether the camera sees the point in which pencil (i, j) meets the plane of
-    /// `face`, by approximations it was made with; `None` if they do not explain it.
+    /// Explains a renderer's answer on whether the camera sees the point where pencil (i, j) meets the plane of
+    /// `face`, by the approximations it was made with; `None` if they do not explain it.
     #[expect(clippy::too_many_arguments, reason = "a pencil, an answer, its making and a tolerance")]
     pub fn explain_sight(
         &self,
@@ -75,7 +77,7 @@ impl Referee<'_> {
         with: SightApproximations,
         tolerance: Tolerance,
     ) -> Option<Vec<ExplainedSight>> {
-        let sensor = Sensor::of(self.scene, SensorId::Beam(beam))?;
+        let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         let mesh = self.scene.mesh();
         if i >= columns || j >= rows || face.0 as usize >= mesh.faces().len() {
@@ -83,12 +85,12 @@ impl Referee<'_> {
         }
         let face = Face::of(mesh, face);
         let ray = ExactRay::new(&sensor, Aim { i, j, dx: 0.0, dy: 0.0 });
-        let way = ExactWay::new(&ray, &face, self.scene.camera());
-        // Only what is hidden by another face, or could be, is a matter of §6.
-        let pixel = way.pixel().filter(|_| way.is_front_seen())?;
-        let camera = Sensor::Camera(*self.scene.camera());
-        let section = Section6::new(&camera, with, pixel, way.centre_to_point().length(), tolerance);
-        let occluders = self.occluders(&way);
+        let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
+        // §6 concerns only points that a face hides, or could hide.
+        let pixel = line.pixel().filter(|_| line.is_front_seen())?;
+        let camera = MountedSensor::Camera(*self.scene.camera());
+        let section = Section6::new(&camera, with, pixel, line.centre_to_point().length(), tolerance);
+        let occluders = self.occluders(&line);
         let explained: Vec<ExplainedSight> = match (visible, occluders.is_empty()) {
             (true, false) => occluders
                 .iter()
@@ -96,8 +98,8 @@ impl Referee<'_> {
                 .collect(),
             (false, true) if with.place => {
                 let mut found: Vec<ExplainedSight> = Vec::new();
-                self.tree.visit(&section.at_centre(&camera, pixel), |other| {
-                    if section.hides(other).may_be {
+                self.bvh.visit(&section.bundle_at_centre(&camera, pixel), |other| {
+                    if section.hides(other).may_hold {
                         found.push(ExplainedSight { face: other.id, reasons: vec![SightReason::Place] });
                     }
                     section.distance * 2.0
@@ -112,20 +114,20 @@ impl Referee<'_> {
     }
 }
 
-/// What §6 asks of a face, for one point.
+/// The tests of §6, for one point.
 struct Section6<'a> {
     with: SightApproximations,
     /// The ray through the centre of the pixel.
-    centre: Pencil<'a>,
-    /// Of the point from the projection centre, metres.
+    centre: PaperRay<'a>,
+    /// Distance of the point from the projection centre, metres.
     distance: f64,
-    /// How far a point may be off, metres.
+    /// Error of a point's position, metres.
     off: f64,
 }
 
 impl<'a> Section6<'a> {
     fn new(
-        camera: &'a Sensor,
+        camera: &'a MountedSensor,
         with: SightApproximations,
         pixel: Pixel,
         distance: f64,
@@ -133,56 +135,59 @@ impl<'a> Section6<'a> {
     ) -> Self {
         let aim = Aim { i: pixel.i, j: pixel.j, dx: 0.0, dy: 0.0 };
         let off = tolerance.depth + tolerance.position;
-        // The pixel's ray is displaced by rounding only: a point that is off by `off` near the image plane.
+        // The pixel's ray is displaced by rounding only; points near the image plane have the error `off`.
         let tolerance = Tolerance { lateral: 1e-9, depth: off, position: off };
-        let centre = Pencil::new(camera, aim, Approximations::default(), tolerance);
+        let centre = PaperRay::new(camera, aim, Approximations::default(), tolerance);
         Self { with, centre, distance, off }
     }
 
-    /// The reasons for which a face that hides the point is not found to.
+    /// The reasons for which a face that hides the point is not found.
     fn overlooks(&self, face: &Face) -> Vec<SightReason> {
         let mut reasons = Vec::new();
-        if self.with.facing && self.is_turned_away(face).may_not {
+        if self.with.facing && self.is_turned_away(face).may_fail {
             reasons.push(SightReason::Facing);
         }
-        if self.is_within_extent(face).may_not {
+        if self.is_within_extent(face).may_fail {
             reasons.push(SightReason::Extent);
         }
         let is_asked_at_centre = self.is_turned_away(face) & self.is_nearer_at_centre(face);
-        if self.with.place && is_asked_at_centre.may_not {
+        if self.with.place && is_asked_at_centre.may_fail {
             reasons.push(SightReason::Place);
         }
         reasons
     }
 
     /// Whether a face is found to hide the point at the centre of its pixel.
-    fn hides(&self, face: &Face) -> Truth {
+    fn hides(&self, face: &Face) -> Kleene {
         self.is_turned_away(face) & self.is_within_extent(face) & self.is_nearer_at_centre(face)
     }
 
-    /// Whether a face is turned away: from the axis, or else from the camera.
-    fn is_turned_away(&self, face: &Face) -> Truth {
-        let [a, b, c] = face.corners.map(|corner| self.centre.seen(corner));
+    /// Whether a face is turned away from the axis, or without `facing` from the camera.
+    fn is_turned_away(&self, face: &Face) -> Kleene {
+        let [a, b, c] = face.corners.map(|corner| self.centre.in_sensor_frame(corner));
         let normal = b.sub(&a).cross(&c.sub(&a));
-        if self.with.facing { Truth::positive(normal.0[2]) } else { Truth::positive(normal.dot(&a)) }
+        if self.with.facing { Kleene::positive(normal.0[2]) } else { Kleene::positive(normal.dot(&a)) }
     }
 
     /// Whether some vertex is no deeper than the extent.
-    fn is_within_extent(&self, face: &Face) -> Truth {
-        let Some(extent) = self.with.extent else { return Truth::YES };
+    fn is_within_extent(&self, face: &Face) -> Kleene {
+        let Some(extent) = self.with.extent else { return Kleene::TRUE };
         let extent = Interval::of(extent).wider(self.off);
-        Truth::any(face.corners.map(|corner| Truth::not_negative(extent.sub(&self.centre.seen(corner).0[2]))))
+        Kleene::any(
+            face.corners
+                .map(|corner| Kleene::not_negative(extent.sub(&self.centre.in_sensor_frame(corner).0[2]))),
+        )
     }
 
     /// Whether the ray through the pixel's centre meets a face, from either side, nearer than the point.
-    fn is_nearer_at_centre(&self, face: &Face) -> Truth {
+    fn is_nearer_at_centre(&self, face: &Face) -> Kleene {
         self.centre.meets_nearer_than(face, Interval::of(self.distance).wider(self.off))
     }
 
-    /// The faces that the ray through the pixel's centre may meet.
-    fn at_centre(&self, camera: &Sensor, pixel: Pixel) -> Bundle {
+    /// The ray bundle through the pixel's centre.
+    fn bundle_at_centre(&self, camera: &MountedSensor, pixel: Pixel) -> RayBundle {
         let mut around = bundle(camera, Aim { i: pixel.i, j: pixel.j, dx: 0.0, dy: 0.0 }, 1e-6);
-        around.reach = self.distance * 2.0;
+        around.max_range = self.distance * 2.0;
         around.start_radius = self.off;
         around
     }

@@ -1,0 +1,81 @@
+//! Signs by intervals against signs by exact arithmetic.
+
+use super::*;
+use crate::splitmix::SplitMix64;
+use glam::{DQuat, DVec3};
+use raypencil_scene::{Beam, Camera, Lens, Mounted, Pose, Profile};
+
+fn sensors(random: &mut SplitMix64) -> [MountedSensor; 2] {
+    let mut part = |scale: f64| scale * (random.unit() - 0.5);
+    let pose = Pose {
+        position: DVec3::new(part(10.0), part(10.0), part(10.0)),
+        rotation: DQuat::from_xyzw(part(2.0), part(2.0), part(2.0), part(2.0) + 1.5),
+    };
+    let camera = Camera {
+        width: 64,
+        height: 48,
+        pixel_pitch: [1.1e-4, 0.9e-4],
+        focal_length: 8e-3,
+        principal_point: [31.3, 24.9],
+        aperture: 2e-3,
+        lens: Lens::CLEAR,
+        max_range: 20.0,
+    };
+    let beam = Beam {
+        columns: 65,
+        rows: 7,
+        thickness: 0.01,
+        grid_distance: 0.1,
+        half_width: 0.09,
+        max_range: 20.0,
+        power: 1.0,
+        wavelength: 8e-7,
+        profile: Profile::Paper,
+    };
+    [
+        MountedSensor::Camera(Mounted { scene_from_sensor: pose, sensor: camera }),
+        MountedSensor::Beam(Mounted { scene_from_sensor: pose, sensor: beam }),
+    ]
+}
+
+/// The interval is never wrong about a sign. A million edges pass through points of rays, rounded to f32: every ray
+/// passes within rounding of an edge, so some need exact arithmetic.
+#[test]
+fn the_filter_agrees_with_exact_arithmetic_on_a_million_edges() {
+    let mut random = SplitMix64(7);
+    let (mut certain, mut uncertain) = (0u32, 0u32);
+    while certain + uncertain < 1_000_000 {
+        for sensor in sensors(&mut random) {
+            let (width, height) = sensor.size();
+            for _ in 0..50 {
+                let cell = |count: u32, by: f64| ((by * f64::from(count)) as u32).min(count - 1);
+                let (i, j) = (cell(width, random.unit()), cell(height, random.unit()));
+                let ray = ExactRay::new(&sensor, Aim { i, j, dx: 0.0, dy: 0.0 });
+                let middle = |v: &Vector<Interval>, scale: &Interval| {
+                    DVec3::new(v.0[0].middle(), v.0[1].middle(), v.0[2].middle()) / scale.middle()
+                };
+                let origin = middle(&ray.fast.origin, &ray.fast.origin_scale);
+                let q = middle(&ray.fast.direction, &ray.fast.direction_scale);
+                for _ in 0..20 {
+                    // Two ends with a point of the ray half-way between them.
+                    let point = origin + q * (10.0 + 100.0 * random.unit());
+                    let part = |random: &mut SplitMix64| random.unit() - 0.5;
+                    let half = DVec3::new(part(&mut random), part(&mut random), part(&mut random));
+                    let narrow = |v: DVec3| v.as_vec3().to_array();
+                    let corners = [narrow(point - half), narrow(point + half), narrow(point)];
+                    let face = Face { id: FaceId(0), corners };
+                    let edge = EdgeSide { face: &face, k: 0 };
+                    let exact = ray.exact_sign(&edge);
+                    match edge.value(&ray.fast).sign() {
+                        Some(sign) => {
+                            certain += 1;
+                            assert_eq!(sign, exact, "{sensor:?} {i},{j} {corners:?}");
+                        }
+                        None => uncertain += 1,
+                    }
+                }
+            }
+        }
+    }
+    assert!(certain > 900_000, "the filter decides most: {certain}");
+}

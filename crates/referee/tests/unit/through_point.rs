@@ -1,0 +1,105 @@
+//! Displacements through points, by hand, and the tip of a thin triangle.
+
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3};
+use raypencil_scene::{
+    Atmosphere, Beam, Camera, FaceId, FluxModel, Lens, Material, Mesh, Pose, Profile, Scene, SensorId,
+};
+
+use super::*;
+use crate::{Referee, Ruling, Tolerance};
+
+/// A camera at (1, 2, 3) that looks along z: pixels of 1/64, focal length 1/16, principal point (2, 2).
+fn camera() -> Mounted<Camera> {
+    let sensor = Camera {
+        width: 4,
+        height: 4,
+        pixel_pitch: [1.0 / 64.0; 2],
+        focal_length: 1.0 / 16.0,
+        principal_point: [2.0; 2],
+        aperture: 2e-3,
+        lens: Lens::CLEAR,
+        max_range: 1e3,
+    };
+    Mounted { scene_from_sensor: Pose::from_position(DVec3::new(1.0, 2.0, 3.0)), sensor }
+}
+
+fn beam(pose: Pose, half_width: f64, thickness: f64, grid_distance: f64) -> Mounted<Beam> {
+    let sensor = Beam {
+        columns: 1,
+        rows: 1,
+        thickness,
+        grid_distance,
+        half_width,
+        max_range: 1024.0,
+        power: 1.0,
+        wavelength: 810e-9,
+        profile: Profile::Paper,
+    };
+    Mounted { scene_from_sensor: pose, sensor }
+}
+
+fn exactly(x: f64, y: f64, z: f64) -> Vector<Dyadic> {
+    Vector::of(DVec3::new(x, y, z))
+}
+
+#[test]
+fn through_a_point_by_hand() {
+    // (2, 1.5, 7) is (1, -1/2, 4) before the camera: x/z = 1/4, y/z = -1/8, that is pixels 3 and 1.5; the middle of
+    // pixel (2, 2) is (2.5, 2.5).
+    let aim = Aim { i: 2, j: 2, dx: 0.0, dy: 0.0 };
+    let sensor = MountedSensor::Camera(camera());
+    assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -1.0]));
+    assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 3.0)), None);
+    // A beam of one cell at the same place, 2 w = 1/2 wide at g = 1 and T = 1/8 thick: x/z = 1/4 is half a cell, y =
+    // -1/2 is 4 cells up.
+    let beam = MountedSensor::Beam(beam(camera().scene_from_sensor, 0.25, 0.125, 1.0));
+    let aim = Aim { i: 0, j: 0, dx: 0.0, dy: 0.0 };
+    assert_eq!(beam.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -4.0]));
+}
+
+/// A pencil of 5e-5 radians aimed at the tip of a thin triangle as exactly as f64 allows. It misses the tip by some
+/// 1e-12 cells, and the linear forms of the triangle's sides cross before they reach the triangle.
+#[allow(clippy::excessive_precision, reason = "these are exact: parts of 1024 and 512")]
+fn needle() -> Scene {
+    let vertices = vec![
+        [10.794921875, 3.29296875, 0.03125],
+        [9.750_529, 4.189_095, 0.367_478_55],
+        [10.486328125, 3.55859375, 0.125],
+    ];
+    let ground = Material { name: "ground".into(), reflectivity: 0.25 };
+    let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![ground]).expect("a mesh");
+    let pose = Pose {
+        position: DVec3::new(11.312596292665075, -1.7929520999900985, 8.320111742053232),
+        rotation: DQuat::from_xyzw(
+            -0.3466432207384321,
+            0.8801026685797992,
+            0.32210972931112314,
+            0.03876973765603294,
+        ),
+    };
+    let beam = beam(pose, 4.76837158203125e-7, 0.00048828125, 0.019999980926513672);
+    let air = Atmosphere { attenuation: 0.0 };
+    Scene::new(Arc::new(mesh), camera(), vec![beam], air, FluxModel::Radiometric).expect("a scene")
+}
+
+#[test]
+fn the_tip_of_a_needle_is_met_by_a_ray_next_to_it() {
+    let scene = needle();
+    let referee = Referee::new(&scene);
+    let beam = SensorId::Beam(0);
+    assert!(!referee.verdict(beam, 0, 0).expect("a pencil").is_hit());
+    // An answer that it is met is wrong by no more than the rounding of f64.
+    let tolerance = Tolerance { lateral: 1e-9, depth: 1e-9, position: 0.0 };
+    let ruling = referee.rule(beam, 0, 0, Some(FaceId(0)), tolerance);
+    let Some(Ruling::Rounding(witness)) = ruling else { panic!("{ruling:?}") };
+    assert!(witness.max_norm() <= 1e-9, "{witness:?}");
+    // It is wrong for a renderer with a finer tolerance.
+    let finer = Tolerance { lateral: 1e-16, ..tolerance };
+    assert_eq!(referee.rule(beam, 0, 0, Some(FaceId(0)), finer), Some(Ruling::Wrong));
+    // The margins show it too.
+    let margins = referee.margins(beam, 0, 0).expect("a pencil");
+    assert!(margins.face.hi <= 1e-9, "{:?}", margins.face);
+    assert!(margins.surface.hi <= 1e-9, "{:?}", margins.surface);
+}
