@@ -7,16 +7,16 @@ use raypencil_scene::{Atmosphere, FluxModel, Image, Mesh, Pose, Renderer, Reques
 use raypencil_terrain::HeightIndex;
 
 use crate::check::check_count;
-use crate::inertial::{Sensed, SensorErrors, Sensors};
-use crate::local_map::{Inconsistency, MapSize};
+use crate::elevation_map::{Inconsistency, MapSize};
+use crate::localisation::{Sensed, SensorErrors, Sensors};
 use crate::mapper::{FrameUpdate, Mapper};
 use crate::navigator_map::{LabelledVector, VectorRules, navigator_map};
 use crate::obstacle_map::{OBSTACLE_FRAMES, ObstacleMap, RadialGrid, obstacle_map_due};
-use crate::passable::PassableRules;
 use crate::rig::{Pan, Rig};
 use crate::route::{Route, RoutePlace};
 use crate::scan::{ScanReason, ScanRule, Sweep};
 use crate::stripe::{EdgePoint, Extraction};
+use crate::traversability::PassableRules;
 use crate::triangulation::{SheetPlane, Triangulation};
 use crate::vehicle::{Stance, Vehicle};
 

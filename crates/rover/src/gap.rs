@@ -1,6 +1,6 @@
 //! The gap problem: what may be said of ground that nobody saw. (Paper, §7)
 
-use crate::local_map::{GridPoint, LocalMap};
+use crate::elevation_map::{GridPoint, LocalMap};
 
 /// The more general solution that the paper leaves open: "A more general solution, which we have not yet implemented,
 /// is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the gap
@@ -56,7 +56,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::local_map::MapSize;
+    use crate::elevation_map::MapSize;
 
     /// A map of 21 points, known where `known` gives an elevation.
     fn map(known: impl Fn(i64, i64) -> Option<f64>) -> LocalMap {

@@ -44,35 +44,35 @@
 //! ```
 
 mod check;
-mod draws;
 mod drive;
+mod elevation_map;
 mod gap;
-mod inertial;
-mod local_map;
+mod localisation;
 mod mapper;
 mod navigator_map;
+mod noise_stream;
 mod obstacle_map;
 mod otsu;
-mod passable;
 mod rig;
 mod route;
 mod scan;
 mod stripe;
+mod traversability;
 mod triangulation;
 mod vehicle;
 
 pub use drive::{Develop, Drive, DriveFrame, DrivePlan, Exposed, Exposure, Exposures, Measured};
+pub use elevation_map::{GridPoint, Inconsistency, LocalMap, MapSize, Source};
 pub use gap::GapRule;
-pub use inertial::{Fixes, Sensed, SensorErrors, Sensors};
-pub use local_map::{GridPoint, Inconsistency, LocalMap, MapSize, Source};
+pub use localisation::{Fixes, Sensed, SensorErrors, Sensors};
 pub use mapper::{FrameUpdate, Mapper};
 pub use navigator_map::{LabelledVector, VectorRules, navigator_map};
 pub use obstacle_map::{Label, OBSTACLE_FRAMES, ObstacleMap, RadialGrid, SectorEnd, obstacle_map_due};
 pub use otsu::otsu;
-pub use passable::{PassableRules, SlopeLimits, Test, Verdict};
 pub use rig::{OnVehicle, Pan, Rig};
 pub use route::{Route, RoutePlace};
 pub use scan::{ScanReason, ScanRule, Sweep};
 pub use stripe::{Detection, EdgePoint, Extraction, Place};
+pub use traversability::{PassableRules, SlopeLimits, Test, Verdict};
 pub use triangulation::{SheetPlane, Triangulation, TriangulationTable};
 pub use vehicle::{Attitude, Stance, Vehicle};

@@ -3,7 +3,7 @@
 use raypencil_scene::SceneError;
 
 use crate::check::{check_count, check_range};
-use crate::local_map::Inconsistency;
+use crate::elevation_map::Inconsistency;
 use crate::rig::Pan;
 
 /// Through which angles the sensors are panned.

@@ -1,8 +1,9 @@
-//! The local terrain map: who inherits, what moves, what stays.
+//! The elevation map: which grid point inherits, what moves, what stays.
 
 use std::collections::HashMap;
 
-use super::*;
+use glam::{DVec2, DVec3};
+use raypencil_rover::{GridPoint, LocalMap, MapSize, Source};
 
 fn map() -> LocalMap {
     LocalMap::new(MapSize::default(), DVec2::new(100.03, -50.02))

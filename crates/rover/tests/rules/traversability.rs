@@ -1,7 +1,7 @@
 //! Every test of a point on maps made by hand.
 
-use super::*;
-use crate::local_map::MapSize;
+use glam::DVec2;
+use raypencil_rover::{LocalMap, MapSize, PassableRules, Test, Vehicle, Verdict};
 
 /// The elevation of grid point (i, j) of a map of 61 by 61, 0.1 m apart; `None` where it is not known.
 fn map(elevation: impl Fn(i64, i64) -> Option<f64>) -> LocalMap {

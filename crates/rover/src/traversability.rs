@@ -4,8 +4,8 @@ use glam::DVec2;
 use raypencil_scene::SceneError;
 
 use crate::check::check_range;
+use crate::elevation_map::LocalMap;
 use crate::gap::GapRule;
-use crate::local_map::LocalMap;
 use crate::vehicle::Vehicle;
 
 /// One of the tests of a point. The letters are the paper's: "The point pairs for slope testing are: a) two front
@@ -173,6 +173,3 @@ impl PassableRules {
 /// A slope exactly at its limit passes: elevations and places within 1e4 m are good to 2e-12 m each, a rise and
 /// its distance to a few of these.
 const ROUNDING: f64 = 1e-11;
-
-#[cfg(test)]
-mod tests;

@@ -250,6 +250,3 @@ impl MapSize {
         Ok(())
     }
 }
-
-#[cfg(test)]
-mod tests;
