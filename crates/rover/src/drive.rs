@@ -8,21 +8,21 @@ use raypencil_terrain::HeightIndex;
 
 use crate::check::check_count;
 use crate::elevation_map::{Inconsistency, MapSize};
-use crate::localisation::{Sensed, SensorErrors, Sensors};
-use crate::mapper::{FrameUpdate, Mapper};
+use crate::localisation::{Localisation, LocalisationErrors, LocalisationReading};
+use crate::mapper::{MapUpdate, Mapper};
 use crate::navigator_map::{LabelledVector, VectorRules, navigator_map};
-use crate::obstacle_map::{OBSTACLE_FRAMES, ObstacleMap, RadialGrid, obstacle_map_due};
+use crate::obstacle_map::{FRAMES_PER_OBSTACLE_MAP, ObstacleMap, RadialGrid, obstacle_map_due};
 use crate::rig::{Pan, Rig};
-use crate::route::{Route, RoutePlace};
+use crate::route::{Route, RoutePose};
 use crate::scan::{ScanReason, ScanRule, Sweep};
 use crate::stripe::{EdgePoint, Extraction};
-use crate::traversability::PassableRules;
+use crate::traversability::TraversabilityRules;
 use crate::triangulation::{SheetPlane, Triangulation};
 use crate::vehicle::{Stance, Vehicle};
 
 /// How the camera tells the beams' stripes apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Exposures {
+pub enum ExposureMode {
     /// Each beam is lit alone, in an exposure of its own. CHOICE: the paper does not say; this needs no guess.
     #[default]
     InTurn,
@@ -42,9 +42,9 @@ pub struct DrivePlan {
     /// How stripes are extracted.
     pub extraction: Extraction,
     /// How they are told apart.
-    pub exposures: Exposures,
+    pub exposures: ExposureMode,
     /// What it knows of where it is.
-    pub errors: SensorErrors,
+    pub errors: LocalisationErrors,
     /// Other seeds give other errors.
     pub seed: u64,
     /// The local terrain map.
@@ -56,7 +56,7 @@ pub struct DrivePlan {
     /// An obstacle map every so many frames.
     pub obstacles_every: u64,
     /// Its thresholds.
-    pub rules: PassableRules,
+    pub rules: TraversabilityRules,
     /// Its grid.
     pub grid: RadialGrid,
     /// Those of the navigator map.
@@ -72,20 +72,20 @@ impl DrivePlan {
     pub fn new(rig: Rig, route: Route, extraction: Extraction) -> Self {
         let vehicle = Vehicle::default();
         Self {
-            rules: PassableRules::of(&vehicle),
-            grid: RadialGrid::of(&vehicle),
-            vectors: VectorRules::of(&vehicle),
+            rules: TraversabilityRules::for_vehicle(&vehicle),
+            grid: RadialGrid::for_vehicle(&vehicle),
+            vectors: VectorRules::for_vehicle(&vehicle),
             vehicle,
             rig,
             route,
             extraction,
-            exposures: Exposures::InTurn,
-            errors: SensorErrors::default(),
+            exposures: ExposureMode::InTurn,
+            errors: LocalisationErrors::default(),
             seed: 0,
             map: MapSize::default(),
             scans: Some(ScanRule::default()),
             sweep: Sweep::default(),
-            obstacles_every: OBSTACLE_FRAMES,
+            obstacles_every: FRAMES_PER_OBSTACLE_MAP,
             atmosphere: Atmosphere { attenuation: 0.0 },
             flux_model: FluxModel::Radiometric,
         }
@@ -124,7 +124,7 @@ pub struct Exposure {
 
 /// What the camera hands on of an exposure.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Exposed {
+pub enum CameraImage {
     /// The flux itself, watts: of a camera without steps 6 to 8.
     Flux(Image<f64>),
     /// Digital numbers; may be less than 0 where those of an unlit exposure are taken off.
@@ -132,11 +132,11 @@ pub enum Exposed {
 }
 
 /// What turns the ideal image into the camera's: steps 6 to 8 (§3).
-pub type Develop<'a> = dyn FnMut(Exposure, Image<f64>) -> Exposed + 'a;
+pub type CameraPipeline<'a> = dyn FnMut(Exposure, Image<f64>) -> CameraImage + 'a;
 
 /// One edge point of a stripe, and where it is thought to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
+pub struct MeasuredPoint {
     /// In a vertical scan, which position of the sweep.
     pub step: Option<u32>,
     /// The beam whose stripe it is.
@@ -153,23 +153,23 @@ pub struct DriveFrame {
     /// Which one.
     pub index: u64,
     /// Where the route has the vehicle.
-    pub place: RoutePlace,
+    pub place: RoutePose,
     /// How it really stands.
     pub stance: Stance,
     /// What its sensors say.
-    pub sensed: Sensed,
+    pub sensed: LocalisationReading,
     /// If it stopped to scan, why.
     pub scan: Option<ScanReason>,
     /// How many points its stripes gave.
     pub points: usize,
     /// With all beams in one exposure: how many columns hold light, but not one run for each beam.
-    pub left_out: usize,
+    pub columns_left_out: usize,
     /// These points, beam by beam, each in row-major order of its image; those of a scan position after position.
-    pub measured: Vec<Measured>,
+    pub measured: Vec<MeasuredPoint>,
     /// The vehicle as it believes itself to be, `global_from_vehicle`: where the points were entered.
     pub believed: Pose,
     /// What they did to the map.
-    pub update: FrameUpdate,
+    pub update: MapUpdate,
     /// The obstacle map and the navigator map, in frames that make them.
     pub obstacles: Option<(ObstacleMap, Vec<LabelledVector>)>,
 }
@@ -180,11 +180,11 @@ pub struct Drive {
     plan: DrivePlan,
     mesh: Arc<Mesh>,
     ground: HeightIndex,
-    sensors: Sensors,
+    localisation: Localisation,
     mapper: Option<Mapper>,
     frame: u64,
     last_scan: Option<f64>,
-    found: Inconsistency,
+    inconsistency: Inconsistency,
 }
 
 impl Drive {
@@ -195,7 +195,7 @@ impl Drive {
     pub fn new(plan: DrivePlan, mesh: Arc<Mesh>) -> Result<Self, SceneError> {
         plan.validate("drive")?;
         let ground = HeightIndex::new(&mesh);
-        let sensors = Sensors::new(plan.errors, plan.seed, plan.route.frame_rate);
+        let localisation = Localisation::new(plan.errors, plan.seed, plan.route.frame_rate);
         let Route { start, heading, .. } = plan.route;
         if plan.vehicle.settle(&ground, start, heading).is_none() {
             return Err(SceneError::new("drive.route.start", start, "a place with ground under every wheel"));
@@ -204,11 +204,11 @@ impl Drive {
             plan,
             mesh,
             ground,
-            sensors,
+            localisation,
             mapper: None,
             frame: 0,
             last_scan: None,
-            found: Inconsistency::default(),
+            inconsistency: Inconsistency::default(),
         })
     }
 
@@ -236,25 +236,26 @@ impl Drive {
     pub fn step(
         &mut self,
         renderer: &dyn Renderer,
-        develop: &mut Develop,
+        pipeline: &mut CameraPipeline,
     ) -> Result<Option<DriveFrame>, SceneError> {
         let index = self.frame;
         let Some(place) = self.plan.route.frame(index) else { return Ok(None) };
         let Some(stance) = self.plan.vehicle.settle(&self.ground, place.place, place.heading) else {
             return Ok(None);
         };
-        let sensed = self.sensors.read(&stance, &self.ground);
+        let sensed = self.localisation.read(&stance, &self.ground);
         let rule = self.plan.scans;
-        let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.found));
-        let (mut measured, mut left_out) = (Vec::new(), 0);
+        let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.inconsistency));
+        let (mut measured, mut columns_left_out) = (Vec::new(), 0);
         if scan.is_some() {
             for (step, pan) in self.plan.sweep.pans().enumerate() {
-                let seen = self.look(renderer, develop, &stance, index, Some((step as u32, pan)))?;
+                let seen =
+                    self.measure_stripes(renderer, pipeline, &stance, index, Some((step as u32, pan)))?;
                 measured.extend(seen.0);
-                left_out += seen.1;
+                columns_left_out += seen.1;
             }
         } else {
-            (measured, left_out) = self.look(renderer, develop, &stance, index, None)?;
+            (measured, columns_left_out) = self.measure_stripes(renderer, pipeline, &stance, index, None)?;
         }
 
         let points = measured.iter().map(|measured| measured.point);
@@ -265,17 +266,17 @@ impl Drive {
         let update = if scan.is_some() {
             self.last_scan = Some(place.driven);
             // What a scan contradicts it has also mended.
-            self.found = Inconsistency::default();
-            mapper.scan(&sensed, points, rule.is_some_and(|rule| rule.forget))
+            self.inconsistency = Inconsistency::default();
+            mapper.update_from_scan(&sensed, points, rule.is_some_and(|rule| rule.forget))
         } else {
-            let update = mapper.frame(&sensed, points);
-            self.found = update.inconsistency;
+            let update = mapper.update(&sensed, points);
+            self.inconsistency = update.inconsistency;
             update
         };
 
         let obstacles = obstacle_map_due(index, self.plan.obstacles_every).then(|| {
             let DrivePlan { vehicle, rules, grid, vectors, .. } = &self.plan;
-            let obstacles = ObstacleMap::of(mapper.map(), vehicle, rules, grid, &mapper.pose());
+            let obstacles = ObstacleMap::extract(mapper.map(), vehicle, rules, grid, &mapper.pose());
             let vectors = navigator_map(&obstacles, vectors);
             (obstacles, vectors)
         });
@@ -288,7 +289,7 @@ impl Drive {
             sensed,
             scan,
             points,
-            left_out,
+            columns_left_out,
             measured,
             believed,
             update,
@@ -298,14 +299,14 @@ impl Drive {
 
     /// The points of the stripes that the camera sees from a stance: beam by beam, each in row-major order. And how many
     /// columns were left out.
-    fn look(
+    fn measure_stripes(
         &self,
         renderer: &dyn Renderer,
-        develop: &mut Develop,
+        pipeline: &mut CameraPipeline,
         stance: &Stance,
         frame: u64,
         scan: Option<(u32, Pan)>,
-    ) -> Result<(Vec<Measured>, usize), SceneError> {
+    ) -> Result<(Vec<MeasuredPoint>, usize), SceneError> {
         let plan = &self.plan;
         let rig = scan.map_or_else(|| plan.rig.clone(), |(_, pan)| plan.rig.panned(pan));
         let mesh = Arc::clone(&self.mesh);
@@ -319,18 +320,18 @@ impl Drive {
         let step = scan.map(|(step, _)| step);
         let exposure = |beam| Exposure { frame, step, beam };
         // Steps 6 to 9.
-        let mut left_out = 0;
+        let mut columns_left_out = 0;
         let stripes = match plan.exposures {
-            Exposures::InTurn => {
+            ExposureMode::InTurn => {
                 let images = flux.into_iter().enumerate();
                 images
-                    .map(|(beam, ideal)| match develop(exposure(Some(beam)), ideal) {
-                        Exposed::Flux(image) => plan.extraction.edges(&image),
-                        Exposed::Numbers(image) => plan.extraction.edges(&image),
+                    .map(|(beam, ideal)| match pipeline(exposure(Some(beam)), ideal) {
+                        CameraImage::Flux(image) => plan.extraction.edges(&image),
+                        CameraImage::Numbers(image) => plan.extraction.edges(&image),
                     })
                     .collect()
             }
-            Exposures::Together => {
+            ExposureMode::Together => {
                 let mut images = flux.into_iter();
                 let Some(mut sum) = images.next() else { return Ok((Vec::new(), 0)) };
                 for image in images {
@@ -339,23 +340,23 @@ impl Drive {
                     }
                 }
                 let beams = rig.beams.len();
-                let (stripes, columns) = match develop(exposure(None), sum) {
-                    Exposed::Flux(image) => plan.extraction.edges_by_order(&image, beams),
-                    Exposed::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
+                let (stripes, columns) = match pipeline(exposure(None), sum) {
+                    CameraImage::Flux(image) => plan.extraction.edges_by_order(&image, beams),
+                    CameraImage::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
                 };
-                left_out = columns;
+                columns_left_out = columns;
                 stripes
             }
         };
-        let plane = SheetPlane::of(plan.extraction.place);
+        let plane = SheetPlane::for_location(plan.extraction.place);
         let mut measured = Vec::new();
         for (beam, edges) in stripes.iter().enumerate() {
             let triangulation = Triangulation::new(&rig, beam, plane);
             measured.extend(edges.iter().filter_map(|&edge| {
-                let point = triangulation.of_edge(&edge)?;
-                Some(Measured { step, beam, edge, point })
+                let point = triangulation.at_edge(&edge)?;
+                Some(MeasuredPoint { step, beam, edge, point })
             }));
         }
-        Ok((measured, left_out))
+        Ok((measured, columns_left_out))
     }
 }

@@ -31,10 +31,10 @@ pub struct GridPoint {
     pub j: i64,
 }
 
-/// Where a grid point's elevation comes from. The paper's key is 's' for [`Source::Unknown`] and 'u' for all
+/// Where a grid point's elevation comes from. The paper's key is 's' for [`ElevationSource::Unknown`] and 'u' for all
 /// others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Source {
+pub enum ElevationSource {
     /// "The elevation at this grid point is not known."
     #[default]
     Unknown,
@@ -46,7 +46,7 @@ pub enum Source {
     Measured,
 }
 
-impl Source {
+impl ElevationSource {
     /// The paper's key: 's' not known, 'u' known. (§7)
     pub fn key(self) -> char {
         if self == Self::Unknown { 's' } else { 'u' }
@@ -58,7 +58,7 @@ impl Source {
 struct Cell {
     /// Global z, metres; of no meaning where it is unknown.
     elevation: f64,
-    source: Source,
+    source: ElevationSource,
     /// The update that made it a new data point, if it is the present one.
     update: u64,
 }
@@ -77,7 +77,7 @@ pub struct Inconsistency {
 /// The local terrain map. "The map does not rotate but the x and y directions are always parallel to the x and y
 /// global axes. The central grid point at the start of a mission is at the local vehicle origin." (§7)
 #[derive(Debug, Clone, PartialEq)]
-pub struct LocalMap {
+pub struct ElevationMap {
     size: MapSize,
     /// Global place of grid point (0, 0).
     origin: DVec2,
@@ -87,7 +87,7 @@ pub struct LocalMap {
     update: u64,
 }
 
-impl LocalMap {
+impl ElevationMap {
     /// A map centred on the global `origin`. "All of the grid points are initialized to 's' at the start of the
     /// run." (§7)
     ///
@@ -145,19 +145,19 @@ impl LocalMap {
     }
 
     /// Where a grid point's elevation comes from; unknown beyond the map.
-    pub fn source(&self, point: GridPoint) -> Source {
+    pub fn source(&self, point: GridPoint) -> ElevationSource {
         self.cell(point).source
     }
 
     /// The elevation of a grid point, global z in metres, if it is known.
     pub fn elevation(&self, point: GridPoint) -> Option<f64> {
         let cell = self.cell(point);
-        (cell.source != Source::Unknown).then_some(cell.elevation)
+        (cell.source != ElevationSource::Unknown).then_some(cell.elevation)
     }
 
     /// Centres the map on the grid point nearest to the vehicle, and gives by how many grid steps it moved. "The
     /// central grid point of the map is moved with the vehicle but only in increments of the grid spacing." (§7)
-    pub fn follow(&mut self, vehicle: DVec2) -> (i64, i64) {
+    pub fn recentre(&mut self, vehicle: DVec2) -> (i64, i64) {
         let (old, new) = (self.centre, self.nearest(vehicle));
         if old == new {
             return (0, 0);
@@ -179,10 +179,10 @@ impl LocalMap {
     }
 
     /// Gives a grid point an elevation from the proximity sensor; nothing beyond the map.
-    pub fn give(&mut self, point: GridPoint, elevation: f64) {
+    pub fn set_proximity(&mut self, point: GridPoint, elevation: f64) {
         if self.contains(point) {
             let index = self.index(point);
-            self.cells[index] = Cell { elevation, source: Source::Proximity, update: 0 };
+            self.cells[index] = Cell { elevation, source: ElevationSource::Proximity, update: 0 };
         }
     }
 
@@ -194,7 +194,7 @@ impl LocalMap {
     /// data point to each of its neighboring grid points that is not itself a new data point": to the eight,
     /// whatever they held. (§7) CHOICE: they are extrapolated in the order in which they first became data points,
     /// and again the last one stays.
-    pub fn enter(&mut self, points: impl IntoIterator<Item = DVec3>) -> Inconsistency {
+    pub fn insert(&mut self, points: impl IntoIterator<Item = DVec3>) -> Inconsistency {
         self.update += 1;
         let mut new = Vec::new();
         let mut found = Inconsistency::default();
@@ -211,9 +211,10 @@ impl LocalMap {
             let old = self.cells[index];
             if old.update != self.update {
                 new.push(point);
-                before.push((old.source == Source::Measured).then_some(old.elevation));
+                before.push((old.source == ElevationSource::Measured).then_some(old.elevation));
             }
-            self.cells[index] = Cell { elevation: edge.z, source: Source::Measured, update: self.update };
+            self.cells[index] =
+                Cell { elevation: edge.z, source: ElevationSource::Measured, update: self.update };
         }
         for (&point, before) in new.iter().zip(before) {
             let elevation = self.cells[self.index(point)].elevation;
@@ -230,7 +231,7 @@ impl LocalMap {
                 }
                 let index = self.index(neighbour);
                 if self.cells[index].update != self.update {
-                    self.cells[index] = Cell { elevation, source: Source::Extrapolated, update: 0 };
+                    self.cells[index] = Cell { elevation, source: ElevationSource::Extrapolated, update: 0 };
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The gap problem: what may be said of ground that nobody saw. (Paper, §7)
 
-use crate::elevation_map::{GridPoint, LocalMap};
+use crate::elevation_map::{ElevationMap, GridPoint};
 
 /// The more general solution that the paper leaves open: "A more general solution, which we have not yet implemented,
 /// is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the gap
@@ -10,11 +10,11 @@ use crate::elevation_map::{GridPoint, LocalMap};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GapRule {
     /// Gaps this wide and less may be crossed, metres: one wheel thickness.
-    pub widest: f64,
+    pub max_width: f64,
 }
 
 /// The four lines through a grid point: along the rows, the columns and both diagonals, and their steps in spacings.
-const LINES: [(i64, i64, f64); 4] =
+const GAP_DIRECTIONS: [(i64, i64, f64); 4] =
     [(1, 0, 1.0), (0, 1, 1.0), (1, 1, std::f64::consts::SQRT_2), (1, -1, std::f64::consts::SQRT_2)];
 
 impl GapRule {
@@ -29,11 +29,11 @@ impl GapRule {
     /// point seen beyond would itself hide that point.
     ///
     /// CHOICE: runs are measured as unknown points times their step. Brackets beyond the map are unknown.
-    pub fn upper_estimate(&self, map: &LocalMap, point: GridPoint) -> Option<f64> {
+    pub fn upper_estimate(&self, map: &ElevationMap, point: GridPoint) -> Option<f64> {
         let spacing = map.size().spacing;
         let mut highest: Option<f64> = None;
-        for (i, j, step) in LINES {
-            let most = (self.widest / (step * spacing) + 1e-9).floor() as i64;
+        for (i, j, step) in GAP_DIRECTIONS {
+            let most = (self.max_width / (step * spacing) + 1e-9).floor() as i64;
             // The nearest known point that way, and how many unknown ones come before it.
             let bracket = |sign: i64| {
                 (1..=most).find_map(|n| {
@@ -59,17 +59,17 @@ mod tests {
     use crate::elevation_map::MapSize;
 
     /// A map of 21 points, known where `known` gives an elevation.
-    fn map(known: impl Fn(i64, i64) -> Option<f64>) -> LocalMap {
-        let mut map = LocalMap::new(MapSize { spacing: 0.1, points: 21 }, DVec2::ZERO);
+    fn map(known: impl Fn(i64, i64) -> Option<f64>) -> ElevationMap {
+        let mut map = ElevationMap::new(MapSize { spacing: 0.1, points: 21 }, DVec2::ZERO);
         for point in map.points() {
             if let Some(z) = known(point.i, point.j) {
-                map.give(point, z);
+                map.set_proximity(point, z);
             }
         }
         map
     }
 
-    const RULE: GapRule = GapRule { widest: 0.25 };
+    const RULE: GapRule = GapRule { max_width: 0.25 };
 
     #[test]
     fn a_crack_two_points_wide_is_bridged_and_one_of_three_is_not() {

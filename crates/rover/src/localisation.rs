@@ -6,7 +6,7 @@ use raypencil_scene::SceneError;
 use raypencil_terrain::HeightIndex;
 
 use crate::check::{check_count, check_range};
-use crate::noise_stream::{Draws, Purpose};
+use crate::noise_stream::{NoiseStream, Purpose};
 use crate::vehicle::{Attitude, Stance};
 
 /// The errors of the sensors. "The x and y coordinates can be obtained directly from inertial guidance sensors and
@@ -15,7 +15,7 @@ use crate::vehicle::{Attitude, Stance};
 ///
 /// CHOICE: the paper gives no figures: the default has no errors at all.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SensorErrors {
+pub struct LocalisationErrors {
     /// The measured position runs away by this, global, metres per second.
     pub position_drift: DVec2,
     /// And wanders: after a second, by this standard deviation in x and in y, metres.
@@ -29,12 +29,12 @@ pub struct SensorErrors {
     /// Standard deviation of the proximity sensor, metres.
     pub proximity_noise: f64,
     /// Sightings of the beacons, if there are any.
-    pub fixes: Option<Fixes>,
+    pub fixes: Option<PositionFixes>,
 }
 
-/// Fixes of the position.
+/// PositionFixes of the position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fixes {
+pub struct PositionFixes {
     /// One every so many frames; the first with frame 0.
     pub every_frames: u64,
     /// Standard deviation in x and in y, metres.
@@ -43,7 +43,7 @@ pub struct Fixes {
 
 /// What the sensors say in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensed {
+pub struct LocalisationReading {
     /// The vehicle's origin as the inertial sensors have it, global, metres.
     pub position: DVec2,
     /// Its attitude likewise.
@@ -56,36 +56,36 @@ pub struct Sensed {
 
 /// The sensors of one drive.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sensors {
-    errors: SensorErrors,
-    draws: Draws,
+pub struct Localisation {
+    errors: LocalisationErrors,
+    noise_stream: NoiseStream,
     frame_rate: f64,
     /// Measured minus true position.
     error: DVec2,
     frame: u64,
 }
 
-impl Sensors {
-    /// Sensors with these errors, read `frame_rate` times a second. Other seeds give other noise.
-    pub fn new(errors: SensorErrors, seed: u64, frame_rate: f64) -> Self {
-        Self { errors, draws: Draws { seed }, frame_rate, error: DVec2::ZERO, frame: 0 }
+impl Localisation {
+    /// Localisation with these errors, read `frame_rate` times a second. Other seeds give other noise.
+    pub fn new(errors: LocalisationErrors, seed: u64, frame_rate: f64) -> Self {
+        Self { errors, noise_stream: NoiseStream { seed }, frame_rate, error: DVec2::ZERO, frame: 0 }
     }
 
     /// Reads all sensors of a vehicle that stands so, once per frame.
-    pub fn read(&mut self, stance: &Stance, ground: &HeightIndex) -> Sensed {
-        let Self { errors, draws, frame, .. } = *self;
+    pub fn read(&mut self, stance: &Stance, ground: &HeightIndex) -> LocalisationReading {
+        let Self { errors, noise_stream, frame, .. } = *self;
         if frame > 0 {
             let dt = 1.0 / self.frame_rate;
-            let walk = DVec2::from_array(draws.gaussians(Purpose::PositionWalk, frame));
+            let walk = DVec2::from_array(noise_stream.gaussians(Purpose::PositionWalk, frame));
             self.error += errors.position_drift * dt + walk * (errors.position_walk * dt.sqrt());
         }
-        if let Some(Fixes { every_frames, noise }) = errors.fixes
+        if let Some(PositionFixes { every_frames, noise }) = errors.fixes
             && frame % every_frames.max(1) == 0
         {
-            self.error = DVec2::from_array(draws.gaussians(Purpose::PositionFix, frame)) * noise;
+            self.error = DVec2::from_array(noise_stream.gaussians(Purpose::PositionFix, frame)) * noise;
         }
-        let [pitch, roll] = draws.gaussians(Purpose::Tilt, frame);
-        let [heading, _] = draws.gaussians(Purpose::Heading, frame);
+        let [pitch, roll] = noise_stream.gaussians(Purpose::Tilt, frame);
+        let [heading, _] = noise_stream.gaussians(Purpose::Heading, frame);
         let drifted = errors.heading_drift * (frame as f64 / self.frame_rate);
         let (bias, noise, truth) = (errors.attitude_bias, errors.attitude_noise, stance.attitude);
         let attitude = Attitude {
@@ -93,10 +93,10 @@ impl Sensors {
             pitch_down: truth.pitch_down + bias.pitch_down + noise * pitch,
             roll_right: truth.roll_right + bias.roll_right + noise * roll,
         };
-        let [proximity, _] = draws.gaussians(Purpose::Proximity, frame);
+        let [proximity, _] = noise_stream.gaussians(Purpose::Proximity, frame);
         let below = ground.height_at(stance.position.x, stance.position.y);
         self.frame += 1;
-        Sensed {
+        LocalisationReading {
             position: stance.position.truncate() + self.error,
             attitude,
             proximity: below.map(|z| stance.position.z - z + errors.proximity_noise * proximity),
@@ -104,7 +104,7 @@ impl Sensors {
     }
 }
 
-impl SensorErrors {
+impl LocalisationErrors {
     /// Refuses errors that are none, naming the field.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "position_drift.x", self.position_drift.x, -1e3, 1e3, "m/s")?;

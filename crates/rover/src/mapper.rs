@@ -3,22 +3,22 @@
 use glam::{DVec2, DVec3};
 use raypencil_scene::Pose;
 
-use crate::elevation_map::{Inconsistency, LocalMap, MapSize, Source};
-use crate::localisation::Sensed;
+use crate::elevation_map::{ElevationMap, ElevationSource, Inconsistency, MapSize};
+use crate::localisation::LocalisationReading;
 use crate::vehicle::Vehicle;
 
 /// A local terrain map and where the vehicle believes that it stands on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mapper {
     vehicle: Vehicle,
-    map: LocalMap,
+    map: ElevationMap,
     /// `global_from_vehicle`, as believed.
     pose: Pose,
 }
 
 /// What a frame did.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrameUpdate {
+pub struct MapUpdate {
     /// Whether the vehicle's elevation came from the map and the proximity sensor; false if the map did not know
     /// the ground under it.
     pub elevation_read: bool,
@@ -34,16 +34,16 @@ impl Mapper {
     ///
     /// CHOICE: the paper does not say how the vehicle knows its first elevation, which must come from the LTM; its
     /// zero is arbitrary, since "only relative elevations are important" (§7).
-    pub fn start(vehicle: Vehicle, size: MapSize, sensed: &Sensed, elevation: f64) -> Self {
-        let map = LocalMap::new(size, sensed.position);
+    pub fn start(vehicle: Vehicle, size: MapSize, sensed: &LocalisationReading, elevation: f64) -> Self {
+        let map = ElevationMap::new(size, sensed.position);
         let pose = sensed.attitude.at(sensed.position.extend(elevation));
         let mut mapper = Self { vehicle, map, pose };
-        mapper.know_what_is_under(sensed);
+        mapper.fill_under_vehicle(sensed);
         mapper
     }
 
     /// The map.
-    pub fn map(&self) -> &LocalMap {
+    pub fn map(&self) -> &ElevationMap {
         &self.map
     }
 
@@ -59,13 +59,17 @@ impl Mapper {
 
     /// One frame: what the sensors say, and the points of all its stripes in vehicle coordinates. In this order: the
     /// vehicle's elevation from the old map and the proximity sensor; the map's move; the points. (§7)
-    pub fn frame(&mut self, sensed: &Sensed, points: impl IntoIterator<Item = DVec3>) -> FrameUpdate {
+    pub fn update(
+        &mut self,
+        sensed: &LocalisationReading,
+        points: impl IntoIterator<Item = DVec3>,
+    ) -> MapUpdate {
         let elevation_read = self.locate(sensed);
-        let moved = self.map.follow(sensed.position);
+        let moved = self.map.recentre(sensed.position);
         // "After converting the edge points to global coordinates" (§7)
         let pose = self.pose;
-        let inconsistency = self.map.enter(points.into_iter().map(|point| pose * point));
-        FrameUpdate { elevation_read, moved, inconsistency }
+        let inconsistency = self.map.insert(points.into_iter().map(|point| pose * point));
+        MapUpdate { elevation_read, moved, inconsistency }
     }
 
     /// A vertical scan at rest: the points of all its stripes at once, in vehicle coordinates. "The beams are
@@ -74,21 +78,21 @@ impl Mapper {
     /// CHOICE: fresh means that all is forgotten first, if `forget`; what is under the vehicle then comes from the
     /// proximity sensor again, as at the start. All points count as new data points, whichever stripe they are of, so
     /// that no stripe's extrapolation overwrites another's measurement.
-    pub fn scan(
+    pub fn update_from_scan(
         &mut self,
-        sensed: &Sensed,
+        sensed: &LocalisationReading,
         points: impl IntoIterator<Item = DVec3>,
         forget: bool,
-    ) -> FrameUpdate {
+    ) -> MapUpdate {
         let elevation_read = self.locate(sensed);
-        let moved = self.map.follow(sensed.position);
+        let moved = self.map.recentre(sensed.position);
         if forget {
             self.map.clear();
-            self.know_what_is_under(sensed);
+            self.fill_under_vehicle(sensed);
         }
         let pose = self.pose;
-        let inconsistency = self.map.enter(points.into_iter().map(|point| pose * point));
-        FrameUpdate { elevation_read, moved, inconsistency }
+        let inconsistency = self.map.insert(points.into_iter().map(|point| pose * point));
+        MapUpdate { elevation_read, moved, inconsistency }
     }
 
     /// "The vehicle determines its global elevation by adding its measured elevation above the ground surface to the
@@ -96,7 +100,7 @@ impl Mapper {
     ///
     /// CHOICE: where the map does not know, the vehicle goes on along the plane of its own wheels: its measured tilt
     /// and its way tell how much it rose.
-    fn locate(&mut self, sensed: &Sensed) -> bool {
+    fn locate(&mut self, sensed: &LocalisationReading) -> bool {
         let below = self.map.elevation(self.map.nearest(sensed.position));
         let read = below.zip(sensed.proximity).map(|(ground, distance)| ground + distance);
         let way = sensed.position - self.pose.position.truncate();
@@ -110,7 +114,7 @@ impl Mapper {
     ///
     /// CHOICE: one distance tells one elevation; around it the ground is taken to be parallel to the plane of the
     /// wheels.
-    fn know_what_is_under(&mut self, sensed: &Sensed) {
+    fn fill_under_vehicle(&mut self, sensed: &LocalisationReading) {
         let Some(distance) = sensed.proximity else { return };
         let ground = self.pose.position.z - distance;
         let vehicle_from_global = self.pose.inverse();
@@ -125,13 +129,13 @@ impl Mapper {
             })
             .collect();
         for (point, elevation) in under {
-            self.map.give(point, elevation);
+            self.map.set_proximity(point, elevation);
         }
     }
 
     /// How many of the map's grid points are known.
-    pub fn known(&self) -> usize {
-        self.map.points().filter(|&point| self.map.source(point) != Source::Unknown).count()
+    pub fn known_count(&self) -> usize {
+        self.map.points().filter(|&point| self.map.source(point) != ElevationSource::Unknown).count()
     }
 }
 

@@ -19,7 +19,7 @@ pub struct VectorRules {
 impl VectorRules {
     /// CHOICE: large is more than the vehicle's width over all (1.25 m): less of an opening between an obstacle and
     /// what is behind it lets no vehicle in. Small is half of that.
-    pub fn of(vehicle: &Vehicle) -> Self {
+    pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         Self { large: vehicle.width(), small: 0.5 * vehicle.width() }
     }
 
@@ -86,7 +86,7 @@ mod tests {
     fn every_rule_of_vectors() {
         use Label::{Obstacle, Unknown, Visibility};
         // Large is above 1.25 m, small up to 0.625 m for the default vehicle.
-        let rules = VectorRules::of(&Vehicle::default());
+        let rules = VectorRules::for_vehicle(&Vehicle::default());
         assert_eq!((rules.large, rules.small), (1.25, 0.625));
         for (a, b, difference, expected) in [
             // The same label, however far apart.
@@ -121,7 +121,7 @@ mod tests {
     fn vectors_join_neighbouring_sectors() {
         let sectors = vec![end(1.0, Label::Obstacle), end(1.5, Label::Unknown), end(4.0, Label::Unknown)];
         let obstacles = ObstacleMap { centre: DVec2::ZERO, sectors };
-        let vectors = navigator_map(&obstacles, &VectorRules::of(&Vehicle::default()));
+        let vectors = navigator_map(&obstacles, &VectorRules::for_vehicle(&Vehicle::default()));
         let labels: Vec<Label> = vectors.iter().map(|vector| vector.label).collect();
         assert_eq!(labels, [Label::Obstacle, Label::Unknown]);
         assert_eq!((vectors[0].to, vectors[1].from), (DVec2::new(1.5, 0.0), DVec2::new(1.5, 0.0)));

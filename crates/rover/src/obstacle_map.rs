@@ -4,8 +4,8 @@ use glam::DVec2;
 use raypencil_scene::{Pose, SceneError};
 
 use crate::check::{check_count, check_range};
-use crate::elevation_map::LocalMap;
-use crate::traversability::{PassableRules, Test, Verdict};
+use crate::elevation_map::ElevationMap;
+use crate::traversability::{Traversability, TraversabilityRules, TraversabilityTest};
 use crate::vehicle::Vehicle;
 
 /// The radial grid. "Determination of the obstacle regions is based upon a radial grid that is overlain over the
@@ -25,14 +25,14 @@ pub struct RadialGrid {
 }
 
 /// CHOICE: no grid has more points. Each may be judged anew in every obstacle map.
-const MOST_POINTS: u32 = 10_000_000;
+const MAX_GRID_POINTS: u32 = 10_000_000;
 
 impl RadialGrid {
     /// CHOICE: 31 sectors over the 60 degrees of the beams' fan, 2 degrees apart, about the vehicle's origin; radii a
     /// grid spacing of 0.1 m apart, so that no grid point is stepped over; from one step before the front axle to
     /// 5 m, just inside the far stripe of the default rig on level ground (5.25 m), so that what it brings is enough
     /// to be clear.
-    pub fn of(vehicle: &Vehicle) -> Self {
+    pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         let step = 0.1;
         let first = 0.5 * vehicle.wheelbase + step;
         Self { sectors: 31, half_angle: 30.0_f64.to_radians(), first, step, last: 5.0 }
@@ -67,19 +67,19 @@ impl RadialGrid {
 
     /// What the tests say of every point of a sector, outwards: each by itself, whatever the ones before it are. Each
     /// is judged only when it is asked for.
-    pub fn verdicts(
+    pub fn classify_sector(
         &self,
         sector: u32,
-        map: &LocalMap,
+        map: &ElevationMap,
         vehicle: &Vehicle,
-        rules: &PassableRules,
+        rules: &TraversabilityRules,
         global_from_vehicle: &Pose,
-    ) -> impl Iterator<Item = (f64, Verdict)> {
+    ) -> impl Iterator<Item = (f64, Traversability)> {
         let (_, unit) = self.direction(sector, global_from_vehicle);
         let centre = global_from_vehicle.position.truncate();
         (0..self.radii()).map(move |index| {
             let radius = self.radius(index);
-            (radius, rules.judge(map, vehicle, centre + unit * radius, unit))
+            (radius, rules.classify(map, vehicle, centre + unit * radius, unit))
         })
     }
 
@@ -92,9 +92,9 @@ impl RadialGrid {
         check_range(field, "last", self.last, self.first, 1e3, "m, at least the first")?;
         // Each number may be sound and all of them too much together.
         let radii = self.radii();
-        let most = MOST_POINTS / radii;
+        let most = MAX_GRID_POINTS / radii;
         if self.sectors > most {
-            let expected = format!("1 to {most}: {MOST_POINTS} points at most, {radii} radii each");
+            let expected = format!("1 to {most}: {MAX_GRID_POINTS} points at most, {radii} radii each");
             return Err(SceneError::new(format!("{field}.sectors"), self.sectors, expected));
         }
         Ok(())
@@ -124,7 +124,7 @@ pub struct SectorEnd {
     /// Why testing stopped there.
     pub label: Label,
     /// The test that an obstacle failed.
-    pub failed: Option<Test>,
+    pub failed: Option<TraversabilityTest>,
 }
 
 /// The labelled points of all sectors, the rightmost first.
@@ -137,22 +137,22 @@ pub struct ObstacleMap {
 }
 
 /// Whether the obstacle map is made in a frame. "The obstacle regions are not extracted from the LTM every camera frame
-/// but at after a fixed number of the frames." (§7) CHOICE: `every` = [`OBSTACLE_FRAMES`].
+/// but at after a fixed number of the frames." (§7) CHOICE: `every` = [`FRAMES_PER_OBSTACLE_MAP`].
 pub fn obstacle_map_due(frame: u64, every: u64) -> bool {
     frame.is_multiple_of(every.max(1))
 }
 
 /// CHOICE: every 10 frames, once a second: the default route moves on by 0.3 m.
-pub const OBSTACLE_FRAMES: u64 = 10;
+pub const FRAMES_PER_OBSTACLE_MAP: u64 = 10;
 
 impl ObstacleMap {
     /// Tests the radial grid around a vehicle believed to be at `global_from_vehicle`. "Points on the radial grid are
     /// tested as to whether they belong to an obstacle region in order of increasing radii along each of the
     /// sectors." (§7)
-    pub fn of(
-        map: &LocalMap,
+    pub fn extract(
+        map: &ElevationMap,
         vehicle: &Vehicle,
-        rules: &PassableRules,
+        rules: &TraversabilityRules,
         grid: &RadialGrid,
         global_from_vehicle: &Pose,
     ) -> Self {
@@ -163,14 +163,14 @@ impl ObstacleMap {
                 let point = centre + unit * radius;
                 SectorEnd { direction, radius, point, label, failed }
             };
-            for (radius, verdict) in grid.verdicts(index, map, vehicle, rules, global_from_vehicle) {
+            for (radius, verdict) in grid.classify_sector(index, map, vehicle, rules, global_from_vehicle) {
                 match verdict {
                     // "... and testing for that sector stops." (§7)
-                    Verdict::Obstacle(test) => return end(radius, Label::Obstacle, Some(test)),
-                    Verdict::Unknown => return end(radius, Label::Unknown, None),
+                    Traversability::Obstacle(test) => return end(radius, Label::Obstacle, Some(test)),
+                    Traversability::Unknown => return end(radius, Label::Unknown, None),
                     // "... and testing for that sector continues unless that point is the last one of the sector, in
                     // which case, the point is labelled as a visibility limit." (§7)
-                    Verdict::Clear => {}
+                    Traversability::Clear => {}
                 }
             }
             end(grid.radius(grid.radii() - 1), Label::Visibility, None)

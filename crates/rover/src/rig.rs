@@ -42,7 +42,7 @@ impl Rig {
     }
 
     /// The rig of a scene whose vehicle stands at `scene_from_vehicle`.
-    pub fn of_scene(scene: &Scene, scene_from_vehicle: Pose) -> Self {
+    pub fn from_scene(scene: &Scene, scene_from_vehicle: Pose) -> Self {
         let vehicle_from_scene = scene_from_vehicle.inverse();
         let beams = scene.beams().iter().map(|beam| OnVehicle {
             vehicle_from_sensor: vehicle_from_scene * beam.scene_from_sensor,

@@ -28,7 +28,7 @@ pub struct Route {
 
 /// Where a route has the vehicle in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoutePlace {
+pub struct RoutePose {
     /// Its middle, global, metres.
     pub place: DVec2,
     /// Radians to the left of the global x axis.
@@ -49,7 +49,7 @@ impl Route {
 
     /// Where the vehicle is in frame `index`, or `None` once the route is over: its last frame is at the last
     /// waypoint. Computed from the index alone, so that no error adds up.
-    pub fn frame(&self, index: u64) -> Option<RoutePlace> {
+    pub fn frame(&self, index: u64) -> Option<RoutePose> {
         let mut time = index as f64 / self.frame_rate;
         let (mut place, mut heading, mut driven) = (self.start, self.heading, 0.0);
         for &waypoint in &self.waypoints {
@@ -60,7 +60,7 @@ impl Route {
             if time < turning {
                 let turned = time * self.turn_rate;
                 let heading = heading + if turn < 0.0 { -turned } else { turned };
-                return Some(RoutePlace { place, heading, driven });
+                return Some(RoutePose { place, heading, driven });
             }
             time -= turning;
             heading = towards;
@@ -68,7 +68,7 @@ impl Route {
             if time < driving {
                 let way = time * self.speed;
                 let place = place + leg * (way / leg.length());
-                return Some(RoutePlace { place, heading, driven: driven + way });
+                return Some(RoutePose { place, heading, driven: driven + way });
             }
             time -= driving;
             driven += leg.length();
@@ -76,7 +76,7 @@ impl Route {
         }
         // The first frame at or after the end is the last; rounding makes no frame more.
         let frames_over = time * self.frame_rate;
-        (frames_over < 1.0 - 1e-6).then_some(RoutePlace { place, heading, driven })
+        (frames_over < 1.0 - 1e-6).then_some(RoutePose { place, heading, driven })
     }
 
     /// Refuses a route that cannot be driven, naming the field.

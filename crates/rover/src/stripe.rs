@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use raypencil_scene::{Image, SceneError};
 
 use crate::check::check_range;
-use crate::otsu::otsu;
+use crate::otsu::otsu_threshold;
 
 /// How light is told from dark. "Finally, thresholding or edge detection is performed to extract the light stripes
 /// from the image." (§3)
@@ -22,7 +22,7 @@ pub enum Detection {
 
 /// Which place of the stripe is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Place {
+pub enum StripeLocation {
     /// The middle of the last lit pixel, as in the paper: "the camera pixels that correspond to edge points are
     /// known" (§7).
     #[default]
@@ -41,7 +41,7 @@ pub struct Extraction {
     /// What is lit.
     pub detection: Detection,
     /// What is measured of it.
-    pub place: Place,
+    pub place: StripeLocation,
     /// Fewer lit rows than this are noise.
     pub least_rows: u32,
 }
@@ -53,12 +53,12 @@ pub struct EdgePoint {
     pub i: u32,
     /// Row of the last lit pixel, or of the one that holds the centroid.
     pub j: u32,
-    /// Where the stripe was measured, rows from the image's upper border: j + 1/2 for [`Place::Pixel`].
+    /// Where the stripe was measured, rows from the image's upper border: j + 1/2 for [`StripeLocation::Pixel`].
     pub row: f64,
 }
 
 /// How many columns are turned upright at a time. Tuned: a cache holds them.
-const STRIP: usize = 32;
+const COLUMNS_PER_STRIP: usize = 32;
 
 /// Lit rows `first..=last` of one column, and where the lower edge lies.
 struct Run {
@@ -70,7 +70,7 @@ struct Run {
 impl Extraction {
     /// The paper's: a fixed threshold, whole pixels. (§6)
     pub fn thresholding(level: f64) -> Self {
-        Self { detection: Detection::Fixed(level), place: Place::Pixel, least_rows: 1 }
+        Self { detection: Detection::Fixed(level), place: StripeLocation::Pixel, least_rows: 1 }
     }
 
     /// The lower edges in an image of one beam, in row-major order. The lower edge of the stripe is where the
@@ -95,27 +95,27 @@ impl Extraction {
         beams: usize,
     ) -> (Vec<Vec<EdgePoint>>, usize) {
         let mut stripes = vec![Vec::new(); beams];
-        let mut left_out = 0;
+        let mut columns_left_out = 0;
         for column in self.columns(image) {
             if column.len() == beams {
                 for (stripe, edge) in stripes.iter_mut().zip(column.into_iter().rev()) {
                     stripe.push(edge);
                 }
             } else if !column.is_empty() {
-                left_out += 1;
+                columns_left_out += 1;
             }
         }
         for stripe in &mut stripes {
             stripe.sort_by_key(|edge| (edge.j, edge.i));
         }
-        (stripes, left_out)
+        (stripes, columns_left_out)
     }
 
     /// The edges of each column, from the top.
     fn columns<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<Vec<EdgePoint>> {
         let level = match self.detection {
             Detection::Fixed(level) | Detection::Gradient(level) => Some(level),
-            Detection::Otsu => otsu(image),
+            Detection::Otsu => otsu_threshold(image),
         };
         let Some(level) = level else { return vec![Vec::new(); image.width() as usize] };
         let (width, height) = (image.width() as usize, image.height() as usize);
@@ -129,7 +129,7 @@ impl Extraction {
         };
         // Images lie row by row: columns are turned upright some at a time.
         let strip = |first: usize| -> Vec<Vec<EdgePoint>> {
-            let columns = STRIP.min(width - first);
+            let columns = COLUMNS_PER_STRIP.min(width - first);
             let mut values = vec![0.0; columns * height];
             for (j, row) in image.cells().chunks_exact(width.max(1)).enumerate() {
                 for (i, &cell) in row[first..first + columns].iter().enumerate() {
@@ -139,15 +139,18 @@ impl Extraction {
             let upright = values.chunks_exact(height.max(1)).enumerate();
             upright.map(|(i, values)| column(first + i, values)).collect()
         };
-        (0..width.div_ceil(STRIP)).into_par_iter().flat_map_iter(|n| strip(n * STRIP)).collect()
+        (0..width.div_ceil(COLUMNS_PER_STRIP))
+            .into_par_iter()
+            .flat_map_iter(|n| strip(n * COLUMNS_PER_STRIP))
+            .collect()
     }
 
     fn measure(&self, values: &[f64], i: u32, run: &Run) -> EdgePoint {
         let last = run.last as f64 + 0.5;
         match self.place {
-            Place::Pixel => EdgePoint { i, j: run.last as u32, row: last },
-            Place::SubPixel => EdgePoint { i, j: run.last as u32, row: run.edge },
-            Place::Centroid => {
+            StripeLocation::Pixel => EdgePoint { i, j: run.last as u32, row: last },
+            StripeLocation::SubPixel => EdgePoint { i, j: run.last as u32, row: run.edge },
+            StripeLocation::Centroid => {
                 let (mut light, mut moment) = (0.0, 0.0);
                 for j in run.first..=run.last {
                     light += values[j];

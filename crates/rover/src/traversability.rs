@@ -4,7 +4,7 @@ use glam::DVec2;
 use raypencil_scene::SceneError;
 
 use crate::check::check_range;
-use crate::elevation_map::LocalMap;
+use crate::elevation_map::ElevationMap;
 use crate::gap::GapRule;
 use crate::vehicle::Vehicle;
 
@@ -12,7 +12,7 @@ use crate::vehicle::Vehicle;
 /// wheel centers b) two rear wheel centers c) the point midway between front wheel centers and the point midway
 /// between the rear wheel centers." (§7)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Test {
+pub enum TraversabilityTest {
     /// a) The two front wheel centres.
     Front,
     /// b) The two rear wheel centres.
@@ -28,10 +28,10 @@ pub enum Test {
 
 /// What the tests say of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Traversability {
     /// "If any of the slope tests exceed the maximum slope for that point pair, point Q is labelled an obstacle
     /// point." (§7) The first test that failed.
-    Obstacle(Test),
+    Obstacle(TraversabilityTest),
     /// "If all the slope tests are satisfied, but if one of the slope points has unknown LTM elevation, the point Q is
     /// labeled as unknown." (§7)
     Unknown,
@@ -55,7 +55,7 @@ pub struct SlopeLimits {
 
 /// The thresholds of the tests. The paper prints none of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PassableRules {
+pub struct TraversabilityRules {
     /// The greatest slopes.
     pub slopes: SlopeLimits,
     /// Where the pair closer to the centre lies: at this share of the half wheelbase before and behind the centre.
@@ -67,14 +67,14 @@ pub struct PassableRules {
     pub gaps: Option<GapRule>,
 }
 
-impl PassableRules {
+impl TraversabilityRules {
     /// The thresholds for a vehicle.
     ///
     /// CHOICE: a pair fails at the slope of a step of one wheel radius between its points: a rigid wheel that meets a
     /// step as high as its hub is pushed back by it, and not lifted. For the default vehicle these are 0.35 (19
     /// degrees) across and 0.29 (16 degrees) along. The closer pair is half way to the centre. Gaps: off, as in the
     /// paper.
-    pub fn of(vehicle: &Vehicle) -> Self {
+    pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         let step = vehicle.wheel_radius;
         let closer_share = 0.5;
         let across = step / vehicle.track;
@@ -89,7 +89,7 @@ impl PassableRules {
 
     /// The same with gaps crossed that are no wider than a wheel is thick.
     pub fn crossing_gaps(self, vehicle: &Vehicle) -> Self {
-        Self { gaps: Some(GapRule { widest: vehicle.wheel_width }), ..self }
+        Self { gaps: Some(GapRule { max_width: vehicle.wheel_width }), ..self }
     }
 
     /// Tests the global point `front`. "The point pairs are relative to an imaginary vehicle whose front axle midcenter
@@ -98,7 +98,13 @@ impl PassableRules {
     ///
     /// CHOICE: every point of the imaginary vehicle takes the elevation of the grid point nearest to it, and slopes
     /// are between these grid points: so a plane has exactly its own slope wherever the pair falls.
-    pub fn judge(&self, map: &LocalMap, vehicle: &Vehicle, front: DVec2, forward: DVec2) -> Verdict {
+    pub fn classify(
+        &self,
+        map: &ElevationMap,
+        vehicle: &Vehicle,
+        front: DVec2,
+        forward: DVec2,
+    ) -> Traversability {
         let Vehicle { wheelbase, track, clearance, .. } = *vehicle;
         let left = forward.perp();
         let ground = |place: DVec2| {
@@ -112,26 +118,26 @@ impl PassableRules {
         let [front_wheels, rear_wheels] = [axle(0.0), axle(wheelbase)];
         let rear_known = rear_wheels.iter().all(Option::is_some);
         let (along, pair) = if rear_known {
-            (Test::Length, [at(0.0, 0.0), at(wheelbase, 0.0)])
+            (TraversabilityTest::Length, [at(0.0, 0.0), at(wheelbase, 0.0)])
         } else {
             let from_centre = 0.5 * wheelbase * self.closer_share;
             let centre = 0.5 * wheelbase;
-            (Test::Closer, [at(centre - from_centre, 0.0), at(centre + from_centre, 0.0)])
+            (TraversabilityTest::Closer, [at(centre - from_centre, 0.0), at(centre + from_centre, 0.0)])
         };
 
         // "The slope tests are made on all point pairs whose LTM elevation is known." (§7)
         let limits = self.slopes;
         let along_limit = if rear_known { limits.length } else { limits.closer };
         for (test, pair, limit) in [
-            (Test::Front, front_wheels, limits.front),
-            (Test::Rear, rear_wheels, limits.rear),
+            (TraversabilityTest::Front, front_wheels, limits.front),
+            (TraversabilityTest::Rear, rear_wheels, limits.rear),
             (along, pair, along_limit),
         ] {
             if let [Some(a), Some(b)] = pair {
                 // rise > limit * distance, so that two points on one grid point need no quotient.
                 let distance = (a - b).truncate().length();
-                if (a.z - b.z).abs() > limit * distance + ROUNDING {
-                    return Verdict::Obstacle(test);
+                if (a.z - b.z).abs() > limit * distance + RISE_ROUNDING_M {
+                    return Traversability::Obstacle(test);
                 }
             }
         }
@@ -143,12 +149,16 @@ impl PassableRules {
         if let (Some(belly), Some(carriers)) = (belly, carriers.iter().copied().collect::<Option<Vec<_>>>()) {
             let mean = carriers.iter().map(|point| point.z).sum::<f64>() / carriers.len() as f64;
             if belly.z >= mean + clearance {
-                return Verdict::Obstacle(Test::Belly);
+                return Traversability::Obstacle(TraversabilityTest::Belly);
             }
         }
 
         let needed = front_wheels.iter().chain(&pair).chain([&belly]).all(Option::is_some);
-        if needed && (rear_known || !self.rear_needed) { Verdict::Clear } else { Verdict::Unknown }
+        if needed && (rear_known || !self.rear_needed) {
+            Traversability::Clear
+        } else {
+            Traversability::Unknown
+        }
     }
 
     /// Refuses thresholds that are none, naming the field.
@@ -164,7 +174,7 @@ impl PassableRules {
         }
         check_range(field, "closer_share", self.closer_share, 1e-3, 1.0, "of the half wheelbase")?;
         if let Some(gaps) = self.gaps {
-            check_range(field, "gaps.widest", gaps.widest, 0.0, 1e2, "m")?;
+            check_range(field, "gaps.max_width", gaps.max_width, 0.0, 1e2, "m")?;
         }
         Ok(())
     }
@@ -172,4 +182,4 @@ impl PassableRules {
 
 /// A slope exactly at its limit passes: elevations and places within 1e4 m are good to 2e-12 m each, a rise and
 /// its distance to a few of these.
-const ROUNDING: f64 = 1e-11;
+const RISE_ROUNDING_M: f64 = 1e-11;

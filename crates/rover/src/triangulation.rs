@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_scene::{Beam, Camera, Image, Maybe, Pose};
 
 use crate::rig::{OnVehicle, Rig};
-use crate::stripe::{EdgePoint, Place};
+use crate::stripe::{EdgePoint, StripeLocation};
 
 /// Which plane of a sheet of light an image point is thought to lie on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,10 +18,10 @@ pub enum SheetPlane {
 
 impl SheetPlane {
     /// The plane that the extracted places lie on.
-    pub fn of(place: Place) -> Self {
+    pub fn for_location(place: StripeLocation) -> Self {
         match place {
-            Place::Pixel | Place::SubPixel => Self::LowerEdge,
-            Place::Centroid => Self::Middle,
+            StripeLocation::Pixel | StripeLocation::SubPixel => Self::LowerEdge,
+            StripeLocation::Centroid => Self::Middle,
         }
     }
 }
@@ -95,11 +95,11 @@ impl Triangulation {
     /// The points of a stripe's edges, in their order, at the places where they were measured: vehicle frame,
     /// metres.
     pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
-        edges.iter().filter_map(|edge| self.of_edge(edge)).collect()
+        edges.iter().filter_map(|edge| self.at_edge(edge)).collect()
     }
 
     /// The point of one edge, at the place where it was measured: vehicle frame, metres.
-    pub fn of_edge(&self, edge: &EdgePoint) -> Option<DVec3> {
+    pub fn at_edge(&self, edge: &EdgePoint) -> Option<DVec3> {
         self.at(f64::from(edge.i) + 0.5, edge.row)
     }
 

@@ -77,7 +77,7 @@ pub struct Stance {
     pub attitude: Attitude,
     /// By how much the last step of settling still moved a wheel, metres: small, unless the ground is so rough
     /// that no stance is at rest.
-    pub unsettled: f64,
+    pub residual: f64,
 }
 
 impl Stance {
@@ -88,10 +88,10 @@ impl Stance {
 }
 
 /// The ways of the four wheels from the vehicle's middle: forward or back, left or right.
-const WHEELS: [(f64, f64); 4] = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+const WHEEL_SIGNS: [(f64, f64); 4] = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
 
 /// Steps of settling. On slopes up to 45 degrees each leaves less than half of the error: 2^-40 m is enough.
-const STEPS: u32 = 40;
+const SETTLING_STEPS: u32 = 40;
 
 impl Vehicle {
     /// Whether a point of the vehicle frame is under the vehicle: within the rectangle around its wheels.
@@ -135,29 +135,29 @@ impl Vehicle {
     pub fn settle(&self, ground: &HeightIndex, place: DVec2, heading: f64) -> Option<Stance> {
         let mut attitude = Attitude { heading, ..Attitude::default() };
         let mut position = place.extend(ground.height_at(place.x, place.y)?);
-        let mut unsettled = f64::INFINITY;
-        for step in 0..STEPS {
+        let mut residual = f64::INFINITY;
+        for step in 0..SETTLING_STEPS {
             let pose = attitude.at(position);
             let forward = pose.rotate(DVec3::X).truncate().normalize_or_zero();
             // How much higher each hub should be.
             let mut lift = [0.0; 4];
-            for (lift, (x, y)) in lift.iter_mut().zip(WHEELS) {
+            for (lift, (x, y)) in lift.iter_mut().zip(WHEEL_SIGNS) {
                 let hub = DVec3::new(0.5 * x * self.wheelbase, 0.5 * y * self.track, self.wheel_radius);
                 let hub = pose * hub;
                 *lift = self.hub_height(ground, hub.truncate(), forward)? - hub.z;
             }
             let part = |sign: fn((f64, f64)) -> f64| {
-                lift.iter().zip(WHEELS).map(|(lift, wheel)| lift * sign(wheel)).sum::<f64>() / 4.0
+                lift.iter().zip(WHEEL_SIGNS).map(|(lift, wheel)| lift * sign(wheel)).sum::<f64>() / 4.0
             };
             let (heave, nose, left) = (part(|_| 1.0), part(|(x, _)| x), part(|(_, y)| y));
-            unsettled = heave.abs() + nose.abs() + left.abs();
+            residual = heave.abs() + nose.abs() + left.abs();
             // On broken ground the full steps may swing for ever: shorter ones later on.
-            let share = if step < STEPS / 2 { 1.0 } else { 0.5 };
+            let share = if step < SETTLING_STEPS / 2 { 1.0 } else { 0.5 };
             position.z += share * heave;
             attitude.pitch_down -= share * 2.0 * nose / self.wheelbase;
             attitude.roll_right += share * 2.0 * left / self.track;
         }
-        Some(Stance { position, attitude, unsettled })
+        Some(Stance { position, attitude, residual })
     }
 
     /// Refuses a vehicle that is none, naming the field.

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use common::{extruded, first_hit, from_vehicle, rig, seen_at};
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Detection, Drive, DriveFrame, DrivePlan, Exposed, Exposures, Extraction, Fixes, Label, OnVehicle, Place,
-    Rig, Route, ScanReason, ScanRule, SensorErrors, Source, Sweep,
+    CameraImage, Detection, Drive, DriveFrame, DrivePlan, ElevationSource, ExposureMode, Extraction, Label,
+    LocalisationErrors, OnVehicle, PositionFixes, Rig, Route, ScanReason, ScanRule, StripeLocation, Sweep,
 };
 use raypencil_scene::{Frame, Image, Mesh, Pose, Renderer, Request, Resolution, Scene};
 
@@ -27,7 +27,7 @@ impl Renderer for StandIn {
     fn render(&self, scene: &Scene, request: &Request) -> Frame {
         assert!(request.returns && !request.camera && !request.beams);
         // As if the vehicle were the scene itself.
-        let rig = Rig::of_scene(scene, Pose::IDENTITY);
+        let rig = Rig::from_scene(scene, Pose::IDENTITY);
         let faces = from_vehicle(scene.mesh(), Pose::from_position(scene.mesh().origin()));
         let flux = rig.beams.iter().map(|beam| {
             let OnVehicle { vehicle_from_sensor, sensor } = beam;
@@ -59,7 +59,7 @@ fn plan() -> DrivePlan {
 fn drive(plan: DrivePlan, mesh: &Arc<Mesh>) -> (Drive, Vec<DriveFrame>) {
     let mut drive = Drive::new(plan, Arc::clone(mesh)).unwrap();
     let mut frames = Vec::new();
-    while let Some(frame) = drive.step(&StandIn, &mut |_, image| Exposed::Flux(image)).unwrap() {
+    while let Some(frame) = drive.step(&StandIn, &mut |_, image| CameraImage::Flux(image)).unwrap() {
         frames.push(frame);
     }
     (drive, frames)
@@ -80,7 +80,7 @@ fn a_drive_towards_a_wall() {
     // What was measured is the ground: 95 % of it (tuned) within 5 cm of its level.
     let (mut close, mut all) = (0, 0);
     for point in mapper.map().points() {
-        if mapper.map().source(point) == Source::Measured {
+        if mapper.map().source(point) == ElevationSource::Measured {
             let (x, z) = (mapper.map().place(point).x, mapper.map().elevation(point).unwrap());
             // A wall's points, and those of a pixel across its edge, are anything between.
             if (x - 5.0).abs() > 0.16 {
@@ -107,14 +107,14 @@ fn one_exposure_of_both_beams_gives_the_same_map_of_level_ground() {
     let route = Route::through(DVec2::ZERO, vec![DVec2::new(0.1, 0.0)]);
     let short = || DrivePlan { route: route.clone(), rig: rig(1024, 2), ..plan() };
     let (in_turn, frames) = drive(short(), &mesh);
-    let (together, others) = drive(DrivePlan { exposures: Exposures::Together, ..short() }, &mesh);
+    let (together, others) = drive(DrivePlan { exposures: ExposureMode::Together, ..short() }, &mesh);
     assert_eq!(frames.len(), others.len());
     // Columns that hold one stripe alone are left out when both are lit: fewer points, none of them new.
     assert!(
         others.iter().zip(&frames).all(|(other, frame)| other.points <= frame.points && other.points > 50)
     );
     let [a, b] = [in_turn.mapper().unwrap().map(), together.mapper().unwrap().map()];
-    let common = a.points().filter(|&point| b.source(point) == Source::Measured);
+    let common = a.points().filter(|&point| b.source(point) == ElevationSource::Measured);
     for point in common {
         assert!((a.elevation(point).unwrap() - b.elevation(point).unwrap()).abs() < 0.06);
     }
@@ -125,10 +125,10 @@ fn errors_of_the_sensors_call_for_a_scan() {
     // Noise of 1 degree in pitch lifts and sinks a stripe 5 m away by 9 cm: points contradict one another, and at 5 cm
     // a scan is due.
     let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
-    let errors = SensorErrors {
+    let errors = LocalisationErrors {
         attitude_noise: 1.0_f64.to_radians(),
-        fixes: Some(Fixes { every_frames: 10, noise: 0.01 }),
-        ..SensorErrors::default()
+        fixes: Some(PositionFixes { every_frames: 10, noise: 0.01 }),
+        ..LocalisationErrors::default()
     };
     let scans = Some(ScanRule { inconsistency: Some(0.05), ..ScanRule::default() });
     let short = DrivePlan {
@@ -157,7 +157,7 @@ fn images_may_be_developed() {
     // Steps 6 to 8 as a digitisation: whole numbers, so many per watt, with a bias; Otsu finds the light.
     let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
     let plan = DrivePlan {
-        extraction: Extraction { detection: Detection::Otsu, place: Place::Pixel, least_rows: 1 },
+        extraction: Extraction { detection: Detection::Otsu, place: StripeLocation::Pixel, least_rows: 1 },
         scans: None,
         route: Route::through(DVec2::ZERO, vec![DVec2::new(0.03, 0.0)]),
         ..plan()
@@ -169,7 +169,7 @@ fn images_may_be_developed() {
         for value in image.cells_mut() {
             *value = (*value * 20.0).min(60.0).round() + 12.0;
         }
-        Exposed::Flux(image)
+        CameraImage::Flux(image)
     };
     let frame = drive.step(&StandIn, &mut develop).unwrap().unwrap();
     assert!(frame.points > 100);

@@ -5,14 +5,14 @@ mod common;
 use common::{extruded, from_vehicle, rig, stripe};
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Attitude, Label, MapSize, Mapper, ObstacleMap, PassableRules, RadialGrid, Rig, Sensed, SheetPlane,
-    Source, Sweep, Test, Triangulation, Vehicle,
+    Attitude, ElevationSource, Label, LocalisationReading, MapSize, Mapper, ObstacleMap, RadialGrid, Rig,
+    SheetPlane, Sweep, TraversabilityRules, TraversabilityTest, Triangulation, Vehicle,
 };
 use raypencil_scene::{Mesh, Pose};
 
 /// Level at x, y = 0, as if the sensors were perfect.
-fn sensed(x: f64) -> Sensed {
-    Sensed { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity: Some(0.0) }
+fn sensed(x: f64) -> LocalisationReading {
+    LocalisationReading { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity: Some(0.0) }
 }
 
 fn stand(x: f64) -> Pose {
@@ -40,8 +40,8 @@ fn frame(rig: &Rig, mesh: &Mesh, x: f64) -> Vec<DVec3> {
 
 fn obstacles(mapper: &Mapper) -> ObstacleMap {
     let vehicle = Vehicle::default();
-    let (rules, grid) = (PassableRules::of(&vehicle), RadialGrid::of(&vehicle));
-    ObstacleMap::of(mapper.map(), &vehicle, &rules, &grid, &mapper.pose())
+    let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    ObstacleMap::extract(mapper.map(), &vehicle, &rules, &grid, &mapper.pose())
 }
 
 fn start() -> Mapper {
@@ -77,12 +77,12 @@ fn the_map_of_level_ground_is_the_ground_within_the_footprint() {
     let mut mapper = start();
     let pose = Pose { position: DVec3::new(0.0, 0.0, 0.0), ..stand(0.0) };
     assert_eq!(mapper.pose(), pose);
-    mapper.frame(&sensed(0.0), points);
+    mapper.update(&sensed(0.0), points);
     let mut measured = 0;
     for point in mapper.map().points() {
         let Some(z) = mapper.map().elevation(point) else { continue };
         assert!(z.abs() <= bound[1], "{z} at {}", mapper.map().place(point));
-        measured += usize::from(mapper.map().source(point) == Source::Measured);
+        measured += usize::from(mapper.map().source(point) == ElevationSource::Measured);
     }
     // Stripes of 3.5 and 6.1 m, a tenth of a metre a point.
     assert!((80..=250).contains(&measured), "{measured} measured points");
@@ -93,13 +93,13 @@ fn a_step_of_0_4_m_is_an_obstacle_and_one_of_0_1_m_is_not() {
     for (height, expected) in [(0.4, Label::Obstacle), (0.1, Label::Visibility)] {
         let mesh = extruded(&[(-20.0, 0.0), (3.0, 0.0), (3.0, height), (20.0, height)]);
         let mut mapper = start();
-        mapper.scan(&sensed(0.0), scan(&rig(256, 1), &mesh, 0.0), true);
+        mapper.update_from_scan(&sensed(0.0), scan(&rig(256, 1), &mesh, 0.0), true);
         let all = obstacles(&mapper);
         let ahead = all.sectors[15];
         assert_eq!(ahead.label, expected, "{ahead:?}");
         if expected == Label::Obstacle {
             // The front axle's grid point is the first that holds the upper level: 3.0 or 3.1.
-            assert_eq!(ahead.failed, Some(Test::Length));
+            assert_eq!(ahead.failed, Some(TraversabilityTest::Length));
             assert!((3.0..3.11).contains(&(ahead.radius + 1e-9)), "{ahead:?}");
         } else {
             assert!(all.sectors.iter().all(|sector| sector.label != Label::Obstacle));
@@ -116,7 +116,7 @@ fn a_trench_is_unknown_from_afar_and_an_obstacle_from_nearer() {
     // From x = 0 the camera, 1.5 m up and 3.7 m before the edge, sees 1.5 / 3.7 * 1 = 0.41 m down the far wall, and no
     // ground at all: from 4.2 m on (one spacing is extrapolated beyond the edge) nothing is known.
     let mut mapper = start();
-    mapper.scan(&sensed(0.0), scan(&rig, &mesh, 0.0), true);
+    mapper.update_from_scan(&sensed(0.0), scan(&rig, &mesh, 0.0), true);
     let ahead = obstacles(&mapper).sectors[15];
     assert_eq!(ahead.label, Label::Unknown);
     assert!((4.0..4.31).contains(&ahead.radius), "{ahead:?}");
@@ -125,7 +125,7 @@ fn a_trench_is_unknown_from_afar_and_an_obstacle_from_nearer() {
     // far wall. At x = 3.1 the front wheels' rims are at the edge.
     for step in 1..=31 {
         let x = 0.1 * f64::from(step);
-        mapper.frame(&sensed(x), frame(&rig, &mesh, x));
+        mapper.update(&sensed(x), frame(&rig, &mesh, x));
     }
     let ahead = obstacles(&mapper).sectors[15];
     assert_eq!(ahead.label, Label::Unknown);
@@ -134,7 +134,7 @@ fn a_trench_is_unknown_from_afar_and_an_obstacle_from_nearer() {
     // A scan from x = 2.8, the camera 0.9 m before the edge: 0.6 / 1.5 * 0.9 = 0.36 m are hidden from it. 4.1 is
     // extrapolated from the edge, 4.3 from the first ground seen, which is at 4.36 and so on 4.4; 4.2 remains.
     let mut farther = mapper.clone();
-    farther.scan(&sensed(2.8), scan(&rig, &mesh, 2.8), true);
+    farther.update_from_scan(&sensed(2.8), scan(&rig, &mesh, 2.8), true);
     let ahead = obstacles(&farther).sectors[15];
     assert_eq!(ahead.label, Label::Unknown);
     assert!((ahead.radius + 2.8 - 4.2).abs() < 1e-9, "{ahead:?}");
@@ -143,9 +143,9 @@ fn a_trench_is_unknown_from_afar_and_an_obstacle_from_nearer() {
     // 0.6 / 1.5 * 0.6 = 0.24 m behind the edge, beam 0 (1.8 m up) lights it from 0.2 m. What is hidden is narrower than
     // the two spacings that are extrapolated from both sides, so the slope is known: 0.6 m over 1.2 m, and 0.35 m is
     // the most.
-    mapper.scan(&sensed(3.1), scan(&rig, &mesh, 3.1), true);
+    mapper.update_from_scan(&sensed(3.1), scan(&rig, &mesh, 3.1), true);
     let ahead = obstacles(&mapper).sectors[15];
-    assert_eq!((ahead.label, ahead.failed), (Label::Obstacle, Some(Test::Length)));
+    assert_eq!((ahead.label, ahead.failed), (Label::Obstacle, Some(TraversabilityTest::Length)));
     assert!((4.0..4.31).contains(&(ahead.radius + 3.1)), "{ahead:?}");
 }
 
@@ -156,12 +156,12 @@ fn a_rock_too_low_to_matter_hides_ground_and_gaps_may_be_crossed() {
     let ridge = |height: f64| {
         let profile = [(-20.0, 0.0), (4.5, 0.0), (4.5, height), (4.6, height), (4.6, 0.0), (20.0, 0.0)];
         let mut mapper = start();
-        mapper.scan(&sensed(0.0), scan(&rig(256, 1), &extruded(&profile), 0.0), true);
+        mapper.update_from_scan(&sensed(0.0), scan(&rig(256, 1), &extruded(&profile), 0.0), true);
         let vehicle = Vehicle::default();
-        let grid = RadialGrid { last: 6.5, ..RadialGrid::of(&vehicle) };
-        let rules = PassableRules::of(&vehicle);
+        let grid = RadialGrid { last: 6.5, ..RadialGrid::for_vehicle(&vehicle) };
+        let rules = TraversabilityRules::for_vehicle(&vehicle);
         [rules, rules.crossing_gaps(&vehicle)].map(|rules| {
-            ObstacleMap::of(mapper.map(), &vehicle, &rules, &grid, &mapper.pose()).sectors[15].label
+            ObstacleMap::extract(mapper.map(), &vehicle, &rules, &grid, &mapper.pose()).sectors[15].label
         })
     };
     // h = 0.25: 0.86 m, of which a spacing on either side is extrapolated: too wide for a wheel of 0.25 m.

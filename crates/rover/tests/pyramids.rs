@@ -7,13 +7,14 @@ use std::sync::Arc;
 use common::rig;
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Drive, DrivePlan, Exposed, Extraction, GridPoint, Label, LocalMap, Place, Route, Source,
+    CameraImage, Drive, DrivePlan, ElevationMap, ElevationSource, Extraction, GridPoint, Label, Route,
+    StripeLocation,
 };
 use raypencil_scanline::Scanline;
 use raypencil_terrain::{HeightIndex, builtin};
 
 /// How far a grid point's elevation is from all heights of the ground within half a spacing of it, metres.
-fn off_the_ground(map: &LocalMap, ground: &HeightIndex, point: GridPoint) -> f64 {
+fn off_the_ground(map: &ElevationMap, ground: &HeightIndex, point: GridPoint) -> f64 {
     let (place, z) = (map.place(point), map.elevation(point).expect("a known point"));
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for i in -2..=2 {
@@ -33,11 +34,11 @@ fn the_map_of_the_pyramids_is_the_ground() {
     // The last 1.5 m of the paper's 7.5 m, twice as fast as by default: 26 frames. Any light is a stripe: the image is
     // ideal.
     let route = Route { speed: 0.6, ..Route::through(DVec2::new(-1.5, 0.0), vec![DVec2::ZERO]) };
-    let extraction = Extraction { place: Place::SubPixel, ..Extraction::thresholding(1e-12) };
+    let extraction = Extraction { place: StripeLocation::SubPixel, ..Extraction::thresholding(1e-12) };
     let mut drive = Drive::new(DrivePlan::new(rig(1024, 4), route, extraction), Arc::clone(&mesh)).unwrap();
     let renderer = Scanline::exact();
     let (mut frames, mut last) = (0, None);
-    while let Some(frame) = drive.step(&renderer, &mut |_, image| Exposed::Flux(image)).unwrap() {
+    while let Some(frame) = drive.step(&renderer, &mut |_, image| CameraImage::Flux(image)).unwrap() {
         frames += 1;
         // The plane under the vehicle is level, so the map's elevation of it is 0 but for the pixels.
         assert!(frame.update.elevation_read && frame.stance.position.z.abs() < 1e-9);
@@ -50,7 +51,8 @@ fn the_map_of_the_pyramids_is_the_ground() {
     // A pixel is 1.1 mrad, 4 to 6 cm along the sheet at the stripes on level ground, of which the elevation has half or
     // less; steep flanks have more. Tuned: 97 % are within 5 cm of the ground about them, and 95 % are asked for.
     let map = mapper.map();
-    let measured: Vec<_> = map.points().filter(|&point| map.source(point) == Source::Measured).collect();
+    let measured: Vec<_> =
+        map.points().filter(|&point| map.source(point) == ElevationSource::Measured).collect();
     let close = measured.iter().filter(|&&point| off_the_ground(map, &ground, point) <= 0.05).count();
     assert!(measured.len() > 1000 && close * 20 > measured.len() * 19, "{close} of {}", measured.len());
 

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
-use raypencil_rover::{GridPoint, LocalMap, MapSize, Source};
+use raypencil_rover::{ElevationMap, ElevationSource, GridPoint, MapSize};
 
-fn map() -> LocalMap {
-    LocalMap::new(MapSize::default(), DVec2::new(100.03, -50.02))
+fn map() -> ElevationMap {
+    ElevationMap::new(MapSize::default(), DVec2::new(100.03, -50.02))
 }
 
 fn at(i: i64, j: i64) -> GridPoint {
@@ -30,24 +30,24 @@ fn the_nearest_grid_point_inherits_and_its_neighbours_are_extrapolated() {
     let mut map = map();
     // 3 cm beside grid point (10, 0), which is at 1 m; the same for (11, 0).
     let edge = |i: f64, z: f64| (DVec2::new(100.03 + 0.1 * i + 0.03, -50.02)).extend(z);
-    let found = map.enter([edge(10.0, 0.5), edge(11.0, 0.8)]);
+    let found = map.insert([edge(10.0, 0.5), edge(11.0, 0.8)]);
     assert_eq!(found.count, 0);
-    assert_eq!((map.elevation(at(10, 0)), map.source(at(10, 0))), (Some(0.5), Source::Measured));
+    assert_eq!((map.elevation(at(10, 0)), map.source(at(10, 0))), (Some(0.5), ElevationSource::Measured));
     assert_eq!(map.elevation(at(11, 0)), Some(0.8));
     // (9, j) neighbours only the first; (10, 1) and (11, 1) neighbour both, and the later wins; (12, j) only the
     // second.
     assert_eq!(map.elevation(at(9, 1)), Some(0.5));
     assert_eq!(map.elevation(at(10, 1)), Some(0.8));
     assert_eq!(map.elevation(at(11, -1)), Some(0.8));
-    assert_eq!((map.elevation(at(12, 0)), map.source(at(12, 0))), (Some(0.8), Source::Extrapolated));
+    assert_eq!((map.elevation(at(12, 0)), map.source(at(12, 0))), (Some(0.8), ElevationSource::Extrapolated));
     assert_eq!(map.points().filter(|point| map.source(*point).key() == 'u').count(), 3 * 4);
     // Later data overwrite a measured neighbour of an earlier update; the last of several points stays.
-    let found = map.enter([edge(12.0, 0.1), edge(12.0, 0.2)]);
+    let found = map.insert([edge(12.0, 0.1), edge(12.0, 0.2)]);
     assert_eq!(map.elevation(at(12, 0)), Some(0.2));
-    assert_eq!((map.elevation(at(11, 0)), map.source(at(11, 0))), (Some(0.2), Source::Extrapolated));
+    assert_eq!((map.elevation(at(11, 0)), map.source(at(11, 0))), (Some(0.2), ElevationSource::Extrapolated));
     // (12, 0) had only been extrapolated: nothing is contradicted. Measured anew it is.
     assert_eq!(found.count, 0);
-    let found = map.enter([edge(12.0, 0.5), edge(40.0, 7.0)]);
+    let found = map.insert([edge(12.0, 0.5), edge(40.0, 7.0)]);
     assert_eq!(found.count, 1);
     assert!((found.mean - 0.3).abs() < 1e-15 && found.largest == found.mean);
 }
@@ -55,12 +55,12 @@ fn the_nearest_grid_point_inherits_and_its_neighbours_are_extrapolated() {
 #[test]
 fn points_beyond_the_map_and_points_that_are_none_are_passed_over() {
     let mut map = map();
-    map.enter([DVec3::new(0.0, 0.0, 1.0), DVec3::NAN]);
-    assert!(map.points().all(|point| map.source(point) == Source::Unknown));
+    map.insert([DVec3::new(0.0, 0.0, 1.0), DVec3::NAN]);
+    assert!(map.points().all(|point| map.source(point) == ElevationSource::Unknown));
     // On the border the neighbours beyond it are not entered at the other side.
-    map.enter([map.place(at(100, 0)).extend(1.0)]);
+    map.insert([map.place(at(100, 0)).extend(1.0)]);
     assert_eq!(map.points().filter(|point| map.source(*point).key() == 'u').count(), 6);
-    assert_eq!(map.source(at(-100, 0)), Source::Unknown);
+    assert_eq!(map.source(at(-100, 0)), ElevationSource::Unknown);
 }
 
 #[test]
@@ -68,8 +68,8 @@ fn the_map_moves_in_whole_steps() {
     let mut map = map();
     // 0.44 m and -0.26 m are 4.4 and -2.6 spacings: 4 and -3 steps.
     let start = DVec2::new(100.03, -50.02);
-    assert_eq!(map.follow(start + DVec2::new(0.44, -0.26)), (4, -3));
-    assert_eq!(map.follow(start + DVec2::new(0.41, -0.34)), (0, 0));
+    assert_eq!(map.recentre(start + DVec2::new(0.44, -0.26)), (4, -3));
+    assert_eq!(map.recentre(start + DVec2::new(0.41, -0.34)), (0, 0));
     assert!((map.place(map.centre()) - start - DVec2::new(0.4, -0.3)).length() < 1e-12);
 }
 
@@ -77,7 +77,7 @@ fn the_map_moves_in_whole_steps() {
 fn no_cell_moves_in_global_coordinates() {
     // A walk of 10000 moves and turns on a map of 41 points (4 m), with a measured point now and then. A plain
     // list of global places stands beside it: what it lost by leaving the map stays unknown.
-    let mut map = LocalMap::new(MapSize { spacing: 0.1, points: 41 }, DVec2::new(1e6, -2e5));
+    let mut map = ElevationMap::new(MapSize { spacing: 0.1, points: 41 }, DVec2::new(1e6, -2e5));
     let mut known: HashMap<GridPoint, (DVec2, f64)> = HashMap::new();
     let draws = raypencil_scene::Sampling::Jittered { seed: 5 };
     let (mut place, mut heading, mut compared) = (DVec2::new(1e6, -2e5), 0.0, 0);
@@ -85,7 +85,7 @@ fn no_cell_moves_in_global_coordinates() {
         let [way, turn] = draws.offset(0, step, 0);
         heading += 2.0 * turn;
         place += DVec2::new(libm::cos(heading), libm::sin(heading)) * (way + 0.5);
-        map.follow(place);
+        map.recentre(place);
         known.retain(|point, _| map.contains(*point));
         if step % 3 == 0 {
             // Alone in its neighbourhood, so that nothing else changes.
@@ -93,7 +93,7 @@ fn no_cell_moves_in_global_coordinates() {
             let point = map.nearest(place + DVec2::new(x, y) * 3.9);
             let around = |other: &GridPoint| (other.i - point.i).abs() <= 1 && (other.j - point.j).abs() <= 1;
             if map.contains(point) && !known.keys().any(around) {
-                map.enter([map.place(point).extend(f64::from(step))]);
+                map.insert([map.place(point).extend(f64::from(step))]);
                 for other in map.points().filter(around) {
                     known.insert(other, (map.place(other), f64::from(step)));
                 }

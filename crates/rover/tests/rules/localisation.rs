@@ -1,11 +1,11 @@
 //! Errors of position and attitude, and the fixes that correct them.
 
 use glam::{DVec2, DVec3};
-use raypencil_rover::{Attitude, Fixes, SensorErrors, Sensors, Stance};
+use raypencil_rover::{Attitude, Localisation, LocalisationErrors, PositionFixes, Stance};
 use raypencil_terrain::HeightIndex;
 
 fn stance() -> Stance {
-    Stance { position: DVec3::new(-9.3, 0.2, 0.04), attitude: Attitude::default(), unsettled: 0.0 }
+    Stance { position: DVec3::new(-9.3, 0.2, 0.04), attitude: Attitude::default(), residual: 0.0 }
 }
 
 fn ground() -> HeightIndex {
@@ -14,9 +14,9 @@ fn ground() -> HeightIndex {
 
 #[test]
 fn without_errors_the_truth_is_read() {
-    let mut sensors = Sensors::new(SensorErrors::default(), 1, 10.0);
+    let mut localisation = Localisation::new(LocalisationErrors::default(), 1, 10.0);
     for _ in 0..3 {
-        let sensed = sensors.read(&stance(), &ground());
+        let sensed = localisation.read(&stance(), &ground());
         assert_eq!(sensed.position, DVec2::new(-9.3, 0.2));
         assert_eq!(sensed.attitude, Attitude::default());
         // 4 cm above a plane at 0.
@@ -27,17 +27,17 @@ fn without_errors_the_truth_is_read() {
 #[test]
 fn drift_grows_until_a_fix_takes_it_away() {
     // 0.02 m/s at 10 frames a second: 2 mm a frame; frames 0, 50, 100 are fixes without noise.
-    let fixes = Some(Fixes { every_frames: 50, noise: 0.0 });
-    let errors = SensorErrors {
+    let fixes = Some(PositionFixes { every_frames: 50, noise: 0.0 });
+    let errors = LocalisationErrors {
         position_drift: DVec2::new(0.02, 0.0),
         heading_drift: 0.01,
         fixes,
-        ..SensorErrors::default()
+        ..LocalisationErrors::default()
     };
     assert!(errors.validate("sensors").is_ok());
-    let (mut sensors, ground) = (Sensors::new(errors, 1, 10.0), ground());
+    let (mut localisation, ground) = (Localisation::new(errors, 1, 10.0), ground());
     for frame in 0..120_u32 {
-        let sensed = sensors.read(&stance(), &ground);
+        let sensed = localisation.read(&stance(), &ground);
         let expected = 0.002 * f64::from(frame % 50);
         assert!((sensed.position.x + 9.3 - expected).abs() < 1e-12, "frame {frame}");
         // Nobody corrects the heading: 1 mrad a frame.
@@ -49,12 +49,12 @@ fn drift_grows_until_a_fix_takes_it_away() {
 fn a_walk_has_the_spread_of_its_time() {
     // After 100 s of a walk of 0.01 m in 1 s: 0.1 m in x. Over 400 seeds the mean square is 0.01 within four
     // standard errors of sqrt(2 / 400).
-    let errors = SensorErrors { position_walk: 0.01, ..SensorErrors::default() };
+    let errors = LocalisationErrors { position_walk: 0.01, ..LocalisationErrors::default() };
     let mut mean_square = 0.0;
     let ground = ground();
     for seed in 0..400 {
-        let mut sensors = Sensors::new(errors, seed, 1.0);
-        let last = (0..=100).map(|_| sensors.read(&stance(), &ground)).last().unwrap();
+        let mut localisation = Localisation::new(errors, seed, 1.0);
+        let last = (0..=100).map(|_| localisation.read(&stance(), &ground)).last().unwrap();
         let error = last.position.x + 9.3;
         mean_square += error * error / 400.0;
     }
@@ -63,6 +63,6 @@ fn a_walk_has_the_spread_of_its_time() {
 
 #[test]
 fn errors_that_are_none_are_named() {
-    let errors = SensorErrors { attitude_noise: -1.0, ..SensorErrors::default() };
+    let errors = LocalisationErrors { attitude_noise: -1.0, ..LocalisationErrors::default() };
     assert!(errors.validate("sensors").unwrap_err().to_string().contains("sensors.attitude_noise is -1"));
 }

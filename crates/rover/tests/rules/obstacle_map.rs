@@ -2,27 +2,27 @@
 
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Label, LocalMap, MapSize, OBSTACLE_FRAMES, ObstacleMap, PassableRules, RadialGrid, Test, Vehicle,
-    obstacle_map_due,
+    ElevationMap, FRAMES_PER_OBSTACLE_MAP, Label, MapSize, ObstacleMap, RadialGrid, TraversabilityRules,
+    TraversabilityTest, Vehicle, obstacle_map_due,
 };
 use raypencil_scene::Pose;
 
-fn map(elevation: impl Fn(f64, f64) -> Option<f64>) -> LocalMap {
-    let mut map = LocalMap::new(MapSize::default(), DVec2::ZERO);
+fn map(elevation: impl Fn(f64, f64) -> Option<f64>) -> ElevationMap {
+    let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
     for point in map.points() {
         let place = map.place(point);
         if let Some(z) = elevation(place.x, place.y) {
-            map.give(point, z);
+            map.set_proximity(point, z);
         }
     }
     map
 }
 
-fn obstacles(map: &LocalMap, heading: f64) -> ObstacleMap {
+fn obstacles(map: &ElevationMap, heading: f64) -> ObstacleMap {
     let vehicle = Vehicle::default();
-    let (rules, grid) = (PassableRules::of(&vehicle), RadialGrid::of(&vehicle));
+    let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
     let pose = Pose::from_axis_angle(DVec3::Z, heading);
-    ObstacleMap::of(map, &vehicle, &rules, &grid, &pose)
+    ObstacleMap::extract(map, &vehicle, &rules, &grid, &pose)
 }
 
 #[test]
@@ -45,12 +45,12 @@ fn a_step_of_0_4_m_is_an_obstacle_and_one_of_0_1_m_is_not() {
     // and the rear one's is not, 0.4 over 1.2 m against 0.35 over 1.2 m. Radius 3.0 is 0.7 + 23 * 0.1.
     let high = map(|x, _| Some(if x > 2.95 { 0.4 } else { 0.0 }));
     let ahead = obstacles(&high, 0.0).sectors[15];
-    assert_eq!((ahead.label, ahead.failed), (Label::Obstacle, Some(Test::Length)));
+    assert_eq!((ahead.label, ahead.failed), (Label::Obstacle, Some(TraversabilityTest::Length)));
     assert!((ahead.radius - 3.0).abs() < 1e-9);
     // Aslant, one front wheel meets it first: a), 0.4 over 1.0 m. At 30 degrees to the left that is the right one,
     // 3 = r cos 30 + 0.5 sin 30.
     let aside = obstacles(&high, 0.0).sectors[30];
-    assert_eq!((aside.label, aside.failed), (Label::Obstacle, Some(Test::Front)));
+    assert_eq!((aside.label, aside.failed), (Label::Obstacle, Some(TraversabilityTest::Front)));
     let r = 2.75 / 0.75_f64.sqrt();
     assert!((aside.radius - r).abs() <= 0.16, "{} for {r}", aside.radius);
     let low = map(|x, _| Some(if x > 2.95 { 0.1 } else { 0.0 }));
@@ -78,13 +78,13 @@ fn the_grid_turns_with_the_vehicle_and_the_map_does_not() {
 
 #[test]
 fn every_tenth_frame() {
-    let due: Vec<u64> = (0..35).filter(|&frame| obstacle_map_due(frame, OBSTACLE_FRAMES)).collect();
+    let due: Vec<u64> = (0..35).filter(|&frame| obstacle_map_due(frame, FRAMES_PER_OBSTACLE_MAP)).collect();
     assert_eq!(due, [0, 10, 20, 30]);
 }
 
 #[test]
 fn a_grid_that_is_none_is_named() {
-    let grid = RadialGrid::of(&Vehicle::default());
+    let grid = RadialGrid::for_vehicle(&Vehicle::default());
     assert!(grid.validate("grid").is_ok());
     let short = RadialGrid { last: 0.1, ..grid };
     assert!(short.validate("grid").unwrap_err().to_string().starts_with("grid.last is 0.1"));

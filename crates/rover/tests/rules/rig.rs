@@ -33,7 +33,7 @@ fn a_scene_of_the_rig_gives_the_rig_back() {
     let stand = Pose { position: DVec3::new(2.0, -1.0, 0.3), ..Pose::from_axis_angle(DVec3::Z, 0.7) };
     let air = Atmosphere { attenuation: 0.0 };
     let scene = rig.scene(Arc::new(mesh), stand, air, FluxModel::Radiometric).unwrap();
-    let again = Rig::of_scene(&scene, stand);
+    let again = Rig::from_scene(&scene, stand);
     for (a, b) in again.beams.iter().zip(&rig.beams) {
         let p = DVec3::new(0.2, 0.1, 3.0);
         assert!((a.vehicle_from_sensor * p - b.vehicle_from_sensor * p).length() < 1e-14);

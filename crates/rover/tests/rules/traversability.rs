@@ -1,14 +1,16 @@
 //! Every test of a point on maps made by hand.
 
 use glam::DVec2;
-use raypencil_rover::{LocalMap, MapSize, PassableRules, Test, Vehicle, Verdict};
+use raypencil_rover::{
+    ElevationMap, MapSize, Traversability, TraversabilityRules, TraversabilityTest, Vehicle,
+};
 
 /// The elevation of grid point (i, j) of a map of 61 by 61, 0.1 m apart; `None` where it is not known.
-fn map(elevation: impl Fn(i64, i64) -> Option<f64>) -> LocalMap {
-    let mut map = LocalMap::new(MapSize { spacing: 0.1, points: 61 }, DVec2::ZERO);
+fn map(elevation: impl Fn(i64, i64) -> Option<f64>) -> ElevationMap {
+    let mut map = ElevationMap::new(MapSize { spacing: 0.1, points: 61 }, DVec2::ZERO);
     for point in map.points() {
         if let Some(z) = elevation(point.i, point.j) {
-            map.give(point, z);
+            map.set_proximity(point, z);
         }
     }
     map
@@ -16,60 +18,74 @@ fn map(elevation: impl Fn(i64, i64) -> Option<f64>) -> LocalMap {
 
 /// The default vehicle, driving along +x, with its front axle at (1, 0): its front wheels are at grid points
 /// (10, +-5), its rear wheels at (-2, +-5), its centre at (4, 0), the closer pair at (7, 0) and (1, 0).
-fn judge(rules: &PassableRules, map: &LocalMap) -> Verdict {
-    rules.judge(map, &Vehicle::default(), DVec2::new(1.0, 0.0), DVec2::X)
+fn judge(rules: &TraversabilityRules, map: &ElevationMap) -> Traversability {
+    rules.classify(map, &Vehicle::default(), DVec2::new(1.0, 0.0), DVec2::X)
 }
 
-fn rules() -> PassableRules {
-    PassableRules::of(&Vehicle::default())
+fn rules() -> TraversabilityRules {
+    TraversabilityRules::for_vehicle(&Vehicle::default())
 }
 
 /// Level ground, but for some grid points.
-fn except(changed: &'static [(i64, i64, f64)]) -> LocalMap {
+fn except(changed: &'static [(i64, i64, f64)]) -> ElevationMap {
     map(move |i, j| {
         Some(changed.iter().find(|change| (change.0, change.1) == (i, j)).map_or(0.0, |change| change.2))
     })
 }
 
 /// Level ground, but for some grid points that are not known.
-fn without(unknown: &'static [(i64, i64)]) -> LocalMap {
+fn without(unknown: &'static [(i64, i64)]) -> ElevationMap {
     map(move |i, j| (!unknown.contains(&(i, j))).then_some(0.0))
 }
 
 #[test]
 fn level_ground_is_clear() {
-    assert_eq!(judge(&rules(), &map(|_, _| Some(0.0))), Verdict::Clear);
-    assert_eq!(judge(&rules(), &map(|_, _| None)), Verdict::Unknown);
+    assert_eq!(judge(&rules(), &map(|_, _| Some(0.0))), Traversability::Clear);
+    assert_eq!(judge(&rules(), &map(|_, _| None)), Traversability::Unknown);
 }
 
 #[test]
 fn test_a_front_wheels() {
     // 1.0 m apart, limit 0.35: a rise of 0.36 m fails, one of 0.34 m passes.
     let fails = except(&[(10, 5, 0.36)]);
-    assert_eq!(judge(&rules(), &fails), Verdict::Obstacle(Test::Front));
-    assert_eq!(judge(&rules(), &except(&[(10, 5, 0.34)])), Verdict::Clear);
-    assert_eq!(judge(&rules(), &except(&[(10, -5, -0.36)])), Verdict::Obstacle(Test::Front));
+    assert_eq!(judge(&rules(), &fails), Traversability::Obstacle(TraversabilityTest::Front));
+    assert_eq!(judge(&rules(), &except(&[(10, 5, 0.34)])), Traversability::Clear);
+    assert_eq!(
+        judge(&rules(), &except(&[(10, -5, -0.36)])),
+        Traversability::Obstacle(TraversabilityTest::Front)
+    );
 }
 
 #[test]
 fn test_b_rear_wheels() {
-    assert_eq!(judge(&rules(), &except(&[(-2, -5, 0.36)])), Verdict::Obstacle(Test::Rear));
-    assert_eq!(judge(&rules(), &except(&[(-2, -5, 0.34)])), Verdict::Clear);
+    assert_eq!(
+        judge(&rules(), &except(&[(-2, -5, 0.36)])),
+        Traversability::Obstacle(TraversabilityTest::Rear)
+    );
+    assert_eq!(judge(&rules(), &except(&[(-2, -5, 0.34)])), Traversability::Clear);
 }
 
 #[test]
 fn test_c_from_axle_to_axle() {
     // 1.2 m apart, limit 0.35 / 1.2: again 0.36 m fails and 0.34 m passes, up or down. At the midpoints alone:
     // the wheels stay level.
-    assert_eq!(judge(&rules(), &except(&[(10, 0, 0.36)])), Verdict::Obstacle(Test::Length));
-    assert_eq!(judge(&rules(), &except(&[(-2, 0, 0.36)])), Verdict::Obstacle(Test::Length));
-    assert_eq!(judge(&rules(), &except(&[(10, 0, -0.34)])), Verdict::Clear);
+    assert_eq!(
+        judge(&rules(), &except(&[(10, 0, 0.36)])),
+        Traversability::Obstacle(TraversabilityTest::Length)
+    );
+    assert_eq!(
+        judge(&rules(), &except(&[(-2, 0, 0.36)])),
+        Traversability::Obstacle(TraversabilityTest::Length)
+    );
+    assert_eq!(judge(&rules(), &except(&[(10, 0, -0.34)])), Traversability::Clear);
     // A slope of 0.29 is below the limit of 0.2917, one of 0.30 above, wherever the vehicle stands on it.
-    for (slope, verdict) in [(0.29, Verdict::Clear), (0.30, Verdict::Obstacle(Test::Length))] {
+    for (slope, verdict) in
+        [(0.29, Traversability::Clear), (0.30, Traversability::Obstacle(TraversabilityTest::Length))]
+    {
         let hill = map(|i, _| Some(slope * 0.1 * i as f64));
         for shift in [0.0, 0.03, 0.07] {
             let front = DVec2::new(1.0 + shift, shift);
-            assert_eq!(rules().judge(&hill, &Vehicle::default(), front, DVec2::X), verdict);
+            assert_eq!(rules().classify(&hill, &Vehicle::default(), front, DVec2::X), verdict);
         }
     }
 }
@@ -77,7 +93,7 @@ fn test_c_from_axle_to_axle() {
 #[test]
 fn a_slope_at_its_limit_passes() {
     // 0.35 m over 1.0 m is exactly the limit.
-    assert_eq!(judge(&rules(), &except(&[(10, 5, 0.35)])), Verdict::Clear);
+    assert_eq!(judge(&rules(), &except(&[(10, 5, 0.35)])), Traversability::Clear);
 }
 
 #[test]
@@ -87,45 +103,51 @@ fn the_closer_pair_stands_in_for_unknown_rear_wheels() {
     let of = |changed: (i64, i64)| {
         map(move |i, j| (!(i == -2 && j == 5)).then_some(if (i, j) == changed { 0.36 } else { 0.0 }))
     };
-    assert_eq!(judge(&rules(), &of((-2, 0))), Verdict::Unknown);
-    assert_eq!(judge(&rules(), &of((1, 0))), Verdict::Obstacle(Test::Closer));
-    assert_eq!(judge(&rules(), &of((7, 0))), Verdict::Obstacle(Test::Closer));
+    assert_eq!(judge(&rules(), &of((-2, 0))), Traversability::Unknown);
+    assert_eq!(judge(&rules(), &of((1, 0))), Traversability::Obstacle(TraversabilityTest::Closer));
+    assert_eq!(judge(&rules(), &of((7, 0))), Traversability::Obstacle(TraversabilityTest::Closer));
     // With all wheels known the same bump between the axles is no obstacle to the slope tests.
-    assert_eq!(judge(&rules(), &except(&[(7, 0, 0.34)])), Verdict::Clear);
+    assert_eq!(judge(&rules(), &except(&[(7, 0, 0.34)])), Traversability::Clear);
 }
 
 #[test]
 fn belly() {
     // Midway between the four wheels, 0.35 m above their mean of 0: terrain at 0.35 hits, at 0.34 does not. No
     // pair of slope points is there.
-    assert_eq!(judge(&rules(), &except(&[(4, 0, 0.35)])), Verdict::Obstacle(Test::Belly));
-    assert_eq!(judge(&rules(), &except(&[(4, 0, 0.34)])), Verdict::Clear);
+    assert_eq!(
+        judge(&rules(), &except(&[(4, 0, 0.35)])),
+        Traversability::Obstacle(TraversabilityTest::Belly)
+    );
+    assert_eq!(judge(&rules(), &except(&[(4, 0, 0.34)])), Traversability::Clear);
     // One wheel on 0.2 lifts the mean by 0.05 m: 0.39 passes, 0.41 does not.
-    assert_eq!(judge(&rules(), &except(&[(4, 0, 0.39), (10, 5, 0.2)])), Verdict::Clear);
-    assert_eq!(judge(&rules(), &except(&[(4, 0, 0.41), (10, 5, 0.2)])), Verdict::Obstacle(Test::Belly));
+    assert_eq!(judge(&rules(), &except(&[(4, 0, 0.39), (10, 5, 0.2)])), Traversability::Clear);
+    assert_eq!(
+        judge(&rules(), &except(&[(4, 0, 0.41), (10, 5, 0.2)])),
+        Traversability::Obstacle(TraversabilityTest::Belly)
+    );
     // Over a ditch it hangs free.
-    assert_eq!(judge(&rules(), &except(&[(4, 0, -3.0)])), Verdict::Clear);
+    assert_eq!(judge(&rules(), &except(&[(4, 0, -3.0)])), Traversability::Clear);
 }
 
 #[test]
 fn every_unknown_point_leaves_it_unknown() {
     for needed in [(10, 5), (10, -5), (-2, 5), (-2, -5), (10, 0), (-2, 0), (4, 0)] {
         let but_one = map(move |i, j| ((i, j) != needed).then_some(0.0));
-        assert_eq!(judge(&rules(), &but_one), Verdict::Unknown, "{needed:?}");
+        assert_eq!(judge(&rules(), &but_one), Traversability::Unknown, "{needed:?}");
     }
     // Points that belong to no pair are not asked for; nor is the closer pair while the rear wheels are known.
-    assert_eq!(judge(&rules(), &without(&[(3, 3), (1, 0), (7, 0)])), Verdict::Clear);
+    assert_eq!(judge(&rules(), &without(&[(3, 3), (1, 0), (7, 0)])), Traversability::Clear);
     // Unknown rear wheels may be excused; the closer pair then is needed.
-    let excusing = PassableRules { rear_needed: false, ..rules() };
-    assert_eq!(judge(&excusing, &without(&[(-2, 5), (-2, -5), (-2, 0)])), Verdict::Clear);
-    assert_eq!(judge(&excusing, &without(&[(-2, 5), (1, 0)])), Verdict::Unknown);
+    let excusing = TraversabilityRules { rear_needed: false, ..rules() };
+    assert_eq!(judge(&excusing, &without(&[(-2, 5), (-2, -5), (-2, 0)])), Traversability::Clear);
+    assert_eq!(judge(&excusing, &without(&[(-2, 5), (1, 0)])), Traversability::Unknown);
 }
 
 #[test]
 fn an_obstacle_outweighs_an_unknown_point() {
     // The rear pair is unknown, the front pair fails all the same.
     let both = map(|i, j| (i != -2).then_some(if (i, j) == (10, 5) { 0.5 } else { 0.0 }));
-    assert_eq!(judge(&rules(), &both), Verdict::Obstacle(Test::Front));
+    assert_eq!(judge(&rules(), &both), Traversability::Obstacle(TraversabilityTest::Front));
 }
 
 #[test]
@@ -135,17 +157,17 @@ fn narrow_gaps_are_crossed_if_asked_for() {
     let crack =
         |far: f64| map(move |i, _| (!(9..=10).contains(&i)).then_some(if i > 10 { far } else { 0.0 }));
     let crossing = rules().crossing_gaps(&Vehicle::default());
-    assert_eq!(judge(&rules(), &crack(0.0)), Verdict::Unknown);
-    assert_eq!(judge(&crossing, &crack(0.0)), Verdict::Clear);
-    assert_eq!(judge(&crossing, &crack(0.4)), Verdict::Obstacle(Test::Length));
+    assert_eq!(judge(&rules(), &crack(0.0)), Traversability::Unknown);
+    assert_eq!(judge(&crossing, &crack(0.0)), Traversability::Clear);
+    assert_eq!(judge(&crossing, &crack(0.4)), Traversability::Obstacle(TraversabilityTest::Length));
     // Three grid points, 0.3 m, are too wide.
     let wide = map(|i, _| (!(9..=11).contains(&i)).then_some(0.0));
-    assert_eq!(judge(&crossing, &wide), Verdict::Unknown);
+    assert_eq!(judge(&crossing, &wide), Traversability::Unknown);
 }
 
 #[test]
 fn thresholds_that_are_none_are_named() {
     assert!(rules().crossing_gaps(&Vehicle::default()).validate("rules").is_ok());
-    let wrong = PassableRules { closer_share: 0.0, ..rules() };
+    let wrong = TraversabilityRules { closer_share: 0.0, ..rules() };
     assert!(wrong.validate("rules").unwrap_err().to_string().starts_with("rules.closer_share is 0"));
 }

@@ -38,7 +38,7 @@ fn on_a_slope_it_is_parallel_to_the_slope() {
     let rise = libm::atan(0.25);
     let up = settled(plane(|x, _| 0.25 * x), 0.0).unwrap();
     assert!((up.attitude.pitch_down + rise).abs() < 1e-6, "{up:?}");
-    assert!(up.attitude.roll_right.abs() < 1e-9 && up.unsettled < 1e-9);
+    assert!(up.attitude.roll_right.abs() < 1e-9 && up.residual < 1e-9);
     assert!((up.position.z - 0.25).abs() < 1e-3, "{up:?}");
     let across = settled(plane(|x, _| 0.25 * x), std::f64::consts::FRAC_PI_2).unwrap();
     assert!((across.attitude.roll_right + rise).abs() < 1e-6, "{across:?}");

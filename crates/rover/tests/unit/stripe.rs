@@ -50,7 +50,7 @@ fn edges_come_in_row_major_order_and_runs_are_told_apart() {
 #[test]
 fn wide_images_are_read_in_strips() {
     // A stripe that falls by a row for each column, over three strips of which the last is not full.
-    let width = 2 * STRIP as u32 + 5;
+    let width = 2 * COLUMNS_PER_STRIP as u32 + 5;
     let mut image = Image::filled(width, width + 3, 0_u16);
     (0..width).for_each(|i| image.set(i, i + 1, 9));
     let edges = Extraction::thresholding(5.0).edges(&image);
@@ -71,7 +71,7 @@ fn a_run_that_the_border_cuts_off_has_no_lower_edge() {
 fn sub_pixel_edges_and_centroids() {
     // A stripe from 10 to 13 + f, threshold half way between dark and light. The crossing is exact for f = 0, 1/2
     // and 1, and otherwise off by |1/2 + 1/(2 (1 - f)) - 1 - f| at most: 0.086 at f = 0.29 (1 - sqrt(1/2)).
-    let extraction = Extraction { place: Place::SubPixel, ..Extraction::thresholding(52.5) };
+    let extraction = Extraction { place: StripeLocation::SubPixel, ..Extraction::thresholding(52.5) };
     for share in [0.0, 0.1, 0.29, 0.45, 0.5, 0.6, 0.75, 0.95] {
         let image = stripes(|_| vec![(10.0, 13.0 + share)]);
         for edge in extraction.edges(&image) {
@@ -81,7 +81,7 @@ fn sub_pixel_edges_and_centroids() {
     let exact = extraction.edges(&stripes(|_| vec![(10.0, 13.5)]));
     assert!((exact[0].row - 13.5).abs() < 1e-12);
     // Lit from 10 to 13 on a dark of 5: the centroid is the middle, 11.5.
-    let centroid = Extraction { place: Place::Centroid, ..extraction };
+    let centroid = Extraction { place: StripeLocation::Centroid, ..extraction };
     let edge = centroid.edges(&stripes(|_| vec![(10.0, 13.0)]))[0];
     assert_eq!((edge.j, edge.row), (11, 11.5));
 }
@@ -97,11 +97,12 @@ fn edges_by_gradient_do_not_need_a_level() {
             image.set(i, j, lit + 2.0 * f64::from(j));
         }
     }
-    let extraction = Extraction { detection: Detection::Gradient(8.0), place: Place::Pixel, least_rows: 1 };
+    let extraction =
+        Extraction { detection: Detection::Gradient(8.0), place: StripeLocation::Pixel, least_rows: 1 };
     let rows: Vec<u32> = extraction.edges(&image).iter().map(|edge| edge.j).collect();
     assert_eq!(rows, [12, 12]);
     // Symmetric differences about the border 13: the vertex is there.
-    let fine = Extraction { place: Place::SubPixel, ..extraction }.edges(&image);
+    let fine = Extraction { place: StripeLocation::SubPixel, ..extraction }.edges(&image);
     assert!(fine.iter().all(|edge| (edge.row - 13.0).abs() < 1e-12));
 }
 
@@ -111,7 +112,7 @@ fn a_second_fall_without_a_rise_begins_below_the_first() {
     // second's centroid is (60 * 2.5 + 55 * 3.5) / 115.
     let image = Image::from_cells(1, 5, vec![0.0, 100.0, 60.0, 55.0, 0.0]);
     let extraction =
-        Extraction { detection: Detection::Gradient(8.0), place: Place::Centroid, least_rows: 1 };
+        Extraction { detection: Detection::Gradient(8.0), place: StripeLocation::Centroid, least_rows: 1 };
     let edges = extraction.edges(&image);
     let expected = [EdgePoint { i: 0, j: 1, row: 1.5 }, EdgePoint { i: 0, j: 2, row: 342.5 / 115.0 }];
     assert_eq!(edges, expected);
@@ -142,8 +143,8 @@ fn two_beams_in_one_exposure_by_order() {
         2 => vec![(10.0, 12.0), (15.0, 16.0), (20.0, 22.0)],
         _ => vec![],
     });
-    let (stripes, left_out) = Extraction::thresholding(50.0).edges_by_order(&image, 2);
-    assert_eq!(left_out, 2);
+    let (stripes, columns_left_out) = Extraction::thresholding(50.0).edges_by_order(&image, 2);
+    assert_eq!(columns_left_out, 2);
     // The near beam's stripe is the lower one.
     assert_eq!(stripes[0], [EdgePoint { i: 0, j: 21, row: 21.5 }]);
     assert_eq!(stripes[1], [EdgePoint { i: 0, j: 11, row: 11.5 }]);
