@@ -1,94 +1,108 @@
-//! The local terrain map (LTM): a square grid of elevations that goes along with the vehicle. (Paper, §7)
+//! The elevation map, the paper's local terrain map (LTM): a square grid that moves with the vehicle. (Paper, §7)
 
 use glam::{DVec2, DVec3};
 use raypencil_scene::SceneError;
 
 use crate::check::{check_count, check_range};
 
-/// The measures of a map.
+/// Size of an elevation map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapSize {
-    /// Between grid points, metres: "a nominal spacing of 0.1 meters" (§7).
+    /// Distance between grid points, metres: "a nominal spacing of 0.1 meters" (§7).
     pub spacing: f64,
-    /// Grid points along a side, odd: "201 by 201 grid points" (§7).
+    /// Number of grid points along a side, odd: "201 by 201 grid points" (§7).
     pub points: u32,
 }
 
 impl Default for MapSize {
-    /// The paper's: 20 by 20 metres. (§7)
+    /// The paper's size, 20 by 20 metres. (§7)
     fn default() -> Self {
         Self { spacing: 0.1, points: 201 }
     }
 }
 
-/// A grid point, counted in spacings from where the vehicle started. It names the same place for ever, wherever
-/// the map has moved.
+/// Index of a grid point, in grid spacings from the grid point at the start. It denotes the same global position
+/// however the map has moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GridPoint {
-    /// Along the global x axis.
+    /// Index along the global x axis.
     pub i: i64,
-    /// Along the global y axis.
+    /// Index along the global y axis.
     pub j: i64,
 }
 
-/// Where a grid point's elevation comes from. The paper's key is 's' for [`ElevationSource::Unknown`] and 'u' for all
-/// others.
+/// Source of a grid point's elevation. The paper's key is 's' for [`ElevationSource::Unknown`] and 'u' for all others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ElevationSource {
-    /// "The elevation at this grid point is not known."
+    /// No elevation: "the elevation at this grid point is not known" (§7).
     #[default]
     Unknown,
-    /// Under the vehicle at the start or at a scan: from the proximity sensor.
+    /// Proximity sensor: the point was under the vehicle at the start or at a scan.
     Proximity,
-    /// A neighbour of a measured point.
+    /// Elevation of a measured neighbour.
     Extrapolated,
-    /// The nearest grid point to a measured point.
+    /// Elevation of a measured point, to which this grid point is the nearest.
     Measured,
 }
 
 impl ElevationSource {
-    /// The paper's key: 's' not known, 'u' known. (§7)
+    /// The paper's key: 's' if the elevation is not known, 'u' if it is. (§7)
     pub fn key(self) -> char {
         if self == Self::Unknown { 's' } else { 'u' }
     }
 }
 
-/// What the map holds at a grid point.
+/// Content of the map at a grid point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Cell {
-    /// Global z, metres; of no meaning where it is unknown.
+    /// Global z, metres. Meaningless if the source is unknown.
     elevation: f64,
     source: ElevationSource,
-    /// The update that made it a new data point, if it is the present one.
+    /// Number of the update that made it a new data point; 0 if its elevation was not measured.
     update: u64,
 }
 
-/// By how much new measurements contradict what the map held.
+/// Difference between new measurements and the elevations measured before.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inconsistency {
-    /// Grid points measured now that had been measured before.
+    /// Number of grid points that were measured now and before.
     pub count: u32,
-    /// The mean of |new - old| over them, metres.
+    /// Mean of |new - old| over these points, metres.
     pub mean: f64,
-    /// The largest, metres.
+    /// Maximum of |new - old|, metres.
     pub largest: f64,
 }
 
-/// The local terrain map. "The map does not rotate but the x and y directions are always parallel to the x and y
+/// The elevation map: the paper's local terrain map, LTM, of section 7. "The map does not rotate but the x and y directions are always parallel to the x and y
 /// global axes. The central grid point at the start of a mission is at the local vehicle origin." (§7)
+///
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use raypencil_rover::{ElevationMap, ElevationSource, MapSize};
+///
+/// // 201 by 201 points 0.1 m apart, centred on (0, 0). The grid point nearest to (2.03, 0.98) is (2.0, 1.0).
+/// let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
+/// map.insert([DVec3::new(2.03, 0.98, 0.3)]);
+/// let point = map.nearest(DVec2::new(2.0, 1.0));
+/// assert_eq!((map.elevation(point), map.source(point)), (Some(0.3), ElevationSource::Measured));
+///
+/// // Its eight neighbours inherit the elevation; the next point does not.
+/// let [beside, farther] = [2.1, 2.2].map(|x| map.nearest(DVec2::new(x, 1.0)));
+/// assert_eq!((map.source(beside), map.elevation(farther)), (ElevationSource::Extrapolated, None));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElevationMap {
     size: MapSize,
-    /// Global place of grid point (0, 0).
+    /// Global x and y of grid point (0, 0), metres.
     origin: DVec2,
     centre: GridPoint,
-    /// Row by row, each grid point at its own remainder of `points`: moving the map moves no cell.
+    /// Row by row. The index of a grid point is its i and j modulo `points`, so that no cell moves with the map.
     cells: Vec<Cell>,
     update: u64,
 }
 
 impl ElevationMap {
-    /// A map centred on the global `origin`. "All of the grid points are initialized to 's' at the start of the
+    /// An unknown map centred on the global `origin`. "All of the grid points are initialized to 's' at the start of the
     /// run." (§7)
     ///
     /// # Panics
@@ -99,36 +113,36 @@ impl ElevationMap {
         Self { size, origin, centre: GridPoint { i: 0, j: 0 }, cells, update: 0 }
     }
 
-    /// The map's measures.
+    /// Size of the map.
     pub fn size(&self) -> MapSize {
         self.size
     }
 
-    /// The central grid point.
+    /// Central grid point.
     pub fn centre(&self) -> GridPoint {
         self.centre
     }
 
-    /// The global place of a grid point. "The global coordinate of the central grid point is updated so that the
+    /// Global x and y of a grid point, metres. "The global coordinate of the central grid point is updated so that the
     /// global coordinates of the other grid points can be computed." (§7)
     pub fn place(&self, point: GridPoint) -> DVec2 {
         self.origin + DVec2::new(point.i as f64, point.j as f64) * self.size.spacing
     }
 
-    /// The grid point nearest to a global place, on the map or not.
+    /// Grid point nearest to a global position, on the map or not.
     pub fn nearest(&self, place: DVec2) -> GridPoint {
         let steps = (place - self.origin) / self.size.spacing;
-        // Half way belongs to the greater one, on either side of 0.
+        // Half way between two points, the greater index is taken, on either side of 0.
         GridPoint { i: (steps.x + 0.5).floor() as i64, j: (steps.y + 0.5).floor() as i64 }
     }
 
-    /// Whether a grid point is on the map now.
+    /// Whether a grid point is on the map at present.
     pub fn contains(&self, point: GridPoint) -> bool {
         let half = i64::from(self.size.points / 2);
         (point.i - self.centre.i).abs() <= half && (point.j - self.centre.j).abs() <= half
     }
 
-    /// The grid points on the map, row by row from the lowest x and y.
+    /// All grid points on the map, row by row from the lowest x and y.
     pub fn points(&self) -> impl Iterator<Item = GridPoint> + use<> {
         let (half, centre) = (i64::from(self.size.points / 2), self.centre);
         (-half..=half)
@@ -144,18 +158,18 @@ impl ElevationMap {
         if self.contains(point) { self.cells[self.index(point)] } else { Cell::default() }
     }
 
-    /// Where a grid point's elevation comes from; unknown beyond the map.
+    /// Source of a grid point's elevation; unknown beyond the map.
     pub fn source(&self, point: GridPoint) -> ElevationSource {
         self.cell(point).source
     }
 
-    /// The elevation of a grid point, global z in metres, if it is known.
+    /// Elevation of a grid point, global z in metres. `None` if it is not known.
     pub fn elevation(&self, point: GridPoint) -> Option<f64> {
         let cell = self.cell(point);
         (cell.source != ElevationSource::Unknown).then_some(cell.elevation)
     }
 
-    /// Centres the map on the grid point nearest to the vehicle, and gives by how many grid steps it moved. "The
+    /// Centres the map on the grid point nearest to the vehicle, and returns the motion in grid steps. "The
     /// central grid point of the map is moved with the vehicle but only in increments of the grid spacing." (§7)
     pub fn recentre(&mut self, vehicle: DVec2) -> (i64, i64) {
         let (old, new) = (self.centre, self.nearest(vehicle));
@@ -173,12 +187,13 @@ impl ElevationMap {
         (new.i - old.i, new.j - old.j)
     }
 
-    /// Forgets all elevations.
+    /// Makes all elevations unknown.
     pub fn clear(&mut self) {
         self.cells.fill(Cell::default());
     }
 
-    /// Gives a grid point an elevation from the proximity sensor; nothing beyond the map.
+    /// Sets the elevation of a grid point, global z in metres, as from the proximity sensor. A point beyond the map is
+    /// ignored.
     pub fn set_proximity(&mut self, point: GridPoint, elevation: f64) {
         if self.contains(point) {
             let index = self.index(point);
@@ -186,14 +201,16 @@ impl ElevationMap {
         }
     }
 
-    /// Enters measured points (global, metres), all those of one frame or of a whole scan, each stripe's in row-major
-    /// order of its image.
+    /// Enters measured points (global, metres). One call takes all points of a frame or of a scan; the points of each
+    /// stripe are in row-major order of its image. Points beyond the map and points that are not finite are ignored.
     ///
     /// "The grid point having x,y coordinates closest to an edge point inherits the elevation of the edge point and
-    /// its key field is set to 'u'." Of several the last one stays. Then "extrapolating the elevation of each new
-    /// data point to each of its neighboring grid points that is not itself a new data point": to the eight,
-    /// whatever they held. (§7) CHOICE: they are extrapolated in the order in which they first became data points,
-    /// and again the last one stays.
+    /// its key field is set to 'u'." If several points have the same grid point, the last one counts. Then "extrapolating the elevation of each new
+    /// data point to each of its neighboring grid points that is not itself a new data point" (§7): eight neighbours,
+    /// whatever they held before.
+    ///
+    /// CHOICE: data points are extrapolated in the order in which they first became data points. If several have the
+    /// same neighbour, the last one counts.
     pub fn insert(&mut self, points: impl IntoIterator<Item = DVec3>) -> Inconsistency {
         self.update += 1;
         let mut new = Vec::new();
@@ -241,7 +258,7 @@ impl ElevationMap {
 }
 
 impl MapSize {
-    /// Refuses a size that no map can have, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "spacing", self.spacing, 1e-4, 1e3, "m")?;
         check_count(field, "points", self.points.into(), 3, 8191)?;

@@ -1,5 +1,4 @@
-//! What the vehicle knows of where it is: inertial sensors with their errors, beacons, and the proximity sensor
-//! below. (Paper, §7)
+//! Localisation of the vehicle: inertial sensors with their errors, beacons, and the proximity sensor. (Paper, §7)
 
 use glam::DVec2;
 use raypencil_scene::SceneError;
@@ -9,69 +8,84 @@ use crate::check::{check_count, check_range};
 use crate::noise_stream::{NoiseStream, Purpose};
 use crate::vehicle::{Attitude, Stance};
 
-/// The errors of the sensors. "The x and y coordinates can be obtained directly from inertial guidance sensors and
+/// Errors of the localisation sensors. "The x and y coordinates can be obtained directly from inertial guidance sensors and
 /// corrected, possibly, by periodic updates from satellite sightings of the Rover's beacons. The pitch, roll, and
 /// yaw angles of the vehicle can also be measured from on-board sensors." (§7)
 ///
-/// CHOICE: the paper gives no figures: the default has no errors at all.
+/// CHOICE: the paper gives no figures. The default has no errors.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LocalisationErrors {
-    /// The measured position runs away by this, global, metres per second.
+    /// Drift of the measured position, global x and y, metres per second.
     pub position_drift: DVec2,
-    /// And wanders: after a second, by this standard deviation in x and in y, metres.
+    /// Random walk of the measured position: standard deviation in x and in y after one second, metres.
     pub position_walk: f64,
     /// Constant errors of heading, pitch and roll, radians.
     pub attitude_bias: Attitude,
-    /// The heading runs away by this, radians per second. No beacon sees it.
+    /// Drift of the measured heading, radians per second. Position fixes do not correct it.
     pub heading_drift: f64,
-    /// Standard deviation of each angle in each frame, radians.
+    /// Noise of each angle in each frame: standard deviation, radians.
     pub attitude_noise: f64,
-    /// Standard deviation of the proximity sensor, metres.
+    /// Noise of the proximity sensor: standard deviation, metres.
     pub proximity_noise: f64,
-    /// Sightings of the beacons, if there are any.
+    /// Position fixes by satellite sightings of the beacons. `None`: no fixes.
     pub fixes: Option<PositionFixes>,
 }
 
-/// PositionFixes of the position.
+/// Periodic fixes of the position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionFixes {
-    /// One every so many frames; the first with frame 0.
+    /// Number of frames from one fix to the next; the first is in frame 0.
     pub every_frames: u64,
-    /// Standard deviation in x and in y, metres.
+    /// Error of a fix: standard deviation in x and in y, metres.
     pub noise: f64,
 }
 
-/// What the sensors say in one frame.
+/// Reading of all localisation sensors in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalisationReading {
-    /// The vehicle's origin as the inertial sensors have it, global, metres.
+    /// Measured position of the vehicle's origin, global x and y, metres.
     pub position: DVec2,
-    /// Its attitude likewise.
+    /// Measured attitude.
     pub attitude: Attitude,
-    /// From the vehicle's origin straight down to the ground, metres: negative where the ground stands above the
-    /// plane of the wheels. "A proximity sensor is mounted under the vehicle to measure the distance from the
-    /// local vehicle origin to the ground surface." (§7) `None` where there is no ground.
+    /// Measured distance from the vehicle's origin straight down to the ground, metres. Negative if the ground is above
+    /// the plane of the wheels. `None` if there is no ground. "A proximity sensor is mounted under the vehicle to measure the distance from the
+    /// local vehicle origin to the ground surface." (§7)
     pub proximity: Option<f64>,
 }
 
-/// The sensors of one drive.
+/// Simulated localisation sensors of one drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Localisation {
     errors: LocalisationErrors,
     noise_stream: NoiseStream,
     frame_rate: f64,
-    /// Measured minus true position.
+    /// Measured minus true position, global x and y, metres.
     error: DVec2,
     frame: u64,
 }
 
 impl Localisation {
-    /// Localisation with these errors, read `frame_rate` times a second. Other seeds give other noise.
+    /// Sensors with these errors that are read `frame_rate` times per second. The seed determines the noise.
     pub fn new(errors: LocalisationErrors, seed: u64, frame_rate: f64) -> Self {
         Self { errors, noise_stream: NoiseStream { seed }, frame_rate, error: DVec2::ZERO, frame: 0 }
     }
 
-    /// Reads all sensors of a vehicle that stands so, once per frame.
+    /// Reads all sensors of a vehicle with this true pose. Call it once per frame, in order.
+    ///
+    /// ```
+    /// use glam::{DVec2, DVec3};
+    /// use raypencil_rover::{Attitude, Localisation, LocalisationErrors, Stance};
+    /// use raypencil_terrain::{HeightIndex, builtin};
+    ///
+    /// // A drift of 0.5 m/s at 10 frames per second is 0.05 m per frame; frame 0 has none yet.
+    /// let errors = LocalisationErrors { position_drift: DVec2::new(0.5, 0.0), ..LocalisationErrors::default() };
+    /// let mut localisation = Localisation::new(errors, 1, 10.0);
+    /// let ground = HeightIndex::new(&builtin("pyramids", 0.25)?.into_mesh()?);
+    /// let stance = Stance { position: DVec3::new(-9.0, 0.0, 0.0), attitude: Attitude::default(), residual: 0.0 };
+    /// let drift = [0, 1].map(|_| localisation.read(&stance, &ground).position.x + 9.0);
+    /// assert!(drift[0] == 0.0 && (drift[1] - 0.05).abs() < 1e-12);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
     pub fn read(&mut self, stance: &Stance, ground: &HeightIndex) -> LocalisationReading {
         let Self { errors, noise_stream, frame, .. } = *self;
         if frame > 0 {
@@ -105,7 +119,7 @@ impl Localisation {
 }
 
 impl LocalisationErrors {
-    /// Refuses errors that are none, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "position_drift.x", self.position_drift.x, -1e3, 1e3, "m/s")?;
         check_range(field, "position_drift.y", self.position_drift.y, -1e3, 1e3, "m/s")?;

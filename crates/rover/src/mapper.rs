@@ -1,4 +1,4 @@
-//! One frame of the local terrain map: the vehicle's elevation, the map's move, new points. (Paper, §7)
+//! Update of the elevation map in a frame: the vehicle's elevation, the map's motion, new points. (Paper, §7)
 
 use glam::{DVec2, DVec3};
 use raypencil_scene::Pose;
@@ -7,33 +7,33 @@ use crate::elevation_map::{ElevationMap, ElevationSource, Inconsistency, MapSize
 use crate::localisation::LocalisationReading;
 use crate::vehicle::Vehicle;
 
-/// A local terrain map and where the vehicle believes that it stands on it.
+/// An elevation map and the estimated pose of the vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mapper {
     vehicle: Vehicle,
     map: ElevationMap,
-    /// `global_from_vehicle`, as believed.
+    /// Estimate of `global_from_vehicle`.
     pose: Pose,
 }
 
-/// What a frame did.
+/// Result of an update of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapUpdate {
-    /// Whether the vehicle's elevation came from the map and the proximity sensor; false if the map did not know
-    /// the ground under it.
+    /// Whether the vehicle's elevation came from the map and the proximity sensor. False if the map had no elevation
+    /// under the vehicle.
     pub elevation_read: bool,
-    /// By how many grid steps the map moved.
+    /// Motion of the map in x and y, grid steps.
     pub moved: (i64, i64),
-    /// How new points fitted old ones.
+    /// Difference between new elevations and old ones.
     pub inconsistency: Inconsistency,
 }
 
 impl Mapper {
-    /// A map at the start of a mission: centred on the vehicle, whose origin's `elevation` is given; under the
-    /// vehicle it comes from the proximity sensor.
+    /// Map at the start of a mission, centred on the vehicle. `elevation` is that of the vehicle's origin, global z in
+    /// metres. The elevations under the vehicle come from the proximity sensor.
     ///
-    /// CHOICE: the paper does not say how the vehicle knows its first elevation, which must come from the LTM; its
-    /// zero is arbitrary, since "only relative elevations are important" (§7).
+    /// CHOICE: the paper does not say how the vehicle gets its first elevation, before the LTM has any. Its zero is
+    /// arbitrary, since "only relative elevations are important" (§7).
     pub fn start(vehicle: Vehicle, size: MapSize, sensed: &LocalisationReading, elevation: f64) -> Self {
         let map = ElevationMap::new(size, sensed.position);
         let pose = sensed.attitude.at(sensed.position.extend(elevation));
@@ -42,12 +42,12 @@ impl Mapper {
         mapper
     }
 
-    /// The map.
+    /// The elevation map.
     pub fn map(&self) -> &ElevationMap {
         &self.map
     }
 
-    /// `global_from_vehicle`, as believed.
+    /// Estimate of `global_from_vehicle`.
     pub fn pose(&self) -> Pose {
         self.pose
     }
@@ -57,8 +57,9 @@ impl Mapper {
         &self.vehicle
     }
 
-    /// One frame: what the sensors say, and the points of all its stripes in vehicle coordinates. In this order: the
-    /// vehicle's elevation from the old map and the proximity sensor; the map's move; the points. (§7)
+    /// Updates the map with one frame: a reading of the sensors, and the points of all stripes (vehicle frame, metres).
+    /// In this order: the vehicle's elevation, from the old map and the proximity sensor; the motion of the map; the
+    /// points. (§7)
     pub fn update(
         &mut self,
         sensed: &LocalisationReading,
@@ -72,12 +73,12 @@ impl Mapper {
         MapUpdate { elevation_read, moved, inconsistency }
     }
 
-    /// A vertical scan at rest: the points of all its stripes at once, in vehicle coordinates. "The beams are
+    /// Updates the map with a vertical scan at rest: the points of all its stripes (vehicle frame, metres). "The beams are
     /// vertically panned to completely refresh the local map." (abstract) "... to obtain a fresh LTM." (§7)
     ///
-    /// CHOICE: fresh means that all is forgotten first, if `forget`; what is under the vehicle then comes from the
-    /// proximity sensor again, as at the start. All points count as new data points, whichever stripe they are of, so
-    /// that no stripe's extrapolation overwrites another's measurement.
+    /// CHOICE: "fresh" means that the map is cleared first, if `forget` is set. The elevations under the vehicle then come
+    /// from the proximity sensor, as at the start. The points of all stripes are new data points of one update, so that
+    /// the extrapolation of one stripe does not overwrite the measurement of another.
     pub fn update_from_scan(
         &mut self,
         sensed: &LocalisationReading,
@@ -95,24 +96,25 @@ impl Mapper {
         MapUpdate { elevation_read, moved, inconsistency }
     }
 
-    /// "The vehicle determines its global elevation by adding its measured elevation above the ground surface to the
-    /// elevation of its current location on the LTM." (§7) Whether it could.
+    /// Estimates the vehicle's pose. "The vehicle determines its global elevation by adding its measured elevation above the ground surface to the
+    /// elevation of its current location on the LTM." (§7) Returns whether the map had
+    /// that elevation.
     ///
-    /// CHOICE: where the map does not know, the vehicle goes on along the plane of its own wheels: its measured tilt
-    /// and its way tell how much it rose.
+    /// CHOICE: if it had none, the vehicle is taken to have moved in the plane of its wheels: its rise follows from the
+    /// measured attitude and the horizontal displacement.
     fn locate(&mut self, sensed: &LocalisationReading) -> bool {
         let below = self.map.elevation(self.map.nearest(sensed.position));
         let read = below.zip(sensed.proximity).map(|(ground, distance)| ground + distance);
-        let way = sensed.position - self.pose.position.truncate();
+        let displacement = sensed.position - self.pose.position.truncate();
         let attitude = sensed.attitude.at(DVec3::ZERO);
-        let elevation = read.unwrap_or_else(|| self.pose.position.z + rise(&attitude, way));
+        let elevation = read.unwrap_or_else(|| self.pose.position.z + rise(&attitude, displacement));
         self.pose = Pose { position: sensed.position.extend(elevation), ..attitude };
         read.is_some()
     }
 
-    /// Gives the grid points under the vehicle the ground's elevation.
+    /// Sets the elevations under the vehicle from the proximity sensor.
     ///
-    /// CHOICE: one distance tells one elevation; around it the ground is taken to be parallel to the plane of the
+    /// CHOICE: the sensor measures one distance. The ground around that point is taken to be parallel to the plane of the
     /// wheels.
     fn fill_under_vehicle(&mut self, sensed: &LocalisationReading) {
         let Some(distance) = sensed.proximity else { return };
@@ -122,10 +124,10 @@ impl Mapper {
             .map
             .points()
             .filter_map(|point| {
-                let way = self.map.place(point) - sensed.position;
-                let place = way.extend(rise(&self.pose, way));
-                let seen = vehicle_from_global.rotate(place);
-                self.vehicle.covers(seen.truncate()).then_some((point, ground + place.z))
+                let displacement = self.map.place(point) - sensed.position;
+                let offset = displacement.extend(rise(&self.pose, displacement));
+                let in_vehicle = vehicle_from_global.rotate(offset);
+                self.vehicle.covers(in_vehicle.truncate()).then_some((point, ground + offset.z))
             })
             .collect();
         for (point, elevation) in under {
@@ -133,15 +135,15 @@ impl Mapper {
         }
     }
 
-    /// How many of the map's grid points are known.
+    /// Number of grid points with a known elevation.
     pub fn known_count(&self) -> usize {
         self.map.points().filter(|&point| self.map.source(point) != ElevationSource::Unknown).count()
     }
 }
 
-/// By how much the plane of a vehicle's wheels rises along a level `way`.
-fn rise(pose: &Pose, way: DVec2) -> f64 {
+/// Rise of the plane of a vehicle's wheels over a horizontal `displacement`, metres.
+fn rise(pose: &Pose, displacement: DVec2) -> f64 {
     let up = pose.rotate(DVec3::Z);
-    // On its side there is no such plane.
-    if up.z > 0.1 { -up.truncate().dot(way) / up.z } else { 0.0 }
+    // A vehicle on its side has no such plane.
+    if up.z > 0.1 { -up.truncate().dot(displacement) / up.z } else { 0.0 }
 }

@@ -1,33 +1,33 @@
-//! Random numbers keyed by (seed, purpose, index): `scene`'s Philox4x32-10.
+//! Random numbers keyed by (seed, purpose, index), from `scene`'s Philox4x32-10.
 
 use raypencil_scene::philox;
 
-/// What a random number is for. The numbers are part of what a seed means: never reuse or renumber one.
+/// Use of a random number. Each use has its own stream. Never reuse or renumber one: a seed would change its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// The walk of the inertial position.
+    /// Random walk of the inertial position.
     PositionWalk = 1,
-    /// A fix of the position by the beacons.
+    /// Error of a position fix by the beacons.
     PositionFix = 2,
-    /// The measured pitch and roll.
+    /// Noise of the measured pitch and roll.
     Tilt = 3,
-    /// The measured heading.
+    /// Noise of the measured heading.
     Heading = 4,
-    /// The proximity sensor.
+    /// Noise of the proximity sensor.
     Proximity = 5,
 }
 
-/// The stream of one seed.
+/// The random numbers of one seed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NoiseStream {
     pub seed: u64,
 }
 
-/// A scene has at most 64 beams, whose jittered pencils draw from the same counters: these lie beyond them.
+/// First value of the third counter word. Jittered pencils use 0 to 63 there, the indices of a scene's beams.
 const NOISE_COUNTER_BASE: u32 = 1 << 16;
 
 impl NoiseStream {
-    /// Two independent numbers, uniform in (0, 1).
+    /// Two independent numbers, uniformly distributed in (0, 1).
     fn uniform(&self, purpose: Purpose, index: u64) -> [f64; 2] {
         let counter = [index as u32, (index >> 32) as u32, NOISE_COUNTER_BASE + purpose as u32, 0];
         let [a, b, _, _] = philox(counter, [self.seed as u32, (self.seed >> 32) as u32]);
@@ -35,7 +35,7 @@ impl NoiseStream {
         [a, b].map(|word| (f64::from(word) + 0.5) * (1.0 / (1_u64 << 32) as f64))
     }
 
-    /// Two independent Gaussians of mean 0 and standard deviation 1. (Box and Muller, 1958)
+    /// Two independent numbers of the normal distribution with mean 0 and standard deviation 1. (Box and Muller, 1958)
     pub fn gaussians(&self, purpose: Purpose, index: u64) -> [f64; 2] {
         let [share, turn] = self.uniform(purpose, index);
         let radius = (-2.0 * libm::log(share)).sqrt();
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_draw_is_philoxs_of_its_counters() {
+    fn numbers_are_philox_of_their_counters() {
         // Key: the seed's halves. Counter: the index's halves, 2^16 and the purpose, 0. A word w is (w + 1/2) / 2^32.
         let stream = NoiseStream { seed: 0x0123_4567_89ab_cdef };
         let [a, b, _, _] = philox([7, 3, 65_536 + 5, 0], [0x89ab_cdef, 0x0123_4567]);
@@ -70,7 +70,7 @@ mod tests {
             [share, turn].map(|part| part * 8_589_934_592.0),
             [a, b].map(|word| 2.0 * f64::from(word) + 1.0)
         );
-        // Box and Muller: the sum of squares is -2 ln(share), the direction a turn.
+        // Box and Muller: the sum of squares is -2 ln(share); the direction is `turn` times a full circle.
         let [x, y] = stream.gaussians(Purpose::Proximity, (3 << 32) | 7);
         assert!((x * x + y * y + 2.0 * libm::log(share)).abs() < 1e-14);
         let angle = libm::atan2(y, x) / std::f64::consts::TAU;
@@ -79,7 +79,8 @@ mod tests {
 
     #[test]
     fn gaussians_have_their_moments() {
-        // Of n = 20000 the means of x, x^2 and xy have standard errors 1, sqrt(2) and 1 over sqrt(n); four of them.
+        // For n = 20000 the means of x, x^2 and xy have the standard errors 1, sqrt(2) and 1, over sqrt(n). Bound: four
+        // standard errors.
         let stream = NoiseStream { seed: 11 };
         let mut sums = [0.0; 3];
         for index in 0..20_000 {

@@ -1,14 +1,14 @@
-//! The sensors as they are mounted on the vehicle, and how they are panned. (Paper, §2, figure 1)
+//! The camera and the beams on the vehicle, and their panning. (Paper, §2, figure 1)
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil_scene::{Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Scene, SceneError};
 
-/// A sensor and where it stands on the vehicle.
+/// A sensor (camera or beam) mounted on the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnVehicle<S> {
-    /// The sensor's frame in the vehicle frame.
+    /// Pose of the sensor in the vehicle frame.
     pub vehicle_from_sensor: Pose,
     /// The sensor.
     pub sensor: S,
@@ -20,28 +20,27 @@ pub struct OnVehicle<S> {
 pub struct Rig {
     /// The camera.
     pub camera: OnVehicle<Camera>,
-    /// The beams, the nearest stripe's first.
+    /// The beams, in order of their stripes, the nearest first.
     pub beams: Vec<OnVehicle<Beam>>,
 }
 
-/// How far the sensors are turned downwards from where they are mounted, radians.
+/// Angles by which the sensors are turned downwards from their mounted direction, radians.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pan {
-    /// The camera.
+    /// Angle of the camera.
     pub camera: f64,
-    /// Every beam.
+    /// Angle of every beam.
     pub beams: f64,
 }
 
 impl Rig {
-    /// Mounts a sensor at `position` (vehicle frame, metres), turned down by `pitch_down` radians from looking
-    /// straight ahead.
+    /// Pose of a sensor at `position` (vehicle frame, metres) that points `pitch_down` radians below straight ahead.
     pub fn mount(position: DVec3, pitch_down: f64) -> Pose {
         let turn = Pose::from_axis_angle(DVec3::Y, pitch_down);
         Pose { position, ..turn * Pose::VEHICLE_FROM_FORWARD_SENSOR }
     }
 
-    /// The rig of a scene whose vehicle stands at `scene_from_vehicle`.
+    /// Rig of a scene whose vehicle has the pose `scene_from_vehicle`.
     pub fn from_scene(scene: &Scene, scene_from_vehicle: Pose) -> Self {
         let vehicle_from_scene = scene_from_vehicle.inverse();
         let beams = scene.beams().iter().map(|beam| OnVehicle {
@@ -55,8 +54,8 @@ impl Rig {
         }
     }
 
-    /// This rig with its sensors panned vertically: each turns about the line through its own origin that is
-    /// parallel to the vehicle's y axis. "If the vehicle is at rest, the beams can be panned vertically." (§2)
+    /// This rig with its sensors panned vertically. Each turns about its own origin, around an axis parallel to the
+    /// vehicle's y axis. "If the vehicle is at rest, the beams can be panned vertically." (§2)
     pub fn panned(&self, pan: Pan) -> Self {
         fn turned<S>(mount: OnVehicle<S>, angle: f64) -> OnVehicle<S> {
             let turn = Pose::from_axis_angle(DVec3::Y, angle);
@@ -70,7 +69,7 @@ impl Rig {
         }
     }
 
-    /// The scene that this rig sees from a vehicle at `global_from_vehicle`.
+    /// Scene of this rig on a vehicle with the pose `global_from_vehicle`.
     ///
     /// # Errors
     /// As [`Scene::new`].
@@ -81,7 +80,7 @@ impl Rig {
         atmosphere: Atmosphere,
         flux_model: FluxModel,
     ) -> Result<Scene, SceneError> {
-        // The origin is taken off first: at 1e6 m, offsets added to global coordinates would lose seven digits.
+        // Subtract the origin first: at 1e6 m, offsets added to global coordinates would lose seven digits.
         let position = global_from_vehicle.position - mesh.origin();
         let scene_from_vehicle = Pose { position, ..global_from_vehicle };
         let camera = Mounted {
@@ -95,7 +94,7 @@ impl Rig {
         Scene::new(mesh, camera, beams.collect(), atmosphere, flux_model)
     }
 
-    /// Refuses a rig that no scene could be made of, naming the field.
+    /// Checks every sensor. The error names the first field that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         let name = format!("{field}.camera");
         self.camera.vehicle_from_sensor.validate(&name)?;

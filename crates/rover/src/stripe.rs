@@ -1,4 +1,4 @@
-//! Step 9: the light stripes of an image, extracted column by column. (Paper, §3 and §6)
+//! Step 9: extraction of the light stripes, column by column. (Paper, §3 and §6)
 
 use rayon::prelude::*;
 use raypencil_scene::{Image, SceneError};
@@ -6,61 +6,60 @@ use raypencil_scene::{Image, SceneError};
 use crate::check::check_range;
 use crate::otsu::otsu_threshold;
 
-/// How light is told from dark. "Finally, thresholding or edge detection is performed to extract the light stripes
+/// Method that separates lit from dark pixels. "Finally, thresholding or edge detection is performed to extract the light stripes
 /// from the image." (§3)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Detection {
-    /// A pixel at or above this value is lit. "Extraction of the stripe edges is currently performed by simple
+    /// Fixed threshold: a pixel at or above this value is lit. "Extraction of the stripe edges is currently performed by simple
     /// thresholding." (§6)
     Fixed(f64),
-    /// The value is the one that best parts the image's histogram in two. (N. Otsu, "A threshold selection method
-    /// from gray-level histograms", 1979)
+    /// Threshold from the image's histogram. (N. Otsu, "A threshold selection method from gray-level histograms", 1979)
     Otsu,
-    /// An edge is where the difference of two pixels, one above the other, is extreme and at least this.
+    /// Edge detection: an edge is a local extremum of the difference of vertical neighbours, of at least this size.
     Gradient(f64),
 }
 
-/// Which place of the stripe is measured.
+/// Row of a stripe that is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StripeLocation {
-    /// The middle of the last lit pixel, as in the paper: "the camera pixels that correspond to edge points are
+    /// Middle of the last lit pixel, as in the paper: "the camera pixels that correspond to edge points are
     /// known" (§7).
     #[default]
     Pixel,
-    /// Where the values, linear from one pixel's middle to the next, cross the threshold; with
-    /// [`Detection::Gradient`] the vertex of a parabola through three differences.
+    /// Row at which the values, interpolated linearly between pixel centres, cross the threshold. With
+    /// [`Detection::Gradient`]: the vertex of the parabola through three differences.
     SubPixel,
-    /// The middle of the light, each row weighted by its value. It lies on the middle plane of the sheet, not on
-    /// its lower edge plane: triangulate with [`crate::SheetPlane::Middle`].
+    /// Centroid of the light: each row weighted by its value. It lies on the middle plane of the light sheet, not on its
+    /// lower edge plane: triangulate with `SheetPlane::Middle`.
     Centroid,
 }
 
-/// How stripes are extracted.
+/// Settings of the stripe extraction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extraction {
-    /// What is lit.
+    /// Method that separates lit from dark pixels.
     pub detection: Detection,
-    /// What is measured of it.
+    /// Row of a stripe that is measured.
     pub place: StripeLocation,
-    /// Fewer lit rows than this are noise.
+    /// Minimum run of lit rows that counts as a stripe.
     pub least_rows: u32,
 }
 
-/// The lower edge of a stripe in one column of the image.
+/// Measured edge of a stripe in one column of the image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgePoint {
     /// Column of the pixel.
     pub i: u32,
-    /// Row of the last lit pixel, or of the one that holds the centroid.
+    /// Row of the last lit pixel; for [`StripeLocation::Centroid`] the row of the centroid.
     pub j: u32,
-    /// Where the stripe was measured, rows from the image's upper border: j + 1/2 for [`StripeLocation::Pixel`].
+    /// Measured row, in pixels from the image's upper border: j + 1/2 for [`StripeLocation::Pixel`].
     pub row: f64,
 }
 
-/// How many columns are turned upright at a time. Tuned: a cache holds them.
+/// Columns that are transposed at a time. Tuned: they fit into a cache.
 const COLUMNS_PER_STRIP: usize = 32;
 
-/// Lit rows `first..=last` of one column, and where the lower edge lies.
+/// Lit rows `first..=last` of one column; `edge` is the sub-pixel row of the lower edge.
 struct Run {
     first: usize,
     last: usize,
@@ -68,27 +67,40 @@ struct Run {
 }
 
 impl Extraction {
-    /// The paper's: a fixed threshold, whole pixels. (§6)
+    /// The paper's extraction: a fixed threshold and whole pixels. (§6)
     pub fn thresholding(level: f64) -> Self {
         Self { detection: Detection::Fixed(level), place: StripeLocation::Pixel, least_rows: 1 }
     }
 
-    /// The lower edges in an image of one beam, in row-major order. The lower edge of the stripe is where the
-    /// light of the beam's lower edge plane lands.
+    /// Lower edges in an image of one beam, in row-major order. The lower edge of a stripe is the image of the light in
+    /// the beam's lower edge plane.
     ///
-    /// CHOICE: a column may hold several runs of lit pixels (a rock and the ground behind it); each is an edge of
-    /// its own, since each is triangulated by itself. A run that the image's lower border cuts off has none.
+    /// CHOICE: a column may hold several runs of lit pixels (a rock and the ground behind it). Each gives an edge, since
+    /// each edge is triangulated alone. A run that is cut off by the image's lower border gives none.
+    ///
+    /// ```
+    /// use raypencil_rover::{EdgePoint, Extraction};
+    /// use raypencil_scene::Image;
+    ///
+    /// // A stripe on rows 3 and 4 of column 1. Its last lit pixel is in row 4, whose middle is at 4.5.
+    /// let mut image = Image::filled(3, 8, 0.0);
+    /// image.set(1, 3, 200.0);
+    /// image.set(1, 4, 120.0);
+    /// let edges = Extraction::thresholding(50.0).edges(&image);
+    /// assert_eq!(edges, [EdgePoint { i: 1, j: 4, row: 4.5 }]);
+    /// ```
     pub fn edges<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<EdgePoint> {
         let mut edges: Vec<EdgePoint> = self.columns(image).into_iter().flatten().collect();
         edges.sort_by_key(|edge| (edge.j, edge.i));
         edges
     }
 
-    /// The edges of all `beams` in one exposure: in each column the lowest run belongs to beam 0, the next one up
-    /// to beam 1. Also says how many columns hold light but not one run for each beam: they are left out.
+    /// Lower edges of all `beams` in one exposure, beam by beam. In each column the lowest run belongs to beam 0, the
+    /// next one above it to beam 1. Columns that hold light, but not exactly one run per beam, are left out; the second
+    /// value is their number.
     ///
-    /// CHOICE: nothing is guessed. The order holds as long as no beam meets the ground so near that its stripe
-    /// rises above the next one's; exposing the beams in turn has no such limit.
+    /// CHOICE: no assignment is guessed. The order is correct unless a beam meets the ground so near that its stripe
+    /// lies above the next one. Exposures of one beam at a time do not have this limit.
     pub fn edges_by_order<T: Copy + Into<f64> + Sync>(
         &self,
         image: &Image<T>,
@@ -111,7 +123,7 @@ impl Extraction {
         (stripes, columns_left_out)
     }
 
-    /// The edges of each column, from the top.
+    /// Edges of each column, from the top.
     fn columns<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<Vec<EdgePoint>> {
         let level = match self.detection {
             Detection::Fixed(level) | Detection::Gradient(level) => Some(level),
@@ -127,7 +139,7 @@ impl Extraction {
             let long = runs.into_iter().filter(|run| run.last - run.first + 1 >= self.least_rows as usize);
             long.map(|run| self.measure(values, i as u32, &run)).collect()
         };
-        // Images lie row by row: columns are turned upright some at a time.
+        // Images are stored row by row: transpose some columns at a time.
         let strip = |first: usize| -> Vec<Vec<EdgePoint>> {
             let columns = COLUMNS_PER_STRIP.min(width - first);
             let mut values = vec![0.0; columns * height];
@@ -136,8 +148,8 @@ impl Extraction {
                     values[i * height + j] = cell.into();
                 }
             }
-            let upright = values.chunks_exact(height.max(1)).enumerate();
-            upright.map(|(i, values)| column(first + i, values)).collect()
+            let transposed = values.chunks_exact(height.max(1)).enumerate();
+            transposed.map(|(i, values)| column(first + i, values)).collect()
         };
         (0..width.div_ceil(COLUMNS_PER_STRIP))
             .into_par_iter()
@@ -156,7 +168,7 @@ impl Extraction {
                     light += values[j];
                     moment += values[j] * (j as f64 + 0.5);
                 }
-                // Values below zero (dark current taken off) may leave no light: then the run's middle.
+                // Negative values (after subtraction of an unlit image) may leave no light: take the run's middle.
                 let middle = 0.5 * (run.first + run.last + 1) as f64;
                 let row = if light > 0.0 { moment / light } else { middle };
                 EdgePoint { i, j: row as u32, row }
@@ -164,7 +176,7 @@ impl Extraction {
         }
     }
 
-    /// Refuses a level or a length that is none.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         match self.detection {
             Detection::Fixed(level) => check_range(field, "level", level, -1e30, 1e30, "")?,
@@ -175,7 +187,7 @@ impl Extraction {
     }
 }
 
-/// Runs of values at or above `level` that end within the image.
+/// Runs of values at or above `level` that end inside the image.
 fn runs_above(values: &[f64], level: f64) -> Vec<Run> {
     let mut runs = Vec::new();
     let mut first = None;
@@ -191,9 +203,9 @@ fn runs_above(values: &[f64], level: f64) -> Vec<Run> {
     runs
 }
 
-/// Runs between a rising and a falling difference of at least `least`, each the steepest of its neighbours.
-fn runs_between_edges(values: &[f64], least: f64) -> Vec<Run> {
-    // differences[j] is across the border between rows j and j + 1.
+/// Runs between a rise and a fall: local extrema of the difference of at least `min_difference`.
+fn runs_between_edges(values: &[f64], min_difference: f64) -> Vec<Run> {
+    // differences[j] belongs to the border between rows j and j + 1.
     let differences: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let at = |j: usize, step: isize| {
         j.checked_add_signed(step).and_then(|j| differences.get(j)).copied().unwrap_or(0.0)
@@ -202,13 +214,13 @@ fn runs_between_edges(values: &[f64], least: f64) -> Vec<Run> {
     let mut first = None;
     for (j, &difference) in differences.iter().enumerate() {
         let (above, below) = (at(j, -1), at(j, 1));
-        if difference >= least && difference > above && difference >= below {
+        if difference >= min_difference && difference > above && difference >= below {
             first = Some(j + 1);
-        } else if difference <= -least && difference < above && difference <= below {
-            // Without a rise the image's upper border cuts the light off: its lower edge is one all the same. Below
-            // another fall the light goes on from there.
+        } else if difference <= -min_difference && difference < above && difference <= below {
+            // Without a rise, the light begins at the image's upper border: its lower edge counts all the same. After an
+            // earlier fall, it begins below that one.
             let first = first.take().unwrap_or(runs.last().map_or(0, |run: &Run| run.last + 1));
-            // The vertex of the parabola through the three differences; its curvature is positive here.
+            // Vertex of the parabola through the three differences. Its curvature is positive at a minimum.
             let curvature = above - 2.0 * difference + below;
             let shift = if curvature > 0.0 { 0.5 * (above - below) / curvature } else { 0.0 };
             runs.push(Run { first, last: j, edge: (j + 1) as f64 + shift });
