@@ -1,4 +1,4 @@
-//! A whole drive: what a rover sees, believes and marks, frame by frame. (Paper, §7 and §8)
+//! A whole drive: images, pose estimate, maps and obstacles, frame by frame. (Paper, §7 and §8)
 
 use std::sync::Arc;
 
@@ -20,55 +20,55 @@ use crate::traversability::TraversabilityRules;
 use crate::triangulation::{SheetPlane, Triangulation};
 use crate::vehicle::{Stance, Vehicle};
 
-/// How the camera tells the beams' stripes apart.
+/// Assignment of exposures to beams, which tells the stripes of the beams apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ExposureMode {
-    /// Each beam is lit alone, in an exposure of its own. CHOICE: the paper does not say; this needs no guess.
+    /// Each beam is lit alone, in its own exposure. CHOICE: the paper does not say; here no assignment is guessed.
     #[default]
     InTurn,
-    /// All beams are lit at once, and told apart by their order in the image.
+    /// All beams are lit in one exposure, and distinguished by their order in the image.
     Together,
 }
 
-/// Everything that a drive is made of but the ground and the renderer.
+/// All settings of a drive, except for the ground and the renderer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrivePlan {
-    /// The vehicle.
+    /// Dimensions of the vehicle.
     pub vehicle: Vehicle,
-    /// Its sensors.
+    /// Camera and beams on the vehicle.
     pub rig: Rig,
-    /// Where it drives.
+    /// Commanded route.
     pub route: Route,
-    /// How stripes are extracted.
+    /// Settings of the stripe extraction.
     pub extraction: Extraction,
-    /// How they are told apart.
+    /// Exposures of the beams: in turn or together.
     pub exposures: ExposureMode,
-    /// What it knows of where it is.
+    /// Errors of the localisation sensors.
     pub errors: LocalisationErrors,
-    /// Other seeds give other errors.
+    /// Seed of these errors.
     pub seed: u64,
-    /// The local terrain map.
+    /// Size of the elevation map.
     pub map: MapSize,
-    /// When it stops to pan its beams; `None`: never.
+    /// Conditions for a vertical scan. `None`: no scans.
     pub scans: Option<ScanRule>,
-    /// Through which angles.
+    /// Angles of a scan.
     pub sweep: Sweep,
-    /// An obstacle map every so many frames.
+    /// Number of frames from one obstacle map to the next.
     pub obstacles_every: u64,
-    /// Its thresholds.
+    /// Settings of the traversability tests.
     pub rules: TraversabilityRules,
-    /// Its grid.
+    /// Radial grid of the obstacle map.
     pub grid: RadialGrid,
-    /// Those of the navigator map.
+    /// Thresholds of the navigator map.
     pub vectors: VectorRules,
-    /// The air.
+    /// Attenuation of the air.
     pub atmosphere: Atmosphere,
-    /// The equation of flux.
+    /// Model of the flux, for the renderer.
     pub flux_model: FluxModel,
 }
 
 impl DrivePlan {
-    /// A drive of the default vehicle with everything as the defaults have it.
+    /// Plan with the default vehicle and all other settings at their defaults.
     pub fn new(rig: Rig, route: Route, extraction: Extraction) -> Self {
         let vehicle = Vehicle::default();
         Self {
@@ -91,7 +91,7 @@ impl DrivePlan {
         }
     }
 
-    /// Refuses a plan that cannot be driven, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         let name = |part: &str| format!("{field}.{part}");
         self.vehicle.validate(&name("vehicle"))?;
@@ -111,70 +111,111 @@ impl DrivePlan {
     }
 }
 
-/// Which exposure an image is.
+/// Identity of an exposure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exposure {
-    /// The frame.
+    /// Index of the frame.
     pub frame: u64,
-    /// In a vertical scan, which position of the sweep.
+    /// Index of the sweep position in a vertical scan; otherwise `None`.
     pub step: Option<u32>,
-    /// The beam that was lit; `None`: all of them.
+    /// Index of the lit beam. `None`: all beams.
     pub beam: Option<usize>,
 }
 
-/// What the camera hands on of an exposure.
+/// Image that the camera passes to the stripe extraction.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CameraImage {
-    /// The flux itself, watts: of a camera without steps 6 to 8.
+    /// Flux per pixel, watts: the camera has no steps 6 to 8.
     Flux(Image<f64>),
-    /// Digital numbers; may be less than 0 where those of an unlit exposure are taken off.
+    /// Digital numbers. They may be negative after subtraction of an unlit image.
     Numbers(Image<i32>),
 }
 
-/// What turns the ideal image into the camera's: steps 6 to 8 (§3).
+/// Imaging pipeline of the camera, steps 6 to 8 (§3): from the ideal image, in watts per pixel, to the camera's image.
 pub type CameraPipeline<'a> = dyn FnMut(Exposure, Image<f64>) -> CameraImage + 'a;
 
-/// One edge point of a stripe, and where it is thought to be.
+/// Measured point of a stripe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPoint {
-    /// In a vertical scan, which position of the sweep.
+    /// Index of the sweep position in a vertical scan; otherwise `None`.
     pub step: Option<u32>,
-    /// The beam whose stripe it is.
+    /// Index of the beam.
     pub beam: usize,
-    /// Its place in the image.
+    /// Edge in the image.
     pub edge: EdgePoint,
-    /// Its place on the beam's plane, vehicle frame, metres.
+    /// Point on the beam's plane, vehicle frame, metres.
     pub point: DVec3,
 }
 
-/// One frame of a drive.
+/// Result of one frame of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveFrame {
-    /// Which one.
+    /// Index of the frame.
     pub index: u64,
-    /// Where the route has the vehicle.
+    /// Commanded pose, from the route.
     pub place: RoutePose,
-    /// How it really stands.
+    /// True pose on the ground.
     pub stance: Stance,
-    /// What its sensors say.
+    /// Reading of the localisation sensors.
     pub sensed: LocalisationReading,
-    /// If it stopped to scan, why.
+    /// Reason for a scan in this frame; `None`: no scan.
     pub scan: Option<ScanReason>,
-    /// How many points its stripes gave.
+    /// Number of measured points.
     pub points: usize,
-    /// With all beams in one exposure: how many columns hold light, but not one run for each beam.
+    /// Number of image columns that were left out: with [`ExposureMode::Together`], those that hold light but not
+    /// exactly one run per beam.
     pub columns_left_out: usize,
-    /// These points, beam by beam, each in row-major order of its image; those of a scan position after position.
+    /// Measured points, beam by beam, in row-major order of the image. In a scan: position by position.
     pub measured: Vec<MeasuredPoint>,
-    /// The vehicle as it believes itself to be, `global_from_vehicle`: where the points were entered.
+    /// Estimated pose `global_from_vehicle`, with which the points were entered into the map.
     pub believed: Pose,
-    /// What they did to the map.
+    /// Update of the map by these points.
     pub update: MapUpdate,
-    /// The obstacle map and the navigator map, in frames that make them.
+    /// Obstacle map and navigator map; `None` in frames that make none.
     pub obstacles: Option<(ObstacleMap, Vec<LabelledVector>)>,
 }
 
-/// A drive under way.
+/// A drive in progress.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::{DVec2, DVec3};
+/// use raypencil_rover::{CameraImage, Drive, DrivePlan, Extraction, OnVehicle, Rig, Route};
+/// use raypencil_scanline::Scanline;
+/// use raypencil_scene::{Beam, Camera, Lens, Profile};
+/// # let camera = Camera {
+/// #     width: 1024, height: 1024, pixel_pitch: [9e-6; 2], focal_length: 8e-3, principal_point: [512.0; 2],
+/// #     aperture: 2e-3, lens: Lens::CLEAR, max_range: 20.0,
+/// # };
+/// # let half_width = Beam::half_width_of(0.1, 60.0_f64.to_radians());
+/// # let beam = Beam {
+/// #     columns: 64, rows: 4, thickness: 5e-3, grid_distance: 0.1, half_width, max_range: 20.0, power: 1.0,
+/// #     wavelength: 810e-9, profile: Profile::Paper,
+/// # };
+///
+/// // A camera 1.5 m up that looks 20 degrees down, and a beam 1.8 m up that points 31 degrees down.
+/// let mount = |height, down: f64| Rig::mount(DVec3::new(0.0, 0.0, height), down.to_radians());
+/// let rig = Rig {
+///     camera: OnVehicle { vehicle_from_sensor: mount(1.5, 20.0), sensor: camera },
+///     beams: vec![OnVehicle { vehicle_from_sensor: mount(1.8, 31.0), sensor: beam }],
+/// };
+/// // 0.03 m at 0.3 m/s and 10 frames per second: two frames, here without scans, on ground that is level there.
+/// let route = Route::through(DVec2::new(-9.0, 0.0), vec![DVec2::new(-8.97, 0.0)]);
+/// let plan = DrivePlan { scans: None, ..DrivePlan::new(rig, route, Extraction::thresholding(1e-12)) };
+/// let mesh = raypencil_terrain::builtin("pyramids", 0.25).unwrap().into_mesh()?;
+/// let mut drive = Drive::new(plan, Arc::new(mesh))?;
+/// let mut frames = Vec::new();
+/// while let Some(frame) = drive.step(&Scanline::exact(), &mut |_, flux| CameraImage::Flux(flux))? {
+///     frames.push(frame);
+/// }
+/// assert_eq!(frames.len(), 2);
+/// // The sheet meets level ground 1.8 / tan 31 = 2.996 m ahead, 3.35 m from the camera and at 4.4 degrees to its rays.
+/// // A pixel of 9 um / 8 mm = 1.125 mrad covers 3.35 m 0.001125 / sin(4.4) = 0.049 m along the sheet there.
+/// assert!(frames[0].points > 50);
+/// assert!(frames[0].measured.iter().all(|measured| (measured.point.x - 2.996).abs() < 0.049));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Drive {
     plan: DrivePlan,
@@ -188,10 +229,10 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Puts the vehicle on the ground.
+    /// Starts a drive: puts the vehicle on the ground `mesh` at the start of the route.
     ///
     /// # Errors
-    /// As [`DrivePlan::validate`], and names the frame's place where there is no ground under a wheel at the start.
+    /// As [`DrivePlan::validate`]. Names `drive.route.start` if a wheel has no ground below it there.
     pub fn new(plan: DrivePlan, mesh: Arc<Mesh>) -> Result<Self, SceneError> {
         plan.validate("drive")?;
         let ground = HeightIndex::new(&mesh);
@@ -212,27 +253,27 @@ impl Drive {
         })
     }
 
-    /// The map, and where the vehicle believes to be; `None` before the first frame.
+    /// Elevation map and estimated pose; `None` before the first frame.
     pub fn mapper(&self) -> Option<&Mapper> {
         self.mapper.as_ref()
     }
 
-    /// The plan.
+    /// Plan of the drive.
     pub fn plan(&self) -> &DrivePlan {
         &self.plan
     }
 
-    /// The true ground.
+    /// Heights of the true ground.
     pub fn ground(&self) -> &HeightIndex {
         &self.ground
     }
 
-    /// Drives on by a frame. `None` once the route is over, or leads off the ground.
+    /// Drives one frame. `None` after the end of the route, and when the route leaves the ground.
     ///
-    /// CHOICE: a scan takes the place of its frame's exposure. Both beams are used in every frame.
+    /// CHOICE: a scan replaces its frame's exposures. All beams are used in every frame.
     ///
     /// # Errors
-    /// As [`raypencil_scene::Scene::new`]; and if the renderer gives no flux.
+    /// As [`raypencil_scene::Scene::new`]. Names the renderer if it does not return one image of flux per beam.
     pub fn step(
         &mut self,
         renderer: &dyn Renderer,
@@ -249,10 +290,10 @@ impl Drive {
         let (mut measured, mut columns_left_out) = (Vec::new(), 0);
         if scan.is_some() {
             for (step, pan) in self.plan.sweep.pans().enumerate() {
-                let seen =
-                    self.measure_stripes(renderer, pipeline, &stance, index, Some((step as u32, pan)))?;
-                measured.extend(seen.0);
-                columns_left_out += seen.1;
+                let position = Some((step as u32, pan));
+                let (points, columns) = self.measure_stripes(renderer, pipeline, &stance, index, position)?;
+                measured.extend(points);
+                columns_left_out += columns;
             }
         } else {
             (measured, columns_left_out) = self.measure_stripes(renderer, pipeline, &stance, index, None)?;
@@ -260,12 +301,12 @@ impl Drive {
 
         let points = measured.iter().map(|measured| measured.point);
         let DrivePlan { vehicle, map, .. } = self.plan;
-        // CHOICE: its first elevation is the true one.
+        // CHOICE: the first elevation is the true one.
         let mapper =
             self.mapper.get_or_insert_with(|| Mapper::start(vehicle, map, &sensed, stance.position.z));
         let update = if scan.is_some() {
             self.last_scan = Some(place.driven);
-            // What a scan contradicts it has also mended.
+            // A scan also corrects the elevations that it contradicts.
             self.inconsistency = Inconsistency::default();
             mapper.update_from_scan(&sensed, points, rule.is_some_and(|rule| rule.forget))
         } else {
@@ -297,8 +338,8 @@ impl Drive {
         }))
     }
 
-    /// The points of the stripes that the camera sees from a stance: beam by beam, each in row-major order. And how many
-    /// columns were left out.
+    /// Points of the stripes that the camera sees, beam by beam, in row-major order of the image. The second value is
+    /// the number of image columns that were left out. `scan` holds the index and the angles of a scan position.
     fn measure_stripes(
         &self,
         renderer: &dyn Renderer,
@@ -315,7 +356,8 @@ impl Drive {
         let flux = renderer.render(&scene, &Request::FLUX).flux;
         if flux.len() != rig.beams.len() {
             let given = format!("{} images of flux", flux.len());
-            return Err(SceneError::new(renderer.name(), given, format!("{}", rig.beams.len())));
+            let expected = format!("{}, one for each beam", rig.beams.len());
+            return Err(SceneError::new(renderer.name(), given, expected));
         }
         let step = scan.map(|(step, _)| step);
         let exposure = |beam| Exposure { frame, step, beam };

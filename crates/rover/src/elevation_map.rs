@@ -73,8 +73,9 @@ pub struct Inconsistency {
     pub largest: f64,
 }
 
-/// The elevation map: the paper's local terrain map, LTM, of section 7. "The map does not rotate but the x and y directions are always parallel to the x and y
-/// global axes. The central grid point at the start of a mission is at the local vehicle origin." (§7)
+/// The elevation map: the paper's local terrain map, LTM, of section 7. "The map does not rotate but the x and y
+/// directions are always parallel to the x and y global axes. The central grid point at the start of a mission is at
+/// the local vehicle origin." (§7)
 ///
 /// ```
 /// use glam::{DVec2, DVec3};
@@ -102,8 +103,8 @@ pub struct ElevationMap {
 }
 
 impl ElevationMap {
-    /// An unknown map centred on the global `origin`. "All of the grid points are initialized to 's' at the start of the
-    /// run." (§7)
+    /// An unknown map centred on the global `origin`. "All of the grid points are initialized to 's' at the start of
+    /// the run." (§7)
     ///
     /// # Panics
     /// If the size is not valid.
@@ -204,10 +205,10 @@ impl ElevationMap {
     /// Enters measured points (global, metres). One call takes all points of a frame or of a scan; the points of each
     /// stripe are in row-major order of its image. Points beyond the map and points that are not finite are ignored.
     ///
-    /// "The grid point having x,y coordinates closest to an edge point inherits the elevation of the edge point and
-    /// its key field is set to 'u'." If several points have the same grid point, the last one counts. Then "extrapolating the elevation of each new
-    /// data point to each of its neighboring grid points that is not itself a new data point" (§7): eight neighbours,
-    /// whatever they held before.
+    /// "The grid point having x,y coordinates closest to an edge point inherits the elevation of the edge point and its
+    /// key field is set to 'u'." If several points have the same grid point, the last one counts. Then "extrapolating
+    /// the elevation of each new data point to each of its neighboring grid points that is not itself a new data point"
+    /// (§7): eight neighbours, whatever they held before.
     ///
     /// CHOICE: data points are extrapolated in the order in which they first became data points. If several have the
     /// same neighbour, the last one counts.

@@ -2,11 +2,11 @@
 
 use crate::elevation_map::{ElevationMap, GridPoint};
 
-/// Rule for narrow gaps, the solution that the paper leaves open: "A more general solution, which we have not yet implemented,
-/// is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the gap
-/// contains elevations that are too high for the vehicle, an upper estimate of the maximum elevation of the gap region
-/// can be computed from the height of the occluding terrain feature or by using elevations from successive stripes
-/// bracketing the gap region." (§7)
+/// Rule for narrow gaps, the solution that the paper leaves open: "A more general solution, which we have not yet
+/// implemented, is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the
+/// gap contains elevations that are too high for the vehicle, an upper estimate of the maximum elevation of the gap
+/// region can be computed from the height of the occluding terrain feature or by using elevations from successive
+/// stripes bracketing the gap region." (§7)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GapRule {
     /// Maximum width of a gap that may be crossed, metres: one wheel thickness.

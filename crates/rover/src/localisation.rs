@@ -8,8 +8,8 @@ use crate::check::{check_count, check_range};
 use crate::noise_stream::{NoiseStream, Purpose};
 use crate::vehicle::{Attitude, Stance};
 
-/// Errors of the localisation sensors. "The x and y coordinates can be obtained directly from inertial guidance sensors and
-/// corrected, possibly, by periodic updates from satellite sightings of the Rover's beacons. The pitch, roll, and
+/// Errors of the localisation sensors. "The x and y coordinates can be obtained directly from inertial guidance sensors
+/// and corrected, possibly, by periodic updates from satellite sightings of the Rover's beacons. The pitch, roll, and
 /// yaw angles of the vehicle can also be measured from on-board sensors." (§7)
 ///
 /// CHOICE: the paper gives no figures. The default has no errors.
@@ -48,8 +48,8 @@ pub struct LocalisationReading {
     /// Measured attitude.
     pub attitude: Attitude,
     /// Measured distance from the vehicle's origin straight down to the ground, metres. Negative if the ground is above
-    /// the plane of the wheels. `None` if there is no ground. "A proximity sensor is mounted under the vehicle to measure the distance from the
-    /// local vehicle origin to the ground surface." (§7)
+    /// the plane of the wheels. `None` if there is no ground. "A proximity sensor is mounted under the vehicle to
+    /// measure the distance from the local vehicle origin to the ground surface." (§7)
     pub proximity: Option<f64>,
 }
 
@@ -80,7 +80,7 @@ impl Localisation {
     /// // A drift of 0.5 m/s at 10 frames per second is 0.05 m per frame; frame 0 has none yet.
     /// let errors = LocalisationErrors { position_drift: DVec2::new(0.5, 0.0), ..LocalisationErrors::default() };
     /// let mut localisation = Localisation::new(errors, 1, 10.0);
-    /// let ground = HeightIndex::new(&builtin("pyramids", 0.25)?.into_mesh()?);
+    /// let ground = HeightIndex::new(&builtin("pyramids", 0.25).unwrap().into_mesh()?);
     /// let stance = Stance { position: DVec3::new(-9.0, 0.0, 0.0), attitude: Attitude::default(), residual: 0.0 };
     /// let drift = [0, 1].map(|_| localisation.read(&stance, &ground).position.x + 9.0);
     /// assert!(drift[0] == 0.0 && (drift[1] - 0.05).abs() < 1e-12);

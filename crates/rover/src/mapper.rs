@@ -73,12 +73,12 @@ impl Mapper {
         MapUpdate { elevation_read, moved, inconsistency }
     }
 
-    /// Updates the map with a vertical scan at rest: the points of all its stripes (vehicle frame, metres). "The beams are
-    /// vertically panned to completely refresh the local map." (abstract) "... to obtain a fresh LTM." (§7)
+    /// Updates the map with a vertical scan at rest: the points of all its stripes (vehicle frame, metres). "The beams
+    /// are vertically panned to completely refresh the local map." (abstract) "... to obtain a fresh LTM." (§7)
     ///
-    /// CHOICE: "fresh" means that the map is cleared first, if `forget` is set. The elevations under the vehicle then come
-    /// from the proximity sensor, as at the start. The points of all stripes are new data points of one update, so that
-    /// the extrapolation of one stripe does not overwrite the measurement of another.
+    /// CHOICE: "fresh" means that the map is cleared first, if `forget` is set. The elevations under the vehicle then
+    /// come from the proximity sensor, as at the start. The points of all stripes are new data points of one update, so
+    /// that the extrapolation of one stripe does not overwrite the measurement of another.
     pub fn update_from_scan(
         &mut self,
         sensed: &LocalisationReading,
@@ -96,8 +96,8 @@ impl Mapper {
         MapUpdate { elevation_read, moved, inconsistency }
     }
 
-    /// Estimates the vehicle's pose. "The vehicle determines its global elevation by adding its measured elevation above the ground surface to the
-    /// elevation of its current location on the LTM." (§7) Returns whether the map had
+    /// Estimates the vehicle's pose. "The vehicle determines its global elevation by adding its measured elevation
+    /// above the ground surface to the elevation of its current location on the LTM." (§7) Returns whether the map had
     /// that elevation.
     ///
     /// CHOICE: if it had none, the vehicle is taken to have moved in the plane of its wheels: its rise follows from the
@@ -114,8 +114,8 @@ impl Mapper {
 
     /// Sets the elevations under the vehicle from the proximity sensor.
     ///
-    /// CHOICE: the sensor measures one distance. The ground around that point is taken to be parallel to the plane of the
-    /// wheels.
+    /// CHOICE: the sensor measures one distance. The ground around that point is taken to be parallel to the plane of
+    /// the wheels.
     fn fill_under_vehicle(&mut self, sensed: &LocalisationReading) {
         let Some(distance) = sensed.proximity else { return };
         let ground = self.pose.position.z - distance;

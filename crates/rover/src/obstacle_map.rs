@@ -1,4 +1,4 @@
-//! The obstacle map: a radial grid over the local terrain map, tested outwards along each sector. (Paper, §7)
+//! The obstacle map: a radial grid over the elevation map, tested outwards along each sector. (Paper, §7)
 
 use glam::DVec2;
 use raypencil_scene::{Pose, SceneError};
@@ -8,37 +8,39 @@ use crate::elevation_map::ElevationMap;
 use crate::traversability::{Traversability, TraversabilityRules, TraversabilityTest};
 use crate::vehicle::Vehicle;
 
-/// The radial grid. "Determination of the obstacle regions is based upon a radial grid that is overlain over the
-/// LTM." (§7)
+/// Radial grid around the vehicle. "Determination of the obstacle regions is based upon a radial grid that is overlain
+/// over the LTM." (§7)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RadialGrid {
-    /// How many sectors, spread evenly over the angle.
+    /// Number of sectors, evenly spaced in angle.
     pub sectors: u32,
-    /// From the heading to the outermost sector on either side, radians.
+    /// Angle from the heading to the outermost sector on either side, radians.
     pub half_angle: f64,
-    /// The first radius, metres from the vehicle's origin.
+    /// First radius, from the vehicle's origin, metres.
     pub first: f64,
-    /// Between radii, metres.
+    /// Distance between radii, metres.
     pub step: f64,
-    /// Radii are tested up to here, metres.
+    /// Maximum radius, metres.
     pub last: f64,
 }
 
-/// CHOICE: no grid has more points. Each may be judged anew in every obstacle map.
+/// Maximum number of points of a radial grid. CHOICE: each may be tested in every obstacle map.
 const MAX_GRID_POINTS: u32 = 10_000_000;
 
 impl RadialGrid {
-    /// CHOICE: 31 sectors over the 60 degrees of the beams' fan, 2 degrees apart, about the vehicle's origin; radii a
-    /// grid spacing of 0.1 m apart, so that no grid point is stepped over; from one step before the front axle to
-    /// 5 m, just inside the far stripe of the default rig on level ground (5.25 m), so that what it brings is enough
-    /// to be clear.
+    /// Radial grid for a vehicle.
+    ///
+    /// CHOICE: 31 sectors, 2 degrees apart, over the 60 degrees of the beams' fan. The radii are one grid spacing of
+    /// 0.1 m apart, so that no grid point is skipped. They begin one step in front of the front axle and end at 5 m,
+    /// just inside the far stripe of the default rig on level ground (5.25 m): that stripe suffices to make a sector
+    /// clear.
     pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         let step = 0.1;
         let first = 0.5 * vehicle.wheelbase + step;
         Self { sectors: 31, half_angle: 30.0_f64.to_radians(), first, step, last: 5.0 }
     }
 
-    /// The angle of a sector from the heading, to the left, radians; sector 0 is the rightmost.
+    /// Angle of a sector from the heading, to the left, radians. Sector 0 is the rightmost.
     pub fn angle(&self, sector: u32) -> f64 {
         if self.sectors < 2 {
             return 0.0;
@@ -46,18 +48,18 @@ impl RadialGrid {
         self.half_angle * (2.0 * f64::from(sector) / f64::from(self.sectors - 1) - 1.0)
     }
 
-    /// How many radii there are.
+    /// Number of radii.
     pub fn radii(&self) -> u32 {
         ((self.last - self.first) / self.step + 1e-9).floor() as u32 + 1
     }
 
-    /// Radius of that index, metres.
+    /// Radius with this index, metres.
     pub fn radius(&self, index: u32) -> f64 {
         self.first + self.step * f64::from(index)
     }
 
-    /// Which way a sector goes from a vehicle at `global_from_vehicle`: from the global x axis to the left, radians, and
-    /// as a unit.
+    /// Direction of a sector of a vehicle with the pose `global_from_vehicle`: the angle from the global x axis to the
+    /// left, radians, and the unit vector.
     pub fn direction(&self, sector: u32, global_from_vehicle: &Pose) -> (f64, DVec2) {
         let forward = global_from_vehicle.rotate(glam::DVec3::X);
         let direction = libm::atan2(forward.y, forward.x) + self.angle(sector);
@@ -65,8 +67,8 @@ impl RadialGrid {
         (direction, DVec2::new(cos, sin))
     }
 
-    /// What the tests say of every point of a sector, outwards: each by itself, whatever the ones before it are. Each
-    /// is judged only when it is asked for.
+    /// Radius (metres) and traversability of every point of a sector, outwards. The result of a point does not depend
+    /// on the points before it. The iterator is lazy: it tests a point when it reaches it.
     pub fn classify_sector(
         &self,
         sector: u32,
@@ -83,72 +85,96 @@ impl RadialGrid {
         })
     }
 
-    /// Refuses a grid that is none, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_count(field, "sectors", self.sectors.into(), 1, 100_000)?;
         check_range(field, "half_angle", self.half_angle, 0.0, std::f64::consts::PI, "rad")?;
         check_range(field, "first", self.first, 0.0, 1e3, "m")?;
         check_range(field, "step", self.step, 1e-3, 1e3, "m")?;
-        check_range(field, "last", self.last, self.first, 1e3, "m, at least the first")?;
-        // Each number may be sound and all of them too much together.
+        check_range(field, "last", self.last, self.first, 1e3, "m (from `first`)")?;
+        // Each number may be in range while the grid has too many points.
         let radii = self.radii();
-        let most = MAX_GRID_POINTS / radii;
-        if self.sectors > most {
-            let expected = format!("1 to {most}: {MAX_GRID_POINTS} points at most, {radii} radii each");
+        let max_sectors = MAX_GRID_POINTS / radii;
+        if self.sectors > max_sectors {
+            let expected =
+                format!("1 to {max_sectors} (at most {MAX_GRID_POINTS} grid points, {radii} per sector)");
             return Err(SceneError::new(format!("{field}.sectors"), self.sectors, expected));
         }
         Ok(())
     }
 }
 
-/// "Each sector has a label and point, the label being either obstacle, unknown, or visibility." (§7)
+/// Label of a sector's end and of a vector. "Each sector has a label and point, the label being either obstacle,
+/// unknown, or visibility." (§7)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Label {
-    /// The vehicle may not stand there.
+    /// The point is not traversable.
     Obstacle,
-    /// Nobody knows whether it may.
+    /// The traversability of the point is unknown.
     Unknown,
-    /// All was clear up to the last point of the sector.
+    /// Visibility limit: all points of the sector are clear; this is the last one.
     Visibility,
 }
 
-/// Where a sector ends and why.
+/// End of a sector: the labelled point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectorEnd {
-    /// Of the sector, from the global x axis to the left, radians.
+    /// Direction of the sector, from the global x axis to the left, radians.
     pub direction: f64,
-    /// Of the point, metres from the grid's centre.
+    /// Distance of the point from the grid's centre, metres.
     pub radius: f64,
-    /// The point, global, metres.
+    /// The point, global x and y, metres.
     pub point: DVec2,
-    /// Why testing stopped there.
+    /// Label of the point: the reason why testing stopped there.
     pub label: Label,
-    /// The test that an obstacle failed.
+    /// Failed test of an obstacle point; otherwise `None`.
     pub failed: Option<TraversabilityTest>,
 }
 
-/// The labelled points of all sectors, the rightmost first.
+/// Obstacle map: the labelled points of all sectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObstacleMap {
-    /// The grid's centre, global, metres.
+    /// Centre of the radial grid, global x and y, metres.
     pub centre: DVec2,
-    /// Where each sector ends.
+    /// End of each sector, from right to left.
     pub sectors: Vec<SectorEnd>,
 }
 
-/// Whether the obstacle map is made in a frame. "The obstacle regions are not extracted from the LTM every camera frame
-/// but at after a fixed number of the frames." (§7) CHOICE: `every` = [`FRAMES_PER_OBSTACLE_MAP`].
+/// Whether a frame makes an obstacle map: one frame in `every`, beginning with frame 0. "The obstacle regions are not
+/// extracted from the LTM every camera frame but at after a fixed number of the frames." (§7)
 pub fn obstacle_map_due(frame: u64, every: u64) -> bool {
     frame.is_multiple_of(every.max(1))
 }
 
-/// CHOICE: every 10 frames, once a second: the default route moves on by 0.3 m.
+/// Default number of frames from one obstacle map to the next. CHOICE: 10, one second, in which the default route
+/// advances by 0.3 m.
 pub const FRAMES_PER_OBSTACLE_MAP: u64 = 10;
 
 impl ObstacleMap {
-    /// Tests the radial grid around a vehicle believed to be at `global_from_vehicle`. "Points on the radial grid are
-    /// tested as to whether they belong to an obstacle region in order of increasing radii along each of the
+    /// Extracts the obstacle map around a vehicle with the estimated pose `global_from_vehicle`. "Points on the radial
+    /// grid are tested as to whether they belong to an obstacle region in order of increasing radii along each of the
     /// sectors." (§7)
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use raypencil_rover::{
+    ///     ElevationMap, Label, MapSize, ObstacleMap, RadialGrid, TraversabilityRules, Vehicle,
+    /// };
+    /// use raypencil_scene::Pose;
+    ///
+    /// // Level ground that is known up to x = 4 m. The vehicle stands at the map's origin and looks along x. No point of
+    /// // the imaginary vehicle lies before its front axle: 4.1 m is the first radius ahead with an unknown point.
+    /// let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
+    /// for point in map.points().filter(|point| point.i <= 40) {
+    ///     map.set_proximity(point, 0.0);
+    /// }
+    /// let vehicle = Vehicle::default();
+    /// let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    /// let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
+    /// let ahead = obstacles.sectors[15];
+    /// assert_eq!(ahead.label, Label::Unknown);
+    /// assert!((ahead.radius - 4.1).abs() < 1e-9);
+    /// ```
     pub fn extract(
         map: &ElevationMap,
         vehicle: &Vehicle,
@@ -163,8 +189,10 @@ impl ObstacleMap {
                 let point = centre + unit * radius;
                 SectorEnd { direction, radius, point, label, failed }
             };
-            for (radius, verdict) in grid.classify_sector(index, map, vehicle, rules, global_from_vehicle) {
-                match verdict {
+            for (radius, traversability) in
+                grid.classify_sector(index, map, vehicle, rules, global_from_vehicle)
+            {
+                match traversability {
                     // "... and testing for that sector stops." (§7)
                     Traversability::Obstacle(test) => return end(radius, Label::Obstacle, Some(test)),
                     Traversability::Unknown => return end(radius, Label::Unknown, None),

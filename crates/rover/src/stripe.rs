@@ -6,12 +6,12 @@ use raypencil_scene::{Image, SceneError};
 use crate::check::check_range;
 use crate::otsu::otsu_threshold;
 
-/// Method that separates lit from dark pixels. "Finally, thresholding or edge detection is performed to extract the light stripes
-/// from the image." (§3)
+/// Method that separates lit from dark pixels. "Finally, thresholding or edge detection is performed to extract the
+/// light stripes from the image." (§3)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Detection {
-    /// Fixed threshold: a pixel at or above this value is lit. "Extraction of the stripe edges is currently performed by simple
-    /// thresholding." (§6)
+    /// Fixed threshold: a pixel at or above this value is lit. "Extraction of the stripe edges is currently performed
+    /// by simple thresholding." (§6)
     Fixed(f64),
     /// Threshold from the image's histogram. (N. Otsu, "A threshold selection method from gray-level histograms", 1979)
     Otsu,
@@ -29,8 +29,8 @@ pub enum StripeLocation {
     /// Row at which the values, interpolated linearly between pixel centres, cross the threshold. With
     /// [`Detection::Gradient`]: the vertex of the parabola through three differences.
     SubPixel,
-    /// Centroid of the light: each row weighted by its value. It lies on the middle plane of the light sheet, not on its
-    /// lower edge plane: triangulate with `SheetPlane::Middle`.
+    /// Centroid of the light: each row weighted by its value. It lies on the middle plane of the light sheet, not on
+    /// its lower edge plane: triangulate with `SheetPlane::Middle`.
     Centroid,
 }
 
@@ -75,8 +75,8 @@ impl Extraction {
     /// Lower edges in an image of one beam, in row-major order. The lower edge of a stripe is the image of the light in
     /// the beam's lower edge plane.
     ///
-    /// CHOICE: a column may hold several runs of lit pixels (a rock and the ground behind it). Each gives an edge, since
-    /// each edge is triangulated alone. A run that is cut off by the image's lower border gives none.
+    /// CHOICE: a column may hold several runs of lit pixels (a rock and the ground behind it). Each gives an edge,
+    /// since each edge is triangulated alone. A run that is cut off by the image's lower border gives none.
     ///
     /// ```
     /// use raypencil_rover::{EdgePoint, Extraction};
@@ -217,8 +217,8 @@ fn runs_between_edges(values: &[f64], min_difference: f64) -> Vec<Run> {
         if difference >= min_difference && difference > above && difference >= below {
             first = Some(j + 1);
         } else if difference <= -min_difference && difference < above && difference <= below {
-            // Without a rise, the light begins at the image's upper border: its lower edge counts all the same. After an
-            // earlier fall, it begins below that one.
+            // Without a rise, the light begins at the image's upper border: its lower edge counts all the same. After
+            // an earlier fall, it begins below that one.
             let first = first.take().unwrap_or(runs.last().map_or(0, |run: &Run| run.last + 1));
             // Vertex of the parabola through the three differences. Its curvature is positive at a minimum.
             let curvature = above - 2.0 * difference + below;

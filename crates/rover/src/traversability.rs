@@ -23,24 +23,26 @@ pub enum TraversabilityTest {
     Rear,
     /// c) Slope between the point midway between the front wheel centres and the one midway between the rear ones.
     Length,
-    /// Slope between two points closer to the centre, instead of c). "If the rear wheels lie on points with unknown LTM elevation, instead of testing with the points
-    /// in c) above we test with a pair of points closer to the center of the vehicle." (§7)
+    /// Slope between two points closer to the centre, instead of c). "If the rear wheels lie on points with unknown LTM
+    /// elevation, instead of testing with the points in c) above we test with a pair of points closer to the center of
+    /// the vehicle." (§7)
     Closer,
-    /// Height of the ground under the belly. "In addition we test whether the terrain hits the midpoint between the rear and front wheel centers." (§7)
+    /// Height of the ground under the belly. "In addition we test whether the terrain hits the midpoint between the
+    /// rear and front wheel centers." (§7)
     Belly,
 }
 
 /// Result of the tests of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Traversability {
-    /// A test failed; this is the first one. "If any of the slope tests exceed the maximum slope for that point pair, point
-    /// Q is labelled an obstacle point." (§7)
+    /// A test failed; this is the first one. "If any of the slope tests exceed the maximum slope for that point pair,
+    /// point Q is labelled an obstacle point." (§7)
     Obstacle(TraversabilityTest),
-    /// No test failed, but an elevation is missing. "If all the slope tests are satisfied, but if one of the slope points has unknown LTM elevation, the point Q is
-    /// labeled as unknown." (§7)
+    /// No test failed, but an elevation is missing. "If all the slope tests are satisfied, but if one of the slope
+    /// points has unknown LTM elevation, the point Q is labeled as unknown." (§7)
     Unknown,
-    /// All tests passed. "Otherwise, if all tests are passed and all points have known elevation, the point is labeled as being
-    /// clear." (§7)
+    /// All tests passed. "Otherwise, if all tests are passed and all points have known elevation, the point is labeled
+    /// as being clear." (§7)
     Clear,
 }
 
@@ -67,16 +69,17 @@ pub struct TraversabilityRules {
     /// Whether unknown rear wheels make a point unknown. They do in the paper, since they are slope points of b). If
     /// false, the two closer points suffice.
     pub rear_needed: bool,
-    /// Rule for narrow gaps. `None`: no gap is crossed, as in the paper, whose solution is one "which we have not yet implemented" (§7).
+    /// Rule for narrow gaps. `None`: no gap is crossed, as in the paper, whose solution is one "which we have not yet
+    /// implemented" (§7).
     pub gaps: Option<GapRule>,
 }
 
 impl TraversabilityRules {
     /// Settings for a vehicle.
     ///
-    /// CHOICE: the maximum slope of a pair is that of a step of one wheel radius between its points: a rigid wheel cannot
-    /// climb a step as high as its hub. For the default vehicle this is 0.35 (19 degrees) across and 0.29 (16 degrees)
-    /// along. The closer points are half way between centre and axles. No gap is crossed, as in the paper.
+    /// CHOICE: the maximum slope of a pair is that of a step of one wheel radius between its points: a rigid wheel
+    /// cannot climb a step as high as its hub. For the default vehicle this is 0.35 (19 degrees) across and 0.29 (16
+    /// degrees) along. The closer points are half way between centre and axles. No gap is crossed, as in the paper.
     pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         let step = vehicle.wheel_radius;
         let closer_share = 0.5;
@@ -95,9 +98,9 @@ impl TraversabilityRules {
         Self { gaps: Some(GapRule { max_width: vehicle.wheel_width }), ..self }
     }
 
-    /// Tests the global point `front`, the paper's Q. `forward` is the direction of the sector, a unit vector. "The point pairs are relative to an imaginary vehicle whose front axle midcenter
-    /// is at the point Q being tested. The orientation of the vehicle is in the direction of the radial grid
-    /// lines." (§7)
+    /// Tests the global point `front`, the paper's Q. `forward` is the direction of the sector, a unit vector. "The
+    /// point pairs are relative to an imaginary vehicle whose front axle midcenter is at the point Q being tested. The
+    /// orientation of the vehicle is in the direction of the radial grid lines." (§7)
     ///
     /// CHOICE: every point of the imaginary vehicle is replaced by the nearest grid point, in position and elevation. A
     /// plane then has its own slope exactly, wherever the vehicle stands on it.
@@ -164,10 +167,10 @@ impl TraversabilityRules {
 
         // CHOICE: the midpoint is that of the four wheels. The ground hits it at the mean of their elevations plus the
         // clearance. If the rear wheels are unknown, the mean is that of the two closer points.
-        let carriers = if rear_known { [front_wheels, rear_wheels].concat() } else { pair.to_vec() };
+        let support = if rear_known { [front_wheels, rear_wheels].concat() } else { pair.to_vec() };
         let belly = at(0.5 * wheelbase, 0.0);
-        if let (Some(belly), Some(carriers)) = (belly, carriers.iter().copied().collect::<Option<Vec<_>>>()) {
-            let mean = carriers.iter().map(|point| point.z).sum::<f64>() / carriers.len() as f64;
+        if let (Some(belly), Some(support)) = (belly, support.iter().copied().collect::<Option<Vec<_>>>()) {
+            let mean = support.iter().map(|point| point.z).sum::<f64>() / support.len() as f64;
             if belly.z >= mean + clearance {
                 return Traversability::Obstacle(TraversabilityTest::Belly);
             }

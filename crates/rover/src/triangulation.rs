@@ -26,7 +26,8 @@ impl SheetPlane {
     }
 }
 
-/// Triangulation with a camera and one plane of light, both fixed to the vehicle: an image point gives a point in space.
+/// Triangulation with a camera and one plane of light, both fixed to the vehicle: an image point gives a point in
+/// space.
 ///
 /// ```
 /// # use glam::DVec3;
@@ -82,8 +83,8 @@ impl Triangulation {
         Self { camera: rig.camera, beam: sensor, beam_from_camera, y }
     }
 
-    /// Point of the plane that is seen at image point (u, v), in the vehicle frame, metres. (u, v) is in pixels from the
-    /// outer corner of pixel (0, 0). `None` if the beam cannot light that point.
+    /// Point of the plane that is seen at image point (u, v), in the vehicle frame, metres. (u, v) is in pixels from
+    /// the outer corner of pixel (0, 0). `None` if the beam cannot light that point.
     pub fn at(&self, u: f64, v: f64) -> Option<DVec3> {
         let camera = &self.camera.sensor;
         let q_camera = DVec3::new(
@@ -114,8 +115,8 @@ impl Triangulation {
     }
 
     /// Radius of the footprint of pixel (i, j) on the plane, metres: the largest distance from the point seen by its
-    /// middle to one seen elsewhere in the pixel. The footprint is a quadrilateral, so that a corner is farthest. `None`
-    /// if the beam cannot light the point of a corner.
+    /// middle to one seen elsewhere in the pixel. The footprint is a quadrilateral, so that a corner is farthest.
+    /// `None` if the beam cannot light the point of a corner.
     pub fn footprint(&self, i: u32, j: u32) -> Option<f64> {
         let middle = self.at_pixel(i, j)?;
         let (u, v) = (f64::from(i), f64::from(j));
@@ -126,8 +127,8 @@ impl Triangulation {
         Some(largest)
     }
 
-    /// Points of a stripe's edges at their measured rows, in the order of the edges: vehicle frame, metres. Edges without
-    /// a point are left out.
+    /// Points of a stripe's edges at their measured rows, in the order of the edges: vehicle frame, metres. Edges
+    /// without a point are left out.
     pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
         edges.iter().filter_map(|edge| self.at_edge(edge)).collect()
     }
@@ -150,11 +151,12 @@ impl Triangulation {
     }
 }
 
-/// Table of the points seen by all pixels. "A table holds the local vehicle coordinates of the edge plane point seen by any given camera pixel, i.e. the
-/// point where a ray passing through the camera pixel intersects the lower edge plane of the light beam." (§7)
+/// Table of the points seen by all pixels. "A table holds the local vehicle coordinates of the edge plane point seen by
+/// any given camera pixel, i.e. the point where a ray passing through the camera pixel intersects the lower edge plane
+/// of the light beam." (§7)
 ///
-/// A table is valid for one configuration of camera and beam: panned sensors need another one. "Tables must be regenerated at
-/// every camera and beam configuration." (§8)
+/// A table is valid for one configuration of camera and beam: panned sensors need another one. "Tables must be
+/// regenerated at every camera and beam configuration." (§8)
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangulationTable {
     points: Image<Maybe<DVec3>>,
@@ -166,8 +168,8 @@ impl TriangulationTable {
         self.points.at(i, j).get()
     }
 
-    /// Points of a stripe's edge pixels, in the order of the edges: vehicle frame, metres. Edges without a point are left
-    /// out.
+    /// Points of a stripe's edge pixels, in the order of the edges: vehicle frame, metres. Edges without a point are
+    /// left out.
     pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
         edges.iter().filter_map(|edge| self.at_pixel(edge.i, edge.j)).collect()
     }

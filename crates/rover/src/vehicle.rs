@@ -8,8 +8,8 @@ use crate::check::{check_count, check_range};
 
 /// Dimensions of a vehicle on four wheels.
 ///
-/// The vehicle frame has x forward, y left, z up. Its origin, the paper's "local vehicle origin" (§7), lies in the plane
-/// of the wheels' lowest points, midway between the axles and between the sides.
+/// The vehicle frame has x forward, y left, z up. Its origin, the paper's "local vehicle origin" (§7), lies in the
+/// plane of the wheels' lowest points, midway between the axles and between the sides.
 ///
 /// CHOICE: the paper gives neither the origin nor any dimension. With this origin a vehicle on a level plane has the
 /// plane's height, as in the scene files.
@@ -31,8 +31,9 @@ pub struct Vehicle {
 }
 
 impl Default for Vehicle {
-    /// CHOICE: a rover of one to two metres, which suits the built-in scenes and the default rig. It fits into the strip
-    /// of 2.6 m that `pyramids` leaves free, and its front end is behind the nearest ground that a panned camera sees.
+    /// CHOICE: a rover of one to two metres, which suits the built-in scenes and the default rig. It fits into the
+    /// strip of 2.6 m that `pyramids` leaves free, and its front end is behind the nearest ground that a panned camera
+    /// sees.
     ///
     /// Two statements of §7 are kept. A wheel is thicker than one grid spacing of 0.1 m, since the paper distinguishes
     /// gaps "less than or equal to one grid spacing" from those "less than one wheel thickness wide". The underside is
@@ -78,8 +79,8 @@ pub struct Stance {
     pub position: DVec3,
     /// Orientation.
     pub attitude: Attitude,
-    /// Motion of the wheels in the last iteration, metres. It is small, unless the ground is so rough that the iteration
-    /// does not converge.
+    /// Motion of the wheels in the last iteration, metres. It is small, unless the ground is so rough that the
+    /// iteration does not converge.
     pub residual: f64,
 }
 
@@ -109,8 +110,8 @@ impl Vehicle {
         self.track + self.wheel_width
     }
 
-    /// Height of the hub of a wheel above the global point `hub`, global z, metres. The wheel rolls towards `heading` (a
-    /// unit vector) and rests on the highest of its rim's points. `None` if there is no ground below.
+    /// Height of the hub of a wheel above the global point `hub`, global z, metres. The wheel rolls towards `heading`
+    /// (a unit vector) and rests on the highest of its rim's points. `None` if there is no ground below.
     fn hub_height(&self, ground: &HeightIndex, hub: DVec2, heading: DVec2) -> Option<f64> {
         let points = self.rim_points.max(1);
         let across = heading.perp() * (0.5 * self.wheel_width);
@@ -142,7 +143,7 @@ impl Vehicle {
     /// use raypencil_terrain::{HeightIndex, builtin};
     ///
     /// // The built-in scene is level at its start, (-9, 0): a vehicle stands level at z = 0 there.
-    /// let ground = HeightIndex::new(&builtin("pyramids", 0.25)?.into_mesh()?);
+    /// let ground = HeightIndex::new(&builtin("pyramids", 0.25).unwrap().into_mesh()?);
     /// let stance = Vehicle::default().settle(&ground, DVec2::new(-9.0, 0.0), 0.0).unwrap();
     /// assert!(stance.position.z.abs() < 1e-9 && stance.attitude.pitch_down.abs() < 1e-9);
     /// # Ok::<(), raypencil_scene::SceneError>(())

@@ -19,14 +19,14 @@ fn without_errors_the_truth_is_read() {
         let sensed = localisation.read(&stance(), &ground());
         assert_eq!(sensed.position, DVec2::new(-9.3, 0.2));
         assert_eq!(sensed.attitude, Attitude::default());
-        // 4 cm above a plane at 0.
+        // The vehicle is 4 cm above a plane at 0.
         assert_eq!(sensed.proximity, Some(0.04));
     }
 }
 
 #[test]
 fn drift_grows_until_a_fix_takes_it_away() {
-    // 0.02 m/s at 10 frames a second: 2 mm a frame; frames 0, 50, 100 are fixes without noise.
+    // 0.02 m/s at 10 frames per second are 2 mm per frame. Frames 0, 50 and 100 have fixes without noise.
     let fixes = Some(PositionFixes { every_frames: 50, noise: 0.0 });
     let errors = LocalisationErrors {
         position_drift: DVec2::new(0.02, 0.0),
@@ -40,15 +40,15 @@ fn drift_grows_until_a_fix_takes_it_away() {
         let sensed = localisation.read(&stance(), &ground);
         let expected = 0.002 * f64::from(frame % 50);
         assert!((sensed.position.x + 9.3 - expected).abs() < 1e-12, "frame {frame}");
-        // Nobody corrects the heading: 1 mrad a frame.
+        // A fix does not correct the heading: it drifts by 1 mrad per frame.
         assert!((sensed.attitude.heading - 0.001 * f64::from(frame)).abs() < 1e-12);
     }
 }
 
 #[test]
 fn a_walk_has_the_spread_of_its_time() {
-    // After 100 s of a walk of 0.01 m in 1 s: 0.1 m in x. Over 400 seeds the mean square is 0.01 within four
-    // standard errors of sqrt(2 / 400).
+    // A walk of 0.01 m in 1 s has a standard deviation of 0.1 m after 100 s. Over 400 seeds the mean square is 0.01,
+    // within four relative standard errors of sqrt(2 / 400).
     let errors = LocalisationErrors { position_walk: 0.01, ..LocalisationErrors::default() };
     let mut mean_square = 0.0;
     let ground = ground();
@@ -62,7 +62,7 @@ fn a_walk_has_the_spread_of_its_time() {
 }
 
 #[test]
-fn errors_that_are_none_are_named() {
+fn errors_out_of_range_are_named() {
     let errors = LocalisationErrors { attitude_noise: -1.0, ..LocalisationErrors::default() };
     assert!(errors.validate("sensors").unwrap_err().to_string().contains("sensors.attitude_noise is -1"));
 }

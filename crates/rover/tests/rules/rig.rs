@@ -1,4 +1,4 @@
-//! Panned sensors, and the way from a rig to a scene and back.
+//! Panned sensors, and the conversion of a rig to a scene and back.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ fn default_rig() -> Rig {
 
 #[test]
 fn panning_turns_down_about_the_sensors_own_place() {
-    // Mounted 31 degrees down and panned 14 more, the beam looks 45 degrees down from where it was.
+    // Mounted 31 degrees down and panned by 14 degrees, the beam points 45 degrees down. Its position stays.
     let rig = default_rig();
     let panned = rig.panned(Pan { camera: 0.0, beams: 14.0_f64.to_radians() });
     assert_eq!(panned.camera, rig.camera);
@@ -22,7 +22,7 @@ fn panning_turns_down_about_the_sensors_own_place() {
     assert_eq!(pose.position, DVec3::new(0.3, 0.0, 1.8));
     let half = 0.5_f64.sqrt();
     assert!((pose.rotate(DVec3::Z) - DVec3::new(half, 0.0, -half)).length() < 1e-15);
-    // Its x axis, across the fan, still points to the vehicle's right.
+    // The beam's x axis, across the fan, still points to the vehicle's right.
     assert!((pose.rotate(DVec3::X) + DVec3::Y).length() < 1e-15);
 }
 

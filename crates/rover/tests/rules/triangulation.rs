@@ -1,4 +1,4 @@
-//! Triangulation against the pinhole's own equation.
+//! Triangulation against the projection of a pinhole camera.
 
 use glam::DVec3;
 use raypencil_rover::{OnVehicle, Pan, Rig, SheetPlane, Triangulation};
@@ -9,7 +9,7 @@ fn default_rig() -> Rig {
     common::rig(1024, 16)
 }
 
-/// Where a point of the vehicle frame lands on the image: the pinhole's own equation.
+/// Image point (u, v) of a point of the vehicle frame, by the projection of a pinhole camera.
 fn project(rig: &Rig, point: DVec3) -> (f64, f64) {
     let p = rig.camera.vehicle_from_sensor.inverse() * point;
     let camera = &rig.camera.sensor;
@@ -19,7 +19,7 @@ fn project(rig: &Rig, point: DVec3) -> (f64, f64) {
     (along(0, p.x), along(1, p.y))
 }
 
-/// Points of a beam's lower edge plane, laid out in the beam frame, that the camera sees.
+/// Points of a beam's lower edge plane that the camera sees, in the vehicle frame. They form a grid in the beam frame.
 fn edge_points(rig: &Rig, beam: usize) -> Vec<DVec3> {
     let OnVehicle { vehicle_from_sensor, sensor } = rig.beams[beam];
     let mut points = Vec::new();
@@ -47,10 +47,10 @@ fn triangulation_closes() {
             assert!(points.len() > 500, "{} points", points.len());
             for point in points {
                 let (u, v) = project(&rig, point);
-                // Where it really lands: the same point again.
+                // Its exact image point gives the same point again.
                 let again = triangulation.at(u, v).expect("a lit point");
                 assert!((again - point).length() < 1e-9, "{again} for {point}");
-                // From the middle of its pixel: within the footprint.
+                // The middle of its pixel gives a point within the footprint.
                 let (i, j) = (u as u32, v as u32);
                 if let Some(footprint) = triangulation.footprint(i, j) {
                     let nearest = triangulation.at_pixel(i, j).expect("a lit pixel");
@@ -63,8 +63,8 @@ fn triangulation_closes() {
 
 #[test]
 fn pixel_centres_close_to_a_nanometre() {
-    // From a pixel's middle to its point and back: the point lies on y = T/2 of the beam, and lands on the
-    // middle of the pixel. 1e-9 m at up to 20 m is 1e-9 / 20 * 8e-3 / 9e-6 = 4e-8 pixels.
+    // The point of a pixel's middle lies on y = T/2 of the beam, and its image is the middle of the pixel. 1e-9 m at up
+    // to 20 m is 1e-9 / 20 * 8e-3 / 9e-6 = 4e-8 pixels.
     let rig = default_rig();
     for beam in 0..2 {
         let table = Triangulation::new(&rig, beam, SheetPlane::LowerEdge).table();
@@ -85,28 +85,28 @@ fn pixel_centres_close_to_a_nanometre() {
 
 #[test]
 fn a_stripe_on_level_ground_is_where_the_plane_meets_it() {
-    // Beam 0: 1.8 m up, 31 degrees down. Its lower edge plane runs 2.5 mm below the axis plane, measured at
-    // right angles: it meets the ground (1.8 - 0.0025 / cos 31) / tan 31 ahead of the beam.
+    // Beam 0 is 1.8 m up and points 31 degrees down. Its lower edge plane is parallel to its middle plane, 2.5 mm
+    // below: it meets the ground (1.8 - 0.0025 / cos 31) / tan 31 ahead of the beam.
     let rig = default_rig();
     let down = 31.0_f64.to_radians();
     let ahead = (1.8 - 0.0025 / libm::cos(down)) / libm::tan(down);
     let (u, v) = project(&rig, DVec3::new(0.3 + ahead, 0.0, 0.0));
     let point = Triangulation::new(&rig, 0, SheetPlane::LowerEdge).at(u, v).unwrap();
     assert!((point - DVec3::new(0.3 + ahead, 0.0, 0.0)).length() < 1e-9);
-    // The camera's ray comes from below the sheet: it meets the middle plane later, below the ground.
+    // The camera's ray comes from below the sheet and meets the middle plane beyond the edge plane, below the ground.
     let middle = Triangulation::new(&rig, 0, SheetPlane::Middle).at(u, v).unwrap();
     assert!(middle.z < 0.0 && middle.x > point.x);
 }
 
 #[test]
-fn what_the_beam_cannot_light_is_no_point() {
+fn pixels_that_see_no_lit_point_give_none() {
     let rig = default_rig();
     let triangulation = Triangulation::new(&rig, 0, SheetPlane::LowerEdge);
-    // The plane falls 31 degrees, 11 more than the camera's axis, and is above the camera: below its vanishing line
-    // at row 512 + 8 mm tan 11 / 9 um = 684.8 the camera looks under it for ever.
+    // The plane descends by 31 degrees, 11 more than the camera's axis, and is above the camera. Its vanishing line is
+    // at row 512 + 8 mm tan 11 / 9 um = 684.8: rays below that row do not meet it.
     assert!(triangulation.at(512.0, 684.0).is_none() && triangulation.at(512.0, 700.0).is_none());
     assert!(triangulation.at(512.0, 650.0).is_some());
-    // Near the image's right border low down, beyond the fan.
+    // A point near the image's right border is beyond the narrow fan.
     let mut narrow = rig.clone();
     narrow.beams[0].sensor.half_width = 0.01;
     let triangulation = Triangulation::new(&narrow, 0, SheetPlane::LowerEdge);

@@ -1,11 +1,11 @@
-//! How the vehicle settles on planes and steps.
+//! The stance of a vehicle on planes and steps.
 
 use glam::{DVec2, DVec3};
 use raypencil_rover::{Attitude, Stance, Vehicle};
 use raypencil_scene::Material;
 use raypencil_terrain::{Ground, HeightIndex};
 
-/// A square of 40 m about (0, 0), z = height(x, y) at its corners, cut along x = y.
+/// A square of 40 m around (0, 0) with z = height(x, y) at its corners, divided along x = y.
 fn plane(height: impl Fn(f64, f64) -> f64) -> Ground {
     let corner = |x: f64, y: f64| DVec3::new(x, y, height(x, y));
     Ground {
@@ -32,9 +32,9 @@ fn on_level_ground_it_stands_level() {
 
 #[test]
 fn on_a_slope_it_is_parallel_to_the_slope() {
-    // z = 0.25 x, driven up: nose up by atan 0.25, no roll; driven across (heading +y): the right side, which
-    // is uphill, is up. The rim's 17 points miss the true contact by at most half their spacing along the
-    // circle, (r / 17)^2 / (2 r) = r / 578 = 0.6 mm, the same at every wheel.
+    // z = 0.25 x. Driving up: pitch of atan 0.25, no roll. Driving across (heading +y): the right side is uphill and
+    // up. The rim's 17 points miss the true contact by at most half their spacing, in height by (r / 17)^2 / (2 r) = r
+    // / 578 = 0.6 mm, the same at every wheel.
     let rise = libm::atan(0.25);
     let up = settled(plane(|x, _| 0.25 * x), 0.0).unwrap();
     assert!((up.attitude.pitch_down + rise).abs() < 1e-6, "{up:?}");
@@ -47,8 +47,8 @@ fn on_a_slope_it_is_parallel_to_the_slope() {
 
 #[test]
 fn front_wheels_on_a_step_lift_the_nose() {
-    // A block 0.2 m high from x = 1.3 on; the middle at x = 1.0, hubs at 1.6 and 0.4 while level. The nose
-    // rises by asin(0.2 / 1.2), the middle by 0.1 m.
+    // A block 0.2 m high begins at x = 1.3. The vehicle's centre is at x = 1.0; its hubs are at 1.6 and 0.4 while
+    // level. It pitches up by asin(0.2 / 1.2), and the centre of the hubs rises by 0.1 m.
     let mut ground = plane(|_, _| 0.0);
     let block = plane(|_, _| 0.2);
     let first = ground.vertices.len() as u32;
@@ -57,7 +57,7 @@ fn front_wheels_on_a_step_lift_the_nose() {
     ground.face_materials.extend([0, 0]);
     let stance = settled(ground, 0.0).unwrap();
     assert!((stance.attitude.pitch_down + libm::asin(0.2 / 1.2)).abs() < 1e-3, "{stance:?}");
-    // The origin is in the wheels' plane, below the middle of the hubs by r cos(pitch): a little less than r.
+    // The origin is in the wheels' plane, r cos(pitch) below the centre of the hubs: a little less than r.
     assert!((stance.position.z - 0.1 - 0.35 * (1.0 - 35.0_f64.sqrt() / 6.0)).abs() < 1e-3);
 }
 
@@ -68,7 +68,7 @@ fn beyond_the_ground_there_is_no_stance() {
 }
 
 #[test]
-fn the_default_vehicle_is_one_and_others_are_named() {
+fn the_default_vehicle_is_valid_and_fields_out_of_range_are_named() {
     assert!(Vehicle::default().validate("vehicle").is_ok());
     let wide = Vehicle { wheel_width: 1.5, ..Vehicle::default() };
     assert!(wide.validate("vehicle").unwrap_err().to_string().starts_with("vehicle.wheel_width is 1.5"));
