@@ -109,7 +109,7 @@ impl ElevationMap {
     /// # Panics
     /// If the size is not valid.
     pub fn new(size: MapSize, origin: DVec2) -> Self {
-        assert!(size.validate("map").is_ok(), "a map of {size:?}");
+        assert!(size.validate("map").is_ok(), "invalid map size: {size:?}");
         let cells = vec![Cell::default(); size.points as usize * size.points as usize];
         Self { size, origin, centre: GridPoint { i: 0, j: 0 }, cells, update: 0 }
     }

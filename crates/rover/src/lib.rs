@@ -12,10 +12,10 @@
 //!    points;
 //! 5. `obstacle_map`, `traversability` and `gap`: in one of [`FRAMES_PER_OBSTACLE_MAP`] frames, [`ObstacleMap`] tests a
 //!    radial grid by [`TraversabilityRules`];
-//! 6. `navigator_map`: [`navigator_map`] joins the ends of the sectors by labelled vectors.
+//! 6. `navigator_map`: [`navigator_map()`] joins the ends of the sectors by labelled vectors.
 //!
-//! `route` and `scan` decide where the vehicle drives and when it stops to pan its beams. `drive` puts all of this
-//! together: [`Drive`] takes a renderer for the images.
+//! `route` and `scan` decide where the vehicle drives and when it stops to pan its beams. `drive_plan` holds all
+//! settings. `drive` puts everything together: [`Drive`] takes a renderer for the images.
 //!
 //! The crate does no IO and reads no clock; random numbers are keyed by (seed, purpose, index). Every number that the
 //! paper does not print is a named field; `docs/rover.md` lists them with the sentences of the paper.
@@ -51,6 +51,7 @@
 
 mod check;
 mod drive;
+mod drive_plan;
 mod elevation_map;
 mod gap;
 mod localisation;
@@ -67,9 +68,8 @@ mod traversability;
 mod triangulation;
 mod vehicle;
 
-pub use drive::{
-    CameraImage, CameraPipeline, Drive, DriveFrame, DrivePlan, Exposure, ExposureMode, MeasuredPoint,
-};
+pub use drive::{CameraImage, CameraPipeline, Drive, DriveFrame, Exposure, MeasuredPoint};
+pub use drive_plan::{DrivePlan, ExposureMode};
 pub use elevation_map::{ElevationMap, ElevationSource, GridPoint, Inconsistency, MapSize};
 pub use gap::GapRule;
 pub use localisation::{Localisation, LocalisationErrors, LocalisationReading, PositionFixes};

@@ -19,8 +19,8 @@ pub struct Mapper {
 /// Result of an update of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapUpdate {
-    /// Whether the vehicle's elevation came from the map and the proximity sensor. False if the map had no elevation
-    /// under the vehicle.
+    /// Whether the vehicle's elevation came from the map and the proximity sensor. False if either had no value under
+    /// the vehicle.
     pub elevation_read: bool,
     /// Motion of the map in x and y, grid steps.
     pub moved: (i64, i64),
@@ -97,10 +97,10 @@ impl Mapper {
     }
 
     /// Estimates the vehicle's pose. "The vehicle determines its global elevation by adding its measured elevation
-    /// above the ground surface to the elevation of its current location on the LTM." (§7) Returns whether the map had
-    /// that elevation.
+    /// above the ground surface to the elevation of its current location on the LTM." (§7) Returns whether both were
+    /// known.
     ///
-    /// CHOICE: if it had none, the vehicle is taken to have moved in the plane of its wheels: its rise follows from the
+    /// CHOICE: if not, the vehicle is taken to have moved in the plane of its wheels: its rise follows from the
     /// measured attitude and the horizontal displacement.
     fn locate(&mut self, sensed: &LocalisationReading) -> bool {
         let below = self.map.elevation(self.map.nearest(sensed.position));

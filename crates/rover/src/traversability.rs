@@ -195,7 +195,7 @@ impl TraversabilityRules {
         ] {
             check_range(field, name, slope, 0.0, 1e3, "(rise over distance)")?;
         }
-        check_range(field, "closer_share", self.closer_share, 1e-3, 1.0, "of the half wheelbase")?;
+        check_range(field, "closer_share", self.closer_share, 1e-3, 1.0, "of half the wheelbase")?;
         if let Some(gaps) = self.gaps {
             check_range(field, "gaps.max_width", gaps.max_width, 0.0, 1e2, "m")?;
         }
