@@ -216,7 +216,7 @@ impl Drive {
             self.last_scan = Some(place.driven);
             // A scan also corrects the elevations that it contradicts.
             self.inconsistency = Inconsistency::default();
-            mapper.update_from_scan(&sensed, points, rule.is_some_and(|rule| rule.forget))
+            mapper.update_from_scan(&sensed, points, rule.is_some_and(|rule| rule.clear_map))
         } else {
             let update = mapper.update(&sensed, points);
             self.inconsistency = update.inconsistency;

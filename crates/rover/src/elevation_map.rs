@@ -208,7 +208,7 @@ impl ElevationMap {
     /// "The grid point having x,y coordinates closest to an edge point inherits the elevation of the edge point and its
     /// key field is set to 'u'." If several points have the same grid point, the last one counts. Then "extrapolating
     /// the elevation of each new data point to each of its neighboring grid points that is not itself a new data point"
-    /// (§7): eight neighbours, whatever they held before.
+    /// (§7): eight neighbours, even if their elevation was known before.
     ///
     /// CHOICE: data points are extrapolated in the order in which they first became data points. If several have the
     /// same neighbour, the last one counts.

@@ -1,4 +1,4 @@
-//! The rover: from the images of its camera to maps of the terrain, obstacles and directions to drive.
+//! The rover: from the images of its camera to an elevation map, an obstacle map and a navigator map.
 //!
 //! Source: step 9 of the paper (section 3) and its section 7, "Building the local obstacle map". One frame goes through
 //! these modules in order:

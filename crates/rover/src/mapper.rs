@@ -76,18 +76,18 @@ impl Mapper {
     /// Updates the map with a vertical scan at rest: the points of all its stripes (vehicle frame, metres). "The beams
     /// are vertically panned to completely refresh the local map." (abstract) "... to obtain a fresh LTM." (§7)
     ///
-    /// CHOICE: "fresh" means that the map is cleared first, if `forget` is set. The elevations under the vehicle then
-    /// come from the proximity sensor, as at the start. The points of all stripes are new data points of one update, so
-    /// that the extrapolation of one stripe does not overwrite the measurement of another.
+    /// CHOICE: "fresh" means that the map is cleared first, if `clear_map` is set. The elevations under the vehicle
+    /// then come from the proximity sensor, as at the start. The points of all stripes are new data points of one
+    /// update, so that the extrapolation of one stripe does not overwrite the measurement of another.
     pub fn update_from_scan(
         &mut self,
         sensed: &LocalisationReading,
         points: impl IntoIterator<Item = DVec3>,
-        forget: bool,
+        clear_map: bool,
     ) -> MapUpdate {
         let elevation_read = self.locate(sensed);
         let moved = self.map.recentre(sensed.position);
-        if forget {
+        if clear_map {
             self.map.clear();
             self.fill_under_vehicle(sensed);
         }

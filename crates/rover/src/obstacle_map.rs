@@ -162,7 +162,7 @@ impl ObstacleMap {
     /// };
     /// use raypencil_scene::Pose;
     ///
-    /// // Level ground that is known up to x = 4 m. The vehicle stands at the map's origin and looks along x. No point of
+    /// // Level ground that is known up to x = 4 m. The vehicle is at the map's origin and looks along x. No point of
     /// // the imaginary vehicle lies before its front axle: 4.1 m is the first radius ahead with an unknown point.
     /// let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
     /// for point in map.points().filter(|point| point.i <= 40) {

@@ -64,7 +64,7 @@ pub struct ScanRule {
     /// Minimum number of re-measured grid points for which `inconsistency` may trigger a scan.
     pub least_points: u32,
     /// Whether a scan clears the old map first.
-    pub forget: bool,
+    pub clear_map: bool,
 }
 
 impl Default for ScanRule {
@@ -72,7 +72,7 @@ impl Default for ScanRule {
     /// the last scan; and one at a mean difference of 0.1 m on 20 grid points, a third of the step that the default
     /// vehicle's slope tests refuse.
     fn default() -> Self {
-        Self { at_start: true, every: Some(5.0), inconsistency: Some(0.1), least_points: 20, forget: true }
+        Self { at_start: true, every: Some(5.0), inconsistency: Some(0.1), least_points: 20, clear_map: true }
     }
 }
 

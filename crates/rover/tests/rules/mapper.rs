@@ -67,7 +67,7 @@ fn a_scan_clears_the_map() {
     assert_eq!(mapper.known_count(), 19 * 13 + 12);
     let map = mapper.map();
     assert_eq!(map.elevation(map.nearest(DVec2::new(3.1, 0.0))), Some(5.2));
-    // Without `forget` the other elevations stay.
+    // Without `clear_map` the other elevations stay.
     mapper.update_from_scan(&sensed(0.0, Some(0.0)), [DVec3::new(-4.0, 0.0, 0.0)], false);
     assert_eq!(mapper.known_count(), 19 * 13 + 21);
 }
