@@ -1,8 +1,8 @@
-//! Refusals of parameters that nothing could work with.
+//! Range checks of parameters.
 
 use raypencil_scene::SceneError;
 
-/// Refuses a `value` outside `low..=high` (and NaN, which is outside of everything).
+/// Refuses a `value` outside `low..=high`, and NaN. The error names `field.name`, the value and the range.
 pub(crate) fn check_range(
     field: &str,
     name: &str,
@@ -17,7 +17,7 @@ pub(crate) fn check_range(
     Err(SceneError::new(format!("{field}.{name}"), value, format!("{low} to {high} {unit}").trim_end()))
 }
 
-/// Refuses a `count` outside `low..=high`.
+/// Refuses a `count` outside `low..=high`. The error names `field.name`, the count and the range.
 pub(crate) fn check_count(
     field: &str,
     name: &str,

@@ -1,201 +1,150 @@
-//! A whole drive: what a rover sees, believes and marks, frame by frame. (Paper, §7 and §8)
+//! A whole drive: images, pose estimate, maps and obstacles, frame by frame. (Paper, §7 and §8)
 
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_scene::{Atmosphere, FluxModel, Image, Mesh, Pose, Renderer, Request, SceneError};
+use raypencil_scene::{Image, Mesh, Pose, Renderer, Request, SceneError};
 use raypencil_terrain::HeightIndex;
 
-use crate::check::check_count;
-use crate::inertial::{Sensed, SensorErrors, Sensors};
-use crate::local_map::{Inconsistency, MapSize};
-use crate::mapper::{FrameUpdate, Mapper};
-use crate::navigator_map::{LabelledVector, VectorRules, navigator_map};
-use crate::obstacle_map::{OBSTACLE_FRAMES, ObstacleMap, RadialGrid, obstacle_map_due};
-use crate::passable::PassableRules;
-use crate::rig::{Pan, Rig};
-use crate::route::{Route, RoutePlace};
-use crate::scan::{ScanReason, ScanRule, Sweep};
-use crate::stripe::{EdgePoint, Extraction};
+use crate::drive_plan::{DrivePlan, ExposureMode};
+use crate::elevation_map::Inconsistency;
+use crate::localisation::{Localisation, LocalisationReading};
+use crate::mapper::{MapUpdate, Mapper};
+use crate::navigator_map::{LabelledVector, navigator_map};
+use crate::obstacle_map::{ObstacleMap, obstacle_map_due};
+use crate::rig::Pan;
+use crate::route::{Route, RoutePose};
+use crate::scan::ScanReason;
+use crate::stripe::EdgePoint;
 use crate::triangulation::{SheetPlane, Triangulation};
-use crate::vehicle::{Stance, Vehicle};
+use crate::vehicle::Stance;
 
-/// How the camera tells the beams' stripes apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Exposures {
-    /// Each beam is lit alone, in an exposure of its own. CHOICE: the paper does not say; this needs no guess.
-    #[default]
-    InTurn,
-    /// All beams are lit at once, and told apart by their order in the image.
-    Together,
-}
-
-/// Everything that a drive is made of but the ground and the renderer.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DrivePlan {
-    /// The vehicle.
-    pub vehicle: Vehicle,
-    /// Its sensors.
-    pub rig: Rig,
-    /// Where it drives.
-    pub route: Route,
-    /// How stripes are extracted.
-    pub extraction: Extraction,
-    /// How they are told apart.
-    pub exposures: Exposures,
-    /// What it knows of where it is.
-    pub errors: SensorErrors,
-    /// Other seeds give other errors.
-    pub seed: u64,
-    /// The local terrain map.
-    pub map: MapSize,
-    /// When it stops to pan its beams; `None`: never.
-    pub scans: Option<ScanRule>,
-    /// Through which angles.
-    pub sweep: Sweep,
-    /// An obstacle map every so many frames.
-    pub obstacles_every: u64,
-    /// Its thresholds.
-    pub rules: PassableRules,
-    /// Its grid.
-    pub grid: RadialGrid,
-    /// Those of the navigator map.
-    pub vectors: VectorRules,
-    /// The air.
-    pub atmosphere: Atmosphere,
-    /// The equation of flux.
-    pub flux_model: FluxModel,
-}
-
-impl DrivePlan {
-    /// A drive of the default vehicle with everything as the defaults have it.
-    pub fn new(rig: Rig, route: Route, extraction: Extraction) -> Self {
-        let vehicle = Vehicle::default();
-        Self {
-            rules: PassableRules::of(&vehicle),
-            grid: RadialGrid::of(&vehicle),
-            vectors: VectorRules::of(&vehicle),
-            vehicle,
-            rig,
-            route,
-            extraction,
-            exposures: Exposures::InTurn,
-            errors: SensorErrors::default(),
-            seed: 0,
-            map: MapSize::default(),
-            scans: Some(ScanRule::default()),
-            sweep: Sweep::default(),
-            obstacles_every: OBSTACLE_FRAMES,
-            atmosphere: Atmosphere { attenuation: 0.0 },
-            flux_model: FluxModel::Radiometric,
-        }
-    }
-
-    /// Refuses a plan that cannot be driven, naming the field.
-    pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        let name = |part: &str| format!("{field}.{part}");
-        self.vehicle.validate(&name("vehicle"))?;
-        self.rig.validate(&name("rig"))?;
-        self.route.validate(&name("route"))?;
-        self.extraction.validate(&name("extraction"))?;
-        self.errors.validate(&name("errors"))?;
-        self.map.validate(&name("map"))?;
-        if let Some(scans) = self.scans {
-            scans.validate(&name("scans"))?;
-        }
-        self.sweep.validate(&name("sweep"))?;
-        check_count(field, "obstacles_every", self.obstacles_every, 1, u64::MAX)?;
-        self.rules.validate(&name("rules"))?;
-        self.grid.validate(&name("grid"))?;
-        self.vectors.validate(&name("vectors"))
-    }
-}
-
-/// Which exposure an image is.
+/// Identity of an exposure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exposure {
-    /// The frame.
+    /// Index of the frame.
     pub frame: u64,
-    /// In a vertical scan, which position of the sweep.
+    /// Index of the sweep position in a vertical scan; otherwise `None`.
     pub step: Option<u32>,
-    /// The beam that was lit; `None`: all of them.
+    /// Index of the lit beam. `None`: all beams.
     pub beam: Option<usize>,
 }
 
-/// What the camera hands on of an exposure.
+/// Image that the camera passes to the stripe extraction.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Exposed {
-    /// The flux itself, watts: of a camera without steps 6 to 8.
+pub enum CameraImage {
+    /// Flux per pixel, watts: the camera has no steps 6 to 8.
     Flux(Image<f64>),
-    /// Digital numbers; may be less than 0 where those of an unlit exposure are taken off.
+    /// Digital numbers. They may be negative after subtraction of an unlit image.
     Numbers(Image<i32>),
 }
 
-/// What turns the ideal image into the camera's: steps 6 to 8 (§3).
-pub type Develop<'a> = dyn FnMut(Exposure, Image<f64>) -> Exposed + 'a;
+/// Imaging pipeline of the camera, steps 6 to 8 (§3): from the ideal image, in watts per pixel, to the camera's image.
+pub type CameraPipeline<'a> = dyn FnMut(Exposure, Image<f64>) -> CameraImage + 'a;
 
-/// One edge point of a stripe, and where it is thought to be.
+/// Measured point of a stripe.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
-    /// In a vertical scan, which position of the sweep.
+pub struct MeasuredPoint {
+    /// Index of the sweep position in a vertical scan; otherwise `None`.
     pub step: Option<u32>,
-    /// The beam whose stripe it is.
+    /// Index of the beam.
     pub beam: usize,
-    /// Its place in the image.
+    /// Edge in the image.
     pub edge: EdgePoint,
-    /// Its place on the beam's plane, vehicle frame, metres.
+    /// Point on the beam's plane, vehicle frame, metres.
     pub point: DVec3,
 }
 
-/// One frame of a drive.
+/// Result of one frame of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveFrame {
-    /// Which one.
+    /// Index of the frame.
     pub index: u64,
-    /// Where the route has the vehicle.
-    pub place: RoutePlace,
-    /// How it really stands.
+    /// Commanded pose, from the route.
+    pub place: RoutePose,
+    /// True pose on the ground.
     pub stance: Stance,
-    /// What its sensors say.
-    pub sensed: Sensed,
-    /// If it stopped to scan, why.
+    /// Reading of the localisation sensors.
+    pub sensed: LocalisationReading,
+    /// Reason for a scan in this frame; `None`: no scan.
     pub scan: Option<ScanReason>,
-    /// How many points its stripes gave.
+    /// Number of measured points.
     pub points: usize,
-    /// With all beams in one exposure: how many columns hold light, but not one run for each beam.
-    pub left_out: usize,
-    /// These points, beam by beam, each in row-major order of its image; those of a scan position after position.
-    pub measured: Vec<Measured>,
-    /// The vehicle as it believes itself to be, `global_from_vehicle`: where the points were entered.
+    /// Number of image columns that were left out: with [`ExposureMode::Together`], those that hold light but not
+    /// exactly one run per beam.
+    pub columns_left_out: usize,
+    /// Measured points, beam by beam, in row-major order of the image. In a scan: position by position.
+    pub measured: Vec<MeasuredPoint>,
+    /// Estimated pose `global_from_vehicle`, with which the points were entered into the map.
     pub believed: Pose,
-    /// What they did to the map.
-    pub update: FrameUpdate,
-    /// The obstacle map and the navigator map, in frames that make them.
+    /// Update of the map by these points.
+    pub update: MapUpdate,
+    /// Obstacle map and navigator map; `None` in frames that make none.
     pub obstacles: Option<(ObstacleMap, Vec<LabelledVector>)>,
 }
 
-/// A drive under way.
+/// A drive in progress.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::{DVec2, DVec3};
+/// use raypencil_rover::{CameraImage, Drive, DrivePlan, Extraction, OnVehicle, Rig, Route};
+/// use raypencil_scanline::Scanline;
+/// use raypencil_scene::{Beam, Camera, Lens, Profile};
+/// # let camera = Camera {
+/// #     width: 1024, height: 1024, pixel_pitch: [9e-6; 2], focal_length: 8e-3, principal_point: [512.0; 2],
+/// #     aperture: 2e-3, lens: Lens::CLEAR, max_range: 20.0,
+/// # };
+/// # let half_width = Beam::half_width_of(0.1, 60.0_f64.to_radians());
+/// # let beam = Beam {
+/// #     columns: 64, rows: 4, thickness: 5e-3, grid_distance: 0.1, half_width, max_range: 20.0, power: 1.0,
+/// #     wavelength: 810e-9, profile: Profile::Paper,
+/// # };
+///
+/// // A camera 1.5 m up that looks 20 degrees down, and a beam 1.8 m up that points 31 degrees down.
+/// let mount = |height, down: f64| Rig::mount(DVec3::new(0.0, 0.0, height), down.to_radians());
+/// let rig = Rig {
+///     camera: OnVehicle { vehicle_from_sensor: mount(1.5, 20.0), sensor: camera },
+///     beams: vec![OnVehicle { vehicle_from_sensor: mount(1.8, 31.0), sensor: beam }],
+/// };
+/// // 0.03 m at 0.3 m/s and 10 frames per second: two frames, here without scans, on ground that is level there.
+/// let route = Route::through(DVec2::new(-9.0, 0.0), vec![DVec2::new(-8.97, 0.0)]);
+/// let plan = DrivePlan { scans: None, ..DrivePlan::new(rig, route, Extraction::thresholding(1e-12)) };
+/// let mesh = raypencil_terrain::builtin("pyramids", 0.25).unwrap().into_mesh()?;
+/// let mut drive = Drive::new(plan, Arc::new(mesh))?;
+/// let mut frames = Vec::new();
+/// while let Some(frame) = drive.step(&Scanline::exact(), &mut |_, flux| CameraImage::Flux(flux))? {
+///     frames.push(frame);
+/// }
+/// assert_eq!(frames.len(), 2);
+/// // The sheet meets level ground 1.8 / tan 31 = 2.996 m ahead, 3.35 m from the camera and at 4.4 degrees to its rays.
+/// // A pixel of 9 um / 8 mm = 1.125 mrad covers 3.35 m 0.001125 / sin(4.4) = 0.049 m along the sheet there.
+/// assert!(frames[0].points > 50);
+/// assert!(frames[0].measured.iter().all(|measured| (measured.point.x - 2.996).abs() < 0.049));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Drive {
     plan: DrivePlan,
     mesh: Arc<Mesh>,
     ground: HeightIndex,
-    sensors: Sensors,
+    localisation: Localisation,
     mapper: Option<Mapper>,
     frame: u64,
     last_scan: Option<f64>,
-    found: Inconsistency,
+    inconsistency: Inconsistency,
 }
 
 impl Drive {
-    /// Puts the vehicle on the ground.
+    /// Starts a drive: puts the vehicle on the ground `mesh` at the start of the route.
     ///
     /// # Errors
-    /// As [`DrivePlan::validate`], and names the frame's place where there is no ground under a wheel at the start.
+    /// As [`DrivePlan::validate`]. Names `drive.route.start` if a wheel has no ground below it there.
     pub fn new(plan: DrivePlan, mesh: Arc<Mesh>) -> Result<Self, SceneError> {
         plan.validate("drive")?;
         let ground = HeightIndex::new(&mesh);
-        let sensors = Sensors::new(plan.errors, plan.seed, plan.route.frame_rate);
+        let localisation = Localisation::new(plan.errors, plan.seed, plan.route.frame_rate);
         let Route { start, heading, .. } = plan.route;
         if plan.vehicle.settle(&ground, start, heading).is_none() {
             return Err(SceneError::new("drive.route.start", start, "a place with ground under every wheel"));
@@ -204,78 +153,79 @@ impl Drive {
             plan,
             mesh,
             ground,
-            sensors,
+            localisation,
             mapper: None,
             frame: 0,
             last_scan: None,
-            found: Inconsistency::default(),
+            inconsistency: Inconsistency::default(),
         })
     }
 
-    /// The map, and where the vehicle believes to be; `None` before the first frame.
+    /// Elevation map and estimated pose; `None` before the first frame.
     pub fn mapper(&self) -> Option<&Mapper> {
         self.mapper.as_ref()
     }
 
-    /// The plan.
+    /// Plan of the drive.
     pub fn plan(&self) -> &DrivePlan {
         &self.plan
     }
 
-    /// The true ground.
+    /// Heights of the true ground.
     pub fn ground(&self) -> &HeightIndex {
         &self.ground
     }
 
-    /// Drives on by a frame. `None` once the route is over, or leads off the ground.
+    /// Drives one frame. `None` after the end of the route, and when the route leaves the ground.
     ///
-    /// CHOICE: a scan takes the place of its frame's exposure. Both beams are used in every frame.
+    /// CHOICE: a scan replaces its frame's exposures. All beams are used in every frame.
     ///
     /// # Errors
-    /// As [`raypencil_scene::Scene::new`]; and if the renderer gives no flux.
+    /// As [`raypencil_scene::Scene::new`]. Names the renderer if it does not return one image of flux per beam.
     pub fn step(
         &mut self,
         renderer: &dyn Renderer,
-        develop: &mut Develop,
+        pipeline: &mut CameraPipeline,
     ) -> Result<Option<DriveFrame>, SceneError> {
         let index = self.frame;
         let Some(place) = self.plan.route.frame(index) else { return Ok(None) };
         let Some(stance) = self.plan.vehicle.settle(&self.ground, place.place, place.heading) else {
             return Ok(None);
         };
-        let sensed = self.sensors.read(&stance, &self.ground);
+        let sensed = self.localisation.read(&stance, &self.ground);
         let rule = self.plan.scans;
-        let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.found));
-        let (mut measured, mut left_out) = (Vec::new(), 0);
+        let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.inconsistency));
+        let (mut measured, mut columns_left_out) = (Vec::new(), 0);
         if scan.is_some() {
             for (step, pan) in self.plan.sweep.pans().enumerate() {
-                let seen = self.look(renderer, develop, &stance, index, Some((step as u32, pan)))?;
-                measured.extend(seen.0);
-                left_out += seen.1;
+                let position = Some((step as u32, pan));
+                let (points, columns) = self.measure_stripes(renderer, pipeline, &stance, index, position)?;
+                measured.extend(points);
+                columns_left_out += columns;
             }
         } else {
-            (measured, left_out) = self.look(renderer, develop, &stance, index, None)?;
+            (measured, columns_left_out) = self.measure_stripes(renderer, pipeline, &stance, index, None)?;
         }
 
         let points = measured.iter().map(|measured| measured.point);
         let DrivePlan { vehicle, map, .. } = self.plan;
-        // CHOICE: its first elevation is the true one.
+        // CHOICE: the first elevation is the true one.
         let mapper =
             self.mapper.get_or_insert_with(|| Mapper::start(vehicle, map, &sensed, stance.position.z));
         let update = if scan.is_some() {
             self.last_scan = Some(place.driven);
-            // What a scan contradicts it has also mended.
-            self.found = Inconsistency::default();
-            mapper.scan(&sensed, points, rule.is_some_and(|rule| rule.forget))
+            // A scan also corrects the elevations that it contradicts.
+            self.inconsistency = Inconsistency::default();
+            mapper.update_from_scan(&sensed, points, rule.is_some_and(|rule| rule.clear_map))
         } else {
-            let update = mapper.frame(&sensed, points);
-            self.found = update.inconsistency;
+            let update = mapper.update(&sensed, points);
+            self.inconsistency = update.inconsistency;
             update
         };
 
         let obstacles = obstacle_map_due(index, self.plan.obstacles_every).then(|| {
             let DrivePlan { vehicle, rules, grid, vectors, .. } = &self.plan;
-            let obstacles = ObstacleMap::of(mapper.map(), vehicle, rules, grid, &mapper.pose());
+            let obstacles = ObstacleMap::extract(mapper.map(), vehicle, rules, grid, &mapper.pose());
             let vectors = navigator_map(&obstacles, vectors);
             (obstacles, vectors)
         });
@@ -288,7 +238,7 @@ impl Drive {
             sensed,
             scan,
             points,
-            left_out,
+            columns_left_out,
             measured,
             believed,
             update,
@@ -296,16 +246,16 @@ impl Drive {
         }))
     }
 
-    /// The points of the stripes that the camera sees from a stance: beam by beam, each in row-major order. And how many
-    /// columns were left out.
-    fn look(
+    /// Points of the stripes that the camera sees, beam by beam, in row-major order of the image. The second value is
+    /// the number of image columns that were left out. `scan` holds the index and the angles of a scan position.
+    fn measure_stripes(
         &self,
         renderer: &dyn Renderer,
-        develop: &mut Develop,
+        pipeline: &mut CameraPipeline,
         stance: &Stance,
         frame: u64,
         scan: Option<(u32, Pan)>,
-    ) -> Result<(Vec<Measured>, usize), SceneError> {
+    ) -> Result<(Vec<MeasuredPoint>, usize), SceneError> {
         let plan = &self.plan;
         let rig = scan.map_or_else(|| plan.rig.clone(), |(_, pan)| plan.rig.panned(pan));
         let mesh = Arc::clone(&self.mesh);
@@ -314,23 +264,24 @@ impl Drive {
         let flux = renderer.render(&scene, &Request::FLUX).flux;
         if flux.len() != rig.beams.len() {
             let given = format!("{} images of flux", flux.len());
-            return Err(SceneError::new(renderer.name(), given, format!("{}", rig.beams.len())));
+            let expected = format!("{}, one for each beam", rig.beams.len());
+            return Err(SceneError::new(renderer.name(), given, expected));
         }
         let step = scan.map(|(step, _)| step);
         let exposure = |beam| Exposure { frame, step, beam };
         // Steps 6 to 9.
-        let mut left_out = 0;
+        let mut columns_left_out = 0;
         let stripes = match plan.exposures {
-            Exposures::InTurn => {
+            ExposureMode::InTurn => {
                 let images = flux.into_iter().enumerate();
                 images
-                    .map(|(beam, ideal)| match develop(exposure(Some(beam)), ideal) {
-                        Exposed::Flux(image) => plan.extraction.edges(&image),
-                        Exposed::Numbers(image) => plan.extraction.edges(&image),
+                    .map(|(beam, ideal)| match pipeline(exposure(Some(beam)), ideal) {
+                        CameraImage::Flux(image) => plan.extraction.edges(&image),
+                        CameraImage::Numbers(image) => plan.extraction.edges(&image),
                     })
                     .collect()
             }
-            Exposures::Together => {
+            ExposureMode::Together => {
                 let mut images = flux.into_iter();
                 let Some(mut sum) = images.next() else { return Ok((Vec::new(), 0)) };
                 for image in images {
@@ -339,23 +290,23 @@ impl Drive {
                     }
                 }
                 let beams = rig.beams.len();
-                let (stripes, columns) = match develop(exposure(None), sum) {
-                    Exposed::Flux(image) => plan.extraction.edges_by_order(&image, beams),
-                    Exposed::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
+                let (stripes, columns) = match pipeline(exposure(None), sum) {
+                    CameraImage::Flux(image) => plan.extraction.edges_by_order(&image, beams),
+                    CameraImage::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
                 };
-                left_out = columns;
+                columns_left_out = columns;
                 stripes
             }
         };
-        let plane = SheetPlane::of(plan.extraction.place);
+        let plane = SheetPlane::for_location(plan.extraction.place);
         let mut measured = Vec::new();
         for (beam, edges) in stripes.iter().enumerate() {
             let triangulation = Triangulation::new(&rig, beam, plane);
             measured.extend(edges.iter().filter_map(|&edge| {
-                let point = triangulation.of_edge(&edge)?;
-                Some(Measured { step, beam, edge, point })
+                let point = triangulation.at_edge(&edge)?;
+                Some(MeasuredPoint { step, beam, edge, point })
             }));
         }
-        Ok((measured, left_out))
+        Ok((measured, columns_left_out))
     }
 }

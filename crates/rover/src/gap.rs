@@ -1,48 +1,49 @@
-//! The gap problem: what may be said of ground that nobody saw. (Paper, §7)
+//! The gap problem: an estimate of the elevation of ground that was not seen. (Paper, §7)
 
-use crate::local_map::{GridPoint, LocalMap};
+use crate::elevation_map::{ElevationMap, GridPoint};
 
-/// The more general solution that the paper leaves open: "A more general solution, which we have not yet implemented,
-/// is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the gap
-/// contains elevations that are too high for the vehicle, an upper estimate of the maximum elevation of the gap region
-/// can be computed from the height of the occluding terrain feature or by using elevations from successive stripes
-/// bracketing the gap region." (§7)
+/// Rule for narrow gaps, the solution that the paper leaves open: "A more general solution, which we have not yet
+/// implemented, is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the
+/// gap contains elevations that are too high for the vehicle, an upper estimate of the maximum elevation of the gap
+/// region can be computed from the height of the occluding terrain feature or by using elevations from successive
+/// stripes bracketing the gap region." (§7)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GapRule {
-    /// Gaps this wide and less may be crossed, metres: one wheel thickness.
-    pub widest: f64,
+    /// Maximum width of a gap that may be crossed, metres: one wheel thickness.
+    pub max_width: f64,
 }
 
-/// The four lines through a grid point: along the rows, the columns and both diagonals, and their steps in spacings.
-const LINES: [(i64, i64, f64); 4] =
+/// Directions of the four lines through a grid point (row, column, both diagonals): i, j, length in grid spacings.
+const GAP_DIRECTIONS: [(i64, i64, f64); 4] =
     [(1, 0, 1.0), (0, 1, 1.0), (1, 1, std::f64::consts::SQRT_2), (1, -1, std::f64::consts::SQRT_2)];
 
 impl GapRule {
-    /// An upper estimate of the elevation at a grid point that is not known, if the gap there is narrow enough to be
-    /// crossed.
+    /// Upper estimate of the elevation at an unknown grid point, metres. `None` if the gap there is too wide.
     ///
-    /// The gap's width is that of the shortest run of unknown grid points through it along a row, a column or a
-    /// diagonal; a long crack is as wide as it is across. A wheel bridges it: how deep it is does not matter. How high
-    /// it is does: of a run that is narrow enough, the estimate is the higher of the known points that bracket it, and
-    /// of several runs the highest. That is both of the paper's estimates: what hides a gap from beam or camera is the
-    /// bracket on their side of it, and ground in its shadow that stood above the line from its top to the first
-    /// point seen beyond would itself hide that point.
+    /// The width of a gap is the shortest run of unknown grid points through it, along a row, a column or a diagonal.
+    /// A long crack is therefore as wide as it is across. The depth does not matter, since a wheel bridges the gap. The
+    /// height matters: the estimate is the higher of the two known points that bracket the run, and the highest such
+    /// value of all runs that are narrow enough.
     ///
-    /// CHOICE: runs are measured as unknown points times their step. Brackets beyond the map are unknown.
-    pub fn upper_estimate(&self, map: &LocalMap, point: GridPoint) -> Option<f64> {
+    /// This covers both estimates of the paper. The "occluding terrain feature" that hides a gap from the beam or the
+    /// camera is the bracket on their side. Ground in its shadow cannot stand above the line from its top to the first
+    /// point seen beyond: it would hide that point.
+    ///
+    /// CHOICE: the width of a run is its number of unknown points times its step. Beyond the map nothing is known.
+    pub fn upper_estimate(&self, map: &ElevationMap, point: GridPoint) -> Option<f64> {
         let spacing = map.size().spacing;
         let mut highest: Option<f64> = None;
-        for (i, j, step) in LINES {
-            let most = (self.widest / (step * spacing) + 1e-9).floor() as i64;
-            // The nearest known point that way, and how many unknown ones come before it.
+        for (i, j, step) in GAP_DIRECTIONS {
+            let max_steps = (self.max_width / (step * spacing) + 1e-9).floor() as i64;
+            // The nearest known point in this direction: the number of unknown points before it, and its elevation.
             let bracket = |sign: i64| {
-                (1..=most).find_map(|n| {
+                (1..=max_steps).find_map(|n| {
                     let at = GridPoint { i: point.i + sign * n * i, j: point.j + sign * n * j };
                     map.elevation(at).map(|z| (n - 1, z))
                 })
             };
             let (Some((before, near)), Some((beyond, far))) = (bracket(-1), bracket(1)) else { continue };
-            if before + 1 + beyond <= most {
+            if before + 1 + beyond <= max_steps {
                 let higher = near.max(far);
                 highest = Some(highest.map_or(higher, |top| top.max(higher)));
             }
@@ -56,25 +57,25 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::local_map::MapSize;
+    use crate::elevation_map::MapSize;
 
-    /// A map of 21 points, known where `known` gives an elevation.
-    fn map(known: impl Fn(i64, i64) -> Option<f64>) -> LocalMap {
-        let mut map = LocalMap::new(MapSize { spacing: 0.1, points: 21 }, DVec2::ZERO);
+    /// A map of 21 by 21 points, known where `known` gives an elevation.
+    fn map(known: impl Fn(i64, i64) -> Option<f64>) -> ElevationMap {
+        let mut map = ElevationMap::new(MapSize { spacing: 0.1, points: 21 }, DVec2::ZERO);
         for point in map.points() {
             if let Some(z) = known(point.i, point.j) {
-                map.give(point, z);
+                map.set_proximity(point, z);
             }
         }
         map
     }
 
-    const RULE: GapRule = GapRule { widest: 0.25 };
+    const RULE: GapRule = GapRule { max_width: 0.25 };
 
     #[test]
     fn a_crack_two_points_wide_is_bridged_and_one_of_three_is_not() {
-        // Columns 0 and 1 unknown all along: 0.2 m wide, bracketed by 0.1 at i = -1 and 0.3 at i = 2. The diagonals
-        // are 2 steps of 0.141 m, more than 0.25 m.
+        // Columns 0 and 1 are unknown: a gap 0.2 m wide, between 0.1 m at i = -1 and 0.3 m at i = 2. Along a diagonal
+        // it is 2 steps of 0.141 m, more than 0.25 m.
         let two = map(|i, _| (!(0..=1).contains(&i)).then_some(if i < 0 { 0.1 } else { 0.3 }));
         assert_eq!(RULE.upper_estimate(&two, GridPoint { i: 0, j: 0 }), Some(0.3));
         assert_eq!(RULE.upper_estimate(&two, GridPoint { i: 1, j: 5 }), Some(0.3));
@@ -86,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_single_hidden_point_takes_the_highest_neighbour() {
-        // One unknown point; a rock of 0.5 m on one diagonal neighbour, ground at 0 elsewhere.
+        // One unknown point; one diagonal neighbour is at 0.5 m, all others are at 0.
         let one = map(|i, j| match (i, j) {
             (0, 0) => None,
             (1, -1) => Some(0.5),
@@ -96,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_map_nothing_brackets() {
+    fn points_beyond_the_map_bracket_no_gap() {
         let border = map(|i, _| (i < 10).then_some(0.0));
         assert_eq!(RULE.upper_estimate(&border, GridPoint { i: 10, j: 0 }), None);
     }

@@ -1,78 +1,93 @@
-//! The rover itself: what it makes of its camera's images, and where it may drive.
+//! The rover: from the images of its camera to an elevation map, an obstacle map and a navigator map.
 //!
-//! Step 9 of the paper (§3) and its §7, in the order of one frame:
+//! Source: step 9 of the paper (section 3) and its section 7, "Building the local obstacle map". One frame goes through
+//! these modules in order:
 //!
-//! 1. [`Extraction`] finds the lower edges of the light stripes in an image;
-//! 2. [`Triangulation`] turns edge pixels into points of the beam's lower edge plane, vehicle frame;
-//! 3. [`Mapper`] knows the vehicle's elevation, moves the [`LocalMap`] and enters the points;
-//! 4. every [`OBSTACLE_FRAMES`] frames, [`ObstacleMap`] tests a radial grid by [`PassableRules`], and
-//!    [`navigator_map`] joins the ends of its sectors by labelled vectors.
+//! 1. `stripe` (with `otsu`): [`Extraction`] finds the lower edges of the light stripes in an image;
+//! 2. `triangulation` (with `rig`): [`Triangulation`] turns edge pixels into points of the beam's lower edge plane, in
+//!    the vehicle frame;
+//! 3. `localisation` (with `vehicle` and `noise_stream`): [`Localisation`] measures position, attitude and the distance
+//!    to the ground, with errors;
+//! 4. `mapper` and `elevation_map`: [`Mapper`] estimates the vehicle's pose, moves the [`ElevationMap`] and enters the
+//!    points;
+//! 5. `obstacle_map`, `traversability` and `gap`: in one of [`FRAMES_PER_OBSTACLE_MAP`] frames, [`ObstacleMap`] tests a
+//!    radial grid by [`TraversabilityRules`];
+//! 6. `navigator_map`: [`navigator_map()`] joins the ends of the sectors by labelled vectors.
 //!
-//! [`Vehicle`] settles on the ground, [`Route`] says where it drives, [`Sensors`] what it knows of that, [`ScanRule`]
-//! and [`Sweep`] when it stops to pan its beams.
+//! `route` and `scan` decide where the vehicle drives and when it stops to pan its beams. `drive_plan` holds all
+//! settings. `drive` puts everything together: [`Drive`] takes a renderer for the images.
 //!
-//! [`Drive`] puts all of it together, with a renderer for the images.
-//!
-//! Pure: no IO, no clocks, and random numbers keyed by (seed, purpose, index). Every number that the paper does not
-//! print is a named parameter; `docs/rover.md` lists them all, with the sentence of the paper that each belongs to.
+//! The crate does no IO and reads no clock; random numbers are keyed by (seed, purpose, index). Every number that the
+//! paper does not print is a named field; `docs/rover.md` lists them with the sentences of the paper.
 //!
 //! ```
 //! use glam::{DVec2, DVec3};
 //! use raypencil_rover::{
-//!     Attitude, Label, Mapper, MapSize, ObstacleMap, PassableRules, RadialGrid, Sensed, Vehicle, VectorRules,
-//!     navigator_map,
+//!     Attitude, Label, LocalisationReading, MapSize, Mapper, ObstacleMap, RadialGrid, TraversabilityRules,
+//!     VectorRules, Vehicle, navigator_map,
 //! };
 //!
-//! // A vehicle at (0, 0) that sees a wall of 0.4 m from x = 3 on, and level ground before it.
+//! // A vehicle at (0, 0) measures level ground and, from x = 3 m on, a step of 0.4 m.
 //! let vehicle = Vehicle::default();
-//! let sensed = Sensed { position: DVec2::ZERO, attitude: Attitude::default(), proximity: Some(0.0) };
-//! let mut mapper = Mapper::start(vehicle, MapSize::default(), &sensed, 0.0);
-//! let seen = (0..60).flat_map(|i| (-40..=40).map(move |j| {
+//! let reading =
+//!     LocalisationReading { position: DVec2::ZERO, attitude: Attitude::default(), proximity: Some(0.0) };
+//! let mut mapper = Mapper::start(vehicle, MapSize::default(), &reading, 0.0);
+//! let points = (0..60).flat_map(|i| (-40..=40).map(move |j| {
 //!     let (x, y) = (0.1 * f64::from(i), 0.1 * f64::from(j));
 //!     DVec3::new(x, y, if x < 2.95 { 0.0 } else { 0.4 })
 //! }));
-//! mapper.frame(&sensed, seen);
+//! mapper.update(&reading, points);
 //!
-//! let grid = RadialGrid::of(&vehicle);
-//! let rules = PassableRules::of(&vehicle);
-//! let obstacles = ObstacleMap::of(mapper.map(), &vehicle, &rules, &grid, &mapper.pose());
+//! // Straight ahead the slope from axle to axle is 0.4 / 1.2 at x = 3 m; the default maximum is 0.35 / 1.2.
+//! let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+//! let obstacles = ObstacleMap::extract(mapper.map(), &vehicle, &rules, &grid, &mapper.pose());
 //! let ahead = obstacles.sectors[15];
 //! assert_eq!(ahead.label, Label::Obstacle);
-//! assert!((ahead.radius - 3.0).abs() < 0.11);
-//! let vectors = navigator_map(&obstacles, &VectorRules::of(&vehicle));
+//! assert!((ahead.radius - 3.0).abs() < 1e-9);
+//! // The next sector ends at an obstacle, too: so does the vector between them.
+//! let vectors = navigator_map(&obstacles, &VectorRules::for_vehicle(&vehicle));
 //! assert_eq!(vectors[14].label, Label::Obstacle);
 //! ```
 
 mod check;
-mod draws;
 mod drive;
+mod drive_plan;
+mod elevation_map;
 mod gap;
-mod inertial;
-mod local_map;
+mod localisation;
 mod mapper;
 mod navigator_map;
+mod noise_stream;
 mod obstacle_map;
 mod otsu;
-mod passable;
 mod rig;
 mod route;
 mod scan;
 mod stripe;
+mod traversability;
 mod triangulation;
 mod vehicle;
 
-pub use drive::{Develop, Drive, DriveFrame, DrivePlan, Exposed, Exposure, Exposures, Measured};
+pub use drive::{CameraImage, CameraPipeline, Drive, DriveFrame, Exposure, MeasuredPoint};
+pub use drive_plan::{DrivePlan, ExposureMode};
+pub use elevation_map::{ElevationMap, ElevationSource, GridPoint, Inconsistency, MapSize};
 pub use gap::GapRule;
-pub use inertial::{Fixes, Sensed, SensorErrors, Sensors};
-pub use local_map::{GridPoint, Inconsistency, LocalMap, MapSize, Source};
-pub use mapper::{FrameUpdate, Mapper};
+pub use localisation::{Localisation, LocalisationErrors, LocalisationReading, PositionFixes};
+pub use mapper::{MapUpdate, Mapper};
 pub use navigator_map::{LabelledVector, VectorRules, navigator_map};
-pub use obstacle_map::{Label, OBSTACLE_FRAMES, ObstacleMap, RadialGrid, SectorEnd, obstacle_map_due};
-pub use otsu::otsu;
-pub use passable::{PassableRules, SlopeLimits, Test, Verdict};
+pub use obstacle_map::{
+    FRAMES_PER_OBSTACLE_MAP, Label, ObstacleMap, RadialGrid, SectorEnd, obstacle_map_due,
+};
+pub use otsu::otsu_threshold;
 pub use rig::{OnVehicle, Pan, Rig};
-pub use route::{Route, RoutePlace};
+pub use route::{Route, RoutePose};
 pub use scan::{ScanReason, ScanRule, Sweep};
-pub use stripe::{Detection, EdgePoint, Extraction, Place};
+pub use stripe::{Detection, EdgePoint, Extraction, StripeLocation};
+pub use traversability::{SlopeLimits, Traversability, TraversabilityRules, TraversabilityTest};
 pub use triangulation::{SheetPlane, Triangulation, TriangulationTable};
 pub use vehicle::{Attitude, Stance, Vehicle};
+
+/// The README's example, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,53 +1,53 @@
-//! One frame of the local terrain map: the vehicle's elevation, the map's move, new points. (Paper, §7)
+//! Update of the elevation map in a frame: the vehicle's elevation, the map's motion, new points. (Paper, §7)
 
 use glam::{DVec2, DVec3};
 use raypencil_scene::Pose;
 
-use crate::inertial::Sensed;
-use crate::local_map::{Inconsistency, LocalMap, MapSize, Source};
+use crate::elevation_map::{ElevationMap, ElevationSource, Inconsistency, MapSize};
+use crate::localisation::LocalisationReading;
 use crate::vehicle::Vehicle;
 
-/// A local terrain map and where the vehicle believes that it stands on it.
+/// An elevation map and the estimated pose of the vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mapper {
     vehicle: Vehicle,
-    map: LocalMap,
-    /// `global_from_vehicle`, as believed.
+    map: ElevationMap,
+    /// Estimate of `global_from_vehicle`.
     pose: Pose,
 }
 
-/// What a frame did.
+/// Result of an update of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrameUpdate {
-    /// Whether the vehicle's elevation came from the map and the proximity sensor; false if the map did not know
-    /// the ground under it.
+pub struct MapUpdate {
+    /// Whether the vehicle's elevation came from the map and the proximity sensor. False if either had no value under
+    /// the vehicle.
     pub elevation_read: bool,
-    /// By how many grid steps the map moved.
+    /// Motion of the map in x and y, grid steps.
     pub moved: (i64, i64),
-    /// How new points fitted old ones.
+    /// Difference between new elevations and old ones.
     pub inconsistency: Inconsistency,
 }
 
 impl Mapper {
-    /// A map at the start of a mission: centred on the vehicle, whose origin's `elevation` is given; under the
-    /// vehicle it comes from the proximity sensor.
+    /// Map at the start of a mission, centred on the vehicle. `elevation` is that of the vehicle's origin, global z in
+    /// metres. The elevations under the vehicle come from the proximity sensor.
     ///
-    /// CHOICE: the paper does not say how the vehicle knows its first elevation, which must come from the LTM; its
-    /// zero is arbitrary, since "only relative elevations are important" (§7).
-    pub fn start(vehicle: Vehicle, size: MapSize, sensed: &Sensed, elevation: f64) -> Self {
-        let map = LocalMap::new(size, sensed.position);
+    /// CHOICE: the paper does not say how the vehicle gets its first elevation, before the LTM has any. Its zero is
+    /// arbitrary, since "only relative elevations are important" (§7).
+    pub fn start(vehicle: Vehicle, size: MapSize, sensed: &LocalisationReading, elevation: f64) -> Self {
+        let map = ElevationMap::new(size, sensed.position);
         let pose = sensed.attitude.at(sensed.position.extend(elevation));
         let mut mapper = Self { vehicle, map, pose };
-        mapper.know_what_is_under(sensed);
+        mapper.fill_under_vehicle(sensed);
         mapper
     }
 
-    /// The map.
-    pub fn map(&self) -> &LocalMap {
+    /// The elevation map.
+    pub fn map(&self) -> &ElevationMap {
         &self.map
     }
 
-    /// `global_from_vehicle`, as believed.
+    /// Estimate of `global_from_vehicle`.
     pub fn pose(&self) -> Pose {
         self.pose
     }
@@ -57,60 +57,66 @@ impl Mapper {
         &self.vehicle
     }
 
-    /// One frame: what the sensors say, and the points of all its stripes in vehicle coordinates. In this order: the
-    /// vehicle's elevation from the old map and the proximity sensor; the map's move; the points. (§7)
-    pub fn frame(&mut self, sensed: &Sensed, points: impl IntoIterator<Item = DVec3>) -> FrameUpdate {
+    /// Updates the map with one frame: a reading of the sensors, and the points of all stripes (vehicle frame, metres).
+    /// In this order: the vehicle's elevation, from the old map and the proximity sensor; the motion of the map; the
+    /// points. (§7)
+    pub fn update(
+        &mut self,
+        sensed: &LocalisationReading,
+        points: impl IntoIterator<Item = DVec3>,
+    ) -> MapUpdate {
         let elevation_read = self.locate(sensed);
-        let moved = self.map.follow(sensed.position);
+        let moved = self.map.recentre(sensed.position);
         // "After converting the edge points to global coordinates" (§7)
         let pose = self.pose;
-        let inconsistency = self.map.enter(points.into_iter().map(|point| pose * point));
-        FrameUpdate { elevation_read, moved, inconsistency }
+        let inconsistency = self.map.insert(points.into_iter().map(|point| pose * point));
+        MapUpdate { elevation_read, moved, inconsistency }
     }
 
-    /// A vertical scan at rest: the points of all its stripes at once, in vehicle coordinates. "The beams are
-    /// vertically panned to completely refresh the local map." (abstract) "... to obtain a fresh LTM." (§7)
+    /// Updates the map with a vertical scan at rest: the points of all its stripes (vehicle frame, metres). "The beams
+    /// are vertically panned to completely refresh the local map." (abstract) "... to obtain a fresh LTM." (§7)
     ///
-    /// CHOICE: fresh means that all is forgotten first, if `forget`; what is under the vehicle then comes from the
-    /// proximity sensor again, as at the start. All points count as new data points, whichever stripe they are of, so
-    /// that no stripe's extrapolation overwrites another's measurement.
-    pub fn scan(
+    /// CHOICE: "fresh" means that the map is cleared first, if `clear_map` is set. The elevations under the vehicle
+    /// then come from the proximity sensor, as at the start. The points of all stripes are new data points of one
+    /// update, so that the extrapolation of one stripe does not overwrite the measurement of another.
+    pub fn update_from_scan(
         &mut self,
-        sensed: &Sensed,
+        sensed: &LocalisationReading,
         points: impl IntoIterator<Item = DVec3>,
-        forget: bool,
-    ) -> FrameUpdate {
+        clear_map: bool,
+    ) -> MapUpdate {
         let elevation_read = self.locate(sensed);
-        let moved = self.map.follow(sensed.position);
-        if forget {
+        let moved = self.map.recentre(sensed.position);
+        if clear_map {
             self.map.clear();
-            self.know_what_is_under(sensed);
+            self.fill_under_vehicle(sensed);
         }
         let pose = self.pose;
-        let inconsistency = self.map.enter(points.into_iter().map(|point| pose * point));
-        FrameUpdate { elevation_read, moved, inconsistency }
+        let inconsistency = self.map.insert(points.into_iter().map(|point| pose * point));
+        MapUpdate { elevation_read, moved, inconsistency }
     }
 
-    /// "The vehicle determines its global elevation by adding its measured elevation above the ground surface to the
-    /// elevation of its current location on the LTM." (§7) Whether it could.
+    /// Estimates the vehicle's pose. "The vehicle determines its global elevation by adding its measured elevation
+    /// above the ground surface to the elevation of its current location on the LTM." (§7) Returns whether both were
+    /// known.
     ///
-    /// CHOICE: where the map does not know, the vehicle goes on along the plane of its own wheels: its measured tilt
-    /// and its way tell how much it rose.
-    fn locate(&mut self, sensed: &Sensed) -> bool {
+    /// CHOICE: if not, the vehicle is taken to have moved in the plane of its wheels: its rise follows from the
+    /// measured attitude and the horizontal displacement.
+    fn locate(&mut self, sensed: &LocalisationReading) -> bool {
         let below = self.map.elevation(self.map.nearest(sensed.position));
         let read = below.zip(sensed.proximity).map(|(ground, distance)| ground + distance);
-        let way = sensed.position - self.pose.position.truncate();
+        let displacement = sensed.position - self.pose.position.truncate();
         let attitude = sensed.attitude.at(DVec3::ZERO);
-        let elevation = read.unwrap_or_else(|| self.pose.position.z + rise(&attitude, way));
+        let elevation = read.unwrap_or_else(|| self.pose.position.z + rise(&attitude, displacement));
         self.pose = Pose { position: sensed.position.extend(elevation), ..attitude };
         read.is_some()
     }
 
-    /// Gives the grid points under the vehicle the ground's elevation.
+    /// Sets the elevations under the vehicle from the proximity sensor.
     ///
-    /// CHOICE: one distance tells one elevation; around it the ground is taken to be parallel to the plane of the
-    /// wheels.
-    fn know_what_is_under(&mut self, sensed: &Sensed) {
+    /// CHOICE: the sensor measures one distance. The ground around that point is taken to be parallel to the plane of
+    /// the wheels.
+    fn fill_under_vehicle(&mut self, sensed: &LocalisationReading) {
         let Some(distance) = sensed.proximity else { return };
         let ground = self.pose.position.z - distance;
         let vehicle_from_global = self.pose.inverse();
@@ -118,101 +124,26 @@ impl Mapper {
             .map
             .points()
             .filter_map(|point| {
-                let way = self.map.place(point) - sensed.position;
-                let place = way.extend(rise(&self.pose, way));
-                let seen = vehicle_from_global.rotate(place);
-                self.vehicle.covers(seen.truncate()).then_some((point, ground + place.z))
+                let displacement = self.map.place(point) - sensed.position;
+                let offset = displacement.extend(rise(&self.pose, displacement));
+                let in_vehicle = vehicle_from_global.rotate(offset);
+                self.vehicle.covers(in_vehicle.truncate()).then_some((point, ground + offset.z))
             })
             .collect();
         for (point, elevation) in under {
-            self.map.give(point, elevation);
+            self.map.set_proximity(point, elevation);
         }
     }
 
-    /// How many of the map's grid points are known.
-    pub fn known(&self) -> usize {
-        self.map.points().filter(|&point| self.map.source(point) != Source::Unknown).count()
+    /// Number of grid points with a known elevation.
+    pub fn known_count(&self) -> usize {
+        self.map.points().filter(|&point| self.map.source(point) != ElevationSource::Unknown).count()
     }
 }
 
-/// By how much the plane of a vehicle's wheels rises along a level `way`.
-fn rise(pose: &Pose, way: DVec2) -> f64 {
+/// Rise of the plane of a vehicle's wheels over a horizontal `displacement`, metres.
+fn rise(pose: &Pose, displacement: DVec2) -> f64 {
     let up = pose.rotate(DVec3::Z);
-    // On its side there is no such plane.
-    if up.z > 0.1 { -up.truncate().dot(way) / up.z } else { 0.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::vehicle::Attitude;
-
-    fn sensed(x: f64, proximity: Option<f64>) -> Sensed {
-        Sensed { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity }
-    }
-
-    fn mapper() -> Mapper {
-        Mapper::start(Vehicle::default(), MapSize::default(), &sensed(0.0, Some(0.0)), 5.0)
-    }
-
-    #[test]
-    fn at_the_start_the_map_knows_what_is_under_the_vehicle() {
-        // Half length 0.6 + 0.35 = 0.95 m, half width 0.625 m: 19 columns of 13 grid points.
-        let mapper = mapper();
-        assert_eq!(mapper.known(), 19 * 13);
-        let map = mapper.map();
-        assert_eq!(map.elevation(map.nearest(DVec2::new(0.9, -0.6))), Some(5.0));
-        assert_eq!(map.source(map.nearest(DVec2::new(1.0, 0.0))).key(), 's');
-        // Standing 5 cm above the ground, which is then at 4.95 m.
-        let start = sensed(0.0, Some(0.05));
-        let raised = Mapper::start(Vehicle::default(), MapSize::default(), &start, 5.0);
-        assert_eq!(raised.map().elevation(raised.map().centre()), Some(4.95));
-    }
-
-    #[test]
-    fn under_a_tilted_vehicle_the_ground_is_tilted() {
-        // Nose up by atan 1/4: 0.4 m ahead it is 0.1 m higher.
-        let attitude = Attitude { pitch_down: -libm::atan(0.25), ..Attitude::default() };
-        let start = Sensed { attitude, ..sensed(0.0, Some(0.0)) };
-        let mapper = Mapper::start(Vehicle::default(), MapSize::default(), &start, 5.0);
-        let map = mapper.map();
-        let ahead = map.elevation(map.nearest(DVec2::new(0.4, 0.3))).unwrap();
-        assert!((ahead - 5.1).abs() < 1e-12, "{ahead}");
-    }
-
-    #[test]
-    fn elevation_comes_from_the_old_map_before_new_points() {
-        let mut mapper = mapper();
-        // The old map has 5.0 below; the proximity sensor says 0.2 m above it. The new point at 9 m, on the very same
-        // cell, was measured from that elevation: 5.2 + 3.8.
-        let update = mapper.frame(&sensed(0.4, Some(0.2)), [DVec3::new(0.0, 0.0, 3.8)]);
-        assert!(update.elevation_read && update.moved == (4, 0));
-        assert_eq!(mapper.pose().position, DVec3::new(0.4, 0.0, 5.2));
-        assert_eq!(mapper.map().elevation(mapper.map().centre()), Some(9.0));
-    }
-
-    #[test]
-    fn where_the_map_does_not_know_the_vehicle_goes_on_along_its_plane() {
-        let mut mapper = mapper();
-        let attitude = Attitude { pitch_down: -libm::atan(0.25), ..Attitude::default() };
-        let update = mapper.frame(&Sensed { attitude, ..sensed(4.0, Some(0.3)) }, []);
-        assert!(!update.elevation_read);
-        assert!((mapper.pose().position.z - 6.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_scan_forgets_what_was_there() {
-        let mut mapper = mapper();
-        mapper.frame(&sensed(0.0, Some(0.0)), [DVec3::new(4.0, 1.0, 0.5)]);
-        assert_eq!(mapper.known(), 19 * 13 + 9);
-        // Two stripes: (3.0, 0) and its eight neighbours, of which (3.1, 0) is measured itself.
-        let stripes = [DVec3::new(3.1, 0.0, 0.2), DVec3::new(3.0, 0.0, 0.1)];
-        mapper.scan(&sensed(0.0, Some(0.0)), stripes, true);
-        assert_eq!(mapper.known(), 19 * 13 + 12);
-        let map = mapper.map();
-        assert_eq!(map.elevation(map.nearest(DVec2::new(3.1, 0.0))), Some(5.2));
-        // Without forgetting, the rest stays.
-        mapper.scan(&sensed(0.0, Some(0.0)), [DVec3::new(-4.0, 0.0, 0.0)], false);
-        assert_eq!(mapper.known(), 19 * 13 + 21);
-    }
+    // A vehicle on its side has no such plane.
+    if up.z > 0.1 { -up.truncate().dot(displacement) / up.z } else { 0.0 }
 }

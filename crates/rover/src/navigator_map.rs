@@ -7,7 +7,7 @@ use crate::check::check_range;
 use crate::obstacle_map::{Label, ObstacleMap, SectorEnd};
 use crate::vehicle::Vehicle;
 
-/// When two radii are near one another. The paper says "not large" and "small", and no number.
+/// Thresholds for the difference of two radii. The paper says "not large" and "small", without numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VectorRules {
     /// A difference above this is large, metres.
@@ -17,13 +17,15 @@ pub struct VectorRules {
 }
 
 impl VectorRules {
-    /// CHOICE: large is more than the vehicle's width over all (1.25 m): less of an opening between an obstacle and
-    /// what is behind it lets no vehicle in. Small is half of that.
-    pub fn of(vehicle: &Vehicle) -> Self {
+    /// Thresholds for a vehicle.
+    ///
+    /// CHOICE: a large difference is more than the overall width of the vehicle (1.25 m by default): the vehicle does
+    /// not fit into a narrower opening between an obstacle and the end of the next sector. Small is half of that.
+    pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         Self { large: vehicle.width(), small: 0.5 * vehicle.width() }
     }
 
-    /// The label of the vector between the ends of two neighbouring sectors.
+    /// Label of the vector between the ends of two neighbouring sectors.
     pub fn label(&self, a: &SectorEnd, b: &SectorEnd) -> Label {
         let difference = (a.radius - b.radius).abs();
         let either = |label| a.label == label || b.label == label;
@@ -44,27 +46,44 @@ impl VectorRules {
         }
     }
 
-    /// Refuses thresholds that are none, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "large", self.large, 0.0, 1e3, "m")?;
         check_range(field, "small", self.small, 0.0, 1e3, "m")
     }
 }
 
-/// A labelled vector, global coordinates in metres.
+/// A labelled vector of the navigator map; global x and y, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LabelledVector {
-    /// The end of a sector.
+    /// Start: the end of a sector.
     pub from: DVec2,
-    /// The end of the next sector to the left.
+    /// End: the end of the next sector to the left.
     pub to: DVec2,
-    /// What lies behind it.
+    /// Label, by the labels and radii of both sectors.
     pub label: Label,
 }
 
+/// Navigator map of an obstacle map: the vectors from right to left, one fewer than there are sectors.
+///
 /// "The Local Navigator Map is a list of labelled global vectors, and is used by the intelligent control and piloting
 /// module, the Navigator. The radial grid is converted into the map by basically connecting the labelled points on each
-/// sector of the radial grid by vectors." (§7) From right to left; one fewer than there are sectors.
+/// sector of the radial grid by vectors." (§7)
+///
+/// ```
+/// use glam::DVec2;
+/// use raypencil_rover::{Label, ObstacleMap, SectorEnd, VectorRules, navigator_map};
+///
+/// // An obstacle at 2 m next to a visibility limit at 5 m. The difference of 3 m is large, so that the vector is no
+/// // obstacle, and it is not small, so that the vector is no visibility limit either.
+/// let end = |radius, label| SectorEnd {
+///     direction: 0.0, radius, point: DVec2::new(radius, 0.0), label, failed: None,
+/// };
+/// let sectors = vec![end(2.0, Label::Obstacle), end(5.0, Label::Visibility)];
+/// let obstacles = ObstacleMap { centre: DVec2::ZERO, sectors };
+/// let vectors = navigator_map(&obstacles, &VectorRules { large: 1.25, small: 0.625 });
+/// assert_eq!((vectors.len(), vectors[0].label), (1, Label::Unknown));
+/// ```
 pub fn navigator_map(obstacles: &ObstacleMap, rules: &VectorRules) -> Vec<LabelledVector> {
     let vector = |pair: &[SectorEnd]| LabelledVector {
         from: pair[0].point,
@@ -86,20 +105,20 @@ mod tests {
     fn every_rule_of_vectors() {
         use Label::{Obstacle, Unknown, Visibility};
         // Large is above 1.25 m, small up to 0.625 m for the default vehicle.
-        let rules = VectorRules::of(&Vehicle::default());
+        let rules = VectorRules::for_vehicle(&Vehicle::default());
         assert_eq!((rules.large, rules.small), (1.25, 0.625));
         for (a, b, difference, expected) in [
-            // The same label, however far apart.
+            // The same label, at any distance.
             (Obstacle, Obstacle, 3.0, Obstacle),
             (Unknown, Unknown, 0.0, Unknown),
             (Visibility, Visibility, 0.0, Visibility),
-            // One obstacle, not large: an obstacle, whatever the other.
+            // One obstacle, not large: an obstacle, with any other label.
             (Obstacle, Unknown, 1.25, Obstacle),
             (Obstacle, Visibility, 0.25, Obstacle),
-            // One obstacle, large: the visibility rule needs a small difference, and no large one is small.
+            // One obstacle, large: unknown. The visibility rule needs a small difference, and a large one is not small.
             (Obstacle, Unknown, 1.5, Unknown),
             (Obstacle, Visibility, 1.5, Unknown),
-            // No obstacle, one visibility: small or not.
+            // No obstacle, one visibility limit: small, and not small.
             (Unknown, Visibility, 0.625, Visibility),
             (Unknown, Visibility, 0.75, Unknown),
         ] {
@@ -111,7 +130,7 @@ mod tests {
 
     #[test]
     fn with_small_above_large_an_obstacle_may_become_a_visibility_limit() {
-        // The rules are in the paper's order: an obstacle whose difference is large falls to the next rule.
+        // The rules apply in the paper's order: an obstacle with a large difference goes on to the next rule.
         let rules = VectorRules { large: 0.5, small: 1.0 };
         let (a, b) = (end(2.0, Label::Obstacle), end(2.75, Label::Visibility));
         assert_eq!(rules.label(&a, &b), Label::Visibility);
@@ -121,7 +140,7 @@ mod tests {
     fn vectors_join_neighbouring_sectors() {
         let sectors = vec![end(1.0, Label::Obstacle), end(1.5, Label::Unknown), end(4.0, Label::Unknown)];
         let obstacles = ObstacleMap { centre: DVec2::ZERO, sectors };
-        let vectors = navigator_map(&obstacles, &VectorRules::of(&Vehicle::default()));
+        let vectors = navigator_map(&obstacles, &VectorRules::for_vehicle(&Vehicle::default()));
         let labels: Vec<Label> = vectors.iter().map(|vector| vector.label).collect();
         assert_eq!(labels, [Label::Obstacle, Label::Unknown]);
         assert_eq!((vectors[0].to, vectors[1].from), (DVec2::new(1.5, 0.0), DVec2::new(1.5, 0.0)));

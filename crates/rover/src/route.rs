@@ -1,55 +1,66 @@
-//! Where the vehicle is told to drive: waypoints at a speed, cut into frames.
+//! The commanded route: waypoints, speed, and the pose of the vehicle in each frame.
 
 use glam::DVec2;
 use raypencil_scene::SceneError;
 
 use crate::check::check_range;
 
-/// From a start over waypoints in straight legs.
+/// A route of straight legs from a start over waypoints.
 ///
-/// CHOICE: at a waypoint the vehicle turns on the spot; the paper says nothing of steering. Waypoints are driven
-/// whatever the maps say: in the paper's samples "the vehicle was forced to travel its path regardless of unknown
+/// CHOICE: the vehicle turns on the spot at a waypoint; the paper does not describe steering. The route ignores the
+/// maps: in the paper's samples "the vehicle was forced to travel its path regardless of unknown
 /// areas and obstacles" (§8).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
-    /// Where it begins, global, metres.
+    /// Start, global x and y, metres.
     pub start: DVec2,
-    /// The heading there, radians to the left of the global x axis.
+    /// Heading at the start, radians to the left of the global x axis.
     pub heading: f64,
-    /// Where it goes, global, metres.
+    /// Waypoints in order, global x and y, metres.
     pub waypoints: Vec<DVec2>,
-    /// Metres per second.
+    /// Speed along a leg, metres per second.
     pub speed: f64,
-    /// Radians per second.
+    /// Rate of a turn on the spot, radians per second.
     pub turn_rate: f64,
-    /// Frames per second: 10, "every tenth of a second" (§7).
+    /// Camera frames per second. The paper's: 10, "every tenth of a second" (§7).
     pub frame_rate: f64,
 }
 
-/// Where a route has the vehicle in one frame.
+/// Commanded pose of the vehicle in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoutePlace {
-    /// Its middle, global, metres.
+pub struct RoutePose {
+    /// Centre of the vehicle, global x and y, metres.
     pub place: DVec2,
-    /// Radians to the left of the global x axis.
+    /// Heading, radians to the left of the global x axis.
     pub heading: f64,
-    /// The way driven since the start, metres.
+    /// Distance driven since the start, metres.
     pub driven: f64,
 }
 
 impl Route {
-    /// A route at 0.3 m/s, turning 0.3 rad/s, at 10 frames a second, first turned towards its first waypoint.
+    /// A route at 0.3 m/s, 0.3 rad/s and 10 frames per second. The heading at the start points to the first waypoint.
     ///
-    /// CHOICE: 0.3 m/s moves the stripes on level ground by 3 cm a frame, so that each grid spacing of 0.1 m is
+    /// CHOICE: at 0.3 m/s the stripes on level ground move by 3 cm per frame, so that each grid spacing of 0.1 m is
     /// measured three times.
     pub fn through(start: DVec2, waypoints: Vec<DVec2>) -> Self {
         let heading = waypoints.first().map_or(0.0, |&first| direction(first - start).unwrap_or(0.0));
         Self { start, heading, waypoints, speed: 0.3, turn_rate: 0.3, frame_rate: 10.0 }
     }
 
-    /// Where the vehicle is in frame `index`, or `None` once the route is over: its last frame is at the last
-    /// waypoint. Computed from the index alone, so that no error adds up.
-    pub fn frame(&self, index: u64) -> Option<RoutePlace> {
+    /// Pose in frame `index`. `None` after the last frame, which is at the last waypoint. The pose is computed from the
+    /// index alone, so that no error adds up.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use raypencil_rover::Route;
+    ///
+    /// // 3 m at 0.3 m/s take 10 s: at 10 frames per second, frame 50 is half way and frame 100 is the last.
+    /// let route = Route::through(DVec2::ZERO, vec![DVec2::new(3.0, 0.0)]);
+    /// assert!((route.frame(50).unwrap().driven - 1.5).abs() < 1e-12);
+    /// assert_eq!(route.frame(100).unwrap().place, DVec2::new(3.0, 0.0));
+    /// assert_eq!(route.frame(101), None);
+    /// ```
+    pub fn frame(&self, index: u64) -> Option<RoutePose> {
         let mut time = index as f64 / self.frame_rate;
         let (mut place, mut heading, mut driven) = (self.start, self.heading, 0.0);
         for &waypoint in &self.waypoints {
@@ -60,26 +71,26 @@ impl Route {
             if time < turning {
                 let turned = time * self.turn_rate;
                 let heading = heading + if turn < 0.0 { -turned } else { turned };
-                return Some(RoutePlace { place, heading, driven });
+                return Some(RoutePose { place, heading, driven });
             }
             time -= turning;
             heading = towards;
             let driving = leg.length() / self.speed;
             if time < driving {
-                let way = time * self.speed;
-                let place = place + leg * (way / leg.length());
-                return Some(RoutePlace { place, heading, driven: driven + way });
+                let along = time * self.speed;
+                let place = place + leg * (along / leg.length());
+                return Some(RoutePose { place, heading, driven: driven + along });
             }
             time -= driving;
             driven += leg.length();
             place = waypoint;
         }
-        // The first frame at or after the end is the last; rounding makes no frame more.
+        // The last frame is the first one at or after the end. 1e-6 of a frame keeps rounding from adding another.
         let frames_over = time * self.frame_rate;
-        (frames_over < 1.0 - 1e-6).then_some(RoutePlace { place, heading, driven })
+        (frames_over < 1.0 - 1e-6).then_some(RoutePose { place, heading, driven })
     }
 
-    /// Refuses a route that cannot be driven, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         for (index, point) in std::iter::once(&self.start).chain(&self.waypoints).enumerate() {
             if !point.is_finite() || point.abs().max_element() > 1e12 {
@@ -87,7 +98,7 @@ impl Route {
                     None => format!("{field}.start"),
                     Some(waypoint) => format!("{field}.waypoints[{waypoint}]"),
                 };
-                return Err(SceneError::new(name, point, "two numbers within 1e12 m"));
+                return Err(SceneError::new(name, point, "two numbers from -1e12 to 1e12 m"));
             }
         }
         check_range(field, "heading", self.heading, -1e3, 1e3, "rad")?;
@@ -97,12 +108,12 @@ impl Route {
     }
 }
 
-/// The heading of a way, unless it has no length.
-fn direction(way: DVec2) -> Option<f64> {
-    (way != DVec2::ZERO).then(|| libm::atan2(way.y, way.x))
+/// Heading of a leg, radians to the left of the x axis; `None` if the leg has no length.
+fn direction(leg: DVec2) -> Option<f64> {
+    (leg != DVec2::ZERO).then(|| libm::atan2(leg.y, leg.x))
 }
 
-/// A difference of headings as a turn of at most half a circle.
+/// The turn of at most half a circle, either way, that equals a difference of headings, radians.
 fn shortest_turn(turn: f64) -> f64 {
     use std::f64::consts::TAU;
     turn - TAU * (turn / TAU).round()
@@ -116,8 +127,8 @@ mod tests {
 
     #[test]
     fn a_leg_a_turn_and_a_leg() {
-        // 3 m along x at 0.3 m/s: 10 s. A turn of 90 degrees left at 0.3 rad/s: 5.236 s. 1.5 m along y: 5 s. In all
-        // 20.236 s: frames 0 to 202 are on the way, and frame 203 (20.3 s) ends it.
+        // 3 m along x at 0.3 m/s: 10 s. A turn of 90 degrees to the left at 0.3 rad/s: 5.236 s. 1.5 m along y: 5 s.
+        // Total 20.236 s: frames 0 to 202 are under way, and frame 203 (20.3 s) is at the end.
         let route = Route::through(DVec2::ZERO, vec![DVec2::new(3.0, 0.0), DVec2::new(3.0, 1.5)]);
         assert!(route.validate("route").is_ok());
         let place = route.frame(50).unwrap();
@@ -134,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_turn_takes_the_shorter_way() {
-        // From 170 to -170 degrees: 20 to the left.
+        // From 170 to -170 degrees the shorter turn is 20 degrees to the left.
         let heading = 170.0_f64.to_radians();
         let far = DVec2::new(libm::cos(heading), -libm::sin(heading)) * 5.0;
         let route = Route { heading, ..Route::through(DVec2::ZERO, vec![far]) };

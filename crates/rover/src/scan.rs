@@ -1,36 +1,37 @@
-//! The vertical scan mode: when to stop and pan the beams, and through which angles. (Paper, §2 and §7)
+//! The vertical scan: when the vehicle stops to pan its beams, and through which angles. (Paper, §2 and §7)
 
 use raypencil_scene::SceneError;
 
 use crate::check::{check_count, check_range};
-use crate::local_map::Inconsistency;
+use crate::elevation_map::Inconsistency;
 use crate::rig::Pan;
 
-/// Through which angles the sensors are panned.
+/// Angles through which the beams and the camera are panned in a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sweep {
-    /// The first turn of the beams, downwards from where they are mounted, radians; the farthest stripe.
+    /// First angle, downwards from the mounted direction, radians. It gives the farthest stripe.
     pub from: f64,
-    /// The last one.
+    /// Last angle, radians.
     pub to: f64,
-    /// How many stripes of each beam, ends included.
+    /// Number of positions, both ends included; each gives one stripe per beam.
     pub steps: u32,
-    /// Whether the camera is panned along. "Tables must be regenerated at every camera and beam configuration" of
-    /// the scan mode (§8): the paper's is.
+    /// Whether the camera is panned with the beams. In the paper it is: in the scan mode "tables must be regenerated at
+    /// every camera and beam configuration" (§8).
     pub camera: bool,
 }
 
 impl Default for Sweep {
-    /// CHOICE: from 10 degrees up to 40 degrees down in steps of half a degree. On level ground the default rig's
-    /// stripes then run from 9.7 m to the front wheels. Those of a beam h up are (h^2 + d^2) / h times the step apart
-    /// at distance d: 0.16 m at 6 m, 0.3 m at 8 m, which the extrapolation to both sides still closes.
+    /// CHOICE: from 10 degrees up to 40 degrees down in steps of half a degree. On level ground the stripes of the
+    /// default rig then lie between 9.7 m and the front wheels. For a beam at height h, neighbouring stripes at
+    /// distance d are (h^2 + d^2) / h times the angular step apart: 0.16 m at 6 m, 0.3 m at 8 m. Extrapolation from
+    /// both sides closes these gaps.
     fn default() -> Self {
         Self { from: (-10.0_f64).to_radians(), to: 40.0_f64.to_radians(), steps: 101, camera: true }
     }
 }
 
 impl Sweep {
-    /// The positions, in order.
+    /// The positions of the sweep, in order.
     pub fn pans(&self) -> impl Iterator<Item = Pan> + use<> {
         let sweep = *self;
         (0..sweep.steps).map(move |step| {
@@ -40,7 +41,7 @@ impl Sweep {
         })
     }
 
-    /// Refuses angles that are none, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "from", self.from, -3.2, 3.2, "rad")?;
         check_range(field, "to", self.to, -3.2, 3.2, "rad")?;
@@ -48,46 +49,58 @@ impl Sweep {
     }
 }
 
-/// When the vehicle stops for a scan.
+/// Conditions under which the vehicle stops for a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanRule {
-    /// Before the first frame.
+    /// Scan in the first frame.
     pub at_start: bool,
-    /// Whenever so many metres were driven since the last one. "The vehicle should stop periodically in order to
+    /// Distance between scans, metres. `None`: no periodic scan. "The vehicle should stop periodically in order to
     /// perform a complete vertical scan of the terrain to obtain a fresh LTM." (§7)
     pub every: Option<f64>,
-    /// When new points contradict old ones by more than this on average, metres. "Error accumulation can lead to
-    /// inconsistency between points taken at different frames." (§7)
+    /// Threshold of the mean difference between new and old elevations, metres. A larger one triggers a scan. `None`:
+    /// differences trigger none. "Error accumulation can lead to inconsistency between points taken at different
+    /// frames." (§7)
     pub inconsistency: Option<f64>,
-    /// On fewer grid points than this an inconsistency says nothing.
+    /// Minimum number of re-measured grid points for which `inconsistency` may trigger a scan.
     pub least_points: u32,
-    /// Whether a scan forgets the old map.
-    pub forget: bool,
+    /// Whether a scan clears the old map first.
+    pub clear_map: bool,
 }
 
 impl Default for ScanRule {
-    /// CHOICE: at the start; every 5 m, the way to the far stripe, so that no cell ahead is older than a scan; and at
-    /// 0.1 m, a third of what the default vehicle's slope tests refuse, on 20 grid points.
+    /// CHOICE: a scan at the start; one every 5 m, the distance of the far stripe, so that no cell ahead is older than
+    /// the last scan; and one at a mean difference of 0.1 m on 20 grid points, a third of the step that the default
+    /// vehicle's slope tests refuse.
     fn default() -> Self {
-        Self { at_start: true, every: Some(5.0), inconsistency: Some(0.1), least_points: 20, forget: true }
+        Self { at_start: true, every: Some(5.0), inconsistency: Some(0.1), least_points: 20, clear_map: true }
     }
 }
 
-/// Why a scan is due.
+/// Reason for a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ScanReason {
-    /// There was none yet.
+    /// No scan was made yet.
     Start,
-    /// The way driven since the last one.
+    /// The vehicle has driven [`ScanRule::every`] since the last scan.
     Distance,
-    /// New points contradict old ones.
+    /// New elevations contradict old ones.
     Inconsistency,
 }
 
 impl ScanRule {
-    /// Whether a scan is due: by the way driven in all and at the last scan (`None` before the first), metres, and by
-    /// what the last frame contradicted.
-    pub fn due(&self, driven: f64, last_scan: Option<f64>, found: &Inconsistency) -> Option<ScanReason> {
+    /// Reason for a scan now; `None` if none is due. `driven` is the distance since the start and `last_scan` its value
+    /// at the last scan (`None` before the first), metres. `last_frame` is the inconsistency of the last frame.
+    ///
+    /// ```
+    /// use raypencil_rover::{Inconsistency, ScanReason, ScanRule};
+    ///
+    /// // By default a scan is due every 5 m.
+    /// let rule = ScanRule::default();
+    /// assert_eq!(rule.due(0.0, None, &Inconsistency::default()), Some(ScanReason::Start));
+    /// assert_eq!(rule.due(4.9, Some(0.0), &Inconsistency::default()), None);
+    /// assert_eq!(rule.due(5.0, Some(0.0), &Inconsistency::default()), Some(ScanReason::Distance));
+    /// ```
+    pub fn due(&self, driven: f64, last_scan: Option<f64>, last_frame: &Inconsistency) -> Option<ScanReason> {
         if self.at_start && last_scan.is_none() {
             return Some(ScanReason::Start);
         }
@@ -95,11 +108,12 @@ impl ScanRule {
         if self.every.is_some_and(|every| since >= every) {
             return Some(ScanReason::Distance);
         }
-        let contradicted = |most: f64| found.count >= self.least_points && found.mean > most;
+        let contradicted =
+            |threshold: f64| last_frame.count >= self.least_points && last_frame.mean > threshold;
         self.inconsistency.is_some_and(contradicted).then_some(ScanReason::Inconsistency)
     }
 
-    /// Refuses thresholds that are none, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         if let Some(every) = self.every {
             check_range(field, "every", every, 1e-3, 1e9, "m")?;

@@ -1,15 +1,15 @@
-//! From a camera pixel to the point on a beam's edge plane that it sees. (Paper, §6 and §7)
+//! Triangulation: from a camera pixel to the point on a beam's edge plane that it sees. (Paper, §6 and §7)
 
 use glam::DVec3;
 use raypencil_scene::{Beam, Camera, Image, Maybe, Pose};
 
 use crate::rig::{OnVehicle, Rig};
-use crate::stripe::{EdgePoint, Place};
+use crate::stripe::{EdgePoint, StripeLocation};
 
-/// Which plane of a sheet of light an image point is thought to lie on.
+/// Plane of a light sheet on which measured image points lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SheetPlane {
-    /// y = +T/2 in the beam frame: "the lower edge plane of the light beam" (§7).
+    /// y = +T/2 in the beam frame, for edges: "the lower edge plane of the light beam" (§7).
     #[default]
     LowerEdge,
     /// y = 0, for centroids.
@@ -17,27 +17,62 @@ pub enum SheetPlane {
 }
 
 impl SheetPlane {
-    /// The plane that the extracted places lie on.
-    pub fn of(place: Place) -> Self {
+    /// Plane of the rows that an extraction measures.
+    pub fn for_location(place: StripeLocation) -> Self {
         match place {
-            Place::Pixel | Place::SubPixel => Self::LowerEdge,
-            Place::Centroid => Self::Middle,
+            StripeLocation::Pixel | StripeLocation::SubPixel => Self::LowerEdge,
+            StripeLocation::Centroid => Self::Middle,
         }
     }
 }
 
-/// A camera and one plane of light, both fixed to the vehicle: any image point gives a point of space.
+/// Triangulation with a camera and one plane of light, both fixed to the vehicle: an image point gives a point in
+/// space.
+///
+/// ```
+/// # use glam::DVec3;
+/// # use raypencil_scene::{Beam, Camera, Lens, Profile};
+/// # let camera = Camera {
+/// #     width: 1024, height: 1024, pixel_pitch: [9e-6; 2], focal_length: 8e-3, principal_point: [512.0; 2],
+/// #     aperture: 2e-3, lens: Lens::CLEAR, max_range: 20.0,
+/// # };
+/// # let half_width = Beam::half_width_of(0.1, 60.0_f64.to_radians());
+/// # let beam = Beam {
+/// #     columns: 1024, rows: 16, thickness: 5e-3, grid_distance: 0.1, half_width, max_range: 20.0, power: 1.0,
+/// #     wavelength: 810e-9, profile: Profile::Paper,
+/// # };
+/// use raypencil_rover::{OnVehicle, Rig, SheetPlane, Triangulation};
+///
+/// // A camera 1.5 m up that looks 20 degrees down, and a beam 1.8 m up that points 31 degrees down.
+/// let mount = |height, down: f64| Rig::mount(DVec3::new(0.0, 0.0, height), down.to_radians());
+/// let rig = Rig {
+///     camera: OnVehicle { vehicle_from_sensor: mount(1.5, 20.0), sensor: camera },
+///     beams: vec![OnVehicle { vehicle_from_sensor: mount(1.8, 31.0), sensor: beam }],
+/// };
+/// let triangulation = Triangulation::new(&rig, 0, SheetPlane::Middle);
+///
+/// // The sheet's middle meets level ground 1.8 / tan 31 = 2.996 m ahead. The camera sees that point
+/// // atan(1.5 / 2.996) = 26.6 degrees down: 6.6 degrees below its axis, 8 mm tan(6.6) / 9 um = 102.9 pixels.
+/// let ahead = 1.8 / libm::tan(31.0_f64.to_radians());
+/// let below_axis = libm::atan(1.5 / ahead) - 20.0_f64.to_radians();
+/// let row = 512.0 + 8e-3 * libm::tan(below_axis) / 9e-6;
+/// let point = triangulation.at(512.0, row).unwrap();
+/// assert!((point - DVec3::new(ahead, 0.0, 0.0)).length() < 1e-9);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triangulation {
     camera: OnVehicle<Camera>,
     beam: Beam,
     beam_from_camera: Pose,
-    /// y of the plane in the beam frame, metres.
+    /// Coordinate y of the plane in the beam frame, metres.
     y: f64,
 }
 
 impl Triangulation {
-    /// The plane of one beam of the rig, which must have it.
+    /// Triangulation on a plane of the beam with index `beam`.
+    ///
+    /// # Panics
+    /// If the rig has no such beam.
     pub fn new(rig: &Rig, beam: usize, plane: SheetPlane) -> Self {
         let OnVehicle { vehicle_from_sensor, sensor } = rig.beams[beam];
         let y = match plane {
@@ -48,8 +83,8 @@ impl Triangulation {
         Self { camera: rig.camera, beam: sensor, beam_from_camera, y }
     }
 
-    /// The point of the plane seen at image point (u, v), in pixels from the outer corner of pixel (0, 0): vehicle
-    /// frame, metres. `None` where the beam cannot have lit what is seen there.
+    /// Point of the plane that is seen at image point (u, v), in the vehicle frame, metres. (u, v) is in pixels from
+    /// the outer corner of pixel (0, 0). `None` if the beam cannot light that point.
     pub fn at(&self, u: f64, v: f64) -> Option<DVec3> {
         let camera = &self.camera.sensor;
         let q_camera = DVec3::new(
@@ -59,12 +94,12 @@ impl Triangulation {
         );
         let q = self.beam_from_camera.rotate(q_camera);
         let centre = self.beam_from_camera.position;
-        // centre + t q lies on the plane; at t = 1 the ray crosses the image plane.
+        // centre + t q is the point on the plane; at t = 1 the ray crosses the image plane.
         let t = (self.y - centre.y) / q.y;
         if !(t >= 1.0 && t.is_finite()) {
             return None;
         }
-        // Outside the fan there is no light, nor beyond its range; a pixel's own size is forgiven.
+        // The beam lights points inside its fan and its range. The tolerance is the size of the pixel at that distance.
         let point = centre + q * t;
         let pixel = t * camera.pixel_pitch[0].max(camera.pixel_pitch[1]);
         let Beam { grid_distance: g, half_width: w, max_range, .. } = self.beam;
@@ -74,14 +109,14 @@ impl Triangulation {
         lit.then(|| self.camera.vehicle_from_sensor * (q_camera * t))
     }
 
-    /// The point seen by the middle of pixel (i, j).
+    /// Point seen by the middle of pixel (i, j), in the vehicle frame, metres.
     pub fn at_pixel(&self, i: u32, j: u32) -> Option<DVec3> {
         self.at(f64::from(i) + 0.5, f64::from(j) + 0.5)
     }
 
-    /// The largest distance, metres, between the point seen by the middle of pixel (i, j) and one seen anywhere
-    /// else in it: its footprint on the plane, a quadrilateral, reaches furthest at a corner. `None` if a corner
-    /// sees nothing lit.
+    /// Radius of the footprint of pixel (i, j) on the plane, metres: the largest distance from the point seen by its
+    /// middle to one seen elsewhere in the pixel. The footprint is a quadrilateral, so that a corner is farthest.
+    /// `None` if the beam cannot light the point of a corner.
     pub fn footprint(&self, i: u32, j: u32) -> Option<f64> {
         let middle = self.at_pixel(i, j)?;
         let (u, v) = (f64::from(i), f64::from(j));
@@ -92,18 +127,18 @@ impl Triangulation {
         Some(largest)
     }
 
-    /// The points of a stripe's edges, in their order, at the places where they were measured: vehicle frame,
-    /// metres.
+    /// Points of a stripe's edges at their measured rows, in the order of the edges: vehicle frame, metres. Edges
+    /// without a point are left out.
     pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
-        edges.iter().filter_map(|edge| self.of_edge(edge)).collect()
+        edges.iter().filter_map(|edge| self.at_edge(edge)).collect()
     }
 
-    /// The point of one edge, at the place where it was measured: vehicle frame, metres.
-    pub fn of_edge(&self, edge: &EdgePoint) -> Option<DVec3> {
+    /// Point of one edge at its measured row: vehicle frame, metres.
+    pub fn at_edge(&self, edge: &EdgePoint) -> Option<DVec3> {
         self.at(f64::from(edge.i) + 0.5, edge.row)
     }
 
-    /// The table of all pixels.
+    /// Table of the points of all pixels.
     pub fn table(&self) -> TriangulationTable {
         let Camera { width, height, .. } = self.camera.sensor;
         let mut points = Image::filled(width, height, Maybe::NONE);
@@ -116,136 +151,26 @@ impl Triangulation {
     }
 }
 
-/// "A table holds the local vehicle coordinates of the edge plane point seen by any given camera pixel, i.e. the
-/// point where a ray passing through the camera pixel intersects the lower edge plane of the light beam." (§7)
+/// Table of the points seen by all pixels. "A table holds the local vehicle coordinates of the edge plane point seen by
+/// any given camera pixel, i.e. the point where a ray passing through the camera pixel intersects the lower edge plane
+/// of the light beam." (§7)
 ///
-/// It holds for one configuration of camera and beam: panned sensors need another. "Tables must be regenerated at
-/// every camera and beam configuration." (§8)
+/// A table is valid for one configuration of camera and beam: panned sensors need another one. "Tables must be
+/// regenerated at every camera and beam configuration." (§8)
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangulationTable {
     points: Image<Maybe<DVec3>>,
 }
 
 impl TriangulationTable {
-    /// The point seen by pixel (i, j), vehicle frame, metres.
+    /// Point seen by the middle of pixel (i, j), in the vehicle frame, metres.
     pub fn at_pixel(&self, i: u32, j: u32) -> Option<DVec3> {
         self.points.at(i, j).get()
     }
 
-    /// The points of a stripe's edge pixels, in their order, vehicle frame, metres.
+    /// Points of a stripe's edge pixels, in the order of the edges: vehicle frame, metres. Edges without a point are
+    /// left out.
     pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
         edges.iter().filter_map(|edge| self.at_pixel(edge.i, edge.j)).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rig::Pan;
-    use crate::rig::tests::default_rig;
-
-    /// Where a point of the vehicle frame lands on the image: the pinhole's own equation.
-    fn project(rig: &Rig, point: DVec3) -> (f64, f64) {
-        let p = rig.camera.vehicle_from_sensor.inverse() * point;
-        let camera = &rig.camera.sensor;
-        let along = |axis: usize, x: f64| {
-            camera.principal_point[axis] + camera.focal_length * x / p.z / camera.pixel_pitch[axis]
-        };
-        (along(0, p.x), along(1, p.y))
-    }
-
-    /// Points of a beam's lower edge plane, laid out in the beam frame, that the camera sees.
-    fn edge_points(rig: &Rig, beam: usize) -> Vec<DVec3> {
-        let OnVehicle { vehicle_from_sensor, sensor } = rig.beams[beam];
-        let mut points = Vec::new();
-        for row in 0..60 {
-            let z = 1.0 + 0.173 * f64::from(row);
-            for column in -20..=20 {
-                let x = z * 0.0281 * f64::from(column);
-                let point = vehicle_from_sensor * DVec3::new(x, 0.5 * sensor.thickness, z);
-                let (u, v) = project(rig, point);
-                if (0.0..1024.0).contains(&u) && (0.0..1024.0).contains(&v) {
-                    points.push(point);
-                }
-            }
-        }
-        points
-    }
-
-    #[test]
-    fn triangulation_closes() {
-        for pan in [Pan::default(), Pan { camera: 0.3, beams: 0.5 }, Pan { camera: 0.0, beams: -0.1 }] {
-            let rig = default_rig().panned(pan);
-            for beam in 0..2 {
-                let triangulation = Triangulation::new(&rig, beam, SheetPlane::LowerEdge);
-                let points = edge_points(&rig, beam);
-                assert!(points.len() > 500, "{} points", points.len());
-                for point in points {
-                    let (u, v) = project(&rig, point);
-                    // Where it really lands: the same point again.
-                    let again = triangulation.at(u, v).expect("a lit point");
-                    assert!((again - point).length() < 1e-9, "{again} for {point}");
-                    // From the middle of its pixel: within the footprint.
-                    let (i, j) = (u as u32, v as u32);
-                    if let Some(footprint) = triangulation.footprint(i, j) {
-                        let nearest = triangulation.at_pixel(i, j).expect("a lit pixel");
-                        assert!((nearest - point).length() <= footprint + 1e-9);
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn pixel_centres_close_to_a_nanometre() {
-        // From a pixel's middle to its point and back: the point lies on y = T/2 of the beam, and lands on the
-        // middle of the pixel. 1e-9 m at up to 20 m is 1e-9 / 20 * 8e-3 / 9e-6 = 4e-8 pixels.
-        let rig = default_rig();
-        for beam in 0..2 {
-            let table = Triangulation::new(&rig, beam, SheetPlane::LowerEdge).table();
-            let beam_from_vehicle = rig.beams[beam].vehicle_from_sensor.inverse();
-            let mut seen = 0;
-            for j in (0..1024).step_by(7) {
-                for i in (0..1024).step_by(7) {
-                    let Some(point) = table.at_pixel(i, j) else { continue };
-                    seen += 1;
-                    assert!(((beam_from_vehicle * point).y - 2.5e-3).abs() < 1e-9);
-                    let (u, v) = project(&rig, point);
-                    assert!((u - f64::from(i) - 0.5).abs() < 4e-8 && (v - f64::from(j) - 0.5).abs() < 4e-8);
-                }
-            }
-            assert!(seen > 3000, "{seen} pixels see the plane");
-        }
-    }
-
-    #[test]
-    fn a_stripe_on_level_ground_is_where_the_plane_meets_it() {
-        // Beam 0: 1.8 m up, 31 degrees down. Its lower edge plane runs 2.5 mm below the axis plane, measured at
-        // right angles: it meets the ground (1.8 - 0.0025 / cos 31) / tan 31 ahead of the beam.
-        let rig = default_rig();
-        let down = 31.0_f64.to_radians();
-        let ahead = (1.8 - 0.0025 / libm::cos(down)) / libm::tan(down);
-        let (u, v) = project(&rig, DVec3::new(0.3 + ahead, 0.0, 0.0));
-        let point = Triangulation::new(&rig, 0, SheetPlane::LowerEdge).at(u, v).unwrap();
-        assert!((point - DVec3::new(0.3 + ahead, 0.0, 0.0)).length() < 1e-9);
-        // The camera's ray comes from below the sheet: it meets the middle plane later, below the ground.
-        let middle = Triangulation::new(&rig, 0, SheetPlane::Middle).at(u, v).unwrap();
-        assert!(middle.z < 0.0 && middle.x > point.x);
-    }
-
-    #[test]
-    fn what_the_beam_cannot_light_is_no_point() {
-        let rig = default_rig();
-        let triangulation = Triangulation::new(&rig, 0, SheetPlane::LowerEdge);
-        // The plane falls 31 degrees, 11 more than the camera's axis, and is above the camera: below its vanishing line
-        // at row 512 + 8 mm tan 11 / 9 um = 684.8 the camera looks under it for ever.
-        assert!(triangulation.at(512.0, 684.0).is_none() && triangulation.at(512.0, 700.0).is_none());
-        assert!(triangulation.at(512.0, 650.0).is_some());
-        // Near the image's right border low down, beyond the fan.
-        let mut narrow = rig.clone();
-        narrow.beams[0].sensor.half_width = 0.01;
-        let triangulation = Triangulation::new(&narrow, 0, SheetPlane::LowerEdge);
-        let (u, v) = project(&rig, DVec3::new(3.29, 0.0, 0.0));
-        assert!(triangulation.at(u, v).is_some() && triangulation.at(u + 400.0, v).is_none());
     }
 }

@@ -1,4 +1,4 @@
-//! The vehicle's measures, and how it settles on the ground.
+//! The vehicle: its dimensions, and how it stands on the ground.
 
 use glam::{DVec2, DVec3};
 use raypencil_scene::{Pose, SceneError};
@@ -6,34 +6,38 @@ use raypencil_terrain::HeightIndex;
 
 use crate::check::{check_count, check_range};
 
-/// A vehicle on four wheels. Its frame has x forward, y left, z up; its origin, the paper's "local vehicle
-/// origin" (§7), is in the plane of the wheels' lowest points, midway between the axles and the sides.
+/// Dimensions of a vehicle on four wheels.
 ///
-/// CHOICE: the paper says where neither the origin is nor how large anything. With the origin on the ground a
-/// vehicle on a plane has the plane's height, as the scene files have it.
+/// The vehicle frame has x forward, y left, z up. Its origin, the paper's "local vehicle origin" (§7), lies in the
+/// plane of the wheels' lowest points, midway between the axles and between the sides.
+///
+/// CHOICE: the paper gives neither the origin nor any dimension. With this origin a vehicle on a level plane has the
+/// plane's height, as in the scene files.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vehicle {
-    /// Between the front and the rear axle, metres.
+    /// Distance between the front and the rear axle, metres.
     pub wheelbase: f64,
-    /// Between the middles of a left and a right wheel, metres.
+    /// Distance between the middles of a left and a right wheel, metres.
     pub track: f64,
-    /// Of every wheel, metres.
+    /// Radius of every wheel, metres.
     pub wheel_radius: f64,
-    /// Of every wheel, metres: the paper's "wheel thickness".
+    /// Width of every wheel, metres: the paper's "wheel thickness".
     pub wheel_width: f64,
-    /// From the plane of the wheels' lowest points up to the body's underside, midway between the axles, metres.
+    /// Height of the body's underside above the plane of the wheels' lowest points, midway between the axles, metres.
     pub clearance: f64,
-    /// How many points of a wheel's rim, over its whole diameter, are held against the ground. 1: its lowest alone.
+    /// Number of points of a wheel's rim, along its diameter, that are tested against the ground. 1: the lowest point
+    /// only.
     pub rim_points: u32,
 }
 
 impl Default for Vehicle {
-    /// CHOICE: a rover of a metre or two, as the built-in scenes and the rig want it: it fits in the strip of
-    /// 2.6 m that `pyramids` leaves free, and its nose ends behind the nearest ground that a panned camera sees.
-    /// What the paper does say is kept: a wheel is thicker than one grid spacing of 0.1 m, since gaps "less than
-    /// or equal to one grid spacing" and those "less than one wheel thickness wide" are different things to it.
-    /// The belly is at the height of the hubs, since the paper's belly test is for "the midpoint between the rear
-    /// and front wheel centers" (all §7).
+    /// CHOICE: a rover of one to two metres, which suits the built-in scenes and the default rig. It fits into the
+    /// strip of 2.6 m that `pyramids` leaves free, and its front end is behind the nearest ground that a panned camera
+    /// sees.
+    ///
+    /// Two statements of §7 are kept. A wheel is thicker than one grid spacing of 0.1 m, since the paper distinguishes
+    /// gaps "less than or equal to one grid spacing" from those "less than one wheel thickness wide". The underside is
+    /// at the height of the hubs, since the paper tests "the midpoint between the rear and front wheel centers".
     fn default() -> Self {
         Self {
             wheelbase: 1.2,
@@ -46,20 +50,20 @@ impl Default for Vehicle {
     }
 }
 
-/// Which way a vehicle is turned: heading first, then pitch, then roll, each about the axis that the turns before
-/// it left, radians.
+/// Orientation of a vehicle: heading, then pitch, then roll, radians. Each turn is about the axis as turned by those
+/// before it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attitude {
-    /// To the left of the global x axis.
+    /// Heading, to the left of the global x axis.
     pub heading: f64,
-    /// Of the nose.
+    /// Pitch, positive with the front end down.
     pub pitch_down: f64,
-    /// Of the right side, downwards.
+    /// Roll, positive with the right side down.
     pub roll_right: f64,
 }
 
 impl Attitude {
-    /// The pose of a vehicle so turned, its origin at `position` (global).
+    /// Pose `global_from_vehicle` of a vehicle with this orientation and its origin at `position` (global, metres).
     pub fn at(&self, position: DVec3) -> Pose {
         let heading = Pose::from_axis_angle(DVec3::Z, self.heading);
         let pitch = Pose::from_axis_angle(DVec3::Y, self.pitch_down);
@@ -68,52 +72,52 @@ impl Attitude {
     }
 }
 
-/// How a vehicle stands.
+/// True pose of a vehicle at rest on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stance {
-    /// Its origin, global, metres.
+    /// Origin of the vehicle frame, global, metres.
     pub position: DVec3,
-    /// Its attitude.
+    /// Orientation.
     pub attitude: Attitude,
-    /// By how much the last step of settling still moved a wheel, metres: small, unless the ground is so rough
-    /// that no stance is at rest.
-    pub unsettled: f64,
+    /// Motion of the wheels in the last iteration, metres. It is small, unless the ground is so rough that the
+    /// iteration does not converge.
+    pub residual: f64,
 }
 
 impl Stance {
-    /// `global_from_vehicle`.
+    /// Pose `global_from_vehicle`.
     pub fn pose(&self) -> Pose {
         self.attitude.at(self.position)
     }
 }
 
-/// The ways of the four wheels from the vehicle's middle: forward or back, left or right.
-const WHEELS: [(f64, f64); 4] = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+/// Signs of the four wheels' x and y in the vehicle frame.
+const WHEEL_SIGNS: [(f64, f64); 4] = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
 
-/// Steps of settling. On slopes up to 45 degrees each leaves less than half of the error: 2^-40 m is enough.
-const STEPS: u32 = 40;
+/// Iterations of settling. On slopes up to 45 degrees each one halves the error at least: 2^-40 m is enough.
+const SETTLING_STEPS: u32 = 40;
 
 impl Vehicle {
-    /// Whether a point of the vehicle frame is under the vehicle: within the rectangle around its wheels.
+    /// Whether a point (vehicle frame x and y, metres) is in the rectangle around the wheels.
     pub fn covers(&self, point: DVec2) -> bool {
         let half_length = 0.5 * self.wheelbase + self.wheel_radius;
         let half_width = 0.5 * (self.track + self.wheel_width);
         point.x.abs() <= half_length && point.y.abs() <= half_width
     }
 
-    /// The width over all, metres.
+    /// Overall width, metres.
     pub fn width(&self) -> f64 {
         self.track + self.wheel_width
     }
 
-    /// How high the hub of a wheel stands whose middle is above the global point `hub` and which rolls towards
-    /// `heading` (a unit): as high as the highest of its rim's points needs. `None` if there is no ground below.
+    /// Height of the hub of a wheel above the global point `hub`, global z, metres. The wheel rolls towards `heading`
+    /// (a unit vector) and rests on the highest of its rim's points. `None` if there is no ground below.
     fn hub_height(&self, ground: &HeightIndex, hub: DVec2, heading: DVec2) -> Option<f64> {
         let points = self.rim_points.max(1);
         let across = heading.perp() * (0.5 * self.wheel_width);
         let mut highest: Option<f64> = None;
         for point in 0..points {
-            // From -1 to 1 over the diameter, ends left out: there the rim is vertical.
+            // Shares from -1 to 1 of the radius, without the ends, where the rim is vertical.
             let share = (2.0 * f64::from(point) + 1.0 - f64::from(points)) / f64::from(points);
             let along = heading * (share * self.wheel_radius);
             let rim = self.wheel_radius * (1.0 - share * share).sqrt();
@@ -127,40 +131,52 @@ impl Vehicle {
         highest
     }
 
-    /// How the vehicle stands when its middle is driven to the global point `place` with that heading; `None` if a
-    /// wheel has no ground below it.
+    /// Pose of the vehicle when its centre is at the global point `place` with this heading. `None` if a wheel has no
+    /// ground below it.
     ///
-    /// CHOICE: all four wheels carry alike, as with a rocker between the sides: the body takes the plane that fits
-    /// the four hubs best. The paper has other programs for suspension and sinkage (§1).
+    /// CHOICE: all four wheels carry the same load, as with a rocker suspension: the body takes the plane that fits the
+    /// four hubs best. The paper leaves suspension and sinkage to other programs (§1).
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use raypencil_rover::Vehicle;
+    /// use raypencil_terrain::{HeightIndex, builtin};
+    ///
+    /// // The built-in scene is level at its start, (-9, 0): a vehicle stands level at z = 0 there.
+    /// let ground = HeightIndex::new(&builtin("pyramids", 0.25).unwrap().into_mesh()?);
+    /// let stance = Vehicle::default().settle(&ground, DVec2::new(-9.0, 0.0), 0.0).unwrap();
+    /// assert!(stance.position.z.abs() < 1e-9 && stance.attitude.pitch_down.abs() < 1e-9);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
     pub fn settle(&self, ground: &HeightIndex, place: DVec2, heading: f64) -> Option<Stance> {
         let mut attitude = Attitude { heading, ..Attitude::default() };
         let mut position = place.extend(ground.height_at(place.x, place.y)?);
-        let mut unsettled = f64::INFINITY;
-        for step in 0..STEPS {
+        let mut residual = f64::INFINITY;
+        for step in 0..SETTLING_STEPS {
             let pose = attitude.at(position);
             let forward = pose.rotate(DVec3::X).truncate().normalize_or_zero();
-            // How much higher each hub should be.
+            // Height of each hub above its present one, metres.
             let mut lift = [0.0; 4];
-            for (lift, (x, y)) in lift.iter_mut().zip(WHEELS) {
+            for (lift, (x, y)) in lift.iter_mut().zip(WHEEL_SIGNS) {
                 let hub = DVec3::new(0.5 * x * self.wheelbase, 0.5 * y * self.track, self.wheel_radius);
                 let hub = pose * hub;
                 *lift = self.hub_height(ground, hub.truncate(), forward)? - hub.z;
             }
             let part = |sign: fn((f64, f64)) -> f64| {
-                lift.iter().zip(WHEELS).map(|(lift, wheel)| lift * sign(wheel)).sum::<f64>() / 4.0
+                lift.iter().zip(WHEEL_SIGNS).map(|(lift, wheel)| lift * sign(wheel)).sum::<f64>() / 4.0
             };
             let (heave, nose, left) = (part(|_| 1.0), part(|(x, _)| x), part(|(_, y)| y));
-            unsettled = heave.abs() + nose.abs() + left.abs();
-            // On broken ground the full steps may swing for ever: shorter ones later on.
-            let share = if step < STEPS / 2 { 1.0 } else { 0.5 };
+            residual = heave.abs() + nose.abs() + left.abs();
+            // On broken ground full steps may oscillate: halve them in the second half of the iterations.
+            let share = if step < SETTLING_STEPS / 2 { 1.0 } else { 0.5 };
             position.z += share * heave;
             attitude.pitch_down -= share * 2.0 * nose / self.wheelbase;
             attitude.roll_right += share * 2.0 * left / self.track;
         }
-        Some(Stance { position, attitude, unsettled })
+        Some(Stance { position, attitude, residual })
     }
 
-    /// Refuses a vehicle that is none, naming the field.
+    /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         for (name, length) in [
             ("wheelbase", self.wheelbase),
@@ -181,87 +197,5 @@ impl Vehicle {
         )?;
         check_range(field, "wheel_width", self.wheel_width, 1e-2, self.track, "m (the track)")?;
         check_count(field, "rim_points", self.rim_points.into(), 1, 1001)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use raypencil_scene::Material;
-    use raypencil_terrain::Ground;
-
-    use super::*;
-
-    /// A square of 40 m about (0, 0), z = height(x, y) at its corners, cut along x = y.
-    fn plane(height: impl Fn(f64, f64) -> f64) -> Ground {
-        let corner = |x: f64, y: f64| DVec3::new(x, y, height(x, y));
-        Ground {
-            vertices: vec![
-                corner(-20.0, -20.0),
-                corner(20.0, -20.0),
-                corner(20.0, 20.0),
-                corner(-20.0, 20.0),
-            ],
-            faces: vec![[0, 1, 2], [0, 2, 3]],
-            face_materials: vec![0, 0],
-            materials: vec![Material { name: "ground".into(), reflectivity: 0.25 }],
-        }
-    }
-
-    fn settled(ground: Ground, heading: f64) -> Option<Stance> {
-        let index = HeightIndex::new(&ground.into_mesh().unwrap());
-        Vehicle::default().settle(&index, DVec2::new(1.0, 2.0), heading)
-    }
-
-    #[test]
-    fn on_level_ground_it_stands_level() {
-        let stance = settled(plane(|_, _| 0.5), 0.7).unwrap();
-        assert!((stance.position - DVec3::new(1.0, 2.0, 0.5)).length() < 1e-9);
-        let Attitude { heading, pitch_down, roll_right } = stance.attitude;
-        assert_eq!(heading, 0.7);
-        assert!(pitch_down.abs() < 1e-9 && roll_right.abs() < 1e-9);
-    }
-
-    #[test]
-    fn on_a_slope_it_is_parallel_to_the_slope() {
-        // z = 0.25 x, driven up: nose up by atan 0.25, no roll; driven across (heading +y): the right side, which
-        // is uphill, is up. The rim's 17 points miss the true contact by at most half their spacing along the
-        // circle, (r / 17)^2 / (2 r) = r / 578 = 0.6 mm, the same at every wheel.
-        let rise = libm::atan(0.25);
-        let up = settled(plane(|x, _| 0.25 * x), 0.0).unwrap();
-        assert!((up.attitude.pitch_down + rise).abs() < 1e-6, "{up:?}");
-        assert!(up.attitude.roll_right.abs() < 1e-9 && up.unsettled < 1e-9);
-        assert!((up.position.z - 0.25).abs() < 1e-3, "{up:?}");
-        let across = settled(plane(|x, _| 0.25 * x), std::f64::consts::FRAC_PI_2).unwrap();
-        assert!((across.attitude.roll_right + rise).abs() < 1e-6, "{across:?}");
-        assert!(across.attitude.pitch_down.abs() < 1e-9);
-    }
-
-    #[test]
-    fn front_wheels_on_a_step_lift_the_nose() {
-        // A block 0.2 m high from x = 1.3 on; the middle at x = 1.0, hubs at 1.6 and 0.4 while level. The nose
-        // rises by asin(0.2 / 1.2), the middle by 0.1 m.
-        let mut ground = plane(|_, _| 0.0);
-        let block = plane(|_, _| 0.2);
-        let first = ground.vertices.len() as u32;
-        ground.vertices.extend(block.vertices.iter().map(|v| *v + DVec3::new(21.3, 0.0, 0.0)));
-        ground.faces.extend(block.faces.iter().map(|face| face.map(|v| v + first)));
-        ground.face_materials.extend([0, 0]);
-        let stance = settled(ground, 0.0).unwrap();
-        assert!((stance.attitude.pitch_down + libm::asin(0.2 / 1.2)).abs() < 1e-3, "{stance:?}");
-        // The origin is in the wheels' plane, below the middle of the hubs by r cos(pitch): a little less than r.
-        assert!((stance.position.z - 0.1 - 0.35 * (1.0 - 35.0_f64.sqrt() / 6.0)).abs() < 1e-3);
-    }
-
-    #[test]
-    fn beyond_the_ground_there_is_no_stance() {
-        let index = HeightIndex::new(&plane(|_, _| 0.0).into_mesh().unwrap());
-        assert!(Vehicle::default().settle(&index, DVec2::new(20.5, 0.0), 0.0).is_none());
-    }
-
-    #[test]
-    fn the_default_vehicle_is_one_and_others_are_named() {
-        assert!(Vehicle::default().validate("vehicle").is_ok());
-        let wide = Vehicle { wheel_width: 1.5, ..Vehicle::default() };
-        assert!(wide.validate("vehicle").unwrap_err().to_string().starts_with("vehicle.wheel_width is 1.5"));
     }
 }

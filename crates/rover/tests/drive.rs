@@ -1,4 +1,4 @@
-//! Whole drives, through images: a stand-in renderer of a few triangles makes them.
+//! Whole drives with the images of a simple renderer for a few triangles.
 
 mod common;
 
@@ -7,12 +7,12 @@ use std::sync::Arc;
 use common::{extruded, first_hit, from_vehicle, rig, seen_at};
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Detection, Drive, DriveFrame, DrivePlan, Exposed, Exposures, Extraction, Fixes, Label, OnVehicle, Place,
-    Rig, Route, ScanReason, ScanRule, SensorErrors, Source, Sweep,
+    CameraImage, Detection, Drive, DriveFrame, DrivePlan, ElevationSource, ExposureMode, Extraction, Label,
+    LocalisationErrors, OnVehicle, PositionFixes, Rig, Route, ScanReason, ScanRule, StripeLocation, Sweep,
 };
 use raypencil_scene::{Frame, Image, Mesh, Pose, Renderer, Request, Resolution, Scene};
 
-/// A watt for every pencil that the camera sees.
+/// A renderer that puts one watt into a pixel for every pencil that the pixel sees.
 struct StandIn;
 
 impl Renderer for StandIn {
@@ -26,8 +26,8 @@ impl Renderer for StandIn {
 
     fn render(&self, scene: &Scene, request: &Request) -> Frame {
         assert!(request.returns && !request.camera && !request.beams);
-        // As if the vehicle were the scene itself.
-        let rig = Rig::of_scene(scene, Pose::IDENTITY);
+        // The vehicle frame is taken to be the scene frame.
+        let rig = Rig::from_scene(scene, Pose::IDENTITY);
         let faces = from_vehicle(scene.mesh(), Pose::from_position(scene.mesh().origin()));
         let flux = rig.beams.iter().map(|beam| {
             let OnVehicle { vehicle_from_sensor, sensor } = beam;
@@ -49,7 +49,7 @@ impl Renderer for StandIn {
     }
 }
 
-/// 1.5 m ahead at 0.3 m/s, with coarse beams and a coarse sweep.
+/// A drive of 1.5 m straight ahead at 0.3 m/s, with coarse beams and a coarse sweep.
 fn plan() -> DrivePlan {
     let route = Route::through(DVec2::ZERO, vec![DVec2::new(1.5, 0.0)]);
     let plan = DrivePlan::new(rig(96, 4), route, Extraction::thresholding(0.5));
@@ -59,7 +59,7 @@ fn plan() -> DrivePlan {
 fn drive(plan: DrivePlan, mesh: &Arc<Mesh>) -> (Drive, Vec<DriveFrame>) {
     let mut drive = Drive::new(plan, Arc::clone(mesh)).unwrap();
     let mut frames = Vec::new();
-    while let Some(frame) = drive.step(&StandIn, &mut |_, image| Exposed::Flux(image)).unwrap() {
+    while let Some(frame) = drive.step(&StandIn, &mut |_, image| CameraImage::Flux(image)).unwrap() {
         frames.push(frame);
     }
     (drive, frames)
@@ -67,22 +67,22 @@ fn drive(plan: DrivePlan, mesh: &Arc<Mesh>) -> (Drive, Vec<DriveFrame>) {
 
 #[test]
 fn a_drive_towards_a_wall() {
-    // Level, and 0.5 m higher from x = 5 on.
+    // Level ground that is 0.5 m higher from x = 5 on.
     let mesh = extruded(&[(-20.0, 0.0), (5.0, 0.0), (5.0, 0.5), (20.0, 0.5)]);
     let (drive, frames) = drive(plan(), &mesh);
-    // 5 s at 10 frames a second, both ends included.
+    // 5 s at 10 frames per second, both ends included.
     assert_eq!(frames.len(), 51);
     assert_eq!(frames[0].scan, Some(ScanReason::Start));
     assert!(frames[1..].iter().all(|frame| frame.scan.is_none() && frame.points > 100));
-    // The elevation of the vehicle comes from the map; a pixel's footprint at the stripes is 4 to 6 cm.
+    // The vehicle's elevation comes from the map. A pixel's footprint at the stripes is 4 to 6 cm.
     let mapper = drive.mapper().unwrap();
     assert!((mapper.pose().position - DVec3::new(1.5, 0.0, 0.0)).length() < 0.06, "{:?}", mapper.pose());
-    // What was measured is the ground: 95 % of it (tuned) within 5 cm of its level.
+    // 95 % (tuned) of the measured points are within 5 cm of the ground.
     let (mut close, mut all) = (0, 0);
     for point in mapper.map().points() {
-        if mapper.map().source(point) == Source::Measured {
+        if mapper.map().source(point) == ElevationSource::Measured {
             let (x, z) = (mapper.map().place(point).x, mapper.map().elevation(point).unwrap());
-            // A wall's points, and those of a pixel across its edge, are anything between.
+            // Points on the wall, and those of a pixel across its edge, have elevations between both levels.
             if (x - 5.0).abs() > 0.16 {
                 all += 1;
                 close += usize::from((z - if x > 5.0 { 0.5 } else { 0.0 }).abs() < 0.05);
@@ -90,7 +90,7 @@ fn a_drive_towards_a_wall() {
         }
     }
     assert!(all > 1000 && close * 20 > all * 19, "{close} of {all}");
-    // The last obstacle map marks the wall straight ahead, 3.5 m away, and its vectors do.
+    // The last obstacle map and its vectors mark the wall straight ahead, 3.5 m away.
     let maps: Vec<_> = frames.iter().filter_map(|frame| frame.obstacles.as_ref()).collect();
     assert_eq!(maps.len(), 6);
     let (obstacles, vectors) = maps[5];
@@ -103,18 +103,18 @@ fn a_drive_towards_a_wall() {
 #[test]
 fn one_exposure_of_both_beams_gives_the_same_map_of_level_ground() {
     let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
-    // Fine beams: a column of the image then holds both stripes.
+    // With fine beams a column of the image holds both stripes.
     let route = Route::through(DVec2::ZERO, vec![DVec2::new(0.1, 0.0)]);
     let short = || DrivePlan { route: route.clone(), rig: rig(1024, 2), ..plan() };
     let (in_turn, frames) = drive(short(), &mesh);
-    let (together, others) = drive(DrivePlan { exposures: Exposures::Together, ..short() }, &mesh);
+    let (together, others) = drive(DrivePlan { exposures: ExposureMode::Together, ..short() }, &mesh);
     assert_eq!(frames.len(), others.len());
-    // Columns that hold one stripe alone are left out when both are lit: fewer points, none of them new.
+    // With both beams lit, columns that hold one stripe only are left out: there are fewer points, and no new ones.
     assert!(
         others.iter().zip(&frames).all(|(other, frame)| other.points <= frame.points && other.points > 50)
     );
     let [a, b] = [in_turn.mapper().unwrap().map(), together.mapper().unwrap().map()];
-    let common = a.points().filter(|&point| b.source(point) == Source::Measured);
+    let common = a.points().filter(|&point| b.source(point) == ElevationSource::Measured);
     for point in common {
         assert!((a.elevation(point).unwrap() - b.elevation(point).unwrap()).abs() < 0.06);
     }
@@ -122,13 +122,13 @@ fn one_exposure_of_both_beams_gives_the_same_map_of_level_ground() {
 
 #[test]
 fn errors_of_the_sensors_call_for_a_scan() {
-    // Noise of 1 degree in pitch lifts and sinks a stripe 5 m away by 9 cm: points contradict one another, and at 5 cm
-    // a scan is due.
+    // Noise of 1 degree in pitch moves a stripe 5 m away up and down by 9 cm. With a threshold of 5 cm, the
+    // inconsistency triggers a scan.
     let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
-    let errors = SensorErrors {
+    let errors = LocalisationErrors {
         attitude_noise: 1.0_f64.to_radians(),
-        fixes: Some(Fixes { every_frames: 10, noise: 0.01 }),
-        ..SensorErrors::default()
+        fixes: Some(PositionFixes { every_frames: 10, noise: 0.01 }),
+        ..LocalisationErrors::default()
     };
     let scans = Some(ScanRule { inconsistency: Some(0.05), ..ScanRule::default() });
     let short = DrivePlan {
@@ -154,10 +154,10 @@ fn errors_of_the_sensors_call_for_a_scan() {
 
 #[test]
 fn images_may_be_developed() {
-    // Steps 6 to 8 as a digitisation: whole numbers, so many per watt, with a bias; Otsu finds the light.
+    // Steps 6 to 8 as a digitisation: 20 numbers per watt, at most 60, and a bias of 12. Otsu's method finds the light.
     let mesh = extruded(&[(-20.0, 0.0), (20.0, 0.0)]);
     let plan = DrivePlan {
-        extraction: Extraction { detection: Detection::Otsu, place: Place::Pixel, least_rows: 1 },
+        extraction: Extraction { detection: Detection::Otsu, place: StripeLocation::Pixel, least_rows: 1 },
         scans: None,
         route: Route::through(DVec2::ZERO, vec![DVec2::new(0.03, 0.0)]),
         ..plan()
@@ -169,7 +169,7 @@ fn images_may_be_developed() {
         for value in image.cells_mut() {
             *value = (*value * 20.0).min(60.0).round() + 12.0;
         }
-        Exposed::Flux(image)
+        CameraImage::Flux(image)
     };
     let frame = drive.step(&StandIn, &mut develop).unwrap().unwrap();
     assert!(frame.points > 100);
@@ -198,7 +198,7 @@ fn a_start_off_the_ground_is_refused_and_a_route_off_it_ends() {
         ..plan()
     };
     let (_, frames) = drive(off, &mesh);
-    // The front hubs are 0.6 m before the middle, their rims 0.35 m more: some part of a wheel has ground below it up
-    // to x = 2 - 0.6 + 0.35 = 1.75 m, 0.3 m a frame.
+    // The front hubs are 0.6 m before the centre, and their rims reach 0.35 m back: a part of a wheel has ground below
+    // it up to x = 2 - 0.6 + 0.35 = 1.75 m. The vehicle drives 0.3 m per frame.
     assert!((5..=7).contains(&frames.len()), "{} frames", frames.len());
 }

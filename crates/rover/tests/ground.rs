@@ -1,18 +1,18 @@
-//! Ideal stripes on grounds of a few faces, and what the maps make of them.
+//! Elevation and obstacle maps from ideal stripes on grounds of a few faces.
 
 mod common;
 
 use common::{extruded, from_vehicle, rig, stripe};
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Attitude, Label, MapSize, Mapper, ObstacleMap, PassableRules, RadialGrid, Rig, Sensed, SheetPlane,
-    Source, Sweep, Test, Triangulation, Vehicle,
+    Attitude, ElevationSource, Label, LocalisationReading, MapSize, Mapper, ObstacleMap, RadialGrid, Rig,
+    SheetPlane, Sweep, TraversabilityRules, TraversabilityTest, Triangulation, Vehicle,
 };
 use raypencil_scene::{Mesh, Pose};
 
-/// Level at x, y = 0, as if the sensors were perfect.
-fn sensed(x: f64) -> Sensed {
-    Sensed { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity: Some(0.0) }
+/// Reading of perfect sensors: the vehicle stands level at (x, 0).
+fn sensed(x: f64) -> LocalisationReading {
+    LocalisationReading { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity: Some(0.0) }
 }
 
 fn stand(x: f64) -> Pose {
@@ -40,8 +40,8 @@ fn frame(rig: &Rig, mesh: &Mesh, x: f64) -> Vec<DVec3> {
 
 fn obstacles(mapper: &Mapper) -> ObstacleMap {
     let vehicle = Vehicle::default();
-    let (rules, grid) = (PassableRules::of(&vehicle), RadialGrid::of(&vehicle));
-    ObstacleMap::of(mapper.map(), &vehicle, &rules, &grid, &mapper.pose())
+    let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    ObstacleMap::extract(mapper.map(), &vehicle, &rules, &grid, &mapper.pose())
 }
 
 fn start() -> Mapper {
@@ -50,8 +50,8 @@ fn start() -> Mapper {
 
 #[test]
 fn the_map_of_level_ground_is_the_ground_within_the_footprint() {
-    // Through whole pixels: a point is off by its pixel's footprint on the edge plane at most, and so is its
-    // elevation. Both stripes are 3.3 and 5.25 m away.
+    // With whole pixels the error of a point is at most its pixel's footprint on the edge plane, and so is the error of
+    // its elevation. The stripes are 3.3 and 5.25 m away.
     let (rig, mesh) = (rig(512, 1), extruded(&[(-20.0, 0.0), (20.0, 0.0)]));
     let tables: Vec<_> = (0..2).map(|beam| Triangulation::new(&rig, beam, SheetPlane::LowerEdge)).collect();
     let faces = from_vehicle(&mesh, stand(0.0));
@@ -71,20 +71,20 @@ fn the_map_of_level_ground_is_the_ground_within_the_footprint() {
         }
     }
     assert!(points.len() > 900, "{} points", points.len());
-    // A pixel is 1.125 mrad: half a diagonal of that, over the angle between the camera's ray and the sheet (4.4 and
-    // 5.1 degrees at 3.3 and 5.25 m), gives 3 to 5 cm along the sheet.
+    // A pixel is 1.125 mrad wide. Half its diagonal, over the angle between the camera's ray and the sheet (4.4 and 5.1
+    // degrees at 3.3 and 5.25 m), is 3 to 5 cm along the sheet.
     assert!(bound[0] < 0.04 && bound[1] < 0.06, "{bound:?}");
     let mut mapper = start();
     let pose = Pose { position: DVec3::new(0.0, 0.0, 0.0), ..stand(0.0) };
     assert_eq!(mapper.pose(), pose);
-    mapper.frame(&sensed(0.0), points);
+    mapper.update(&sensed(0.0), points);
     let mut measured = 0;
     for point in mapper.map().points() {
         let Some(z) = mapper.map().elevation(point) else { continue };
         assert!(z.abs() <= bound[1], "{z} at {}", mapper.map().place(point));
-        measured += usize::from(mapper.map().source(point) == Source::Measured);
+        measured += usize::from(mapper.map().source(point) == ElevationSource::Measured);
     }
-    // Stripes of 3.5 and 6.1 m, a tenth of a metre a point.
+    // The stripes are 3.5 and 6.1 m long, with one grid point per 0.1 m.
     assert!((80..=250).contains(&measured), "{measured} measured points");
 }
 
@@ -93,13 +93,13 @@ fn a_step_of_0_4_m_is_an_obstacle_and_one_of_0_1_m_is_not() {
     for (height, expected) in [(0.4, Label::Obstacle), (0.1, Label::Visibility)] {
         let mesh = extruded(&[(-20.0, 0.0), (3.0, 0.0), (3.0, height), (20.0, height)]);
         let mut mapper = start();
-        mapper.scan(&sensed(0.0), scan(&rig(256, 1), &mesh, 0.0), true);
+        mapper.update_from_scan(&sensed(0.0), scan(&rig(256, 1), &mesh, 0.0), true);
         let all = obstacles(&mapper);
         let ahead = all.sectors[15];
         assert_eq!(ahead.label, expected, "{ahead:?}");
         if expected == Label::Obstacle {
-            // The front axle's grid point is the first that holds the upper level: 3.0 or 3.1.
-            assert_eq!(ahead.failed, Some(Test::Length));
+            // The front axle is at the first grid point on the upper level: 3.0 or 3.1 m.
+            assert_eq!(ahead.failed, Some(TraversabilityTest::Length));
             assert!((3.0..3.11).contains(&(ahead.radius + 1e-9)), "{ahead:?}");
         } else {
             assert!(all.sectors.iter().all(|sector| sector.label != Label::Obstacle));
@@ -109,65 +109,66 @@ fn a_step_of_0_4_m_is_an_obstacle_and_one_of_0_1_m_is_not() {
 
 #[test]
 fn a_trench_is_unknown_from_afar_and_an_obstacle_from_nearer() {
-    // 1 m wide and 0.6 m deep, from x = 4 on, with vertical walls.
+    // A trench with vertical walls from x = 4 to 5 m, 0.6 m deep.
     let profile = [(-20.0, 0.0), (4.0, 0.0), (4.0, -0.6), (5.0, -0.6), (5.0, 0.0), (20.0, 0.0)];
     let (rig, mesh) = (rig(256, 1), extruded(&profile));
 
-    // From x = 0 the camera, 1.5 m up and 3.7 m before the edge, sees 1.5 / 3.7 * 1 = 0.41 m down the far wall, and no
-    // ground at all: from 4.2 m on (one spacing is extrapolated beyond the edge) nothing is known.
+    // From x = 0 the camera, 1.5 m up and 3.7 m before the edge, sees the upper 1.5 / 3.7 * 1 = 0.41 m of the far wall,
+    // and no ground of the trench: nothing is known from 4.2 m on (one spacing is extrapolated beyond the edge).
     let mut mapper = start();
-    mapper.scan(&sensed(0.0), scan(&rig, &mesh, 0.0), true);
+    mapper.update_from_scan(&sensed(0.0), scan(&rig, &mesh, 0.0), true);
     let ahead = obstacles(&mapper).sectors[15];
     assert_eq!(ahead.label, Label::Unknown);
     assert!((4.0..4.31).contains(&ahead.radius), "{ahead:?}");
 
-    // Driven up to it without a scan, the near part of the trench stays hidden: both stripes leap from the edge to the
-    // far wall. At x = 3.1 the front wheels' rims are at the edge.
+    // The vehicle drives up to the trench without a scan. The near part stays hidden: both stripes jump from the edge
+    // to the far wall. At x = 3.1 the front wheels' rims are at the edge.
     for step in 1..=31 {
         let x = 0.1 * f64::from(step);
-        mapper.frame(&sensed(x), frame(&rig, &mesh, x));
+        mapper.update(&sensed(x), frame(&rig, &mesh, x));
     }
     let ahead = obstacles(&mapper).sectors[15];
     assert_eq!(ahead.label, Label::Unknown);
     assert!((4.0..4.31).contains(&(ahead.radius + 3.1)), "{ahead:?}");
 
-    // A scan from x = 2.8, the camera 0.9 m before the edge: 0.6 / 1.5 * 0.9 = 0.36 m are hidden from it. 4.1 is
-    // extrapolated from the edge, 4.3 from the first ground seen, which is at 4.36 and so on 4.4; 4.2 remains.
+    // A scan from x = 2.8, with the camera 0.9 m before the edge: 0.6 / 1.5 * 0.9 = 0.36 m are hidden from it. 4.1 is
+    // extrapolated from the edge, and 4.3 from the first visible ground, at 4.36, whose grid point is 4.4. 4.2 stays
+    // unknown.
     let mut farther = mapper.clone();
-    farther.scan(&sensed(2.8), scan(&rig, &mesh, 2.8), true);
+    farther.update_from_scan(&sensed(2.8), scan(&rig, &mesh, 2.8), true);
     let ahead = obstacles(&farther).sectors[15];
     assert_eq!(ahead.label, Label::Unknown);
     assert!((ahead.radius + 2.8 - 4.2).abs() < 1e-9, "{ahead:?}");
 
     // A scan from x = 3.1: the edge is 0.6 m before camera and beams. The camera sees the ground of the trench from
-    // 0.6 / 1.5 * 0.6 = 0.24 m behind the edge, beam 0 (1.8 m up) lights it from 0.2 m. What is hidden is narrower than
-    // the two spacings that are extrapolated from both sides, so the slope is known: 0.6 m over 1.2 m, and 0.35 m is
-    // the most.
-    mapper.scan(&sensed(3.1), scan(&rig, &mesh, 3.1), true);
+    // 0.6 / 1.5 * 0.6 = 0.24 m behind the edge on, and beam 0 (1.8 m up) lights it from 0.2 m on. Extrapolation by one
+    // spacing from each side closes this gap. The slope is then known: 0.6 m over 1.2 m; the maximum is 0.35 m over
+    // 1.2 m.
+    mapper.update_from_scan(&sensed(3.1), scan(&rig, &mesh, 3.1), true);
     let ahead = obstacles(&mapper).sectors[15];
-    assert_eq!((ahead.label, ahead.failed), (Label::Obstacle, Some(Test::Length)));
+    assert_eq!((ahead.label, ahead.failed), (Label::Obstacle, Some(TraversabilityTest::Length)));
     assert!((4.0..4.31).contains(&(ahead.radius + 3.1)), "{ahead:?}");
 }
 
 #[test]
 fn a_rock_too_low_to_matter_hides_ground_and_gaps_may_be_crossed() {
-    // A ridge 0.1 m thick across the way at x = 4.5, neither so high that a slope fails nor that the belly hits it. From
-    // x = 0 the camera, 1.5 m up and 4.3 m before its far side, does not see h / (1.5 - h) * 4.3 m behind it.
+    // A ridge 0.1 m thick at x = 4.5, so low that it fails neither a slope test nor the belly test. From x = 0 the
+    // camera, 1.5 m up and 4.3 m before the ridge's far side, does not see the first h / (1.5 - h) * 4.3 m behind it.
     let ridge = |height: f64| {
         let profile = [(-20.0, 0.0), (4.5, 0.0), (4.5, height), (4.6, height), (4.6, 0.0), (20.0, 0.0)];
         let mut mapper = start();
-        mapper.scan(&sensed(0.0), scan(&rig(256, 1), &extruded(&profile), 0.0), true);
+        mapper.update_from_scan(&sensed(0.0), scan(&rig(256, 1), &extruded(&profile), 0.0), true);
         let vehicle = Vehicle::default();
-        let grid = RadialGrid { last: 6.5, ..RadialGrid::of(&vehicle) };
-        let rules = PassableRules::of(&vehicle);
+        let grid = RadialGrid { last: 6.5, ..RadialGrid::for_vehicle(&vehicle) };
+        let rules = TraversabilityRules::for_vehicle(&vehicle);
         [rules, rules.crossing_gaps(&vehicle)].map(|rules| {
-            ObstacleMap::of(mapper.map(), &vehicle, &rules, &grid, &mapper.pose()).sectors[15].label
+            ObstacleMap::extract(mapper.map(), &vehicle, &rules, &grid, &mapper.pose()).sectors[15].label
         })
     };
-    // h = 0.25: 0.86 m, of which a spacing on either side is extrapolated: too wide for a wheel of 0.25 m.
+    // h = 0.25: 0.86 m are hidden. Minus one extrapolated spacing on each side, this is too wide for a wheel of 0.25 m.
     let high = ridge(0.25);
     assert_eq!(high, [Label::Unknown, Label::Unknown]);
-    // h = 0.15: 0.48 m, from 4.6 to 5.08. 4.7 and 5.0 are extrapolated, 4.8 and 4.9 remain: 0.2 m.
+    // h = 0.15: 0.48 m are hidden, from 4.6 to 5.08. 4.7 and 5.0 are extrapolated; 4.8 and 4.9 stay unknown: 0.2 m.
     let low = ridge(0.15);
     assert_eq!(low, [Label::Unknown, Label::Visibility]);
 }

@@ -1,4 +1,4 @@
-//! The paper's first sample (§8): a drive towards the pyramids, through images of a real renderer.
+//! The paper's first sample (§8): a drive towards the pyramids, with the images of a renderer.
 
 mod common;
 
@@ -7,13 +7,14 @@ use std::sync::Arc;
 use common::rig;
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Drive, DrivePlan, Exposed, Extraction, GridPoint, Label, LocalMap, Place, Route, Source,
+    CameraImage, Drive, DrivePlan, ElevationMap, ElevationSource, Extraction, GridPoint, Label, Route,
+    StripeLocation,
 };
 use raypencil_scanline::Scanline;
 use raypencil_terrain::{HeightIndex, builtin};
 
-/// How far a grid point's elevation is from all heights of the ground within half a spacing of it, metres.
-fn off_the_ground(map: &LocalMap, ground: &HeightIndex, point: GridPoint) -> f64 {
+/// Distance of a grid point's elevation from the range of ground heights within half a spacing of it, metres.
+fn off_the_ground(map: &ElevationMap, ground: &HeightIndex, point: GridPoint) -> f64 {
     let (place, z) = (map.place(point), map.elevation(point).expect("a known point"));
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for i in -2..=2 {
@@ -30,16 +31,16 @@ fn off_the_ground(map: &LocalMap, ground: &HeightIndex, point: GridPoint) -> f64
 fn the_map_of_the_pyramids_is_the_ground() {
     let mesh = Arc::new(builtin("pyramids", 0.25).unwrap().into_mesh().unwrap());
     let ground = HeightIndex::new(&mesh);
-    // The last 1.5 m of the paper's 7.5 m, twice as fast as by default: 26 frames. Any light is a stripe: the image is
-    // ideal.
+    // The last 1.5 m of the paper's 7.5 m, at twice the default speed: 26 frames. The image is ideal, so that any light
+    // belongs to a stripe.
     let route = Route { speed: 0.6, ..Route::through(DVec2::new(-1.5, 0.0), vec![DVec2::ZERO]) };
-    let extraction = Extraction { place: Place::SubPixel, ..Extraction::thresholding(1e-12) };
+    let extraction = Extraction { place: StripeLocation::SubPixel, ..Extraction::thresholding(1e-12) };
     let mut drive = Drive::new(DrivePlan::new(rig(1024, 4), route, extraction), Arc::clone(&mesh)).unwrap();
     let renderer = Scanline::exact();
     let (mut frames, mut last) = (0, None);
-    while let Some(frame) = drive.step(&renderer, &mut |_, image| Exposed::Flux(image)).unwrap() {
+    while let Some(frame) = drive.step(&renderer, &mut |_, image| CameraImage::Flux(image)).unwrap() {
         frames += 1;
-        // The plane under the vehicle is level, so the map's elevation of it is 0 but for the pixels.
+        // The ground under the vehicle is level, at 0.
         assert!(frame.update.elevation_read && frame.stance.position.z.abs() < 1e-9);
         last = frame.obstacles.or(last);
     }
@@ -47,16 +48,18 @@ fn the_map_of_the_pyramids_is_the_ground() {
     let mapper = drive.mapper().unwrap();
     assert!((mapper.pose().position - DVec3::ZERO).length() < 0.02);
 
-    // A pixel is 1.1 mrad, 4 to 6 cm along the sheet at the stripes on level ground, of which the elevation has half or
-    // less; steep flanks have more. Tuned: 97 % are within 5 cm of the ground about them, and 95 % are asked for.
+    // A pixel is 1.1 mrad: 4 to 6 cm along the sheet at the stripes on level ground. The error of an elevation is half
+    // of that or less; on steep flanks it is more. Tuned: 97 % are within 5 cm of the ground near them; 95 % must be.
     let map = mapper.map();
-    let measured: Vec<_> = map.points().filter(|&point| map.source(point) == Source::Measured).collect();
+    let measured: Vec<_> =
+        map.points().filter(|&point| map.source(point) == ElevationSource::Measured).collect();
     let close = measured.iter().filter(|&&point| off_the_ground(map, &ground, point) <= 0.05).count();
     assert!(measured.len() > 1000 && close * 20 > measured.len() * 19, "{close} of {}", measured.len());
 
-    // The last obstacle map is that of frame 20, at x = -0.3. The first pyramid's apex is at (2.313, -0.827), its base
-    // reaches 0.5 m about it, more at its corners: a right front wheel, 0.5 m beside the middle, meets it before 2.6 m.
-    // To the left the ground is free up to the pyramid at (3.437, 0.563), and the leftmost sector passes beside it.
+    // The last obstacle map is that of frame 20, at x = -0.3. The first pyramid has its apex at (2.313, -0.827) and a
+    // base of 0.5 m around it, more at the corners: the right front wheel, 0.5 m beside the centre line, meets it
+    // before 2.6 m. To the left the ground is free up to the pyramid at (3.437, 0.563). The leftmost sector passes
+    // beside it.
     let (obstacles, vectors) = last.unwrap();
     assert!((obstacles.centre - DVec2::new(-0.3, 0.0)).length() < 1e-9);
     let [ahead, left] = [obstacles.sectors[15], obstacles.sectors[30]];

@@ -1,6 +1,6 @@
-//! Grounds, the default rig, and stripes as geometry alone has them: a few rays against a few triangles.
+//! Grounds, the default rig, and ideal stripes: rays against a few triangles.
 
-#![allow(dead_code, reason = "each test takes what it needs")]
+#![allow(dead_code, reason = "no test needs all of it")]
 
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use raypencil_rover::{OnVehicle, Rig};
 use raypencil_scene::{Beam, Camera, Lens, Material, Mesh, Pose, Profile};
 use raypencil_terrain::Ground;
 
-/// The project's default rig: camera 1.5 m up and 20 degrees down, beams 1.8 and 2.0 m up, 31 and 22 degrees down;
-/// with `columns` pencils in `rows`.
+/// The default rig: camera 1.5 m up and 20 degrees down, beams 1.8 and 2.0 m up, 31 and 22 degrees down, each with
+/// `columns` by `rows` pencils.
 pub fn rig(columns: u32, rows: u32) -> Rig {
     let camera = Camera {
         width: 1024,
@@ -39,15 +39,15 @@ pub fn rig(columns: u32, rows: u32) -> Rig {
     Rig { camera: OnVehicle { vehicle_from_sensor: mount(1.5, 20.0), sensor: camera }, beams: beams.to_vec() }
 }
 
-/// Ground that is the same for every y from -20 to 20 m: a line of (x, z), from small x to large, drawn along y. Two
-/// points of the same x make a wall.
+/// Ground that is the same for every y from -20 to 20 m: a profile of points (x, z), extruded along y. x must not
+/// decrease; two points with the same x make a wall.
 pub fn extruded(profile: &[(f64, f64)]) -> Arc<Mesh> {
     let vertices = profile
         .iter()
         .flat_map(|&(x, z)| [DVec3::new(x, -20.0, z), DVec3::new(x, 20.0, z)])
         .collect::<Vec<_>>();
     let pieces = profile.len() as u32 - 1;
-    // Right and left of each point of the line: counter-clockwise from above.
+    // Vertices 2n and 2n + 1 are right and left of profile point n. Faces are counter-clockwise from above.
     let faces: Vec<[u32; 3]> =
         (0..pieces).map(|n| 2 * n).flat_map(|a| [[a, a + 2, a + 3], [a, a + 3, a + 1]]).collect();
     let materials = vec![Material { name: "ground".into(), reflectivity: 0.25 }];
@@ -55,15 +55,15 @@ pub fn extruded(profile: &[(f64, f64)]) -> Arc<Mesh> {
     Arc::new(Ground { vertices, faces, face_materials, materials }.into_mesh().expect("a ground"))
 }
 
-/// Corners of every face, scene frame.
+/// Corners of every face, in the scene frame.
 pub fn corners(mesh: &Mesh) -> Vec<[DVec3; 3]> {
     let corner = |v: u32| DVec3::from_array(mesh.vertices()[v as usize].map(f64::from));
     mesh.faces().iter().map(|face| face.map(corner)).collect()
 }
 
-/// Where `origin + t direction` meets a triangle, whichever side faces it, and the cosine's sign: t and whether it is
-/// the front. (T. Möller and B. Trumbore, 1997)
-pub fn meets(origin: DVec3, direction: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<(f64, bool)> {
+/// Intersection of the ray `origin + t direction` with a triangle, from either side: t, and whether the ray meets the
+/// front. (T. Möller and B. Trumbore, 1997)
+pub fn intersect(origin: DVec3, direction: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<(f64, bool)> {
     let (u, v) = (*b - *a, *c - *a);
     let across = direction.cross(v);
     let det = u.dot(across);
@@ -78,14 +78,14 @@ pub fn meets(origin: DVec3, direction: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<
     inside.then(|| (v.dot(turned) / det, u.cross(v).dot(direction) < 0.0))
 }
 
-/// The first point of a ray that lies on a front, if no back is before it.
+/// First intersection of a ray with the faces. `None` if there is none, or if it is on the back of a face.
 pub fn first_hit(faces: &[[DVec3; 3]], origin: DVec3, direction: DVec3) -> Option<DVec3> {
-    let hits = faces.iter().filter_map(|face| meets(origin, direction, face)).filter(|hit| hit.0 > 1e-9);
+    let hits = faces.iter().filter_map(|face| intersect(origin, direction, face)).filter(|hit| hit.0 > 1e-9);
     let (t, front) = hits.min_by(|a, b| a.0.total_cmp(&b.0))?;
     front.then(|| origin + direction * t)
 }
 
-/// Where a point (vehicle frame) lands on the image, if the camera sees it past the faces (vehicle frame).
+/// Image point (u, v) of a point; `None` if the camera does not see it. Point and faces are in the vehicle frame.
 pub fn seen_at(rig: &Rig, faces: &[[DVec3; 3]], point: DVec3) -> Option<(f64, f64)> {
     let OnVehicle { vehicle_from_sensor, sensor } = rig.camera;
     let p = vehicle_from_sensor.inverse() * point;
@@ -102,15 +102,15 @@ pub fn seen_at(rig: &Rig, faces: &[[DVec3; 3]], point: DVec3) -> Option<(f64, f6
     ((first - point).length() < 1e-6).then_some((u, v))
 }
 
-/// The faces seen from a vehicle: the scene's, moved.
+/// Corners of every face, in the vehicle frame.
 pub fn from_vehicle(mesh: &Mesh, global_from_vehicle: Pose) -> Vec<[DVec3; 3]> {
     let vehicle_from_global = global_from_vehicle.inverse();
     let origin = mesh.origin();
     corners(mesh).into_iter().map(|face| face.map(|corner| vehicle_from_global * (corner + origin))).collect()
 }
 
-/// An ideal stripe: where the lower edge plane of a beam meets the ground, and the camera sees it. Points in vehicle
-/// coordinates, one for each column of the beam, and where they land on the image.
+/// Ideal stripe: points of a beam's lower edge plane on the ground that the camera sees, at most one per column of the
+/// beam. Each is given in the vehicle frame, metres, and as an image point (u, v).
 pub fn stripe(rig: &Rig, beam: usize, faces: &[[DVec3; 3]]) -> Vec<(DVec3, (f64, f64))> {
     let OnVehicle { vehicle_from_sensor, sensor } = rig.beams[beam];
     let origin = vehicle_from_sensor * DVec3::new(0.0, 0.5 * sensor.thickness, 0.0);

@@ -1,11 +1,12 @@
-//! The local terrain map: who inherits, what moves, what stays.
+//! The elevation map: inheritance, extrapolation and motion.
 
 use std::collections::HashMap;
 
-use super::*;
+use glam::{DVec2, DVec3};
+use raypencil_rover::{ElevationMap, ElevationSource, GridPoint, MapSize};
 
-fn map() -> LocalMap {
-    LocalMap::new(MapSize::default(), DVec2::new(100.03, -50.02))
+fn map() -> ElevationMap {
+    ElevationMap::new(MapSize::default(), DVec2::new(100.03, -50.02))
 }
 
 fn at(i: i64, j: i64) -> GridPoint {
@@ -18,7 +19,7 @@ fn a_new_map_knows_nothing_and_is_the_papers() {
     assert_eq!(map.points().count(), 201 * 201);
     assert!(map.points().all(|point| map.source(point).key() == 's'));
     assert_eq!(map.place(at(0, 0)), DVec2::new(100.03, -50.02));
-    // 20 m from end to end.
+    // The side is 20 m.
     let corners = map.place(at(100, 100)) - map.place(at(-100, -100));
     assert!((corners - DVec2::splat(20.0)).length() < 1e-12);
     assert!(map.contains(at(100, -100)) && !map.contains(at(101, 0)));
@@ -27,39 +28,39 @@ fn a_new_map_knows_nothing_and_is_the_papers() {
 #[test]
 fn the_nearest_grid_point_inherits_and_its_neighbours_are_extrapolated() {
     let mut map = map();
-    // 3 cm beside grid point (10, 0), which is at 1 m; the same for (11, 0).
+    // Points 3 cm beside grid points (10, 0) and (11, 0).
     let edge = |i: f64, z: f64| (DVec2::new(100.03 + 0.1 * i + 0.03, -50.02)).extend(z);
-    let found = map.enter([edge(10.0, 0.5), edge(11.0, 0.8)]);
+    let found = map.insert([edge(10.0, 0.5), edge(11.0, 0.8)]);
     assert_eq!(found.count, 0);
-    assert_eq!((map.elevation(at(10, 0)), map.source(at(10, 0))), (Some(0.5), Source::Measured));
+    assert_eq!((map.elevation(at(10, 0)), map.source(at(10, 0))), (Some(0.5), ElevationSource::Measured));
     assert_eq!(map.elevation(at(11, 0)), Some(0.8));
-    // (9, j) neighbours only the first; (10, 1) and (11, 1) neighbour both, and the later wins; (12, j) only the
-    // second.
+    // (9, j) is a neighbour of the first point only, and (12, j) of the second. (10, 1) and (11, 1) are neighbours of
+    // both: the later one counts.
     assert_eq!(map.elevation(at(9, 1)), Some(0.5));
     assert_eq!(map.elevation(at(10, 1)), Some(0.8));
     assert_eq!(map.elevation(at(11, -1)), Some(0.8));
-    assert_eq!((map.elevation(at(12, 0)), map.source(at(12, 0))), (Some(0.8), Source::Extrapolated));
+    assert_eq!((map.elevation(at(12, 0)), map.source(at(12, 0))), (Some(0.8), ElevationSource::Extrapolated));
     assert_eq!(map.points().filter(|point| map.source(*point).key() == 'u').count(), 3 * 4);
-    // Later data overwrite a measured neighbour of an earlier update; the last of several points stays.
-    let found = map.enter([edge(12.0, 0.1), edge(12.0, 0.2)]);
+    // New data overwrite a measured neighbour of an earlier update. Of several points in a cell the last one counts.
+    let found = map.insert([edge(12.0, 0.1), edge(12.0, 0.2)]);
     assert_eq!(map.elevation(at(12, 0)), Some(0.2));
-    assert_eq!((map.elevation(at(11, 0)), map.source(at(11, 0))), (Some(0.2), Source::Extrapolated));
-    // (12, 0) had only been extrapolated: nothing is contradicted. Measured anew it is.
+    assert_eq!((map.elevation(at(11, 0)), map.source(at(11, 0))), (Some(0.2), ElevationSource::Extrapolated));
+    // (12, 0) had been extrapolated, not measured: no inconsistency. The next measurement has one.
     assert_eq!(found.count, 0);
-    let found = map.enter([edge(12.0, 0.5), edge(40.0, 7.0)]);
+    let found = map.insert([edge(12.0, 0.5), edge(40.0, 7.0)]);
     assert_eq!(found.count, 1);
     assert!((found.mean - 0.3).abs() < 1e-15 && found.largest == found.mean);
 }
 
 #[test]
-fn points_beyond_the_map_and_points_that_are_none_are_passed_over() {
+fn points_beyond_the_map_and_points_that_are_not_finite_are_ignored() {
     let mut map = map();
-    map.enter([DVec3::new(0.0, 0.0, 1.0), DVec3::NAN]);
-    assert!(map.points().all(|point| map.source(point) == Source::Unknown));
-    // On the border the neighbours beyond it are not entered at the other side.
-    map.enter([map.place(at(100, 0)).extend(1.0)]);
+    map.insert([DVec3::new(0.0, 0.0, 1.0), DVec3::NAN]);
+    assert!(map.points().all(|point| map.source(point) == ElevationSource::Unknown));
+    // Neighbours beyond the border do not appear at the opposite side.
+    map.insert([map.place(at(100, 0)).extend(1.0)]);
     assert_eq!(map.points().filter(|point| map.source(*point).key() == 'u').count(), 6);
-    assert_eq!(map.source(at(-100, 0)), Source::Unknown);
+    assert_eq!(map.source(at(-100, 0)), ElevationSource::Unknown);
 }
 
 #[test]
@@ -67,32 +68,32 @@ fn the_map_moves_in_whole_steps() {
     let mut map = map();
     // 0.44 m and -0.26 m are 4.4 and -2.6 spacings: 4 and -3 steps.
     let start = DVec2::new(100.03, -50.02);
-    assert_eq!(map.follow(start + DVec2::new(0.44, -0.26)), (4, -3));
-    assert_eq!(map.follow(start + DVec2::new(0.41, -0.34)), (0, 0));
+    assert_eq!(map.recentre(start + DVec2::new(0.44, -0.26)), (4, -3));
+    assert_eq!(map.recentre(start + DVec2::new(0.41, -0.34)), (0, 0));
     assert!((map.place(map.centre()) - start - DVec2::new(0.4, -0.3)).length() < 1e-12);
 }
 
 #[test]
 fn no_cell_moves_in_global_coordinates() {
-    // A walk of 10000 moves and turns on a map of 41 points (4 m), with a measured point now and then. A plain
-    // list of global places stands beside it: what it lost by leaving the map stays unknown.
-    let mut map = LocalMap::new(MapSize { spacing: 0.1, points: 41 }, DVec2::new(1e6, -2e5));
+    // A random walk of 10000 steps on a map of 41 by 41 points (4 m), with a measured point in some steps. A hash map
+    // of known points is the reference: a point that left the map is unknown from then on.
+    let mut map = ElevationMap::new(MapSize { spacing: 0.1, points: 41 }, DVec2::new(1e6, -2e5));
     let mut known: HashMap<GridPoint, (DVec2, f64)> = HashMap::new();
-    let draws = raypencil_scene::Sampling::Jittered { seed: 5 };
+    let random = raypencil_scene::Sampling::Jittered { seed: 5 };
     let (mut place, mut heading, mut compared) = (DVec2::new(1e6, -2e5), 0.0, 0);
     for step in 0..10_000 {
-        let [way, turn] = draws.offset(0, step, 0);
+        let [way, turn] = random.offset(0, step, 0);
         heading += 2.0 * turn;
         place += DVec2::new(libm::cos(heading), libm::sin(heading)) * (way + 0.5);
-        map.follow(place);
+        map.recentre(place);
         known.retain(|point, _| map.contains(*point));
         if step % 3 == 0 {
-            // Alone in its neighbourhood, so that nothing else changes.
-            let [x, y] = draws.offset(1, step, 0);
+            // No known point is near it, so that no other elevation changes.
+            let [x, y] = random.offset(1, step, 0);
             let point = map.nearest(place + DVec2::new(x, y) * 3.9);
             let around = |other: &GridPoint| (other.i - point.i).abs() <= 1 && (other.j - point.j).abs() <= 1;
             if map.contains(point) && !known.keys().any(around) {
-                map.enter([map.place(point).extend(f64::from(step))]);
+                map.insert([map.place(point).extend(f64::from(step))]);
                 for other in map.points().filter(around) {
                     known.insert(other, (map.place(other), f64::from(step)));
                 }
@@ -110,7 +111,7 @@ fn no_cell_moves_in_global_coordinates() {
 }
 
 #[test]
-fn a_size_that_is_none_is_named() {
+fn a_size_out_of_range_is_named() {
     let even = MapSize { points: 200, ..MapSize::default() };
     assert!(even.validate("map").unwrap_err().to_string().contains("map.points is 200"));
     assert!(MapSize { spacing: 0.0, ..even }.validate("map").is_err());

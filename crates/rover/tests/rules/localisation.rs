@@ -1,0 +1,68 @@
+//! Errors of position and attitude, and the fixes that correct them.
+
+use glam::{DVec2, DVec3};
+use raypencil_rover::{Attitude, Localisation, LocalisationErrors, PositionFixes, Stance};
+use raypencil_terrain::HeightIndex;
+
+fn stance() -> Stance {
+    Stance { position: DVec3::new(-9.3, 0.2, 0.04), attitude: Attitude::default(), residual: 0.0 }
+}
+
+fn ground() -> HeightIndex {
+    HeightIndex::new(&raypencil_terrain::builtin("pyramids", 0.25).unwrap().into_mesh().unwrap())
+}
+
+#[test]
+fn without_errors_the_truth_is_read() {
+    let mut localisation = Localisation::new(LocalisationErrors::default(), 1, 10.0);
+    for _ in 0..3 {
+        let sensed = localisation.read(&stance(), &ground());
+        assert_eq!(sensed.position, DVec2::new(-9.3, 0.2));
+        assert_eq!(sensed.attitude, Attitude::default());
+        // The vehicle is 4 cm above a plane at 0.
+        assert_eq!(sensed.proximity, Some(0.04));
+    }
+}
+
+#[test]
+fn drift_grows_until_a_fix_takes_it_away() {
+    // 0.02 m/s at 10 frames per second are 2 mm per frame. Frames 0, 50 and 100 have fixes without noise.
+    let fixes = Some(PositionFixes { every_frames: 50, noise: 0.0 });
+    let errors = LocalisationErrors {
+        position_drift: DVec2::new(0.02, 0.0),
+        heading_drift: 0.01,
+        fixes,
+        ..LocalisationErrors::default()
+    };
+    assert!(errors.validate("sensors").is_ok());
+    let (mut localisation, ground) = (Localisation::new(errors, 1, 10.0), ground());
+    for frame in 0..120_u32 {
+        let sensed = localisation.read(&stance(), &ground);
+        let expected = 0.002 * f64::from(frame % 50);
+        assert!((sensed.position.x + 9.3 - expected).abs() < 1e-12, "frame {frame}");
+        // A fix does not correct the heading: it drifts by 1 mrad per frame.
+        assert!((sensed.attitude.heading - 0.001 * f64::from(frame)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_walk_has_the_spread_of_its_time() {
+    // A walk of 0.01 m in 1 s has a standard deviation of 0.1 m after 100 s. Over 400 seeds the mean square is 0.01,
+    // within four relative standard errors of sqrt(2 / 400).
+    let errors = LocalisationErrors { position_walk: 0.01, ..LocalisationErrors::default() };
+    let mut mean_square = 0.0;
+    let ground = ground();
+    for seed in 0..400 {
+        let mut localisation = Localisation::new(errors, seed, 1.0);
+        let last = (0..=100).map(|_| localisation.read(&stance(), &ground)).last().unwrap();
+        let error = last.position.x + 9.3;
+        mean_square += error * error / 400.0;
+    }
+    assert!((mean_square / 0.01 - 1.0).abs() < 0.283, "{mean_square}");
+}
+
+#[test]
+fn errors_out_of_range_are_named() {
+    let errors = LocalisationErrors { attitude_noise: -1.0, ..LocalisationErrors::default() };
+    assert!(errors.validate("sensors").unwrap_err().to_string().contains("sensors.attitude_noise is -1"));
+}

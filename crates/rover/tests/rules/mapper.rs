@@ -1,0 +1,73 @@
+//! The estimated elevation of the vehicle, and the order of a map update.
+
+use glam::{DVec2, DVec3};
+use raypencil_rover::{Attitude, LocalisationReading, MapSize, Mapper, Vehicle};
+
+fn sensed(x: f64, proximity: Option<f64>) -> LocalisationReading {
+    LocalisationReading { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity }
+}
+
+fn mapper() -> Mapper {
+    Mapper::start(Vehicle::default(), MapSize::default(), &sensed(0.0, Some(0.0)), 5.0)
+}
+
+#[test]
+fn at_the_start_the_map_knows_what_is_under_the_vehicle() {
+    // The half length is 0.6 + 0.35 = 0.95 m, the half width 0.625 m: 19 columns of 13 grid points.
+    let mapper = mapper();
+    assert_eq!(mapper.known_count(), 19 * 13);
+    let map = mapper.map();
+    assert_eq!(map.elevation(map.nearest(DVec2::new(0.9, -0.6))), Some(5.0));
+    assert_eq!(map.source(map.nearest(DVec2::new(1.0, 0.0))).key(), 's');
+    // The vehicle is 5 cm above the ground, which is therefore at 4.95 m.
+    let start = sensed(0.0, Some(0.05));
+    let raised = Mapper::start(Vehicle::default(), MapSize::default(), &start, 5.0);
+    assert_eq!(raised.map().elevation(raised.map().centre()), Some(4.95));
+}
+
+#[test]
+fn under_a_tilted_vehicle_the_ground_is_tilted() {
+    // The vehicle pitches up by atan 1/4: 0.4 m ahead, the ground is 0.1 m higher.
+    let attitude = Attitude { pitch_down: -libm::atan(0.25), ..Attitude::default() };
+    let start = LocalisationReading { attitude, ..sensed(0.0, Some(0.0)) };
+    let mapper = Mapper::start(Vehicle::default(), MapSize::default(), &start, 5.0);
+    let map = mapper.map();
+    let ahead = map.elevation(map.nearest(DVec2::new(0.4, 0.3))).unwrap();
+    assert!((ahead - 5.1).abs() < 1e-12, "{ahead}");
+}
+
+#[test]
+fn elevation_comes_from_the_old_map_before_new_points() {
+    let mut mapper = mapper();
+    // The old map has 5.0 m below the vehicle, and the proximity sensor measures 0.2 m: the vehicle is at 5.2 m. The
+    // new point in the same cell, 3.8 m above the vehicle, is at 9 m.
+    let update = mapper.update(&sensed(0.4, Some(0.2)), [DVec3::new(0.0, 0.0, 3.8)]);
+    assert!(update.elevation_read && update.moved == (4, 0));
+    assert_eq!(mapper.pose().position, DVec3::new(0.4, 0.0, 5.2));
+    assert_eq!(mapper.map().elevation(mapper.map().centre()), Some(9.0));
+}
+
+#[test]
+fn over_unknown_ground_the_vehicle_moves_in_the_plane_of_its_wheels() {
+    let mut mapper = mapper();
+    let attitude = Attitude { pitch_down: -libm::atan(0.25), ..Attitude::default() };
+    let update = mapper.update(&LocalisationReading { attitude, ..sensed(4.0, Some(0.3)) }, []);
+    assert!(!update.elevation_read);
+    assert!((mapper.pose().position.z - 6.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_scan_clears_the_map() {
+    let mut mapper = mapper();
+    mapper.update(&sensed(0.0, Some(0.0)), [DVec3::new(4.0, 1.0, 0.5)]);
+    assert_eq!(mapper.known_count(), 19 * 13 + 9);
+    // Two stripes: (3.0, 0) and (3.1, 0), which are neighbours. With theirs these are 4 columns of 3 points.
+    let stripes = [DVec3::new(3.1, 0.0, 0.2), DVec3::new(3.0, 0.0, 0.1)];
+    mapper.update_from_scan(&sensed(0.0, Some(0.0)), stripes, true);
+    assert_eq!(mapper.known_count(), 19 * 13 + 12);
+    let map = mapper.map();
+    assert_eq!(map.elevation(map.nearest(DVec2::new(3.1, 0.0))), Some(5.2));
+    // Without `clear_map` the other elevations stay.
+    mapper.update_from_scan(&sensed(0.0, Some(0.0)), [DVec3::new(-4.0, 0.0, 0.0)], false);
+    assert_eq!(mapper.known_count(), 19 * 13 + 21);
+}

@@ -1,0 +1,75 @@
+//! The stance of a vehicle on planes and steps.
+
+use glam::{DVec2, DVec3};
+use raypencil_rover::{Attitude, Stance, Vehicle};
+use raypencil_scene::Material;
+use raypencil_terrain::{Ground, HeightIndex};
+
+/// A square of 40 m around (0, 0) with z = height(x, y) at its corners, divided along x = y.
+fn plane(height: impl Fn(f64, f64) -> f64) -> Ground {
+    let corner = |x: f64, y: f64| DVec3::new(x, y, height(x, y));
+    Ground {
+        vertices: vec![corner(-20.0, -20.0), corner(20.0, -20.0), corner(20.0, 20.0), corner(-20.0, 20.0)],
+        faces: vec![[0, 1, 2], [0, 2, 3]],
+        face_materials: vec![0, 0],
+        materials: vec![Material { name: "ground".into(), reflectivity: 0.25 }],
+    }
+}
+
+fn settled(ground: Ground, heading: f64) -> Option<Stance> {
+    let index = HeightIndex::new(&ground.into_mesh().unwrap());
+    Vehicle::default().settle(&index, DVec2::new(1.0, 2.0), heading)
+}
+
+#[test]
+fn on_level_ground_it_stands_level() {
+    let stance = settled(plane(|_, _| 0.5), 0.7).unwrap();
+    assert!((stance.position - DVec3::new(1.0, 2.0, 0.5)).length() < 1e-9);
+    let Attitude { heading, pitch_down, roll_right } = stance.attitude;
+    assert_eq!(heading, 0.7);
+    assert!(pitch_down.abs() < 1e-9 && roll_right.abs() < 1e-9);
+}
+
+#[test]
+fn on_a_slope_it_is_parallel_to_the_slope() {
+    // z = 0.25 x. Driving up: pitch of atan 0.25, no roll. Driving across (heading +y): the right side is uphill and
+    // up. The rim's 17 points miss the true contact by at most half their spacing, in height by (r / 17)^2 / (2 r) = r
+    // / 578 = 0.6 mm, the same at every wheel.
+    let rise = libm::atan(0.25);
+    let up = settled(plane(|x, _| 0.25 * x), 0.0).unwrap();
+    assert!((up.attitude.pitch_down + rise).abs() < 1e-6, "{up:?}");
+    assert!(up.attitude.roll_right.abs() < 1e-9 && up.residual < 1e-9);
+    assert!((up.position.z - 0.25).abs() < 1e-3, "{up:?}");
+    let across = settled(plane(|x, _| 0.25 * x), std::f64::consts::FRAC_PI_2).unwrap();
+    assert!((across.attitude.roll_right + rise).abs() < 1e-6, "{across:?}");
+    assert!(across.attitude.pitch_down.abs() < 1e-9);
+}
+
+#[test]
+fn front_wheels_on_a_step_lift_the_nose() {
+    // A block 0.2 m high begins at x = 1.3. The vehicle's centre is at x = 1.0; its hubs are at 1.6 and 0.4 while
+    // level. It pitches up by asin(0.2 / 1.2), and the centre of the hubs rises by 0.1 m.
+    let mut ground = plane(|_, _| 0.0);
+    let block = plane(|_, _| 0.2);
+    let first = ground.vertices.len() as u32;
+    ground.vertices.extend(block.vertices.iter().map(|v| *v + DVec3::new(21.3, 0.0, 0.0)));
+    ground.faces.extend(block.faces.iter().map(|face| face.map(|v| v + first)));
+    ground.face_materials.extend([0, 0]);
+    let stance = settled(ground, 0.0).unwrap();
+    assert!((stance.attitude.pitch_down + libm::asin(0.2 / 1.2)).abs() < 1e-3, "{stance:?}");
+    // The origin is in the wheels' plane, r cos(pitch) below the centre of the hubs: a little less than r.
+    assert!((stance.position.z - 0.1 - 0.35 * (1.0 - 35.0_f64.sqrt() / 6.0)).abs() < 1e-3);
+}
+
+#[test]
+fn beyond_the_ground_there_is_no_stance() {
+    let index = HeightIndex::new(&plane(|_, _| 0.0).into_mesh().unwrap());
+    assert!(Vehicle::default().settle(&index, DVec2::new(20.5, 0.0), 0.0).is_none());
+}
+
+#[test]
+fn the_default_vehicle_is_valid_and_fields_out_of_range_are_named() {
+    assert!(Vehicle::default().validate("vehicle").is_ok());
+    let wide = Vehicle { wheel_width: 1.5, ..Vehicle::default() };
+    assert!(wide.validate("vehicle").unwrap_err().to_string().starts_with("vehicle.wheel_width is 1.5"));
+}
