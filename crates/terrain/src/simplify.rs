@@ -258,4 +258,5 @@ fn span(corners: [Point; 3], row: u32) -> (u32, u32) {
 }
 
 #[cfg(test)]
+#[path = "../tests/unit/simplify.rs"]
 mod tests;

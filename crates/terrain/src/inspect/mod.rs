@@ -11,6 +11,7 @@ mod patches;
 mod report;
 mod shape;
 #[cfg(test)]
+#[path = "../../tests/unit/inspect.rs"]
 mod tests;
 mod weld;
 

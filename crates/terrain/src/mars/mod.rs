@@ -16,6 +16,7 @@ mod presets;
 mod rocks;
 mod surface;
 #[cfg(test)]
+#[path = "../../tests/unit/mars/mars.rs"]
 mod tests;
 
 use glam::{DVec2, DVec3};
