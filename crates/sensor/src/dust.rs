@@ -19,7 +19,7 @@ pub struct Dust {
 
 /// An image seen through dust.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Dusted {
+pub struct DustedImage {
     /// Watts per pixel.
     pub image: Image<f64>,
     /// What the dust swallowed, watts.
@@ -30,13 +30,13 @@ pub struct Dusted {
 
 impl Dust {
     /// What arrives: T ((1 - h) image + h (image * Gaussian)). `pixel_pitch` is the camera's, metres.
-    pub fn apply(&self, image: &Image<f64>, pixel_pitch: [f64; 2]) -> Dusted {
+    pub fn apply(&self, image: &Image<f64>, pixel_pitch: [f64; 2]) -> DustedImage {
         let halo = convolve(image, &Kernel::gaussian(self.halo_sigma.in_cells(pixel_pitch, 1)));
         let straight = self.transmission * (1.0 - self.halo_share);
         let scattered = self.transmission * self.halo_share;
         let cells = image.cells().iter().zip(halo.image.cells());
         let cells = cells.map(|(sharp, wide)| straight * sharp + scattered * wide).collect();
-        Dusted {
+        DustedImage {
             image: Image::from_cells(image.width(), image.height(), cells),
             absorbed: (1.0 - self.transmission) * image.cells().iter().sum::<f64>(),
             lost: scattered * halo.lost,

@@ -84,27 +84,27 @@ impl Psf {
 /// A kernel: how the light of one cell spreads over those around it. Its weights are not negative and add up to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kernel {
-    pub(crate) form: Form,
+    pub(crate) form: KernelForm,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Form {
+pub(crate) enum KernelForm {
     /// The product of a row and a column, each of an odd number of weights.
-    Product { across: Vec<f64>, down: Vec<f64> },
+    Separable { across: Vec<f64>, down: Vec<f64> },
     /// Row by row, an odd number of columns and rows.
-    Table { columns: usize, weights: Vec<f64> },
+    Dense { columns: usize, weights: Vec<f64> },
 }
 
 /// A Gaussian ends there, in standard deviations: 2e-9 of it lies beyond on each axis.
-const GAUSSIAN_END: f64 = 6.0;
+const GAUSSIAN_CUTOFF_SIGMAS: f64 = 6.0;
 /// No kernel reaches further, in cells: a product, and a table (whose cost is the square).
-const LONGEST_PRODUCT: f64 = 16_384.0;
-const LONGEST_TABLE: f64 = 512.0;
+const MAX_SEPARABLE_HALF_WIDTH_CELLS: f64 = 16_384.0;
+const MAX_DENSE_HALF_WIDTH_CELLS: f64 = 512.0;
 
 impl Kernel {
     /// Light stays where it is.
     pub fn identity() -> Self {
-        Self { form: Form::Product { across: vec![1.0], down: vec![1.0] } }
+        Self { form: KernelForm::Separable { across: vec![1.0], down: vec![1.0] } }
     }
 
     /// A Gaussian of standard deviations `sigma` in cells, across and down, *integrated over each cell*: so it is
@@ -115,7 +115,7 @@ impl Kernel {
             if !(sigma > 0.0) {
                 return vec![1.0];
             }
-            let half = (GAUSSIAN_END * sigma).ceil().min(LONGEST_PRODUCT) as i32;
+            let half = (GAUSSIAN_CUTOFF_SIGMAS * sigma).ceil().min(MAX_SEPARABLE_HALF_WIDTH_CELLS) as i32;
             let scale = 1.0 / (sigma * SQRT_2);
             // Differences of erfc on the right, mirrored: in the tail those of erf would cancel.
             let tail = |x: f64| libm::erfc(x * scale);
@@ -125,7 +125,7 @@ impl Kernel {
             };
             normalised((-half..=half).map(weight).collect())
         });
-        Self { form: Form::Product { across, down } }
+        Self { form: KernelForm::Separable { across, down } }
     }
 
     /// The diffraction pattern of a round aperture, with its first `rings` dark rings, on cells of `cell` metres:
@@ -134,7 +134,7 @@ impl Kernel {
         let unit = wavelength * f_number;
         // Zeros of J1 are near pi (n + 1/4).
         let end = (f64::from(rings) + 0.25) * unit;
-        let half = cell.map(|size| (end / size).ceil().min(LONGEST_TABLE) as i32);
+        let half = cell.map(|size| (end / size).ceil().min(MAX_DENSE_HALF_WIDTH_CELLS) as i32);
         let points = cell.map(|size| (8.0 * size / unit).ceil().clamp(4.0, 64.0) as u32);
         let place = |axis: usize, k: i32, point: u32| {
             (f64::from(k) - 0.5 + (f64::from(point) + 0.5) / f64::from(points[axis])) * cell[axis]
@@ -159,7 +159,7 @@ impl Kernel {
                 weights.push(sum);
             }
         }
-        Self { form: Form::Table { columns: 2 * half[0] as usize + 1, weights: normalised(weights) } }
+        Self { form: KernelForm::Dense { columns: 2 * half[0] as usize + 1, weights: normalised(weights) } }
     }
 
     /// A kernel of given weights, row by row, normalised. The middle one is for light that stays; what is right of it
@@ -169,7 +169,7 @@ impl Kernel {
     /// If the sides are not odd, the number of weights is not their product, or weights are negative, not finite or
     /// all 0.
     pub fn from_numbers(columns: usize, rows: usize, weights: &[f64]) -> Result<Self, SceneError> {
-        let longest = 2 * LONGEST_TABLE as usize + 1;
+        let longest = 2 * MAX_DENSE_HALF_WIDTH_CELLS as usize + 1;
         for (side, count) in [("columns", columns), ("rows", rows)] {
             if count % 2 == 0 || count > longest {
                 let expected = format!("an odd number up to {longest}");
@@ -192,14 +192,14 @@ impl Kernel {
         if !(weights.iter().sum::<f64>() > 1e-100) {
             return Err(SceneError::new("kernel.weights", "all 0", "a sum above 1e-100"));
         }
-        Ok(Self { form: Form::Table { columns, weights: normalised(weights.to_vec()) } })
+        Ok(Self { form: KernelForm::Dense { columns, weights: normalised(weights.to_vec()) } })
     }
 
     /// How far it reaches from its middle, in cells across and down.
     pub fn half_widths(&self) -> [usize; 2] {
         match &self.form {
-            Form::Product { across, down } => [across.len() / 2, down.len() / 2],
-            Form::Table { columns, weights } => [columns / 2, weights.len() / columns / 2],
+            KernelForm::Separable { across, down } => [across.len() / 2, down.len() / 2],
+            KernelForm::Dense { columns, weights } => [columns / 2, weights.len() / columns / 2],
         }
     }
 
@@ -211,8 +211,8 @@ impl Kernel {
         }
         let (i, j) = ((right + half[0]) as usize, (down + half[1]) as usize);
         match &self.form {
-            Form::Product { across, down } => across[i] * down[j],
-            Form::Table { columns, weights } => weights[j * columns + i],
+            KernelForm::Separable { across, down } => across[i] * down[j],
+            KernelForm::Dense { columns, weights } => weights[j * columns + i],
         }
     }
 }

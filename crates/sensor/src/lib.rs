@@ -25,25 +25,25 @@ mod check;
 mod convolve;
 mod disc;
 mod dust;
+mod image_sensor;
 mod kernel;
+mod noise_stream;
 mod optics;
 mod poisson;
 mod presets;
-mod random;
-mod sensor;
 mod splat;
 mod sunlight;
 
 pub use airy::{airy_pattern, encircled_energy};
-pub use convolve::{Convolved, binned, convolve};
-pub use dust::{Dust, Dusted};
+pub use convolve::{ConvolvedImage, binned, convolve};
+pub use dust::{Dust, DustedImage};
+pub use image_sensor::{
+    DarkCurrent, DigitalFrame, FramePair, PLANCK_CONSTANT, SPEED_OF_LIGHT, Sensor, difference, photon_energy,
+};
 pub use kernel::{Extent, Kernel, Psf};
-pub use optics::{Imaged, Ledger, Optics};
+pub use noise_stream::{NoiseSource, NoiseStream};
+pub use optics::{FluxBudget, Optics, OpticsOutput};
 pub use poisson::poisson;
 pub use presets::{PRESETS, preset};
-pub use random::{Purpose, Stream};
-pub use sensor::{
-    DarkCurrent, Digital, PLANCK_CONSTANT, Pair, SPEED_OF_LIGHT, Sensor, difference, photon_energy,
-};
-pub use splat::{PointSource, Splat, ThinLens, splat, splat_defocused};
+pub use splat::{PointSource, SplatImage, ThinLens, splat, splat_defocused};
 pub use sunlight::{Ground, MARS_ORBIT, SOLAR_SPECTRUM_810, Sunlight};

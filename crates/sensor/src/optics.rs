@@ -3,7 +3,7 @@
 use raypencil_scene::{Camera, Image, SceneError};
 
 use crate::check::check_range;
-use crate::{Dust, PointSource, Psf, Splat, ThinLens, binned, convolve, splat, splat_defocused};
+use crate::{Dust, PointSource, Psf, SplatImage, ThinLens, binned, convolve, splat, splat_defocused};
 
 /// What the camera's optics do to an image.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Optics {
 
 /// An image on its way through the optics.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Imaged {
+pub struct OpticsOutput {
     /// After the blurs, watts per cell.
     pub fine: Image<f64>,
     /// The same, watts per pixel.
@@ -28,12 +28,12 @@ pub struct Imaged {
     /// After the dust, watts per pixel: what falls on the sensor.
     pub optical: Image<f64>,
     /// Where the light went.
-    pub ledger: Ledger,
+    pub budget: FluxBudget,
 }
 
 /// Where the light went, watts. `entered` is the sum of all others, but for rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Ledger {
+pub struct FluxBudget {
     /// What came.
     pub entered: f64,
     /// Fell beside the image.
@@ -56,20 +56,20 @@ impl Optics {
     ///
     /// # Panics
     /// If the optics are not valid.
-    pub fn form(&self, camera: &Camera, sources: impl IntoIterator<Item = PointSource>) -> Imaged {
+    pub fn form(&self, camera: &Camera, sources: impl IntoIterator<Item = PointSource>) -> OpticsOutput {
         let mut entered = 0.0;
         let sources = sources.into_iter().inspect(|source| entered += source.watts);
-        let Splat { image, lost } = match self.focus {
+        let SplatImage { image, lost } = match self.focus {
             None => splat(camera.width, camera.height, self.oversampling, sources),
             Some(focus) => {
-                let lens = ThinLens::of(camera, focus);
+                let lens = ThinLens::for_camera(camera, focus);
                 let (pitch, s) = (camera.pixel_pitch, self.oversampling);
                 splat_defocused(camera.width, camera.height, s, pitch, &lens, sources)
             }
         };
         let mut imaged = self.filter(camera, image);
-        imaged.ledger.entered = entered;
-        imaged.ledger.missed = lost;
+        imaged.budget.entered = entered;
+        imaged.budget.missed = lost;
         imaged
     }
 
@@ -78,29 +78,29 @@ impl Optics {
     ///
     /// # Panics
     /// If the image has another size.
-    pub fn filter(&self, camera: &Camera, fine: Image<f64>) -> Imaged {
+    pub fn filter(&self, camera: &Camera, fine: Image<f64>) -> OpticsOutput {
         let size = (camera.width * self.oversampling, camera.height * self.oversampling);
         assert_eq!((fine.width(), fine.height()), size, "cells of the fine image");
         let cell = camera.pixel_pitch.map(|pitch| pitch / f64::from(self.oversampling));
-        let mut ledger = Ledger { entered: fine.cells().iter().sum(), ..Ledger::default() };
+        let mut budget = FluxBudget { entered: fine.cells().iter().sum(), ..FluxBudget::default() };
         let mut fine = fine;
         for blur in &self.blurs {
             let blurred = convolve(&fine, &blur.kernel(cell, self.oversampling));
             fine = blurred.image;
-            ledger.blurred_out += blurred.lost;
+            budget.blurred_out += blurred.lost;
         }
         let pixels = binned(&fine, self.oversampling);
         let optical = match self.dust {
             None => pixels.clone(),
             Some(dust) => {
                 let dusted = dust.apply(&pixels, camera.pixel_pitch);
-                ledger.absorbed = dusted.absorbed;
-                ledger.scattered_out = dusted.lost;
+                budget.absorbed = dusted.absorbed;
+                budget.scattered_out = dusted.lost;
                 dusted.image
             }
         };
-        ledger.arrived = optical.cells().iter().sum();
-        Imaged { fine, pixels, optical, ledger }
+        budget.arrived = optical.cells().iter().sum();
+        OpticsOutput { fine, pixels, optical, budget }
     }
 
     /// What becomes of an image that is known by pixels only, as a sun-lit background is: dust acts on it; blur,

@@ -1,12 +1,12 @@
 //! How many electrons there are when so many are expected: numbers of Poisson's law.
 
-use crate::Stream;
+use crate::NoiseStream;
 
 /// Below this mean the sum of probabilities is searched from 0 on: a few steps.
-const SEARCHED: f64 = 10.0;
+const MAX_INVERSION_MEAN: f64 = 10.0;
 /// Up to this mean the law is exact, but for rounding: beyond, k ln(mean) - ln(k!) has lost so many digits that the
 /// normal law is nearer.
-const EXACT: f64 = 1e8;
+const MAX_REJECTION_MEAN: f64 = 1e8;
 
 /// A number of Poisson's law, a whole one: 0 if `mean` is not positive.
 ///
@@ -17,17 +17,17 @@ const EXACT: f64 = 1e8;
 /// * Beyond: the normal law, rounded to a whole number. Its distribution function is off by up to
 ///   max |(x^2 - 1) phi(x)| / (6 sqrt(mean)) = 0.0665 / sqrt(mean), 7e-6 at most (Edgeworth's first term, the
 ///   skewness).
-pub fn poisson(mean: f64, stream: &mut Stream) -> f64 {
-    if mean < SEARCHED {
-        searched(mean, stream)
-    } else if mean <= EXACT {
+pub fn poisson(mean: f64, stream: &mut NoiseStream) -> f64 {
+    if mean < MAX_INVERSION_MEAN {
+        inversion(mean, stream)
+    } else if mean <= MAX_REJECTION_MEAN {
         transformed_rejection(mean, stream)
     } else {
         (mean + mean.sqrt() * stream.normal()).round().max(0.0)
     }
 }
 
-fn searched(mean: f64, stream: &mut Stream) -> f64 {
+fn inversion(mean: f64, stream: &mut NoiseStream) -> f64 {
     if !(mean > 0.0) {
         return 0.0;
     }
@@ -43,7 +43,7 @@ fn searched(mean: f64, stream: &mut Stream) -> f64 {
     k
 }
 
-fn transformed_rejection(mean: f64, stream: &mut Stream) -> f64 {
+fn transformed_rejection(mean: f64, stream: &mut NoiseStream) -> f64 {
     // The constants of algorithm PTRS.
     let b = 0.931 + 2.53 * mean.sqrt();
     let a = -0.059 + 0.024_83 * b;

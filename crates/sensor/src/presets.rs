@@ -17,7 +17,7 @@ pub fn preset(name: &str) -> Option<(Optics, Sensor)> {
 }
 
 /// CHOICE: of the default beams.
-const WAVELENGTH: f64 = 810e-9;
+const BEAM_WAVELENGTH_M: f64 = 810e-9;
 
 impl Sensor {
     /// No noise at all, 16 bits, an electron for each photon, wells without a bottom.
@@ -26,7 +26,7 @@ impl Sensor {
             // CHOICE: a stripe of the default rig, some 1.2e-11 W per pixel, gives 24,000 DN.
             exposure: 2e-3,
             gain: 0.25,
-            wavelength: WAVELENGTH,
+            wavelength: BEAM_WAVELENGTH_M,
             quantum_efficiency: 1.0,
             shot_noise: false,
             dark_current: DarkCurrent::NONE,
@@ -47,7 +47,7 @@ impl Sensor {
             // CHOICE: stripes of the default rig fill a third of the well, and ten frames a second (paper, §7) leave time
             // for it.
             exposure: 2e-3,
-            wavelength: WAVELENGTH,
+            wavelength: BEAM_WAVELENGTH_M,
             // CHOICE: front-lit silicon of that time has 0.3 to 0.4 there.
             quantum_efficiency: 0.35,
             shot_noise: true,
@@ -83,7 +83,7 @@ impl Sensor {
         Self {
             // CHOICE: stripes of the default rig fill two fifths of the well.
             exposure: 0.4e-3,
-            wavelength: WAVELENGTH,
+            wavelength: BEAM_WAVELENGTH_M,
             // CHOICE: makers' curves for this sensor fall from 0.6 to 0.7 in the green to 0.2 to 0.25 here.
             quantum_efficiency: 0.22,
             shot_noise: true,
@@ -119,7 +119,7 @@ impl Optics {
             oversampling: 4,
             focus: None,
             blurs: vec![
-                Psf::Airy { wavelength: WAVELENGTH, f_number: 4.0, rings: 8 },
+                Psf::Airy { wavelength: BEAM_WAVELENGTH_M, f_number: 4.0, rings: 8 },
                 Psf::Gaussian { sigma: Extent::Metres(0.5e-6) },
             ],
             dust: None,
@@ -133,7 +133,7 @@ impl Optics {
             oversampling: 4,
             focus: Some(4.0),
             blurs: vec![
-                Psf::Airy { wavelength: WAVELENGTH, f_number: 4.0, rings: 8 },
+                Psf::Airy { wavelength: BEAM_WAVELENGTH_M, f_number: 4.0, rings: 8 },
                 Psf::Gaussian { sigma: Extent::Pixels(1.0 / 3.0) },
             ],
             dust: Some(Dust { transmission: 0.9, halo_share: 0.03, halo_sigma: Extent::Pixels(20.0) }),

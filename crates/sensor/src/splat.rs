@@ -33,7 +33,7 @@ impl PointSource {
 
 /// Points of light on a fine image.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Splat {
+pub struct SplatImage {
     /// Watts per cell.
     pub image: Image<f64>,
     /// What falls beside the image, watts.
@@ -47,13 +47,13 @@ pub fn splat(
     height: u32,
     oversampling: u32,
     sources: impl IntoIterator<Item = PointSource>,
-) -> Splat {
+) -> SplatImage {
     let mut image = Image::filled(width * oversampling, height * oversampling, 0.0);
     let mut lost = 0.0;
     for source in sources {
         add_point(&mut image, &mut lost, oversampling, source);
     }
-    Splat { image, lost }
+    SplatImage { image, lost }
 }
 
 /// Puts each source onto the image as the disc that the lens makes of it at its depth: evenly lit, cells at its edge
@@ -65,7 +65,7 @@ pub fn splat_defocused(
     pixel_pitch: [f64; 2],
     lens: &ThinLens,
     sources: impl IntoIterator<Item = PointSource>,
-) -> Splat {
+) -> SplatImage {
     let mut image = Image::filled(width * oversampling, height * oversampling, 0.0);
     let mut lost = 0.0;
     let s = f64::from(oversampling);
@@ -97,7 +97,7 @@ pub fn splat_defocused(
         let inside = disc::area(across(0), across(image.width()), down(0), down(image.height())) / PI;
         lost += source.watts * (1.0 - inside).max(0.0);
     }
-    Splat { image, lost }
+    SplatImage { image, lost }
 }
 
 fn add_point(image: &mut Image<f64>, lost: &mut f64, oversampling: u32, source: PointSource) {
@@ -127,7 +127,7 @@ pub struct ThinLens {
 impl ThinLens {
     /// The lens that makes a sharp image of what is at depth `focus` on the image plane of this camera, f_c behind it:
     /// 1 / f = 1 / f_c + 1 / z_f.
-    pub fn of(camera: &Camera, focus: f64) -> Self {
+    pub fn for_camera(camera: &Camera, focus: f64) -> Self {
         let focal_length = camera.focal_length / (1.0 + camera.focal_length / focus);
         Self { aperture: camera.aperture, focal_length, focus }
     }

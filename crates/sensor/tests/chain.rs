@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, LN_2, PI};
 use glam::DVec3;
 use raypencil_scene::{Camera, Filter, Image, Lens, Maybe};
 use raypencil_sensor::{
-    DarkCurrent, Digital, Ground, MARS_ORBIT, Optics, PLANCK_CONSTANT, PRESETS, PointSource,
+    DarkCurrent, DigitalFrame, Ground, MARS_ORBIT, Optics, PLANCK_CONSTANT, PRESETS, PointSource,
     SOLAR_SPECTRUM_810, SPEED_OF_LIGHT, Sensor, Sunlight, difference, photon_energy, preset,
 };
 
@@ -247,7 +247,7 @@ fn sensors_are_checked() {
 }
 
 /// Everything that is computed on several threads.
-fn run() -> (Vec<u64>, Digital) {
+fn run() -> (Vec<u64>, DigitalFrame) {
     let camera = camera(48, 40, FILTER);
     let sources = (0..400).map(|index| {
         let x = f64::from(index) * 0.12;
@@ -260,13 +260,13 @@ fn run() -> (Vec<u64>, Digital) {
     let ground = Ground { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
     let background = Sunlight::mars(0.6, 1.0, 0.5).flux(&camera, 1e-3, &ground);
     let frame = Sensor { seed: 99, ..Sensor::ccd_1989() }.expose(&imaged.optical, Some(&background), 5);
-    let ledger = imaged.ledger;
+    let budget = imaged.budget;
     let mut bits: Vec<u64> = [imaged.fine.cells(), imaged.optical.cells(), background.cells()]
         .into_iter()
         .flatten()
         .map(|value| value.to_bits())
         .collect();
-    bits.extend([ledger.blurred_out, ledger.scattered_out, ledger.arrived].map(f64::to_bits));
+    bits.extend([budget.blurred_out, budget.scattered_out, budget.arrived].map(f64::to_bits));
     (bits, frame)
 }
 

@@ -2,7 +2,7 @@
 //! rarely a sensor that obeys the law would have failed: |z| < 3.72 is 1 in 5,000.
 
 use raypencil_scene::Image;
-use raypencil_sensor::{DarkCurrent, Purpose, Sensor, Stream, poisson};
+use raypencil_sensor::{DarkCurrent, NoiseSource, NoiseStream, Sensor, poisson};
 
 const LEVEL: f64 = 3.72;
 
@@ -71,7 +71,9 @@ fn poisson_has_its_law() {
     const DRAWS: u32 = 1_000_000;
     for (number, expected) in [0.3, 3.0, 9.999, 10.0, 30.0, 300.0, 3e4].into_iter().enumerate() {
         let draws: Vec<f64> = (0..DRAWS)
-            .map(|index| poisson(expected, &mut Stream::new(2026, Purpose::Shot, number as u64, index)))
+            .map(|index| {
+                poisson(expected, &mut NoiseStream::new(2026, NoiseSource::Shot, number as u64, index))
+            })
             .collect();
         assert!(draws.iter().all(|k| *k >= 0.0 && *k == k.floor()));
         assert_mean(&draws, expected, expected, "Poisson");
@@ -94,7 +96,7 @@ fn poisson_has_its_law() {
 
 #[test]
 fn poisson_of_much_light_and_of_none() {
-    let draw = |mean: f64, pixel: u32| poisson(mean, &mut Stream::new(3, Purpose::Shot, 0, pixel));
+    let draw = |mean: f64, pixel: u32| poisson(mean, &mut NoiseStream::new(3, NoiseSource::Shot, 0, pixel));
     for nothing in [0.0, -1.0, f64::NAN] {
         assert_eq!(draw(nothing, 0), 0.0);
     }
@@ -110,7 +112,7 @@ fn poisson_of_much_light_and_of_none() {
 #[test]
 fn normal_has_its_law() {
     const DRAWS: u32 = 200_000;
-    let mut stream = Stream::new(5, Purpose::Read, 0, 0);
+    let mut stream = NoiseStream::new(5, NoiseSource::Read, 0, 0);
     let draws: Vec<f64> = (0..DRAWS).map(|_| stream.normal()).collect();
     assert_mean(&draws, 0.0, 1.0, "normal");
     assert_variance(&draws, 1.0, 3.0, "normal");
@@ -132,7 +134,7 @@ fn normal_has_its_law() {
 
 #[test]
 fn uniform_has_its_law() {
-    let mut stream = Stream::new(6, Purpose::Read, 0, 0);
+    let mut stream = NoiseStream::new(6, NoiseSource::Read, 0, 0);
     let mut counts = [0.0; 100];
     for _ in 0..100_000 {
         counts[(stream.uniform() * 100.0) as usize] += 1.0;

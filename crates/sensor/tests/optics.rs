@@ -3,7 +3,7 @@
 use glam::DVec3;
 use raypencil_scene::{Camera, Image, Lens};
 use raypencil_sensor::{
-    Dust, Extent, Kernel, Optics, PointSource, Psf, Purpose, Stream, ThinLens, airy_pattern, binned,
+    Dust, Extent, Kernel, NoiseSource, NoiseStream, Optics, PointSource, Psf, ThinLens, airy_pattern, binned,
     convolve, encircled_energy, splat, splat_defocused,
 };
 
@@ -27,7 +27,7 @@ fn sum(image: &Image<f64>) -> f64 {
 
 /// Half of the cells dark, the others with random light.
 fn speckle(width: u32, height: u32) -> Image<f64> {
-    let mut stream = Stream::new(1, Purpose::Shot, 0, 0);
+    let mut stream = NoiseStream::new(1, NoiseSource::Shot, 0, 0);
     let cells = (0..width * height).map(|_| (stream.uniform() - 0.5).max(0.0)).collect();
     Image::from_cells(width, height, cells)
 }
@@ -180,7 +180,7 @@ fn defocus_by_hand() {
     let far = ThinLens { focus: f64::INFINITY, ..lens };
     assert!((far.blur_diameter(2.0) - 8e-6).abs() < 1e-18);
     // With f of the camera's image distance it is D f_c |1/z - 1/z_f| = 2e-3 8e-3 / 4.
-    let of_camera = ThinLens::of(&camera, 4.0);
+    let of_camera = ThinLens::for_camera(&camera, 4.0);
     assert!((of_camera.blur_diameter(2.0) - 4e-6).abs() < 1e-18);
     assert!((1.0 / of_camera.focal_length - 1.0 / 8e-3 - 1.0 / 4.0).abs() < 1e-12);
     assert!(of_camera.validate("lens").is_ok() && far.validate("lens").is_ok());
@@ -240,7 +240,7 @@ fn splats_land_in_their_cells() {
 }
 
 fn sources() -> Vec<PointSource> {
-    let mut stream = Stream::new(4, Purpose::Shot, 0, 0);
+    let mut stream = NoiseStream::new(4, NoiseSource::Shot, 0, 0);
     // Some of them beside the image.
     let mut number = |from: f64, to: f64| from + (to - from) * stream.uniform();
     (0..500)
@@ -270,7 +270,7 @@ fn the_ledger_balances() {
     assert!(all.validate("optics").is_ok());
     for optics in [all.clone(), Optics::PERFECT, Optics::dusty(), Optics::diffraction_limited()] {
         let imaged = optics.form(&camera, sources());
-        let account = imaged.ledger;
+        let account = imaged.budget;
         let spent =
             account.missed + account.blurred_out + account.absorbed + account.scattered_out + account.arrived;
         assert!((account.entered - spent).abs() < 1e-12 * account.entered, "{account:?}");

@@ -9,7 +9,7 @@ use glam::DVec3;
 use raypencil_scene::Material;
 
 use crate::Ground;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// The names that [`builtin`] knows.
 pub const BUILTIN_NAMES: &[&str] = &["pyramids", "facets"];
@@ -34,11 +34,11 @@ struct Pyramid {
     /// Of the apex above the plane.
     height: f64,
     /// About the vertical.
-    turn: f64,
+    rotation: f64,
 }
 
-const fn pyramid(x: f64, y: f64, half_side: f64, height: f64, turn: f64) -> Pyramid {
-    Pyramid { x, y, half_side, height, turn }
+const fn pyramid(x: f64, y: f64, half_side: f64, height: f64, rotation: f64) -> Pyramid {
+    Pyramid { x, y, half_side, height, rotation }
 }
 
 /// Where the pyramids stand. No coordinate is round, so that no vertex, edge or side lines up with a
@@ -78,28 +78,34 @@ const PYRAMIDS: [Pyramid; 16] = [
 /// little against the axes.
 fn pyramids(mut ground: Ground) -> Ground {
     const CELLS: u32 = 8;
-    const HALF_SIDE: f64 = 20.0;
+    const HALF_SIDE_M: f64 = 20.0;
     // The drive begins at x = -7.5 m and looks 20 m ahead: the plane's middle is between start and sight.
-    const MIDDLE: DVec3 = DVec3::new(3.19, 0.43, 0.0);
-    const TURN: f64 = 0.113;
-    const SUNK: f64 = 0.05;
+    const CENTRE_M: DVec3 = DVec3::new(3.19, 0.43, 0.0);
+    const ROTATION_RAD: f64 = 0.113;
+    const DEPTH_BELOW_PLANE_M: f64 = 0.05;
 
-    let (sin, cos) = libm::sincos(TURN);
+    let (sin, cos) = libm::sincos(ROTATION_RAD);
     let place = |column: u32, row: u32| {
-        let step = 2.0 * HALF_SIDE / f64::from(CELLS);
-        let (x, y) = (step * f64::from(column) - HALF_SIDE, step * f64::from(row) - HALF_SIDE);
-        MIDDLE + DVec3::new(cos * x - sin * y, sin * x + cos * y, 0.0)
+        let step = 2.0 * HALF_SIDE_M / f64::from(CELLS);
+        let (x, y) = (step * f64::from(column) - HALF_SIDE_M, step * f64::from(row) - HALF_SIDE_M);
+        CENTRE_M + DVec3::new(cos * x - sin * y, sin * x + cos * y, 0.0)
     };
     let mut falling = false;
     let alternate = || {
         falling = !falling;
         falling
     };
-    ground.height_field(CELLS, CELLS, place, alternate, || 0);
-    for Pyramid { x, y, half_side, height, turn } in PYRAMIDS {
+    ground.add_height_field(CELLS, CELLS, place, alternate, || 0);
+    for Pyramid { x, y, half_side, height, rotation } in PYRAMIDS {
         // The same flanks, continued below the plane.
-        let deeper = (height + SUNK) / height;
-        ground.pyramid(DVec3::new(x, y, -SUNK), half_side * deeper, height + SUNK, turn, 0);
+        let deeper = (height + DEPTH_BELOW_PLANE_M) / height;
+        ground.add_pyramid(
+            DVec3::new(x, y, -DEPTH_BELOW_PLANE_M),
+            half_side * deeper,
+            height + DEPTH_BELOW_PLANE_M,
+            rotation,
+            0,
+        );
     }
     ground
 }
@@ -113,23 +119,28 @@ fn pyramids(mut ground: Ground) -> Ground {
 fn facets(mut ground: Ground) -> Ground {
     const COLUMNS: u32 = 16;
     const ROWS: u32 = 8;
-    const CELL: f64 = 1.5;
-    const CORNER: DVec3 = DVec3::new(-10.1, -6.1, 0.0);
-    const JITTER: f64 = 0.2 * CELL;
-    const RELIEF: f64 = 0.6;
+    const CELL_M: f64 = 1.5;
+    const CORNER_M: DVec3 = DVec3::new(-10.1, -6.1, 0.0);
+    const MAX_SHIFT_M: f64 = 0.2 * CELL_M;
+    const MAX_HEIGHT_M: f64 = 0.6;
     // Calm within the first of these distances from (0, 0), full relief from the second on, metres.
-    const CALM: (f64, f64) = (0.9, 3.0);
+    const CALM_RADII_M: (f64, f64) = (0.9, 3.0);
 
-    let mut draws = Draws::new(256, Purpose::Grid);
+    let mut random = RandomStream::new(256, StreamPurpose::Grid);
     let place = |column: u32, row: u32| {
-        let grid = CORNER + DVec3::new(CELL * f64::from(column), CELL * f64::from(row), 0.0);
-        let moved = grid + DVec3::new(draws.between(-JITTER, JITTER), draws.between(-JITTER, JITTER), 0.0);
-        let share = ((moved.length() - CALM.0) / (CALM.1 - CALM.0)).clamp(0.0, 1.0);
-        let relief = RELIEF * (0.05 + 0.95 * share * share * (3.0 - 2.0 * share));
-        moved + DVec3::new(0.0, 0.0, draws.between(-relief, relief))
+        let grid = CORNER_M + DVec3::new(CELL_M * f64::from(column), CELL_M * f64::from(row), 0.0);
+        let moved = grid
+            + DVec3::new(
+                random.between(-MAX_SHIFT_M, MAX_SHIFT_M),
+                random.between(-MAX_SHIFT_M, MAX_SHIFT_M),
+                0.0,
+            );
+        let share = ((moved.length() - CALM_RADII_M.0) / (CALM_RADII_M.1 - CALM_RADII_M.0)).clamp(0.0, 1.0);
+        let relief = MAX_HEIGHT_M * (0.05 + 0.95 * share * share * (3.0 - 2.0 * share));
+        moved + DVec3::new(0.0, 0.0, random.between(-relief, relief))
     };
-    let mut diagonals = Draws::new(256, Purpose::Diagonals);
-    ground.height_field(COLUMNS, ROWS, place, || diagonals.coin(), || 0);
+    let mut diagonals = RandomStream::new(256, StreamPurpose::Diagonals);
+    ground.add_height_field(COLUMNS, ROWS, place, || diagonals.coin(), || 0);
     ground
 }
 

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use raypencil_scene::{Material, Mesh, SceneError};
 
-use crate::draws::Draws;
+use crate::random_stream::RandomStream;
 
 /// Triangles under construction: global `f64` vertices.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,14 +29,14 @@ impl Ground {
     }
 
     /// Adds a vertex and gives its index.
-    pub(crate) fn vertex(&mut self, position: DVec3) -> u32 {
+    pub(crate) fn add_vertex(&mut self, position: DVec3) -> u32 {
         let index = self.next_vertex();
         self.vertices.push(position);
         index
     }
 
     /// Adds a face.
-    pub(crate) fn face(&mut self, corners: [u32; 3], material: u16) {
+    pub(crate) fn add_face(&mut self, corners: [u32; 3], material: u16) {
         self.faces.push(corners);
         self.face_materials.push(material);
     }
@@ -50,7 +50,7 @@ impl Ground {
     /// function keeps the axes); then all normals point up.
     ///
     /// `falling` chooses each cell's diagonal: from its far left to its near right corner if true.
-    pub(crate) fn height_field(
+    pub(crate) fn add_height_field(
         &mut self,
         columns: u32,
         rows: u32,
@@ -71,7 +71,7 @@ impl Ground {
                 let (b, c, d) = (a + 1, a + columns + 2, a + columns + 1);
                 let halves = if falling() { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] };
                 for half in halves {
-                    self.face(half, material());
+                    self.add_face(half, material());
                 }
             }
         }
@@ -79,7 +79,7 @@ impl Ground {
 
     /// Adds a closed box of 12 faces: its centre, and from there to the middle of three sides. The three
     /// must be right-handed; they need not be at right angles.
-    pub(crate) fn solid_box(&mut self, centre: DVec3, [u, v, w]: [DVec3; 3], material: u16) {
+    pub(crate) fn add_box(&mut self, centre: DVec3, [u, v, w]: [DVec3; 3], material: u16) {
         // Corner 4k + 2j + i is at the sides chosen by the bits i, j, k of u, v, w.
         let first = self.next_vertex();
         let side = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
@@ -90,27 +90,27 @@ impl Ground {
         // Each side counter-clockwise from outside.
         let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         for [a, b, c, d] in sides.map(|side| side.map(|corner| first + corner)) {
-            self.face([a, b, c], material);
-            self.face([a, c, d], material);
+            self.add_face([a, b, c], material);
+            self.add_face([a, c, d], material);
         }
     }
 
     /// Adds a closed square pyramid of 6 faces: the centre of its base, half the side of the base, its
     /// height, and how far it is turned about the vertical, radians.
-    pub(crate) fn pyramid(&mut self, base: DVec3, half_side: f64, height: f64, turn: f64, material: u16) {
+    pub(crate) fn add_pyramid(&mut self, base: DVec3, half_side: f64, height: f64, turn: f64, material: u16) {
         let (sin, cos) = libm::sincos(turn);
         let first = self.next_vertex();
         for corner in [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)] {
             let DVec2 { x, y } = corner * half_side;
             self.vertices.push(base + DVec3::new(cos * x - sin * y, sin * x + cos * y, 0.0));
         }
-        let apex = self.vertex(base + DVec3::new(0.0, 0.0, height));
+        let apex = self.add_vertex(base + DVec3::new(0.0, 0.0, height));
         for corner in 0..4 {
-            self.face([first + corner, first + (corner + 1) % 4, apex], material);
+            self.add_face([first + corner, first + (corner + 1) % 4, apex], material);
         }
         // The base looks down.
-        self.face([first, first + 2, first + 1], material);
-        self.face([first, first + 3, first + 2], material);
+        self.add_face([first, first + 2, first + 1], material);
+        self.add_face([first, first + 3, first + 2], material);
     }
 
     /// Adds a closed, irregular rock of 32 faces: an octahedron with every face cut in four, thrown onto a
@@ -118,24 +118,30 @@ impl Ground {
     ///
     /// A vertex keeps its direction from the centre, so the rock stays star-shaped about it, and its faces
     /// outward, however rough it is.
-    pub(crate) fn rock(&mut self, centre: DVec3, half_axes: DVec3, draws: &mut Draws, material: u16) {
+    pub(crate) fn add_rock(
+        &mut self,
+        centre: DVec3,
+        half_axes: DVec3,
+        random: &mut RandomStream,
+        material: u16,
+    ) {
         // The six corners +x -x +y -y +z -z, then the middles of the twelve edges.
         let corner = |index: usize| DVec3::AXES[index / 2] * if index & 1 == 0 { 1.0 } else { -1.0 };
-        const EDGES: [[usize; 2]; 12] =
+        const OCTAHEDRON_EDGES: [[usize; 2]; 12] =
             [[0, 2], [0, 3], [0, 4], [0, 5], [1, 2], [1, 3], [1, 4], [1, 5], [2, 4], [2, 5], [3, 4], [3, 5]];
         // Any turn will do, so that no two rocks lie alike: an orthonormal frame about a random axis.
-        let z = draws.direction();
-        let x = z.cross(draws.direction()).normalize_or(z.any_orthonormal_vector());
+        let z = random.direction();
+        let x = z.cross(random.direction()).normalize_or(z.any_orthonormal_vector());
         let y = z.cross(x);
         let first = self.next_vertex();
-        let middles = EDGES.iter().map(|&[a, b]| (corner(a) + corner(b)) / f64::sqrt(2.0));
+        let middles = OCTAHEDRON_EDGES.iter().map(|&[a, b]| (corner(a) + corner(b)) / f64::sqrt(2.0));
         for unit in (0..6).map(corner).chain(middles) {
             let turned = x * unit.x + y * unit.y + z * unit.z;
-            self.vertices.push(centre + turned * half_axes * draws.between(0.75, 1.1));
+            self.vertices.push(centre + turned * half_axes * random.between(0.75, 1.1));
         }
         let middle_of = |a: usize, b: usize| {
             let edge = [a.min(b), a.max(b)];
-            6 + EDGES.iter().position(|e| *e == edge).expect("an edge of the octahedron")
+            6 + OCTAHEDRON_EDGES.iter().position(|e| *e == edge).expect("an edge of the octahedron")
         };
         for octant in 0..8_usize {
             // The corners on the sides of x, y, z chosen by the bits; mirroring one axis turns the order.
@@ -143,27 +149,27 @@ impl Ground {
             let (b, c) = if octant.count_ones() % 2 == 0 { (b, c) } else { (c, b) };
             let (ab, bc, ca) = (middle_of(a, b), middle_of(b, c), middle_of(c, a));
             for quarter in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-                self.face(quarter.map(|v| first + v as u32), material);
+                self.add_face(quarter.map(|v| first + v as u32), material);
             }
         }
     }
 
     /// Adds a closed mushroom: a stem under a wider cap, a body of revolution about the vertical through
     /// `foot`, with `sides` sides and a rough rim. It has `8 sides` faces.
-    pub(crate) fn mushroom(
+    pub(crate) fn add_mushroom(
         &mut self,
         foot: DVec3,
         height: f64,
         cap_radius: f64,
         sides: u32,
-        draws: &mut Draws,
+        random: &mut RandomStream,
         material: u16,
     ) {
         // The profile from bottom to top, as shares of (radius, height): stem, underside, rim, top.
         const PROFILE: [(f64, f64); 4] = [(0.40, 0.0), (0.30, 0.60), (1.0, 0.72), (0.60, 0.95)];
-        let turn = draws.unit();
-        let rim: Vec<f64> = (0..sides).map(|_| draws.between(0.8, 1.0)).collect();
-        let bottom = self.vertex(foot);
+        let turn = random.uniform();
+        let rim: Vec<f64> = (0..sides).map(|_| random.between(0.8, 1.0)).collect();
+        let bottom = self.add_vertex(foot);
         let first = self.next_vertex();
         for (radius, level) in PROFILE {
             for side in 0..sides {
@@ -174,18 +180,18 @@ impl Ground {
                 self.vertices.push(foot + DVec3::new(r * cos, r * sin, level * height));
             }
         }
-        let top = self.vertex(foot + DVec3::new(0.0, 0.0, height));
+        let top = self.add_vertex(foot + DVec3::new(0.0, 0.0, height));
         let ring = |level: u32, side: u32| first + level * sides + side % sides;
         let last = PROFILE.len() as u32 - 1;
         for side in 0..sides {
-            self.face([bottom, ring(0, side + 1), ring(0, side)], material);
+            self.add_face([bottom, ring(0, side + 1), ring(0, side)], material);
             for level in 0..last {
                 let (a, b) = (ring(level, side), ring(level, side + 1));
                 let (c, d) = (ring(level + 1, side + 1), ring(level + 1, side));
-                self.face([a, b, c], material);
-                self.face([a, c, d], material);
+                self.add_face([a, b, c], material);
+                self.add_face([a, c, d], material);
             }
-            self.face([ring(last, side), ring(last, side + 1), top], material);
+            self.add_face([ring(last, side), ring(last, side + 1), top], material);
         }
     }
 }

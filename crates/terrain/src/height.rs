@@ -20,7 +20,7 @@ pub fn height_at(mesh: &Mesh, x: f64, y: f64) -> Option<f64> {
             let [x, y, z] = vertices[v as usize];
             DVec3::new(f64::from(x), f64::from(y), f64::from(z))
         });
-        if let Some(z) = height_of(corners, point) {
+        if let Some(z) = height_on_triangle(corners, point) {
             highest = Some(highest.map_or(z, |top| top.max(z)));
         }
     }
@@ -28,7 +28,7 @@ pub fn height_at(mesh: &Mesh, x: f64, y: f64) -> Option<f64> {
 }
 
 /// Height of one closed triangle above a point, all in the scene frame.
-pub(crate) fn height_of([a, b, c]: [DVec3; 3], point: DVec2) -> Option<f64> {
+pub(crate) fn height_on_triangle([a, b, c]: [DVec3; 3], point: DVec2) -> Option<f64> {
     // Reject faces that do not look up.
     if !((b - a).perp_dot_xy(c - a) > 0.0) {
         return None;

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use raypencil_scene::Mesh;
 
-use crate::height::height_of;
+use crate::height::height_on_triangle;
 
 /// What [`crate::height_at`] says of a mesh, for many points: each query looks at the faces of one cell.
 ///
@@ -26,13 +26,13 @@ pub struct HeightIndex {
 
 /// Faces are entered this far, metres, beyond their bounding boxes: rounding may put a point on a face that it
 /// misses by less. (f64 at 1e7 m is good to 2e-9 m.)
-const PADDING: f64 = 1e-6;
+const PADDING_M: f64 = 1e-6;
 
 /// At most this many cells along a side, so that the grid stays within 64 MiB.
-const MOST_CELLS: f64 = 4096.0;
+const MAX_CELLS_PER_SIDE: f64 = 4096.0;
 
 /// At most this many cells for a face, on average. (One that fits a cell may touch four, and counts as four.)
-const MOST_ENTRIES: f64 = 32.0;
+const MAX_MEAN_CELLS_PER_FACE: f64 = 32.0;
 
 impl HeightIndex {
     /// Sorts the faces of a mesh that look up: about one cell for each.
@@ -46,7 +46,7 @@ impl HeightIndex {
             mesh.faces().iter().map(|face| face.map(corner)).filter(looks_up).collect();
         let boxes = |corners: &[DVec3; 3]| {
             let [a, b, c] = corners.map(DVec3::truncate);
-            (a.min(b).min(c) - PADDING, a.max(b).max(c) + PADDING)
+            (a.min(b).min(c) - PADDING_M, a.max(b).max(c) + PADDING_M)
         };
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (from, to) in corners.iter().map(boxes) {
@@ -57,7 +57,7 @@ impl HeightIndex {
         }
         let extent = high - low;
         let one_each = (extent.x * extent.y / corners.len().max(1) as f64).sqrt();
-        let mut cell = one_each.max(extent.max_element() / MOST_CELLS).max(PADDING);
+        let mut cell = one_each.max(extent.max_element() / MAX_CELLS_PER_SIDE).max(PADDING_M);
         // Many large faces over one another would be entered in many cells each: then larger cells will do.
         let entries = |cell: f64| {
             let cells = |(from, to): (DVec2, DVec2)| {
@@ -66,7 +66,7 @@ impl HeightIndex {
             };
             corners.iter().map(boxes).map(cells).sum::<f64>()
         };
-        while entries(cell) > MOST_ENTRIES * corners.len() as f64 {
+        while entries(cell) > MAX_MEAN_CELLS_PER_FACE * corners.len() as f64 {
             cell *= 2.0;
         }
         let count = |length: f64| (length / cell) as usize + 1;
@@ -127,7 +127,7 @@ impl HeightIndex {
         let cell = row * self.columns + column;
         let mut highest: Option<f64> = None;
         for &face in &self.faces[self.starts[cell] as usize..self.starts[cell + 1] as usize] {
-            if let Some(z) = height_of(self.corners[face as usize], point) {
+            if let Some(z) = height_on_triangle(self.corners[face as usize], point) {
                 highest = Some(highest.map_or(z, |top| top.max(z)));
             }
         }

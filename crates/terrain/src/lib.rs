@@ -22,24 +22,24 @@
 //! body's outward.
 
 mod builtin;
-mod draws;
 mod ground;
 mod height;
+mod height_grid;
 mod height_index;
 mod inspect;
 mod mars;
-mod posts;
-mod random;
+mod random_ground;
+mod random_stream;
 mod repair;
 mod simplify;
 
 pub use builtin::{BUILTIN_NAMES, builtin};
 pub use ground::Ground;
 pub use height::height_at;
+pub use height_grid::{Posts, indices_within};
 pub use height_index::HeightIndex;
 pub use inspect::{Example, Found, Inspection, Item, OpenEdges, OpenPiece, ZeroAreaKinds, inspect};
 pub use mars::{Crater, Craters, Crevasses, MarsGround, PRESET_NAMES, Rocks, Roughness};
-pub use posts::{Posts, indices_within};
-pub use random::RandomGround;
+pub use random_ground::RandomGround;
 pub use repair::{Repairs, repair};
 pub use simplify::simplify;

@@ -2,7 +2,7 @@
 
 use raypencil_scene::Mesh;
 
-use crate::inspect::{Fate, Study, study};
+use crate::inspect::{FaceStatus, MeshAnalysis, analyse};
 
 /// What a repair did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -35,7 +35,7 @@ impl Repairs {
 /// no face are dropped, faces that [`crate::Inspection::inverted`] counts are turned. No vertex moves, no hole
 /// is filled; what stays keeps its order. A mesh that was repaired has nothing left to repair.
 pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
-    let Study { inspection, welded, fates } = study(mesh);
+    let MeshAnalysis { inspection, welded, statuses } = analyse(mesh);
     let mut repairs = Repairs {
         zero_area_faces: inspection.zero_area.count,
         duplicate_faces: inspection.duplicates.count,
@@ -46,16 +46,16 @@ pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
     };
     let staying = inspection.faces - repairs.zero_area_faces - repairs.duplicate_faces;
     let (mut faces, mut face_materials) = (Vec::with_capacity(staying), Vec::with_capacity(staying));
-    for ((corners, &material), fate) in mesh.faces().iter().zip(mesh.face_materials()).zip(&fates) {
+    for ((corners, &material), status) in mesh.faces().iter().zip(mesh.face_materials()).zip(&statuses) {
         let [a, b, c] = corners.map(|vertex| welded[vertex as usize]);
-        match fate {
-            Fate::Sound => faces.push([a, b, c]),
-            Fate::Inverted => faces.push([a, c, b]),
-            Fate::ZeroArea | Fate::Copy | Fate::CopyOfOtherMaterial => continue,
+        match status {
+            FaceStatus::Sound => faces.push([a, b, c]),
+            FaceStatus::Inverted => faces.push([a, c, b]),
+            FaceStatus::ZeroArea | FaceStatus::Duplicate | FaceStatus::DuplicateOfOtherMaterial => continue,
         }
         face_materials.push(material);
     }
-    drop(fates);
+    drop(statuses);
 
     // Vertices that a face still uses, by their new numbers.
     let mut numbers = vec![u32::MAX; mesh.vertices().len()];

@@ -2,13 +2,14 @@
 
 use glam::{DVec3, Vec3Swizzles as _};
 
-use super::edges::Joints;
-use super::shape::Shapes;
-use super::{Fate, Inspection, at_face};
+use super::edges::FaceConnectivity;
+use super::geometry::MeshGeometry;
+use super::report::{Example, Inspection};
+use super::status::FaceStatus;
 
 /// Of the area of open patches at least so much must be seen from above before they can be upside down: walls that
 /// are upright up to a rounding look neither up nor down. CHOICE, and not derived.
-const LEAST_LEVEL: f64 = 0.01;
+const MIN_HORIZONTAL_SHARE: f64 = 0.01;
 
 /// All faces that hang together over edges of two faces. Those like the first are its first half, those that
 /// run against it the second.
@@ -20,7 +21,7 @@ struct Patch {
     halves: [u32; 2],
     /// Some edge has not just two faces.
     open: bool,
-    one_sided: bool,
+    non_orientable: bool,
     /// Six times the volume, if the second half is turned; the sum of the magnitudes that it was added from.
     six_volume: f64,
     magnitude: f64,
@@ -28,13 +29,13 @@ struct Patch {
 
 /// What is wrong with a patch.
 #[derive(PartialEq)]
-enum Wrong {
+enum WrongFaces {
     /// One of its halves, which may be empty.
     Half(usize),
     /// One half or the other.
     Undecided,
     /// It has no halves.
-    OneSided,
+    NonOrientable,
 }
 
 impl Patch {
@@ -57,33 +58,33 @@ impl Patch {
         u64::from(self.halves[0]) + u64::from(self.halves[1])
     }
 
-    fn wrong(&self) -> Wrong {
-        if self.one_sided {
-            return Wrong::OneSided;
+    fn wrong(&self) -> WrongFaces {
+        if self.non_orientable {
+            return WrongFaces::NonOrientable;
         }
         if !self.open && self.six_volume.abs() > self.volume_error() {
-            return Wrong::Half(usize::from(self.six_volume > 0.0));
+            return WrongFaces::Half(usize::from(self.six_volume > 0.0));
         }
         match self.halves[0].cmp(&self.halves[1]) {
-            std::cmp::Ordering::Less => Wrong::Half(0),
-            std::cmp::Ordering::Equal => Wrong::Undecided,
-            std::cmp::Ordering::Greater => Wrong::Half(1),
+            std::cmp::Ordering::Less => WrongFaces::Half(0),
+            std::cmp::Ordering::Equal => WrongFaces::Undecided,
+            std::cmp::Ordering::Greater => WrongFaces::Half(1),
         }
     }
 }
 
 /// Finds faces that are the wrong way round, and closed components.
 pub(super) fn find_inverted(
-    shapes: &Shapes,
-    mut joints: Joints,
-    fates: &mut [Fate],
+    geometry: &MeshGeometry,
+    mut connectivity: FaceConnectivity,
+    statuses: &mut [FaceStatus],
     inspection: &mut Inspection,
 ) {
     // Patches by number; the first face of each comes first, as it is the root.
-    let mut numbers = vec![u32::MAX; fates.len()];
+    let mut numbers = vec![u32::MAX; statuses.len()];
     let mut patches: Vec<Patch> = Vec::new();
-    for face in shapes.faces().filter(|&face| fates[face as usize].stays()) {
-        let (root, turned) = joints.patches.root(face);
+    for face in geometry.faces().filter(|&face| statuses[face as usize].is_surface()) {
+        let (root, turned) = connectivity.patches.find(face);
         if root == face {
             numbers[face as usize] = patches.len() as u32;
             patches.push(Patch { first: face, ..Patch::default() });
@@ -92,43 +93,43 @@ pub(super) fn find_inverted(
         numbers[face as usize] = number;
         let patch = &mut patches[number as usize];
         patch.halves[usize::from(turned)] += 1;
-        patch.open |= joints.at_rim[face as usize];
+        patch.open |= connectivity.at_patch_border[face as usize];
         // From a place of its own, so that a far body does not drown in rounding.
-        let [from, ..] = shapes.corners(patch.first);
-        patch.add_volume(shapes.corners(face).map(|corner| corner - from), turned);
+        let [from, ..] = geometry.corners(patch.first);
+        patch.add_volume(geometry.corners(face).map(|corner| corner - from), turned);
     }
-    for &face in &joints.one_sided {
-        patches[numbers[face as usize] as usize].one_sided = true;
+    for &face in &connectivity.non_orientable {
+        patches[numbers[face as usize] as usize].non_orientable = true;
     }
 
     for patch in &patches {
-        let example = || at_face(patch.first, shapes.middle(patch.first));
+        let example = || Example::at_face(patch.first, geometry.middle(patch.first));
         inspection.closed_components += usize::from(!patch.open);
-        if !patch.open && !patch.one_sided {
+        if !patch.open && !patch.non_orientable {
             inspection.volume += patch.six_volume.abs() / 6.0;
         }
         match patch.wrong() {
-            Wrong::OneSided => inspection.one_sided_patches.add(example),
-            Wrong::Undecided => inspection.undecided_patches.add(example),
-            Wrong::Half(0) if patch.halves[1] == 0 => inspection.inside_out += 1,
-            Wrong::Half(_) => {}
+            WrongFaces::NonOrientable => inspection.one_sided_patches.add(example),
+            WrongFaces::Undecided => inspection.undecided_patches.add(example),
+            WrongFaces::Half(0) if patch.halves[1] == 0 => inspection.inside_out += 1,
+            WrongFaces::Half(_) => {}
         }
     }
 
     // Seen from above, the open patches show these areas of front and back faces; a closed one as much of both.
     let (mut up, mut down, mut area) = (0.0, 0.0, 0.0);
-    for face in shapes.faces().filter(|&face| numbers[face as usize] != u32::MAX) {
+    for face in geometry.faces().filter(|&face| numbers[face as usize] != u32::MAX) {
         let patch = &patches[numbers[face as usize] as usize];
-        let (_, turned) = joints.patches.root(face);
-        if patch.wrong() == Wrong::Half(usize::from(turned)) {
-            fates[face as usize] = Fate::Inverted;
-            inspection.inverted.add(|| at_face(face, shapes.middle(face)));
+        let (_, turned) = connectivity.patches.find(face);
+        if patch.wrong() == WrongFaces::Half(usize::from(turned)) {
+            statuses[face as usize] = FaceStatus::Inverted;
+            inspection.inverted.add(|| Example::at_face(face, geometry.middle(face)));
         }
         if patch.open {
-            let normal = shapes.normal(face);
+            let normal = geometry.normal(face);
             area += normal.length();
             *(if normal.z < 0.0 { &mut down } else { &mut up }) += normal.z.abs();
         }
     }
-    inspection.upside_down = down > up && down + up > LEAST_LEVEL * area;
+    inspection.upside_down = down > up && down + up > MIN_HORIZONTAL_SHARE * area;
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_scene::FaceId;
 
 /// How many examples are kept of anything.
-const EXAMPLES: usize = 5;
+const MAX_EXAMPLES: usize = 5;
 
 /// What there is in a mesh, and what may be wrong with it. Lengths are in metres, places in the global frame.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -76,7 +76,7 @@ pub struct Inspection {
 impl Inspection {
     /// From this ratio of length to width on a face is called slender. CHOICE: at 1e4 a face of a metre is a tenth of
     /// a millimetre wide; it is a matter for people, since renderers take any.
-    pub const SLENDER: f64 = 1e4;
+    pub const MIN_SLENDER_ASPECT: f64 = 1e4;
 
     /// Loops of open edges beyond the one that is a ground's border: holes, and gaps between parts.
     pub fn excess_loops(&self) -> usize {
@@ -121,7 +121,7 @@ impl Found {
     /// Counts one more; it is looked at only if it is among the first.
     pub(crate) fn add(&mut self, example: impl FnOnce() -> Example) {
         self.count += 1;
-        if self.examples.len() < EXAMPLES {
+        if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(example());
         }
     }
@@ -134,6 +134,13 @@ pub struct Example {
     pub item: Item,
     /// A vertex, the middle of an edge or of a face; global frame, metres.
     pub place: DVec3,
+}
+
+impl Example {
+    /// A face, and a place on it in the global frame, metres.
+    pub(super) fn at_face(face: u32, place: DVec3) -> Self {
+        Self { item: Item::Face(FaceId(face)), place }
+    }
 }
 
 /// A part of a mesh.
@@ -187,9 +194,9 @@ impl OpenEdges {
     pub(crate) fn add_piece(&mut self, piece: OpenPiece) {
         self.pieces += 1;
         let at = self.longest.partition_point(|other| other.length >= piece.length);
-        if at < EXAMPLES {
+        if at < MAX_EXAMPLES {
             self.longest.insert(at, piece);
-            self.longest.truncate(EXAMPLES);
+            self.longest.truncate(MAX_EXAMPLES);
         }
     }
 }

@@ -7,16 +7,16 @@
 use glam::DVec2;
 
 use crate::Posts;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// Depth from rim to floor of a fresh crater and of the most degraded one, shares of its diameter.
-const DEPTH: [f64; 2] = [0.2, 0.03];
+const DEPTH_PER_DIAMETER: [f64; 2] = [0.2, 0.03];
 /// Height of the rim above the ground around it, likewise.
-const RIM: [f64; 2] = [0.04, 0.004];
+const RIM_HEIGHT_PER_DIAMETER: [f64; 2] = [0.04, 0.004];
 /// How much the rim of the most degraded crater is rounded, a share of the diameter. CHOICE.
-const ROUNDING: f64 = 0.03;
+const MAX_RIM_ROUNDING_PER_DIAMETER: f64 = 0.03;
 /// The ejecta end here, in radii.
-const REACH: f64 = 3.0;
+const EJECTA_END_RADII: f64 = 3.0;
 
 /// How many craters there are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,25 +44,25 @@ impl Craters {
     }
 
     fn side(&self, extent: f64) -> f64 {
-        extent + self.largest * REACH
+        extent + self.largest * EJECTA_END_RADII
     }
 
     /// The craters of a square of that side about `middle`, the largest first.
     pub(super) fn draw(&self, middle: DVec2, extent: f64, seed: u64) -> Vec<Crater> {
-        let mut draws = Draws::new(seed, Purpose::Craters);
+        let mut random = RandomStream::new(seed, StreamPurpose::Craters);
         let scale = self.density * self.area(extent);
         // The number of craters above D is a Poisson process in scale / D^2.
         let mut events = scale / (self.largest * self.largest);
         let mut craters = Vec::new();
         loop {
-            events += draws.exponential();
+            events += random.exponential();
             let diameter = (scale / events).sqrt();
             if !(diameter >= self.smallest) {
                 return craters;
             }
             let half = 0.5 * self.side(extent);
-            let centre = middle + DVec2::new(draws.between(-half, half), draws.between(-half, half));
-            craters.push(Crater { centre, diameter, degradation: draws.unit() });
+            let centre = middle + DVec2::new(random.between(-half, half), random.between(-half, half));
+            craters.push(Crater { centre, diameter, degradation: random.uniform() });
         }
     }
 }
@@ -81,12 +81,12 @@ pub struct Crater {
 impl Crater {
     /// From the rim to the floor, metres.
     pub fn depth(&self) -> f64 {
-        self.between(DEPTH)
+        self.between(DEPTH_PER_DIAMETER)
     }
 
     /// Of the rim above the ground around it, metres.
     pub fn rim_height(&self) -> f64 {
-        self.between(RIM)
+        self.between(RIM_HEIGHT_PER_DIAMETER)
     }
 
     fn between(&self, [fresh, degraded]: [f64; 2]) -> f64 {
@@ -96,28 +96,28 @@ impl Crater {
     /// What it adds to the height of the ground at that distance from its middle, metres.
     pub fn profile(&self, distance: f64) -> f64 {
         let r = 2.0 * distance / self.diameter;
-        if r >= REACH {
+        if r >= EJECTA_END_RADII {
             return 0.0;
         }
-        let rounding = ROUNDING * self.degradation * self.diameter;
+        let rounding = MAX_RIM_ROUNDING_PER_DIAMETER * self.degradation * self.diameter;
         // The smooth minimum below lowers the crest. Where straight lines of slopes a > 0 and -b < 0 meet, it does so by
         // width s (1 - s), s = b / (a + b); bowl and blanket are not straight, but nearly so near the rim.
-        let [a, b] = [4.0 * DEPTH[0], 6.0 * self.rim_height() / self.diameter];
+        let [a, b] = [4.0 * DEPTH_PER_DIAMETER[0], 6.0 * self.rim_height() / self.diameter];
         let share = b / (a + b);
         let rim = self.rim_height() + rounding * share * (1.0 - share);
-        let bowl = DEPTH[0] * self.diameter * (r * r - 1.0) + rim;
+        let bowl = DEPTH_PER_DIAMETER[0] * self.diameter * (r * r - 1.0) + rim;
         // Inside, the blanket only shapes the crest; the bowl is far below it half way out.
         let far = r.max(0.5);
-        let faded = 1.0 / (REACH * REACH * REACH);
+        let faded = 1.0 / (EJECTA_END_RADII * EJECTA_END_RADII * EJECTA_END_RADII);
         let ejecta = rim * (1.0 / (far * far * far) - faded) / (1.0 - faded);
-        let surface = smooth_minimum(bowl, ejecta, rounding);
+        let sheet = smooth_minimum(bowl, ejecta, rounding);
         // Sand fills the bowl up to a level floor.
-        surface.max(self.rim_height() - self.depth())
+        sheet.max(self.rim_height() - self.depth())
     }
 
     /// Adds it to posts.
     pub(super) fn carve(&self, posts: &mut Posts) {
-        let reach = 0.5 * REACH * self.diameter;
+        let reach = 0.5 * EJECTA_END_RADII * self.diameter;
         let range = |centre: f64, corner: f64, spacing: f64, count: u32| {
             let post = |edge: f64| ((edge - corner) / spacing).clamp(0.0, f64::from(count)) as u32;
             post(centre - reach)..(post(centre + reach) + 1).min(count)

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// Which crevasses there are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,14 +24,14 @@ pub struct Crevasses {
 }
 
 /// How far rows are bent at most, metres: crevasses wind by twice this.
-const LARGEST_BEND: f64 = 2.5;
+const MAX_BEND_M: f64 = 2.5;
 
 /// Rows are pressed together to no less than a third: the bend's steepest slope is 1.54 times its height over its width, and
 /// this much more than that.
-const SLACK: f64 = 1.5;
+const BEND_SLACK: f64 = 1.5;
 
 /// Steepest slope of (1 - t^2)^2, at t = 1/sqrt 3: 8 / (3 sqrt 3).
-const STEEPEST: f64 = 1.539_600_717_839_002;
+const MAX_BUMP_SLOPE: f64 = 1.539_600_717_839_002;
 
 impl Crevasses {
     /// Extent along y of the band of rows that each crevasse bends, metres.
@@ -41,44 +41,45 @@ impl Crevasses {
     }
 
     /// The widest that they can be on a ground of that extent along y, metres: it leaves as much for them to wind.
-    pub(super) fn widest(&self, extent: f64) -> f64 {
-        self.band(extent) / (2.0 * SLACK * STEEPEST)
+    pub(super) fn max_width(&self, extent: f64) -> f64 {
+        self.band(extent) / (2.0 * BEND_SLACK * MAX_BUMP_SLOPE)
     }
 
     /// The crevasses on a grid of that many cells along x and y, of that spacing, about the origin.
     pub(super) fn draw(&self, [cells, rows]: [u32; 2], spacing: DVec2, seed: u64) -> Vec<Crevasse> {
-        let mut draws = Draws::new(seed, Purpose::Crevasses);
+        let mut random = RandomStream::new(seed, StreamPurpose::Crevasses);
         let [extent, height] = [f64::from(cells) * spacing.x, f64::from(rows) * spacing.y];
         let band = self.band(height);
-        let bend = LARGEST_BEND.min(0.5 * band / (SLACK * STEEPEST) - 0.5 * self.width).max(0.0);
-        let course = |draws: &mut Draws| {
+        let bend = MAX_BEND_M.min(0.5 * band / (BEND_SLACK * MAX_BUMP_SLOPE) - 0.5 * self.width).max(0.0);
+        let course = |random: &mut RandomStream| {
             // Three waves, the shorter the lower, no higher than the bend together.
             [(0.55, 20.0), (0.3, 8.0), (0.15, 3.5)].map(|(share, length)| Wave {
-                height: bend * share,
-                number: std::f64::consts::TAU / (length * draws.between(0.8, 1.25)),
-                phase: draws.between(0.0, std::f64::consts::TAU),
+                amplitude: bend * share,
+                wave_number: std::f64::consts::TAU / (length * random.between(0.8, 1.25)),
+                phase: random.between(0.0, std::f64::consts::TAU),
             })
         };
         let middle_row = |slot: u32| (((f64::from(slot) + 0.5) * band / spacing.y) as u32).clamp(1, rows - 1);
         let one = |slot: u32| {
-            let course = course(&mut draws);
+            let course = course(&mut random);
             let margin = f64::from(cells);
-            let first = (margin * draws.between(0.03, 0.2)) as u32;
-            let last = cells - (margin * draws.between(0.03, 0.2)) as u32;
+            let first = (margin * random.between(0.03, 0.2)) as u32;
+            let last = cells - (margin * random.between(0.03, 0.2)) as u32;
             let row = middle_row(slot);
             let level = f64::from(row) * spacing.y - 0.5 * height;
-            let ragged = (0..=cells).map(|_| [draws.between(0.75, 1.0), draws.between(0.75, 1.0)]).collect();
+            let edge_shares =
+                (0..=cells).map(|_| [random.between(0.75, 1.0), random.between(0.75, 1.0)]).collect();
             let start = f64::from(first) * spacing.x - 0.5 * extent;
             let end = f64::from(last) * spacing.x - 0.5 * extent;
             Crevasse {
-                law: *self,
+                settings: *self,
                 row,
                 level,
                 columns: first..last,
                 span: [start, end],
                 half_band: 0.5 * band,
                 course,
-                ragged,
+                edge_shares,
             }
         };
         (0..self.count).map(one).collect()
@@ -88,7 +89,7 @@ impl Crevasses {
 /// One crevasse on a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Crevasse {
-    law: Crevasses,
+    settings: Crevasses,
     /// The grid's row that it opens.
     pub row: u32,
     /// y of that row before it is bent.
@@ -99,20 +100,20 @@ pub(super) struct Crevasse {
     half_band: f64,
     course: [Wave; 3],
     /// For each column, how much of its half width the near and the far edge take: edges are ragged.
-    ragged: Vec<[f64; 2]>,
+    edge_shares: Vec<[f64; 2]>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Wave {
-    height: f64,
-    number: f64,
+    amplitude: f64,
+    wave_number: f64,
     phase: f64,
 }
 
 impl Crevasse {
     /// How far rows are bent at that x, metres.
     fn bend(&self, x: f64) -> f64 {
-        self.course.iter().map(|wave| wave.height * libm::sin(wave.number * x + wave.phase)).sum()
+        self.course.iter().map(|wave| wave.amplitude * libm::sin(wave.wave_number * x + wave.phase)).sum()
     }
 
     /// 1 along most of it, 0 at its ends and beyond.
@@ -130,7 +131,7 @@ impl Crevasse {
             return 0.0;
         }
         // Rows make way for the opening as well, to both sides.
-        let opening = 0.5 * self.law.width * self.taper(x);
+        let opening = 0.5 * self.settings.width * self.taper(x);
         let aside = if t > 0.0 {
             opening
         } else if t < 0.0 {
@@ -148,12 +149,12 @@ impl Crevasse {
 
     /// y of a point of a wall or an edge: `side` -1 for near, 1 for far, and how far down it is, 0 at the edge to 1 at
     /// the floor.
-    pub(super) fn wall(&self, column: u32, x: f64, side: f64, down: f64) -> f64 {
+    pub(super) fn wall_y(&self, column: u32, x: f64, side: f64, down: f64) -> f64 {
         let taper = self.taper(x);
-        let [near, far] = self.ragged[column as usize];
-        let edge = 0.5 * self.law.width * taper * if side < 0.0 { near } else { far };
+        let [near, far] = self.edge_shares[column as usize];
+        let edge = 0.5 * self.settings.width * taper * if side < 0.0 { near } else { far };
         // Walls come together by a quarter towards the floor, and go back in between where they overhang.
-        let under = self.law.overhang * taper * 4.0 * down * (1.0 - down);
+        let under = self.settings.overhang * taper * 4.0 * down * (1.0 - down);
         self.middle(x) + side * (edge * (1.0 - 0.25 * down * down) + under)
     }
 
@@ -161,15 +162,15 @@ impl Crevasse {
     pub(super) fn depth(&self, x: f64) -> f64 {
         // Shallower where it winds, so that the floor is not level.
         let uneven = 0.85 + 0.15 * libm::sin(2.3 * x + self.course[0].phase);
-        self.law.depth * self.taper(x) * uneven
+        self.settings.depth * self.taper(x) * uneven
     }
 
     /// Whether a body of that radius at (x, y) would reach over an edge or an overhang.
-    pub(super) fn touches(&self, place: DVec2, radius: f64) -> bool {
+    pub(super) fn overlaps_disc(&self, place: DVec2, radius: f64) -> bool {
         let [start, end] = self.span;
         // The course is no steeper than its bend's slopes together: within a radius it does not move more than this.
-        let slope: f64 = self.course.iter().map(|wave| wave.height * wave.number).sum();
-        let reach = 0.5 * self.law.width + self.law.overhang + radius * (1.0 + slope);
+        let slope: f64 = self.course.iter().map(|wave| wave.amplitude * wave.wave_number).sum();
+        let reach = 0.5 * self.settings.width + self.settings.overhang + radius * (1.0 + slope);
         let beside = place.x < start - radius || place.x > end + radius;
         !beside && (place.y - self.middle(place.x)).abs() < reach
     }

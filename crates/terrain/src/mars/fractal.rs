@@ -12,7 +12,7 @@
 use glam::DVec2;
 
 use crate::Posts;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// How rough a surface is.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,19 +35,19 @@ impl Roughness {
 }
 
 /// Four posts at the corners of a square, as high as the law wants them: neighbours differ by roughness side^H (rms).
-pub(crate) fn corners(side: f64, roughness: &Roughness, seed: u64) -> Posts {
-    let mut draws = Draws::new(seed, Purpose::Corners);
+pub(crate) fn corner_posts(side: f64, roughness: &Roughness, seed: u64) -> Posts {
+    let mut random = RandomStream::new(seed, StreamPurpose::Corners);
     let deviation = roughness.at_1_m * libm::pow(side, roughness.hurst) * std::f64::consts::FRAC_1_SQRT_2;
-    let heights = (0..4).map(|_| deviation * draws.gaussian()).collect();
+    let heights = (0..4).map(|_| deviation * random.normal()).collect();
     Posts { columns: 2, rows: 2, corner: DVec2::ZERO, spacing: DVec2::splat(side), heights }
 }
 
 /// Halves the spacing of `posts` `octaves` times. The old posts are among the new ones, unchanged to the bit.
 pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u64) -> Posts {
-    let mut draws = Draws::new(seed, Purpose::Octaves);
+    let mut random = RandomStream::new(seed, StreamPurpose::Octaves);
     let mut posts = posts;
     for octave in 0..octaves as usize {
-        posts = halved(posts);
+        posts = halve_spacing(posts);
         // CHOICE: a new post in the middle of a cell is sqrt(2) farther from its neighbours than one on a side; both
         // are displaced alike, as in the paper of 1982.
         let spacing = (posts.spacing.x * posts.spacing.y).sqrt();
@@ -57,7 +57,7 @@ pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u6
             // In even rows every second post is an old one.
             let (first, step) = if row % 2 == 0 { (1, 2) } else { (0, 1) };
             for height in heights.iter_mut().skip(first).step_by(step) {
-                *height += displacement * draws.gaussian();
+                *height += displacement * random.normal();
             }
         }
     }
@@ -65,20 +65,20 @@ pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u6
 }
 
 /// Twice as many cells in each direction, the new posts on the smooth curves through the old.
-fn halved(posts: Posts) -> Posts {
+fn halve_spacing(posts: Posts) -> Posts {
     let (old_columns, old_rows) = (posts.columns as usize, posts.rows as usize);
     let (columns, rows) = (2 * old_columns - 1, 2 * old_rows - 1);
     let mut heights = vec![0.0; columns * rows];
     for (old, new) in posts.heights.chunks_exact(old_columns).zip(heights.chunks_exact_mut(2 * columns)) {
-        along(old_columns, |i| old[i], |i, height| new[i] = height);
+        interpolate_line(old_columns, |i| old[i], |i, height| new[i] = height);
     }
     // The last row has no row of new posts after it, so that it is no whole chunk of two.
     let last = (old_rows - 1) * old_columns;
     let (old, new) = (&posts.heights[last..], &mut heights[(rows - 1) * columns..]);
-    along(old_columns, |i| old[i], |i, height| new[i] = height);
+    interpolate_line(old_columns, |i| old[i], |i, height| new[i] = height);
     for column in 0..columns {
         let old: Vec<f64> = (0..old_rows).map(|row| heights[2 * row * columns + column]).collect();
-        along(old_rows, |i| old[i], |i, height| heights[i * columns + column] = height);
+        interpolate_line(old_rows, |i| old[i], |i, height| heights[i * columns + column] = height);
     }
     Posts {
         columns: columns as u32,
@@ -90,7 +90,7 @@ fn halved(posts: Posts) -> Posts {
 }
 
 /// A line of `count` old posts and the new ones between them.
-fn along(count: usize, old: impl Fn(usize) -> f64, mut new: impl FnMut(usize, f64)) {
+fn interpolate_line(count: usize, old: impl Fn(usize) -> f64, mut new: impl FnMut(usize, f64)) {
     for i in 0..count {
         new(2 * i, old(i));
         if i + 1 == count {

@@ -14,9 +14,9 @@ mod crevasses;
 mod fractal;
 mod presets;
 mod rocks;
-mod surface;
+mod sheet;
 #[cfg(test)]
-#[path = "../../tests/unit/mars/mars.rs"]
+#[path = "../../tests/unit/mars/whole_grounds.rs"]
 mod tests;
 
 use glam::{DVec2, DVec3};
@@ -31,7 +31,7 @@ pub use presets::PRESET_NAMES;
 pub use rocks::Rocks;
 
 /// The most faces that a ground may be expected to have: as many as files may.
-const MOST_FACES: f64 = (1 << 25) as f64;
+const MAX_FACES: f64 = (1 << 25) as f64;
 
 /// A ground to be generated. Start from [`MarsGround::preset`] and change fields; the same fields give the same bytes
 /// on every machine.
@@ -61,7 +61,7 @@ pub struct MarsGround {
 }
 
 /// Rocks and crevasses stay this far from the middle, metres.
-const FREE_RADIUS: f64 = 1.5;
+const FREE_RADIUS_M: f64 = 1.5;
 
 impl MarsGround {
     /// Builds it.
@@ -77,8 +77,14 @@ impl MarsGround {
         let cells = [posts.columns - 1, posts.rows - 1];
         let crevasses = self.crevasses.draw(cells, posts.spacing, self.seed);
 
-        let mut ground = Ground { materials: kinds(), ..Ground::default() };
-        surface::add(&mut ground, &posts, &crevasses, &surface::Kinds { soil: SOIL, wall: WALL }, self.seed);
+        let mut ground = Ground { materials: materials(), ..Ground::default() };
+        sheet::add(
+            &mut ground,
+            &posts,
+            &crevasses,
+            &sheet::SheetMaterials { soil: SOIL_MATERIAL, wall: WALL_MATERIAL },
+            self.seed,
+        );
         self.add_rocks(&mut ground, &posts, &crevasses);
         if self.offset != DVec3::ZERO {
             for vertex in &mut ground.vertices {
@@ -118,7 +124,7 @@ impl MarsGround {
         let cells = self.cells();
         let octaves = cells.next_power_of_two().ilog2();
         let whole = 1_u32 << octaves;
-        let start = fractal::corners(f64::from(whole) * self.post_spacing, &self.roughness, self.seed);
+        let start = fractal::corner_posts(f64::from(whole) * self.post_spacing, &self.roughness, self.seed);
         let posts = fractal::refine(start, octaves, &self.roughness, self.seed);
         // The ground is a part of it, about the origin.
         let margin = (whole - cells) / 2;
@@ -147,19 +153,20 @@ impl MarsGround {
     fn add_rocks(&self, ground: &mut Ground, posts: &Posts, crevasses: &[crevasses::Crevasse]) {
         let extent = posts.extent();
         let middle = posts.corner + 0.5 * extent;
-        let free_radius = FREE_RADIUS.min(0.125 * extent.min_element());
+        let free_radius = FREE_RADIUS_M.min(0.125 * extent.min_element());
         let is_free = |place: DVec2, diameter: f64| {
             let local = place - middle;
             let beyond = local.abs().cmpgt(0.5 * extent).any();
             !beyond
                 && local.length() > free_radius + 0.5 * diameter
-                && !crevasses.iter().any(|crevasse| crevasse.touches(local, 0.6 * diameter))
+                && !crevasses.iter().any(|crevasse| crevasse.overlaps_disc(local, 0.6 * diameter))
         };
-        let sites = rocks::place(&self.rock_diameters(), middle, extent.max_element(), self.seed, is_free);
-        let mut shapes = rocks::Shapes::new(self.seed);
+        let sites =
+            rocks::place_rocks(&self.rock_diameters(), middle, extent.max_element(), self.seed, is_free);
+        let mut bodies = rocks::RockBodies::new(self.seed);
         for site in sites {
-            let centre = site.place.extend(surface::height(posts, site.place));
-            shapes.add(ground, centre, site.diameter, ROCK);
+            let centre = site.place.extend(sheet::height(posts, site.place));
+            bodies.add(ground, centre, site.diameter, ROCK_MATERIAL);
         }
     }
 
@@ -212,13 +219,13 @@ impl MarsGround {
                 (coarse.extent(), f64::from(coarse.columns - 1) * f64::from(coarse.rows - 1) * finer * finer)
             }
         };
-        let most = format!("at most {MOST_FACES} faces in all");
-        if 2.0 * cells > MOST_FACES {
+        let most = format!("at most {MAX_FACES} faces in all");
+        if 2.0 * cells > MAX_FACES {
             let found = format!("{} m: {} faces", self.post_spacing, 2.0 * cells);
             return Err(SceneError::new("post_spacing_m", found, most));
         }
-        let rocks = self.rocks.expected_faces_at_most(extent.x * extent.y);
-        if 2.0 * cells + rocks > MOST_FACES {
+        let rocks = self.rocks.max_expected_faces(extent.x * extent.y);
+        if 2.0 * cells + rocks > MAX_FACES {
             let found = format!("{} m: up to {rocks:.0} faces of rocks", self.rocks.smallest);
             return Err(SceneError::new("rock_smallest_m", found, most));
         }
@@ -231,9 +238,10 @@ impl MarsGround {
         if crevasses.count > 1000 {
             return Err(SceneError::new("crevasses", crevasses.count, "0 to 1000"));
         }
-        let widest = crevasses.widest(extent.y);
-        if crevasses.count > 0 && crevasses.width > widest {
-            let expected = format!("at most {widest:.3} m for {} of them on {} m", crevasses.count, extent.y);
+        let max_width = crevasses.max_width(extent.y);
+        if crevasses.count > 0 && crevasses.width > max_width {
+            let expected =
+                format!("at most {max_width:.3} m for {} of them on {} m", crevasses.count, extent.y);
             return Err(SceneError::new("crevasse_width_m", crevasses.width, expected));
         }
         Ok(())
@@ -270,13 +278,13 @@ fn octaves(coarse: f64, fine: f64) -> u32 {
     octaves
 }
 
-const SOIL: u16 = 0;
-const ROCK: u16 = 1;
-const WALL: u16 = 2;
+const SOIL_MATERIAL: u16 = 0;
+const ROCK_MATERIAL: u16 = 1;
+const WALL_MATERIAL: u16 = 2;
 
 /// CHOICE: soil as bright as all ground that brings no reflectivity of its own; rocks and fresh walls darker, as in
 /// near infrared images of the landing sites dust is brighter than rock.
-fn kinds() -> Vec<Material> {
+fn materials() -> Vec<Material> {
     [("soil", 0.25), ("rock", 0.16), ("crevasse wall", 0.2)]
         .map(|(name, reflectivity)| Material { name: name.into(), reflectivity })
         .into()

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use crate::Ground;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// Which rocks lie on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,12 +37,14 @@ impl Rocks {
     }
 
     /// No fewer faces than are to be expected of the rocks on that many square metres.
-    pub(super) fn expected_faces_at_most(&self, area: f64) -> f64 {
+    pub(super) fn max_expected_faces(&self, area: f64) -> f64 {
         let from = |diameter: f64| {
             (1.0 / self.smallest.max(diameter) - 1.0 / self.largest).max(0.0) * self.rate(area)
         };
         // Those of the least faces, and what larger ones have beyond it.
-        32.0 * from(0.0) + 96.0 * from(ROUND) + 384.0 * from(ROUNDER)
+        32.0 * from(0.0)
+            + 96.0 * from(MIN_DIAMETER_OF_128_FACES_M)
+            + 384.0 * from(MIN_DIAMETER_OF_512_FACES_M)
     }
 
     /// Events of the process per unit of 1/D.
@@ -62,15 +64,15 @@ impl Rocks {
         if !(rate > 0.0) {
             return diameters;
         }
-        let mut draws = Draws::new(seed, Purpose::Rocks);
+        let mut random = RandomStream::new(seed, StreamPurpose::Rocks);
         let mut curvature = 1.0 / self.largest;
         loop {
-            curvature += draws.exponential() / rate;
+            curvature += random.exponential() / rate;
             let diameter = 1.0 / curvature;
             if !(diameter >= self.smallest) {
                 return diameters;
             }
-            if draws.unit() < libm::exp(-self.decay() * diameter) {
+            if random.uniform() < libm::exp(-self.decay() * diameter) {
                 diameters.push(diameter);
             }
         }
@@ -79,7 +81,7 @@ impl Rocks {
 
 /// Where a rock lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Site {
+pub(super) struct RockSite {
     pub place: DVec2,
     pub diameter: f64,
 }
@@ -89,25 +91,25 @@ pub(super) struct Site {
 ///
 /// CHOICE: rocks do not lie in one another as long as another place is found within a few draws; the law says
 /// nothing of places. The number of rocks does not depend on it.
-pub(super) fn place(
+pub(super) fn place_rocks(
     diameters: &[f64],
     middle: DVec2,
     extent: f64,
     seed: u64,
     is_free: impl Fn(DVec2, f64) -> bool,
-) -> Vec<Site> {
-    const TRIES: usize = 24;
-    let mut draws = Draws::new(seed, Purpose::RockPlaces);
+) -> Vec<RockSite> {
+    const MAX_TRIES_PER_ROCK: usize = 24;
+    let mut random = RandomStream::new(seed, StreamPurpose::RockPlaces);
     // Cells as large as the largest rock: two that touch lie in the same or in neighbouring cells.
     let cell = diameters.first().copied().unwrap_or(1.0);
     let cell_of = |place: DVec2| ((place - middle) / cell).floor().to_array().map(|index| index as i64);
-    let mut sites: Vec<Site> = Vec::with_capacity(diameters.len());
+    let mut sites: Vec<RockSite> = Vec::with_capacity(diameters.len());
     let mut taken: BTreeMap<[i64; 2], Vec<u32>> = BTreeMap::new();
     for &diameter in diameters {
         let mut chosen = None;
-        for _ in 0..TRIES {
+        for _ in 0..MAX_TRIES_PER_ROCK {
             let half = 0.5 * extent;
-            let place = middle + DVec2::new(draws.between(-half, half), draws.between(-half, half));
+            let place = middle + DVec2::new(random.between(-half, half), random.between(-half, half));
             if !is_free(place, diameter) {
                 continue;
             }
@@ -125,35 +127,36 @@ pub(super) fn place(
         // Where nothing is free at all, as on a ground that is all start or crevasse, there is no rock.
         let Some(place) = chosen else { continue };
         taken.entry(cell_of(place)).or_default().push(sites.len() as u32);
-        sites.push(Site { place, diameter });
+        sites.push(RockSite { place, diameter });
     }
     sites
 }
 
 /// Rocks from these diameters on, metres, have 128 and 512 faces; smaller ones have 32. CHOICE: facets of some centimetres.
-const ROUND: f64 = 0.15;
-const ROUNDER: f64 = 0.6;
+const MIN_DIAMETER_OF_128_FACES_M: f64 = 0.15;
+const MIN_DIAMETER_OF_512_FACES_M: f64 = 0.6;
 
 /// How often the faces of a rock's octahedron are cut in four.
 fn subdivisions(diameter: f64) -> u32 {
-    1 + u32::from(diameter >= ROUND) + u32::from(diameter >= ROUNDER)
+    1 + u32::from(diameter >= MIN_DIAMETER_OF_128_FACES_M)
+        + u32::from(diameter >= MIN_DIAMETER_OF_512_FACES_M)
 }
 
 /// The bodies of rocks.
-pub(super) struct Shapes {
-    draws: Draws,
+pub(super) struct RockBodies {
+    random: RandomStream,
     /// Octahedra whose faces are cut in four once, twice and three times, thrown onto the unit sphere.
     spheres: [Sphere; 3],
 }
 
-impl Shapes {
+impl RockBodies {
     pub(super) fn new(seed: u64) -> Self {
         let mut sphere = Sphere::octahedron();
         let spheres = [(); 3].map(|()| {
-            sphere = sphere.cut();
+            sphere = sphere.subdivided();
             sphere.clone()
         });
-        Self { draws: Draws::new(seed, Purpose::RockShapes), spheres }
+        Self { random: RandomStream::new(seed, StreamPurpose::RockShapes), spheres }
     }
 
     /// Adds a closed rock of that diameter, its widest level at `centre`.
@@ -165,20 +168,20 @@ impl Shapes {
     /// 1997 find linear relations of height and diameter), and up to 0.35 of the diameter deep in it, so that no side of
     /// it hangs over a slope of less than 35 degrees.
     pub(super) fn add(&mut self, ground: &mut Ground, centre: DVec3, diameter: f64, material: u16) {
-        let draws = &mut self.draws;
+        let random = &mut self.random;
         let sphere = &self.spheres[subdivisions(diameter) as usize - 1];
         // Flat sides: at least half of the radius is left.
         let planes: Vec<(DVec3, f64)> =
-            (0..8).map(|_| (draws.direction(), draws.between(0.55, 0.95))).collect();
+            (0..8).map(|_| (random.direction(), random.between(0.55, 0.95))).collect();
         let cut = |direction: DVec3| {
             planes.iter().fold(1.0_f64, |radius, (normal, distance)| {
                 let cosine = normal.dot(direction);
                 if cosine * radius > *distance { distance / cosine } else { radius }
             })
         };
-        let slender = draws.between(0.6, 1.0);
-        let (sin, cos) = libm::sincos(draws.between(0.0, std::f64::consts::TAU));
-        let (height, depth) = (diameter * draws.between(0.3, 0.7), 0.35 * diameter);
+        let slender = random.between(0.6, 1.0);
+        let (sin, cos) = libm::sincos(random.between(0.0, std::f64::consts::TAU));
+        let (height, depth) = (diameter * random.between(0.3, 0.7), 0.35 * diameter);
         let body: Vec<DVec3> = sphere
             .vertices
             .iter()
@@ -195,10 +198,10 @@ impl Shapes {
         let first = ground.vertices.len() as u32;
         for v in body {
             let z = if v.z > 0.0 { v.z * (height / top) } else { v.z * (depth / -bottom) };
-            ground.vertex(centre + DVec3::new(scale * v.x, scale * v.y, z));
+            ground.add_vertex(centre + DVec3::new(scale * v.x, scale * v.y, z));
         }
         for face in &sphere.faces {
-            ground.face(face.map(|corner| first + corner), material);
+            ground.add_face(face.map(|corner| first + corner), material);
         }
     }
 }
@@ -232,7 +235,7 @@ impl Sphere {
     }
 
     /// Every face cut in four at the middles of its sides.
-    fn cut(&self) -> Self {
+    fn subdivided(&self) -> Self {
         let mut vertices = self.vertices.clone();
         let mut middles = BTreeMap::new();
         let mut middle_of = |a: u32, b: u32| {

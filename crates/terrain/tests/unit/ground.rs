@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::draws::Purpose;
+use crate::random_stream::StreamPurpose;
 
 /// (b - a) x (c - a) of a face.
 pub(crate) fn normal(ground: &Ground, face: [u32; 3]) -> DVec3 {
@@ -36,7 +36,7 @@ fn a_box_has_the_volume_of_a_box() {
     // Sides of 2, 4 and 6 m: the top is at z = 1 + 3, all twelve faces together measure
     // 2 (2*4 + 4*6 + 6*2) = 88 square metres.
     let mut ground = Ground::default();
-    ground.solid_box(DVec3::Z, [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0], 0);
+    ground.add_box(DVec3::Z, [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0], 0);
     assert_closed_and_outward(&ground, 0..12);
     let area: f64 = ground.faces.iter().map(|&face| normal(&ground, face).length() / 2.0).sum();
     assert_eq!(area, 88.0);
@@ -46,7 +46,7 @@ fn a_box_has_the_volume_of_a_box() {
 #[test]
 fn a_pyramid_is_closed_and_its_flanks_lean_up() {
     let mut ground = Ground::default();
-    ground.pyramid(DVec3::new(3.0, -1.0, 0.5), 0.5, 0.8, 0.3, 0);
+    ground.add_pyramid(DVec3::new(3.0, -1.0, 0.5), 0.5, 0.8, 0.3, 0);
     assert_closed_and_outward(&ground, 0..6);
     assert!(ground.faces[..4].iter().all(|&face| normal(&ground, face).z > 0.0));
     assert!(ground.faces[4..].iter().all(|&face| normal(&ground, face).z < 0.0));
@@ -57,7 +57,7 @@ fn a_height_field_looks_up_on_either_diagonal() {
     for falling in [false, true] {
         let mut ground = Ground::default();
         let place = |column, row| DVec3::new(f64::from(column), f64::from(row), 0.0);
-        ground.height_field(3, 2, place, || falling, || 0);
+        ground.add_height_field(3, 2, place, || falling, || 0);
         assert_eq!((ground.vertices.len(), ground.faces.len()), (12, 12));
         assert!(ground.faces.iter().all(|&face| normal(&ground, face) == DVec3::Z));
     }
@@ -71,7 +71,7 @@ proptest! {
         let mut ground = Ground::default();
         let centre = DVec3::new(10.0, -20.0, 0.3);
         let half_axes = DVec3::new(a, b, c);
-        ground.rock(centre, half_axes, &mut Draws::new(seed, Purpose::Boulders), 0);
+        ground.add_rock(centre, half_axes, &mut RandomStream::new(seed, StreamPurpose::Boulders), 0);
         prop_assert_eq!((ground.vertices.len(), ground.faces.len()), (18, 32));
         assert_closed_and_outward(&ground, 0..32);
         // Star-shaped: every face looks away from the centre.
@@ -84,8 +84,8 @@ proptest! {
     #[test]
     fn mushrooms_are_closed_and_outward(seed: u64, height in 0.2..2.0, radius in 0.2..2.0, sides in 3_u32..12) {
         let mut ground = Ground::default();
-        let mut draws = Draws::new(seed, Purpose::Overhangs);
-        ground.mushroom(DVec3::new(1.0, 2.0, -0.1), height, radius, sides, &mut draws, 0);
+        let mut random = RandomStream::new(seed, StreamPurpose::Overhangs);
+        ground.add_mushroom(DVec3::new(1.0, 2.0, -0.1), height, radius, sides, &mut random, 0);
         prop_assert_eq!(ground.faces.len(), 8 * sides as usize);
         assert_closed_and_outward(&ground, 0..ground.faces.len());
     }

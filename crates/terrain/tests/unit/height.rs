@@ -15,7 +15,7 @@ fn ramp() -> Ground {
         let (x, y) = (20.0 * f64::from(column) - 10.0, 20.0 * f64::from(row) - 10.0);
         DVec3::new(x, y, 0.5 * x)
     };
-    ground.height_field(1, 1, place, || false, || 0);
+    ground.add_height_field(1, 1, place, || false, || 0);
     ground
 }
 
@@ -37,7 +37,7 @@ fn the_flank_of_a_pyramid() {
     // Half side 2 m, height 1 m, not turned: the flank towards +x falls from 1 m at x = 0 to 0 m at
     // x = 2, so at (0.5, 0.25) it stands at 1 * (1 - 0.5 / 2) = 0.75 m. The base, 0 m, looks down.
     let mut ground = bare();
-    ground.pyramid(DVec3::ZERO, 2.0, 1.0, 0.0, 0);
+    ground.add_pyramid(DVec3::ZERO, 2.0, 1.0, 0.0, 0);
     let mesh = ground.into_mesh().unwrap();
     assert_eq!(height_at(&mesh, 0.5, 0.25), Some(0.75));
     assert_eq!(height_at(&mesh, 0.0, 0.0), Some(1.0));
@@ -50,7 +50,7 @@ fn the_flank_of_a_pyramid() {
 fn an_overhang_gives_its_upper_surface() {
     // A slab from 1.0 to 1.2 m above the ramp's 0.5 x at x = 1.
     let mut ground = ramp();
-    ground.solid_box(DVec3::new(1.0, 1.0, 1.1), [DVec3::X * 0.5, DVec3::Y * 0.5, DVec3::Z * 0.1], 0);
+    ground.add_box(DVec3::new(1.0, 1.0, 1.1), [DVec3::X * 0.5, DVec3::Y * 0.5, DVec3::Z * 0.1], 0);
     let mesh = ground.into_mesh().unwrap();
     // 1.2 is not an f32: the stored number is the nearest one.
     assert_eq!(height_at(&mesh, 1.0, 1.0), Some(f64::from(1.2_f32)));

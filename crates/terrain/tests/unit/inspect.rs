@@ -102,8 +102,8 @@ fn two_cubes_that_share_a_wall_are_crowded_there() {
     // halves of the wall are there in both senses.
     let half = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * 0.5);
     let mut cubes = Ground { materials: ground(), ..Ground::default() };
-    cubes.solid_box(DVec3::ZERO, half, 0);
-    cubes.solid_box(DVec3::X, half, 0);
+    cubes.add_box(DVec3::ZERO, half, 0);
+    cubes.add_box(DVec3::X, half, 0);
     let found = inspect(&cubes.into_mesh().unwrap());
     // The four corners of the wall are there twice.
     assert_eq!((found.split_vertices.count, found.components, found.closed_components), (4, 1, 0));
@@ -129,7 +129,7 @@ fn three_faces_fan_out_from_one_edge() {
 fn square() -> Ground {
     let mut square = Ground { materials: ground(), ..Ground::default() };
     let place = |column, row| DVec3::new(f64::from(column), f64::from(row), 0.0);
-    square.height_field(3, 3, place, || false, || 0);
+    square.add_height_field(3, 3, place, || false, || 0);
     square
 }
 

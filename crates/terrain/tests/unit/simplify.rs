@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::ground::tests::normal;
 use crate::height_at;
-use crate::posts::tests::plain;
+use crate::height_grid::tests::plain;
 
 /// Posts 1 m apart with these heights.
 fn posts(columns: u32, rows: u32, height: impl Fn(u32, u32) -> f64) -> Posts {

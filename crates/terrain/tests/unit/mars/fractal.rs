@@ -14,7 +14,7 @@ fn posts(columns: u32, rows: u32, height: impl Fn(f64, f64) -> f64) -> Posts {
 fn the_curve_through_four_posts_by_hand() {
     // Heights 0, 8, 16, 8 at 0, 1, 2, 3: at 1.5 it is 9/16 (8 + 16) - 1/16 (0 + 8) = 13.5 - 0.5 = 13. Before 0
     // the line goes on to -8: at 0.5 it is 9/16 (0 + 8) - 1/16 (-8 + 16) = 4.
-    let fine = halved(posts(4, 1, |x, _| [0.0, 8.0, 16.0, 8.0][x as usize]));
+    let fine = halve_spacing(posts(4, 1, |x, _| [0.0, 8.0, 16.0, 8.0][x as usize]));
     assert_eq!((fine.columns, fine.rows), (7, 1));
     assert_eq!(fine.heights, [0.0, 4.0, 8.0, 13.0, 16.0, 13.0, 8.0]);
     assert_eq!(fine.at(3, 0), glam::DVec3::new(1.5, 0.0, 13.0));
@@ -68,7 +68,7 @@ fn the_structure_function_follows_the_exponent() {
         let rough = Roughness { hurst, at_1_m: 0.1, octave_gains: Vec::new() };
         let mut squares = [0.0; 5];
         for seed in 0..40 {
-            let fine = refine(corners(64.0, &rough, seed), 8, &rough, seed);
+            let fine = refine(corner_posts(64.0, &rough, seed), 8, &rough, seed);
             for (k, square) in squares.iter_mut().enumerate() {
                 let lag = 1_u32 << k;
                 let all = (0..257).flat_map(|row| (0..257 - lag).map(move |column| (column, row)));

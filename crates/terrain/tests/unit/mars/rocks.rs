@@ -65,7 +65,7 @@ fn smaller_rocks_are_added_at_the_end() {
 fn rocks_keep_apart_and_out_of_what_is_not_free() {
     let diameters = PATHFINDER.diameters(900.0, 8);
     let free = |place: DVec2, diameter: f64| place.length() > 2.0 + 0.5 * diameter;
-    let sites = place(&diameters, DVec2::ZERO, 30.0, 8, free);
+    let sites = place_rocks(&diameters, DVec2::ZERO, 30.0, 8, free);
     assert_eq!(sites.len(), diameters.len());
     let touching = |k: usize| {
         let rock = sites[k];
@@ -77,17 +77,17 @@ fn rocks_keep_apart_and_out_of_what_is_not_free() {
     // A place is missed 24 times in a row only where it is very full: with a fifth covered, never.
     assert_eq!(count, 0);
     assert!(sites.iter().all(|site| free(site.place, site.diameter)));
-    assert!(place(&diameters, DVec2::ZERO, 30.0, 8, |_, _| false).is_empty());
+    assert!(place_rocks(&diameters, DVec2::ZERO, 30.0, 8, |_, _| false).is_empty());
 }
 
 #[test]
 fn bodies_are_closed_outward_and_as_wide_and_high_as_asked_for() {
-    let mut shapes = Shapes::new(5);
+    let mut bodies = RockBodies::new(5);
     for k in 0..200 {
         let diameter = 0.05 + 0.01 * f64::from(k);
         let mut ground = Ground::default();
         let centre = DVec3::new(3.0, -2.0, 0.7);
-        shapes.add(&mut ground, centre, diameter, 0);
+        bodies.add(&mut ground, centre, diameter, 0);
         assert_eq!(ground.faces.len(), faces(diameter));
         assert_closed_and_outward(&ground, 0..ground.faces.len());
         let plan = plan_area(&ground.vertices, &ground.faces);
@@ -103,11 +103,11 @@ fn bodies_are_closed_outward_and_as_wide_and_high_as_asked_for() {
 fn the_outline_is_as_large_as_the_faces_say() {
     // The upper side folds over itself hardly anywhere: the outline, counted on a raster of 2 % of the diameter, is
     // as large as the sum of projected faces within 1 % on the mean of 40 rocks.
-    let mut shapes = Shapes::new(6);
+    let mut bodies = RockBodies::new(6);
     let mut ratio = 0.0;
     for _ in 0..40 {
         let mut ground = Ground::default();
-        shapes.add(&mut ground, DVec3::ZERO, 1.0, 0);
+        bodies.add(&mut ground, DVec3::ZERO, 1.0, 0);
         let triangles: Vec<[DVec2; 3]> =
             ground.faces.iter().map(|f| f.map(|v| ground.vertices[v as usize].truncate())).collect();
         let inside = |p: DVec2| {

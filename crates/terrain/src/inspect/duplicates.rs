@@ -1,13 +1,19 @@
 //! Faces on the same three places.
 
-use super::shape::Shapes;
-use super::{Fate, Inspection, at_face};
+use super::geometry::MeshGeometry;
+use super::report::{Example, Inspection};
+use super::status::FaceStatus;
 
 /// Sets copies aside, and counts sheets of two sides.
-pub(super) fn find_copies(shapes: &Shapes, welded: &[u32], fates: &mut [Fate], inspection: &mut Inspection) {
+pub(super) fn find_duplicates(
+    geometry: &MeshGeometry,
+    welded: &[u32],
+    statuses: &mut [FaceStatus],
+    inspection: &mut Inspection,
+) {
     // The corners from the lowest on, as [a, b, c] in the face's own sense.
     let turned = |face: u32| {
-        let mut corners = shapes.mesh.faces()[face as usize].map(|vertex| welded[vertex as usize]);
+        let mut corners = geometry.mesh.faces()[face as usize].map(|vertex| welded[vertex as usize]);
         let lowest = (0..3).min_by_key(|&corner| corners[corner]).expect("three corners");
         corners.rotate_left(lowest);
         corners
@@ -21,7 +27,7 @@ pub(super) fn find_copies(shapes: &Shapes, welded: &[u32], fates: &mut [Fate], i
         ([a, b.min(c), b.max(c)], face)
     };
     let mut faces: Vec<([u32; 3], u32)> =
-        shapes.faces().filter(|&face| fates[face as usize] == Fate::Sound).map(sorted).collect();
+        geometry.faces().filter(|&face| statuses[face as usize] == FaceStatus::Sound).map(sorted).collect();
     faces.sort_unstable();
     // Faces of each place follow each other by number, so that the first of each sense is the lowest.
     let mut sheets = Vec::new();
@@ -30,9 +36,10 @@ pub(super) fn find_copies(shapes: &Shapes, welded: &[u32], fates: &mut [Fate], i
         for &(_, face) in place {
             match &mut first[usize::from(sense(face))] {
                 Some(earlier) => {
-                    let material = |face: u32| shapes.mesh.face_materials()[face as usize];
+                    let material = |face: u32| geometry.mesh.face_materials()[face as usize];
                     let same = material(*earlier) == material(face);
-                    fates[face as usize] = if same { Fate::Copy } else { Fate::CopyOfOtherMaterial };
+                    statuses[face as usize] =
+                        if same { FaceStatus::Duplicate } else { FaceStatus::DuplicateOfOtherMaterial };
                 }
                 none => *none = Some(face),
             }
@@ -45,13 +52,14 @@ pub(super) fn find_copies(shapes: &Shapes, welded: &[u32], fates: &mut [Fate], i
     // Examples in the order of faces.
     sheets.sort_unstable();
     for face in sheets {
-        inspection.double_sided.add(|| at_face(face, shapes.middle(face)));
+        inspection.double_sided.add(|| Example::at_face(face, geometry.middle(face)));
     }
-    for face in shapes.faces() {
-        let fate = fates[face as usize];
-        if matches!(fate, Fate::Copy | Fate::CopyOfOtherMaterial) {
-            inspection.duplicates.add(|| at_face(face, shapes.middle(face)));
-            inspection.duplicates_of_other_material += usize::from(fate == Fate::CopyOfOtherMaterial);
+    for face in geometry.faces() {
+        let status = statuses[face as usize];
+        if matches!(status, FaceStatus::Duplicate | FaceStatus::DuplicateOfOtherMaterial) {
+            inspection.duplicates.add(|| Example::at_face(face, geometry.middle(face)));
+            inspection.duplicates_of_other_material +=
+                usize::from(status == FaceStatus::DuplicateOfOtherMaterial);
         }
     }
 }

@@ -18,7 +18,7 @@ fn small(name: &str, seed: u64) -> MarsGround {
 
 /// Faces of the sheet come first; then rocks.
 fn first_rock_face(ground: &Ground) -> usize {
-    ground.face_materials.iter().position(|&kind| kind == ROCK).unwrap_or(ground.faces.len())
+    ground.face_materials.iter().position(|&kind| kind == ROCK_MATERIAL).unwrap_or(ground.faces.len())
 }
 
 /// The closed bodies of the rocks, as ranges of faces: each has vertices of its own.
@@ -84,7 +84,10 @@ fn the_sheet_has_no_gap_and_no_fold_however_it_is_cut() {
             // Soil looks up everywhere.
             let sheet = first_rock_face(&ground);
             for (face, &kind) in ground.faces[..sheet].iter().zip(&ground.face_materials) {
-                assert!(kind == WALL || normal(&ground, *face).z > 0.0, "{name}, seed {seed}: {face:?}");
+                assert!(
+                    kind == WALL_MATERIAL || normal(&ground, *face).z > 0.0,
+                    "{name}, seed {seed}: {face:?}"
+                );
             }
         }
     }
@@ -100,7 +103,10 @@ fn walls_are_walls_and_overhang_only_if_asked_to() {
     };
     let walls = |ground: &Ground| -> Vec<DVec3> {
         let faces = ground.faces.iter().zip(&ground.face_materials);
-        faces.filter(|(_, kind)| **kind == WALL).map(|(face, _)| normal(ground, *face).normalize()).collect()
+        faces
+            .filter(|(_, kind)| **kind == WALL_MATERIAL)
+            .map(|(face, _)| normal(ground, *face).normalize())
+            .collect()
     };
     let [plain, under] = [0.0, 0.2].map(|overhang| walls(&mars(overhang)));
     assert!(plain.len() > 500);

@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_scene::Material;
 
 use crate::Ground;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// A random ground, centred on `offset`. Start from [`RandomGround::plain`] or [`RandomGround::nasty`] and
 /// change fields; the same fields give the same bytes on every machine.
@@ -97,8 +97,8 @@ impl RandomGround {
     pub fn build(&self) -> Ground {
         assert!(self.materials > 0, "a ground needs a material");
         assert!(self.extent > 0.0 && self.extent.is_finite(), "extent {} m", self.extent);
-        let relief = Relief::new(self.seed, self.extent, self.relief);
-        let mut ground = Ground { materials: self.kinds(), ..Ground::default() };
+        let relief = ValueNoise::new(self.seed, self.extent, self.relief);
+        let mut ground = Ground { materials: self.material_list(), ..Ground::default() };
         self.add_height_field(&mut ground, &relief);
         self.add_boulders(&mut ground, &relief);
         self.add_overhangs(&mut ground, &relief);
@@ -115,7 +115,7 @@ impl RandomGround {
         ground
     }
 
-    fn kinds(&self) -> Vec<Material> {
+    fn material_list(&self) -> Vec<Material> {
         let reflectivity = |kind: u16| match self.materials {
             1 => 0.25,
             count => 0.1 + 0.8 * f64::from(kind) / f64::from(count - 1),
@@ -124,11 +124,11 @@ impl RandomGround {
         (0..self.materials).map(kind).collect()
     }
 
-    fn draw_material(&self, draws: &mut Draws) -> u16 {
-        draws.below(usize::from(self.materials)) as u16
+    fn draw_material(&self, random: &mut RandomStream) -> u16 {
+        random.below(usize::from(self.materials)) as u16
     }
 
-    fn add_height_field(&self, ground: &mut Ground, relief: &Relief) {
+    fn add_height_field(&self, ground: &mut Ground, relief: &ValueNoise) {
         // At most one mushroom more than slabs.
         let overhangs = self.overhangs.div_ceil(2) * MUSHROOM_FACES + self.overhangs / 2 * BOX_FACES;
         let features = self.boulders * ROCK_FACES
@@ -148,27 +148,33 @@ impl RandomGround {
         // Corners move by up to a fifth of a cell each way. With shifts of at most j cells a face's area seen
         // from above is at least ((1 - 2j)^2 - (2j)^2) / 2 = (1 - 4j) / 2 cells: above 0 for j < 1/4, so
         // that every normal points up. The border stays straight.
-        const JITTER: f64 = 0.2;
-        let mut draws = Draws::new(self.seed, Purpose::Grid);
+        const MAX_SHIFT_CELLS: f64 = 0.2;
+        let mut random = RandomStream::new(self.seed, StreamPurpose::Grid);
         let place = |column: u32, row: u32| {
             let mut coordinate = |index: u32| {
-                let shift = draws.between(-JITTER, JITTER);
+                let shift = random.between(-MAX_SHIFT_CELLS, MAX_SHIFT_CELLS);
                 let inside = index > 0 && index < cells;
                 step * (f64::from(index) + if inside { shift } else { 0.0 }) - 0.5 * self.extent
             };
             let (x, y) = (coordinate(column), coordinate(row));
             DVec3::new(x, y, relief.at(x, y))
         };
-        let mut materials = Draws::new(self.seed, Purpose::Materials);
-        let mut diagonals = Draws::new(self.seed, Purpose::Diagonals);
-        ground.height_field(cells, cells, place, || diagonals.coin(), || self.draw_material(&mut materials));
+        let mut materials = RandomStream::new(self.seed, StreamPurpose::Materials);
+        let mut diagonals = RandomStream::new(self.seed, StreamPurpose::Diagonals);
+        ground.add_height_field(
+            cells,
+            cells,
+            place,
+            || diagonals.coin(),
+            || self.draw_material(&mut materials),
+        );
     }
 
     /// A place for a body: on the height field, not in the middle.
-    fn draw_site(&self, draws: &mut Draws, relief: &Relief) -> DVec3 {
+    fn draw_place(&self, random: &mut RandomStream, relief: &ValueNoise) -> DVec3 {
         let clear = f64::min(2.0, 0.25 * self.extent);
         loop {
-            let mut coordinate = || 0.46 * self.extent * draws.between(-1.0, 1.0);
+            let mut coordinate = || 0.46 * self.extent * random.between(-1.0, 1.0);
             let (x, y) = (coordinate(), coordinate());
             if x * x + y * y > clear * clear {
                 return DVec3::new(x, y, relief.at(x, y));
@@ -181,134 +187,134 @@ impl RandomGround {
         f64::min(1.0, self.extent / 20.0)
     }
 
-    fn add_boulders(&self, ground: &mut Ground, relief: &Relief) {
-        let mut draws = Draws::new(self.seed, Purpose::Boulders);
+    fn add_boulders(&self, ground: &mut Ground, relief: &ValueNoise) {
+        let mut random = RandomStream::new(self.seed, StreamPurpose::Boulders);
         for _ in 0..self.boulders {
-            let mut half_axis = || self.body_scale() * draws.between(0.15, 0.9);
+            let mut half_axis = || self.body_scale() * random.between(0.15, 0.9);
             let half_axes = DVec3::new(half_axis(), half_axis(), half_axis());
-            let site = self.draw_site(&mut draws, relief);
-            let centre = site + DVec3::new(0.0, 0.0, draws.between(0.0, 0.6) * half_axes.z);
-            let material = self.draw_material(&mut draws);
-            ground.rock(centre, half_axes, &mut draws, material);
+            let site = self.draw_place(&mut random, relief);
+            let centre = site + DVec3::new(0.0, 0.0, random.between(0.0, 0.6) * half_axes.z);
+            let material = self.draw_material(&mut random);
+            ground.add_rock(centre, half_axes, &mut random, material);
         }
     }
 
-    fn add_overhangs(&self, ground: &mut Ground, relief: &Relief) {
-        let mut draws = Draws::new(self.seed, Purpose::Overhangs);
+    fn add_overhangs(&self, ground: &mut Ground, relief: &ValueNoise) {
+        let mut random = RandomStream::new(self.seed, StreamPurpose::Overhangs);
         let scale = self.body_scale();
         for index in 0..self.overhangs {
-            let site = self.draw_site(&mut draws, relief);
-            let radius = scale * draws.between(0.3, 1.0);
-            let height = scale * draws.between(0.4, 1.3);
-            let material = self.draw_material(&mut draws);
+            let site = self.draw_place(&mut random, relief);
+            let radius = scale * random.between(0.3, 1.0);
+            let height = scale * random.between(0.4, 1.3);
+            let material = self.draw_material(&mut random);
             if index % 2 == 0 {
                 let foot = site - DVec3::new(0.0, 0.0, 0.2 * height);
-                ground.mushroom(foot, 1.2 * height, radius, MUSHROOM_SIDES, &mut draws, material);
+                ground.add_mushroom(foot, 1.2 * height, radius, MUSHROOM_SIDES, &mut random, material);
             } else {
                 // A slab that floats, turned about a random axis by little: its top still looks up.
-                let [u, v] = draw_level_frame(&mut draws);
-                let tilt = DVec3::new(0.0, 0.0, draws.between(-0.4, 0.4));
-                let thickness = DVec3::new(0.0, 0.0, scale * draws.between(0.02, 0.15));
-                let sides = [(u + tilt) * radius, v * (radius * draws.between(0.3, 1.0)), thickness];
-                ground.solid_box(site + DVec3::new(0.0, 0.0, height), sides, material);
+                let [u, v] = draw_level_axes(&mut random);
+                let tilt = DVec3::new(0.0, 0.0, random.between(-0.4, 0.4));
+                let thickness = DVec3::new(0.0, 0.0, scale * random.between(0.02, 0.15));
+                let sides = [(u + tilt) * radius, v * (radius * random.between(0.3, 1.0)), thickness];
+                ground.add_box(site + DVec3::new(0.0, 0.0, height), sides, material);
             }
         }
     }
 
-    fn add_walls(&self, ground: &mut Ground, relief: &Relief) {
-        let mut draws = Draws::new(self.seed, Purpose::Walls);
+    fn add_walls(&self, ground: &mut Ground, relief: &ValueNoise) {
+        let mut random = RandomStream::new(self.seed, StreamPurpose::Walls);
         let scale = self.body_scale();
         for index in 0..self.walls {
-            let site = self.draw_site(&mut draws, relief);
-            let turned = draw_level_frame(&mut draws);
+            let site = self.draw_place(&mut random, relief);
+            let turned = draw_level_axes(&mut random);
             let [u, v] = if index % 2 == 0 { [DVec3::X, DVec3::Y] } else { turned };
-            let half_length = scale * draws.between(0.2, 1.2);
-            let half_thickness = scale * draws.between(0.001, 0.1);
-            let half_height = DVec3::new(0.0, 0.0, scale * draws.between(0.3, 0.9));
-            let material = self.draw_material(&mut draws);
-            ground.solid_box(site, [u * half_length, v * half_thickness, half_height], material);
+            let half_length = scale * random.between(0.2, 1.2);
+            let half_thickness = scale * random.between(0.001, 0.1);
+            let half_height = DVec3::new(0.0, 0.0, scale * random.between(0.3, 0.9));
+            let material = self.draw_material(&mut random);
+            ground.add_box(site, [u * half_length, v * half_thickness, half_height], material);
         }
     }
 
-    fn add_slivers(&self, ground: &mut Ground, relief: &Relief) {
-        let mut draws = Draws::new(self.seed, Purpose::Slivers);
+    fn add_slivers(&self, ground: &mut Ground, relief: &ValueNoise) {
+        let mut random = RandomStream::new(self.seed, StreamPurpose::Slivers);
         for _ in 0..self.slivers {
-            let site = self.draw_site(&mut draws, relief);
-            let [along, across] = draw_level_frame(&mut draws);
-            let length = self.body_scale() * draws.between(0.3, 3.0);
-            let aspect = libm::pow(10.0, draws.between(3.0, 6.0));
-            let rise = DVec3::new(0.0, 0.0, draws.between(-0.5, 0.5));
-            let low = site + DVec3::new(0.0, 0.0, draws.between(0.02, 0.4));
+            let site = self.draw_place(&mut random, relief);
+            let [along, across] = draw_level_axes(&mut random);
+            let length = self.body_scale() * random.between(0.3, 3.0);
+            let aspect = libm::pow(10.0, random.between(3.0, 6.0));
+            let rise = DVec3::new(0.0, 0.0, random.between(-0.5, 0.5));
+            let low = site + DVec3::new(0.0, 0.0, random.between(0.02, 0.4));
             // The third corner lies anywhere along the long side: needles and caps.
-            let third = low + (along + rise) * (length * draws.unit()) + across * (length / aspect);
-            let corners = [low, low + (along + rise) * length, third].map(|corner| ground.vertex(corner));
-            let material = self.draw_material(&mut draws);
-            ground.face(corners, material);
+            let third = low + (along + rise) * (length * random.uniform()) + across * (length / aspect);
+            let corners = [low, low + (along + rise) * length, third].map(|corner| ground.add_vertex(corner));
+            let material = self.draw_material(&mut random);
+            ground.add_face(corners, material);
         }
     }
 
     fn add_duplicate_faces(&self, ground: &mut Ground) {
-        let mut draws = Draws::new(self.seed, Purpose::DuplicateFaces);
+        let mut random = RandomStream::new(self.seed, StreamPurpose::DuplicateFaces);
         let originals = ground.faces.len();
         for _ in 0..self.duplicate_faces {
-            let mut corners = ground.faces[draws.below(originals)];
-            corners.rotate_left(draws.below(3));
-            let material = self.draw_material(&mut draws);
-            ground.face(corners, material);
+            let mut corners = ground.faces[random.below(originals)];
+            corners.rotate_left(random.below(3));
+            let material = self.draw_material(&mut random);
+            ground.add_face(corners, material);
         }
     }
 
-    fn add_zero_area_faces(&self, ground: &mut Ground, relief: &Relief) {
-        let mut draws = Draws::new(self.seed, Purpose::ZeroAreaFaces);
+    fn add_zero_area_faces(&self, ground: &mut Ground, relief: &ValueNoise) {
+        let mut random = RandomStream::new(self.seed, StreamPurpose::ZeroAreaFaces);
         for index in 0..self.zero_area_faces {
-            let site = self.draw_site(&mut draws, relief);
-            let a = ground.vertex(site);
-            let b = ground.vertex(site + DVec3::new(draws.between(0.1, 1.0), 0.0, 0.0));
+            let site = self.draw_place(&mut random, relief);
+            let a = ground.add_vertex(site);
+            let b = ground.add_vertex(site + DVec3::new(random.between(0.1, 1.0), 0.0, 0.0));
             let c = match index % 3 {
                 0 => a,
-                1 => ground.vertex(site),
+                1 => ground.add_vertex(site),
                 // y and z are the very same numbers, so the three stay on a line through any rounding.
-                _ => ground.vertex(site + DVec3::new(draws.between(1.0, 2.0), 0.0, 0.0)),
+                _ => ground.add_vertex(site + DVec3::new(random.between(1.0, 2.0), 0.0, 0.0)),
             };
-            let material = self.draw_material(&mut draws);
-            ground.face([a, b, c], material);
+            let material = self.draw_material(&mut random);
+            ground.add_face([a, b, c], material);
         }
     }
 
-    fn add_unreferenced_vertices(&self, ground: &mut Ground, relief: &Relief) {
-        let mut draws = Draws::new(self.seed, Purpose::UnreferencedVertices);
+    fn add_unreferenced_vertices(&self, ground: &mut Ground, relief: &ValueNoise) {
+        let mut random = RandomStream::new(self.seed, StreamPurpose::UnreferencedVertices);
         for _ in 0..self.unreferenced_vertices {
-            let site = self.draw_site(&mut draws, relief);
-            ground.vertex(site + DVec3::new(0.0, 0.0, draws.between(-1.0, 1.0)));
+            let site = self.draw_place(&mut random, relief);
+            ground.add_vertex(site + DVec3::new(0.0, 0.0, random.between(-1.0, 1.0)));
         }
     }
 }
 
 /// Two level unit vectors at right angles, counter-clockwise from above; neither is parallel to an axis.
-fn draw_level_frame(draws: &mut Draws) -> [DVec3; 2] {
-    let (sin, cos) = libm::sincos(draws.between(0.0, std::f64::consts::TAU));
+fn draw_level_axes(random: &mut RandomStream) -> [DVec3; 2] {
+    let (sin, cos) = libm::sincos(random.between(0.0, std::f64::consts::TAU));
     [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0)]
 }
 
 /// Value noise in four octaves: random heights on a lattice, each octave twice as fine and half as high,
 /// blended with 3t^2 - 2t^3. (Perlin's lattice noise; polynomials only.)
-struct Relief {
+struct ValueNoise {
     extent: f64,
     amplitude: f64,
     /// Lattice heights in [-1, 1), row by row, of (cells + 1)^2 nodes.
     octaves: Vec<(usize, Vec<f64>)>,
 }
 
-impl Relief {
+impl ValueNoise {
     /// Cells per side of the coarsest octave.
-    const CELLS: usize = 3;
+    const COARSEST_CELLS: usize = 3;
     const OCTAVES: usize = 4;
 
     fn new(seed: u64, extent: f64, relief: f64) -> Self {
-        let mut draws = Draws::new(seed, Purpose::Relief);
+        let mut random = RandomStream::new(seed, StreamPurpose::Relief);
         let octave = |octave| {
-            let cells = Self::CELLS << octave;
-            (cells, (0..(cells + 1) * (cells + 1)).map(|_| draws.between(-1.0, 1.0)).collect())
+            let cells = Self::COARSEST_CELLS << octave;
+            (cells, (0..(cells + 1) * (cells + 1)).map(|_| random.between(-1.0, 1.0)).collect())
         };
         let octaves = (0..Self::OCTAVES).map(octave).collect();
         // The octaves' heights are 1, 1/2, 1/4, ...: together below 2.
@@ -339,5 +345,5 @@ impl Relief {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/random.rs"]
+#[path = "../tests/unit/random_ground.rs"]
 mod tests;

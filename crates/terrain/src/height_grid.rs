@@ -43,7 +43,7 @@ impl Posts {
     /// # Panics
     /// If `heights` are not as many as `columns` and `rows` say.
     pub fn crop(&self, low: DVec2, high: DVec2) -> Option<Self> {
-        self.assert_whole();
+        self.checked_len();
         let columns = indices_within(self.corner.x, self.spacing.x, self.columns, low.x, high.x)?;
         let rows = indices_within(self.corner.y, self.spacing.y, self.rows, low.y, high.y)?;
         let (column, row) = (*columns.start(), *rows.start());
@@ -69,7 +69,7 @@ impl Posts {
     /// # Panics
     /// If `heights` are not as many as `columns` and `rows` say, or 2^32 or more.
     pub fn ground(&self, material: Material) -> Ground {
-        self.assert_whole();
+        self.checked_len();
         // CHOICE: three known corners give no face. One triangle would fill half a cell by a diagonal that the
         // missing corner chose; without it the ground ends at whole cells, simplified or not.
         let complete_cells = || {
@@ -92,7 +92,7 @@ impl Posts {
             };
             faces.extend(halves);
         }
-        self.ground_of(faces, material)
+        self.ground_from_faces(faces, material)
     }
 
     /// The height of a post, NaN if it is not known.
@@ -109,8 +109,8 @@ impl Posts {
 
     /// A ground of faces that name posts, counted row by row. Vertices are those posts that a face uses, in the
     /// order of posts.
-    pub(crate) fn ground_of(&self, mut faces: Vec<[u32; 3]>, material: Material) -> Ground {
-        let count = self.assert_whole();
+    pub(crate) fn ground_from_faces(&self, mut faces: Vec<[u32; 3]>, material: Material) -> Ground {
+        let count = self.checked_len();
         // First whether a post is used, then its number among those that are.
         let mut number = vec![0_u32; count];
         faces.as_flattened().iter().for_each(|&post| number[post as usize] = 1);
@@ -131,7 +131,7 @@ impl Posts {
     }
 
     /// How many posts there are.
-    fn assert_whole(&self) -> usize {
+    fn checked_len(&self) -> usize {
         let count = u64::from(self.columns) * u64::from(self.rows);
         assert_eq!(self.heights.len() as u64, count, "one height for each post");
         assert!(count <= u64::from(u32::MAX), "a post's number is below 2^32");

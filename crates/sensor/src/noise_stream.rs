@@ -6,7 +6,7 @@ use raypencil_scene::philox;
 
 /// What a random number is for. Other purposes have other numbers, whatever the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
+pub enum NoiseSource {
     /// How many electrons are collected in a frame.
     Shot = 1,
     /// What reading out adds in a frame.
@@ -19,20 +19,20 @@ pub enum Purpose {
 
 /// The random numbers of one pixel, for one purpose, in one frame.
 #[derive(Debug, Clone)]
-pub struct Stream {
+pub struct NoiseStream {
     key: [u32; 2],
     counter: [u32; 4],
     spare: Option<f64>,
 }
 
-impl Stream {
+impl NoiseStream {
     /// The stream of key (`seed`) and counters (`pixel`, `frame`, `purpose` and a count of blocks).
     ///
     /// The last word is never 0, so that no block is one of the draws of `scene`'s jittered pencils.
-    pub fn new(seed: u64, purpose: Purpose, frame: u64, pixel: u32) -> Self {
+    pub fn new(seed: u64, source: NoiseSource, frame: u64, pixel: u32) -> Self {
         Self {
             key: [seed as u32, (seed >> 32) as u32],
-            counter: [pixel, frame as u32, (frame >> 32) as u32, (purpose as u32) << 24],
+            counter: [pixel, frame as u32, (frame >> 32) as u32, (source as u32) << 24],
             spare: None,
         }
     }
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_stream_reads_its_blocks_in_order() {
-        let mut stream = Stream::new(0x0123_4567_89ab_cdef, Purpose::Read, (7 << 32) | 5, 42);
+        let mut stream = NoiseStream::new(0x0123_4567_89ab_cdef, NoiseSource::Read, (7 << 32) | 5, 42);
         for block in 0..3 {
             let words = philox([42, 5, 7, (2 << 24) + block], [0x89ab_cdef, 0x0123_4567]);
             for pair in words.chunks(2) {
@@ -80,15 +80,15 @@ mod tests {
 
     #[test]
     fn seed_purpose_frame_and_pixel_each_give_another_stream() {
-        let first = |seed, purpose, frame, pixel| Stream::new(seed, purpose, frame, pixel).uniform();
+        let first = |seed, source, frame, pixel| NoiseStream::new(seed, source, frame, pixel).uniform();
         let all = [
-            first(1, Purpose::Shot, 0, 0),
-            first(2, Purpose::Shot, 0, 0),
-            first(1 << 32, Purpose::Shot, 0, 0),
-            first(1, Purpose::Read, 0, 0),
-            first(1, Purpose::Shot, 1, 0),
-            first(1, Purpose::Shot, 1 << 32, 0),
-            first(1, Purpose::Shot, 0, 1),
+            first(1, NoiseSource::Shot, 0, 0),
+            first(2, NoiseSource::Shot, 0, 0),
+            first(1 << 32, NoiseSource::Shot, 0, 0),
+            first(1, NoiseSource::Read, 0, 0),
+            first(1, NoiseSource::Shot, 1, 0),
+            first(1, NoiseSource::Shot, 1 << 32, 0),
+            first(1, NoiseSource::Shot, 0, 1),
         ];
         for (index, a) in all.iter().enumerate() {
             assert!(all[index + 1..].iter().all(|b| a != b), "{all:?}");

@@ -3,11 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use super::crevasses::Crevasse;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 use crate::{Ground, Posts};
 
 /// Points on a wall between its edge and the floor, the latter included.
-const WALL_POINTS: u32 = 5;
+const POINTS_PER_WALL: u32 = 5;
 
 /// Height of the posts' surface at a place, bilinear between the four around it; outside, that of the nearest border.
 pub(super) fn height(posts: &Posts, place: DVec2) -> f64 {
@@ -26,19 +26,25 @@ pub(super) fn height(posts: &Posts, place: DVec2) -> f64 {
 }
 
 /// Materials of the sheet.
-pub(super) struct Kinds {
+pub(super) struct SheetMaterials {
     pub soil: u16,
     pub wall: u16,
 }
 
 /// Adds the sheet to a ground without faces.
-pub(super) fn add(ground: &mut Ground, posts: &Posts, crevasses: &[Crevasse], kinds: &Kinds, seed: u64) {
-    let mut diagonals = Draws::new(seed, Purpose::Diagonals);
-    let mut before: Option<Line> = None;
+pub(super) fn add(
+    ground: &mut Ground,
+    posts: &Posts,
+    crevasses: &[Crevasse],
+    materials: &SheetMaterials,
+    seed: u64,
+) {
+    let mut diagonals = RandomStream::new(seed, StreamPurpose::Diagonals);
+    let mut before: Option<VertexRow> = None;
     for row in 0..posts.rows {
-        for line in lines(ground, posts, crevasses, row, kinds) {
+        for line in vertex_rows(ground, posts, crevasses, row, materials) {
             if let Some(before) = &before {
-                join(ground, before, &line, &mut diagonals);
+                join_rows(ground, before, &line, &mut diagonals);
             }
             before = Some(line);
         }
@@ -46,13 +52,19 @@ pub(super) fn add(ground: &mut Ground, posts: &Posts, crevasses: &[Crevasse], ki
 }
 
 /// The vertices of a row from left to right, and the material of the cells between it and the row before.
-struct Line {
+struct VertexRow {
     vertices: Vec<u32>,
     material: u16,
 }
 
 /// The rows that a row of the grid becomes: one, or those of a crevasse from the near edge to the far one.
-fn lines(ground: &mut Ground, posts: &Posts, crevasses: &[Crevasse], row: u32, kinds: &Kinds) -> Vec<Line> {
+fn vertex_rows(
+    ground: &mut Ground,
+    posts: &Posts,
+    crevasses: &[Crevasse],
+    row: u32,
+    materials: &SheetMaterials,
+) -> Vec<VertexRow> {
     let opened = crevasses.iter().find(|crevasse| crevasse.row == row);
     let middle = posts.corner
         + 0.5 * posts.spacing * DVec2::new(f64::from(posts.columns - 1), f64::from(posts.rows - 1));
@@ -62,18 +74,18 @@ fn lines(ground: &mut Ground, posts: &Posts, crevasses: &[Crevasse], row: u32, k
         let local = post.truncate() - middle;
         let shift: f64 = crevasses.iter().map(|crevasse| crevasse.shift(local.x, local.y)).sum();
         if shift == 0.0 {
-            return ground.vertex(post);
+            return ground.add_vertex(post);
         }
         let place = post.truncate() + DVec2::new(0.0, shift);
-        ground.vertex(place.extend(height(posts, place)))
+        ground.add_vertex(place.extend(height(posts, place)))
     };
     let Some(crevasse) = opened else {
         let vertices = (0..posts.columns).map(|column| plain(ground, column)).collect();
-        return vec![Line { vertices, material: kinds.soil }];
+        return vec![VertexRow { vertices, material: materials.soil }];
     };
     // From the near edge down, then up to the far edge.
-    let down = (0..=WALL_POINTS).map(|point| (-1.0, point));
-    let up = (0..=WALL_POINTS).rev().map(|point| (1.0, point));
+    let down = (0..=POINTS_PER_WALL).map(|point| (-1.0, point));
+    let up = (0..=POINTS_PER_WALL).rev().map(|point| (1.0, point));
     let profile: Vec<(f64, u32)> = down.chain(up).collect();
     let mut columns = Vec::with_capacity(posts.columns as usize);
     for column in 0..posts.columns {
@@ -83,35 +95,35 @@ fn lines(ground: &mut Ground, posts: &Posts, crevasses: &[Crevasse], row: u32, k
         }
         let x = posts.at(column, row).x - middle.x;
         let edge = |side: f64| {
-            let place = middle + DVec2::new(x, crevasse.wall(column, x, side, 0.0));
+            let place = middle + DVec2::new(x, crevasse.wall_y(column, x, side, 0.0));
             height(posts, place)
         };
         let (near, far) = (edge(-1.0), edge(1.0));
         let floor = near.min(far) - crevasse.depth(x);
         let point = |&(side, point): &(f64, u32)| {
-            let share = f64::from(point) / f64::from(WALL_POINTS);
+            let share = f64::from(point) / f64::from(POINTS_PER_WALL);
             let top = if side < 0.0 { near } else { far };
-            let y = middle.y + crevasse.wall(column, x, side, share);
-            ground.vertex(DVec3::new(middle.x + x, y, top + (floor - top) * share))
+            let y = middle.y + crevasse.wall_y(column, x, side, share);
+            ground.add_vertex(DVec3::new(middle.x + x, y, top + (floor - top) * share))
         };
         columns.push(profile.iter().map(point).collect());
     }
-    let line = |k: usize| Line {
+    let line = |k: usize| VertexRow {
         vertices: columns.iter().map(|column| column[k]).collect(),
-        material: if k == 0 { kinds.soil } else { kinds.wall },
+        material: if k == 0 { materials.soil } else { materials.wall },
     };
     (0..profile.len()).map(line).collect()
 }
 
 /// Adds the cells between two rows: two faces each, fewer where corners are one vertex.
-fn join(ground: &mut Ground, near: &Line, far: &Line, diagonals: &mut Draws) {
+fn join_rows(ground: &mut Ground, near: &VertexRow, far: &VertexRow, diagonals: &mut RandomStream) {
     for (near, far_pair) in near.vertices.windows(2).zip(far.vertices.windows(2)) {
         // Counter-clockwise from the near left corner.
         let (a, b, c, d) = (near[0], near[1], far_pair[1], far_pair[0]);
         let halves = if diagonals.coin() { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] };
         for half in halves {
             if half[0] != half[1] && half[1] != half[2] && half[2] != half[0] {
-                ground.face(half, far.material);
+                ground.add_face(half, far.material);
             }
         }
     }

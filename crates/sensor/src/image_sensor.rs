@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use raypencil_scene::{Image, SceneError};
 
 use crate::check::{assert_same_size, check_range};
-use crate::{Purpose, Stream, poisson};
+use crate::{NoiseSource, NoiseStream, poisson};
 
 /// h, J s: exact by the definition of the SI (CODATA).
 pub const PLANCK_CONSTANT: f64 = 6.626_070_15e-34;
@@ -72,7 +72,7 @@ pub struct Sensor {
 
 /// A frame, and how it came about.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Digital {
+pub struct DigitalFrame {
     /// Electrons expected in each pixel, of light and in the dark.
     pub expected: Image<f64>,
     /// Electrons that it holds at the end of the exposure.
@@ -85,16 +85,16 @@ pub struct Digital {
 
 /// A frame with the laser on, one with it off, and what the first has more.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pair {
+pub struct FramePair {
     /// Laser on.
-    pub lit: Digital,
+    pub lit: DigitalFrame,
     /// Laser off: background alone.
-    pub unlit: Digital,
+    pub unlit: DigitalFrame,
     /// Lit minus unlit, DN.
     pub difference: Image<i32>,
 }
 
-/// One pixel's part in each image of [`Digital`], before rounding.
+/// One pixel's part in each image of [`DigitalFrame`], before rounding.
 struct Pixel {
     expected: f64,
     electrons: f64,
@@ -116,7 +116,7 @@ impl Sensor {
     ///
     /// # Panics
     /// If the images differ in size, or a flux is negative or not finite.
-    pub fn expose(&self, optical: &Image<f64>, background: Option<&Image<f64>>, frame: u64) -> Digital {
+    pub fn expose(&self, optical: &Image<f64>, background: Option<&Image<f64>>, frame: u64) -> DigitalFrame {
         let (width, height) = (optical.width(), optical.height());
         let flux = fluxes(optical, background);
         let dark = self.dark_electrons();
@@ -124,7 +124,7 @@ impl Sensor {
         let pixels: Vec<Pixel> = pixels.map(|index| self.pixel(flux(index), dark, frame, index)).collect();
         let image = |of: fn(&Pixel) -> f64| Image::from_cells(width, height, pixels.iter().map(of).collect());
         let numbers = pixels.iter().map(|pixel| self.digitised(pixel.signal)).collect();
-        Digital {
+        DigitalFrame {
             expected: image(|pixel| pixel.expected),
             electrons: image(|pixel| pixel.electrons),
             signal: image(|pixel| pixel.signal),
@@ -132,7 +132,7 @@ impl Sensor {
         }
     }
 
-    /// [`Digital::numbers`] of [`Sensor::expose`] alone, without the images on the way to them; of any type that holds
+    /// [`DigitalFrame::numbers`] of [`Sensor::expose`] alone, without the images on the way to them; of any type that holds
     /// them all.
     ///
     /// # Panics
@@ -178,15 +178,15 @@ impl Sensor {
     ///
     /// # Panics
     /// As [`Sensor::expose`].
-    pub fn expose_pair(&self, optical: &Image<f64>, background: Option<&Image<f64>>, pair: u64) -> Pair {
+    pub fn expose_pair(&self, optical: &Image<f64>, background: Option<&Image<f64>>, pair: u64) -> FramePair {
         let lit = self.expose(optical, background, 2 * pair);
         let off = Image::filled(optical.width(), optical.height(), 0.0);
         let unlit = self.expose(&off, background, 2 * pair + 1);
         let difference = difference(&lit.numbers, &unlit.numbers);
-        Pair { lit, unlit, difference }
+        FramePair { lit, unlit, difference }
     }
 
-    /// [`Pair::difference`] of [`Sensor::expose_pair`] alone, without the images on the way to it.
+    /// [`FramePair::difference`] of [`Sensor::expose_pair`] alone, without the images on the way to it.
     ///
     /// # Panics
     /// As [`Sensor::expose`].
@@ -212,14 +212,14 @@ impl Sensor {
         if self.prnu == 0.0 {
             return 1.0;
         }
-        (1.0 + self.prnu * Stream::new(self.seed, Purpose::Prnu, 0, pixel).normal()).max(0.0)
+        (1.0 + self.prnu * NoiseStream::new(self.seed, NoiseSource::Prnu, 0, pixel).normal()).max(0.0)
     }
 
     /// The electrons in a pixel's well when so many are expected.
     fn collected(&self, expected: f64, frame: u64, pixel: u32) -> f64 {
         // What comes of light and what comes in the dark are both Poisson's, so their sum is, too.
         let electrons = if self.shot_noise {
-            poisson(expected, &mut Stream::new(self.seed, Purpose::Shot, frame, pixel))
+            poisson(expected, &mut NoiseStream::new(self.seed, NoiseSource::Shot, frame, pixel))
         } else {
             expected
         };
@@ -230,10 +230,10 @@ impl Sensor {
     fn signal(&self, electrons: f64, frame: u64, pixel: u32) -> f64 {
         let mut offset = 0.0;
         if self.dsnu > 0.0 {
-            offset += self.dsnu * Stream::new(self.seed, Purpose::Dsnu, 0, pixel).normal();
+            offset += self.dsnu * NoiseStream::new(self.seed, NoiseSource::Dsnu, 0, pixel).normal();
         }
         if self.read_noise > 0.0 {
-            offset += self.read_noise * Stream::new(self.seed, Purpose::Read, frame, pixel).normal();
+            offset += self.read_noise * NoiseStream::new(self.seed, NoiseSource::Read, frame, pixel).normal();
         }
         self.bias + self.gain * (electrons + offset)
     }

@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// What a stream of numbers is for. Streams are independent, so that more of one kind of feature does not
 /// move the others. The numbers are part of what a seed means: never reuse or renumber one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Purpose {
+pub(crate) enum StreamPurpose {
     Relief = 1,
     Grid = 2,
     Materials = 3,
@@ -29,10 +29,10 @@ pub(crate) enum Purpose {
 }
 
 /// The numbers of one (seed, purpose), in order: the index is the place in the key stream.
-pub(crate) struct Draws(ChaCha8Rng);
+pub(crate) struct RandomStream(ChaCha8Rng);
 
-impl Draws {
-    pub(crate) fn new(seed: u64, purpose: Purpose) -> Self {
+impl RandomStream {
+    pub(crate) fn new(seed: u64, purpose: StreamPurpose) -> Self {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         key[8..16].copy_from_slice(&(purpose as u64).to_le_bytes());
@@ -40,13 +40,13 @@ impl Draws {
     }
 
     /// Uniform in [0, 1): a multiple of 2^-53, so the conversion is exact.
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 
     /// Uniform in [low, high).
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
+        low + (high - low) * self.uniform()
     }
 
     /// Uniform in 0..count, by the high half of a product (its bias is below 2^-32). `count` must not be 0.
@@ -63,13 +63,13 @@ impl Draws {
     /// Exponential of mean 1: the wait for the next event of a Poisson process of unit rate.
     pub(crate) fn exponential(&mut self) -> f64 {
         // 1 - u lies in (0, 1]: the logarithm is finite.
-        -libm::log(1.0 - self.unit())
+        -libm::log(1.0 - self.uniform())
     }
 
     /// Gaussian of mean 0 and standard deviation 1. (Box and Muller, 1958; one of the pair)
-    pub(crate) fn gaussian(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let radius = (2.0 * self.exponential()).sqrt();
-        radius * libm::cos(std::f64::consts::TAU * self.unit())
+        radius * libm::cos(std::f64::consts::TAU * self.uniform())
     }
 
     /// A direction, uniform over the sphere: a point of the unit ball, made a unit. (von Neumann, 1951)
@@ -91,22 +91,22 @@ mod tests {
 
     #[test]
     fn streams_differ_by_seed_and_by_purpose_only() {
-        let first = |seed, purpose| Draws::new(seed, purpose).unit();
-        assert_eq!(first(1, Purpose::Grid), first(1, Purpose::Grid));
-        assert_ne!(first(1, Purpose::Grid), first(2, Purpose::Grid));
-        assert_ne!(first(1, Purpose::Grid), first(1, Purpose::Relief));
+        let first = |seed, purpose| RandomStream::new(seed, purpose).uniform();
+        assert_eq!(first(1, StreamPurpose::Grid), first(1, StreamPurpose::Grid));
+        assert_ne!(first(1, StreamPurpose::Grid), first(2, StreamPurpose::Grid));
+        assert_ne!(first(1, StreamPurpose::Grid), first(1, StreamPurpose::Relief));
     }
 
     #[test]
     fn draws_stay_in_their_ranges() {
-        let mut draws = Draws::new(3, Purpose::Grid);
+        let mut random = RandomStream::new(3, StreamPurpose::Grid);
         for _ in 0..10_000 {
-            assert!((0.0..1.0).contains(&draws.unit()));
-            assert!((-2.0..5.0).contains(&draws.between(-2.0, 5.0)));
-            assert!(draws.below(3) < 3);
-            assert!(draws.exponential() >= 0.0);
-            assert!(draws.gaussian().is_finite());
-            assert!((draws.direction().length() - 1.0).abs() < 1e-15);
+            assert!((0.0..1.0).contains(&random.uniform()));
+            assert!((-2.0..5.0).contains(&random.between(-2.0, 5.0)));
+            assert!(random.below(3) < 3);
+            assert!(random.exponential() >= 0.0);
+            assert!(random.normal().is_finite());
+            assert!((random.direction().length() - 1.0).abs() < 1e-15);
         }
     }
 
@@ -114,10 +114,10 @@ mod tests {
     fn waits_and_gaussians_have_their_moments() {
         // Of 1e5 draws the mean of x, x^2, x^4 has a standard error of sqrt(var / n): for the exponential
         // (moments n!) 1, sqrt(20), for the Gaussian 1, sqrt(2), sqrt(96), each over sqrt(1e5). Bounds of 4 of them.
-        let mut draws = Draws::new(5, Purpose::Octaves);
+        let mut random = RandomStream::new(5, StreamPurpose::Octaves);
         let mut sums = [0.0; 5];
         for _ in 0..100_000 {
-            let (wait, x) = (draws.exponential(), draws.gaussian());
+            let (wait, x) = (random.exponential(), random.normal());
             for (sum, term) in sums.iter_mut().zip([wait, wait * wait, x, x * x, x * x * x * x]) {
                 *sum += term / 1e5;
             }
