@@ -1,4 +1,4 @@
-//! Random grounds: a height field, and on request everything that makes terrain hard to render.
+//! Random grounds: a height field and, on request, features that are hard to render.
 
 use glam::DVec3;
 use raypencil_scene::Material;
@@ -6,53 +6,68 @@ use raypencil_scene::Material;
 use crate::Ground;
 use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// A random ground, centred on `offset`. Start from [`RandomGround::plain`] or [`RandomGround::nasty`] and
-/// change fields; the same fields give the same bytes on every machine.
+/// Random ground, centred on `offset`.
 ///
-/// Bodies (boulders, overhangs, walls) are closed and reach into the ground. Their centres stay 2 m (at most
-/// a quarter of `extent`) away from the middle, so that a rover can stand there.
+/// Start from [`RandomGround::plain`] or [`RandomGround::nasty`] and change fields. The same fields give the same
+/// bytes on every machine.
+///
+/// Bodies (boulders, overhangs, walls) are closed and reach into the ground. Their centres stay 2 m away from the
+/// middle (at most a quarter of `extent`), so that a rover can stand there.
+///
+/// ```
+/// use raypencil_terrain::RandomGround;
+///
+/// // 2,000 faces are 31 x 31 cells of two faces each: 32 x 32 cells would need 2,048.
+/// let ground = RandomGround::plain(7, 2_000, 40.0).build();
+/// assert_eq!(ground.faces.len(), 2 * 31 * 31);
+/// // The heights stay within a fortieth of the extent.
+/// assert!(ground.vertices.iter().all(|vertex| vertex.z.abs() <= 1.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct RandomGround {
-    /// Which of the grounds with these settings.
+    /// Seed: another seed gives another ground with the same settings.
     pub seed: u64,
-    /// Approximate number of faces. The height field gets what the features below leave, and at least one
-    /// cell of two faces.
+    /// Approximate number of faces. The height field gets the faces that the features below leave, and at least
+    /// one cell of two faces.
     pub faces: usize,
-    /// Side of the square that the height field covers, metres.
+    /// Side of the square of the height field, metres.
     pub extent: f64,
-    /// Added to every vertex, metres. Up to 1e6 m still leaves 1e-10 m of precision.
+    /// Translation of all vertices, metres. The precision is 1e-10 m at 1e6 m.
     pub offset: DVec3,
-    /// The height field stays within plus or minus this height, metres.
+    /// Maximum height of the height field above or below its mean level, metres.
     pub relief: f64,
-    /// Kinds of ground, 1 to 65535, spread at random over faces and bodies; reflectivities from 0.1 to 0.9.
+    /// Number of materials, 1 to 65535. Faces and bodies get one at random; reflectivities run from 0.1 to 0.9.
     pub materials: u16,
-    /// Closed, irregular rocks of 32 faces.
+    /// Number of boulders: closed, irregular rocks of 32 faces.
     pub boulders: usize,
-    /// By turns closed mushrooms of 64 faces and floating slabs of 12.
+    /// Number of overhangs: alternately closed mushrooms of 64 faces and floating slabs of 12 faces.
     pub overhangs: usize,
-    /// Closed upright slabs of 12 faces, their sides exactly vertical, 2 mm to 0.2 m thick. Every second one
-    /// is parallel to the axes.
+    /// Number of walls: closed upright slabs of 12 faces, 2 mm to 0.2 m thick, with exactly vertical sides. Every
+    /// second one is parallel to the axes.
     pub walls: usize,
-    /// Loose triangles near the ground, up to 3 m long, 1e3 to 1e6 times longer than wide. Far from the
-    /// scene origin the thinnest lose their area when they are rounded to `f32`.
+    /// Number of slivers: separate triangles near the ground, up to 3 m long, 1e3 to 1e6 times longer than wide.
+    /// Far from the scene origin the thinnest lose their area when they are rounded to `f32`.
     pub slivers: usize,
-    /// Copies of other faces, on the same vertices in the same sense, of a random material.
+    /// Number of duplicate faces: the same vertices in the same sense as another face, and a random material.
     pub duplicate_faces: usize,
-    /// By turns a vertex used twice, two vertices in one place, and three on a line.
+    /// Number of faces without area: alternately with one vertex twice, two vertices in one place, and three on a
+    /// line.
     pub zero_area_faces: usize,
-    /// Vertices that no face uses.
+    /// Number of vertices that no face uses.
     pub unreferenced_vertices: usize,
 }
 
-/// Faces of a rock, of a mushroom with [`MUSHROOM_SIDES`] sides, of a box.
+/// Faces of a boulder, of a mushroom with [`MUSHROOM_SIDES`] sides, and of a box.
 const ROCK_FACES: usize = 32;
 const MUSHROOM_FACES: usize = 8 * MUSHROOM_SIDES as usize;
 const BOX_FACES: usize = 12;
 const MUSHROOM_SIDES: u32 = 8;
 
 impl RandomGround {
-    /// A height field of about `faces` faces over a square of side `extent` metres: hills over a third of
-    /// it down to bumps over a 24th, no higher than a fortieth. Nothing else; the ground for benchmarks.
+    /// Height field alone, of about `faces` faces, over a square of side `extent` metres: the ground for
+    /// benchmarks.
+    ///
+    /// Hills have a third of the extent, the smallest bumps a 24th. No height exceeds a fortieth of the extent.
     pub fn plain(seed: u64, faces: usize, extent: f64) -> Self {
         Self {
             seed,
@@ -71,8 +86,10 @@ impl RandomGround {
         }
     }
 
-    /// Everything at once: of about `faces` faces (from some 250 on) half are height field. The square has a
-    /// side of 24 m, more from 4000 faces on, so that the features do not crowd. No offset.
+    /// Ground with every feature. Half of about `faces` faces (from 250 on) are height field.
+    ///
+    /// The square has a side of 24 m, and more from 4000 faces on, so that the features do not crowd. There is no
+    /// offset.
     pub fn nasty(seed: u64, faces: usize) -> Self {
         let extent = 24.0 * (faces as f64 / 4000.0).sqrt().max(1.0);
         let share = |divisor: usize| (faces / divisor).max(1);
@@ -90,10 +107,9 @@ impl RandomGround {
         }
     }
 
-    /// Builds it.
+    /// Builds the ground.
     ///
-    /// # Panics
-    /// If `materials` is 0, or `extent` is not a positive, finite number.
+    /// # Panics If `materials` is 0, or `extent` is not a positive, finite number.
     pub fn build(&self) -> Ground {
         assert!(self.materials > 0, "a ground needs a material");
         assert!(self.extent > 0.0 && self.extent.is_finite(), "extent {} m", self.extent);
@@ -129,7 +145,7 @@ impl RandomGround {
     }
 
     fn add_height_field(&self, ground: &mut Ground, relief: &ValueNoise) {
-        // At most one mushroom more than slabs.
+        // Mushrooms and slabs alternate, mushrooms first.
         let overhangs = self.overhangs.div_ceil(2) * MUSHROOM_FACES + self.overhangs / 2 * BOX_FACES;
         let features = self.boulders * ROCK_FACES
             + overhangs
@@ -137,7 +153,7 @@ impl RandomGround {
             + self.slivers
             + self.duplicate_faces
             + self.zero_area_faces;
-        // n x n cells of two faces each.
+        // The height field has n x n cells of two faces each.
         let left = self.faces.saturating_sub(features);
         let cells = ((left as f64 / 2.0).sqrt() as u32).max(1);
         let step = self.extent / f64::from(cells);
@@ -145,9 +161,9 @@ impl RandomGround {
         ground.faces.reserve(left + features);
         ground.face_materials.reserve(left + features);
 
-        // Corners move by up to a fifth of a cell each way. With shifts of at most j cells a face's area seen
-        // from above is at least ((1 - 2j)^2 - (2j)^2) / 2 = (1 - 4j) / 2 cells: above 0 for j < 1/4, so
-        // that every normal points up. The border stays straight.
+        // Corners move by up to j = 1/5 of a cell along x and y. Seen from above, a face then keeps an area of at
+        // least ((1 - 2j)^2 - (2j)^2) / 2 = (1 - 4j) / 2 cells. This is positive for j < 1/4, so every normal
+        // points up. The border stays straight.
         const MAX_SHIFT_CELLS: f64 = 0.2;
         let mut random = RandomStream::new(self.seed, StreamPurpose::Grid);
         let place = |column: u32, row: u32| {
@@ -170,7 +186,7 @@ impl RandomGround {
         );
     }
 
-    /// A place for a body: on the height field, not in the middle.
+    /// Random point of the height field outside the free circle in the middle.
     fn draw_place(&self, random: &mut RandomStream, relief: &ValueNoise) -> DVec3 {
         let clear = f64::min(2.0, 0.25 * self.extent);
         loop {
@@ -182,7 +198,7 @@ impl RandomGround {
         }
     }
 
-    /// How large bodies are: 1 on grounds of 20 m and more, less on smaller ones.
+    /// Scale of bodies: 1 on grounds of 20 m and more, smaller in proportion below.
     fn body_scale(&self) -> f64 {
         f64::min(1.0, self.extent / 20.0)
     }
@@ -211,7 +227,7 @@ impl RandomGround {
                 let foot = site - DVec3::new(0.0, 0.0, 0.2 * height);
                 ground.add_mushroom(foot, 1.2 * height, radius, MUSHROOM_SIDES, &mut random, material);
             } else {
-                // A slab that floats, turned about a random axis by little: its top still looks up.
+                // A floating slab. The tilt is small enough that its top still looks up.
                 let [u, v] = draw_level_axes(&mut random);
                 let tilt = DVec3::new(0.0, 0.0, random.between(-0.4, 0.4));
                 let thickness = DVec3::new(0.0, 0.0, scale * random.between(0.02, 0.15));
@@ -245,7 +261,7 @@ impl RandomGround {
             let aspect = libm::pow(10.0, random.between(3.0, 6.0));
             let rise = DVec3::new(0.0, 0.0, random.between(-0.5, 0.5));
             let low = site + DVec3::new(0.0, 0.0, random.between(0.02, 0.4));
-            // The third corner lies anywhere along the long side: needles and caps.
+            // The third corner lies anywhere along the long side: this gives needles and caps.
             let third = low + (along + rise) * (length * random.uniform()) + across * (length / aspect);
             let corners = [low, low + (along + rise) * length, third].map(|corner| ground.add_vertex(corner));
             let material = self.draw_material(&mut random);
@@ -273,7 +289,7 @@ impl RandomGround {
             let c = match index % 3 {
                 0 => a,
                 1 => ground.add_vertex(site),
-                // y and z are the very same numbers, so the three stay on a line through any rounding.
+                // y and z are equal to the bit, so the three vertices stay on a line when they are rounded.
                 _ => ground.add_vertex(site + DVec3::new(random.between(1.0, 2.0), 0.0, 0.0)),
             };
             let material = self.draw_material(&mut random);
@@ -290,18 +306,18 @@ impl RandomGround {
     }
 }
 
-/// Two level unit vectors at right angles, counter-clockwise from above; neither is parallel to an axis.
+/// Two horizontal unit vectors at right angles, counter-clockwise from above. Neither is parallel to an axis.
 fn draw_level_axes(random: &mut RandomStream) -> [DVec3; 2] {
     let (sin, cos) = libm::sincos(random.between(0.0, std::f64::consts::TAU));
     [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0)]
 }
 
-/// Value noise in four octaves: random heights on a lattice, each octave twice as fine and half as high,
-/// blended with 3t^2 - 2t^3. (Perlin's lattice noise; polynomials only.)
+/// Value noise in four octaves: random heights on a lattice, blended with 3t^2 - 2t^3. Each octave is twice as
+/// fine and half as high as the one before. (After Perlin's lattice noise; polynomials only)
 struct ValueNoise {
     extent: f64,
     amplitude: f64,
-    /// Lattice heights in [-1, 1), row by row, of (cells + 1)^2 nodes.
+    /// Cells per side and lattice heights in [-1, 1) of each octave: (cells + 1)^2 nodes, row by row.
     octaves: Vec<(usize, Vec<f64>)>,
 }
 
@@ -317,11 +333,11 @@ impl ValueNoise {
             (cells, (0..(cells + 1) * (cells + 1)).map(|_| random.between(-1.0, 1.0)).collect())
         };
         let octaves = (0..Self::OCTAVES).map(octave).collect();
-        // The octaves' heights are 1, 1/2, 1/4, ...: together below 2.
+        // The octaves' amplitudes are 1, 1/2, 1/4, ...: their sum is below 2.
         Self { extent, amplitude: 0.5 * relief, octaves }
     }
 
-    /// Height at a point of the square, before the offset, metres. Outside, that of the nearest border.
+    /// Height at a point of the square before the offset, metres; outside, the height at the nearest border.
     fn at(&self, x: f64, y: f64) -> f64 {
         let [u, v] = [x, y].map(|coordinate| (coordinate / self.extent + 0.5).clamp(0.0, 1.0));
         let mut height = 0.0;

@@ -1,11 +1,12 @@
-//! Random numbers keyed by (seed, purpose, index): ChaCha with 8 rounds (D. J. Bernstein, 2008).
+//! Random numbers keyed by (seed, purpose): ChaCha with 8 rounds. (D. J. Bernstein, 2008)
 
 use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// What a stream of numbers is for. Streams are independent, so that more of one kind of feature does not
-/// move the others. The numbers are part of what a seed means: never reuse or renumber one.
+/// Purpose of a stream. Streams are independent: more features of one kind do not move the others.
+///
+/// The discriminants are part of the key: never reuse or renumber one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StreamPurpose {
     Relief = 1,
@@ -28,7 +29,7 @@ pub(crate) enum StreamPurpose {
     Corners = 18,
 }
 
-/// The numbers of one (seed, purpose), in order: the index is the place in the key stream.
+/// Random numbers of one (seed, purpose): ChaCha's key stream, read in order.
 pub(crate) struct RandomStream(ChaCha8Rng);
 
 impl RandomStream {
@@ -39,41 +40,41 @@ impl RandomStream {
         Self(ChaCha8Rng::from_seed(key))
     }
 
-    /// Uniform in [0, 1): a multiple of 2^-53, so the conversion is exact.
+    /// Uniform number in [0, 1). It is a multiple of 2^-53, so the conversion is exact.
     pub(crate) fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 
-    /// Uniform in [low, high).
+    /// Uniform number in [low, high).
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    /// Uniform in 0..count, by the high half of a product (its bias is below 2^-32). `count` must not be 0.
+    /// Uniform index in 0..count: the high half of a product, with a bias below 2^-32. `count` must not be 0.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         let count = u64::try_from(count).expect("counts of faces fit 64 bits");
         ((u128::from(self.0.next_u64()) * u128::from(count)) >> 64) as usize
     }
 
-    /// Heads or tails.
+    /// Fair coin: true with probability 1/2.
     pub(crate) fn coin(&mut self) -> bool {
         self.0.next_u64() >> 63 == 1
     }
 
-    /// Exponential of mean 1: the wait for the next event of a Poisson process of unit rate.
+    /// Exponential number of mean 1: the waiting time in a Poisson process of unit rate.
     pub(crate) fn exponential(&mut self) -> f64 {
         // 1 - u lies in (0, 1]: the logarithm is finite.
         -libm::log(1.0 - self.uniform())
     }
 
-    /// Gaussian of mean 0 and standard deviation 1. (Box and Muller, 1958; one of the pair)
+    /// Standard normal number. (Box and Muller, 1958; the second one of each pair is dropped)
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = (2.0 * self.exponential()).sqrt();
         radius * libm::cos(std::f64::consts::TAU * self.uniform())
     }
 
-    /// A direction, uniform over the sphere: a point of the unit ball, made a unit. (von Neumann, 1951)
-    pub(crate) fn direction(&mut self) -> DVec3 {
+    /// Unit vector, uniform over the sphere: a random point of the unit ball, normalised. (von Neumann, 1951)
+    pub(crate) fn unit_vector(&mut self) -> DVec3 {
         loop {
             let mut coordinate = || self.between(-1.0, 1.0);
             let v = DVec3::new(coordinate(), coordinate(), coordinate());
@@ -106,14 +107,15 @@ mod tests {
             assert!(random.below(3) < 3);
             assert!(random.exponential() >= 0.0);
             assert!(random.normal().is_finite());
-            assert!((random.direction().length() - 1.0).abs() < 1e-15);
+            assert!((random.unit_vector().length() - 1.0).abs() < 1e-15);
         }
     }
 
     #[test]
     fn waits_and_gaussians_have_their_moments() {
-        // Of 1e5 draws the mean of x, x^2, x^4 has a standard error of sqrt(var / n): for the exponential
-        // (moments n!) 1, sqrt(20), for the Gaussian 1, sqrt(2), sqrt(96), each over sqrt(1e5). Bounds of 4 of them.
+        // The mean of n = 1e5 draws of a quantity of variance v has the standard error sqrt(v / n). The variances
+        // are 1 and 20 for the exponential x and x^2 (moments n!), and 1, 2 and 96 for the Gaussian x, x^2 and
+        // x^4. The bound is 4 standard errors.
         let mut random = RandomStream::new(5, StreamPurpose::Octaves);
         let mut sums = [0.0; 5];
         for _ in 0..100_000 {

@@ -172,7 +172,7 @@ impl RockBodies {
         let sphere = &self.spheres[subdivisions(diameter) as usize - 1];
         // Flat sides: at least half of the radius is left.
         let planes: Vec<(DVec3, f64)> =
-            (0..8).map(|_| (random.direction(), random.between(0.55, 0.95))).collect();
+            (0..8).map(|_| (random.unit_vector(), random.between(0.55, 0.95))).collect();
         let cut = |direction: DVec3| {
             planes.iter().fold(1.0_f64, |radius, (normal, distance)| {
                 let cosine = normal.dot(direction);
