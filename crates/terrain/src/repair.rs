@@ -1,23 +1,23 @@
-//! Mends what can be mended without a guess.
+//! Repair of the faults that can be mended without a guess.
 
 use raypencil_scene::Mesh;
 
 use crate::inspect::{FaceStatus, MeshAnalysis, analyse};
 
-/// What a repair did.
+/// Changes made by a repair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Repairs {
-    /// Faces without area that were dropped.
+    /// Number of faces without area that were dropped.
     pub zero_area_faces: usize,
-    /// Copies of faces that were dropped; the first of each stays.
+    /// Number of duplicate faces that were dropped; the first of each stays.
     pub duplicate_faces: usize,
-    /// How many of these copies were of another material than the face that stays.
+    /// Number of these whose material differs from that of the face that stays.
     pub duplicates_of_other_material: usize,
-    /// Faces that were turned.
+    /// Number of faces that were turned round.
     pub turned_faces: usize,
-    /// Vertices that gave way to an earlier one in the same place.
+    /// Number of vertices that were merged into an earlier one in the same place.
     pub welded_vertices: usize,
-    /// Vertices of no face, or only of faces that were dropped, and dropped with them.
+    /// Number of dropped vertices: no face used them, or only dropped faces did.
     pub unused_vertices: usize,
 }
 
@@ -28,12 +28,26 @@ impl Repairs {
     }
 }
 
-/// Repairs what needs no guess, and says what it did.
+/// Repairs a mesh where no guess is needed, and reports the changes.
 ///
-/// Faces without area and copies of faces are dropped: the first of all copies stays, which is the one that
-/// renderers report, so that no hit moves and no reflectivity changes. Vertices in one place become one, vertices of
-/// no face are dropped, faces that [`crate::Inspection::inverted`] counts are turned. No vertex moves, no hole
-/// is filled; what stays keeps its order. A mesh that was repaired has nothing left to repair.
+/// * Faces without area and duplicate faces are dropped. The first of all duplicates stays: it is the one that
+///   renderers report, so no hit moves and no reflectivity changes.
+/// * Vertices in one place become one, and vertices without a face are dropped.
+/// * Faces that [`crate::Inspection::inverted`] counts are turned round.
+///
+/// No vertex moves and no hole is filled. The remaining parts keep their order. A second repair changes nothing.
+///
+/// ```
+/// use raypencil_terrain::{RandomGround, inspect, repair};
+///
+/// let nasty = RandomGround::nasty(7, 1_000);
+/// let (mesh, repairs) = repair(&nasty.build().into_mesh()?);
+/// // Every vertex that the generator left unused is gone, and the second repair finds nothing.
+/// assert!(repairs.unused_vertices >= nasty.unreferenced_vertices);
+/// assert_eq!(inspect(&mesh).unused_vertices.count, 0);
+/// assert!(!repair(&mesh).1.any());
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
     let MeshAnalysis { inspection, welded, statuses } = analyse(mesh);
     let mut repairs = Repairs {
@@ -57,7 +71,7 @@ pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
     }
     drop(statuses);
 
-    // Vertices that a face still uses, by their new numbers.
+    // New numbers of the vertices that a face still uses.
     let mut numbers = vec![u32::MAX; mesh.vertices().len()];
     for &vertex in faces.as_flattened() {
         numbers[vertex as usize] = 0;

@@ -1,21 +1,21 @@
-//! Things that hang together, and whether each is like or unlike the first of its kind. (Union-find with parity:
-//! Tarjan 1975, with the sign of each link.)
+//! Disjoint sets whose members are the same as or opposite to their root: union-find with parity. (Tarjan 1975,
+//! with a sign on each link)
 
-/// Disjoint sets. The lowest number of a set is its root.
+/// Disjoint sets. The root of a set is its lowest number.
 pub(super) struct DisjointSets {
     links: Vec<u32>,
-    /// Whether each is unlike what its link leads to.
+    /// Whether each member is opposite to the target of its link.
     opposite: Vec<bool>,
 }
 
-/// What came of joining two.
+/// Result of a union.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum UnionOutcome {
-    /// Two sets have become one.
+    /// Two sets became one.
     Merged,
-    /// They were in one set, and as like or unlike as was asked for.
+    /// Both were in one set already, with the relation asked for.
     Consistent,
-    /// They were in one set, and not so.
+    /// Both were in one set already, with the other relation.
     Contradictory,
 }
 
@@ -25,14 +25,14 @@ impl DisjointSets {
         Self { links, opposite: vec![false; count] }
     }
 
-    /// The root of a number's set, and whether the number is unlike the root.
+    /// Root of a number's set, and whether the number is opposite to the root.
     pub(super) fn find(&mut self, number: u32) -> (u32, bool) {
         let (mut root, mut opposite) = (number, false);
         while self.links[root as usize] != root {
             opposite ^= self.opposite[root as usize];
             root = self.links[root as usize];
         }
-        // Once more, so that all on the way lead straight to the root.
+        // Path compression: every member on the way links straight to the root.
         let (mut at, mut rest) = (number, opposite);
         while self.links[at as usize] != root && at != root {
             let (next, step) = (self.links[at as usize], self.opposite[at as usize]);
@@ -44,7 +44,7 @@ impl DisjointSets {
         (root, opposite)
     }
 
-    /// Puts two sets together, such that `a` is unlike `b` or not.
+    /// Joins two sets so that `a` is opposite to `b`, or the same.
     pub(super) fn union(&mut self, a: u32, b: u32, opposite: bool) -> UnionOutcome {
         let ((root_a, of_a), (root_b, of_b)) = (self.find(a), self.find(b));
         let between = of_a ^ of_b ^ opposite;
@@ -63,8 +63,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn likeness_is_kept_along_chains() {
-        // 4 - 3 - 2 - 1 - 0, each unlike the next: even numbers are like 0, odd ones unlike.
+    fn parity_is_kept_along_chains() {
+        // The chain 4 - 3 - 2 - 1 - 0, each opposite to the next: even numbers are the same as 0, odd ones
+        // opposite.
         let mut sets = DisjointSets::new(6);
         for number in (1..5).rev() {
             assert_eq!(sets.union(number, number - 1, true), UnionOutcome::Merged);

@@ -1,17 +1,17 @@
-//! Faces on the same three places.
+//! Duplicate and double-sided faces: faces on the same three places.
 
 use super::geometry::MeshGeometry;
 use super::report::{Example, Inspection};
 use super::status::FaceStatus;
 
-/// Sets copies aside, and counts sheets of two sides.
+/// Marks duplicate faces and counts double-sided sheets.
 pub(super) fn find_duplicates(
     geometry: &MeshGeometry,
     welded: &[u32],
     statuses: &mut [FaceStatus],
     inspection: &mut Inspection,
 ) {
-    // The corners from the lowest on, as [a, b, c] in the face's own sense.
+    // Corners from the lowest on, in the face's own sense: [a, b, c].
     let turned = |face: u32| {
         let mut corners = geometry.mesh.faces()[face as usize].map(|vertex| welded[vertex as usize]);
         let lowest = (0..3).min_by_key(|&corner| corners[corner]).expect("three corners");
@@ -29,7 +29,7 @@ pub(super) fn find_duplicates(
     let mut faces: Vec<([u32; 3], u32)> =
         geometry.faces().filter(|&face| statuses[face as usize] == FaceStatus::Sound).map(sorted).collect();
     faces.sort_unstable();
-    // Faces of each place follow each other by number, so that the first of each sense is the lowest.
+    // Faces on one place are ordered by number, so the first of each sense is the lowest.
     let mut sheets = Vec::new();
     for place in faces.chunk_by(|a, b| a.0 == b.0).filter(|place| place.len() > 1) {
         let mut first: [Option<u32>; 2] = [None; 2];
@@ -49,7 +49,7 @@ pub(super) fn find_duplicates(
         }
     }
     drop(faces);
-    // Examples in the order of faces.
+    // Examples are in the order of faces.
     sheets.sort_unstable();
     for face in sheets {
         inspection.double_sided.add(|| Example::at_face(face, geometry.middle(face)));

@@ -1,4 +1,4 @@
-//! Edges: which faces share each, and how these run along it.
+//! Edges: the faces that share each edge, and their direction along it.
 
 use glam::DVec3;
 
@@ -7,13 +7,13 @@ use super::geometry::MeshGeometry;
 use super::report::{Example, Inspection, OpenPiece};
 use super::status::FaceStatus;
 
-/// A side of a face, by the lower and the higher of its ends.
+/// Half-edge: a side of one face, by the lower and the higher of its two vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct HalfEdge {
     low: u32,
     high: u32,
     face: u32,
-    /// The face runs from the higher end to the lower.
+    /// The face runs from the higher vertex to the lower.
     backwards: bool,
 }
 
@@ -22,23 +22,24 @@ impl HalfEdge {
         (geometry.vertex(self.high) - geometry.vertex(self.low)).length()
     }
 
-    /// The middle, in the global frame.
+    /// Midpoint, global frame, metres.
     fn middle(&self, geometry: &MeshGeometry) -> DVec3 {
         geometry.global((geometry.vertex(self.low) + geometry.vertex(self.high)) * 0.5)
     }
 }
 
-/// How faces hang together.
+/// Connections between faces over edges.
 pub(super) struct FaceConnectivity {
-    /// Patches: faces over edges of two faces, unlike if one of them has to be turned to suit the other.
+    /// Patches: faces connected over edges of two faces. Two faces are opposite if one must be turned to match
+    /// the other.
     pub(super) patches: DisjointSets,
-    /// Faces at an edge that has not just two.
+    /// Whether each face has an edge that is not shared by exactly two faces.
     pub(super) at_patch_border: Vec<bool>,
-    /// Faces, one at least of each patch that has no two sides.
+    /// At least one face of each non-orientable patch.
     pub(super) non_orientable: Vec<u32>,
 }
 
-/// Finds out which sides of the faces that stay belong together.
+/// Connects the faces of the surface over their edges, and counts open, non-manifold and mismatched edges.
 pub(super) fn connect(
     geometry: &MeshGeometry,
     welded: &[u32],
@@ -63,7 +64,7 @@ pub(super) fn connect(
         }
         match edge {
             [one, other] => {
-                // Neighbours on one side of the surface run along their edge in opposite directions.
+                // Consistent neighbours run along their edge in opposite directions.
                 let mismatched = one.backwards == other.backwards;
                 if mismatched {
                     inspection.mismatched_edges.add(example);
@@ -88,7 +89,7 @@ pub(super) fn connect(
     connectivity
 }
 
-/// The sides of all faces that stay, those of one edge together.
+/// Half-edges of all faces of the surface, sorted so that those of one edge are adjacent.
 fn sorted_half_edges(geometry: &MeshGeometry, welded: &[u32], statuses: &[FaceStatus]) -> Vec<HalfEdge> {
     let staying = || geometry.faces().filter(|&face| statuses[face as usize].is_surface());
     let mut half_edges = Vec::with_capacity(3 * staying().count());
@@ -102,7 +103,7 @@ fn sorted_half_edges(geometry: &MeshGeometry, welded: &[u32], statuses: &[FaceSt
     half_edges
 }
 
-/// Counts open edges, and puts them together at their ends.
+/// Counts open edges, and joins them to pieces at their vertices.
 fn gather_open(geometry: &MeshGeometry, open: &[HalfEdge], inspection: &mut Inspection) {
     let found = &mut inspection.open_edges;
     found.count = open.len();
@@ -112,7 +113,7 @@ fn gather_open(geometry: &MeshGeometry, open: &[HalfEdge], inspection: &mut Insp
     let mut ends = DisjointSets::new(geometry.mesh.vertices().len());
     for half_edge in open {
         found.length += half_edge.length(geometry);
-        // An edge between what hangs together already closes one more loop.
+        // An edge within one piece closes one more loop.
         found.loops += usize::from(ends.union(half_edge.low, half_edge.high, false) != UnionOutcome::Merged);
     }
     let mut pieces: Vec<(u32, HalfEdge)> =

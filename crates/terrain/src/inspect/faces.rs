@@ -1,4 +1,4 @@
-//! Faces one by one: without area, slender, looking down.
+//! Checks of single faces: area, slenderness, downward normals.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::geometry::MeshGeometry;
 use super::report::{Example, Inspection};
 use super::status::FaceStatus;
 
-/// Sets faces without area aside.
+/// Marks and counts faces without area.
 pub(super) fn find_zero_area(
     geometry: &MeshGeometry,
     welded: &[u32],
@@ -33,18 +33,18 @@ pub(super) fn find_zero_area(
     geometry.faces().map(status).collect()
 }
 
-/// Measures the faces that stay.
+/// Measures the faces of the surface.
 pub(super) fn measure(geometry: &MeshGeometry, statuses: &[FaceStatus], inspection: &mut Inspection) {
     for face in geometry.faces().filter(|&face| statuses[face as usize].is_surface()) {
         let normal = geometry.normal(face);
         let twice_area = normal.length();
         let example = || Example::at_face(face, geometry.middle(face));
         inspection.area += 0.5 * twice_area;
-        // Only faces of less than 1e-150 m a side have a length of 0 here: they are no measure of anything.
+        // The length is 0 only for faces below 1e-150 m a side, whose aspect means nothing.
         let [a, b, c] = geometry.corners(face);
         let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
         if twice_area > 0.0 {
-            // length / width, and width = twice the area / length.
+            // aspect = length / width, and width = twice the area / length.
             let aspect = longest / twice_area;
             inspection.worst_aspect = inspection.worst_aspect.max(aspect);
             if aspect > Inspection::MIN_SLENDER_ASPECT {

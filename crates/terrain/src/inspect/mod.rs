@@ -1,8 +1,18 @@
-//! What may be wrong with a mesh that rays are cast at.
+//! Inspection of a mesh for faults that matter to ray casting.
 //!
-//! Sorting finds what belongs together: vertices by position, faces by their corners, sides of faces by their
-//! ends. Everything takes O(n log n), and some 70 bytes a face. Whether faces run through each other is not asked:
-//! that is a search of its own, and no ray minds it.
+//! Sorting brings together vertices by position, faces by their corners, and half-edges by their ends. The time
+//! is O(n log n), the memory some 70 bytes a face. Intersections between faces are not searched for: rays are not
+//! affected by them.
+//!
+//! ```text
+//! geometry       vertices, corners, normals in f64
+//! weld           vertices in one place
+//! faces          faces one by one: area, slenderness, direction
+//! duplicates     faces on the same three places
+//! edges          faces along each edge; disjoint_sets joins them to patches and components
+//! patches        orientation of each patch
+//! report         the result; status: what becomes of each face
+//! ```
 
 mod disjoint_sets;
 mod duplicates;
@@ -24,23 +34,32 @@ pub(crate) use status::FaceStatus;
 
 use geometry::MeshGeometry;
 
-/// Looks for everything that an [`Inspection`] tells.
+/// Inspects a mesh; [`Inspection`] lists what is looked for.
 ///
-/// Vertices in one place count as one, with 0 = -0: so renderers see shared edges. Faces of zero area, which no
-/// ray hits, and copies of other faces are counted and then set aside: edges, components, areas and volumes are
-/// those of the surface that is left. (CHOICE: else one copy would make its three edges crowded, and hide what else is
-/// wrong there. A face without area that filled a crack leaves open edges, as it does for a ray.)
+/// Vertices in one place count as one, with 0 = -0: this is how renderers see shared edges. Faces without area,
+/// which no ray hits, and duplicate faces are counted and then set aside. Edges, components, areas and volumes
+/// describe the remaining surface. (CHOICE: otherwise one duplicate would make its three edges non-manifold and
+/// hide other faults there. A face without area that filled a crack leaves open edges, as it does for a ray.)
 ///
-/// # Panics
-/// If the mesh has 2^32 vertices or more, which no face could use.
+/// # Panics If the mesh has 2^32 vertices or more, which no face could use.
+///
+/// ```
+/// use raypencil_terrain::{RandomGround, inspect};
+///
+/// // 800 faces are 20 x 20 cells. The border, four times 20 open edges, is one loop.
+/// let found = inspect(&RandomGround::plain(1, 800, 20.0).build().into_mesh()?);
+/// assert!(found.passes());
+/// assert_eq!((found.open_edges.count, found.open_edges.loops), (80, 1));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 pub fn inspect(mesh: &Mesh) -> Inspection {
     analyse(mesh).inspection
 }
 
-/// An inspection, and what a repair needs to know of each vertex and face.
+/// Inspection, with the data about each vertex and face that a repair needs.
 pub(crate) struct MeshAnalysis {
     pub(crate) inspection: Inspection,
-    /// The first vertex in the place of each vertex.
+    /// First vertex in the place of each vertex.
     pub(crate) welded: Vec<u32>,
     pub(crate) statuses: Vec<FaceStatus>,
 }

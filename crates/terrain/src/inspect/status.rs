@@ -1,22 +1,22 @@
-//! The part that each face plays in an inspection.
+//! What an inspection decides about each face.
 
-/// What becomes of a face.
+/// Result of the inspection for one face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FaceStatus {
-    /// It stays.
+    /// Part of the surface.
     Sound,
-    /// It stays, the other way round.
+    /// Part of the surface, to be turned round.
     Inverted,
-    /// It has no area.
+    /// Without area.
     ZeroArea,
-    /// A face of lower number has the same corners in the same sense.
+    /// Duplicate of a face of lower number: the same corners in the same sense.
     Duplicate,
-    /// The same, and that face is of another material.
+    /// Duplicate of a face of another material.
     DuplicateOfOtherMaterial,
 }
 
 impl FaceStatus {
-    /// Whether the face belongs to the surface that rays meet.
+    /// Whether the face belongs to the surface that rays hit.
     pub(crate) fn is_surface(self) -> bool {
         matches!(self, Self::Sound | Self::Inverted)
     }

@@ -1,9 +1,9 @@
-//! Vertices in one place, and vertices of no face.
+//! Welding: vertices in one place, and unused vertices.
 
 use super::geometry::MeshGeometry;
 use super::report::{Example, Inspection, Item};
 
-/// Finds the first vertex in the place of each.
+/// First vertex in the place of each vertex; counts unused and split vertices, and measures the bounds.
 pub(super) fn weld(geometry: &MeshGeometry, inspection: &mut Inspection) -> Vec<u32> {
     let vertices = geometry.mesh.vertices();
     let mut used = vec![false; vertices.len()];
@@ -11,7 +11,7 @@ pub(super) fn weld(geometry: &MeshGeometry, inspection: &mut Inspection) -> Vec<
         used[vertex as usize] = true;
     }
     let index = |index: usize| u32::try_from(index).expect("a mesh has fewer than 2^32 vertices");
-    // -0 + 0 = 0, and all other numbers stay what they are.
+    // -0 + 0 = 0; all other numbers are unchanged.
     let bits = |vertex: &[f32; 3]| vertex.map(|coordinate| (coordinate + 0.0).to_bits());
     let mut places: Vec<([u32; 3], u32)> =
         vertices.iter().enumerate().map(|(number, vertex)| (bits(vertex), index(number))).collect();

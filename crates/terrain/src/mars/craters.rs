@@ -1,37 +1,38 @@
-//! Craters: bowls with a raised rim and a blanket of ejecta, from fresh to nearly gone.
+//! Craters: bowls with a raised rim and an ejecta blanket, from fresh to nearly eroded.
 //!
-//! Of a fresh simple crater of diameter D (rim to rim) the depth from rim to floor is about 0.2 D and the rim stands about
-//! 0.04 D above the ground around it (Pike 1977); ejecta thin out with the third power of the distance (McGetchin, Settle
-//! and Head 1973). Wind fills old craters from the floor up and rounds their rims.
+//! A fresh simple crater of diameter D (rim to rim) is about 0.2 D deep from rim to floor, and its rim stands
+//! about 0.04 D above the surrounding ground (Pike 1977). Ejecta decrease with the third power of the distance
+//! (McGetchin, Settle and Head 1973). Wind fills old craters from the floor up and rounds their rims.
 
 use glam::DVec2;
 
 use crate::Posts;
 use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// Depth from rim to floor of a fresh crater and of the most degraded one, shares of its diameter.
+/// Depth from rim to floor of a fresh crater and of the most degraded one, per diameter.
 const DEPTH_PER_DIAMETER: [f64; 2] = [0.2, 0.03];
-/// Height of the rim above the ground around it, likewise.
+/// Height of the rim above the surrounding ground, likewise.
 const RIM_HEIGHT_PER_DIAMETER: [f64; 2] = [0.04, 0.004];
-/// How much the rim of the most degraded crater is rounded, a share of the diameter. CHOICE.
+/// Width of the rounding of the most degraded rim, per diameter. CHOICE.
 const MAX_RIM_ROUNDING_PER_DIAMETER: f64 = 0.03;
-/// The ejecta end here, in radii.
+/// Outer end of the ejecta, radii.
 const EJECTA_END_RADII: f64 = 3.0;
 
-/// How many craters there are.
+/// Size distribution of the craters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Craters {
-    /// Craters of diameter D and more, per square metre, are `density` / D^2: the slope of surfaces on which new craters
-    /// destroy as many old ones. Geometric saturation is 1.54, and surfaces in equilibrium have 1 to 10 % of it (Gault 1970).
+    /// Number of craters of diameter D and more per square metre, times D^2. (The power -2 holds where new
+    /// craters destroy as many old ones) Geometric saturation is 1.54; surfaces in equilibrium have 1 to 10 % of
+    /// it (Gault 1970).
     pub density: f64,
-    /// The smallest diameter, metres.
+    /// Smallest diameter, metres.
     pub smallest: f64,
-    /// The largest diameter, metres.
+    /// Largest diameter, metres.
     pub largest: f64,
 }
 
 impl Craters {
-    /// How many are to be expected on a square, those outside whose ejecta reach it included.
+    /// Expected number of craters on a square, including those outside whose ejecta reach it.
     pub(super) fn expected(&self, extent: f64) -> f64 {
         self.density
             * self.area(extent)
@@ -47,7 +48,7 @@ impl Craters {
         extent + self.largest * EJECTA_END_RADII
     }
 
-    /// The craters of a square of that side about `middle`, the largest first.
+    /// Craters of a square of side `extent` about `middle`, the largest first.
     pub(super) fn draw(&self, middle: DVec2, extent: f64, seed: u64) -> Vec<Crater> {
         let mut random = RandomStream::new(seed, StreamPurpose::Craters);
         let scale = self.density * self.area(extent);
@@ -70,21 +71,21 @@ impl Craters {
 /// One crater.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crater {
-    /// Its middle, global x and y, metres.
+    /// Centre, global x and y, metres.
     pub centre: DVec2,
-    /// From rim to rim, metres.
+    /// Diameter from rim to rim, metres.
     pub diameter: f64,
-    /// 0 for a fresh one, 1 for one that is nearly gone.
+    /// Degradation: 0 for a fresh crater, 1 for one that is nearly eroded.
     pub degradation: f64,
 }
 
 impl Crater {
-    /// From the rim to the floor, metres.
+    /// Depth from rim to floor, metres.
     pub fn depth(&self) -> f64 {
         self.between(DEPTH_PER_DIAMETER)
     }
 
-    /// Of the rim above the ground around it, metres.
+    /// Height of the rim above the surrounding ground, metres.
     pub fn rim_height(&self) -> f64 {
         self.between(RIM_HEIGHT_PER_DIAMETER)
     }
@@ -93,20 +94,20 @@ impl Crater {
         self.diameter * (fresh + (degraded - fresh) * self.degradation)
     }
 
-    /// What it adds to the height of the ground at that distance from its middle, metres.
+    /// Height that the crater adds to the ground at a distance from its centre, metres.
     pub fn profile(&self, distance: f64) -> f64 {
         let r = 2.0 * distance / self.diameter;
         if r >= EJECTA_END_RADII {
             return 0.0;
         }
         let rounding = MAX_RIM_ROUNDING_PER_DIAMETER * self.degradation * self.diameter;
-        // The smooth minimum below lowers the crest. Where straight lines of slopes a > 0 and -b < 0 meet, it does so by
-        // width s (1 - s), s = b / (a + b); bowl and blanket are not straight, but nearly so near the rim.
+        // The smooth minimum below lowers the crest. Where straight lines of slopes a > 0 and -b < 0 meet, it
+        // lowers by width s (1 - s), s = b / (a + b). Bowl and blanket are nearly straight near the rim.
         let [a, b] = [4.0 * DEPTH_PER_DIAMETER[0], 6.0 * self.rim_height() / self.diameter];
         let share = b / (a + b);
         let rim = self.rim_height() + rounding * share * (1.0 - share);
         let bowl = DEPTH_PER_DIAMETER[0] * self.diameter * (r * r - 1.0) + rim;
-        // Inside, the blanket only shapes the crest; the bowl is far below it half way out.
+        // Inside, the blanket shapes the crest alone: the bowl is far below it half way out.
         let far = r.max(0.5);
         let faded = 1.0 / (EJECTA_END_RADII * EJECTA_END_RADII * EJECTA_END_RADII);
         let ejecta = rim * (1.0 / (far * far * far) - faded) / (1.0 - faded);
@@ -115,7 +116,7 @@ impl Crater {
         sheet.max(self.rim_height() - self.depth())
     }
 
-    /// Adds it to posts.
+    /// Adds the crater to the heights of the posts.
     pub(super) fn carve(&self, posts: &mut Posts) {
         let reach = 0.5 * EJECTA_END_RADII * self.diameter;
         let range = |centre: f64, corner: f64, spacing: f64, count: u32| {
@@ -134,10 +135,10 @@ impl Crater {
     }
 }
 
-/// The smaller of two, the corner between them rounded where they differ by less than `width`.
+/// Minimum of two values, with the corner rounded where they differ by less than `width`.
 fn smooth_minimum(a: f64, b: f64, width: f64) -> f64 {
     let near = (width - (a - b).abs()).max(0.0);
-    // Without a width nothing is near.
+    // A width of 0 never rounds.
     if near == 0.0 { a.min(b) } else { a.min(b) - near * near / (4.0 * width) }
 }
 

@@ -1,32 +1,34 @@
-//! Stochastic interpolation: from posts far apart to posts close together, rough at every scale.
+//! Fractal relief by stochastic interpolation: from posts far apart to posts close together, rough at every
+//! scale.
 //!
-//! Fournier, Fussell and Carpenter (1982) halve the spacing again and again and move each new post by a Gaussian. A
-//! self-affine surface of Hurst exponent H whose heights differ by `roughness` (rms, metres) at points 1 m apart differs by
-//! roughness s^H at points s apart; given both neighbours at distance s, the middle one has the standard deviation
-//! roughness s^H sqrt(1 - 2^(2H - 2)).
+//! Fournier, Fussell and Carpenter (1982) halve the spacing repeatedly and displace each new post by a Gaussian.
+//! Let a self-affine surface of Hurst exponent H have a height difference of `roughness` (rms, metres) at points
+//! 1 m apart. Then the difference at points s apart is roughness s^H. Given both neighbours at distance s, the
+//! middle post has the standard deviation roughness s^H sqrt(1 - 2^(2H - 2)).
 //!
-//! Old posts never move, so that every post of the coarse grid is met exactly. New ones start from the smooth curve
-//! through the four nearest, with weights -1, 9, 9, -1 over 16 (Dyn, Levin and Gregory, 1987), not from the straight line
-//! between two, which would leave the creases that plain midpoint displacement is known for.
+//! Old posts never move, so the surface meets every coarse post exactly. New posts start from the smooth curve
+//! through the four nearest, with weights -1, 9, 9, -1 over 16 (Dyn, Levin and Gregory, 1987). The straight line
+//! between two posts would leave the creases that plain midpoint displacement is known for.
 
 use glam::DVec2;
 
 use crate::Posts;
 use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// How rough a surface is.
+/// Roughness of a self-affine surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Roughness {
-    /// Hurst exponent H, above 0 and below 1: the nearer to 1, the smoother small parts are beside large ones.
+    /// Hurst exponent H, above 0 and below 1. The nearer to 1, the smoother small scales are relative to large
+    /// ones.
     pub hurst: f64,
-    /// Root mean square difference of height of points 1 m apart, metres.
+    /// Root mean square difference of height between points 1 m apart, metres.
     pub at_1_m: f64,
-    /// Factors on the displacements of each halving of the spacing, the coarsest first; 1 for those not named.
+    /// Factor on the displacements of each halving of the spacing, the coarsest first; 1 for those not given.
     pub octave_gains: Vec<f64>,
 }
 
 impl Roughness {
-    /// Standard deviation of new posts that stand `spacing` metres from their old neighbours.
+    /// Standard deviation of the displacement of new posts `spacing` metres from their old neighbours, metres.
     fn displacement(&self, octave: usize, spacing: f64) -> f64 {
         let gain = self.octave_gains.get(octave).copied().unwrap_or(1.0);
         let left = 1.0 - libm::pow(2.0, 2.0 * self.hurst - 2.0);
@@ -34,7 +36,8 @@ impl Roughness {
     }
 }
 
-/// Four posts at the corners of a square, as high as the law wants them: neighbours differ by roughness side^H (rms).
+/// Four posts at the corners of a square, with heights by the same law: neighbours differ by roughness side^H
+/// (rms).
 pub(crate) fn corner_posts(side: f64, roughness: &Roughness, seed: u64) -> Posts {
     let mut random = RandomStream::new(seed, StreamPurpose::Corners);
     let deviation = roughness.at_1_m * libm::pow(side, roughness.hurst) * std::f64::consts::FRAC_1_SQRT_2;
@@ -42,14 +45,14 @@ pub(crate) fn corner_posts(side: f64, roughness: &Roughness, seed: u64) -> Posts
     Posts { columns: 2, rows: 2, corner: DVec2::ZERO, spacing: DVec2::splat(side), heights }
 }
 
-/// Halves the spacing of `posts` `octaves` times. The old posts are among the new ones, unchanged to the bit.
+/// Halves the spacing of `posts` `octaves` times. The old posts stay among the new ones, unchanged to the bit.
 pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u64) -> Posts {
     let mut random = RandomStream::new(seed, StreamPurpose::Octaves);
     let mut posts = posts;
     for octave in 0..octaves as usize {
         posts = halve_spacing(posts);
-        // CHOICE: a new post in the middle of a cell is sqrt(2) farther from its neighbours than one on a side; both
-        // are displaced alike, as in the paper of 1982.
+        // CHOICE: a new post in the middle of a cell is sqrt(2) farther from its neighbours than one on a side.
+        // Both are displaced alike, as in the paper of 1982.
         let spacing = (posts.spacing.x * posts.spacing.y).sqrt();
         let displacement = roughness.displacement(octave, spacing);
         let columns = posts.columns as usize;
@@ -64,7 +67,7 @@ pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u6
     posts
 }
 
-/// Twice as many cells in each direction, the new posts on the smooth curves through the old.
+/// Grid with twice as many cells in each direction; new posts lie on the smooth curves through the old ones.
 fn halve_spacing(posts: Posts) -> Posts {
     let (old_columns, old_rows) = (posts.columns as usize, posts.rows as usize);
     let (columns, rows) = (2 * old_columns - 1, 2 * old_rows - 1);
@@ -72,7 +75,7 @@ fn halve_spacing(posts: Posts) -> Posts {
     for (old, new) in posts.heights.chunks_exact(old_columns).zip(heights.chunks_exact_mut(2 * columns)) {
         interpolate_line(old_columns, |i| old[i], |i, height| new[i] = height);
     }
-    // The last row has no row of new posts after it, so that it is no whole chunk of two.
+    // The last row is not followed by a row of new posts, so it is no whole chunk of two rows.
     let last = (old_rows - 1) * old_columns;
     let (old, new) = (&posts.heights[last..], &mut heights[(rows - 1) * columns..]);
     interpolate_line(old_columns, |i| old[i], |i, height| new[i] = height);
@@ -89,7 +92,7 @@ fn halve_spacing(posts: Posts) -> Posts {
     }
 }
 
-/// A line of `count` old posts and the new ones between them.
+/// Passes the `count` old posts of a line and the new posts between them to `new`.
 fn interpolate_line(count: usize, old: impl Fn(usize) -> f64, mut new: impl FnMut(usize, f64)) {
     for i in 0..count {
         new(2 * i, old(i));
@@ -97,7 +100,7 @@ fn interpolate_line(count: usize, old: impl Fn(usize) -> f64, mut new: impl FnMu
             break;
         }
         let (b, c) = (old(i), old(i + 1));
-        // Past the ends the line goes on straight.
+        // Beyond the ends the line continues straight.
         let a = if i > 0 { old(i - 1) } else { 2.0 * b - c };
         let d = if i + 2 < count { old(i + 2) } else { 2.0 * c - b };
         new(2 * i + 1, 0.5625 * (b + c) - 0.0625 * (a + d));

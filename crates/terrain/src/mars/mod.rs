@@ -1,12 +1,12 @@
-//! Ground as Mars has it: relief at every scale, craters, crevasses and rocks, each by its own law.
+//! Mars-like ground: relief at every scale, craters, crevasses and rocks, each by its own published law.
 //!
 //! ```text
 //! fractal    relief: stochastic interpolation between coarse posts
 //! craters    bowls, rims and ejecta, added to the posts
-//! crevasses  the courses of cracks, and how the grid makes way for them
-//! surface    the sheet of faces over the posts, cut open at the crevasses
+//! crevasses  the courses of cracks, and how the grid rows bend around them
+//! sheet      the faces over the posts, cut open at the crevasses
 //! rocks      sizes, places and bodies of rocks
-//! presets    grounds with a source for every number
+//! presets    grounds by name, with a source for every number
 //! ```
 
 mod craters;
@@ -30,44 +30,61 @@ pub use fractal::Roughness;
 pub use presets::PRESET_NAMES;
 pub use rocks::Rocks;
 
-/// The most faces that a ground may be expected to have: as many as files may.
+/// Maximum expected number of faces: the limit of the files, 2^25.
 const MAX_FACES: f64 = (1 << 25) as f64;
 
-/// A ground to be generated. Start from [`MarsGround::preset`] and change fields; the same fields give the same bytes
-/// on every machine.
+/// Settings of a generated ground. Start from [`MarsGround::preset`] and change fields. The same fields give the
+/// same bytes on every machine.
 ///
-/// The middle of the square, 1.5 m about it, is free of rocks and crevasses, so that a rover can stand there.
+/// The middle of the square, up to 1.5 m from its centre, is free of rocks and crevasses, so that a rover can
+/// stand there.
+///
+/// ```
+/// use raypencil_terrain::{Craters, Crevasses, MarsGround, Rocks};
+///
+/// let preset = MarsGround::preset("viking1", 7).expect("a preset name");
+/// // Relief alone: 12 m in steps of 0.2 m are 60 x 60 cells of two faces.
+/// let mars = MarsGround {
+///     extent: 12.0,
+///     post_spacing: 0.2,
+///     rocks: Rocks { coverage: 0.0, ..preset.rocks },
+///     craters: Craters { density: 0.0, ..preset.craters },
+///     crevasses: Crevasses { count: 0, ..preset.crevasses },
+///     ..preset
+/// };
+/// assert_eq!(mars.build()?.faces.len(), 2 * 60 * 60);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarsGround {
-    /// Which of the grounds with these settings.
+    /// Seed: another seed gives another ground with the same settings.
     pub seed: u64,
-    /// Side of the square, metres, to the next whole cell. Of no effect if `coarse` is given.
+    /// Side of the square, metres, rounded up to whole cells. Ignored if `coarse` is given.
     pub extent: f64,
-    /// Posts are this far apart, metres; if `coarse` is given, at most this far.
+    /// Distance between posts, metres; an upper limit if `coarse` is given.
     pub post_spacing: f64,
-    /// Posts that the surface passes through, before craters and crevasses are put in. Without them the relief
+    /// Posts that the surface passes through before craters and crevasses are added. Without them the relief
     /// starts from four posts at the corners of a square at least as large as the ground.
     pub coarse: Option<Posts>,
-    /// How rough the surface is.
+    /// Roughness of the relief.
     pub roughness: Roughness,
-    /// Rocks; a coverage of 0 for none.
+    /// Rocks; none if the coverage is 0.
     pub rocks: Rocks,
-    /// Craters; a density of 0 for none.
+    /// Craters; none if the density is 0.
     pub craters: Craters,
-    /// Crevasses; a count of 0 for none.
+    /// Crevasses; none if the count is 0.
     pub crevasses: Crevasses,
-    /// Added to every vertex, metres.
+    /// Translation of all vertices, metres.
     pub offset: DVec3,
 }
 
-/// Rocks and crevasses stay this far from the middle, metres.
+/// Distance of rocks and crevasses from the middle, metres.
 const FREE_RADIUS_M: f64 = 1.5;
 
 impl MarsGround {
-    /// Builds it.
+    /// Builds the ground.
     ///
-    /// # Errors
-    /// As [`MarsGround::validate`].
+    /// # Errors As [`MarsGround::validate`].
     pub fn build(&self) -> Result<Ground, SceneError> {
         self.validate()?;
         let mut posts = self.relief();
@@ -94,20 +111,20 @@ impl MarsGround {
         Ok(ground)
     }
 
-    /// Diameters of its rocks, the largest first, metres.
+    /// Diameters of the rocks, metres, in descending order.
     pub fn rock_diameters(&self) -> Vec<f64> {
         let extent = self.extents();
         self.rocks.diameters(extent.x * extent.y, self.seed)
     }
 
-    /// Its craters, the largest first; those outside whose ejecta reach it are among them.
+    /// Craters, the largest first. Those outside the ground whose ejecta reach it are included.
     pub fn crater_list(&self) -> Vec<Crater> {
         let corner = self.coarse.as_ref().map_or(-0.5 * self.extents(), |coarse| coarse.corner);
         let extent = self.extents();
         self.craters.draw(corner + 0.5 * extent, extent.max_element(), self.seed)
     }
 
-    /// From border to border along x and y, metres.
+    /// Extent along x and y from border to border, metres.
     pub fn extents(&self) -> DVec2 {
         match &self.coarse {
             Some(coarse) => coarse.extent(),
@@ -115,7 +132,7 @@ impl MarsGround {
         }
     }
 
-    /// The posts, without craters.
+    /// Posts before craters are added.
     fn relief(&self) -> Posts {
         if let Some(coarse) = &self.coarse {
             let octaves = octaves(coarse.spacing.max_element(), self.post_spacing);
@@ -126,7 +143,7 @@ impl MarsGround {
         let whole = 1_u32 << octaves;
         let start = fractal::corner_posts(f64::from(whole) * self.post_spacing, &self.roughness, self.seed);
         let posts = fractal::refine(start, octaves, &self.roughness, self.seed);
-        // The ground is a part of it, about the origin.
+        // The ground is the part of it about the origin.
         let margin = (whole - cells) / 2;
         let heights = (0..=cells)
             .flat_map(|row| {
@@ -146,7 +163,7 @@ impl MarsGround {
 
     /// Cells per side of a ground without coarse posts.
     fn cells(&self) -> u32 {
-        // Below 2^13 after the check.
+        // Below 2^13 after validation.
         ((self.extent / self.post_spacing).ceil() as u32).max(2)
     }
 
@@ -170,10 +187,9 @@ impl MarsGround {
         }
     }
 
-    /// Whether it can be built.
+    /// Checks that the ground can be built.
     ///
-    /// # Errors
-    /// Names the first number that is out of its range, or what makes the ground larger than 2^25 faces.
+    /// # Errors Names the first number out of its range, or the number that makes the ground larger than 2^25 faces.
     pub fn validate(&self) -> Result<(), SceneError> {
         let Self { rocks, craters, crevasses, roughness, .. } = self;
         let ranges = [
@@ -207,7 +223,7 @@ impl MarsGround {
         self.check_size()
     }
 
-    /// Refuses what would take more faces than a file may have.
+    /// Refuses a ground with more faces than a file may have.
     fn check_size(&self) -> Result<(), SceneError> {
         let (extent, cells) = match &self.coarse {
             None => {
@@ -252,25 +268,25 @@ fn check_coarse(coarse: &Posts) -> Result<(), SceneError> {
     let (columns, rows) = (coarse.columns as usize, coarse.rows as usize);
     if columns < 2 || rows < 2 || coarse.heights.len() != columns * rows {
         let found = format!("{columns} x {rows} posts, {} heights", coarse.heights.len());
-        return Err(SceneError::new("coarse", found, "2 x 2 posts or more, a height for each"));
+        return Err(SceneError::new("coarse", found, "at least 2 x 2 posts, with a height for each"));
     }
     let finite = |v: DVec2| v.is_finite() && v.abs().max_element() <= 1e12;
     if !(coarse.spacing.min_element() > 0.0 && finite(coarse.spacing) && finite(coarse.corner)) {
         let found = format!("spacing {}, corner {}", coarse.spacing, coarse.corner);
-        return Err(SceneError::new("coarse", found, "positive spacings and places within 1e12 m"));
+        return Err(SceneError::new("coarse", found, "positive spacings, and coordinates within 1e12 m"));
     }
     if let Some(index) = coarse.heights.iter().position(|height| !(height.abs() <= 1e7)) {
         let found = format!("post ({}, {}) at {} m", index % columns, index / columns, coarse.heights[index]);
-        return Err(SceneError::new("coarse", found, "heights that are all known, within 1e7 m"));
+        return Err(SceneError::new("coarse", found, "known heights within 1e7 m"));
     }
     Ok(())
 }
 
-/// How often to halve the coarse spacing for a spacing that is no larger than the fine one.
+/// Number of halvings after which the coarse spacing is no larger than the fine one.
 fn octaves(coarse: f64, fine: f64) -> u32 {
     let mut octaves = 0;
     let mut spacing = coarse;
-    // 1e12 m at most, to 1e-3 m at least: 50 halvings.
+    // From at most 1e12 m to at least 1e-3 m: 50 halvings.
     while spacing > fine {
         spacing *= 0.5;
         octaves += 1;
@@ -282,8 +298,8 @@ const SOIL_MATERIAL: u16 = 0;
 const ROCK_MATERIAL: u16 = 1;
 const WALL_MATERIAL: u16 = 2;
 
-/// CHOICE: soil as bright as all ground that brings no reflectivity of its own; rocks and fresh walls darker, as in
-/// near infrared images of the landing sites dust is brighter than rock.
+/// CHOICE: soil has the default reflectivity of the scene file. Rocks and fresh walls are darker, because dust is
+/// brighter than rock in near-infrared images of the landing sites.
 fn materials() -> Vec<Material> {
     [("soil", 0.25), ("rock", 0.16), ("crevasse wall", 0.2)]
         .map(|(name, reflectivity)| Material { name: name.into(), reflectivity })

@@ -1,10 +1,13 @@
-//! Rocks by the law of Golombek and Rapp (1997): how many of each size, where they lie, and their bodies.
+//! Rocks by the law of Golombek and Rapp (1997): sizes, places and bodies.
 //!
-//! The share of the ground that rocks of diameter D and more cover is F(D) = k exp(-q D), with k the share that all of them
-//! cover and q = 1.79 + 0.152 / k per metre. A rock covers pi D^2 / 4, so that per square metre and metre of diameter
-//! there are -F'(D) / (pi D^2 / 4) = 4 k q exp(-q D) / (pi D^2) rocks: in v = 1/D, 4 k q exp(-q / v) / pi per unit of v.
-//! That is how they are drawn: a Poisson process of rate 4 k q / pi in v, from 1/largest to 1/smallest, each event kept with
-//! probability exp(-q D). A rock's diameter is that of the circle as large as its outline seen from above.
+//! Rocks of diameter D and more cover the fraction F(D) = k exp(-q D) of the ground. Here k is the fraction that
+//! all rocks cover, and q = 1.79 + 0.152 / k per metre. One rock covers pi D^2 / 4. Per square metre and metre of
+//! diameter there are therefore -F'(D) / (pi D^2 / 4) = 4 k q exp(-q D) / (pi D^2) rocks, or 4 k q exp(-q / v) /
+//! pi per unit of v = 1/D.
+//!
+//! Diameters are drawn from this density: a Poisson process of rate 4 k q / pi in v, from 1/largest to
+//! 1/smallest, keeps each event with probability exp(-q D). The diameter of a rock is that of the circle with the
+//! same area as its outline from above.
 
 use std::collections::BTreeMap;
 
@@ -13,41 +16,42 @@ use glam::{DVec2, DVec3};
 use crate::Ground;
 use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// Which rocks lie on the ground.
+/// Size distribution of the rocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rocks {
-    /// Share k of the ground that rocks of all sizes would cover, 0 to 0.4 (Golombek et al. 2003 give 0.05 to 0.4).
+    /// Fraction k of the ground that rocks of all sizes would cover, 0 to 0.4. (Golombek et al. 2003 give 0.05 to
+    /// 0.4)
     pub coverage: f64,
-    /// The smallest diameter D_min, metres: the law goes on below it, to ever more and smaller ones.
+    /// Smallest diameter D_min, metres. The law continues below it with ever more and smaller rocks.
     pub smallest: f64,
-    /// The largest diameter D_max, metres.
+    /// Largest diameter D_max, metres.
     pub largest: f64,
 }
 
 impl Rocks {
-    /// q of the law, per metre.
+    /// Decay rate q of the law, per metre.
     pub fn decay(&self) -> f64 {
         1.79 + 0.152 / self.coverage
     }
 
-    /// Share of the ground that rocks from that diameter up to the largest cover: F(D) - F(D_max).
+    /// Fraction of the ground covered by rocks from `diameter` (metres) up to the largest: F(D) - F(D_max).
     pub fn cumulative_area(&self, diameter: f64) -> f64 {
         let share = |diameter: f64| self.coverage * libm::exp(-self.decay() * diameter);
         share(diameter) - share(self.largest)
     }
 
-    /// No fewer faces than are to be expected of the rocks on that many square metres.
+    /// Upper bound on the expected number of faces of the rocks on `area` square metres.
     pub(super) fn max_expected_faces(&self, area: f64) -> f64 {
         let from = |diameter: f64| {
             (1.0 / self.smallest.max(diameter) - 1.0 / self.largest).max(0.0) * self.rate(area)
         };
-        // Those of the least faces, and what larger ones have beyond it.
+        // 32 faces for each rock, plus the additional faces of the larger ones.
         32.0 * from(0.0)
             + 96.0 * from(MIN_DIAMETER_OF_128_FACES_M)
             + 384.0 * from(MIN_DIAMETER_OF_512_FACES_M)
     }
 
-    /// Events of the process per unit of 1/D.
+    /// Rate of the Poisson process: events per unit of 1/D.
     fn rate(&self, area: f64) -> f64 {
         if self.coverage > 0.0 {
             area * 4.0 * self.coverage * self.decay() / std::f64::consts::PI
@@ -56,8 +60,8 @@ impl Rocks {
         }
     }
 
-    /// The diameters of the rocks on that many square metres, the largest first, metres. A smaller `smallest` of the
-    /// same seed adds more at the end.
+    /// Diameters of the rocks on `area` square metres, metres, in descending order. A smaller `smallest` with the
+    /// same seed appends more rocks at the end.
     pub fn diameters(&self, area: f64, seed: u64) -> Vec<f64> {
         let rate = self.rate(area);
         let mut diameters = Vec::new();
@@ -79,18 +83,18 @@ impl Rocks {
     }
 }
 
-/// Where a rock lies.
+/// Place and size of a rock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RockSite {
     pub place: DVec2,
     pub diameter: f64,
 }
 
-/// Places for rocks of these diameters (the largest first) on the square of side `extent` about `middle`, wherever
-/// `is_free` allows one of that diameter.
+/// Places for rocks of these diameters (in descending order) on the square of side `extent` about `middle`,
+/// wherever `is_free` allows a rock of that diameter.
 ///
-/// CHOICE: rocks do not lie in one another as long as another place is found within a few draws; the law says
-/// nothing of places. The number of rocks does not depend on it.
+/// CHOICE: the law does not give places. A rock avoids earlier rocks if one of its first tries finds a clear
+/// place; otherwise it overlaps them. The number of rocks does not depend on this.
 pub(super) fn place_rocks(
     diameters: &[f64],
     middle: DVec2,
@@ -100,7 +104,7 @@ pub(super) fn place_rocks(
 ) -> Vec<RockSite> {
     const MAX_TRIES_PER_ROCK: usize = 24;
     let mut random = RandomStream::new(seed, StreamPurpose::RockPlaces);
-    // Cells as large as the largest rock: two that touch lie in the same or in neighbouring cells.
+    // Cells as large as the largest rock: two rocks that touch lie in the same cell or in neighbouring cells.
     let cell = diameters.first().copied().unwrap_or(1.0);
     let cell_of = |place: DVec2| ((place - middle) / cell).floor().to_array().map(|index| index as i64);
     let mut sites: Vec<RockSite> = Vec::with_capacity(diameters.len());
@@ -124,7 +128,7 @@ pub(super) fn place_rocks(
                 break;
             }
         }
-        // Where nothing is free at all, as on a ground that is all start or crevasse, there is no rock.
+        // A ground that is nowhere free (all start area or crevasse) gets no rock.
         let Some(place) = chosen else { continue };
         taken.entry(cell_of(place)).or_default().push(sites.len() as u32);
         sites.push(RockSite { place, diameter });
@@ -132,20 +136,21 @@ pub(super) fn place_rocks(
     sites
 }
 
-/// Rocks from these diameters on, metres, have 128 and 512 faces; smaller ones have 32. CHOICE: facets of some centimetres.
+/// Diameters, metres, from which rocks have 128 and 512 faces; smaller ones have 32. CHOICE: facets of some
+/// centimetres.
 const MIN_DIAMETER_OF_128_FACES_M: f64 = 0.15;
 const MIN_DIAMETER_OF_512_FACES_M: f64 = 0.6;
 
-/// How often the faces of a rock's octahedron are cut in four.
+/// Number of times that the faces of a rock's octahedron are cut in four.
 fn subdivisions(diameter: f64) -> u32 {
     1 + u32::from(diameter >= MIN_DIAMETER_OF_128_FACES_M)
         + u32::from(diameter >= MIN_DIAMETER_OF_512_FACES_M)
 }
 
-/// The bodies of rocks.
+/// Generator of rock bodies.
 pub(super) struct RockBodies {
     random: RandomStream,
-    /// Octahedra whose faces are cut in four once, twice and three times, thrown onto the unit sphere.
+    /// Octahedra whose faces are cut in four once, twice and three times, projected onto the unit sphere.
     spheres: [Sphere; 3],
 }
 
@@ -159,18 +164,19 @@ impl RockBodies {
         Self { random: RandomStream::new(seed, StreamPurpose::RockShapes), spheres }
     }
 
-    /// Adds a closed rock of that diameter, its widest level at `centre`.
+    /// Adds a closed rock of that diameter; its widest level is at `centre`.
     ///
-    /// The body is a ball that random planes have cut flat, with half axes of its own: the higher of the two vertical ones is
-    /// above ground. Every vertex keeps its direction from the centre, so that faces look outward however it is cut.
+    /// The body is a ball that random planes have cut flat, with separate half axes; the part above `centre` is
+    /// above ground. Every vertex keeps its direction from the centre, so faces look outward however the ball is
+    /// cut.
     ///
-    /// CHOICE: half as high above ground as wide (0.3 to 0.7), as rocks at the landing sites stand (Golombek and Rapp
-    /// 1997 find linear relations of height and diameter), and up to 0.35 of the diameter deep in it, so that no side of
-    /// it hangs over a slope of less than 35 degrees.
+    /// CHOICE: the height above ground is 0.3 to 0.7 of the diameter, as rocks at the landing sites stand.
+    /// (Golombek and Rapp 1997 find linear relations of height and diameter) The rock reaches 0.35 of the
+    /// diameter into the ground, so that no side hangs over a slope of less than 35 degrees.
     pub(super) fn add(&mut self, ground: &mut Ground, centre: DVec3, diameter: f64, material: u16) {
         let random = &mut self.random;
         let sphere = &self.spheres[subdivisions(diameter) as usize - 1];
-        // Flat sides: at least half of the radius is left.
+        // Flat sides: at least half of the radius remains.
         let planes: Vec<(DVec3, f64)> =
             (0..8).map(|_| (random.unit_vector(), random.between(0.55, 0.95))).collect();
         let cut = |direction: DVec3| {
@@ -191,7 +197,7 @@ impl RockBodies {
                 DVec3::new(cos * x - sin * y, sin * x + cos * y, z)
             })
             .collect();
-        // As wide as asked for, and as high.
+        // Scaled to the required width and height.
         let scale = diameter * (std::f64::consts::FRAC_PI_4 / plan_area(&body, &sphere.faces)).sqrt();
         let top = body.iter().fold(0.0_f64, |top, v| top.max(v.z));
         let bottom = body.iter().fold(0.0_f64, |bottom, v| bottom.min(v.z));
@@ -206,7 +212,7 @@ impl RockBodies {
     }
 }
 
-/// Area of the outline of a closed body seen from above: that of all faces that look up, projected. Where the upper
+/// Area of the outline of a closed body from above: the projected area of all faces that look up. Where the upper
 /// side folds over itself that part counts twice.
 fn plan_area(vertices: &[DVec3], faces: &[[u32; 3]]) -> f64 {
     let twice = faces.iter().map(|face| {
@@ -216,7 +222,7 @@ fn plan_area(vertices: &[DVec3], faces: &[[u32; 3]]) -> f64 {
     0.5 * twice.sum::<f64>()
 }
 
-/// A triangulated sphere: unit vertices, faces counter-clockwise from outside.
+/// Triangulated sphere: unit vertices, faces counter-clockwise from outside.
 #[derive(Clone)]
 struct Sphere {
     vertices: Vec<DVec3>,
@@ -228,13 +234,13 @@ impl Sphere {
         let vertices = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]).collect();
         let face = |octant: u32| {
             let (a, b, c) = (octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2));
-            // Mirroring one axis turns the order.
+            // Mirroring one axis reverses the order.
             if octant.count_ones().is_multiple_of(2) { [a, b, c] } else { [a, c, b] }
         };
         Self { vertices, faces: (0..8).map(face).collect() }
     }
 
-    /// Every face cut in four at the middles of its sides.
+    /// The sphere with every face cut in four at the midpoints of its sides.
     fn subdivided(&self) -> Self {
         let mut vertices = self.vertices.clone();
         let mut middles = BTreeMap::new();

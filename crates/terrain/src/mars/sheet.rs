@@ -1,4 +1,4 @@
-//! The sheet of the ground: a grid over the posts, cut open at the crevasses.
+//! Sheet of faces over the posts: a grid, cut open at the crevasses.
 
 use glam::{DVec2, DVec3};
 
@@ -6,10 +6,11 @@ use super::crevasses::Crevasse;
 use crate::random_stream::{RandomStream, StreamPurpose};
 use crate::{Ground, Posts};
 
-/// Points on a wall between its edge and the floor, the latter included.
+/// Points on a wall below its edge, down to the floor and including it.
 const POINTS_PER_WALL: u32 = 5;
 
-/// Height of the posts' surface at a place, bilinear between the four around it; outside, that of the nearest border.
+/// Height of the posts' surface at a place, bilinear between the four posts around it; outside, the height at the
+/// nearest border.
 pub(super) fn height(posts: &Posts, place: DVec2) -> f64 {
     let locate = |offset: f64, count: u32| {
         let at = offset.clamp(0.0, f64::from(count - 1));
@@ -19,13 +20,13 @@ pub(super) fn height(posts: &Posts, place: DVec2) -> f64 {
     let offset = (place - posts.corner) / posts.spacing;
     let ((i, s), (j, t)) = (locate(offset.x, posts.columns), locate(offset.y, posts.rows));
     let post = |i: u32, j: u32| posts.at(i, j).z;
-    // A post's own place gives the post's own height, whatever stands beside it.
+    // At a post the result is the post's own height, even if its neighbours are unknown.
     let between = |a: f64, b: f64, share: f64| if share == 0.0 { a } else { a + (b - a) * share };
     let line = |j: u32| if s == 0.0 { post(i, j) } else { between(post(i, j), post(i + 1, j), s) };
     if t == 0.0 { line(j) } else { between(line(j), line(j + 1), t) }
 }
 
-/// Materials of the sheet.
+/// Material indices of the sheet.
 pub(super) struct SheetMaterials {
     pub soil: u16,
     pub wall: u16,
@@ -51,13 +52,13 @@ pub(super) fn add(
     }
 }
 
-/// The vertices of a row from left to right, and the material of the cells between it and the row before.
+/// Vertices of a row from left to right, and the material of the cells between this row and the one before.
 struct VertexRow {
     vertices: Vec<u32>,
     material: u16,
 }
 
-/// The rows that a row of the grid becomes: one, or those of a crevasse from the near edge to the far one.
+/// Vertex rows for one grid row: one, or those of a crevasse from the near edge to the far edge.
 fn vertex_rows(
     ground: &mut Ground,
     posts: &Posts,
@@ -70,7 +71,7 @@ fn vertex_rows(
         + 0.5 * posts.spacing * DVec2::new(f64::from(posts.columns - 1), f64::from(posts.rows - 1));
     let plain = |ground: &mut Ground, column: u32| {
         let post = posts.at(column, row);
-        // Crevasses are drawn about the origin.
+        // Crevasses are generated about the origin.
         let local = post.truncate() - middle;
         let shift: f64 = crevasses.iter().map(|crevasse| crevasse.shift(local.x, local.y)).sum();
         if shift == 0.0 {
@@ -115,10 +116,10 @@ fn vertex_rows(
     (0..profile.len()).map(line).collect()
 }
 
-/// Adds the cells between two rows: two faces each, fewer where corners are one vertex.
+/// Adds the cells between two rows: two faces each, fewer where corners share a vertex.
 fn join_rows(ground: &mut Ground, near: &VertexRow, far: &VertexRow, diagonals: &mut RandomStream) {
     for (near, far_pair) in near.vertices.windows(2).zip(far.vertices.windows(2)) {
-        // Counter-clockwise from the near left corner.
+        // Corners of the cell, counter-clockwise from the near left one.
         let (a, b, c, d) = (near[0], near[1], far_pair[1], far_pair[0]);
         let halves = if diagonals.coin() { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] };
         for half in halves {
