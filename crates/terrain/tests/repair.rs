@@ -11,8 +11,8 @@ fn kinds() -> Vec<Material> {
 
 #[test]
 fn all_that_was_promised_is_done_and_nothing_else() {
-    // A tetrahedron with face 3 turned, face 1 once more in another kind of ground, a face without area on vertices
-    // of its own, a vertex of no face, and vertex 4 in the place of vertex 3.
+    // A tetrahedron with face 3 turned, a duplicate of face 1 in another material, a face without area on
+    // vertices of its own, a vertex without a face, and vertex 4 in the place of vertex 3.
     let vertices = vec![
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -51,7 +51,7 @@ proptest! {
     fn promised_faults_are_counted_and_mended(seed: u64, faces in 250_usize..3_000, far in -1e6..1e6, turn in proptest::option::of(0_u64..97)) {
         let nasty = RandomGround { offset: DVec3::new(far, -far, far), ..RandomGround::nasty(seed, faces) };
         let mut ground = nasty.build();
-        // One face in 97 the wrong way round, copies or not.
+        // One face in 97 is turned, duplicates or not.
         for (face, corners) in ground.faces.iter_mut().enumerate() {
             if turn.is_some_and(|turn| (face as u64).wrapping_add(turn).is_multiple_of(97)) {
                 corners.swap(1, 2);
@@ -65,8 +65,8 @@ proptest! {
         let kinds = found.zero_area_kinds;
         let of_kinds = kinds.repeated_vertex + kinds.coincident_vertices + kinds.collinear;
         prop_assert_eq!(of_kinds, found.zero_area.count);
-        // A copy of a sliver that lost its area in rounding is no duplicate but a face without area; a face that
-        // was turned alone lies on the back of its like.
+        // The duplicate of a sliver that lost its area in rounding counts as a face without area, not as a
+        // duplicate. A face that was turned alone makes a double-sided sheet with its duplicate.
         let lost = found.zero_area.count - nasty.zero_area_faces;
         prop_assert!(found.duplicates.count <= nasty.duplicate_faces);
         if turn.is_none() {
@@ -80,7 +80,7 @@ proptest! {
             prop_assert_eq!(none.count, 0);
         }
         prop_assert_eq!(left.inside_out, 0);
-        // What no repair changes, to the last bit.
+        // Quantities that no repair changes, to the last bit.
         prop_assert_eq!(&left.open_edges.count, &found.open_edges.count);
         prop_assert_eq!(left.open_edges.length, found.open_edges.length);
         prop_assert_eq!(left.open_edges.loops, found.open_edges.loops);

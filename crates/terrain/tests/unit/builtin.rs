@@ -1,3 +1,5 @@
+//! The paper's two scenes: shapes, places, shadows, and room for the rover.
+
 use raypencil_scene::Mesh;
 
 use super::*;
@@ -44,7 +46,7 @@ fn pyramids_are_closed_bodies_on_a_plane() {
 fn pyramids_stand_where_they_are_listed_and_leave_the_drive_free() {
     let mesh = builtin("pyramids", 0.25).unwrap().into_mesh().unwrap();
     for Pyramid { x, y, height, .. } in PYRAMIDS {
-        // The apex, rounded to f32 (under 1e-6 m), on flanks no steeper than 3 : 1.
+        // The apex is rounded to f32 (below 1e-6 m), on flanks no steeper than 3 : 1.
         let z = height_at(&mesh, x, y).unwrap();
         assert!((z - height).abs() < 5e-6, "{z} at {x}, {y}");
     }
@@ -56,8 +58,8 @@ fn pyramids_stand_where_they_are_listed_and_leave_the_drive_free() {
     }
 }
 
-/// Whether the straight line from above (0.3, 0) at `height` to the level point (x, y, 0) clears the
-/// terrain: in steps of a 400th, coarse but enough for pyramids.
+/// Whether the straight line from above (0.3, 0) at `height` to the level point (x, y, 0) clears the terrain:
+/// tested at 400 steps, which is enough for pyramids.
 fn is_clear(mesh: &Mesh, height: f64, x: f64, y: f64) -> bool {
     let from = DVec3::new(0.3, 0.0, height);
     (1..400).map(|step| from.lerp(DVec3::new(x, y, 0.0), f64::from(step) / 400.0)).all(|point| {
@@ -69,8 +71,9 @@ fn is_clear(mesh: &Mesh, height: f64, x: f64, y: f64) -> bool {
 #[test]
 fn pyramids_cut_shadow_and_hide_the_stripes() {
     let mesh = builtin("pyramids", 0.25).unwrap().into_mesh().unwrap();
-    // Points of the two stripes on level ground, every 5 cm: lit if the way from the beam is clear and
-    // no pyramid stands there; hidden if lit, but the way from the camera, 1.5 m up, is not clear.
+    // Points of the two stripes on level ground, every 5 cm. A point is lit if the line from the beam is clear
+    // and no pyramid stands there. It is hidden if it is lit but the line from the camera, 1.5 m up, is not
+    // clear.
     let count = |height: f64, x: f64, half_width: f64| {
         let (mut lit, mut hidden, mut all) = (0, 0, 0);
         for step in 0..=(half_width / 0.025) as i32 {
@@ -106,8 +109,8 @@ fn facets_are_256_faces_that_look_up() {
 #[test]
 fn a_rover_can_stand_on_the_facets() {
     let mesh = builtin("facets", 0.25).unwrap().into_mesh().unwrap();
-    // Within half a metre of (0, 0) the ground stays within 10 cm: 5 % of 0.6 m at corners within
-    // 0.9 m, rising over at most one cell of 1.5 m beyond.
+    // Within half a metre of (0, 0) the ground stays within 10 cm: corners within 0.9 m have 5 % of 0.6 m, and
+    // the ground rises over at most one cell of 1.5 m beyond.
     let z = height_at(&mesh, 0.0, 0.0).unwrap();
     assert!(z.abs() < 0.1, "{z}");
     for (x, y) in [(0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5)] {
@@ -118,7 +121,7 @@ fn a_rover_can_stand_on_the_facets() {
 
 #[test]
 fn nothing_lies_on_the_axes_of_the_sensors() {
-    // The rig looks along +x from (0.3, 0): no vertex within 1 mm of that vertical plane, or of the one
+    // The rig looks along +x from (0.3, 0). No vertex lies within 1 mm of that vertical plane, or of the plane
     // across it through the sensors.
     for name in BUILTIN_NAMES {
         for v in builtin(name, 0.25).unwrap().vertices {

@@ -1,16 +1,18 @@
+//! Shapes: closed bodies with outward normals, and height fields that look up.
+
 use proptest::prelude::*;
 
 use super::*;
 use crate::random_stream::StreamPurpose;
 
-/// (b - a) x (c - a) of a face.
+/// Normal (b - a) x (c - a) of a face.
 pub(crate) fn normal(ground: &Ground, face: [u32; 3]) -> DVec3 {
     let [a, b, c] = face.map(|v| ground.vertices[v as usize]);
     (b - a).cross(c - a)
 }
 
-/// Asserts that `faces` of the ground close a body: every directed edge once, its reverse once, and a
-/// positive signed volume, which is the sum of a . (b x c) / 6 over the faces. (Gauss)
+/// Asserts that `faces` of the ground form a closed body with outward normals: every directed edge occurs once,
+/// its reverse once, and the signed volume, the sum of a . (b x c) / 6 over the faces, is positive. (Gauss)
 pub(crate) fn assert_closed_and_outward(ground: &Ground, faces: std::ops::Range<usize>) {
     let faces = &ground.faces[faces];
     let mut edges: Vec<[u32; 2]> = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
@@ -19,7 +21,7 @@ pub(crate) fn assert_closed_and_outward(ground: &Ground, faces: std::ops::Range<
     for &[a, b] in &edges {
         assert!(edges.binary_search(&[b, a]).is_ok(), "edge {a} {b} has no partner");
     }
-    // Relative to a vertex, so that a far body does not drown in rounding.
+    // Relative to a vertex, so that a far body is not lost in rounding.
     let from = ground.vertices[faces[0][0] as usize];
     let volume: f64 = faces
         .iter()
@@ -33,8 +35,8 @@ pub(crate) fn assert_closed_and_outward(ground: &Ground, faces: std::ops::Range<
 
 #[test]
 fn a_box_has_the_volume_of_a_box() {
-    // Sides of 2, 4 and 6 m: the top is at z = 1 + 3, all twelve faces together measure
-    // 2 (2*4 + 4*6 + 6*2) = 88 square metres.
+    // Sides of 2, 4 and 6 m. The top is at z = 1 + 3. All twelve faces together measure 2 (2*4 + 4*6 + 6*2) = 88
+    // square metres.
     let mut ground = Ground::default();
     ground.add_box(DVec3::Z, [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0], 0);
     assert_closed_and_outward(&ground, 0..12);

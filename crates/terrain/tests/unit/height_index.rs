@@ -1,3 +1,5 @@
+//! The index against the search through all faces.
+
 use proptest::prelude::*;
 
 use super::*;

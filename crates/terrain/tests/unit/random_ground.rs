@@ -1,3 +1,5 @@
+//! Random grounds: sizes, features, reproducibility, and meshes for any seed.
+
 use proptest::prelude::*;
 
 use super::*;
@@ -9,7 +11,7 @@ fn plain_ground_has_the_size_asked_for_and_looks_up() {
     for faces in [2, 50, 2_000, 200_000] {
         let plain = RandomGround::plain(11, faces, 40.0);
         let ground = plain.build();
-        // n x n cells for the largest n that fits: fewer by at most 2 (2n + 1).
+        // n x n cells for the largest n that fits.
         let cells = (faces as f64 / 2.0).sqrt() as usize;
         assert_eq!(ground.faces.len(), 2 * cells * cells);
         assert!(ground.faces.iter().all(|&face| normal(&ground, face).z > 0.0));
@@ -32,7 +34,7 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
     let build = |seed| RandomGround::nasty(seed, 1_500).build();
     assert_eq!(build(1), build(1));
     assert_ne!(build(1).vertices, build(2).vertices);
-    // Features have streams of their own: without walls the rest stays put.
+    // Each kind of feature has its own stream: without walls all other features stay.
     let with = RandomGround::nasty(1, 1_500);
     let without = RandomGround { walls: 0, faces: with.faces - BOX_FACES * with.walls, ..with.clone() };
     let (with, without) = (with.build(), without.build());
@@ -41,7 +43,7 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
 
 #[test]
 fn the_bytes_are_these() {
-    // A fingerprint (FNV-1a, 64 bits) of all coordinates: changes with any change of what a seed means.
+    // A digest (FNV-1a, 64 bits) of all coordinates: it changes if a seed changes its meaning.
     let ground = RandomGround::nasty(2024, 3_000).build();
     let mut digest = 0xcbf2_9ce4_8422_2325_u64;
     for byte in ground.vertices.iter().flat_map(|v| v.to_array()).flat_map(f64::to_le_bytes) {
@@ -73,7 +75,7 @@ fn nasty_ground_holds_what_it_promises() {
     }
     assert_eq!(at, bodies_end);
 
-    // Walls stand upright: eight of each one's twelve normals are exactly level.
+    // Walls are vertical: eight of the twelve normals of each are exactly horizontal.
     let walls = &ground.faces[bodies_end - nasty.walls * BOX_FACES..bodies_end];
     let level = walls.iter().filter(|&&face| normal(&ground, face).z == 0.0).count();
     assert_eq!(level, 8 * nasty.walls);
@@ -85,7 +87,7 @@ fn nasty_ground_holds_what_it_promises() {
         assert!((0.99e3..1.2e6).contains(&aspect), "{aspect}");
     }
 
-    // Every duplicate has its like among the faces before.
+    // Every duplicate equals an earlier face.
     let sorted = |face: [u32; 3]| {
         let mut face = face;
         face.sort_unstable();
@@ -102,7 +104,7 @@ fn nasty_ground_holds_what_it_promises() {
 
 #[test]
 fn an_overhang_counts_with_its_upper_side() {
-    // One mushroom, found by its top, the last of its vertices; the ground below is lower.
+    // One mushroom, found by its top: the last vertex. The ground below is lower.
     let one = RandomGround { overhangs: 1, ..RandomGround::plain(8, 500, 20.0) };
     let ground = one.build();
     let top = *ground.vertices.last().unwrap();
@@ -135,7 +137,7 @@ proptest! {
         let ground = RandomGround { offset: DVec3::new(far, -far, far), ..RandomGround::nasty(seed, faces) };
         let mesh = ground.build().into_mesh();
         prop_assert!(mesh.is_ok(), "{:?}", mesh.err());
-        // The rover's place is free of bodies, and on the ground.
+        // The rover's place is free of bodies, and it is on the ground.
         let z = height_at(&mesh.unwrap(), far, -far);
         prop_assert!(z.is_some_and(|z| (z - far).abs() <= ground.relief + 3.0));
     }

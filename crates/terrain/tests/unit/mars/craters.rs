@@ -1,3 +1,5 @@
+//! Crater profiles by hand, and the law of their numbers.
+
 use super::*;
 
 fn crater(degradation: f64) -> Crater {
@@ -6,8 +8,8 @@ fn crater(degradation: f64) -> Crater {
 
 #[test]
 fn a_fresh_crater_by_hand() {
-    // 10 m across: the rim at 5 m is 0.4 m high, the floor 2 m below it; half way out the bowl is at
-    // 0.4 - 2 (1 - 1/4) = -1.1 m; at 10 m (two radii) ejecta are 0.4 (1/8 - 1/27) / (26/27) m.
+    // 10 m across: the rim at 5 m is 0.4 m high, and the floor is 2 m below it. Half way out the bowl is at 0.4 -
+    // 2 (1 - 1/4) = -1.1 m. At 10 m (two radii) the ejecta are 0.4 (1/8 - 1/27) / (26/27) m high.
     let fresh = crater(0.0);
     assert!((fresh.depth() - 2.0).abs() < 1e-12 && (fresh.rim_height() - 0.4).abs() < 1e-12);
     assert!((fresh.profile(5.0) - 0.4).abs() < 1e-12);
@@ -22,7 +24,7 @@ fn a_degraded_crater_is_shallow_with_a_level_floor_and_a_round_rim() {
     let old = crater(1.0);
     assert!((old.profile(0.0) - (0.04 - 0.3)).abs() < 1e-12);
     assert_eq!(old.profile(0.0), old.profile(4.0));
-    // No kink: slopes on both sides of the crest differ by little, where the fresh one falls at 0.8 inside.
+    // No kink: the slopes on both sides of the crest differ by little. The fresh crater falls at 0.8 inside.
     let slope = |a: f64, b: f64| (old.profile(b) - old.profile(a)) / (b - a);
     assert!((slope(4.99, 5.0) - slope(5.0, 5.01)).abs() < 0.05);
     assert!(crater(0.0).profile(5.0) - crater(0.0).profile(4.99) > 0.007);
@@ -30,8 +32,8 @@ fn a_degraded_crater_is_shallow_with_a_level_floor_and_a_round_rim() {
 
 #[test]
 fn rims_are_as_high_as_they_say() {
-    // By steps of 1 mm from half way out to twice as far as the rim. Of a fresh one the crest is a corner at 5 m; where
-    // it is round, its height is right but for the curvature of bowl and blanket within the rounding: a tuned 2 %.
+    // Steps of 1 mm from half way out to two radii. The crest of a fresh crater is a corner at 5 m. A rounded
+    // crest has the right height but for the curvature of bowl and blanket within the rounding: the 2 % is tuned.
     for degradation in [0.0, 0.1, 0.3, 0.5, 0.8, 1.0] {
         let crater = crater(degradation);
         let crest = (2_500..10_000).map(|mm| crater.profile(f64::from(mm) * 1e-3)).fold(0.0, f64::max);
@@ -58,7 +60,7 @@ fn posts_are_carved_within_reach_only() {
             assert_eq!(p.z, expected);
         }
     }
-    // Far away nothing happens, and nothing breaks.
+    // A crater far away changes nothing.
     let before = carved.clone();
     Crater { centre: DVec2::new(-1e6, 1e6), ..crater(0.0) }.carve(&mut carved);
     assert_eq!(carved, before);

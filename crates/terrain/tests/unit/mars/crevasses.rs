@@ -1,3 +1,5 @@
+//! Crevasses: rows stay in order, edges and ends meet the grid.
+
 use super::*;
 
 const SETTINGS: Crevasses = Crevasses { count: 3, width: 0.6, depth: 1.0, overhang: 0.2 };
@@ -13,7 +15,7 @@ fn rows_keep_their_order_however_they_are_bent() {
                     .map(|y| y + crevasse.shift(x, y))
                     .collect();
                 let least = places.windows(2).map(|pair| pair[1] - pair[0]).fold(1.0, f64::min);
-                // A third of 0.2 m is left at least.
+                // At least a third of 0.2 m remains.
                 assert!(least > 0.2 / 3.0 - 1e-9, "{least}");
             }
         }

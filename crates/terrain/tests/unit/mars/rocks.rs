@@ -1,7 +1,9 @@
+//! Rocks against the law of their sizes, their places and their bodies.
+
 use super::*;
 use crate::ground::tests::assert_closed_and_outward;
 
-/// Faces of a rock of that diameter.
+/// Number of faces of a rock of that diameter.
 pub(in crate::mars) fn faces(diameter: f64) -> usize {
     32 << (2 * (subdivisions(diameter) - 1))
 }
@@ -10,16 +12,16 @@ const PATHFINDER: Rocks = Rocks { coverage: 0.19, smallest: 0.05, largest: 3.0 }
 
 #[test]
 fn the_law_by_hand() {
-    // k = 0.19: q = 1.79 + 0.8 = 2.59 per metre; F(1 m) = 0.19 e^-2.59 = 0.19 * 0.07502 = 0.014254, less that of
-    // 3 m, 0.19 e^-7.77 = 0.0000802.
+    // k = 0.19: q = 1.79 + 0.8 = 2.59 per metre. F(1 m) = 0.19 e^-2.59 = 0.19 * 0.07502 = 0.014254, minus F(3 m)
+    // = 0.19 e^-7.77 = 0.0000802.
     assert!((PATHFINDER.decay() - 2.59).abs() < 1e-12);
     assert!((PATHFINDER.cumulative_area(1.0) - 0.014_174).abs() < 2e-6);
 }
 
 #[test]
 fn covered_areas_follow_the_law() {
-    // Compound Poisson: the sum of the areas a of all rocks from D on has the variance of the sum of a^2, which
-    // is estimated by the sum itself. As many square metres as make 3 standard errors at most 5 %.
+    // Compound Poisson: the sum of the areas a of all rocks from D on has the variance of the sum of a^2, and
+    // that sum estimates it. The number of seeds makes 3 standard errors at most 5 %.
     for (coverage, seeds) in [(0.069, 320), (0.19, 100), (0.35, 60)] {
         let rocks = Rocks { coverage, ..PATHFINDER };
         let area = 120.0 * 120.0;
@@ -74,7 +76,7 @@ fn rocks_keep_apart_and_out_of_what_is_not_free() {
             .any(|other| rock.place.distance(other.place) <= 0.5 * (rock.diameter + other.diameter))
     };
     let count = (0..sites.len()).filter(|&k| touching(k)).count();
-    // A place is missed 24 times in a row only where it is very full: with a fifth covered, never.
+    // 24 failures in a row need a very full ground: with a fifth covered, they never happen.
     assert_eq!(count, 0);
     assert!(sites.iter().all(|site| free(site.place, site.diameter)));
     assert!(place_rocks(&diameters, DVec2::ZERO, 30.0, 8, |_, _| false).is_empty());
@@ -101,8 +103,8 @@ fn bodies_are_closed_outward_and_as_wide_and_high_as_asked_for() {
 
 #[test]
 fn the_outline_is_as_large_as_the_faces_say() {
-    // The upper side folds over itself hardly anywhere: the outline, counted on a raster of 2 % of the diameter, is
-    // as large as the sum of projected faces within 1 % on the mean of 40 rocks.
+    // The upper side hardly ever folds over itself. The outline, counted on a raster of 2 % of the diameter,
+    // therefore equals the sum of the projected faces within 1 %, on the mean of 40 rocks.
     let mut bodies = RockBodies::new(6);
     let mut ratio = 0.0;
     for _ in 0..40 {
