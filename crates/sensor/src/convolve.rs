@@ -1,7 +1,7 @@
-//! Convolution of an image with a kernel, directly: what it adds up is known, and in which order.
+//! Convolution of an image with a kernel by direct summation, in a fixed order.
 //!
-//! A Fourier transform would be faster for wide kernels, but the fast ones choose their instructions by the machine
-//! they find, and so their bits.
+//! A Fourier transform would be faster for wide kernels. Fast implementations choose their instructions by the
+//! machine, however, and thereby change the bits.
 
 use rayon::prelude::*;
 use raypencil_scene::Image;
@@ -9,16 +9,29 @@ use raypencil_scene::Image;
 use crate::Kernel;
 use crate::kernel::KernelForm;
 
-/// A convolved image.
+/// Image after a convolution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvolvedImage {
-    /// What arrives in each cell.
+    /// Light that arrives in each cell.
     pub image: Image<f64>,
-    /// What leaves the image over its sides, in the image's unit: its sum and this are the sum of what came in.
+    /// Light that leaves the image over its sides, in the image's unit. The image's sum plus this is the sum of
+    /// the input.
     pub lost: f64,
 }
 
-/// Spreads the light of each cell by the kernel. Outside of the image it is dark, and light that leaves it is lost.
+/// Spreads the light of each cell by the kernel. It is dark outside the image, and light that leaves it is lost.
+///
+/// ```
+/// use raypencil_scene::Image;
+/// use raypencil_sensor::{Kernel, convolve};
+///
+/// // A quarter moves left, a quarter right; from the first cell the left quarter of 8 is lost.
+/// let kernel = Kernel::from_numbers(3, 1, &[1.0, 2.0, 1.0])?;
+/// let out = convolve(&Image::from_cells(3, 1, vec![8.0, 0.0, 4.0]), &kernel);
+/// assert_eq!(out.image.cells(), &[4.0, 3.0, 2.0]);
+/// assert_eq!(out.lost, 2.0 + 1.0);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 pub fn convolve(image: &Image<f64>, kernel: &Kernel) -> ConvolvedImage {
     match &kernel.form {
         KernelForm::Separable { across, down } => {
@@ -30,14 +43,14 @@ pub fn convolve(image: &Image<f64>, kernel: &Kernel) -> ConvolvedImage {
     }
 }
 
-/// Where a row is not dark: from a cell up to but not a cell.
+/// Range of a row outside of which it is dark: first cell, and the cell after the last.
 fn lit_range(row: &[f64]) -> (usize, usize) {
     let first = row.iter().position(|value| *value != 0.0).unwrap_or(row.len());
     let last = row.iter().rposition(|value| *value != 0.0).map_or(first, |last| last + 1);
     (first, last)
 }
 
-/// Adds to `row` what `source`, a row of the image, sends there by one row of the kernel.
+/// Adds to `row` the light that one row of the kernel sends there from `source`, a row of the image.
 fn add_spread(row: &mut [f64], source: &[f64], span: (usize, usize), weights: &[f64]) {
     let half = weights.len() / 2;
     for i in span.0..span.1 {
@@ -54,7 +67,7 @@ fn add_spread(row: &mut [f64], source: &[f64], span: (usize, usize), weights: &[
     }
 }
 
-/// The share of the light of cell `at` that leaves a row of `count` cells over its ends.
+/// Fraction of the light of cell `at` that leaves a row of `count` cells over its ends.
 fn share_leaving(weights: &[f64], at: usize, count: usize) -> f64 {
     let half = weights.len() / 2;
     let before: f64 = weights[..half.saturating_sub(at)].iter().sum();
@@ -75,7 +88,7 @@ fn convolve_rows(image: &Image<f64>, weights: &[f64]) -> (Image<f64>, f64) {
             source.iter().zip(&share_leaving).map(|(value, share)| value * share).sum()
         })
         .collect();
-    // Row after row, whatever threads they came from.
+    // Summed row after row, in any distribution over threads.
     (out, lost.iter().sum())
 }
 
@@ -110,7 +123,8 @@ fn convolve_dense(image: &Image<f64>, columns: usize, weights: &[f64]) -> Convol
             add_spread(sums, row(from), spans[from], of_kernel(j + half[1] - from));
         }
     });
-    // What leaves over the sides from rows of the kernel that stay, and whole rows of it that do not.
+    // Light leaves over the sides from kernel rows that stay within the image, and with whole kernel rows that do
+    // not.
     let totals: Vec<f64> = (0..2 * half[1] + 1).map(|k| of_kernel(k).iter().sum()).collect();
     let lost: Vec<f64> = (0..height)
         .into_par_iter()
@@ -137,10 +151,9 @@ fn convolve_dense(image: &Image<f64>, columns: usize, weights: &[f64]) -> Convol
     ConvolvedImage { image: out, lost: lost.iter().sum() }
 }
 
-/// An image whose pixels are the sums of `oversampling x oversampling` cells of a finer one, row by row.
+/// Image whose pixels are sums of `oversampling x oversampling` cells of a finer image, row by row.
 ///
-/// # Panics
-/// If the finer image is not a whole number of pixels wide and high.
+/// # Panics If the finer image is not a whole number of pixels wide and high.
 pub fn binned(fine: &Image<f64>, oversampling: u32) -> Image<f64> {
     let whole = oversampling > 0
         && fine.width().is_multiple_of(oversampling)

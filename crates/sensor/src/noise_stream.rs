@@ -1,23 +1,23 @@
-//! Random numbers as a function of what they are for: the same bits in any order and on any thread.
+//! Random numbers as a function of their use: the same bits in any order and on any thread.
 
 use std::f64::consts::PI;
 
 use raypencil_scene::philox;
 
-/// What a random number is for. Other purposes have other numbers, whatever the seed.
+/// Source of noise. Each has its own random numbers, whatever the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoiseSource {
-    /// How many electrons are collected in a frame.
+    /// Shot noise: the number of electrons in a frame.
     Shot = 1,
-    /// What reading out adds in a frame.
+    /// Read noise of a frame.
     Read = 2,
-    /// How sensitive a pixel is, in every frame.
+    /// PRNU: the sensitivity of a pixel, the same in every frame.
     Prnu = 3,
-    /// By how much a pixel's dark signal is off, in every frame.
+    /// DSNU: the offset of a pixel's dark signal, the same in every frame.
     Dsnu = 4,
 }
 
-/// The random numbers of one pixel, for one purpose, in one frame.
+/// Random numbers of one pixel, one noise source, one frame: Philox of these counters.
 #[derive(Debug, Clone)]
 pub struct NoiseStream {
     key: [u32; 2],
@@ -26,9 +26,9 @@ pub struct NoiseStream {
 }
 
 impl NoiseStream {
-    /// The stream of key (`seed`) and counters (`pixel`, `frame`, `purpose` and a count of blocks).
+    /// Stream of key (`seed`) and counters (`pixel`, `frame`, `source` and a count of blocks).
     ///
-    /// The last word is never 0, so that no block is one of the draws of `scene`'s jittered pencils.
+    /// The last word is never 0, so no block coincides with one of the draws of `scene`'s jittered pencils.
     pub fn new(seed: u64, source: NoiseSource, frame: u64, pixel: u32) -> Self {
         Self {
             key: [seed as u32, (seed >> 32) as u32],
@@ -37,7 +37,7 @@ impl NoiseStream {
         }
     }
 
-    /// A number uniform in (0, 1): an odd multiple of 2^-53, so never 0 or 1.
+    /// Uniform number in (0, 1): an odd multiple of 2^-53, so never 0 or 1.
     pub fn uniform(&mut self) -> f64 {
         if let Some(number) = self.spare.take() {
             return number;
@@ -53,8 +53,8 @@ impl NoiseStream {
         unit(a, b)
     }
 
-    /// A number of the standard normal law. (Box and Muller 1958; its tail ends at 8.6 standard deviations, beyond
-    /// which 1e-17 of the law lies)
+    /// Standard normal number. (Box and Muller, 1958; the tail ends at 8.6 standard deviations, beyond which
+    /// 1e-17 of the law lies)
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(self.uniform())).sqrt();
         radius * libm::cos(2.0 * PI * self.uniform())

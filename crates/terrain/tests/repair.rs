@@ -48,7 +48,12 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn promised_faults_are_counted_and_mended(seed: u64, faces in 250_usize..3_000, far in -1e6..1e6, turn in proptest::option::of(0_u64..97)) {
+    fn promised_faults_are_counted_and_mended(
+        seed: u64,
+        faces in 250_usize..3_000,
+        far in -1e6..1e6,
+        turn in proptest::option::of(0_u64..97),
+    ) {
         let nasty = RandomGround { offset: DVec3::new(far, -far, far), ..RandomGround::nasty(seed, faces) };
         let mut ground = nasty.build();
         // One face in 97 is turned, duplicates or not.
