@@ -153,7 +153,8 @@ fn convolve_dense(image: &Image<f64>, columns: usize, weights: &[f64]) -> Convol
 
 /// Image whose pixels are sums of `oversampling x oversampling` cells of a finer image, row by row.
 ///
-/// # Panics If the finer image is not a whole number of pixels wide and high.
+/// # Panics
+/// If the finer image is not a whole number of pixels wide and high.
 pub fn binned(fine: &Image<f64>, oversampling: u32) -> Image<f64> {
     let whole = oversampling > 0
         && fine.width().is_multiple_of(oversampling)

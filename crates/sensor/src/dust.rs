@@ -59,7 +59,8 @@ impl Dust {
 
     /// Checks that all values are in their ranges.
     ///
-    /// # Errors Names the first invalid field, as a part of `field`.
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "transmission", self.transmission, 0.0, 1.0, "")?;
         check_range(field, "halo_share", self.halo_share, 0.0, 1.0, "")?;

@@ -65,7 +65,7 @@ pub struct Sensor {
 
 /// Frame, with the images it was made from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DigitalFrame {
+pub struct DigitalImage {
     /// Expected electrons in each pixel, from light and dark current.
     pub expected: Image<f64>,
     /// Electrons at the end of the exposure.
@@ -78,16 +78,16 @@ pub struct DigitalFrame {
 
 /// Frames with the laser on and off, and their difference.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FramePair {
+pub struct ImagePair {
     /// Frame with the laser on.
-    pub lit: DigitalFrame,
+    pub lit: DigitalImage,
     /// Frame with the laser off: background alone.
-    pub unlit: DigitalFrame,
+    pub unlit: DigitalImage,
     /// Lit minus unlit, DN.
     pub difference: Image<i32>,
 }
 
-/// One pixel of each image of [`DigitalFrame`], before rounding.
+/// One pixel of each image of [`DigitalImage`], before rounding.
 struct Pixel {
     expected: f64,
     electrons: f64,
@@ -107,7 +107,10 @@ impl Sensor {
     /// Exposes frame number `frame`. `optical` is the flux of the laser on each pixel, watts; `background` that
     /// of all other light. The fixed patterns are the same in every frame.
     ///
-    /// # Panics If the images differ in size, or a flux is negative or not finite.
+    /// # Panics
+    /// If the images differ in size, or a flux is negative or not finite.
+    ///
+    /// # Example
     ///
     /// ```
     /// use raypencil_scene::Image;
@@ -119,7 +122,7 @@ impl Sensor {
     /// let flux = Image::from_cells(3, 1, vec![0.0, 200.0 * one_electron, 300.0 * one_electron]);
     /// assert_eq!(sensor.expose(&flux, None, 0).numbers.cells(), &[0, 200, 255]);
     /// ```
-    pub fn expose(&self, optical: &Image<f64>, background: Option<&Image<f64>>, frame: u64) -> DigitalFrame {
+    pub fn expose(&self, optical: &Image<f64>, background: Option<&Image<f64>>, frame: u64) -> DigitalImage {
         let (width, height) = (optical.width(), optical.height());
         let flux = fluxes(optical, background);
         let dark = self.dark_electrons();
@@ -127,7 +130,7 @@ impl Sensor {
         let pixels: Vec<Pixel> = pixels.map(|index| self.pixel(flux(index), dark, frame, index)).collect();
         let image = |of: fn(&Pixel) -> f64| Image::from_cells(width, height, pixels.iter().map(of).collect());
         let numbers = pixels.iter().map(|pixel| self.digitised(pixel.signal)).collect();
-        DigitalFrame {
+        DigitalImage {
             expected: image(|pixel| pixel.expected),
             electrons: image(|pixel| pixel.electrons),
             signal: image(|pixel| pixel.signal),
@@ -135,10 +138,11 @@ impl Sensor {
         }
     }
 
-    /// [`DigitalFrame::numbers`] of [`Sensor::expose`] alone, without the other images, as any type that holds a
+    /// [`DigitalImage::numbers`] of [`Sensor::expose`] alone, without the other images, as any type that holds a
     /// `u16`.
     ///
-    /// # Panics As [`Sensor::expose`].
+    /// # Panics
+    /// As [`Sensor::expose`].
     pub fn numbers<T: Copy + From<u16> + Send + Sync>(
         &self,
         optical: &Image<f64>,
@@ -178,7 +182,10 @@ impl Sensor {
 
     /// Exposes frame 2 `pair` with the laser on and frame 2 `pair` + 1 with it off, and subtracts them.
     ///
-    /// # Panics As [`Sensor::expose`].
+    /// # Panics
+    /// As [`Sensor::expose`].
+    ///
+    /// # Example
     ///
     /// ```
     /// use raypencil_scene::Image;
@@ -193,17 +200,18 @@ impl Sensor {
     /// assert_eq!(pair.lit.numbers.at(1, 2), 7 + 130);
     /// assert_eq!(pair.difference.at(1, 2), 100);
     /// ```
-    pub fn expose_pair(&self, optical: &Image<f64>, background: Option<&Image<f64>>, pair: u64) -> FramePair {
+    pub fn expose_pair(&self, optical: &Image<f64>, background: Option<&Image<f64>>, pair: u64) -> ImagePair {
         let lit = self.expose(optical, background, 2 * pair);
         let off = Image::filled(optical.width(), optical.height(), 0.0);
         let unlit = self.expose(&off, background, 2 * pair + 1);
         let difference = difference(&lit.numbers, &unlit.numbers);
-        FramePair { lit, unlit, difference }
+        ImagePair { lit, unlit, difference }
     }
 
-    /// [`FramePair::difference`] of [`Sensor::expose_pair`] alone, without the other images.
+    /// [`ImagePair::difference`] of [`Sensor::expose_pair`] alone, without the other images.
     ///
-    /// # Panics As [`Sensor::expose`].
+    /// # Panics
+    /// As [`Sensor::expose`].
     pub fn lit_minus_unlit(
         &self,
         optical: &Image<f64>,
@@ -264,7 +272,8 @@ impl Sensor {
 
     /// Checks that all values are in their ranges.
     ///
-    /// # Errors Names the first invalid field, as a part of `field`.
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "exposure", self.exposure, 0.0, 1e5, "s")?;
         check_range(field, "wavelength", self.wavelength, 1e-8, 1e-3, "m")?;
@@ -285,7 +294,8 @@ impl Sensor {
 
 /// Numbers of the lit frame minus those of the unlit frame, DN.
 ///
-/// # Panics If the frames differ in size.
+/// # Panics
+/// If the frames differ in size.
 pub fn difference(lit: &Image<u16>, unlit: &Image<u16>) -> Image<i32> {
     assert_same_size(lit, unlit, "the unlit frame");
     let cells = lit.cells().iter().zip(unlit.cells());

@@ -102,7 +102,9 @@ impl Kernel {
     /// Kernel of given weights, row by row, normalised. The middle weight is for light that stays. Weights to its
     /// right move light to the right, weights below it move light down.
     ///
-    /// # Errors If the sides are not odd or too long, the number of weights is not their product, or weights are negative, not finite or all 0.
+    /// # Errors
+    /// If the sides are not odd or too long, the number of weights is not their product, or weights are negative,
+    /// not finite or all 0.
     pub fn from_numbers(columns: usize, rows: usize, weights: &[f64]) -> Result<Self, SceneError> {
         let longest = 2 * MAX_DENSE_HALF_WIDTH_CELLS as usize + 1;
         for (side, count) in [("columns", columns), ("rows", rows)] {

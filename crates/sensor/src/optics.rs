@@ -54,7 +54,10 @@ impl Optics {
 
     /// Forms the image of points of light.
     ///
-    /// # Panics If the optics are not valid.
+    /// # Panics
+    /// If the optics are not valid.
+    ///
+    /// # Example
     ///
     /// ```
     /// # use raypencil_scene::{Camera, Lens};
@@ -93,7 +96,8 @@ impl Optics {
     /// Filters a fine image, whose light is already where a sharp lens would bring it. It is `camera.width` times
     /// `oversampling` cells wide, and high likewise.
     ///
-    /// # Panics If the image has another size.
+    /// # Panics
+    /// If the image has another size.
     pub fn filter(&self, camera: &Camera, fine: Image<f64>) -> OpticsOutput {
         let size = (camera.width * self.oversampling, camera.height * self.oversampling);
         assert_eq!((fine.width(), fine.height()), size, "cells of the fine image");
@@ -127,7 +131,8 @@ impl Optics {
 
     /// Checks that all values are in their ranges.
     ///
-    /// # Errors Names the first invalid field, as a part of `field`.
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "oversampling", f64::from(self.oversampling), 1.0, 64.0, "cells")?;
         if let Some(focus) = self.focus {

@@ -66,7 +66,8 @@ impl Psf {
 
     /// Checks that a kernel can be made.
     ///
-    /// # Errors Names the first invalid field, as a part of `field`.
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         match self {
             Self::Gaussian { sigma } => sigma.validate(&format!("{field}.sigma")),

@@ -155,7 +155,8 @@ impl ThinLens {
 
     /// Checks that all values are in their ranges.
     ///
-    /// # Errors Names the first invalid field, as a part of `field`.
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "aperture", self.aperture, 1e-6, 1e1, "m")?;
         check_range(field, "focal_length", self.focal_length, 1e-5, 1e2, "m")?;

@@ -119,7 +119,8 @@ impl Sunlight {
     /// with phi of the pixel's centre, E within the pass band at phi, and E_sun = 0 in shadow. `attenuation` is
     /// sigma, 1/m. A pixel without a hit sees the sky, L = E_sky / pi.
     ///
-    /// # Panics If the maps do not have the camera's size.
+    /// # Panics
+    /// If the maps do not have the camera's size.
     pub fn flux(&self, camera: &Camera, attenuation: f64, ground: &Ground<'_>) -> Image<f64> {
         let mut out = Image::filled(camera.width, camera.height, 0.0);
         assert_same_size(&out, ground.normal, "normals");
@@ -155,7 +156,8 @@ impl Sunlight {
 
     /// Checks that all values are in their ranges.
     ///
-    /// # Errors Names the first invalid field, as a part of `field`.
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "elevation", self.elevation, -PI / 2.0, PI / 2.0, "rad")?;
         check_range(field, "azimuth", self.azimuth, -2.0 * PI, 2.0 * PI, "rad")?;

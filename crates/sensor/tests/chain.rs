@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, LN_2, PI};
 use glam::DVec3;
 use raypencil_scene::{Camera, Filter, Image, Lens, Maybe};
 use raypencil_sensor::{
-    DarkCurrent, DigitalFrame, Ground, MARS_ORBIT, Optics, PLANCK_CONSTANT, PRESETS, PointSource,
+    DarkCurrent, DigitalImage, Ground, MARS_ORBIT, Optics, PLANCK_CONSTANT, PRESETS, PointSource,
     SOLAR_SPECTRUM_810, SPEED_OF_LIGHT, Sensor, Sunlight, difference, photon_energy, preset,
 };
 
@@ -249,7 +249,7 @@ fn sensors_are_checked() {
 }
 
 /// All computations that use several threads.
-fn run() -> (Vec<u64>, DigitalFrame) {
+fn run() -> (Vec<u64>, DigitalImage) {
     let camera = camera(48, 40, FILTER);
     let sources = (0..400).map(|index| {
         let x = f64::from(index) * 0.12;

@@ -38,7 +38,8 @@ pub struct Ground {
 impl Ground {
     /// Mesh for the renderers: each vertex is rounded once to an `f32` offset from the scene origin.
     ///
-    /// # Errors As [`Mesh::from_global`]: names the first invalid vertex, face or material.
+    /// # Errors
+    /// As [`Mesh::from_global`]: names the first invalid vertex, face or material.
     pub fn into_mesh(self) -> Result<Mesh, SceneError> {
         Mesh::from_global(&self.vertices, self.faces, self.face_materials, self.materials)
     }

@@ -46,7 +46,8 @@ pub struct Posts {
 impl Posts {
     /// Position of a post, global frame, metres.
     ///
-    /// # Panics If the grid has no such post.
+    /// # Panics
+    /// If the grid has no such post.
     pub fn at(&self, column: u32, row: u32) -> DVec3 {
         let place = self.corner + self.spacing * DVec2::new(f64::from(column), f64::from(row));
         place.extend(self.height(column, row))
@@ -60,7 +61,8 @@ impl Posts {
 
     /// Posts from `low` to `high` in x and y (global frame, both inclusive); `None` if there are none.
     ///
-    /// # Panics If the number of `heights` differs from `columns * rows`.
+    /// # Panics
+    /// If the number of `heights` differs from `columns * rows`.
     pub fn crop(&self, low: DVec2, high: DVec2) -> Option<Self> {
         self.checked_len();
         let columns = indices_within(self.corner.x, self.spacing.x, self.columns, low.x, high.x)?;
@@ -84,7 +86,8 @@ impl Posts {
     /// A cell with an unknown corner has no faces, so that unknown ground is a hole and never a cliff. Posts that
     /// no face uses are left out. The ground is empty if no cell has four known corners.
     ///
-    /// # Panics If the number of `heights` differs from `columns * rows`, or is 2^32 or more.
+    /// # Panics
+    /// If the number of `heights` differs from `columns * rows`, or is 2^32 or more.
     pub fn ground(&self, material: Material) -> Ground {
         self.checked_len();
         // CHOICE: a cell with three known corners has no face. One triangle would fill half of the cell, and the

@@ -109,7 +109,8 @@ impl RandomGround {
 
     /// Builds the ground.
     ///
-    /// # Panics If `materials` is 0, or `extent` is not a positive, finite number.
+    /// # Panics
+    /// If `materials` is 0, or `extent` is not a positive, finite number.
     pub fn build(&self) -> Ground {
         assert!(self.materials > 0, "a ground needs a material");
         assert!(self.extent > 0.0 && self.extent.is_finite(), "extent {} m", self.extent);
@@ -141,7 +142,7 @@ impl RandomGround {
     }
 
     fn draw_material(&self, random: &mut RandomStream) -> u16 {
-        random.below(usize::from(self.materials)) as u16
+        random.index_below(usize::from(self.materials)) as u16
     }
 
     fn add_height_field(&self, ground: &mut Ground, relief: &ValueNoise) {
@@ -273,8 +274,8 @@ impl RandomGround {
         let mut random = RandomStream::new(self.seed, StreamPurpose::DuplicateFaces);
         let originals = ground.faces.len();
         for _ in 0..self.duplicate_faces {
-            let mut corners = ground.faces[random.below(originals)];
-            corners.rotate_left(random.below(3));
+            let mut corners = ground.faces[random.index_below(originals)];
+            corners.rotate_left(random.index_below(3));
             let material = self.draw_material(&mut random);
             ground.add_face(corners, material);
         }

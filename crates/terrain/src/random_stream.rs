@@ -51,7 +51,7 @@ impl RandomStream {
     }
 
     /// Uniform index in 0..count: the high half of a product, with a bias below 2^-32. `count` must not be 0.
-    pub(crate) fn below(&mut self, count: usize) -> usize {
+    pub(crate) fn index_below(&mut self, count: usize) -> usize {
         let count = u64::try_from(count).expect("counts of faces fit 64 bits");
         ((u128::from(self.0.next_u64()) * u128::from(count)) >> 64) as usize
     }
@@ -104,7 +104,7 @@ mod tests {
         for _ in 0..10_000 {
             assert!((0.0..1.0).contains(&random.uniform()));
             assert!((-2.0..5.0).contains(&random.between(-2.0, 5.0)));
-            assert!(random.below(3) < 3);
+            assert!(random.index_below(3) < 3);
             assert!(random.exponential() >= 0.0);
             assert!(random.normal().is_finite());
             assert!((random.unit_vector().length() - 1.0).abs() < 1e-15);

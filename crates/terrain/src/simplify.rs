@@ -28,7 +28,8 @@ const RELATIVE_ROUNDING: f64 = 128.0 / 9_007_199_254_740_992.0;
 /// Every post of a covered cell lies within `max_error` metres of the ground, measured along z. The bound holds
 /// for the `f64` vertices. The same posts give the same ground on any machine. ([`Posts`] has an example.)
 ///
-/// # Panics If the number of `heights` differs from `columns * rows` or is 2^31 or more; if `max_error` is not above zero.
+/// # Panics
+/// If the number of `heights` differs from `columns * rows` or is 2^31 or more; if `max_error` is not above zero.
 pub fn simplify(posts: &Posts, max_error: f64, material: Material) -> Ground {
     assert!(max_error > 0.0, "max_error must be above 0 m");
     assert!(posts.heights.len() < 1 << 31, "the number of posts must be below 2^31");

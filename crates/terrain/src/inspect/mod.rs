@@ -41,7 +41,10 @@ use geometry::MeshGeometry;
 /// describe the remaining surface. (CHOICE: otherwise one duplicate would make its three edges non-manifold and
 /// hide other faults there. A face without area that filled a crack leaves open edges, as it does for a ray.)
 ///
-/// # Panics If the mesh has 2^32 vertices or more, which no face could use.
+/// # Panics
+/// If the mesh has 2^32 vertices or more, which no face could use.
+///
+/// # Example
 ///
 /// ```
 /// use raypencil_terrain::{RandomGround, inspect};

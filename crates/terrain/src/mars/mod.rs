@@ -78,13 +78,20 @@ pub struct MarsGround {
     pub offset: DVec3,
 }
 
+/// Maximum expected number of craters.
+const MAX_CRATERS: f64 = 1e5;
+
+/// Maximum number of crevasses.
+const MAX_CREVASSES: u32 = 1000;
+
 /// Distance of rocks and crevasses from the middle, metres.
 const FREE_RADIUS_M: f64 = 1.5;
 
 impl MarsGround {
     /// Builds the ground.
     ///
-    /// # Errors As [`MarsGround::validate`].
+    /// # Errors
+    /// As [`MarsGround::validate`].
     pub fn build(&self) -> Result<Ground, SceneError> {
         self.validate()?;
         let mut posts = self.relief();
@@ -189,7 +196,8 @@ impl MarsGround {
 
     /// Checks that the ground can be built.
     ///
-    /// # Errors Names the first number out of its range, or the number that makes the ground larger than 2^25 faces.
+    /// # Errors
+    /// Names the first number out of its range, or the number that makes the ground larger than 2^25 faces.
     pub fn validate(&self) -> Result<(), SceneError> {
         let Self { rocks, craters, crevasses, roughness, .. } = self;
         let ranges = [
@@ -246,13 +254,17 @@ impl MarsGround {
             return Err(SceneError::new("rock_smallest_m", found, most));
         }
         let craters = self.craters.expected(extent.max_element());
-        if craters > 1e5 {
+        if craters > MAX_CRATERS {
             let found = format!("{} m: {craters:.0} craters", self.craters.smallest);
-            return Err(SceneError::new("crater_smallest_m", found, "at most 100000 craters"));
+            return Err(SceneError::new(
+                "crater_smallest_m",
+                found,
+                format!("at most {MAX_CRATERS} craters"),
+            ));
         }
         let crevasses = &self.crevasses;
-        if crevasses.count > 1000 {
-            return Err(SceneError::new("crevasses", crevasses.count, "0 to 1000"));
+        if crevasses.count > MAX_CREVASSES {
+            return Err(SceneError::new("crevasses", crevasses.count, format!("0 to {MAX_CREVASSES}")));
         }
         let max_width = crevasses.max_width(extent.y);
         if crevasses.count > 0 && crevasses.width > max_width {
