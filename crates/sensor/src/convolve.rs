@@ -55,7 +55,7 @@ fn add_spread(row: &mut [f64], source: &[f64], span: (usize, usize), weights: &[
     let half = weights.len() / 2;
     for i in span.0..span.1 {
         let value = source[i];
-        // Most of a frame is dark, and 0 adds nothing.
+        // Most of an image is dark, and 0 adds nothing.
         if value == 0.0 {
             continue;
         }
@@ -78,14 +78,14 @@ fn share_leaving(weights: &[f64], at: usize, count: usize) -> f64 {
 fn convolve_rows(image: &Image<f64>, weights: &[f64]) -> (Image<f64>, f64) {
     let width = image.width() as usize;
     let mut out = Image::filled(image.width(), image.height(), 0.0);
-    let share_leaving: Vec<f64> = (0..width).map(|i| share_leaving(weights, i, width)).collect();
+    let shares: Vec<f64> = (0..width).map(|i| share_leaving(weights, i, width)).collect();
     let lost: Vec<f64> = out
         .cells_mut()
         .par_chunks_mut(width)
         .zip(image.cells().par_chunks(width))
         .map(|(row, source)| {
             add_spread(row, source, lit_range(source), weights);
-            source.iter().zip(&share_leaving).map(|(value, share)| value * share).sum()
+            source.iter().zip(&shares).map(|(value, share)| value * share).sum()
         })
         .collect();
     // Summed row after row, in any distribution over threads.

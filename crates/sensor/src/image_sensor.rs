@@ -262,11 +262,11 @@ impl Sensor {
 
     /// Output of the converter: the nearest whole number (halves upwards), clipped to its range.
     pub fn digitised(&self, signal: f64) -> u16 {
-        signal.round().clamp(0.0, self.largest()) as u16
+        signal.round().clamp(0.0, self.max_number()) as u16
     }
 
     /// Largest output of the converter, 2^bits - 1.
-    pub fn largest(&self) -> f64 {
+    pub fn max_number(&self) -> f64 {
         ((1_u32 << self.bits) - 1).into()
     }
 
@@ -288,7 +288,7 @@ impl Sensor {
         check_range(field, "full_well", self.full_well, 1.0, f64::INFINITY, "electrons")?;
         check_range(field, "gain", self.gain, 1e-9, 1e6, "DN per electron")?;
         check_range(field, "bits", f64::from(self.bits), 1.0, 16.0, "bits")?;
-        check_range(field, "bias", self.bias, 0.0, self.largest(), "DN")
+        check_range(field, "bias", self.bias, 0.0, self.max_number(), "DN")
     }
 }
 

@@ -14,7 +14,7 @@ pub const PRESETS: &[&str] = &["ideal", "ccd_1989", "cmos"];
 /// assert_eq!(PRESETS, ["ideal", "ccd_1989", "cmos"]);
 /// // The camera of 1989 has 8 bits: its largest number is 2^8 - 1.
 /// let (optics, sensor) = preset("ccd_1989").expect("a preset name");
-/// assert_eq!(sensor.largest(), 255.0);
+/// assert_eq!(sensor.max_number(), 255.0);
 /// // Its lens is dusty: a tenth of the light is lost.
 /// assert_eq!(optics.dust.expect("dust").transmission, 0.9);
 /// ```

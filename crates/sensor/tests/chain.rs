@@ -221,13 +221,13 @@ fn presets_are_valid() {
         if sensor.full_well.is_finite() {
             assert_eq!(
                 sensor.digitised(sensor.bias + sensor.gain * sensor.full_well),
-                sensor.largest() as u16
+                sensor.max_number() as u16
             );
         }
         // A stripe of the default rig is well above the dark level and well below saturation.
         let frame = sensor.expose(&Image::filled(8, 8, 1.2e-11), None, 0);
         let mean = frame.numbers.cells().iter().map(|number| f64::from(*number)).sum::<f64>() / 64.0;
-        assert!(mean > 0.2 * sensor.largest() && mean < 0.8 * sensor.largest(), "{name}: {mean}");
+        assert!(mean > 0.2 * sensor.max_number() && mean < 0.8 * sensor.max_number(), "{name}: {mean}");
     }
     assert!(preset("film").is_none());
     // Nothing is random in the ideal sensor.

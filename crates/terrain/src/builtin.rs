@@ -22,7 +22,7 @@ pub const BUILTIN_NAMES: &[&str] = &["pyramids", "facets"];
 /// let pyramids = builtin("pyramids", 0.25).expect("a built-in name");
 /// // A plane of 8 x 8 cells of two faces, and 16 pyramids of four flanks and a base of two faces.
 /// assert_eq!(pyramids.faces.len(), 2 * 8 * 8 + 16 * 6);
-/// // The rover starts on the plane, z = 0.
+/// // The rover stands at (0, 0), on the plane z = 0.
 /// assert_eq!(height_at(&pyramids.into_mesh()?, 0.0, 0.0), Some(0.0));
 ///
 /// // 16 x 8 cells of two facets.

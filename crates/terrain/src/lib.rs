@@ -14,7 +14,7 @@
 //! ```
 //! use raypencil_terrain::{RandomGround, builtin, height_at};
 //!
-//! // The start of the paper's drive is on the plane, z = 0.
+//! // The rover stands at (0, 0), on the plane z = 0.
 //! let pyramids = builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
 //! assert_eq!(height_at(&pyramids, 0.0, 0.0), Some(0.0));
 //!

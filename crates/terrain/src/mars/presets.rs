@@ -19,8 +19,8 @@ struct Numbers {
 impl MarsGround {
     /// Ground by its name and seed, 40 m square, with a post each 0.1 m; `None` for an unknown name.
     ///
-    /// * `smooth`: a plain with few and small rocks. CHOICE: a third of the roughness of Viking 1 and rocks on 1
-    ///   % of the ground, as on the plains that landers are sent to.
+    /// * `smooth`: a plain with few and small rocks. CHOICE: a third of the roughness of Viking 1 and rocks on
+    ///   0.01 of the ground, as on the plains that landers are sent to.
     /// * `viking1`: roughness from stereo images (Shepard, Seelos, Arvidson and Haldemann, "The roughness of the
     ///   Martian surface: what we know": Hurst exponent 0.5 to 0.8; rms slopes of 4.8 degrees at 1 m and 3.0 at
     ///   10 m, hence 0.8); rocks on 0.069 of the ground (Golombek and Rapp 1997).
@@ -37,8 +37,8 @@ impl MarsGround {
     /// ground or less.
     pub fn preset(name: &str, seed: u64) -> Option<Self> {
         const NO_CREVASSES: (u32, f64, f64, f64) = (0, 0.6, 1.2, 0.0);
-        // The rms difference of height at 1 m is the tangent of the rms slope there: tan 4.8 deg = 0.084, tan 5.4
-        // deg = 0.0945.
+        // The rms difference of height at 1 m is the tangent of the rms slope there: tan 4.8 deg = 0.084,
+        // tan 5.4 deg = 0.0945.
         let Numbers { relief, rocks, craters, crevasses } = match name {
             "smooth" => Numbers {
                 relief: (0.8, 0.028),

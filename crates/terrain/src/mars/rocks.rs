@@ -2,11 +2,11 @@
 //!
 //! Rocks of diameter D and more cover the fraction F(D) = k exp(-q D) of the ground. Here k is the fraction that
 //! all rocks cover, and q = 1.79 + 0.152 / k per metre. One rock covers pi D^2 / 4. Per square metre and metre of
-//! diameter there are therefore -F'(D) / (pi D^2 / 4) = 4 k q exp(-q D) / (pi D^2) rocks, or 4 k q exp(-q / v) /
-//! pi per unit of v = 1/D.
+//! diameter there are therefore -F'(D) / (pi D^2 / 4) = 4 k q exp(-q D) / (pi D^2) rocks, or
+//! 4 k q exp(-q / v) / pi per unit of v = 1/D.
 //!
-//! Diameters are drawn from this density: a Poisson process of rate 4 k q / pi in v, from 1/largest to
-//! 1/smallest, keeps each event with probability exp(-q D). The diameter of a rock is that of the circle with the
+//! Diameters are drawn from this density: events of a Poisson process of rate 4 k q / pi in v, from 1/largest to
+//! 1/smallest, are kept with probability exp(-q D). The diameter of a rock is that of the circle with the
 //! same area as its outline from above.
 
 use std::collections::BTreeMap;
