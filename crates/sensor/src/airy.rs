@@ -1,13 +1,13 @@
-//! The diffraction pattern of a round aperture. (Born and Wolf, Principles of Optics, 8.5.2; the paper's reference 1)
+//! Diffraction pattern of a round aperture. (Born and Wolf, Principles of Optics, 8.5.2; the paper's reference 1)
 
 use std::f64::consts::PI;
 
-/// v = pi r / (lambda N) of a point at `radius` metres from the middle of the pattern.
+/// Argument v = pi r / (lambda N) of a point `radius` metres from the centre of the pattern.
 fn argument(radius: f64, wavelength: f64, f_number: f64) -> f64 {
     PI * radius / (wavelength * f_number)
 }
 
-/// Irradiance at `radius` metres from the middle, in units of that in the middle: (2 J1(v) / v)^2.
+/// Irradiance at `radius` metres from the centre, relative to the centre: (2 J1(v) / v)^2.
 pub fn airy_pattern(radius: f64, wavelength: f64, f_number: f64) -> f64 {
     let v = argument(radius, wavelength, f_number);
     // 2 J1(v) / v = 1 - v^2 / 8 + ...: 1 to the last bit.
@@ -18,7 +18,14 @@ pub fn airy_pattern(radius: f64, wavelength: f64, f_number: f64) -> f64 {
     amplitude * amplitude
 }
 
-/// The share of the light within `radius` metres of the middle: 1 - J0(v)^2 - J1(v)^2.
+/// Fraction of the light within `radius` metres of the centre: 1 - J0(v)^2 - J1(v)^2.
+///
+/// ```
+/// use raypencil_sensor::encircled_energy;
+///
+/// // The first dark ring of f/4 at 810 nm is at 1.22 * 810 nm * 4 and encloses 83.8 %. (Born and Wolf, table 8.2)
+/// assert!((encircled_energy(1.22 * 810e-9 * 4.0, 810e-9, 4.0) - 0.838).abs() < 5e-4);
+/// ```
 pub fn encircled_energy(radius: f64, wavelength: f64, f_number: f64) -> f64 {
     let v = argument(radius, wavelength, f_number);
     let (j0, j1) = (libm::j0(v), libm::j1(v));
@@ -37,7 +44,7 @@ mod tests {
         assert!(airy_pattern(zero, wavelength, f_number) < 1e-18);
         assert!(airy_pattern(0.97 * zero, wavelength, f_number) > 1e-4);
         assert!(airy_pattern(1.03 * zero, wavelength, f_number) > 1e-4);
-        // The pattern falls all the way to it.
+        // The pattern decreases all the way to it.
         let mut last = 1.0;
         for step in 1..=100 {
             let here = airy_pattern(zero * f64::from(step) / 100.0, wavelength, f_number);

@@ -1,4 +1,4 @@
-//! Refusing values that no camera has.
+//! Checks of ranges and image sizes.
 
 use raypencil_scene::{Image, SceneError};
 
@@ -17,7 +17,7 @@ pub(crate) fn check_range(
     Err(SceneError::new(format!("{field}.{part}"), value, format!("{low} to {high} {unit}").trim_end()))
 }
 
-/// Panics unless two rasters have the same size: a fault of the program, not of its input.
+/// Panics unless two rasters have the same size: a mistake of the program, not of its input.
 pub(crate) fn assert_same_size<A: Copy, B: Copy>(a: &Image<A>, b: &Image<B>, what: &str) {
     assert_eq!((a.width(), a.height()), (b.width(), b.height()), "size of {what}");
 }

@@ -1,48 +1,61 @@
-//! Convolution of an image with a kernel, directly: what it adds up is known, and in which order.
+//! Convolution of an image with a kernel by direct summation, in a fixed order.
 //!
-//! A Fourier transform would be faster for wide kernels, but the fast ones choose their instructions by the machine
-//! they find, and so their bits.
+//! A Fourier transform would be faster for wide kernels. Fast implementations choose their instructions by the
+//! machine, however, and thereby change the bits.
 
 use rayon::prelude::*;
 use raypencil_scene::Image;
 
 use crate::Kernel;
-use crate::kernel::Form;
+use crate::kernel::KernelForm;
 
-/// A convolved image.
+/// Image after a convolution.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Convolved {
-    /// What arrives in each cell.
+pub struct ConvolvedImage {
+    /// Light that arrives in each cell.
     pub image: Image<f64>,
-    /// What leaves the image over its sides, in the image's unit: its sum and this are the sum of what came in.
+    /// Light that leaves the image over its sides, in the image's unit. The image's sum plus this is the sum of
+    /// the input.
     pub lost: f64,
 }
 
-/// Spreads the light of each cell by the kernel. Outside of the image it is dark, and light that leaves it is lost.
-pub fn convolve(image: &Image<f64>, kernel: &Kernel) -> Convolved {
+/// Spreads the light of each cell by the kernel. It is dark outside the image, and light that leaves it is lost.
+///
+/// ```
+/// use raypencil_scene::Image;
+/// use raypencil_sensor::{Kernel, convolve};
+///
+/// // A quarter moves left, a quarter right; from the first cell the left quarter of 8 is lost.
+/// let kernel = Kernel::from_numbers(3, 1, &[1.0, 2.0, 1.0])?;
+/// let out = convolve(&Image::from_cells(3, 1, vec![8.0, 0.0, 4.0]), &kernel);
+/// assert_eq!(out.image.cells(), &[4.0, 3.0, 2.0]);
+/// assert_eq!(out.lost, 2.0 + 1.0);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+pub fn convolve(image: &Image<f64>, kernel: &Kernel) -> ConvolvedImage {
     match &kernel.form {
-        Form::Product { across, down } => {
-            let (middle, left_over_sides) = along_rows(image, across);
-            let (image, left_over_ends) = along_columns(&middle, down);
-            Convolved { image, lost: left_over_sides + left_over_ends }
+        KernelForm::Separable { across, down } => {
+            let (middle, left_over_sides) = convolve_rows(image, across);
+            let (image, left_over_ends) = convolve_columns(&middle, down);
+            ConvolvedImage { image, lost: left_over_sides + left_over_ends }
         }
-        Form::Table { columns, weights } => table(image, *columns, weights),
+        KernelForm::Dense { columns, weights } => convolve_dense(image, *columns, weights),
     }
 }
 
-/// Where a row is not dark: from a cell up to but not a cell.
-fn lit(row: &[f64]) -> (usize, usize) {
+/// Range of a row outside of which it is dark: first cell, and the cell after the last.
+fn lit_range(row: &[f64]) -> (usize, usize) {
     let first = row.iter().position(|value| *value != 0.0).unwrap_or(row.len());
     let last = row.iter().rposition(|value| *value != 0.0).map_or(first, |last| last + 1);
     (first, last)
 }
 
-/// Adds to `row` what `source`, a row of the image, sends there by one row of the kernel.
-fn spread(row: &mut [f64], source: &[f64], span: (usize, usize), weights: &[f64]) {
+/// Adds to `row` the light that one row of the kernel sends there from `source`, a row of the image.
+fn add_spread(row: &mut [f64], source: &[f64], span: (usize, usize), weights: &[f64]) {
     let half = weights.len() / 2;
     for i in span.0..span.1 {
         let value = source[i];
-        // Most of a frame is dark, and 0 adds nothing.
+        // Most of an image is dark, and 0 adds nothing.
         if value == 0.0 {
             continue;
         }
@@ -54,36 +67,36 @@ fn spread(row: &mut [f64], source: &[f64], span: (usize, usize), weights: &[f64]
     }
 }
 
-/// The share of the light of cell `at` that leaves a row of `count` cells over its ends.
-fn leaving(weights: &[f64], at: usize, count: usize) -> f64 {
+/// Fraction of the light of cell `at` that leaves a row of `count` cells over its ends.
+fn share_leaving(weights: &[f64], at: usize, count: usize) -> f64 {
     let half = weights.len() / 2;
     let before: f64 = weights[..half.saturating_sub(at)].iter().sum();
     let after: f64 = weights[(half + count - at).min(weights.len())..].iter().sum();
     before + after
 }
 
-fn along_rows(image: &Image<f64>, weights: &[f64]) -> (Image<f64>, f64) {
+fn convolve_rows(image: &Image<f64>, weights: &[f64]) -> (Image<f64>, f64) {
     let width = image.width() as usize;
     let mut out = Image::filled(image.width(), image.height(), 0.0);
-    let leaving: Vec<f64> = (0..width).map(|i| leaving(weights, i, width)).collect();
+    let shares: Vec<f64> = (0..width).map(|i| share_leaving(weights, i, width)).collect();
     let lost: Vec<f64> = out
         .cells_mut()
         .par_chunks_mut(width)
         .zip(image.cells().par_chunks(width))
         .map(|(row, source)| {
-            spread(row, source, lit(source), weights);
-            source.iter().zip(&leaving).map(|(value, share)| value * share).sum()
+            add_spread(row, source, lit_range(source), weights);
+            source.iter().zip(&shares).map(|(value, share)| value * share).sum()
         })
         .collect();
-    // Row after row, whatever threads they came from.
+    // Summed row after row, in any distribution over threads.
     (out, lost.iter().sum())
 }
 
-fn along_columns(image: &Image<f64>, weights: &[f64]) -> (Image<f64>, f64) {
+fn convolve_columns(image: &Image<f64>, weights: &[f64]) -> (Image<f64>, f64) {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let half = weights.len() / 2;
     let row = |j: usize| &image.cells()[j * width..(j + 1) * width];
-    let spans: Vec<(usize, usize)> = (0..height).map(|j| lit(row(j))).collect();
+    let spans: Vec<(usize, usize)> = (0..height).map(|j| lit_range(row(j))).collect();
     let mut out = Image::filled(image.width(), image.height(), 0.0);
     out.cells_mut().par_chunks_mut(width).enumerate().for_each(|(j, sums)| {
         for from in j.saturating_sub(half)..(j + half + 1).min(height) {
@@ -94,23 +107,24 @@ fn along_columns(image: &Image<f64>, weights: &[f64]) -> (Image<f64>, f64) {
             }
         }
     });
-    let lost = (0..height).map(|j| row(j).iter().sum::<f64>() * leaving(weights, j, height)).sum();
+    let lost = (0..height).map(|j| row(j).iter().sum::<f64>() * share_leaving(weights, j, height)).sum();
     (out, lost)
 }
 
-fn table(image: &Image<f64>, columns: usize, weights: &[f64]) -> Convolved {
+fn convolve_dense(image: &Image<f64>, columns: usize, weights: &[f64]) -> ConvolvedImage {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let half = [columns / 2, weights.len() / columns / 2];
     let row = |j: usize| &image.cells()[j * width..(j + 1) * width];
     let of_kernel = |j: usize| &weights[j * columns..(j + 1) * columns];
-    let spans: Vec<(usize, usize)> = (0..height).map(|j| lit(row(j))).collect();
+    let spans: Vec<(usize, usize)> = (0..height).map(|j| lit_range(row(j))).collect();
     let mut out = Image::filled(image.width(), image.height(), 0.0);
     out.cells_mut().par_chunks_mut(width).enumerate().for_each(|(j, sums)| {
         for from in j.saturating_sub(half[1])..(j + half[1] + 1).min(height) {
-            spread(sums, row(from), spans[from], of_kernel(j + half[1] - from));
+            add_spread(sums, row(from), spans[from], of_kernel(j + half[1] - from));
         }
     });
-    // What leaves over the sides from rows of the kernel that stay, and whole rows of it that do not.
+    // Light leaves over the sides from kernel rows that stay within the image, and with whole kernel rows that do
+    // not.
     let totals: Vec<f64> = (0..2 * half[1] + 1).map(|k| of_kernel(k).iter().sum()).collect();
     let lost: Vec<f64> = (0..height)
         .into_par_iter()
@@ -126,7 +140,7 @@ fn table(image: &Image<f64>, columns: usize, weights: &[f64]) -> Convolved {
                     .map(|k| {
                         let to = j + k;
                         let stays = to >= half[1] && to - half[1] < height;
-                        if stays { leaving(of_kernel(k), i, width) } else { totals[k] }
+                        if stays { share_leaving(of_kernel(k), i, width) } else { totals[k] }
                     })
                     .sum();
                 lost += value * share;
@@ -134,10 +148,10 @@ fn table(image: &Image<f64>, columns: usize, weights: &[f64]) -> Convolved {
             lost
         })
         .collect();
-    Convolved { image: out, lost: lost.iter().sum() }
+    ConvolvedImage { image: out, lost: lost.iter().sum() }
 }
 
-/// An image whose pixels are the sums of `oversampling x oversampling` cells of a finer one, row by row.
+/// Image whose pixels are sums of `oversampling x oversampling` cells of a finer image, row by row.
 ///
 /// # Panics
 /// If the finer image is not a whole number of pixels wide and high.

@@ -1,23 +1,29 @@
-//! Steps 6 to 8 of the paper: from watts per pixel to digital numbers.
+//! Image sensor chain, steps 6 to 8 of the paper: from watts per pixel to digital numbers.
 //!
 //! ```text
-//! 6  splat -> convolve (kernel, airy, disc) -> optics, dust      filter the image for aberrations and dust
-//!    sunlight                                                    what the sun and the sky add
-//! 7  random, poisson -> sensor                                   add the sensor's noise
-//! 8  sensor -> difference                                        adjust the range, digitise
+//! 6  splat (disc) -> psf -> kernel (airy) -> convolve -> optics, dust   filter the image for aberrations and dust
+//!    sunlight                                                           the background light of sun and sky
+//! 7  noise_stream, poisson -> image_sensor (photon)                     add the sensor's noise
+//! 8  image_sensor                                                       adjust the range, digitise, subtract frames
+//!    presets                                                            optics and sensors by name, with sources
 //! ```
 //!
-//! Everything is a pure function of its arguments. Random numbers are functions of seed, purpose, frame and pixel, and
-//! every sum is in a fixed order, so that the bits do not depend on the number of threads. `docs/sensor.md` has the
-//! equations.
+//! Sources: the linear camera model of EMVA 1288, release 4.0; Goodman, Introduction to Fourier Optics. The equations
+//! are in `docs/sensor.md`.
+//!
+//! Every function is pure. Random numbers depend on (seed, noise source, frame, pixel) alone, and every sum has a fixed
+//! order: the bits do not depend on the number of threads.
 //!
 //! ```
 //! use raypencil_scene::Image;
 //! use raypencil_sensor::Sensor;
 //!
+//! // No noise and one electron per photon: 0.25 DN per electron, rounded.
+//! let sensor = Sensor::ideal();
 //! let flux = Image::filled(64, 48, 2e-12);
-//! let frame = Sensor::cmos().expose(&flux, None, 0);
-//! assert!(frame.numbers.at(10, 10) > 0);
+//! let frame = sensor.expose(&flux, None, 0);
+//! let expected = (0.25 * sensor.photoelectrons(2e-12)).round();
+//! assert_eq!(f64::from(frame.numbers.at(10, 10)), expected);
 //! ```
 
 mod airy;
@@ -25,25 +31,31 @@ mod check;
 mod convolve;
 mod disc;
 mod dust;
+mod image_sensor;
 mod kernel;
+mod noise_stream;
 mod optics;
+mod photon;
 mod poisson;
 mod presets;
-mod random;
-mod sensor;
+mod psf;
 mod splat;
 mod sunlight;
 
 pub use airy::{airy_pattern, encircled_energy};
-pub use convolve::{Convolved, binned, convolve};
-pub use dust::{Dust, Dusted};
-pub use kernel::{Extent, Kernel, Psf};
-pub use optics::{Imaged, Ledger, Optics};
+pub use convolve::{ConvolvedImage, binned, convolve};
+pub use dust::{Dust, DustedImage};
+pub use image_sensor::{DarkCurrent, DigitalImage, ImagePair, Sensor, difference};
+pub use kernel::Kernel;
+pub use noise_stream::{NoiseSource, NoiseStream};
+pub use optics::{FluxBudget, Optics, OpticsOutput};
+pub use photon::{PLANCK_CONSTANT, SPEED_OF_LIGHT, photon_energy};
 pub use poisson::poisson;
 pub use presets::{PRESETS, preset};
-pub use random::{Purpose, Stream};
-pub use sensor::{
-    DarkCurrent, Digital, PLANCK_CONSTANT, Pair, SPEED_OF_LIGHT, Sensor, difference, photon_energy,
-};
-pub use splat::{PointSource, Splat, ThinLens, splat, splat_defocused};
+pub use psf::{Extent, Psf};
+pub use splat::{PointSource, SplatImage, ThinLens, splat, splat_defocused};
 pub use sunlight::{Ground, MARS_ORBIT, SOLAR_SPECTRUM_810, Sunlight};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,115 +1,138 @@
-//! Step 6: the image that the optics make of points of light, and an account of where the light went.
+//! Step 6 of the paper: the image that the optics make of points of light, and the balance of its flux.
 
 use raypencil_scene::{Camera, Image, SceneError};
 
 use crate::check::check_range;
-use crate::{Dust, PointSource, Psf, Splat, ThinLens, binned, convolve, splat, splat_defocused};
+use crate::{Dust, PointSource, Psf, SplatImage, ThinLens, binned, convolve, splat, splat_defocused};
 
-/// What the camera's optics do to an image.
+/// Optics of a camera: focus, blurs and dust.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optics {
-    /// Cells to the side of a pixel in which blur is computed. Memory and time grow as its square.
+    /// Cells along the side of a pixel in which blur is computed. Memory and time grow with its square.
     pub oversampling: u32,
-    /// The depth at which the lens is sharp, metres; `None`: it is sharp everywhere.
+    /// Depth at which the lens is in focus, metres; `None` for a lens that is sharp at all depths.
     pub focus: Option<f64>,
-    /// Blurs, one after another.
+    /// Blurs, applied one after another.
     pub blurs: Vec<Psf>,
     /// Dust on the lens.
     pub dust: Option<Dust>,
 }
 
-/// An image on its way through the optics.
+/// Image after each stage of the optics.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Imaged {
-    /// After the blurs, watts per cell.
+pub struct OpticsOutput {
+    /// Image after the blurs, watts per cell.
     pub fine: Image<f64>,
-    /// The same, watts per pixel.
+    /// The same image, watts per pixel.
     pub pixels: Image<f64>,
-    /// After the dust, watts per pixel: what falls on the sensor.
+    /// Image after the dust, watts per pixel: the flux on the sensor.
     pub optical: Image<f64>,
-    /// Where the light went.
-    pub ledger: Ledger,
+    /// Balance of the flux.
+    pub budget: FluxBudget,
 }
 
-/// Where the light went, watts. `entered` is the sum of all others, but for rounding.
+/// Balance of the flux, watts: `entered` is the sum of all others, but for rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Ledger {
-    /// What came.
+pub struct FluxBudget {
+    /// Flux of all sources.
     pub entered: f64,
-    /// Fell beside the image.
+    /// Flux that fell beside the image.
     pub missed: f64,
-    /// Was blurred over the sides of the image.
+    /// Flux that blurs moved over the sides of the image.
     pub blurred_out: f64,
-    /// Was absorbed by dust.
+    /// Flux absorbed by dust.
     pub absorbed: f64,
-    /// Was scattered by dust beside the image.
+    /// Flux that dust scattered beside the image.
     pub scattered_out: f64,
-    /// Falls on the sensor.
+    /// Flux on the sensor.
     pub arrived: f64,
 }
 
 impl Optics {
-    /// Sharp and clean: every point lands in its pixel.
+    /// Sharp and clean optics: every point lands in its pixel.
     pub const PERFECT: Self = Self { oversampling: 1, focus: None, blurs: Vec::new(), dust: None };
 
-    /// The image of points of light.
+    /// Forms the image of points of light.
     ///
     /// # Panics
     /// If the optics are not valid.
-    pub fn form(&self, camera: &Camera, sources: impl IntoIterator<Item = PointSource>) -> Imaged {
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # use raypencil_scene::{Camera, Lens};
+    /// use raypencil_sensor::{Optics, PointSource};
+    ///
+    /// # let camera = Camera {
+    /// #     width: 32, height: 32, pixel_pitch: [9e-6; 2], focal_length: 8e-3, principal_point: [16.0; 2],
+    /// #     aperture: 2e-3, lens: Lens::CLEAR, max_range: 20.0,
+    /// # };
+    /// let source = PointSource { x: 16.5, y: 16.5, watts: 1.0, depth: 4.0 };
+    /// // Perfect optics put all light into its pixel.
+    /// assert_eq!(Optics::PERFECT.form(&camera, [source]).optical.at(16, 16), 1.0);
+    /// // Dusty optics absorb a tenth, and every part of the flux is accounted for.
+    /// let budget = Optics::dusty().form(&camera, [source]).budget;
+    /// assert!((budget.absorbed - 0.1).abs() < 1e-3);
+    /// let out = budget.missed + budget.blurred_out + budget.absorbed + budget.scattered_out + budget.arrived;
+    /// assert!((budget.entered - out).abs() < 1e-12);
+    /// ```
+    pub fn form(&self, camera: &Camera, sources: impl IntoIterator<Item = PointSource>) -> OpticsOutput {
         let mut entered = 0.0;
         let sources = sources.into_iter().inspect(|source| entered += source.watts);
-        let Splat { image, lost } = match self.focus {
+        let SplatImage { image, lost } = match self.focus {
             None => splat(camera.width, camera.height, self.oversampling, sources),
             Some(focus) => {
-                let lens = ThinLens::of(camera, focus);
+                let lens = ThinLens::for_camera(camera, focus);
                 let (pitch, s) = (camera.pixel_pitch, self.oversampling);
                 splat_defocused(camera.width, camera.height, s, pitch, &lens, sources)
             }
         };
         let mut imaged = self.filter(camera, image);
-        imaged.ledger.entered = entered;
-        imaged.ledger.missed = lost;
+        imaged.budget.entered = entered;
+        imaged.budget.missed = lost;
         imaged
     }
 
-    /// What becomes of a fine image, whose light is already where a sharp lens would bring it: `camera.width`
-    /// times `oversampling` cells wide, and high likewise.
+    /// Filters a fine image, whose light is already where a sharp lens would bring it. It is `camera.width` times
+    /// `oversampling` cells wide, and high likewise.
     ///
     /// # Panics
     /// If the image has another size.
-    pub fn filter(&self, camera: &Camera, fine: Image<f64>) -> Imaged {
+    pub fn filter(&self, camera: &Camera, fine: Image<f64>) -> OpticsOutput {
         let size = (camera.width * self.oversampling, camera.height * self.oversampling);
         assert_eq!((fine.width(), fine.height()), size, "cells of the fine image");
         let cell = camera.pixel_pitch.map(|pitch| pitch / f64::from(self.oversampling));
-        let mut ledger = Ledger { entered: fine.cells().iter().sum(), ..Ledger::default() };
+        let mut budget = FluxBudget { entered: fine.cells().iter().sum(), ..FluxBudget::default() };
         let mut fine = fine;
         for blur in &self.blurs {
             let blurred = convolve(&fine, &blur.kernel(cell, self.oversampling));
             fine = blurred.image;
-            ledger.blurred_out += blurred.lost;
+            budget.blurred_out += blurred.lost;
         }
         let pixels = binned(&fine, self.oversampling);
         let optical = match self.dust {
             None => pixels.clone(),
             Some(dust) => {
                 let dusted = dust.apply(&pixels, camera.pixel_pitch);
-                ledger.absorbed = dusted.absorbed;
-                ledger.scattered_out = dusted.lost;
+                budget.absorbed = dusted.absorbed;
+                budget.scattered_out = dusted.lost;
                 dusted.image
             }
         };
-        ledger.arrived = optical.cells().iter().sum();
-        Imaged { fine, pixels, optical, ledger }
+        budget.arrived = optical.cells().iter().sum();
+        OpticsOutput { fine, pixels, optical, budget }
     }
 
-    /// What becomes of an image that is known by pixels only, as a sun-lit background is: dust acts on it; blur,
-    /// narrow beside the pixels, is left out.
+    /// Filters an image that is known by pixels only, such as a sun-lit background. Dust acts on it; blur, which
+    /// is narrow relative to the pixels, is left out.
     pub fn veil(&self, camera: &Camera, pixels: &Image<f64>) -> Image<f64> {
         self.dust.map_or_else(|| pixels.clone(), |dust| dust.apply(pixels, camera.pixel_pitch).image)
     }
 
-    /// Refuses optics that make no image, naming the field.
+    /// Checks that all values are in their ranges.
+    ///
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "oversampling", f64::from(self.oversampling), 1.0, 64.0, "cells")?;
         if let Some(focus) = self.focus {

@@ -1,40 +1,39 @@
-//! How many electrons there are when so many are expected: numbers of Poisson's law.
+//! Random numbers of Poisson's law: electrons, given their expectation.
 
-use crate::Stream;
+use crate::NoiseStream;
 
-/// Below this mean the sum of probabilities is searched from 0 on: a few steps.
-const SEARCHED: f64 = 10.0;
-/// Up to this mean the law is exact, but for rounding: beyond, k ln(mean) - ln(k!) has lost so many digits that the
-/// normal law is nearer.
-const EXACT: f64 = 1e8;
+/// Mean below which inversion is used: the search takes a few steps.
+const MAX_INVERSION_MEAN: f64 = 10.0;
+/// Mean up to which rejection is used: the law is exact but for rounding. Beyond, k ln(mean) - ln(k!) has lost so
+/// many digits that the normal law is closer.
+const MAX_REJECTION_MEAN: f64 = 1e8;
 
-/// A number of Poisson's law, a whole one: 0 if `mean` is not positive.
+/// Random number of Poisson's law, a whole one; 0 if `mean` is not positive.
 ///
 /// * Below a mean of 10: inversion, by searching upwards.
 /// * Up to 1e8: PTRS (W. Hoermann, "The transformed rejection method for generating Poisson random variables",
-///   Insurance: Mathematics and Economics 12, 1993). ln(k!) is good to 2 ulp, so that the logarithm of the chance of
-///   acceptance is off by 4e-16 mean ln(mean), 7e-7 at most.
-/// * Beyond: the normal law, rounded to a whole number. Its distribution function is off by up to
-///   max |(x^2 - 1) phi(x)| / (6 sqrt(mean)) = 0.0665 / sqrt(mean), 7e-6 at most (Edgeworth's first term, the
-///   skewness).
-pub fn poisson(mean: f64, stream: &mut Stream) -> f64 {
-    if mean < SEARCHED {
-        searched(mean, stream)
-    } else if mean <= EXACT {
+///   Insurance: Mathematics and Economics 12, 1993). ln(k!) is good to 2 ulp, so the logarithm of the acceptance
+///   probability is off by 4e-16 mean ln(mean), 7e-7 at most.
+/// * Beyond: the normal law, rounded to a whole number. Its distribution function is off by up to max |(x^2 - 1)
+///   phi(x)| / (6 sqrt(mean)) = 0.0665 / sqrt(mean), 7e-6 at most (Edgeworth's first term, the skewness).
+pub fn poisson(mean: f64, stream: &mut NoiseStream) -> f64 {
+    if mean < MAX_INVERSION_MEAN {
+        inversion(mean, stream)
+    } else if mean <= MAX_REJECTION_MEAN {
         transformed_rejection(mean, stream)
     } else {
         (mean + mean.sqrt() * stream.normal()).round().max(0.0)
     }
 }
 
-fn searched(mean: f64, stream: &mut Stream) -> f64 {
+fn inversion(mean: f64, stream: &mut NoiseStream) -> f64 {
     if !(mean > 0.0) {
         return 0.0;
     }
     let mut left = stream.uniform();
     let mut probability = libm::exp(-mean);
     let mut k = 0.0;
-    // The probabilities vanish long before k = 200; only then could rounding leave something over.
+    // The probabilities vanish long before k = 200; later only rounding errors are left over.
     while left > probability && k < 200.0 {
         left -= probability;
         k += 1.0;
@@ -43,7 +42,7 @@ fn searched(mean: f64, stream: &mut Stream) -> f64 {
     k
 }
 
-fn transformed_rejection(mean: f64, stream: &mut Stream) -> f64 {
+fn transformed_rejection(mean: f64, stream: &mut NoiseStream) -> f64 {
     // The constants of algorithm PTRS.
     let b = 0.931 + 2.53 * mean.sqrt();
     let a = -0.059 + 0.024_83 * b;
@@ -55,7 +54,7 @@ fn transformed_rejection(mean: f64, stream: &mut Stream) -> f64 {
         let v = stream.uniform();
         let u_s = 0.5 - u.abs();
         let k = ((2.0 * a / u_s + b) * u + mean + 0.43).floor();
-        // Nine of ten end here. (Step 1)
+        // Nine of ten draws end here. (Step 1)
         if u_s >= 0.07 && v <= v_r {
             return k;
         }

@@ -1,12 +1,23 @@
-//! Sensors and their optics by name. Each figure has its source, or is marked CHOICE; `docs/sensor.md` has them as a
+//! Optics and sensors by name. Each figure has its source or is marked CHOICE; `docs/sensor.md` lists them in a
 //! table.
 
 use crate::{DarkCurrent, Dust, Extent, Optics, Psf, Sensor};
 
-/// The names of all presets.
+/// Names that [`preset`] accepts.
 pub const PRESETS: &[&str] = &["ideal", "ccd_1989", "cmos"];
 
-/// A sensor and its optics by name.
+/// Optics and sensor by name; `None` for an unknown name.
+///
+/// ```
+/// use raypencil_sensor::{PRESETS, preset};
+///
+/// assert_eq!(PRESETS, ["ideal", "ccd_1989", "cmos"]);
+/// // The camera of 1989 has 8 bits: its largest number is 2^8 - 1.
+/// let (optics, sensor) = preset("ccd_1989").expect("a preset name");
+/// assert_eq!(sensor.max_number(), 255.0);
+/// // Its lens is dusty: a tenth of the light is lost.
+/// assert_eq!(optics.dust.expect("dust").transmission, 0.9);
+/// ```
 pub fn preset(name: &str) -> Option<(Optics, Sensor)> {
     match name {
         "ideal" => Some((Optics::PERFECT, Sensor::ideal())),
@@ -16,17 +27,17 @@ pub fn preset(name: &str) -> Option<(Optics, Sensor)> {
     }
 }
 
-/// CHOICE: of the default beams.
-const WAVELENGTH: f64 = 810e-9;
+/// Wavelength of the default beams, metres. CHOICE.
+const BEAM_WAVELENGTH_M: f64 = 810e-9;
 
 impl Sensor {
-    /// No noise at all, 16 bits, an electron for each photon, wells without a bottom.
+    /// Sensor without noise: 16 bits, one electron per photon, an infinite full well.
     pub const fn ideal() -> Self {
         Self {
             // CHOICE: a stripe of the default rig, some 1.2e-11 W per pixel, gives 24,000 DN.
             exposure: 2e-3,
             gain: 0.25,
-            wavelength: WAVELENGTH,
+            wavelength: BEAM_WAVELENGTH_M,
             quantum_efficiency: 1.0,
             shot_noise: false,
             dark_current: DarkCurrent::NONE,
@@ -40,27 +51,27 @@ impl Sensor {
         }
     }
 
-    /// A CCD camera as a rover of the paper's time could have had, after the solid-state imager that Galileo took along
-    /// in 1989 (a virtual-phase CCD of 800 x 800 pixels by Texas Instruments).
+    /// CCD camera of the paper's time, after the solid-state imager of Galileo, launched in 1989 (a virtual-phase
+    /// CCD of 800 x 800 pixels by Texas Instruments).
     pub const fn ccd_1989() -> Self {
         Self {
-            // CHOICE: stripes of the default rig fill a third of the well, and ten frames a second (paper, §7) leave time
-            // for it.
+            // CHOICE: stripes of the default rig fill a third of the well, and ten frames a second (paper, §7)
+            // leave time for it.
             exposure: 2e-3,
-            wavelength: WAVELENGTH,
-            // CHOICE: front-lit silicon of that time has 0.3 to 0.4 there.
+            wavelength: BEAM_WAVELENGTH_M,
+            // CHOICE: front-lit silicon of that time has 0.3 to 0.4 at 810 nm.
             quantum_efficiency: 0.35,
             shot_noise: true,
             dark_current: DarkCurrent {
-                // The frame-transfer CCDs of the Mars Exploration Rovers (12 um pixels) are allowed as much at 0 C.
+                // Limit for the frame-transfer CCDs of the Mars Exploration Rovers (12 um pixels) at 0 C.
                 rate: 1200.0,
                 at: 273.15,
-                // Halved each 5 to 7 K, as CCD makers say.
+                // CCD makers give a factor of 2 for 5 to 7 K.
                 doubling: 6.0,
                 // CHOICE: a warm afternoon on Mars.
                 temperature: 273.15,
             },
-            // CHOICE: 30 to 40 for that imager; those rovers' were allowed 50, fifteen years later.
+            // CHOICE: 30 to 40 for that imager. The limit for those rovers, fifteen years later, was 50.
             read_noise: 35.0,
             // CHOICE.
             prnu: 0.02,
@@ -78,17 +89,17 @@ impl Sensor {
         }
     }
 
-    /// A camera of today with a global shutter, of the class of Sony's IMX250.
+    /// Camera of today with a global shutter, of the class of Sony's IMX250.
     pub const fn cmos() -> Self {
         Self {
             // CHOICE: stripes of the default rig fill two fifths of the well.
             exposure: 0.4e-3,
-            wavelength: WAVELENGTH,
-            // CHOICE: makers' curves for this sensor fall from 0.6 to 0.7 in the green to 0.2 to 0.25 here.
+            wavelength: BEAM_WAVELENGTH_M,
+            // CHOICE: makers' curves for this sensor fall from 0.6 to 0.7 in the green to 0.2 to 0.25 at 810 nm.
             quantum_efficiency: 0.22,
             shot_noise: true,
             dark_current: DarkCurrent {
-                // CHOICE: a few electrons; in a millisecond it hardly matters.
+                // CHOICE: a few electrons per second; in a millisecond they hardly matter.
                 rate: 5.0,
                 at: 298.15,
                 doubling: 7.0,
@@ -113,27 +124,28 @@ impl Sensor {
 }
 
 impl Optics {
-    /// The diffraction of the default camera (f/4) at 810 nm, and a little more. CHOICE: half a micrometre of blur.
+    /// Diffraction of the default camera (f/4) at 810 nm, and half a micrometre of Gaussian blur. CHOICE: the
+    /// latter.
     pub fn diffraction_limited() -> Self {
         Self {
             oversampling: 4,
             focus: None,
             blurs: vec![
-                Psf::Airy { wavelength: WAVELENGTH, f_number: 4.0, rings: 8 },
+                Psf::Airy { wavelength: BEAM_WAVELENGTH_M, f_number: 4.0, rings: 8 },
                 Psf::Gaussian { sigma: Extent::Metres(0.5e-6) },
             ],
             dust: None,
         }
     }
 
-    /// A lens that has been on Mars for a while. CHOICE, all of it: a spot of a third of a pixel, sharp at 4 m, a tenth
-    /// of the light lost to dust and 3 % of the rest in a halo.
+    /// Lens after some time on Mars. CHOICE, all of it: a spot of a third of a pixel, in focus at 4 m; a tenth of
+    /// the light is lost to dust, and 3 % of the rest goes into a halo.
     pub fn dusty() -> Self {
         Self {
             oversampling: 4,
             focus: Some(4.0),
             blurs: vec![
-                Psf::Airy { wavelength: WAVELENGTH, f_number: 4.0, rings: 8 },
+                Psf::Airy { wavelength: BEAM_WAVELENGTH_M, f_number: 4.0, rings: 8 },
                 Psf::Gaussian { sigma: Extent::Pixels(1.0 / 3.0) },
             ],
             dust: Some(Dust { transmission: 0.9, halo_share: 0.03, halo_sigma: Extent::Pixels(20.0) }),

@@ -1,4 +1,4 @@
-//! Points of light, put onto an image finer than the camera's: sharp, or as the disc of a lens out of focus.
+//! Points of light on an image finer than the camera's: sharp, or as the disc of a defocused lens.
 
 use std::f64::consts::PI;
 
@@ -8,21 +8,21 @@ use raypencil_scene::{Camera, Image, SceneError};
 use crate::check::check_range;
 use crate::disc;
 
-/// Light that comes together in one point of the image: one pencil's.
+/// Light that converges in one point of the image, from one pencil.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointSource {
-    /// Pixels to the right of the image's left side.
+    /// Position in pixels to the right of the image's left side.
     pub x: f64,
-    /// Pixels down from the image's upper side.
+    /// Position in pixels down from the image's upper side.
     pub y: f64,
-    /// Its flux, watts.
+    /// Flux, watts.
     pub watts: f64,
-    /// Of what sends it, along the camera's normal axis, metres.
+    /// Depth of the emitting point along the camera's normal axis, metres.
     pub depth: f64,
 }
 
 impl PointSource {
-    /// Where a point of the camera frame lands: (c_x + f_c x / (z p_x), c_y + f_c y / (z p_y)).
+    /// Projects a point of the camera frame: (c_x + f_c x / (z p_x), c_y + f_c y / (z p_y)).
     pub fn project(camera: &Camera, point: DVec3, watts: f64) -> Self {
         let place = |axis: usize, across: f64| {
             camera.principal_point[axis] + camera.focal_length * across / (point.z * camera.pixel_pitch[axis])
@@ -31,33 +31,34 @@ impl PointSource {
     }
 }
 
-/// Points of light on a fine image.
+/// Image of points of light, on fine cells.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Splat {
+pub struct SplatImage {
     /// Watts per cell.
     pub image: Image<f64>,
-    /// What falls beside the image, watts.
+    /// Flux that falls beside the image, watts.
     pub lost: f64,
 }
 
-/// Puts each source into the cell that it lands in, of a `width x height` image with `oversampling` cells to the side
-/// of a pixel. Sources are added in their order.
+/// Adds each source to the cell it falls into, of a `width x height` image with `oversampling` cells along the
+/// side of a pixel. Sources are added in their order.
 pub fn splat(
     width: u32,
     height: u32,
     oversampling: u32,
     sources: impl IntoIterator<Item = PointSource>,
-) -> Splat {
+) -> SplatImage {
     let mut image = Image::filled(width * oversampling, height * oversampling, 0.0);
     let mut lost = 0.0;
     for source in sources {
         add_point(&mut image, &mut lost, oversampling, source);
     }
-    Splat { image, lost }
+    SplatImage { image, lost }
 }
 
-/// Puts each source onto the image as the disc that the lens makes of it at its depth: evenly lit, cells at its edge
-/// sharing it by their exact area. Sources are added in their order. `pixel_pitch` is the camera's.
+/// Adds each source to the image as the disc that the lens makes of it at its depth. The disc is evenly lit, and
+/// cells at its edge get their exact fraction of its area. Sources are added in their order. `pixel_pitch` is the
+/// camera's, metres.
 pub fn splat_defocused(
     width: u32,
     height: u32,
@@ -65,20 +66,20 @@ pub fn splat_defocused(
     pixel_pitch: [f64; 2],
     lens: &ThinLens,
     sources: impl IntoIterator<Item = PointSource>,
-) -> Splat {
+) -> SplatImage {
     let mut image = Image::filled(width * oversampling, height * oversampling, 0.0);
     let mut lost = 0.0;
     let s = f64::from(oversampling);
     for source in sources {
         let radius = 0.5 * lens.blur_diameter(source.depth);
         let radii = pixel_pitch.map(|pitch| radius / pitch * s);
-        // In focus; also what has no depth that a lens could work with.
+        // In focus, or without a depth that a lens can image.
         if !(radii[0] > 0.0 && radii[1] > 0.0 && radius.is_finite()) {
             add_point(&mut image, &mut lost, oversampling, source);
             continue;
         }
         let [x, y] = [source.x * s, source.y * s];
-        // Side number `k` of the cells, in radii from the middle.
+        // Border number `k` of the cells, in radii from the centre.
         let across = |k: u32| (f64::from(k) - x) / radii[0];
         let down = |k: u32| (f64::from(k) - y) / radii[1];
         let range = |middle: f64, radius: f64, count: u32| {
@@ -90,14 +91,14 @@ pub fn splat_defocused(
         for j in range(y, radii[1], image.height()) {
             for i in columns.clone() {
                 let share = disc::area(across(i), across(i + 1), down(j), down(j + 1)) / PI;
-                // Rounding may leave a cell that the disc hardly touches a share of -1e-17.
+                // Rounding may give a cell that the disc hardly touches a fraction of -1e-17.
                 image.set(i, j, image.at(i, j) + source.watts * share.max(0.0));
             }
         }
         let inside = disc::area(across(0), across(image.width()), down(0), down(image.height())) / PI;
         lost += source.watts * (1.0 - inside).max(0.0);
     }
-    Splat { image, lost }
+    SplatImage { image, lost }
 }
 
 fn add_point(image: &mut Image<f64>, lost: &mut f64, oversampling: u32, source: PointSource) {
@@ -107,39 +108,55 @@ fn add_point(image: &mut Image<f64>, lost: &mut f64, oversampling: u32, source: 
         *lost += source.watts;
         return;
     }
-    // A product may round up to the far side.
+    // The product may round up to the far side.
     let i = ((source.x * s) as u32).min(image.width() - 1);
     let j = ((source.y * s) as u32).min(image.height() - 1);
     image.set(i, j, image.at(i, j) + source.watts);
 }
 
-/// A thin lens, focused at some distance.
+/// Thin lens, focused at some depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThinLens {
-    /// D: diameter of its aperture, metres.
+    /// Diameter D of its aperture, metres.
     pub aperture: f64,
-    /// f: its own focal length, metres; *not* the camera's f_c, the distance of its image plane.
+    /// Focal length f of the lens, metres. This is *not* the camera's f_c, the distance of its image plane.
     pub focal_length: f64,
-    /// z_f: the depth at which it is sharp, metres; may be infinite.
+    /// Depth z_f at which it is in focus, metres; may be infinite.
     pub focus: f64,
 }
 
 impl ThinLens {
-    /// The lens that makes a sharp image of what is at depth `focus` on the image plane of this camera, f_c behind it:
-    /// 1 / f = 1 / f_c + 1 / z_f.
-    pub fn of(camera: &Camera, focus: f64) -> Self {
+    /// Lens that images depth `focus` sharply on the image plane of this camera, f_c behind it: 1 / f = 1 / f_c +
+    /// 1 / z_f.
+    ///
+    /// ```
+    /// # use raypencil_scene::{Camera, Lens};
+    /// use raypencil_sensor::ThinLens;
+    ///
+    /// # let camera = Camera {
+    /// #     width: 8, height: 8, pixel_pitch: [9e-6; 2], focal_length: 8e-3, principal_point: [4.0; 2],
+    /// #     aperture: 2e-3, lens: Lens::CLEAR, max_range: 20.0,
+    /// # };
+    /// // f_c = 8 mm, D = 2 mm, focus at 4 m. At 2 m the disc is D f_c |1/2 - 1/4| = 2e-3 * 8e-3 / 4 = 4 um wide.
+    /// let lens = ThinLens::for_camera(&camera, 4.0);
+    /// assert!((lens.blur_diameter(2.0) - 4e-6).abs() < 1e-18);
+    /// ```
+    pub fn for_camera(camera: &Camera, focus: f64) -> Self {
         let focal_length = camera.focal_length / (1.0 + camera.focal_length / focus);
         Self { aperture: camera.aperture, focal_length, focus }
     }
 
-    /// Diameter of the disc on the image plane that a point at this depth becomes, metres:
-    /// c = D f |z - z_f| / (z (z_f - f)), written so that z_f may be infinite.
+    /// Diameter of the blur disc on the image plane for a point at this depth, metres: c = D f |z - z_f| / (z
+    /// (z_f - f)), written so that z_f may be infinite.
     pub fn blur_diameter(&self, depth: f64) -> f64 {
         self.aperture * self.focal_length * (1.0 / depth - 1.0 / self.focus).abs()
             / (1.0 - self.focal_length / self.focus)
     }
 
-    /// Refuses a lens that makes no image, naming the field.
+    /// Checks that all values are in their ranges.
+    ///
+    /// # Errors
+    /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(field, "aperture", self.aperture, 1e-6, 1e1, "m")?;
         check_range(field, "focal_length", self.focal_length, 1e-5, 1e2, "m")?;

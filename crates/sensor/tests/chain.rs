@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, LN_2, PI};
 use glam::DVec3;
 use raypencil_scene::{Camera, Filter, Image, Lens, Maybe};
 use raypencil_sensor::{
-    DarkCurrent, Digital, Ground, MARS_ORBIT, Optics, PLANCK_CONSTANT, PRESETS, PointSource,
+    DarkCurrent, DigitalImage, Ground, MARS_ORBIT, Optics, PLANCK_CONSTANT, PRESETS, PointSource,
     SOLAR_SPECTRUM_810, SPEED_OF_LIGHT, Sensor, Sunlight, difference, photon_energy, preset,
 };
 
@@ -26,10 +26,11 @@ const FILTER: Filter = Filter::Interference { centre: 810e-9, width: 10e-9, inde
 
 #[test]
 fn one_pixel_by_hand() {
-    // A photon of 810 nm has 6.62607015e-34 299792458 / 810e-9 = 2.452402e-19 J.
+    // A photon of 810 nm has 6.62607015e-34 * 299792458 / 810e-9 = 2.452402e-19 J.
     assert!((photon_energy(810e-9) - 2.452_402e-19).abs() < 1e-25);
-    // 1e-12 W for 2 ms are 2e-15 J, 8155.27 photons; at eta = 0.5 4077.64 electrons. In the dark 100 per second at
-    // 273.15 K, doubled twice at 287.15 K: 0.8 in 2 ms. 12 + 0.1 (4077.64 + 0.8) = 419.84, so 420 DN.
+    // 1e-12 W for 2 ms are 2e-15 J or 8155.27 photons; at eta = 0.5, 4077.64 electrons. The dark current of 100
+    // per second at 273.15 K doubles twice to 287.15 K: 0.8 electrons in 2 ms. 12 + 0.1 (4077.64 + 0.8) = 419.84,
+    // so 420 DN.
     let sensor = Sensor {
         exposure: 2e-3,
         quantum_efficiency: 0.5,
@@ -51,9 +52,9 @@ fn one_pixel_by_hand() {
 
 #[test]
 fn the_sun_on_one_pixel_by_hand() {
-    // The pass band: 10 nm sqrt(pi / (4 ln 2)) = 10.64467 nm. The sun at 30 degrees, on level ground: n.s = 1/2.
-    // E = (0.5e9 / 2 + 0.05e9) 10.64467e-9 = 3.193401 W/m^2, L = 0.25 / pi E = 0.2541228;
-    // flux = pi / 4 L (2 / 8)^2 (9e-6)^2 0.8 = 8.083296e-13 W.
+    // The pass band is 10 nm sqrt(pi / (4 ln 2)) = 10.64467 nm. The sun at 30 degrees on level ground: n.s = 1/2.
+    // E = (0.5e9 / 2 + 0.05e9) 10.64467e-9 = 3.193401 W/m^2, L = 0.25 / pi E = 0.2541228, flux = pi / 4 L (2 /
+    // 8)^2 (9e-6)^2 0.8 = 8.083296e-13 W.
     let camera = camera(1, 1, FILTER);
     let sun = Sunlight {
         elevation: FRAC_PI_6,
@@ -74,14 +75,14 @@ fn the_sun_on_one_pixel_by_hand() {
     let near =
         |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
     near(of(Some(DVec3::Z), true, 0.0), 8.083_296e-13);
-    // In shadow only the sky: a sixth. So on a face that is turned away.
+    // In shadow only the sky shines, a sixth. The same holds on a face that is turned away.
     near(of(Some(DVec3::Z), false, 0.0), 8.083_296e-13 / 6.0);
     near(of(Some(-DVec3::Z), true, 0.0), 8.083_296e-13 / 6.0);
-    // A face square to the sun has (0.5 + 0.05) / 0.3 of it.
+    // A face perpendicular to the sunlight has (0.5 + 0.05) / 0.3 of it.
     near(of(Some(sun.direction()), true, 0.0), 8.083_296e-13 * 0.55 / 0.3);
-    // Air over 3 m.
+    // Attenuation over 3 m of air.
     near(of(Some(DVec3::Z), true, 0.1), 8.083_296e-13 * libm::exp(-0.3));
-    // No ground: the sky itself, 4 times what ground of r_d = 1/4 sends of it.
+    // No ground: the sky itself, 4 times as bright as ground of r_d = 1/4 under it.
     near(of(None, true, 0.1), 8.083_296e-13 / 6.0 * 4.0);
 }
 
@@ -104,7 +105,7 @@ fn the_pass_band_is_the_integral_of_the_filter() {
     let sun = Sunlight { slope: 0.0, ..Sunlight::mars(1.0, 0.0, 0.5) };
     let sloped = Sunlight::mars(1.0, 0.0, 0.5);
     for sin_squared in [0.0, 0.1, 0.25] {
-        // F of docs/radiometry.md over the wavelength at one angle, by a sum in steps of 0.01 nm.
+        // F of docs/radiometry.md, integrated over the wavelength at one angle in steps of 0.01 nm.
         let centre = 810e-9 * (1.0 - sin_squared / 4.0_f64).sqrt();
         let (mut flat, mut line) = (0.0, 0.0);
         for step in -10_000..10_000 {
@@ -132,7 +133,7 @@ fn the_sun_is_where_it_is_said_to_be() {
 
 #[test]
 fn sunlight_on_mars_is_near_its_sources() {
-    // A black body of 5772 K of the sun's radius (6.957e8 m) at 1 AU, at 810 nm: within 3 % of the standard's.
+    // A black body of 5772 K with the sun's radius (6.957e8 m), at 1 AU and 810 nm: within 3 % of the standard.
     let wavelength = 810e-9;
     let x = PLANCK_CONSTANT * SPEED_OF_LIGHT / (wavelength * 1.380_649e-23 * 5772.0);
     let fifth = wavelength * wavelength * wavelength * wavelength * wavelength;
@@ -142,8 +143,8 @@ fn sunlight_on_mars_is_near_its_sources() {
     // 1.110 / 2.3216 = 0.478 W/m^2/nm on Mars.
     let above = SOLAR_SPECTRUM_810 / (MARS_ORBIT * MARS_ORBIT);
     assert!((above - 0.4781e9).abs() < 1e5);
-    // What comes down in all, of what comes from above: table III of Appelbaum and Flood (1990), net flux at an albedo
-    // of 0.1, so divided by 0.9.
+    // All light on the ground, relative to that above the atmosphere: table III of Appelbaum and Flood (1990),
+    // net flux at an albedo of 0.1, hence divided by 0.9.
     for (depth, zenith, net) in [(0.3, 40.0, 0.826), (0.5, 0.0, 0.810), (0.5, 60.0, 0.708), (1.0, 0.0, 0.732)]
     {
         let elevation = (90.0_f64 - zenith).to_radians();
@@ -153,7 +154,7 @@ fn sunlight_on_mars_is_near_its_sources() {
         assert!((down / (net / 0.9) - 1.0).abs() < 0.04, "{depth} {zenith}: {down} {}", net / 0.9);
         assert!(sun.validate("sun").is_ok());
     }
-    // At night there is none.
+    // At night there is no light.
     let night = Sunlight::mars(-0.1, 0.0, 0.5);
     assert_eq!((night.direct, night.sky), (0.0, 0.0));
 }
@@ -170,7 +171,8 @@ fn subtraction_leaves_the_stripe() {
     assert_eq!(pair.lit, sensor.expose(&laser, Some(&sun), 6));
     assert_eq!(pair.unlit, sensor.expose(&Image::filled(60, 60, 0.0), Some(&sun), 7));
     assert_eq!(pair.difference, difference(&pair.lit.numbers, &pair.unlit.numbers));
-    // The stripe's 1e-11 W are 28,543 electrons of light in 2 ms, 72 DN; the background is gone, but for noise of both signs.
+    // The stripe's 1e-11 W are 28,543 electrons in 2 ms, 72 DN. The background is gone, but for noise of both
+    // signs.
     let expected = sensor.gain * sensor.photoelectrons(1e-11);
     let row: Vec<i32> = (0..60).map(|i| pair.difference.at(i, 30)).collect();
     let mean = f64::from(row.iter().sum::<i32>()) / 60.0;
@@ -183,7 +185,7 @@ fn subtraction_leaves_the_stripe() {
 
 #[test]
 fn numbers_alone_are_those_of_the_whole_chain() {
-    // Most pixels dark, some faint, some beyond the full well of every preset; with a background and without.
+    // Most pixels dark, some faint, some beyond the full well of every preset; with and without a background.
     let mut light = Image::filled(67, 41, 0.0);
     for (index, watts) in light.cells_mut().iter_mut().enumerate().filter(|(index, _)| index % 7 == 0) {
         *watts = 1e-14 * (index * index) as f64;
@@ -191,7 +193,7 @@ fn numbers_alone_are_those_of_the_whole_chain() {
     let background = Image::filled(67, 41, 3e-13);
     let dim = DarkCurrent { rate: 5e3, ..DarkCurrent::NONE };
     let presets = PRESETS.iter().map(|name| preset(name).unwrap().1);
-    // Without chance but not without electrons in the dark; and each chance by itself.
+    // A sensor without noise but with dark current, and each kind of noise alone.
     let quiet = Sensor { dark_current: dim, bias: 3.0, ..Sensor::ideal() };
     let alone = [
         Sensor { shot_noise: true, ..quiet },
@@ -215,20 +217,20 @@ fn presets_are_valid() {
         let (optics, sensor) = preset(name).expect("a preset");
         optics.validate("optics").expect("valid optics");
         sensor.validate("sensor").expect("a valid sensor");
-        // A full well does not leave the converter, and fills it to the last number.
+        // A full well fills the converter to its largest number and does not exceed it.
         if sensor.full_well.is_finite() {
             assert_eq!(
                 sensor.digitised(sensor.bias + sensor.gain * sensor.full_well),
-                sensor.largest() as u16
+                sensor.max_number() as u16
             );
         }
-        // A stripe of the default rig is well above the dark, and below the end.
+        // A stripe of the default rig is well above the dark level and well below saturation.
         let frame = sensor.expose(&Image::filled(8, 8, 1.2e-11), None, 0);
         let mean = frame.numbers.cells().iter().map(|number| f64::from(*number)).sum::<f64>() / 64.0;
-        assert!(mean > 0.2 * sensor.largest() && mean < 0.8 * sensor.largest(), "{name}: {mean}");
+        assert!(mean > 0.2 * sensor.max_number() && mean < 0.8 * sensor.max_number(), "{name}: {mean}");
     }
     assert!(preset("film").is_none());
-    // Nothing is random about the ideal sensor.
+    // Nothing is random in the ideal sensor.
     let ramp = Image::from_cells(100, 1, (0..100).map(|index| f64::from(index) * 1e-13).collect());
     assert_eq!(Sensor::ideal().expose(&ramp, None, 0), Sensor::ideal().expose(&ramp, None, 1));
 }
@@ -246,8 +248,8 @@ fn sensors_are_checked() {
     assert_eq!(refused(Sensor { dark_current: cold, ..good }), "sensor.dark_current.temperature");
 }
 
-/// Everything that is computed on several threads.
-fn run() -> (Vec<u64>, Digital) {
+/// All computations that use several threads.
+fn run() -> (Vec<u64>, DigitalImage) {
     let camera = camera(48, 40, FILTER);
     let sources = (0..400).map(|index| {
         let x = f64::from(index) * 0.12;
@@ -260,13 +262,13 @@ fn run() -> (Vec<u64>, Digital) {
     let ground = Ground { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
     let background = Sunlight::mars(0.6, 1.0, 0.5).flux(&camera, 1e-3, &ground);
     let frame = Sensor { seed: 99, ..Sensor::ccd_1989() }.expose(&imaged.optical, Some(&background), 5);
-    let ledger = imaged.ledger;
+    let budget = imaged.budget;
     let mut bits: Vec<u64> = [imaged.fine.cells(), imaged.optical.cells(), background.cells()]
         .into_iter()
         .flatten()
         .map(|value| value.to_bits())
         .collect();
-    bits.extend([ledger.blurred_out, ledger.scattered_out, ledger.arrived].map(f64::to_bits));
+    bits.extend([budget.blurred_out, budget.scattered_out, budget.arrived].map(f64::to_bits));
     (bits, frame)
 }
 
@@ -281,7 +283,8 @@ fn the_bits_do_not_depend_on_threads_or_optimisation() {
         assert!(on(threads) == one, "{threads} threads");
     }
     assert!(one.1.numbers.cells().iter().any(|number| *number > 20));
-    // Nor on the machine or the optimisation: all of it in one number. (FNV-1a, 64 bits, of words)
+    // The bits do not depend on the machine or the optimisation either: one digest of all. (FNV-1a, 64 bits, of
+    // words)
     let words = one.0.iter().copied().chain(one.1.numbers.cells().iter().map(|number| u64::from(*number)));
     let digest =
         words.fold(0xcbf2_9ce4_8422_2325_u64, |sum, word| (sum ^ word).wrapping_mul(0x0100_0000_01b3));

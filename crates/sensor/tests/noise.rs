@@ -1,15 +1,17 @@
-//! Each term of the noise against its law. Seeds are fixed, so every test always gives the same; its level says how
-//! rarely a sensor that obeys the law would have failed: |z| < 3.72 is 1 in 5,000.
+//! Each term of the noise against its law.
+//!
+//! Seeds are fixed, so every test always has the same outcome. The level tells how rarely a sensor that obeys the
+//! law would fail: |z| >= 3.72 is 1 in 5,000.
 
 use raypencil_scene::Image;
-use raypencil_sensor::{DarkCurrent, Purpose, Sensor, Stream, poisson};
+use raypencil_sensor::{DarkCurrent, NoiseSource, NoiseStream, Sensor, poisson};
 
 const LEVEL: f64 = 3.72;
 
-/// No noise, 1 DN per electron, 16 bits, and a flux of `electrons(1)` per electron.
+/// Sensor without noise: 1 DN per electron, 16 bits.
 const PLAIN: Sensor = Sensor { gain: 1.0, exposure: 1.0, ..Sensor::ideal() };
 
-/// Watts that make one electron.
+/// Flux that makes one electron, watts.
 fn watts_per_electron(sensor: &Sensor) -> f64 {
     1.0 / sensor.photoelectrons(1.0)
 }
@@ -32,20 +34,20 @@ fn assert_mean(values: &[f64], expected: f64, variance: f64, what: &str) {
     assert!(z.abs() < LEVEL, "mean of {what}: {} for {expected}, z = {z}", mean(values));
 }
 
-/// `fourth` is the law's fourth central moment: the variance of a variance is (fourth - variance^2) / n.
+/// `fourth` is the fourth central moment of the law: the variance of a variance is (fourth - variance^2) / n.
 fn assert_variance(values: &[f64], expected: f64, fourth: f64, what: &str) {
     let z = (variance(values) - expected) / ((fourth - expected * expected) / values.len() as f64).sqrt();
     assert!(z.abs() < LEVEL, "variance of {what}: {} for {expected}, z = {z}", variance(values));
 }
 
-/// The value that chi-square exceeds with the chance of a normal number above `z`. (Wilson and Hilferty)
+/// Quantile of chi-square, for the probability of a standard normal number above `z`. (Wilson and Hilferty)
 fn chi_square_bound(freedom: f64, z: f64) -> f64 {
     let part = 2.0 / (9.0 * freedom);
     let root = 1.0 - part + z * part.sqrt();
     freedom * (root * root * root)
 }
 
-/// Counts against expectations, neighbours put together until at least 20 are expected.
+/// Compares counts with expectations by chi-square. Neighbours are merged until at least 20 are expected.
 fn assert_chi_square(pairs: impl Iterator<Item = (f64, f64)>, what: &str) {
     let mut bins: Vec<(f64, f64)> = Vec::new();
     let mut open = (0.0, 0.0);
@@ -71,13 +73,15 @@ fn poisson_has_its_law() {
     const DRAWS: u32 = 1_000_000;
     for (number, expected) in [0.3, 3.0, 9.999, 10.0, 30.0, 300.0, 3e4].into_iter().enumerate() {
         let draws: Vec<f64> = (0..DRAWS)
-            .map(|index| poisson(expected, &mut Stream::new(2026, Purpose::Shot, number as u64, index)))
+            .map(|index| {
+                poisson(expected, &mut NoiseStream::new(2026, NoiseSource::Shot, number as u64, index))
+            })
             .collect();
         assert!(draws.iter().all(|k| *k >= 0.0 && *k == k.floor()));
         assert_mean(&draws, expected, expected, "Poisson");
         assert_variance(&draws, expected, expected + 3.0 * expected * expected, "Poisson");
 
-        // All k within 12 standard deviations, and one beyond.
+        // One bin for each k within 12 standard deviations, and one beyond.
         let end = (expected + 12.0 * expected.sqrt() + 12.0) as usize;
         let mut counts = vec![0.0; end + 1];
         for k in &draws {
@@ -94,11 +98,11 @@ fn poisson_has_its_law() {
 
 #[test]
 fn poisson_of_much_light_and_of_none() {
-    let draw = |mean: f64, pixel: u32| poisson(mean, &mut Stream::new(3, Purpose::Shot, 0, pixel));
+    let draw = |mean: f64, pixel: u32| poisson(mean, &mut NoiseStream::new(3, NoiseSource::Shot, 0, pixel));
     for nothing in [0.0, -1.0, f64::NAN] {
         assert_eq!(draw(nothing, 0), 0.0);
     }
-    // On both sides of where PTRS hands over.
+    // On both sides of the limit of PTRS.
     for expected in [0.9e8, 1e12] {
         let draws: Vec<f64> = (0..50_000).map(|pixel| draw(expected, pixel)).collect();
         assert_mean(&draws, expected, expected, "much light");
@@ -110,11 +114,11 @@ fn poisson_of_much_light_and_of_none() {
 #[test]
 fn normal_has_its_law() {
     const DRAWS: u32 = 200_000;
-    let mut stream = Stream::new(5, Purpose::Read, 0, 0);
+    let mut stream = NoiseStream::new(5, NoiseSource::Read, 0, 0);
     let draws: Vec<f64> = (0..DRAWS).map(|_| stream.normal()).collect();
     assert_mean(&draws, 0.0, 1.0, "normal");
     assert_variance(&draws, 1.0, 3.0, "normal");
-    // Bins a tenth wide from -4 to 4, and what is outside.
+    // Bins of width 0.1 from -4 to 4, and one on either side.
     let below = |x: f64| 0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2);
     let side = |bin: usize| -4.0 + 0.1 * bin as f64;
     let mut counts = [0.0; 82];
@@ -132,7 +136,7 @@ fn normal_has_its_law() {
 
 #[test]
 fn uniform_has_its_law() {
-    let mut stream = Stream::new(6, Purpose::Read, 0, 0);
+    let mut stream = NoiseStream::new(6, NoiseSource::Read, 0, 0);
     let mut counts = [0.0; 100];
     for _ in 0..100_000 {
         counts[(stream.uniform() * 100.0) as usize] += 1.0;
@@ -146,7 +150,7 @@ fn shot_noise_is_poissons() {
     let frame = sensor.expose(&flat(&sensor, 300, 400.0), None, 0);
     assert_mean(frame.electrons.cells(), 400.0, 400.0, "shot noise");
     assert_variance(frame.electrons.cells(), 400.0, 400.0 + 3.0 * 400.0 * 400.0, "shot noise");
-    // In another frame the noise is another, and the law the same: the difference has twice the variance.
+    // Another frame has other noise of the same law: the difference has twice the variance.
     let next = sensor.expose(&flat(&sensor, 300, 400.0), None, 1);
     let pairs = frame.electrons.cells().iter().zip(next.electrons.cells());
     let differences: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
@@ -178,11 +182,11 @@ fn fixed_patterns_are_fixed() {
     // 1 % of 10,000: sigma 100.
     assert_mean(light.electrons.cells(), 10_000.0, 1e4, "PRNU");
     assert_variance(light.electrons.cells(), 1e4, 3e8, "PRNU");
-    // The same in every frame, another with another seed.
+    // The pattern is the same in every frame, and another with another seed.
     assert_eq!(take(10_000.0, 77).signal, light.signal);
     let other = Sensor { seed: 14, ..sensor };
     assert_ne!(other.expose(&flat(&sensor, 300, 10_000.0), None, 1).signal, light.signal);
-    // PRNU is of the light: twice the light, twice the pattern.
+    // PRNU scales with the light: twice the light, twice the pattern.
     let twice = take(20_000.0, 2);
     for (once, twice) in light.electrons.cells().iter().zip(twice.electrons.cells()) {
         assert!((2.0 * once - twice).abs() < 1e-9 * twice);
@@ -191,10 +195,11 @@ fn fixed_patterns_are_fixed() {
 
 #[test]
 fn dark_frames_follow_time_and_temperature() {
-    // 1000 electrons per second at 293.15 K, twice as many 7 K warmer: 4000 per second at 307.15 K.
+    // 1000 electrons per second at 293.15 K double every 7 K: 4000 per second at 307.15 K.
     let dark = DarkCurrent { rate: 1000.0, at: 293.15, doubling: 7.0, temperature: 307.15 };
     assert!((dark.electrons_per_second() - 4000.0).abs() < 1e-9);
-    // In 50 ms 200 of them; with read noise of 10 electrons and DSNU of 5 the variance is 200 + 100 + 25 electrons^2.
+    // In 50 ms there are 200 electrons. With read noise of 10 electrons and DSNU of 5 the variance is 200 + 100 +
+    // 25 electrons^2.
     let sensor = Sensor {
         exposure: 0.05,
         shot_noise: true,
@@ -208,16 +213,16 @@ fn dark_frames_follow_time_and_temperature() {
     };
     let frame = sensor.expose(&Image::filled(300, 300, 0.0), None, 0);
     let numbers: Vec<f64> = frame.numbers.cells().iter().map(|number| f64::from(*number)).collect();
-    // K^2 sigma^2 + 1/12 of quantisation.
+    // K^2 sigma^2, and 1/12 for quantisation.
     let expected = 16.0 * 325.0 + 1.0 / 12.0;
     assert_mean(&numbers, 100.0 + 4.0 * 200.0, expected, "dark frame");
-    // Fourth moment: nearly normal; Poisson's excess is 200 K^4.
+    // Fourth moment: that of a normal law, plus the excess 200 K^4 of Poisson's law.
     assert_variance(&numbers, expected, 3.0 * expected * expected + 256.0 * 200.0, "dark frame");
 }
 
 #[test]
 fn quantisation_adds_a_twelfth() {
-    // Signals spread evenly over 200 DN by a ramp of flux: rounding has variance 1/12 and mean 0.
+    // A ramp of flux spreads the signal evenly over 200 DN: rounding has variance 1/12 and mean 0.
     let ramp: Vec<f64> =
         (0..100_000).map(|index| 0.002 * f64::from(index) * watts_per_electron(&PLAIN)).collect();
     let frame = PLAIN.expose(&Image::from_cells(1000, 100, ramp), None, 0);
@@ -229,8 +234,8 @@ fn quantisation_adds_a_twelfth() {
 
 #[test]
 fn the_slope_of_photon_transfer_is_the_gain() {
-    // EMVA 1288: sigma_y^2 = K^2 sigma_d^2 + sigma_q^2 + K (mu_y - mu_y.dark). Temporal variance, so by pairs of frames
-    // with the fixed patterns in them.
+    // EMVA 1288: sigma_y^2 = K^2 sigma_d^2 + sigma_q^2 + K (mu_y - mu_y.dark). The variance is temporal: it is
+    // estimated from pairs of frames with the same fixed patterns.
     let sensor = Sensor { bias: 100.0, seed: 16, ..Sensor::cmos() };
     let of_level = |level: u64| {
         let flux = flat(&sensor, 300, 500.0 * level as f64);
@@ -240,7 +245,7 @@ fn the_slope_of_photon_transfer_is_the_gain() {
         let mean = mean(&pairs.iter().map(|(a, b)| 0.5 * (a + b)).collect::<Vec<_>>());
         (mean, 0.5 * variance(&pairs.iter().map(|(a, b)| a - b).collect::<Vec<_>>()))
     };
-    // 5,000 electrons at most, half of the well.
+    // At most 5,000 electrons, half of the well.
     let points: Vec<(f64, f64)> = (0..=10).map(of_level).collect();
     // Weighted least squares: the variance of a variance is 2 variance^2 / n.
     let n = 90_000.0;
@@ -257,7 +262,7 @@ fn the_slope_of_photon_transfer_is_the_gain() {
     let error = (w / (w * xx - x * x)).sqrt();
     assert!((slope - sensor.gain).abs() < LEVEL * error, "{slope} +- {error} for {}", sensor.gain);
     assert!(error < 0.003 * sensor.gain, "{error}");
-    // Where there is no light: K^2 sigma_d^2 + 1/12.
+    // Without light: K^2 sigma_d^2 + 1/12.
     let dark = sensor.gain * sensor.gain * sensor.read_noise * sensor.read_noise + 1.0 / 12.0;
     assert!((points[0].1 / dark - 1.0).abs() < LEVEL * (2.0 / n).sqrt(), "{} for {dark}", points[0].1);
 }
@@ -278,16 +283,16 @@ fn the_response_is_a_straight_line() {
 
 #[test]
 fn wells_and_converters_fill_up() {
-    // The well first: 10,700 electrons are 4095 DN, and no light makes more.
+    // The well fills first: 10,700 electrons are 4095 DN, and more light changes nothing.
     let sensor = Sensor { read_noise: 0.0, dsnu: 0.0, ..Sensor::cmos() };
     let frame = sensor.expose(&flat(&sensor, 50, 1e5), None, 0);
     assert!(frame.electrons.cells().iter().all(|electrons| *electrons == 10_700.0));
     assert!(frame.numbers.cells().iter().all(|number| *number == 4095));
-    // The converter first.
+    // The converter fills first.
     let steep = Sensor { gain: 10.0, bits: 8, ..PLAIN };
     assert_eq!(steep.expose(&flat(&steep, 1, 25.0), None, 0).numbers.at(0, 0), 250);
     assert_eq!(steep.expose(&flat(&steep, 1, 26.0), None, 0).numbers.at(0, 0), 255);
-    // And downwards: half of the read noise about 0 is lost.
+    // Clipping at 0: half of the read noise is lost.
     let low = Sensor { read_noise: 10.0, seed: 18, ..PLAIN };
     let frame = low.expose(&flat(&low, 100, 0.0), None, 0);
     let zeros = frame.numbers.cells().iter().filter(|number| **number == 0).count() as f64;

@@ -1,9 +1,9 @@
-//! The image that optics make: kernels, convolution, splats, and where the light goes.
+//! Image formation: kernels, convolution, splats, and the balance of the flux.
 
 use glam::DVec3;
 use raypencil_scene::{Camera, Image, Lens};
 use raypencil_sensor::{
-    Dust, Extent, Kernel, Optics, PointSource, Psf, Purpose, Stream, ThinLens, airy_pattern, binned,
+    Dust, Extent, Kernel, NoiseSource, NoiseStream, Optics, PointSource, Psf, ThinLens, airy_pattern, binned,
     convolve, encircled_energy, splat, splat_defocused,
 };
 
@@ -25,9 +25,9 @@ fn sum(image: &Image<f64>) -> f64 {
     image.cells().iter().sum()
 }
 
-/// Half of the cells dark, the others with random light.
+/// Image with half of its cells dark and random light in the others.
 fn speckle(width: u32, height: u32) -> Image<f64> {
-    let mut stream = Stream::new(1, Purpose::Shot, 0, 0);
+    let mut stream = NoiseStream::new(1, NoiseSource::Shot, 0, 0);
     let cells = (0..width * height).map(|_| (stream.uniform() - 0.5).max(0.0)).collect();
     Image::from_cells(width, height, cells)
 }
@@ -57,7 +57,7 @@ fn kernels() -> Vec<Kernel> {
         Kernel::gaussian([1.3, 0.4]),
         Kernel::airy(810e-9, 4.0, 3, [2.25e-6, 3e-6]),
         Kernel::from_numbers(5, 3, &lopsided).expect("a kernel"),
-        // Larger than the image.
+        // Kernels larger than the image.
         Kernel::gaussian([9.0, 7.0]),
         Kernel::from_numbers(41, 1, &[1.0; 41]).expect("a kernel"),
     ]
@@ -69,7 +69,7 @@ fn convolution_is_the_direct_sum() {
     for kernel in kernels() {
         let (fast, slow) = (convolve(&image, &kernel).image, direct_sum(&image, &kernel));
         for (a, b) in fast.cells().iter().zip(slow.cells()) {
-            // Some 200 roundings of sums of up to 1.
+            // Some 200 roundings of sums up to 1.
             assert!((a - b).abs() < 1e-13, "{a} {b}");
         }
     }
@@ -84,7 +84,7 @@ fn convolution_conserves_energy() {
         assert!((before - after).abs() < 1e-12 * before, "{before} {after}");
         assert!(out.lost >= 0.0);
     }
-    // Far from the sides nothing is lost at all.
+    // Far from the sides no light is lost.
     let mut point = Image::filled(101, 101, 0.0);
     point.set(50, 50, 3.0);
     let out = convolve(&point, &Kernel::gaussian([2.0, 2.0]));
@@ -112,21 +112,21 @@ fn a_gaussian_has_its_second_moment() {
     for sigma in [[3.0, 1.0], [0.7, 12.0]] {
         let (all, across, down) = moments(&Kernel::gaussian(sigma));
         assert!((all - 1.0).abs() < 1e-14);
-        // sigma^2 + 1/12, since light is known to cells only; what is cut off at 6 sigma takes 2e-7 of it, and
-        // Sheppard's correction is off by 16 pi^2 sigma^2 exp(-2 pi^2 sigma^2), 5e-3 at 0.7.
+        // The second moment is sigma^2 + 1/12, since light is known to cells only. The cut at 6 sigma removes
+        // 2e-7 of it. Sheppard's correction is off by 16 pi^2 sigma^2 exp(-2 pi^2 sigma^2), 5e-3 at 0.7.
         for (moment, sigma) in [(across, sigma[0]), (down, sigma[1])] {
             let bound = 2e-7 * sigma * sigma + 160.0 * sigma * sigma * libm::exp(-19.7 * sigma * sigma);
             assert!((moment - sigma * sigma - 1.0 / 12.0).abs() < bound, "{moment} for {sigma}");
         }
     }
-    // However narrow, its light stays.
+    // However narrow the Gaussian is, its light stays.
     assert!((Kernel::gaussian([1e-3, 1e-300]).weight(0, 0) - 1.0).abs() < 1e-15);
     assert_eq!(Kernel::gaussian([0.0, 0.0]), Kernel::identity());
 }
 
 #[test]
 fn an_airy_kernel_is_the_pattern() {
-    // Ten cells to lambda N: the first dark ring is at 12.197 cells.
+    // Ten cells per lambda N: the first dark ring is at 12.197 cells.
     let (wavelength, f_number) = (810e-9, 4.0);
     let unit = wavelength * f_number;
     let kernel = Kernel::airy(wavelength, f_number, 8, [0.1 * unit, 0.1 * unit]);
@@ -135,13 +135,14 @@ fn an_airy_kernel_is_the_pattern() {
     for k in [0, 3, 7, 16] {
         let expected = airy_pattern(f64::from(k) * 0.1 * unit, wavelength, f_number);
         let found = kernel.weight(k, 0) / kernel.weight(0, 0);
-        // A cell's mean is off its middle by its second moment, 0.01 lambda^2 N^2 / 12 times half the curvature.
+        // The mean of a cell differs from its middle by the cell's second moment, 0.01 lambda^2 N^2 / 12, times
+        // half the curvature.
         assert!((found - expected).abs() < 0.01, "{k}: {found} {expected}");
         for turned in [kernel.weight(-k, 0), kernel.weight(0, k), kernel.weight(0, -k)] {
             assert!((turned - kernel.weight(k, 0)).abs() < 1e-15);
         }
     }
-    // Within the first dark ring are 83.8 % of all light, so 0.838 / 0.975 of the kernel's.
+    // The first dark ring encloses 83.8 % of all light, hence 0.838 / 0.975 of the kernel's.
     let mut within = 0.0;
     for j in -13..=13 {
         for i in -13..=13 {
@@ -163,7 +164,7 @@ fn kernels_of_numbers_are_checked() {
     assert!(Kernel::from_numbers(1, 1, &[f64::NAN]).is_err());
     assert!(Kernel::from_numbers(1, 1, &[0.0]).is_err());
     let kernel = Kernel::from_numbers(3, 1, &[1.0, 2.0, 5.0]).expect("a kernel");
-    // What is right of the middle moves right.
+    // Weights right of the middle move light to the right.
     let mut point = Image::filled(5, 1, 0.0);
     point.set(2, 0, 8.0);
     assert_eq!(convolve(&point, &kernel).image.cells(), &[0.0, 1.0, 2.0, 5.0, 0.0]);
@@ -176,11 +177,11 @@ fn defocus_by_hand() {
     // D f |z - z_f| / (z (z_f - f)) = 2e-3 8e-3 2 / (2 3.992) = 4.008016e-6 m at z = 2.
     assert!((lens.blur_diameter(2.0) - 4.008_016e-6).abs() < 1e-12);
     assert_eq!(lens.blur_diameter(4.0), 0.0);
-    // Focused at infinity: D f / z.
+    // Focus at infinity: D f / z.
     let far = ThinLens { focus: f64::INFINITY, ..lens };
     assert!((far.blur_diameter(2.0) - 8e-6).abs() < 1e-18);
-    // With f of the camera's image distance it is D f_c |1/z - 1/z_f| = 2e-3 8e-3 / 4.
-    let of_camera = ThinLens::of(&camera, 4.0);
+    // With f from the camera's image distance it is D f_c |1/z - 1/z_f| = 2e-3 8e-3 / 4.
+    let of_camera = ThinLens::for_camera(&camera, 4.0);
     assert!((of_camera.blur_diameter(2.0) - 4e-6).abs() < 1e-18);
     assert!((1.0 / of_camera.focal_length - 1.0 / 8e-3 - 1.0 / 4.0).abs() < 1e-12);
     assert!(of_camera.validate("lens").is_ok() && far.validate("lens").is_ok());
@@ -192,26 +193,27 @@ fn discs_share_their_light_by_area() {
     let pitch = [9e-6, 9e-6];
     let lens = ThinLens { aperture: 8e-3, focal_length: 8e-3, focus: 4.0 };
     let source = |x, y, depth| PointSource { x, y, watts: 2.0, depth };
-    // At z = 1: c = 8e-3 8e-3 3 / 3.992 = 4.80962e-5 m; 5.34402 pixels; 4 cells each: radius 10.68804 cells.
+    // At z = 1: c = 8e-3 8e-3 3 / 3.992 = 4.80962e-5 m or 5.34402 pixels. With 4 cells per pixel the radius is
+    // 10.68804 cells.
     let radius = 0.5 * lens.blur_diameter(1.0) / 9e-6 * 4.0;
     assert!((radius - 10.688_04).abs() < 1e-4);
     let out = splat_defocused(16, 16, 4, pitch, &lens, [source(8.1, 7.9, 1.0)]);
     assert!((sum(&out.image) - 2.0).abs() < 1e-12);
     assert!(out.lost < 1e-12);
-    // A cell within the disc has its share of the area; one beyond has nothing.
+    // A cell within the disc has its fraction of the area; a cell beyond has none.
     let inner = 2.0 / (std::f64::consts::PI * radius * radius);
     assert!((out.image.at(32, 31) - inner).abs() < 1e-13);
     assert_eq!(out.image.at(32 + 12, 31), 0.0);
-    // Half of it beside the image.
+    // Half of the disc lies beside the image.
     let out = splat_defocused(16, 16, 4, pitch, &lens, [source(0.0, 8.0, 1.0)]);
     assert!((out.lost - 1.0).abs() < 1e-12 && (sum(&out.image) - 1.0).abs() < 1e-12);
-    // Partly over a corner, and all beside.
+    // One disc partly over a corner, one beside the image.
     let out = splat_defocused(16, 16, 4, pitch, &lens, [source(15.0, 15.5, 1.0), source(-9.0, 3.0, 1.0)]);
     assert!((out.lost + sum(&out.image) - 4.0).abs() < 4e-12 && out.lost > 2.0);
-    // In focus it is the plain splat.
+    // In focus, the result equals the plain splat.
     let sharp = [source(3.3, 4.7, 4.0), source(-0.1, 3.0, 4.0)];
     assert_eq!(splat_defocused(16, 16, 4, pitch, &lens, sharp), splat(16, 16, 4, sharp));
-    // A second moment of R^2 / 4 on each axis.
+    // The second moment is R^2 / 4 on each axis.
     let out = splat_defocused(16, 16, 4, pitch, &lens, [source(8.0, 8.0, 1.0)]);
     let mut moment = 0.0;
     for j in 0..64 {
@@ -233,15 +235,16 @@ fn splats_land_in_their_cells() {
     assert_eq!(out.image.at(6, 1), 3.0);
     assert_eq!((sum(&out.image), out.lost), (3.0, 12.0));
     assert_eq!(binned(&out.image, 4).cells(), &[0.0, 3.0]);
-    // 10 m ahead, 1 m right, 2 m up: 8e-3 / 9e-6 (0.1, -0.2) = (88.89, -177.78) pixels from the middle of 1024.
+    // A point 10 m ahead, 1 m right, 2 m up: 8e-3 / 9e-6 (0.1, -0.2) = (88.89, -177.78) pixels from the middle of
+    // 1024.
     let source = PointSource::project(&camera(1024, 1024), DVec3::new(1.0, -2.0, 10.0), 5.0);
     assert!((source.x - 600.888_888).abs() < 1e-5 && (source.y - 334.222_222).abs() < 1e-5);
     assert_eq!((source.watts, source.depth), (5.0, 10.0));
 }
 
 fn sources() -> Vec<PointSource> {
-    let mut stream = Stream::new(4, Purpose::Shot, 0, 0);
-    // Some of them beside the image.
+    let mut stream = NoiseStream::new(4, NoiseSource::Shot, 0, 0);
+    // Some of the sources lie beside the image.
     let mut number = |from: f64, to: f64| from + (to - from) * stream.uniform();
     (0..500)
         .map(|_| PointSource {
@@ -254,7 +257,7 @@ fn sources() -> Vec<PointSource> {
 }
 
 #[test]
-fn the_ledger_balances() {
+fn the_flux_budget_balances() {
     let camera = camera(32, 24);
     let dust = Dust { transmission: 0.8, halo_share: 0.2, halo_sigma: Extent::Pixels(5.0) };
     let all = Optics {
@@ -270,7 +273,7 @@ fn the_ledger_balances() {
     assert!(all.validate("optics").is_ok());
     for optics in [all.clone(), Optics::PERFECT, Optics::dusty(), Optics::diffraction_limited()] {
         let imaged = optics.form(&camera, sources());
-        let account = imaged.ledger;
+        let account = imaged.budget;
         let spent =
             account.missed + account.blurred_out + account.absorbed + account.scattered_out + account.arrived;
         assert!((account.entered - spent).abs() < 1e-12 * account.entered, "{account:?}");
@@ -279,11 +282,11 @@ fn the_ledger_balances() {
     // Perfect optics put each pencil into its pixel.
     let plain = splat(32, 24, 1, sources());
     assert_eq!(Optics::PERFECT.form(&camera, sources()).optical, plain.image);
-    // Dust on an even image far from its sides: T of it.
+    // Dust on an even image leaves T of it, far from the sides.
     let even = Image::filled(100, 100, 2.0);
     let veiled = all.veil(&camera, &even);
     assert!((veiled.at(50, 50) - 1.6).abs() < 1e-7);
-    // And a point keeps T (1 - h) and a little of its own halo.
+    // A point keeps T (1 - h) and a little of its own halo.
     let mut point = Image::filled(101, 101, 0.0);
     point.set(50, 50, 1.0);
     let kernel = Kernel::gaussian([5.0, 5.0]);

@@ -1,42 +1,58 @@
-//! Triangles under construction, and the shapes that grounds are made of: height fields, boxes, pyramids,
-//! rocks and mushrooms.
+//! Triangles under construction, and the shapes they are added as: height fields, boxes, pyramids, rocks,
+//! mushrooms.
 
 use glam::{DVec2, DVec3};
 use raypencil_scene::{Material, Mesh, SceneError};
 
-use crate::draws::Draws;
+use crate::random_stream::RandomStream;
 
-/// Triangles under construction: global `f64` vertices.
+/// Triangles under construction, with global `f64` vertices. Faces are counter-clockwise from outside.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::Material;
+/// use raypencil_terrain::{Ground, height_at};
+///
+/// let ground = Ground {
+///     vertices: vec![DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(0.0, 4.0, 2.0)],
+///     faces: vec![[0, 1, 2]],
+///     face_materials: vec![0],
+///     materials: vec![Material { name: "sand".into(), reflectivity: 0.25 }],
+/// };
+/// // The face is z = y / 2.
+/// assert_eq!(height_at(&ground.into_mesh()?, 1.0, 1.0), Some(0.5));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ground {
     /// Vertices in the global frame (z up), metres.
     pub vertices: Vec<DVec3>,
     /// Three vertex indices per face, counter-clockwise from outside.
     pub faces: Vec<[u32; 3]>,
-    /// Index into `materials` of each face.
+    /// Index into `materials` for each face.
     pub face_materials: Vec<u16>,
-    /// The kinds of ground.
+    /// Materials of the ground.
     pub materials: Vec<Material>,
 }
 
 impl Ground {
-    /// The mesh that renderers take: vertices rounded once to `f32` offsets from the scene origin.
+    /// Mesh for the renderers: each vertex is rounded once to an `f32` offset from the scene origin.
     ///
     /// # Errors
-    /// As [`Mesh::from_global`]: names the first vertex, face or material that no renderer could work with.
+    /// As [`Mesh::from_global`]: names the first invalid vertex, face or material.
     pub fn into_mesh(self) -> Result<Mesh, SceneError> {
         Mesh::from_global(&self.vertices, self.faces, self.face_materials, self.materials)
     }
 
-    /// Adds a vertex and gives its index.
-    pub(crate) fn vertex(&mut self, position: DVec3) -> u32 {
+    /// Adds a vertex and returns its index.
+    pub(crate) fn add_vertex(&mut self, position: DVec3) -> u32 {
         let index = self.next_vertex();
         self.vertices.push(position);
         index
     }
 
     /// Adds a face.
-    pub(crate) fn face(&mut self, corners: [u32; 3], material: u16) {
+    pub(crate) fn add_face(&mut self, corners: [u32; 3], material: u16) {
         self.faces.push(corners);
         self.face_materials.push(material);
     }
@@ -45,12 +61,13 @@ impl Ground {
         u32::try_from(self.vertices.len()).expect("a ground has fewer than 2^32 vertices")
     }
 
-    /// Adds a height field of `columns x rows` cells, two faces each, from a function that places the grid's
-    /// corner (column, row). Seen from above, columns run to the right and rows away (x and y, if the
-    /// function keeps the axes); then all normals point up.
+    /// Adds a height field of `columns x rows` cells, two faces each. `place` gives the position of the grid's
+    /// corner (column, row).
     ///
-    /// `falling` chooses each cell's diagonal: from its far left to its near right corner if true.
-    pub(crate) fn height_field(
+    /// If columns run to the right and rows away, seen from above, all normals point up.
+    ///
+    /// `falling` chooses the diagonal of each cell: true for the one from the far left to the near right corner.
+    pub(crate) fn add_height_field(
         &mut self,
         columns: u32,
         rows: u32,
@@ -66,222 +83,143 @@ impl Ground {
         }
         for row in 0..rows {
             for column in 0..columns {
-                // Counter-clockwise from the near left corner: a b c d.
+                // Corners a b c d of the cell, counter-clockwise from the near left one.
                 let a = first + row * (columns + 1) + column;
                 let (b, c, d) = (a + 1, a + columns + 2, a + columns + 1);
                 let halves = if falling() { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] };
                 for half in halves {
-                    self.face(half, material());
+                    self.add_face(half, material());
                 }
             }
         }
     }
 
-    /// Adds a closed box of 12 faces: its centre, and from there to the middle of three sides. The three
-    /// must be right-handed; they need not be at right angles.
-    pub(crate) fn solid_box(&mut self, centre: DVec3, [u, v, w]: [DVec3; 3], material: u16) {
-        // Corner 4k + 2j + i is at the sides chosen by the bits i, j, k of u, v, w.
+    /// Adds a closed box of 12 faces: its centre, and the vectors from there to the centres of three sides. The
+    /// three vectors must be right-handed; they need not be at right angles.
+    pub(crate) fn add_box(&mut self, centre: DVec3, [u, v, w]: [DVec3; 3], material: u16) {
+        // Corner 4k + 2j + i lies on the sides of u, v, w that the bits i, j, k choose.
         let first = self.next_vertex();
         let side = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
         for corner in 0..8 {
             let (i, j, k) = (side(corner & 1), side(corner >> 1 & 1), side(corner >> 2));
             self.vertices.push(centre + u * i + v * j + w * k);
         }
-        // Each side counter-clockwise from outside.
+        // The sides, counter-clockwise from outside.
         let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         for [a, b, c, d] in sides.map(|side| side.map(|corner| first + corner)) {
-            self.face([a, b, c], material);
-            self.face([a, c, d], material);
+            self.add_face([a, b, c], material);
+            self.add_face([a, c, d], material);
         }
     }
 
-    /// Adds a closed square pyramid of 6 faces: the centre of its base, half the side of the base, its
-    /// height, and how far it is turned about the vertical, radians.
-    pub(crate) fn pyramid(&mut self, base: DVec3, half_side: f64, height: f64, turn: f64, material: u16) {
-        let (sin, cos) = libm::sincos(turn);
+    /// Adds a closed square pyramid of 6 faces: the centre of its base, half the side of the base, its height
+    /// (metres), and its rotation about the vertical (radians).
+    pub(crate) fn add_pyramid(
+        &mut self,
+        base: DVec3,
+        half_side: f64,
+        height: f64,
+        rotation: f64,
+        material: u16,
+    ) {
+        let (sin, cos) = libm::sincos(rotation);
         let first = self.next_vertex();
         for corner in [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)] {
             let DVec2 { x, y } = corner * half_side;
             self.vertices.push(base + DVec3::new(cos * x - sin * y, sin * x + cos * y, 0.0));
         }
-        let apex = self.vertex(base + DVec3::new(0.0, 0.0, height));
+        let apex = self.add_vertex(base + DVec3::new(0.0, 0.0, height));
         for corner in 0..4 {
-            self.face([first + corner, first + (corner + 1) % 4, apex], material);
+            self.add_face([first + corner, first + (corner + 1) % 4, apex], material);
         }
         // The base looks down.
-        self.face([first, first + 2, first + 1], material);
-        self.face([first, first + 3, first + 2], material);
+        self.add_face([first, first + 2, first + 1], material);
+        self.add_face([first, first + 3, first + 2], material);
     }
 
-    /// Adds a closed, irregular rock of 32 faces: an octahedron with every face cut in four, thrown onto a
-    /// sphere, each vertex then moved along its own radius, and the whole stretched by `half_axes`.
+    /// Adds a closed, irregular rock of 32 faces: an octahedron with every face cut in four, projected onto a
+    /// sphere. Each vertex then moves along its own radius, and `half_axes` stretch the whole.
     ///
-    /// A vertex keeps its direction from the centre, so the rock stays star-shaped about it, and its faces
-    /// outward, however rough it is.
-    pub(crate) fn rock(&mut self, centre: DVec3, half_axes: DVec3, draws: &mut Draws, material: u16) {
-        // The six corners +x -x +y -y +z -z, then the middles of the twelve edges.
+    /// Each vertex keeps its direction from the centre. The rock therefore stays star-shaped, and its faces look
+    /// outward.
+    pub(crate) fn add_rock(
+        &mut self,
+        centre: DVec3,
+        half_axes: DVec3,
+        random: &mut RandomStream,
+        material: u16,
+    ) {
+        // The six corners +x -x +y -y +z -z, then the midpoints of the twelve edges.
         let corner = |index: usize| DVec3::AXES[index / 2] * if index & 1 == 0 { 1.0 } else { -1.0 };
-        const EDGES: [[usize; 2]; 12] =
+        const OCTAHEDRON_EDGES: [[usize; 2]; 12] =
             [[0, 2], [0, 3], [0, 4], [0, 5], [1, 2], [1, 3], [1, 4], [1, 5], [2, 4], [2, 5], [3, 4], [3, 5]];
-        // Any turn will do, so that no two rocks lie alike: an orthonormal frame about a random axis.
-        let z = draws.direction();
-        let x = z.cross(draws.direction()).normalize_or(z.any_orthonormal_vector());
+        // A random orientation, so that no two rocks look alike: an orthonormal frame about a random axis.
+        let z = random.unit_vector();
+        let x = z.cross(random.unit_vector()).normalize_or(z.any_orthonormal_vector());
         let y = z.cross(x);
         let first = self.next_vertex();
-        let middles = EDGES.iter().map(|&[a, b]| (corner(a) + corner(b)) / f64::sqrt(2.0));
+        let middles = OCTAHEDRON_EDGES.iter().map(|&[a, b]| (corner(a) + corner(b)) / f64::sqrt(2.0));
         for unit in (0..6).map(corner).chain(middles) {
             let turned = x * unit.x + y * unit.y + z * unit.z;
-            self.vertices.push(centre + turned * half_axes * draws.between(0.75, 1.1));
+            self.vertices.push(centre + turned * half_axes * random.between(0.75, 1.1));
         }
         let middle_of = |a: usize, b: usize| {
             let edge = [a.min(b), a.max(b)];
-            6 + EDGES.iter().position(|e| *e == edge).expect("an edge of the octahedron")
+            6 + OCTAHEDRON_EDGES.iter().position(|e| *e == edge).expect("an edge of the octahedron")
         };
         for octant in 0..8_usize {
-            // The corners on the sides of x, y, z chosen by the bits; mirroring one axis turns the order.
+            // The bits choose the corners on the x, y and z axes. Mirroring one axis reverses the order.
             let (a, b, c) = (octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2));
             let (b, c) = if octant.count_ones() % 2 == 0 { (b, c) } else { (c, b) };
             let (ab, bc, ca) = (middle_of(a, b), middle_of(b, c), middle_of(c, a));
             for quarter in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-                self.face(quarter.map(|v| first + v as u32), material);
+                self.add_face(quarter.map(|v| first + v as u32), material);
             }
         }
     }
 
-    /// Adds a closed mushroom: a stem under a wider cap, a body of revolution about the vertical through
-    /// `foot`, with `sides` sides and a rough rim. It has `8 sides` faces.
-    pub(crate) fn mushroom(
+    /// Adds a closed mushroom of `8 sides` faces: a stem under a wider cap, a body of revolution about the
+    /// vertical through `foot`, with `sides` sides and a rough rim.
+    pub(crate) fn add_mushroom(
         &mut self,
         foot: DVec3,
         height: f64,
         cap_radius: f64,
         sides: u32,
-        draws: &mut Draws,
+        random: &mut RandomStream,
         material: u16,
     ) {
-        // The profile from bottom to top, as shares of (radius, height): stem, underside, rim, top.
+        // The profile from bottom to top, as fractions of (radius, height): stem, underside, rim, top.
         const PROFILE: [(f64, f64); 4] = [(0.40, 0.0), (0.30, 0.60), (1.0, 0.72), (0.60, 0.95)];
-        let turn = draws.unit();
-        let rim: Vec<f64> = (0..sides).map(|_| draws.between(0.8, 1.0)).collect();
-        let bottom = self.vertex(foot);
+        let rotation = random.uniform();
+        let rim: Vec<f64> = (0..sides).map(|_| random.between(0.8, 1.0)).collect();
+        let bottom = self.add_vertex(foot);
         let first = self.next_vertex();
         for (radius, level) in PROFILE {
             for side in 0..sides {
-                let angle = std::f64::consts::TAU * ((f64::from(side) + turn) / f64::from(sides));
+                let angle = std::f64::consts::TAU * ((f64::from(side) + rotation) / f64::from(sides));
                 let (sin, cos) = libm::sincos(angle);
-                // One factor for a whole meridian, so that neighbouring rings never cross.
+                // One factor for each meridian, so that neighbouring rings never cross.
                 let r = cap_radius * radius * rim[side as usize];
                 self.vertices.push(foot + DVec3::new(r * cos, r * sin, level * height));
             }
         }
-        let top = self.vertex(foot + DVec3::new(0.0, 0.0, height));
+        let top = self.add_vertex(foot + DVec3::new(0.0, 0.0, height));
         let ring = |level: u32, side: u32| first + level * sides + side % sides;
         let last = PROFILE.len() as u32 - 1;
         for side in 0..sides {
-            self.face([bottom, ring(0, side + 1), ring(0, side)], material);
+            self.add_face([bottom, ring(0, side + 1), ring(0, side)], material);
             for level in 0..last {
                 let (a, b) = (ring(level, side), ring(level, side + 1));
                 let (c, d) = (ring(level + 1, side + 1), ring(level + 1, side));
-                self.face([a, b, c], material);
-                self.face([a, c, d], material);
+                self.add_face([a, b, c], material);
+                self.add_face([a, c, d], material);
             }
-            self.face([ring(last, side), ring(last, side + 1), top], material);
+            self.add_face([ring(last, side), ring(last, side + 1), top], material);
         }
     }
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::draws::Purpose;
-
-    /// (b - a) x (c - a) of a face.
-    pub(crate) fn normal(ground: &Ground, face: [u32; 3]) -> DVec3 {
-        let [a, b, c] = face.map(|v| ground.vertices[v as usize]);
-        (b - a).cross(c - a)
-    }
-
-    /// Asserts that `faces` of the ground close a body: every directed edge once, its reverse once, and a
-    /// positive signed volume, which is the sum of a . (b x c) / 6 over the faces. (Gauss)
-    pub(crate) fn assert_closed_and_outward(ground: &Ground, faces: std::ops::Range<usize>) {
-        let faces = &ground.faces[faces];
-        let mut edges: Vec<[u32; 2]> = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        edges.sort_unstable();
-        assert!(edges.windows(2).all(|pair| pair[0] != pair[1]), "a directed edge twice");
-        for &[a, b] in &edges {
-            assert!(edges.binary_search(&[b, a]).is_ok(), "edge {a} {b} has no partner");
-        }
-        // Relative to a vertex, so that a far body does not drown in rounding.
-        let from = ground.vertices[faces[0][0] as usize];
-        let volume: f64 = faces
-            .iter()
-            .map(|face| {
-                let [a, b, c] = face.map(|v| ground.vertices[v as usize] - from);
-                a.dot(b.cross(c)) / 6.0
-            })
-            .sum();
-        assert!(volume > 0.0, "volume {volume}");
-    }
-
-    #[test]
-    fn a_box_has_the_volume_of_a_box() {
-        // Sides of 2, 4 and 6 m: the top is at z = 1 + 3, all twelve faces together measure
-        // 2 (2*4 + 4*6 + 6*2) = 88 square metres.
-        let mut ground = Ground::default();
-        ground.solid_box(DVec3::Z, [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0], 0);
-        assert_closed_and_outward(&ground, 0..12);
-        let area: f64 = ground.faces.iter().map(|&face| normal(&ground, face).length() / 2.0).sum();
-        assert_eq!(area, 88.0);
-        assert_eq!(ground.vertices.iter().fold(0.0_f64, |top, v| top.max(v.z)), 4.0);
-    }
-
-    #[test]
-    fn a_pyramid_is_closed_and_its_flanks_lean_up() {
-        let mut ground = Ground::default();
-        ground.pyramid(DVec3::new(3.0, -1.0, 0.5), 0.5, 0.8, 0.3, 0);
-        assert_closed_and_outward(&ground, 0..6);
-        assert!(ground.faces[..4].iter().all(|&face| normal(&ground, face).z > 0.0));
-        assert!(ground.faces[4..].iter().all(|&face| normal(&ground, face).z < 0.0));
-    }
-
-    #[test]
-    fn a_height_field_looks_up_on_either_diagonal() {
-        for falling in [false, true] {
-            let mut ground = Ground::default();
-            let place = |column, row| DVec3::new(f64::from(column), f64::from(row), 0.0);
-            ground.height_field(3, 2, place, || falling, || 0);
-            assert_eq!((ground.vertices.len(), ground.faces.len()), (12, 12));
-            assert!(ground.faces.iter().all(|&face| normal(&ground, face) == DVec3::Z));
-        }
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
-
-        #[test]
-        fn rocks_are_closed_and_outward(seed: u64, a in 0.05..2.0, b in 0.05..2.0, c in 0.05..2.0) {
-            let mut ground = Ground::default();
-            let centre = DVec3::new(10.0, -20.0, 0.3);
-            let half_axes = DVec3::new(a, b, c);
-            ground.rock(centre, half_axes, &mut Draws::new(seed, Purpose::Boulders), 0);
-            prop_assert_eq!((ground.vertices.len(), ground.faces.len()), (18, 32));
-            assert_closed_and_outward(&ground, 0..32);
-            // Star-shaped: every face looks away from the centre.
-            for &face in &ground.faces {
-                let middle = face.map(|v| ground.vertices[v as usize] - centre).iter().sum::<DVec3>();
-                prop_assert!(normal(&ground, face).dot(middle) > 0.0);
-            }
-        }
-
-        #[test]
-        fn mushrooms_are_closed_and_outward(seed: u64, height in 0.2..2.0, radius in 0.2..2.0, sides in 3_u32..12) {
-            let mut ground = Ground::default();
-            let mut draws = Draws::new(seed, Purpose::Overhangs);
-            ground.mushroom(DVec3::new(1.0, 2.0, -0.1), height, radius, sides, &mut draws, 0);
-            prop_assert_eq!(ground.faces.len(), 8 * sides as usize);
-            assert_closed_and_outward(&ground, 0..ground.faces.len());
-        }
-    }
-}
+#[path = "../tests/unit/ground.rs"]
+pub(crate) mod tests;

@@ -1,13 +1,26 @@
-//! The height of the terrain at many points: faces sorted into the cells of a grid over the plane.
+//! Height of the terrain at many points: faces sorted into the cells of a grid over the plane.
 
 use glam::{DVec2, DVec3};
 use raypencil_scene::Mesh;
 
-use crate::height::height_of;
+use crate::height::{height_on_triangle, looks_up};
 
-/// What [`crate::height_at`] says of a mesh, for many points: each query looks at the faces of one cell.
+/// Index of a mesh for many height queries. Each query visits the faces of one cell and returns exactly what
+/// [`crate::height_at`] returns.
 ///
-/// The faces that look up are copied, 76 bytes each with their place in the grid.
+/// Memory: 76 bytes for each face that looks up, including its grid entries.
+///
+/// ```
+/// use raypencil_terrain::{HeightIndex, builtin, height_at};
+///
+/// let mesh = builtin("facets", 0.25).expect("a built-in name").into_mesh()?;
+/// let index = HeightIndex::new(&mesh);
+/// // The same bits as the search through all faces.
+/// assert_eq!(index.height_at(1.25, -2.5), height_at(&mesh, 1.25, -2.5));
+/// // The facets end before x = 14.2 m.
+/// assert_eq!(index.height_at(15.0, 0.0), None);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct HeightIndex {
     origin: DVec3,
@@ -17,36 +30,36 @@ pub struct HeightIndex {
     cell: f64,
     columns: usize,
     rows: usize,
-    /// Where each cell's faces begin in `faces`, and where the last ends.
+    /// Start of each cell's list in `faces`, and the end of the last list.
     starts: Vec<u32>,
     /// Indices into `corners`, cell by cell, in the order of the mesh.
     faces: Vec<u32>,
     corners: Vec<[DVec3; 3]>,
 }
 
-/// Faces are entered this far, metres, beyond their bounding boxes: rounding may put a point on a face that it
-/// misses by less. (f64 at 1e7 m is good to 2e-9 m.)
-const PADDING: f64 = 1e-6;
+/// Margin around the bounding box of a face, metres. Rounding may put a point on a face whose box it misses by
+/// less. (f64 at 1e7 m has an ulp of 2e-9 m)
+const PADDING_M: f64 = 1e-6;
 
-/// At most this many cells along a side, so that the grid stays within 64 MiB.
-const MOST_CELLS: f64 = 4096.0;
+/// Maximum number of cells along a side: keeps the grid within 64 MiB.
+const MAX_CELLS_PER_SIDE: f64 = 4096.0;
 
-/// At most this many cells for a face, on average. (One that fits a cell may touch four, and counts as four.)
-const MOST_ENTRIES: f64 = 32.0;
+/// Maximum number of cells per face, on average. (A face that fits into one cell may touch four, and counts as
+/// four)
+const MAX_MEAN_CELLS_PER_FACE: f64 = 32.0;
 
 impl HeightIndex {
-    /// Sorts the faces of a mesh that look up: about one cell for each.
+    /// Builds the index, with about one cell for each face that looks up.
     pub fn new(mesh: &Mesh) -> Self {
         let corner = |v: u32| {
             let [x, y, z] = mesh.vertices()[v as usize];
             DVec3::new(f64::from(x), f64::from(y), f64::from(z))
         };
-        let looks_up = |[a, b, c]: &[DVec3; 3]| (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;
         let corners: Vec<[DVec3; 3]> =
             mesh.faces().iter().map(|face| face.map(corner)).filter(looks_up).collect();
         let boxes = |corners: &[DVec3; 3]| {
             let [a, b, c] = corners.map(DVec3::truncate);
-            (a.min(b).min(c) - PADDING, a.max(b).max(c) + PADDING)
+            (a.min(b).min(c) - PADDING_M, a.max(b).max(c) + PADDING_M)
         };
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (from, to) in corners.iter().map(boxes) {
@@ -56,9 +69,9 @@ impl HeightIndex {
             (low, high) = (DVec2::ZERO, DVec2::ZERO);
         }
         let extent = high - low;
-        let one_each = (extent.x * extent.y / corners.len().max(1) as f64).sqrt();
-        let mut cell = one_each.max(extent.max_element() / MOST_CELLS).max(PADDING);
-        // Many large faces over one another would be entered in many cells each: then larger cells will do.
+        let one_face_each = (extent.x * extent.y / corners.len().max(1) as f64).sqrt();
+        let mut cell = one_face_each.max(extent.max_element() / MAX_CELLS_PER_SIDE).max(PADDING_M);
+        // Many large faces over one another would each enter many cells: the cells grow instead.
         let entries = |cell: f64| {
             let cells = |(from, to): (DVec2, DVec2)| {
                 let span = ((to - from) / cell).floor() + 2.0;
@@ -66,7 +79,7 @@ impl HeightIndex {
             };
             corners.iter().map(boxes).map(cells).sum::<f64>()
         };
-        while entries(cell) > MOST_ENTRIES * corners.len() as f64 {
+        while entries(cell) > MAX_MEAN_CELLS_PER_FACE * corners.len() as f64 {
             cell *= 2.0;
         }
         let count = |length: f64| (length / cell) as usize + 1;
@@ -81,10 +94,10 @@ impl HeightIndex {
             faces: Vec::new(),
             corners,
         };
-        // Count, sum up, fill in: two passes over the faces, in their order.
+        // A counting sort: count, sum up, fill in. Two passes over the faces, in their order.
         let cells_of = |index: &Self, (from, to): (DVec2, DVec2)| {
-            let (left, bottom) = index.place(from);
-            let (right, top) = index.place(to);
+            let (left, bottom) = index.cell_at(from);
+            let (right, top) = index.cell_at(to);
             (bottom..=top)
                 .flat_map(move |row| (left..=right).map(move |column| row * columns + column))
                 .collect::<Vec<usize>>()
@@ -109,25 +122,25 @@ impl HeightIndex {
         index
     }
 
-    /// Column and row of a point of the scene frame, the nearest ones if it is outside.
-    fn place(&self, point: DVec2) -> (usize, usize) {
-        // A negative number becomes 0.
+    /// Column and row of a point of the scene frame; outside the grid, the nearest ones.
+    fn cell_at(&self, point: DVec2) -> (usize, usize) {
+        // The conversion takes a negative number to 0.
         let along = |from: f64, count: usize| ((from / self.cell) as usize).min(count - 1);
         (along(point.x - self.low.x, self.columns), along(point.y - self.low.y, self.rows))
     }
 
-    /// Highest point of the terrain above the global point (x, y), global z in metres, as
-    /// [`crate::height_at`] gives it; `None` where there is none.
+    /// Highest terrain point above the global point (x, y): global z in metres, equal to [`crate::height_at`];
+    /// `None` where no face looks up.
     pub fn height_at(&self, x: f64, y: f64) -> Option<f64> {
         let point = DVec2::new(x - self.origin.x, y - self.origin.y);
         if !point.is_finite() {
             return None;
         }
-        let (column, row) = self.place(point);
+        let (column, row) = self.cell_at(point);
         let cell = row * self.columns + column;
         let mut highest: Option<f64> = None;
         for &face in &self.faces[self.starts[cell] as usize..self.starts[cell + 1] as usize] {
-            if let Some(z) = height_of(self.corners[face as usize], point) {
+            if let Some(z) = height_on_triangle(self.corners[face as usize], point) {
                 highest = Some(highest.map_or(z, |top| top.max(z)));
             }
         }
@@ -136,64 +149,5 @@ impl HeightIndex {
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::{RandomGround, builtin, height_at};
-
-    #[test]
-    fn the_same_as_going_through_all_faces() {
-        let mesh = builtin("pyramids", 0.25).unwrap().into_mesh().unwrap();
-        let index = HeightIndex::new(&mesh);
-        for row in -60..60 {
-            for column in -60..60 {
-                let (x, y) = (0.413 * f64::from(column), 0.397 * f64::from(row));
-                assert_eq!(index.height_at(x, y), height_at(&mesh, x, y), "at {x}, {y}");
-            }
-        }
-        assert_eq!(index.height_at(f64::NAN, 0.0), None);
-        assert_eq!(index.height_at(1e9, 0.0), None);
-    }
-
-    #[test]
-    fn faces_over_one_another_take_larger_cells() {
-        // 3000 squares of 10 m, one over the other, 1 mm apart.
-        let mut posts = Vec::new();
-        let mut faces = Vec::new();
-        for layer in 0..3000_u32 {
-            let z = 1e-3 * f64::from(layer);
-            posts.extend(
-                [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(|(x, y)| DVec3::new(x, y, z)),
-            );
-            let a = 4 * layer;
-            faces.extend([[a, a + 1, a + 2], [a, a + 2, a + 3]]);
-        }
-        let materials = vec![raypencil_scene::Material { name: "ground".into(), reflectivity: 0.25 }];
-        let mesh = Mesh::from_global(&posts, faces, vec![0; 6000], materials).unwrap();
-        let index = HeightIndex::new(&mesh);
-        assert!(index.faces.len() <= 32 * 6000, "{} entries", index.faces.len());
-        assert_eq!(index.height_at(3.0, 4.0), height_at(&mesh, 3.0, 4.0));
-    }
-
-    #[test]
-    fn a_ground_without_faces_has_no_height() {
-        let mesh = Mesh::from_global(&[], Vec::new(), Vec::new(), Vec::new()).unwrap();
-        assert_eq!(HeightIndex::new(&mesh).height_at(0.0, 0.0), None);
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..Default::default() })]
-
-        #[test]
-        fn the_same_on_random_ground_and_at_its_vertices(seed: u64, x in -7.0..7.0, y in -7.0..7.0) {
-            let mesh = RandomGround::plain(seed, 400, 12.0).build().into_mesh().unwrap();
-            let index = HeightIndex::new(&mesh);
-            prop_assert_eq!(index.height_at(x, y), height_at(&mesh, x, y));
-            for v in mesh.vertices().iter().take(50) {
-                let (x, y) = (f64::from(v[0]), f64::from(v[1]));
-                prop_assert_eq!(index.height_at(x, y), height_at(&mesh, x, y));
-            }
-        }
-    }
-}
+#[path = "../tests/unit/height_index.rs"]
+mod tests;

@@ -1,23 +1,23 @@
-//! Mends what can be mended without a guess.
+//! Repair of the faults that can be mended without a guess.
 
 use raypencil_scene::Mesh;
 
-use crate::inspect::{Fate, Study, study};
+use crate::inspect::{FaceStatus, MeshAnalysis, analyse};
 
-/// What a repair did.
+/// Changes made by a repair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Repairs {
-    /// Faces without area that were dropped.
+    /// Number of faces without area that were dropped.
     pub zero_area_faces: usize,
-    /// Copies of faces that were dropped; the first of each stays.
+    /// Number of duplicate faces that were dropped; the first of each stays.
     pub duplicate_faces: usize,
-    /// How many of these copies were of another material than the face that stays.
+    /// Number of these whose material differs from that of the face that stays.
     pub duplicates_of_other_material: usize,
-    /// Faces that were turned.
+    /// Number of faces that were turned round.
     pub turned_faces: usize,
-    /// Vertices that gave way to an earlier one in the same place.
+    /// Number of vertices that were merged into an earlier one in the same place.
     pub welded_vertices: usize,
-    /// Vertices of no face, or only of faces that were dropped, and dropped with them.
+    /// Number of dropped vertices: no face used them, or only dropped faces did.
     pub unused_vertices: usize,
 }
 
@@ -28,14 +28,28 @@ impl Repairs {
     }
 }
 
-/// Repairs what needs no guess, and says what it did.
+/// Repairs a mesh where no guess is needed, and reports the changes.
 ///
-/// Faces without area and copies of faces are dropped: the first of all copies stays, which is the one that
-/// renderers report, so that no hit moves and no reflectivity changes. Vertices in one place become one, vertices of
-/// no face are dropped, faces that [`crate::Inspection::inverted`] counts are turned. No vertex moves, no hole
-/// is filled; what stays keeps its order. A mesh that was repaired has nothing left to repair.
+/// * Faces without area and duplicate faces are dropped. The first of all duplicates stays: it is the one that
+///   renderers report, so no hit moves and no reflectivity changes.
+/// * Vertices in one place become one, and vertices without a face are dropped.
+/// * Faces that [`crate::Inspection::inverted`] counts are turned round.
+///
+/// No vertex moves and no hole is filled. The remaining parts keep their order. A second repair changes nothing.
+///
+/// ```
+/// use raypencil_terrain::{RandomGround, inspect, repair};
+///
+/// let nasty = RandomGround::nasty(7, 1_000);
+/// let (mesh, repairs) = repair(&nasty.build().into_mesh()?);
+/// // Every vertex that the generator left unused is gone, and the second repair finds nothing.
+/// assert!(repairs.unused_vertices >= nasty.unreferenced_vertices);
+/// assert_eq!(inspect(&mesh).unused_vertices.count, 0);
+/// assert!(!repair(&mesh).1.any());
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
-    let Study { inspection, welded, fates } = study(mesh);
+    let MeshAnalysis { inspection, welded, statuses } = analyse(mesh);
     let mut repairs = Repairs {
         zero_area_faces: inspection.zero_area.count,
         duplicate_faces: inspection.duplicates.count,
@@ -46,18 +60,18 @@ pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
     };
     let staying = inspection.faces - repairs.zero_area_faces - repairs.duplicate_faces;
     let (mut faces, mut face_materials) = (Vec::with_capacity(staying), Vec::with_capacity(staying));
-    for ((corners, &material), fate) in mesh.faces().iter().zip(mesh.face_materials()).zip(&fates) {
+    for ((corners, &material), status) in mesh.faces().iter().zip(mesh.face_materials()).zip(&statuses) {
         let [a, b, c] = corners.map(|vertex| welded[vertex as usize]);
-        match fate {
-            Fate::Sound => faces.push([a, b, c]),
-            Fate::Inverted => faces.push([a, c, b]),
-            Fate::ZeroArea | Fate::Copy | Fate::CopyOfOtherMaterial => continue,
+        match status {
+            FaceStatus::Sound => faces.push([a, b, c]),
+            FaceStatus::Inverted => faces.push([a, c, b]),
+            FaceStatus::ZeroArea | FaceStatus::Duplicate | FaceStatus::DuplicateOfOtherMaterial => continue,
         }
         face_materials.push(material);
     }
-    drop(fates);
+    drop(statuses);
 
-    // Vertices that a face still uses, by their new numbers.
+    // New numbers of the vertices that a face still uses.
     let mut numbers = vec![u32::MAX; mesh.vertices().len()];
     for &vertex in faces.as_flattened() {
         numbers[vertex as usize] = 0;
@@ -76,112 +90,4 @@ pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
     let mesh = Mesh::new(mesh.origin(), vertices, faces, face_materials, mesh.materials().to_vec())
         .expect("parts of a mesh are a mesh");
     (mesh, repairs)
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec3;
-    use proptest::prelude::*;
-    use raypencil_scene::Material;
-
-    use super::*;
-    use crate::{RandomGround, height_at, inspect};
-
-    fn kinds() -> Vec<Material> {
-        ["sand", "rock"].map(|name| Material { name: name.into(), reflectivity: 0.25 }).to_vec()
-    }
-
-    #[test]
-    fn all_that_was_promised_is_done_and_nothing_else() {
-        // A tetrahedron with face 3 turned, face 1 once more in another kind of ground, a face without area on vertices
-        // of its own, a vertex of no face, and vertex 4 in the place of vertex 3.
-        let vertices = vec![
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [9.0, 9.0, 9.0],
-            [0.0, 1.0, 0.0],
-            [0.0, 1.0, -0.0],
-            [0.0, 0.0, 1.0],
-            [5.0, 0.0, 0.0],
-            [6.0, 0.0, 0.0],
-        ];
-        let faces = vec![[0, 3, 1], [0, 1, 5], [0, 6, 7], [0, 5, 4], [1, 5, 3], [5, 0, 1]];
-        let origin = DVec3::new(1e6, 0.0, 0.0);
-        let mesh = Mesh::new(origin, vertices, faces, vec![0, 0, 0, 1, 0, 1], kinds()).unwrap();
-        let (repaired, repairs) = repair(&mesh);
-        let expected = Repairs {
-            zero_area_faces: 1,
-            duplicate_faces: 1,
-            duplicates_of_other_material: 1,
-            turned_faces: 1,
-            welded_vertices: 1,
-            unused_vertices: 3,
-        };
-        assert_eq!(repairs, expected);
-        assert_eq!(repaired.faces(), [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
-        assert_eq!(repaired.vertices(), [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-        assert_eq!(repaired.face_materials(), [0, 0, 1, 0]);
-        assert_eq!((repaired.origin(), repaired.materials()), (origin, mesh.materials()));
-        assert!(inspect(&repaired).passes());
-        assert!(!repair(&repaired).1.any());
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..Default::default() })]
-
-        #[test]
-        fn promised_faults_are_counted_and_mended(seed: u64, faces in 250_usize..3_000, far in -1e6..1e6, turn in proptest::option::of(0_u64..97)) {
-            let nasty = RandomGround { offset: DVec3::new(far, -far, far), ..RandomGround::nasty(seed, faces) };
-            let mut ground = nasty.build();
-            // One face in 97 the wrong way round, copies or not.
-            for (face, corners) in ground.faces.iter_mut().enumerate() {
-                if turn.is_some_and(|turn| (face as u64).wrapping_add(turn).is_multiple_of(97)) {
-                    corners.swap(1, 2);
-                }
-            }
-            let mesh = ground.into_mesh().unwrap();
-            let found = inspect(&mesh);
-            prop_assert_eq!(found.unused_vertices.count, nasty.unreferenced_vertices);
-            prop_assert_eq!(found.zero_area.count, mesh.zero_area_faces());
-            prop_assert!(found.zero_area.count >= nasty.zero_area_faces);
-            let kinds = found.zero_area_kinds;
-            let of_kinds = kinds.repeated_vertex + kinds.coincident_vertices + kinds.collinear;
-            prop_assert_eq!(of_kinds, found.zero_area.count);
-            // A copy of a sliver that lost its area in rounding is no duplicate but a face without area; a face that
-            // was turned alone lies on the back of its like.
-            let lost = found.zero_area.count - nasty.zero_area_faces;
-            prop_assert!(found.duplicates.count <= nasty.duplicate_faces);
-            if turn.is_none() {
-                prop_assert!(found.duplicates.count + lost >= nasty.duplicate_faces);
-                prop_assert_eq!(found.inverted.count, 0);
-            }
-
-            let (repaired, repairs) = repair(&mesh);
-            let left = inspect(&repaired);
-            for none in [&left.unused_vertices, &left.split_vertices, &left.zero_area, &left.duplicates, &left.inverted] {
-                prop_assert_eq!(none.count, 0);
-            }
-            prop_assert_eq!(left.inside_out, 0);
-            // What no repair changes, to the last bit.
-            prop_assert_eq!(&left.open_edges.count, &found.open_edges.count);
-            prop_assert_eq!(left.open_edges.length, found.open_edges.length);
-            prop_assert_eq!(left.open_edges.loops, found.open_edges.loops);
-            prop_assert_eq!((left.components, left.closed_components), (found.components, found.closed_components));
-            prop_assert_eq!((left.area, left.volume), (found.area, found.volume));
-            prop_assert_eq!(left.crowded_edges.count, found.crowded_edges.count);
-            prop_assert_eq!(left.double_sided.count, found.double_sided.count);
-            prop_assert_eq!(left.faces, found.faces - repairs.zero_area_faces - repairs.duplicate_faces);
-            prop_assert_eq!(left.vertices, found.vertices - repairs.welded_vertices - repairs.unused_vertices);
-            let (again, none) = repair(&repaired);
-            prop_assert!(again == repaired && !none.any());
-        }
-
-        #[test]
-        fn the_ground_stays_where_it_is(seed: u64, x in -10.0..10.0, y in -10.0..10.0) {
-            let mesh = RandomGround::nasty(seed, 600).build().into_mesh().unwrap();
-            let (repaired, repairs) = repair(&mesh);
-            prop_assert!(repairs.any() && repairs.turned_faces == 0);
-            prop_assert_eq!(height_at(&repaired, x, y).map(f64::to_bits), height_at(&mesh, x, y).map(f64::to_bits));
-        }
-    }
 }

@@ -1,82 +1,81 @@
-//! What may be wrong with a mesh that rays are cast at.
+//! Inspection of a mesh for faults that matter to ray casting.
 //!
-//! Sorting finds what belongs together: vertices by position, faces by their corners, sides of faces by their
-//! ends. Everything takes O(n log n), and some 70 bytes a face. Whether faces run through each other is not asked:
-//! that is a search of its own, and no ray minds it.
+//! Sorting brings together vertices by position, faces by their corners, and half-edges by their ends. The time
+//! is O(n log n), the memory some 70 bytes a face. Intersections between faces are not searched for: rays are not
+//! affected by them.
+//!
+//! ```text
+//! geometry       vertices, corners, normals in f64
+//! weld           vertices in one place
+//! faces          faces one by one: area, slenderness, direction
+//! duplicates     faces on the same three places
+//! edges          faces along each edge; disjoint_sets joins them to patches and components
+//! patches        orientation of each patch
+//! report         the result; status: what becomes of each face
+//! ```
 
-mod copies;
+mod disjoint_sets;
+mod duplicates;
 mod edges;
-mod forest;
+mod faces;
+mod geometry;
 mod patches;
 mod report;
-mod shape;
+mod status;
 #[cfg(test)]
+#[path = "../../tests/unit/inspect.rs"]
 mod tests;
 mod weld;
 
-use glam::DVec3;
-use raypencil_scene::{FaceId, Mesh};
+use raypencil_scene::Mesh;
 
 pub use report::{Example, Found, Inspection, Item, OpenEdges, OpenPiece, ZeroAreaKinds};
-pub(crate) use shape::Shapes;
+pub(crate) use status::FaceStatus;
 
-/// Looks for everything that an [`Inspection`] tells.
+use geometry::MeshGeometry;
+
+/// Inspects a mesh; [`Inspection`] lists what is looked for.
 ///
-/// Vertices in one place count as one, with 0 = -0: so renderers see shared edges. Faces of zero area, which no
-/// ray hits, and copies of other faces are counted and then set aside: edges, components, areas and volumes are
-/// those of the surface that is left. (CHOICE: else one copy would make its three edges crowded, and hide what else is
-/// wrong there. A face without area that filled a crack leaves open edges, as it does for a ray.)
+/// Vertices in one place count as one, with 0 = -0: this is how renderers see shared edges. Faces without area,
+/// which no ray hits, and duplicate faces are counted and then set aside. Edges, components, areas and volumes
+/// describe the remaining surface. (CHOICE: otherwise one duplicate would make its three edges non-manifold and
+/// hide other faults there. A face without area that filled a crack leaves open edges, as it does for a ray.)
 ///
 /// # Panics
 /// If the mesh has 2^32 vertices or more, which no face could use.
+///
+/// # Example
+///
+/// ```
+/// use raypencil_terrain::{RandomGround, inspect};
+///
+/// // 800 faces are 20 x 20 cells. The border, four times 20 open edges, is one loop.
+/// let found = inspect(&RandomGround::plain(1, 800, 20.0).build().into_mesh()?);
+/// assert!(found.passes());
+/// assert_eq!((found.open_edges.count, found.open_edges.loops), (80, 1));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 pub fn inspect(mesh: &Mesh) -> Inspection {
-    study(mesh).inspection
+    analyse(mesh).inspection
 }
 
-/// What becomes of a face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fate {
-    /// It stays.
-    Sound,
-    /// It stays, the other way round.
-    Inverted,
-    /// It has no area.
-    ZeroArea,
-    /// A face of lower number has the same corners in the same sense.
-    Copy,
-    /// The same, and that face is of another material.
-    CopyOfOtherMaterial,
-}
-
-impl Fate {
-    /// Whether the face belongs to the surface that rays meet.
-    pub(crate) fn stays(self) -> bool {
-        matches!(self, Self::Sound | Self::Inverted)
-    }
-}
-
-/// An inspection, and what a repair needs to know of each vertex and face.
-pub(crate) struct Study {
+/// Inspection, with the data about each vertex and face that a repair needs.
+pub(crate) struct MeshAnalysis {
     pub(crate) inspection: Inspection,
-    /// The first vertex in the place of each vertex.
+    /// First vertex in the place of each vertex.
     pub(crate) welded: Vec<u32>,
-    pub(crate) fates: Vec<Fate>,
+    pub(crate) statuses: Vec<FaceStatus>,
 }
 
-pub(crate) fn study(mesh: &Mesh) -> Study {
-    let shapes = Shapes { mesh };
+pub(crate) fn analyse(mesh: &Mesh) -> MeshAnalysis {
+    let geometry = MeshGeometry { mesh };
     let mut inspection =
         Inspection { faces: mesh.faces().len(), vertices: mesh.vertices().len(), ..Inspection::default() };
-    let welded = weld::weld(&shapes, &mut inspection);
-    let mut fates = shape::find_zero_area(&shapes, &welded, &mut inspection);
-    copies::find_copies(&shapes, &welded, &mut fates, &mut inspection);
-    shape::measure(&shapes, &fates, &mut inspection);
-    let joints = edges::join(&shapes, &welded, &fates, &mut inspection);
-    patches::find_inverted(&shapes, joints, &mut fates, &mut inspection);
-    Study { inspection, welded, fates }
-}
-
-/// A face and a place on it.
-fn at_face(face: u32, place: DVec3) -> Example {
-    Example { item: Item::Face(FaceId(face)), place }
+    let welded = weld::weld(&geometry, &mut inspection);
+    let mut statuses = faces::find_zero_area(&geometry, &welded, &mut inspection);
+    duplicates::find_duplicates(&geometry, &welded, &mut statuses, &mut inspection);
+    faces::measure(&geometry, &statuses, &mut inspection);
+    let connectivity = edges::connect(&geometry, &welded, &statuses, &mut inspection);
+    patches::find_inverted(&geometry, connectivity, &mut statuses, &mut inspection);
+    MeshAnalysis { inspection, welded, statuses }
 }

@@ -1,44 +1,45 @@
-//! Patches: which way round each is, and which of its faces contradict the others.
+//! Patches: the orientation of each, and the faces that contradict it.
 
 use glam::{DVec3, Vec3Swizzles as _};
 
-use super::edges::Joints;
-use super::shape::Shapes;
-use super::{Fate, Inspection, at_face};
+use super::edges::FaceConnectivity;
+use super::geometry::MeshGeometry;
+use super::report::{Example, Inspection};
+use super::status::FaceStatus;
 
-/// Of the area of open patches at least so much must be seen from above before they can be upside down: walls that
-/// are upright up to a rounding look neither up nor down. CHOICE, and not derived.
-const LEAST_LEVEL: f64 = 0.01;
+/// Minimum fraction of the area of open patches, projected on the horizontal, before they can be upside down.
+/// Walls that are vertical up to rounding face neither up nor down. CHOICE: not derived.
+const MIN_HORIZONTAL_SHARE: f64 = 0.01;
 
-/// All faces that hang together over edges of two faces. Those like the first are its first half, those that
-/// run against it the second.
+/// Faces connected over edges of two faces. The first half has the orientation of the first face, the second half
+/// the opposite one.
 #[derive(Default)]
 struct Patch {
-    /// The face of the lowest number.
+    /// Face of the lowest number.
     first: u32,
-    /// How many faces are in each half.
+    /// Number of faces in each half.
     halves: [u32; 2],
-    /// Some edge has not just two faces.
+    /// Whether some edge is not shared by exactly two faces.
     open: bool,
-    one_sided: bool,
-    /// Six times the volume, if the second half is turned; the sum of the magnitudes that it was added from.
+    non_orientable: bool,
+    /// Six times the volume with the second half turned, and the sum of the magnitudes of its terms.
     six_volume: f64,
     magnitude: f64,
 }
 
-/// What is wrong with a patch.
+/// Faces of a patch with the wrong orientation.
 #[derive(PartialEq)]
-enum Wrong {
-    /// One of its halves, which may be empty.
+enum WrongFaces {
+    /// One of the halves, which may be empty.
     Half(usize),
-    /// One half or the other.
+    /// One of two halves of equal size.
     Undecided,
-    /// It has no halves.
-    OneSided,
+    /// Undefined: the patch has no two sides.
+    NonOrientable,
 }
 
 impl Patch {
-    /// Adds a face of the closed surface: a . (b x c) of its corners from any one place. (Gauss)
+    /// Adds the volume term of a face, a . (b x c) of its corners relative to a fixed place. (Gauss)
     fn add_volume(&mut self, [a, b, c]: [DVec3; 3], turned: bool) {
         let volume = a.dot(b.cross(c));
         self.six_volume += if turned { -volume } else { volume };
@@ -46,9 +47,9 @@ impl Patch {
         self.magnitude += a.dot(b.yzx() * c.zxy() + b.zxy() * c.yzx());
     }
 
-    /// How far rounding may have moved `six_volume`. Each product of three differences is rounded 8 times at
-    /// most on its way into a face's sum, and as often again as there are faces: (n + 8) u of the magnitudes, u = 2^-53.
-    /// Twice that also covers the higher powers of u, and the rounding of the magnitudes.
+    /// Bound on the rounding of `six_volume`. Each product of three differences is rounded at most 8 times on its
+    /// way into a face's term, and once for each of the n faces in the sum: (n + 8) u of the magnitudes, u =
+    /// 2^-53. Twice that also covers the higher powers of u and the rounding of the magnitudes.
     fn volume_error(&self) -> f64 {
         (self.faces() as f64 + 8.0) * f64::EPSILON * self.magnitude
     }
@@ -57,33 +58,33 @@ impl Patch {
         u64::from(self.halves[0]) + u64::from(self.halves[1])
     }
 
-    fn wrong(&self) -> Wrong {
-        if self.one_sided {
-            return Wrong::OneSided;
+    fn wrong(&self) -> WrongFaces {
+        if self.non_orientable {
+            return WrongFaces::NonOrientable;
         }
         if !self.open && self.six_volume.abs() > self.volume_error() {
-            return Wrong::Half(usize::from(self.six_volume > 0.0));
+            return WrongFaces::Half(usize::from(self.six_volume > 0.0));
         }
         match self.halves[0].cmp(&self.halves[1]) {
-            std::cmp::Ordering::Less => Wrong::Half(0),
-            std::cmp::Ordering::Equal => Wrong::Undecided,
-            std::cmp::Ordering::Greater => Wrong::Half(1),
+            std::cmp::Ordering::Less => WrongFaces::Half(0),
+            std::cmp::Ordering::Equal => WrongFaces::Undecided,
+            std::cmp::Ordering::Greater => WrongFaces::Half(1),
         }
     }
 }
 
-/// Finds faces that are the wrong way round, and closed components.
+/// Finds faces with the wrong orientation, and closed components.
 pub(super) fn find_inverted(
-    shapes: &Shapes,
-    mut joints: Joints,
-    fates: &mut [Fate],
+    geometry: &MeshGeometry,
+    mut connectivity: FaceConnectivity,
+    statuses: &mut [FaceStatus],
     inspection: &mut Inspection,
 ) {
-    // Patches by number; the first face of each comes first, as it is the root.
-    let mut numbers = vec![u32::MAX; fates.len()];
+    // Patches by number. The first face of each comes first, since it is the root.
+    let mut numbers = vec![u32::MAX; statuses.len()];
     let mut patches: Vec<Patch> = Vec::new();
-    for face in shapes.faces().filter(|&face| fates[face as usize].stays()) {
-        let (root, turned) = joints.patches.root(face);
+    for face in geometry.faces().filter(|&face| statuses[face as usize].is_surface()) {
+        let (root, turned) = connectivity.patches.find(face);
         if root == face {
             numbers[face as usize] = patches.len() as u32;
             patches.push(Patch { first: face, ..Patch::default() });
@@ -92,43 +93,43 @@ pub(super) fn find_inverted(
         numbers[face as usize] = number;
         let patch = &mut patches[number as usize];
         patch.halves[usize::from(turned)] += 1;
-        patch.open |= joints.at_rim[face as usize];
-        // From a place of its own, so that a far body does not drown in rounding.
-        let [from, ..] = shapes.corners(patch.first);
-        patch.add_volume(shapes.corners(face).map(|corner| corner - from), turned);
+        patch.open |= connectivity.at_patch_border[face as usize];
+        // Relative to a vertex of the patch, so that a far body is not lost in rounding.
+        let [from, ..] = geometry.corners(patch.first);
+        patch.add_volume(geometry.corners(face).map(|corner| corner - from), turned);
     }
-    for &face in &joints.one_sided {
-        patches[numbers[face as usize] as usize].one_sided = true;
+    for &face in &connectivity.non_orientable {
+        patches[numbers[face as usize] as usize].non_orientable = true;
     }
 
     for patch in &patches {
-        let example = || at_face(patch.first, shapes.middle(patch.first));
+        let example = || Example::at_face(patch.first, geometry.middle(patch.first));
         inspection.closed_components += usize::from(!patch.open);
-        if !patch.open && !patch.one_sided {
+        if !patch.open && !patch.non_orientable {
             inspection.volume += patch.six_volume.abs() / 6.0;
         }
         match patch.wrong() {
-            Wrong::OneSided => inspection.one_sided_patches.add(example),
-            Wrong::Undecided => inspection.undecided_patches.add(example),
-            Wrong::Half(0) if patch.halves[1] == 0 => inspection.inside_out += 1,
-            Wrong::Half(_) => {}
+            WrongFaces::NonOrientable => inspection.one_sided_patches.add(example),
+            WrongFaces::Undecided => inspection.undecided_patches.add(example),
+            WrongFaces::Half(0) if patch.halves[1] == 0 => inspection.inside_out += 1,
+            WrongFaces::Half(_) => {}
         }
     }
 
-    // Seen from above, the open patches show these areas of front and back faces; a closed one as much of both.
+    // Areas of front and back faces that the open patches show from above; a closed patch shows as much of both.
     let (mut up, mut down, mut area) = (0.0, 0.0, 0.0);
-    for face in shapes.faces().filter(|&face| numbers[face as usize] != u32::MAX) {
+    for face in geometry.faces().filter(|&face| numbers[face as usize] != u32::MAX) {
         let patch = &patches[numbers[face as usize] as usize];
-        let (_, turned) = joints.patches.root(face);
-        if patch.wrong() == Wrong::Half(usize::from(turned)) {
-            fates[face as usize] = Fate::Inverted;
-            inspection.inverted.add(|| at_face(face, shapes.middle(face)));
+        let (_, turned) = connectivity.patches.find(face);
+        if patch.wrong() == WrongFaces::Half(usize::from(turned)) {
+            statuses[face as usize] = FaceStatus::Inverted;
+            inspection.inverted.add(|| Example::at_face(face, geometry.middle(face)));
         }
         if patch.open {
-            let normal = shapes.normal(face);
+            let normal = geometry.normal(face);
             area += normal.length();
             *(if normal.z < 0.0 { &mut down } else { &mut up }) += normal.z.abs();
         }
     }
-    inspection.upside_down = down > up && down + up > LEAST_LEVEL * area;
+    inspection.upside_down = down > up && down + up > MIN_HORIZONTAL_SHARE * area;
 }

@@ -1,92 +1,91 @@
-//! What an inspection found.
+//! Result of an inspection.
 
 use glam::DVec3;
 use raypencil_scene::FaceId;
 
-/// How many examples are kept of anything.
-const EXAMPLES: usize = 5;
+/// Maximum number of examples for each kind.
+const MAX_EXAMPLES: usize = 5;
 
-/// What there is in a mesh, and what may be wrong with it. Lengths are in metres, places in the global frame.
+/// Contents and faults of a mesh. Lengths are in metres, places in the global frame.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Inspection {
-    /// All faces.
+    /// Number of faces.
     pub faces: usize,
-    /// All vertices.
+    /// Number of vertices.
     pub vertices: usize,
-    /// The smallest and largest coordinates of vertices that a face uses.
+    /// Smallest and largest coordinates of the used vertices.
     pub bounds: Option<[DVec3; 2]>,
-    /// Area of the surface, both sides counted once, square metres.
+    /// Area of the surface, square metres; a double-sided sheet counts twice.
     pub area: f64,
-    /// What the closed components enclose together, whichever way round each is, cubic metres.
+    /// Volume of the closed components, cubic metres, whatever their orientation.
     pub volume: f64,
 
     /// Vertices that no face uses.
     pub unused_vertices: Found,
-    /// Vertices in the place of an earlier one.
+    /// Vertices in the place of an earlier vertex.
     pub split_vertices: Found,
 
-    /// Faces that have no area, as [`raypencil_scene::Mesh::zero_area_faces`] counts them: no ray hits them.
+    /// Faces without area, as [`raypencil_scene::Mesh::zero_area_faces`] counts them: no ray hits them.
     pub zero_area: Found,
-    /// Why they have none.
+    /// Their number by cause.
     pub zero_area_kinds: ZeroAreaKinds,
-    /// Faces with the corners of an earlier face in the same sense.
+    /// Faces with the same corners as an earlier face, in the same sense.
     pub duplicates: Found,
-    /// How many of them are of another material than the first.
+    /// Number of these whose material differs from that of the first.
     pub duplicates_of_other_material: usize,
-    /// Pairs of faces with the same corners in opposite senses: sheets that are seen from both sides.
+    /// Pairs of faces with the same corners in opposite senses: sheets that are visible from both sides.
     pub double_sided: Found,
-    /// Faces longer than [`Inspection::SLENDER`] times their width.
+    /// Faces longer than [`Inspection::MIN_SLENDER_ASPECT`] times their width.
     pub slender: Found,
-    /// The largest ratio of a face's longest side to its height above that.
+    /// Largest ratio of a face's longest side to the height above that side.
     pub worst_aspect: f64,
-    /// Faces whose normal points downwards; the underside of an overhang does.
+    /// Faces whose normal points down, such as the underside of an overhang.
     pub down: Found,
-    /// Their area, square metres.
+    /// Area of these faces, square metres.
     pub down_area: f64,
-    /// Whether most of what the open components show to someone above is back faces.
+    /// Whether the open components show more back faces than front faces from above, by area.
     pub upside_down: bool,
 
     /// Edges of one face only.
     pub open_edges: OpenEdges,
-    /// Edges of more than two faces.
+    /// Edges of more than two faces (non-manifold).
     pub crowded_edges: Found,
-    /// Edges of two faces that both run along it in the same direction: one of them has its front where
-    /// the other has its back.
+    /// Edges along which both of their two faces run in the same direction: the faces have opposite orientations.
     pub mismatched_edges: Found,
-    /// Faces that are proven to be the wrong way round.
+    /// Faces with a proven wrong orientation.
     ///
-    /// A *patch* is all faces that hang together over edges of two faces. If some of it can be turned so that no
-    /// two neighbours contradict each other, there are two ways to do so. In a closed patch, that with a
-    /// positive volume is right; in an open one (CHOICE) that which turns fewer faces.
+    /// A *patch* is all faces connected over edges of two faces. If its faces can be turned so that no two
+    /// neighbours contradict each other, there are two ways to do so. In a closed patch the way with a positive
+    /// volume is right; in an open one (CHOICE) the way that turns fewer faces.
     pub inverted: Found,
-    /// Closed components that are inside out as a whole. CHOICE: terrain is looked at from outside, so a cavity
-    /// that is modelled as a body of its own counts as well.
+    /// Closed components with all faces inverted. CHOICE: terrain is viewed from outside, so a cavity that is
+    /// modelled as a separate body counts as well.
     pub inside_out: usize,
-    /// Open patches of which exactly half contradicts the other half.
+    /// Open patches in which exactly half of the faces contradict the other half.
     pub undecided_patches: Found,
-    /// Patches that have no two sides, such as a Moebius strip: no turning of faces helps.
+    /// Non-orientable patches, such as a Moebius strip: no turning of faces helps.
     pub one_sided_patches: Found,
 
-    /// Sets of faces that hang together over edges.
+    /// Connected components: sets of faces connected over edges.
     pub components: usize,
-    /// How many of them are closed: each edge has two faces.
+    /// Number of closed components: each edge has two faces.
     pub closed_components: usize,
 }
 
 impl Inspection {
-    /// From this ratio of length to width on a face is called slender. CHOICE: at 1e4 a face of a metre is a tenth of
-    /// a millimetre wide; it is a matter for people, since renderers take any.
-    pub const SLENDER: f64 = 1e4;
+    /// Ratio of length to width from which a face is called slender. CHOICE: at 1e4 a face of 1 m is 0.1 mm wide.
+    /// It is a hint to people; renderers accept any face.
+    pub const MIN_SLENDER_ASPECT: f64 = 1e4;
 
-    /// Loops of open edges beyond the one that is a ground's border: holes, and gaps between parts.
+    /// Number of open loops beyond the one border of a ground: holes, and gaps between parts.
     pub fn excess_loops(&self) -> usize {
         self.open_edges.loops.saturating_sub(1)
     }
 
-    /// How many kinds of things are wrong.
+    /// Number of kinds of faults.
     ///
-    /// CHOICE: what is usual and harms no ray is a fact and not wrong: one border, split vertices (files of glTF
-    /// have them wherever normals differ), double-sided sheets, slender faces, faces that look down.
+    /// CHOICE: what is usual and harms no ray is no fault: one border, split vertices (glTF files have them
+    /// wherever normals differ), double-sided sheets, slender faces, faces that look down.
     pub fn kinds_wrong(&self) -> usize {
         let found = [
             &self.unused_vertices,
@@ -102,53 +101,60 @@ impl Inspection {
             + usize::from(self.upside_down)
     }
 
-    /// Whether nothing is wrong.
+    /// Whether the mesh has no fault.
     pub fn passes(&self) -> bool {
         self.kinds_wrong() == 0
     }
 }
 
-/// A count, and the first few.
+/// Number of occurrences of one kind, and the first few of them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Found {
-    /// How many there are.
+    /// Number of occurrences.
     pub count: usize,
-    /// The first five.
+    /// The first five occurrences.
     pub examples: Vec<Example>,
 }
 
 impl Found {
-    /// Counts one more; it is looked at only if it is among the first.
+    /// Counts one more occurrence. `example` is evaluated for the first few only.
     pub(crate) fn add(&mut self, example: impl FnOnce() -> Example) {
         self.count += 1;
-        if self.examples.len() < EXAMPLES {
+        if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(example());
         }
     }
 }
 
-/// Something, and where to find it.
+/// One occurrence, and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Example {
-    /// What it is.
+    /// The face or vertex.
     pub item: Item,
-    /// A vertex, the middle of an edge or of a face; global frame, metres.
+    /// Position of a vertex, midpoint of an edge, or centroid of a face; global frame, metres.
     pub place: DVec3,
 }
 
-/// A part of a mesh.
+impl Example {
+    /// A face, and a place on it in the global frame, metres.
+    pub(super) fn at_face(face: u32, place: DVec3) -> Self {
+        Self { item: Item::Face(FaceId(face)), place }
+    }
+}
+
+/// Face or vertex of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Item {
-    /// A face; of an edge the first of its faces.
+    /// Face; for an edge, the first of its faces.
     Face(FaceId),
-    /// An index into [`raypencil_scene::Mesh::vertices`].
+    /// Index into [`raypencil_scene::Mesh::vertices`].
     Vertex(u32),
 }
 
-/// Faces without area by cause; each counts once, under the first that fits.
+/// Number of faces without area by cause; each counts once, under the first cause that applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ZeroAreaKinds {
-    /// A vertex is used twice.
+    /// One vertex is used twice.
     pub repeated_vertex: usize,
     /// Two vertices are in one place.
     pub coincident_vertices: usize,
@@ -159,37 +165,37 @@ pub struct ZeroAreaKinds {
 /// Edges of one face only.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OpenEdges {
-    /// How many there are.
+    /// Number of open edges.
     pub count: usize,
-    /// How long they are together, metres.
+    /// Total length, metres.
     pub length: f64,
-    /// Loops of open edges. Where loops touch, it is the number of independent ones: edges - vertices + pieces.
+    /// Number of loops. Where loops touch, this is the number of independent ones: edges - vertices + pieces.
     pub loops: usize,
-    /// Sets of open edges that hang together at vertices.
+    /// Number of pieces: sets of open edges connected at vertices.
     pub pieces: usize,
-    /// The longest five of these, longest first.
+    /// The five longest pieces, the longest first.
     pub longest: Vec<OpenPiece>,
 }
 
-/// Open edges that hang together.
+/// Piece: a set of connected open edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpenPiece {
-    /// How many edges.
+    /// Number of edges.
     pub edges: usize,
-    /// How long together, metres.
+    /// Total length, metres.
     pub length: f64,
-    /// A face at one of the edges, and the middle of that edge.
+    /// Face at one of the edges, and the midpoint of that edge.
     pub example: Example,
 }
 
 impl OpenEdges {
-    /// Keeps a piece if it is one of the longest; of equally long ones the earlier.
+    /// Counts a piece, and keeps it if it is among the longest; in a tie the earlier stays.
     pub(crate) fn add_piece(&mut self, piece: OpenPiece) {
         self.pieces += 1;
         let at = self.longest.partition_point(|other| other.length >= piece.length);
-        if at < EXAMPLES {
+        if at < MAX_EXAMPLES {
             self.longest.insert(at, piece);
-            self.longest.truncate(EXAMPLES);
+            self.longest.truncate(MAX_EXAMPLES);
         }
     }
 }

@@ -1,17 +1,17 @@
-//! Vertices in one place, and vertices of no face.
+//! Welding: vertices in one place, and unused vertices.
 
-use super::shape::Shapes;
-use super::{Example, Inspection, Item};
+use super::geometry::MeshGeometry;
+use super::report::{Example, Inspection, Item};
 
-/// Finds the first vertex in the place of each.
-pub(super) fn weld(shapes: &Shapes, inspection: &mut Inspection) -> Vec<u32> {
-    let vertices = shapes.mesh.vertices();
+/// First vertex in the place of each vertex; counts unused and split vertices, and measures the bounds.
+pub(super) fn weld(geometry: &MeshGeometry, inspection: &mut Inspection) -> Vec<u32> {
+    let vertices = geometry.mesh.vertices();
     let mut used = vec![false; vertices.len()];
-    for &vertex in shapes.mesh.faces().as_flattened() {
+    for &vertex in geometry.mesh.faces().as_flattened() {
         used[vertex as usize] = true;
     }
     let index = |index: usize| u32::try_from(index).expect("a mesh has fewer than 2^32 vertices");
-    // -0 + 0 = 0, and all other numbers stay what they are.
+    // -0 + 0 = 0; all other numbers are unchanged.
     let bits = |vertex: &[f32; 3]| vertex.map(|coordinate| (coordinate + 0.0).to_bits());
     let mut places: Vec<([u32; 3], u32)> =
         vertices.iter().enumerate().map(|(number, vertex)| (bits(vertex), index(number))).collect();
@@ -23,12 +23,13 @@ pub(super) fn weld(shapes: &Shapes, inspection: &mut Inspection) -> Vec<u32> {
     drop(places);
     for (number, (&first, &used)) in welded.iter().zip(&used).enumerate() {
         let vertex = index(number);
-        let example = || Example { item: Item::Vertex(vertex), place: shapes.global(shapes.vertex(vertex)) };
+        let example =
+            || Example { item: Item::Vertex(vertex), place: geometry.global(geometry.vertex(vertex)) };
         if first != vertex {
             inspection.split_vertices.add(example);
         }
         if used {
-            let place = shapes.global(shapes.vertex(vertex));
+            let place = geometry.global(geometry.vertex(vertex));
             let [low, high] = inspection.bounds.unwrap_or([place, place]);
             inspection.bounds = Some([low.min(place), high.max(place)]);
         } else {

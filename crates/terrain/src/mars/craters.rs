@@ -1,37 +1,38 @@
-//! Craters: bowls with a raised rim and a blanket of ejecta, from fresh to nearly gone.
+//! Craters: bowls with a raised rim and an ejecta blanket, from fresh to nearly eroded.
 //!
-//! Of a fresh simple crater of diameter D (rim to rim) the depth from rim to floor is about 0.2 D and the rim stands about
-//! 0.04 D above the ground around it (Pike 1977); ejecta thin out with the third power of the distance (McGetchin, Settle
-//! and Head 1973). Wind fills old craters from the floor up and rounds their rims.
+//! A fresh simple crater of diameter D (rim to rim) is about 0.2 D deep from rim to floor, and its rim stands
+//! about 0.04 D above the surrounding ground (Pike 1977). Ejecta decrease with the third power of the distance
+//! (McGetchin, Settle and Head 1973). Wind fills old craters from the floor up and rounds their rims.
 
 use glam::DVec2;
 
 use crate::Posts;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// Depth from rim to floor of a fresh crater and of the most degraded one, shares of its diameter.
-const DEPTH: [f64; 2] = [0.2, 0.03];
-/// Height of the rim above the ground around it, likewise.
-const RIM: [f64; 2] = [0.04, 0.004];
-/// How much the rim of the most degraded crater is rounded, a share of the diameter. CHOICE.
-const ROUNDING: f64 = 0.03;
-/// The ejecta end here, in radii.
-const REACH: f64 = 3.0;
+/// Depth from rim to floor of a fresh crater and of the most degraded one, per diameter.
+const DEPTH_PER_DIAMETER: [f64; 2] = [0.2, 0.03];
+/// Height of the rim above the surrounding ground, likewise.
+const RIM_HEIGHT_PER_DIAMETER: [f64; 2] = [0.04, 0.004];
+/// Width of the rounding of the most degraded rim, per diameter. CHOICE.
+const MAX_RIM_ROUNDING_PER_DIAMETER: f64 = 0.03;
+/// Outer end of the ejecta, radii.
+const EJECTA_END_RADII: f64 = 3.0;
 
-/// How many craters there are.
+/// Size distribution of the craters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Craters {
-    /// Craters of diameter D and more, per square metre, are `density` / D^2: the slope of surfaces on which new craters
-    /// destroy as many old ones. Geometric saturation is 1.54, and surfaces in equilibrium have 1 to 10 % of it (Gault 1970).
+    /// Number of craters of diameter D and more per square metre, times D^2. (The power -2 holds where new
+    /// craters destroy as many old ones) Geometric saturation is 1.54; surfaces in equilibrium have 1 to 10 % of
+    /// it (Gault 1970).
     pub density: f64,
-    /// The smallest diameter, metres.
+    /// Smallest diameter, metres.
     pub smallest: f64,
-    /// The largest diameter, metres.
+    /// Largest diameter, metres.
     pub largest: f64,
 }
 
 impl Craters {
-    /// How many are to be expected on a square, those outside whose ejecta reach it included.
+    /// Expected number of craters on a square, including those outside whose ejecta reach it.
     pub(super) fn expected(&self, extent: f64) -> f64 {
         self.density
             * self.area(extent)
@@ -44,25 +45,25 @@ impl Craters {
     }
 
     fn side(&self, extent: f64) -> f64 {
-        extent + self.largest * REACH
+        extent + self.largest * EJECTA_END_RADII
     }
 
-    /// The craters of a square of that side about `middle`, the largest first.
+    /// Craters of a square of side `extent` about `middle`, the largest first.
     pub(super) fn draw(&self, middle: DVec2, extent: f64, seed: u64) -> Vec<Crater> {
-        let mut draws = Draws::new(seed, Purpose::Craters);
+        let mut random = RandomStream::new(seed, StreamPurpose::Craters);
         let scale = self.density * self.area(extent);
         // The number of craters above D is a Poisson process in scale / D^2.
         let mut events = scale / (self.largest * self.largest);
         let mut craters = Vec::new();
         loop {
-            events += draws.exponential();
+            events += random.exponential();
             let diameter = (scale / events).sqrt();
             if !(diameter >= self.smallest) {
                 return craters;
             }
             let half = 0.5 * self.side(extent);
-            let centre = middle + DVec2::new(draws.between(-half, half), draws.between(-half, half));
-            craters.push(Crater { centre, diameter, degradation: draws.unit() });
+            let centre = middle + DVec2::new(random.between(-half, half), random.between(-half, half));
+            craters.push(Crater { centre, diameter, degradation: random.uniform() });
         }
     }
 }
@@ -70,54 +71,54 @@ impl Craters {
 /// One crater.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crater {
-    /// Its middle, global x and y, metres.
+    /// Centre, global x and y, metres.
     pub centre: DVec2,
-    /// From rim to rim, metres.
+    /// Diameter from rim to rim, metres.
     pub diameter: f64,
-    /// 0 for a fresh one, 1 for one that is nearly gone.
+    /// Degradation: 0 for a fresh crater, 1 for one that is nearly eroded.
     pub degradation: f64,
 }
 
 impl Crater {
-    /// From the rim to the floor, metres.
+    /// Depth from rim to floor, metres.
     pub fn depth(&self) -> f64 {
-        self.between(DEPTH)
+        self.between(DEPTH_PER_DIAMETER)
     }
 
-    /// Of the rim above the ground around it, metres.
+    /// Height of the rim above the surrounding ground, metres.
     pub fn rim_height(&self) -> f64 {
-        self.between(RIM)
+        self.between(RIM_HEIGHT_PER_DIAMETER)
     }
 
     fn between(&self, [fresh, degraded]: [f64; 2]) -> f64 {
         self.diameter * (fresh + (degraded - fresh) * self.degradation)
     }
 
-    /// What it adds to the height of the ground at that distance from its middle, metres.
+    /// Height that the crater adds to the ground at a distance from its centre, metres.
     pub fn profile(&self, distance: f64) -> f64 {
         let r = 2.0 * distance / self.diameter;
-        if r >= REACH {
+        if r >= EJECTA_END_RADII {
             return 0.0;
         }
-        let rounding = ROUNDING * self.degradation * self.diameter;
-        // The smooth minimum below lowers the crest. Where straight lines of slopes a > 0 and -b < 0 meet, it does so by
-        // width s (1 - s), s = b / (a + b); bowl and blanket are not straight, but nearly so near the rim.
-        let [a, b] = [4.0 * DEPTH[0], 6.0 * self.rim_height() / self.diameter];
+        let rounding = MAX_RIM_ROUNDING_PER_DIAMETER * self.degradation * self.diameter;
+        // The smooth minimum below lowers the crest. Where straight lines of slopes a > 0 and -b < 0 meet, it
+        // lowers by width s (1 - s), s = b / (a + b). Bowl and blanket are nearly straight near the rim.
+        let [a, b] = [4.0 * DEPTH_PER_DIAMETER[0], 6.0 * self.rim_height() / self.diameter];
         let share = b / (a + b);
         let rim = self.rim_height() + rounding * share * (1.0 - share);
-        let bowl = DEPTH[0] * self.diameter * (r * r - 1.0) + rim;
-        // Inside, the blanket only shapes the crest; the bowl is far below it half way out.
+        let bowl = DEPTH_PER_DIAMETER[0] * self.diameter * (r * r - 1.0) + rim;
+        // Inside, the blanket shapes the crest alone: the bowl is far below it half way out.
         let far = r.max(0.5);
-        let faded = 1.0 / (REACH * REACH * REACH);
+        let faded = 1.0 / (EJECTA_END_RADII * EJECTA_END_RADII * EJECTA_END_RADII);
         let ejecta = rim * (1.0 / (far * far * far) - faded) / (1.0 - faded);
-        let surface = smooth_minimum(bowl, ejecta, rounding);
+        let sheet = smooth_minimum(bowl, ejecta, rounding);
         // Sand fills the bowl up to a level floor.
-        surface.max(self.rim_height() - self.depth())
+        sheet.max(self.rim_height() - self.depth())
     }
 
-    /// Adds it to posts.
+    /// Adds the crater to the heights of the posts.
     pub(super) fn carve(&self, posts: &mut Posts) {
-        let reach = 0.5 * REACH * self.diameter;
+        let reach = 0.5 * EJECTA_END_RADII * self.diameter;
         let range = |centre: f64, corner: f64, spacing: f64, count: u32| {
             let post = |edge: f64| ((edge - corner) / spacing).clamp(0.0, f64::from(count)) as u32;
             post(centre - reach)..(post(centre + reach) + 1).min(count)
@@ -134,93 +135,13 @@ impl Crater {
     }
 }
 
-/// The smaller of two, the corner between them rounded where they differ by less than `width`.
+/// Minimum of two values, with the corner rounded where they differ by less than `width`.
 fn smooth_minimum(a: f64, b: f64, width: f64) -> f64 {
     let near = (width - (a - b).abs()).max(0.0);
-    // Without a width nothing is near.
+    // A width of 0 never rounds.
     if near == 0.0 { a.min(b) } else { a.min(b) - near * near / (4.0 * width) }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn crater(degradation: f64) -> Crater {
-        Crater { centre: DVec2::new(0.3, -0.2), diameter: 10.0, degradation }
-    }
-
-    #[test]
-    fn a_fresh_crater_by_hand() {
-        // 10 m across: the rim at 5 m is 0.4 m high, the floor 2 m below it; half way out the bowl is at
-        // 0.4 - 2 (1 - 1/4) = -1.1 m; at 10 m (two radii) ejecta are 0.4 (1/8 - 1/27) / (26/27) m.
-        let fresh = crater(0.0);
-        assert!((fresh.depth() - 2.0).abs() < 1e-12 && (fresh.rim_height() - 0.4).abs() < 1e-12);
-        assert!((fresh.profile(5.0) - 0.4).abs() < 1e-12);
-        assert!((fresh.profile(0.0) + 1.6).abs() < 1e-12);
-        assert!((fresh.profile(2.5) + 1.1).abs() < 1e-12);
-        assert!((fresh.profile(10.0) - 0.4 * (19.0 / 216.0) * (27.0 / 26.0)).abs() < 1e-12);
-        assert_eq!(fresh.profile(15.0), 0.0);
-    }
-
-    #[test]
-    fn a_degraded_crater_is_shallow_with_a_level_floor_and_a_round_rim() {
-        let old = crater(1.0);
-        assert!((old.profile(0.0) - (0.04 - 0.3)).abs() < 1e-12);
-        assert_eq!(old.profile(0.0), old.profile(4.0));
-        // No kink: slopes on both sides of the crest differ by little, where the fresh one falls at 0.8 inside.
-        let slope = |a: f64, b: f64| (old.profile(b) - old.profile(a)) / (b - a);
-        assert!((slope(4.99, 5.0) - slope(5.0, 5.01)).abs() < 0.05);
-        assert!(crater(0.0).profile(5.0) - crater(0.0).profile(4.99) > 0.007);
-    }
-
-    #[test]
-    fn rims_are_as_high_as_they_say() {
-        // By steps of 1 mm from half way out to twice as far as the rim. Of a fresh one the crest is a corner at 5 m; where
-        // it is round, its height is right but for the curvature of bowl and blanket within the rounding: a tuned 2 %.
-        for degradation in [0.0, 0.1, 0.3, 0.5, 0.8, 1.0] {
-            let crater = crater(degradation);
-            let crest = (2_500..10_000).map(|mm| crater.profile(f64::from(mm) * 1e-3)).fold(0.0, f64::max);
-            let ratio = crest / crater.rim_height();
-            assert!((ratio - 1.0).abs() < 0.02, "{ratio} at {degradation}");
-        }
-    }
-
-    #[test]
-    fn posts_are_carved_within_reach_only() {
-        let flat = Posts {
-            columns: 41,
-            rows: 31,
-            corner: DVec2::new(-20.0, -15.0),
-            spacing: DVec2::ONE,
-            heights: vec![0.0; 41 * 31],
-        };
-        let mut carved = flat;
-        crater(0.2).carve(&mut carved);
-        for row in 0..31 {
-            for column in 0..41 {
-                let p = carved.at(column, row);
-                let expected = crater(0.2).profile((p.truncate() - crater(0.2).centre).length());
-                assert_eq!(p.z, expected);
-            }
-        }
-        // Far away nothing happens, and nothing breaks.
-        let before = carved.clone();
-        Crater { centre: DVec2::new(-1e6, 1e6), ..crater(0.0) }.carve(&mut carved);
-        assert_eq!(carved, before);
-    }
-
-    #[test]
-    fn numbers_follow_the_power_law() {
-        let law = Craters { density: 0.05, smallest: 1.0, largest: 20.0 };
-        let seeds = 60;
-        let all: Vec<Crater> = (0..seeds).flat_map(|seed| law.draw(DVec2::ZERO, 40.0, seed)).collect();
-        for diameter in [1.0, 2.0, 4.0] {
-            let count = all.iter().filter(|crater| crater.diameter >= diameter).count() as f64;
-            // A Poisson number: z is (count - mean) / sqrt(mean).
-            let mean = f64::from(seeds as u32) * Craters { smallest: diameter, ..law }.expected(40.0);
-            let z = (count - mean) / mean.sqrt();
-            assert!(z.abs() < 4.0, "{count} of {mean} above {diameter} m: {z}");
-        }
-        assert!(all.iter().all(|crater| (1.0..=20.0).contains(&crater.diameter)));
-    }
-}
+#[path = "../../tests/unit/mars/craters.rs"]
+mod tests;

@@ -1,84 +1,85 @@
 //! Crevasses: winding cracks with walls of their own, which may overhang.
 //!
-//! A height field has no walls: it can only be steep. So the grid itself gives way. Its rows near a crack are bent
-//! along the crack's course, and at the crack one row becomes several: the near edge, down the near wall, across the floor,
-//! up the far wall, the far edge. The surface stays one sheet without a gap.
+//! A height field has no walls: it can only be steep. Here the grid itself opens. Its rows near a crack bend
+//! along the crack's course. At the crack one row becomes several: the near edge, down the near wall, across the
+//! floor, up the far wall, the far edge. The surface stays one sheet without a gap.
 
 use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// Which crevasses there are.
+/// Number and size of the crevasses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crevasses {
-    /// How many, side by side along x.
+    /// Number of crevasses; each runs along x.
     pub count: u32,
-    /// From edge to edge at the widest place, metres.
+    /// Width from edge to edge at the widest place, metres.
     pub width: f64,
-    /// From the lower edge to the floor at the deepest place, metres.
+    /// Depth from the lower edge to the floor at the deepest place, metres.
     pub depth: f64,
-    /// How far walls go back under their edge at most, metres; 0 for none.
+    /// Largest distance that a wall recedes under its edge, metres; 0 for no overhang.
     pub overhang: f64,
 }
 
-/// How far rows are bent at most, metres: crevasses wind by twice this.
-const LARGEST_BEND: f64 = 2.5;
+/// Largest displacement of a bent row, metres: crevasses wind by twice this.
+const MAX_BEND_M: f64 = 2.5;
 
-/// Rows are pressed together to no less than a third: the bend's steepest slope is 1.54 times its height over its width, and
-/// this much more than that.
-const SLACK: f64 = 1.5;
+/// Width of a band, relative to the narrowest band whose rows keep their order. Bent rows then keep at least 1 -
+/// 1/1.5, a third, of their distance.
+const BEND_SLACK: f64 = 1.5;
 
 /// Steepest slope of (1 - t^2)^2, at t = 1/sqrt 3: 8 / (3 sqrt 3).
-const STEEPEST: f64 = 1.539_600_717_839_002;
+const MAX_BUMP_SLOPE: f64 = 1.539_600_717_839_002;
 
 impl Crevasses {
-    /// Extent along y of the band of rows that each crevasse bends, metres.
+    /// Extent along y of the band of rows that one crevasse bends, metres.
     fn band(&self, extent: f64) -> f64 {
-        // An even number of bands, so that the middle of the ground lies between two of them.
+        // The number of bands is even, so that the middle of the ground lies between two of them.
         extent / f64::from(self.count.next_multiple_of(2).max(2))
     }
 
-    /// The widest that they can be on a ground of that extent along y, metres: it leaves as much for them to wind.
-    pub(super) fn widest(&self, extent: f64) -> f64 {
-        self.band(extent) / (2.0 * SLACK * STEEPEST)
+    /// Maximum width on a ground of this extent along y, metres: it leaves the same amount for the bend.
+    pub(super) fn max_width(&self, extent: f64) -> f64 {
+        self.band(extent) / (2.0 * BEND_SLACK * MAX_BUMP_SLOPE)
     }
 
-    /// The crevasses on a grid of that many cells along x and y, of that spacing, about the origin.
+    /// Crevasses on a grid of that many cells along x and y, of that spacing, about the origin.
     pub(super) fn draw(&self, [cells, rows]: [u32; 2], spacing: DVec2, seed: u64) -> Vec<Crevasse> {
-        let mut draws = Draws::new(seed, Purpose::Crevasses);
+        let mut random = RandomStream::new(seed, StreamPurpose::Crevasses);
         let [extent, height] = [f64::from(cells) * spacing.x, f64::from(rows) * spacing.y];
         let band = self.band(height);
-        let bend = LARGEST_BEND.min(0.5 * band / (SLACK * STEEPEST) - 0.5 * self.width).max(0.0);
-        let course = |draws: &mut Draws| {
-            // Three waves, the shorter the lower, no higher than the bend together.
+        let bend = MAX_BEND_M.min(0.5 * band / (BEND_SLACK * MAX_BUMP_SLOPE) - 0.5 * self.width).max(0.0);
+        let course = |random: &mut RandomStream| {
+            // Three waves, the shorter the lower. Their sum stays within the bend.
             [(0.55, 20.0), (0.3, 8.0), (0.15, 3.5)].map(|(share, length)| Wave {
-                height: bend * share,
-                number: std::f64::consts::TAU / (length * draws.between(0.8, 1.25)),
-                phase: draws.between(0.0, std::f64::consts::TAU),
+                amplitude: bend * share,
+                wave_number: std::f64::consts::TAU / (length * random.between(0.8, 1.25)),
+                phase: random.between(0.0, std::f64::consts::TAU),
             })
         };
         let middle_row = |slot: u32| (((f64::from(slot) + 0.5) * band / spacing.y) as u32).clamp(1, rows - 1);
         let one = |slot: u32| {
-            let course = course(&mut draws);
+            let course = course(&mut random);
             let margin = f64::from(cells);
-            let first = (margin * draws.between(0.03, 0.2)) as u32;
-            let last = cells - (margin * draws.between(0.03, 0.2)) as u32;
+            let first = (margin * random.between(0.03, 0.2)) as u32;
+            let last = cells - (margin * random.between(0.03, 0.2)) as u32;
             let row = middle_row(slot);
             let level = f64::from(row) * spacing.y - 0.5 * height;
-            let ragged = (0..=cells).map(|_| [draws.between(0.75, 1.0), draws.between(0.75, 1.0)]).collect();
+            let edge_shares =
+                (0..=cells).map(|_| [random.between(0.75, 1.0), random.between(0.75, 1.0)]).collect();
             let start = f64::from(first) * spacing.x - 0.5 * extent;
             let end = f64::from(last) * spacing.x - 0.5 * extent;
             Crevasse {
-                law: *self,
+                settings: *self,
                 row,
                 level,
                 columns: first..last,
                 span: [start, end],
                 half_band: 0.5 * band,
                 course,
-                ragged,
+                edge_shares,
             }
         };
         (0..self.count).map(one).collect()
@@ -88,49 +89,49 @@ impl Crevasses {
 /// One crevasse on a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Crevasse {
-    law: Crevasses,
-    /// The grid's row that it opens.
+    settings: Crevasses,
+    /// Grid row that the crevasse opens.
     pub row: u32,
-    /// y of that row before it is bent.
+    /// y of that row before it is bent, metres.
     level: f64,
-    /// It begins after the first of these columns and ends before the last; at both it is closed.
+    /// Columns of the two ends, where the crevasse is closed: it is open between them.
     pub columns: Range<u32>,
     span: [f64; 2],
     half_band: f64,
     course: [Wave; 3],
-    /// For each column, how much of its half width the near and the far edge take: edges are ragged.
-    ragged: Vec<[f64; 2]>,
+    /// Fraction of the half width that the near and the far edge take in each column: edges are ragged.
+    edge_shares: Vec<[f64; 2]>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Wave {
-    height: f64,
-    number: f64,
+    amplitude: f64,
+    wave_number: f64,
     phase: f64,
 }
 
 impl Crevasse {
-    /// How far rows are bent at that x, metres.
+    /// Displacement of the rows at that x, metres.
     fn bend(&self, x: f64) -> f64 {
-        self.course.iter().map(|wave| wave.height * libm::sin(wave.number * x + wave.phase)).sum()
+        self.course.iter().map(|wave| wave.amplitude * libm::sin(wave.wave_number * x + wave.phase)).sum()
     }
 
-    /// 1 along most of it, 0 at its ends and beyond.
+    /// Factor on the opening: 1 along most of the crevasse, 0 at its ends and beyond.
     fn taper(&self, x: f64) -> f64 {
         let [start, end] = self.span;
         let t = (2.0 * x - start - end) / (end - start);
         (1.0 - t * t * t * t).max(0.0)
     }
 
-    /// How far the y of a grid point (x, y) moves. Points of the crevasse's own row do not open here.
+    /// Displacement along y of a grid point (x, y), metres. Points of the crevasse's own row do not open here.
     pub(super) fn shift(&self, x: f64, y: f64) -> f64 {
         let t = (y - self.level) / self.half_band;
         let share = 1.0 - t * t;
         if share <= 0.0 {
             return 0.0;
         }
-        // Rows make way for the opening as well, to both sides.
-        let opening = 0.5 * self.law.width * self.taper(x);
+        // Rows also move aside for the opening, on both sides.
+        let opening = 0.5 * self.settings.width * self.taper(x);
         let aside = if t > 0.0 {
             opening
         } else if t < 0.0 {
@@ -141,106 +142,41 @@ impl Crevasse {
         share * share * (self.bend(x) + aside)
     }
 
-    /// y of its middle at that x.
+    /// y of the centre line at that x, metres.
     fn middle(&self, x: f64) -> f64 {
         self.level + self.bend(x)
     }
 
-    /// y of a point of a wall or an edge: `side` -1 for near, 1 for far, and how far down it is, 0 at the edge to 1 at
-    /// the floor.
-    pub(super) fn wall(&self, column: u32, x: f64, side: f64, down: f64) -> f64 {
+    /// y of a point on a wall or an edge, metres. `side` is -1 for near and 1 for far; `down` runs from 0 at the
+    /// edge to 1 at the floor.
+    pub(super) fn wall_y(&self, column: u32, x: f64, side: f64, down: f64) -> f64 {
         let taper = self.taper(x);
-        let [near, far] = self.ragged[column as usize];
-        let edge = 0.5 * self.law.width * taper * if side < 0.0 { near } else { far };
-        // Walls come together by a quarter towards the floor, and go back in between where they overhang.
-        let under = self.law.overhang * taper * 4.0 * down * (1.0 - down);
+        let [near, far] = self.edge_shares[column as usize];
+        let edge = 0.5 * self.settings.width * taper * if side < 0.0 { near } else { far };
+        // Walls approach by a quarter towards the floor; between edge and floor they recede where they overhang.
+        let under = self.settings.overhang * taper * 4.0 * down * (1.0 - down);
         self.middle(x) + side * (edge * (1.0 - 0.25 * down * down) + under)
     }
 
-    /// From the lower edge to the floor at that x, metres.
+    /// Depth from the lower edge to the floor at that x, metres.
     pub(super) fn depth(&self, x: f64) -> f64 {
-        // Shallower where it winds, so that the floor is not level.
+        // The depth varies along the crevasse, so that the floor is not level.
         let uneven = 0.85 + 0.15 * libm::sin(2.3 * x + self.course[0].phase);
-        self.law.depth * self.taper(x) * uneven
+        self.settings.depth * self.taper(x) * uneven
     }
 
-    /// Whether a body of that radius at (x, y) would reach over an edge or an overhang.
-    pub(super) fn touches(&self, place: DVec2, radius: f64) -> bool {
+    /// Whether a disc of that radius about (x, y) would reach an edge or an overhang.
+    pub(super) fn overlaps_disc(&self, place: DVec2, radius: f64) -> bool {
         let [start, end] = self.span;
-        // The course is no steeper than its bend's slopes together: within a radius it does not move more than this.
-        let slope: f64 = self.course.iter().map(|wave| wave.height * wave.number).sum();
-        let reach = 0.5 * self.law.width + self.law.overhang + radius * (1.0 + slope);
+        // The slope of the course is at most the sum of its waves' slopes: this bounds its displacement within a
+        // radius.
+        let slope: f64 = self.course.iter().map(|wave| wave.amplitude * wave.wave_number).sum();
+        let reach = 0.5 * self.settings.width + self.settings.overhang + radius * (1.0 + slope);
         let beside = place.x < start - radius || place.x > end + radius;
         !beside && (place.y - self.middle(place.x)).abs() < reach
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const LAW: Crevasses = Crevasses { count: 3, width: 0.6, depth: 1.0, overhang: 0.2 };
-
-    #[test]
-    fn rows_keep_their_order_however_they_are_bent() {
-        for seed in 0..20 {
-            for crevasse in LAW.draw([200; 2], DVec2::splat(0.2), seed) {
-                for column in 0..=200 {
-                    let x = 0.2 * f64::from(column) - 20.0;
-                    let places: Vec<f64> = (0..=200)
-                        .map(|row| 0.2 * f64::from(row) - 20.0)
-                        .map(|y| y + crevasse.shift(x, y))
-                        .collect();
-                    let least = places.windows(2).map(|pair| pair[1] - pair[0]).fold(1.0, f64::min);
-                    // A third of 0.2 m is left at least.
-                    assert!(least > 0.2 / 3.0 - 1e-9, "{least}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn edges_lie_between_the_neighbouring_rows() {
-        for seed in 0..20 {
-            for crevasse in LAW.draw([200; 2], DVec2::splat(0.2), seed) {
-                for column in 0..=200 {
-                    let x = 0.2 * f64::from(column) - 20.0;
-                    let [near, far] = [-1.0, 1.0].map(|side| crevasse.wall(column, x, side, 0.0));
-                    assert!(near <= far);
-                    let neighbour = |row: u32| {
-                        let y = 0.2 * f64::from(row) - 20.0;
-                        y + crevasse.shift(x, y)
-                    };
-                    assert!(neighbour(crevasse.row - 1) < near && far < neighbour(crevasse.row + 1));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn it_is_closed_at_its_ends_and_open_between() {
-        for crevasse in LAW.draw([200; 2], DVec2::splat(0.2), 4) {
-            for (column, open) in
-                [(crevasse.columns.start, false), (100, true), (crevasse.columns.end, false)]
-            {
-                let x = 0.2 * f64::from(column) - 20.0;
-                let [near, far] = [-1.0, 1.0].map(|side| crevasse.wall(column, x, side, 0.0));
-                let depth = crevasse.depth(x);
-                assert_eq!(open, far - near > 0.3 && depth > 0.5, "{near} {far} {depth}");
-                assert!(open || (far - near < 1e-9 && depth < 1e-9));
-            }
-        }
-    }
-
-    #[test]
-    fn the_middle_of_the_ground_is_free() {
-        for count in 1..6 {
-            for seed in 0..20 {
-                let law = Crevasses { count, ..LAW };
-                for crevasse in law.draw([200; 2], DVec2::splat(0.2), seed) {
-                    assert!(!crevasse.touches(DVec2::ZERO, 0.3), "{count} crevasses, seed {seed}");
-                }
-            }
-        }
-    }
-}
+#[path = "../../tests/unit/mars/crevasses.rs"]
+mod tests;

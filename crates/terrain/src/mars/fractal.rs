@@ -1,32 +1,34 @@
-//! Stochastic interpolation: from posts far apart to posts close together, rough at every scale.
+//! Fractal relief by stochastic interpolation: from posts far apart to posts close together, rough at every
+//! scale.
 //!
-//! Fournier, Fussell and Carpenter (1982) halve the spacing again and again and move each new post by a Gaussian. A
-//! self-affine surface of Hurst exponent H whose heights differ by `roughness` (rms, metres) at points 1 m apart differs by
-//! roughness s^H at points s apart; given both neighbours at distance s, the middle one has the standard deviation
-//! roughness s^H sqrt(1 - 2^(2H - 2)).
+//! Fournier, Fussell and Carpenter (1982) halve the spacing repeatedly and displace each new post by a Gaussian.
+//! Let a self-affine surface of Hurst exponent H have a height difference of `roughness` (rms, metres) at points
+//! 1 m apart. Then the difference at points s apart is roughness s^H. Given both neighbours at distance s, the
+//! middle post has the standard deviation roughness s^H sqrt(1 - 2^(2H - 2)).
 //!
-//! Old posts never move, so that every post of the coarse grid is met exactly. New ones start from the smooth curve
-//! through the four nearest, with weights -1, 9, 9, -1 over 16 (Dyn, Levin and Gregory, 1987), not from the straight line
-//! between two, which would leave the creases that plain midpoint displacement is known for.
+//! Old posts never move, so the surface meets every coarse post exactly. New posts start from the smooth curve
+//! through the four nearest, with weights -1, 9, 9, -1 over 16 (Dyn, Levin and Gregory, 1987). The straight line
+//! between two posts would leave the creases that plain midpoint displacement is known for.
 
 use glam::DVec2;
 
 use crate::Posts;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// How rough a surface is.
+/// Roughness of a self-affine surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Roughness {
-    /// Hurst exponent H, above 0 and below 1: the nearer to 1, the smoother small parts are beside large ones.
+    /// Hurst exponent H, above 0 and below 1. The nearer to 1, the smoother small scales are relative to large
+    /// ones.
     pub hurst: f64,
-    /// Root mean square difference of height of points 1 m apart, metres.
+    /// Root mean square difference of height between points 1 m apart, metres.
     pub at_1_m: f64,
-    /// Factors on the displacements of each halving of the spacing, the coarsest first; 1 for those not named.
+    /// Factor on the displacements of each halving of the spacing, the coarsest first; 1 for those not given.
     pub octave_gains: Vec<f64>,
 }
 
 impl Roughness {
-    /// Standard deviation of new posts that stand `spacing` metres from their old neighbours.
+    /// Standard deviation of the displacement of new posts `spacing` metres from their old neighbours, metres.
     fn displacement(&self, octave: usize, spacing: f64) -> f64 {
         let gain = self.octave_gains.get(octave).copied().unwrap_or(1.0);
         let left = 1.0 - libm::pow(2.0, 2.0 * self.hurst - 2.0);
@@ -34,22 +36,23 @@ impl Roughness {
     }
 }
 
-/// Four posts at the corners of a square, as high as the law wants them: neighbours differ by roughness side^H (rms).
-pub(crate) fn corners(side: f64, roughness: &Roughness, seed: u64) -> Posts {
-    let mut draws = Draws::new(seed, Purpose::Corners);
+/// Four posts at the corners of a square, with heights by the same law: neighbours differ by roughness side^H
+/// (rms).
+pub(crate) fn corner_posts(side: f64, roughness: &Roughness, seed: u64) -> Posts {
+    let mut random = RandomStream::new(seed, StreamPurpose::Corners);
     let deviation = roughness.at_1_m * libm::pow(side, roughness.hurst) * std::f64::consts::FRAC_1_SQRT_2;
-    let heights = (0..4).map(|_| deviation * draws.gaussian()).collect();
+    let heights = (0..4).map(|_| deviation * random.normal()).collect();
     Posts { columns: 2, rows: 2, corner: DVec2::ZERO, spacing: DVec2::splat(side), heights }
 }
 
-/// Halves the spacing of `posts` `octaves` times. The old posts are among the new ones, unchanged to the bit.
+/// Halves the spacing of `posts` `octaves` times. The old posts stay among the new ones, unchanged to the bit.
 pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u64) -> Posts {
-    let mut draws = Draws::new(seed, Purpose::Octaves);
+    let mut random = RandomStream::new(seed, StreamPurpose::Octaves);
     let mut posts = posts;
     for octave in 0..octaves as usize {
-        posts = halved(posts);
-        // CHOICE: a new post in the middle of a cell is sqrt(2) farther from its neighbours than one on a side; both
-        // are displaced alike, as in the paper of 1982.
+        posts = halve_spacing(posts);
+        // CHOICE: a new post in the middle of a cell is sqrt(2) farther from its neighbours than one on a side.
+        // Both are displaced alike, as in the paper of 1982.
         let spacing = (posts.spacing.x * posts.spacing.y).sqrt();
         let displacement = roughness.displacement(octave, spacing);
         let columns = posts.columns as usize;
@@ -57,28 +60,28 @@ pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u6
             // In even rows every second post is an old one.
             let (first, step) = if row % 2 == 0 { (1, 2) } else { (0, 1) };
             for height in heights.iter_mut().skip(first).step_by(step) {
-                *height += displacement * draws.gaussian();
+                *height += displacement * random.normal();
             }
         }
     }
     posts
 }
 
-/// Twice as many cells in each direction, the new posts on the smooth curves through the old.
-fn halved(posts: Posts) -> Posts {
+/// Grid with twice as many cells in each direction; new posts lie on the smooth curves through the old ones.
+fn halve_spacing(posts: Posts) -> Posts {
     let (old_columns, old_rows) = (posts.columns as usize, posts.rows as usize);
     let (columns, rows) = (2 * old_columns - 1, 2 * old_rows - 1);
     let mut heights = vec![0.0; columns * rows];
     for (old, new) in posts.heights.chunks_exact(old_columns).zip(heights.chunks_exact_mut(2 * columns)) {
-        along(old_columns, |i| old[i], |i, height| new[i] = height);
+        interpolate_line(old_columns, |i| old[i], |i, height| new[i] = height);
     }
-    // The last row has no row of new posts after it, so that it is no whole chunk of two.
+    // The last row is not followed by a row of new posts, so it is no whole chunk of two rows.
     let last = (old_rows - 1) * old_columns;
     let (old, new) = (&posts.heights[last..], &mut heights[(rows - 1) * columns..]);
-    along(old_columns, |i| old[i], |i, height| new[i] = height);
+    interpolate_line(old_columns, |i| old[i], |i, height| new[i] = height);
     for column in 0..columns {
         let old: Vec<f64> = (0..old_rows).map(|row| heights[2 * row * columns + column]).collect();
-        along(old_rows, |i| old[i], |i, height| heights[i * columns + column] = height);
+        interpolate_line(old_rows, |i| old[i], |i, height| heights[i * columns + column] = height);
     }
     Posts {
         columns: columns as u32,
@@ -89,15 +92,15 @@ fn halved(posts: Posts) -> Posts {
     }
 }
 
-/// A line of `count` old posts and the new ones between them.
-fn along(count: usize, old: impl Fn(usize) -> f64, mut new: impl FnMut(usize, f64)) {
+/// Passes the `count` old posts of a line and the new posts between them to `new`.
+fn interpolate_line(count: usize, old: impl Fn(usize) -> f64, mut new: impl FnMut(usize, f64)) {
     for i in 0..count {
         new(2 * i, old(i));
         if i + 1 == count {
             break;
         }
         let (b, c) = (old(i), old(i + 1));
-        // Past the ends the line goes on straight.
+        // Beyond the ends the line continues straight.
         let a = if i > 0 { old(i - 1) } else { 2.0 * b - c };
         let d = if i + 2 < count { old(i + 2) } else { 2.0 * c - b };
         new(2 * i + 1, 0.5625 * (b + c) - 0.0625 * (a + d));
@@ -105,90 +108,5 @@ fn along(count: usize, old: impl Fn(usize) -> f64, mut new: impl FnMut(usize, f6
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn smooth() -> Roughness {
-        Roughness { hurst: 0.7, at_1_m: 0.0, octave_gains: Vec::new() }
-    }
-
-    fn posts(columns: u32, rows: u32, height: impl Fn(f64, f64) -> f64) -> Posts {
-        let place = |i: u32| (f64::from(i % columns), f64::from(i / columns));
-        let heights = (0..columns * rows).map(place).map(|(x, y)| height(x, y)).collect();
-        Posts { columns, rows, corner: DVec2::ZERO, spacing: DVec2::ONE, heights }
-    }
-
-    #[test]
-    fn the_curve_through_four_posts_by_hand() {
-        // Heights 0, 8, 16, 8 at 0, 1, 2, 3: at 1.5 it is 9/16 (8 + 16) - 1/16 (0 + 8) = 13.5 - 0.5 = 13. Before 0
-        // the line goes on to -8: at 0.5 it is 9/16 (0 + 8) - 1/16 (-8 + 16) = 4.
-        let fine = halved(posts(4, 1, |x, _| [0.0, 8.0, 16.0, 8.0][x as usize]));
-        assert_eq!((fine.columns, fine.rows), (7, 1));
-        assert_eq!(fine.heights, [0.0, 4.0, 8.0, 13.0, 16.0, 13.0, 8.0]);
-        assert_eq!(fine.at(3, 0), glam::DVec3::new(1.5, 0.0, 13.0));
-    }
-
-    #[test]
-    fn cubics_stay_cubics_away_from_the_border() {
-        let cubic = |x: f64, y: f64| x * x * x - 2.0 * x * y * y + y;
-        let fine = refine(posts(8, 8, cubic), 2, &smooth(), 1);
-        for row in 4..25 {
-            for column in 4..25 {
-                let p = fine.at(column, row);
-                // Near the border of the first halving the second looks at posts that were not on the cubic.
-                if (6..23).contains(&row) && (6..23).contains(&column) {
-                    assert!((p.z - cubic(p.x, p.y)).abs() < 1e-11, "{p}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn coarse_posts_are_met_to_the_bit() {
-        let coarse = posts(5, 4, |x, y| 0.37 * x - 1.9 * y * y);
-        let rough = Roughness { at_1_m: 0.3, ..smooth() };
-        let fine = refine(coarse.clone(), 4, &rough, 9);
-        assert_eq!((fine.columns, fine.rows), (65, 49));
-        for row in 0..4 {
-            for column in 0..5 {
-                assert_eq!(fine.at(16 * column, 16 * row), coarse.at(column, row));
-            }
-        }
-        assert_ne!(fine.at(1, 0).z, refine(coarse, 4, &smooth(), 9).at(1, 0).z);
-    }
-
-    #[test]
-    fn octave_gains_name_their_octave() {
-        // Only the second of three octaves is rough: posts of the first stay on the smooth curve.
-        let rough = Roughness { at_1_m: 0.3, octave_gains: vec![0.0, 2.0, 0.0], ..smooth() };
-        let [fine, calm] = [rough, smooth()].map(|how| refine(posts(3, 3, |x, _| x), 3, &how, 4));
-        assert_eq!(fine.at(4, 4), calm.at(4, 4));
-        assert_ne!(fine.at(2, 4), calm.at(2, 4));
-    }
-
-    #[test]
-    fn the_structure_function_follows_the_exponent() {
-        // Mean squared difference of height at lags of 1 to 16 fine posts, away from the scale of the coarse grid, over
-        // seeds, is 2 H steep in logarithms. Midpoint displacement is not exactly self-affine: old posts keep the
-        // variance of their own scale. Both bounds are tuned: seen are slopes of 0.505, 0.674, 0.863 for 0.5, 0.7, 0.9,
-        // and differences at 1 m of 1.20, 1.12, 1.01 times the law.
-        for hurst in [0.5, 0.7, 0.9] {
-            let rough = Roughness { hurst, at_1_m: 0.1, octave_gains: Vec::new() };
-            let mut squares = [0.0; 5];
-            for seed in 0..40 {
-                let fine = refine(corners(64.0, &rough, seed), 8, &rough, seed);
-                for (k, square) in squares.iter_mut().enumerate() {
-                    let lag = 1_u32 << k;
-                    let all = (0..257).flat_map(|row| (0..257 - lag).map(move |column| (column, row)));
-                    let all = all.map(|(i, j)| fine.at(i + lag, j).z - fine.at(i, j).z);
-                    *square += all.map(|d| d * d).sum::<f64>() / f64::from(257 * (257 - lag)) / 40.0;
-                }
-            }
-            let slope = libm::log2(squares[4] / squares[0]) / 8.0;
-            // Spacing 64 / 256 = 0.25 m: a lag of 4 is 1 m.
-            let at_1_m = squares[2].sqrt();
-            assert!((slope - hurst).abs() < 0.06, "H {hurst}: {slope}");
-            assert!((at_1_m / 0.1 - 1.0).abs() < 0.25, "H {hurst}: {at_1_m} m at 1 m");
-        }
-    }
-}
+#[path = "../../tests/unit/mars/fractal.rs"]
+mod tests;

@@ -1,12 +1,12 @@
-//! Ground as Mars has it: relief at every scale, craters, crevasses and rocks, each by its own law.
+//! Mars-like ground: relief at every scale, craters, crevasses and rocks, each by its own published law.
 //!
 //! ```text
 //! fractal    relief: stochastic interpolation between coarse posts
 //! craters    bowls, rims and ejecta, added to the posts
-//! crevasses  the courses of cracks, and how the grid makes way for them
-//! surface    the sheet of faces over the posts, cut open at the crevasses
+//! crevasses  the courses of cracks, and how the grid rows bend around them
+//! sheet      the faces over the posts, cut open at the crevasses
 //! rocks      sizes, places and bodies of rocks
-//! presets    grounds with a source for every number
+//! presets    grounds by name, with a source for every number
 //! ```
 
 mod craters;
@@ -14,8 +14,9 @@ mod crevasses;
 mod fractal;
 mod presets;
 mod rocks;
-mod surface;
+mod sheet;
 #[cfg(test)]
+#[path = "../../tests/unit/mars/whole_grounds.rs"]
 mod tests;
 
 use glam::{DVec2, DVec3};
@@ -29,41 +30,65 @@ pub use fractal::Roughness;
 pub use presets::PRESET_NAMES;
 pub use rocks::Rocks;
 
-/// The most faces that a ground may be expected to have: as many as files may.
-const MOST_FACES: f64 = (1 << 25) as f64;
+/// Maximum expected number of faces: the limit of the files, 2^25.
+const MAX_FACES: f64 = (1 << 25) as f64;
 
-/// A ground to be generated. Start from [`MarsGround::preset`] and change fields; the same fields give the same bytes
-/// on every machine.
+/// Settings of a generated ground. Start from [`MarsGround::preset`] and change fields. The same fields give the
+/// same bytes on every machine.
 ///
-/// The middle of the square, 1.5 m about it, is free of rocks and crevasses, so that a rover can stand there.
+/// The middle of the square, up to 1.5 m from its centre, is free of rocks and crevasses, so that a rover can
+/// stand there.
+///
+/// ```
+/// use raypencil_terrain::{Craters, Crevasses, MarsGround, Rocks};
+///
+/// let preset = MarsGround::preset("viking1", 7).expect("a preset name");
+/// // Relief alone: 12 m in steps of 0.2 m are 60 x 60 cells of two faces.
+/// let mars = MarsGround {
+///     extent: 12.0,
+///     post_spacing: 0.2,
+///     rocks: Rocks { coverage: 0.0, ..preset.rocks },
+///     craters: Craters { density: 0.0, ..preset.craters },
+///     crevasses: Crevasses { count: 0, ..preset.crevasses },
+///     ..preset
+/// };
+/// assert_eq!(mars.build()?.faces.len(), 2 * 60 * 60);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarsGround {
-    /// Which of the grounds with these settings.
+    /// Seed: another seed gives another ground with the same settings.
     pub seed: u64,
-    /// Side of the square, metres, to the next whole cell. Of no effect if `coarse` is given.
+    /// Side of the square, metres, rounded up to whole cells. Ignored if `coarse` is given.
     pub extent: f64,
-    /// Posts are this far apart, metres; if `coarse` is given, at most this far.
+    /// Distance between posts, metres; an upper limit if `coarse` is given.
     pub post_spacing: f64,
-    /// Posts that the surface passes through, before craters and crevasses are put in. Without them the relief
+    /// Posts that the surface passes through before craters and crevasses are added. Without them the relief
     /// starts from four posts at the corners of a square at least as large as the ground.
     pub coarse: Option<Posts>,
-    /// How rough the surface is.
+    /// Roughness of the relief.
     pub roughness: Roughness,
-    /// Rocks; a coverage of 0 for none.
+    /// Rocks; none if the coverage is 0.
     pub rocks: Rocks,
-    /// Craters; a density of 0 for none.
+    /// Craters; none if the density is 0.
     pub craters: Craters,
-    /// Crevasses; a count of 0 for none.
+    /// Crevasses; none if the count is 0.
     pub crevasses: Crevasses,
-    /// Added to every vertex, metres.
+    /// Translation of all vertices, metres.
     pub offset: DVec3,
 }
 
-/// Rocks and crevasses stay this far from the middle, metres.
-const FREE_RADIUS: f64 = 1.5;
+/// Maximum expected number of craters.
+const MAX_CRATERS: f64 = 1e5;
+
+/// Maximum number of crevasses.
+const MAX_CREVASSES: u32 = 1000;
+
+/// Distance of rocks and crevasses from the middle, metres.
+const FREE_RADIUS_M: f64 = 1.5;
 
 impl MarsGround {
-    /// Builds it.
+    /// Builds the ground.
     ///
     /// # Errors
     /// As [`MarsGround::validate`].
@@ -76,8 +101,14 @@ impl MarsGround {
         let cells = [posts.columns - 1, posts.rows - 1];
         let crevasses = self.crevasses.draw(cells, posts.spacing, self.seed);
 
-        let mut ground = Ground { materials: kinds(), ..Ground::default() };
-        surface::add(&mut ground, &posts, &crevasses, &surface::Kinds { soil: SOIL, wall: WALL }, self.seed);
+        let mut ground = Ground { materials: materials(), ..Ground::default() };
+        sheet::add(
+            &mut ground,
+            &posts,
+            &crevasses,
+            &sheet::SheetMaterials { soil: SOIL_MATERIAL, wall: WALL_MATERIAL },
+            self.seed,
+        );
         self.add_rocks(&mut ground, &posts, &crevasses);
         if self.offset != DVec3::ZERO {
             for vertex in &mut ground.vertices {
@@ -87,20 +118,20 @@ impl MarsGround {
         Ok(ground)
     }
 
-    /// Diameters of its rocks, the largest first, metres.
+    /// Diameters of the rocks, metres, in descending order.
     pub fn rock_diameters(&self) -> Vec<f64> {
         let extent = self.extents();
         self.rocks.diameters(extent.x * extent.y, self.seed)
     }
 
-    /// Its craters, the largest first; those outside whose ejecta reach it are among them.
+    /// Craters, the largest first. Those outside the ground whose ejecta reach it are included.
     pub fn crater_list(&self) -> Vec<Crater> {
         let corner = self.coarse.as_ref().map_or(-0.5 * self.extents(), |coarse| coarse.corner);
         let extent = self.extents();
         self.craters.draw(corner + 0.5 * extent, extent.max_element(), self.seed)
     }
 
-    /// From border to border along x and y, metres.
+    /// Extent along x and y from border to border, metres.
     pub fn extents(&self) -> DVec2 {
         match &self.coarse {
             Some(coarse) => coarse.extent(),
@@ -108,7 +139,7 @@ impl MarsGround {
         }
     }
 
-    /// The posts, without craters.
+    /// Posts before craters are added.
     fn relief(&self) -> Posts {
         if let Some(coarse) = &self.coarse {
             let octaves = octaves(coarse.spacing.max_element(), self.post_spacing);
@@ -117,9 +148,9 @@ impl MarsGround {
         let cells = self.cells();
         let octaves = cells.next_power_of_two().ilog2();
         let whole = 1_u32 << octaves;
-        let start = fractal::corners(f64::from(whole) * self.post_spacing, &self.roughness, self.seed);
+        let start = fractal::corner_posts(f64::from(whole) * self.post_spacing, &self.roughness, self.seed);
         let posts = fractal::refine(start, octaves, &self.roughness, self.seed);
-        // The ground is a part of it, about the origin.
+        // The ground is the part of it about the origin.
         let margin = (whole - cells) / 2;
         let heights = (0..=cells)
             .flat_map(|row| {
@@ -139,33 +170,34 @@ impl MarsGround {
 
     /// Cells per side of a ground without coarse posts.
     fn cells(&self) -> u32 {
-        // Below 2^13 after the check.
+        // Below 2^13 after validation.
         ((self.extent / self.post_spacing).ceil() as u32).max(2)
     }
 
     fn add_rocks(&self, ground: &mut Ground, posts: &Posts, crevasses: &[crevasses::Crevasse]) {
         let extent = posts.extent();
         let middle = posts.corner + 0.5 * extent;
-        let free_radius = FREE_RADIUS.min(0.125 * extent.min_element());
+        let free_radius = FREE_RADIUS_M.min(0.125 * extent.min_element());
         let is_free = |place: DVec2, diameter: f64| {
             let local = place - middle;
             let beyond = local.abs().cmpgt(0.5 * extent).any();
             !beyond
                 && local.length() > free_radius + 0.5 * diameter
-                && !crevasses.iter().any(|crevasse| crevasse.touches(local, 0.6 * diameter))
+                && !crevasses.iter().any(|crevasse| crevasse.overlaps_disc(local, 0.6 * diameter))
         };
-        let sites = rocks::place(&self.rock_diameters(), middle, extent.max_element(), self.seed, is_free);
-        let mut shapes = rocks::Shapes::new(self.seed);
+        let sites =
+            rocks::place_rocks(&self.rock_diameters(), middle, extent.max_element(), self.seed, is_free);
+        let mut bodies = rocks::RockBodies::new(self.seed);
         for site in sites {
-            let centre = site.place.extend(surface::height(posts, site.place));
-            shapes.add(ground, centre, site.diameter, ROCK);
+            let centre = site.place.extend(sheet::height(posts, site.place));
+            bodies.add(ground, centre, site.diameter, ROCK_MATERIAL);
         }
     }
 
-    /// Whether it can be built.
+    /// Checks that the ground can be built.
     ///
     /// # Errors
-    /// Names the first number that is out of its range, or what makes the ground larger than 2^25 faces.
+    /// Names the first number out of its range, or the number that makes the ground larger than 2^25 faces.
     pub fn validate(&self) -> Result<(), SceneError> {
         let Self { rocks, craters, crevasses, roughness, .. } = self;
         let ranges = [
@@ -199,7 +231,7 @@ impl MarsGround {
         self.check_size()
     }
 
-    /// Refuses what would take more faces than a file may have.
+    /// Refuses a ground with more faces than a file may have.
     fn check_size(&self) -> Result<(), SceneError> {
         let (extent, cells) = match &self.coarse {
             None => {
@@ -211,28 +243,33 @@ impl MarsGround {
                 (coarse.extent(), f64::from(coarse.columns - 1) * f64::from(coarse.rows - 1) * finer * finer)
             }
         };
-        let most = format!("at most {MOST_FACES} faces in all");
-        if 2.0 * cells > MOST_FACES {
+        let most = format!("at most {MAX_FACES} faces in all");
+        if 2.0 * cells > MAX_FACES {
             let found = format!("{} m: {} faces", self.post_spacing, 2.0 * cells);
             return Err(SceneError::new("post_spacing_m", found, most));
         }
-        let rocks = self.rocks.expected_faces_at_most(extent.x * extent.y);
-        if 2.0 * cells + rocks > MOST_FACES {
+        let rocks = self.rocks.max_expected_faces(extent.x * extent.y);
+        if 2.0 * cells + rocks > MAX_FACES {
             let found = format!("{} m: up to {rocks:.0} faces of rocks", self.rocks.smallest);
             return Err(SceneError::new("rock_smallest_m", found, most));
         }
         let craters = self.craters.expected(extent.max_element());
-        if craters > 1e5 {
+        if craters > MAX_CRATERS {
             let found = format!("{} m: {craters:.0} craters", self.craters.smallest);
-            return Err(SceneError::new("crater_smallest_m", found, "at most 100000 craters"));
+            return Err(SceneError::new(
+                "crater_smallest_m",
+                found,
+                format!("at most {MAX_CRATERS} craters"),
+            ));
         }
         let crevasses = &self.crevasses;
-        if crevasses.count > 1000 {
-            return Err(SceneError::new("crevasses", crevasses.count, "0 to 1000"));
+        if crevasses.count > MAX_CREVASSES {
+            return Err(SceneError::new("crevasses", crevasses.count, format!("0 to {MAX_CREVASSES}")));
         }
-        let widest = crevasses.widest(extent.y);
-        if crevasses.count > 0 && crevasses.width > widest {
-            let expected = format!("at most {widest:.3} m for {} of them on {} m", crevasses.count, extent.y);
+        let max_width = crevasses.max_width(extent.y);
+        if crevasses.count > 0 && crevasses.width > max_width {
+            let expected =
+                format!("at most {max_width:.3} m for {} of them on {} m", crevasses.count, extent.y);
             return Err(SceneError::new("crevasse_width_m", crevasses.width, expected));
         }
         Ok(())
@@ -243,25 +280,25 @@ fn check_coarse(coarse: &Posts) -> Result<(), SceneError> {
     let (columns, rows) = (coarse.columns as usize, coarse.rows as usize);
     if columns < 2 || rows < 2 || coarse.heights.len() != columns * rows {
         let found = format!("{columns} x {rows} posts, {} heights", coarse.heights.len());
-        return Err(SceneError::new("coarse", found, "2 x 2 posts or more, a height for each"));
+        return Err(SceneError::new("coarse", found, "at least 2 x 2 posts, with a height for each"));
     }
     let finite = |v: DVec2| v.is_finite() && v.abs().max_element() <= 1e12;
     if !(coarse.spacing.min_element() > 0.0 && finite(coarse.spacing) && finite(coarse.corner)) {
         let found = format!("spacing {}, corner {}", coarse.spacing, coarse.corner);
-        return Err(SceneError::new("coarse", found, "positive spacings and places within 1e12 m"));
+        return Err(SceneError::new("coarse", found, "positive spacings, and coordinates within 1e12 m"));
     }
     if let Some(index) = coarse.heights.iter().position(|height| !(height.abs() <= 1e7)) {
         let found = format!("post ({}, {}) at {} m", index % columns, index / columns, coarse.heights[index]);
-        return Err(SceneError::new("coarse", found, "heights that are all known, within 1e7 m"));
+        return Err(SceneError::new("coarse", found, "known heights within 1e7 m"));
     }
     Ok(())
 }
 
-/// How often to halve the coarse spacing for a spacing that is no larger than the fine one.
+/// Number of halvings after which the coarse spacing is no larger than the fine one.
 fn octaves(coarse: f64, fine: f64) -> u32 {
     let mut octaves = 0;
     let mut spacing = coarse;
-    // 1e12 m at most, to 1e-3 m at least: 50 halvings.
+    // From at most 1e12 m to at least 1e-3 m: 50 halvings.
     while spacing > fine {
         spacing *= 0.5;
         octaves += 1;
@@ -269,13 +306,13 @@ fn octaves(coarse: f64, fine: f64) -> u32 {
     octaves
 }
 
-const SOIL: u16 = 0;
-const ROCK: u16 = 1;
-const WALL: u16 = 2;
+const SOIL_MATERIAL: u16 = 0;
+const ROCK_MATERIAL: u16 = 1;
+const WALL_MATERIAL: u16 = 2;
 
-/// CHOICE: soil as bright as all ground that brings no reflectivity of its own; rocks and fresh walls darker, as in
-/// near infrared images of the landing sites dust is brighter than rock.
-fn kinds() -> Vec<Material> {
+/// CHOICE: soil has the default reflectivity of the scene file. Rocks and fresh walls are darker, because dust is
+/// brighter than rock in near-infrared images of the landing sites.
+fn materials() -> Vec<Material> {
     [("soil", 0.25), ("rock", 0.16), ("crevasse wall", 0.2)]
         .map(|(name, reflectivity)| Material { name: name.into(), reflectivity })
         .into()

@@ -1,14 +1,14 @@
-//! Grounds with a name, and where their numbers come from.
+//! Mars grounds by name, with the source of each number.
 
 use glam::DVec3;
 
 use super::{Craters, Crevasses, MarsGround, Rocks, Roughness};
 
-/// The names that [`MarsGround::preset`] knows.
+/// Names that [`MarsGround::preset`] accepts.
 pub const PRESET_NAMES: &[&str] = &["smooth", "viking1", "pathfinder", "crater_field", "crevassed", "worst"];
 
-/// Numbers of a preset: Hurst exponent and rms difference of height at 1 m; rock coverage and largest rock; density and
-/// largest diameter of craters; count, width, depth and overhang of crevasses.
+/// Numbers of a preset: (Hurst exponent, rms difference of height at 1 m), (rock coverage, largest rock), (crater
+/// density, largest crater), and (count, width, depth, overhang) of the crevasses.
 struct Numbers {
     relief: (f64, f64),
     rocks: (f64, f64),
@@ -17,25 +17,28 @@ struct Numbers {
 }
 
 impl MarsGround {
-    /// The ground of that name and seed, 40 m square with a post each 0.1 m; `None` for an unknown name.
+    /// Ground by its name and seed, 40 m square, with a post each 0.1 m; `None` for an unknown name.
     ///
-    /// * `smooth`: a plain with few and small rocks. CHOICE: a third of the roughness of Viking 1, a hundredth of the ground
-    ///   covered, as on plains that landers are sent to.
-    /// * `viking1`: roughness from stereo images (Shepard, Seelos, Arvidson and Haldemann, "The roughness of the Martian
-    ///   surface: what we know": Hurst exponent 0.5 to 0.8; rms slopes of 4.8 degrees at 1 m, 3.0 at 10 m, hence 0.8);
-    ///   0.069 of the ground covered by rocks (Golombek and Rapp 1997).
-    /// * `pathfinder`: the same sources: Hurst exponent 0.54 to 0.61, 5.4 degrees at 1 m; 0.19 covered (Golombek et al. 2003).
-    /// * `crater_field`: craters to 5 % of geometric saturation (Gault 1970 gives 1 to 10 % in equilibrium), up to 15 m;
-    ///   0.05 covered by rocks, the least of the models of Golombek et al. (2003).
-    /// * `crevassed`: the ground of Viking 1 with two cracks of 0.6 m and 1.2 m deep. CHOICE: the paper's ground has
-    ///   crevasses, and says nothing of their sizes; these are those that a rover's wheel would fall into.
-    /// * `worst`: all of it, twice as rough as Pathfinder, 0.35 covered, with overhanging crevasses. No place on Mars.
+    /// * `smooth`: a plain with few and small rocks. CHOICE: a third of the roughness of Viking 1 and rocks on
+    ///   0.01 of the ground, as on the plains that landers are sent to.
+    /// * `viking1`: roughness from stereo images (Shepard, Seelos, Arvidson and Haldemann, "The roughness of the
+    ///   Martian surface: what we know": Hurst exponent 0.5 to 0.8; rms slopes of 4.8 degrees at 1 m and 3.0 at
+    ///   10 m, hence 0.8); rocks on 0.069 of the ground (Golombek and Rapp 1997).
+    /// * `pathfinder`: the same sources: Hurst exponent 0.54 to 0.61, 5.4 degrees at 1 m; rocks on 0.19 (Golombek
+    ///   et al. 2003).
+    /// * `crater_field`: craters at 5 % of geometric saturation (Gault 1970 gives 1 to 10 % in equilibrium), up
+    ///   to 15 m; rocks on 0.05, the smallest of the models of Golombek et al. (2003).
+    /// * `crevassed`: the ground of Viking 1 with two cracks, 0.6 m wide and 1.2 m deep. CHOICE: the paper's
+    ///   ground has crevasses but no sizes for them; a rover's wheel would fall into these.
+    /// * `worst`: all features together, twice as rough as Pathfinder, rocks on 0.35, overhanging crevasses. No
+    ///   place on Mars looks like this.
     ///
-    /// The smallest rocks are 5 cm wide (2 cm more than the facets of the smallest can show), the largest as given; the
-    /// law puts a thousandth or less of the ground under larger ones.
+    /// The smallest rocks are 5 cm wide. The largest are as given; larger ones would cover a thousandth of the
+    /// ground or less.
     pub fn preset(name: &str, seed: u64) -> Option<Self> {
         const NO_CREVASSES: (u32, f64, f64, f64) = (0, 0.6, 1.2, 0.0);
-        // tan of the rms slope at 1 m is the rms difference of height there: tan 4.8 deg = 0.084, tan 5.4 deg = 0.0945.
+        // The rms difference of height at 1 m is the tangent of the rms slope there: tan 4.8 deg = 0.084,
+        // tan 5.4 deg = 0.0945.
         let Numbers { relief, rocks, craters, crevasses } = match name {
             "smooth" => Numbers {
                 relief: (0.8, 0.028),

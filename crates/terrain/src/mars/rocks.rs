@@ -1,51 +1,57 @@
-//! Rocks by the law of Golombek and Rapp (1997): how many of each size, where they lie, and their bodies.
+//! Rocks by the law of Golombek and Rapp (1997): sizes, places and bodies.
 //!
-//! The share of the ground that rocks of diameter D and more cover is F(D) = k exp(-q D), with k the share that all of them
-//! cover and q = 1.79 + 0.152 / k per metre. A rock covers pi D^2 / 4, so that per square metre and metre of diameter
-//! there are -F'(D) / (pi D^2 / 4) = 4 k q exp(-q D) / (pi D^2) rocks: in v = 1/D, 4 k q exp(-q / v) / pi per unit of v.
-//! That is how they are drawn: a Poisson process of rate 4 k q / pi in v, from 1/largest to 1/smallest, each event kept with
-//! probability exp(-q D). A rock's diameter is that of the circle as large as its outline seen from above.
+//! Rocks of diameter D and more cover the fraction F(D) = k exp(-q D) of the ground. Here k is the fraction that
+//! all rocks cover, and q = 1.79 + 0.152 / k per metre. One rock covers pi D^2 / 4. Per square metre and metre of
+//! diameter there are therefore -F'(D) / (pi D^2 / 4) = 4 k q exp(-q D) / (pi D^2) rocks, or
+//! 4 k q exp(-q / v) / pi per unit of v = 1/D.
+//!
+//! Diameters are drawn from this density: events of a Poisson process of rate 4 k q / pi in v, from 1/largest to
+//! 1/smallest, are kept with probability exp(-q D). The diameter of a rock is that of the circle with the
+//! same area as its outline from above.
 
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
 use crate::Ground;
-use crate::draws::{Draws, Purpose};
+use crate::random_stream::{RandomStream, StreamPurpose};
 
-/// Which rocks lie on the ground.
+/// Size distribution of the rocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rocks {
-    /// Share k of the ground that rocks of all sizes would cover, 0 to 0.4 (Golombek et al. 2003 give 0.05 to 0.4).
+    /// Fraction k of the ground that rocks of all sizes would cover, 0 to 0.4. (Golombek et al. 2003 give 0.05 to
+    /// 0.4)
     pub coverage: f64,
-    /// The smallest diameter D_min, metres: the law goes on below it, to ever more and smaller ones.
+    /// Smallest diameter D_min, metres. The law continues below it with ever more and smaller rocks.
     pub smallest: f64,
-    /// The largest diameter D_max, metres.
+    /// Largest diameter D_max, metres.
     pub largest: f64,
 }
 
 impl Rocks {
-    /// q of the law, per metre.
+    /// Decay rate q of the law, per metre.
     pub fn decay(&self) -> f64 {
         1.79 + 0.152 / self.coverage
     }
 
-    /// Share of the ground that rocks from that diameter up to the largest cover: F(D) - F(D_max).
+    /// Fraction of the ground covered by rocks from `diameter` (metres) up to the largest: F(D) - F(D_max).
     pub fn cumulative_area(&self, diameter: f64) -> f64 {
         let share = |diameter: f64| self.coverage * libm::exp(-self.decay() * diameter);
         share(diameter) - share(self.largest)
     }
 
-    /// No fewer faces than are to be expected of the rocks on that many square metres.
-    pub(super) fn expected_faces_at_most(&self, area: f64) -> f64 {
+    /// Upper bound on the expected number of faces of the rocks on `area` square metres.
+    pub(super) fn max_expected_faces(&self, area: f64) -> f64 {
         let from = |diameter: f64| {
             (1.0 / self.smallest.max(diameter) - 1.0 / self.largest).max(0.0) * self.rate(area)
         };
-        // Those of the least faces, and what larger ones have beyond it.
-        32.0 * from(0.0) + 96.0 * from(ROUND) + 384.0 * from(ROUNDER)
+        // 32 faces for each rock, plus the additional faces of the larger ones.
+        32.0 * from(0.0)
+            + 96.0 * from(MIN_DIAMETER_OF_128_FACES_M)
+            + 384.0 * from(MIN_DIAMETER_OF_512_FACES_M)
     }
 
-    /// Events of the process per unit of 1/D.
+    /// Rate of the Poisson process: events per unit of 1/D.
     fn rate(&self, area: f64) -> f64 {
         if self.coverage > 0.0 {
             area * 4.0 * self.coverage * self.decay() / std::f64::consts::PI
@@ -54,60 +60,60 @@ impl Rocks {
         }
     }
 
-    /// The diameters of the rocks on that many square metres, the largest first, metres. A smaller `smallest` of the
-    /// same seed adds more at the end.
+    /// Diameters of the rocks on `area` square metres, metres, in descending order. A smaller `smallest` with the
+    /// same seed appends more rocks at the end.
     pub fn diameters(&self, area: f64, seed: u64) -> Vec<f64> {
         let rate = self.rate(area);
         let mut diameters = Vec::new();
         if !(rate > 0.0) {
             return diameters;
         }
-        let mut draws = Draws::new(seed, Purpose::Rocks);
+        let mut random = RandomStream::new(seed, StreamPurpose::Rocks);
         let mut curvature = 1.0 / self.largest;
         loop {
-            curvature += draws.exponential() / rate;
+            curvature += random.exponential() / rate;
             let diameter = 1.0 / curvature;
             if !(diameter >= self.smallest) {
                 return diameters;
             }
-            if draws.unit() < libm::exp(-self.decay() * diameter) {
+            if random.uniform() < libm::exp(-self.decay() * diameter) {
                 diameters.push(diameter);
             }
         }
     }
 }
 
-/// Where a rock lies.
+/// Place and size of a rock.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Site {
+pub(super) struct RockSite {
     pub place: DVec2,
     pub diameter: f64,
 }
 
-/// Places for rocks of these diameters (the largest first) on the square of side `extent` about `middle`, wherever
-/// `is_free` allows one of that diameter.
+/// Places for rocks of these diameters (in descending order) on the square of side `extent` about `middle`,
+/// wherever `is_free` allows a rock of that diameter.
 ///
-/// CHOICE: rocks do not lie in one another as long as another place is found within a few draws; the law says
-/// nothing of places. The number of rocks does not depend on it.
-pub(super) fn place(
+/// CHOICE: the law does not give places. A rock avoids earlier rocks if one of its first tries finds a clear
+/// place; otherwise it overlaps them. The number of rocks does not depend on this.
+pub(super) fn place_rocks(
     diameters: &[f64],
     middle: DVec2,
     extent: f64,
     seed: u64,
     is_free: impl Fn(DVec2, f64) -> bool,
-) -> Vec<Site> {
-    const TRIES: usize = 24;
-    let mut draws = Draws::new(seed, Purpose::RockPlaces);
-    // Cells as large as the largest rock: two that touch lie in the same or in neighbouring cells.
+) -> Vec<RockSite> {
+    const MAX_TRIES_PER_ROCK: usize = 24;
+    let mut random = RandomStream::new(seed, StreamPurpose::RockPlaces);
+    // Cells as large as the largest rock: two rocks that touch lie in the same cell or in neighbouring cells.
     let cell = diameters.first().copied().unwrap_or(1.0);
     let cell_of = |place: DVec2| ((place - middle) / cell).floor().to_array().map(|index| index as i64);
-    let mut sites: Vec<Site> = Vec::with_capacity(diameters.len());
+    let mut sites: Vec<RockSite> = Vec::with_capacity(diameters.len());
     let mut taken: BTreeMap<[i64; 2], Vec<u32>> = BTreeMap::new();
     for &diameter in diameters {
         let mut chosen = None;
-        for _ in 0..TRIES {
+        for _ in 0..MAX_TRIES_PER_ROCK {
             let half = 0.5 * extent;
-            let place = middle + DVec2::new(draws.between(-half, half), draws.between(-half, half));
+            let place = middle + DVec2::new(random.between(-half, half), random.between(-half, half));
             if !is_free(place, diameter) {
                 continue;
             }
@@ -122,63 +128,66 @@ pub(super) fn place(
                 break;
             }
         }
-        // Where nothing is free at all, as on a ground that is all start or crevasse, there is no rock.
+        // A ground that is nowhere free (all start area or crevasse) gets no rock.
         let Some(place) = chosen else { continue };
         taken.entry(cell_of(place)).or_default().push(sites.len() as u32);
-        sites.push(Site { place, diameter });
+        sites.push(RockSite { place, diameter });
     }
     sites
 }
 
-/// Rocks from these diameters on, metres, have 128 and 512 faces; smaller ones have 32. CHOICE: facets of some centimetres.
-const ROUND: f64 = 0.15;
-const ROUNDER: f64 = 0.6;
+/// Diameters, metres, from which rocks have 128 and 512 faces; smaller ones have 32. CHOICE: facets of some
+/// centimetres.
+const MIN_DIAMETER_OF_128_FACES_M: f64 = 0.15;
+const MIN_DIAMETER_OF_512_FACES_M: f64 = 0.6;
 
-/// How often the faces of a rock's octahedron are cut in four.
+/// Number of times that the faces of a rock's octahedron are cut in four.
 fn subdivisions(diameter: f64) -> u32 {
-    1 + u32::from(diameter >= ROUND) + u32::from(diameter >= ROUNDER)
+    1 + u32::from(diameter >= MIN_DIAMETER_OF_128_FACES_M)
+        + u32::from(diameter >= MIN_DIAMETER_OF_512_FACES_M)
 }
 
-/// The bodies of rocks.
-pub(super) struct Shapes {
-    draws: Draws,
-    /// Octahedra whose faces are cut in four once, twice and three times, thrown onto the unit sphere.
+/// Generator of rock bodies.
+pub(super) struct RockBodies {
+    random: RandomStream,
+    /// Octahedra whose faces are cut in four once, twice and three times, projected onto the unit sphere.
     spheres: [Sphere; 3],
 }
 
-impl Shapes {
+impl RockBodies {
     pub(super) fn new(seed: u64) -> Self {
         let mut sphere = Sphere::octahedron();
         let spheres = [(); 3].map(|()| {
-            sphere = sphere.cut();
+            sphere = sphere.subdivided();
             sphere.clone()
         });
-        Self { draws: Draws::new(seed, Purpose::RockShapes), spheres }
+        Self { random: RandomStream::new(seed, StreamPurpose::RockShapes), spheres }
     }
 
-    /// Adds a closed rock of that diameter, its widest level at `centre`.
+    /// Adds a closed rock of that diameter; its widest level is at `centre`.
     ///
-    /// The body is a ball that random planes have cut flat, with half axes of its own: the higher of the two vertical ones is
-    /// above ground. Every vertex keeps its direction from the centre, so that faces look outward however it is cut.
+    /// The body is a ball that random planes have cut flat, with separate half axes; the part above `centre` is
+    /// above ground. Every vertex keeps its direction from the centre, so faces look outward however the ball is
+    /// cut.
     ///
-    /// CHOICE: half as high above ground as wide (0.3 to 0.7), as rocks at the landing sites stand (Golombek and Rapp
-    /// 1997 find linear relations of height and diameter), and up to 0.35 of the diameter deep in it, so that no side of
-    /// it hangs over a slope of less than 35 degrees.
+    /// CHOICE: the height above ground is 0.3 to 0.7 of the diameter, as rocks at the landing sites stand.
+    /// (Golombek and Rapp 1997 find linear relations of height and diameter) The rock reaches 0.35 of the
+    /// diameter into the ground, so that no side hangs over a slope of less than 35 degrees.
     pub(super) fn add(&mut self, ground: &mut Ground, centre: DVec3, diameter: f64, material: u16) {
-        let draws = &mut self.draws;
+        let random = &mut self.random;
         let sphere = &self.spheres[subdivisions(diameter) as usize - 1];
-        // Flat sides: at least half of the radius is left.
+        // Flat sides: at least half of the radius remains.
         let planes: Vec<(DVec3, f64)> =
-            (0..8).map(|_| (draws.direction(), draws.between(0.55, 0.95))).collect();
+            (0..8).map(|_| (random.unit_vector(), random.between(0.55, 0.95))).collect();
         let cut = |direction: DVec3| {
             planes.iter().fold(1.0_f64, |radius, (normal, distance)| {
                 let cosine = normal.dot(direction);
                 if cosine * radius > *distance { distance / cosine } else { radius }
             })
         };
-        let slender = draws.between(0.6, 1.0);
-        let (sin, cos) = libm::sincos(draws.between(0.0, std::f64::consts::TAU));
-        let (height, depth) = (diameter * draws.between(0.3, 0.7), 0.35 * diameter);
+        let slender = random.between(0.6, 1.0);
+        let (sin, cos) = libm::sincos(random.between(0.0, std::f64::consts::TAU));
+        let (height, depth) = (diameter * random.between(0.3, 0.7), 0.35 * diameter);
         let body: Vec<DVec3> = sphere
             .vertices
             .iter()
@@ -188,22 +197,22 @@ impl Shapes {
                 DVec3::new(cos * x - sin * y, sin * x + cos * y, z)
             })
             .collect();
-        // As wide as asked for, and as high.
+        // Scaled to the required width and height.
         let scale = diameter * (std::f64::consts::FRAC_PI_4 / plan_area(&body, &sphere.faces)).sqrt();
         let top = body.iter().fold(0.0_f64, |top, v| top.max(v.z));
         let bottom = body.iter().fold(0.0_f64, |bottom, v| bottom.min(v.z));
         let first = ground.vertices.len() as u32;
         for v in body {
             let z = if v.z > 0.0 { v.z * (height / top) } else { v.z * (depth / -bottom) };
-            ground.vertex(centre + DVec3::new(scale * v.x, scale * v.y, z));
+            ground.add_vertex(centre + DVec3::new(scale * v.x, scale * v.y, z));
         }
         for face in &sphere.faces {
-            ground.face(face.map(|corner| first + corner), material);
+            ground.add_face(face.map(|corner| first + corner), material);
         }
     }
 }
 
-/// Area of the outline of a closed body seen from above: that of all faces that look up, projected. Where the upper
+/// Area of the outline of a closed body from above: the projected area of all faces that look up. Where the upper
 /// side folds over itself that part counts twice.
 fn plan_area(vertices: &[DVec3], faces: &[[u32; 3]]) -> f64 {
     let twice = faces.iter().map(|face| {
@@ -213,7 +222,7 @@ fn plan_area(vertices: &[DVec3], faces: &[[u32; 3]]) -> f64 {
     0.5 * twice.sum::<f64>()
 }
 
-/// A triangulated sphere: unit vertices, faces counter-clockwise from outside.
+/// Triangulated sphere: unit vertices, faces counter-clockwise from outside.
 #[derive(Clone)]
 struct Sphere {
     vertices: Vec<DVec3>,
@@ -225,14 +234,14 @@ impl Sphere {
         let vertices = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]).collect();
         let face = |octant: u32| {
             let (a, b, c) = (octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2));
-            // Mirroring one axis turns the order.
+            // Mirroring one axis reverses the order.
             if octant.count_ones().is_multiple_of(2) { [a, b, c] } else { [a, c, b] }
         };
         Self { vertices, faces: (0..8).map(face).collect() }
     }
 
-    /// Every face cut in four at the middles of its sides.
-    fn cut(&self) -> Self {
+    /// The sphere with every face cut in four at the midpoints of its sides.
+    fn subdivided(&self) -> Self {
         let mut vertices = self.vertices.clone();
         let mut middles = BTreeMap::new();
         let mut middle_of = |a: u32, b: u32| {
@@ -251,131 +260,5 @@ impl Sphere {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
-    use super::*;
-    use crate::ground::tests::assert_closed_and_outward;
-
-    /// Faces of a rock of that diameter.
-    pub(in crate::mars) fn faces(diameter: f64) -> usize {
-        32 << (2 * (subdivisions(diameter) - 1))
-    }
-
-    const PATHFINDER: Rocks = Rocks { coverage: 0.19, smallest: 0.05, largest: 3.0 };
-
-    #[test]
-    fn the_law_by_hand() {
-        // k = 0.19: q = 1.79 + 0.8 = 2.59 per metre; F(1 m) = 0.19 e^-2.59 = 0.19 * 0.07502 = 0.014254, less that of
-        // 3 m, 0.19 e^-7.77 = 0.0000802.
-        assert!((PATHFINDER.decay() - 2.59).abs() < 1e-12);
-        assert!((PATHFINDER.cumulative_area(1.0) - 0.014_174).abs() < 2e-6);
-    }
-
-    #[test]
-    fn covered_areas_follow_the_law() {
-        // Compound Poisson: the sum of the areas a of all rocks from D on has the variance of the sum of a^2, which
-        // is estimated by the sum itself. As many square metres as make 3 standard errors at most 5 %.
-        for (coverage, seeds) in [(0.069, 320), (0.19, 100), (0.35, 60)] {
-            let rocks = Rocks { coverage, ..PATHFINDER };
-            let area = 120.0 * 120.0;
-            let mut sums = [(0.1, 0.0, 0.0), (0.2, 0.0, 0.0), (0.5, 0.0, 0.0), (1.0, 0.0, 0.0)];
-            for seed in 0..seeds {
-                let tracked = Rocks { smallest: 0.1, ..rocks };
-                for diameter in tracked.diameters(area, seed) {
-                    let covered = std::f64::consts::FRAC_PI_4 * diameter * diameter;
-                    for (least, sum, squares) in &mut sums {
-                        if diameter >= *least {
-                            *sum += covered;
-                            *squares += covered * covered;
-                        }
-                    }
-                }
-            }
-            for (least, sum, squares) in sums {
-                let expected = rocks.cumulative_area(least) * area * seeds as f64;
-                let error = f64::sqrt(squares);
-                let z = (sum - expected) / error;
-                println!(
-                    "k {coverage}, D {least}: {:.4} of the law, 3 errors {:.4}, z {z:.2}",
-                    sum / expected,
-                    3.0 * error / expected
-                );
-                assert!(3.0 * error / expected <= 0.05, "too few rocks above {least} m to tell");
-                assert!(z.abs() < 4.0, "k {coverage}: {sum} m2 above {least} m for {expected}: {z}");
-            }
-        }
-    }
-
-    #[test]
-    fn smaller_rocks_are_added_at_the_end() {
-        let coarse = Rocks { smallest: 0.2, ..PATHFINDER }.diameters(400.0, 3);
-        let fine = PATHFINDER.diameters(400.0, 3);
-        assert!(fine.len() > 2 * coarse.len());
-        assert_eq!(fine[..coarse.len()], coarse);
-        assert!(fine.is_sorted_by(|a, b| a >= b));
-        assert!(Rocks { coverage: 0.0, ..PATHFINDER }.diameters(400.0, 3).is_empty());
-    }
-
-    #[test]
-    fn rocks_keep_apart_and_out_of_what_is_not_free() {
-        let diameters = PATHFINDER.diameters(900.0, 8);
-        let free = |place: DVec2, diameter: f64| place.length() > 2.0 + 0.5 * diameter;
-        let sites = place(&diameters, DVec2::ZERO, 30.0, 8, free);
-        assert_eq!(sites.len(), diameters.len());
-        let touching = |k: usize| {
-            let rock = sites[k];
-            sites[..k]
-                .iter()
-                .any(|other| rock.place.distance(other.place) <= 0.5 * (rock.diameter + other.diameter))
-        };
-        let count = (0..sites.len()).filter(|&k| touching(k)).count();
-        // A place is missed 24 times in a row only where it is very full: with a fifth covered, never.
-        assert_eq!(count, 0);
-        assert!(sites.iter().all(|site| free(site.place, site.diameter)));
-        assert!(place(&diameters, DVec2::ZERO, 30.0, 8, |_, _| false).is_empty());
-    }
-
-    #[test]
-    fn bodies_are_closed_outward_and_as_wide_and_high_as_asked_for() {
-        let mut shapes = Shapes::new(5);
-        for k in 0..200 {
-            let diameter = 0.05 + 0.01 * f64::from(k);
-            let mut ground = Ground::default();
-            let centre = DVec3::new(3.0, -2.0, 0.7);
-            shapes.add(&mut ground, centre, diameter, 0);
-            assert_eq!(ground.faces.len(), faces(diameter));
-            assert_closed_and_outward(&ground, 0..ground.faces.len());
-            let plan = plan_area(&ground.vertices, &ground.faces);
-            let circle = std::f64::consts::FRAC_PI_4 * diameter * diameter;
-            assert!((plan / circle - 1.0).abs() < 1e-9, "{plan} for {circle}");
-            let heights = ground.vertices.iter().map(|v| (v.z - centre.z) / diameter);
-            let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
-            assert!((low + 0.35).abs() < 1e-9 && (0.3..0.7001).contains(&high), "{low} to {high}");
-        }
-    }
-
-    #[test]
-    fn the_outline_is_as_large_as_the_faces_say() {
-        // The upper side folds over itself hardly anywhere: the outline, counted on a raster of 2 % of the diameter, is
-        // as large as the sum of projected faces within 1 % on the mean of 40 rocks.
-        let mut shapes = Shapes::new(6);
-        let mut ratio = 0.0;
-        for _ in 0..40 {
-            let mut ground = Ground::default();
-            shapes.add(&mut ground, DVec3::ZERO, 1.0, 0);
-            let triangles: Vec<[DVec2; 3]> =
-                ground.faces.iter().map(|f| f.map(|v| ground.vertices[v as usize].truncate())).collect();
-            let inside = |p: DVec2| {
-                triangles.iter().any(|[a, b, c]| {
-                    let side = |a: &DVec2, b: &DVec2| (*b - *a).perp_dot(p - *a) >= 0.0;
-                    side(a, b) && side(b, c) && side(c, a)
-                })
-            };
-            let step = 0.02;
-            let raster =
-                (-50..50).flat_map(|i| (-50..50).map(move |j| DVec2::new(f64::from(i), f64::from(j))));
-            let count = raster.filter(|&p| inside((p + 0.5) * step)).count();
-            ratio += count as f64 * step * step / std::f64::consts::FRAC_PI_4 / 40.0;
-        }
-        assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
-    }
-}
+#[path = "../../tests/unit/mars/rocks.rs"]
+pub(super) mod tests;

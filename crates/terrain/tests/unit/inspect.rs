@@ -1,4 +1,4 @@
-//! Meshes made by hand, and what is known of each.
+//! Inspections of meshes made by hand, with results derived by hand.
 
 use glam::DVec3;
 use raypencil_scene::{FaceId, Material, Mesh};
@@ -20,7 +20,7 @@ fn mesh(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Mesh {
 const TETRAHEDRON: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const ITS_FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
-/// The faces found, which are fewer than are kept as examples.
+/// Numbers of the faces found; the tests find no more than are kept as examples.
 fn faces(found: &Found) -> Vec<u32> {
     assert_eq!(found.count, found.examples.len());
     let number = |example: &Example| match example.item {
@@ -45,11 +45,12 @@ fn a_tetrahedron_is_closed_and_sound() {
     assert_eq!((found.faces, found.vertices), (4, 4));
     assert_eq!((found.components, found.closed_components), (1, 1));
     assert_eq!(found.open_edges, OpenEdges::default());
-    // A sixth of the cube; three right triangles and an equilateral one of side sqrt 2: 3/2 + sqrt(3)/2.
+    // The volume is a sixth of the cube. The area is three right triangles and an equilateral one of side sqrt 2:
+    // 3/2 + sqrt(3)/2.
     assert!((found.volume - 1.0 / 6.0).abs() < 1e-15, "{}", found.volume);
     assert!((found.area - (1.5 + 3.0_f64.sqrt() / 2.0)).abs() < 1e-15, "{}", found.area);
     assert_eq!(found.bounds, Some([DVec3::ZERO, DVec3::ONE]));
-    // The base alone looks down. Its longest side is sqrt 2, twice its area 1: the ratio is 2.
+    // Only the base looks down. Its longest side is sqrt 2, and twice its area is 1: the ratio is 2.
     assert_eq!((faces(&found.down), found.down_area, found.worst_aspect), (vec![0], 0.5, 2.0));
 }
 
@@ -67,11 +68,12 @@ fn a_face_the_wrong_way_round_contradicts_its_three_neighbours() {
 
 #[test]
 fn the_volume_of_a_closed_body_decides_and_not_the_majority() {
-    // Three of the four faces are turned: they are wrong all the same.
+    // Three of the four faces are turned: they are wrong despite their majority.
     let turned = ITS_FACES.map(|[a, b, c]| if [a, b, c] == [0, 2, 1] { [a, b, c] } else { [a, c, b] });
     let found = inspect(&mesh(&TETRAHEDRON, &turned));
     assert_eq!((faces(&found.inverted), found.inside_out), (vec![1, 2, 3], 0));
-    // All four: inside out, though no two contradict each other. Also a hundred kilometres away.
+    // All four are turned: inside out, although no two contradict each other. The same holds a hundred kilometres
+    // away.
     let far = TETRAHEDRON.map(|[x, y, z]| [x + 1e5, y - 1e5, z]);
     for corners in [TETRAHEDRON, far] {
         let found = inspect(&mesh(&corners, &ITS_FACES.map(|[a, b, c]| [a, c, b])));
@@ -82,12 +84,12 @@ fn the_volume_of_a_closed_body_decides_and_not_the_majority() {
 
 #[test]
 fn a_flat_bag_has_no_volume_to_be_judged_by() {
-    // Two faces back to back are closed, and are what a double-sided sheet is.
+    // Two faces back to back are closed: a double-sided sheet.
     let found = inspect(&mesh(&TETRAHEDRON[..3], &[[0, 1, 2], [0, 2, 1]]));
     assert!(found.passes(), "{found:?}");
     assert_eq!((faces(&found.double_sided), found.duplicates.count), (vec![0], 0));
     assert_eq!((found.components, found.closed_components, found.volume), (1, 1, 0.0));
-    // In the same sense they are copies. The one that is left is open all round: 1 + 1 + sqrt 2 metres.
+    // In the same sense they are duplicates. The remaining one is open all round: 1 + 1 + sqrt 2 metres.
     let found = inspect(&mesh(&TETRAHEDRON[..3], &[[0, 1, 2], [2, 0, 1], [1, 2, 0]]));
     assert_eq!((faces(&found.duplicates), found.double_sided.count), (vec![1, 2], 0));
     assert_eq!((found.open_edges.count, found.open_edges.loops, found.kinds_wrong()), (3, 1, 1));
@@ -96,16 +98,16 @@ fn a_flat_bag_has_no_volume_to_be_judged_by() {
 
 #[test]
 fn two_cubes_that_share_a_wall_are_crowded_there() {
-    // Cubes of 1 m beside each other along x, each with all its 12 faces. Around the wall between them each
-    // edge has two faces of either cube: 4. The diagonal of the first cube's side joins its corners 1 and 7, that of the
-    // second's its corners 0 and 6: the same two places, and four faces again. So 5 edges are crowded, and both
-    // halves of the wall are there in both senses.
+    // Two cubes of 1 m beside each other along x, each with all its 12 faces. Each edge of the wall between them
+    // has two faces of either cube: 4. The diagonal of the first cube's wall joins its corners 1 and 7, that of
+    // the second's its corners 0 and 6. These are the same two places, so the diagonal has four faces again.
+    // Hence 5 edges are crowded, and both halves of the wall occur in both senses.
     let half = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * 0.5);
     let mut cubes = Ground { materials: ground(), ..Ground::default() };
-    cubes.solid_box(DVec3::ZERO, half, 0);
-    cubes.solid_box(DVec3::X, half, 0);
+    cubes.add_box(DVec3::ZERO, half, 0);
+    cubes.add_box(DVec3::X, half, 0);
     let found = inspect(&cubes.into_mesh().unwrap());
-    // The four corners of the wall are there twice.
+    // The four corners of the wall occur twice.
     assert_eq!((found.split_vertices.count, found.components, found.closed_components), (4, 1, 0));
     assert_eq!((found.crowded_edges.count, faces(&found.double_sided).len()), (5, 2));
     assert_eq!((found.area, found.open_edges.count, found.inverted.count), (12.0, 0, 0));
@@ -118,8 +120,8 @@ fn three_faces_fan_out_from_one_edge() {
     let found = inspect(&mesh(&tips, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]));
     assert_eq!(faces(&found.crowded_edges), [0]);
     assert_eq!(found.crowded_edges.examples[0].place, DVec3::new(0.5, 0.0, 0.0));
-    // Six open edges on five vertices in one piece: 6 - 5 + 1 = 2 loops. Which faces suit each other at an
-    // edge of three is not asked.
+    // Six open edges on five vertices in one piece: 6 - 5 + 1 = 2 loops. The orientation at an edge of three
+    // faces is not compared.
     let open = &found.open_edges;
     assert_eq!((open.count, open.pieces, open.loops), (6, 1, 2));
     assert_eq!((found.mismatched_edges.count, found.components, found.closed_components), (0, 1, 0));
@@ -129,20 +131,20 @@ fn three_faces_fan_out_from_one_edge() {
 fn square() -> Ground {
     let mut square = Ground { materials: ground(), ..Ground::default() };
     let place = |column, row| DVec3::new(f64::from(column), f64::from(row), 0.0);
-    square.height_field(3, 3, place, || false, || 0);
+    square.add_height_field(3, 3, place, || false, || 0);
     square
 }
 
 #[test]
 fn a_hole_is_a_second_loop() {
     let whole = inspect(&square().into_mesh().unwrap());
-    // The border: 12 m. One loop is what a ground has.
+    // The border is 12 m long. One loop is normal for a ground.
     assert!(whole.passes(), "{whole:?}");
     let open = &whole.open_edges;
     assert_eq!((open.count, open.length, open.loops, open.pieces), (12, 12.0, 1, 1));
     assert_eq!((whole.components, whole.closed_components), (1, 0));
 
-    // Without the middle cell, faces 8 and 9: 4 m more.
+    // Without the middle cell (faces 8 and 9) the open edges are 4 m longer.
     let mut holed = square();
     holed.faces.drain(8..10);
     holed.face_materials.drain(8..10);
@@ -154,7 +156,7 @@ fn a_hole_is_a_second_loop() {
     assert_eq!((open.longest[0].edges, of_hole.edges, of_hole.length), (12, 4, 4.0));
     assert!((1.0..=2.0).contains(&of_hole.example.place.x) && (1.0..=2.0).contains(&of_hole.example.place.y));
 
-    // Without the cell at a corner of it, too, the holes touch: one piece, two loops.
+    // Without a second cell that touches the hole at a corner: one piece, two loops.
     let mut holed = square();
     for cell in [4, 2] {
         holed.faces.drain(2 * cell..2 * cell + 2);
@@ -176,7 +178,7 @@ fn in_an_open_patch_the_minority_is_wrong() {
     assert_eq!(faces(&found.inverted), [3, 16]);
     assert!(!found.upside_down);
 
-    // Two against two: no majority, nothing is turned, but the edge between them is told.
+    // One face against one: no majority, and nothing is turned, but the edge between them is counted.
     let strip = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let found = inspect(&mesh(&strip, &[[0, 1, 2], [0, 3, 2]]));
     assert_eq!((found.mismatched_edges.count, found.inverted.count), (1, 0));
@@ -185,14 +187,14 @@ fn in_an_open_patch_the_minority_is_wrong() {
 
 #[test]
 fn a_moebius_strip_has_no_two_sides() {
-    // Five vertices, five faces (i, i+1, i+2) modulo 5: the smallest there is. (Moebius 1886) Every face shares
-    // its sides (i, i+1) and (i+1, i+2) with others; the sides (i, i+2) are the border, one loop of 5.
+    // Five vertices, five faces (i, i+1, i+2) modulo 5: the smallest Moebius strip. (Moebius 1886) Every face
+    // shares its sides (i, i+1) and (i+1, i+2) with others. The sides (i, i+2) are the border, one loop of 5.
     let strip = [[0.0, 0.0, 0.0], [3.0, 0.0, 1.0], [1.0, 2.0, 0.0], [-1.0, 1.0, 2.0], [2.0, -1.0, 3.0]];
     let turned: Vec<[u32; 3]> = (0..5).map(|i| [i, (i + 1) % 5, (i + 2) % 5]).collect();
     let found = inspect(&mesh(&strip, &turned));
     assert_eq!((faces(&found.one_sided_patches), found.inverted.count), (vec![0], 0));
     assert_eq!((found.open_edges.count, found.open_edges.loops), (5, 1));
-    // Turn them as one may, neighbours contradict each other somewhere.
+    // However the faces are turned, some neighbours contradict each other.
     for choice in 0..32_u32 {
         let some: Vec<[u32; 3]> = (0..5_u32)
             .map(|i| turned[i as usize])
@@ -212,9 +214,9 @@ fn faces_without_area_are_told_by_their_cause() {
     assert_eq!(faces(&found.zero_area), [1, 2, 3]);
     let one = ZeroAreaKinds { repeated_vertex: 1, coincident_vertices: 1, collinear: 1 };
     assert_eq!(found.zero_area_kinds, one);
-    // Vertex 3 is at -0 and vertex 0 at 0: one place. All five are some face's.
+    // Vertex 3 is at -0 and vertex 0 at 0: one place. Each of the five vertices is used by some face.
     assert_eq!((vertices(&found.split_vertices), found.unused_vertices.count), (vec![3], 0));
-    // Only face 0 is surface.
+    // Only face 0 belongs to the surface.
     assert_eq!((found.open_edges.count, found.components, found.area), (3, 1, 0.5));
 }
 
@@ -231,7 +233,7 @@ fn vertices_of_no_face_do_not_widen_the_bounds() {
 
 #[test]
 fn a_slender_face_is_a_fact() {
-    // 1 m long and h wide, the third corner in the middle: 1 / h.
+    // A face of 1 m with its third corner h above the middle: the ratio is 1 / h.
     let needle = |h: f64| mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.5, h, 0.0]], &[[0, 1, 2]]);
     let found = inspect(&needle(1.0 / 8192.0));
     assert_eq!((found.slender.count, found.worst_aspect), (0, 8192.0));
@@ -244,10 +246,10 @@ fn a_ground_that_shows_its_back_is_upside_down() {
     let mut ground = square();
     ground.faces.iter_mut().for_each(|face| face.swap(0, 1));
     let found = inspect(&ground.into_mesh().unwrap());
-    // No face contradicts another, so nothing is proven and nothing would be turned.
+    // No face contradicts another: nothing is proven, and nothing would be turned.
     assert_eq!((found.upside_down, found.inverted.count, found.kinds_wrong()), (true, 0, 1));
     assert_eq!((found.down.count, found.down_area), (18, 9.0));
-    // An upright wall shows nothing to someone above, whichever way its normals are rounded.
+    // A vertical wall shows no area from above, however its normals are rounded.
     let wall = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1e-9, 1.0]];
     assert!(!inspect(&mesh(&wall, &[[0, 1, 2]])).upside_down);
     assert!(!inspect(&mesh(&wall, &[[0, 2, 1]])).upside_down);
@@ -269,7 +271,7 @@ fn our_own_grounds_are_sound() {
     }
     let found = inspect(&RandomGround::plain(3, 20_000, 40.0).build().into_mesh().unwrap());
     assert!(found.passes());
-    // 100 x 100 cells of 0.4 m: the border's 400 edges, level distances of 160 m.
+    // 100 x 100 cells of 0.4 m: the border has 400 edges and, in the plane, a length of 160 m.
     assert_eq!((found.open_edges.count, found.open_edges.loops, found.components), (400, 1, 1));
     assert!(found.open_edges.length > 160.0 && found.open_edges.length < 170.0);
 }

@@ -1,43 +1,43 @@
-//! Random numbers as a function of what they are for: the same bits in any order and on any thread.
+//! Random numbers as a function of their use: the same bits in any order and on any thread.
 
 use std::f64::consts::PI;
 
 use raypencil_scene::philox;
 
-/// What a random number is for. Other purposes have other numbers, whatever the seed.
+/// Source of noise. Each has its own random numbers, whatever the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
-    /// How many electrons are collected in a frame.
+pub enum NoiseSource {
+    /// Shot noise: the number of electrons in a frame.
     Shot = 1,
-    /// What reading out adds in a frame.
+    /// Read noise of a frame.
     Read = 2,
-    /// How sensitive a pixel is, in every frame.
+    /// PRNU: the sensitivity of a pixel, the same in every frame.
     Prnu = 3,
-    /// By how much a pixel's dark signal is off, in every frame.
+    /// DSNU: the offset of a pixel's dark signal, the same in every frame.
     Dsnu = 4,
 }
 
-/// The random numbers of one pixel, for one purpose, in one frame.
+/// Random numbers of one pixel, one noise source, one frame: Philox of these counters.
 #[derive(Debug, Clone)]
-pub struct Stream {
+pub struct NoiseStream {
     key: [u32; 2],
     counter: [u32; 4],
     spare: Option<f64>,
 }
 
-impl Stream {
-    /// The stream of key (`seed`) and counters (`pixel`, `frame`, `purpose` and a count of blocks).
+impl NoiseStream {
+    /// Stream of key (`seed`) and counters (`pixel`, `frame`, `source` and a count of blocks).
     ///
-    /// The last word is never 0, so that no block is one of the draws of `scene`'s jittered pencils.
-    pub fn new(seed: u64, purpose: Purpose, frame: u64, pixel: u32) -> Self {
+    /// The last word is never 0, so no block coincides with one of the draws of `scene`'s jittered pencils.
+    pub fn new(seed: u64, source: NoiseSource, frame: u64, pixel: u32) -> Self {
         Self {
             key: [seed as u32, (seed >> 32) as u32],
-            counter: [pixel, frame as u32, (frame >> 32) as u32, (purpose as u32) << 24],
+            counter: [pixel, frame as u32, (frame >> 32) as u32, (source as u32) << 24],
             spare: None,
         }
     }
 
-    /// A number uniform in (0, 1): an odd multiple of 2^-53, so never 0 or 1.
+    /// Uniform number in (0, 1): an odd multiple of 2^-53, so never 0 or 1.
     pub fn uniform(&mut self) -> f64 {
         if let Some(number) = self.spare.take() {
             return number;
@@ -53,8 +53,8 @@ impl Stream {
         unit(a, b)
     }
 
-    /// A number of the standard normal law. (Box and Muller 1958; its tail ends at 8.6 standard deviations, beyond
-    /// which 1e-17 of the law lies)
+    /// Standard normal number. (Box and Muller, 1958; the tail ends at 8.6 standard deviations, beyond which
+    /// 1e-17 of the law lies)
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(self.uniform())).sqrt();
         radius * libm::cos(2.0 * PI * self.uniform())
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_stream_reads_its_blocks_in_order() {
-        let mut stream = Stream::new(0x0123_4567_89ab_cdef, Purpose::Read, (7 << 32) | 5, 42);
+        let mut stream = NoiseStream::new(0x0123_4567_89ab_cdef, NoiseSource::Read, (7 << 32) | 5, 42);
         for block in 0..3 {
             let words = philox([42, 5, 7, (2 << 24) + block], [0x89ab_cdef, 0x0123_4567]);
             for pair in words.chunks(2) {
@@ -80,15 +80,15 @@ mod tests {
 
     #[test]
     fn seed_purpose_frame_and_pixel_each_give_another_stream() {
-        let first = |seed, purpose, frame, pixel| Stream::new(seed, purpose, frame, pixel).uniform();
+        let first = |seed, source, frame, pixel| NoiseStream::new(seed, source, frame, pixel).uniform();
         let all = [
-            first(1, Purpose::Shot, 0, 0),
-            first(2, Purpose::Shot, 0, 0),
-            first(1 << 32, Purpose::Shot, 0, 0),
-            first(1, Purpose::Read, 0, 0),
-            first(1, Purpose::Shot, 1, 0),
-            first(1, Purpose::Shot, 1 << 32, 0),
-            first(1, Purpose::Shot, 0, 1),
+            first(1, NoiseSource::Shot, 0, 0),
+            first(2, NoiseSource::Shot, 0, 0),
+            first(1 << 32, NoiseSource::Shot, 0, 0),
+            first(1, NoiseSource::Read, 0, 0),
+            first(1, NoiseSource::Shot, 1, 0),
+            first(1, NoiseSource::Shot, 1 << 32, 0),
+            first(1, NoiseSource::Shot, 0, 1),
         ];
         for (index, a) in all.iter().enumerate() {
             assert!(all[index + 1..].iter().all(|b| a != b), "{all:?}");

@@ -1,4 +1,4 @@
-//! A regular grid of heights: what elevation models are, and what generated relief starts from.
+//! Regular grid of heights ("posts"): the content of elevation models, and the start of generated relief.
 
 use std::ops::RangeInclusive;
 
@@ -8,42 +8,63 @@ use raypencil_scene::Material;
 use crate::Ground;
 
 /// Heights on a regular grid of points ("posts"), global frame.
+///
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use raypencil_scene::Material;
+/// use raypencil_terrain::{Posts, height_at, simplify};
+///
+/// // 9 x 9 posts, 0.5 m apart, on the plane z = x / 4.
+/// let heights = (0..81).map(|post| 0.125 * f64::from(post % 9)).collect();
+/// let posts =
+///     Posts { columns: 9, rows: 9, corner: DVec2::ZERO, spacing: DVec2::splat(0.5), heights };
+/// // Column 4, row 2: x = 4 * 0.5 = 2, y = 2 * 0.5 = 1, z = 2 / 4.
+/// assert_eq!(posts.at(4, 2), DVec3::new(2.0, 1.0, 0.5));
+///
+/// let sand = Material { name: "sand".into(), reflectivity: 0.25 };
+/// // 8 x 8 cells of two faces; a plane needs only two faces in all.
+/// assert_eq!(posts.ground(sand.clone()).faces.len(), 128);
+/// let simple = simplify(&posts, 0.01, sand);
+/// assert_eq!(simple.faces.len(), 2);
+/// assert_eq!(height_at(&simple.into_mesh()?, 2.0, 1.0), Some(0.5));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posts {
-    /// Posts along x.
+    /// Number of posts along x.
     pub columns: u32,
-    /// Posts along y.
+    /// Number of posts along y.
     pub rows: u32,
-    /// Global x and y of post (0, 0), the one with the least of both, metres.
+    /// Global x and y of post (0, 0), the post of least x and y, metres.
     pub corner: DVec2,
-    /// From a post to the next along x, and along y, metres; both are positive.
+    /// Distance between neighbouring posts along x and along y, metres; both are positive.
     pub spacing: DVec2,
-    /// Global z, metres, `columns` of them for each row, the row of least y first; NaN where it is not known.
+    /// Global z of each post, metres, row by row, the row of least y first; NaN where it is unknown.
     pub heights: Vec<f64>,
 }
 
 impl Posts {
-    /// Where the post of that column and row stands.
+    /// Position of a post, global frame, metres.
     ///
     /// # Panics
-    /// If there is no such post.
+    /// If the grid has no such post.
     pub fn at(&self, column: u32, row: u32) -> DVec3 {
         let place = self.corner + self.spacing * DVec2::new(f64::from(column), f64::from(row));
         place.extend(self.height(column, row))
     }
 
-    /// From the first post to the last along x and along y, metres.
+    /// Extent of the grid along x and along y, from the first post to the last, metres.
     pub fn extent(&self) -> DVec2 {
         let steps = |count: u32| f64::from(count.saturating_sub(1));
         self.spacing * DVec2::new(steps(self.columns), steps(self.rows))
     }
 
-    /// The posts from `low` to `high` in x and y, global frame, both included; `None` if there are none.
+    /// Posts from `low` to `high` in x and y (global frame, both inclusive); `None` if there are none.
     ///
     /// # Panics
-    /// If `heights` are not as many as `columns` and `rows` say.
+    /// If the number of `heights` differs from `columns * rows`.
     pub fn crop(&self, low: DVec2, high: DVec2) -> Option<Self> {
-        self.assert_whole();
+        self.checked_len();
         let columns = indices_within(self.corner.x, self.spacing.x, self.columns, low.x, high.x)?;
         let rows = indices_within(self.corner.y, self.spacing.y, self.rows, low.y, high.y)?;
         let (column, row) = (*columns.start(), *rows.start());
@@ -60,58 +81,57 @@ impl Posts {
         })
     }
 
-    /// The ground through all posts, all of one material: two faces for each cell between four posts, both
-    /// looking up. A cell with a corner that is not known has none, so that what is not known is a hole and
-    /// never a cliff; posts that no face uses are left out.
+    /// Ground through all posts, in one material: each cell between four posts has two faces, and both look up.
     ///
-    /// The ground is empty if no cell has four known corners.
+    /// A cell with an unknown corner has no faces, so that unknown ground is a hole and never a cliff. Posts that
+    /// no face uses are left out. The ground is empty if no cell has four known corners.
     ///
     /// # Panics
-    /// If `heights` are not as many as `columns` and `rows` say, or 2^32 or more.
+    /// If the number of `heights` differs from `columns * rows`, or is 2^32 or more.
     pub fn ground(&self, material: Material) -> Ground {
-        self.assert_whole();
-        // CHOICE: three known corners give no face. One triangle would fill half a cell by a diagonal that the
-        // missing corner chose; without it the ground ends at whole cells, simplified or not.
+        self.checked_len();
+        // CHOICE: a cell with three known corners has no face. One triangle would fill half of the cell, and the
+        // missing corner would choose which half. Without it the ground ends at cell borders, simplified or not.
         let complete_cells = || {
             let [columns, rows] = [self.columns, self.rows].map(|count| count.saturating_sub(1));
             let cells = (0..rows).flat_map(move |row| (0..columns).map(move |column| (column, row)));
             cells.filter(|&(column, row)| self.is_complete(column, row))
         };
-        // Counted first: a list that grows takes up to three times the memory.
+        // Counted first: a growing list takes up to three times the memory.
         let mut faces = Vec::with_capacity(2 * complete_cells().count());
         for (column, row) in complete_cells() {
-            // Counter-clockwise from the near left corner: a b c d.
+            // Corners a b c d of the cell, counter-clockwise from the near left one.
             let a = row * self.columns + column;
             let (b, c, d) = (a + 1, a + self.columns + 1, a + self.columns);
             let [za, zb, zc, zd] = [a, b, c, d].map(|post| self.heights[post as usize]);
-            // CHOICE: the diagonal between the corners that differ less in height, which follows ridges and
-            // valleys; of two alike the one from a to c.
+            // CHOICE: the diagonal joins the corners that differ less in height: it follows ridges and valleys.
+            // In a tie it runs from a to c.
             let halves = match (zb - zd).abs() < (za - zc).abs() {
                 true => [[a, b, d], [b, c, d]],
                 false => [[a, b, c], [a, c, d]],
             };
             faces.extend(halves);
         }
-        self.ground_of(faces, material)
+        self.ground_from_faces(faces, material)
     }
 
-    /// The height of a post, NaN if it is not known.
+    /// Height of a post, metres; NaN if it is unknown.
     pub(crate) fn height(&self, column: u32, row: u32) -> f64 {
         self.heights[row as usize * self.columns as usize + column as usize]
     }
 
-    /// Whether the cell whose near left corner is that post has four known corners.
+    /// Whether a cell, named by its near left post, has four known corners.
     pub(crate) fn is_complete(&self, column: u32, row: u32) -> bool {
         [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)]
             .into_iter()
             .all(|(column, row)| self.height(column, row).is_finite())
     }
 
-    /// A ground of faces that name posts, counted row by row. Vertices are those posts that a face uses, in the
-    /// order of posts.
-    pub(crate) fn ground_of(&self, mut faces: Vec<[u32; 3]>, material: Material) -> Ground {
-        let count = self.assert_whole();
-        // First whether a post is used, then its number among those that are.
+    /// Ground from faces that name posts by number, row by row. Its vertices are the posts that a face uses, in
+    /// the order of posts.
+    pub(crate) fn ground_from_faces(&self, mut faces: Vec<[u32; 3]>, material: Material) -> Ground {
+        let count = self.checked_len();
+        // First 1 for each used post, then its vertex number.
         let mut number = vec![0_u32; count];
         faces.as_flattened().iter().for_each(|&post| number[post as usize] = 1);
         let mut vertices = Vec::with_capacity(number.iter().filter(|used| **used == 1).count());
@@ -130,17 +150,25 @@ impl Posts {
         Ground { vertices, faces, face_materials, materials: vec![material] }
     }
 
-    /// How many posts there are.
-    fn assert_whole(&self) -> usize {
+    /// Number of posts, after a check that it fits `columns`, `rows` and u32.
+    fn checked_len(&self) -> usize {
         let count = u64::from(self.columns) * u64::from(self.rows);
-        assert_eq!(self.heights.len() as u64, count, "one height for each post");
-        assert!(count <= u64::from(u32::MAX), "a post's number is below 2^32");
+        assert_eq!(self.heights.len() as u64, count, "the number of heights must be columns * rows");
+        assert!(count <= u64::from(u32::MAX), "the number of posts must be below 2^32");
         self.heights.len()
     }
 }
 
-/// Which of `count` posts along one axis lie from `low` to `high`, both included, if any do: post `k` is at
-/// `corner + spacing * k`, evaluated as [`Posts::at`] does it.
+/// Indices of the posts along one axis that lie from `low` to `high`, both inclusive; `None` if there are none.
+///
+/// Post `k` of `count` stands at `corner + spacing * k`, evaluated as in [`Posts::at`].
+///
+/// ```
+/// use raypencil_terrain::indices_within;
+///
+/// // Posts at 10, 10.5, 11, 11.5: the second and third lie from 10.5 to 11.4.
+/// assert_eq!(indices_within(10.0, 0.5, 4, 10.5, 11.4), Some(1..=2));
+/// ```
 pub fn indices_within(
     corner: f64,
     spacing: f64,
@@ -149,7 +177,7 @@ pub fn indices_within(
     high: f64,
 ) -> Option<RangeInclusive<u32>> {
     let at = |index: u32| corner + spacing * f64::from(index);
-    // Places do not fall with the index, so that both ends are found by halving.
+    // Positions never decrease with the index, so that bisection finds both ends.
     let first_where = |is_beyond: &dyn Fn(f64) -> bool| {
         let (mut from, mut to) = (0, count);
         while from < to {
@@ -179,12 +207,12 @@ pub(crate) mod tests {
 
     #[test]
     fn a_cell_is_cut_along_the_flatter_diagonal() {
-        // Corners by row: near 0 and 1, far 3 and 0.5. The diagonal near left to far right differs by 0.5 m,
-        // the other by 2 m: the first is taken, a-b-c and a-c-d with the vertices numbered by rows.
+        // Corners by row: near 0 and 1, far 3 and 0.5. The diagonal from near left to far right differs by 0.5 m,
+        // the other by 2 m. The first is taken: faces a-b-c and a-c-d, with the vertices numbered row by row.
         let ground = posts(2, 2, &[0.0, 1.0, 3.0, 0.5]).ground(plain());
         assert_eq!(ground.faces, [[0, 1, 3], [0, 3, 2]]);
         assert_eq!(ground.vertices[3], DVec3::new(10.5, -3.0, 0.5));
-        // The other way round; and a tie.
+        // Mirrored, and a tie.
         assert_eq!(posts(2, 2, &[1.0, 0.0, 0.5, 3.0]).ground(plain()).faces, [[0, 1, 2], [1, 3, 2]]);
         assert_eq!(posts(2, 2, &[1.0, 0.0, 0.0, 1.0]).ground(plain()).faces, [[0, 1, 3], [0, 3, 2]]);
         assert_eq!(posts(2, 2, &[0.0, 1.0, 2.0, 3.0]).ground(plain()).faces, [[0, 1, 2], [1, 3, 2]]);
@@ -192,15 +220,15 @@ pub(crate) mod tests {
 
     #[test]
     fn the_unknown_is_a_hole() {
-        // 4 x 3 posts, the second of the middle row not known: of six cells the four around it go, the two on
-        // the right stay, with their six posts.
+        // 4 x 3 posts, and the second of the middle row is unknown. Four of the six cells touch it and go; the
+        // two on the right stay, with their six posts.
         let mut heights = [0.0; 12];
         heights[5] = f64::NAN;
         let ground = posts(4, 3, &heights).ground(plain());
         assert_eq!((ground.vertices.len(), ground.faces.len()), (6, 4));
         assert!(ground.vertices.iter().all(|v| v.is_finite() && v.x >= 11.0));
         assert!(ground.faces.iter().all(|&face| normal(&ground, face).z > 0.0));
-        // Nothing at all is a ground without faces, and so is a single row.
+        // Unknown posts alone, or a single row, give a ground without faces.
         assert_eq!(posts(2, 2, &[f64::NAN; 4]).ground(plain()).faces, [[0; 3]; 0]);
         assert_eq!(posts(3, 1, &[0.0; 3]).ground(plain()).vertices, []);
     }
@@ -209,13 +237,13 @@ pub(crate) mod tests {
     fn a_window_is_closed() {
         let heights: Vec<f64> = (0..12).map(f64::from).collect();
         let all = posts(4, 3, &heights);
-        // x of the posts: 10, 10.5, 11, 11.5; y: -5, -3, -1. From 10.5 to 11.4 there are two columns, from -5 to
-        // -3 two rows: posts 1, 2, 5, 6.
+        // x of the posts: 10, 10.5, 11, 11.5; y: -5, -3, -1. Two columns lie from 10.5 to 11.4, two rows from -5
+        // to -3: posts 1, 2, 5, 6.
         let part = all.crop(DVec2::new(10.5, -5.0), DVec2::new(11.4, -3.0)).unwrap();
         assert_eq!((part.columns, part.rows, part.corner), (2, 2, DVec2::new(10.5, -5.0)));
         assert_eq!(part.heights, [1.0, 2.0, 5.0, 6.0]);
         assert_eq!(all.crop(DVec2::splat(-1e9), DVec2::splat(1e9)).unwrap(), all);
-        // Between two posts, beside them, and the wrong way round.
+        // Between two posts, beside all posts, and with the bounds exchanged.
         assert_eq!(all.crop(DVec2::new(10.1, -5.0), DVec2::new(10.4, -3.0)), None);
         assert_eq!(all.crop(DVec2::new(12.0, -5.0), DVec2::new(13.0, -3.0)), None);
         assert_eq!(all.crop(DVec2::new(11.0, -3.0), DVec2::new(10.0, -5.0)), None);

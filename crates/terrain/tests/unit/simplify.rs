@@ -1,4 +1,4 @@
-//! Bound, borders and cracks of simplified grounds, by evaluations that know nothing of how they were made.
+//! Bound, borders and cracks of simplified grounds, by evaluations independent of the algorithm.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::ground::tests::normal;
 use crate::height_at;
-use crate::posts::tests::plain;
+use crate::height_grid::tests::plain;
 
 /// Posts 1 m apart with these heights.
 fn posts(columns: u32, rows: u32, height: impl Fn(u32, u32) -> f64) -> Posts {
@@ -19,12 +19,12 @@ fn posts(columns: u32, rows: u32, height: impl Fn(u32, u32) -> f64) -> Posts {
 
 #[test]
 fn a_plane_is_two_faces() {
-    // 9 x 9 posts are one square of 8 x 8 cells; z = x / 4 - y is met exactly.
+    // 9 x 9 posts are one square of 8 x 8 cells; two faces meet z = x / 4 - y exactly.
     let plane = posts(9, 9, |column, row| 0.25 * f64::from(column) - f64::from(row));
     let ground = simplify(&plane, 1e-6, plain());
     assert_eq!((ground.faces.len(), ground.vertices.len()), (2, 4));
     assert!(ground.faces.iter().all(|&face| normal(&ground, face).z > 0.0));
-    // The bound is a bound, not a target: with less than rounding allows every cell stays.
+    // The bound is strict: below the rounding of the plane every cell stays.
     assert_eq!(simplify(&plane, 1e-16, plain()).faces.len(), 128);
 }
 
@@ -52,13 +52,13 @@ fn grids_of_any_shape() {
 
 #[test]
 fn a_strip_of_a_row_of_cells_cannot_be_simplified() {
-    // Its only squares are cells.
+    // The only squares of one row of cells are the cells.
     assert_eq!(simplify(&posts(2, 9, |_, _| 0.0), 1.0, plain()).faces.len(), 16);
 }
 
-/// How far the surface of a mesh may be from that of its ground at a post, metres: each vertex is rounded to
-/// f32 offsets, by half an ulp, 2^-24 of the coordinate, which moves the surface up or down by that of z and,
-/// along its slope, by that of x and y; and one more time for the height's own evaluation in f64.
+/// Distance between the surface of a mesh and that of its ground at a post, at most, metres. Each vertex is
+/// rounded to f32 offsets by half an ulp, 2^-24 of the coordinate. This moves the surface up or down by the
+/// rounding of z and, along its slope, of x and y. The last term covers the evaluation of the height in f64.
 fn f32_allowance(ground: &Ground, mesh_origin: DVec3) -> f64 {
     let half_ulp = 0.5_f64 / 8_388_608.0;
     let reach = ground.vertices.iter().fold(DVec3::ZERO, |most, v| most.max((*v - mesh_origin).abs()));
@@ -84,7 +84,7 @@ proptest! {
         offset in prop_oneof![Just(0.0), Just(1e3), Just(1e6)],
         spacing in 0.1..3.0,
     ) {
-        // A plain mixing of bits: any numbers will do. (Vigna, splitmix64)
+        // Mixed bits: any numbers will do. (Vigna, splitmix64)
         let draw = |index: u64| {
             let mut z = (seed ^ index).wrapping_add(0x9e37_79b9_7f4a_7c15).wrapping_mul(0xbf58_476d_1ce4_e5b9);
             z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -107,8 +107,8 @@ proptest! {
         prop_assert!(ground.faces.iter().all(|&face| normal(&ground, face).z > 0.0));
         prop_assert_eq!(&simplify(&posts, max_error, plain()), &ground);
 
-        // No cracks: each edge belongs to two faces, one each way, or to one and the border of the ground, where
-        // nobody's vertex lies inside it. Edges inside the ground are told by the cells on both sides.
+        // No cracks: each edge belongs to two faces, one in each direction, or to one face and the border of the
+        // ground. The cells on both sides tell which edges are inside the ground.
         let mut edges = BTreeMap::new();
         for &[a, b, c] in &ground.faces {
             for edge in [[a, b], [b, c], [c, a]] {
@@ -133,10 +133,10 @@ proptest! {
             .filter(|[a, b]| !whole_edges.contains_key(&[*b, *a]))
             .map(|[a, b]| (whole.vertices[*a as usize] - whole.vertices[*b as usize]).truncate().length())
             .sum();
-        // A crack would be border too: the same length means there is none.
+        // A crack would be border, too: equal lengths mean that there is none.
         prop_assert!((border - whole_border).abs() <= 1e-6 * (1.0 + border), "{border} and {whole_border}");
 
-        // The bound, by the height of the finished mesh above each post; and the same holes.
+        // The bound, by the height of the finished mesh at each post; and the same holes.
         if ground.faces.is_empty() {
             return Ok(());
         }
@@ -149,7 +149,7 @@ proptest! {
         let mesh = ground.into_mesh().unwrap();
         for vertex in &whole.vertices {
             let place = inner(vertex);
-            // On the border of a hole or of the whole there may be nothing by an f32's rounding.
+            // On a border, f32 rounding may leave no ground below the post.
             let Some(z) = height_at(&mesh, place.x, place.y) else { continue };
             let far = (z - vertex.z).abs();
             prop_assert!(far <= max_error + allowance, "{far} at {vertex}, allowed {max_error} + {allowance}");

@@ -1,4 +1,4 @@
-//! Whole grounds against their laws: what a mesh holds, not what a list promises.
+//! Whole grounds against their laws: the content of the mesh, not of the lists it is made from.
 
 use std::collections::BTreeMap;
 
@@ -8,22 +8,22 @@ use super::*;
 use crate::ground::tests::{assert_closed_and_outward, normal};
 use crate::height_at;
 
-/// The ground of a preset, small enough for many of them.
+/// Ground of a preset, small enough for many of them.
 fn small(name: &str, seed: u64) -> MarsGround {
     let mars = MarsGround::preset(name, seed).expect("a preset");
-    // Four crevasses do not fit on so little.
+    // Four crevasses do not fit on 12 m.
     let crevasses = Crevasses { count: mars.crevasses.count.min(2), ..mars.crevasses };
     MarsGround { extent: 12.0, post_spacing: 0.2, crevasses, ..mars }
 }
 
-/// Faces of the sheet come first; then rocks.
+/// First face that is not of the sheet: rocks come last.
 fn first_rock_face(ground: &Ground) -> usize {
-    ground.face_materials.iter().position(|&kind| kind == ROCK).unwrap_or(ground.faces.len())
+    ground.face_materials.iter().position(|&kind| kind == ROCK_MATERIAL).unwrap_or(ground.faces.len())
 }
 
-/// The closed bodies of the rocks, as ranges of faces: each has vertices of its own.
+/// Closed bodies of the rocks, as ranges of faces.
 fn rocks_of(ground: &Ground) -> Vec<std::ops::Range<usize>> {
-    // Each body's faces name its own vertices alone, all later than those of the body before.
+    // The faces of each body use its own vertices alone, all later than those of the body before.
     let first = first_rock_face(ground);
     let mut bodies: Vec<std::ops::Range<usize>> = Vec::new();
     let mut highest = 0;
@@ -59,7 +59,7 @@ fn every_preset_is_a_mesh_whose_rocks_are_closed_and_outward() {
     assert_eq!(MarsGround::preset("viking2", 0), None);
 }
 
-/// How many faces run along each edge of the sheet, one way and the other.
+/// Number of faces along each edge of the sheet, in either direction.
 fn edges(ground: &Ground) -> BTreeMap<[u32; 2], [u32; 2]> {
     let mut edges: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
     for &[a, b, c] in &ground.faces[..first_rock_face(ground)] {
@@ -77,14 +77,18 @@ fn the_sheet_has_no_gap_and_no_fold_however_it_is_cut() {
             let mars = small(name, seed);
             let ground = mars.build().unwrap();
             let cells = mars.cells();
-            // A closed sheet but for its outer border of four times `cells` edges, all faces the same way round.
+            // The sheet is closed but for its outer border of four times `cells` edges, and all faces have the
+            // same orientation.
             let border = edges(&ground).values().filter(|uses| **uses != [1, 1]).count();
             assert_eq!(border, 4 * cells as usize, "{name}, seed {seed}");
             assert!(edges(&ground).values().all(|uses| uses[0] <= 1 && uses[1] <= 1));
-            // Soil looks up everywhere.
+            // Soil faces look up everywhere.
             let sheet = first_rock_face(&ground);
             for (face, &kind) in ground.faces[..sheet].iter().zip(&ground.face_materials) {
-                assert!(kind == WALL || normal(&ground, *face).z > 0.0, "{name}, seed {seed}: {face:?}");
+                assert!(
+                    kind == WALL_MATERIAL || normal(&ground, *face).z > 0.0,
+                    "{name}, seed {seed}: {face:?}"
+                );
             }
         }
     }
@@ -100,18 +104,22 @@ fn walls_are_walls_and_overhang_only_if_asked_to() {
     };
     let walls = |ground: &Ground| -> Vec<DVec3> {
         let faces = ground.faces.iter().zip(&ground.face_materials);
-        faces.filter(|(_, kind)| **kind == WALL).map(|(face, _)| normal(ground, *face).normalize()).collect()
+        faces
+            .filter(|(_, kind)| **kind == WALL_MATERIAL)
+            .map(|(face, _)| normal(ground, *face).normalize())
+            .collect()
     };
     let [plain, under] = [0.0, 0.2].map(|overhang| walls(&mars(overhang)));
     assert!(plain.len() > 500);
-    // Without an overhang hardly any wall looks down (edges are ragged), and half of all are steeper than 70 degrees.
+    // Without an overhang hardly any wall looks down (edges are ragged), and half of all are steeper than 70
+    // degrees: |cos| < 0.342.
     let share = |normals: &[DVec3], holds: &dyn Fn(f64) -> bool| {
         normals.iter().filter(|n| holds(n.z)).count() as f64 / normals.len() as f64
     };
     assert!(share(&plain, &|z| z.abs() < 0.342) > 0.5);
     assert!(share(&plain, &|z| z < -0.1) < 0.05);
     assert!(share(&under, &|z| z < -0.1) > 0.15);
-    // 1.2 m deep at the deepest, at least 0.7 of that in the middle.
+    // The depth is at most 1.2 m, and at least 0.7 of that in the middle.
     let ground = mars(0.0);
     let lowest = ground.vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
     let flat = MarsGround {
@@ -125,7 +133,7 @@ fn walls_are_walls_and_overhang_only_if_asked_to() {
 
 #[test]
 fn coarse_posts_are_vertices_of_the_ground() {
-    // 7 x 5 posts each 4 m, at map coordinates of a million metres.
+    // 7 x 5 posts, 4 m apart, at map coordinates of a million metres.
     let heights = (0..35).map(|k| f64::from(k * k % 13) * 0.37 - 2.0).collect();
     let coarse = Posts {
         columns: 7,
@@ -150,8 +158,8 @@ fn coarse_posts_are_vertices_of_the_ground() {
 
 #[test]
 fn a_crater_of_the_ground_has_its_depth_and_rim() {
-    // The same ground with and without: the difference at the posts of the largest crater that lies well inside, fresh
-    // or not. Others may lie in it, so it is looked for among seeds in which it is alone.
+    // The same ground with and without craters: the difference at the posts of the first crater that lies well
+    // inside. Other craters may overlap it, so only seeds in which it is alone are measured.
     let mut measured = 0;
     for seed in 0..400 {
         let mars = MarsGround {
@@ -181,8 +189,9 @@ fn a_crater_of_the_ground_has_its_depth_and_rim() {
                 assert!((a.z - b.z).abs() < 1e-12 || craters.len() > 1);
             }
         }
-        // Posts lie within 0.07 m of the middle and of any point of the crest: there the bowl, at most 0.8 steep, is at most
-        // 0.06 m lower than the crest, and 0.2 D (2 * 0.07 / D)^2 < 1e-3 m higher than its lowest point.
+        // Posts lie within 0.07 m of the centre and of any point of the crest. There the bowl, with a slope of at
+        // most 0.8, is at most 0.06 m lower than the crest, and 0.2 D (2 * 0.07 / D)^2 < 1e-3 m higher than its
+        // lowest point.
         assert!(
             (0.0..0.06).contains(&(crater.rim_height() - rim + 1e-9)),
             "{rim} for {}",
@@ -205,7 +214,7 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
 
 #[test]
 fn the_bytes_are_these() {
-    // A fingerprint (FNV-1a, 64 bits) of all coordinates: changes with any change of what a seed means.
+    // A digest (FNV-1a, 64 bits) of all coordinates: it changes if a seed changes its meaning.
     let mut digest = 0xcbf2_9ce4_8422_2325_u64;
     for &name in PRESET_NAMES {
         let ground = small(name, 2024).build().unwrap();
