@@ -32,7 +32,7 @@ packs:
     cargo run --release --bin raypencil -- pack data/scenes/facets-small.toml -o data/packs/facets
     reference/run.sh target/release/raypencil
 
-# The largest errors in ulp, as the first half of docs/results.md; YARD is a mesh of your own
+# The largest errors in ulp, as the first half of docs/evidence/results.md; YARD is a mesh of your own
 results YARD:
     cargo run --release -p raypencil-harness --example results -- pyramids facets {{ quote(YARD) }}
 
@@ -40,9 +40,9 @@ results YARD:
 truth:
     cargo run --release -p raypencil-harness --example truth
 
-# What catches each planted fault, and the smallest scene that does: docs/planted-faults.md
+# What catches each planted fault, and the smallest scene that does: docs/evidence/injected-faults.md
 planted-faults:
-    cargo run --release -p raypencil-tests --example planted_faults > docs/planted-faults.md
+    cargo run --release -p raypencil-tests --example planted_faults > docs/evidence/injected-faults.md
 
 # Pictures of the presets of generated ground: docs/figures/ground-*.svg
 portraits:
@@ -52,14 +52,14 @@ portraits:
 properties CASES:
     PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test properties
 
-# Mutants of a kernel crate (scanline, tracer, referee) against its fast tests, in a clone: docs/mutants.md
+# Mutants of a kernel crate (scanline, tracer, referee) against its fast tests, in a clone: docs/evidence/mutants.md
 mutants CRATE:
     rm -rf out/mutants/clone && git clone --quiet . out/mutants/clone
     out/mutants/clone/tests/mutants.sh {{ CRATE }} "$PWD/out/mutants/{{ CRATE }}"
 
-# The hostile files, as docs/hostile.md lists them
+# The hostile files, as docs/evidence/malformed-inputs.md lists them
 hostile:
-    cargo run --release -p raypencil-tests --example hostile > docs/hostile.md
+    cargo run --release -p raypencil-tests --example hostile > docs/evidence/malformed-inputs.md
 
 # Any bytes for SECONDS at a reader, starting from the hostile files: scene_toml, resolved_scene, glb, dem, exr, npy,
 # pfm, manifest, candidate. Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md

@@ -1,10 +1,10 @@
 // A renderer in one file of C++17 without libraries: traces the rays of a pack and writes range.T.npy and face.I.npy of
-// each sensor, for `raypencil check`. docs/for-implementers.md explains what it must do; this is the least that does it.
+// each sensor, for `raypencil check`. docs/guide/for-implementers.md explains what it must do; this is the least that does it.
 //
 //     g++ -O2 -std=c++17 -ffp-contract=off reference/cpp_candidate.cpp -o cpp_candidate && ./cpp_candidate PACK OUT
 //
 // -ffp-contract=off matters where the compiler may fuse products and sums (-march=native): the edge test below relies on plain ones.
-// Reads what packs contain and no more (little endian, NPY 1.0, the layout of terrain.glb in docs/files.md).
+// Reads what packs contain and no more (little endian, NPY 1.0, the layout of terrain.glb in docs/formats/files.md).
 
 #include <array>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 An evaluation that shares no code and no method with raypencil: whatever is rational is a Fraction, a single root is rounded
 by squaring, the rest (exp, atan, pi, sums of roots) is computed to 60 digits. No filter, no tree: each ray is tried on
-all faces. Formulas: docs/radiometry.md (light), docs/files.md (channels), docs/for-implementers.md (rays, hits, view).
+all faces. Formulas: docs/theory/radiometry.md (light), docs/formats/files.md (channels), docs/guide/for-implementers.md (rays, hits, view).
 
 Exit code 0: all equal; 1: something differs, and the first ten cells are named; 2: no pack.
 """
@@ -182,7 +182,7 @@ class Camera:
         return self.pose.position, self.pose.rotate(self.direction(i, j))
 
     def F(self, cos2_phi, wavelength):
-        """The interference filter (docs/radiometry.md, "The filter"); None: there is none, F = 1."""
+        """The interference filter (docs/theory/radiometry.md, "The filter"); None: there is none, F = 1."""
         if not self.filter:
             return None
         sin2 = 1 - cos2_phi
@@ -229,7 +229,7 @@ class Beam:
         return self.rows * sum(each(i) for i in range(self.columns))
 
     def share(self, i):
-        """P_k as (square, factors): sqrt(square) times all factors (docs/radiometry.md, "A pencil's share")."""
+        """P_k as (square, factors): sqrt(square) times all factors (docs/theory/radiometry.md, "A pencil's share")."""
         if self.profile == "paper":  # I_b A_bp cos(alpha) / A_b, and A_b = columns rows A_bp
             return (self.I_b / (self.columns * self.rows)) ** 2 * self.cos2_alpha(i), []
         if self.profile == "uniform_angle":  # weight cos^2(alpha)
@@ -372,7 +372,7 @@ class View:
 
 
 def view(scene, h):
-    """Where the hit lands, seen or hidden, if it is beyond the image plane (docs/radiometry.md)."""
+    """Where the hit lands, seen or hidden, if it is beyond the image plane (docs/theory/radiometry.md)."""
     camera = scene.camera
     V = sub(h.P, camera.pose.position)
     x, y, r = camera.pose.unrotate(V)
@@ -389,7 +389,7 @@ def visible(scene, v):
     """cos(theta) > 0, depth > f_c, on the image, and no face, front or back, between the hit and the image plane.
 
     On c + u V the hit is at u = 1 and the image plane at u = f_c / r. A face met at u = 1 contains the point and does
-    not hide it (docs/radiometry.md, "Which pixel, and whether").
+    not hide it (docs/theory/radiometry.md, "Pixel and visibility").
     """
     camera = scene.camera
     if v.emission <= 0 or v.pixel is None:
@@ -406,7 +406,7 @@ def product(square, factors):
 
 
 def flux(scene, beam, i, h, v, model):
-    """I_k of a visible pencil (docs/radiometry.md). What is algebraic is collected as its square."""
+    """I_k of a visible pencil (docs/theory/radiometry.md). What is algebraic is collected as its square."""
     camera, sigma = scene.camera, scene.sigma
     share2, factors = beam.share(i)
     factors = list(factors)

@@ -1,4 +1,4 @@
-"""What a pack asks: sensors, triangles and rays, read from its own files (docs/for-implementers.md)."""
+"""What a pack asks: sensors, triangles and rays, read from its own files (docs/guide/for-implementers.md)."""
 
 import json
 import tomllib
@@ -33,7 +33,7 @@ class Pose:
 
 @dataclass
 class Pack:
-    """A pack. `rays` has (rows, columns, 6) by sensor; of `beams` and `camera` see docs/scene.md, resolved scenes."""
+    """A pack. `rays` has (rows, columns, 6) by sensor; of `beams` and `camera` see docs/guide/scene.md, resolved scenes."""
 
     folder: Path
     scene: dict

@@ -1,4 +1,4 @@
-//! The hostile files: `just hostile` prints their table to `docs/hostile.md`. With a folder as its argument the files are
+//! The hostile files: `just hostile` prints their table to `docs/evidence/malformed-inputs.md`. With a folder as its argument the files are
 //! made in it, as seeds for the fuzz targets (`just fuzz`).
 
 use std::fs;

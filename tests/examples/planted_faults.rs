@@ -1,9 +1,9 @@
 //! Every planted fault: which scene catches it first, by what, after how many rays, and how small a scene still does.
-//! Writes the page `docs/planted-faults.md` to standard output; times go to standard error. Given a folder, it leaves the
+//! Writes the page `docs/evidence/injected-faults.md` to standard output; times go to standard error. Given a folder, it leaves the
 //! smallest scenes there as well.
 //!
 //! ```sh
-//! cargo run --release -p raypencil-tests --example planted_faults > docs/planted-faults.md
+//! cargo run --release -p raypencil-tests --example planted_faults > docs/evidence/injected-faults.md
 //! ```
 
 use std::path::Path;

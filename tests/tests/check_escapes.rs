@@ -95,7 +95,7 @@ fn a_pencil_near_a_border_is_not_lost_unseen() {
     assert_passes(&check(&truth, &image_only, &Silent));
     // Near, but thousands of times as far as any arithmetic reaches.
     let near = cells(&flux).find(|&(i, j)| {
-        let sight = referee.sight_margins(0, i, j);
+        let sight = referee.visibility_margins(0, i, j);
         sight.is_some_and(|sight| {
             sight.sight.visible && sight.landing.is_some_and(|[lo, _]| lo > 1e-3 && lo < 1e-2)
         })

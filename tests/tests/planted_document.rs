@@ -1,4 +1,4 @@
-//! `docs/planted-faults.md` is held to the list of faults: each is in the table of its kind, and all are caught.
+//! `docs/evidence/injected-faults.md` is held to the list of faults: each is in the table of its kind, and all are caught.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ fn faults(kind: Kind) -> Vec<(String, &'static str)> {
 
 #[test]
 fn the_page_has_every_fault_and_none_else() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/planted-faults.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/evidence/injected-faults.md");
     let page = fs::read_to_string(path).expect("the page, as `just planted-faults` writes it");
     for kind in Kind::ALL {
         let name = kind.to_string();

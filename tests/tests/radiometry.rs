@@ -1,5 +1,5 @@
 //! What light must do whoever computes it: shares of the beam's power, laws of distance, the camera equation as
-//! pencils get fine, energy, and statistics of jittered rays. (docs/radiometry.md)
+//! pencils get fine, energy, and statistics of jittered rays. (docs/theory/radiometry.md)
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_6, LN_2, PI, TAU};
 use std::sync::Arc;

@@ -170,7 +170,7 @@ fn an_approximation_is_no_excuse_for_a_wrong_value() {
         let (columns, rows) = scene.size(SensorId::Beam(index)).expect("a beam");
         for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
             let place = raypencil::Place { sensor: SensorId::Beam(index), i, j };
-            if attributions.cause(place).is_none() && attributions.sight_cause(place).is_none() {
+            if attributions.cause(place).is_none() && attributions.visibility_cause(place).is_none() {
                 continue;
             }
             let ranges = spoilt[0].beams[index].range.as_mut().expect("ranges");

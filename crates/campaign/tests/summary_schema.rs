@@ -17,7 +17,8 @@ fn the_summary_keeps_to_its_schema() {
         what: "1 m and 2 m".into(),
     });
     let merged = Merged { campaign, terrains: vec![record] };
-    let schema: Value = serde_json::from_str(include_str!("../../../docs/campaign.schema.json")).unwrap();
+    let schema: Value =
+        serde_json::from_str(include_str!("../../../docs/formats/campaign.schema.json")).unwrap();
     let mut summary: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
     assert_eq!(schema_faults(&schema, &summary), [""; 0]);
     // The schema is no sieve: a key that is not there and one that should not be are both found.

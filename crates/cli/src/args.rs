@@ -407,7 +407,7 @@ pub(crate) struct Check {
     #[arg(value_name = "PACK")]
     pub(crate) pack: PathBuf,
 
-    /// Folder of the answers to judge: EXR, NPY or PFM files with the names of docs/files.md.
+    /// Folder of the answers to judge: EXR, NPY or PFM files with the names of docs/formats/files.md.
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
 
@@ -541,7 +541,7 @@ pub(crate) struct TerrainInspect {
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainGenerate {
-    /// Where all numbers start from: smooth, viking1, pathfinder, crater_field, crevassed or worst; docs/terrain.md.
+    /// Where all numbers start from: smooth, viking1, pathfinder, crater_field, crevassed or worst; docs/guide/terrain.md.
     #[arg(long, value_name = "NAME", default_value = "viking1")]
     pub(crate) preset: String,
 

@@ -176,7 +176,7 @@ fn good_files_pass_under_the_same_limits() {
 
 #[test]
 fn the_document_lists_every_case() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/hostile.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/evidence/malformed-inputs.md");
     let written = fs::read_to_string(path).unwrap_or_default();
-    assert!(written == table(), "docs/hostile.md is not what `just hostile` writes");
+    assert!(written == table(), "docs/evidence/malformed-inputs.md is not what `just hostile` writes");
 }

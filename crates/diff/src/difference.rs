@@ -1,5 +1,5 @@
 //! Two recordings of anything, channel by channel: what differs, by how much, and whether that is allowed.
-//! `docs/diff.md` has the rules.
+//! `docs/guide/diff.md` has the rules.
 //!
 //! ```text
 //! diff        two sets of channels -> Difference; no scene, no referee

@@ -123,11 +123,11 @@ impl<'a> Lookup<'a> {
         }
         let of = |item: Item| self.others.get(&(item, place)).copied().unwrap_or(Class::Agree);
         // What a pencil delivers goes with whether and where it is seen.
-        let of_sight = match item.quantity {
+        let of_visibility = match item.quantity {
             Quantity::PencilFlux => of(Quantity::Visible.into()).max(of(Quantity::Pixel.into())),
             _ => Class::Agree,
         };
-        Some(of(item).max(of_sight).max(of(Quantity::Hit.into())).max(of(Quantity::Face.into())))
+        Some(of(item).max(of_visibility).max(of(Quantity::Hit.into())).max(of(Quantity::Face.into())))
     }
 
     fn words(&self, place: Place) -> String {

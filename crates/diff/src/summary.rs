@@ -1,4 +1,4 @@
-//! `summary.json` of a comparison: everything counted, for programs. `docs/diff.md` lists the keys.
+//! `summary.json` of a comparison: everything counted, for programs. `docs/guide/diff.md` lists the keys.
 
 use serde_json::{Value, json};
 

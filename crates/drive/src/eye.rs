@@ -60,7 +60,7 @@ impl<'a> Eye<'a> {
             let sources = lit.filter_map(|(point, &watts)| {
                 Some(PointSource::project(&camera.sensor, camera_from_scene * point.get()?, watts))
             });
-            Some(self.optics.form(&camera.sensor, sources).optical)
+            Some(self.optics.form_image(&camera.sensor, sources).optical)
         });
         frame.flux = formed.collect::<Option<_>>().unwrap_or_default();
     }

@@ -16,9 +16,9 @@ use crate::run::DriveRun;
 use crate::summary::drive_json;
 use raypencil_files::{FileError, FolderError, begin, write_atomically, write_npy};
 use raypencil_mesh_io::write_geotiff;
-use raypencil_rover::{Label, LocalMap, ObstacleMap, RadialGrid, Source, Vehicle};
+use raypencil_rover::{ElevationMap, ElevationSource, Label, ObstacleMap, RadialGrid, Vehicle};
 use raypencil_scene::{Image, Pose, Progress};
-use raypencil_terrain::Posts;
+use raypencil_terrain::HeightGrid;
 
 /// What [`write_drive`] wrote.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -101,22 +101,22 @@ pub fn write_drive(
 
 /// Elevations, NaN where they are not known, and where each comes from: 0 not known, 1 proximity sensor, 2 extrapolated, 3
 /// measured. The row of least y first.
-fn images(map: &LocalMap) -> (Image<f64>, Image<u8>) {
+fn images(map: &ElevationMap) -> (Image<f64>, Image<u8>) {
     let side = map.size().points;
     let elevations = map.points().map(|point| map.elevation(point).unwrap_or(f64::NAN)).collect();
     let sources = map.points().map(|point| match map.source(point) {
-        Source::Unknown => 0,
-        Source::Proximity => 1,
-        Source::Extrapolated => 2,
-        Source::Measured => 3,
+        ElevationSource::Unknown => 0,
+        ElevationSource::Proximity => 1,
+        ElevationSource::Extrapolated => 2,
+        ElevationSource::Measured => 3,
     });
     (Image::from_cells(side, side, elevations), Image::from_cells(side, side, sources.collect()))
 }
 
 /// The map as an elevation model.
-pub fn posts(map: &LocalMap) -> Posts {
+pub fn posts(map: &ElevationMap) -> HeightGrid {
     let side = map.size().points;
-    Posts {
+    HeightGrid {
         columns: side,
         rows: side,
         corner: map.points().next().map_or(DVec2::ZERO, |point| map.place(point)),
@@ -129,7 +129,7 @@ pub fn posts(map: &LocalMap) -> Posts {
 /// Free before the end of the sector that a cell is nearest to, occupied at the end if an obstacle is there, not known
 /// elsewhere; and free where the vehicle stands.
 pub fn occupancy(
-    map: &LocalMap,
+    map: &ElevationMap,
     obstacles: &ObstacleMap,
     grid: &RadialGrid,
     vehicle: &Vehicle,

@@ -8,7 +8,7 @@ use raypencil_files::FolderError;
 use raypencil_rover::{DrivePlan, Rig};
 use raypencil_scene::{FluxModel, Image, Mesh, Pose, SceneError};
 use raypencil_scene_io::{DriveSettings, LoadedScene, SceneSource, SensorWord, camera_chain, plan, sunlight};
-use raypencil_sensor::{Optics, Sensor, Sunlight};
+use raypencil_sensor::{ImageSensor, Optics, Sunlight};
 
 /// A drive has no more frames: an hour of them at ten a second. Each leaves some two thousand edge points in memory.
 pub(super) const MOST_FRAMES: u64 = 36_000;
@@ -19,7 +19,7 @@ pub(super) const MOST_FRAMES: u64 = 36_000;
 pub enum DriveError {
     /// A scene that says nothing of where to go.
     #[error(
-        "there is no drive; expected --to X,Y, a scene file with a [drive] table (docs/drive.md), or a built-in ground: \
+        "there is no drive; expected --to X,Y, a scene file with a [drive] table (docs/guide/drive.md), or a built-in ground: \
          pyramids, facets"
     )]
     NoDrive,
@@ -57,7 +57,7 @@ pub struct DriveJob {
     /// Step 6.
     pub optics: Optics,
     /// Steps 7 and 8.
-    pub sensor: Sensor,
+    pub sensor: ImageSensor,
     /// The sun behind the stripes.
     pub sunlight: Option<Sunlight>,
     /// Whether a second image without the laser is taken off each.
@@ -117,9 +117,9 @@ impl DriveJob {
             }
             (None, _) => return Err(DriveError::NoDrive),
         };
-        // Sensors are on the vehicle wherever it stands.
+        // Localisation are on the vehicle wherever it stands.
         let position = vehicle.position - scene.mesh().origin();
-        let rig = Rig::of_scene(scene, Pose { position, ..vehicle });
+        let rig = Rig::from_scene(scene, Pose { position, ..vehicle });
         let forward = vehicle.rotate(DVec3::X);
         let heading = libm::atan2(forward.y, forward.x);
 

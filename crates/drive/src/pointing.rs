@@ -1,6 +1,6 @@
 //! Blur against pointing: how far each moves what a stripe says of the ground. "Calculations show that diffraction effects
 //! are not important compared to camera pointing errors arising from vehicle inertial navigation sensors." (Paper, §5)
-//! `docs/results.md` has the table.
+//! `docs/evidence/results.md` has the table.
 
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -10,7 +10,8 @@ use crate::eye::Eye;
 use crate::job::{DriveError, DriveJob};
 use raypencil_report::number;
 use raypencil_rover::{
-    Attitude, Detection, Drive, Exposed, Exposure, Extraction, Measured, Place, Rig, SensorErrors,
+    Attitude, CameraImage, Detection, Drive, Exposure, Extraction, LocalisationErrors, MeasuredPoint, Rig,
+    StripeLocation,
 };
 use raypencil_scene::{Image, Pose, Renderer, SceneError};
 use raypencil_sensor::{Optics, Psf};
@@ -123,7 +124,7 @@ impl Moved {
 }
 
 /// The points of a first frame, where they were taken to be, and the vehicle likewise.
-type Look = (Vec<(Measured, DVec3)>, Pose);
+type Look = (Vec<(MeasuredPoint, DVec3)>, Pose);
 
 /// What a drive's first frame measures.
 fn look(job: &DriveJob, renderer: &dyn Renderer) -> Result<Look, DriveError> {
@@ -134,7 +135,7 @@ fn look(job: &DriveJob, renderer: &dyn Renderer) -> Result<Look, DriveError> {
     let mut develop = |_: Exposure, light: Image<f64>| {
         let numbers = job.sensor.numbers(&light, None, exposures);
         exposures += 1;
-        Exposed::Numbers(numbers)
+        CameraImage::Numbers(numbers)
     };
     let frame = drive.step(&Eye::new(renderer, job, None), &mut develop)?;
     let frame =
@@ -146,7 +147,7 @@ fn look(job: &DriveJob, renderer: &dyn Renderer) -> Result<Look, DriveError> {
 /// moved.
 fn moved(beam: usize, from: &Look, to: &Look, formula: impl Fn(f64, DVec3) -> f64) -> Moved {
     let columns = |look: &Look| {
-        let mut columns: BTreeMap<u32, Vec<(Measured, DVec3)>> = BTreeMap::new();
+        let mut columns: BTreeMap<u32, Vec<(MeasuredPoint, DVec3)>> = BTreeMap::new();
         for &(measured, point) in look.0.iter().filter(|(measured, _)| measured.beam == beam) {
             columns.entry(measured.edge.i).or_default().push((measured, point));
         }
@@ -183,7 +184,7 @@ const PITCHES: [f64; 4] = [0.01, 0.1, 0.5, 1.0];
 /// As [`Drive::new`] and [`Drive::step`].
 pub fn pointing_table(job: &DriveJob, renderer: &dyn Renderer) -> Result<String, DriveError> {
     let mut job = job.clone();
-    job.plan.errors = SensorErrors::default();
+    job.plan.errors = LocalisationErrors::default();
     job.optics = Optics { oversampling: 4, ..Optics::PERFECT };
     let rig = job.plan.rig.clone();
     let mut out = String::from(
@@ -202,7 +203,7 @@ pub fn pointing_table(job: &DriveJob, renderer: &dyn Renderer) -> Result<String,
     };
 
     let usual = job.plan.extraction;
-    let otsu = Extraction { detection: Detection::Otsu, place: Place::SubPixel, ..usual };
+    let otsu = Extraction { detection: Detection::Otsu, place: StripeLocation::SubPixel, ..usual };
     for (words, extraction) in [("fixed, pixel", usual), ("Otsu, sub-pixel", otsu)] {
         job.plan.extraction = extraction;
         let sharp = look(&job, renderer)?;
@@ -235,7 +236,7 @@ pub fn pointing_table(job: &DriveJob, renderer: &dyn Renderer) -> Result<String,
     for degrees in PITCHES {
         let pitch = degrees.to_radians();
         let attitude_bias = Attitude { pitch_down: pitch, ..Attitude::default() };
-        job.plan.errors = SensorErrors { attitude_bias, ..SensorErrors::default() };
+        job.plan.errors = LocalisationErrors { attitude_bias, ..LocalisationErrors::default() };
         let tilted = look(&job, renderer)?;
         let moved = [0, 1].map(|beam| {
             moved(beam, &level, &tilted, |_, point| Lever::at(&rig, beam, point.x).elevation_of_pitch(pitch))

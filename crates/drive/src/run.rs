@@ -12,7 +12,7 @@ use crate::trace::{Kept, MOST_LIT, Trace};
 use crate::truth::TruthMatrix;
 use crate::view::{View, view};
 use raypencil_rover::{
-    Detection, Drive, DriveFrame, Exposed, Exposure, LabelledVector, LocalMap, ObstacleMap, Route,
+    CameraImage, Detection, Drive, DriveFrame, ElevationMap, Exposure, LabelledVector, ObstacleMap, Route,
 };
 use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
 
@@ -47,7 +47,7 @@ pub struct DriveRun {
     /// How many frames the route has: more than were driven if it leads off the ground.
     pub planned: u64,
     /// The map at the end.
-    pub map: LocalMap,
+    pub map: ElevationMap,
     /// Where the vehicle believes to be at the end.
     pub believed: Pose,
     /// The last obstacle map and navigator map, and their frame.
@@ -128,7 +128,7 @@ impl<'a> Side<'a> {
                 images.push((exposure.beam, numbers.clone()));
             }
             *exposing += start.elapsed();
-            Exposed::Numbers(numbers)
+            CameraImage::Numbers(numbers)
         };
         let start = Instant::now();
         let frame = self.drive.step(&self.eye, &mut develop)?;
@@ -136,7 +136,7 @@ impl<'a> Side<'a> {
         Ok(frame.map(|frame| Seen { frame, kept, images }))
     }
 
-    fn map(&self) -> &LocalMap {
+    fn map(&self) -> &ElevationMap {
         self.drive.mapper().expect("a frame was driven").map()
     }
 

@@ -1,5 +1,5 @@
 //! `summary.json`: what was driven and found, for programs. SI throughout, units in the names.
-//! `docs/drive.schema.json` describes it.
+//! `docs/formats/drive.schema.json` describes it.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use crate::run::DriveRun;
 use crate::trace::{StageTrace, Trace};
 use crate::truth::{Said, TruthMatrix};
 use raypencil_report::VERSION;
-use raypencil_rover::{Label, Source};
+use raypencil_rover::{ElevationSource, Label};
 
 /// Grid points of a map by what is known of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -23,8 +23,10 @@ pub(crate) fn cells(run: &DriveRun) -> Cells {
     let mut cells = Cells::default();
     for point in run.map.points() {
         match run.map.source(point) {
-            Source::Unknown => cells.unknown += 1,
-            Source::Measured => (cells.known, cells.measured) = (cells.known + 1, cells.measured + 1),
+            ElevationSource::Unknown => cells.unknown += 1,
+            ElevationSource::Measured => {
+                (cells.known, cells.measured) = (cells.known + 1, cells.measured + 1)
+            }
             _ => cells.known += 1,
         }
     }
@@ -74,7 +76,7 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "driven_m": run.driven(),
         "vertical_scans": scans,
         "edge_points": run.edge_points,
-        "columns_left_out": run.frames.iter().map(|frame| frame.left_out as u64).sum::<u64>(),
+        "columns_left_out": run.frames.iter().map(|frame| frame.columns_left_out as u64).sum::<u64>(),
         "map": {
             "spacing_m": job.plan.map.spacing,
             "points": job.plan.map.points,

@@ -10,7 +10,7 @@ use raypencil_scene::{
     Atmosphere, Camera, FluxModel, Image, Lens, Maybe, Mesh, Mounted, Pose, Quantities, Renderer, Request,
     Scene, SceneError,
 };
-use raypencil_sensor::{Ground, PointSource, Sunlight};
+use raypencil_sensor::{PointSource, Sunlight, VisibleSurface};
 use raypencil_tracer::Tracer;
 
 /// Cells of the map of shadows, along either side. CHOICE: 2.4 cm on 50 m.
@@ -165,9 +165,10 @@ impl Sun {
             }
         });
         let sunlit = Image::from_cells(camera.width, camera.height, sunlit.collect());
-        let ground = Ground { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
+        let ground =
+            VisibleSurface { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
         let flux = self.light.flux(&camera, scene.atmosphere().attenuation, &ground);
-        job.optics.veil(&camera, &flux)
+        job.optics.filter_pixels(&camera, &flux)
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use crate::job::DriveJob;
 use crate::sun::Sun;
-use raypencil_rover::{DriveFrame, Exposure, LocalMap, Measured};
+use raypencil_rover::{DriveFrame, ElevationMap, Exposure, MeasuredPoint};
 use raypencil_scene::{Image, Scene};
 
 /// What was compared at one stage.
@@ -199,7 +199,7 @@ impl Trace {
     }
 
     /// What one frame made of its exposures.
-    pub(super) fn frames(&mut self, a: &DriveFrame, b: &DriveFrame, maps: [&LocalMap; 2]) {
+    pub(super) fn frames(&mut self, a: &DriveFrame, b: &DriveFrame, maps: [&ElevationMap; 2]) {
         self.edges(a, b);
         self.cells(a.index, maps);
         if let (Some((of_a, vectors_a)), Some((of_b, vectors_b))) = (&a.obstacles, &b.obstacles) {
@@ -237,8 +237,9 @@ impl Trace {
             return;
         }
         // Position of the scan, beam, column, row; where within the pixel it was measured counts as well.
-        let keys = |measured: &[Measured]| -> BTreeSet<(Option<u32>, usize, u32, u32, u64)> {
-            let key = |one: &Measured| (one.step, one.beam, one.edge.i, one.edge.j, one.edge.row.to_bits());
+        let keys = |measured: &[MeasuredPoint]| -> BTreeSet<(Option<u32>, usize, u32, u32, u64)> {
+            let key =
+                |one: &MeasuredPoint| (one.step, one.beam, one.edge.i, one.edge.j, one.edge.row.to_bits());
             measured.iter().map(key).collect()
         };
         let (of_a, of_b) = (keys(&a.measured), keys(&b.measured));
@@ -258,8 +259,8 @@ impl Trace {
         });
     }
 
-    fn cells(&mut self, frame: u64, [a, b]: [&LocalMap; 2]) {
-        let cell = |map: &LocalMap, point| (map.source(point), map.elevation(point).map(f64::to_bits));
+    fn cells(&mut self, frame: u64, [a, b]: [&ElevationMap; 2]) {
+        let cell = |map: &ElevationMap, point| (map.source(point), map.elevation(point).map(f64::to_bits));
         let (mut compared, mut differ, mut first) = (0, 0, None);
         for point in a.points() {
             compared += 1;
@@ -272,7 +273,7 @@ impl Trace {
             first.map_or(String::new(), |point| {
                 let place = a.place(point);
                 let word =
-                    |map: &LocalMap| map.elevation(point).map_or("unknown".into(), |z| format!("{z} m"));
+                    |map: &ElevationMap| map.elevation(point).map_or("unknown".into(), |z| format!("{z} m"));
                 let when = moment(frame, None);
                 format!("{when}, cell at {:.3}, {:.3} m: {} against {}", place.x, place.y, word(a), word(b))
             })

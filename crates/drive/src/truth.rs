@@ -1,11 +1,13 @@
 //! What a drive's obstacle maps say, against the same tests on the true ground: point by point of the radial grid.
-//! (Paper, §7) `docs/results.md` has the table.
+//! (Paper, §7) `docs/evidence/results.md` has the table.
 
 use glam::DVec2;
 
 use crate::job::DriveJob;
 use raypencil_report::count;
-use raypencil_rover::{DrivePlan, Fixes, LocalMap, PassableRules, SensorErrors, Verdict};
+use raypencil_rover::{
+    DrivePlan, ElevationMap, LocalisationErrors, PositionFixes, Traversability, TraversabilityRules,
+};
 use raypencil_scene::Pose;
 use raypencil_scene_io::{SensorWord, threshold};
 use raypencil_sensor::preset;
@@ -28,11 +30,11 @@ impl Said {
         self.obstacle + self.unknown + self.clear
     }
 
-    fn add(&mut self, verdict: Verdict) {
+    fn add(&mut self, verdict: Traversability) {
         *match verdict {
-            Verdict::Obstacle(_) => &mut self.obstacle,
-            Verdict::Unknown => &mut self.unknown,
-            Verdict::Clear => &mut self.clear,
+            Traversability::Obstacle(_) => &mut self.obstacle,
+            Traversability::Unknown => &mut self.unknown,
+            Traversability::Clear => &mut self.clear,
         } += 1;
     }
 }
@@ -62,7 +64,7 @@ impl TruthMatrix {
     /// sector had stopped before.
     pub fn add(
         &mut self,
-        map: &LocalMap,
+        map: &ElevationMap,
         ground: &HeightIndex,
         plan: &DrivePlan,
         global_from_vehicle: &Pose,
@@ -71,19 +73,19 @@ impl TruthMatrix {
         let truth = true_map(map, ground);
         self.maps += 1;
         for sector in 0..grid.sectors {
-            let verdicts = |map| grid.verdicts(sector, map, vehicle, rules, global_from_vehicle);
+            let verdicts = |map| grid.classify_sector(sector, map, vehicle, rules, global_from_vehicle);
             let (mut first_obstacle, mut free) = (None, None);
             let mut stopped = false;
             for (index, ((_, said), (_, is))) in verdicts(map).zip(verdicts(&truth)).enumerate() {
                 match is {
-                    Verdict::Obstacle(_) => self.obstacle.add(said),
-                    Verdict::Clear => self.clear.add(said),
-                    Verdict::Unknown => self.beyond += 1,
+                    Traversability::Obstacle(_) => self.obstacle.add(said),
+                    Traversability::Clear => self.clear.add(said),
+                    Traversability::Unknown => self.beyond += 1,
                 }
-                if matches!(is, Verdict::Obstacle(_)) {
+                if matches!(is, Traversability::Obstacle(_)) {
                     first_obstacle = first_obstacle.or(Some(index));
                 }
-                stopped |= said != Verdict::Clear;
+                stopped |= said != Traversability::Clear;
                 if !stopped {
                     free = Some(index);
                 }
@@ -156,13 +158,13 @@ fn percent(part: u64, all: u64) -> String {
 }
 
 /// A map of the same size and at the same place that knows the true elevation of every grid point with ground.
-fn true_map(map: &LocalMap, ground: &HeightIndex) -> LocalMap {
+fn true_map(map: &ElevationMap, ground: &HeightIndex) -> ElevationMap {
     let mut truth = map.clone();
     truth.clear();
     for point in truth.points() {
         let place = truth.place(point);
         if let Some(z) = ground.height_at(place.x, place.y) {
-            truth.give(point, z);
+            truth.set_proximity(point, z);
         }
     }
     truth
@@ -204,27 +206,27 @@ impl NoiseLevel {
     ///
     /// CHOICE, all of it: the paper gives no figures. The drift is 1 % and 4 % of the way, forward and to the left of the
     /// global axes like 4 to 3; beacons are seen every 10 s at the built-in drives' 3 frames a second, or never.
-    fn errors(self, speed: f64) -> SensorErrors {
+    fn errors(self, speed: f64) -> LocalisationErrors {
         let drift = |share: f64| DVec2::new(0.8, 0.6) * (share * speed);
         match self {
-            Self::None => SensorErrors::default(),
-            Self::Modest => SensorErrors {
+            Self::None => LocalisationErrors::default(),
+            Self::Modest => LocalisationErrors {
                 position_drift: drift(0.01),
                 position_walk: 0.005,
                 heading_drift: 0.002_f64.to_radians(),
                 attitude_noise: 0.1_f64.to_radians(),
                 proximity_noise: 0.01,
-                fixes: Some(Fixes { every_frames: 30, noise: 0.05 }),
-                ..SensorErrors::default()
+                fixes: Some(PositionFixes { every_frames: 30, noise: 0.05 }),
+                ..LocalisationErrors::default()
             },
-            Self::Coarse => SensorErrors {
+            Self::Coarse => LocalisationErrors {
                 position_drift: drift(0.04),
                 position_walk: 0.02,
                 heading_drift: 0.02_f64.to_radians(),
                 attitude_noise: 0.5_f64.to_radians(),
                 proximity_noise: 0.03,
                 fixes: None,
-                ..SensorErrors::default()
+                ..LocalisationErrors::default()
             },
         }
     }
@@ -237,11 +239,11 @@ impl NoiseLevel {
         let (optics, sensor) = preset(word.word()).expect("every word of scene files is a preset");
         job.sensor_word = word;
         job.optics = optics;
-        job.sensor = raypencil_sensor::Sensor { wavelength, seed: 0, ..sensor };
+        job.sensor = raypencil_sensor::ImageSensor { wavelength, seed: 0, ..sensor };
         job.plan.extraction.detection = raypencil_rover::Detection::Fixed(threshold(word));
         job.plan.errors = self.errors(job.plan.route.speed);
         job.plan.seed = 0;
-        job.plan.rules = PassableRules::of(&job.plan.vehicle);
+        job.plan.rules = TraversabilityRules::for_vehicle(&job.plan.vehicle);
         job
     }
 }

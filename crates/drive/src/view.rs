@@ -5,7 +5,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 use crate::job::{DriveError, DriveJob};
-use raypencil_rover::{Measured, OnVehicle, Rig};
+use raypencil_rover::{MeasuredPoint, OnVehicle, Rig};
 use raypencil_scene::{Camera, Image, Pose, Quantities, Renderer, Request, SceneError};
 use raypencil_sensor::PointSource;
 
@@ -47,10 +47,10 @@ impl View {
     }
 
     /// With the points of stripes, where the camera as it is mounted sees them: that of a scan is panned.
-    pub(super) fn with_edges(mut self, rig: &Rig, measured: &[Measured]) -> Self {
+    pub(super) fn with_edges(mut self, rig: &Rig, measured: &[MeasuredPoint]) -> Self {
         let OnVehicle { vehicle_from_sensor, sensor } = rig.camera;
         let camera_from_vehicle = vehicle_from_sensor.inverse();
-        for Measured { beam, point, .. } in measured {
+        for MeasuredPoint { beam, point, .. } in measured {
             let seen = camera_from_vehicle * *point;
             if seen.z > 0.0 {
                 let place = PointSource::project(&sensor, seen, 0.0);

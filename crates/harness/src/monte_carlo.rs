@@ -1,6 +1,6 @@
 //! Images by chance: a renderer that samples light at random against pencils drawn at random.
 //!
-//! Both have the same expectation in each pixel, the camera equation's (docs/radiometry.md), and each brings the standard
+//! Both have the same expectation in each pixel, the camera equation's (docs/theory/radiometry.md), and each brings the standard
 //! error of its mean. Then z = (theirs - ours) / sqrt(their error^2 + our error^2) has mean 0 and variance 1, but for the
 //! errors being estimates themselves: from n images its variance is (n - 1) / (n - 3), 1.095 for 24.
 

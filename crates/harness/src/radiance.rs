@@ -5,7 +5,7 @@
 //! ```
 //!
 //! with x = g tan(alpha) the place on the grid, T the sheet's thickness and p(x) the part of the power per metre of x. For
-//! the paper's profile p = cos(alpha) / 2w, and E is the (I_b / A_b)(R_g / R) cos(psi) of docs/radiometry.md. The others are
+//! the paper's profile p = cos(alpha) / 2w, and E is the (I_b / A_b)(R_g / R) cos(psi) of docs/theory/radiometry.md. The others are
 //! here divided by their integral over the fan, not by the sum over the pencils, for this light knows of no pencils.
 
 use glam::DVec3;

@@ -1,11 +1,11 @@
-//! Every summary of a validation keeps to `docs/summary.schema.json`.
+//! Every summary of a validation keeps to `docs/formats/summary.schema.json`.
 
 use raypencil_harness::summary_json;
 use raypencil_tests::fixtures;
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 use serde_json::Value;
 
-const SCHEMA: &str = include_str!("../../../docs/summary.schema.json");
+const SCHEMA: &str = include_str!("../../../docs/formats/summary.schema.json");
 
 fn faults_of(summary: &Value) -> Vec<String> {
     let schema: Value = serde_json::from_str(SCHEMA).unwrap();

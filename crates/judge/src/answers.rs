@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use raypencil_referee::{CertifiedLight, CertifiedMap, Format, Referee};
+use raypencil_referee::{CertifiedMap, CertifiedReturns, Format, Referee};
 use raypencil_scene::{
     FluxModel, Frame, Image, Progress, Quantities, Returns, Sampling, Scene, SensorId, SensorMap, Stage,
 };
@@ -95,7 +95,7 @@ impl Answers {
 #[derive(Debug)]
 pub struct Certified {
     maps: Vec<CertifiedMap>,
-    light: Vec<CertifiedLight>,
+    light: Vec<CertifiedReturns>,
     /// How long each sensor took.
     pub stages: Vec<Stage>,
 }
@@ -119,7 +119,7 @@ impl Certified {
         }
         for beam in 0..scene.beams().len() {
             progress.stage(&format!("{}: exact flux", SensorId::Beam(beam)));
-            light.extend(referee.certified_light(beam, Sampling::Centres));
+            light.extend(referee.certified_returns(beam, Sampling::Centres));
             done(&format!("{} light", SensorId::Beam(beam)));
         }
         Self { maps, light, stages }
@@ -141,6 +141,6 @@ impl Certified {
 
     /// Values that the budget of bits did not decide.
     pub fn undecided(&self) -> usize {
-        self.light.iter().map(CertifiedLight::undecided).sum()
+        self.light.iter().map(CertifiedReturns::undecided).sum()
     }
 }

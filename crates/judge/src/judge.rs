@@ -2,8 +2,8 @@
 
 use crate::bounds::Bounds;
 use raypencil_referee::{
-    Approximations, Displacement, Explained, ExplainedSight, Format, Referee, RoundedReturn, Ruling,
-    SightApproximations, SightRuling, Tolerance,
+    Approximations, Displacement, Explained, ExplainedVisibility, Format, Referee, RoundedReturn, Ruling,
+    Tolerance, VisibilityApproximations, VisibilityRuling,
 };
 use raypencil_scene::Place;
 use raypencil_scene::{FaceId, Hit, Pixel, Resolution, Return, Sampling, Scene, SensorId};
@@ -61,7 +61,7 @@ impl<'s> Judge<'s> {
     }
 
     /// Rules on what one side says of the camera's view of a pencil's hit on `face`.
-    pub fn rule_sight(
+    pub fn rule_visibility(
         &self,
         place: Place,
         face: FaceId,
@@ -69,11 +69,11 @@ impl<'s> Judge<'s> {
         visible: bool,
         pixel: Option<Pixel>,
         resolution: Resolution,
-    ) -> Option<SightRuling> {
+    ) -> Option<VisibilityRuling> {
         let SensorId::Beam(beam) = place.sensor else { return None };
         let tolerance = self.tolerance(place, Some(face), range, resolution);
         let Place { i, j, .. } = place;
-        self.referee.rule_sight(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
+        self.referee.rule_visibility(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
     }
 
     /// The values of where a ray meets the plane of a face, the nearest f64; `None` if they are not finite.
@@ -107,9 +107,9 @@ impl<'s> Judge<'s> {
     }
 
     /// The faces that a ray may meet which is displaced by no more than a renderer may displace it.
-    pub fn faces_near(&self, place: Place, range: Option<f64>, resolution: Resolution) -> Vec<FaceId> {
+    pub fn candidate_faces(&self, place: Place, range: Option<f64>, resolution: Resolution) -> Vec<FaceId> {
         let Tolerance { lateral, .. } = self.tolerance(place, None, range, resolution);
-        self.referee.faces_near(place.sensor, place.i, place.j, lateral).unwrap_or_default()
+        self.referee.candidate_faces(place.sensor, place.i, place.j, lateral).unwrap_or_default()
     }
 
     /// Explains one side's answer to a ray by the approximations it was made with; `None` if they do not.
@@ -126,18 +126,18 @@ impl<'s> Judge<'s> {
     }
 
     /// Explains what one side says of whether the camera sees a pencil's hit; `None` if the approximations do not.
-    pub fn explain_sight(
+    pub fn explain_visibility(
         &self,
         place: Place,
         face: FaceId,
         range: Option<f64>,
         visible: bool,
-        with: SightApproximations,
+        with: VisibilityApproximations,
         resolution: Resolution,
-    ) -> Option<Vec<ExplainedSight>> {
+    ) -> Option<Vec<ExplainedVisibility>> {
         let SensorId::Beam(beam) = place.sensor else { return None };
         let tolerance = self.tolerance(place, Some(face), range, resolution);
-        self.referee.explain_sight(beam, place.i, place.j, face, visible, with, tolerance)
+        self.referee.explain_visibility(beam, place.i, place.j, face, visible, with, tolerance)
     }
 
     /// delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S

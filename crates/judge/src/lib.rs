@@ -11,7 +11,7 @@ mod recorded;
 mod tally;
 
 pub use answers::{Answers, BeamLight, Certified};
-pub use attribution::cause::{Attributions, Cause, SightCause};
+pub use attribution::cause::{Attributions, Cause, VisibilityCause};
 pub use attribution::court::Rerender;
 pub use bounds::Bounds;
 pub use check::tally::{ItemTally, Largest, SensorCheck, Wrong};

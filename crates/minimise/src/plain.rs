@@ -7,7 +7,7 @@ use crate::draft::Draft;
 use crate::trials::Trials;
 use raypencil_scene::{Filter, FluxModel, Lens, Material, Mesh, Profile};
 
-/// The reflectivity of the default ground, `docs/scene.md`.
+/// The reflectivity of the default ground, `docs/guide/scene.md`.
 const REFLECTIVITY: f64 = 0.25;
 
 /// Farther than rovers see, metres; one binary digit, so that it is as short as can be.

@@ -1,4 +1,4 @@
-//! The answers of a sensor as NPY arrays, by the names of `docs/files.md`.
+//! The answers of a sensor as NPY arrays, by the names of `docs/formats/files.md`.
 
 use glam::DVec3;
 use std::path::Path;

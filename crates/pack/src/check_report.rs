@@ -150,7 +150,7 @@ fn of_classes(by_class: &[u64; 6]) -> Value {
     })
 }
 
-/// The check for programs. Its schema is `docs/check.schema.json`.
+/// The check for programs. Its schema is `docs/formats/check.schema.json`.
 pub fn check_json(checked: &Checked) -> String {
     let Checked { subject, recorded, check, is_blind } = checked;
     let model = subject.scene.flux_model();

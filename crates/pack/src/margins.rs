@@ -29,7 +29,7 @@ impl SensorMargins {
                 let margins = referee.margins(sensor, i, j).expect("a cell of this sensor");
                 let (visibility, landing) = match sensor {
                     SensorId::Camera => (NOTHING, NOTHING),
-                    SensorId::Beam(beam) => match referee.sight_margins(beam, i, j) {
+                    SensorId::Beam(beam) => match referee.visibility_margins(beam, i, j) {
                         Some(sight) => {
                             (sight.visibility.lo, sight.landing.map_or(NOTHING, |[lo, _]| lo.min(1.0)))
                         }

@@ -1,4 +1,4 @@
-//! `candidate.json`: what made a recording, and of which scene. Optional; `docs/files.md` describes it.
+//! `candidate.json`: what made a recording, and of which scene. Optional; `docs/formats/files.md` describes it.
 
 use serde::Deserialize;
 use std::path::Path;
@@ -122,7 +122,7 @@ impl Provenance {
     pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Self, FileError> {
         let unfit = |fault: Fault| FileError::Recording(fault.in_file(file));
         let invalid = |error: serde_json::Error| {
-            unfit(Fault::new("JSON", error.to_string(), "what docs/files.md describes"))
+            unfit(Fault::new("JSON", error.to_string(), "what docs/formats/files.md describes"))
         };
         // A newer format fails by its number and not by a key.
         #[derive(Deserialize)]

@@ -9,7 +9,7 @@ use raypencil_pack::{Checked, check_json, check_pack};
 use raypencil_scene::{Request, Resolution, Silent};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 
-const SCHEMA: &str = include_str!("../../../docs/check.schema.json");
+const SCHEMA: &str = include_str!("../../../docs/formats/check.schema.json");
 
 fn pack() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids")

@@ -1,6 +1,6 @@
 //! "The computation can be speeded up in the future by converting the code from floating point to integer arithmetic."
 //! (Paper, §8) The three inner computations of both renderers in f64, and in fixed point of 64 and of 128 bits; see
-//! `docs/results.md` for the bits that each needs.
+//! `docs/evidence/results.md` for the bits that each needs.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

@@ -10,7 +10,7 @@ use std::sync::{Arc, LazyLock};
 use raypencil::drive::DriveJob;
 use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
-use raypencil::rover::{Drive, Exposed, Pan, SheetPlane, Triangulation};
+use raypencil::rover::{CameraImage, Drive, Pan, SheetPlane, Triangulation};
 use raypencil::terrain::HeightIndex;
 use raypencil::{Image, Renderer, Request};
 
@@ -54,7 +54,7 @@ impl Cycles {
         let exposures = &mut self.exposures;
         let mut develop = |_, light: Image<f64>| {
             *exposures += 1;
-            Exposed::Numbers(JOB.sensor.numbers(&light, None, *exposures))
+            CameraImage::Numbers(JOB.sensor.numbers(&light, None, *exposures))
         };
         let frame = self.drive.step(self.renderer.as_ref(), &mut develop).expect("a frame");
         assert!(black_box(frame).is_some_and(|frame| frame.points > 500), "the route is long enough");
@@ -88,7 +88,7 @@ fn cycle(bencher: Bencher<'_, '_>, name: &str) {
 }
 
 /// The two exposures of a cycle, by what the sensor adds to them.
-#[divan::bench(args = raypencil::sensor::PRESETS, sample_count = 11, sample_size = 1)]
+#[divan::bench(args = raypencil::sensor::PRESET_NAMES, sample_count = 11, sample_size = 1)]
 fn exposures(bencher: Bencher<'_, '_>, name: &str) {
     let plan = &JOB.plan;
     let place = plan.route.frame(0).expect("a first frame");

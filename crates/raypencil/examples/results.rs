@@ -1,5 +1,5 @@
 //! How exact each renderer is: its largest error in ulp, quantity by quantity, against correctly rounded values, over
-//! every ray of some scenes, in both models of flux. Writes the first half of `docs/results.md`, above its mark, to
+//! every ray of some scenes, in both models of flux. Writes the first half of `docs/evidence/results.md`, above its mark, to
 //! standard output; the example `truth` the tables below.
 //!
 //! ```sh
@@ -31,16 +31,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let names: Vec<String> = scenes.iter().map(|scene| name(scene)).collect();
     println!("# How exact the renderers are\n");
     println!(
-        "Every ray of each scene under the default rig, as each renderer computes it in double precision, against the\n\
-         referee's correctly rounded values: the largest error in units of the last place (ulp) of the latter, and\n\
-         where. 0 would be correctly rounded throughout. Of a vector it is the error of a part in ulp of the largest\n\
-         part. The large errors of ranges are those of rays that graze a face, where a bound grows as 1 / cos(psi)\n\
-         (`crates/harness/src/bounds.rs`). Which face is hit, which pixel and what is seen are judged exactly.\n"
+        "Every ray of each scene under the default rig is computed by each renderer in double precision and\n\
+         compared with the referee's correctly rounded values. The tables give the largest error in units of the\n\
+         last place (ulp) of the correctly rounded value, and where it occurs. An error of 0 would be correctly\n\
+         rounded throughout. The error of a vector is that of a component, in ulp of the largest component. The\n\
+         large errors of ranges belong to rays that graze a face, where a bound grows as 1 / cos(psi)\n\
+         (`bounds.rs`). Which face is hit, which pixel, and what is visible are judged exactly.\n"
     );
     println!(
-        "Made by `cargo run --release -p raypencil-harness --example results -- {}`; the last is the Mars\n\
-         yard of half a million triangles, which is no part of this repository. The same numbers come out on any\n\
-         machine.\n",
+        "The tables are made by\n\
+         `cargo run --release -p raypencil-harness --example results -- {}`.\n\
+         The last scene is the Mars yard of half a million triangles, which is not part of this repository. The\n\
+         numbers are the same on any machine.\n",
         names.join(" ")
     );
     for (scene, name) in scenes.iter().zip(&names) {

@@ -1,4 +1,4 @@
-//! What the rover finds of the obstacles that are there, and which errors matter: the tables of `docs/results.md` below
+//! What the rover finds of the obstacles that are there, and which errors matter: the tables of `docs/evidence/results.md` below
 //! its mark, as Markdown on standard output.
 //!
 //! ```sh
@@ -64,7 +64,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Drives with `scanline`, which `tracer` equals to the last label (`docs/drive.md`).
+/// Drives with `scanline`, which `tracer` equals to the last label (`docs/guide/drive.md`).
 fn truth(job: &DriveJob) -> Result<TruthMatrix, Failure> {
     let renderer = contender("scanline").ok_or("a renderer of this house")?.renderer;
     Ok(drive(job, &[renderer.as_ref()], &Silent)?.truth)

@@ -29,7 +29,7 @@ pub enum Reason {
 impl Reason {
     /// Whether the reason belongs to [`Approximations::beam_edges`]; otherwise it belongs to
     /// [`Approximations::skip_rules`].
-    pub fn is_of_beam_edges(self) -> bool {
+    pub fn belongs_to_beam_edges(self) -> bool {
         self == Self::StraightSide
     }
 }

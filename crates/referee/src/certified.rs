@@ -27,7 +27,7 @@ pub struct CertifiedMap {
 
 /// The return of each pencil of a beam, and their sums on the camera's image.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CertifiedLight {
+pub struct CertifiedReturns {
     /// Columns of the beam.
     pub columns: u32,
     /// Rows of the beam.
@@ -76,7 +76,7 @@ impl CertifiedMap {
     }
 }
 
-impl CertifiedLight {
+impl CertifiedReturns {
     /// The returns with values rounded to f64 or f32.
     pub fn returns_in(&self, format: Format, model: FluxModel) -> Returns {
         let mut returns = Returns::empty(self.columns, self.rows);
@@ -143,7 +143,7 @@ impl Referee<'_> {
     }
 
     /// The returns of all pencils of a beam; `None` if there is no such beam.
-    pub fn certified_light(&self, beam: usize, sampling: Sampling) -> Option<CertifiedLight> {
+    pub fn certified_returns(&self, beam: usize, sampling: Sampling) -> Option<CertifiedReturns> {
         let light = self.light(beam, sampling)?;
         let beam = &self.scene.beams()[beam].sensor;
         let camera = &self.scene.camera().sensor;
@@ -163,7 +163,7 @@ impl Referee<'_> {
             }
         }
         let sums = pixels.into_par_iter().map(|((j, i), pencils)| (Pixel { i, j }, sum(&light, &pencils)));
-        Some(CertifiedLight {
+        Some(CertifiedReturns {
             columns: beam.columns,
             rows: beam.rows,
             sums: sums.collect(),

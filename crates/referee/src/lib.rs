@@ -2,7 +2,7 @@
 //!
 //! Two f64 programs that agree prove only that they share their mistakes. All that the contract says of a ray is a
 //! sign of a polynomial in stored f64 numbers, so it can be known without error: by an interval if that is certain,
-//! else by exact dyadic rationals. `docs/referee.md` has the proofs and the bounds.
+//! else by exact dyadic rationals. `docs/theory/referee.md` has the proofs and the bounds.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -129,17 +129,17 @@ struct Readme;
 pub use approximations::{Approximations, Explained, Reason};
 pub use arithmetic::Undecided;
 pub use beam_returns::{BeamReturns, Contribution, RoundedReturn};
-pub use certified::{CertifiedLight, CertifiedMap, PixelSum};
+pub use certified::{CertifiedMap, CertifiedReturns, PixelSum};
 pub use displacement::Displacement;
 pub use flux::Flux;
 pub use margin::Margin;
 pub use margins::Margins;
-pub use paper_visibility::{ExplainedSight, SightApproximations, SightReason};
+pub use paper_visibility::{ExplainedVisibility, VisibilityApproximations, VisibilityReason};
 pub use render::ExactRenderer;
 pub use rounding::{Format, Rounded};
 pub use ruling::{Ruling, Tolerance};
 pub use values::RoundedHit;
 pub use verdict::{Referee, Verdict};
 pub use visibility::Visibility;
-pub use visibility_margin::SightMargins;
-pub use visibility_ruling::SightRuling;
+pub use visibility_margin::VisibilityMargins;
+pub use visibility_ruling::VisibilityRuling;

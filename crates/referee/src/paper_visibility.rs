@@ -23,7 +23,7 @@ use crate::verdict::{Referee, bundle};
 
 /// The paper's approximations that an answer about the camera's view was made with. (§6)
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SightApproximations {
+pub struct VisibilityApproximations {
     /// Only faces turned away from the camera's *axis* occlude.
     pub facing: bool,
     /// Only faces with a vertex no deeper than this occlude, metres along the camera's axis.
@@ -34,7 +34,7 @@ pub struct SightApproximations {
 
 /// The reason why an approximation calls a hidden point seen, or a seen point hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum SightReason {
+pub enum VisibilityReason {
     /// The face is not turned away from the camera's axis.
     Facing,
     /// All vertices of the face are deeper than the furthest extent of the upper beam.
@@ -44,7 +44,7 @@ pub enum SightReason {
     Place,
 }
 
-impl fmt::Display for SightReason {
+impl fmt::Display for VisibilityReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Facing => "it is not turned away from the camera's axis",
@@ -56,27 +56,27 @@ impl fmt::Display for SightReason {
 
 /// A face that hides a point, or does not, against the contract, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ExplainedSight {
+pub struct ExplainedVisibility {
     /// The face.
     pub face: FaceId,
     /// All reasons that hold; at least one.
-    pub reasons: Vec<SightReason>,
+    pub reasons: Vec<VisibilityReason>,
 }
 
 impl Referee<'_> {
     /// Explains a renderer's answer on whether the camera sees the point where pencil (i, j) meets the plane of
     /// `face`, by the approximations it was made with; `None` if they do not explain it.
     #[expect(clippy::too_many_arguments, reason = "a pencil, an answer, its making and a tolerance")]
-    pub fn explain_sight(
+    pub fn explain_visibility(
         &self,
         beam: usize,
         i: u32,
         j: u32,
         face: FaceId,
         visible: bool,
-        with: SightApproximations,
+        with: VisibilityApproximations,
         tolerance: Tolerance,
-    ) -> Option<Vec<ExplainedSight>> {
+    ) -> Option<Vec<ExplainedVisibility>> {
         let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         let mesh = self.scene.mesh();
@@ -91,16 +91,19 @@ impl Referee<'_> {
         let camera = MountedSensor::Camera(*self.scene.camera());
         let section = Section6::new(&camera, with, pixel, line.centre_to_point().length(), tolerance);
         let occluders = self.occluders(&line);
-        let explained: Vec<ExplainedSight> = match (visible, occluders.is_empty()) {
+        let explained: Vec<ExplainedVisibility> = match (visible, occluders.is_empty()) {
             (true, false) => occluders
                 .iter()
-                .map(|other| ExplainedSight { face: other.id, reasons: section.overlooks(other) })
+                .map(|other| ExplainedVisibility { face: other.id, reasons: section.overlooks(other) })
                 .collect(),
             (false, true) if with.place => {
-                let mut found: Vec<ExplainedSight> = Vec::new();
+                let mut found: Vec<ExplainedVisibility> = Vec::new();
                 self.bvh.visit(&section.bundle_at_centre(&camera, pixel), |other| {
                     if section.hides(other).may_hold {
-                        found.push(ExplainedSight { face: other.id, reasons: vec![SightReason::Place] });
+                        found.push(ExplainedVisibility {
+                            face: other.id,
+                            reasons: vec![VisibilityReason::Place],
+                        });
                     }
                     section.distance * 2.0
                 });
@@ -116,7 +119,7 @@ impl Referee<'_> {
 
 /// The tests of §6, for one point.
 struct Section6<'a> {
-    with: SightApproximations,
+    with: VisibilityApproximations,
     /// The ray through the centre of the pixel.
     centre: PaperRay<'a>,
     /// Distance of the point from the projection centre, metres.
@@ -128,7 +131,7 @@ struct Section6<'a> {
 impl<'a> Section6<'a> {
     fn new(
         camera: &'a MountedSensor,
-        with: SightApproximations,
+        with: VisibilityApproximations,
         pixel: Pixel,
         distance: f64,
         tolerance: Tolerance,
@@ -142,17 +145,17 @@ impl<'a> Section6<'a> {
     }
 
     /// The reasons for which a face that hides the point is not found.
-    fn overlooks(&self, face: &Face) -> Vec<SightReason> {
+    fn overlooks(&self, face: &Face) -> Vec<VisibilityReason> {
         let mut reasons = Vec::new();
         if self.with.facing && self.is_turned_away(face).may_fail {
-            reasons.push(SightReason::Facing);
+            reasons.push(VisibilityReason::Facing);
         }
         if self.is_within_extent(face).may_fail {
-            reasons.push(SightReason::Extent);
+            reasons.push(VisibilityReason::Extent);
         }
         let is_asked_at_centre = self.is_turned_away(face) & self.is_nearer_at_centre(face);
         if self.with.place && is_asked_at_centre.may_fail {
-            reasons.push(SightReason::Place);
+            reasons.push(VisibilityReason::Place);
         }
         reasons
     }

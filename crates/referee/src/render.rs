@@ -49,7 +49,7 @@ impl Renderer for ExactRenderer {
         let (mut returns, mut flux) = (Vec::new(), Vec::new());
         for index in 0..if request.returns { scene.beams().len() } else { 0 } {
             let start = Instant::now();
-            if let Some(light) = referee.certified_light(index, request.sampling) {
+            if let Some(light) = referee.certified_returns(index, request.sampling) {
                 let model = scene.flux_model();
                 returns.push(light.returns_in(Format::Double, model));
                 flux.push(light.image_in(Format::Double, model));

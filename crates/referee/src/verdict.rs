@@ -78,7 +78,7 @@ impl<'s> Referee<'s> {
 
     /// The faces that a ray displaced from cell (i, j) by at most `radius` cells may meet, and possibly others, in
     /// ascending order; `None` if there is no such cell.
-    pub fn faces_near(&self, id: SensorId, i: u32, j: u32, radius: f64) -> Option<Vec<FaceId>> {
+    pub fn candidate_faces(&self, id: SensorId, i: u32, j: u32, radius: f64) -> Option<Vec<FaceId>> {
         let (sensor, aim) = self.sensor_and_aim(id, i, j)?;
         let mut near = Vec::new();
         let max_range = sensor.max_range();

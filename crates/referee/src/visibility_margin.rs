@@ -50,7 +50,7 @@ use crate::visibility::Visibility;
 
 /// The camera's view of a pencil's hit, and how far it is from changing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SightMargins {
+pub struct VisibilityMargins {
     /// The view of the pencil itself.
     pub sight: Visibility,
     /// The least displacement at which `visible` changes; a pencil that misses is not visible.
@@ -76,7 +76,7 @@ impl Referee<'_> {
     /// // The image ends half a pixel, 1/8 m on the wall, to the left. The pencil's cell is 1 m wide.
     /// assert!(margins.visibility.lo <= 0.125 && 0.125 <= margins.visibility.hi);
     /// ```
-    pub fn sight_margins(&self, beam: usize, i: u32, j: u32) -> Option<SightMargins> {
+    pub fn visibility_margins(&self, beam: usize, i: u32, j: u32) -> Option<VisibilityMargins> {
         let (sensor, aim) = self.sensor_and_aim(SensorId::Beam(beam), i, j)?;
         let near = Neighbourhood::new(self, &sensor, aim);
         let nearest = near.nearest_at([0.0; 2]);
@@ -94,7 +94,7 @@ impl Referee<'_> {
             hit_faces: HashMap::new(),
             known_displacements: HashMap::new(),
         };
-        Some(SightMargins { sight, visibility: view.margin(), landing })
+        Some(VisibilityMargins { sight, visibility: view.margin(), landing })
     }
 }
 

@@ -19,7 +19,7 @@ use crate::visibility::Visibility;
 
 /// The referee's ruling on one answer about the camera's view.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SightRuling {
+pub struct VisibilityRuling {
     /// The ruling on whether the point is seen.
     pub visible: Ruling,
     /// The ruling on where it lands.
@@ -34,7 +34,7 @@ impl Referee<'_> {
     /// The ruling on a renderer's answer about the point where pencil (i, j), displaced by `by`, meets the plane of
     /// `face`; `None` if there is no such pencil or face.
     #[expect(clippy::too_many_arguments, reason = "a pencil, an answer and a tolerance")]
-    pub fn rule_sight(
+    pub fn rule_visibility(
         &self,
         beam: usize,
         i: u32,
@@ -44,7 +44,7 @@ impl Referee<'_> {
         visible: bool,
         pixel: Option<Pixel>,
         tolerance: Tolerance,
-    ) -> Option<SightRuling> {
+    ) -> Option<VisibilityRuling> {
         let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         let mesh = self.scene.mesh();
@@ -55,7 +55,7 @@ impl Referee<'_> {
         let aim = Aim { i, j, dx: by.dx, dy: by.dy };
         let exact = self.visibility_of(&sensor, aim, &face);
         if exact.visible == visible && exact.pixel == pixel {
-            return Some(SightRuling { visible: Ruling::Exact, pixel: Ruling::Exact });
+            return Some(VisibilityRuling { visible: Ruling::Exact, pixel: Ruling::Exact });
         }
         let lateral = tolerance.lateral.clamp(0.0, 1.0);
         let beside: Vec<(Displacement, Visibility)> = TRIED_DISPLACEMENTS
@@ -91,7 +91,7 @@ impl Referee<'_> {
         } else {
             Ruling::Wrong
         };
-        Some(SightRuling { visible: of_visible, pixel: of_pixel })
+        Some(VisibilityRuling { visible: of_visible, pixel: of_pixel })
     }
 
     /// Whether a point with an error of `off` metres may be called seen, or hidden, against the exact answer.

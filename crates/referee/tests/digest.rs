@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use common::SplitMix64;
 use glam::{DQuat, DVec3};
-use raypencil_referee::{Approximations, Displacement, Referee, SightApproximations, Tolerance};
+use raypencil_referee::{Approximations, Displacement, Referee, Tolerance, VisibilityApproximations};
 use raypencil_scene::{
     Atmosphere, Beam, Camera, FaceId, Filter, FluxModel, Lens, Mounted, Pose, Profile, Sampling, Scene,
     SensorId,
@@ -172,7 +172,7 @@ fn record_ray(
 fn record_pencil(transcript: &mut Transcript, scene: &Scene, referee: &Referee<'_>, random: &mut SplitMix64) {
     let Beam { columns, rows, .. } = scene.beams()[0].sensor;
     let (i, j) = (random.below(columns), random.below(rows));
-    let margins = referee.sight_margins(0, i, j);
+    let margins = referee.visibility_margins(0, i, j);
     transcript.record("sight margins", &margins);
     let Some(face) =
         referee.verdict(SensorId::Beam(0), i, j).and_then(|verdict| verdict.faces.first().copied())
@@ -186,8 +186,10 @@ fn record_pencil(transcript: &mut Transcript, scene: &Scene, referee: &Referee<'
         let pixel = sight.and_then(|sight| sight.pixel);
         for (visible, tolerance) in [true, false].into_iter().flat_map(|v| TOLERANCES.map(|t| (v, t))) {
             let at = Displacement::ZERO;
-            transcript
-                .record("sight rulings", &referee.rule_sight(0, i, j, at, face, visible, pixel, tolerance));
+            transcript.record(
+                "sight rulings",
+                &referee.rule_visibility(0, i, j, at, face, visible, pixel, tolerance),
+            );
             for (facing, extent, place) in [
                 (true, None, false),
                 (false, Some(4.0), false),
@@ -195,8 +197,8 @@ fn record_pencil(transcript: &mut Transcript, scene: &Scene, referee: &Referee<'
                 (true, Some(3.0), true),
                 (false, Some(2.0), true),
             ] {
-                let with = SightApproximations { facing, extent, place };
-                let explained = referee.explain_sight(0, i, j, face, visible, with, tolerance);
+                let with = VisibilityApproximations { facing, extent, place };
+                let explained = referee.explain_visibility(0, i, j, face, visible, with, tolerance);
                 transcript.record("explained sights", &explained);
             }
         }
@@ -219,7 +221,7 @@ fn answers_to_rays_have_the_committed_bits() {
             record_pencil(&mut transcript, &scene, &referee, &mut random);
         }
         for sampling in [Sampling::Centres, Sampling::Jittered { seed: 3 }] {
-            let light = referee.certified_light(0, sampling).expect("a beam");
+            let light = referee.certified_returns(0, sampling).expect("a beam");
             transcript.record("light", &light.returns);
             transcript.record("light on pixels", &light.sums);
         }
@@ -247,7 +249,7 @@ fn margins_of_many_rays_have_the_committed_bits() {
         for _ in 0..60 {
             transcript.record(
                 "sight margins",
-                &referee.sight_margins(0, random.below(columns), random.below(rows)),
+                &referee.visibility_margins(0, random.below(columns), random.below(rows)),
             );
         }
     }

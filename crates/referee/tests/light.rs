@@ -210,7 +210,7 @@ fn a_beam_narrower_than_its_pencils_has_shares_all_the_same() {
         let (mesh, air) = (Arc::clone(scene.mesh()), scene.atmosphere());
         let scene = Scene::new(mesh, *scene.camera(), beams, air, scene.flux_model()).expect("a scene");
         let referee = Referee::new(&scene);
-        let light = referee.certified_light(0, Sampling::Centres).expect("a beam");
+        let light = referee.certified_returns(0, Sampling::Centres).expect("a beam");
         assert_eq!(light.undecided(), 0);
         light.returns.iter().map(|back| back.expect("a hit").radiometric.expect("decided").double).collect()
     };
@@ -253,7 +253,7 @@ fn a_landing_is_excused_as_far_as_the_position_explains_it() {
     let referee = Referee::new(&scene);
     let rule = |pixel: Option<Pixel>, position: f64| {
         let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position };
-        let ruling = referee.rule_sight(0, 0, 0, Displacement::ZERO, FaceId(0), true, pixel, tolerance);
+        let ruling = referee.rule_visibility(0, 0, 0, Displacement::ZERO, FaceId(0), true, pixel, tolerance);
         ruling.expect("a pencil").pixel
     };
     let at = |i: u32, j: u32| Some(Pixel { i, j });

@@ -216,7 +216,7 @@ fn faces_near_a_ray_are_all_that_it_may_meet() {
     let scene = looking_along_z(vertices, six, 100.0);
     let referee = Referee::new(&scene);
     let near = |i: u32, j: u32, radius: f64| {
-        let faces = referee.faces_near(CAMERA, i, j, radius)?;
+        let faces = referee.candidate_faces(CAMERA, i, j, radius)?;
         Some(faces.into_iter().map(|face| face.0).collect::<Vec<_>>())
     };
     assert_eq!(near(4, 4, 0.5), Some(vec![0, 1, 2, 3, 4, 5]));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::SplitMix64;
 use glam::{DQuat, DVec3};
-use raypencil_referee::{Displacement, Margin, Referee, SightMargins};
+use raypencil_referee::{Displacement, Margin, Referee, VisibilityMargins};
 use raypencil_scene::{
     Atmosphere, Beam, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pixel, Pose, Profile, Scene,
 };
@@ -77,10 +77,10 @@ fn margins_hold_are_witnessed_and_are_tight() {
         let Beam { columns, rows, .. } = scene.beams()[0].sensor;
         for _ in 0..160 {
             let (i, j) = (random.below(columns), random.below(rows));
-            let margins = referee.sight_margins(0, i, j);
+            let margins = referee.visibility_margins(0, i, j);
             let own = referee.sight(0, i, j, Displacement::ZERO);
             assert_eq!(margins.map(|margins| margins.sight), own);
-            let Some(SightMargins { sight, visibility, landing }) = margins else { continue };
+            let Some(VisibilityMargins { sight, visibility, landing }) = margins else { continue };
             assert_eq!(landing.is_some(), sight.pixel.is_some());
             *if sight.visible { &mut seen } else { &mut hidden } += 1;
             let Margin { lo, hi, witness } = visibility;
@@ -168,8 +168,8 @@ fn by_hand(faces: &[[[f32; 3]; 3]], apart: f64, principal_point: [f64; 2]) -> Sc
     .expect("a scene")
 }
 
-fn margins(scene: &Scene) -> SightMargins {
-    Referee::new(scene).sight_margins(0, 0, 0).expect("the wall is hit")
+fn margins(scene: &Scene) -> VisibilityMargins {
+    Referee::new(scene).visibility_margins(0, 0, 0).expect("the wall is hit")
 }
 
 /// Asserts that a margin contains the derived number, and is tight.

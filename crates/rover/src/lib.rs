@@ -18,7 +18,7 @@
 //! settings. `drive` puts everything together: [`Drive`] takes a renderer for the images.
 //!
 //! The crate does no IO and reads no clock; random numbers are keyed by (seed, purpose, index). Every number that the
-//! paper does not print is a named field; `docs/rover.md` lists them with the sentences of the paper.
+//! paper does not print is a named field; `docs/theory/rover.md` lists them with the sentences of the paper.
 //!
 //! ```
 //! use glam::{DVec2, DVec3};

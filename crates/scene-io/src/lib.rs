@@ -1,13 +1,13 @@
 //! Every file format of raypencil, in and out. Nothing else below the harness touches files.
 //!
 //! * [`load`]: a built-in name, a scene TOML or a glTF terrain becomes a [`LoadedScene`]. The keys of a
-//!   scene file are described in `docs/scene.md`.
+//!   scene file are described in `docs/guide/scene.md`.
 //! * [`write_resolved`]: a scene's own numbers, which [`load`] gives back bit for bit.
 //! * [`load_mesh`]: a `.glb` or `.gltf` file becomes a [`raypencil_scene::Mesh`]; [`write_glb`] and [`mesh_of_offsets`]
 //!   keep one bit for bit, [`write_terrain_glb`] does so for people, with the ground where it belongs.
 //! * [`read_dem`]: the heights of a GeoTIFF, all or a part of them, and the mesh that they make.
 //! * [`write_exr_map`], [`read_exr_map`]: the maps of one sensor as OpenEXR; [`ExrMap`] for files of any
-//!   channels. Conventions are in `docs/files.md`.
+//!   channels. Conventions are in `docs/formats/files.md`.
 //! * [`read_npy`], [`write_npy`], [`read_pfm`], [`write_pfm`]: arrays of numbers, as NumPy and image programs
 //!   have them.
 //! * [`read_channels`]: a recording of any program, in any of these formats, as [`Channels`].

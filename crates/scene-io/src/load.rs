@@ -286,7 +286,7 @@ fn kernel_file(places: &Source, part: &KernelPart) -> Result<(Kernel, Sha), Scen
     };
     let (columns, rows) = plane.size();
     let weights: Vec<f64> = (0..columns as usize * rows as usize).map(|index| plane.real(index)).collect();
-    let kernel = Kernel::from_numbers(columns as usize, rows as usize, &weights).map_err(|error| {
+    let kernel = Kernel::from_weights(columns as usize, rows as usize, &weights).map_err(|error| {
         let SceneError { field, value, expected } = error;
         places.error(part.span.clone(), format!("`{name}`: {field} is {value}; expected {expected}"))
     })?;

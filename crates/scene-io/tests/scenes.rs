@@ -195,7 +195,7 @@ fn around_a_hole_the_nearest_face_that_looks_up_is_stood_on() {
 
 #[test]
 fn the_documented_example_is_the_file() {
-    let docs = std::fs::read_to_string(scenes().join("../../docs/scene.md")).unwrap();
+    let docs = std::fs::read_to_string(scenes().join("../../docs/guide/scene.md")).unwrap();
     let text = std::fs::read_to_string(scenes().join("default.toml")).unwrap();
     let (_, body) = text.split_once("version = 1\n").unwrap();
     assert!(docs.ends_with(&format!("```toml\nversion = 1\n{body}```\n")));
@@ -257,7 +257,7 @@ fn a_source_that_is_none_lists_what_there_is() {
 
 #[test]
 fn every_limit_of_every_key_is_within_the_limits_of_the_scene() {
-    // The smallest and the largest value of each key, as docs/scene.md gives them.
+    // The smallest and the largest value of each key, as docs/guide/scene.md gives them.
     let least = "version = 1\n[vehicle]\nposition_m = [0, 0]\nheading_deg = -360\n\
         [camera]\nposition_m = [-1000, -1000, -1000]\npitch_down_deg = -360\nwidth_px = 1\nheight_px = 1\n\
         pixel_pitch_um = 0.01\nfocal_length_mm = 0.01\naperture_mm = 0.001\nmax_range_m = 0.001\n\

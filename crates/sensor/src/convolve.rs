@@ -33,7 +33,7 @@ pub struct ConvolvedImage {
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
 pub fn convolve(image: &Image<f64>, kernel: &Kernel) -> ConvolvedImage {
-    match &kernel.form {
+    match &kernel.form_image {
         KernelForm::Separable { across, down } => {
             let (middle, left_over_sides) = convolve_rows(image, across);
             let (image, left_over_ends) = convolve_columns(&middle, down);

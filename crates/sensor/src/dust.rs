@@ -3,7 +3,7 @@
 use raypencil_scene::{Image, SceneError};
 
 use crate::check::check_range;
-use crate::{Extent, Kernel, convolve};
+use crate::{ImageLength, Kernel, convolve};
 
 /// Dust on the lens, evenly spread and far out of focus: it casts no shape on the image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Dust {
     pub halo_share: f64,
     /// Standard deviation of the halo, a Gaussian. The halo is computed on the camera's pixels, so it should be
     /// some pixels wide.
-    pub halo_sigma: Extent,
+    pub halo_sigma: ImageLength,
 }
 
 /// Image after the dust.

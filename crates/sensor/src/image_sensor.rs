@@ -10,31 +10,32 @@ use crate::{NoiseSource, NoiseStream, photon_energy, poisson};
 /// Dark current: electrons that collect without light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DarkCurrent {
-    /// Electrons per second and pixel at the temperature `at`.
+    /// Electrons per second and pixel at the temperature `reference_temperature`.
     pub rate: f64,
     /// Temperature at which `rate` holds, kelvin.
-    pub at: f64,
+    pub reference_temperature: f64,
     /// Temperature increase that doubles the rate, kelvin.
-    pub doubling: f64,
+    pub doubling_kelvins: f64,
     /// Temperature of the sensor, kelvin.
     pub temperature: f64,
 }
 
 impl DarkCurrent {
     /// No dark current.
-    pub const NONE: Self = Self { rate: 0.0, at: 293.15, doubling: 7.0, temperature: 293.15 };
+    pub const NONE: Self =
+        Self { rate: 0.0, reference_temperature: 293.15, doubling_kelvins: 7.0, temperature: 293.15 };
 
     /// Electrons per second and pixel at the sensor's own temperature.
     pub fn electrons_per_second(&self) -> f64 {
-        self.rate * libm::exp2((self.temperature - self.at) / self.doubling)
+        self.rate * libm::exp2((self.temperature - self.reference_temperature) / self.doubling_kelvins)
     }
 }
 
 /// Image sensor with its amplifier and A/D converter.
 ///
-/// Start from [`Sensor::ideal`], [`Sensor::ccd_1989`] or [`Sensor::cmos`] and change fields.
+/// Start from [`ImageSensor::ideal`], [`ImageSensor::ccd_1989`] or [`ImageSensor::cmos`] and change fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensor {
+pub struct ImageSensor {
     /// Exposure time, seconds.
     pub exposure: f64,
     /// Wavelength, metres. All light counts as light of this wavelength.
@@ -103,7 +104,7 @@ fn fluxes<'a>(optical: &'a Image<f64>, background: Option<&'a Image<f64>>) -> im
     move |index| optical[index] + background.map_or(0.0, |background| background[index])
 }
 
-impl Sensor {
+impl ImageSensor {
     /// Exposes frame number `frame`. `optical` is the flux of the laser on each pixel, watts; `background` that
     /// of all other light. The fixed patterns are the same in every frame.
     ///
@@ -138,11 +139,11 @@ impl Sensor {
         }
     }
 
-    /// [`DigitalImage::numbers`] of [`Sensor::expose`] alone, without the other images, as any type that holds a
+    /// [`DigitalImage::numbers`] of [`ImageSensor::expose`] alone, without the other images, as any type that holds a
     /// `u16`.
     ///
     /// # Panics
-    /// As [`Sensor::expose`].
+    /// As [`ImageSensor::expose`].
     pub fn numbers<T: Copy + From<u16> + Send + Sync>(
         &self,
         optical: &Image<f64>,
@@ -183,7 +184,7 @@ impl Sensor {
     /// Exposes frame 2 `pair` with the laser on and frame 2 `pair` + 1 with it off, and subtracts them.
     ///
     /// # Panics
-    /// As [`Sensor::expose`].
+    /// As [`ImageSensor::expose`].
     ///
     /// # Example
     ///
@@ -208,10 +209,10 @@ impl Sensor {
         ImagePair { lit, unlit, difference }
     }
 
-    /// [`ImagePair::difference`] of [`Sensor::expose_pair`] alone, without the other images.
+    /// [`ImagePair::difference`] of [`ImageSensor::expose_pair`] alone, without the other images.
     ///
     /// # Panics
-    /// As [`Sensor::expose`].
+    /// As [`ImageSensor::expose`].
     pub fn lit_minus_unlit(
         &self,
         optical: &Image<f64>,
@@ -279,8 +280,15 @@ impl Sensor {
         check_range(field, "wavelength", self.wavelength, 1e-8, 1e-3, "m")?;
         check_range(field, "quantum_efficiency", self.quantum_efficiency, 0.0, 1.0, "")?;
         check_range(field, "dark_current.rate", self.dark_current.rate, 0.0, 1e9, "electrons/s")?;
-        check_range(field, "dark_current.at", self.dark_current.at, 50.0, 500.0, "K")?;
-        check_range(field, "dark_current.doubling", self.dark_current.doubling, 1.0, 100.0, "K")?;
+        check_range(
+            field,
+            "dark_current.reference_temperature",
+            self.dark_current.reference_temperature,
+            50.0,
+            500.0,
+            "K",
+        )?;
+        check_range(field, "dark_current.doubling", self.dark_current.doubling_kelvins, 1.0, 100.0, "K")?;
         check_range(field, "dark_current.temperature", self.dark_current.temperature, 50.0, 500.0, "K")?;
         check_range(field, "read_noise", self.read_noise, 0.0, 1e6, "electrons")?;
         check_range(field, "prnu", self.prnu, 0.0, 1.0, "")?;

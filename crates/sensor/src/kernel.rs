@@ -20,7 +20,7 @@ use crate::airy::airy_pattern;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kernel {
-    pub(crate) form: KernelForm,
+    pub(crate) form_image: KernelForm,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ const MAX_DENSE_HALF_WIDTH_CELLS: f64 = 512.0;
 impl Kernel {
     /// Identity: light stays where it is.
     pub fn identity() -> Self {
-        Self { form: KernelForm::Separable { across: vec![1.0], down: vec![1.0] } }
+        Self { form_image: KernelForm::Separable { across: vec![1.0], down: vec![1.0] } }
     }
 
     /// Gaussian of standard deviations `sigma` in cells, across and down, *integrated over each cell*: it is
@@ -62,7 +62,7 @@ impl Kernel {
             };
             normalised((-half..=half).map(weight).collect())
         });
-        Self { form: KernelForm::Separable { across, down } }
+        Self { form_image: KernelForm::Separable { across, down } }
     }
 
     /// Diffraction pattern of a round aperture with its first `rings` dark rings, on cells of `cell` metres. It
@@ -96,7 +96,9 @@ impl Kernel {
                 weights.push(sum);
             }
         }
-        Self { form: KernelForm::Dense { columns: 2 * half[0] as usize + 1, weights: normalised(weights) } }
+        Self {
+            form_image: KernelForm::Dense { columns: 2 * half[0] as usize + 1, weights: normalised(weights) },
+        }
     }
 
     /// Kernel of given weights, row by row, normalised. The middle weight is for light that stays. Weights to its
@@ -105,7 +107,7 @@ impl Kernel {
     /// # Errors
     /// If the sides are not odd or too long, the number of weights is not their product, or weights are negative,
     /// not finite or all 0.
-    pub fn from_numbers(columns: usize, rows: usize, weights: &[f64]) -> Result<Self, SceneError> {
+    pub fn from_weights(columns: usize, rows: usize, weights: &[f64]) -> Result<Self, SceneError> {
         let longest = 2 * MAX_DENSE_HALF_WIDTH_CELLS as usize + 1;
         for (side, count) in [("columns", columns), ("rows", rows)] {
             if count % 2 == 0 || count > longest {
@@ -129,12 +131,12 @@ impl Kernel {
         if !(weights.iter().sum::<f64>() > 1e-100) {
             return Err(SceneError::new("kernel.weights", "all 0", "a sum above 1e-100"));
         }
-        Ok(Self { form: KernelForm::Dense { columns, weights: normalised(weights.to_vec()) } })
+        Ok(Self { form_image: KernelForm::Dense { columns, weights: normalised(weights.to_vec()) } })
     }
 
     /// Half widths: cells from the middle to the ends, across and down.
     pub fn half_widths(&self) -> [usize; 2] {
-        match &self.form {
+        match &self.form_image {
             KernelForm::Separable { across, down } => [across.len() / 2, down.len() / 2],
             KernelForm::Dense { columns, weights } => [columns / 2, weights.len() / columns / 2],
         }
@@ -147,7 +149,7 @@ impl Kernel {
             return 0.0;
         }
         let (i, j) = ((right + half[0]) as usize, (down + half[1]) as usize);
-        match &self.form {
+        match &self.form_image {
             KernelForm::Separable { across, down } => across[i] * down[j],
             KernelForm::Dense { columns, weights } => weights[j * columns + i],
         }

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Sources: the linear camera model of EMVA 1288, release 4.0; Goodman, Introduction to Fourier Optics. The equations
-//! are in `docs/sensor.md`.
+//! are in `docs/theory/sensor.md`.
 //!
 //! Every function is pure. Random numbers depend on (seed, noise source, frame, pixel) alone, and every sum has a fixed
 //! order: the bits do not depend on the number of threads.
@@ -45,16 +45,16 @@ mod sunlight;
 pub use airy::{airy_pattern, encircled_energy};
 pub use convolve::{ConvolvedImage, binned, convolve};
 pub use dust::{Dust, DustedImage};
-pub use image_sensor::{DarkCurrent, DigitalImage, ImagePair, Sensor, difference};
+pub use image_sensor::{DarkCurrent, DigitalImage, ImagePair, ImageSensor, difference};
 pub use kernel::Kernel;
 pub use noise_stream::{NoiseSource, NoiseStream};
 pub use optics::{FluxBudget, Optics, OpticsOutput};
 pub use photon::{PLANCK_CONSTANT, SPEED_OF_LIGHT, photon_energy};
 pub use poisson::poisson;
-pub use presets::{PRESETS, preset};
-pub use psf::{Extent, Psf};
+pub use presets::{PRESET_NAMES, preset};
+pub use psf::{ImageLength, Psf};
 pub use splat::{PointSource, SplatImage, ThinLens, splat, splat_defocused};
-pub use sunlight::{Ground, MARS_ORBIT, SOLAR_SPECTRUM_810, Sunlight};
+pub use sunlight::{MARS_SEMI_MAJOR_AXIS_AU, SOLAR_IRRADIANCE_810_NM, Sunlight, VisibleSurface};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -76,7 +76,11 @@ impl Optics {
     /// let out = budget.missed + budget.blurred_out + budget.absorbed + budget.scattered_out + budget.arrived;
     /// assert!((budget.entered - out).abs() < 1e-12);
     /// ```
-    pub fn form(&self, camera: &Camera, sources: impl IntoIterator<Item = PointSource>) -> OpticsOutput {
+    pub fn form_image(
+        &self,
+        camera: &Camera,
+        sources: impl IntoIterator<Item = PointSource>,
+    ) -> OpticsOutput {
         let mut entered = 0.0;
         let sources = sources.into_iter().inspect(|source| entered += source.watts);
         let SplatImage { image, lost } = match self.focus {
@@ -125,7 +129,7 @@ impl Optics {
 
     /// Filters an image that is known by pixels only, such as a sun-lit background. Dust acts on it; blur, which
     /// is narrow relative to the pixels, is left out.
-    pub fn veil(&self, camera: &Camera, pixels: &Image<f64>) -> Image<f64> {
+    pub fn filter_pixels(&self, camera: &Camera, pixels: &Image<f64>) -> Image<f64> {
         self.dust.map_or_else(|| pixels.clone(), |dust| dust.apply(pixels, camera.pixel_pitch).image)
     }
 

@@ -1,10 +1,10 @@
-//! Optics and sensors by name. Each figure has its source or is marked CHOICE; `docs/sensor.md` lists them in a
+//! Optics and sensors by name. Each figure has its source or is marked CHOICE; `docs/theory/sensor.md` lists them in a
 //! table.
 
-use crate::{DarkCurrent, Dust, Extent, Optics, Psf, Sensor};
+use crate::{DarkCurrent, Dust, ImageLength, ImageSensor, Optics, Psf};
 
 /// Names that [`preset`] accepts.
-pub const PRESETS: &[&str] = &["ideal", "ccd_1989", "cmos"];
+pub const PRESET_NAMES: &[&str] = &["ideal", "ccd_1989", "cmos"];
 
 /// Optics and sensor by name; `None` for an unknown name.
 ///
@@ -18,11 +18,11 @@ pub const PRESETS: &[&str] = &["ideal", "ccd_1989", "cmos"];
 /// // Its lens is dusty: a tenth of the light is lost.
 /// assert_eq!(optics.dust.expect("dust").transmission, 0.9);
 /// ```
-pub fn preset(name: &str) -> Option<(Optics, Sensor)> {
+pub fn preset(name: &str) -> Option<(Optics, ImageSensor)> {
     match name {
-        "ideal" => Some((Optics::PERFECT, Sensor::ideal())),
-        "ccd_1989" => Some((Optics::dusty(), Sensor::ccd_1989())),
-        "cmos" => Some((Optics::diffraction_limited(), Sensor::cmos())),
+        "ideal" => Some((Optics::PERFECT, ImageSensor::ideal())),
+        "ccd_1989" => Some((Optics::dusty(), ImageSensor::ccd_1989())),
+        "cmos" => Some((Optics::diffraction_limited(), ImageSensor::cmos())),
         _ => None,
     }
 }
@@ -30,7 +30,7 @@ pub fn preset(name: &str) -> Option<(Optics, Sensor)> {
 /// Wavelength of the default beams, metres. CHOICE.
 const BEAM_WAVELENGTH_M: f64 = 810e-9;
 
-impl Sensor {
+impl ImageSensor {
     /// Sensor without noise: 16 bits, one electron per photon, an infinite full well.
     pub const fn ideal() -> Self {
         Self {
@@ -65,9 +65,9 @@ impl Sensor {
             dark_current: DarkCurrent {
                 // Limit for the frame-transfer CCDs of the Mars Exploration Rovers (12 um pixels) at 0 C.
                 rate: 1200.0,
-                at: 273.15,
+                reference_temperature: 273.15,
                 // CCD makers give a factor of 2 for 5 to 7 K.
-                doubling: 6.0,
+                doubling_kelvins: 6.0,
                 // CHOICE: a warm afternoon on Mars.
                 temperature: 273.15,
             },
@@ -101,8 +101,8 @@ impl Sensor {
             dark_current: DarkCurrent {
                 // CHOICE: a few electrons per second; in a millisecond they hardly matter.
                 rate: 5.0,
-                at: 298.15,
-                doubling: 7.0,
+                reference_temperature: 298.15,
+                doubling_kelvins: 7.0,
                 temperature: 298.15,
             },
             // CHOICE: EMVA 1288 figures for the sensor are about 2.4. (The manual below: 75.46 dB, that is 1.8.)
@@ -132,7 +132,7 @@ impl Optics {
             focus: None,
             blurs: vec![
                 Psf::Airy { wavelength: BEAM_WAVELENGTH_M, f_number: 4.0, rings: 8 },
-                Psf::Gaussian { sigma: Extent::Metres(0.5e-6) },
+                Psf::Gaussian { sigma: ImageLength::Metres(0.5e-6) },
             ],
             dust: None,
         }
@@ -146,9 +146,9 @@ impl Optics {
             focus: Some(4.0),
             blurs: vec![
                 Psf::Airy { wavelength: BEAM_WAVELENGTH_M, f_number: 4.0, rings: 8 },
-                Psf::Gaussian { sigma: Extent::Pixels(1.0 / 3.0) },
+                Psf::Gaussian { sigma: ImageLength::Pixels(1.0 / 3.0) },
             ],
-            dust: Some(Dust { transmission: 0.9, halo_share: 0.03, halo_sigma: Extent::Pixels(20.0) }),
+            dust: Some(Dust { transmission: 0.9, halo_share: 0.03, halo_sigma: ImageLength::Pixels(20.0) }),
         }
     }
 }

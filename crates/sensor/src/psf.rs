@@ -8,14 +8,14 @@ use crate::check::check_range;
 
 /// Length on the image.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Extent {
+pub enum ImageLength {
     /// Pixels of the camera, across and down alike.
     Pixels(f64),
     /// Metres on the image plane.
     Metres(f64),
 }
 
-impl Extent {
+impl ImageLength {
     /// Length in cells across and down: cells of `cell` metres, `oversampling` of them along the side of a pixel.
     pub(crate) fn in_cells(self, cell: [f64; 2], oversampling: u32) -> [f64; 2] {
         match self {
@@ -38,7 +38,7 @@ pub enum Psf {
     /// Gaussian: the sum of many small aberrations, or the diffusion of charge.
     Gaussian {
         /// Standard deviation along each axis.
-        sigma: Extent,
+        sigma: ImageLength,
     },
     /// Diffraction pattern of a round aperture.
     Airy {
@@ -51,7 +51,7 @@ pub enum Psf {
         rings: u32,
     },
     /// Measured kernel on the cells of the fine image.
-    Numbers(Kernel),
+    Sampled(Kernel),
 }
 
 impl Psf {
@@ -60,7 +60,7 @@ impl Psf {
         match self {
             Self::Gaussian { sigma } => Kernel::gaussian(sigma.in_cells(cell, oversampling)),
             Self::Airy { wavelength, f_number, rings } => Kernel::airy(*wavelength, *f_number, *rings, cell),
-            Self::Numbers(kernel) => kernel.clone(),
+            Self::Sampled(kernel) => kernel.clone(),
         }
     }
 
@@ -77,7 +77,7 @@ impl Psf {
                 check_range(field, "rings", f64::from(*rings), 1.0, 100.0, "rings")
             }
             // A kernel is valid by construction.
-            Self::Numbers(_) => Ok(()),
+            Self::Sampled(_) => Ok(()),
         }
     }
 }

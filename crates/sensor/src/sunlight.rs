@@ -11,9 +11,9 @@ use crate::check::{assert_same_size, check_range};
 /// Spectral irradiance of the sun at 1 AU near 810 nm, W/m^2 per metre of wavelength: 1.110 W/m^2/nm, the mean of the
 /// ten rows 801 to 819 nm of ASTM E490-00a (1142, 1129, 1115, 1120, 1095, 1114, 1115, 1107, 1104 and
 /// 1063 W/m^2/um). ASTM G173-03 has 1.110 at 810 nm for the top of the atmosphere.
-pub const SOLAR_SPECTRUM_810: f64 = 1.110e9;
+pub const SOLAR_IRRADIANCE_810_NM: f64 = 1.110e9;
 /// Semi-major axis of Mars' orbit, astronomical units (J2000). Sunlight decreases with its square, 2.3216.
-pub const MARS_ORBIT: f64 = 1.523_679;
+pub const MARS_SEMI_MAJOR_AXIS_AU: f64 = 1.523_679;
 
 /// Light of the sun and the sky on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Sunlight {
 
 /// Surface that the camera sees, pixel by pixel: maps of its central rays.
 #[derive(Debug, Clone, Copy)]
-pub struct Ground<'a> {
+pub struct VisibleSurface<'a> {
     /// Unit normal of the face hit, scene frame; none where there is no hit.
     pub normal: &'a Image<Maybe<DVec3>>,
     /// Distance of the hit along the ray, metres.
@@ -71,7 +71,7 @@ impl Sunlight {
     /// assert!((dusty.sky / sun.direct - 0.7 * 0.3935).abs() < 1e-4);
     /// ```
     pub fn mars(elevation: f64, azimuth: f64, optical_depth: f64) -> Self {
-        let above = SOLAR_SPECTRUM_810 / (MARS_ORBIT * MARS_ORBIT);
+        let above = SOLAR_IRRADIANCE_810_NM / (MARS_SEMI_MAJOR_AXIS_AU * MARS_SEMI_MAJOR_AXIS_AU);
         let height = libm::sin(elevation).max(0.0);
         let left = if height > 0.0 { libm::exp(-optical_depth / height) } else { 0.0 };
         Self {
@@ -121,7 +121,7 @@ impl Sunlight {
     ///
     /// # Panics
     /// If the maps do not have the camera's size.
-    pub fn flux(&self, camera: &Camera, attenuation: f64, ground: &Ground<'_>) -> Image<f64> {
+    pub fn flux(&self, camera: &Camera, attenuation: f64, ground: &VisibleSurface<'_>) -> Image<f64> {
         let mut out = Image::filled(camera.width, camera.height, 0.0);
         assert_same_size(&out, ground.normal, "normals");
         assert_same_size(&out, ground.range, "ranges");

@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, LN_2, PI};
 use glam::DVec3;
 use raypencil_scene::{Camera, Filter, Image, Lens, Maybe};
 use raypencil_sensor::{
-    DarkCurrent, DigitalImage, Ground, MARS_ORBIT, Optics, PLANCK_CONSTANT, PRESETS, PointSource,
-    SOLAR_SPECTRUM_810, SPEED_OF_LIGHT, Sensor, Sunlight, difference, photon_energy, preset,
+    DarkCurrent, DigitalImage, ImageSensor, MARS_SEMI_MAJOR_AXIS_AU, Optics, PLANCK_CONSTANT, PRESET_NAMES,
+    PointSource, SOLAR_IRRADIANCE_810_NM, SPEED_OF_LIGHT, Sunlight, VisibleSurface, difference,
+    photon_energy, preset,
 };
 
 fn camera(width: u32, height: u32, filter: Filter) -> Camera {
@@ -31,14 +32,19 @@ fn one_pixel_by_hand() {
     // 1e-12 W for 2 ms are 2e-15 J or 8155.27 photons; at eta = 0.5, 4077.64 electrons. The dark current of 100
     // per second at 273.15 K doubles twice to 287.15 K: 0.8 electrons in 2 ms. 12 + 0.1 (4077.64 + 0.8) = 419.84,
     // so 420 DN.
-    let sensor = Sensor {
+    let sensor = ImageSensor {
         exposure: 2e-3,
         quantum_efficiency: 0.5,
-        dark_current: DarkCurrent { rate: 100.0, at: 273.15, doubling: 7.0, temperature: 287.15 },
+        dark_current: DarkCurrent {
+            rate: 100.0,
+            reference_temperature: 273.15,
+            doubling_kelvins: 7.0,
+            temperature: 287.15,
+        },
         gain: 0.1,
         bias: 12.0,
         bits: 12,
-        ..Sensor::ideal()
+        ..ImageSensor::ideal()
     };
     let frame = sensor.expose(&Image::filled(1, 1, 1e-12), None, 0);
     assert!((frame.expected.at(0, 0) - 4078.44).abs() < 0.01, "{}", frame.expected.at(0, 0));
@@ -69,7 +75,8 @@ fn the_sun_on_one_pixel_by_hand() {
         let normal = Image::filled(1, 1, Maybe::from(normal));
         let range = Image::filled(1, 1, Maybe::some(3.0));
         let (reflectivity, sunlit) = (Image::filled(1, 1, 0.25), Image::filled(1, 1, sunlit));
-        let ground = Ground { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
+        let ground =
+            VisibleSurface { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
         sun.flux(&camera, attenuation, &ground).at(0, 0)
     };
     let near =
@@ -93,7 +100,8 @@ fn the_camera_equation_falls_as_the_fourth_power_of_the_cosine() {
     let none = Image::filled(5, 5, Maybe::NONE);
     let normal = Image::filled(5, 5, Maybe::NONE);
     let (reflectivity, sunlit) = (Image::filled(5, 5, 0.0), Image::filled(5, 5, true));
-    let ground = Ground { normal: &normal, range: &none, reflectivity: &reflectivity, sunlit: &sunlit };
+    let ground =
+        VisibleSurface { normal: &normal, range: &none, reflectivity: &reflectivity, sunlit: &sunlit };
     let flux = sun.flux(&camera, 0.0, &ground);
     // Pixel (4, 2) is 4 mm aside: tan(phi) = 1/2, cos^2(phi) = 4/5.
     assert!((flux.at(4, 2) / flux.at(2, 2) - 0.64).abs() < 1e-12);
@@ -105,7 +113,7 @@ fn the_pass_band_is_the_integral_of_the_filter() {
     let sun = Sunlight { slope: 0.0, ..Sunlight::mars(1.0, 0.0, 0.5) };
     let sloped = Sunlight::mars(1.0, 0.0, 0.5);
     for sin_squared in [0.0, 0.1, 0.25] {
-        // F of docs/radiometry.md, integrated over the wavelength at one angle in steps of 0.01 nm.
+        // F of docs/theory/radiometry.md, integrated over the wavelength at one angle in steps of 0.01 nm.
         let centre = 810e-9 * (1.0 - sin_squared / 4.0_f64).sqrt();
         let (mut flat, mut line) = (0.0, 0.0);
         for step in -10_000..10_000 {
@@ -139,9 +147,9 @@ fn sunlight_on_mars_is_near_its_sources() {
     let fifth = wavelength * wavelength * wavelength * wavelength * wavelength;
     let radiance = 2.0 * PLANCK_CONSTANT * SPEED_OF_LIGHT * SPEED_OF_LIGHT / (fifth * (libm::exp(x) - 1.0));
     let disc = PI * (6.957e8 / 1.495_978_707e11) * (6.957e8 / 1.495_978_707e11);
-    assert!((radiance * disc / SOLAR_SPECTRUM_810 - 1.0).abs() < 0.03);
+    assert!((radiance * disc / SOLAR_IRRADIANCE_810_NM - 1.0).abs() < 0.03);
     // 1.110 / 2.3216 = 0.478 W/m^2/nm on Mars.
-    let above = SOLAR_SPECTRUM_810 / (MARS_ORBIT * MARS_ORBIT);
+    let above = SOLAR_IRRADIANCE_810_NM / (MARS_SEMI_MAJOR_AXIS_AU * MARS_SEMI_MAJOR_AXIS_AU);
     assert!((above - 0.4781e9).abs() < 1e5);
     // All light on the ground, relative to that above the atmosphere: table III of Appelbaum and Flood (1990),
     // net flux at an albedo of 0.1, hence divided by 0.9.
@@ -161,7 +169,7 @@ fn sunlight_on_mars_is_near_its_sources() {
 
 #[test]
 fn subtraction_leaves_the_stripe() {
-    let sensor = Sensor { seed: 21, ..Sensor::ccd_1989() };
+    let sensor = ImageSensor { seed: 21, ..ImageSensor::ccd_1989() };
     let mut laser = Image::filled(60, 60, 0.0);
     for i in 0..60 {
         laser.set(i, 30, 1e-11);
@@ -192,14 +200,14 @@ fn numbers_alone_are_those_of_the_whole_chain() {
     }
     let background = Image::filled(67, 41, 3e-13);
     let dim = DarkCurrent { rate: 5e3, ..DarkCurrent::NONE };
-    let presets = PRESETS.iter().map(|name| preset(name).unwrap().1);
+    let presets = PRESET_NAMES.iter().map(|name| preset(name).unwrap().1);
     // A sensor without noise but with dark current, and each kind of noise alone.
-    let quiet = Sensor { dark_current: dim, bias: 3.0, ..Sensor::ideal() };
+    let quiet = ImageSensor { dark_current: dim, bias: 3.0, ..ImageSensor::ideal() };
     let alone = [
-        Sensor { shot_noise: true, ..quiet },
-        Sensor { read_noise: 9.0, ..quiet },
-        Sensor { prnu: 0.1, ..quiet },
-        Sensor { dsnu: 20.0, ..quiet },
+        ImageSensor { shot_noise: true, ..quiet },
+        ImageSensor { read_noise: 9.0, ..quiet },
+        ImageSensor { prnu: 0.1, ..quiet },
+        ImageSensor { dsnu: 20.0, ..quiet },
         quiet,
     ];
     for sensor in presets.chain(alone) {
@@ -213,7 +221,7 @@ fn numbers_alone_are_those_of_the_whole_chain() {
 
 #[test]
 fn presets_are_valid() {
-    for name in PRESETS {
+    for name in PRESET_NAMES {
         let (optics, sensor) = preset(name).expect("a preset");
         optics.validate("optics").expect("valid optics");
         sensor.validate("sensor").expect("a valid sensor");
@@ -232,20 +240,20 @@ fn presets_are_valid() {
     assert!(preset("film").is_none());
     // Nothing is random in the ideal sensor.
     let ramp = Image::from_cells(100, 1, (0..100).map(|index| f64::from(index) * 1e-13).collect());
-    assert_eq!(Sensor::ideal().expose(&ramp, None, 0), Sensor::ideal().expose(&ramp, None, 1));
+    assert_eq!(ImageSensor::ideal().expose(&ramp, None, 0), ImageSensor::ideal().expose(&ramp, None, 1));
 }
 
 #[test]
 fn sensors_are_checked() {
-    let refused = |sensor: Sensor| sensor.validate("sensor").expect_err("refused").field;
-    let good = Sensor::cmos();
-    assert_eq!(refused(Sensor { exposure: -1.0, ..good }), "sensor.exposure");
-    assert_eq!(refused(Sensor { quantum_efficiency: 1.1, ..good }), "sensor.quantum_efficiency");
-    assert_eq!(refused(Sensor { read_noise: f64::NAN, ..good }), "sensor.read_noise");
-    assert_eq!(refused(Sensor { bits: 17, ..good }), "sensor.bits");
-    assert_eq!(refused(Sensor { bias: 5000.0, ..good }), "sensor.bias");
+    let refused = |sensor: ImageSensor| sensor.validate("sensor").expect_err("refused").field;
+    let good = ImageSensor::cmos();
+    assert_eq!(refused(ImageSensor { exposure: -1.0, ..good }), "sensor.exposure");
+    assert_eq!(refused(ImageSensor { quantum_efficiency: 1.1, ..good }), "sensor.quantum_efficiency");
+    assert_eq!(refused(ImageSensor { read_noise: f64::NAN, ..good }), "sensor.read_noise");
+    assert_eq!(refused(ImageSensor { bits: 17, ..good }), "sensor.bits");
+    assert_eq!(refused(ImageSensor { bias: 5000.0, ..good }), "sensor.bias");
     let cold = DarkCurrent { temperature: 0.0, ..good.dark_current };
-    assert_eq!(refused(Sensor { dark_current: cold, ..good }), "sensor.dark_current.temperature");
+    assert_eq!(refused(ImageSensor { dark_current: cold, ..good }), "sensor.dark_current.temperature");
 }
 
 /// All computations that use several threads.
@@ -255,13 +263,15 @@ fn run() -> (Vec<u64>, DigitalImage) {
         let x = f64::from(index) * 0.12;
         PointSource { x, y: 20.0 + libm::sin(x), watts: 1e-12, depth: 2.0 + 0.01 * x }
     });
-    let imaged = Optics::dusty().form(&camera, sources);
+    let imaged = Optics::dusty().form_image(&camera, sources);
     let normal = Image::filled(48, 40, Maybe::some(DVec3::Z));
     let range = Image::filled(48, 40, Maybe::some(4.0));
     let (reflectivity, sunlit) = (Image::filled(48, 40, 0.25), Image::filled(48, 40, true));
-    let ground = Ground { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
+    let ground =
+        VisibleSurface { normal: &normal, range: &range, reflectivity: &reflectivity, sunlit: &sunlit };
     let background = Sunlight::mars(0.6, 1.0, 0.5).flux(&camera, 1e-3, &ground);
-    let frame = Sensor { seed: 99, ..Sensor::ccd_1989() }.expose(&imaged.optical, Some(&background), 5);
+    let frame =
+        ImageSensor { seed: 99, ..ImageSensor::ccd_1989() }.expose(&imaged.optical, Some(&background), 5);
     let budget = imaged.budget;
     let mut bits: Vec<u64> = [imaged.fine.cells(), imaged.optical.cells(), background.cells()]
         .into_iter()

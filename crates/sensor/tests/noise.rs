@@ -4,19 +4,19 @@
 //! law would fail: |z| >= 3.72 is 1 in 5,000.
 
 use raypencil_scene::Image;
-use raypencil_sensor::{DarkCurrent, NoiseSource, NoiseStream, Sensor, poisson};
+use raypencil_sensor::{DarkCurrent, ImageSensor, NoiseSource, NoiseStream, poisson};
 
 const LEVEL: f64 = 3.72;
 
 /// Sensor without noise: 1 DN per electron, 16 bits.
-const PLAIN: Sensor = Sensor { gain: 1.0, exposure: 1.0, ..Sensor::ideal() };
+const PLAIN: ImageSensor = ImageSensor { gain: 1.0, exposure: 1.0, ..ImageSensor::ideal() };
 
 /// Flux that makes one electron, watts.
-fn watts_per_electron(sensor: &Sensor) -> f64 {
+fn watts_per_electron(sensor: &ImageSensor) -> f64 {
     1.0 / sensor.photoelectrons(1.0)
 }
 
-fn flat(sensor: &Sensor, side: u32, electrons: f64) -> Image<f64> {
+fn flat(sensor: &ImageSensor, side: u32, electrons: f64) -> Image<f64> {
     Image::filled(side, side, electrons * watts_per_electron(sensor))
 }
 
@@ -146,7 +146,7 @@ fn uniform_has_its_law() {
 
 #[test]
 fn shot_noise_is_poissons() {
-    let sensor = Sensor { shot_noise: true, seed: 11, ..PLAIN };
+    let sensor = ImageSensor { shot_noise: true, seed: 11, ..PLAIN };
     let frame = sensor.expose(&flat(&sensor, 300, 400.0), None, 0);
     assert_mean(frame.electrons.cells(), 400.0, 400.0, "shot noise");
     assert_variance(frame.electrons.cells(), 400.0, 400.0 + 3.0 * 400.0 * 400.0, "shot noise");
@@ -161,7 +161,7 @@ fn shot_noise_is_poissons() {
 
 #[test]
 fn read_noise_is_normal_and_new_in_each_frame() {
-    let sensor = Sensor { read_noise: 12.0, gain: 0.5, bias: 1000.0, seed: 12, ..PLAIN };
+    let sensor = ImageSensor { read_noise: 12.0, gain: 0.5, bias: 1000.0, seed: 12, ..PLAIN };
     let dark = flat(&sensor, 300, 0.0);
     let (first, second) = (sensor.expose(&dark, None, 0), sensor.expose(&dark, None, 1));
     // 0.5 DN per electron: sigma 6 DN.
@@ -174,7 +174,7 @@ fn read_noise_is_normal_and_new_in_each_frame() {
 
 #[test]
 fn fixed_patterns_are_fixed() {
-    let sensor = Sensor { prnu: 0.01, dsnu: 5.0, bias: 500.0, seed: 13, ..PLAIN };
+    let sensor = ImageSensor { prnu: 0.01, dsnu: 5.0, bias: 500.0, seed: 13, ..PLAIN };
     let take = |electrons, frame| sensor.expose(&flat(&sensor, 300, electrons), None, frame);
     let (dark, light) = (take(0.0, 0), take(10_000.0, 1));
     assert_mean(dark.signal.cells(), 500.0, 25.0, "DSNU");
@@ -184,7 +184,7 @@ fn fixed_patterns_are_fixed() {
     assert_variance(light.electrons.cells(), 1e4, 3e8, "PRNU");
     // The pattern is the same in every frame, and another with another seed.
     assert_eq!(take(10_000.0, 77).signal, light.signal);
-    let other = Sensor { seed: 14, ..sensor };
+    let other = ImageSensor { seed: 14, ..sensor };
     assert_ne!(other.expose(&flat(&sensor, 300, 10_000.0), None, 1).signal, light.signal);
     // PRNU scales with the light: twice the light, twice the pattern.
     let twice = take(20_000.0, 2);
@@ -196,11 +196,16 @@ fn fixed_patterns_are_fixed() {
 #[test]
 fn dark_frames_follow_time_and_temperature() {
     // 1000 electrons per second at 293.15 K double every 7 K: 4000 per second at 307.15 K.
-    let dark = DarkCurrent { rate: 1000.0, at: 293.15, doubling: 7.0, temperature: 307.15 };
+    let dark = DarkCurrent {
+        rate: 1000.0,
+        reference_temperature: 293.15,
+        doubling_kelvins: 7.0,
+        temperature: 307.15,
+    };
     assert!((dark.electrons_per_second() - 4000.0).abs() < 1e-9);
     // In 50 ms there are 200 electrons. With read noise of 10 electrons and DSNU of 5 the variance is 200 + 100 +
     // 25 electrons^2.
-    let sensor = Sensor {
+    let sensor = ImageSensor {
         exposure: 0.05,
         shot_noise: true,
         dark_current: dark,
@@ -236,7 +241,7 @@ fn quantisation_adds_a_twelfth() {
 fn the_slope_of_photon_transfer_is_the_gain() {
     // EMVA 1288: sigma_y^2 = K^2 sigma_d^2 + sigma_q^2 + K (mu_y - mu_y.dark). The variance is temporal: it is
     // estimated from pairs of frames with the same fixed patterns.
-    let sensor = Sensor { bias: 100.0, seed: 16, ..Sensor::cmos() };
+    let sensor = ImageSensor { bias: 100.0, seed: 16, ..ImageSensor::cmos() };
     let of_level = |level: u64| {
         let flux = flat(&sensor, 300, 500.0 * level as f64);
         let [a, b] = [0, 1].map(|frame| sensor.expose(&flux, None, 2 * level + frame).numbers);
@@ -269,7 +274,7 @@ fn the_slope_of_photon_transfer_is_the_gain() {
 
 #[test]
 fn the_response_is_a_straight_line() {
-    let sensor = Sensor { seed: 17, ..Sensor::cmos() };
+    let sensor = ImageSensor { seed: 17, ..ImageSensor::cmos() };
     for electrons in [0.0, 100.0, 1000.0, 5000.0, 9000.0] {
         let frame = sensor.expose(&flat(&sensor, 300, electrons), None, 9);
         let numbers: Vec<f64> = frame.numbers.cells().iter().map(|number| f64::from(*number)).collect();
@@ -284,16 +289,16 @@ fn the_response_is_a_straight_line() {
 #[test]
 fn wells_and_converters_fill_up() {
     // The well fills first: 10,700 electrons are 4095 DN, and more light changes nothing.
-    let sensor = Sensor { read_noise: 0.0, dsnu: 0.0, ..Sensor::cmos() };
+    let sensor = ImageSensor { read_noise: 0.0, dsnu: 0.0, ..ImageSensor::cmos() };
     let frame = sensor.expose(&flat(&sensor, 50, 1e5), None, 0);
     assert!(frame.electrons.cells().iter().all(|electrons| *electrons == 10_700.0));
     assert!(frame.numbers.cells().iter().all(|number| *number == 4095));
     // The converter fills first.
-    let steep = Sensor { gain: 10.0, bits: 8, ..PLAIN };
+    let steep = ImageSensor { gain: 10.0, bits: 8, ..PLAIN };
     assert_eq!(steep.expose(&flat(&steep, 1, 25.0), None, 0).numbers.at(0, 0), 250);
     assert_eq!(steep.expose(&flat(&steep, 1, 26.0), None, 0).numbers.at(0, 0), 255);
     // Clipping at 0: half of the read noise is lost.
-    let low = Sensor { read_noise: 10.0, seed: 18, ..PLAIN };
+    let low = ImageSensor { read_noise: 10.0, seed: 18, ..PLAIN };
     let frame = low.expose(&flat(&low, 100, 0.0), None, 0);
     let zeros = frame.numbers.cells().iter().filter(|number| **number == 0).count() as f64;
     // P(signal < 1/2) = Phi(0.05) = 0.5199.

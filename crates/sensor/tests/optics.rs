@@ -3,8 +3,8 @@
 use glam::DVec3;
 use raypencil_scene::{Camera, Image, Lens};
 use raypencil_sensor::{
-    Dust, Extent, Kernel, NoiseSource, NoiseStream, Optics, PointSource, Psf, ThinLens, airy_pattern, binned,
-    convolve, encircled_energy, splat, splat_defocused,
+    Dust, ImageLength, Kernel, NoiseSource, NoiseStream, Optics, PointSource, Psf, ThinLens, airy_pattern,
+    binned, convolve, encircled_energy, splat, splat_defocused,
 };
 
 /// The default camera, small.
@@ -56,10 +56,10 @@ fn kernels() -> Vec<Kernel> {
         Kernel::identity(),
         Kernel::gaussian([1.3, 0.4]),
         Kernel::airy(810e-9, 4.0, 3, [2.25e-6, 3e-6]),
-        Kernel::from_numbers(5, 3, &lopsided).expect("a kernel"),
+        Kernel::from_weights(5, 3, &lopsided).expect("a kernel"),
         // Kernels larger than the image.
         Kernel::gaussian([9.0, 7.0]),
-        Kernel::from_numbers(41, 1, &[1.0; 41]).expect("a kernel"),
+        Kernel::from_weights(41, 1, &[1.0; 41]).expect("a kernel"),
     ]
 }
 
@@ -158,12 +158,12 @@ fn an_airy_kernel_is_the_pattern() {
 
 #[test]
 fn kernels_of_numbers_are_checked() {
-    assert!(Kernel::from_numbers(2, 1, &[1.0, 1.0]).is_err());
-    assert!(Kernel::from_numbers(3, 1, &[1.0, 1.0]).is_err());
-    assert!(Kernel::from_numbers(3, 1, &[1.0, -1.0, 1.0]).is_err());
-    assert!(Kernel::from_numbers(1, 1, &[f64::NAN]).is_err());
-    assert!(Kernel::from_numbers(1, 1, &[0.0]).is_err());
-    let kernel = Kernel::from_numbers(3, 1, &[1.0, 2.0, 5.0]).expect("a kernel");
+    assert!(Kernel::from_weights(2, 1, &[1.0, 1.0]).is_err());
+    assert!(Kernel::from_weights(3, 1, &[1.0, 1.0]).is_err());
+    assert!(Kernel::from_weights(3, 1, &[1.0, -1.0, 1.0]).is_err());
+    assert!(Kernel::from_weights(1, 1, &[f64::NAN]).is_err());
+    assert!(Kernel::from_weights(1, 1, &[0.0]).is_err());
+    let kernel = Kernel::from_weights(3, 1, &[1.0, 2.0, 5.0]).expect("a kernel");
     // Weights right of the middle move light to the right.
     let mut point = Image::filled(5, 1, 0.0);
     point.set(2, 0, 8.0);
@@ -259,20 +259,20 @@ fn sources() -> Vec<PointSource> {
 #[test]
 fn the_flux_budget_balances() {
     let camera = camera(32, 24);
-    let dust = Dust { transmission: 0.8, halo_share: 0.2, halo_sigma: Extent::Pixels(5.0) };
+    let dust = Dust { transmission: 0.8, halo_share: 0.2, halo_sigma: ImageLength::Pixels(5.0) };
     let all = Optics {
         oversampling: 4,
         focus: Some(3.0),
         blurs: vec![
             Psf::Airy { wavelength: 810e-9, f_number: 4.0, rings: 4 },
-            Psf::Gaussian { sigma: Extent::Metres(6e-6) },
-            Psf::Numbers(Kernel::from_numbers(3, 1, &[0.0, 1.0, 1.0]).expect("a kernel")),
+            Psf::Gaussian { sigma: ImageLength::Metres(6e-6) },
+            Psf::Sampled(Kernel::from_weights(3, 1, &[0.0, 1.0, 1.0]).expect("a kernel")),
         ],
         dust: Some(dust),
     };
     assert!(all.validate("optics").is_ok());
     for optics in [all.clone(), Optics::PERFECT, Optics::dusty(), Optics::diffraction_limited()] {
-        let imaged = optics.form(&camera, sources());
+        let imaged = optics.form_image(&camera, sources());
         let account = imaged.budget;
         let spent =
             account.missed + account.blurred_out + account.absorbed + account.scattered_out + account.arrived;
@@ -281,16 +281,16 @@ fn the_flux_budget_balances() {
     }
     // Perfect optics put each pencil into its pixel.
     let plain = splat(32, 24, 1, sources());
-    assert_eq!(Optics::PERFECT.form(&camera, sources()).optical, plain.image);
+    assert_eq!(Optics::PERFECT.form_image(&camera, sources()).optical, plain.image);
     // Dust on an even image leaves T of it, far from the sides.
     let even = Image::filled(100, 100, 2.0);
-    let veiled = all.veil(&camera, &even);
+    let veiled = all.filter_pixels(&camera, &even);
     assert!((veiled.at(50, 50) - 1.6).abs() < 1e-7);
     // A point keeps T (1 - h) and a little of its own halo.
     let mut point = Image::filled(101, 101, 0.0);
     point.set(50, 50, 1.0);
     let kernel = Kernel::gaussian([5.0, 5.0]);
-    let veiled = all.veil(&camera, &point);
+    let veiled = all.filter_pixels(&camera, &point);
     assert!((veiled.at(50, 50) - 0.64 - 0.16 * kernel.weight(0, 0)).abs() < 1e-15);
     assert!((veiled.at(58, 50) - 0.16 * kernel.weight(8, 0)).abs() < 1e-15);
 }
@@ -300,8 +300,8 @@ fn optics_are_checked() {
     let refused = |optics: Optics| optics.validate("optics").expect_err("refused").field;
     assert_eq!(refused(Optics { oversampling: 0, ..Optics::PERFECT }), "optics.oversampling");
     assert_eq!(refused(Optics { focus: Some(f64::NAN), ..Optics::PERFECT }), "optics.focus");
-    let blurs = vec![Psf::Gaussian { sigma: Extent::Pixels(-1.0) }];
+    let blurs = vec![Psf::Gaussian { sigma: ImageLength::Pixels(-1.0) }];
     assert_eq!(refused(Optics { blurs, ..Optics::PERFECT }), "optics.blurs[0].sigma.pixels");
-    let dust = Some(Dust { transmission: 1.5, halo_share: 0.0, halo_sigma: Extent::Pixels(1.0) });
+    let dust = Some(Dust { transmission: 1.5, halo_share: 0.0, halo_sigma: ImageLength::Pixels(1.0) });
     assert_eq!(refused(Optics { dust, ..Optics::PERFECT }), "optics.dust.transmission");
 }

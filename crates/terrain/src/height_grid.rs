@@ -30,7 +30,7 @@ use crate::Ground;
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Posts {
+pub struct HeightGrid {
     /// Number of posts along x.
     pub columns: u32,
     /// Number of posts along y.
@@ -43,7 +43,7 @@ pub struct Posts {
     pub heights: Vec<f64>,
 }
 
-impl Posts {
+impl HeightGrid {
     /// Position of a post, global frame, metres.
     ///
     /// # Panics
@@ -161,7 +161,7 @@ impl Posts {
 
 /// Indices of the posts along one axis that lie from `low` to `high`, both inclusive; `None` if there are none.
 ///
-/// Post `k` of `count` stands at `corner + spacing * k`, evaluated as in [`Posts::at`].
+/// Post `k` of `count` stands at `corner + spacing * k`, evaluated as in [`HeightGrid::at`].
 ///
 /// ```
 /// use raypencil_terrain::indices_within;
@@ -200,9 +200,9 @@ pub(crate) mod tests {
         Material { name: "ground".into(), reflectivity: 0.25 }
     }
 
-    fn posts(columns: u32, rows: u32, heights: &[f64]) -> Posts {
+    fn posts(columns: u32, rows: u32, heights: &[f64]) -> HeightGrid {
         let (corner, spacing) = (DVec2::new(10.0, -5.0), DVec2::new(0.5, 2.0));
-        Posts { columns, rows, corner, spacing, heights: heights.to_vec() }
+        HeightGrid { columns, rows, corner, spacing, heights: heights.to_vec() }
     }
 
     #[test]

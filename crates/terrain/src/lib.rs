@@ -46,9 +46,11 @@ mod simplify;
 pub use builtin::{BUILTIN_NAMES, builtin};
 pub use ground::Ground;
 pub use height::height_at;
-pub use height_grid::{Posts, indices_within};
+pub use height_grid::{HeightGrid, indices_within};
 pub use height_index::HeightIndex;
-pub use inspect::{Example, Found, Inspection, Item, OpenEdges, OpenPiece, ZeroAreaKinds, inspect};
+pub use inspect::{
+    Inspection, MeshElement, Occurrence, Occurrences, OpenEdgePiece, OpenEdges, ZeroAreaKinds, inspect,
+};
 pub use mars::{Crater, Craters, Crevasses, MarsGround, PRESET_NAMES, Rocks, Roughness};
 pub use random_ground::RandomGround;
 pub use repair::{Repairs, repair};

@@ -12,7 +12,7 @@ pub struct Repairs {
     /// Number of duplicate faces that were dropped; the first of each stays.
     pub duplicate_faces: usize,
     /// Number of these whose material differs from that of the face that stays.
-    pub duplicates_of_other_material: usize,
+    pub duplicate_faces_of_other_material: usize,
     /// Number of faces that were turned round.
     pub turned_faces: usize,
     /// Number of vertices that were merged into an earlier one in the same place.
@@ -53,7 +53,7 @@ pub fn repair(mesh: &Mesh) -> (Mesh, Repairs) {
     let mut repairs = Repairs {
         zero_area_faces: inspection.zero_area.count,
         duplicate_faces: inspection.duplicates.count,
-        duplicates_of_other_material: inspection.duplicates_of_other_material,
+        duplicate_faces_of_other_material: inspection.duplicate_faces_of_other_material,
         turned_faces: inspection.inverted.count,
         welded_vertices: inspection.split_vertices.count,
         unused_vertices: 0,

@@ -12,7 +12,7 @@
 
 use raypencil_scene::Material;
 
-use crate::{Ground, Posts};
+use crate::{Ground, HeightGrid};
 
 /// Side of the largest squares, cells. CHOICE: two faces for 65536 cells are few enough, and small squares fit a
 /// grid of any shape.
@@ -23,14 +23,14 @@ const MAX_SQUARE_CELLS: u32 = 256;
 /// sum are off by at most 55 u times the largest height; the post's own difference adds u. 128 u is larger.
 const RELATIVE_ROUNDING: f64 = 128.0 / 9_007_199_254_740_992.0;
 
-/// Ground of [`Posts::ground`] with fewer faces: it covers the same cells, and its vertices are posts.
+/// Ground of [`HeightGrid::ground`] with fewer faces: it covers the same cells, and its vertices are posts.
 ///
 /// Every post of a covered cell lies within `max_error` metres of the ground, measured along z. The bound holds
-/// for the `f64` vertices. The same posts give the same ground on any machine. ([`Posts`] has an example.)
+/// for the `f64` vertices. The same posts give the same ground on any machine. ([`HeightGrid`] has an example.)
 ///
 /// # Panics
 /// If the number of `heights` differs from `columns * rows` or is 2^31 or more; if `max_error` is not above zero.
-pub fn simplify(posts: &Posts, max_error: f64, material: Material) -> Ground {
+pub fn simplify(posts: &HeightGrid, max_error: f64, material: Material) -> Ground {
     assert!(max_error > 0.0, "max_error must be above 0 m");
     assert!(posts.heights.len() < 1 << 31, "the number of posts must be below 2^31");
     let faces = match TriangleNetwork::new(posts, max_error) {
@@ -90,7 +90,7 @@ fn area(a: GridPoint, b: GridPoint, c: GridPoint) -> i64 {
 }
 
 struct TriangleNetwork<'a> {
-    posts: &'a Posts,
+    posts: &'a HeightGrid,
     max_error: f64,
     /// Whether each cell has four known corners, row by row.
     complete: Vec<bool>,
@@ -106,7 +106,7 @@ struct TriangleNetwork<'a> {
 
 impl<'a> TriangleNetwork<'a> {
     /// Network before any cut; `None` if the grid has no cell.
-    fn new(posts: &'a Posts, max_error: f64) -> Option<Self> {
+    fn new(posts: &'a HeightGrid, max_error: f64) -> Option<Self> {
         let cells = [posts.columns.checked_sub(1)?, posts.rows.checked_sub(1)?];
         let least = cells[0].min(cells[1]);
         // The largest power of two within the shorter side: the squares cover less than twice the grid each way.

@@ -30,7 +30,7 @@ fn all_that_was_promised_is_done_and_nothing_else() {
     let expected = Repairs {
         zero_area_faces: 1,
         duplicate_faces: 1,
-        duplicates_of_other_material: 1,
+        duplicate_faces_of_other_material: 1,
         turned_faces: 1,
         welded_vertices: 1,
         unused_vertices: 3,
@@ -84,15 +84,15 @@ proptest! {
         for none in [&left.unused_vertices, &left.split_vertices, &left.zero_area, &left.duplicates, &left.inverted] {
             prop_assert_eq!(none.count, 0);
         }
-        prop_assert_eq!(left.inside_out, 0);
+        prop_assert_eq!(left.inside_out_components, 0);
         // Quantities that no repair changes, to the last bit.
         prop_assert_eq!(&left.open_edges.count, &found.open_edges.count);
         prop_assert_eq!(left.open_edges.length, found.open_edges.length);
         prop_assert_eq!(left.open_edges.loops, found.open_edges.loops);
         prop_assert_eq!((left.components, left.closed_components), (found.components, found.closed_components));
         prop_assert_eq!((left.area, left.volume), (found.area, found.volume));
-        prop_assert_eq!(left.crowded_edges.count, found.crowded_edges.count);
-        prop_assert_eq!(left.double_sided.count, found.double_sided.count);
+        prop_assert_eq!(left.non_manifold_edges.count, found.non_manifold_edges.count);
+        prop_assert_eq!(left.double_sided_sheets.count, found.double_sided_sheets.count);
         prop_assert_eq!(left.faces, found.faces - repairs.zero_area_faces - repairs.duplicate_faces);
         prop_assert_eq!(left.vertices, found.vertices - repairs.welded_vertices - repairs.unused_vertices);
         let (again, none) = repair(&repaired);

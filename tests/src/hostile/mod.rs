@@ -1,4 +1,4 @@
-//! Files that somebody made to hurt: each with the command that meets it and the words of the refusal. `docs/hostile.md`
+//! Files that somebody made to hurt: each with the command that meets it and the words of the refusal. `docs/evidence/malformed-inputs.md`
 //! lists them.
 //!
 //! They are made here, byte by byte, and none is committed. What is true of every refusal (exit code 2, one short message
@@ -180,7 +180,7 @@ pub fn good() -> Vec<Case> {
     ]
 }
 
-/// The cases as the table of `docs/hostile.md`.
+/// The cases as the table of `docs/evidence/malformed-inputs.md`.
 pub fn table() -> String {
     let mut text = String::from(
         "# Hostile files\n\nMade by `tests/src/hostile`, run by `crates/cli/tests/hostile.rs`: each in a process of its own \

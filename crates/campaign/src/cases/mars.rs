@@ -24,7 +24,7 @@ pub fn mars_grounds_of(name: &'static str, cells: u32) -> impl Strategy<Value = 
             let scale = extent / ground.extent;
             ground.extent = extent;
             ground.post_spacing = extent / f64::from(cells);
-            ground.roughness.at_1_m *= relief;
+            ground.roughness.rms_at_1_m *= relief;
             let Rocks { coverage: most, largest, .. } = ground.rocks;
             // No more rocks than a few for each cell.
             ground.rocks = Rocks {

@@ -59,7 +59,7 @@ fn parameters(command: &TerrainGenerate, ground: &MarsGround) -> Value {
         "post_spacing_m": ground.post_spacing,
         "coarse": coarse.map(|name| name.to_string_lossy()),
         "hurst": roughness.hurst,
-        "roughness_m": roughness.at_1_m,
+        "roughness_m": roughness.rms_at_1_m,
         "octave_gains": roughness.octave_gains,
         "rock_coverage": rocks.coverage,
         "rock_smallest_m": rocks.smallest,

@@ -15,7 +15,7 @@ pub(crate) mod top;
 use crate::job::DriveJob;
 use crate::run::DriveRun;
 use raypencil_report::{Colour, Drawing};
-use raypencil_rover::{GridPoint, Label, LocalMap};
+use raypencil_rover::{ElevationMap, GridPoint, Label};
 
 /// A figure, the name of its files and what it shows.
 pub(crate) struct Figure {
@@ -73,7 +73,7 @@ pub(crate) fn word(label: Label) -> &'static str {
 }
 
 /// The least and the greatest known elevation, and the grid points that hold all that is known.
-pub(crate) fn known(map: &LocalMap) -> Option<([f64; 2], [GridPoint; 2])> {
+pub(crate) fn known(map: &ElevationMap) -> Option<([f64; 2], [GridPoint; 2])> {
     let mut found: Option<([f64; 2], [GridPoint; 2])> = None;
     for point in map.points() {
         let Some(z) = map.elevation(point) else { continue };

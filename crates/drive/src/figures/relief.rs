@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::figures::axes::elevations;
 use crate::figures::{known, stride};
 use raypencil_report::{Anchor, Colour, Drawing, INK, SOFT, Scale};
-use raypencil_rover::{GridPoint, LocalMap};
+use raypencil_rover::{ElevationMap, GridPoint};
 
 /// Lines of the net, along either side; more cannot be told apart.
 const MOST_ACROSS: i64 = 240;
@@ -57,7 +57,7 @@ fn tint(place: f64, light: f64) -> Colour {
 }
 
 /// Cells between four known points, far ones first; all others are open.
-pub(super) fn relief(map: &LocalMap) -> Drawing {
+pub(super) fn relief(map: &ElevationMap) -> Drawing {
     let mut drawing = Drawing::new(PAGE[0], PAGE[1], "Local terrain map");
     let Some(([lowest, highest], [low, high])) = known(map) else {
         drawing.text(MIDDLE, "nothing is known", Anchor::Middle, SOFT);

@@ -1,4 +1,4 @@
-//! What a drive leaves behind, in the formats of those who use it. `docs/drive.md` has the conventions.
+//! What a drive leaves behind, in the formats of those who use it. `docs/guide/drive.md` has the conventions.
 
 pub(crate) mod camera_info;
 pub(crate) mod occupancy;

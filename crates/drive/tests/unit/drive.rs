@@ -12,12 +12,12 @@ use crate::{DriveError, DriveJob, DriveRun, drive, drive_json, drive_screen, wri
 use raypencil_files::write_npy;
 use raypencil_mesh_io::read_dem;
 use raypencil_rover::{
-    Drive, EdgePoint, Exposed, Label, LocalMap, MapSize, Measured, ObstacleMap, PassableRules, RadialGrid,
-    Vehicle,
+    CameraImage, Drive, EdgePoint, ElevationMap, Label, MapSize, MeasuredPoint, ObstacleMap, RadialGrid,
+    TraversabilityRules, Vehicle,
 };
 use raypencil_scene::{Frame, Image, Material, Mesh, Pose, Renderer, Request, Resolution, Scene, Silent};
 use raypencil_scene_io::{LoadedScene, SensorWord, load, load_text};
-use raypencil_sensor::{DarkCurrent, Dust, Extent, Optics, Psf, Sensor};
+use raypencil_sensor::{DarkCurrent, Dust, ImageLength, ImageSensor, Optics, Psf};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 use raypencil_tracer::Tracer;
 
@@ -225,13 +225,16 @@ fn the_file_says_what_is_driven() {
     assert_eq!(route.turn_rate, 90.0_f64.to_radians());
     assert_eq!((job.sensor_word, job.sensor.seed, job.sensor.bits), (SensorWord::Cmos, 4, 12));
     assert_eq!((plan.seed, plan.map.points, plan.map.spacing, plan.obstacles_every), (9, 101, 0.2, 4));
-    assert_eq!(plan.exposures, raypencil_rover::Exposures::Together);
+    assert_eq!(plan.exposures, raypencil_rover::ExposureMode::Together);
     assert_eq!(plan.extraction.detection, raypencil_rover::Detection::Gradient(30.0));
-    assert_eq!((plan.extraction.place, plan.extraction.least_rows), (raypencil_rover::Place::SubPixel, 2));
+    assert_eq!(
+        (plan.extraction.place, plan.extraction.least_rows),
+        (raypencil_rover::StripeLocation::SubPixel, 2)
+    );
     assert_eq!((plan.sweep.steps, plan.scans.unwrap().every), (21, Some(3.0)));
     assert_eq!((plan.vehicle.wheelbase, plan.vehicle.track, plan.vehicle.clearance), (1.5, 1.1, 0.45));
     // What follows from the vehicle's measures follows from these.
-    let mut rules = PassableRules::of(&plan.vehicle).crossing_gaps(&plan.vehicle);
+    let mut rules = TraversabilityRules::for_vehicle(&plan.vehicle).crossing_gaps(&plan.vehicle);
     (rules.slopes.front, rules.slopes.length) = (0.3, 0.25);
     assert_eq!(plan.rules, rules);
     let half_angle = 45.0_f64.to_radians();
@@ -273,14 +276,15 @@ fn the_file_says_what_camera_it_is() {
     );
     let own = job(FLAT, &all);
     let blurs = vec![
-        Psf::Gaussian { sigma: Extent::Metres(1e-6 * 2.0) },
+        Psf::Gaussian { sigma: ImageLength::Metres(1e-6 * 2.0) },
         Psf::Airy { wavelength: 810e-9, f_number: 4.0, rings: 3 },
-        Psf::Gaussian { sigma: Extent::Pixels(0.5) },
+        Psf::Gaussian { sigma: ImageLength::Pixels(0.5) },
     ];
-    let dust = Dust { transmission: 0.8, halo_share: 0.1, halo_sigma: Extent::Pixels(7.0) };
+    let dust = Dust { transmission: 0.8, halo_share: 0.1, halo_sigma: ImageLength::Pixels(7.0) };
     assert_eq!(own.optics, Optics { oversampling: 2, focus: Some(5.0), blurs, dust: Some(dust) });
-    let dark_current = DarkCurrent { rate: 9.0, at: 293.15, doubling: 5.0, temperature: -40.0 + 273.15 };
-    let sensor = Sensor {
+    let dark_current =
+        DarkCurrent { rate: 9.0, reference_temperature: 293.15, doubling_kelvins: 5.0, temperature: -40.0 + 273.15 };
+    let sensor = ImageSensor {
         exposure: 1e-3 * 3.0,
         wavelength: 810e-9,
         quantum_efficiency: 0.6,
@@ -336,7 +340,8 @@ fn a_kernel_from_a_file_moves_the_stripe() {
         let renderer = Tracer::new();
         let mut drive = Drive::new(job.plan.clone(), job.mesh.clone()).unwrap();
         let eye = crate::eye::Eye::new(&renderer, &job, None);
-        let frame = drive.step(&eye, &mut |_, light| Exposed::Numbers(job.sensor.numbers(&light, None, 0)));
+        let frame =
+            drive.step(&eye, &mut |_, light| CameraImage::Numbers(job.sensor.numbers(&light, None, 0)));
         let measured = frame.unwrap().unwrap().measured;
         (measured.iter().map(|one| (one.edge.i, one.edge.j)).collect::<Vec<_>>(), loaded.source_sha256)
     };
@@ -357,8 +362,8 @@ fn points_of_a_scan_are_drawn_where_the_camera_sees_them() {
     let job = job(FLAT, SHORT);
     let mount = job.plan.rig.camera.vehicle_from_sensor;
     let edge = EdgePoint { i: 3, j: 5, row: 5.5 };
-    let measured = Measured { step: Some(7), beam: 1, edge, point: mount * DVec3::new(1e-6, 1e-6, 4.0) };
-    let behind = Measured { point: mount * DVec3::new(0.0, 0.0, -1.0), ..measured };
+    let measured = MeasuredPoint { step: Some(7), beam: 1, edge, point: mount * DVec3::new(1e-6, 1e-6, 4.0) };
+    let behind = MeasuredPoint { point: mount * DVec3::new(0.0, 0.0, -1.0), ..measured };
     let blank = [9; 3];
     let view =
         View { width: 128, height: 128, pixels: vec![blank; 128 * 128], reduction: 1, camera: [128, 128] };
@@ -539,7 +544,7 @@ fn the_folder_holds_everything_and_the_summary_comes_last() {
 #[test]
 fn the_summary_keeps_to_its_schema() {
     let schema: serde_json::Value =
-        serde_json::from_str(include_str!("../../../../docs/drive.schema.json")).unwrap();
+        serde_json::from_str(include_str!("../../../../docs/formats/drive.schema.json")).unwrap();
     assert_keys_are_closed(&schema);
     let sunny = format!("{SHORT}\n{LOW_SUN}\nsubtract_unlit = true");
     for (drive, names) in [(SHORT, &["tracer"][..]), (sunny.as_str(), &["scanline", "tracer"])] {
@@ -551,14 +556,14 @@ fn the_summary_keeps_to_its_schema() {
 
 #[test]
 fn a_wall_is_occupied_what_is_before_it_free_and_what_is_behind_it_unknown() {
-    let mut map = LocalMap::new(MapSize::default(), DVec2::ZERO);
+    let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
     for point in map.points() {
         let z = if map.place(point).x > 2.95 { 1.0 } else { 0.0 };
-        map.give(point, z);
+        map.set_proximity(point, z);
     }
     let vehicle = Vehicle::default();
-    let (rules, grid) = (PassableRules::of(&vehicle), RadialGrid::of(&vehicle));
-    let obstacles = ObstacleMap::of(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
+    let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
     let cells = occupancy(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY);
     // 201 cells of 0.1 m about the origin.
     assert_eq!((cells.columns, cells.resolution), (201, 0.1));
@@ -573,7 +578,7 @@ fn a_wall_is_occupied_what_is_before_it_free_and_what_is_behind_it_unknown() {
     assert_eq!((at(2.0, 2.0), at(-3.0, 0.0)), (Occupancy::Unknown, Occupancy::Unknown));
     // A grid that begins at 2 m has tested nothing that is nearer.
     let far = RadialGrid { first: 2.0, ..grid };
-    let obstacles = ObstacleMap::of(&map, &vehicle, &rules, &far, &Pose::IDENTITY);
+    let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &far, &Pose::IDENTITY);
     let cells = occupancy(&map, &obstacles, &far, &vehicle, &Pose::IDENTITY);
     let at =
         |x: f64, y: f64| cells.cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize];

@@ -38,10 +38,10 @@ fn plan() -> DrivePlan {
 
 /// The matrix of a map that holds these elevations at these x.
 fn matrix(elevation: impl Fn(f64) -> Option<f64>) -> TruthMatrix {
-    let mut map = LocalMap::new(MapSize::default(), DVec2::ZERO);
+    let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
     for point in map.points() {
         if let Some(z) = elevation(map.place(point).x) {
-            map.give(point, z);
+            map.set_proximity(point, z);
         }
     }
     let mut matrix = TruthMatrix::default();
@@ -101,10 +101,10 @@ fn a_step_in_the_wrong_place_is_missed_here_and_false_there() {
 fn a_vehicle_that_is_wrong_of_its_place_is_judged_where_it_believes_to_be() {
     // The map is right, and the vehicle believes to be at x = 1 m: the truth is that of there. Q from 1.7 to 6.0 m: 12 points
     // at the step as before; before it 13, and on it 4 as before; 4.6 to 6.0 m, 15 points, off the ground.
-    let mut map = LocalMap::new(MapSize::default(), DVec2::ZERO);
+    let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
     for point in map.points() {
         let x = map.place(point).x;
-        map.give(point, if x > 2.95 { 0.4 } else { 0.0 });
+        map.set_proximity(point, if x > 2.95 { 0.4 } else { 0.0 });
     }
     let mut matrix = TruthMatrix::default();
     matrix.add(&map, &step(), &plan(), &Pose::from_position(DVec3::X));

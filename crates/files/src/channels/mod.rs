@@ -1,4 +1,4 @@
-//! A recording of any program: the channels of a file or a folder, by key. Rules: `docs/files.md`.
+//! A recording of any program: the channels of a file or a folder, by key. Rules: `docs/formats/files.md`.
 
 pub(crate) mod files;
 pub(crate) mod merge;
@@ -42,7 +42,7 @@ pub struct Channels {
 }
 
 /// Reads a recording: an `.exr`, `.npy` or `.pfm` file, or all of them in a folder and in the folders just
-/// below it. Keys, components and duplicates are as `docs/files.md` says.
+/// below it. Keys, components and duplicates are as `docs/formats/files.md` says.
 ///
 /// # Errors
 /// Names the file and the place in it; for two files that contradict each other, both and the first cell.

@@ -1,4 +1,4 @@
-//! The maps of one sensor as named channels, and those as OpenEXR. Conventions: `docs/files.md`.
+//! The maps of one sensor as named channels, and those as OpenEXR. Conventions: `docs/formats/files.md`.
 
 pub(crate) mod header;
 pub(crate) mod light;
@@ -151,7 +151,7 @@ impl ExrMap {
         exr
     }
 
-    /// The maps of `sensor`: each of the channels of `docs/files.md` that is there, other channels left out.
+    /// The maps of `sensor`: each of the channels of `docs/formats/files.md` that is there, other channels left out.
     /// What is not finite (or the face 4294967295) is a cell without a hit.
     ///
     /// # Errors
@@ -228,7 +228,7 @@ impl ExrMap {
     }
 }
 
-/// Writes the maps of one sensor: the quantities that it has, as `docs/files.md` lists them. The file is
+/// Writes the maps of one sensor: the quantities that it has, as `docs/formats/files.md` lists them. The file is
 /// replaced as a whole, and is the same bytes for the same maps on any machine.
 ///
 /// # Errors

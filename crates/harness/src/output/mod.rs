@@ -1,4 +1,4 @@
-//! The folder that a validation leaves behind, and the screen that a command prints. `docs/report.md`
+//! The folder that a validation leaves behind, and the screen that a command prints. `docs/guide/report.md`
 //! describes both.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! `summary.json`: the validation for programs. Its schema is `docs/summary.schema.json`.
+//! `summary.json`: the validation for programs. Its schema is `docs/formats/summary.schema.json`.
 
 use crate::output::panel;
 use serde::Serialize;

@@ -3,8 +3,8 @@
 pub(crate) mod words;
 
 use crate::renderers::{Contender, attribute};
-use raypencil_judge::{Cause, Class, Judge, JudgeShare, Quantity, SightCause};
-use raypencil_referee::{Format, Margin, Margins, Ruling, SightMargins, SightRuling, Verdict};
+use raypencil_judge::{Cause, Class, Judge, JudgeShare, Quantity, VisibilityCause};
+use raypencil_referee::{Format, Margin, Margins, Ruling, Verdict, VisibilityMargins, VisibilityRuling};
 use raypencil_scene::Place;
 use raypencil_scene::{Frame, Hit, Progress, Ray, Request, Return, Sampling, SensorId};
 use raypencil_scene_io::{Subject, probe_command};
@@ -35,7 +35,7 @@ pub struct Probe {
     /// The least displacement at which the range jumps.
     pub surface_margin: Margin,
     /// Of a pencil that hits: how far the camera's view of it is from changing.
-    pub sight_margins: Option<SightMargins>,
+    pub visibility_margins: Option<VisibilityMargins>,
 }
 
 /// One renderer's answer to a ray, and what it is.
@@ -61,9 +61,9 @@ pub struct ProbedReturn {
     /// What it says.
     pub back: Return,
     /// What the referee rules on whether the point is seen, and on where it lands.
-    pub ruling: SightRuling,
+    pub ruling: VisibilityRuling,
     /// Why it is wrong about being seen, if a cause is confirmed.
-    pub cause: Option<SightCause>,
+    pub cause: Option<VisibilityCause>,
 }
 
 /// Why there is no such ray.
@@ -135,9 +135,9 @@ pub fn probe(
             back.map(|back| back.in_format(Format::Double, scene.flux_model()))
         }
     };
-    let sight_margins = match sensor {
+    let visibility_margins = match sensor {
         SensorId::Camera => None,
-        SensorId::Beam(index) => referee.sight_margins(index, i, j),
+        SensorId::Beam(index) => referee.visibility_margins(index, i, j),
     };
     let command = probe_command(subject, place);
     Ok(Probe {
@@ -152,7 +152,7 @@ pub fn probe(
         flux_unit: Quantity::PencilFlux.unit(scene.flux_model()),
         face_margin: face,
         surface_margin: surface,
-        sight_margins,
+        visibility_margins,
     })
 }
 
@@ -187,7 +187,8 @@ fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
         is_wrong.then(|| attribute(judge, &frame, contender.approximations(), renderer.resolution()));
     let cause = attributions.as_ref().and_then(|attributions| attributions.cause(place).cloned());
     if let Some(back) = &mut back {
-        back.cause = attributions.as_ref().and_then(|attributions| attributions.sight_cause(place).cloned());
+        back.cause =
+            attributions.as_ref().and_then(|attributions| attributions.visibility_cause(place).cloned());
     }
     let class = Class::of(ruling, cause.is_some());
     ProbedAnswer { renderer: renderer.name().to_string(), hit, ruling, class, cause, back }
@@ -212,6 +213,7 @@ fn returned(
         flux: returns.flux.as_ref()?.at(i, j),
     };
     let resolution = contender.renderer.resolution();
-    let ruling = judge.rule_sight(place, hit.face, Some(hit.range), back.visible, back.pixel, resolution)?;
+    let ruling =
+        judge.rule_visibility(place, hit.face, Some(hit.range), back.visible, back.pixel, resolution)?;
     Some(ProbedReturn { back, ruling, cause: None })
 }

@@ -96,8 +96,8 @@ impl Probe {
                 "flux_unit": self.flux_unit,
                 "face_margin": margin(&self.face_margin),
                 "surface_margin": margin(&self.surface_margin),
-                "visibility_margin": self.sight_margins.as_ref().map(|margins| margin(&margins.visibility)),
-                "landing_margin_pixels": self.sight_margins.as_ref().and_then(|margins| margins.landing),
+                "visibility_margin": self.visibility_margins.as_ref().map(|margins| margin(&margins.visibility)),
+                "landing_margin_pixels": self.visibility_margins.as_ref().and_then(|margins| margins.landing),
             },
             "answers": answers,
         })
@@ -154,7 +154,7 @@ impl fmt::Display for Probe {
         }
         writeln!(f, "    face margin {}", margin(&self.face_margin))?;
         writeln!(f, "    surface margin {}", margin(&self.surface_margin))?;
-        if let Some(margins) = &self.sight_margins {
+        if let Some(margins) = &self.visibility_margins {
             writeln!(f, "    visibility margin {}", margin(&margins.visibility))?;
             if let Some([low, _]) = margins.landing {
                 writeln!(f, "    landing margin {low:e} pixels")?;

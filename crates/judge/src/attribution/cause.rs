@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use raypencil_referee::{Explained, ExplainedSight};
+use raypencil_referee::{Explained, ExplainedVisibility};
 use raypencil_scene::Place;
 use raypencil_scene::{SensorId, Switches};
 
@@ -24,24 +24,24 @@ pub struct Cause {
 #[derive(Debug, Clone, Default)]
 pub struct Attributions {
     pub(super) by_ray: HashMap<(SensorId, u32, u32), Cause>,
-    pub(super) of_sight: HashMap<(SensorId, u32, u32), SightCause>,
+    pub(super) of_visibility: HashMap<(SensorId, u32, u32), VisibilityCause>,
 }
 
 /// What explains one answer about what the camera sees.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SightCause {
+pub struct VisibilityCause {
     /// The smallest set of switches that restores an exact answer and is confirmed.
     pub switches: Switches,
     /// The faces that hide the point, or do not, against the contract, and why.
-    pub explained: Vec<ExplainedSight>,
+    pub explained: Vec<ExplainedVisibility>,
     /// The same of the answers that are still wrong with only these switches exact.
-    pub explained_without: Vec<(Switches, Vec<ExplainedSight>)>,
+    pub explained_without: Vec<(Switches, Vec<ExplainedVisibility>)>,
 }
 
 impl Attributions {
     /// The cause of the answer about what the camera sees of one pencil's hit, if it has one.
-    pub fn sight_cause(&self, Place { sensor, i, j }: Place) -> Option<&SightCause> {
-        self.of_sight.get(&(sensor, i, j))
+    pub fn visibility_cause(&self, Place { sensor, i, j }: Place) -> Option<&VisibilityCause> {
+        self.of_visibility.get(&(sensor, i, j))
     }
 
     /// The cause of the answer to one ray, if it has one.

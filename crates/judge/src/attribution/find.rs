@@ -21,9 +21,9 @@ impl Attributions {
         let court = Court { judge, switches, resolution, rerender };
         let key = |Place { sensor, i, j }: Place| (sensor, i, j);
         let by_ray = geometry::causes(court, frame).into_iter().map(|(at, cause)| (key(at), cause)).collect();
-        let mut found = Self { by_ray, of_sight: HashMap::new() };
-        let of_sight = sight::causes(court, frame, &found);
-        found.of_sight = of_sight.into_iter().map(|(at, cause)| (key(at), cause)).collect();
+        let mut found = Self { by_ray, of_visibility: HashMap::new() };
+        let of_visibility = sight::causes(court, frame, &found);
+        found.of_visibility = of_visibility.into_iter().map(|(at, cause)| (key(at), cause)).collect();
         found
     }
 }

@@ -139,7 +139,7 @@ fn approximations(switches: Switches) -> Approximations {
 fn reasons(explained: &[Explained]) -> Switches {
     let any = |of_beam_edges: bool| {
         let mut reasons = explained.iter().flat_map(|one| &one.reasons);
-        if reasons.any(|reason| reason.is_of_beam_edges() == of_beam_edges) {
+        if reasons.any(|reason| reason.belongs_to_beam_edges() == of_beam_edges) {
             Fidelity::Paper
         } else {
             Fidelity::Exact

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use crate::attribution::cause::{Attributions, SightCause};
+use crate::attribution::cause::{Attributions, VisibilityCause};
 use crate::attribution::court::{Court, sets_of};
-use raypencil_referee::{ExplainedSight, Ruling, SightApproximations, SightReason};
+use raypencil_referee::{ExplainedVisibility, Ruling, VisibilityApproximations, VisibilityReason};
 use raypencil_scene::Place;
 use raypencil_scene::{FaceId, Fidelity, Frame, Pixel, Quantities, Request, SensorId, Switches};
 
@@ -38,7 +38,7 @@ struct Wrong {
     answer: Answer,
     /// The answers that are wrong with other switches on `exact`, by which.
     without: Vec<(Switches, Answer)>,
-    cause: Option<SightCause>,
+    cause: Option<VisibilityCause>,
 }
 
 /// The pencils of a frame whose visibility is wrong for a confirmed cause.
@@ -46,23 +46,23 @@ pub(super) fn causes(
     court: Court<'_>,
     frame: &Frame,
     of_geometry: &Attributions,
-) -> Vec<(Place, SightCause)> {
+) -> Vec<(Place, VisibilityCause)> {
     let Switches { facing, extent, place, .. } = court.switches;
-    let of_sight = Switches { facing, extent, place, ..Switches::EXACT };
-    if of_sight == Switches::EXACT || frame.returns.is_empty() {
+    let of_visibility = Switches { facing, extent, place, ..Switches::EXACT };
+    if of_visibility == Switches::EXACT || frame.returns.is_empty() {
         return Vec::new();
     }
     let request = Request { camera: false, quantities: Quantities::RANGE_MAP, ..Request::EVERYTHING };
     let reach = upper_extent(court, frame);
 
     // What differs from the same algorithm without any approximation of sight, and is wrong.
-    let exact = court.render(court.switches.without(of_sight), request);
+    let exact = court.render(court.switches.without(of_visibility), request);
     let mut wrong: Vec<Wrong> = frame
         .beams
         .iter()
         .flat_map(|map| wrong_answers(court, frame, &exact, map.sensor, of_geometry))
         .collect();
-    for cause in sets_of(of_sight) {
+    for cause in sets_of(of_visibility) {
         let mut open: Vec<&mut Wrong> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
         if open.is_empty() {
             break;
@@ -117,25 +117,25 @@ impl Court<'_> {
     /// Whether what is said of a pencil's visibility is wrong.
     fn is_sight_wrong(&self, place: Place, answer: Answer) -> bool {
         let Answer { face, range, visible, pixel } = answer;
-        let ruling = self.judge.rule_sight(place, face, range, visible, pixel, self.resolution);
+        let ruling = self.judge.rule_visibility(place, face, range, visible, pixel, self.resolution);
         ruling.is_none_or(|ruling| ruling.visible == Ruling::Wrong)
     }
 
     /// Explains an answer that was made with the renderer's switches but for `exact`.
-    fn explain_sight(
+    fn explain_visibility(
         &self,
         place: Place,
         answer: Answer,
         exact: Switches,
         reach: Option<f64>,
-    ) -> Option<Vec<ExplainedSight>> {
+    ) -> Option<Vec<ExplainedVisibility>> {
         let switches = self.switches.without(exact);
-        let with = SightApproximations {
+        let with = VisibilityApproximations {
             facing: switches.facing == Fidelity::Paper,
             extent: reach.filter(|_| switches.extent == Fidelity::Paper),
             place: switches.place == Fidelity::Paper,
         };
-        self.judge.explain_sight(place, answer.face, answer.range, answer.visible, with, self.resolution)
+        self.judge.explain_visibility(place, answer.face, answer.range, answer.visible, with, self.resolution)
     }
 }
 
@@ -147,7 +147,8 @@ impl Wrong {
             self.without.push((cause, restored));
             return;
         }
-        let Some(explained) = court.explain_sight(self.place, self.answer, Switches::EXACT, reach) else {
+        let Some(explained) = court.explain_visibility(self.place, self.answer, Switches::EXACT, reach)
+        else {
             return;
         };
         let mut open = cause.without(reasons(&explained));
@@ -155,28 +156,28 @@ impl Wrong {
         for &(part, answer) in &self.without {
             if open != Switches::EXACT
                 && cause.contains(part)
-                && let Some(explained) = court.explain_sight(self.place, answer, part, reach)
+                && let Some(explained) = court.explain_visibility(self.place, answer, part, reach)
             {
                 open = open.without(reasons(&explained));
                 explained_without.push((part, explained));
             }
         }
         if open == Switches::EXACT {
-            self.cause = Some(SightCause { switches: cause, explained, explained_without });
+            self.cause = Some(VisibilityCause { switches: cause, explained, explained_without });
         }
     }
 }
 
 /// The switches that are a reason for one of the faces.
-fn reasons(explained: &[ExplainedSight]) -> Switches {
-    let has = |reason: SightReason| {
+fn reasons(explained: &[ExplainedVisibility]) -> Switches {
+    let has = |reason: VisibilityReason| {
         let any = explained.iter().any(|one| one.reasons.contains(&reason));
         if any { Fidelity::Paper } else { Fidelity::Exact }
     };
     Switches {
-        facing: has(SightReason::Facing),
-        extent: has(SightReason::Extent),
-        place: has(SightReason::Place),
+        facing: has(VisibilityReason::Facing),
+        extent: has(VisibilityReason::Extent),
+        place: has(VisibilityReason::Place),
         ..Switches::EXACT
     }
 }

@@ -30,8 +30,8 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
     let SensorId::Beam(beam) = sensor else { return Vec::new() };
     let (judge, referee) = (truth.judge(), truth.judge().referee());
     let Some(margins) = referee.margins(sensor, i, j) else { return Vec::new() };
-    let sight = referee.sight_margins(beam, i, j);
-    let is_close = |sight: &raypencil_referee::SightMargins| {
+    let sight = referee.visibility_margins(beam, i, j);
+    let is_close = |sight: &raypencil_referee::VisibilityMargins| {
         sight.visibility.lo < CLOSE || sight.landing.is_none_or(|[lo, _]| lo < CLOSE)
     };
     if margins.face.lo >= CLOSE && margins.verdict.faces.len() < 2 && !sight.as_ref().is_some_and(is_close) {
@@ -44,7 +44,7 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
 
     // Every admissible face, those that tie among them, and of each every admissible pixel.
     let mut faces: Vec<FaceId> = true_face.into_iter().collect();
-    for face in judge.faces_near(place, None, resolution) {
+    for face in judge.candidate_faces(place, None, resolution) {
         let is_admissible = || !matches!(judge.rule(place, Some(face), None, resolution), Ruling::Wrong);
         if Some(face) != true_face && is_admissible() {
             faces.push(face);
@@ -62,7 +62,8 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
         for pixel in about.into_iter().filter(|pixel| pixel.i < camera.width && pixel.j < camera.height) {
             let is_true = Some(face) == true_face && Some(pixel) == true_pixel;
             let is_admissible = || {
-                let ruling = judge.rule_sight(place, face, Some(hit.range), true, Some(pixel), resolution);
+                let ruling =
+                    judge.rule_visibility(place, face, Some(hit.range), true, Some(pixel), resolution);
                 ruling.is_some_and(|ruling| ruling.visible != Ruling::Wrong && ruling.pixel != Ruling::Wrong)
             };
             if !is_true && !is_admissible() {
@@ -85,7 +86,7 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
     let may_be_hidden = || {
         let face = true_face?;
         let hit = judge.plane_hit(place, face)?;
-        let ruling = judge.rule_sight(place, face, Some(hit.range), false, pixel, resolution)?;
+        let ruling = judge.rule_visibility(place, face, Some(hit.range), false, pixel, resolution)?;
         Some(ruling.visible != Ruling::Wrong)
     };
     let may_miss = || !matches!(judge.rule(place, None, None, resolution), Ruling::Wrong);

@@ -80,7 +80,8 @@ impl Question<'_> {
         let (classes, ruling) = if is_true {
             ([Class::Agree; 2], None)
         } else {
-            let ruled = judge.rule_sight(self.place, hit.face, Some(hit.range), visible, pixel, resolution);
+            let ruled =
+                judge.rule_visibility(self.place, hit.face, Some(hit.range), visible, pixel, resolution);
             match ruled {
                 Some(ruling) => (
                     [Class::of(ruling.visible, false), Class::of(ruling.pixel, false)],

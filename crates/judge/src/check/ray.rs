@@ -240,7 +240,7 @@ fn unnamed(
 ) -> Option<Reference> {
     let place = judged.place;
     let judge = truth.judge();
-    for face in judge.faces_near(place, said.range, recorded.resolution) {
+    for face in judge.candidate_faces(place, said.range, recorded.resolution) {
         let Some(hit) = judge.plane_hit(place, face) else { continue };
         let bounds = bounds(truth, ray, &hit, recorded);
         let differences = said.differences(recorded, place.sensor, &hit, &bounds);

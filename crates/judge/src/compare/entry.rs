@@ -1,4 +1,3 @@
-
 use crate::bounds::Bounds;
 use crate::class::{CLASSES, Class, QUANTITIES, Quantity};
 use crate::compare::answer::Answer;

@@ -24,9 +24,7 @@ use crate::compare::ray::compare_ray;
 use crate::compare::side::Side;
 use crate::judge::{Judge, JudgeShare};
 use crate::tally::{DEFECTS_DESCRIBED, SensorComparison, Tally};
-use raypencil_scene::{
-    Image, Place, Scene, SensorId, SensorMap,
-};
+use raypencil_scene::{Image, Place, Scene, SensorId, SensorMap};
 
 pub use crate::compare::single::{First, class_at, first_of};
 

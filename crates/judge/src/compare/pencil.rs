@@ -125,8 +125,8 @@ pub(crate) fn compare_pencil(
     if light.class == Class::Approximation {
         for attributions in sides.iter().filter_map(|side| side.attributions) {
             let of_geometry = attributions.cause(place).map(|cause| cause.switches);
-            let of_sight = attributions.sight_cause(place).map(|cause| cause.switches);
-            for switches in of_geometry.into_iter().chain(of_sight) {
+            let of_visibility = attributions.visibility_cause(place).map(|cause| cause.switches);
+            for switches in of_geometry.into_iter().chain(of_visibility) {
                 light.causes = light.causes.union(switches);
             }
         }
@@ -151,8 +151,8 @@ fn ruled(
     let place = entry.place;
     let (visible, pixel) = (back.visible?, back.pixel?);
     entry.spoil(off_its_face(judge, place, side, face, back));
-    let has_cause = side.attributions.is_some_and(|causes| causes.sight_cause(place).is_some());
-    Some(match judge.rule_sight(place, face, range, visible, pixel, side.resolution) {
+    let has_cause = side.attributions.is_some_and(|causes| causes.visibility_cause(place).is_some());
+    Some(match judge.rule_visibility(place, face, range, visible, pixel, side.resolution) {
         Some(ruling) => [Class::of(ruling.visible, has_cause), Class::of(ruling.pixel, false)],
         None => [Class::Defect; 2],
     })
@@ -184,7 +184,7 @@ fn off_its_face(
     };
     // The referee's values are rounded to f64.
     let bounds = bounds(side.resolution).plus(&bounds(Resolution::F64));
-    // A negative cos(psi), of a back that rule 1b adds, delivers nothing by equation (1). CHOICE: see `docs/radiometry.md`.
+    // A negative cos(psi), of a back that rule 1b adds, delivers nothing by equation (1). CHOICE: see `docs/theory/radiometry.md`.
     let flux = exact.flux.max(0.0);
     let all = [
         (Quantity::CameraDepth, back.depth, exact.depth, bounds.depth),

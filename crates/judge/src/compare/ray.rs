@@ -1,6 +1,5 @@
 //! One ray of two frames: what it meets.
 
-
 use crate::attribution::cause::Cause;
 use crate::bounds::Bounds;
 use crate::class::{Class, Quantity};
@@ -71,7 +70,7 @@ pub(crate) fn compare_ray(
                 causes = causes.union(cause.switches);
                 tally.enter(answer, cause, place);
             }
-            if let Some(cause) = attributions.sight_cause(place) {
+            if let Some(cause) = attributions.visibility_cause(place) {
                 causes = causes.union(cause.switches);
             }
         }

@@ -1,4 +1,3 @@
-
 use crate::attribution::cause::Attributions;
 use raypencil_scene::{Frame, Resolution};
 

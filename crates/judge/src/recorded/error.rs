@@ -44,7 +44,7 @@ pub enum RecordingError {
         found: String,
     },
     /// Nothing in it is known.
-    #[error("{}: holds no channel of this scene; expected files such as camera.exr or beam-0/range.T.npy with the names of docs/files.md{}", folder.display(), there(unknown))]
+    #[error("{}: holds no channel of this scene; expected files such as camera.exr or beam-0/range.T.npy with the names of docs/formats/files.md{}", folder.display(), there(unknown))]
     Nothing {
         /// The folder.
         folder: PathBuf,

@@ -1,5 +1,5 @@
 //! What another program recorded in files, as answers: names, sizes and conventions are checked, and nothing is
-//! guessed. The conventions are those of `docs/files.md`.
+//! guessed. The conventions are those of `docs/formats/files.md`.
 
 pub(crate) mod error;
 pub(crate) mod names;
@@ -11,9 +11,7 @@ use crate::recorded::error::RecordingError;
 use crate::recorded::names::is_of_outsiders;
 use crate::recorded::reader::{Reader, limits, recordings_in};
 use raypencil_files::{Channels, Storage, read_channels};
-use raypencil_scene::{
-    Frame, Renderer, Request, Resolution, Scene, SensorId,
-};
+use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::Path;
 

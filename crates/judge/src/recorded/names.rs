@@ -1,4 +1,4 @@
-//! Names of the channels of a recording, as `docs/files.md` lists them.
+//! Names of the channels of a recording, as `docs/formats/files.md` lists them.
 
 use crate::class::{Item, Quantity};
 use raypencil_scene::{FluxModel, Scene, SensorId};

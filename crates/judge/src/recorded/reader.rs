@@ -7,9 +7,7 @@ use crate::recorded::names;
 use crate::recorded::names::{flux_channel, image_channel};
 use glam::DVec3;
 use raypencil_files::{Channel, Channels, Limits, Storage, Values};
-use raypencil_scene::{
-    FaceId, Image, Maybe, Pixel, Renderer, Sample, Scene, SensorId,
-};
+use raypencil_scene::{FaceId, Image, Maybe, Pixel, Renderer, Sample, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Elevation models: GeoTIFF files of heights on a regular grid. `docs/dem.md` says what is read and how.
+//! Elevation models: GeoTIFF files of heights on a regular grid. `docs/guide/dem.md` says what is read and how.
 
 pub(crate) mod blocks;
 pub(crate) mod georeference;
@@ -16,7 +16,7 @@ use crate::dem::georeference::Placement;
 use crate::dem::tags::Tags;
 use raypencil_files::{Fault, FileError, Sha, sha_of_file};
 use raypencil_scene::{Material, Mesh};
-use raypencil_terrain::{Ground, Posts, indices_within, simplify};
+use raypencil_terrain::{Ground, HeightGrid, indices_within, simplify};
 
 /// The most cells between posts that are read: 2^24, which make 2^25 faces, the most that a GLB may have.
 const MOST_CELLS: u64 = 1 << 24;
@@ -67,7 +67,7 @@ pub struct Dem {
     /// The file.
     pub file: PathBuf,
     /// Heights in the global frame: x to the east, y to the north, metres of the map.
-    pub posts: Posts,
+    pub posts: HeightGrid,
     /// What a pixel is.
     pub registration: Registration,
     /// The sample that stands for "not known" beside NaN, if the file names one.
@@ -115,7 +115,7 @@ pub fn load(
 }
 
 /// All posts of an elevation model, and the digest of its file.
-pub fn posts(path: &Path) -> Result<(Posts, Sha), FileError> {
+pub fn posts(path: &Path) -> Result<(HeightGrid, Sha), FileError> {
     let posts = read_dem(path, None)?.posts;
     let (_, sha) = sha_of_file(path).map_err(|error| FileError::io(path, "read", error))?;
     Ok((posts, sha))
@@ -166,7 +166,7 @@ fn read(
     }
     let unknown = heights.iter().filter(|height| height.is_nan()).count();
     let start = DVec2::new(f64::from(*columns.start()), f64::from(first));
-    let posts = Posts {
+    let posts = HeightGrid {
         // Both are at most 2^24.
         columns: count[0] as u32,
         rows: count[1] as u32,

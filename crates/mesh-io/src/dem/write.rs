@@ -7,7 +7,7 @@ use tiff::encoder::colortype::Gray64Float;
 use tiff::tags::Tag;
 
 use raypencil_files::{FileError, write_atomically};
-use raypencil_terrain::Posts;
+use raypencil_terrain::HeightGrid;
 
 /// Geo keys: a projected model that is nobody's, pixels that are points, metres along all axes.
 const GEO_KEYS: [u16; 24] = [
@@ -25,13 +25,13 @@ const GEO_KEYS: [u16; 24] = [
 ///
 /// # Errors
 /// What the file system says, or the encoder, with the path.
-pub fn write_geotiff(path: impl AsRef<Path>, posts: &Posts) -> Result<(), FileError> {
+pub fn write_geotiff(path: impl AsRef<Path>, posts: &HeightGrid) -> Result<(), FileError> {
     let path = path.as_ref();
     let bytes = encode(posts).map_err(|error| FileError::io(path, "write", std::io::Error::other(error)))?;
     write_atomically(path, |file| file.write_all(&bytes))
 }
 
-fn encode(posts: &Posts) -> tiff::TiffResult<Vec<u8>> {
+fn encode(posts: &HeightGrid) -> tiff::TiffResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
     let mut encoder = TiffEncoder::new(&mut file)?;
     let mut image = encoder.new_image::<Gray64Float>(posts.columns, posts.rows)?;
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_back() {
-        let posts = Posts {
+        let posts = HeightGrid {
             columns: 4,
             rows: 3,
             corner: DVec2::new(-7.5, 2.25),

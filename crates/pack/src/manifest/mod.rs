@@ -1,4 +1,4 @@
-//! `manifest.json` of a pack: what it is, and each of its files by size and digest. Schema: `docs/pack.schema.json`.
+//! `manifest.json` of a pack: what it is, and each of its files by size and digest. Schema: `docs/formats/pack.schema.json`.
 
 pub(crate) mod scene;
 pub(crate) mod verify;
@@ -151,7 +151,7 @@ pub struct ManifestFile {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ManifestChannel {
-    /// As in `docs/files.md`: `range.T`.
+    /// As in `docs/formats/files.md`: `range.T`.
     pub name: String,
     /// `m`, `W`, `1`, ...; `index` of what counts.
     pub unit: String,

@@ -28,7 +28,10 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, FileError> {
 /// The manifest that a text is, checked by its form alone.
 fn parse(text: &[u8], path: &Path) -> Result<Manifest, FileError> {
     let invalid = |error: serde_json::Error| {
-        unfit(path, Fault::new("JSON", error.to_string(), "a manifest as docs/pack.schema.json describes"))
+        unfit(
+            path,
+            Fault::new("JSON", error.to_string(), "a manifest as docs/formats/pack.schema.json describes"),
+        )
     };
     // A newer format fails by its number and not by a key.
     #[derive(Deserialize)]

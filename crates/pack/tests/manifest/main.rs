@@ -132,7 +132,7 @@ fn what_is_no_pack_is_refused() {
         std::fs::write(folder.path().join("manifest.json"), text).unwrap();
         refusal(folder.path())
     };
-    let schema = "expected a manifest as docs/pack.schema.json describes";
+    let schema = "expected a manifest as docs/formats/pack.schema.json describes";
     for text in
         ["", "{", "[1]", "{\"format\": -1}", "{\"format\": 1}", "{\"format\": 1e400}", "{\"format\": nan}"]
     {

@@ -1,11 +1,11 @@
-//! Holds `manifest.json` to `docs/pack.schema.json`, with every key that can be written.
+//! Holds `manifest.json` to `docs/formats/pack.schema.json`, with every key that can be written.
 
 use raypencil_tests::schema::schema_faults;
 use serde_json::Value;
 
 use super::{blind, manifest};
 
-const SCHEMA: &str = include_str!("../../../../docs/pack.schema.json");
+const SCHEMA: &str = include_str!("../../../../docs/formats/pack.schema.json");
 
 fn faults_of(value: &Value) -> Vec<String> {
     let schema: Value = serde_json::from_str(SCHEMA).unwrap();

@@ -174,7 +174,7 @@ fn a_lid_of_several_faces_hides_as_one() {
     let (up, down) = ([2.4375, 3.7, 1.0], [2.4375, -3.3, 1.0]);
     let of = |lid: &[[[f32; 3]; 3]]| {
         let scene = level_with(4.0, 0.03125, 0.25, lid);
-        let margins = Referee::new(&scene).sight_margins(0, 1, 1).expect("a pencil");
+        let margins = Referee::new(&scene).visibility_margins(0, 1, 1).expect("a pencil");
         (margins.sight.visible, margins.visibility)
     };
     assert_eq!(of(&[]), (true, Margin::CAPPED));
@@ -206,7 +206,8 @@ fn a_ray_beside_excuses_what_is_true_of_it() {
         let pixel = referee.sight(0, 1, 1, Displacement::ZERO).expect("a pencil").pixel;
         let rule = |lateral: f64| {
             let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
-            let ruled = referee.rule_sight(0, 1, 1, Displacement::ZERO, FaceId(0), false, pixel, tolerance);
+            let ruled =
+                referee.rule_visibility(0, 1, 1, Displacement::ZERO, FaceId(0), false, pixel, tolerance);
             ruled.expect("a pencil").visible
         };
         assert_eq!(rule(1.0), Ruling::Rounding(Displacement { dx, dy }), "{dx},{dy}");

@@ -4,7 +4,9 @@ use crate::drive::camera_settings::BlurSettings;
 use crate::drive::settings::{DriveSettings, SensorWord, SunSettings};
 use raypencil_rover::Rig;
 use raypencil_scene::SceneError;
-use raypencil_sensor::{MARS_ORBIT, Optics, Psf, SOLAR_SPECTRUM_810, Sensor, Sunlight, preset};
+use raypencil_sensor::{
+    ImageSensor, MARS_SEMI_MAJOR_AXIS_AU, Optics, Psf, SOLAR_IRRADIANCE_810_NM, Sunlight, preset,
+};
 
 /// Cells of the fine image on which optics blur: 2 GiB of them.
 pub const MOST_FINE_CELLS: u64 = 1 << 28;
@@ -14,7 +16,7 @@ pub fn camera_chain(
     settings: &DriveSettings,
     word: SensorWord,
     rig: &Rig,
-) -> Result<(Optics, Sensor), SceneError> {
+) -> Result<(Optics, ImageSensor), SceneError> {
     let (mut optics, mut sensor) = preset(word.word()).expect("every word of scene files is a preset");
     let camera = rig.camera.sensor;
     if let Some(beam) = rig.beams.first() {
@@ -31,7 +33,7 @@ pub fn camera_chain(
         let blur = |blur: &BlurSettings| match blur {
             BlurSettings::Airy { rings } => airy(*rings),
             BlurSettings::Gaussian(sigma) => Psf::Gaussian { sigma: *sigma },
-            BlurSettings::Kernel(kernel) => Psf::Numbers(kernel.clone()),
+            BlurSettings::Kernel(kernel) => Psf::Sampled(kernel.clone()),
         };
         optics.blurs = blurs.iter().map(blur).collect();
     }
@@ -59,8 +61,8 @@ pub fn camera_chain(
     let given = settings.electronics;
     let dark = &mut sensor.dark_current;
     dark.rate = given.dark_rate.unwrap_or(dark.rate);
-    dark.at = given.dark_at.unwrap_or(dark.at);
-    dark.doubling = given.dark_doubling.unwrap_or(dark.doubling);
+    dark.reference_temperature = given.dark_at.unwrap_or(dark.reference_temperature);
+    dark.doubling_kelvins = given.dark_doubling.unwrap_or(dark.doubling_kelvins);
     dark.temperature = given.temperature.unwrap_or(dark.temperature);
     sensor.exposure = given.exposure.unwrap_or(sensor.exposure);
     sensor.quantum_efficiency = given.quantum_efficiency.unwrap_or(sensor.quantum_efficiency);
@@ -80,7 +82,7 @@ pub fn camera_chain(
 /// Light on Mars, its sun as bright as the file says.
 pub fn sunlight(settings: SunSettings) -> Sunlight {
     let mars = Sunlight::mars(settings.elevation, settings.azimuth, settings.optical_depth);
-    let usual = SOLAR_SPECTRUM_810 / (MARS_ORBIT * MARS_ORBIT);
+    let usual = SOLAR_IRRADIANCE_810_NM / (MARS_SEMI_MAJOR_AXIS_AU * MARS_SEMI_MAJOR_AXIS_AU);
     let share = settings.spectral_irradiance.map_or(1.0, |irradiance| irradiance / usual);
     Sunlight { direct: share * mars.direct, sky: share * mars.sky, ..mars }
 }

@@ -9,7 +9,7 @@ use crate::drive::camera_settings::{BlurSettings, ElectronicsSettings, OpticsSet
 use crate::keys::Key;
 use crate::parse::Source;
 use crate::scene_error::SceneIoError;
-use raypencil_sensor::{Dust, Extent};
+use raypencil_sensor::{Dust, ImageLength};
 
 /// Blurs, one after another.
 const MOST_BLURS: usize = 16;
@@ -110,11 +110,13 @@ impl Source<'_> {
                     }
                     (None, sigma @ Some(_), None, None) => {
                         let sigma = self.drive_number(sigma, &name("gaussian_px"), BLUR_PX, "pixels")?;
-                        blurs.extend(sigma.map(|sigma| BlurSettings::Gaussian(Extent::Pixels(sigma))));
+                        blurs.extend(sigma.map(|sigma| BlurSettings::Gaussian(ImageLength::Pixels(sigma))));
                     }
                     (None, None, sigma @ Some(_), None) => {
                         let sigma = self.drive_number(sigma, &name("gaussian_um"), BLUR_UM, "micrometres")?;
-                        blurs.extend(sigma.map(|sigma| BlurSettings::Gaussian(Extent::Metres(1e-6 * sigma))));
+                        blurs.extend(
+                            sigma.map(|sigma| BlurSettings::Gaussian(ImageLength::Metres(1e-6 * sigma))),
+                        );
                     }
                     (None, None, None, Some(file)) => {
                         files.push(KernelPart { blur, span: file.span(), file: file.into_inner().into() });
@@ -139,7 +141,7 @@ impl Source<'_> {
             optics.dust = Some(Dust {
                 transmission: number(transmission, "transmission", 1.0, SHARE, "of 1")?,
                 halo_share: number(halo_share, "halo_share", 0.0, SHARE, "of 1")?,
-                halo_sigma: Extent::Pixels(number(halo_px, "halo_px", 20.0, BLUR_PX, "pixels")?),
+                halo_sigma: ImageLength::Pixels(number(halo_px, "halo_px", 20.0, BLUR_PX, "pixels")?),
             });
         }
         Ok((optics, files))

@@ -1,7 +1,7 @@
 //! What a scene file says of the camera's optics and electronics: `[drive.optics]` and `[drive.electronics]`, in SI. What
 //! it leaves out is the preset's.
 
-use raypencil_sensor::{Dust, Extent, Kernel};
+use raypencil_sensor::{Dust, ImageLength, Kernel};
 
 /// One blur of the optics.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,7 +12,7 @@ pub enum BlurSettings {
         rings: u32,
     },
     /// A Gaussian of this standard deviation.
-    Gaussian(Extent),
+    Gaussian(ImageLength),
     /// Numbers from a file, on the cells of the fine image.
     Kernel(Kernel),
 }

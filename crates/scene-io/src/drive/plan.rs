@@ -4,14 +4,15 @@ use glam::DVec2;
 
 use crate::drive::settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord};
 use raypencil_rover::{
-    Attitude, Detection, DrivePlan, Exposures, Extraction, Fixes, MapSize, PassableRules, Place, RadialGrid,
-    Rig, Route, ScanRule, SensorErrors, SlopeLimits, Sweep, VectorRules, Vehicle,
+    Attitude, Detection, DrivePlan, ExposureMode, Extraction, LocalisationErrors, MapSize, PositionFixes,
+    RadialGrid, Rig, Route, ScanRule, SlopeLimits, StripeLocation, Sweep, TraversabilityRules, VectorRules,
+    Vehicle,
 };
 use raypencil_sensor::preset;
 
 /// The level that tells light from dark where the file names none, digital numbers.
 ///
-/// CHOICE: about a fiftieth of a stripe of the default rig (24,000, 84 and 1620 DN, docs/sensor.md) above the bias, so that
+/// CHOICE: about a fiftieth of a stripe of the default rig (24,000, 84 and 1620 DN, docs/theory/sensor.md) above the bias, so that
 /// a stripe 10 m away still passes; several times what noise reaches.
 pub fn threshold(sensor: SensorWord) -> f64 {
     match sensor {
@@ -50,14 +51,14 @@ pub fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sens
         DetectionWord::Gradient => Detection::Gradient(level),
     };
     extraction.place = match settings.place.unwrap_or(PlaceWord::Pixel) {
-        PlaceWord::Pixel => Place::Pixel,
-        PlaceWord::SubPixel => Place::SubPixel,
-        PlaceWord::Centroid => Place::Centroid,
+        PlaceWord::Pixel => StripeLocation::Pixel,
+        PlaceWord::SubPixel => StripeLocation::SubPixel,
+        PlaceWord::Centroid => StripeLocation::Centroid,
     };
     extraction.least_rows = settings.least_rows.unwrap_or(extraction.least_rows);
 
     let mut plan = DrivePlan::new(rig, route, extraction);
-    let rules = PassableRules::of(&vehicle);
+    let rules = TraversabilityRules::for_vehicle(&vehicle);
     plan.rules = if settings.cross_gaps == Some(true) { rules.crossing_gaps(&vehicle) } else { rules };
     let ([front, rear, length, closer], usual) = (settings.slopes, plan.rules.slopes);
     plan.rules.slopes = SlopeLimits {
@@ -66,7 +67,7 @@ pub fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sens
         length: length.unwrap_or(usual.length),
         closer: closer.unwrap_or(usual.closer),
     };
-    let ([first, last, step], usual) = (settings.grid_radii, RadialGrid::of(&vehicle));
+    let ([first, last, step], usual) = (settings.grid_radii, RadialGrid::for_vehicle(&vehicle));
     plan.grid = RadialGrid {
         sectors: settings.grid_sectors.unwrap_or(usual.sectors),
         half_angle: settings.grid_half_angle.unwrap_or(usual.half_angle),
@@ -74,7 +75,7 @@ pub fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sens
         step: step.unwrap_or(usual.step),
         last: last.unwrap_or(usual.last),
     };
-    let usual = VectorRules::of(&vehicle);
+    let usual = VectorRules::for_vehicle(&vehicle);
     plan.vectors = VectorRules {
         large: settings.vector_large.unwrap_or(usual.large),
         small: settings.vector_small.unwrap_or(usual.small),
@@ -82,7 +83,7 @@ pub fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sens
     plan.vehicle = vehicle;
     plan.seed = settings.seed.unwrap_or(plan.seed);
     if settings.lit_together == Some(true) {
-        plan.exposures = Exposures::Together;
+        plan.exposures = ExposureMode::Together;
     }
     plan.map = MapSize {
         spacing: settings.map_spacing.unwrap_or(plan.map.spacing),
@@ -109,7 +110,7 @@ pub fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sens
         ..usual
     };
     let [heading, pitch_down, roll_right] = settings.attitude_bias.map(|bias| bias.unwrap_or(0.0));
-    plan.errors = SensorErrors {
+    plan.errors = LocalisationErrors {
         position_drift: settings.position_drift.map_or(DVec2::ZERO, DVec2::from_array),
         position_walk: settings.position_walk.unwrap_or(0.0),
         attitude_bias: Attitude { heading, pitch_down, roll_right },
@@ -118,7 +119,7 @@ pub fn plan(settings: &DriveSettings, rig: Rig, start: DVec2, heading: f64, sens
         proximity_noise: settings.proximity_noise.unwrap_or(0.0),
         fixes: settings
             .fix_every
-            .map(|every_frames| Fixes { every_frames, noise: settings.fix_noise.unwrap_or(0.0) }),
+            .map(|every_frames| PositionFixes { every_frames, noise: settings.fix_noise.unwrap_or(0.0) }),
     };
     plan
 }

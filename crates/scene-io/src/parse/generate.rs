@@ -101,7 +101,7 @@ impl Source<'_> {
             (keys.extent_m.take(), "extent_m", &mut ground.extent, 1.0..=1e5, "metres"),
             (keys.post_spacing_m.take(), "post_spacing_m", &mut ground.post_spacing, LENGTH_M, "metres"),
             (keys.hurst.take(), "hurst", &mut ground.roughness.hurst, 0.01..=0.99, ""),
-            (keys.roughness_m.take(), "roughness_m", &mut ground.roughness.at_1_m, 0.0..=10.0, "metres"),
+            (keys.roughness_m.take(), "roughness_m", &mut ground.roughness.rms_at_1_m, 0.0..=10.0, "metres"),
             (keys.rock_coverage.take(), "rock_coverage", &mut ground.rocks.coverage, 0.0..=0.4, ""),
             (
                 keys.rock_smallest_m.take(),

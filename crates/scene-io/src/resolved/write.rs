@@ -30,7 +30,7 @@ pub fn write_resolved(path: impl AsRef<Path>, scene: &Scene, mesh_file_name: &st
     write_atomically(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// The scene file. Keys and units are those of `docs/scene.md`.
+/// The scene file. Keys and units are those of `docs/guide/scene.md`.
 fn text(scene: &Scene, mesh_file_name: &str) -> String {
     let mut text = String::from(
         "# A resolved scene: the very numbers that renderers compute with, in SI units.\nversion = 1\nkind = \"resolved\"\n",

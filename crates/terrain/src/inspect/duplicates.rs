@@ -1,7 +1,7 @@
 //! Duplicate and double-sided faces: faces on the same three places.
 
 use super::geometry::MeshGeometry;
-use super::report::{Example, Inspection};
+use super::report::{Inspection, Occurrence};
 use super::status::FaceStatus;
 
 /// Marks duplicate faces and counts double-sided sheets.
@@ -52,13 +52,13 @@ pub(super) fn find_duplicates(
     // Examples are in the order of faces.
     sheets.sort_unstable();
     for face in sheets {
-        inspection.double_sided.add(|| Example::at_face(face, geometry.middle(face)));
+        inspection.double_sided_sheets.add(|| Occurrence::at_face(face, geometry.middle(face)));
     }
     for face in geometry.faces() {
         let status = statuses[face as usize];
         if matches!(status, FaceStatus::Duplicate | FaceStatus::DuplicateOfOtherMaterial) {
-            inspection.duplicates.add(|| Example::at_face(face, geometry.middle(face)));
-            inspection.duplicates_of_other_material +=
+            inspection.duplicates.add(|| Occurrence::at_face(face, geometry.middle(face)));
+            inspection.duplicate_faces_of_other_material +=
                 usize::from(status == FaceStatus::DuplicateOfOtherMaterial);
         }
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::disjoint_sets::{DisjointSets, UnionOutcome};
 use super::geometry::MeshGeometry;
-use super::report::{Example, Inspection, OpenPiece};
+use super::report::{Inspection, Occurrence, OpenEdgePiece};
 use super::status::FaceStatus;
 
 /// Half-edge: a side of one face, by the lower and the higher of its two vertices.
@@ -57,7 +57,7 @@ pub(super) fn connect(
     inspection.components = statuses.iter().filter(|status| status.is_surface()).count();
     let mut open = Vec::new();
     for edge in half_edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
-        let example = || Example::at_face(edge[0].face, edge[0].middle(geometry));
+        let example = || Occurrence::at_face(edge[0].face, edge[0].middle(geometry));
         for pair in edge.windows(2) {
             let outcome = components.union(pair[0].face, pair[1].face, false);
             inspection.components -= usize::from(outcome == UnionOutcome::Merged);
@@ -67,7 +67,7 @@ pub(super) fn connect(
                 // Consistent neighbours run along their edge in opposite directions.
                 let mismatched = one.backwards == other.backwards;
                 if mismatched {
-                    inspection.mismatched_edges.add(example);
+                    inspection.inconsistent_edges.add(example);
                 }
                 if connectivity.patches.union(one.face, other.face, mismatched) == UnionOutcome::Contradictory
                 {
@@ -79,7 +79,7 @@ pub(super) fn connect(
                     .for_each(|half_edge| connectivity.at_patch_border[half_edge.face as usize] = true);
                 match edge {
                     [one] => open.push(*one),
-                    _ => inspection.crowded_edges.add(example),
+                    _ => inspection.non_manifold_edges.add(example),
                 }
             }
         }
@@ -121,10 +121,10 @@ fn gather_open(geometry: &MeshGeometry, open: &[HalfEdge], inspection: &mut Insp
     pieces.sort_unstable();
     for piece in pieces.chunk_by(|a, b| a.0 == b.0) {
         let first = piece[0].1;
-        found.add_piece(OpenPiece {
+        found.add_piece(OpenEdgePiece {
             edges: piece.len(),
             length: piece.iter().map(|(_, half_edge)| half_edge.length(geometry)).sum(),
-            example: Example::at_face(first.face, first.middle(geometry)),
+            example: Occurrence::at_face(first.face, first.middle(geometry)),
         });
     }
 }

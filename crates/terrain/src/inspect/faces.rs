@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::geometry::MeshGeometry;
-use super::report::{Example, Inspection};
+use super::report::{Inspection, Occurrence};
 use super::status::FaceStatus;
 
 /// Marks and counts faces without area.
@@ -27,7 +27,7 @@ pub(super) fn find_zero_area(
             &mut kinds.collinear
         };
         *kind += 1;
-        inspection.zero_area.add(|| Example::at_face(face, geometry.middle(face)));
+        inspection.zero_area.add(|| Occurrence::at_face(face, geometry.middle(face)));
         FaceStatus::ZeroArea
     };
     geometry.faces().map(status).collect()
@@ -38,7 +38,7 @@ pub(super) fn measure(geometry: &MeshGeometry, statuses: &[FaceStatus], inspecti
     for face in geometry.faces().filter(|&face| statuses[face as usize].is_surface()) {
         let normal = geometry.normal(face);
         let twice_area = normal.length();
-        let example = || Example::at_face(face, geometry.middle(face));
+        let example = || Occurrence::at_face(face, geometry.middle(face));
         inspection.area += 0.5 * twice_area;
         // The length is 0 only for faces below 1e-150 m a side, whose aspect means nothing.
         let [a, b, c] = geometry.corners(face);
@@ -52,7 +52,7 @@ pub(super) fn measure(geometry: &MeshGeometry, statuses: &[FaceStatus], inspecti
             }
         }
         if normal.z < 0.0 {
-            inspection.down_area += 0.5 * twice_area;
+            inspection.downward_area += 0.5 * twice_area;
             inspection.down.add(example);
         }
     }

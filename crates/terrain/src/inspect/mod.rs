@@ -29,7 +29,7 @@ mod weld;
 
 use raypencil_scene::Mesh;
 
-pub use report::{Example, Found, Inspection, Item, OpenEdges, OpenPiece, ZeroAreaKinds};
+pub use report::{Inspection, MeshElement, Occurrence, Occurrences, OpenEdgePiece, OpenEdges, ZeroAreaKinds};
 pub(crate) use status::FaceStatus;
 
 use geometry::MeshGeometry;

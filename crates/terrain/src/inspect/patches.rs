@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3Swizzles as _};
 
 use super::edges::FaceConnectivity;
 use super::geometry::MeshGeometry;
-use super::report::{Example, Inspection};
+use super::report::{Inspection, Occurrence};
 use super::status::FaceStatus;
 
 /// Minimum fraction of the area of open patches, projected on the horizontal, before they can be upside down.
@@ -103,15 +103,15 @@ pub(super) fn find_inverted(
     }
 
     for patch in &patches {
-        let example = || Example::at_face(patch.first, geometry.middle(patch.first));
+        let example = || Occurrence::at_face(patch.first, geometry.middle(patch.first));
         inspection.closed_components += usize::from(!patch.open);
         if !patch.open && !patch.non_orientable {
             inspection.volume += patch.six_volume.abs() / 6.0;
         }
         match patch.wrong() {
-            WrongFaces::NonOrientable => inspection.one_sided_patches.add(example),
+            WrongFaces::NonOrientable => inspection.non_orientable_patches.add(example),
             WrongFaces::Undecided => inspection.undecided_patches.add(example),
-            WrongFaces::Half(0) if patch.halves[1] == 0 => inspection.inside_out += 1,
+            WrongFaces::Half(0) if patch.halves[1] == 0 => inspection.inside_out_components += 1,
             WrongFaces::Half(_) => {}
         }
     }
@@ -123,7 +123,7 @@ pub(super) fn find_inverted(
         let (_, turned) = connectivity.patches.find(face);
         if patch.wrong() == WrongFaces::Half(usize::from(turned)) {
             statuses[face as usize] = FaceStatus::Inverted;
-            inspection.inverted.add(|| Example::at_face(face, geometry.middle(face)));
+            inspection.inverted.add(|| Occurrence::at_face(face, geometry.middle(face)));
         }
         if patch.open {
             let normal = geometry.normal(face);

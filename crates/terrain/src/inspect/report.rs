@@ -21,50 +21,50 @@ pub struct Inspection {
     pub volume: f64,
 
     /// Vertices that no face uses.
-    pub unused_vertices: Found,
+    pub unused_vertices: Occurrences,
     /// Vertices in the place of an earlier vertex.
-    pub split_vertices: Found,
+    pub split_vertices: Occurrences,
 
     /// Faces without area, as [`raypencil_scene::Mesh::zero_area_faces`] counts them: no ray hits them.
-    pub zero_area: Found,
+    pub zero_area: Occurrences,
     /// Their number by cause.
     pub zero_area_kinds: ZeroAreaKinds,
     /// Faces with the same corners as an earlier face, in the same sense.
-    pub duplicates: Found,
+    pub duplicates: Occurrences,
     /// Number of these whose material differs from that of the first.
-    pub duplicates_of_other_material: usize,
+    pub duplicate_faces_of_other_material: usize,
     /// Pairs of faces with the same corners in opposite senses: sheets that are visible from both sides.
-    pub double_sided: Found,
+    pub double_sided_sheets: Occurrences,
     /// Faces longer than [`Inspection::MIN_SLENDER_ASPECT`] times their width.
-    pub slender: Found,
+    pub slender: Occurrences,
     /// Largest ratio of a face's longest side to the height above that side.
     pub worst_aspect: f64,
     /// Faces whose normal points down, such as the underside of an overhang.
-    pub down: Found,
+    pub down: Occurrences,
     /// Area of these faces, square metres.
-    pub down_area: f64,
+    pub downward_area: f64,
     /// Whether the open components show more back faces than front faces from above, by area.
     pub upside_down: bool,
 
     /// Edges of one face only.
     pub open_edges: OpenEdges,
     /// Edges of more than two faces (non-manifold).
-    pub crowded_edges: Found,
+    pub non_manifold_edges: Occurrences,
     /// Edges along which both of their two faces run in the same direction: the faces have opposite orientations.
-    pub mismatched_edges: Found,
+    pub inconsistent_edges: Occurrences,
     /// Faces with a proven wrong orientation.
     ///
     /// A *patch* is all faces connected over edges of two faces. If its faces can be turned so that no two
     /// neighbours contradict each other, there are two ways to do so. In a closed patch the way with a positive
     /// volume is right; in an open one (CHOICE) the way that turns fewer faces.
-    pub inverted: Found,
+    pub inverted: Occurrences,
     /// Closed components with all faces inverted. CHOICE: terrain is viewed from outside, so a cavity that is
     /// modelled as a separate body counts as well.
-    pub inside_out: usize,
+    pub inside_out_components: usize,
     /// Open patches in which exactly half of the faces contradict the other half.
-    pub undecided_patches: Found,
+    pub undecided_patches: Occurrences,
     /// Non-orientable patches, such as a Moebius strip: no turning of faces helps.
-    pub one_sided_patches: Found,
+    pub non_orientable_patches: Occurrences,
 
     /// Connected components: sets of faces connected over edges.
     pub components: usize,
@@ -86,15 +86,15 @@ impl Inspection {
     ///
     /// CHOICE: what is usual and harms no ray is no fault: one border, split vertices (glTF files have them
     /// wherever normals differ), double-sided sheets, slender faces, faces that look down.
-    pub fn kinds_wrong(&self) -> usize {
+    pub fn fault_kinds(&self) -> usize {
         let found = [
             &self.unused_vertices,
             &self.zero_area,
             &self.duplicates,
-            &self.crowded_edges,
-            &self.mismatched_edges,
+            &self.non_manifold_edges,
+            &self.inconsistent_edges,
             &self.inverted,
-            &self.one_sided_patches,
+            &self.non_orientable_patches,
         ];
         found.into_iter().filter(|found| found.count > 0).count()
             + usize::from(self.excess_loops() > 0)
@@ -103,22 +103,22 @@ impl Inspection {
 
     /// Whether the mesh has no fault.
     pub fn passes(&self) -> bool {
-        self.kinds_wrong() == 0
+        self.fault_kinds() == 0
     }
 }
 
 /// Number of occurrences of one kind, and the first few of them.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Found {
+pub struct Occurrences {
     /// Number of occurrences.
     pub count: usize,
     /// The first five occurrences.
-    pub examples: Vec<Example>,
+    pub examples: Vec<Occurrence>,
 }
 
-impl Found {
+impl Occurrences {
     /// Counts one more occurrence. `example` is evaluated for the first few only.
-    pub(crate) fn add(&mut self, example: impl FnOnce() -> Example) {
+    pub(crate) fn add(&mut self, example: impl FnOnce() -> Occurrence) {
         self.count += 1;
         if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(example());
@@ -128,23 +128,23 @@ impl Found {
 
 /// One occurrence, and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Example {
+pub struct Occurrence {
     /// The face or vertex.
-    pub item: Item,
+    pub item: MeshElement,
     /// Position of a vertex, midpoint of an edge, or centroid of a face; global frame, metres.
     pub place: DVec3,
 }
 
-impl Example {
+impl Occurrence {
     /// A face, and a place on it in the global frame, metres.
     pub(super) fn at_face(face: u32, place: DVec3) -> Self {
-        Self { item: Item::Face(FaceId(face)), place }
+        Self { item: MeshElement::Face(FaceId(face)), place }
     }
 }
 
 /// Face or vertex of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Item {
+pub enum MeshElement {
     /// Face; for an edge, the first of its faces.
     Face(FaceId),
     /// Index into [`raypencil_scene::Mesh::vertices`].
@@ -174,23 +174,23 @@ pub struct OpenEdges {
     /// Number of pieces: sets of open edges connected at vertices.
     pub pieces: usize,
     /// The five longest pieces, the longest first.
-    pub longest: Vec<OpenPiece>,
+    pub longest: Vec<OpenEdgePiece>,
 }
 
 /// Piece: a set of connected open edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OpenPiece {
+pub struct OpenEdgePiece {
     /// Number of edges.
     pub edges: usize,
     /// Total length, metres.
     pub length: f64,
     /// Face at one of the edges, and the midpoint of that edge.
-    pub example: Example,
+    pub example: Occurrence,
 }
 
 impl OpenEdges {
     /// Counts a piece, and keeps it if it is among the longest; in a tie the earlier stays.
-    pub(crate) fn add_piece(&mut self, piece: OpenPiece) {
+    pub(crate) fn add_piece(&mut self, piece: OpenEdgePiece) {
         self.pieces += 1;
         let at = self.longest.partition_point(|other| other.length >= piece.length);
         if at < MAX_EXAMPLES {

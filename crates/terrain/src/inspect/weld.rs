@@ -1,7 +1,7 @@
 //! Welding: vertices in one place, and unused vertices.
 
 use super::geometry::MeshGeometry;
-use super::report::{Example, Inspection, Item};
+use super::report::{Inspection, MeshElement, Occurrence};
 
 /// First vertex in the place of each vertex; counts unused and split vertices, and measures the bounds.
 pub(super) fn weld(geometry: &MeshGeometry, inspection: &mut Inspection) -> Vec<u32> {
@@ -23,8 +23,10 @@ pub(super) fn weld(geometry: &MeshGeometry, inspection: &mut Inspection) -> Vec<
     drop(places);
     for (number, (&first, &used)) in welded.iter().zip(&used).enumerate() {
         let vertex = index(number);
-        let example =
-            || Example { item: Item::Vertex(vertex), place: geometry.global(geometry.vertex(vertex)) };
+        let example = || Occurrence {
+            item: MeshElement::Vertex(vertex),
+            place: geometry.global(geometry.vertex(vertex)),
+        };
         if first != vertex {
             inspection.split_vertices.add(example);
         }

@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use crate::Posts;
+use crate::HeightGrid;
 use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// Depth from rim to floor of a fresh crater and of the most degraded one, per diameter.
@@ -117,7 +117,7 @@ impl Crater {
     }
 
     /// Adds the crater to the heights of the posts.
-    pub(super) fn carve(&self, posts: &mut Posts) {
+    pub(super) fn carve(&self, posts: &mut HeightGrid) {
         let reach = 0.5 * EJECTA_END_RADII * self.diameter;
         let range = |centre: f64, corner: f64, spacing: f64, count: u32| {
             let post = |edge: f64| ((edge - corner) / spacing).clamp(0.0, f64::from(count)) as u32;

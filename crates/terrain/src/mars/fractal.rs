@@ -12,7 +12,7 @@
 
 use glam::DVec2;
 
-use crate::Posts;
+use crate::HeightGrid;
 use crate::random_stream::{RandomStream, StreamPurpose};
 
 /// Roughness of a self-affine surface.
@@ -22,7 +22,7 @@ pub struct Roughness {
     /// ones.
     pub hurst: f64,
     /// Root mean square difference of height between points 1 m apart, metres.
-    pub at_1_m: f64,
+    pub rms_at_1_m: f64,
     /// Factor on the displacements of each halving of the spacing, the coarsest first; 1 for those not given.
     pub octave_gains: Vec<f64>,
 }
@@ -32,21 +32,21 @@ impl Roughness {
     fn displacement(&self, octave: usize, spacing: f64) -> f64 {
         let gain = self.octave_gains.get(octave).copied().unwrap_or(1.0);
         let left = 1.0 - libm::pow(2.0, 2.0 * self.hurst - 2.0);
-        gain * self.at_1_m * libm::pow(spacing, self.hurst) * left.sqrt()
+        gain * self.rms_at_1_m * libm::pow(spacing, self.hurst) * left.sqrt()
     }
 }
 
 /// Four posts at the corners of a square, with heights by the same law: neighbours differ by roughness side^H
 /// (rms).
-pub(crate) fn corner_posts(side: f64, roughness: &Roughness, seed: u64) -> Posts {
+pub(crate) fn corner_posts(side: f64, roughness: &Roughness, seed: u64) -> HeightGrid {
     let mut random = RandomStream::new(seed, StreamPurpose::Corners);
-    let deviation = roughness.at_1_m * libm::pow(side, roughness.hurst) * std::f64::consts::FRAC_1_SQRT_2;
+    let deviation = roughness.rms_at_1_m * libm::pow(side, roughness.hurst) * std::f64::consts::FRAC_1_SQRT_2;
     let heights = (0..4).map(|_| deviation * random.normal()).collect();
-    Posts { columns: 2, rows: 2, corner: DVec2::ZERO, spacing: DVec2::splat(side), heights }
+    HeightGrid { columns: 2, rows: 2, corner: DVec2::ZERO, spacing: DVec2::splat(side), heights }
 }
 
 /// Halves the spacing of `posts` `octaves` times. The old posts stay among the new ones, unchanged to the bit.
-pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u64) -> Posts {
+pub(crate) fn refine(posts: HeightGrid, octaves: u32, roughness: &Roughness, seed: u64) -> HeightGrid {
     let mut random = RandomStream::new(seed, StreamPurpose::Octaves);
     let mut posts = posts;
     for octave in 0..octaves as usize {
@@ -68,7 +68,7 @@ pub(crate) fn refine(posts: Posts, octaves: u32, roughness: &Roughness, seed: u6
 }
 
 /// Grid with twice as many cells in each direction; new posts lie on the smooth curves through the old ones.
-fn halve_spacing(posts: Posts) -> Posts {
+fn halve_spacing(posts: HeightGrid) -> HeightGrid {
     let (old_columns, old_rows) = (posts.columns as usize, posts.rows as usize);
     let (columns, rows) = (2 * old_columns - 1, 2 * old_rows - 1);
     let mut heights = vec![0.0; columns * rows];
@@ -83,7 +83,7 @@ fn halve_spacing(posts: Posts) -> Posts {
         let old: Vec<f64> = (0..old_rows).map(|row| heights[2 * row * columns + column]).collect();
         interpolate_line(old_rows, |i| old[i], |i, height| heights[i * columns + column] = height);
     }
-    Posts {
+    HeightGrid {
         columns: columns as u32,
         rows: rows as u32,
         corner: posts.corner,

@@ -22,7 +22,7 @@ mod tests;
 use glam::{DVec2, DVec3};
 use raypencil_scene::{Material, SceneError};
 
-use crate::{Ground, Posts};
+use crate::{Ground, HeightGrid};
 
 pub use craters::{Crater, Craters};
 pub use crevasses::Crevasses;
@@ -65,7 +65,7 @@ pub struct MarsGround {
     pub post_spacing: f64,
     /// Posts that the surface passes through before craters and crevasses are added. Without them the relief
     /// starts from four posts at the corners of a square at least as large as the ground.
-    pub coarse: Option<Posts>,
+    pub coarse: Option<HeightGrid>,
     /// Roughness of the relief.
     pub roughness: Roughness,
     /// Rocks; none if the coverage is 0.
@@ -140,7 +140,7 @@ impl MarsGround {
     }
 
     /// Posts before craters are added.
-    fn relief(&self) -> Posts {
+    fn relief(&self) -> HeightGrid {
         if let Some(coarse) = &self.coarse {
             let octaves = octaves(coarse.spacing.max_element(), self.post_spacing);
             return fractal::refine(coarse.clone(), octaves, &self.roughness, self.seed);
@@ -159,7 +159,7 @@ impl MarsGround {
             })
             .collect();
         let corner = DVec2::splat(-0.5 * f64::from(cells) * self.post_spacing);
-        Posts {
+        HeightGrid {
             columns: cells + 1,
             rows: cells + 1,
             corner,
@@ -174,7 +174,7 @@ impl MarsGround {
         ((self.extent / self.post_spacing).ceil() as u32).max(2)
     }
 
-    fn add_rocks(&self, ground: &mut Ground, posts: &Posts, crevasses: &[crevasses::Crevasse]) {
+    fn add_rocks(&self, ground: &mut Ground, posts: &HeightGrid, crevasses: &[crevasses::Crevasse]) {
         let extent = posts.extent();
         let middle = posts.corner + 0.5 * extent;
         let free_radius = FREE_RADIUS_M.min(0.125 * extent.min_element());
@@ -204,7 +204,7 @@ impl MarsGround {
             ("extent_m", self.extent, 1.0..=1e5),
             ("post_spacing_m", self.post_spacing, 1e-3..=1e4),
             ("hurst", roughness.hurst, 0.01..=0.99),
-            ("roughness_m", roughness.at_1_m, 0.0..=10.0),
+            ("roughness_m", roughness.rms_at_1_m, 0.0..=10.0),
             ("rock_coverage", rocks.coverage, 0.0..=0.4),
             ("rock_smallest_m", rocks.smallest, 1e-3..=100.0),
             ("rock_largest_m", rocks.largest, rocks.smallest..=100.0),
@@ -276,7 +276,7 @@ impl MarsGround {
     }
 }
 
-fn check_coarse(coarse: &Posts) -> Result<(), SceneError> {
+fn check_coarse(coarse: &HeightGrid) -> Result<(), SceneError> {
     let (columns, rows) = (coarse.columns as usize, coarse.rows as usize);
     if columns < 2 || rows < 2 || coarse.heights.len() != columns * rows {
         let found = format!("{columns} x {rows} posts, {} heights", coarse.heights.len());

@@ -83,7 +83,7 @@ impl MarsGround {
             extent: 40.0,
             post_spacing: 0.1,
             coarse: None,
-            roughness: Roughness { hurst: relief.0, at_1_m: relief.1, octave_gains: Vec::new() },
+            roughness: Roughness { hurst: relief.0, rms_at_1_m: relief.1, octave_gains: Vec::new() },
             rocks: Rocks { coverage: rocks.0, smallest: 0.05, largest: rocks.1 },
             craters: Craters { density: craters.0, smallest: 1.0, largest: craters.1 },
             crevasses: Crevasses {

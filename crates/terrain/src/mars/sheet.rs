@@ -4,14 +4,14 @@ use glam::{DVec2, DVec3};
 
 use super::crevasses::Crevasse;
 use crate::random_stream::{RandomStream, StreamPurpose};
-use crate::{Ground, Posts};
+use crate::{Ground, HeightGrid};
 
 /// Points on a wall below its edge, down to the floor and including it.
 const POINTS_PER_WALL: u32 = 5;
 
 /// Height of the posts' surface at a place, bilinear between the four posts around it; outside, the height at the
 /// nearest border.
-pub(super) fn height(posts: &Posts, place: DVec2) -> f64 {
+pub(super) fn height(posts: &HeightGrid, place: DVec2) -> f64 {
     let locate = |offset: f64, count: u32| {
         let at = offset.clamp(0.0, f64::from(count - 1));
         let cell = (at as u32).min(count.saturating_sub(2));
@@ -35,7 +35,7 @@ pub(super) struct SheetMaterials {
 /// Adds the sheet to a ground without faces.
 pub(super) fn add(
     ground: &mut Ground,
-    posts: &Posts,
+    posts: &HeightGrid,
     crevasses: &[Crevasse],
     materials: &SheetMaterials,
     seed: u64,
@@ -61,7 +61,7 @@ struct VertexRow {
 /// Vertex rows for one grid row: one, or those of a crevasse from the near edge to the far edge.
 fn vertex_rows(
     ground: &mut Ground,
-    posts: &Posts,
+    posts: &HeightGrid,
     crevasses: &[Crevasse],
     row: u32,
     materials: &SheetMaterials,

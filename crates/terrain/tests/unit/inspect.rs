@@ -21,19 +21,19 @@ const TETRAHEDRON: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 
 const ITS_FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
 /// Numbers of the faces found; the tests find no more than are kept as examples.
-fn faces(found: &Found) -> Vec<u32> {
+fn faces(found: &Occurrences) -> Vec<u32> {
     assert_eq!(found.count, found.examples.len());
-    let number = |example: &Example| match example.item {
-        Item::Face(FaceId(face)) => face,
-        Item::Vertex(vertex) => panic!("vertex {vertex}"),
+    let number = |example: &Occurrence| match example.item {
+        MeshElement::Face(FaceId(face)) => face,
+        MeshElement::Vertex(vertex) => panic!("vertex {vertex}"),
     };
     found.examples.iter().map(number).collect()
 }
 
-fn vertices(found: &Found) -> Vec<u32> {
-    let number = |example: &Example| match example.item {
-        Item::Vertex(vertex) => vertex,
-        Item::Face(face) => panic!("{face:?}"),
+fn vertices(found: &Occurrences) -> Vec<u32> {
+    let number = |example: &Occurrence| match example.item {
+        MeshElement::Vertex(vertex) => vertex,
+        MeshElement::Face(face) => panic!("{face:?}"),
     };
     found.examples.iter().map(number).collect()
 }
@@ -51,7 +51,7 @@ fn a_tetrahedron_is_closed_and_sound() {
     assert!((found.area - (1.5 + 3.0_f64.sqrt() / 2.0)).abs() < 1e-15, "{}", found.area);
     assert_eq!(found.bounds, Some([DVec3::ZERO, DVec3::ONE]));
     // Only the base looks down. Its longest side is sqrt 2, and twice its area is 1: the ratio is 2.
-    assert_eq!((faces(&found.down), found.down_area, found.worst_aspect), (vec![0], 0.5, 2.0));
+    assert_eq!((faces(&found.down), found.downward_area, found.worst_aspect), (vec![0], 0.5, 2.0));
 }
 
 #[test]
@@ -61,7 +61,10 @@ fn a_face_the_wrong_way_round_contradicts_its_three_neighbours() {
         turned[wrong].swap(1, 2);
         let found = inspect(&mesh(&TETRAHEDRON, &turned));
         assert_eq!(faces(&found.inverted), [wrong as u32]);
-        assert_eq!((found.mismatched_edges.count, found.inside_out, found.kinds_wrong()), (3, 0, 2));
+        assert_eq!(
+            (found.inconsistent_edges.count, found.inside_out_components, found.fault_kinds()),
+            (3, 0, 2)
+        );
         assert!((found.volume - 1.0 / 6.0).abs() < 1e-15);
     }
 }
@@ -71,14 +74,17 @@ fn the_volume_of_a_closed_body_decides_and_not_the_majority() {
     // Three of the four faces are turned: they are wrong despite their majority.
     let turned = ITS_FACES.map(|[a, b, c]| if [a, b, c] == [0, 2, 1] { [a, b, c] } else { [a, c, b] });
     let found = inspect(&mesh(&TETRAHEDRON, &turned));
-    assert_eq!((faces(&found.inverted), found.inside_out), (vec![1, 2, 3], 0));
+    assert_eq!((faces(&found.inverted), found.inside_out_components), (vec![1, 2, 3], 0));
     // All four are turned: inside out, although no two contradict each other. The same holds a hundred kilometres
     // away.
     let far = TETRAHEDRON.map(|[x, y, z]| [x + 1e5, y - 1e5, z]);
     for corners in [TETRAHEDRON, far] {
         let found = inspect(&mesh(&corners, &ITS_FACES.map(|[a, b, c]| [a, c, b])));
-        assert_eq!((found.inverted.count, found.inside_out, found.mismatched_edges.count), (4, 1, 0));
-        assert_eq!(found.kinds_wrong(), 1);
+        assert_eq!(
+            (found.inverted.count, found.inside_out_components, found.inconsistent_edges.count),
+            (4, 1, 0)
+        );
+        assert_eq!(found.fault_kinds(), 1);
     }
 }
 
@@ -87,12 +93,12 @@ fn a_flat_bag_has_no_volume_to_be_judged_by() {
     // Two faces back to back are closed: a double-sided sheet.
     let found = inspect(&mesh(&TETRAHEDRON[..3], &[[0, 1, 2], [0, 2, 1]]));
     assert!(found.passes(), "{found:?}");
-    assert_eq!((faces(&found.double_sided), found.duplicates.count), (vec![0], 0));
+    assert_eq!((faces(&found.double_sided_sheets), found.duplicates.count), (vec![0], 0));
     assert_eq!((found.components, found.closed_components, found.volume), (1, 1, 0.0));
     // In the same sense they are duplicates. The remaining one is open all round: 1 + 1 + sqrt 2 metres.
     let found = inspect(&mesh(&TETRAHEDRON[..3], &[[0, 1, 2], [2, 0, 1], [1, 2, 0]]));
-    assert_eq!((faces(&found.duplicates), found.double_sided.count), (vec![1, 2], 0));
-    assert_eq!((found.open_edges.count, found.open_edges.loops, found.kinds_wrong()), (3, 1, 1));
+    assert_eq!((faces(&found.duplicates), found.double_sided_sheets.count), (vec![1, 2], 0));
+    assert_eq!((found.open_edges.count, found.open_edges.loops, found.fault_kinds()), (3, 1, 1));
     assert!((found.open_edges.length - (2.0 + 2.0_f64.sqrt())).abs() < 1e-15);
 }
 
@@ -109,22 +115,22 @@ fn two_cubes_that_share_a_wall_are_crowded_there() {
     let found = inspect(&cubes.into_mesh().unwrap());
     // The four corners of the wall occur twice.
     assert_eq!((found.split_vertices.count, found.components, found.closed_components), (4, 1, 0));
-    assert_eq!((found.crowded_edges.count, faces(&found.double_sided).len()), (5, 2));
+    assert_eq!((found.non_manifold_edges.count, faces(&found.double_sided_sheets).len()), (5, 2));
     assert_eq!((found.area, found.open_edges.count, found.inverted.count), (12.0, 0, 0));
-    assert_eq!(found.kinds_wrong(), 1);
+    assert_eq!(found.fault_kinds(), 1);
 }
 
 #[test]
 fn three_faces_fan_out_from_one_edge() {
     let tips = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
     let found = inspect(&mesh(&tips, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]));
-    assert_eq!(faces(&found.crowded_edges), [0]);
-    assert_eq!(found.crowded_edges.examples[0].place, DVec3::new(0.5, 0.0, 0.0));
+    assert_eq!(faces(&found.non_manifold_edges), [0]);
+    assert_eq!(found.non_manifold_edges.examples[0].place, DVec3::new(0.5, 0.0, 0.0));
     // Six open edges on five vertices in one piece: 6 - 5 + 1 = 2 loops. The orientation at an edge of three
     // faces is not compared.
     let open = &found.open_edges;
     assert_eq!((open.count, open.pieces, open.loops), (6, 1, 2));
-    assert_eq!((found.mismatched_edges.count, found.components, found.closed_components), (0, 1, 0));
+    assert_eq!((found.inconsistent_edges.count, found.components, found.closed_components), (0, 1, 0));
 }
 
 /// A square of 3 x 3 cells of 1 m, as a height field.
@@ -151,7 +157,7 @@ fn a_hole_is_a_second_loop() {
     let found = inspect(&holed.into_mesh().unwrap());
     let open = &found.open_edges;
     assert_eq!((open.count, open.length, open.loops, open.pieces), (16, 16.0, 2, 2));
-    assert_eq!((found.kinds_wrong(), found.excess_loops()), (1, 1));
+    assert_eq!((found.fault_kinds(), found.excess_loops()), (1, 1));
     let of_hole = open.longest[1];
     assert_eq!((open.longest[0].edges, of_hole.edges, of_hole.length), (12, 4, 4.0));
     assert!((1.0..=2.0).contains(&of_hole.example.place.x) && (1.0..=2.0).contains(&of_hole.example.place.y));
@@ -181,8 +187,8 @@ fn in_an_open_patch_the_minority_is_wrong() {
     // One face against one: no majority, and nothing is turned, but the edge between them is counted.
     let strip = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let found = inspect(&mesh(&strip, &[[0, 1, 2], [0, 3, 2]]));
-    assert_eq!((found.mismatched_edges.count, found.inverted.count), (1, 0));
-    assert_eq!((faces(&found.undecided_patches), found.kinds_wrong()), (vec![0], 1));
+    assert_eq!((found.inconsistent_edges.count, found.inverted.count), (1, 0));
+    assert_eq!((faces(&found.undecided_patches), found.fault_kinds()), (vec![0], 1));
 }
 
 #[test]
@@ -192,7 +198,7 @@ fn a_moebius_strip_has_no_two_sides() {
     let strip = [[0.0, 0.0, 0.0], [3.0, 0.0, 1.0], [1.0, 2.0, 0.0], [-1.0, 1.0, 2.0], [2.0, -1.0, 3.0]];
     let turned: Vec<[u32; 3]> = (0..5).map(|i| [i, (i + 1) % 5, (i + 2) % 5]).collect();
     let found = inspect(&mesh(&strip, &turned));
-    assert_eq!((faces(&found.one_sided_patches), found.inverted.count), (vec![0], 0));
+    assert_eq!((faces(&found.non_orientable_patches), found.inverted.count), (vec![0], 0));
     assert_eq!((found.open_edges.count, found.open_edges.loops), (5, 1));
     // However the faces are turned, some neighbours contradict each other.
     for choice in 0..32_u32 {
@@ -202,8 +208,8 @@ fn a_moebius_strip_has_no_two_sides() {
             .map(|(i, [a, b, c])| if choice >> i & 1 == 1 { [a, c, b] } else { [a, b, c] })
             .collect();
         let found = inspect(&mesh(&strip, &some));
-        assert_eq!(found.one_sided_patches.count, 1);
-        assert!(found.mismatched_edges.count % 2 == 1, "{}", found.mismatched_edges.count);
+        assert_eq!(found.non_orientable_patches.count, 1);
+        assert!(found.inconsistent_edges.count % 2 == 1, "{}", found.inconsistent_edges.count);
     }
 }
 
@@ -228,7 +234,7 @@ fn vertices_of_no_face_do_not_widen_the_bounds() {
     assert_eq!(vertices(&found.unused_vertices), [4, 5]);
     assert_eq!(found.unused_vertices.examples[0].place, DVec3::new(7.0, 0.0, 0.0));
     assert_eq!(vertices(&found.split_vertices), [5]);
-    assert_eq!((found.bounds, found.kinds_wrong()), (Some([DVec3::ZERO, DVec3::ONE]), 1));
+    assert_eq!((found.bounds, found.fault_kinds()), (Some([DVec3::ZERO, DVec3::ONE]), 1));
 }
 
 #[test]
@@ -247,8 +253,8 @@ fn a_ground_that_shows_its_back_is_upside_down() {
     ground.faces.iter_mut().for_each(|face| face.swap(0, 1));
     let found = inspect(&ground.into_mesh().unwrap());
     // No face contradicts another: nothing is proven, and nothing would be turned.
-    assert_eq!((found.upside_down, found.inverted.count, found.kinds_wrong()), (true, 0, 1));
-    assert_eq!((found.down.count, found.down_area), (18, 9.0));
+    assert_eq!((found.upside_down, found.inverted.count, found.fault_kinds()), (true, 0, 1));
+    assert_eq!((found.down.count, found.downward_area), (18, 9.0));
     // A vertical wall shows no area from above, however its normals are rounded.
     let wall = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1e-9, 1.0]];
     assert!(!inspect(&mesh(&wall, &[[0, 1, 2]])).upside_down);
@@ -266,7 +272,7 @@ fn no_faces_at_all_are_no_trouble() {
 fn our_own_grounds_are_sound() {
     for name in crate::BUILTIN_NAMES {
         let found = inspect(&builtin(name, 0.25).unwrap().into_mesh().unwrap());
-        assert_eq!((found.inverted.count, found.mismatched_edges.count), (0, 0), "{name}");
+        assert_eq!((found.inverted.count, found.inconsistent_edges.count), (0, 0), "{name}");
         assert_eq!((found.zero_area.count, found.duplicates.count), (0, 0), "{name}");
     }
     let found = inspect(&RandomGround::plain(3, 20_000, 40.0).build().into_mesh().unwrap());

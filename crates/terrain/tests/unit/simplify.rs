@@ -11,10 +11,10 @@ use crate::height_at;
 use crate::height_grid::tests::plain;
 
 /// Posts 1 m apart with these heights.
-fn posts(columns: u32, rows: u32, height: impl Fn(u32, u32) -> f64) -> Posts {
+fn posts(columns: u32, rows: u32, height: impl Fn(u32, u32) -> f64) -> HeightGrid {
     let heights = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
     let heights = heights.map(|(column, row)| height(column, row)).collect();
-    Posts { columns, rows, corner: DVec2::ZERO, spacing: DVec2::ONE, heights }
+    HeightGrid { columns, rows, corner: DVec2::ZERO, spacing: DVec2::ONE, heights }
 }
 
 #[test]

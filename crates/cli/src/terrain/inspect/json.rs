@@ -1,6 +1,6 @@
 //! The same for programs.
 
-use raypencil::terrain::{Example, Found, Inspection, Item, OpenPiece};
+use raypencil::terrain::{Inspection, MeshElement, Occurrence, Occurrences, OpenEdgePiece};
 use serde_json::{Value, json};
 
 use super::Report;
@@ -14,7 +14,7 @@ pub(super) fn json(report: &Report) -> String {
             "file": repaired.file.display().to_string(),
             "zero_area_faces": repairs.zero_area_faces,
             "duplicate_faces": repairs.duplicate_faces,
-            "duplicates_of_other_material": repairs.duplicates_of_other_material,
+            "duplicates_of_other_material": repairs.duplicate_faces_of_other_material,
             "turned_faces": repairs.turned_faces,
             "welded_vertices": repairs.welded_vertices,
             "unused_vertices": repairs.unused_vertices,
@@ -29,7 +29,7 @@ fn inspection(found: &Inspection) -> Value {
     let open = &found.open_edges;
     json!({
         "passes": found.passes(),
-        "kinds_wrong": found.kinds_wrong(),
+        "kinds_wrong": found.fault_kinds(),
         "faces": found.faces,
         "vertices": found.vertices,
         "bounds_m": found.bounds.map(|corners| corners.map(|corner| corner.to_array())),
@@ -46,12 +46,12 @@ fn inspection(found: &Inspection) -> Value {
             "collinear": kinds.collinear,
         },
         "duplicates": of(&found.duplicates),
-        "duplicates_of_other_material": found.duplicates_of_other_material,
-        "double_sided": of(&found.double_sided),
+        "duplicates_of_other_material": found.duplicate_faces_of_other_material,
+        "double_sided": of(&found.double_sided_sheets),
         "slender": of(&found.slender),
         "worst_aspect": found.worst_aspect,
         "down": of(&found.down),
-        "down_area_m2": found.down_area,
+        "down_area_m2": found.downward_area,
         "upside_down": found.upside_down,
         "open_edges": {
             "count": open.count,
@@ -61,27 +61,27 @@ fn inspection(found: &Inspection) -> Value {
             "pieces": open.pieces,
             "longest": open.longest.iter().map(piece).collect::<Vec<Value>>(),
         },
-        "crowded_edges": of(&found.crowded_edges),
-        "mismatched_edges": of(&found.mismatched_edges),
+        "crowded_edges": of(&found.non_manifold_edges),
+        "mismatched_edges": of(&found.inconsistent_edges),
         "inverted": of(&found.inverted),
-        "inside_out_components": found.inside_out,
+        "inside_out_components": found.inside_out_components,
         "undecided_patches": of(&found.undecided_patches),
-        "one_sided_patches": of(&found.one_sided_patches),
+        "one_sided_patches": of(&found.non_orientable_patches),
     })
 }
 
-fn of(found: &Found) -> Value {
+fn of(found: &Occurrences) -> Value {
     json!({ "count": found.count, "examples": found.examples.iter().map(example).collect::<Vec<Value>>() })
 }
 
-fn piece(piece: &OpenPiece) -> Value {
+fn piece(piece: &OpenEdgePiece) -> Value {
     json!({ "edges": piece.edges, "length_m": piece.length, "example": example(&piece.example) })
 }
 
-fn example(example: &Example) -> Value {
+fn example(example: &Occurrence) -> Value {
     let place = example.place.to_array();
     match example.item {
-        Item::Face(face) => json!({ "face": face.0, "place_m": place }),
-        Item::Vertex(vertex) => json!({ "vertex": vertex, "place_m": place }),
+        MeshElement::Face(face) => json!({ "face": face.0, "place_m": place }),
+        MeshElement::Vertex(vertex) => json!({ "vertex": vertex, "place_m": place }),
     }
 }

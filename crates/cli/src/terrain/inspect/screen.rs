@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use raypencil::report::count;
-use raypencil::terrain::{Example, Found, Inspection, Item, Repairs};
+use raypencil::terrain::{Inspection, MeshElement, Occurrence, Occurrences, Repairs};
 
 use super::Report;
 
@@ -51,12 +51,12 @@ struct Row {
     places: String,
 }
 
-fn row(words: &str, found: &Found) -> Row {
+fn row(words: &str, found: &Occurrences) -> Row {
     Row { count: found.count, words: words.into(), places: listed(&found.examples) }
 }
 
 /// The same, with more words if there is any.
-fn row_with(words: &str, more: &str, found: &Found) -> Row {
+fn row_with(words: &str, more: &str, found: &Occurrences) -> Row {
     row(&format!("{words}{}", if found.count > 0 { more } else { "" }), found)
 }
 
@@ -69,8 +69,8 @@ fn wrong(found: &Inspection) -> Vec<Row> {
         counted(kinds.coincident_vertices),
         counted(kinds.collinear)
     );
-    let other = format!(", {} of another material", counted(found.duplicates_of_other_material));
-    let inside_out = match found.inside_out {
+    let other = format!(", {} of another material", counted(found.duplicate_faces_of_other_material));
+    let inside_out_components = match found.inside_out_components {
         0 => String::new(),
         some => format!(", closed components that are inside out: {}", counted(some)),
     };
@@ -85,10 +85,10 @@ fn wrong(found: &Inspection) -> Vec<Row> {
         row("vertices that no face uses", &found.unused_vertices),
         row_with("faces without area", &of_kinds, &found.zero_area),
         row_with("copies of other faces", &other, &found.duplicates),
-        row("edges of more than two faces", &found.crowded_edges),
-        row("edges whose two faces contradict each other in winding", &found.mismatched_edges),
-        row_with("faces the wrong way round", &inside_out, &found.inverted),
-        row("patches that have only one side", &found.one_sided_patches),
+        row("edges of more than two faces", &found.non_manifold_edges),
+        row("edges whose two faces contradict each other in winding", &found.inconsistent_edges),
+        row_with("faces the wrong way round", &inside_out_components, &found.inverted),
+        row("patches that have only one side", &found.non_orientable_patches),
         Row {
             count: found.excess_loops(),
             words: "loops of open edges beside a border".into(),
@@ -104,8 +104,8 @@ fn extent(found: &Inspection) -> Vec<String> {
     if let Some([low, high]) = found.bounds {
         lines.push(format!("  from {} to {} m", place(low.to_array()), place(high.to_array())));
     }
-    let (down, down_area) = (counted(found.down.count), found.down_area);
-    lines.push(format!("  area {:.3} m2; {down} faces look down, {down_area:.3} m2", found.area));
+    let (down, downward_area) = (counted(found.down.count), found.downward_area);
+    lines.push(format!("  area {:.3} m2; {down} faces look down, {downward_area:.3} m2", found.area));
     let closed = match found.closed_components {
         0 => "none of them closed".to_string(),
         some => format!("{} of them closed, which enclose {:.3} m3", counted(some), found.volume),
@@ -122,7 +122,7 @@ fn facts(found: &Inspection) -> Vec<String> {
         vec![line(open.count, format!("open edges, {:.3} m; loops: {}", open.length, counted(open.loops)))];
     let more = [
         (&found.split_vertices, "vertices in the place of another".to_string()),
-        (&found.double_sided, "pairs of faces back to back".to_string()),
+        (&found.double_sided_sheets, "pairs of faces back to back".to_string()),
         (&found.undecided_patches, "patches of which half contradicts the other half".to_string()),
         (
             &found.slender,
@@ -160,7 +160,7 @@ fn verdict(report: &Report) -> String {
     let last = report.last();
     let checks = wrong(last).len();
     let place = if report.repaired.is_some() { " in the repaired mesh" } else { "" };
-    match last.kinds_wrong() {
+    match last.fault_kinds() {
         0 => format!("PASS {checks} checks found nothing{place}."),
         some => {
             let would = match &report.repaired {
@@ -180,7 +180,7 @@ fn mendable(found: &Inspection) -> bool {
 }
 
 /// As many examples as a line takes.
-fn listed(examples: &[Example]) -> String {
+fn listed(examples: &[Occurrence]) -> String {
     let mut line = String::new();
     for (index, example) in examples.iter().enumerate() {
         let words = format!("{}{}", if index == 0 { "" } else { "; " }, at(example));
@@ -192,11 +192,11 @@ fn listed(examples: &[Example]) -> String {
     line
 }
 
-fn at(example: &Example) -> String {
+fn at(example: &Occurrence) -> String {
     let place = place(example.place.to_array());
     match example.item {
-        Item::Face(face) => format!("face {} {place}", face.0),
-        Item::Vertex(vertex) => format!("vertex {vertex} {place}"),
+        MeshElement::Face(face) => format!("face {} {place}", face.0),
+        MeshElement::Vertex(vertex) => format!("vertex {vertex} {place}"),
     }
 }
 

@@ -44,7 +44,7 @@ fn rims_are_as_high_as_they_say() {
 
 #[test]
 fn posts_are_carved_within_reach_only() {
-    let flat = Posts {
+    let flat = HeightGrid {
         columns: 41,
         rows: 31,
         corner: DVec2::new(-20.0, -15.0),

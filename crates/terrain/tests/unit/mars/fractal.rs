@@ -3,13 +3,13 @@
 use super::*;
 
 fn smooth() -> Roughness {
-    Roughness { hurst: 0.7, at_1_m: 0.0, octave_gains: Vec::new() }
+    Roughness { hurst: 0.7, rms_at_1_m: 0.0, octave_gains: Vec::new() }
 }
 
-fn posts(columns: u32, rows: u32, height: impl Fn(f64, f64) -> f64) -> Posts {
+fn posts(columns: u32, rows: u32, height: impl Fn(f64, f64) -> f64) -> HeightGrid {
     let place = |i: u32| (f64::from(i % columns), f64::from(i / columns));
     let heights = (0..columns * rows).map(place).map(|(x, y)| height(x, y)).collect();
-    Posts { columns, rows, corner: DVec2::ZERO, spacing: DVec2::ONE, heights }
+    HeightGrid { columns, rows, corner: DVec2::ZERO, spacing: DVec2::ONE, heights }
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn cubics_stay_cubics_away_from_the_border() {
 #[test]
 fn coarse_posts_are_met_to_the_bit() {
     let coarse = posts(5, 4, |x, y| 0.37 * x - 1.9 * y * y);
-    let rough = Roughness { at_1_m: 0.3, ..smooth() };
+    let rough = Roughness { rms_at_1_m: 0.3, ..smooth() };
     let fine = refine(coarse.clone(), 4, &rough, 9);
     assert_eq!((fine.columns, fine.rows), (65, 49));
     for row in 0..4 {
@@ -54,7 +54,7 @@ fn coarse_posts_are_met_to_the_bit() {
 #[test]
 fn octave_gains_name_their_octave() {
     // Only the second of three octaves is rough: the posts of the first stay on the smooth curve.
-    let rough = Roughness { at_1_m: 0.3, octave_gains: vec![0.0, 2.0, 0.0], ..smooth() };
+    let rough = Roughness { rms_at_1_m: 0.3, octave_gains: vec![0.0, 2.0, 0.0], ..smooth() };
     let [fine, calm] = [rough, smooth()].map(|how| refine(posts(3, 3, |x, _| x), 3, &how, 4));
     assert_eq!(fine.at(4, 4), calm.at(4, 4));
     assert_ne!(fine.at(2, 4), calm.at(2, 4));
@@ -67,7 +67,7 @@ fn the_structure_function_follows_the_exponent() {
     // keep the variance of their own scale. Both bounds are tuned. Observed: slopes of 0.505, 0.674, 0.863 for
     // 0.5, 0.7, 0.9, and differences at 1 m of 1.20, 1.12, 1.01 times the law.
     for hurst in [0.5, 0.7, 0.9] {
-        let rough = Roughness { hurst, at_1_m: 0.1, octave_gains: Vec::new() };
+        let rough = Roughness { hurst, rms_at_1_m: 0.1, octave_gains: Vec::new() };
         let mut squares = [0.0; 5];
         for seed in 0..40 {
             let fine = refine(corner_posts(64.0, &rough, seed), 8, &rough, seed);
@@ -80,8 +80,8 @@ fn the_structure_function_follows_the_exponent() {
         }
         let slope = libm::log2(squares[4] / squares[0]) / 8.0;
         // Spacing 64 / 256 = 0.25 m: a lag of 4 is 1 m.
-        let at_1_m = squares[2].sqrt();
+        let rms_at_1_m = squares[2].sqrt();
         assert!((slope - hurst).abs() < 0.06, "H {hurst}: {slope}");
-        assert!((at_1_m / 0.1 - 1.0).abs() < 0.25, "H {hurst}: {at_1_m} m at 1 m");
+        assert!((rms_at_1_m / 0.1 - 1.0).abs() < 0.25, "H {hurst}: {rms_at_1_m} m at 1 m");
     }
 }

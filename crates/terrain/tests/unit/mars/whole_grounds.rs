@@ -135,7 +135,7 @@ fn walls_are_walls_and_overhang_only_if_asked_to() {
 fn coarse_posts_are_vertices_of_the_ground() {
     // 7 x 5 posts, 4 m apart, at map coordinates of a million metres.
     let heights = (0..35).map(|k| f64::from(k * k % 13) * 0.37 - 2.0).collect();
-    let coarse = Posts {
+    let coarse = HeightGrid {
         columns: 7,
         rows: 5,
         corner: DVec2::new(1e6 + 0.25, -2e6),
@@ -271,7 +271,7 @@ fn numbers_out_of_range_are_refused_by_name() {
     for (message, word) in cases {
         assert!(message.contains(word), "{message} does not name {word}");
     }
-    let hole = Posts {
+    let hole = HeightGrid {
         columns: 2,
         rows: 2,
         corner: DVec2::ZERO,
@@ -301,7 +301,7 @@ proptest! {
         let mars = MarsGround {
             extent,
             post_spacing: spacing,
-            roughness: Roughness { hurst, at_1_m: roughness, octave_gains: Vec::new() },
+            roughness: Roughness { hurst, rms_at_1_m: roughness, octave_gains: Vec::new() },
             rocks: Rocks { coverage, smallest: 0.1, largest: 2.0 },
             craters: Craters { density, smallest: 1.0, largest: 6.0 },
             crevasses: Crevasses { count, width, depth: 1.0, overhang },
