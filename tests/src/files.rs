@@ -7,7 +7,7 @@ use raypencil::io::Subject;
 use raypencil::io::{ExrMap, Limits, Raster, SceneIoError, read_exr, scene_sha256, write_exr};
 use raypencil::judge::{Check, Class, Item, Recorded, RecordingError, Truth, check};
 use raypencil::tracer::Tracer;
-use raypencil::{Image, Renderer, Request, Resolution, Sampling, Scene};
+use raypencil::{Image, Precision, Renderer, Request, Sampling, Scene};
 use raypencil::{Place, Silent};
 
 /// A way to spoil a recording.
@@ -140,7 +140,7 @@ fn through_half(x: f32) -> f32 {
 /// # Errors
 /// What the file system says.
 pub fn write(scene: &Scene, fault: Option<FileFault>, folder: &Path) -> Result<(), SceneIoError> {
-    let frame = Tracer::new().render(scene, &Request::EVERYTHING);
+    let output = Tracer::new().render(scene, &Request::EVERYTHING);
     let subject = Subject {
         scene: scene.clone(),
         name: "planted".into(),
@@ -148,7 +148,7 @@ pub fn write(scene: &Scene, fault: Option<FileFault>, folder: &Path) -> Result<(
         sha256: scene_sha256(scene),
     };
     let files =
-        write_maps(&frame, "tracer", &subject, Sampling::Centres, folder).expect("a folder to write to");
+        write_maps(&output, "tracer", &subject, Sampling::Centres, folder).expect("a folder to write to");
     for file in files {
         let mut map = read_exr(&file, &Limits::default())?;
         if let Some(fault) = fault {
@@ -166,7 +166,7 @@ pub fn write(scene: &Scene, fault: Option<FileFault>, folder: &Path) -> Result<(
 pub fn caught(scene: &Scene, fault: Option<FileFault>) -> Option<Caught> {
     let folder = tempfile::tempdir().expect("a folder");
     write(scene, fault, folder.path()).expect("files");
-    let recorded = match Recorded::read(folder.path(), scene, Resolution::F64) {
+    let recorded = match Recorded::read(folder.path(), scene, Precision::F64) {
         Ok(recorded) => recorded,
         Err(refusal) => return Some(Caught::Refused(refusal)),
     };

@@ -8,7 +8,7 @@ use raypencil::harness::{Estimate, Outsider, RadianceMap, Validation, WayImage, 
 use raypencil::io::Subject;
 use raypencil::judge::{Class, Defect, JudgeShare, Quantity, Recorded, Worst};
 use raypencil::{
-    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Profile, Resolution, Scene,
+    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Precision, Profile, Scene,
     SensorId, Silent,
 };
 
@@ -85,12 +85,12 @@ pub const MISS: Place = Place { sensor: SensorId::Beam(0), i: 30, j: 2 };
 pub fn with_outsider() -> Validation {
     let mut validation = agreeing();
     let scene = &validation.subject.scene;
-    let frame = &validation.rendered[1].frame;
-    let mut recorded = Recorded::of_frame("odd", scene, frame, Resolution::F64);
+    let output = &validation.rendered[1].output;
+    let mut recorded = Recorded::of_output("odd", scene, output, Precision::F64);
     let seen = recorded.answers.light[0].returns.visible.as_mut().unwrap();
     assert!(seen.at(MISS.i, MISS.j), "a pencil that is seen");
     seen.set(MISS.i, MISS.j, false);
-    let lands = &frame.returns[0].pixel.as_ref().unwrap();
+    let lands = &output.returns[0].pixel.as_ref().unwrap();
     let (i, j) = (0..seen.height())
         .flat_map(|j| (0..seen.width()).map(move |i| (i, j)))
         .find(|&(i, j)| !seen.at(i, j) && (i, j) != (MISS.i, MISS.j) && lands.at(i, j).get().is_some())
@@ -100,7 +100,7 @@ pub fn with_outsider() -> Validation {
     recorded.answers.light[0].returns.flux = None;
     recorded.answers.light[0].image = None;
     let camera = scene.camera().sensor;
-    let twice = frame.flux[0].cells().iter().map(|flux| 2.0 * flux).collect();
+    let twice = output.flux[0].cells().iter().map(|flux| 2.0 * flux).collect();
     let mean = Image::from_cells(camera.width, camera.height, twice);
     let error = Image::filled(camera.width, camera.height, 1e-12);
     let image =
@@ -151,7 +151,7 @@ pub fn defective() -> Validation {
     {
         sensor.defects.push(Defect { place, quantity, what: what.into() });
     }
-    let map = validation.rendered[1].frame.beams[0].range.as_mut().unwrap();
+    let map = validation.rendered[1].output.beams[0].range.as_mut().unwrap();
     let image: &mut Image<Maybe<f64>> = map;
     image.set(7, 1, Maybe::NONE);
     validation

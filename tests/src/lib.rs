@@ -19,7 +19,7 @@ pub use raypencil::rig;
 use raypencil::scanline::Scanline;
 use raypencil::tracer::Tracer;
 use raypencil::{
-    FaceId, Frame, Hit, Image, Maybe, Mesh, Renderer, Request, Sample, Scene, SensorId, SensorMap,
+    FaceId, Hit, Image, Maybe, Mesh, RenderOutput, Renderer, Request, Sample, Scene, SensorId, SensorMap,
 };
 
 /// The same ground with other faces on other vertices; materials are of no matter here.
@@ -43,7 +43,7 @@ pub fn renderers() -> [Box<dyn Renderer>; 2] {
 }
 
 /// What each renderer makes of a scene, with its name.
-pub fn render_both(scene: &Scene) -> [(String, Frame); 2] {
+pub fn render_both(scene: &Scene) -> [(String, RenderOutput); 2] {
     renderers().map(|renderer| (renderer.name().into(), renderer.render(scene, &Request::EVERYTHING)))
 }
 
@@ -61,11 +61,11 @@ pub fn hit(map: &SensorMap, i: u32, j: u32) -> Option<Hit> {
         at(&map.point, i, j),
         at(&map.normal, i, j),
         at(&map.depth, i, j),
-        at(&map.incidence, i, j),
+        at(&map.cos_incidence, i, j),
     );
     match parts {
-        (Some(face), Some(range), Some(point), Some(normal), Some(depth), Some(incidence)) => {
-            Some(Hit { face, range, point, normal, depth, incidence })
+        (Some(face), Some(range), Some(point), Some(normal), Some(depth), Some(cos_incidence)) => {
+            Some(Hit { face, range, point, normal, depth, cos_incidence })
         }
         (None, None, None, None, None, None) => None,
         _ => panic!("{} {i},{j}: half a hit: {parts:?}", map.sensor),
@@ -86,7 +86,7 @@ pub fn cells_missed(map: &SensorMap) -> Vec<(u32, u32)> {
 }
 
 /// The bits of everything that a frame says, in a fixed order; no hit is all ones.
-pub fn bits(frame: &Frame) -> Vec<u64> {
+pub fn bits(output: &RenderOutput) -> Vec<u64> {
     const NOTHING: u64 = u64::MAX;
     fn vector(value: Maybe<DVec3>) -> [u64; 3] {
         value.get().map_or([NOTHING; 3], |v| v.to_array().map(f64::to_bits))
@@ -98,7 +98,7 @@ pub fn bits(frame: &Frame) -> Vec<u64> {
         raster.as_ref().expect("every quantity was asked for").cells()
     }
     let mut bits = Vec::new();
-    for map in frame.maps() {
+    for map in output.maps() {
         bits.extend([u64::from(map.width), u64::from(map.height)]);
         bits.extend(cells(&map.range).iter().map(|&value| number(value)));
         bits.extend(cells(&map.depth).iter().map(|&value| number(value)));
@@ -106,39 +106,39 @@ pub fn bits(frame: &Frame) -> Vec<u64> {
         bits.extend(cells(&map.face).iter().map(|&value| face(value)));
         bits.extend(cells(&map.point).iter().flat_map(|&value| vector(value)));
         bits.extend(cells(&map.normal).iter().flat_map(|&value| vector(value)));
-        bits.extend(cells(&map.incidence).iter().map(|&value| number(value)));
+        bits.extend(cells(&map.cos_incidence).iter().map(|&value| number(value)));
     }
     bits
 }
 
 /// The bits of all that a frame says of light, in a fixed order; what is not there is all ones.
-pub fn light_bits(frame: &Frame) -> Vec<u64> {
+pub fn light_bits(output: &RenderOutput) -> Vec<u64> {
     const NOTHING: u64 = u64::MAX;
     fn numbers(bits: &mut Vec<u64>, image: &Option<Image<Maybe<f64>>>) {
         let cells = image.iter().flat_map(|image| image.cells());
         bits.extend(cells.map(|cell| cell.get().map_or(NOTHING, f64::to_bits)));
     }
     let mut bits = Vec::new();
-    for returns in &frame.returns {
+    for returns in &output.returns {
         bits.extend([u64::from(returns.columns), u64::from(returns.rows)]);
         let visible = returns.visible.iter().flat_map(|image| image.cells());
         bits.extend(visible.map(|&visible| u64::from(visible)));
         let pixels = returns.pixel.iter().flat_map(|image| image.cells());
         let index = |pixel: raypencil::Pixel| u64::from(pixel.i) << 32 | u64::from(pixel.j);
         bits.extend(pixels.map(|pixel| pixel.get().map_or(NOTHING, index)));
-        for image in [&returns.depth, &returns.off_axis, &returns.emission] {
+        for image in [&returns.depth, &returns.cos_off_axis, &returns.cos_view] {
             numbers(&mut bits, image);
         }
         bits.extend(returns.flux.iter().flat_map(|image| image.cells()).map(|flux| flux.to_bits()));
     }
-    for image in &frame.flux {
+    for image in &output.flux {
         bits.extend(image.cells().iter().map(|flux| flux.to_bits()));
     }
     bits
 }
 
 /// The first cell whose bits differ between two frames of one scene, and what each says of it.
-pub fn first_difference(a: &Frame, b: &Frame) -> Option<String> {
+pub fn first_difference(a: &RenderOutput, b: &RenderOutput) -> Option<String> {
     if bits(a) == bits(b) {
         return None;
     }
@@ -184,9 +184,9 @@ pub fn agreement(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Result<Vec<SensorCo
 
 /// The sensors of a scene and the names of its renderers, to go through in a test.
 pub fn for_each_map(scene: &Scene, mut visit: impl FnMut(&str, &SensorMap)) {
-    for (name, frame) in &render_both(scene) {
+    for (name, output) in &render_both(scene) {
         for sensor in scene.sensors() {
-            let map = frame.map(sensor).expect("every sensor was asked for");
+            let map = output.map(sensor).expect("every sensor was asked for");
             visit(&format!("{name} {sensor}"), map);
         }
     }
@@ -194,7 +194,7 @@ pub fn for_each_map(scene: &Scene, mut visit: impl FnMut(&str, &SensorMap)) {
 
 /// Calls `visit` with each renderer's map of one sensor.
 pub fn for_each_map_of(scene: &Scene, sensor: SensorId, mut visit: impl FnMut(&str, &SensorMap)) {
-    for (name, frame) in &render_both(scene) {
-        visit(&format!("{name} {sensor}"), frame.map(sensor).expect("every sensor was asked for"));
+    for (name, output) in &render_both(scene) {
+        visit(&format!("{name} {sensor}"), output.map(sensor).expect("every sensor was asked for"));
     }
 }

@@ -11,8 +11,8 @@ use std::time::Instant;
 
 use glam::{DQuat, DVec3};
 use raypencil::{
-    Beam, Camera, FaceId, Frame, Hit, Mesh, Pose, Quantities, Renderer, Request, Resolution, Scene, SensorId,
-    SensorMap, Stage,
+    Beam, Camera, FaceId, Hit, Mesh, Pose, Precision, Quantities, RenderOutput, Renderer, Request, Scene,
+    SensorId, SensorMap, Stage,
 };
 
 pub use fault::{Fault, Kind};
@@ -58,11 +58,11 @@ impl Renderer for Naive {
         "naive"
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let faces = self.faces(scene.mesh());
         let mut stages = Vec::new();
         let mut timed = |eye: &Eye<'_>| {
@@ -104,7 +104,7 @@ impl Renderer for Naive {
                 flux.push(image);
             }
         }
-        Frame { camera, beams, returns, flux, stages }
+        RenderOutput { camera, beams, returns, flux, stages }
     }
 }
 
@@ -341,7 +341,7 @@ impl Naive {
             point: ray.origin + ray.q * t,
             normal,
             depth,
-            incidence: -n.dot(towards) / (n.length() * towards.length()),
+            cos_incidence: -n.dot(towards) / (n.length() * towards.length()),
         }
     }
 }

@@ -12,7 +12,7 @@ use raypencil::io::{Overrides, load};
 use raypencil::judge::{Class, Quantity, Truth};
 use raypencil::pack::{Checked, check_pack};
 use raypencil::tracer::Tracer;
-use raypencil::{Beam, FluxModel, Image, Mounted, Renderer, Request, Resolution, Sampling, Scene, SensorId};
+use raypencil::{Beam, FluxModel, Image, Mounted, Precision, Renderer, Request, Sampling, Scene, SensorId};
 
 const PACKS: [&str; 2] = ["pyramids", "facets"];
 /// How often pencils are drawn.
@@ -32,9 +32,9 @@ fn with(scene: &Scene, camera: Mounted<raypencil::Camera>, beams: Vec<Mounted<Be
         .expect("a scene")
 }
 
-fn checked(pack: &str, renderer: &str, resolution: Option<Resolution>) -> Checked {
+fn checked(pack: &str, renderer: &str, precision: Option<Precision>) -> Checked {
     let candidate = data(&format!("candidates/{renderer}/{pack}"));
-    check_pack(&data(&format!("packs/{pack}")), &candidate, resolution, &Silent).expect("a candidate")
+    check_pack(&data(&format!("packs/{pack}")), &candidate, precision, &Silent).expect("a candidate")
 }
 
 fn outsider(pack: &str) -> Outsider {
@@ -58,7 +58,7 @@ fn embree_is_right_as_single_precision_goes() {
     for pack in PACKS {
         // Its note says that it computes in single precision.
         let found = checked(pack, "embree", None);
-        assert_eq!(found.recorded.resolution, Resolution::F32);
+        assert_eq!(found.recorded.precision, Precision::F32);
         assert!(
             found.check.passes(),
             "{pack}: {:?}",
@@ -75,7 +75,7 @@ fn embree_is_right_as_single_precision_goes() {
         assert_eq!(compared, [Quantity::Hit, Quantity::Face, Quantity::Range, Quantity::Visible], "{pack}");
         assert_eq!(found.check.of(Class::Rounding), 0, "{pack}");
         // It would not do as double precision.
-        assert!(!checked(pack, "embree", Some(Resolution::F64)).check.passes(), "{pack}");
+        assert!(!checked(pack, "embree", Some(Precision::F64)).check.passes(), "{pack}");
     }
 }
 
@@ -97,8 +97,8 @@ fn embree_is_off_by_micrometres_from_the_face_it_hits() {
                 let (Some(range), Some(hit)) = (range, hit) else { continue };
                 let off = (range - hit.range).abs();
                 // A ray that is displaced sideways by e is off by e / cos(psi) along the ray, whoever computes it.
-                off_face = off_face.max(off * hit.incidence);
-                if hit.incidence >= 0.05 {
+                off_face = off_face.max(off * hit.cos_incidence);
+                if hit.cos_incidence >= 0.05 {
                     steep = steep.max(off);
                 } else {
                     grazing += usize::from(off > 5e-6);
@@ -222,9 +222,9 @@ fn expected_of_ptracer(scene: &Scene, draws: u64) -> Vec<Estimate> {
     let mut moments = vec![vec![[0.0_f64; 2]; cells + 1]; scene.beams().len()];
     for seed in 1..=draws {
         let request = Request { camera: false, sampling: Sampling::Jittered { seed }, ..Request::EVERYTHING };
-        let frame = Tracer::default().render(&scene, &request);
+        let output = Tracer::default().render(&scene, &request);
         for (beam, moments) in moments.iter_mut().enumerate() {
-            let (map, back) = (&frame.beams[beam], &frame.returns[beam]);
+            let (map, back) = (&output.beams[beam], &output.returns[beam]);
             let mut image = vec![0.0; cells + 1];
             for (i, j) in (0..map.height).flat_map(|j| (0..map.width).map(move |i| (i, j))) {
                 let flux = back.flux.as_ref().expect("flux").at(i, j);
@@ -236,8 +236,8 @@ fn expected_of_ptracer(scene: &Scene, draws: u64) -> Vec<Estimate> {
                 let normal = map.normal.as_ref().expect("normals").at(i, j).get().expect("a normal");
                 let above =
                     point + normal * ((1.0 + point.abs().max_element()) * 1500.0 / f64::from(1 << 24));
-                let emission = |from: glam::DVec3| (normal.dot(eye - from) / (eye - from).length()).max(0.0);
-                let flux = flux * emission(above) / emission(point);
+                let cos_view = |from: glam::DVec3| (normal.dot(eye - from) / (eye - from).length()).max(0.0);
+                let flux = flux * cos_view(above) / cos_view(point);
                 image[(pixel.j * width + pixel.i) as usize] += flux;
                 image[cells] += flux;
             }

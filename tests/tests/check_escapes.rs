@@ -10,7 +10,7 @@ use raypencil::io::{Overrides, load};
 use raypencil::judge::{Check, Class, Item, Quantity, Recorded, Truth, check};
 use raypencil::pack::blind_scene;
 use raypencil::referee::Format;
-use raypencil::{FluxModel, Image, Maybe, Pixel, Request, Resolution, Scene, SensorId, Silent};
+use raypencil::{FluxModel, Image, Maybe, Pixel, Precision, Request, Scene, SensorId, Silent};
 
 fn scene_of(pack: &str) -> Scene {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/packs").join(pack).join("scene.toml");
@@ -18,9 +18,9 @@ fn scene_of(pack: &str) -> Scene {
 }
 
 /// What the tracer says, declared to be of this arithmetic.
-pub fn recorded(scene: &Scene, resolution: Resolution) -> Recorded {
-    let frame = contender("tracer").unwrap().renderer.render(scene, &Request::EVERYTHING);
-    Recorded::of_frame("tracer", scene, &frame, resolution)
+pub fn recorded(scene: &Scene, precision: Precision) -> Recorded {
+    let output = contender("tracer").unwrap().renderer.render(scene, &Request::EVERYTHING);
+    Recorded::of_output("tracer", scene, &output, precision)
 }
 
 /// Leaves only some quantities of a recording.
@@ -32,9 +32,9 @@ fn keep(recorded: &mut Recorded, kept: &[Quantity]) {
             Quantity::Depth
                 | Quantity::Point
                 | Quantity::Normal
-                | Quantity::Incidence
-                | Quantity::OffAxis
-                | Quantity::Emission
+                | Quantity::CosIncidence
+                | Quantity::CosOffAxis
+                | Quantity::CosView
         );
         kept.contains(&quantity) && !is_other
     };
@@ -46,7 +46,7 @@ fn keep(recorded: &mut Recorded, kept: &[Quantity]) {
         if !is_kept(Quantity::Range) {
             map.range = None;
         }
-        (map.depth, map.point, map.normal, map.incidence) = (None, None, None, None);
+        (map.depth, map.point, map.normal, map.cos_incidence) = (None, None, None, None);
     }
     for light in &mut recorded.answers.light {
         let returns = &mut light.returns;
@@ -59,7 +59,7 @@ fn keep(recorded: &mut Recorded, kept: &[Quantity]) {
         if !is_kept(Quantity::CameraDepth) {
             returns.depth = None;
         }
-        (returns.off_axis, returns.emission) = (None, None);
+        (returns.cos_off_axis, returns.cos_view) = (None, None);
         if !is_kept(Quantity::PencilFlux) {
             returns.flux = None;
         }
@@ -89,7 +89,7 @@ fn a_pencil_near_a_border_is_not_lost_unseen() {
     let scene = scene_of("pyramids");
     let truth = Truth::certified(&scene, &Silent);
     let referee = truth.judge().referee();
-    let mut image_only = recorded(&scene, Resolution::F64);
+    let mut image_only = recorded(&scene, Precision::F64);
     let flux = image_only.answers.light[0].returns.flux.clone().unwrap();
     keep(&mut image_only, &[Quantity::PixelFlux]);
     assert_passes(&check(&truth, &image_only, &Silent));
@@ -105,8 +105,8 @@ fn a_pencil_near_a_border_is_not_lost_unseen() {
     let Pixel { i: column, j: row } = pixel.unwrap();
     let image = image_only.answers.light[0].image.as_mut().unwrap();
     image.set(column, row, (image.at(column, row) - flux.at(i, j)).max(0.0));
-    for resolution in [Resolution::F64, Resolution::F32] {
-        image_only.resolution = resolution;
+    for precision in [Precision::F64, Precision::F32] {
+        image_only.precision = precision;
         let found = check(&truth, &image_only, &Silent);
         assert_eq!(found.of(Class::Defect), 1);
         assert_eq!(found.of(Class::Rounding), 0);
@@ -140,7 +140,7 @@ fn on_a_border() -> (Scene, Place) {
 fn a_pencil_that_rounds_over_a_border_is_no_fault_of_either_pixel() {
     let (scene, Place { i, j, .. }) = on_a_border();
     let truth = Truth::certified(&scene, &Silent);
-    let mut moved = recorded(&scene, Resolution::F32);
+    let mut moved = recorded(&scene, Precision::F32);
     let light = &mut moved.answers.light[0];
     let flux = light.returns.flux.as_ref().unwrap().at(i, j);
     let from = light.returns.pixel.as_ref().unwrap().at(i, j).get().unwrap();
@@ -168,7 +168,7 @@ fn a_pencil_that_rounds_over_a_border_is_no_fault_of_either_pixel() {
     assert_eq!(check(&truth, &moved, &Silent).of(Class::Defect), 1);
     // And by double precision nothing went over.
     moved.answers.light[0].image.as_mut().unwrap().set(to.i, to.j, image_at(&truth, to) + flux);
-    moved.resolution = Resolution::F64;
+    moved.precision = Precision::F64;
     assert!(!check(&truth, &moved, &Silent).passes());
 }
 
@@ -185,7 +185,7 @@ fn light_off_the_image_is_nothing() {
         .find(|place| truth.hit(*place).is_some() && truth.sight(*place) == (false, None))
         .expect("some pencils of this pack land off the image");
     for without in [[].as_slice(), &[Quantity::Visible], &[Quantity::Visible, Quantity::Pixel]] {
-        let mut lying = recorded(&scene, Resolution::F64);
+        let mut lying = recorded(&scene, Precision::F64);
         let all = Quantity::ALL.into_iter().filter(|quantity| !without.contains(quantity));
         keep(&mut lying, &all.collect::<Vec<_>>());
         assert_passes(&check(&truth, &lying, &Silent));
@@ -198,7 +198,7 @@ fn light_off_the_image_is_nothing() {
 #[test]
 fn a_hit_that_is_seen_lands_somewhere() {
     let scene = scene_of("pyramids");
-    let mut lying = recorded(&scene, Resolution::F64);
+    let mut lying = recorded(&scene, Precision::F64);
     keep(&mut lying, &[Quantity::Face, Quantity::Range, Quantity::Pixel, Quantity::PencilFlux]);
     let pixels = lying.answers.light[0].returns.pixel.as_mut().unwrap();
     let landed = pixels.cells().iter().filter(|pixel| pixel.get().is_some()).count() as u64;
@@ -212,7 +212,7 @@ fn a_hit_that_is_seen_lands_somewhere() {
 fn a_value_is_there_exactly_where_something_is_hit() {
     let scene = scene_of("facets");
     let truth = Truth::certified(&scene, &Silent);
-    let mut lying = recorded(&scene, Resolution::F64);
+    let mut lying = recorded(&scene, Precision::F64);
     keep(&mut lying, &[Quantity::CameraDepth]);
     assert_passes(&check(&truth, &lying, &Silent));
     let depth = lying.answers.light[0].returns.depth.clone().unwrap();
@@ -231,7 +231,7 @@ fn a_value_is_there_exactly_where_something_is_hit() {
 #[test]
 fn each_beams_image_is_judged_by_its_own_type() {
     let scene = scene_of("pyramids");
-    let mut lying = recorded(&scene, Resolution::F64);
+    let mut lying = recorded(&scene, Precision::F64);
     lying.answers.light[0].image.as_mut().unwrap().cells_mut().fill(0.0);
     lying.storage.insert((SensorId::Camera, Item::of_image(1)), Storage::F16);
     let found = judged(&scene, &lying);
@@ -272,7 +272,7 @@ fn faces_that_tie_may_deliver_unlike_light() {
         &[Quantity::PencilFlux],
         &[Quantity::PixelFlux],
     ] {
-        let mut taken = recorded(&scene, Resolution::F64);
+        let mut taken = recorded(&scene, Precision::F64);
         let light = &mut taken.answers.light[beam];
         let flux = light.returns.flux.as_mut().unwrap();
         let own = flux.at(i, j);
@@ -314,7 +314,7 @@ fn what_single_precision_loses_is_not_called_hidden() {
     let scene =
         Scene::new(Arc::clone(scene.mesh()), *scene.camera(), beams, scene.atmosphere(), scene.flux_model())
             .unwrap();
-    let mut single = recorded(&scene, Resolution::F32);
+    let mut single = recorded(&scene, Precision::F32);
     keep(&mut single, &[Quantity::Face, Quantity::Range, Quantity::PencilFlux]);
     let flux = single.answers.light[0].returns.flux.as_mut().unwrap();
     flux.cells_mut().iter_mut().for_each(|flux| *flux = f64::from(*flux as f32));

@@ -79,7 +79,7 @@ struct Known {
     depth: f64,
     point: [f64; 3],
     normal: [f64; 3],
-    incidence: f64,
+    cos_incidence: f64,
 }
 
 /// Asserts that cell (i, j) hits as known.
@@ -93,7 +93,7 @@ fn assert_hit(what: &str, map: &SensorMap, (i, j): (u32, u32), known: &Known) {
         assert_abs_diff_eq!(hit.point[axis], known.point[axis], epsilon = CLOSE);
         assert_abs_diff_eq!(hit.normal[axis], known.normal[axis], epsilon = CLOSE);
     }
-    assert_abs_diff_eq!(hit.incidence, known.incidence, epsilon = CLOSE);
+    assert_abs_diff_eq!(hit.cos_incidence, known.cos_incidence, epsilon = CLOSE);
 }
 
 /// Asserts that exactly the cells which `is_hit` names hit.
@@ -148,7 +148,7 @@ fn level_ground_under_a_camera_that_looks_thirty_degrees_down() {
         point: [x, y, 0.0],
         normal: [0.0, 0.0, 1.0],
         // 1 m of height over the range.
-        incidence: 1.0 / range,
+        cos_incidence: 1.0 / range,
     };
     for_each_map(&scene, |what, map| {
         // Straight ahead: R = 1 / sin 30 = 2 m, cos(psi) = sin 30 = 1/2, sqrt 3 m ahead.
@@ -192,7 +192,7 @@ fn level_ground_under_a_beam_that_looks_thirty_degrees_down() {
                 depth,
                 point: [x, y, 0.0],
                 normal: [0.0, 0.0, 1.0],
-                incidence: height / range,
+                cos_incidence: height / range,
             };
             assert_hit(what, map, (1, j), &known(depth, 0.0));
             // 30 degrees aside: depth tan 30 to the left (+y) or the right, R = depth / cos 30.
@@ -226,8 +226,8 @@ fn a_slope_of_three_in_four() {
             let point = [t * x, start + t * y, 0.5 * t];
             // Which side of the diagonal: in the corners' coordinates.
             let face = u32::from(point[0] / 16.0 > (point[1] + 11.0) / 13.0);
-            let incidence = (0.6 * y + 0.4) / q_length;
-            let known = Known { face, range: t * q_length, depth: 0.5 * t, point, normal, incidence };
+            let cos_incidence = (0.6 * y + 0.4) / q_length;
+            let known = Known { face, range: t * q_length, depth: 0.5 * t, point, normal, cos_incidence };
             assert_hit(what, map, (i, j), &known);
         }
     });
@@ -358,7 +358,7 @@ fn a_point_exactly_on_the_spp_is_hit() {
             depth: 0.5,
             point: [x, 0.25, 0.5],
             normal: [0.0, -1.0, 0.0],
-            incidence: 0.25 / (x * x + 0.0625 + 0.25).sqrt(),
+            cos_incidence: 0.25 / (x * x + 0.0625 + 0.25).sqrt(),
         };
         assert_hit(what, map, (3, 12), &known);
     });
@@ -646,7 +646,7 @@ fn fans_up_to_170_degrees_spread_evenly_on_the_grid() {
                 let hit = hit(map, i, j).unwrap();
                 assert_abs_diff_eq!(hit.point.x, x, epsilon = CLOSE);
                 assert_abs_diff_eq!(hit.range, (1.0 + x * x).sqrt(), epsilon = CLOSE);
-                assert_abs_diff_eq!(hit.incidence, 1.0 / (1.0 + x * x).sqrt(), epsilon = CLOSE);
+                assert_abs_diff_eq!(hit.cos_incidence, 1.0 / (1.0 + x * x).sqrt(), epsilon = CLOSE);
             }
         });
     }

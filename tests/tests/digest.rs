@@ -65,9 +65,9 @@ fn worst() -> MarsGround {
 }
 
 fn digest(renderer: &dyn Renderer, scene: &Scene) -> String {
-    let frame = renderer.render(scene, &Request::EVERYTHING);
+    let output = renderer.render(scene, &Request::EVERYTHING);
     let mut sha256 = Sha256::new();
-    for bits in bits(&frame) {
+    for bits in bits(&output) {
         sha256.update(bits.to_le_bytes());
     }
     sha256.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
@@ -143,8 +143,8 @@ fn light_has_the_committed_bits_too() {
 fn the_scenes_under_digest_are_seen() {
     // A digest of empty maps would hold nothing.
     for (name, scene) in scenes() {
-        for (renderer, frame) in raypencil_tests::render_both(&scene) {
-            for map in frame.maps() {
+        for (renderer, output) in raypencil_tests::render_both(&scene) {
+            for map in output.maps() {
                 let hits = raypencil_tests::cells_hit(map).len();
                 assert!(2 * hits >= map.cell_count(), "{name}, {renderer} {}: {hits} hits", map.sensor);
             }

@@ -41,14 +41,14 @@ fn beside(mesh: Arc<Mesh>, position: DVec3) -> Scene {
 /// returns light, and that the image holds all of it.
 fn for_each_pencil(scene: &Scene, mut visit: impl FnMut(&str, u32, f64, f64)) {
     for renderer in evaluations() {
-        let frame = renderer.render(scene, &Request::EVERYTHING);
-        let fluxes = fluxes(&frame.returns[0]);
+        let output = renderer.render(scene, &Request::EVERYTHING);
+        let fluxes = fluxes(&output.returns[0]);
         for (i, j) in (0..3).flat_map(|j| (0..16).map(move |i| (i, j))) {
-            let range = hit(&frame.beams[0], i, j).expect("every pencil hits").range;
-            assert_eq!(is_visible(&frame.returns[0], i, j), fluxes.at(i, j) > 0.0);
+            let range = hit(&output.beams[0], i, j).expect("every pencil hits").range;
+            assert_eq!(is_visible(&output.returns[0], i, j), fluxes.at(i, j) > 0.0);
             visit(&format!("{} {i},{j}", renderer.name()), i, range, fluxes.at(i, j));
         }
-        let (image, sum) = (total(&frame.flux[0]), total(fluxes));
+        let (image, sum) = (total(&output.flux[0]), total(fluxes));
         assert!((image - sum).abs() <= 1e-14 * sum, "{}: {image:e}, {sum:e} W", renderer.name());
     }
 }
@@ -255,10 +255,10 @@ fn on_closed_ground_backs_hide_all_that_is_hidden() {
         let [all, backs] = faces_and_backs(&scene);
         assert!(!backs.is_empty() && backs.len() < all.len());
         for renderer in evaluations() {
-            let frame = renderer.render(&scene, &Request::EVERYTHING);
-            for (map, returns) in frame.beams.iter().zip(&frame.returns) {
+            let output = renderer.render(&scene, &Request::EVERYTHING);
+            for (map, returns) in output.beams.iter().zip(&output.returns) {
                 let depths = returns.depth.as_ref().expect("depths are known");
-                let emissions = returns.emission.as_ref().expect("angles are known");
+                let emissions = returns.cos_view.as_ref().expect("angles are known");
                 let pixels = returns.pixel.as_ref().expect("pixels are known");
                 for (i, j) in cells_hit(map) {
                     let met = hit(map, i, j).expect("a hit");

@@ -276,7 +276,7 @@ const GEOMETRY_OF: &[(&str, &str)] = &[
     ("Beam", "origin"),
 ];
 
-/// The last name in `scene`, `self.scene`, `frame.scene()`, `(*scene)`.
+/// The last name in `scene`, `self.scene`, `output.scene()`, `(*scene)`.
 fn last_name(expression: &syn::Expr) -> Option<String> {
     match expression {
         syn::Expr::Path(path) => path.path.segments.last().map(|segment| segment.ident.to_string()),

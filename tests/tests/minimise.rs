@@ -10,7 +10,7 @@ use raypencil::io::{Overrides, load};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::minimise::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
 use raypencil::terrain::RandomGround;
-use raypencil::{FaceId, Frame, Mesh, Renderer, Request, Resolution, Scene, SensorId};
+use raypencil::{FaceId, Mesh, Precision, RenderOutput, Renderer, Request, Scene, SensorId};
 use raypencil::{Place, Silent};
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::plants::geometry::{lattice, ridge, rig};
@@ -87,11 +87,11 @@ impl Renderer for LastOfTies {
         "last-of-ties"
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let mesh = scene.mesh();
         let count = mesh.faces().len() as u32;
         let reversed = mesh.faces().iter().rev().copied().collect();
@@ -102,14 +102,14 @@ impl Renderer for LastOfTies {
         let (camera, beams) = (*scene.camera(), scene.beams().to_vec());
         let other =
             Scene::new(Arc::new(mesh), camera, beams, scene.atmosphere(), scene.flux_model()).unwrap();
-        let mut frame = tracer().renderer.render(&other, request);
-        let maps = frame.camera.iter_mut().chain(&mut frame.beams);
+        let mut output = tracer().renderer.render(&other, request);
+        let maps = output.camera.iter_mut().chain(&mut output.beams);
         for faces in maps.filter_map(|map| map.face.as_mut()) {
             for face in faces.cells_mut() {
                 *face = face.get().map(|face| FaceId(count - 1 - face.0)).into();
             }
         }
-        frame
+        output
     }
 }
 

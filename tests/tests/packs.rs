@@ -11,7 +11,7 @@ use raypencil::io::Subject;
 use raypencil::io::{Overrides, load};
 use raypencil::judge::{Class, Quantity};
 use raypencil::pack::{Checked, check_pack, write_pack};
-use raypencil::{Request, Resolution, Sampling};
+use raypencil::{Precision, Request, Sampling};
 
 const PACKS: [&str; 2] = ["pyramids", "facets"];
 
@@ -80,10 +80,10 @@ fn judged(pack: &str, renderer: &str) -> Checked {
         sha256: loaded.source_sha256,
     };
     let contender = contender(renderer).expect("a renderer of this house");
-    let frame = contender.renderer.render(&subject.scene, &Request::EVERYTHING);
+    let output = contender.renderer.render(&subject.scene, &Request::EVERYTHING);
     let folder = tempfile::tempdir().expect("a folder");
-    write_maps(&frame, renderer, &subject, Sampling::Centres, folder.path()).expect("maps");
-    check_pack(&pack, folder.path(), Some(Resolution::F64), &Silent).expect("a candidate as it should be")
+    write_maps(&output, renderer, &subject, Sampling::Centres, folder.path()).expect("maps");
+    check_pack(&pack, folder.path(), Some(Precision::F64), &Silent).expect("a candidate as it should be")
 }
 
 #[test]

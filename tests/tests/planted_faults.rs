@@ -9,7 +9,7 @@ use raypencil::judge::{Class, SensorComparison, Side, compare};
 use raypencil::scanline::Scanline;
 use raypencil::terrain::RandomGround;
 use raypencil::tracer::Tracer;
-use raypencil::{Frame, Renderer, Request, Scene, SensorId};
+use raypencil::{RenderOutput, Renderer, Request, Scene, SensorId};
 use raypencil_tests::lattice as lattices;
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::plants::geometry::{
@@ -116,7 +116,7 @@ fn plant(fault: Fault) -> Plant {
 /// What both renderers make of a scene, to compare others with.
 struct Judges<'a> {
     scene: &'a Scene,
-    frames: [(&'static str, Frame); 2],
+    outputs: [(&'static str, RenderOutput); 2],
 }
 
 impl<'a> Judges<'a> {
@@ -124,18 +124,18 @@ impl<'a> Judges<'a> {
         let render = |renderer: &dyn Renderer| renderer.render(scene, &Request::MAPS);
         Self {
             scene,
-            frames: [("scanline", render(&Scanline::default())), ("tracer", render(&Tracer::new()))],
+            outputs: [("scanline", render(&Scanline::default())), ("tracer", render(&Tracer::new()))],
         }
     }
 
     /// The naive renderer compared with each of them.
     fn compare(&self, naive: Naive) -> [(&'static str, Vec<SensorComparison>); 2] {
-        let frame = naive.render(self.scene, &Request::MAPS);
-        let resolution = naive.resolution();
+        let output = naive.render(self.scene, &Request::MAPS);
+        let precision = naive.precision();
         [0, 1].map(|index| {
-            let (name, judge) = &self.frames[index];
-            let a = Side { name, frame: judge, resolution, attributions: None };
-            let b = Side { name: naive.name(), frame: &frame, resolution, attributions: None };
+            let (name, judge) = &self.outputs[index];
+            let a = Side { name, output: judge, precision, attributions: None };
+            let b = Side { name: naive.name(), output: &output, precision, attributions: None };
             (*name, compare(self.scene, a, b))
         })
     }
@@ -160,8 +160,8 @@ impl<'a> Judges<'a> {
 
     /// How many rays of each sensor hit.
     fn hits(&self) -> Vec<usize> {
-        let (_, frame) = &self.frames[1];
-        let ranges = frame.maps().map(|map| map.range.as_ref().expect("ranges were asked for"));
+        let (_, output) = &self.outputs[1];
+        let ranges = output.maps().map(|map| map.range.as_ref().expect("ranges were asked for"));
         ranges.map(|range| range.cells().iter().filter(|cell| cell.get().is_some()).count()).collect()
     }
 }

@@ -7,7 +7,7 @@ use raypencil::Silent;
 use raypencil::io::Subject;
 use raypencil::judge::{Quantity, RecordingError};
 use raypencil::pack::{CheckError, check_pack, write_pack};
-use raypencil::{Resolution, Scene};
+use raypencil::{Precision, Scene};
 use raypencil_tests::files::{Caught, FileFault, caught, write};
 use raypencil_tests::plants::geometry::{pyramids, range_cut_wall};
 
@@ -71,7 +71,7 @@ fn a_pack_finds_them_too() {
         let candidate = folder.path().join("candidate");
         let _ = fs::remove_dir_all(&candidate);
         write(&subject.scene, fault, &candidate).unwrap();
-        let found = check_pack(&pack, &candidate, Some(Resolution::F64), &Silent);
+        let found = check_pack(&pack, &candidate, Some(Precision::F64), &Silent);
         match (fault, found) {
             (None, Ok(checked)) => assert!(checked.check.passes()),
             (Some(FileFault::MinusOneForNoHit), Err(CheckError::Candidate(_))) => {}

@@ -4,7 +4,7 @@
 use raypencil::judge::{Class, SensorComparison, Side, compare};
 use raypencil::scanline::Scanline;
 use raypencil::tracer::Tracer;
-use raypencil::{FluxModel, Frame, Renderer, Request, Scene, SensorId};
+use raypencil::{FluxModel, RenderOutput, Renderer, Request, Scene, SensorId};
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::plants::light::{doubled, lit, screened};
 
@@ -21,8 +21,8 @@ fn scenes(fault: Fault) -> Vec<(&'static str, Scene)> {
     }
 }
 
-fn side<'a>(renderer: &dyn Renderer, name: &'a str, frame: &'a Frame) -> Side<'a> {
-    Side { name, frame, resolution: renderer.resolution(), attributions: None }
+fn side<'a>(renderer: &dyn Renderer, name: &'a str, output: &'a RenderOutput) -> Side<'a> {
+    Side { name, output, precision: renderer.precision(), attributions: None }
 }
 
 fn compared(scene: &Scene, honest: &dyn Renderer, naive: Naive) -> Vec<SensorComparison> {

@@ -14,7 +14,7 @@ use raypencil::harness::Contender;
 use raypencil::judge::{Class, Judge, JudgeShare, Side};
 use raypencil::scanline::{Options, Scanline, Switches};
 use raypencil::tracer::Tracer;
-use raypencil::{Frame, Mesh, Mounted, Renderer, Request, Scene};
+use raypencil::{Mesh, Mounted, RenderOutput, Renderer, Request, Scene};
 use raypencil_tests::lattice::hash;
 use raypencil_tests::random::{Case, cases, lit_cases, mars_cases};
 use raypencil_tests::reproducers::{commit, folder, reproduce};
@@ -75,16 +75,16 @@ fn of_both(property: &'static str) -> impl Fn(&Case) -> String {
     }
 }
 
-fn render(renderer: &dyn Renderer, scene: &Scene) -> Frame {
+fn render(renderer: &dyn Renderer, scene: &Scene) -> RenderOutput {
     renderer.render(scene, &Request::EVERYTHING)
 }
 
-fn side<'a>(renderer: &'a dyn Renderer, frame: &'a Frame) -> Side<'a> {
-    Side { name: renderer.name(), frame, resolution: renderer.resolution(), attributions: None }
+fn side<'a>(renderer: &'a dyn Renderer, output: &'a RenderOutput) -> Side<'a> {
+    Side { name: renderer.name(), output, precision: renderer.precision(), attributions: None }
 }
 
 /// Fails unless both frames hold the same bits.
-fn same_bits(what: &str, expected: &Frame, found: &Frame) -> TestCaseResult {
+fn same_bits(what: &str, expected: &RenderOutput, found: &RenderOutput) -> TestCaseResult {
     match first_difference(expected, found) {
         None => Ok(()),
         Some(difference) => Err(TestCaseError::fail(format!("{what}: {difference}"))),
@@ -92,9 +92,9 @@ fn same_bits(what: &str, expected: &Frame, found: &Frame) -> TestCaseResult {
 }
 
 /// Rays of a frame, and those of them that hit.
-fn count_hits(frame: &Frame) -> [u64; 2] {
+fn count_hits(output: &RenderOutput) -> [u64; 2] {
     let mut counts = [0, 0];
-    for map in frame.maps() {
+    for map in output.maps() {
         let ranges = map.range.as_ref().expect("every quantity was asked for").cells();
         counts[0] += ranges.len() as u64;
         counts[1] += ranges.iter().filter(|range| range.get().is_some()).count() as u64;
@@ -145,7 +145,7 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
         for switches in sets(few, any) {
             let scanline = Scanline::new(Options { switches, ..Options::EXACT });
             let a = render(&scanline, &scene);
-            let attributions = raypencil::harness::attribute(&judge, &a, switches, scanline.resolution());
+            let attributions = raypencil::harness::attribute(&judge, &a, switches, scanline.precision());
             let a = Side { attributions: Some(&attributions), ..side(&scanline, &a) };
             let sensors = agreement(&scene, a, side(&tracer, &b))
                 .map_err(|error| TestCaseError::fail(format!("{}: {error}", scanline.name())))?;

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use raypencil::harness::contender;
 use raypencil::{
-    Atmosphere, Beam, Camera, Filter, FluxModel, Frame, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
-    Renderer, Request, Returns, Sampling, Scene, SensorId,
+    Atmosphere, Beam, Camera, Filter, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
+    RenderOutput, Renderer, Request, Returns, Sampling, Scene, SensorId,
 };
 use raypencil_tests::light::{Draws, LIGHT, evaluations, fluxes, is_visible, looking, relative, total};
 use raypencil_tests::quadrature::{gauss_legendre, over_rectangle};
@@ -169,7 +169,7 @@ fn shares_add_up_to_what_their_profile_says() {
             ..rig::beam(columns, 2, [1.0, 1.0], 0.1)
         };
         let scene = scene(Arc::clone(&mesh), at_origin(camera), vec![at_origin(beam)]);
-        let frame = renderer.render(&scene, &LIGHT);
+        let output = renderer.render(&scene, &LIGHT);
         let mut sum = 0.0;
         for j in 0..beam.rows {
             for i in 0..columns {
@@ -177,7 +177,7 @@ fn shares_add_up_to_what_their_profile_says() {
                 let secant_squared = 1.0 + tan_alpha * tan_alpha + 0.25 * beam.origin(j).y * beam.origin(j).y;
                 let of_share = 3.0 * 0.25 * 0.25 * camera.aperture * camera.aperture
                     / (4.0 * secant_squared * secant_squared);
-                sum += fluxes(&frame.returns[0]).at(i, j) / of_share;
+                sum += fluxes(&output.returns[0]).at(i, j) / of_share;
             }
         }
         sum
@@ -248,15 +248,15 @@ fn irradiance_falls_with_range() {
             let (mesh, _) = Plane::mesh(DVec3::new(0.0, 0.0, range), DVec3::NEG_Z, 0.25);
             let pose = Pose::from_position(DVec3::new(0.0, 0.0, range - 1.0));
             let camera = Mounted { scene_from_sensor: pose, sensor: camera };
-            let frame = renderer.render(
+            let output = renderer.render(
                 &scene(mesh, camera, vec![at_origin(beam)]),
                 &Request { camera: false, ..Request::EVERYTHING },
             );
-            let map = frame.map(SensorId::Beam(0)).expect("the beam was asked for");
+            let map = output.map(SensorId::Beam(0)).expect("the beam was asked for");
             let point = |i, j| hit(map, i, j).expect("the wall is hit").point;
             let across = (point(17, 2) - point(15, 2)) * 0.5;
             let area = across.cross((point(16, 3) - point(16, 1)) * 0.5).length();
-            let flux = fluxes(&frame.returns[0]).at(16, 2);
+            let flux = fluxes(&output.returns[0]).at(16, 2);
             // 1e-12: points are differences of metres, over millimetres.
             assert!(
                 relative(area, 8.0 * range / f64::from(1 << 19)) < 1e-12,
@@ -314,11 +314,11 @@ fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
         let (mut tested, mut worst) = (0, [0.0_f64; 3]);
         for (scene, plane) in &cases {
             let (camera, beam) = (scene.camera().sensor, scene.beams()[0].sensor);
-            let frame = renderer.render(scene, &LIGHT);
+            let output = renderer.render(scene, &LIGHT);
             for (i, j) in (0..3).flat_map(|j| (0..5).map(move |i| (i, j))) {
                 let at = landing(scene, *plane, i, j);
                 // The rest of a fan may run along the plane, or out of the image.
-                if !is_visible(&frame.returns[0], i, j) || at.cos_psi < 0.1 || at.cos_theta < 0.1 {
+                if !is_visible(&output.returns[0], i, j) || at.cos_psi < 0.1 || at.cos_theta < 0.1 {
                     continue;
                 }
                 tested += 1;
@@ -331,7 +331,7 @@ fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
                 // The same two areas of exact derivatives of the point by the place on grid and image.
                 let spot_2 = of_pencil * at.plane_per_grid;
                 let patch_2 = of_pixel * at.plane_per_grid / at.image_per_grid;
-                let found = fluxes(&frame.returns[0]).at(i, j) * patch / spot;
+                let found = fluxes(&output.returns[0]).at(i, j) * patch / spot;
                 let derived = at.flux_per_image(scene) * of_pixel;
                 let errors = [relative(spot, spot_2), relative(patch, patch_2), relative(found, derived)];
                 for (worst, error) in worst.iter_mut().zip(errors) {
@@ -425,11 +425,15 @@ fn black_ground_returns_nothing() {
     for renderer in evaluations() {
         for model in [FluxModel::Radiometric, FluxModel::Eq1] {
             let (scene, _) = slope(64, 4, 5e-3, 0.0, 0.05, model);
-            let frame = renderer.render(&scene, &LIGHT);
+            let output = renderer.render(&scene, &LIGHT);
             // Seen it is all the same.
-            assert!((0..64).all(|i| is_visible(&frame.returns[0], i, 2)), "{}", renderer.name());
-            assert!(fluxes(&frame.returns[0]).cells().iter().all(|flux| *flux == 0.0), "{}", renderer.name());
-            assert!(frame.flux[0].cells().iter().all(|flux| *flux == 0.0), "{}", renderer.name());
+            assert!((0..64).all(|i| is_visible(&output.returns[0], i, 2)), "{}", renderer.name());
+            assert!(
+                fluxes(&output.returns[0]).cells().iter().all(|flux| *flux == 0.0),
+                "{}",
+                renderer.name()
+            );
+            assert!(output.flux[0].cells().iter().all(|flux| *flux == 0.0), "{}", renderer.name());
         }
     }
 }
@@ -441,8 +445,8 @@ fn air_only_takes() {
         for model in [FluxModel::Radiometric, FluxModel::Eq1] {
             let fluxes_at = |attenuation| {
                 let (scene, plane) = slope(64, 4, 5e-3, 0.25, attenuation, model);
-                let frame = renderer.render(&scene, &LIGHT);
-                (fluxes(&frame.returns[0]).clone(), total(&frame.flux[0]), scene, plane)
+                let output = renderer.render(&scene, &LIGHT);
+                (fluxes(&output.returns[0]).clone(), total(&output.flux[0]), scene, plane)
             };
             let (clear, mut before, scene, plane) = fluxes_at(0.0);
             for sigma in [1e-3, 0.1, 2.0] {
@@ -497,10 +501,10 @@ fn the_flux_of_a_stripe_converges_to_the_camera_equation() {
                 continue;
             }
             let (scene, _) = slope(columns, rows, 5e-3, 0.25, 0.05, FluxModel::Radiometric);
-            let frame = renderer.render(&scene, &LIGHT);
-            let visible = frame.returns[0].visible.as_ref().expect("what is visible is known");
+            let output = renderer.render(&scene, &LIGHT);
+            let visible = output.returns[0].visible.as_ref().expect("what is visible is known");
             assert!(visible.cells().iter().all(|seen| *seen), "{name}: the stripe is not wholly in view");
-            let error = relative(total(&frame.flux[0]), derived);
+            let error = relative(total(&output.flux[0]), derived);
             // The sheet is so thin that its rows matter little: the error is that of the columns.
             let order = before.map(|before| libm::log2(before / error) / 2.0);
             println!("{name}: {columns} x {rows} pencils: {error:e}, order {order:?}");
@@ -608,7 +612,7 @@ fn jittered_rays_are_the_same_for_all() {
         Scene::new(mesh, *plane.camera(), plane.beams().to_vec(), plane.atmosphere(), FluxModel::Radiometric)
             .expect("a scene");
     for (what, scene) in [("slope", &plane), ("pyramids", &pyramids)] {
-        let mut first: Option<Frame> = None;
+        let mut first: Option<RenderOutput> = None;
         for seed in [1, 0x1234_5678_9abc_def0] {
             let [a, b] = ["tracer", "referee"].map(|name| render(name, scene, seed));
             assert_eq!(a.beams[0].face, b.beams[0].face, "{what}, seed {seed}");

@@ -9,20 +9,20 @@ use raypencil::judge::{Class, Judge, JudgeShare, Quantity, SensorComparison, Sid
 use raypencil::scanline::Scanline;
 use raypencil::terrain::builtin;
 use raypencil::tracer::Tracer;
-use raypencil::{Frame, Maybe, Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId};
+use raypencil::{Maybe, Mesh, Mounted, Pose, RenderOutput, Renderer, Request, Scene, SensorId};
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene};
 
 fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorComparison> {
-    let frames = [a, b].map(|renderer| renderer.render(scene, &Request::EVERYTHING));
-    let side = |renderer: &dyn Renderer, frame| Side {
+    let outputs = [a, b].map(|renderer| renderer.render(scene, &Request::EVERYTHING));
+    let side = |renderer: &dyn Renderer, output| Side {
         name: if renderer.name() == a.name() { "a" } else { "b" },
-        frame,
-        resolution: renderer.resolution(),
+        output,
+        precision: renderer.precision(),
         attributions: None,
     };
     let judge = Judge::new(scene, JudgeShare::All);
-    compare_judged(&judge, side(a, &frames[0]), side(b, &frames[1]))
+    compare_judged(&judge, side(a, &outputs[0]), side(b, &outputs[1]))
 }
 
 #[test]
@@ -82,10 +82,10 @@ fn faces_one_ulp_apart_are_rounding() {
 
 /// The paper's algorithm, with some answers spoiled: of every 97th pencil that hits, unseen, the hit is lost; of every 89th
 /// it is said the other way whether the camera sees it.
-fn spoiled(scene: &Scene, paper: &Scanline) -> (Frame, u64) {
-    let mut frame = paper.render(scene, &Request::EVERYTHING);
+fn spoiled(scene: &Scene, paper: &Scanline) -> (RenderOutput, u64) {
+    let mut output = paper.render(scene, &Request::EVERYTHING);
     let mut spoilt = 0;
-    for (map, returns) in frame.beams.iter_mut().zip(&mut frame.returns) {
+    for (map, returns) in output.beams.iter_mut().zip(&mut output.returns) {
         for j in 0..map.height {
             for i in 0..map.width {
                 let index = j * map.width + i;
@@ -97,14 +97,14 @@ fn spoiled(scene: &Scene, paper: &Scanline) -> (Frame, u64) {
                     map.face.as_mut().expect("faces").set(i, j, Maybe::NONE);
                     map.range.as_mut().expect("ranges").set(i, j, Maybe::NONE);
                     spoilt += 1;
-                } else if index % 89 == 0 && hit.incidence > 0.1 {
+                } else if index % 89 == 0 && hit.cos_incidence > 0.1 {
                     visible.set(i, j, !seen);
                     spoilt += 1;
                 }
             }
         }
     }
-    (frame, spoilt)
+    (output, spoilt)
 }
 
 #[test]
@@ -117,16 +117,16 @@ fn an_approximation_is_no_excuse_for_anything_else() {
     }
     let scene = scene(Arc::new(ground), camera, beams);
     let (paper, tracer) = (Scanline::paper(), Tracer::new());
-    let (frame, spoilt) = spoiled(&scene, &paper);
+    let (output, spoilt) = spoiled(&scene, &paper);
     assert!(spoilt > 15, "{spoilt} answers are spoiled");
     let honest = tracer.render(&scene, &Request::EVERYTHING);
     let judge = Judge::new(&scene, JudgeShare::Sample);
     let attributions =
-        raypencil::harness::attribute(&judge, &frame, paper.options().switches, paper.resolution());
+        raypencil::harness::attribute(&judge, &output, paper.options().switches, paper.precision());
     let side =
-        |name, frame, attributions| Side { name, frame, resolution: tracer.resolution(), attributions };
+        |name, output, attributions| Side { name, output, precision: tracer.precision(), attributions };
     let sensors =
-        compare_judged(&judge, side("spoiled", &frame, Some(&attributions)), side("tracer", &honest, None));
+        compare_judged(&judge, side("spoiled", &output, Some(&attributions)), side("tracer", &honest, None));
     let beams = &sensors[1..];
     let defects: u64 = beams.iter().map(|sensor| sensor.of(Class::Defect)).sum();
     let approximated: u64 = beams.iter().map(|sensor| sensor.of(Class::Approximation)).sum();
@@ -144,27 +144,27 @@ fn an_approximation_is_no_excuse_for_a_wrong_value() {
     }
     let scene = scene(Arc::new(ground), camera, beams);
     let (paper, tracer) = (Scanline::paper(), Tracer::new());
-    let frame = paper.render(&scene, &Request::EVERYTHING);
+    let output = paper.render(&scene, &Request::EVERYTHING);
     let honest = tracer.render(&scene, &Request::EVERYTHING);
     let judge = Judge::new(&scene, JudgeShare::Sample);
     let attributions =
-        raypencil::harness::attribute(&judge, &frame, paper.options().switches, paper.resolution());
-    let resolution = tracer.resolution();
-    let compared = |frame: &Frame| {
+        raypencil::harness::attribute(&judge, &output, paper.options().switches, paper.precision());
+    let precision = tracer.precision();
+    let compared = |output: &RenderOutput| {
         let sensors = compare_judged(
             &judge,
-            Side { name: "paper", frame, resolution, attributions: Some(&attributions) },
-            Side { name: "tracer", frame: &honest, resolution, attributions: None },
+            Side { name: "paper", output, precision, attributions: Some(&attributions) },
+            Side { name: "tracer", output: &honest, precision, attributions: None },
         );
         sensors[1..].iter().fold([0, 0], |[defects, approximated], sensor| {
             [defects + sensor.of(Class::Defect), approximated + sensor.of(Class::Approximation)]
         })
     };
-    let [defects, approximated] = compared(&frame);
+    let [defects, approximated] = compared(&output);
     assert_eq!(defects, 0);
     assert!(approximated > 20, "{approximated}");
 
-    let mut spoilt = [frame.clone(), frame];
+    let mut spoilt = [output.clone(), output];
     let mut counts = [0, 0];
     for index in 0..scene.beams().len() {
         let (columns, rows) = scene.size(SensorId::Beam(index)).expect("a beam");
@@ -186,8 +186,8 @@ fn an_approximation_is_no_excuse_for_a_wrong_value() {
         }
     }
     assert!(counts.iter().all(|count| *count > 5), "{counts:?}");
-    for (frame, count) in spoilt.iter().zip(counts) {
-        assert_eq!(compared(frame)[0], count);
+    for (output, count) in spoilt.iter().zip(counts) {
+        assert_eq!(compared(output)[0], count);
     }
 }
 

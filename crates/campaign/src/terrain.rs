@@ -17,7 +17,7 @@ use raypencil_harness::{
 };
 use raypencil_judge::{Class, Judge, JudgeShare, Side, compare_judged};
 use raypencil_minimise::{MINIMISE_BUDGET, minimise};
-use raypencil_scene::{Mounted, Request, Resolution, Scene, SensorId, Silent, Switches, rig};
+use raypencil_scene::{Mounted, Precision, Request, Scene, SensorId, Silent, Switches, rig};
 use raypencil_scene_io::write_resolved;
 
 /// The case of a terrain.
@@ -139,16 +139,16 @@ fn compared(part: PartName, scene: &Scene, share: JudgeShare, tracer: &Contender
         [&scanline, tracer].map(|contender| contender.renderer.render(scene, &request));
     let judge = Judge::new(scene, share);
     let attributions =
-        (part == PartName::Paper).then(|| attribute(&judge, &of_scanline, Switches::PAPER, Resolution::F64));
+        (part == PartName::Paper).then(|| attribute(&judge, &of_scanline, Switches::PAPER, Precision::F64));
     let name = |contender: &Contender| contender.renderer.name().to_string();
     let names = [name(&scanline), name(tracer)];
     let a = Side {
         name: &names[0],
-        frame: &of_scanline,
-        resolution: Resolution::F64,
+        output: &of_scanline,
+        precision: Precision::F64,
         attributions: attributions.as_ref(),
     };
-    let b = Side { name: &names[1], frame: &of_tracer, resolution: Resolution::F64, attributions: None };
+    let b = Side { name: &names[1], output: &of_tracer, precision: Precision::F64, attributions: None };
     let mut sensors = compare_judged(&judge, a, b);
     if part == PartName::Aimed {
         // The camera that had to be there.
@@ -159,7 +159,7 @@ fn compared(part: PartName, scene: &Scene, share: JudgeShare, tracer: &Contender
 
 #[cfg(test)]
 mod tests {
-    use raypencil_scene::{Frame, Maybe, Renderer};
+    use raypencil_scene::{Maybe, RenderOutput, Renderer};
 
     use super::*;
     use raypencil_tests::fixtures::subject;
@@ -172,18 +172,18 @@ mod tests {
             "tracer"
         }
 
-        fn resolution(&self) -> Resolution {
-            Resolution::F64
+        fn precision(&self) -> Precision {
+            Precision::F64
         }
 
-        fn render(&self, scene: &Scene, request: &Request) -> Frame {
-            let mut frame = self.0.renderer.render(scene, request);
-            for map in frame.camera.iter_mut().chain(&mut frame.beams) {
+        fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
+            let mut output = self.0.renderer.render(scene, request);
+            for map in output.camera.iter_mut().chain(&mut output.beams) {
                 for range in map.range.iter_mut().flat_map(|ranges| ranges.cells_mut()) {
                     *range = range.get().map_or(Maybe::NONE, |range| Maybe::some(1.001 * range));
                 }
             }
-            frame
+            output
         }
     }
 

@@ -7,7 +7,7 @@ use raypencil::Fidelity;
 use raypencil::campaign::Shard;
 use raypencil::io::Overrides;
 use raypencil::io::quoted;
-use raypencil::{FluxModel, Resolution};
+use raypencil::{FluxModel, Precision};
 
 /// A Mars rover's structured-light vision, simulated twice by two unlike algorithms and compared ray by ray.
 ///
@@ -431,10 +431,10 @@ pub(crate) enum ArithmeticWord {
 }
 
 impl ArithmeticWord {
-    pub(crate) fn resolution(self) -> Resolution {
+    pub(crate) fn precision(self) -> Precision {
         match self {
-            Self::F64 => Resolution::F64,
-            Self::F32 => Resolution::F32,
+            Self::F64 => Precision::F64,
+            Self::F32 => Precision::F32,
         }
     }
 }

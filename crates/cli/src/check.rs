@@ -8,8 +8,8 @@ use crate::{Outcome, Trouble};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
-    let resolution = command.arithmetic.map(ArithmeticWord::resolution);
-    let checked = check_pack(&command.pack, &command.candidate, resolution, &spinner)?;
+    let precision = command.arithmetic.map(ArithmeticWord::precision);
+    let checked = check_pack(&command.pack, &command.candidate, precision, &spinner)?;
     if let Some(folder) = &command.output {
         write_check(&checked, folder)?;
     }

@@ -46,8 +46,8 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     if let Some(scene) = &command.scene {
         spinner.stage(&format!("{scene}: loading"));
         let scene = load(scene, &Overrides::default())?.scene;
-        let resolution = command.arithmetic.resolution();
-        let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, resolution));
+        let precision = command.arithmetic.precision();
+        let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, precision));
         let [of_a, of_b] = recorded;
         let (of_a, of_b) = (of_a.map_err(CheckError::from)?, of_b.map_err(CheckError::from)?);
         let truth = Truth::certified(&scene, &spinner);

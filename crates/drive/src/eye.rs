@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::job::DriveJob;
 use crate::sun::Sun;
-use raypencil_scene::{Frame, Image, Quantities, Renderer, Request, Resolution, Scene};
+use raypencil_scene::{Image, Precision, Quantities, RenderOutput, Renderer, Request, Scene};
 use raypencil_sensor::{Optics, PointSource};
 
 /// A renderer seen through optics; a renderer itself.
@@ -51,7 +51,7 @@ impl<'a> Eye<'a> {
     }
 
     /// Puts the light of every pencil through the optics; leaves out all light if the renderer tells no points.
-    fn through_optics(&self, scene: &Scene, frame: &mut Frame) {
+    fn through_optics(&self, scene: &Scene, frame: &mut RenderOutput) {
         let camera = scene.camera();
         let camera_from_scene = camera.scene_from_sensor.inverse();
         let formed = frame.beams.iter().zip(&frame.returns).map(|(map, returns)| {
@@ -71,11 +71,11 @@ impl Renderer for Eye<'_> {
         self.inner.name()
     }
 
-    fn resolution(&self) -> Resolution {
-        self.inner.resolution()
+    fn precision(&self) -> Precision {
+        self.inner.precision()
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let is_perfect = self.is_perfect();
         let quantities = Quantities { point: !is_perfect || request.quantities.point, ..request.quantities };
         let request = Request { beams: !is_perfect || request.beams, quantities, ..*request };

@@ -28,7 +28,7 @@ fn map(sensor: SensorId, quantities: Quantities) -> SensorMap {
                 point,
                 normal: point / point.length(),
                 depth: value / 1.1,
-                incidence: 1.0 / value,
+                cos_incidence: 1.0 / value,
             };
             if !cell.is_multiple_of(3) {
                 row.put(i, &hit);
@@ -79,7 +79,7 @@ fn a_map_comes_back_rounded_to_single_precision() {
             for i in 0..WIDTH {
                 let at = |image: &Option<Image<Maybe<f64>>>| image.as_ref().unwrap().at(i, j).get();
                 assert_eq!(at(&back.range), at(&map.range).map(single));
-                assert_eq!(at(&back.incidence), at(&map.incidence).map(single));
+                assert_eq!(at(&back.cos_incidence), at(&map.cos_incidence).map(single));
                 assert_eq!(at(&back.depth), at(&map.depth).map(single));
                 let at = |image: &Option<Image<Maybe<DVec3>>>| image.as_ref().unwrap().at(i, j).get();
                 let singles = |v: DVec3| DVec3::new(single(v.x), single(v.y), single(v.z));
@@ -131,7 +131,7 @@ fn names_types_and_no_hit_values_are_those_of_the_documentation() {
     assert_eq!(read.channels.keys().collect::<Vec<_>>(), ["face.I", "range.T"]);
     let back = read.to_sensor_map(SensorId::Camera, &path).unwrap();
     assert!(
-        back.depth.is_none() && back.point.is_none() && back.normal.is_none() && back.incidence.is_none()
+        back.depth.is_none() && back.point.is_none() && back.normal.is_none() && back.cos_incidence.is_none()
     );
     let nothing = Quantities { range: false, face: false, ..Quantities::RANGE_MAP };
     let error = write_exr_map(&path, &map(SensorId::Camera, nothing), &Attributes::default()).unwrap_err();

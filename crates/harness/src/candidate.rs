@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::estimate::{Estimate, WayImage};
 use raypencil_files::{Channels, Values};
 use raypencil_judge::{Recorded, RecordingError};
-use raypencil_pack::{Provenance, ProvenanceError, note, resolution_of};
-use raypencil_scene::{Image, Resolution, Scene, SensorId};
+use raypencil_pack::{Provenance, ProvenanceError, note, precision_of};
+use raypencil_scene::{Image, Precision, Scene, SensorId};
 
 /// Why a candidate could not be held to a scene.
 #[derive(Debug, thiserror::Error)]
@@ -54,9 +54,9 @@ impl Outsider {
     /// Names the file, the channel and the cell that breaks the conventions; a recording of another scene.
     pub fn read(folder: &Path, scene: &Scene) -> Result<Self, CandidateError> {
         let note = note(folder, scene)?;
-        let resolution = note.as_ref().map_or(Resolution::F64, |note| resolution_of(note.arithmetic));
+        let precision = note.as_ref().map_or(Precision::F64, |note| precision_of(note.arithmetic));
         let channels = Recorded::channels(folder, scene)?;
-        let recorded = Recorded::of_folder(folder, scene, resolution, &channels)?;
+        let recorded = Recorded::of_folder(folder, scene, precision, &channels)?;
         let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
         let reader = Extras { folder, scene, channels: &channels };
         let images = reader.images(note.as_ref())?;

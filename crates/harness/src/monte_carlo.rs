@@ -35,8 +35,8 @@ pub fn expected_images(scene: &Scene, draws: u64, progress: &dyn Progress) -> Ve
             progress.stage(&format!("drawing pencils at random: {} of {draws} times", seed - 1));
         }
         let sampling = Sampling::Jittered { seed };
-        let frame = tracer.render(&scene, &Request { camera: false, sampling, ..Request::EVERYTHING });
-        for (running, image) in running.iter_mut().zip(&frame.flux) {
+        let output = tracer.render(&scene, &Request { camera: false, sampling, ..Request::EVERYTHING });
+        for (running, image) in running.iter_mut().zip(&output.flux) {
             running.add(image.cells());
         }
     }

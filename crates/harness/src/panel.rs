@@ -71,7 +71,7 @@ pub fn panel(
     let scene = &subject.scene;
     let truth = Truth::certified(scene, progress);
     let ours = rendered.iter().map(|side| {
-        let recorded = Recorded::of_frame(&side.name, scene, &side.frame, side.resolution);
+        let recorded = Recorded::of_output(&side.name, scene, &side.output, side.precision);
         Held { name: side.name.clone(), check: check(&truth, &recorded, progress) }
     });
     let ours = ours.collect();

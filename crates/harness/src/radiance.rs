@@ -137,8 +137,8 @@ impl<'a> Light<'a> {
         if inside.abs() <= BORDER * (1.0 + point.length()) {
             return Lit::Unsure;
         }
-        let incidence = -pose.rotate(DVec3::new(x, 0.0, z)).dot(normal) / range;
-        if inside < 0.0 || incidence <= 0.0 {
+        let cos_incidence = -pose.rotate(DVec3::new(x, 0.0, z)).dot(normal) / range;
+        if inside < 0.0 || cos_incidence <= 0.0 {
             return Lit::Dark;
         }
         let alpha = libm::atan(x / z);
@@ -146,7 +146,7 @@ impl<'a> Light<'a> {
         let density = weight(&self.beam.sensor, alpha) / self.integral;
         let attenuation = self.scene.atmosphere().attenuation;
         let irradiance = power / thickness * density * g / (cos * cos) / range
-            * incidence
+            * cos_incidence
             * libm::exp(-attenuation * range);
         Lit::By(reflectivity * irradiance / std::f64::consts::PI)
     }

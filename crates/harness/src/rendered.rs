@@ -1,7 +1,7 @@
 use std::time::Duration;
 
 use raypencil_judge::{Attributions, Side};
-use raypencil_scene::{Frame, Resolution, Switches};
+use raypencil_scene::{Precision, RenderOutput, Switches};
 
 /// What one renderer made of the scene.
 #[derive(Debug)]
@@ -9,13 +9,13 @@ pub struct Rendered {
     /// The renderer's name.
     pub name: String,
     /// How finely it computes.
-    pub resolution: Resolution,
+    pub precision: Precision,
     /// The paper's approximations that it makes.
     pub approximations: Switches,
     /// What they did.
     pub attributions: Attributions,
     /// Its maps.
-    pub frame: Frame,
+    pub output: RenderOutput,
     /// Wall-clock time of the whole render.
     pub time: Duration,
 }
@@ -25,8 +25,8 @@ impl Rendered {
     pub fn side(&self) -> Side<'_> {
         Side {
             name: &self.name,
-            frame: &self.frame,
-            resolution: self.resolution,
+            output: &self.output,
+            precision: self.precision,
             attributions: Some(&self.attributions),
         }
     }

@@ -5,7 +5,7 @@ use std::fmt;
 use raypencil_judge::{Attributions, Judge};
 use raypencil_referee::ExactRenderer;
 use raypencil_scanline::{Options, Scanline};
-use raypencil_scene::{Fidelity, Frame, Renderer, Request, Resolution, Switches};
+use raypencil_scene::{Fidelity, Precision, RenderOutput, Renderer, Request, Switches};
 use raypencil_scene_io::quoted;
 use raypencil_tracer::Tracer;
 
@@ -75,17 +75,17 @@ impl fmt::Debug for Contender {
     }
 }
 
-/// Finds the causes of what `frame` has wrong, which the scanline renderer made of the judge's scene with `switches`.
+/// Finds the causes of what `output` has wrong, which the scanline renderer made of the judge's scene with `switches`.
 pub fn attribute(
     judge: &Judge<'_>,
-    frame: &Frame,
+    output: &RenderOutput,
     switches: Switches,
-    resolution: Resolution,
+    precision: Precision,
 ) -> Attributions {
     let rerender = |switches: Switches, request: Request| {
         Scanline::new(Options { switches, ..Options::EXACT }).render(judge.scene(), &request)
     };
-    Attributions::find(judge, frame, switches, resolution, &rerender)
+    Attributions::find(judge, output, switches, precision, &rerender)
 }
 
 /// A renderer by its name.

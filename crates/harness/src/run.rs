@@ -26,20 +26,20 @@ pub fn validate(
         let name = renderer.name().to_string();
         progress.stage(&format!("{name}: rendering"));
         let start = Instant::now();
-        let frame = renderer.render(&subject.scene, &Request::EVERYTHING);
+        let output = renderer.render(&subject.scene, &Request::EVERYTHING);
         let time = start.elapsed();
         stages.extend(
-            frame
+            output
                 .stages
                 .iter()
                 .map(|stage| Stage { name: format!("{name}: {}", stage.name), ..stage.clone() }),
         );
         rendered.push(Rendered {
             name,
-            resolution: renderer.resolution(),
+            precision: renderer.precision(),
             approximations: contender.approximations(),
             attributions: Attributions::default(),
-            frame,
+            output,
             time,
         });
     }
@@ -55,7 +55,7 @@ pub fn validate(
         let what = format!("attributing {}", side.name);
         progress.stage(&what);
         let start = Instant::now();
-        side.attributions = attribute(&judge, &side.frame, side.approximations, side.resolution);
+        side.attributions = attribute(&judge, &side.output, side.approximations, side.precision);
         stages.push(Stage { name: what, time: start.elapsed() });
     }
 

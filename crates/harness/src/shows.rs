@@ -41,18 +41,18 @@ fn compared<T>(
     share: JudgeShare,
     ask: impl FnOnce(&Judge<'_>, Side<'_>, Side<'_>) -> T,
 ) -> T {
-    let frames = contenders.map(|contender| contender.renderer.render(scene, request));
+    let outputs = contenders.map(|contender| contender.renderer.render(scene, request));
     let judge = Judge::new(scene, share);
     let attributions = [0, 1].map(|side| {
         let made_with = contenders[side].approximations();
-        let resolution = contenders[side].renderer.resolution();
+        let precision = contenders[side].renderer.precision();
         let errs = made_with != Switches::EXACT;
-        errs.then(|| attribute(&judge, &frames[side], made_with, resolution))
+        errs.then(|| attribute(&judge, &outputs[side], made_with, precision))
     });
     let [a, b] = [0, 1].map(|side| Side {
         name: contenders[side].renderer.name(),
-        frame: &frames[side],
-        resolution: contenders[side].renderer.resolution(),
+        output: &outputs[side],
+        precision: contenders[side].renderer.precision(),
         attributions: attributions[side].as_ref(),
     });
     ask(&judge, a, b)

@@ -38,7 +38,7 @@ fn timeless(mut validation: Validation) -> Validation {
     }
     for rendered in &mut validation.rendered {
         rendered.time = Duration::from_millis(9);
-        for stage in &mut rendered.frame.stages {
+        for stage in &mut rendered.output.stages {
             stage.time = Duration::from_millis(3);
         }
     }

@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use raypencil_referee::{CertifiedMap, CertifiedReturns, Format, Referee};
 use raypencil_scene::{
-    FluxModel, Frame, Image, Progress, Quantities, Returns, Sampling, Scene, SensorId, SensorMap, Stage,
+    FluxModel, Image, Progress, Quantities, RenderOutput, Returns, Sampling, Scene, SensorId, SensorMap,
+    Stage,
 };
 
 /// What somebody says of each ray of a scene. Every quantity is optional.
@@ -38,7 +39,7 @@ impl Answers {
             face: false,
             point: false,
             normal: false,
-            incidence: false,
+            cos_incidence: false,
         };
         let maps = scene.sensors().map(|sensor| {
             let (width, height) = scene.size(sensor).expect("a sensor of this scene");
@@ -54,26 +55,26 @@ impl Answers {
     }
 
     /// What a renderer's frame says.
-    pub fn of_frame(scene: &Scene, frame: &Frame) -> Self {
+    pub fn of_output(scene: &Scene, output: &RenderOutput) -> Self {
         let mut answers = Self::none(scene);
         for (mine, sensor) in answers.maps.iter_mut().zip(scene.sensors()) {
-            if let Some(map) = frame.map(sensor) {
+            if let Some(map) = output.map(sensor) {
                 *mine = map.clone();
             }
         }
         for (index, light) in answers.light.iter_mut().enumerate() {
-            if let Some(returns) = frame.returns.get(index) {
+            if let Some(returns) = output.returns.get(index) {
                 light.returns = returns.clone();
             }
-            light.image = frame.flux.get(index).cloned();
+            light.image = output.flux.get(index).cloned();
         }
         answers
     }
 
     /// The same as a frame, as far as a frame holds it: an image that one beam does not have leaves out those of
     /// later beams.
-    pub(crate) fn to_frame(&self) -> Frame {
-        Frame {
+    pub(crate) fn to_output(&self) -> RenderOutput {
+        RenderOutput {
             camera: self.maps.first().cloned(),
             beams: self.maps.iter().skip(1).cloned().collect(),
             returns: self.light.iter().map(|light| light.returns.clone()).collect(),

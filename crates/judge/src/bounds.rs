@@ -24,7 +24,7 @@
 
 use glam::DVec3;
 
-use raypencil_scene::{Beam, FaceId, Filter, FluxModel, Mesh, Profile, Ray, Resolution, Scene};
+use raypencil_scene::{Beam, FaceId, Filter, FluxModel, Mesh, Precision, Profile, Ray, Scene};
 
 /// |dR| <= RANGE kappa u S / c.
 const RANGE: f64 = 36.0;
@@ -49,13 +49,13 @@ pub struct Bounds {
     /// Distance of the unit normal.
     pub normal: f64,
     /// Cosine of incidence.
-    pub incidence: f64,
+    pub cos_incidence: f64,
 }
 
 impl Bounds {
     /// The bounds for a hit on `face` at `range` metres along `ray`.
-    pub fn of(mesh: &Mesh, face: FaceId, ray: &Ray, range: f64, resolution: Resolution) -> Self {
-        let u = resolution.unit_roundoff;
+    pub fn of(mesh: &Mesh, face: FaceId, ray: &Ray, range: f64, precision: Precision) -> Self {
+        let u = precision.unit_roundoff;
         let [a, b, c] = mesh.faces()[face.0 as usize].map(|v| {
             let [x, y, z] = mesh.vertices()[v as usize];
             DVec3::new(f64::from(x), f64::from(y), f64::from(z))
@@ -71,7 +71,7 @@ impl Bounds {
             range: range_bound,
             point: range_bound + POINT * u * scale,
             normal: NORMAL * aspect * u,
-            incidence: INCIDENCE * aspect * u * scale / range,
+            cos_incidence: INCIDENCE * aspect * u * scale / range,
         }
     }
 
@@ -81,7 +81,7 @@ impl Bounds {
             range: self.range + other.range,
             point: self.point + other.point,
             normal: self.normal + other.normal,
-            incidence: self.incidence + other.incidence,
+            cos_incidence: self.cos_incidence + other.cos_incidence,
         }
     }
 }
@@ -105,9 +105,9 @@ pub(crate) struct ReturnBounds {
     /// r, metres.
     pub(crate) depth: f64,
     /// cos(phi).
-    pub(crate) off_axis: f64,
+    pub(crate) cos_off_axis: f64,
     /// cos(theta).
-    pub(crate) emission: f64,
+    pub(crate) cos_view: f64,
     /// The flux, relative.
     pub(crate) flux: f64,
     /// The flux, watts (`eq1`: W/m): where a share of the power is so small that it has no 53 digits left.
@@ -120,13 +120,13 @@ pub(crate) struct Returned {
     /// R, metres.
     pub(crate) range: f64,
     /// cos(psi).
-    pub(crate) incidence: f64,
+    pub(crate) cos_incidence: f64,
     /// r, metres.
     pub(crate) depth: f64,
     /// cos(phi).
-    pub(crate) off_axis: f64,
+    pub(crate) cos_off_axis: f64,
     /// cos(theta).
-    pub(crate) emission: f64,
+    pub(crate) cos_view: f64,
     /// d, metres.
     pub(crate) distance: f64,
 }
@@ -138,11 +138,11 @@ impl ReturnBounds {
         (beam, column): (usize, u32),
         hit: &Bounds,
         values: Returned,
-        resolution: Resolution,
+        precision: Precision,
         model: FluxModel,
     ) -> Self {
-        let u = resolution.unit_roundoff;
-        let Returned { range, incidence, depth, off_axis, emission, distance } = values;
+        let u = precision.unit_roundoff;
+        let Returned { range, cos_incidence, depth, cos_off_axis, cos_view, distance } = values;
         let centre = scene.camera().scene_from_sensor.position.length();
         let point = hit.point + SEEN * u * (2.0 * centre + 2.0 * distance);
         let direction = point / distance;
@@ -162,12 +162,12 @@ impl ReturnBounds {
                 weights + 2.0 * alpha * alpha * 20.0 * u
             }
         };
-        let shared = (2.0 * point / depth + of_emission / emission).abs() + FLUX * u + sum;
+        let shared = (2.0 * point / depth + of_emission / cos_view).abs() + FLUX * u + sum;
         let relative = match model {
             FluxModel::Radiometric => {
-                let filter = filter_bound(scene, beam, off_axis, of_off_axis, u);
+                let filter = filter_bound(scene, beam, cos_off_axis, of_off_axis, u);
                 shared
-                    + (3.0 * of_off_axis / off_axis).abs()
+                    + (3.0 * of_off_axis / cos_off_axis).abs()
                     + filter
                     + sigma * (hit.range + point)
                     + sigma * (range + distance) * 4.0 * u
@@ -176,8 +176,8 @@ impl ReturnBounds {
             FluxModel::Eq1 => {
                 shared
                     + hit.range / range
-                    + (hit.incidence / incidence).abs()
-                    + filter_bound(scene, beam, off_axis, 8.0 * u, u)
+                    + (hit.cos_incidence / cos_incidence).abs()
+                    + filter_bound(scene, beam, cos_off_axis, 8.0 * u, u)
                     + sigma * (hit.range + point)
                     + sigma * (range + distance) * 4.0 * u
             }
@@ -192,16 +192,16 @@ impl ReturnBounds {
                 squares * area / (camera.focal_length * camera.focal_length * range)
             }
         };
-        let least_flux = least_normal(resolution) * (1.0 + beam.power) * (1.0 + gain);
-        Self { depth: point, off_axis: of_off_axis, emission: of_emission, flux: relative, least_flux }
+        let least_flux = least_normal(precision) * (1.0 + beam.power) * (1.0 + gain);
+        Self { depth: point, cos_off_axis: of_off_axis, cos_view: of_emission, flux: relative, least_flux }
     }
 
     /// How far two renderers with these bounds may differ.
     pub(crate) fn plus(&self, other: &Self) -> Self {
         Self {
             depth: self.depth + other.depth,
-            off_axis: self.off_axis + other.off_axis,
-            emission: self.emission + other.emission,
+            cos_off_axis: self.cos_off_axis + other.cos_off_axis,
+            cos_view: self.cos_view + other.cos_view,
             flux: self.flux + other.flux,
             least_flux: self.least_flux + other.least_flux,
         }
@@ -209,8 +209,8 @@ impl ReturnBounds {
 }
 
 /// Below this an arithmetic loses digits: its smallest normal number.
-pub(crate) fn least_normal(resolution: Resolution) -> f64 {
-    let is_double = resolution.unit_roundoff <= Resolution::F64.unit_roundoff;
+pub(crate) fn least_normal(precision: Precision) -> f64 {
+    let is_double = precision.unit_roundoff <= Precision::F64.unit_roundoff;
     if is_double { f64::MIN_POSITIVE } else { f64::from(f32::MIN_POSITIVE) }
 }
 
@@ -226,9 +226,9 @@ fn incidence_angle(beam: &Beam, column: u32) -> f64 {
 ///
 /// |dc'| <= c^2 / (c' n^2) |cos(phi)| |d cos(phi)|, c' and the difference are rounded (8 u c), and the exponent
 /// itself (10 u of it): |d ln F| = 4 ln 2 |away| (2 |dc'| / width + 10 u |away|).
-fn filter_bound(scene: &Scene, beam: &Beam, off_axis: f64, of_off_axis: f64, u: f64) -> f64 {
+fn filter_bound(scene: &Scene, beam: &Beam, cos_off_axis: f64, of_off_axis: f64, u: f64) -> f64 {
     let Filter::Interference { centre, width, index } = scene.camera().sensor.lens.filter else { return 0.0 };
-    let sin_squared = (1.0 - off_axis * off_axis).max(0.0);
+    let sin_squared = (1.0 - cos_off_axis * cos_off_axis).max(0.0);
     let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
     let of_shifted = centre * centre / (shifted * index * index) * of_off_axis + 8.0 * u * centre;
     let away = ((beam.wavelength - shifted).abs() + of_shifted) / width;
@@ -253,7 +253,7 @@ mod tests {
         )
         .unwrap();
         let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: DVec3::new(0.0, 0.0, -0.5) };
-        let bounds = Bounds::of(&mesh, FaceId(0), &ray, 3.0, Resolution::F64);
+        let bounds = Bounds::of(&mesh, FaceId(0), &ray, 3.0, Precision::F64);
         let u = 2.0_f64.recip() * f64::EPSILON;
         let scale = 6.0 + 2.0_f64.sqrt();
         // To a few roundings of the bound itself.

@@ -66,7 +66,8 @@ pub enum Quantity {
     /// The unit normal.
     Normal,
     /// The cosine of incidence, cos(psi).
-    Incidence,
+    #[serde(rename = "incidence")]
+    CosIncidence,
     /// Whether the camera sees a pencil's hit.
     Visible,
     /// Where a pencil's hit lands on the camera's image.
@@ -74,9 +75,11 @@ pub enum Quantity {
     /// r, distance of a pencil's hit from the projection centre along the camera's axis, metres.
     CameraDepth,
     /// cos(phi), of a pencil's hit as the camera sees it.
-    OffAxis,
+    #[serde(rename = "off_axis")]
+    CosOffAxis,
     /// cos(theta), of a pencil's hit towards the camera.
-    Emission,
+    #[serde(rename = "emission")]
+    CosView,
     /// What a pencil delivers, watts (`eq1`: W/m).
     PencilFlux,
     /// What a pixel receives of all beams, watts (`eq1`: W/m).
@@ -95,12 +98,12 @@ impl Quantity {
         Self::Depth,
         Self::Point,
         Self::Normal,
-        Self::Incidence,
+        Self::CosIncidence,
         Self::Visible,
         Self::Pixel,
         Self::CameraDepth,
-        Self::OffAxis,
-        Self::Emission,
+        Self::CosOffAxis,
+        Self::CosView,
         Self::PencilFlux,
         Self::PixelFlux,
     ];
@@ -116,11 +119,11 @@ impl Quantity {
             Self::Hit
             | Self::Face
             | Self::Normal
-            | Self::Incidence
+            | Self::CosIncidence
             | Self::Visible
             | Self::Pixel
-            | Self::OffAxis
-            | Self::Emission => "",
+            | Self::CosOffAxis
+            | Self::CosView => "",
         }
     }
 
@@ -133,12 +136,12 @@ impl Quantity {
             | Self::Depth
             | Self::Point
             | Self::Normal
-            | Self::Incidence => true,
+            | Self::CosIncidence => true,
             Self::Visible
             | Self::Pixel
             | Self::CameraDepth
-            | Self::OffAxis
-            | Self::Emission
+            | Self::CosOffAxis
+            | Self::CosView
             | Self::PencilFlux => sensor != SensorId::Camera,
             Self::PixelFlux => sensor == SensorId::Camera,
         }
@@ -154,12 +157,12 @@ impl fmt::Display for Quantity {
             Self::Depth => "depth",
             Self::Point => "point",
             Self::Normal => "normal",
-            Self::Incidence => "incidence",
+            Self::CosIncidence => "incidence",
             Self::Visible => "visible",
             Self::Pixel => "pixel",
             Self::CameraDepth => "camera depth",
-            Self::OffAxis => "cos(phi)",
-            Self::Emission => "cos(theta)",
+            Self::CosOffAxis => "cos(phi)",
+            Self::CosView => "cos(theta)",
             Self::PencilFlux => "pencil flux",
             Self::PixelFlux => "pixel flux",
         })

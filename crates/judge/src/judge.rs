@@ -6,7 +6,7 @@ use raypencil_referee::{
     Tolerance, VisibilityApproximations, VisibilityRuling,
 };
 use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Hit, Pixel, Resolution, Return, Sampling, Scene, SensorId};
+use raypencil_scene::{FaceId, Hit, Pixel, Precision, Return, Sampling, Scene, SensorId};
 
 /// Which of the rays that agree are judged as well; those that do not are always judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,9 +53,9 @@ impl<'s> Judge<'s> {
         place: Place,
         answer: Option<FaceId>,
         range: Option<f64>,
-        resolution: Resolution,
+        precision: Precision,
     ) -> Ruling {
-        let tolerance = self.tolerance(place, answer, range, resolution);
+        let tolerance = self.tolerance(place, answer, range, precision);
         // A face that the mesh does not have is as wrong as can be.
         self.referee.rule(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
     }
@@ -68,10 +68,10 @@ impl<'s> Judge<'s> {
         range: Option<f64>,
         visible: bool,
         pixel: Option<Pixel>,
-        resolution: Resolution,
+        precision: Precision,
     ) -> Option<VisibilityRuling> {
         let SensorId::Beam(beam) = place.sensor else { return None };
-        let tolerance = self.tolerance(place, Some(face), range, resolution);
+        let tolerance = self.tolerance(place, Some(face), range, precision);
         let Place { i, j, .. } = place;
         self.referee.rule_visibility(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
     }
@@ -107,8 +107,8 @@ impl<'s> Judge<'s> {
     }
 
     /// The faces that a ray may meet which is displaced by no more than a renderer may displace it.
-    pub fn candidate_faces(&self, place: Place, range: Option<f64>, resolution: Resolution) -> Vec<FaceId> {
-        let Tolerance { lateral, .. } = self.tolerance(place, None, range, resolution);
+    pub fn candidate_faces(&self, place: Place, range: Option<f64>, precision: Precision) -> Vec<FaceId> {
+        let Tolerance { lateral, .. } = self.tolerance(place, None, range, precision);
         self.referee.candidate_faces(place.sensor, place.i, place.j, lateral).unwrap_or_default()
     }
 
@@ -119,9 +119,9 @@ impl<'s> Judge<'s> {
         answer: Option<FaceId>,
         range: Option<f64>,
         with: Approximations,
-        resolution: Resolution,
+        precision: Precision,
     ) -> Option<Vec<Explained>> {
-        let tolerance = self.tolerance(place, answer, range, resolution);
+        let tolerance = self.tolerance(place, answer, range, precision);
         self.referee.explain(place.sensor, place.i, place.j, answer, with, tolerance)
     }
 
@@ -133,10 +133,10 @@ impl<'s> Judge<'s> {
         range: Option<f64>,
         visible: bool,
         with: VisibilityApproximations,
-        resolution: Resolution,
+        precision: Precision,
     ) -> Option<Vec<ExplainedVisibility>> {
         let SensorId::Beam(beam) = place.sensor else { return None };
-        let tolerance = self.tolerance(place, Some(face), range, resolution);
+        let tolerance = self.tolerance(place, Some(face), range, precision);
         self.referee.explain_visibility(beam, place.i, place.j, face, visible, with, tolerance)
     }
 
@@ -147,7 +147,7 @@ impl<'s> Judge<'s> {
         Place { sensor, i, j }: Place,
         answer: Option<FaceId>,
         claimed: Option<f64>,
-        resolution: Resolution,
+        precision: Precision,
     ) -> Tolerance {
         let scene = self.scene;
         let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
@@ -159,9 +159,9 @@ impl<'s> Judge<'s> {
         let place = Place { sensor, i, j };
         let range = known.and_then(|face| self.plane_hit(place, face)).map(|hit| hit.range);
         let range = range.or(claimed.filter(|range| range.is_finite() && *range > 0.0)).unwrap_or(max_range);
-        let depth = known.map_or(0.0, |face| Bounds::of(mesh, face, &ray, range, resolution).range);
+        let depth = known.map_or(0.0, |face| Bounds::of(mesh, face, &ray, range, precision).range);
         let edge = known.map_or(0.0, |face| longest_edge(scene, face));
-        let error = DIRECTION * resolution.unit_roundoff * (range + edge + ray.origin.length());
+        let error = DIRECTION * precision.unit_roundoff * (range + edge + ray.origin.length());
         let q = ray.direction.length();
         // The smallest angle between neighbouring cells' rays here: across the ray, a cell is at least its
         // size times the cosine of the obliquity.

@@ -37,7 +37,7 @@ impl<'a> Arrays<'a> {
         }
         self.vectors("P", "m", map.point.as_ref())?;
         self.vectors("N", "1", map.normal.as_ref())?;
-        self.cosines("incidence.V", map.incidence.as_ref())?;
+        self.cosines("incidence.V", map.cos_incidence.as_ref())?;
         if let Some(faces) = &map.face {
             let index = |face: Maybe<_>| face.get().map_or(u32::MAX, |raypencil_scene::FaceId(index)| index);
             self.wholes("face.I", &convert(faces, index))?;
@@ -79,8 +79,8 @@ impl<'a> Arrays<'a> {
             self.wholes("pixel.J", &part(|pixel| pixel.j))?;
         }
         self.lengths("view.Z", returns.depth.as_ref())?;
-        self.cosines("offAxis.V", returns.off_axis.as_ref())?;
-        self.cosines("emission.V", returns.emission.as_ref())?;
+        self.cosines("offAxis.V", returns.cos_off_axis.as_ref())?;
+        self.cosines("emission.V", returns.cos_view.as_ref())?;
         self.flux(&flux_channel(None), model, returns.flux.as_ref())?;
         let second = model.other();
         self.flux(&flux_channel(Some(second)), second, light.other_flux.as_ref())

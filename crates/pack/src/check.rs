@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use crate::blind::blind_scene;
 use crate::manifest::{FileRole, Manifest, PackKind};
-use crate::provenance::{ProvenanceError, note, resolution_of};
+use crate::provenance::{ProvenanceError, note, precision_of};
 use raypencil_files::{FileError, Limits, Storage, read_listed};
 use raypencil_judge::{Check, Item, Quantity, Recorded, RecordingError, Truth, check};
 use raypencil_scene::Place;
-use raypencil_scene::{Progress, Resolution, Scene};
+use raypencil_scene::{Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, scene_sha256};
 
 /// Why a candidate could not be held to a pack.
@@ -59,7 +59,7 @@ impl Checked {
     }
 }
 
-/// Holds a candidate to a pack. Its arithmetic is as fine as `resolution` says; if nothing is said, as its own
+/// Holds a candidate to a pack. Its arithmetic is as fine as `precision` says; if nothing is said, as its own
 /// `candidate.json` does, and else that of doubles.
 ///
 /// # Errors
@@ -68,7 +68,7 @@ impl Checked {
 pub fn check_pack(
     pack: &Path,
     candidate: &Path,
-    resolution: Option<Resolution>,
+    precision: Option<Precision>,
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
     progress.stage("reading the pack");
@@ -88,9 +88,9 @@ pub fn check_pack(
     // The candidate before the truth: what is wrong with it is said soon.
     progress.stage("reading the candidate");
     let note = note(candidate, &scene)?;
-    let own = note.map(|note| resolution_of(note.arithmetic));
-    let resolution = resolution.or(own).unwrap_or(Resolution::F64);
-    let recorded = Recorded::read(candidate, &scene, resolution)?;
+    let own = note.map(|note| precision_of(note.arithmetic));
+    let precision = precision.or(own).unwrap_or(Precision::F64);
+    let recorded = Recorded::read(candidate, &scene, precision)?;
 
     let truth = match (manifest.kind, manifest.blind_seed) {
         (PackKind::Blind, Some(seed)) => {
@@ -128,7 +128,7 @@ fn read_answers<'s>(pack: &Path, manifest: &Manifest, scene: &'s Scene) -> Resul
     let answers = manifest.files.iter().filter(|file| file.role == FileRole::Answers);
     let channels = read_listed(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
     let name = manifest.scene.name.clone();
-    let recorded = Recorded::of_channels(name, pack, scene, Resolution::F64, &channels)?;
+    let recorded = Recorded::of_channels(name, pack, scene, Precision::F64, &channels)?;
     for sensor in scene.sensors() {
         for quantity in Quantity::ALL.into_iter().filter(|one| one.is_of(sensor) && *one != Quantity::Hit) {
             let own: Vec<Item> = match quantity {

@@ -9,7 +9,7 @@ use crate::check::Checked;
 use raypencil_files::{FileError, FolderError, begin, write_atomically};
 use raypencil_judge::{Check, Class, Item, ItemTally, Largest, SensorCheck, Wrong, key_of, name_of, unit_of};
 use raypencil_report::{count, number, quantity};
-use raypencil_scene::Resolution;
+use raypencil_scene::Precision;
 
 /// The number of the JSON's form; it grows when a key changes its meaning or goes away.
 const FORMAT: u32 = 1;
@@ -17,8 +17,8 @@ const FORMAT: u32 = 1;
 /// Wrong rays that get their lines on the screen.
 const SHOWN: usize = 5;
 
-fn arithmetic(resolution: Resolution) -> &'static str {
-    if resolution == Resolution::F32 { "f32" } else { "f64" }
+fn arithmetic(precision: Precision) -> &'static str {
+    if precision == Precision::F32 { "f32" } else { "f64" }
 }
 
 fn verdict(check: &Check) -> &'static str {
@@ -39,7 +39,7 @@ pub fn check_screen(checked: &Checked) -> String {
         env!("CARGO_PKG_VERSION"),
         recorded.name,
         subject.name,
-        arithmetic(recorded.resolution)
+        arithmetic(recorded.precision)
     );
     let heads = [
         "",
@@ -201,7 +201,7 @@ pub fn check_json(checked: &Checked) -> String {
         "version": env!("CARGO_PKG_VERSION"),
         "verdict": verdict(check),
         "candidate": recorded.name,
-        "arithmetic": arithmetic(recorded.resolution),
+        "arithmetic": arithmetic(recorded.precision),
         "scene": { "name": subject.name, "sha256": subject.sha256 },
         "blind": is_blind,
         "compared": check.compared(),

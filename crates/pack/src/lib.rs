@@ -16,5 +16,5 @@ pub use manifest::{
     ChannelType, FileRole, FileType, FluxWord, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile,
     ManifestScene, ManifestSensor, PackKind,
 };
-pub use provenance::{Arithmetic, Provenance, ProvenanceError, Total, note, resolution_of};
+pub use provenance::{Arithmetic, Provenance, ProvenanceError, Total, note, precision_of};
 pub use write::{PackError, write_pack};

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::manifest::ManifestScene;
 use raypencil_files::bytes;
 use raypencil_files::{Fault, FileError};
-use raypencil_scene::{Resolution, Scene};
+use raypencil_scene::{Precision, Scene};
 use raypencil_scene_io::scene_sha256;
 
 /// Why the note of a recording cannot be used.
@@ -33,10 +33,10 @@ pub enum ProvenanceError {
 }
 
 /// The resolution of an arithmetic.
-pub fn resolution_of(arithmetic: Arithmetic) -> Resolution {
+pub fn precision_of(arithmetic: Arithmetic) -> Precision {
     match arithmetic {
-        Arithmetic::F32 => Resolution::F32,
-        Arithmetic::F64 => Resolution::F64,
+        Arithmetic::F32 => Precision::F32,
+        Arithmetic::F64 => Precision::F64,
     }
 }
 

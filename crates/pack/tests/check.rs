@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use raypencil_harness::contender;
 use raypencil_judge::{Class, Quantity, Recorded, Truth, check};
 use raypencil_pack::{Checked, check_json, check_pack};
-use raypencil_scene::{Request, Resolution, Silent};
+use raypencil_scene::{Precision, Request, Silent};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 
 const SCHEMA: &str = include_str!("../../../docs/formats/check.schema.json");
@@ -16,7 +16,7 @@ fn pack() -> PathBuf {
 }
 
 fn of_itself() -> Checked {
-    check_pack(&pack(), &pack(), Some(Resolution::F64), &Silent).expect("a pack as it was written")
+    check_pack(&pack(), &pack(), Some(Precision::F64), &Silent).expect("a pack as it was written")
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn frames_in_memory_are_judged_in_double_precision() {
     let truth = Truth::certified(&scene, &Silent);
     for renderer in ["scanline", "tracer"] {
         let frame = contender(renderer).unwrap().renderer.render(&scene, &Request::EVERYTHING);
-        let mut recorded = Recorded::of_frame(renderer, &scene, &frame, Resolution::F64);
+        let mut recorded = Recorded::of_output(renderer, &scene, &frame, Precision::F64);
         let found = check(&truth, &recorded, &Silent);
         assert!(found.passes());
         let totals = found.totals();

@@ -31,7 +31,7 @@ static PLAIN: LazyLock<Scene> = LazyLock::new(|| {
     load(path.to_str().expect("a path in UTF-8"), &Overrides::default()).expect("a valid scene").scene
 });
 
-fn frame(bencher: Bencher<'_, '_>, scene: &Scene, name: &str) {
+fn output(bencher: Bencher<'_, '_>, scene: &Scene, name: &str) {
     let renderer = contender(name).expect("a renderer of this house").renderer;
     let render = || renderer.render(black_box(scene), &Request::EVERYTHING);
     // Tables and trees are made once.
@@ -41,10 +41,10 @@ fn frame(bencher: Bencher<'_, '_>, scene: &Scene, name: &str) {
 
 #[divan::bench(args = ["scanline", "scanline-paper", "tracer"], sample_count = 11, sample_size = 1)]
 fn facets(bencher: Bencher<'_, '_>, name: &str) {
-    frame(bencher, &FACETS, name);
+    output(bencher, &FACETS, name);
 }
 
 #[divan::bench(args = ["scanline", "scanline-paper", "tracer"], sample_count = 11, sample_size = 1)]
 fn half_a_million(bencher: Bencher<'_, '_>, name: &str) {
-    frame(bencher, &PLAIN, name);
+    output(bencher, &PLAIN, name);
 }

@@ -37,8 +37,8 @@ fn main() {
         let scene =
             Scene::new(Arc::clone(&mesh), *rig.camera(), rig.beams().to_vec(), rig.atmosphere(), model)
                 .expect("a scene");
-        let frame = Scanline::default().render(&scene, &Request::EVERYTHING);
-        let flux = frame.returns[0].flux.as_ref().expect("the renderer has flux");
+        let output = Scanline::default().render(&scene, &Request::EVERYTHING);
+        let flux = output.returns[0].flux.as_ref().expect("the renderer has flux");
         (0..flux.width()).map(|i| flux.at(i, flux.height() / 2)).collect()
     };
     let (radiometric, eq1) = (flux(FluxModel::Radiometric), flux(FluxModel::Eq1));

@@ -64,9 +64,9 @@ fn page(scene: &str, name: &str) -> Result<(), Box<dyn std::error::Error>> {
         let truth = Truth::certified(&loaded.scene, &Stages);
         for renderer in RENDERERS {
             let contender = contender(renderer).ok_or("a renderer of this house")?;
-            let frame = contender.renderer.render(&loaded.scene, &Request::EVERYTHING);
-            let resolution = contender.renderer.resolution();
-            let recorded = Recorded::of_frame(renderer, &loaded.scene, &frame, resolution);
+            let output = contender.renderer.render(&loaded.scene, &Request::EVERYTHING);
+            let precision = contender.renderer.precision();
+            let recorded = Recorded::of_output(renderer, &loaded.scene, &output, precision);
             let model = if flux_model == FluxModel::Eq1 { "eq1" } else { "radiometric" };
             columns.push((format!("{renderer} {model}"), check(&truth, &recorded, &Stages)));
         }

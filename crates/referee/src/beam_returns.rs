@@ -32,9 +32,9 @@ pub struct RoundedReturn {
     /// Depth r of the point in the camera, metres.
     pub depth: Rounded,
     /// cos(phi), phi being the angle between the camera's axis and the line to the point.
-    pub off_axis: Rounded,
+    pub cos_off_axis: Rounded,
     /// cos(theta), theta being the angle between the normal and the line to the camera.
-    pub emission: Rounded,
+    pub cos_view: Rounded,
     /// Flux by the model `radiometric`, watts.
     pub radiometric: Flux,
     /// Flux by the model `eq1`, W/m.
@@ -57,8 +57,8 @@ impl RoundedReturn {
             visible: self.visible,
             pixel: self.pixel,
             depth: of(self.depth),
-            off_axis: of(self.off_axis),
-            emission: of(self.emission),
+            cos_off_axis: of(self.cos_off_axis),
+            cos_view: of(self.cos_view),
             flux: of(self.flux(model).unwrap_or_else(|undecided| undecided.0)),
         }
     }
@@ -227,12 +227,12 @@ impl BeamReturns<'_, '_> {
             let CameraTerms { axial, scale, frame_scale, .. } = &exact().camera;
             quotient(axial, &frame_scale.mul(scale))
         });
-        let off_axis = axial.over(&squared.sqrt()).rounded().unwrap_or_else(|| {
+        let cos_off_axis = axial.over(&squared.sqrt()).rounded().unwrap_or_else(|| {
             let CameraTerms { axial, squared, .. } = &exact().camera;
             cosine(axial, squared)
         });
         let length = direction_squared.mul(&fast.intersection.normal_squared).sqrt();
-        let emission = towards.over(&length).rounded().unwrap_or_else(|| {
+        let cos_view = towards.over(&length).rounded().unwrap_or_else(|| {
             let CameraTerms { towards, direction_squared, .. } = &exact().camera;
             cosine(towards, &direction_squared.mul(&exact().intersection.normal_squared))
         });
@@ -244,8 +244,8 @@ impl BeamReturns<'_, '_> {
             visible,
             pixel,
             depth,
-            off_axis,
-            emission,
+            cos_off_axis,
+            cos_view,
             radiometric: flux(FluxModel::Radiometric),
             eq1: flux(FluxModel::Eq1),
         })

@@ -140,7 +140,7 @@ impl FluxFormula<'_> {
         let depth = a.div(&a.abs(&view.axial), &a.mul(&a.abs(&view.frame_scale), &a.abs(&view.scale)));
         // cos(theta).
         let lengths = a.mul(&a.abs(&view.direction_squared), &a.abs(&intersection.normal_squared));
-        let emission = a.div(&a.abs(&view.towards), &a.sqrt(&lengths));
+        let cos_view = a.div(&a.abs(&view.towards), &a.sqrt(&lengths));
         let range = a.div(
             &a.mul(&a.abs(&intersection.height), &a.sqrt(&a.abs(&intersection.direction_squared))),
             &a.abs(&intersection.scale),
@@ -149,12 +149,12 @@ impl FluxFormula<'_> {
             FluxModel::Radiometric => {
                 // cos(phi), of the ray itself, and its square.
                 let squared = a.abs(&view.squared);
-                let off_axis = a.div(&a.abs(&view.axial), &a.sqrt(&squared));
+                let cos_off_axis = a.div(&a.abs(&view.axial), &a.sqrt(&squared));
                 let cos_squared = a.div(&a.abs(&view.axial.square()), &squared);
                 let sin_squared = a.div(&a.abs(&view.squared.sub(&view.axial.square())), &squared);
                 let distance = a.div(&a.sqrt(&a.abs(&view.direction_squared)), &a.abs(&view.scale));
                 let delivered =
-                    product(&[power, emission, cos_squared, off_axis, self.filter(a, sin_squared)]);
+                    product(&[power, cos_view, cos_squared, cos_off_axis, self.filter(a, sin_squared)]);
                 let delivered = a.div(&delivered, &square(&depth));
                 self.through_air(a, delivered, || a.add(&range, &distance))
             }
@@ -174,12 +174,12 @@ impl FluxFormula<'_> {
                 let sin_squared = a.div(&a.abs(&aside), &squared);
                 let lengths =
                     a.mul(&a.abs(&intersection.normal_squared), &a.abs(&intersection.direction_squared));
-                let incidence = a.div(&a.abs(&intersection.approach), &a.sqrt(&lengths));
+                let cos_incidence = a.div(&a.abs(&intersection.approach), &a.sqrt(&lengths));
                 let delivered = product(&[
                     power,
                     a.pi(),
-                    emission,
-                    incidence,
+                    cos_view,
+                    cos_incidence,
                     square(&cos_squared),
                     self.filter(a, sin_squared),
                     a.exact(camera.pixel_pitch[0]),

@@ -73,7 +73,7 @@ impl Intersection<Dyadic> {
         root(sign_of(part), &part.square(), &self.normal_squared)
     }
 
-    pub(crate) fn incidence(&self) -> Rounded {
+    pub(crate) fn cos_incidence(&self) -> Rounded {
         let lengths = self.normal_squared.mul(&self.direction_squared);
         root(sign_of(&minus(&self.approach)), &self.approach.square(), &lengths)
     }

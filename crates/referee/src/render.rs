@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, SensorId, Stage};
+use raypencil_scene::{Precision, RenderOutput, Renderer, Request, Scene, SensorId, Stage};
 
 use crate::rounding::Format;
 use crate::verdict::Referee;
@@ -28,11 +28,11 @@ impl Renderer for ExactRenderer {
         "referee"
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let start = Instant::now();
         let referee = Referee::new(scene);
         let mut stages = vec![Stage { name: "tree".into(), time: start.elapsed() }];
@@ -56,6 +56,6 @@ impl Renderer for ExactRenderer {
             }
             stages.push(Stage { name: format!("{} returns", SensorId::Beam(index)), time: start.elapsed() });
         }
-        Frame { camera, beams, returns, flux, stages }
+        RenderOutput { camera, beams, returns, flux, stages }
     }
 }

@@ -31,7 +31,7 @@ pub struct RoundedHit {
     /// Distance along the sensor's normal axis, metres.
     pub depth: Rounded,
     /// cos(psi), psi being the angle between the normal and the reversed ray.
-    pub incidence: Rounded,
+    pub cos_incidence: Rounded,
 }
 
 impl RoundedHit {
@@ -44,7 +44,7 @@ impl RoundedHit {
             point: DVec3::from_array(self.point.map(of)),
             normal: DVec3::from_array(self.normal.map(of)),
             depth: of(self.depth),
-            incidence: of(self.incidence),
+            cos_incidence: of(self.cos_incidence),
         }
     }
 }
@@ -82,8 +82,8 @@ pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<Ro
         fast.normal.0[k].over(&normal_length).rounded().unwrap_or_else(|| exact().normal_part(k))
     });
     let towards = minus(&fast.approach).over(&normal_length.mul(&length));
-    let incidence = towards.rounded().unwrap_or_else(|| exact().incidence());
-    Some(RoundedHit { face: face.id, range, point, normal, depth, incidence })
+    let cos_incidence = towards.rounded().unwrap_or_else(|| exact().cos_incidence());
+    Some(RoundedHit { face: face.id, range, point, normal, depth, cos_incidence })
 }
 
 impl Referee<'_> {

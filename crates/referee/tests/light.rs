@@ -99,8 +99,8 @@ fn one_pencil_on_a_wall_by_hand() {
     assert_eq!(back.pixel, Some(Pixel { i: 0, j: 32 }));
     assert_eq!(back.depth, 2.0);
     let cosine = 2.0 / 5.0_f64.sqrt();
-    close(back.off_axis, cosine);
-    close(back.emission, cosine);
+    close(back.cos_off_axis, cosine);
+    close(back.cos_view, cosine);
     // I = P r_d (D^2 / 4) cos(theta) cos^3(phi) / r^2 = 4 (1/2) (2^-18 / 4) (16/25) / 4 = 2^-21 16/25.
     assert_eq!(back.flux, 16.0 / 25.0 / f64::from(1 << 21));
     // Equation (1): phi of the centre of pixel (0, 32): x = -31.5/64, y = 1/128, so tan^2 = (63^2 + 1) / 128^2
@@ -194,8 +194,8 @@ fn a_plane_met_from_behind_is_seen_where_it_is() {
     let back = back.in_format(Format::Double, FluxModel::Radiometric);
     let cosine = 2.0 / 5.0_f64.sqrt();
     assert_eq!((back.depth, back.flux), (2.0, 0.0));
-    close(back.off_axis, cosine);
-    close(back.emission, -cosine);
+    close(back.cos_off_axis, cosine);
+    close(back.cos_view, -cosine);
 }
 
 #[test]

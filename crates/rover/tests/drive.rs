@@ -10,7 +10,7 @@ use raypencil_rover::{
     CameraImage, Detection, Drive, DriveFrame, DrivePlan, ElevationSource, ExposureMode, Extraction, Label,
     LocalisationErrors, OnVehicle, PositionFixes, Rig, Route, ScanReason, ScanRule, StripeLocation, Sweep,
 };
-use raypencil_scene::{Frame, Image, Mesh, Pose, Renderer, Request, Resolution, Scene};
+use raypencil_scene::{Image, Mesh, Pose, Precision, RenderOutput, Renderer, Request, Scene};
 
 /// A renderer that puts one watt into a pixel for every pencil that the pixel sees.
 struct StandIn;
@@ -20,11 +20,11 @@ impl Renderer for StandIn {
         "stand-in"
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         assert!(request.returns && !request.camera && !request.beams);
         // The vehicle frame is taken to be the scene frame.
         let rig = Rig::from_scene(scene, Pose::IDENTITY);
@@ -45,7 +45,7 @@ impl Renderer for StandIn {
             image
         });
         let flux = flux.collect();
-        Frame { camera: None, beams: Vec::new(), returns: Vec::new(), flux, stages: Vec::new() }
+        RenderOutput { camera: None, beams: Vec::new(), returns: Vec::new(), flux, stages: Vec::new() }
     }
 }
 

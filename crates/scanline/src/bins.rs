@@ -72,7 +72,7 @@ impl Bins {
         points: impl Iterator<Item = Option<&'a StripePoint>> + Clone,
     ) -> Self {
         let landed = points.enumerate().filter_map(|(index, point)| {
-            let point = point.filter(|point| point.emission > 0.0)?;
+            let point = point.filter(|point| point.cos_view > 0.0)?;
             let landing = point.landing?;
             let binned = Binned {
                 at: landing.at,
@@ -205,11 +205,11 @@ mod tests {
         StripePoint {
             face: FaceId(0),
             range: 1.0,
-            incidence: 1.0,
-            emission: 1.0,
+            cos_incidence: 1.0,
+            cos_view: 1.0,
             depth: 1.0,
             distance: 1.0,
-            off_axis: 1.0,
+            cos_off_axis: 1.0,
             sin_squared: 0.0,
             landing: Some(Landing { pixel: Pixel { i, j }, at, inverse_t: 1.0 / f64::from(2 + i) }),
             error: PointError { along: DVec3::ZERO, anywhere: 0.0 },
@@ -223,7 +223,7 @@ mod tests {
         let mut points: Vec<_> = cells.map(|(i, j)| Some(point(i, j))).collect();
         points.push(Some(point(4, 4)));
         points.push(Some(StripePoint { landing: None, ..point(0, 0) }));
-        points.push(Some(StripePoint { emission: 0.0, ..point(0, 0) }));
+        points.push(Some(StripePoint { cos_view: 0.0, ..point(0, 0) }));
         points.push(None);
         points
     }

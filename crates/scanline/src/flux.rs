@@ -122,13 +122,13 @@ impl<'a> Flux<'a> {
             // (pi D^2/4) cos(phi) at the distance d = r / cos(phi). phi is the ray's own.
             Model::Radiometric => {
                 let f_phi = pass(camera.lens.filter, self.wavelength, point.sin_squared);
-                let cos_3_phi = point.off_axis * point.off_axis * point.off_axis;
+                let cos_3_phi = point.cos_off_axis * point.cos_off_axis * point.cos_off_axis;
                 share
                     * reflectivity
                     * c_loss
                     * f_phi
                     * (0.25 * aperture * aperture)
-                    * point.emission
+                    * point.cos_view
                     * cos_3_phi
                     / (r * r)
                     * self.transmission(big_r + point.distance)
@@ -137,7 +137,7 @@ impl<'a> Flux<'a> {
             Model::Eq1 { tables, f_phi } => {
                 // CHOICE: the laser behind the face (a back that rule 1b as printed has let be hit) delivers
                 // nothing: power is not negative.
-                if !(point.incidence > 0.0) {
+                if !(point.cos_incidence > 0.0) {
                     return 0.0;
                 }
                 let of_pixel = pixel.j as usize * camera.width as usize + pixel.i as usize;
@@ -153,8 +153,8 @@ impl<'a> Flux<'a> {
                     * f_phi
                     * a_cp
                     * cos_4_phi
-                    * point.emission
-                    * point.incidence
+                    * point.cos_view
+                    * point.cos_incidence
                     / (big_r * (r * r))
                     * self.transmission(r)
                     * self.transmission(big_r)

@@ -73,7 +73,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use raypencil_scene::{
-    FaceId, Frame, Image, Maybe, Quantities, Renderer, Request, Resolution, Returns, Sampling, Scene,
+    FaceId, Image, Maybe, Precision, Quantities, RenderOutput, Renderer, Request, Returns, Sampling, Scene,
     SensorId, SensorMap, Stage,
 };
 
@@ -207,11 +207,11 @@ impl Renderer for Scanline {
         &self.name
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let mut stages = Vec::new();
         // There are no rays to displace: a face is projected, and the grid's cells find themselves in it.
         let supported = request.sampling == Sampling::Centres;
@@ -234,7 +234,7 @@ impl Renderer for Scanline {
         });
         if !supported {
             let (beams, returns) = unsupported(scene, request);
-            return Frame { camera, beams, returns, flux: Vec::new(), stages };
+            return RenderOutput { camera, beams, returns, flux: Vec::new(), stages };
         }
 
         // The faces that pencils hit are all that returns want of the maps.
@@ -266,12 +266,12 @@ impl Renderer for Scanline {
         if !request.beams {
             beams.clear();
         }
-        Frame { camera, beams, returns, flux, stages }
+        RenderOutput { camera, beams, returns, flux, stages }
     }
 }
 
 const NOTHING: Quantities =
-    Quantities { range: false, depth: false, face: false, point: false, normal: false, incidence: false };
+    Quantities { range: false, depth: false, face: false, point: false, normal: false, cos_incidence: false };
 
 /// Of jittered pencils nothing is known: maps and returns without a quantity, and no flux.
 fn unsupported(scene: &Scene, request: &Request) -> (Vec<SensorMap>, Vec<Returns>) {

@@ -25,15 +25,15 @@ pub(crate) struct StripePoint {
     /// R, metres.
     pub(crate) range: f64,
     /// cos(psi). Negative on a back that rule 1b as printed lets a beam hit.
-    pub(crate) incidence: f64,
+    pub(crate) cos_incidence: f64,
     /// cos(theta), by the face's own normal: negative where the camera is behind the face.
-    pub(crate) emission: f64,
+    pub(crate) cos_view: f64,
     /// r: along the camera's axis, metres.
     pub(crate) depth: f64,
     /// d: from the projection centre, metres.
     pub(crate) distance: f64,
     /// cos(phi) of the point itself.
-    pub(crate) off_axis: f64,
+    pub(crate) cos_off_axis: f64,
     /// sin^2(phi) of the point itself.
     pub(crate) sin_squared: f64,
     /// Where it lands, if it does.
@@ -130,7 +130,7 @@ fn stripe_point(
     let n_length = plane.normal.length();
     // n.q = d / t, so cos(psi) = -n.q / (|n| |q|) needs no direction.
     let laser_distance = beam.row_distance(&plane, y);
-    let incidence = -laser_distance * inverse_t / (n_length * q_length);
+    let cos_incidence = -laser_distance * inverse_t / (n_length * q_length);
 
     // Step 3: the point in the camera's frame, and its image.
     let in_beam = beam.row_origin(y) + beam.q(x, y) / inverse_t;
@@ -154,14 +154,14 @@ fn stripe_point(
     Some(StripePoint {
         face,
         range,
-        incidence,
-        emission: cosine(-camera_distance, n_length * distance),
+        cos_incidence,
+        cos_view: cosine(-camera_distance, n_length * distance),
         depth: p.z,
         distance,
-        off_axis: cosine(p.z, distance),
+        cos_off_axis: cosine(p.z, distance),
         sin_squared: cosine(across, distance_squared),
         landing,
-        error: error(&corners, n_length, incidence.abs(), range, in_beam, distance, beam, camera),
+        error: error(&corners, n_length, cos_incidence.abs(), range, in_beam, distance, beam, camera),
     })
 }
 

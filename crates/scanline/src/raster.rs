@@ -166,7 +166,7 @@ impl Raster {
         quantities: Quantities,
         rows: &mut [SensorRow<'_>],
     ) {
-        let geometry = quantities.point || quantities.normal || quantities.incidence;
+        let geometry = quantities.point || quantities.normal || quantities.cos_incidence;
         for row in rows {
             let cells = (row.j - self.first_row) as usize * self.width;
             let kept = &self.inverse_t[cells..cells + self.width];
@@ -226,6 +226,6 @@ fn hit<T: Transformation>(
         point: sensor_from_scene.back(p),
         normal: n / n_length,
         depth: transformation.plane_distance() / inverse_t,
-        incidence: -distance * inverse_t / (n_length * q_length),
+        cos_incidence: -distance * inverse_t / (n_length * q_length),
     }
 }

@@ -86,8 +86,8 @@ pub(crate) fn of_beams(
                     visible,
                     pixel,
                     depth: point.depth,
-                    off_axis: point.off_axis,
-                    emission: point.emission,
+                    cos_off_axis: point.cos_off_axis,
+                    cos_view: point.cos_view,
                     flux: delivered,
                 };
                 returns.put(i, j, &back);

@@ -32,7 +32,7 @@ pub struct Hit {
     /// Distance of the point from the ray's origin along the sensor's normal axis, metres.
     pub depth: f64,
     /// cos(psi): cosine of the angle between the reversed ray and the normal.
-    pub incidence: f64,
+    pub cos_incidence: f64,
 }
 
 /// One of a scene's sensors.

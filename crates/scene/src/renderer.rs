@@ -1,6 +1,6 @@
 //! What a renderer is: anything that turns a scene into a frame.
 
-use crate::{Frame, Request, Scene};
+use crate::{RenderOutput, Request, Scene};
 
 /// A program, or the recording of one, that renders the maps of a scene's sensors.
 ///
@@ -11,20 +11,20 @@ pub trait Renderer: Sync {
     fn name(&self) -> &str;
 
     /// How fine the renderer's arithmetic is; the bounds it is judged by follow from this.
-    fn resolution(&self) -> Resolution;
+    fn precision(&self) -> Precision;
 
     /// Renders what `request` asks for.
-    fn render(&self, scene: &Scene, request: &Request) -> Frame;
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput;
 }
 
 /// How finely a renderer computes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Resolution {
+pub struct Precision {
     /// Unit roundoff u of its arithmetic: the largest relative error of one operation.
     pub unit_roundoff: f64,
 }
 
-impl Resolution {
+impl Precision {
     /// IEEE 754 binary64 throughout, u = 2^-53.
     pub const F64: Self = Self { unit_roundoff: f64::EPSILON / 2.0 };
     /// IEEE 754 binary32 throughout, u = 2^-24.

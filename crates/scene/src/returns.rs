@@ -31,10 +31,10 @@ pub struct Return {
     pub depth: f64,
     /// cos(phi): of the angle between the camera's normal axis and the ray from the projection centre to
     /// the point.
-    pub off_axis: f64,
+    pub cos_off_axis: f64,
     /// cos(theta): of the angle between the face's normal and the direction to the projection centre; negative
     /// where the camera is behind the face.
-    pub emission: f64,
+    pub cos_view: f64,
     /// The flux that arrives in the pixel, watts (`eq1`: W/m); 0 if the point is not visible.
     pub flux: f64,
 }
@@ -52,10 +52,10 @@ pub struct Returns {
     pub pixel: Option<Image<Maybe<Pixel>>>,
     /// [`Return::depth`], metres.
     pub depth: Option<Image<Maybe<f64>>>,
-    /// [`Return::off_axis`].
-    pub off_axis: Option<Image<Maybe<f64>>>,
-    /// [`Return::emission`].
-    pub emission: Option<Image<Maybe<f64>>>,
+    /// [`Return::cos_off_axis`].
+    pub cos_off_axis: Option<Image<Maybe<f64>>>,
+    /// [`Return::cos_view`].
+    pub cos_view: Option<Image<Maybe<f64>>>,
     /// [`Return::flux`], watts (`eq1`: W/m); 0 where there is no hit.
     pub flux: Option<Image<f64>>,
 }
@@ -69,8 +69,8 @@ impl Returns {
             visible: Some(Image::filled(columns, rows, false)),
             pixel: Some(Image::filled(columns, rows, Maybe::NONE)),
             depth: Some(Image::filled(columns, rows, Maybe::NONE)),
-            off_axis: Some(Image::filled(columns, rows, Maybe::NONE)),
-            emission: Some(Image::filled(columns, rows, Maybe::NONE)),
+            cos_off_axis: Some(Image::filled(columns, rows, Maybe::NONE)),
+            cos_view: Some(Image::filled(columns, rows, Maybe::NONE)),
             flux: Some(Image::filled(columns, rows, 0.0)),
         }
     }
@@ -83,8 +83,8 @@ impl Returns {
             visible: None,
             pixel: None,
             depth: None,
-            off_axis: None,
-            emission: None,
+            cos_off_axis: None,
+            cos_view: None,
             flux: None,
         }
     }
@@ -99,8 +99,8 @@ impl Returns {
         write(&mut self.visible, i, j, back.visible);
         write(&mut self.pixel, i, j, back.pixel.into());
         write(&mut self.depth, i, j, Maybe::some(back.depth));
-        write(&mut self.off_axis, i, j, Maybe::some(back.off_axis));
-        write(&mut self.emission, i, j, Maybe::some(back.emission));
+        write(&mut self.cos_off_axis, i, j, Maybe::some(back.cos_off_axis));
+        write(&mut self.cos_view, i, j, Maybe::some(back.cos_view));
         write(&mut self.flux, i, j, back.flux);
     }
 }

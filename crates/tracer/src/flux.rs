@@ -32,11 +32,11 @@ pub(crate) struct Path {
     /// R: from the beam to the point along the pencil, metres.
     pub(crate) range: f64,
     /// cos(psi).
-    pub(crate) incidence: f64,
+    pub(crate) cos_incidence: f64,
     /// r_d.
     pub(crate) reflectivity: f64,
     /// cos(theta).
-    pub(crate) emission: f64,
+    pub(crate) cos_view: f64,
     /// r: *along the camera's normal axis*, metres.
     pub(crate) depth: f64,
     /// d: from the point to the projection centre, metres.
@@ -64,7 +64,7 @@ impl Light {
 
     /// I_k, watts (`eq1`: W/m).
     pub(crate) fn flux(&self, path: &Path) -> f64 {
-        let Path { power, range, incidence, reflectivity, emission, depth, distance, .. } = *path;
+        let Path { power, range, cos_incidence, reflectivity, cos_view, depth, distance, .. } = *path;
         let Self { attenuation: sigma, transmission, aperture, .. } = *self;
         match self.model {
             // P_k r_d C_loss F(phi) (D^2 / 4) cos(theta) cos^3(phi) / r^2 e^(-sigma (R + d)): a Lambertian
@@ -75,7 +75,7 @@ impl Light {
                 let solid_angle = aperture * aperture / 4.0 * (cos_phi * cos_phi * cos_phi) / (depth * depth);
                 let lens = transmission * self.filter(path.point);
                 let air = libm::exp(-sigma * (range + distance));
-                power * reflectivity * emission * solid_angle * lens * air
+                power * reflectivity * cos_view * solid_angle * lens * air
             }
             // I_b r_d (pi / 4) (D / f_c)^2 C_loss F(phi) A_cp (A_bp cos(alpha) / A_b)
             // cos^4(phi) cos(theta) cos(psi) / (R r^2) e^(-sigma r) e^(-sigma R), phi of the pixel. (Equation (1))
@@ -87,7 +87,7 @@ impl Light {
                     PI / 4.0 * (stop * stop) * self.pixel_area * (cos_phi_squared * cos_phi_squared);
                 let lens = transmission * self.filter(q);
                 let air = libm::exp(-sigma * depth) * libm::exp(-sigma * range);
-                let spread = emission * incidence / (range * (depth * depth));
+                let spread = cos_view * cos_incidence / (range * (depth * depth));
                 power * reflectivity * extended * lens * spread * air
             }
         }

@@ -34,7 +34,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use raypencil_scene::{
-    Frame, Mesh, Quantities, Renderer, Request, Resolution, Scene, SensorId, SensorMap, Stage,
+    Mesh, Precision, Quantities, RenderOutput, Renderer, Request, Scene, SensorId, SensorMap, Stage,
 };
 
 use hierarchy::Hierarchy;
@@ -86,14 +86,14 @@ impl Renderer for Tracer {
         "tracer"
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let start = Instant::now();
         let hierarchy = self.hierarchy(scene.mesh(), hierarchy::reach_of(scene));
-        let mut frame = Frame {
+        let mut frame = RenderOutput {
             camera: None,
             beams: Vec::new(),
             returns: Vec::new(),

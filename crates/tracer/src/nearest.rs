@@ -25,7 +25,7 @@ impl Found {
             point: ray.origin + ray.direction * self.t,
             normal,
             depth: self.t * depth_per_t,
-            incidence: -normal.dot(ray.direction) / ray.metres_per_t,
+            cos_incidence: -normal.dot(ray.direction) / ray.metres_per_t,
         }
     }
 

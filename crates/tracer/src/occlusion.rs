@@ -207,7 +207,7 @@ mod tests {
             for (index, beam) in scene.beams().iter().enumerate() {
                 let rays = SensorRays::of_beam(beam, Grid::new(beam.sensor, index, sampling));
                 let visible = frame.returns[index].visible.as_ref().unwrap();
-                let emission = frame.returns[index].emission.as_ref().unwrap();
+                let cos_view = frame.returns[index].cos_view.as_ref().unwrap();
                 for (i, j) in (0..4).flat_map(|j| (0..128).map(move |i| (i, j))) {
                     let pencil = rays.ray(i, j);
                     let found = Search::new(&hierarchy).nearest(&pencil, rays.max_range());
@@ -216,7 +216,7 @@ mod tests {
                         let view = eye.view(point);
                         let depth = view.in_camera.z;
                         let sight = Sight::new(eye.centre, 8e-3, point, depth, &pencil, &met);
-                        let faces_camera = emission.at(i, j).get().unwrap() > 0.0;
+                        let faces_camera = cos_view.at(i, j).get().unwrap() > 0.0;
                         faces_camera && view.pixel.is_some() && !exhaustive(&all, &sight)
                     });
                     assert_eq!(visible.at(i, j), expected, "beam {index}, pencil ({i}, {j}) of seed {seed}");

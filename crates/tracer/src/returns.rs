@@ -92,7 +92,7 @@ impl Follower<'_> {
         // right angles to everything.
         let view = self.eye.view(hit.point);
         let (depth, distance) = (view.in_camera.z, view.distance);
-        let (off_axis, emission) = if distance == 0.0 {
+        let (cos_off_axis, cos_view) = if distance == 0.0 {
             (0.0, 0.0)
         } else {
             // cos(theta) = n.(c - P) / (|n| d), and n.(c - P) = n.(c - a): a corner is not rounded, so that a
@@ -104,7 +104,7 @@ impl Follower<'_> {
 
         // Seen: from the front, beyond the image plane and on the image, with nothing in between.
         let focal_length = self.eye.camera.focal_length;
-        let lands = view.pixel.filter(|_| emission > 0.0);
+        let lands = view.pixel.filter(|_| cos_view > 0.0);
         let seen = lands.filter(|_| {
             let sight = Sight::new(self.eye.centre, focal_length, hit.point, depth, &pencil, &met);
             !occlusion.hides(&sight)
@@ -114,15 +114,15 @@ impl Follower<'_> {
             self.light.flux(&Path {
                 power: self.shares.of(i, j),
                 range: hit.range,
-                incidence: hit.incidence,
+                cos_incidence: hit.cos_incidence,
                 reflectivity: self.mesh.materials()[usize::from(material)].reflectivity,
-                emission,
+                cos_view,
                 depth,
                 distance,
                 point: view.in_camera,
                 through_middle: self.eye.through_middle(pixel),
             })
         });
-        Return { visible: seen.is_some(), pixel: view.pixel, depth, off_axis, emission, flux }
+        Return { visible: seen.is_some(), pixel: view.pixel, depth, cos_off_axis, cos_view, flux }
     }
 }

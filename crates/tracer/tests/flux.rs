@@ -24,7 +24,7 @@ fn filtered() -> Lens {
 fn the_geometry_of_one_pencil() {
     let back = Bench::new().back(0);
     assert!(back.visible);
-    assert_eq!((back.depth, back.off_axis, back.emission), (2.0, 0.8, 0.8));
+    assert_eq!((back.depth, back.cos_off_axis, back.cos_view), (2.0, 0.8, 0.8));
     // 16 * 3/4 + 32.25 = 44.25 across, 32.5 down.
     assert_eq!(back.pixel, Some(Pixel { i: 44, j: 32 }));
 }
@@ -180,7 +180,7 @@ fn jittered_rays_are_displaced_by_their_offsets() {
             // tan(alpha) = (x - 3) / 2.
             let back = back(&frame.returns[0], i, j);
             let (cos_phi, slope) = (2.0 / (x * x + y * y + 4.0).sqrt(), (x - 3.0) / 2.0);
-            assert!(close(back.off_axis, cos_phi, CLOSE));
+            assert!(close(back.cos_off_axis, cos_phi, CLOSE));
             let power = 3.0 / 32.0 / (1.0 + slope * slope).sqrt();
             let flux = power * 0.25 / 16.0 * cos_phi * cos_phi * cos_phi * cos_phi / 4.0;
             assert!(close(back.flux, flux, CLOSE));

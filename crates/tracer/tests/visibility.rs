@@ -94,7 +94,7 @@ fn a_camera_behind_the_face_sees_nothing() {
     let mut bench = Bench { pose: looking_back(DVec3::new(1.5, 0.0, 4.0)), ..Bench::new() };
     bench.faces = reversed(screen(2.0, [-16.0, 16.0], [-16.0, 16.0])).to_vec();
     let back = bench.back(1);
-    assert_eq!((back.depth, back.emission, back.visible, back.flux), (2.0, -0.8, false, 0.0));
+    assert_eq!((back.depth, back.cos_view, back.visible, back.flux), (2.0, -0.8, false, 0.0));
     assert!(back.pixel.is_some());
 }
 
@@ -106,7 +106,7 @@ fn a_camera_in_the_plane_of_the_face_sees_nothing() {
     // x = 3 - 3/4 z and z = 2 x: x = 1.2.
     let back = bench.back(0);
     assert!((back.depth - 2.4).abs() < 1e-14 && back.pixel.is_some());
-    assert_eq!((back.emission, back.visible), (0.0, false));
+    assert_eq!((back.cos_view, back.visible), (0.0, false));
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn a_point_that_is_not_beyond_the_image_plane_lands_nowhere() {
     let mut bench = Bench { pose: looking_back(DVec3::new(1.5, 0.0, 0.0)), ..Bench::new() };
     bench.faces = reversed(screen(-2.0, [-16.0, 16.0], [-16.0, 16.0])).to_vec();
     let back = bench.back(1);
-    assert_eq!((back.depth, back.off_axis, back.emission), (-2.0, -0.8, 0.8));
+    assert_eq!((back.depth, back.cos_off_axis, back.cos_view), (-2.0, -0.8, 0.8));
     assert_eq!((back.pixel, back.visible), (None, false));
 }
 
@@ -133,7 +133,7 @@ fn a_point_in_the_projection_centre_is_not_seen() {
     let mut bench = Bench { pose: Pose::from_position(DVec3::new(0.0, 0.0, -2.0)), ..Bench::new() };
     bench.faces = screen(0.0, [-16.0, 16.0], [-16.0, 16.0]).to_vec();
     let back = bench.back(1);
-    assert_eq!((back.depth, back.off_axis, back.emission, back.visible), (0.0, 0.0, 0.0, false));
+    assert_eq!((back.depth, back.cos_off_axis, back.cos_view, back.visible), (0.0, 0.0, 0.0, false));
 }
 
 #[test]

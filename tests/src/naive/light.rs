@@ -83,8 +83,8 @@ impl Lit<'_> {
         let conjugate = super::conjugate(scene_from_sensor.rotation);
         let seen = self.naive.rotate(conjugate, to_point);
         let (depth, distance) = (seen.z, seen.length());
-        let off_axis = depth / distance;
-        let emission = -hit.normal.dot(to_point) / distance;
+        let cos_off_axis = depth / distance;
+        let cos_view = -hit.normal.dot(to_point) / distance;
 
         // Where it lands: pixel (i, j) is [i, i + 1) x [j, j + 1).
         let place = [0, 1].map(|axis: usize| {
@@ -102,18 +102,18 @@ impl Lit<'_> {
             pixel = Some(Pixel { i: j.min(camera.width - 1), j: i.min(camera.height - 1) });
         }
         let too_far = self.has(Fault::CameraRangeLimits) && distance > camera.max_range;
-        let visible = emission > 0.0
+        let visible = cos_view > 0.0
             && pixel.is_some()
             && !too_far
             && !self.is_hidden(hit, centre, to_point, camera.focal_length / depth);
 
         let flux = match pixel {
             Some(pixel) if visible || self.has(Fault::HiddenLit) => {
-                self.flux(hit, beam, power, [depth, distance, off_axis, emission], pixel)
+                self.flux(hit, beam, power, [depth, distance, cos_off_axis, cos_view], pixel)
             }
             _ => 0.0,
         };
-        Return { visible, pixel, depth, off_axis, emission, flux }
+        Return { visible, pixel, depth, cos_off_axis, cos_view, flux }
     }
 
     /// Whether a face, front or back, meets the segment c + u (P - c), f_c / r <= u < 1. A face through P does not
@@ -153,7 +153,7 @@ impl Lit<'_> {
         hit: &Hit,
         beam: &Beam,
         power: f64,
-        [depth, distance, off_axis, emission]: [f64; 4],
+        [depth, distance, cos_off_axis, cos_view]: [f64; 4],
         pixel: Pixel,
     ) -> f64 {
         let (scene, camera) = (self.scene, &self.scene.camera().sensor);
@@ -167,18 +167,18 @@ impl Lit<'_> {
         let d = if self.has(Fault::ApertureAsRadius) { 2.0 * camera.aperture } else { camera.aperture };
         let depth = if self.has(Fault::RangeForCameraDepth) { hit.range } else { depth };
         let cos_theta = if self.has(Fault::IncidenceForEmission) {
-            hit.incidence
+            hit.cos_incidence
         } else if self.has(Fault::EmissionForgotten) {
             1.0
         } else {
-            emission
+            cos_view
         };
         let q = camera.direction(pixel.i, pixel.j);
         let of_centre = q.z / q.length();
         let common = power * reflectivity * camera.lens.transmission * cos_theta / (depth * depth);
         match scene.flux_model() {
             FluxModel::Radiometric => {
-                let cos_phi = if self.has(Fault::PhiOfPixelCentre) { of_centre } else { off_axis };
+                let cos_phi = if self.has(Fault::PhiOfPixelCentre) { of_centre } else { cos_off_axis };
                 let power_of_cosine = if self.has(Fault::FourthPower) {
                     square(square(cos_phi))
                 } else {
@@ -200,7 +200,7 @@ impl Lit<'_> {
                     * self.filter(beam, of_centre)
                     * area
                     * square(square(of_centre))
-                    * hit.incidence
+                    * hit.cos_incidence
                     / hit.range
                     * libm::exp(-sigma * path)
             }

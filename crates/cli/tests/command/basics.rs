@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use raypencil::{Frame, Renderer, Request, Resolution, Scene};
+use raypencil::{Precision, RenderOutput, Renderer, Request, Scene};
 use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, text};
@@ -219,11 +219,11 @@ impl Renderer for Flipped {
         "tracer"
     }
 
-    fn resolution(&self) -> Resolution {
-        self.inner.resolution()
+    fn precision(&self) -> Precision {
+        self.inner.precision()
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let mut frame = self.inner.render(scene, request);
         for map in frame.camera.iter_mut().chain(&mut frame.beams) {
             for normal in map.normal.iter_mut().flat_map(|image| image.cells_mut()) {

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use raypencil::harness::contender;
-use raypencil::{Frame, Renderer, Request, Resolution, Scene};
+use raypencil::{Precision, RenderOutput, Renderer, Request, Scene};
 use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, screen, text};
@@ -140,11 +140,11 @@ impl Renderer for Bright {
         "tracer"
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let mut frame = self.0.renderer.render(scene, request);
         frame.flux.iter_mut().for_each(|image| image.set(30, 10, 1e-9));
         frame

@@ -15,7 +15,9 @@ use raypencil_rover::{
     CameraImage, Drive, EdgePoint, ElevationMap, Label, MapSize, MeasuredPoint, ObstacleMap, RadialGrid,
     TraversabilityRules, Vehicle,
 };
-use raypencil_scene::{Frame, Image, Material, Mesh, Pose, Renderer, Request, Resolution, Scene, Silent};
+use raypencil_scene::{
+    Image, Material, Mesh, Pose, Precision, RenderOutput, Renderer, Request, Scene, Silent,
+};
 use raypencil_scene_io::{LoadedScene, SensorWord, load, load_text};
 use raypencil_sensor::{DarkCurrent, Dust, ImageLength, ImageSensor, Optics, Psf};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
@@ -282,8 +284,12 @@ fn the_file_says_what_camera_it_is() {
     ];
     let dust = Dust { transmission: 0.8, halo_share: 0.1, halo_sigma: ImageLength::Pixels(7.0) };
     assert_eq!(own.optics, Optics { oversampling: 2, focus: Some(5.0), blurs, dust: Some(dust) });
-    let dark_current =
-        DarkCurrent { rate: 9.0, reference_temperature: 293.15, doubling_kelvins: 5.0, temperature: -40.0 + 273.15 };
+    let dark_current = DarkCurrent {
+        rate: 9.0,
+        reference_temperature: 293.15,
+        doubling_kelvins: 5.0,
+        temperature: -40.0 + 273.15,
+    };
     let sensor = ImageSensor {
         exposure: 1e-3 * 3.0,
         wavelength: 810e-9,
@@ -452,11 +458,11 @@ impl Renderer for Faulty {
         "faulty"
     }
 
-    fn resolution(&self) -> Resolution {
-        Resolution::F64
+    fn precision(&self) -> Precision {
+        Precision::F64
     }
 
-    fn render(&self, scene: &Scene, request: &Request) -> Frame {
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let mut frame = self.0.render(scene, request);
         let camera_x = scene.camera().scene_from_sensor.position.x;
         // The third frame: 0.2 m on. Above the stripe, in row 77, light would be of something above the ground.

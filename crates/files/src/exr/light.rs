@@ -28,7 +28,7 @@ fn unit(model: FluxModel) -> &'static str {
 }
 
 impl ExrMap {
-    /// Adds what comes back of a beam's pencils: `visible.V`, `pixel.I`, `pixel.J`, `view.Z`, `offAxis.V`, `emission.V`
+    /// Adds what comes back of a beam's pencils: `visible.V`, `pixel.I`, `pixel.J`, `view.Z`, `offAxis.V`, `cos_view.V`
     /// and `flux.V`, those that there are.
     ///
     /// # Panics
@@ -49,8 +49,8 @@ impl ExrMap {
             self.insert(FLUX, Raster::F32(convert(flux, |flux| flux as f32)));
         }
         self.scalar(VIEW_DEPTH, returns.depth.as_ref(), f32::INFINITY);
-        self.scalar(OFF_AXIS, returns.off_axis.as_ref(), NO_VALUE);
-        self.scalar(EMISSION, returns.emission.as_ref(), NO_VALUE);
+        self.scalar(OFF_AXIS, returns.cos_off_axis.as_ref(), NO_VALUE);
+        self.scalar(EMISSION, returns.cos_view.as_ref(), NO_VALUE);
         let units = "visible: 0 or 1; pixel: index; view: metre; offAxis, emission: 1; flux: ";
         let attributes = [
             ("returnUnit", format!("{units}{}", unit(model))),
@@ -81,8 +81,8 @@ impl ExrMap {
         returns.visible = self.reals(VISIBLE)?.map(|image| convert(image, |cell| cell > 0.5));
         returns.flux = self.reals(FLUX)?.map(|image| convert(image, f64::from));
         returns.depth = self.scalar_of(VIEW_DEPTH)?;
-        returns.off_axis = self.scalar_of(OFF_AXIS)?;
-        returns.emission = self.scalar_of(EMISSION)?;
+        returns.cos_off_axis = self.scalar_of(OFF_AXIS)?;
+        returns.cos_view = self.scalar_of(EMISSION)?;
         returns.pixel = match [self.wholes(PIXEL[0])?, self.wholes(PIXEL[1])?] {
             [Some(i), Some(j)] => {
                 let cells = i.cells().iter().zip(j.cells());
@@ -130,8 +130,8 @@ mod tests {
             visible: true,
             pixel: Some(Pixel { i: 7, j: 1023 }),
             depth: 2.0,
-            off_axis: 0.5,
-            emission: 0.5,
+            cos_off_axis: 0.5,
+            cos_view: 0.5,
             flux: 0.0078125,
         };
         returns.put(1, 0, &back);

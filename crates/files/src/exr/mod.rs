@@ -123,7 +123,7 @@ impl ExrMap {
         exr.scalar(DEPTH, map.depth.as_ref(), f32::INFINITY);
         exr.vector(POINT, map.point.as_ref());
         exr.vector(NORMAL, map.normal.as_ref());
-        exr.scalar(INCIDENCE, map.incidence.as_ref(), NO_VALUE);
+        exr.scalar(INCIDENCE, map.cos_incidence.as_ref(), NO_VALUE);
         if let Some(faces) = &map.face {
             exr.insert(FACE, Raster::U32(convert(faces, |face| face.get().map_or(NO_FACE, |face| face.0))));
         }
@@ -167,7 +167,7 @@ impl ExrMap {
             face: self.faces().map_err(unfit)?,
             point: self.vector_of(POINT).map_err(unfit)?,
             normal: self.vector_of(NORMAL).map_err(unfit)?,
-            incidence: self.scalar_of(INCIDENCE).map_err(unfit)?,
+            cos_incidence: self.scalar_of(INCIDENCE).map_err(unfit)?,
         })
     }
 

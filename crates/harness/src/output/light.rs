@@ -65,12 +65,12 @@ pub(crate) fn light(validation: &Validation, most: u32) -> Light {
     let sums: Vec<(&str, Image<Maybe<f64>>, f64)> = validation
         .rendered
         .iter()
-        .filter(|rendered| !rendered.frame.flux.is_empty())
+        .filter(|rendered| !rendered.output.flux.is_empty())
         .map(|rendered| {
             let camera = &scene.camera().sensor;
             let cells = camera.width as usize * camera.height as usize;
             let mut sum = vec![0.0_f64; cells];
-            for image in &rendered.frame.flux {
+            for image in &rendered.output.flux {
                 for (sum, flux) in sum.iter_mut().zip(image.cells()) {
                     *sum += flux;
                 }
@@ -118,7 +118,7 @@ fn stripe(validation: &Validation, beam: usize, unit: &'static str) -> Option<St
         .rendered
         .iter()
         .filter_map(|rendered| {
-            let flux = rendered.frame.returns.get(beam)?.flux.as_ref()?;
+            let flux = rendered.output.returns.get(beam)?.flux.as_ref()?;
             Some((rendered.name.as_str(), (0..columns).map(|i| flux.at(i, row)).collect()))
         })
         .collect();

@@ -61,7 +61,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
         let [a, b] = [pair.a, pair.b].map(|index| &validation.rendered[index]);
         for sensor in &pair.sensors {
             let of = |side: &crate::rendered::Rendered| {
-                side.frame.map(sensor.sensor).and_then(hits).map_or("unknown".into(), count)
+                side.output.map(sensor.sensor).and_then(hits).map_or("unknown".into(), count)
             };
             sensors.push(Sensor {
                 name: sensor.sensor.to_string(),

@@ -34,7 +34,7 @@ use raypencil_files::{
     Attributes, ExrMap, FileError, FolderError, begin, create, write_atomically, write_exr,
 };
 use raypencil_pack::PackError;
-use raypencil_scene::{Frame, Progress, Sampling, SensorId, SensorMap};
+use raypencil_scene::{Progress, RenderOutput, Sampling, SensorId, SensorMap};
 use raypencil_scene_io::Subject;
 
 pub use crate::output::summary::summary_json;
@@ -107,7 +107,7 @@ pub fn write_validation(
         progress.stage(&format!("{}: writing maps", rendered.name));
         let folder = folder.join(&rendered.name);
         maps.extend(write_maps(
-            &rendered.frame,
+            &rendered.output,
             &rendered.name,
             &validation.subject,
             Sampling::Centres,
@@ -143,7 +143,7 @@ pub fn write_validation(
 /// # Errors
 /// Names the file or folder that could not be written, and why.
 pub fn write_maps(
-    frame: &Frame,
+    output: &RenderOutput,
     renderer: &str,
     subject: &Subject,
     sampling: Sampling,
@@ -161,7 +161,7 @@ pub fn write_maps(
         let mut exr = ExrMap::from_sensor_map(map, &attributes);
         match map.sensor {
             SensorId::Camera => {
-                for (beam, image) in frame.flux.iter().enumerate() {
+                for (beam, image) in output.flux.iter().enumerate() {
                     exr.insert_flux(beam, image, model);
                 }
             }
@@ -171,7 +171,7 @@ pub fn write_maps(
                         format!("cell (i, j) is a ray drawn within pencil (i, j), seed {seed}; row 0 on top");
                     exr.attributes.insert("pixelRule".into(), rule);
                 }
-                if let Some(returns) = frame.returns.get(index) {
+                if let Some(returns) = output.returns.get(index) {
                     exr.insert_returns(returns, model);
                 }
             }
@@ -179,7 +179,7 @@ pub fn write_maps(
         write_exr(&path, &exr)?;
         Ok(path)
     };
-    frame.maps().map(write).collect()
+    output.maps().map(write).collect()
 }
 
 /// Where a renderer's map of a sensor goes, from the folder of the validation.

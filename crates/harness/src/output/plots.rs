@@ -79,7 +79,7 @@ fn of_ranges(validation: &Validation, sensor: SensorId, reduction: Reduction, wi
     let maps: Vec<_> = validation
         .rendered
         .iter()
-        .filter_map(|rendered| Some((rendered, rendered.frame.map(sensor)?.range.as_ref()?)))
+        .filter_map(|rendered| Some((rendered, rendered.output.map(sensor)?.range.as_ref()?)))
         .collect();
     let ranges = maps.iter().flat_map(|(_, map)| map.cells()).filter_map(|cell| cell.get());
     let scale = Scale::of_ranges(ranges);
@@ -127,7 +127,7 @@ fn of_difference(
     let comparison = pair.sensors.iter().find(|comparison| comparison.sensor == sensor)?;
     let differences = comparison.range_difference.as_ref()?;
     let [a, b] = [pair.a, pair.b].map(|index| &validation.rendered[index]);
-    let [of_a, of_b] = [a, b].map(|side| side.frame.map(sensor).and_then(|map| map.range.as_ref()));
+    let [of_a, of_b] = [a, b].map(|side| side.output.map(sensor).and_then(|map| map.range.as_ref()));
     let (of_a, of_b) = (of_a?, of_b?);
     let hit = |map: &Image<Maybe<f64>>, i, j| map.at(i, j).get().is_some();
     let one_sided = |i, j| hit(of_a, i, j) != hit(of_b, i, j);

@@ -186,7 +186,7 @@ fn title(validation: &Validation, pair: &Pair) -> String {
 fn numbers(validation: &Validation, sensor: raypencil_scene::SensorId) -> Vec<String> {
     let mut numbers: Vec<String> = Vec::new();
     for rendered in &validation.rendered {
-        numbers.push(match rendered.frame.map(sensor).and_then(hits) {
+        numbers.push(match rendered.output.map(sensor).and_then(hits) {
             Some(hits) => format!("{}: {}", rendered.name, counted(hits, "hit", "hits")),
             None => format!("{}: no map", rendered.name),
         });

@@ -138,7 +138,7 @@ fn sensors(validation: &Validation) -> String {
         let hit: Vec<String> = validation
             .rendered
             .iter()
-            .map(|rendered| rendered.frame.map(sensor).and_then(hits).map_or("?".into(), count))
+            .map(|rendered| rendered.output.map(sensor).and_then(hits).map_or("?".into(), count))
             .collect();
         // One number where all say the same.
         let hit = if hit.windows(2).all(|two| two[0] == two[1]) {
@@ -208,7 +208,8 @@ fn outsiders(validation: &Validation) -> String {
 fn times(validation: &Validation) -> String {
     let mut text = String::new();
     for rendered in &validation.rendered {
-        let stages = rendered.frame.stages.iter().map(|stage| format!("{} {}", stage.name, time(stage.time)));
+        let stages =
+            rendered.output.stages.iter().map(|stage| format!("{} {}", stage.name, time(stage.time)));
         text.push_str(&wrap(&format!("{} {}: ", rendered.name, time(rendered.time)), stages, 1));
     }
     // The other stages are named after no renderer.

@@ -179,7 +179,7 @@ pub fn summary_json(validation: &Validation) -> String {
 }
 
 fn of_renderer(rendered: &Rendered) -> RendererSummary<'_> {
-    let sensors = rendered.frame.maps().map(|map| MapSummary {
+    let sensors = rendered.output.maps().map(|map| MapSummary {
         sensor: map.sensor.to_string(),
         columns: map.width,
         rows: map.height,
@@ -188,9 +188,9 @@ fn of_renderer(rendered: &Rendered) -> RendererSummary<'_> {
     });
     RendererSummary {
         name: &rendered.name,
-        unit_roundoff: finite(rendered.resolution.unit_roundoff),
+        unit_roundoff: finite(rendered.precision.unit_roundoff),
         seconds: rendered.time.as_secs_f64(),
-        flux: rendered.frame.flux.iter().map(|image| image.cells().iter().sum()).collect(),
+        flux: rendered.output.flux.iter().map(|image| image.cells().iter().sum()).collect(),
         sensors: sensors.collect(),
     }
 }

@@ -6,7 +6,7 @@ use crate::renderers::{Contender, attribute};
 use raypencil_judge::{Cause, Class, Judge, JudgeShare, Quantity, VisibilityCause};
 use raypencil_referee::{Format, Margin, Margins, Ruling, Verdict, VisibilityMargins, VisibilityRuling};
 use raypencil_scene::Place;
-use raypencil_scene::{Frame, Hit, Progress, Ray, Request, Return, Sampling, SensorId};
+use raypencil_scene::{Hit, Progress, Ray, RenderOutput, Request, Return, Sampling, SensorId};
 use raypencil_scene_io::{Subject, probe_command};
 
 /// One ray and what each renderer says of it.
@@ -167,24 +167,24 @@ fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
         ..Request::EVERYTHING
     };
     let renderer = &contender.renderer;
-    let frame = renderer.render(judge.scene(), &request);
-    let hit = frame.map(sensor).and_then(|map| {
+    let output = renderer.render(judge.scene(), &request);
+    let hit = output.map(sensor).and_then(|map| {
         Some(Hit {
             face: map.face.as_ref()?.at(i, j).get()?,
             range: map.range.as_ref()?.at(i, j).get()?,
             point: map.point.as_ref()?.at(i, j).get()?,
             normal: map.normal.as_ref()?.at(i, j).get()?,
             depth: map.depth.as_ref()?.at(i, j).get()?,
-            incidence: map.incidence.as_ref()?.at(i, j).get()?,
+            cos_incidence: map.cos_incidence.as_ref()?.at(i, j).get()?,
         })
     });
     let (face, range) = (hit.map(|hit| hit.face), hit.map(|hit| hit.range));
-    let ruling = judge.rule(place, face, range, renderer.resolution());
-    let mut back = returned(judge, place, contender, &frame, hit);
+    let ruling = judge.rule(place, face, range, renderer.precision());
+    let mut back = returned(judge, place, contender, &output, hit);
     let is_wrong =
         ruling == Ruling::Wrong || back.as_ref().is_some_and(|back| back.ruling.visible == Ruling::Wrong);
     let attributions =
-        is_wrong.then(|| attribute(judge, &frame, contender.approximations(), renderer.resolution()));
+        is_wrong.then(|| attribute(judge, &output, contender.approximations(), renderer.precision()));
     let cause = attributions.as_ref().and_then(|attributions| attributions.cause(place).cloned());
     if let Some(back) = &mut back {
         back.cause =
@@ -199,21 +199,21 @@ fn returned(
     judge: &Judge<'_>,
     place: Place,
     contender: &Contender,
-    frame: &Frame,
+    output: &RenderOutput,
     hit: Option<Hit>,
 ) -> Option<ProbedReturn> {
     let Place { sensor: SensorId::Beam(index), i, j } = place else { return None };
-    let (hit, returns) = (hit?, frame.returns.get(index)?);
+    let (hit, returns) = (hit?, output.returns.get(index)?);
     let back = Return {
         visible: returns.visible.as_ref()?.at(i, j),
         pixel: returns.pixel.as_ref()?.at(i, j).get(),
         depth: returns.depth.as_ref()?.at(i, j).get()?,
-        off_axis: returns.off_axis.as_ref()?.at(i, j).get()?,
-        emission: returns.emission.as_ref()?.at(i, j).get()?,
+        cos_off_axis: returns.cos_off_axis.as_ref()?.at(i, j).get()?,
+        cos_view: returns.cos_view.as_ref()?.at(i, j).get()?,
         flux: returns.flux.as_ref()?.at(i, j),
     };
-    let resolution = contender.renderer.resolution();
+    let precision = contender.renderer.precision();
     let ruling =
-        judge.rule_visibility(place, hit.face, Some(hit.range), back.visible, back.pixel, resolution)?;
+        judge.rule_visibility(place, hit.face, Some(hit.range), back.visible, back.pixel, precision)?;
     Some(ProbedReturn { back, ruling, cause: None })
 }

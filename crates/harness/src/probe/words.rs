@@ -26,7 +26,7 @@ impl Probe {
                 depth_m: hit.depth,
                 point_m: hit.point.to_array(),
                 normal: hit.normal.to_array(),
-                incidence_cosine: hit.incidence,
+                incidence_cosine: hit.cos_incidence,
             })
         };
         let of_return = |back: &Return| {
@@ -34,8 +34,8 @@ impl Probe {
                 "visible": back.visible,
                 "pixel": back.pixel.map(|pixel| [pixel.i, pixel.j]),
                 "camera_depth_m": back.depth,
-                "off_axis_cosine": back.off_axis,
-                "emission_cosine": back.emission,
+                "off_axis_cosine": back.cos_off_axis,
+                "emission_cosine": back.cos_view,
                 "flux": back.flux,
             })
         };
@@ -188,14 +188,18 @@ impl fmt::Display for Probe {
 fn write_values(f: &mut fmt::Formatter<'_>, hit: &Hit) -> fmt::Result {
     writeln!(f, "    range {} m, depth {} m", hit.range, hit.depth)?;
     writeln!(f, "    point {} m", vector(hit.point))?;
-    writeln!(f, "    normal {}, cos(psi) {}", vector(hit.normal), hit.incidence)
+    writeln!(f, "    normal {}, cos(psi) {}", vector(hit.normal), hit.cos_incidence)
 }
 
 fn write_return(f: &mut fmt::Formatter<'_>, back: &Return, unit: &str) -> fmt::Result {
     let seen = if back.visible { "seen" } else { "not seen" };
     let pixel = back.pixel.map_or("off the image".into(), |pixel| format!("pixel {},{}", pixel.i, pixel.j));
     writeln!(f, "    {seen} by the camera, {pixel}; depth {} m there", back.depth)?;
-    writeln!(f, "    cos(phi) {}, cos(theta) {}, flux {:e} {unit}", back.off_axis, back.emission, back.flux)
+    writeln!(
+        f,
+        "    cos(phi) {}, cos(theta) {}, flux {:e} {unit}",
+        back.cos_off_axis, back.cos_view, back.flux
+    )
 }
 
 fn write_ruled_return(f: &mut fmt::Formatter<'_>, answer: &ProbedReturn, unit: &str) -> fmt::Result {

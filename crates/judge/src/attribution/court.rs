@@ -1,26 +1,26 @@
 //! Whom to ask about the answers of one renderer that follows the paper.
 
-use raypencil_scene::{Frame, Request, Resolution, Switches};
+use raypencil_scene::{Precision, RenderOutput, Request, Switches};
 
 use crate::judge::Judge;
 
 /// Renders the judge's scene as the paper's renderer does with these switches.
 ///
 /// The judge knows no renderer: whoever asks for causes hands in the one whose answers are to be explained.
-pub type Rerender<'a> = dyn Fn(Switches, Request) -> Frame + Sync + 'a;
+pub type Rerender<'a> = dyn Fn(Switches, Request) -> RenderOutput + Sync + 'a;
 
 /// The judge, and how the renderer whose answers are explained computes.
 #[derive(Clone, Copy)]
 pub(super) struct Court<'a> {
     pub(super) judge: &'a Judge<'a>,
     pub(super) switches: Switches,
-    pub(super) resolution: Resolution,
+    pub(super) precision: Precision,
     pub(super) rerender: &'a Rerender<'a>,
 }
 
 impl Court<'_> {
     /// Renders the scene as the renderer would with these switches.
-    pub(super) fn render(&self, switches: Switches, request: Request) -> Frame {
+    pub(super) fn render(&self, switches: Switches, request: Request) -> RenderOutput {
         (self.rerender)(switches, request)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use raypencil_scene::{Frame, Place, Resolution, Switches};
+use raypencil_scene::{Place, Precision, RenderOutput, Switches};
 
 use crate::attribution::cause::Attributions;
 use crate::attribution::court::{Court, Rerender};
@@ -10,19 +10,20 @@ use crate::attribution::{geometry, sight};
 use crate::judge::Judge;
 
 impl Attributions {
-    /// Finds the causes of `frame`, which the scanline renderer made of the judge's scene with `switches`.
+    /// Finds the causes of `output`, which the scanline renderer made of the judge's scene with `switches`.
     pub fn find(
         judge: &Judge<'_>,
-        frame: &Frame,
+        output: &RenderOutput,
         switches: Switches,
-        resolution: Resolution,
+        precision: Precision,
         rerender: &Rerender<'_>,
     ) -> Self {
-        let court = Court { judge, switches, resolution, rerender };
+        let court = Court { judge, switches, precision, rerender };
         let key = |Place { sensor, i, j }: Place| (sensor, i, j);
-        let by_ray = geometry::causes(court, frame).into_iter().map(|(at, cause)| (key(at), cause)).collect();
+        let by_ray =
+            geometry::causes(court, output).into_iter().map(|(at, cause)| (key(at), cause)).collect();
         let mut found = Self { by_ray, of_visibility: HashMap::new() };
-        let of_visibility = sight::causes(court, frame, &found);
+        let of_visibility = sight::causes(court, output, &found);
         found.of_visibility = of_visibility.into_iter().map(|(at, cause)| (key(at), cause)).collect();
         found
     }

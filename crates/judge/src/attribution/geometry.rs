@@ -6,7 +6,7 @@ use crate::attribution::cause::Cause;
 use crate::attribution::court::{Court, sets_of};
 use raypencil_referee::{Approximations, Explained, Ruling};
 use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Fidelity, Frame, Quantities, Request, SensorMap, Switches};
+use raypencil_scene::{FaceId, Fidelity, Quantities, RenderOutput, Request, SensorMap, Switches};
 
 /// A ray whose answer is not the contract's.
 struct Wrong {
@@ -35,18 +35,18 @@ impl Answer {
 
 impl Court<'_> {
     fn is_wrong(&self, place: Place, answer: Answer) -> bool {
-        self.judge.rule(place, answer.face, answer.range, self.resolution) == Ruling::Wrong
+        self.judge.rule(place, answer.face, answer.range, self.precision) == Ruling::Wrong
     }
 
     /// Explains an answer that was made with the renderer's switches but for `exact`.
     fn explain(&self, place: Place, answer: Answer, exact: Switches) -> Option<Vec<Explained>> {
         let with = approximations(self.switches.without(exact));
-        self.judge.explain(place, answer.face, answer.range, with, self.resolution)
+        self.judge.explain(place, answer.face, answer.range, with, self.precision)
     }
 }
 
 /// The rays of a frame whose errors have a confirmed cause.
-pub(super) fn causes(court: Court<'_>, frame: &Frame) -> Vec<(Place, Cause)> {
+pub(super) fn causes(court: Court<'_>, output: &RenderOutput) -> Vec<(Place, Cause)> {
     let of_geometry = court.switches.without(Switches {
         beam_edges: Fidelity::Exact,
         skip_rules: Fidelity::Exact,
@@ -56,15 +56,15 @@ pub(super) fn causes(court: Court<'_>, frame: &Frame) -> Vec<(Place, Cause)> {
         return Vec::new();
     }
     let request = Request {
-        camera: frame.camera.is_some(),
-        beams: !frame.beams.is_empty(),
+        camera: output.camera.is_some(),
+        beams: !output.beams.is_empty(),
         quantities: Quantities::RANGE_MAP,
         ..Request::MAPS
     };
 
     // What differs from the same algorithm without any approximation, and is wrong.
     let exact = court.render(Switches::EXACT, request);
-    let mut wrong: Vec<Wrong> = frame
+    let mut wrong: Vec<Wrong> = output
         .maps()
         .filter_map(|map| Some((map, exact.map(map.sensor)?)))
         .flat_map(|(map, of_exact)| wrong_answers(court, map, of_exact))
@@ -100,7 +100,7 @@ fn wrong_answers(court: Court<'_>, map: &SensorMap, of_exact: &SensorMap) -> Vec
 
 impl Wrong {
     /// Takes `cause` for the cause if the frame `without` it restores this ray and the referee confirms it.
-    fn attribute_to(&mut self, cause: Switches, without: &Frame, court: Court<'_>) {
+    fn attribute_to(&mut self, cause: Switches, without: &RenderOutput, court: Court<'_>) {
         let Place { sensor, i, j } = self.place;
         let Some(map) = without.map(sensor) else { return };
         let restored = Answer::of(map, i, j);

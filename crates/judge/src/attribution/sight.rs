@@ -6,7 +6,7 @@ use crate::attribution::cause::{Attributions, VisibilityCause};
 use crate::attribution::court::{Court, sets_of};
 use raypencil_referee::{ExplainedVisibility, Ruling, VisibilityApproximations, VisibilityReason};
 use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Fidelity, Frame, Pixel, Quantities, Request, SensorId, Switches};
+use raypencil_scene::{FaceId, Fidelity, Pixel, Quantities, RenderOutput, Request, SensorId, Switches};
 
 /// What a frame says of one pencil's hit.
 #[derive(Debug, Clone, Copy)]
@@ -19,9 +19,9 @@ struct Answer {
 
 impl Answer {
     /// `None` where there is no hit, or the frame does not say.
-    fn of(frame: &Frame, Place { sensor, i, j }: Place) -> Option<Self> {
+    fn of(output: &RenderOutput, Place { sensor, i, j }: Place) -> Option<Self> {
         let SensorId::Beam(index) = sensor else { return None };
-        let (map, returns) = (frame.map(sensor)?, frame.returns.get(index)?);
+        let (map, returns) = (output.map(sensor)?, output.returns.get(index)?);
         Some(Self {
             face: map.face.as_ref()?.at(i, j).get()?,
             range: map.range.as_ref().and_then(|ranges| ranges.at(i, j).get()),
@@ -44,23 +44,23 @@ struct Wrong {
 /// The pencils of a frame whose visibility is wrong for a confirmed cause.
 pub(super) fn causes(
     court: Court<'_>,
-    frame: &Frame,
+    output: &RenderOutput,
     of_geometry: &Attributions,
 ) -> Vec<(Place, VisibilityCause)> {
     let Switches { facing, extent, place, .. } = court.switches;
     let of_visibility = Switches { facing, extent, place, ..Switches::EXACT };
-    if of_visibility == Switches::EXACT || frame.returns.is_empty() {
+    if of_visibility == Switches::EXACT || output.returns.is_empty() {
         return Vec::new();
     }
     let request = Request { camera: false, quantities: Quantities::RANGE_MAP, ..Request::EVERYTHING };
-    let reach = upper_extent(court, frame);
+    let reach = upper_extent(court, output);
 
     // What differs from the same algorithm without any approximation of sight, and is wrong.
     let exact = court.render(court.switches.without(of_visibility), request);
-    let mut wrong: Vec<Wrong> = frame
+    let mut wrong: Vec<Wrong> = output
         .beams
         .iter()
-        .flat_map(|map| wrong_answers(court, frame, &exact, map.sensor, of_geometry))
+        .flat_map(|map| wrong_answers(court, output, &exact, map.sensor, of_geometry))
         .collect();
     for cause in sets_of(of_visibility) {
         let mut open: Vec<&mut Wrong> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
@@ -75,19 +75,19 @@ pub(super) fn causes(
 
 /// The greatest camera depth of the upper beam's hits in a frame: that of the beam whose origin is highest in the
 /// camera's image, of several the last.
-fn upper_extent(court: Court<'_>, frame: &Frame) -> Option<f64> {
+fn upper_extent(court: Court<'_>, output: &RenderOutput) -> Option<f64> {
     let scene = court.judge.scene();
     let camera_from_scene = scene.camera().scene_from_sensor.inverse();
     let down = |index: usize| (camera_from_scene * scene.beams()[index].scene_from_sensor.position).y;
     let upper = (0..scene.beams().len()).min_by(|&a, &b| down(a).total_cmp(&down(b)).then(b.cmp(&a)))?;
-    let depths = frame.returns.get(upper)?.depth.as_ref()?.cells().iter().filter_map(|depth| depth.get());
+    let depths = output.returns.get(upper)?.depth.as_ref()?.cells().iter().filter_map(|depth| depth.get());
     depths.reduce(f64::max)
 }
 
 fn wrong_answers(
     court: Court<'_>,
-    frame: &Frame,
-    exact: &Frame,
+    output: &RenderOutput,
+    exact: &RenderOutput,
     sensor: SensorId,
     of_geometry: &Attributions,
 ) -> Vec<Wrong> {
@@ -95,12 +95,12 @@ fn wrong_answers(
     let rows = (0..rows).into_par_iter().flat_map_iter(|j| {
         (0..columns).filter_map(move |i| {
             let place = Place { sensor, i, j };
-            let (answer, of_exact) = (Answer::of(frame, place)?, Answer::of(exact, place)?);
+            let (answer, of_exact) = (Answer::of(output, place)?, Answer::of(exact, place)?);
             let differs = answer.visible != of_exact.visible;
             let face_is_accounted_for = || {
                 let (face, range) = (Some(answer.face), answer.range);
                 of_geometry.cause(place).is_some()
-                    || court.judge.rule(place, face, range, court.resolution) != Ruling::Wrong
+                    || court.judge.rule(place, face, range, court.precision) != Ruling::Wrong
             };
             (differs && face_is_accounted_for() && court.is_sight_wrong(place, answer)).then(|| Wrong {
                 place,
@@ -117,7 +117,7 @@ impl Court<'_> {
     /// Whether what is said of a pencil's visibility is wrong.
     fn is_sight_wrong(&self, place: Place, answer: Answer) -> bool {
         let Answer { face, range, visible, pixel } = answer;
-        let ruling = self.judge.rule_visibility(place, face, range, visible, pixel, self.resolution);
+        let ruling = self.judge.rule_visibility(place, face, range, visible, pixel, self.precision);
         ruling.is_none_or(|ruling| ruling.visible == Ruling::Wrong)
     }
 
@@ -135,13 +135,19 @@ impl Court<'_> {
             extent: reach.filter(|_| switches.extent == Fidelity::Paper),
             place: switches.place == Fidelity::Paper,
         };
-        self.judge.explain_visibility(place, answer.face, answer.range, answer.visible, with, self.resolution)
+        self.judge.explain_visibility(place, answer.face, answer.range, answer.visible, with, self.precision)
     }
 }
 
 impl Wrong {
     /// Takes `cause` for the cause if the frame `without` it restores this pencil and the referee confirms it.
-    fn attribute_to(&mut self, cause: Switches, without: &Frame, reach: Option<f64>, court: Court<'_>) {
+    fn attribute_to(
+        &mut self,
+        cause: Switches,
+        without: &RenderOutput,
+        reach: Option<f64>,
+        court: Court<'_>,
+    ) {
         let Some(restored) = Answer::of(without, self.place) else { return };
         if court.is_sight_wrong(self.place, restored) {
             self.without.push((cause, restored));

@@ -37,15 +37,15 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
     if margins.face.lo >= CLOSE && margins.verdict.faces.len() < 2 && !sight.as_ref().is_some_and(is_close) {
         return Vec::new();
     }
-    let resolution = recorded.resolution;
+    let precision = recorded.precision;
     let true_face = truth.hit(place).map(|hit| hit.face);
     let (seen, pixel) = truth.sight(place);
     let true_pixel = pixel.filter(|_| seen);
 
     // Every admissible face, those that tie among them, and of each every admissible pixel.
     let mut faces: Vec<FaceId> = true_face.into_iter().collect();
-    for face in judge.candidate_faces(place, None, resolution) {
-        let is_admissible = || !matches!(judge.rule(place, Some(face), None, resolution), Ruling::Wrong);
+    for face in judge.candidate_faces(place, None, precision) {
+        let is_admissible = || !matches!(judge.rule(place, Some(face), None, precision), Ruling::Wrong);
         if Some(face) != true_face && is_admissible() {
             faces.push(face);
         }
@@ -57,13 +57,13 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
     let mut true_flux = None;
     for face in faces {
         let Some(hit) = judge.plane_hit(place, face) else { continue };
-        let of_hit = Bounds::of(truth.scene().mesh(), face, &ray, hit.range, resolution);
+        let of_hit = Bounds::of(truth.scene().mesh(), face, &ray, hit.range, precision);
         let about = landing_near(truth, hit.point.to_array(), pixel);
         for pixel in about.into_iter().filter(|pixel| pixel.i < camera.width && pixel.j < camera.height) {
             let is_true = Some(face) == true_face && Some(pixel) == true_pixel;
             let is_admissible = || {
                 let ruling =
-                    judge.rule_visibility(place, face, Some(hit.range), true, Some(pixel), resolution);
+                    judge.rule_visibility(place, face, Some(hit.range), true, Some(pixel), precision);
                 ruling.is_some_and(|ruling| ruling.visible != Ruling::Wrong && ruling.pixel != Ruling::Wrong)
             };
             if !is_true && !is_admissible() {
@@ -71,7 +71,7 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
             }
             let Some(back) = judge.rounded_return(place, face, true, Some(pixel)) else { continue };
             let flux = [model, model.other()].map(|model| back.in_format(Format::Double, model).flux);
-            let bounds = return_bounds(truth, beam, i, &hit, &back, &of_hit, resolution);
+            let bounds = return_bounds(truth, beam, i, &hit, &back, &of_hit, precision);
             let bound = [flux_bound(&bounds[0], flux[0]), flux_bound(&bounds[1], flux[1])];
             let option = Possible { pixel, flux, bound };
             if is_true {
@@ -86,10 +86,10 @@ pub(crate) fn alternatives(truth: &Truth<'_>, recorded: &Recorded, place: Place)
     let may_be_hidden = || {
         let face = true_face?;
         let hit = judge.plane_hit(place, face)?;
-        let ruling = judge.rule_visibility(place, face, Some(hit.range), false, pixel, resolution)?;
+        let ruling = judge.rule_visibility(place, face, Some(hit.range), false, pixel, precision)?;
         Some(ruling.visible != Ruling::Wrong)
     };
-    let may_miss = || !matches!(judge.rule(place, None, None, resolution), Ruling::Wrong);
+    let may_miss = || !matches!(judge.rule(place, None, None, precision), Ruling::Wrong);
     if !found.is_empty() || may_be_hidden() == Some(true) || may_miss() {
         found.push(Possible { flux: there.flux.map(|flux| -flux), ..there });
     }

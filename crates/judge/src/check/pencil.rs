@@ -11,7 +11,7 @@ use crate::class::{Class, Item, Quantity};
 use crate::recorded::Recorded;
 use raypencil_referee::{Format, RoundedReturn};
 use raypencil_scene::Place;
-use raypencil_scene::{FluxModel, Hit, Pixel, Resolution, SensorId};
+use raypencil_scene::{FluxModel, Hit, Pixel, Precision, SensorId};
 
 /// What a pencil delivers, exactly, where it is said to land.
 #[derive(Debug, Clone, Copy)]
@@ -76,12 +76,12 @@ impl Question<'_> {
         pixel: Option<Pixel>,
         is_true: bool,
     ) -> Option<Meaning> {
-        let (judge, resolution) = (self.truth.judge(), self.recorded.resolution);
+        let (judge, precision) = (self.truth.judge(), self.recorded.precision);
         let (classes, ruling) = if is_true {
             ([Class::Agree; 2], None)
         } else {
             let ruled =
-                judge.rule_visibility(self.place, hit.face, Some(hit.range), visible, pixel, resolution);
+                judge.rule_visibility(self.place, hit.face, Some(hit.range), visible, pixel, precision);
             match ruled {
                 Some(ruling) => (
                     [Class::of(ruling.visible, false), Class::of(ruling.pixel, false)],
@@ -92,7 +92,7 @@ impl Question<'_> {
         };
         let exact = judge.rounded_return(self.place, hit.face, visible, pixel)?;
         let model = self.truth.scene().flux_model();
-        let bounds = return_bounds(self.truth, self.beam, self.place.i, hit, &exact, of_hit, resolution);
+        let bounds = return_bounds(self.truth, self.beam, self.place.i, hit, &exact, of_hit, precision);
         let differences =
             self.said.differences(self.recorded, self.place.sensor, &exact, model, [&bounds[0], &bounds[1]]);
         let class = of_class.max(classes[0]).max(classes[1]);
@@ -113,7 +113,7 @@ impl Question<'_> {
         // A flux of 0 says that it is not seen, unless the true one is too small to be told from 0.
         let is_told = said.iter().any(|&(k, _)| {
             let storage = self.recorded.storage_of(self.place.sensor, flux_item(k));
-            let least = least_normal(self.recorded.resolution);
+            let least = least_normal(self.recorded.precision);
             self.truth.flux(self.place)[k] > 2.0 * (storage.ulp(0.0) + least)
         });
         truly && !is_told
@@ -187,7 +187,7 @@ fn otherwise(
         let ray = truth.scene().ray(place.sensor, place.i, place.j)?;
         for face in verdict.map(|verdict| verdict.faces).unwrap_or_default() {
             if let Some(hit) = judge.plane_hit(*place, face).filter(|hit| hit.face != of_hit.0.face) {
-                let bounds = Bounds::of(truth.scene().mesh(), face, &ray, hit.range, recorded.resolution);
+                let bounds = Bounds::of(truth.scene().mesh(), face, &ray, hit.range, recorded.precision);
                 hits.push((hit, bounds, Class::Tie));
             }
         }
@@ -281,18 +281,18 @@ pub(crate) fn return_bounds(
     hit: &Hit,
     exact: &RoundedReturn,
     of_hit: &Bounds,
-    resolution: Resolution,
+    precision: Precision,
 ) -> [ReturnBounds; 2] {
     let scene = truth.scene();
     let values = Returned {
         range: hit.range,
-        incidence: hit.incidence,
+        cos_incidence: hit.cos_incidence,
         depth: exact.depth.double,
-        off_axis: exact.off_axis.double,
-        emission: exact.emission.double,
+        cos_off_axis: exact.cos_off_axis.double,
+        cos_view: exact.cos_view.double,
         distance: hit.point.distance(scene.camera().scene_from_sensor.position),
     };
-    let of = |model: FluxModel| ReturnBounds::of(scene, (beam, column), of_hit, values, resolution, model);
+    let of = |model: FluxModel| ReturnBounds::of(scene, (beam, column), of_hit, values, precision, model);
     [of(scene.flux_model()), of(scene.flux_model().other())]
 }
 
@@ -329,8 +329,8 @@ fn missing(judged: &mut Judged<'_>, recorded: &Recorded) {
         Quantity::Visible,
         Quantity::Pixel,
         Quantity::CameraDepth,
-        Quantity::OffAxis,
-        Quantity::Emission,
+        Quantity::CosOffAxis,
+        Quantity::CosView,
         Quantity::PencilFlux,
     ];
     for item in plain.map(Item::from).into_iter().chain([flux_item(1)]) {

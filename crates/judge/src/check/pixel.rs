@@ -96,8 +96,8 @@ impl BeamImage {
             let storage = recorded.storage_of(SensorId::Camera, item);
             // n u Sigma of the recording's sum, and what n numbers lose that are too small for its arithmetic.
             let count = f64::from(landed.count);
-            let rounding = count * recorded.resolution.unit_roundoff * landed.flux[k]
-                + count * least_normal(recorded.resolution) * recorded.resolution.unit_roundoff;
+            let rounding = count * recorded.precision.unit_roundoff * landed.flux[k]
+                + count * least_normal(recorded.precision) * recorded.precision.unit_roundoff;
             let base = landed.bound[k] + rounding;
             let difference = |from: f64, bound: f64| {
                 let stored = 0.5 * (storage.ulp(said) + Storage::F64.ulp(from));

@@ -193,7 +193,7 @@ fn face_name(face: FaceId) -> String {
 }
 
 fn bounds(truth: &Truth<'_>, ray: &Ray, hit: &Hit, recorded: &Recorded) -> Bounds {
-    Bounds::of(truth.scene().mesh(), hit.face, ray, hit.range, recorded.resolution)
+    Bounds::of(truth.scene().mesh(), hit.face, ray, hit.range, recorded.precision)
 }
 
 /// What the referee makes of an answer that is not the exact one.
@@ -213,7 +213,7 @@ fn ruled_otherwise(
             of_truth(Class::Defect)
         });
     }
-    let ruling = truth.judge().rule(place, said.face, said.range, recorded.resolution);
+    let ruling = truth.judge().rule(place, said.face, said.range, recorded.precision);
     judged.ruled(&words(ruling));
     let class = Class::of(ruling, false);
     if class == Class::Defect {
@@ -240,14 +240,14 @@ fn unnamed(
 ) -> Option<Reference> {
     let place = judged.place;
     let judge = truth.judge();
-    for face in judge.candidate_faces(place, said.range, recorded.resolution) {
+    for face in judge.candidate_faces(place, said.range, recorded.precision) {
         let Some(hit) = judge.plane_hit(place, face) else { continue };
         let bounds = bounds(truth, ray, &hit, recorded);
         let differences = said.differences(recorded, place.sensor, &hit, &bounds);
         if !differences.iter().all(Difference::is_within) {
             continue;
         }
-        let ruling = judge.rule(place, Some(face), said.range, recorded.resolution);
+        let ruling = judge.rule(place, Some(face), said.range, recorded.precision);
         if matches!(ruling, Ruling::Tie | Ruling::Rounding(_)) {
             judged.ruled(&format!("{}, if {} is meant", words(ruling), face_name(face)));
             let class = Class::of(ruling, false);
@@ -265,7 +265,8 @@ fn unnamed(
 
 /// The values that the recording does not have at all.
 fn missing_values(judged: &mut Judged<'_>, recorded: &Recorded) {
-    for quantity in [Quantity::Range, Quantity::Depth, Quantity::Point, Quantity::Normal, Quantity::Incidence]
+    for quantity in
+        [Quantity::Range, Quantity::Depth, Quantity::Point, Quantity::Normal, Quantity::CosIncidence]
     {
         if !recorded.storage.contains_key(&(judged.place.sensor, quantity.into())) {
             judged.missing(quantity);

@@ -20,7 +20,7 @@ pub(crate) struct SaidHit {
     pub(super) face: Option<FaceId>,
     pub(super) range: Option<f64>,
     depth: Option<f64>,
-    incidence: Option<f64>,
+    cos_incidence: Option<f64>,
     point: Option<DVec3>,
     normal: Option<DVec3>,
 }
@@ -87,7 +87,7 @@ impl SaidHit {
             face: at(&map.face, i, j),
             range: at(&map.range, i, j),
             depth: at(&map.depth, i, j),
-            incidence: at(&map.incidence, i, j),
+            cos_incidence: at(&map.cos_incidence, i, j),
             point: at(&map.point, i, j),
             normal: at(&map.normal, i, j),
         };
@@ -96,13 +96,13 @@ impl SaidHit {
             || map.depth.is_some()
             || map.point.is_some()
             || map.normal.is_some()
-            || map.incidence.is_some();
+            || map.cos_incidence.is_some();
         let hits = said.face.is_some()
             || said.range.is_some()
             || said.depth.is_some()
             || said.point.is_some()
             || said.normal.is_some()
-            || said.incidence.is_some();
+            || said.cos_incidence.is_some();
         said.hit = says.then_some(hits);
         said
     }
@@ -132,8 +132,8 @@ impl SaidHit {
         if let Some(normal) = self.normal {
             enter(Quantity::Normal, &normal.to_array(), &exact.normal.to_array(), bounds.normal);
         }
-        if let Some(incidence) = self.incidence {
-            enter(Quantity::Incidence, &[incidence], &[exact.incidence], bounds.incidence);
+        if let Some(cos_incidence) = self.cos_incidence {
+            enter(Quantity::CosIncidence, &[cos_incidence], &[exact.cos_incidence], bounds.cos_incidence);
         }
         found
     }
@@ -146,8 +146,8 @@ pub(crate) struct SaidBack {
     /// `Some(None)`: it lands on no pixel.
     pub(super) pixel: Option<Option<Pixel>>,
     depth: Option<f64>,
-    off_axis: Option<f64>,
-    emission: Option<f64>,
+    cos_off_axis: Option<f64>,
+    cos_view: Option<f64>,
     /// By the scene's model, and by the other.
     pub(super) flux: [Option<f64>; 2],
 }
@@ -160,8 +160,8 @@ impl SaidBack {
             visible: returns.visible.as_ref().map(|image| image.at(i, j)),
             pixel: returns.pixel.as_ref().map(|image| image.at(i, j).get()),
             depth: at(&returns.depth, i, j),
-            off_axis: at(&returns.off_axis, i, j),
-            emission: at(&returns.emission, i, j),
+            cos_off_axis: at(&returns.cos_off_axis, i, j),
+            cos_view: at(&returns.cos_view, i, j),
             flux: [flux(&returns.flux), flux(&light.other_flux)],
         }
     }
@@ -170,8 +170,8 @@ impl SaidBack {
     pub(super) fn values(&self) -> [(Quantity, bool); 3] {
         [
             (Quantity::CameraDepth, self.depth.is_some()),
-            (Quantity::OffAxis, self.off_axis.is_some()),
-            (Quantity::Emission, self.emission.is_some()),
+            (Quantity::CosOffAxis, self.cos_off_axis.is_some()),
+            (Quantity::CosView, self.cos_view.is_some()),
         ]
     }
 
@@ -201,8 +201,8 @@ impl SaidBack {
             }
         };
         enter(Quantity::CameraDepth.into(), self.depth, values.depth, bounds[0].depth);
-        enter(Quantity::OffAxis.into(), self.off_axis, values.off_axis, bounds[0].off_axis);
-        enter(Quantity::Emission.into(), self.emission, values.emission, bounds[0].emission);
+        enter(Quantity::CosOffAxis.into(), self.cos_off_axis, values.cos_off_axis, bounds[0].cos_off_axis);
+        enter(Quantity::CosView.into(), self.cos_view, values.cos_view, bounds[0].cos_view);
         for (k, is_other_model) in [false, true].into_iter().enumerate() {
             let flux =
                 exact.in_format(Format::Double, if is_other_model { model.other() } else { model }).flux;

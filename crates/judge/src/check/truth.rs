@@ -150,8 +150,8 @@ fn back_of(returns: &Returns, i: u32, j: u32) -> Option<Return> {
         visible: returns.visible.as_ref()?.at(i, j),
         pixel: returns.pixel.as_ref()?.at(i, j).get(),
         depth: value(&returns.depth)?,
-        off_axis: value(&returns.off_axis)?,
-        emission: value(&returns.emission)?,
+        cos_off_axis: value(&returns.cos_off_axis)?,
+        cos_view: value(&returns.cos_view)?,
         flux: returns.flux.as_ref()?.at(i, j),
     })
 }
@@ -167,6 +167,6 @@ fn hit_of(map: &SensorMap, Place { i, j, .. }: Place) -> Option<Hit> {
         point: at(&map.point, i, j)?,
         normal: at(&map.normal, i, j)?,
         depth: at(&map.depth, i, j)?,
-        incidence: at(&map.incidence, i, j)?,
+        cos_incidence: at(&map.cos_incidence, i, j)?,
     })
 }

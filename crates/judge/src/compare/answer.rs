@@ -9,8 +9,8 @@ pub(crate) struct Back {
     /// `Some(None)`: it lands on no pixel.
     pub(crate) pixel: Option<Option<Pixel>>,
     pub(crate) depth: Option<f64>,
-    pub(crate) off_axis: Option<f64>,
-    pub(crate) emission: Option<f64>,
+    pub(crate) cos_off_axis: Option<f64>,
+    pub(crate) cos_view: Option<f64>,
     pub(crate) flux: Option<f64>,
 }
 
@@ -20,8 +20,8 @@ impl Back {
             visible: returns.visible.as_ref().map(|image| image.at(i, j)),
             pixel: returns.pixel.as_ref().map(|image| image.at(i, j).get()),
             depth: returns.depth.as_ref().and_then(|image| image.at(i, j).get()),
-            off_axis: returns.off_axis.as_ref().and_then(|image| image.at(i, j).get()),
-            emission: returns.emission.as_ref().and_then(|image| image.at(i, j).get()),
+            cos_off_axis: returns.cos_off_axis.as_ref().and_then(|image| image.at(i, j).get()),
+            cos_view: returns.cos_view.as_ref().and_then(|image| image.at(i, j).get()),
             flux: returns.flux.as_ref().map(|image| image.at(i, j)),
         }
     }
@@ -36,7 +36,7 @@ pub(crate) struct Answer {
     pub(super) face: Option<FaceId>,
     pub(super) point: Option<DVec3>,
     pub(crate) normal: Option<DVec3>,
-    pub(super) incidence: Option<f64>,
+    pub(super) cos_incidence: Option<f64>,
 }
 
 impl Answer {
@@ -52,7 +52,7 @@ impl Answer {
             face,
             point: at(&map.point, i, j),
             normal: at(&map.normal, i, j),
-            incidence: at(&map.incidence, i, j),
+            cos_incidence: at(&map.cos_incidence, i, j),
         }
     }
 }

@@ -64,12 +64,12 @@ pub(crate) fn light_of<'f>(
     pencils: Vec<PencilLight>,
 ) -> Option<PixelLight<'f>> {
     let tells_pencils = sides.iter().all(|side| {
-        let returns = side.frame.returns.get(beam);
+        let returns = side.output.returns.get(beam);
         returns.is_some_and(|returns| returns.pixel.is_some() && returns.flux.is_some())
     });
-    let [of_a, of_b] = sides.map(|side| side.frame.flux.get(beam));
+    let [of_a, of_b] = sides.map(|side| side.output.flux.get(beam));
     let images = [of_a?, of_b?];
-    let [a, b] = sides.map(|side| side.resolution.unit_roundoff);
+    let [a, b] = sides.map(|side| side.precision.unit_roundoff);
     tells_pencils.then(|| PixelLight::new(judge.scene(), images, pencils, a.max(b)))
 }
 
@@ -80,7 +80,7 @@ fn compare_sensor(
     b: Side<'_>,
     light: &[PixelLight<'_>],
 ) -> (SensorComparison, Vec<PencilLight>) {
-    if let (Some(of_a), Some(of_b)) = (a.frame.map(sensor), b.frame.map(sensor))
+    if let (Some(of_a), Some(of_b)) = (a.output.map(sensor), b.output.map(sensor))
         && says_hit(of_a)
         && says_hit(of_b)
     {

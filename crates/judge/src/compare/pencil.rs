@@ -8,15 +8,15 @@ use crate::compare::light::PencilLight;
 use crate::compare::side::Side;
 use crate::judge::Judge;
 use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Resolution, Returns, SensorId, Switches};
+use raypencil_scene::{FaceId, Precision, Returns, SensorId, Switches};
 
 /// The quantities of a pencil's return.
 const QUANTITIES: [Quantity; 6] = [
     Quantity::Visible,
     Quantity::Pixel,
     Quantity::CameraDepth,
-    Quantity::OffAxis,
-    Quantity::Emission,
+    Quantity::CosOffAxis,
+    Quantity::CosView,
     Quantity::PencilFlux,
 ];
 
@@ -85,12 +85,18 @@ pub(crate) fn compare_pencil(
         is_one_point.then(|| return_bounds(judge, &geometry, [&of_a, &of_b], place, sides)).flatten();
     let scalars = [
         (Quantity::CameraDepth, of_a.depth, of_b.depth, bounds.map(|bounds| bounds.depth), true),
-        (Quantity::OffAxis, of_a.off_axis, of_b.off_axis, bounds.map(|bounds| bounds.off_axis), true),
         (
-            Quantity::Emission,
-            of_a.emission,
-            of_b.emission,
-            bounds.map(|bounds| bounds.emission),
+            Quantity::CosOffAxis,
+            of_a.cos_off_axis,
+            of_b.cos_off_axis,
+            bounds.map(|bounds| bounds.cos_off_axis),
+            true,
+        ),
+        (
+            Quantity::CosView,
+            of_a.cos_view,
+            of_b.cos_view,
+            bounds.map(|bounds| bounds.cos_view),
             geometry.same_face,
         ),
     ];
@@ -152,7 +158,7 @@ fn ruled(
     let (visible, pixel) = (back.visible?, back.pixel?);
     entry.spoil(off_its_face(judge, place, side, face, back));
     let has_cause = side.attributions.is_some_and(|causes| causes.visibility_cause(place).is_some());
-    Some(match judge.rule_visibility(place, face, range, visible, pixel, side.resolution) {
+    Some(match judge.rule_visibility(place, face, range, visible, pixel, side.precision) {
         Some(ruling) => [Class::of(ruling.visible, has_cause), Class::of(ruling.pixel, false)],
         None => [Class::Defect; 2],
     })
@@ -172,24 +178,24 @@ fn off_its_face(
     let ray = scene.ray(place.sensor, place.i, place.j)?;
     let values = Returned {
         range: hit.range,
-        incidence: hit.incidence,
+        cos_incidence: hit.cos_incidence,
         depth: exact.depth,
-        off_axis: exact.off_axis,
-        emission: exact.emission,
+        cos_off_axis: exact.cos_off_axis,
+        cos_view: exact.cos_view,
         distance: hit.point.distance(scene.camera().scene_from_sensor.position),
     };
-    let bounds = |resolution| {
-        let of_hit = Bounds::of(scene.mesh(), face, &ray, hit.range, resolution);
-        ReturnBounds::of(scene, (beam, place.i), &of_hit, values, resolution, scene.flux_model())
+    let bounds = |precision| {
+        let of_hit = Bounds::of(scene.mesh(), face, &ray, hit.range, precision);
+        ReturnBounds::of(scene, (beam, place.i), &of_hit, values, precision, scene.flux_model())
     };
     // The referee's values are rounded to f64.
-    let bounds = bounds(side.resolution).plus(&bounds(Resolution::F64));
+    let bounds = bounds(side.precision).plus(&bounds(Precision::F64));
     // A negative cos(psi), of a back that rule 1b adds, delivers nothing by equation (1). CHOICE: see `docs/theory/radiometry.md`.
     let flux = exact.flux.max(0.0);
     let all = [
         (Quantity::CameraDepth, back.depth, exact.depth, bounds.depth),
-        (Quantity::OffAxis, back.off_axis, exact.off_axis, bounds.off_axis),
-        (Quantity::Emission, back.emission, exact.emission, bounds.emission),
+        (Quantity::CosOffAxis, back.cos_off_axis, exact.cos_off_axis, bounds.cos_off_axis),
+        (Quantity::CosView, back.cos_view, exact.cos_view, bounds.cos_view),
         (Quantity::PencilFlux, back.flux, flux, bounds.flux * flux + bounds.least_flux),
     ];
     // What is not a number is off.
@@ -212,17 +218,17 @@ fn return_bounds(
         let (answer, back) = (&geometry.answers[k], backs[k]);
         let values = Returned {
             range: answer.range?,
-            incidence: answer.incidence?,
+            cos_incidence: answer.cos_incidence?,
             depth: back.depth?,
-            off_axis: back.off_axis?,
-            emission: back.emission?,
+            cos_off_axis: back.cos_off_axis?,
+            cos_view: back.cos_view?,
             distance: match answer.point {
                 Some(point) => point.distance(judge.scene().camera().scene_from_sensor.position),
-                None => (back.depth? / back.off_axis?).abs(),
+                None => (back.depth? / back.cos_off_axis?).abs(),
             },
         };
         let model = judge.scene().flux_model();
-        Some(ReturnBounds::of(judge.scene(), (beam, place.i), &bounds[k], values, sides[k].resolution, model))
+        Some(ReturnBounds::of(judge.scene(), (beam, place.i), &bounds[k], values, sides[k].precision, model))
     };
     Some(of(0)?.plus(&of(1)?))
 }

@@ -11,7 +11,7 @@ use crate::compare::side::Side;
 use crate::judge::Judge;
 use crate::tally::{ApproximationTally, DEFECTS_DESCRIBED, Defect, Worst};
 use raypencil_scene::Place;
-use raypencil_scene::{Resolution, SensorId, SensorMap, Switches};
+use raypencil_scene::{Precision, SensorId, SensorMap, Switches};
 
 /// Compares one ray and enters it into `row`. Its class, and the quantity that is worst.
 pub(crate) fn compare_ray(
@@ -34,7 +34,7 @@ pub(crate) fn compare_ray(
             Quantity::Depth => map_a.depth.is_none() || map_b.depth.is_none(),
             Quantity::Point => map_a.point.is_none() || map_b.point.is_none(),
             Quantity::Normal => map_a.normal.is_none() || map_b.normal.is_none(),
-            Quantity::Incidence => map_a.incidence.is_none() || map_b.incidence.is_none(),
+            Quantity::CosIncidence => map_a.cos_incidence.is_none() || map_b.cos_incidence.is_none(),
             _ => false,
         };
         if missing {
@@ -45,7 +45,7 @@ pub(crate) fn compare_ray(
     match sensor {
         SensorId::Camera => compare_pixel(&mut entry, light, judge.scene().beams().len()),
         SensorId::Beam(index) => {
-            let returns = [a, b].map(|side| side.frame.returns.get(index));
+            let returns = [a, b].map(|side| side.output.returns.get(index));
             let delivered = compare_pencil(judge, &mut entry, geometry, returns, [a, b]);
             flux_difference = delivered.difference();
             entry.row.light.extend(delivered.if_any());
@@ -106,7 +106,7 @@ fn compare_geometry(
     let ruled = (named(&of_a) && named(&of_b) && (differ || judge.samples(place))).then(|| {
         entry.judged();
         let class_of = |answer: &Answer, side: Side<'_>| {
-            let ruling = judge.rule(place, answer.face, answer.range, side.resolution);
+            let ruling = judge.rule(place, answer.face, answer.range, side.precision);
             Class::of(ruling, side.attributions.is_some_and(|causes| causes.cause(place).is_some()))
         };
         class_of(&of_a, a).max(class_of(&of_b, b))
@@ -125,13 +125,13 @@ fn compare_geometry(
     // Without faces or ranges there is nothing to derive a bound from: only exactness agrees.
     let mesh = scene.mesh();
     let known = |answer: &Answer| answer.face.filter(|face| (face.0 as usize) < mesh.faces().len());
-    let bounds_of = |answer: &Answer, other: &Answer, resolution| {
+    let bounds_of = |answer: &Answer, other: &Answer, precision| {
         let face = known(answer).or(known(other));
         let range = answer.range.or(other.range);
-        face.zip(range).map(|(face, range)| Bounds::of(mesh, face, &ray, range, resolution))
+        face.zip(range).map(|(face, range)| Bounds::of(mesh, face, &ray, range, precision))
     };
-    geometry.bounds = bounds_of(&of_a, &of_b, a.resolution)
-        .zip(bounds_of(&of_b, &of_a, b.resolution))
+    geometry.bounds = bounds_of(&of_a, &of_b, a.precision)
+        .zip(bounds_of(&of_b, &of_a, b.precision))
         .map(|(of_a, of_b)| [of_a, of_b]);
     let bounds = geometry.bounds.map(|[of_a, of_b]| of_a.plus(&of_b));
     // Each side's values must be those of the face that it names itself, whatever the other says.
@@ -151,9 +151,9 @@ fn compare_geometry(
         (Quantity::Range, of_a.range.zip(of_b.range), bounds.map(|bounds| bounds.range), is_one_point),
         (Quantity::Depth, of_a.depth.zip(of_b.depth), bounds.map(|bounds| bounds.range), is_one_point),
         (
-            Quantity::Incidence,
-            of_a.incidence.zip(of_b.incidence),
-            bounds.map(|bounds| bounds.incidence),
+            Quantity::CosIncidence,
+            of_a.cos_incidence.zip(of_b.cos_incidence),
+            bounds.map(|bounds| bounds.cos_incidence),
             is_one_face,
         ),
     ];
@@ -179,13 +179,13 @@ fn off_its_face(judge: &Judge<'_>, place: Place, answer: &Answer, side: Side<'_>
     let (face, scene) = (answer.face?, judge.scene());
     let exact = judge.plane_hit(place, face)?;
     let ray = scene.ray(place.sensor, place.i, place.j)?;
-    let bounds = |resolution| Bounds::of(scene.mesh(), face, &ray, exact.range, resolution);
+    let bounds = |precision| Bounds::of(scene.mesh(), face, &ray, exact.range, precision);
     // The values are the referee's in f64.
-    let bounds = bounds(side.resolution).plus(&bounds(Resolution::F64));
+    let bounds = bounds(side.precision).plus(&bounds(Precision::F64));
     let scalars = [
         (Quantity::Range, answer.range, exact.range, bounds.range),
         (Quantity::Depth, answer.depth, exact.depth, bounds.range),
-        (Quantity::Incidence, answer.incidence, exact.incidence, bounds.incidence),
+        (Quantity::CosIncidence, answer.cos_incidence, exact.cos_incidence, bounds.cos_incidence),
     ];
     let vectors = [
         (Quantity::Point, answer.point, exact.point, bounds.point),

@@ -1,5 +1,5 @@
 use crate::attribution::cause::Attributions;
-use raypencil_scene::{Frame, Resolution};
+use raypencil_scene::{Precision, RenderOutput};
 
 /// One side of a comparison.
 #[derive(Debug, Clone, Copy)]
@@ -7,9 +7,9 @@ pub struct Side<'a> {
     /// The renderer's name.
     pub name: &'a str,
     /// What it rendered.
-    pub frame: &'a Frame,
+    pub output: &'a RenderOutput,
     /// How finely it computes.
-    pub resolution: Resolution,
+    pub precision: Precision,
     /// The causes of its errors, if it follows the paper into some.
     pub attributions: Option<&'a Attributions>,
 }

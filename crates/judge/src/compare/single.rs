@@ -25,7 +25,7 @@ pub struct First {
 /// The class of one ray of the judge's scene and the quantity that is worst, as [`crate::compare::compare::compare_judged`] has it;
 /// `None` if there is no such ray or one side does not say what it hits.
 pub fn class_at(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>, place: Place) -> Option<(Class, Quantity)> {
-    let (of_a, of_b) = (a.frame.map(place.sensor)?, b.frame.map(place.sensor)?);
+    let (of_a, of_b) = (a.output.map(place.sensor)?, b.output.map(place.sensor)?);
     let (width, height) = judge.scene().size(place.sensor)?;
     if place.i >= width || place.j >= height || !says_hit(of_a) || !says_hit(of_b) {
         return None;
@@ -60,7 +60,7 @@ fn first_on(
     compared: &mut u64,
 ) -> Result<Vec<PencilLight>, First> {
     let mut gathered = Gathered::default();
-    let maps = (a.frame.map(sensor), b.frame.map(sensor), judge.scene().size(sensor));
+    let maps = (a.output.map(sensor), b.output.map(sensor), judge.scene().size(sensor));
     let (Some(of_a), Some(of_b), Some((width, height))) = maps else { return Ok(Vec::new()) };
     if !says_hit(of_a) || !says_hit(of_b) {
         return Ok(Vec::new());

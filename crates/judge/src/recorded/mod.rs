@@ -11,7 +11,7 @@ use crate::recorded::error::RecordingError;
 use crate::recorded::names::is_of_outsiders;
 use crate::recorded::reader::{Reader, limits, recordings_in};
 use raypencil_files::{Channels, Storage, read_channels};
-use raypencil_scene::{Frame, Renderer, Request, Resolution, Scene, SensorId};
+use raypencil_scene::{Precision, RenderOutput, Renderer, Request, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub struct Recorded {
     /// Channels whose names mean nothing here.
     pub unknown: Vec<String>,
     /// How finely it computes, as declared.
-    pub resolution: Resolution,
+    pub precision: Precision,
 }
 
 impl Renderer for Recorded {
@@ -35,13 +35,13 @@ impl Renderer for Recorded {
         &self.name
     }
 
-    fn resolution(&self) -> Resolution {
-        self.resolution
+    fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// What was recorded, of whatever scene: the caller sees to it that it is this one.
-    fn render(&self, _: &Scene, _: &Request) -> Frame {
-        self.answers.to_frame()
+    fn render(&self, _: &Scene, _: &Request) -> RenderOutput {
+        self.answers.to_output()
     }
 }
 
@@ -50,8 +50,8 @@ impl Recorded {
     ///
     /// # Errors
     /// Names the file, the channel and the cell that breaks the conventions.
-    pub fn read(folder: &Path, scene: &Scene, resolution: Resolution) -> Result<Self, RecordingError> {
-        Self::of_folder(folder, scene, resolution, &Self::channels(folder, scene)?)
+    pub fn read(folder: &Path, scene: &Scene, precision: Precision) -> Result<Self, RecordingError> {
+        Self::of_folder(folder, scene, precision, &Self::channels(folder, scene)?)
     }
 
     /// The channels of a folder that holds one recording of a scene.
@@ -71,16 +71,16 @@ impl Recorded {
     pub fn of_folder(
         folder: &Path,
         scene: &Scene,
-        resolution: Resolution,
+        precision: Precision,
         channels: &Channels,
     ) -> Result<Self, RecordingError> {
         let name = folder.file_name().map_or("candidate".into(), |name| name.to_string_lossy().into_owned());
-        Self::of_channels(name, folder, scene, resolution, channels)
+        Self::of_channels(name, folder, scene, precision, channels)
     }
 
     /// What a renderer of this house says, as it computed it.
-    pub fn of_frame(name: &str, scene: &Scene, frame: &Frame, resolution: Resolution) -> Self {
-        let answers = Answers::of_frame(scene, frame);
+    pub fn of_output(name: &str, scene: &Scene, output: &RenderOutput, precision: Precision) -> Self {
+        let answers = Answers::of_output(scene, output);
         let mut storage = BTreeMap::new();
         for (sensor, map) in scene.sensors().zip(&answers.maps) {
             let mut store = |quantity: Quantity, is_there: bool, how: Storage| {
@@ -93,29 +93,29 @@ impl Recorded {
             store(Quantity::Depth, map.depth.is_some(), Storage::F64);
             store(Quantity::Point, map.point.is_some(), Storage::F64);
             store(Quantity::Normal, map.normal.is_some(), Storage::F64);
-            store(Quantity::Incidence, map.incidence.is_some(), Storage::F64);
+            store(Quantity::CosIncidence, map.cos_incidence.is_some(), Storage::F64);
             if let SensorId::Beam(beam) = sensor {
                 let light = &answers.light[beam];
                 let returns = &light.returns;
                 store(Quantity::Visible, returns.visible.is_some(), Storage::Whole);
                 store(Quantity::Pixel, returns.pixel.is_some(), Storage::Whole);
                 store(Quantity::CameraDepth, returns.depth.is_some(), Storage::F64);
-                store(Quantity::OffAxis, returns.off_axis.is_some(), Storage::F64);
-                store(Quantity::Emission, returns.emission.is_some(), Storage::F64);
+                store(Quantity::CosOffAxis, returns.cos_off_axis.is_some(), Storage::F64);
+                store(Quantity::CosView, returns.cos_view.is_some(), Storage::F64);
                 store(Quantity::PencilFlux, returns.flux.is_some(), Storage::F64);
             }
         }
         for (beam, _) in answers.light.iter().enumerate().filter(|(_, light)| light.image.is_some()) {
             storage.insert((SensorId::Camera, Item::of_image(beam)), Storage::F64);
         }
-        Self { name: name.into(), answers, storage, unknown: Vec::new(), resolution }
+        Self { name: name.into(), answers, storage, unknown: Vec::new(), precision }
     }
 
     pub fn of_channels(
         name: String,
         folder: &Path,
         scene: &Scene,
-        resolution: Resolution,
+        precision: Precision,
         channels: &Channels,
     ) -> Result<Self, RecordingError> {
         let mut reader = Reader {
@@ -145,6 +145,6 @@ impl Recorded {
         if storage.is_empty() {
             return Err(RecordingError::Nothing { folder: folder.to_path_buf(), unknown });
         }
-        Ok(Self { name, answers, storage, unknown, resolution })
+        Ok(Self { name, answers, storage, unknown, precision })
     }
 }

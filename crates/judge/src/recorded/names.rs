@@ -70,12 +70,12 @@ pub fn item_of_channel(scene: &Scene, sensor: SensorId, name: &str) -> Option<It
         FACE => Quantity::Face,
         name if POINT.contains(&name) => Quantity::Point,
         name if NORMAL.contains(&name) => Quantity::Normal,
-        INCIDENCE => Quantity::Incidence,
+        INCIDENCE => Quantity::CosIncidence,
         VISIBLE => Quantity::Visible,
         name if PIXEL.contains(&name) => Quantity::Pixel,
         VIEW => Quantity::CameraDepth,
-        OFF_AXIS => Quantity::OffAxis,
-        EMISSION => Quantity::Emission,
+        OFF_AXIS => Quantity::CosOffAxis,
+        EMISSION => Quantity::CosView,
         _ => return None,
     };
     quantity.is_of(sensor).then(|| quantity.into())

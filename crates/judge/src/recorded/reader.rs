@@ -161,14 +161,14 @@ impl<'a> Reader<'a> {
     pub(super) fn geometry(&mut self, index: usize, sensor: SensorId) -> Result<(), RecordingError> {
         let faces = self.wholes(sensor, names::FACE)?;
         let (range, depth) = (self.reals(sensor, names::RANGE)?, self.reals(sensor, names::DEPTH)?);
-        let incidence = self.reals(sensor, names::INCIDENCE)?;
+        let cos_incidence = self.reals(sensor, names::INCIDENCE)?;
         let (point, normal) = (self.vector(sensor, names::POINT)?, self.vector(sensor, names::NORMAL)?);
 
         // Whether each ray hits: the first of these that is there says so, and the others must agree.
         let hits: Option<(String, Vec<bool>)> = if let Some(faces) = &faces {
             Some((names::FACE.into(), faces.cells().iter().map(|face| *face != u32::MAX).collect()))
         } else {
-            let speaker = range.or(depth).or(point.map(|p| p[0])).or(normal.map(|n| n[0])).or(incidence);
+            let speaker = range.or(depth).or(point.map(|p| p[0])).or(normal.map(|n| n[0])).or(cos_incidence);
             speaker.map(|reals| {
                 (reals.name.to_string(), reals.image.cells().iter().map(|x| x.is_finite()).collect())
             })
@@ -185,7 +185,7 @@ impl<'a> Reader<'a> {
         let scalars = [
             (range, Quantity::Range, true),
             (depth, Quantity::Depth, true),
-            (incidence, Quantity::Incidence, false),
+            (cos_incidence, Quantity::CosIncidence, false),
         ];
         for (reals, quantity, is_length) in scalars {
             let Some(reals) = reals else { continue };
@@ -195,7 +195,7 @@ impl<'a> Reader<'a> {
             match quantity {
                 Quantity::Range => map.range = Some(image),
                 Quantity::Depth => map.depth = Some(image),
-                _ => map.incidence = Some(image),
+                _ => map.cos_incidence = Some(image),
             }
         }
         for (parts, quantity) in [(point, Quantity::Point), (normal, Quantity::Normal)] {
@@ -311,8 +311,8 @@ impl<'a> Reader<'a> {
 
         let scalars = [
             (names::VIEW, Quantity::CameraDepth, true),
-            (names::OFF_AXIS, Quantity::OffAxis, false),
-            (names::EMISSION, Quantity::Emission, false),
+            (names::OFF_AXIS, Quantity::CosOffAxis, false),
+            (names::EMISSION, Quantity::CosView, false),
         ];
         for (name, quantity, is_length) in scalars {
             let Some(reals) = self.reals(sensor, name)? else { continue };
@@ -328,8 +328,8 @@ impl<'a> Reader<'a> {
             let returns = &mut self.answers.light[beam].returns;
             match quantity {
                 Quantity::CameraDepth => returns.depth = Some(image),
-                Quantity::OffAxis => returns.off_axis = Some(image),
-                _ => returns.emission = Some(image),
+                Quantity::CosOffAxis => returns.cos_off_axis = Some(image),
+                _ => returns.cos_view = Some(image),
             }
         }
 

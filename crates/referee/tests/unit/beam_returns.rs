@@ -72,9 +72,9 @@ fn all_ways_to_a_flux_agree() {
             let CameraTerms { towards, direction_squared, axial, squared, scale, frame_scale } =
                 &exact.camera;
             assert_eq!(back.depth, quotient(axial, &frame_scale.mul(scale)));
-            assert_eq!(back.off_axis, cosine(axial, squared));
+            assert_eq!(back.cos_off_axis, cosine(axial, squared));
             let lengths = direction_squared.mul(&exact.intersection.normal_squared);
-            assert_eq!(back.emission, cosine(towards, &lengths));
+            assert_eq!(back.cos_view, cosine(towards, &lengths));
         }
         assert!(seen > 60, "{seen} of 144 pencils are seen");
     }

@@ -34,7 +34,7 @@ fn exactly(sensor: &MountedSensor, aim: Aim, face: &Face, focal_length: f64) -> 
         point: [0, 1, 2].map(|k: usize| quotient(&point.0[k], &exact.scale)),
         normal: [0, 1, 2].map(|k: usize| exact.normal_part(k)),
         depth: exact.depth(focal_length),
-        incidence: exact.incidence(),
+        cos_incidence: exact.cos_incidence(),
     }
 }
 

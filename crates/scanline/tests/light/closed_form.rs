@@ -41,8 +41,8 @@ fn geometry_of_a_return() {
     assert!(back.visible);
     assert_eq!(back.pixel, Some(Pixel { i: 160, j: 192 }));
     assert_close(back.depth, 2.0);
-    assert_close(back.off_axis, 2.0 / 3.0);
-    assert_close(back.emission, 2.0 / 3.0);
+    assert_close(back.cos_off_axis, 2.0 / 3.0);
+    assert_close(back.cos_view, 2.0 / 3.0);
 }
 
 #[test]
@@ -149,15 +149,15 @@ fn a_point_off_the_image_has_no_pixel_and_no_flux() {
     let back = rig.pencil(3);
     assert_eq!((back.pixel, back.visible, back.flux), (None, false, 0.0));
     assert_close(back.depth, 2.0);
-    assert_close(back.emission, 2.0 / 3.0);
+    assert_close(back.cos_view, 2.0 / 3.0);
     // Nor has one behind the camera, whose depth is negative: the wall is seen from (0, -2, 4), at its back.
     let mut rig = Rig::new();
     rig.scene_from_camera.position.z = 4.0;
     let back = rig.pencil(3);
     assert_eq!((back.pixel, back.visible, back.flux), (None, false, 0.0));
     assert_close(back.depth, -2.0);
-    assert_close(back.off_axis, -2.0 / 3.0);
-    assert_close(back.emission, -2.0 / 3.0);
+    assert_close(back.cos_off_axis, -2.0 / 3.0);
+    assert_close(back.cos_view, -2.0 / 3.0);
     // Or in front of the SPP: f_c = 1/128 m, and the wall 1/256 m away.
     let mut rig = Rig::new();
     rig.scene_from_camera.position.z = 2.0 - 1.0 / 256.0;
@@ -173,7 +173,7 @@ fn a_point_whose_front_is_turned_away_is_not_visible_but_lands() {
     let back = rig.pencil(3);
     // Its x runs the other way: (-1, 2, 2).
     assert_eq!(back.pixel, Some(Pixel { i: 96, j: 192 }));
-    assert_close(back.emission, -2.0 / 3.0);
+    assert_close(back.cos_view, -2.0 / 3.0);
     assert_eq!((back.visible, back.flux), (false, 0.0));
     // A second wall facing the camera in the same place shows it nothing of the laser either.
     assert!(!rig.and(&[reversed(wall(2.0))]).pencil(3).visible);

@@ -143,7 +143,7 @@ fn coplanar_faces_do_not_hide_the_point() {
         rig.scene_from_camera.rotation = numbers.rotation();
         let frame = rig.render();
         let Some(back) = back(&frame, 0, 0, 0) else { continue };
-        if back.pixel.is_none() || back.emission < 1e-3 {
+        if back.pixel.is_none() || back.cos_view < 1e-3 {
             continue;
         }
         assert!(back.visible, "{face:?}");
@@ -214,9 +214,9 @@ fn exact_occlusion_is_that_of_segments_and_triangles() {
                     let sides = [a.cross(*b), b.cross(*e), e.cross(*a)].map(|side| side.dot(p));
                     sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
                 };
-                let visible = back.emission > 0.0 && back.pixel.is_some() && !faces.iter().any(blocks);
+                let visible = back.cos_view > 0.0 && back.pixel.is_some() && !faces.iter().any(blocks);
                 assert_eq!(back.visible, visible, "{seed} {beam} ({i}, {j})");
-                hidden += usize::from(back.emission > 0.0 && back.pixel.is_some() && !visible);
+                hidden += usize::from(back.cos_view > 0.0 && back.pixel.is_some() && !visible);
             }
         }
     }

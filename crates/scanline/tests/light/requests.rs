@@ -38,7 +38,7 @@ fn jittered_pencils_are_not_answered() {
     for map in frame.beams {
         assert_eq!((map.width, map.height), (256, 4));
         assert!(map.range.is_none() && map.depth.is_none() && map.face.is_none());
-        assert!(map.point.is_none() && map.normal.is_none() && map.incidence.is_none());
+        assert!(map.point.is_none() && map.normal.is_none() && map.cos_incidence.is_none());
     }
     let nothing = Request { beams: false, returns: false, ..jittered };
     let frame = Scanline::exact().render(&scene, &nothing);

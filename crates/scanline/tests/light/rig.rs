@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DQuat, DVec3};
 use raypencil_scanline::{Options, Scanline};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Frame, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
+    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Profile, RenderOutput,
     Renderer, Request, Return, Scene,
 };
 use raypencil_terrain::{Ground, height_at};
@@ -107,7 +107,7 @@ impl Rig {
         Scene::new(Arc::new(mesh), camera, self.beams.clone(), air, self.model).expect("a valid scene")
     }
 
-    pub(crate) fn render(&self) -> Frame {
+    pub(crate) fn render(&self) -> RenderOutput {
         Scanline::exact().render(&self.scene(), &Request::EVERYTHING)
     }
 
@@ -118,14 +118,14 @@ impl Rig {
 }
 
 /// The return of a pencil that hits.
-pub(crate) fn back(frame: &Frame, beam: usize, i: u32, j: u32) -> Option<Return> {
+pub(crate) fn back(frame: &RenderOutput, beam: usize, i: u32, j: u32) -> Option<Return> {
     let returns = &frame.returns[beam];
     Some(Return {
         depth: returns.depth.as_ref()?.at(i, j).get()?,
         visible: returns.visible.as_ref()?.at(i, j),
         pixel: returns.pixel.as_ref()?.at(i, j).get(),
-        off_axis: returns.off_axis.as_ref()?.at(i, j).get()?,
-        emission: returns.emission.as_ref()?.at(i, j).get()?,
+        cos_off_axis: returns.cos_off_axis.as_ref()?.at(i, j).get()?,
+        cos_view: returns.cos_view.as_ref()?.at(i, j).get()?,
         flux: returns.flux.as_ref()?.at(i, j),
     })
 }
@@ -164,7 +164,7 @@ pub(crate) fn rig_on(ground: Ground, thickness: f64) -> Scene {
 }
 
 /// The rig on a ground, skipping or not.
-pub(crate) fn render(scene: &Scene, options: Options) -> Frame {
+pub(crate) fn render(scene: &Scene, options: Options) -> RenderOutput {
     Scanline::new(options).render(scene, &Request::EVERYTHING)
 }
 

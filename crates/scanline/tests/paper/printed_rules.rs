@@ -117,8 +117,8 @@ fn rule_1b_adds_a_row_that_sees_the_back_where_the_middle_sees_the_front() {
         assert!((range(&paper, 32, 3).unwrap() - 2.0 * length).abs() < 1e-12);
         // n = (0, -128, 1/2), q = (1/64, 0, 1) g: cos(psi) = -n.q / (|n| |q|) < 0.
         let cosine = -0.5 / (128.0_f64 * 128.0 + 0.25).sqrt() / length;
-        let incidence = paper.incidence.as_ref().unwrap().at(32, 3).get().unwrap();
-        assert!((incidence - cosine).abs() < 1e-12, "{incidence} {cosine}");
+        let cos_incidence = paper.cos_incidence.as_ref().unwrap().at(32, 3).get().unwrap();
+        assert!((cos_incidence - cosine).abs() < 1e-12, "{cos_incidence} {cosine}");
     }
 }
 
@@ -130,9 +130,9 @@ fn what_rule_1b_adds_returns_by_its_own_normal_and_not_by_equation_1() {
     for (model, delivers) in [(FluxModel::Radiometric, true), (FluxModel::Eq1, false)] {
         let scene = seen_by_both(&faces, &[([0.0; 3], four_rows())], model);
         let frame = render(&scene, SKIP_RULES);
-        assert!(frame.beams[0].incidence.as_ref().unwrap().at(32, 3).get().unwrap() < 0.0);
+        assert!(frame.beams[0].cos_incidence.as_ref().unwrap().at(32, 3).get().unwrap() < 0.0);
         let returns = &frame.returns[0];
-        assert!(returns.emission.as_ref().unwrap().at(32, 3).get().unwrap() > 0.0);
+        assert!(returns.cos_view.as_ref().unwrap().at(32, 3).get().unwrap() > 0.0);
         assert!(returns.visible.as_ref().unwrap().at(32, 3));
         assert_eq!(returns.pixel.as_ref().unwrap().at(32, 3).get().map(|pixel| pixel.j), Some(64));
         // Equation (1) has cos(psi), and power is not negative; the other model has not.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Frame, Lens, Material, Mesh, Mounted, Pose, Profile, Renderer,
-    Request, Scene, SensorMap,
+    Atmosphere, Beam, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Profile, RenderOutput,
+    Renderer, Request, Scene, SensorMap,
 };
 use raypencil_terrain::{Ground, height_at};
 
@@ -123,12 +123,12 @@ pub(crate) const FACING: Switches = Switches { facing: Fidelity::Paper, ..Switch
 pub(crate) const EXTENT: Switches = Switches { extent: Fidelity::Paper, ..Switches::EXACT };
 pub(crate) const PLACE: Switches = Switches { place: Fidelity::Paper, ..Switches::EXACT };
 
-pub(crate) fn render(scene: &Scene, switches: Switches) -> Frame {
+pub(crate) fn render(scene: &Scene, switches: Switches) -> RenderOutput {
     Scanline::new(Options { switches, ..Options::EXACT }).render(scene, &Request::EVERYTHING)
 }
 
 /// Without rules 3, and without 1a where it is a mere skip.
-pub(crate) fn render_unskipped(scene: &Scene, switches: Switches) -> Frame {
+pub(crate) fn render_unskipped(scene: &Scene, switches: Switches) -> RenderOutput {
     Scanline::new(Options { switches, skip_unseen: false }).render(scene, &Request::EVERYTHING)
 }
 
@@ -140,7 +140,7 @@ pub(crate) fn beam_map(scene: &Scene, switches: Switches) -> SensorMap {
     render(scene, switches).beams.remove(0)
 }
 
-pub(crate) fn same_maps(a: &Frame, b: &Frame) -> bool {
+pub(crate) fn same_maps(a: &RenderOutput, b: &RenderOutput) -> bool {
     a.maps().eq(b.maps())
 }
 

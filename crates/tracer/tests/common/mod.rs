@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Frame, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
+    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Profile, RenderOutput,
     Renderer, Request, Return, Returns, Scene,
 };
 use raypencil_tracer::Tracer;
@@ -83,7 +83,7 @@ impl Bench {
         Scene::new(Arc::new(mesh), camera, vec![beam], air, self.model).unwrap()
     }
 
-    pub fn frame(&self) -> Frame {
+    pub fn frame(&self) -> RenderOutput {
         Tracer::new().render(&self.scene(), &Request::EVERYTHING)
     }
 
@@ -119,8 +119,8 @@ pub fn back(returns: &Returns, i: u32, j: u32) -> Return {
         visible: of(&returns.visible, i, j),
         pixel: of(&returns.pixel, i, j).get(),
         depth: of(&returns.depth, i, j).get().expect("a hit"),
-        off_axis: of(&returns.off_axis, i, j).get().expect("a hit"),
-        emission: of(&returns.emission, i, j).get().expect("a hit"),
+        cos_off_axis: of(&returns.cos_off_axis, i, j).get().expect("a hit"),
+        cos_view: of(&returns.cos_view, i, j).get().expect("a hit"),
         flux: of(&returns.flux, i, j),
     }
 }

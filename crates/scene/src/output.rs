@@ -51,19 +51,19 @@ pub struct Quantities {
     /// The face's normal.
     pub normal: bool,
     /// The cosine of incidence.
-    pub incidence: bool,
+    pub cos_incidence: bool,
 }
 
 impl Quantities {
     /// None of them.
     pub const NONE: Self =
-        Self { range: false, depth: false, face: false, point: false, normal: false, incidence: false };
+        Self { range: false, depth: false, face: false, point: false, normal: false, cos_incidence: false };
     /// All of them.
     pub const ALL: Self =
-        Self { range: true, depth: true, face: true, point: true, normal: true, incidence: true };
+        Self { range: true, depth: true, face: true, point: true, normal: true, cos_incidence: true };
     /// The paper's range raster map alone, with the face that each range belongs to.
     pub const RANGE_MAP: Self =
-        Self { range: true, depth: false, face: true, point: false, normal: false, incidence: false };
+        Self { range: true, depth: false, face: true, point: false, normal: false, cos_incidence: false };
 }
 
 /// The maps of one sensor. Every quantity is optional; within one, a cell without a hit is `None`.
@@ -85,8 +85,8 @@ pub struct SensorMap {
     pub point: Option<Image<Maybe<DVec3>>>,
     /// [`Hit::normal`], scene frame.
     pub normal: Option<Image<Maybe<DVec3>>>,
-    /// [`Hit::incidence`].
-    pub incidence: Option<Image<Maybe<f64>>>,
+    /// [`Hit::cos_incidence`].
+    pub cos_incidence: Option<Image<Maybe<f64>>>,
 }
 
 impl SensorMap {
@@ -104,7 +104,7 @@ impl SensorMap {
             face: raster(quantities.face, width, height),
             point: raster(quantities.point, width, height),
             normal: raster(quantities.normal, width, height),
-            incidence: raster(quantities.incidence, width, height),
+            cos_incidence: raster(quantities.cos_incidence, width, height),
         }
     }
 
@@ -119,7 +119,7 @@ impl SensorMap {
         let mut face = rows(&mut self.face, width);
         let mut point = rows(&mut self.point, width);
         let mut normal = rows(&mut self.normal, width);
-        let mut incidence = rows(&mut self.incidence, width);
+        let mut cos_incidence = rows(&mut self.cos_incidence, width);
         (0..self.height)
             .map(|j| SensorRow {
                 j,
@@ -128,7 +128,7 @@ impl SensorMap {
                 face: face.next(),
                 point: point.next(),
                 normal: normal.next(),
-                incidence: incidence.next(),
+                cos_incidence: cos_incidence.next(),
             })
             .collect()
     }
@@ -154,8 +154,8 @@ pub struct SensorRow<'a> {
     pub point: Option<&'a mut [Maybe<DVec3>]>,
     /// Its cells of [`SensorMap::normal`].
     pub normal: Option<&'a mut [Maybe<DVec3>]>,
-    /// Its cells of [`SensorMap::incidence`].
-    pub incidence: Option<&'a mut [Maybe<f64>]>,
+    /// Its cells of [`SensorMap::cos_incidence`].
+    pub cos_incidence: Option<&'a mut [Maybe<f64>]>,
 }
 
 impl SensorRow<'_> {
@@ -171,13 +171,13 @@ impl SensorRow<'_> {
         write(&mut self.face, i, hit.face);
         write(&mut self.point, i, hit.point);
         write(&mut self.normal, i, hit.normal);
-        write(&mut self.incidence, i, hit.incidence);
+        write(&mut self.cos_incidence, i, hit.cos_incidence);
     }
 }
 
 /// Everything one renderer says of one scene.
 #[derive(Debug, Clone)]
-pub struct Frame {
+pub struct RenderOutput {
     /// The camera's maps, if they were asked for and are known.
     pub camera: Option<SensorMap>,
     /// The maps of each beam, in the scene's order; empty if not asked for.
@@ -191,7 +191,7 @@ pub struct Frame {
     pub stages: Vec<Stage>,
 }
 
-impl Frame {
+impl RenderOutput {
     /// The maps of one sensor.
     pub fn map(&self, sensor: SensorId) -> Option<&SensorMap> {
         match sensor {
