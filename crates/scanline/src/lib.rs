@@ -49,6 +49,7 @@ mod bins;
 mod clip;
 mod cylindrical;
 #[cfg(test)]
+#[path = "../tests/unit/fixtures.rs"]
 mod fixtures;
 mod flux;
 mod occluders;

@@ -1,0 +1,133 @@
+//! Unit tests of `occlusion`.
+
+use super::*;
+use glam::DVec3;
+use raypencil_scene::{Beam, Camera, Lens, Mesh, Mounted, Pose, Profile, Quantities, SensorId};
+use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin, height_at};
+
+use crate::cylindrical::Cylindrical;
+use crate::fixtures::{camera, mesh};
+use crate::occluders::Facing;
+use crate::perspective::Perspective;
+use crate::points::{self, Pixels};
+use crate::rounding::PointError;
+use crate::tables::CameraTables;
+use crate::{Options, Switches, bands};
+
+/// What is hidden of the default rig's stripes, its rasters four times coarser and 2 cm thick, if those faces
+/// occlude.
+fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
+    let z = height_at(mesh, 0.0, 0.0).expect("ground under the vehicle");
+    let mount = |height: f64, pitch_down_deg: f64| {
+        Pose::from_position(DVec3::new(0.3, 0.0, z + height) - mesh.origin())
+            * Pose::from_axis_angle(DVec3::Y, pitch_down_deg.to_radians())
+            * Pose::VEHICLE_FROM_FORWARD_SENSOR
+    };
+    let camera = Camera {
+        width: 256,
+        height: 256,
+        pixel_pitch: [36e-6; 2],
+        focal_length: 8e-3,
+        principal_point: [128.0; 2],
+        aperture: 2e-3,
+        lens: Lens::CLEAR,
+        max_range: 20.0,
+    };
+    let beam = Beam {
+        columns: 256,
+        rows: 4,
+        thickness: 2e-2,
+        grid_distance: 0.1,
+        half_width: Beam::half_width_of(0.1, 60_f64.to_radians()),
+        max_range: 20.0,
+        power: 1.0,
+        wavelength: 810e-9,
+        profile: Profile::Paper,
+    };
+    let tables = CameraTables::of(&camera);
+    let mounted = Mounted { scene_from_sensor: mount(1.5, 20.0), sensor: camera };
+    let perspective = Perspective::new(&mounted, &tables);
+    let pixels = Pixels::of(&camera);
+    let mut stripes = Vec::new();
+    for (height, down) in [(1.8, 31.0), (2.0, 22.0)] {
+        let beam = Mounted { scene_from_sensor: mount(height, down), sensor: beam };
+        let cylindrical = Cylindrical::new(&beam, Switches::EXACT);
+        let of = SensorId::Beam(0);
+        let map = bands::render(mesh, &cylindrical, of, Quantities::RANGE_MAP, Options::EXACT);
+        let hits = map.face.expect("asked for");
+        stripes.extend(points::of_beam(mesh, &cylindrical, &perspective, pixels, &hits));
+    }
+    let bins = Bins::of(pixels, stripes.iter().map(Option::as_ref));
+    assert!(bins.points().len() > 500);
+    hidden(&Occluders::new(mesh, &perspective, facing, f64::INFINITY), &bins, true)
+}
+
+/// Hills, rocks, mushrooms, floating slabs and walls: all of it closed.
+fn closed(seed: u64) -> RandomGround {
+    RandomGround { slivers: 0, duplicate_faces: 0, zero_area_faces: 0, ..RandomGround::nasty(seed, 4000) }
+}
+
+#[test]
+fn a_face_holds_a_point_within_rounding_of_its_plane() {
+    // Sides of 3, 4 and 5 m in the plane z = 2, d = -12 * 2 or 24; the farthest corner (3, 0, 2) or (0, 4, 2) is
+    // sqrt 20 m from the camera.
+    let ground = mesh(&[[[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [0.0, 4.0, 2.0]]]);
+    let tables = CameraTables::of(&camera());
+    let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
+    let perspective = Perspective::new(&mounted, &tables);
+    let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
+    let holds_at = |beyond: f64, error: PointError| {
+        let mut answers = Vec::new();
+        occluders.pieces(
+            FaceId(0),
+            |_| true,
+            |occluder| {
+                // |d| (1/t - 1/t_P) / (1/t_P) = |d| beyond.
+                let inverse_t = 0.5;
+                let point = Binned {
+                    at: Corner { x: 0.0, y: 0.0 },
+                    inverse_t: inverse_t / (1.0 + beyond),
+                    distance: 3.0,
+                    error,
+                    face: FaceId(1),
+                    index: 0,
+                };
+                answers.push(holds(&occluders, occluder, &point, inverse_t));
+            },
+        );
+        answers
+    };
+    let exact = PointError { along: DVec3::ZERO, anywhere: 0.0 };
+    let bound = ROUNDING * 20.0 * (20_f64.sqrt() + 3.0) / 24.0;
+    assert_eq!((holds_at(0.99 * bound, exact), holds_at(1.01 * bound, exact)), (vec![true], vec![false]));
+    // And the point's own error, |n| = 12 times 1e-9 m: as much again as 1e-9 12 / 24.
+    let inexact = PointError { along: DVec3::ZERO, anywhere: 1e-9 };
+    assert_eq!((holds_at(4.99e-10, inexact), holds_at(5.01e-10, inexact)), (vec![true], vec![false]));
+}
+
+#[test]
+fn faces_turned_away_suffice_on_closed_ground() {
+    // §6: "a ray from the camera to a stripe is occluded by the terrain if the ray passes through a triangle on
+    // the back side of the terrain." True if the ground is closed, camera and laser are outside of it, the
+    // camera is on the front side of the face hit, and facing is judged from the camera's position: the ray
+    // starts outside and ends at a front from outside, so each time it goes in it must come out by a back.
+    let grounds = (0..6).map(|seed| closed(seed).build());
+    let mut count = 0;
+    for ground in grounds.chain(BUILTIN_NAMES.iter().map(|name| builtin(name, 0.25).unwrap())) {
+        let mesh = ground.into_mesh().unwrap();
+        let hidden = hidden_by(&mesh, Facing::Every);
+        assert_eq!(hidden, hidden_by(&mesh, Facing::AwayFromCamera));
+        count += hidden.iter().filter(|hidden| **hidden).count();
+    }
+    assert!(count > 300, "{count}");
+}
+
+#[test]
+fn faces_turned_away_do_not_suffice_on_open_ground() {
+    // With loose slivers, every second of which shows the camera its front.
+    let differs = |seed| {
+        let mesh = RandomGround { slivers: 600, ..closed(seed) }.build().into_mesh().unwrap();
+        hidden_by(&mesh, Facing::Every) != hidden_by(&mesh, Facing::AwayFromCamera)
+    };
+    assert!((0..6).any(differs));
+}

@@ -1,0 +1,68 @@
+//! Unit tests of `printed_occlusion`.
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Pixel, Pose};
+
+use super::*;
+use crate::fixtures::{beam, camera, mesh};
+use crate::occluders::Facing;
+use crate::perspective::Perspective;
+use crate::points::{Landing, Pixels};
+use crate::rounding::PointError;
+use crate::scan::Corner;
+use crate::tables::CameraTables;
+
+fn point(depth: f64) -> Option<StripePoint> {
+    Some(StripePoint {
+        face: FaceId(0),
+        range: 1.0,
+        incidence: 1.0,
+        emission: 1.0,
+        depth,
+        distance: 1.0,
+        off_axis: 1.0,
+        sin_squared: 0.0,
+        landing: None,
+        error: PointError { along: DVec3::ZERO, anywhere: 0.0 },
+    })
+}
+
+#[test]
+fn a_face_deeper_than_a_point_may_be_nearer_at_the_centre_of_its_pixel() {
+    // The point is at (0.24, 0.24) of pixel (4, 4), whose centre is (0.125, 0.125), at z = 2: 2.112 m away. At the
+    // centre a wall at z = 2.05 is 2.082 m away, one at 2.1 is 2.133 m.
+    let (x, z) = (0.24_f64, 2.0);
+    let distance = z * (1.0 + 2.0 * x * x).sqrt();
+    let landing = Landing { pixel: Pixel { i: 4, j: 4 }, at: Corner { x, y: x }, inverse_t: 1.0 / z };
+    let point = StripePoint { distance, landing: Some(landing), ..point(z).unwrap() };
+    let tables = CameraTables::of(&camera());
+    let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
+    let perspective = Perspective::new(&mounted, &tables);
+    let bins = Bins::of(Pixels::of(&camera()), [Some(&point)].into_iter());
+    for (wall, is_hidden) in [(2.05, true), (2.1, false)] {
+        let ground = mesh(&[[[-9.0, -9.0, wall], [9.0, -9.0, wall], [0.0, 9.0, wall]]]);
+        let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
+        for skip_unseen in [true, false] {
+            assert_eq!(hidden_at_centres(&occluders, &bins, skip_unseen), [is_hidden], "{wall}");
+        }
+    }
+}
+
+#[test]
+fn the_upper_beam_is_the_last_of_the_highest() {
+    let camera_from_scene = SensorFromScene::of(&Pose::IDENTITY);
+    let at = |position: DVec3| Mounted { scene_from_sensor: Pose::from_position(position), sensor: beam() };
+    let extent = |beams: [DVec3; 2]| {
+        let stripes = [vec![point(3.0), None, point(5.0), point(4.0)], vec![point(7.0), point(6.0)]];
+        upper_extent(&camera_from_scene, &beams.map(at), &stripes)
+    };
+    // The camera's y is down.
+    let (low, high) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0));
+    assert_eq!((extent([high, low]), extent([low, high]), extent([low, low])), (5.0, 7.0, 7.0));
+    // Heights of +0 and -0: seen from the camera, y of the first is -0 - 0 - 0, of the second +0.
+    let (plus, minus) = (DVec3::new(-1.0, -0.0, -1.0), DVec3::new(1.0, 0.0, 1.0));
+    assert_eq!((extent([plus, minus]), extent([minus, plus])), (7.0, 7.0));
+    // No hit, no limit.
+    let nothing = [vec![None], vec![point(6.0)]];
+    assert_eq!(upper_extent(&camera_from_scene, &[at(high), at(low)], &nothing), f64::INFINITY);
+}
