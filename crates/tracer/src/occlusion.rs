@@ -1,125 +1,131 @@
-//! Does any face stand between a point that a pencil hits and the camera? (Paper, §6; contract: visible)
+//! Occlusion: does any face stand between a pencil's hit point and the camera? (Paper, §6; contract: visible)
 //!
-//! The segment is c + u (P - c), f_c / r <= u < 1: from the crossing of the image plane up to, but without,
-//! the point. Any face counts, from its front or its back, except those that the point lies on.
+//! The tested segment is c + u (P - c) with f_c / r <= u < 1. It runs from the crossing of the image plane up to the
+//! point P, without P itself. Every face counts, from its front or its back, except those that P lies on.
 //!
 //! # The end at the point
 //!
-//! u < 1 is not asked of a quotient. With u = n.(a - c) / n.(P - c) it is 1 - u = n.(P - a) / n.(P - c), so
-//! u < 1 says: *the point lies strictly behind the face's plane, as the camera sees it*. The sign of n.(P - a)
-//! is as good as P itself; no threshold is needed, and a lid one step of f32 above the ground hides it.
+//! u < 1 is not tested on a quotient. From u = n.(a - c) / n.(P - c) follows 1 - u = n.(P - a) / n.(P - c). So
+//! u < 1 means: *the point lies strictly behind the face's plane, as the camera sees it*. The sign of n.(P - a) is
+//! as accurate as P itself. No threshold is needed, and a lid one f32 step above the ground hides it.
 //!
-//! What is left is the rounding of P: some 2^-52 of its coordinates and of R, and along the pencil, that is
-//! within the hit face at grazing incidence, 1 / cos(psi) times that; 1e-14 m at 20 m. A face whose plane passes
-//! as close to P as that may be put on the wrong side of it: it hides the point or not, by rounding. For most
-//! such faces that cannot happen, because they are known to hold P itself:
+//! What remains is the rounding of P. It is some 2^-52 of P's coordinates and of R; along the pencil, which is
+//! within the hit face at grazing incidence, it is 1 / cos(psi) times that: 1e-14 m at 20 m. A face whose plane
+//! passes P that closely may come out on the wrong side of P, and then hide it or not by rounding. For most such
+//! faces this cannot happen, because they are known to contain P:
 //!
 //! * the hit face;
-//! * those that the pencil meets, from either side, at the very same bits of t: duplicates and reversed
-//!   duplicates always, and neighbours where the pencil runs into their common edge and t comes out alike;
-//! * those whose corners lie in the plane of the hit face. The segment leaves that plane in P and meets it nowhere
-//!   else, so they either hold P or are not met. (Faces that overlap without sharing corners: their t differ by
-//!   rounding although they are equal. The corners' f64 distance from the plane is exactly 0 for planes along
-//!   the axes; where it is 0 by rounding, the face lies within rounding of the plane, as above.)
+//! * faces that the pencil meets, from either side, at the very same bits of t: duplicates and reversed duplicates
+//!   always, and neighbours where the pencil runs into their common edge and t comes out alike;
+//! * faces whose vertices lie in the plane of the hit face. The segment leaves that plane in P and meets it nowhere
+//!   else, so such a face either contains P or is not met. (Faces may overlap without sharing vertices. Their t
+//!   are then equal, but differ as rounded. The vertices' f64 distance from the plane is exactly 0 for planes along
+//!   the axes. Where it is 0 by rounding, the face lies within rounding of the plane, as above.)
 //!
-//! So there remains a pencil within rounding of an edge between two faces of different slope. Which way it is
-//! decided there is a matter of rounding, not of definition: a ray displaced by as little decides otherwise.
+//! There remains a pencil within rounding of an edge between two faces of different slope. The definition does not
+//! decide that case, rounding does: a ray displaced by as little gets the other answer.
 
 use glam::DVec3;
 use obvhs::faststack::{FastStack, HeapStack};
 use obvhs::ray::RayHit;
 
+use crate::closest_hit::Intersection;
 use crate::hierarchy::{Hierarchy, round_up};
-use crate::nearest::Found;
 use crate::rays::TracedRay;
 use crate::triangle::{Triangle, widen};
 
-/// The line of sight from the camera to a point that a pencil hits.
+/// The line of sight from the camera to the point that a pencil hits.
 #[derive(Debug)]
-pub(crate) struct Sight<'a> {
-    /// From the projection centre along P - c: the point is at u = 1.
+pub(crate) struct LineOfSight<'a> {
+    /// The ray from the projection centre along P - c. The point is at u = 1.
     ray: TracedRay,
     /// P, scene frame, metres.
     point: DVec3,
-    /// u where the ray crosses the image plane is f_c / r: the two apart, metres.
+    /// f_c, metres. The ray crosses the image plane at u = f_c / r.
     focal_length: f64,
+    /// r, metres.
     depth: f64,
-    /// The pencil, and the face it hits.
     pencil: &'a TracedRay,
-    met: &'a Found,
+    /// The pencil's hit.
+    hit: &'a Intersection,
 }
 
-impl<'a> Sight<'a> {
-    /// From the camera's `centre` to `point`, at a `depth` beyond the focal length, where `pencil` has `met` a
-    /// face.
+impl<'a> LineOfSight<'a> {
+    /// From the camera's `centre` to `point`, the `hit` of `pencil`. The point's `depth` exceeds `focal_length`.
     pub(crate) fn new(
         centre: DVec3,
         focal_length: f64,
         point: DVec3,
         depth: f64,
         pencil: &'a TracedRay,
-        met: &'a Found,
+        hit: &'a Intersection,
     ) -> Self {
-        Self { ray: TracedRay::new(centre, point - centre), point, focal_length, depth, pencil, met }
+        Self { ray: TracedRay::new(centre, point - centre), point, focal_length, depth, pencil, hit }
     }
 
     /// Whether this face hides the point.
     #[inline]
     pub(crate) fn is_blocked_by(&self, triangle: &Triangle) -> bool {
-        let Some(crossing) = triangle.crosses(&self.ray) else { return false };
+        let Some(crossing) = triangle.intersect_either_side(&self.ray) else { return false };
         // Both inequalities are multiplied by |n.(P - c)|, the first by r too: no division rounds.
-        let side = crossing.along.signum();
+        let side = crossing.n_dot_q.signum();
         let beyond_image_plane =
-            side * crossing.to_plane * self.depth >= self.focal_length * (side * crossing.along);
+            side * crossing.n_dot_offset * self.depth >= self.focal_length * (side * crossing.n_dot_q);
         let before_point = side * crossing.normal.dot(self.point - widen(triangle.vertices[0])) > 0.0;
-        beyond_image_plane && before_point && !self.holds_point(triangle)
+        beyond_image_plane && before_point && !self.is_point_on(triangle)
     }
 
-    /// Whether the point is known to lie on this face. Few faces get as far as being asked.
+    /// Whether the point is known to lie on this face. Few faces get this far.
     #[cold]
-    fn holds_point(&self, triangle: &Triangle) -> bool {
-        let hit = &self.met.triangle;
-        if triangle.face == hit.face {
+    fn is_point_on(&self, triangle: &Triangle) -> bool {
+        let hit_face = &self.hit.triangle;
+        if triangle.face == hit_face.face {
             return true;
         }
-        let tied = triangle.crosses(self.pencil).is_some_and(|at| at.to_plane / at.along == self.met.t);
-        let (normal, corner) = (hit.normal(), widen(hit.vertices[0]));
-        tied || triangle.vertices.iter().all(|&v| normal.dot(widen(v) - corner) == 0.0)
+        let tied = triangle
+            .intersect_either_side(self.pencil)
+            .is_some_and(|crossing| crossing.n_dot_offset / crossing.n_dot_q == self.hit.t);
+        let (normal, vertex) = (hit_face.normal(), widen(hit_face.vertices[0]));
+        tied || triangle.vertices.iter().all(|&v| normal.dot(widen(v) - vertex) == 0.0)
     }
 }
 
-/// A search for anything in the way, with a stack of its own, for many points on one thread.
-pub(crate) struct Occlusion<'a> {
+/// An any-hit traversal with its own stack, for many points on one thread.
+pub(crate) struct OcclusionTraverser<'a> {
     hierarchy: &'a Hierarchy,
     stack: HeapStack<u32>,
 }
 
-impl<'a> Occlusion<'a> {
+impl<'a> OcclusionTraverser<'a> {
     pub(crate) fn new(hierarchy: &'a Hierarchy) -> Self {
         Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.stack_size()) }
     }
 
-    /// Whether any face hides the point at the end of `sight`.
-    pub(crate) fn hides(&mut self, sight: &Sight) -> bool {
-        let distance = sight.ray.metres_per_t;
-        debug_assert!(distance <= self.hierarchy.reach(), "{distance} m: the boxes are too narrow");
-        // obvhs enters a box only if it begins strictly before the far end, hence rounded up; it knows no near
-        // end, so faces before the image plane are proposed and refused.
-        let box_ray = sight.ray.for_boxes(round_up(distance));
-        // What an early end left on the stack belongs to another ray.
+    /// Whether any face hides the point at the end of `line_of_sight`.
+    pub(crate) fn is_occluded(&mut self, line_of_sight: &LineOfSight) -> bool {
+        let distance = line_of_sight.ray.metres_per_t;
+        debug_assert!(
+            distance <= self.hierarchy.max_trace_distance(),
+            "the line of sight is {distance} m long; the boxes are padded for {} m",
+            self.hierarchy.max_trace_distance()
+        );
+        // obvhs enters a box only if it begins strictly before the far end, hence rounded up. It knows no near
+        // end, so faces before the image plane are proposed too, and refused by the exact test.
+        let box_ray = line_of_sight.ray.box_ray(round_up(distance));
+        // A traversal that ended early leaves entries of its own ray on the stack.
         self.stack.clear();
-        let mut hidden = false;
+        let mut occluded = false;
         self.hierarchy.tree().ray_traverse_dynamic(
             &mut self.stack,
             box_ray,
             &mut RayHit::none(),
             |node, _, _| {
-                let triangles = self.hierarchy.triangles_of(node.first_index, node.prim_count);
-                hidden = triangles.iter().any(|triangle| sight.is_blocked_by(triangle));
-                !hidden
+                let triangles = self.hierarchy.leaf_triangles(node.first_index, node.prim_count);
+                occluded = triangles.iter().any(|triangle| line_of_sight.is_blocked_by(triangle));
+                !occluded
             },
         );
-        hidden
+        occluded
     }
 }
 

@@ -1,50 +1,51 @@
-//! How a beam's power spreads over its pencils: P_k. (Paper, equation (1), A_bp cos(alpha) / A_b; contract: flux)
+//! The power P_k of each pencil of a beam. (Paper, equation (1), A_bp cos(alpha) / A_b; contract: flux)
 
 use rayon::prelude::*;
 use raypencil_scene::Profile;
 
-use crate::rays::Grid;
+use crate::rays::PencilGrid;
 
-/// The power of each pencil of a beam.
+/// The shares of a beam's power that its pencils carry.
 #[derive(Debug)]
-pub(crate) struct Shares {
-    grid: Grid,
-    /// Watts of a pencil of weight 1.
-    per_weight: f64,
-    /// alpha^2 of the pencil nearest to the normal axis, rad^2; for the Gaussian profile.
-    least: f64,
+pub(crate) struct PowerShares {
+    grid: PencilGrid,
+    /// Power of a pencil of weight 1, watts.
+    watts_per_weight: f64,
+    /// alpha^2 of the pencil nearest to the normal axis, rad^2. Used by the Gaussian profile.
+    min_alpha_squared: f64,
 }
 
-impl Shares {
-    pub(crate) fn new(grid: Grid) -> Self {
+impl PowerShares {
+    pub(crate) fn new(grid: PencilGrid) -> Self {
         let (columns, rows) = (grid.beam.columns, grid.beam.rows);
-        let mut shares = Self { grid, per_weight: 1.0, least: 0.0 };
-        let sum = match grid.beam.profile {
-            // A_bp / A_b is the same for all of them.
+        let mut shares = Self { grid, watts_per_weight: 1.0, min_alpha_squared: 0.0 };
+        let divisor = match grid.beam.profile {
+            // A_bp / A_b is the same for all pencils.
             Profile::Paper => f64::from(columns) * f64::from(rows),
             Profile::UniformAngle => shares.sum_of_weights(),
             Profile::Gaussian { .. } => {
-                // The pencil nearest to the axis gets the weight 1, the others theirs in proportion: a beam
-                // much narrower than a pencil would else have the weight 0 in all of them.
-                let least_of_row =
+                // The pencil nearest to the axis gets the weight 1, the others theirs in proportion. Otherwise a
+                // beam much narrower than a pencil would have the weight 0 in all of them.
+                let min_of_row =
                     |j| (0..columns).map(|i| shares.alpha_squared(i, j)).fold(f64::MAX, f64::min);
-                shares.least = (0..rows).into_par_iter().map(least_of_row).reduce(|| f64::MAX, f64::min);
+                shares.min_alpha_squared =
+                    (0..rows).into_par_iter().map(min_of_row).reduce(|| f64::MAX, f64::min);
                 shares.sum_of_weights()
             }
         };
-        shares.per_weight = grid.beam.power / sum;
+        shares.watts_per_weight = grid.beam.power / divisor;
         shares
     }
 
     /// P_k of pencil (i, j), watts.
-    pub(crate) fn of(&self, i: u32, j: u32) -> f64 {
-        self.weight(i, j) * self.per_weight
+    pub(crate) fn power(&self, i: u32, j: u32) -> f64 {
+        self.weight(i, j) * self.watts_per_weight
     }
 
-    /// Over all pencils, hit or not: rows on any thread, added in their order.
+    /// The sum over all pencils, hit or not. Rows are summed on any thread and added in their order.
     fn sum_of_weights(&self) -> f64 {
-        let of_row = |j| (0..self.grid.beam.columns).map(|i| self.weight(i, j)).sum();
-        let rows: Vec<f64> = (0..self.grid.beam.rows).into_par_iter().map(of_row).collect();
+        let sum_of_row = |j| (0..self.grid.beam.columns).map(|i| self.weight(i, j)).sum();
+        let rows: Vec<f64> = (0..self.grid.beam.rows).into_par_iter().map(sum_of_row).collect();
         rows.iter().sum()
     }
 
@@ -59,11 +60,13 @@ impl Shares {
             Profile::Paper => cos_squared().sqrt(),
             Profile::UniformAngle => cos_squared(),
             Profile::Gaussian { half_width } => {
-                libm::exp(-2.0 * ((self.alpha_squared(i, j) - self.least) / (half_width * half_width)))
+                let above_min = self.alpha_squared(i, j) - self.min_alpha_squared;
+                libm::exp(-2.0 * (above_min / (half_width * half_width)))
             }
         }
     }
 
+    /// alpha^2 of pencil (i, j), rad^2.
     fn alpha_squared(&self, i: u32, j: u32) -> f64 {
         let (x, _) = self.grid.crossing(i, j);
         let alpha = libm::atan(x / self.grid.beam.grid_distance);

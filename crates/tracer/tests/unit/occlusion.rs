@@ -1,4 +1,4 @@
-//! Unit tests of `occlusion`.
+//! Unit tests of `occlusion`, against an exhaustive search and against integer arithmetic.
 
 use std::sync::Arc;
 
@@ -10,30 +10,31 @@ use raypencil_scene::{
 use raypencil_terrain::{RandomGround, height_at};
 
 use super::*;
-use crate::nearest::Search;
-use crate::rays::{Grid, SensorRays};
-use crate::view::Eye;
+use crate::camera::PosedCamera;
+use crate::closest_hit::ClosestHitTraverser;
+use crate::rays::{PencilGrid, SensorRays};
 
 fn triangles(mesh: &Mesh) -> Vec<Triangle> {
     let corners = |face: &[u32; 3]| face.map(|v| mesh.vertices()[v as usize]);
     (0..).zip(mesh.faces()).map(|(k, face)| Triangle::new(corners(face), FaceId(k))).collect()
 }
 
-/// The twin: every face with an area, no tree.
-fn exhaustive(triangles: &[Triangle], sight: &Sight) -> bool {
-    triangles.iter().any(|triangle| sight.is_blocked_by(triangle))
+/// The same answer by testing every face, without a tree.
+fn exhaustive(triangles: &[Triangle], line_of_sight: &LineOfSight) -> bool {
+    triangles.iter().any(|triangle| line_of_sight.is_blocked_by(triangle))
 }
 
-fn moved(mesh: &Mesh, offset: f32) -> Mesh {
+fn translated(mesh: &Mesh, offset: f32) -> Mesh {
     let vertices = mesh.vertices().iter().map(|[x, y, z]| [x + offset, *y, *z]).collect();
     let (faces, of_faces) = (mesh.faces().to_vec(), mesh.face_materials().to_vec());
     Mesh::new(mesh.origin(), vertices, faces, of_faces, mesh.materials().to_vec()).unwrap()
 }
 
-/// The default rig on the middle of a ground, its beams 128 x 4 and its camera low, where much is hidden from it.
+/// A rig on the middle of a ground, translated by `offset` metres along x. Its beams have 128 x 4 pencils. The camera is
+/// low, so that much is hidden from it.
 fn rig_on(mesh: Mesh, offset: f32) -> Scene {
     let z = height_at(&mesh, 0.0, 0.0).unwrap();
-    let mesh = moved(&mesh, offset);
+    let mesh = translated(&mesh, offset);
     let scene_from_vehicle = Pose::from_position(DVec3::new(f64::from(offset), 0.0, z));
     let mount = |height: f64, down: f64| {
         scene_from_vehicle
@@ -71,42 +72,42 @@ fn rig_on(mesh: Mesh, offset: f32) -> Scene {
 
 #[test]
 fn returns_on_nasty_grounds_agree_with_an_exhaustive_search_on_every_pencil() {
-    let mut seen = [0; 2];
+    let mut counts = [0; 2];
     for (seed, offset) in [(1, 0.0), (2, 0.0), (3, 0.0), (4, 3e4), (5, 0.0), (6, 2e6), (7, 0.0), (8, 0.0)] {
         let scene = rig_on(RandomGround::nasty(seed, 2500).build().into_mesh().unwrap(), offset);
-        let (all, eye) = (triangles(scene.mesh()), Eye::new(scene.camera()));
+        let (all_triangles, camera) = (triangles(scene.mesh()), PosedCamera::new(scene.camera()));
         let sampling = if seed % 2 == 0 { Sampling::Centres } else { Sampling::Jittered { seed } };
         let frame = crate::Tracer::new().render(&scene, &Request { sampling, ..Request::EVERYTHING });
-        let hierarchy = Hierarchy::build(scene.mesh(), crate::hierarchy::reach_of(&scene));
+        let hierarchy = Hierarchy::build(scene.mesh(), crate::hierarchy::max_trace_distance(&scene));
         for (index, beam) in scene.beams().iter().enumerate() {
-            let rays = SensorRays::of_beam(beam, Grid::new(beam.sensor, index, sampling));
+            let rays = SensorRays::of_beam(beam, PencilGrid::new(beam.sensor, index, sampling));
             let visible = frame.returns[index].visible.as_ref().unwrap();
             let emission = frame.returns[index].emission.as_ref().unwrap();
             for (i, j) in (0..4).flat_map(|j| (0..128).map(move |i| (i, j))) {
                 let pencil = rays.ray(i, j);
-                let found = Search::new(&hierarchy).nearest(&pencil, rays.max_range());
-                let expected = found.is_some_and(|met| {
-                    let point = met.hit(&pencil, 0.1).point;
-                    let view = eye.view(point);
-                    let depth = view.in_camera.z;
-                    let sight = Sight::new(eye.centre, 8e-3, point, depth, &pencil, &met);
+                let hit = ClosestHitTraverser::new(&hierarchy).closest_hit(&pencil, rays.max_range());
+                let expected = hit.is_some_and(|hit| {
+                    let point = hit.hit(&pencil, 0.1).point;
+                    let observed = camera.observe(point);
+                    let depth = observed.in_camera.z;
+                    let line_of_sight = LineOfSight::new(camera.centre, 8e-3, point, depth, &pencil, &hit);
                     let faces_camera = emission.at(i, j).get().unwrap() > 0.0;
-                    faces_camera && view.pixel.is_some() && !exhaustive(&all, &sight)
+                    faces_camera && observed.pixel.is_some() && !exhaustive(&all_triangles, &line_of_sight)
                 });
                 assert_eq!(visible.at(i, j), expected, "beam {index}, pencil ({i}, {j}) of seed {seed}");
-                seen[usize::from(expected)] += 1;
+                counts[usize::from(expected)] += 1;
             }
         }
     }
     // Neither answer is rare.
-    assert!(seen.iter().all(|&count| count > 500), "{seen:?} hidden and seen");
+    assert!(counts.iter().all(|&count| count > 500), "{counts:?} invisible and visible");
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { max_shrink_iters: 200, ..ProptestConfig::default() })]
 
-    // From anywhere, along any line: pencils aimed at corners, edges and insides of faces, and cameras aimed so
-    // that the line of sight runs through a corner, an edge or the inside of another face, or along an axis.
+    // Pencils from anywhere, aimed at vertices, edges and insides of faces. The camera stands where its line of sight
+    // runs through a vertex, an edge or the inside of another face, or along an axis.
     #[test]
     fn the_tree_hides_what_an_exhaustive_search_hides(
         seed in any::<u64>(),
@@ -117,13 +118,13 @@ proptest! {
             40,
         ),
     ) {
-        let mesh = moved(&RandomGround::nasty(seed, faces).build().into_mesh().unwrap(), offset);
-        let all = triangles(&mesh);
+        let mesh = translated(&RandomGround::nasty(seed, faces).build().into_mesh().unwrap(), offset);
+        let all_triangles = triangles(&mesh);
         let hierarchy = Hierarchy::build(&mesh, 60.0);
-        let mut occlusion = Occlusion::new(&hierarchy);
-        let mut search = Search::new(&hierarchy);
+        let mut occlusion = OcclusionTraverser::new(&hierarchy);
+        let mut traverser = ClosestHitTraverser::new(&hierarchy);
         let place = |face: prop::sample::Index, kind: u8, u: f64, v: f64| {
-            let [a, b, c] = all[face.index(all.len())].vertices.map(widen);
+            let [a, b, c] = all_triangles[face.index(all_triangles.len())].vertices.map(widen);
             match kind {
                 0 => a,
                 1 => a + (b - a) * u,
@@ -134,28 +135,28 @@ proptest! {
             let target = place(target, kind, u, v);
             let from = target + DVec3::new(v - 0.5, u - 0.5, 1.0) * far;
             let pencil = TracedRay::new(from, (target - from).normalize() * 0.01);
-            let Some(met) = search.nearest(&pencil, 20.0) else { continue };
-            let point = met.hit(&pencil, 0.01).point;
+            let Some(hit) = traverser.closest_hit(&pencil, 20.0) else { continue };
+            let point = hit.hit(&pencil, 0.01).point;
             let centre = if kind == 3 {
                 point + [DVec3::X, DVec3::NEG_Y, DVec3::Z][between.index(3)] * far
             } else {
                 let through = place(between, 2 - kind, v, u);
-                // A fifth farther than what may be in the way, and not beyond the boxes' reach.
+                // A fifth farther away than the possible occluder, and within the trace distance of the boxes.
                 point + ((through - point) * 1.2).clamp_length_max(50.0)
             };
             if centre == point {
                 continue;
             }
-            let sight = Sight::new(centre, 0.008, point, 0.8 * (point - centre).length(), &pencil, &met);
-            prop_assert_eq!(occlusion.hides(&sight), exhaustive(&all, &sight), "seed {}", seed);
+            let line_of_sight = LineOfSight::new(centre, 0.008, point, 0.8 * (point - centre).length(), &pencil, &hit);
+            prop_assert_eq!(occlusion.is_occluded(&line_of_sight), exhaustive(&all_triangles, &line_of_sight), "seed {}", seed);
         }
     }
 }
 
-/// Numbers from 0 to 1 for these tests. (Numerical Recipes' 64-bit generator, its upper bits)
-struct Draws(u64);
+/// Pseudo-random numbers from 0 to 1: the upper bits of Knuth's MMIX linear congruential generator.
+struct RandomNumbers(u64);
 
-impl Draws {
+impl RandomNumbers {
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
@@ -166,65 +167,65 @@ impl Draws {
     }
 }
 
-/// A pencil that comes from beyond `point` and the face that it hits there, far away from any occluder and
-/// slanting, so that nothing but the occluder counts.
-fn lit(point: DVec3) -> (TracedRay, Found) {
+/// A pencil that ends at `point`, and its hit. The face of that hit is far away from any occluder and slanting, so that
+/// the occluder alone decides.
+fn pencil_to(point: DVec3) -> (TracedRay, Intersection) {
     let corners = [[0.0, 0.0, -900.0], [1.0, 0.0, -901.0], [0.0, 1.0, -903.0]];
-    let met = Found { triangle: Triangle::new(corners, FaceId(u32::MAX - 1)), t: 1.0 };
-    (TracedRay::new(point - DVec3::new(0.0, 0.3, 1.0), DVec3::new(0.0, 0.3, 1.0)), met)
+    let hit = Intersection { triangle: Triangle::new(corners, FaceId(u32::MAX - 1)), t: 1.0 };
+    (TracedRay::new(point - DVec3::new(0.0, 0.3, 1.0), DVec3::new(0.0, 0.3, 1.0)), hit)
 }
 
 #[test]
 fn no_line_of_sight_slips_through_a_shared_edge_or_corner() {
-    // A sheet of 24 x 24 crumpled cells, so steep that a line from above meets fronts and backs: as a continuous
-    // surface it parts every point below it from every point above it, wherever a line crosses it.
+    // A crumpled sheet of 24 x 24 cells, so steep that a line from above meets fronts and backs. The sheet is a
+    // continuous surface: every line from a point above it to a point below it crosses it.
     const CELLS: u32 = 24;
-    let mut draws = Draws(7);
+    let mut random = RandomNumbers(7);
     let mut vertices = Vec::new();
     for (column, row) in (0..=CELLS).flat_map(|row| (0..=CELLS).map(move |column| (column, row))) {
-        let mut shaken = |index: u32| 0.3 * f64::from(index) + 0.2 * draws.unit();
+        let mut shaken = |index: u32| 0.3 * f64::from(index) + 0.2 * random.unit();
         let (x, y) = (shaken(column) as f32, shaken(row) as f32);
-        vertices.push([x, y, (2.0 * draws.unit() - 1.0) as f32]);
+        vertices.push([x, y, (2.0 * random.unit() - 1.0) as f32]);
     }
     let mut faces = Vec::new();
     for (column, row) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (column, row))) {
         let at = |x: u32, y: u32| (row + y) * (CELLS + 1) + column + x;
         let (a, b, c, d) = (at(0, 0), at(1, 0), at(1, 1), at(0, 1));
-        faces.extend(if draws.unit() < 0.5 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
+        faces.extend(if random.unit() < 0.5 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
     }
     let kinds = vec![Material { name: "sheet".into(), reflectivity: 0.5 }];
     let mesh = Mesh::new(DVec3::ZERO, vertices, faces.clone(), vec![0; faces.len()], kinds).unwrap();
     let hierarchy = Hierarchy::build(&mesh, 60.0);
-    let mut occlusion = Occlusion::new(&hierarchy);
+    let mut occlusion = OcclusionTraverser::new(&hierarchy);
     for _ in 0..200_000 {
-        // Through a corner, an edge, or the inside of a face at least five cells from the border: the lines lean
-        // by less than 0.5, so that they cross heights -1 to 1 inside the sheet.
-        let (column, row) = (5 + draws.below(CELLS - 10), 5 + draws.below(CELLS - 10));
-        let face = faces[(2 * (row * CELLS + column) + draws.below(2)) as usize];
+        // Through a vertex, an edge, or the inside of a face at least five cells from the border. The lines lean by
+        // less than 0.5, so they cross the heights -1 to 1 inside the sheet.
+        let (column, row) = (5 + random.below(CELLS - 10), 5 + random.below(CELLS - 10));
+        let face = faces[(2 * (row * CELLS + column) + random.below(2)) as usize];
         let [a, b, c] = face.map(|v| widen(mesh.vertices()[v as usize]));
-        let target = match draws.below(3) {
+        let target = match random.below(3) {
             0 => a,
-            1 => a.lerp(b, draws.unit()),
-            _ => a.lerp(b, draws.unit()).lerp(c, draws.unit()),
+            1 => a.lerp(b, random.unit()),
+            _ => a.lerp(b, random.unit()).lerp(c, random.unit()),
         };
-        let mut lean = || if draws.below(4) == 0 { 0.0 } else { draws.unit() - 0.5 };
+        let mut lean = || if random.below(4) == 0 { 0.0 } else { random.unit() - 0.5 };
         let along = DVec3::new(lean(), lean(), 1.0);
-        let centre = target + along * (3.0 + draws.unit());
-        let point = target - along * (3.0 + draws.unit());
-        let (pencil, met) = lit(point);
-        let sight = Sight::new(centre, 1e-3, point, (point - centre).length(), &pencil, &met);
-        assert!(occlusion.hides(&sight), "from {centre} to {point}");
+        let centre = target + along * (3.0 + random.unit());
+        let point = target - along * (3.0 + random.unit());
+        let (pencil, hit) = pencil_to(point);
+        let line_of_sight = LineOfSight::new(centre, 1e-3, point, (point - centre).length(), &pencil, &hit);
+        assert!(occlusion.is_occluded(&line_of_sight), "from {centre} to {point}");
     }
 }
 
 #[test]
-fn whole_numbers_are_answered_as_integers_answer() {
-    // Corners, centre and point on a lattice, so that touching, running along an edge and ending on a face are
-    // frequent and f64 is exact: the definition itself, in i64, by volumes of tetrahedra.
-    let mut draws = Draws(3);
+fn on_whole_numbers_the_answer_is_that_of_integer_arithmetic() {
+    // Vertices, centre and point lie on a lattice, where f64 is exact. Lines that touch a face, run along an edge or
+    // end on a face are frequent there. Expected: the definition in i64, by volumes of tetrahedra.
+    let mut random = RandomNumbers(3);
     let mut counts = [0; 2];
     for _ in 0..300_000 {
-        let mut whole = || [0; 3].map(|_: i64| i64::from(draws.below(7)) - 3);
+        let mut whole = || [0; 3].map(|_: i64| i64::from(random.below(7)) - 3);
         let [a, b, c, o, p] = [whole(), whole(), whole(), whole(), whole()];
         let minus = |a: [i64; 3], b: [i64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let volume = |u: [i64; 3], v: [i64; 3], w: [i64; 3]| {
@@ -247,9 +248,9 @@ fn whole_numbers_are_answered_as_integers_answer() {
         let float = |v: [i64; 3]| DVec3::new(v[0] as f64, v[1] as f64, v[2] as f64);
         let corners = [a, b, c].map(|v| v.map(|x| x as f32));
         let triangle = Triangle::new(corners, FaceId(0));
-        let (pencil, met) = lit(float(p));
-        let sight = Sight::new(float(o), 1.0, float(p), 4.0, &pencil, &met);
-        assert_eq!(sight.is_blocked_by(&triangle), expected, "{a:?} {b:?} {c:?} from {o:?} to {p:?}");
+        let (pencil, hit) = pencil_to(float(p));
+        let line_of_sight = LineOfSight::new(float(o), 1.0, float(p), 4.0, &pencil, &hit);
+        assert_eq!(line_of_sight.is_blocked_by(&triangle), expected, "{a:?} {b:?} {c:?} from {o:?} to {p:?}");
         counts[usize::from(expected)] += 1;
     }
     assert!(counts[1] > 5000, "{counts:?} free and blocked");

@@ -1,7 +1,6 @@
-//! Unit tests of `nearest`.
+//! Unit tests of `closest_hit`, against an exhaustive search.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -10,22 +9,22 @@ use raypencil_terrain::RandomGround;
 
 use super::*;
 
-/// The twin: every face, no tree.
-fn exhaustive(mesh: &Mesh, ray: &TracedRay, max_range: f64) -> Option<Found> {
-    let mut nearest = None;
+/// The same answer by testing every face, without a tree.
+fn exhaustive(mesh: &Mesh, ray: &TracedRay, max_range: f64) -> Option<Intersection> {
+    let mut closest = None;
     for (index, face) in mesh.faces().iter().enumerate() {
         let corners = face.map(|v| mesh.vertices()[v as usize]);
         let triangle = Triangle::new(corners, FaceId(index as u32));
-        offer(&mut nearest, &triangle, ray, max_range);
+        update_closest(&mut closest, &triangle, ray, max_range);
     }
-    nearest
+    closest
 }
 
-fn bits(found: Option<Found>) -> Option<(FaceId, u64)> {
-    found.map(|found| (found.triangle.face, found.t.to_bits()))
+fn bits(intersection: Option<Intersection>) -> Option<(FaceId, u64)> {
+    intersection.map(|intersection| (intersection.triangle.face, intersection.t.to_bits()))
 }
 
-/// A point on a face: a corner, on an edge, or inside, by two numbers from 0 to 1.
+/// A point on a face, given by two numbers from 0 to 1. `kind` 0: a vertex; 1: on an edge; others: inside.
 fn point_on(mesh: &Mesh, face: usize, kind: u8, u: f64, v: f64) -> DVec3 {
     let [a, b, c] = mesh.faces()[face].map(|v| crate::triangle::widen(mesh.vertices()[v as usize]));
     match kind {
@@ -39,15 +38,15 @@ fn point_on(mesh: &Mesh, face: usize, kind: u8, u: f64, v: f64) -> DVec3 {
 proptest! {
     #![proptest_config(ProptestConfig { max_shrink_iters: 200, ..ProptestConfig::default() })]
 
-    // Rays aimed at corners, edges and insides of faces from anywhere, among them rays along an axis,
-    // whose other components are 0: exactly the same face and the same bits of t.
+    // Rays from anywhere, aimed at vertices, edges and insides of faces. Some run along an axis: their other
+    // components are 0. Expected: the same face and the same bits of t.
     #[test]
     fn the_tree_finds_what_an_exhaustive_search_finds(
         seed in any::<u64>(),
         faces in 2usize..3000,
         offset in prop_oneof![Just(0.0), Just(1e3), Just(1e6)],
         local_offset in prop_oneof![Just(0.0f32), Just(3e4), Just(2e6)],
-        // Metres for each unit of t: of a camera, and so long that a range is no multiple of t to be mistaken for it.
+        // Metres per unit of t: as for a camera, and lengths for which a range cannot be mistaken for its t.
         length in prop_oneof![Just(0.01), Just(0.7), Just(3.0)],
         aims in prop::collection::vec(
             (any::<prop::sample::Index>(), 0u8..4, 0.0f64..1.0, 0.0f64..1.0, -1.0f64..1.0, 0.0f64..1.0, 0.1f64..30.0),
@@ -59,7 +58,7 @@ proptest! {
             ..RandomGround::nasty(seed, faces)
         };
         let mesh = ground.build().into_mesh().unwrap();
-        // Far from the scene origin f32 boxes are coarse: the padding has to cope.
+        // Far from the scene origin f32 boxes are coarse: the padding must make up for it.
         let moved = mesh.vertices().iter().map(|[x, y, z]| [x + local_offset, *y, *z]).collect();
         let mesh = Mesh::new(
             mesh.origin(),
@@ -71,11 +70,10 @@ proptest! {
         .unwrap();
         let max_range = 20.0;
         let hierarchy = Hierarchy::build(&mesh, max_range);
-        let mut search = Search::new(&hierarchy);
+        let mut traverser = ClosestHitTraverser::new(&hierarchy);
         for (face, kind, u, v, z, turn, distance) in aims {
             let target = point_on(&mesh, face.index(mesh.faces().len()), kind, u, v);
             let away = if kind == 3 {
-                // Along an axis.
                 [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z][(turn * 6.0) as usize]
             } else {
                 let (sin, cos) = libm::sincos(2.0 * PI * turn);
@@ -84,7 +82,7 @@ proptest! {
             };
             let ray = TracedRay::new(target + away * distance, -away * length);
             prop_assert_eq!(
-                bits(search.nearest(&ray, max_range)),
+                bits(traverser.closest_hit(&ray, max_range)),
                 bits(exhaustive(&mesh, &ray, max_range)),
                 "face {} of seed {}", face.index(mesh.faces().len()), seed
             );
@@ -98,21 +96,21 @@ fn ground() -> Vec<Material> {
 
 #[test]
 fn faces_of_the_same_corners_tie_for_the_lowest_index() {
-    // The same triangle three times, its cycle started at each corner; seen from 2 m above.
+    // The same triangle three times, its cycle started at each vertex; seen from 2 m above.
     let vertices = vec![[-0.9, -1.1, 0.03], [1.3, -0.8, 0.1], [0.1, 1.7, -0.2]];
     let faces = vec![[2, 0, 1], [0, 1, 2], [1, 2, 0]];
     let mesh = Mesh::new(DVec3::ZERO, vertices, faces, vec![0; 3], ground()).unwrap();
     let hierarchy = Hierarchy::build(&mesh, 10.0);
     let ray = TracedRay::new(DVec3::new(0.1, 0.05, 2.0), DVec3::new(0.003, 0.001, -0.01));
-    let found = Search::new(&hierarchy).nearest(&ray, 10.0).unwrap();
-    assert_eq!(found.triangle.face, FaceId(0));
-    assert_eq!(bits(Some(found)), bits(exhaustive(&mesh, &ray, 10.0)));
+    let hit = ClosestHitTraverser::new(&hierarchy).closest_hit(&ray, 10.0).unwrap();
+    assert_eq!(hit.triangle.face, FaceId(0));
+    assert_eq!(bits(Some(hit)), bits(exhaustive(&mesh, &ray, 10.0)));
 }
 
 #[test]
-fn a_million_identical_boxes_build_at_once() {
-    // Faces of one and the same box are one entry of the tree. (Left apart, they make the build
-    // quadratic: this test would then take hours.)
+fn a_million_identical_boxes_build_quickly() {
+    // Faces with identical boxes are one entry of the tree. (As separate entries they would make the build
+    // quadratic, and this test would take hours.)
     let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let count = 1_000_000;
     let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]; count], vec![0; count], ground()).unwrap();
@@ -121,9 +119,9 @@ fn a_million_identical_boxes_build_at_once() {
 }
 
 #[test]
-fn faces_inside_one_another_build_at_once_and_are_found() {
+fn nested_faces_build_quickly_and_are_hit() {
     // 100,000 triangles around one centre, each a little larger and a little lower than the one before it.
-    // (In one go obvhs' builder takes minutes over them.)
+    // (As one group they take obvhs minutes to build.)
     let count = 100_000;
     let corner = |k: u32, x: f32, y: f32| {
         let size = 1.0 + k as f32 * 1e-4;
@@ -135,37 +133,24 @@ fn faces_inside_one_another_build_at_once_and_are_found() {
     let materials = vec![0; faces.len()];
     let mesh = Mesh::new(DVec3::ZERO, vertices.collect(), faces, materials, ground()).unwrap();
     let hierarchy = Hierarchy::build(&mesh, 20.0);
-    let mut search = Search::new(&hierarchy);
-    // Straight down beside the first k faces: the next one is met.
+    let mut traverser = ClosestHitTraverser::new(&hierarchy);
+    // Straight down beside the first k faces: the next one is hit.
     for x in [0.0, 0.9, 1.7, 3.3, 5.2] {
         let ray = TracedRay::new(DVec3::new(x, -0.3, 2.0), DVec3::new(0.0, 0.0, -0.01));
-        let found = bits(search.nearest(&ray, 20.0));
-        assert!(found.is_some());
-        assert_eq!(found, bits(exhaustive(&mesh, &ray, 20.0)));
+        let hit = bits(traverser.closest_hit(&ray, 20.0));
+        assert!(hit.is_some());
+        assert_eq!(hit, bits(exhaustive(&mesh, &ray, 20.0)));
     }
 }
 
 #[test]
-fn no_face_and_faces_without_area_make_a_tree_that_is_never_hit() {
+fn a_mesh_without_faces_and_faces_without_area_are_never_hit() {
     let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
     for faces in [vec![], vec![[0, 1, 2], [0, 0, 1]]] {
         let materials = vec![0; faces.len()];
         let mesh = Mesh::new(DVec3::ZERO, vertices.clone(), faces, materials, ground()).unwrap();
         let hierarchy = Hierarchy::build(&mesh, 10.0);
         let ray = TracedRay::new(DVec3::new(0.5, 0.0, 1.0), DVec3::new(0.0, 0.0, -0.1));
-        assert!(Search::new(&hierarchy).nearest(&ray, 10.0).is_none());
+        assert!(ClosestHitTraverser::new(&hierarchy).closest_hit(&ray, 10.0).is_none());
     }
-}
-
-#[test]
-fn a_kept_hierarchy_serves_the_same_mesh_only() {
-    let mesh = Arc::new(RandomGround::plain(1, 200, 10.0).build().into_mesh().unwrap());
-    let tracer = crate::Tracer::new();
-    let first = tracer.hierarchy(&mesh, 10.0);
-    // A 64th to spare, exactly.
-    assert_eq!(first.reach(), 10.15625);
-    assert!(Arc::ptr_eq(&first, &tracer.hierarchy(&mesh, 5.0)), "a shorter reach needs no new boxes");
-    assert!(!Arc::ptr_eq(&first, &tracer.hierarchy(&mesh, 20.0)), "a longer reach needs wider boxes");
-    let other = Arc::new(Mesh::clone(&mesh));
-    assert!(!Arc::ptr_eq(&first, &tracer.hierarchy(&other, 5.0)));
 }
