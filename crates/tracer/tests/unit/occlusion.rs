@@ -30,8 +30,8 @@ fn translated(mesh: &Mesh, offset: f32) -> Mesh {
     Mesh::new(mesh.origin(), vertices, faces, of_faces, mesh.materials().to_vec()).unwrap()
 }
 
-/// A rig on the middle of a ground, translated by `offset` metres along x. Its beams have 128 x 4 pencils. The camera is
-/// low, so that much is hidden from it.
+/// A rig on the middle of a ground, translated by `offset` metres along x. Its beams have 128 x 4 pencils. The camera
+/// is low, so that much is hidden from it.
 fn rig_on(mesh: Mesh, offset: f32) -> Scene {
     let z = height_at(&mesh, 0.0, 0.0).unwrap();
     let mesh = translated(&mesh, offset);
@@ -114,7 +114,14 @@ proptest! {
         faces in 200usize..2000,
         offset in prop_oneof![Just(0.0f32), Just(3e4), Just(2e6)],
         aims in prop::collection::vec(
-            (any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0u8..4, 0.0f64..1.0, 0.0f64..1.0, 0.1f64..10.0),
+            (
+                any::<prop::sample::Index>(),
+                any::<prop::sample::Index>(),
+                0u8..4,
+                0.0f64..1.0,
+                0.0f64..1.0,
+                0.1f64..10.0,
+            ),
             40,
         ),
     ) {
@@ -147,8 +154,13 @@ proptest! {
             if centre == point {
                 continue;
             }
-            let line_of_sight = LineOfSight::new(centre, 0.008, point, 0.8 * (point - centre).length(), &pencil, &hit);
-            prop_assert_eq!(occlusion.is_occluded(&line_of_sight), exhaustive(&all_triangles, &line_of_sight), "seed {}", seed);
+            let depth = 0.8 * (point - centre).length();
+            let line_of_sight = LineOfSight::new(centre, 0.008, point, depth, &pencil, &hit);
+            prop_assert_eq!(
+                occlusion.is_occluded(&line_of_sight),
+                exhaustive(&all_triangles, &line_of_sight),
+                "seed {}", seed
+            );
         }
     }
 }
