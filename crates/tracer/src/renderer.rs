@@ -26,16 +26,14 @@ const DISTANCE_HEADROOM: f64 = 1.0 + 1.0 / 64.0;
 /// ```
 /// # mod doc { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/doc/scene.rs")); }
 /// # use doc::scene_above;
-/// use raypencil_scene::{FaceId, Renderer, Request};
+/// use raypencil_scene::{Renderer, Request};
 /// use raypencil_tracer::Tracer;
 ///
 /// // Camera and beam are 10 m above the triangle and look straight down.
 /// let scene = scene_above([[-40.0, -40.0, 0.0], [40.0, -40.0, 0.0], [0.0, 40.0, 0.0]]);
 /// let frame = Tracer::new().render(&scene, &Request::MAPS);
-/// let maps = &frame.beams[0];
-/// assert_eq!(maps.face.as_ref().and_then(|faces| faces.at(0, 0).get()), Some(FaceId(0)));
-/// // The pencil meets the ground at right angles: cos(psi) = 1.
-/// assert_eq!(maps.incidence.as_ref().and_then(|cosines| cosines.at(0, 0).get()), Some(1.0));
+/// let range = frame.beams[0].range.as_ref().expect("asked for");
+/// assert_eq!(range.at(0, 0).get(), Some(10.0));
 /// ```
 ///
 /// # Light
@@ -69,13 +67,16 @@ impl Tracer {
     /// A tracer with an empty cache.
     ///
     /// ```
-    /// use raypencil_scene::Renderer;
+    /// # mod doc { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/doc/scene.rs")); }
+    /// # use doc::scene_above;
+    /// use raypencil_scene::{Renderer, Request};
     /// use raypencil_tracer::Tracer;
     ///
     /// let tracer = Tracer::new();
-    /// assert_eq!(tracer.name(), "tracer");
-    /// // It computes in f64, whose unit roundoff is 2^-53.
-    /// assert_eq!(tracer.resolution().unit_roundoff, 0.5 * f64::EPSILON);
+    /// let scene = scene_above([[-40.0, -40.0, 0.0], [40.0, -40.0, 0.0], [0.0, 40.0, 0.0]]);
+    /// // The second frame takes the hierarchy from the cache. It has the same bits.
+    /// let [first, second] = [(); 2].map(|()| tracer.render(&scene, &Request::EVERYTHING));
+    /// assert_eq!((first.camera, first.returns), (second.camera, second.returns));
     /// ```
     pub fn new() -> Self {
         Self::default()

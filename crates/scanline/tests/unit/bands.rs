@@ -10,20 +10,20 @@ use crate::tables::CameraTables;
 /// The rows that a face may touch, for a camera at the origin that looks along +z.
 fn rows_of(corners: [[f32; 3]; 3], skip_unseen: bool) -> Option<std::ops::Range<u32>> {
     let (camera, mesh) = (camera(), mesh(&[corners]));
-    let tables = CameraTables::of(&camera);
+    let tables = CameraTables::new(&camera);
     let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
     let transformation = Perspective::new(&mounted, &tables);
-    let vertices = vertices::transform(&mesh, |position| Vertex {
+    let vertices = vertices::transform(&mesh, |position| SensorVertex {
         position,
-        corner: transformation.project(position),
+        projection: transformation.project(position),
         outside: transformation.outside(position),
     });
-    let faces = Faces {
+    let faces = FaceScanner {
         mesh: &mesh,
         vertices: &vertices,
         transformation: &transformation,
         skip_unseen,
-        screen: Screen::new(transformation.columns(), transformation.rows()),
+        screen: SensorScreen::new(transformation.columns(), transformation.rows()),
     };
     faces.rows(FaceId(0))
 }

@@ -32,7 +32,7 @@ pub(crate) fn beam() -> Beam {
     }
 }
 
-/// Faces that share no vertex.
+/// FaceScanner that share no vertex.
 pub(crate) fn mesh(faces: &[[[f32; 3]; 3]]) -> Mesh {
     let indices = (0..faces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
     let materials = vec![Material { name: "ground".into(), reflectivity: 0.5 }];

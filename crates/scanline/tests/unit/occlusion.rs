@@ -9,7 +9,7 @@ use crate::cylindrical::Cylindrical;
 use crate::fixtures::{camera, mesh};
 use crate::occluders::Facing;
 use crate::perspective::Perspective;
-use crate::points::{self, Pixels};
+use crate::points::{self, PixelGrid};
 use crate::rounding::PointError;
 use crate::tables::CameraTables;
 use crate::{Options, Switches, bands};
@@ -44,10 +44,10 @@ fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
         wavelength: 810e-9,
         profile: Profile::Paper,
     };
-    let tables = CameraTables::of(&camera);
+    let tables = CameraTables::new(&camera);
     let mounted = Mounted { scene_from_sensor: mount(1.5, 20.0), sensor: camera };
     let perspective = Perspective::new(&mounted, &tables);
-    let pixels = Pixels::of(&camera);
+    let pixels = PixelGrid::new(&camera);
     let mut stripes = Vec::new();
     for (height, down) in [(1.8, 31.0), (2.0, 22.0)] {
         let beam = Mounted { scene_from_sensor: mount(height, down), sensor: beam };
@@ -55,9 +55,9 @@ fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
         let of = SensorId::Beam(0);
         let map = bands::render(mesh, &cylindrical, of, Quantities::RANGE_MAP, Options::EXACT);
         let hits = map.face.expect("asked for");
-        stripes.extend(points::of_beam(mesh, &cylindrical, &perspective, pixels, &hits));
+        stripes.extend(points::stripe_points(mesh, &cylindrical, &perspective, pixels, &hits));
     }
-    let bins = Bins::of(pixels, stripes.iter().map(Option::as_ref));
+    let bins = Bins::new(pixels, stripes.iter().map(Option::as_ref));
     assert!(bins.points().len() > 500);
     hidden(&Occluders::new(mesh, &perspective, facing, f64::INFINITY), &bins, true)
 }
@@ -72,36 +72,36 @@ fn a_face_holds_a_point_within_rounding_of_its_plane() {
     // Sides of 3, 4 and 5 m in the plane z = 2, d = -12 * 2 or 24; the farthest corner (3, 0, 2) or (0, 4, 2) is
     // sqrt 20 m from the camera.
     let ground = mesh(&[[[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [0.0, 4.0, 2.0]]]);
-    let tables = CameraTables::of(&camera());
+    let tables = CameraTables::new(&camera());
     let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
     let perspective = Perspective::new(&mounted, &tables);
     let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
     let holds_at = |beyond: f64, error: PointError| {
         let mut answers = Vec::new();
-        occluders.pieces(
+        occluders.visit_face(
             FaceId(0),
             |_| true,
             |occluder| {
                 // |d| (1/t - 1/t_P) / (1/t_P) = |d| beyond.
                 let inverse_t = 0.5;
-                let point = Binned {
-                    at: Corner { x: 0.0, y: 0.0 },
+                let point = BinnedPoint {
+                    on_spp: SppPoint { x: 0.0, y: 0.0 },
                     inverse_t: inverse_t / (1.0 + beyond),
                     distance: 3.0,
                     error,
                     face: FaceId(1),
                     index: 0,
                 };
-                answers.push(holds(&occluders, occluder, &point, inverse_t));
+                answers.push(plane_contains(&occluders, occluder, &point, inverse_t));
             },
         );
         answers
     };
-    let exact = PointError { along: DVec3::ZERO, anywhere: 0.0 };
-    let bound = ROUNDING * 20.0 * (20_f64.sqrt() + 3.0) / 24.0;
+    let exact = PointError { along_pencil: DVec3::ZERO, any_direction: 0.0 };
+    let bound = RELATIVE_ROUNDING * 20.0 * (20_f64.sqrt() + 3.0) / 24.0;
     assert_eq!((holds_at(0.99 * bound, exact), holds_at(1.01 * bound, exact)), (vec![true], vec![false]));
     // And the point's own error, |n| = 12 times 1e-9 m: as much again as 1e-9 12 / 24.
-    let inexact = PointError { along: DVec3::ZERO, anywhere: 1e-9 };
+    let inexact = PointError { along_pencil: DVec3::ZERO, any_direction: 1e-9 };
     assert_eq!((holds_at(4.99e-10, inexact), holds_at(5.01e-10, inexact)), (vec![true], vec![false]));
 }
 

@@ -7,23 +7,23 @@ use super::*;
 use crate::fixtures::{beam, camera, mesh};
 use crate::occluders::Facing;
 use crate::perspective::Perspective;
-use crate::points::{Landing, Pixels};
+use crate::points::{ImagePoint, PixelGrid};
 use crate::rounding::PointError;
-use crate::scan::Corner;
+use crate::spp::SppPoint;
 use crate::tables::CameraTables;
 
 fn point(depth: f64) -> Option<StripePoint> {
     Some(StripePoint {
         face: FaceId(0),
         range: 1.0,
-        incidence: 1.0,
-        emission: 1.0,
+        cos_psi: 1.0,
+        cos_theta: 1.0,
         depth,
         distance: 1.0,
-        off_axis: 1.0,
-        sin_squared: 0.0,
-        landing: None,
-        error: PointError { along: DVec3::ZERO, anywhere: 0.0 },
+        cos_phi: 1.0,
+        sin_squared_phi: 0.0,
+        image: None,
+        error: PointError { along_pencil: DVec3::ZERO, any_direction: 0.0 },
     })
 }
 
@@ -33,12 +33,12 @@ fn a_face_deeper_than_a_point_may_be_nearer_at_the_centre_of_its_pixel() {
     // centre a wall at z = 2.05 is 2.082 m away, one at 2.1 is 2.133 m.
     let (x, z) = (0.24_f64, 2.0);
     let distance = z * (1.0 + 2.0 * x * x).sqrt();
-    let landing = Landing { pixel: Pixel { i: 4, j: 4 }, at: Corner { x, y: x }, inverse_t: 1.0 / z };
-    let point = StripePoint { distance, landing: Some(landing), ..point(z).unwrap() };
-    let tables = CameraTables::of(&camera());
+    let image = ImagePoint { pixel: Pixel { i: 4, j: 4 }, on_spp: SppPoint { x, y: x }, inverse_t: 1.0 / z };
+    let point = StripePoint { distance, image: Some(image), ..point(z).unwrap() };
+    let tables = CameraTables::new(&camera());
     let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
     let perspective = Perspective::new(&mounted, &tables);
-    let bins = Bins::of(Pixels::of(&camera()), [Some(&point)].into_iter());
+    let bins = Bins::new(PixelGrid::new(&camera()), [Some(&point)].into_iter());
     for (wall, is_hidden) in [(2.05, true), (2.1, false)] {
         let ground = mesh(&[[[-9.0, -9.0, wall], [9.0, -9.0, wall], [0.0, 9.0, wall]]]);
         let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
@@ -50,7 +50,7 @@ fn a_face_deeper_than_a_point_may_be_nearer_at_the_centre_of_its_pixel() {
 
 #[test]
 fn the_upper_beam_is_the_last_of_the_highest() {
-    let camera_from_scene = SensorFromScene::of(&Pose::IDENTITY);
+    let camera_from_scene = SensorFromScene::from_pose(&Pose::IDENTITY);
     let at = |position: DVec3| Mounted { scene_from_sensor: Pose::from_position(position), sensor: beam() };
     let extent = |beams: [DVec3; 2]| {
         let stripes = [vec![point(3.0), None, point(5.0), point(4.0)], vec![point(7.0), point(6.0)]];

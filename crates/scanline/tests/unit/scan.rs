@@ -7,7 +7,7 @@ use proptest::prelude::*;
 #[derive(Debug, Clone, Copy)]
 struct Straight([f64; 3]);
 
-impl Line for Straight {
+impl ProjectedLine for Straight {
     fn x_at(&self, y: f64) -> f64 {
         -(self.0[1] * y + self.0[2]) / self.0[0]
     }
@@ -16,7 +16,7 @@ impl Line for Straight {
 fn triangle(points: [[f64; 2]; 3]) -> SplitTriangle<Straight> {
     let line = |[x, y]: [f64; 2], [x2, y2]: [f64; 2]| Straight([y2 - y, x - x2, x2 * y - x * y2]);
     let [a, b, c] = points;
-    let corners = points.map(|[x, y]| Corner { x, y });
+    let corners = points.map(|[x, y]| SppPoint { x, y });
     SplitTriangle::new(corners, [line(a, b), line(b, c), line(c, a)])
 }
 
@@ -34,7 +34,7 @@ proptest! {
         let triangle = triangle([[x[0], y[0]], [x[1], y[1]], [x[2], y[2]]]);
         let height = |part: f64| 1.0 + part * 9.0 * step;
         let (low, high) = (height(rows.0.min(rows.1)), height(rows.0.max(rows.1)));
-        let (left, right) = triangle.spans(low, high);
+        let (left, right) = triangle.span_bounds(low, high);
         for y in [low, high, low + at * (high - low), triangle.top(), triangle.bottom(), y[0], y[1], y[2]] {
             if y < low || y > high || y < triangle.top() || y > triangle.bottom() {
                 continue;
@@ -59,13 +59,13 @@ fn the_bounds_of_rows_are_no_wider_than_they_are() {
         ((-3.0, -1.0), None),
         ((8.5, 9.0), None),
     ] {
-        assert_eq!(side.crossings(low, high), expected, "{low} to {high}");
+        assert_eq!(side.crossing_bounds(low, high), expected, "{low} to {high}");
     }
     // One that falls to the left.
     let side = triangle([[4.0, 0.0], [0.0, 8.0], [10.0, 12.0]]).upper;
-    assert_eq!(side.crossings(2.0, 4.0), Some((2.0, 3.0)));
-    // One along the rows has no place of its own: all of it.
+    assert_eq!(side.crossing_bounds(2.0, 4.0), Some((2.0, 3.0)));
+    // One along the rows has no approximate_index of its own: all of it.
     let side = triangle([[1.0, 2.0], [5.0, 2.0], [3.0, 9.0]]).upper;
     assert_eq!((side.top.y, side.bottom.y), (2.0, 2.0));
-    assert_eq!(side.crossings(1.0, 3.0), Some((1.0, 5.0)));
+    assert_eq!(side.crossing_bounds(1.0, 3.0), Some((1.0, 5.0)));
 }

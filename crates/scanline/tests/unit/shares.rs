@@ -18,8 +18,8 @@ fn beam(columns: u32, rows: u32, profile: Profile) -> Beam {
 }
 
 fn sum(beam: &Beam) -> f64 {
-    let shares = Shares::of(beam);
-    (0..beam.rows).flat_map(|_| &shares.of_column).sum::<f64>() / beam.power
+    let shares = ColumnShares::new(beam);
+    (0..beam.rows).flat_map(|_| &shares.watts).sum::<f64>() / beam.power
 }
 
 #[test]
@@ -53,15 +53,15 @@ fn four_columns_by_hand() {
     let (outer, inner) = (16.0 / 19.0, 48.0 / 49.0);
     let close = |a: &[f64], b: [f64; 4]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-14);
     let cosines = [outer, inner, inner, outer].map(|squared: f64| 3.0 * squared.sqrt() / 8.0);
-    assert!(close(&Shares::of(&beam(4, 2, Profile::Paper)).of_column, cosines));
+    assert!(close(&ColumnShares::new(&beam(4, 2, Profile::Paper)).watts, cosines));
     let of_sum = [outer, inner, inner, outer].map(|weight| 3.0 * weight / (4.0 * (outer + inner)));
-    assert!(close(&Shares::of(&beam(4, 2, Profile::UniformAngle)).of_column, of_sum));
+    assert!(close(&ColumnShares::new(&beam(4, 2, Profile::UniformAngle)).watts, of_sum));
     // tan(alpha) = sqrt(3)/4 and sqrt(3)/12: alpha = 0.408638 and 0.143348 rad; with w = 0.2 rad exp(-2 (alpha/w)^2)
     // = exp(-8.34925) and exp(-1.02743): 2.3654e-4 and 0.357926.
     let (outer, inner) = (2.3654e-4, 0.357_926);
     let of_sum = [outer, inner, inner, outer].map(|weight: f64| 3.0 * weight / (4.0 * (outer + inner)));
-    let gaussian = Shares::of(&beam(4, 2, Profile::Gaussian { half_width: 0.2 }));
-    for (share, expected) in gaussian.of_column.iter().zip(of_sum) {
+    let gaussian = ColumnShares::new(&beam(4, 2, Profile::Gaussian { half_width: 0.2 }));
+    for (share, expected) in gaussian.watts.iter().zip(of_sum) {
         assert!((share / expected - 1.0).abs() < 1e-3, "{share} {expected}");
     }
 }
@@ -70,5 +70,5 @@ fn four_columns_by_hand() {
 fn a_beam_narrower_than_its_pencils_keeps_its_power() {
     // All exponentials of the definition vanish: exp(-2 (0.14 / 1e-6)^2).
     let narrow = beam(4, 1, Profile::Gaussian { half_width: 1e-6 });
-    assert_eq!(Shares::of(&narrow).of_column, [0.0, 1.5, 1.5, 0.0]);
+    assert_eq!(ColumnShares::new(&narrow).watts, [0.0, 1.5, 1.5, 0.0]);
 }

@@ -14,7 +14,7 @@ proptest! {
         on in proptest::option::of(0u32..40),
         beside in -1i8..=1,
     ) {
-        let axis = Axis::of_pixels(count, centre, pitch);
+        let axis = Axis::pixels(count, centre, pitch);
         let [low, high] = axis.borders();
         // Anywhere around the screen, or on a centre, or next to one: there the first guess errs.
         let value = match on {
@@ -36,16 +36,16 @@ proptest! {
 fn the_first_guess_is_the_cell() {
     // Else the search would find it too, but cell by cell.
     let axes = [
-        Axis::of_pixels(7, 2.25, 0.5),
-        Axis::of_pixels(640, -300.0, 7.4e-6),
-        Axis::of_grid(5, 0.3),
-        Axis::of_grid(1024, 0.1),
-        Axis::of_rows(3, 0.02),
-        Axis::of_rows(256, 0.005),
+        Axis::pixels(7, 2.25, 0.5),
+        Axis::pixels(640, -300.0, 7.4e-6),
+        Axis::grid_columns(5, 0.3),
+        Axis::grid_columns(1024, 0.1),
+        Axis::grid_rows(3, 0.02),
+        Axis::grid_rows(256, 0.005),
     ];
     for axis in axes {
         for index in 0..axis.count() {
-            let off = axis.place(axis.centre(index)) - f64::from(index);
+            let off = axis.approximate_index(axis.centre(index)) - f64::from(index);
             assert!(off.abs() < 1e-9, "{axis:?}: cell {index} is guessed {off} cells beside");
         }
     }
@@ -53,7 +53,7 @@ fn the_first_guess_is_the_cell() {
 
 #[test]
 fn infinities_and_nan_stay_on_the_screen() {
-    let axis = Axis::of_grid(8, 0.1);
+    let axis = Axis::grid_columns(8, 0.1);
     assert_eq!((axis.first_at_or_after(f64::INFINITY), axis.end_at_or_before(f64::INFINITY)), (8, 8));
     assert_eq!((axis.first_at_or_after(-f64::INFINITY), axis.end_at_or_before(-f64::INFINITY)), (0, 0));
     assert_eq!(axis.end_at_or_before(f64::NAN), 0);

@@ -3,40 +3,40 @@
 use super::*;
 
 /// The square from -1 to 1.
-fn screen() -> Screen {
-    Screen::new(&Axis::of_grid(4, 1.0), &Axis::of_grid(4, 1.0))
+fn screen() -> SensorScreen {
+    SensorScreen::new(&Axis::grid_columns(4, 1.0), &Axis::grid_columns(4, 1.0))
 }
 
-fn corners(points: [[f64; 2]; 3]) -> [Corner; 3] {
-    points.map(|[x, y]| Corner { x, y })
+fn corners(points: [[f64; 2]; 3]) -> [SppPoint; 3] {
+    points.map(|[x, y]| SppPoint { x, y })
 }
 
 #[test]
 fn rule_3a_wants_all_vertices_on_one_side() {
     // All left of -1; all above -1.
-    assert!(screen().is_beside(&corners([[-2.0, 0.0], [-1.1, 5.0], [-9.0, -5.0]])));
-    assert!(screen().is_beside(&corners([[-2.0, -1.1], [0.0, -3.0], [5.0, -2.0]])));
+    assert!(screen().skips_by_3a(&corners([[-2.0, 0.0], [-1.1, 5.0], [-9.0, -5.0]])));
+    assert!(screen().skips_by_3a(&corners([[-2.0, -1.1], [0.0, -3.0], [5.0, -2.0]])));
     // None in the screen, but not all on *one* side. A vertex on the border is not beside it.
-    assert!(!screen().is_beside(&corners([[-2.0, 0.0], [0.0, -2.0], [-2.0, -2.0]])));
-    assert!(!screen().is_beside(&corners([[-2.0, 0.0], [-1.0, 5.0], [-9.0, -5.0]])));
+    assert!(!screen().skips_by_3a(&corners([[-2.0, 0.0], [0.0, -2.0], [-2.0, -2.0]])));
+    assert!(!screen().skips_by_3a(&corners([[-2.0, 0.0], [-1.0, 5.0], [-9.0, -5.0]])));
 }
 
 /// From -1 to 3 and from -2 to 4, its centre at (1, 1).
-fn oblong() -> Screen {
-    Screen::new(&Axis::of_pixels(4, 1.0, 1.0), &Axis::of_pixels(6, 2.0, 1.0))
+fn oblong() -> SensorScreen {
+    SensorScreen::new(&Axis::pixels(4, 1.0, 1.0), &Axis::pixels(6, 2.0, 1.0))
 }
 
 #[test]
 fn every_side_of_the_screen_counts_and_borders_belong_to_it() {
-    // A triangle around the middle of each side, its nearest vertex beyond the border, on it, and within.
+    // A triangle around the middle of each side, its nearest vertex beyond the border, on it, and in_row.
     for (step, beside) in [(1e-9, true), (0.0, false), (-1e-9, false)] {
         let left = [[-1.0 - step, 1.0], [-2.0, 0.0], [-2.0, 2.0]];
         let right = [[3.0 + step, 1.0], [4.0, 0.0], [4.0, 2.0]];
         let above = [[1.0, -2.0 - step], [0.0, -3.0], [2.0, -3.0]];
         let below = [[1.0, 4.0 + step], [0.0, 5.0], [2.0, 5.0]];
         for triangle in [left, right, above, below] {
-            assert_eq!(oblong().is_beside(&corners(triangle)), beside, "{triangle:?}");
-            assert_eq!(oblong().is_apart(&corners(triangle)), beside, "{triangle:?}");
+            assert_eq!(oblong().skips_by_3a(&corners(triangle)), beside, "{triangle:?}");
+            assert_eq!(oblong().skips_by_3c(&corners(triangle)), beside, "{triangle:?}");
         }
     }
 }
@@ -44,8 +44,8 @@ fn every_side_of_the_screen_counts_and_borders_belong_to_it() {
 #[test]
 fn a_side_whose_line_crosses_the_screen_may_end_before_it() {
     let meets = |from: [f64; 2], to: [f64; 2]| {
-        let [from, to] = [from, to].map(|[x, y]| Corner { x, y });
-        (oblong().meets_side(&from, &to), oblong().meets_side(&to, &from))
+        let [from, to] = [from, to].map(|[x, y]| SppPoint { x, y });
+        (oblong().intersects_side(&from, &to), oblong().intersects_side(&to, &from))
     };
     for (from, to) in [
         ([0.9, -9.0], [1.0, -2.1]),
@@ -70,31 +70,31 @@ fn a_side_whose_line_crosses_the_screen_may_end_before_it() {
 
 #[test]
 fn the_centre_of_the_screen_is_its_own() {
-    // Each holds the screen and little to its left or above it.
-    assert!(!oblong().is_apart(&corners([[-1.2, -20.0], [-1.2, 20.0], [30.0, 0.0]])));
-    assert!(!oblong().is_apart(&corners([[-20.0, -2.5], [20.0, -2.5], [0.0, 40.0]])));
+    // Each plane_contains the screen and little to its left or above it.
+    assert!(!oblong().skips_by_3c(&corners([[-1.2, -20.0], [-1.2, 20.0], [30.0, 0.0]])));
+    assert!(!oblong().skips_by_3c(&corners([[-20.0, -2.5], [20.0, -2.5], [0.0, 40.0]])));
 }
 
 #[test]
 fn rule_3b_wants_all_vertices_in_the_screen_and_all_too_far() {
-    let within = corners([[-1.0, -1.0], [1.0, 0.0], [0.0, 0.5]]);
-    assert!(screen().is_in_but_too_far(&within, |_| true));
-    assert!(!screen().is_in_but_too_far(&within, |k| k != 1));
+    let in_row = corners([[-1.0, -1.0], [1.0, 0.0], [0.0, 0.5]]);
+    assert!(screen().skips_by_3b(&in_row, |_| true));
+    assert!(!screen().skips_by_3b(&in_row, |k| k != 1));
     let across = corners([[-1.0, -1.0], [1.1, 0.0], [0.0, 0.5]]);
-    assert!(!screen().is_in_but_too_far(&across, |_| true));
+    assert!(!screen().skips_by_3b(&across, |_| true));
 }
 
 #[test]
 fn rule_3c_tells_triangles_apart_from_the_screen() {
     // Beyond the corner (1, 1): the side from (3, 0) to (0, 3) passes at x + y = 3 > 2, both borders' reach.
-    assert!(screen().is_apart(&corners([[3.0, 0.0], [0.0, 3.0], [3.0, 3.0]])));
+    assert!(screen().skips_by_3c(&corners([[3.0, 0.0], [0.0, 3.0], [3.0, 3.0]])));
     // x + y = 1.9 cuts the corner off.
-    assert!(!screen().is_apart(&corners([[1.9, 0.0], [0.0, 1.9], [3.0, 3.0]])));
+    assert!(!screen().skips_by_3c(&corners([[1.9, 0.0], [0.0, 1.9], [3.0, 3.0]])));
     let cut = corners([[3.0, -1.1], [-1.1, 3.0], [3.0, 3.0]]);
-    assert!(!cut.iter().any(|corner| screen().holds(corner)));
-    assert!(!screen().is_apart(&cut));
+    assert!(!cut.iter().any(|corner| screen().contains(corner)));
+    assert!(!screen().skips_by_3c(&cut));
     // Around the whole screen: no vertex or side meets it, its centre decides. Either way round.
     let around = [[-9.0, -3.0], [9.0, -3.0], [0.0, 9.0]];
-    assert!(!screen().is_apart(&corners(around)));
-    assert!(!screen().is_apart(&corners([around[1], around[0], around[2]])));
+    assert!(!screen().skips_by_3c(&corners(around)));
+    assert!(!screen().skips_by_3c(&corners([around[1], around[0], around[2]])));
 }
