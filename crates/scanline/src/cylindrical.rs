@@ -204,8 +204,8 @@ mod tests {
     fn a_row_sees_the_front_of_a_plane_that_its_origin_is_in_front_of() {
         let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: beam() };
         let with = |switches| Cylindrical::new(&mounted, switches);
-        // A floor at y = 1/4 that faces up, n = (0, -1, 0): d = -1/4. A row at y = -1/4 is above the floor and parallel to
-        // it: 1/t = (0 x + 0 g) / (-1/4 - 1/4). A row at y = 1/4 lies in it, one at 1/2 is below.
+        // A floor at y = 1/4 that faces up, n = (0, -1, 0): d = -1/4. A row at y = -1/4 is above the floor and parallel
+        // to it: 1/t = (0 x + 0 g) / (-1/4 - 1/4). A row at y = 1/4 lies in it, one at 1/2 is below.
         let corners = [[0.0, 0.25, 1.0], [1.0, 0.25, 1.0], [1.0, 0.25, 2.0]].map(DVec3::from_array);
         let (exact, paper) = (with(Switches::EXACT), with(Switches::PAPER));
         let plane = Plane::new(&corners, exact.sensor_from_scene());

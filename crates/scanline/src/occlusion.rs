@@ -2,9 +2,9 @@
 //!
 //! The algorithm "works in a backward fashion, taking each triangle of the terrain data base and finding all the raster
 //! points that see the triangle" (§6). Here the raster points are the stripe points, sorted by pixel in `bins`. A face
-//! is projected onto the camera's SPP and clipped there, like a face of the camera's own map. Every point in *all* pixels
-//! that the face touches is then tested at its own position: is it within the projected triangle, and is 1/t of the
-//! face's plane larger there than the point's own?
+//! is projected onto the camera's SPP and clipped there, like a face of the camera's own map. Every point in *all*
+//! pixels that the face touches is then tested at its own position: is it within the projected triangle, and is 1/t of
+//! the face's plane larger there than the point's own?
 //!
 //! Why nothing slips between two faces: the row through a point cuts the sides of a face as any row of a map does
 //! (`scan`), in an interval that leaves no gap to the neighbour's, whatever the rounding.

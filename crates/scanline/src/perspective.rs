@@ -1,7 +1,7 @@
 //! The camera's transformation: perspective. (§4)
 //!
-//! A point (X, Y, Z) projects to (f X / Z, f Y / Z). Lines map to lines: the edge from P to P' and the projection centre
-//! span a plane of normal N = P x (P' - P), and the edge's projection is N.(x, y, f) = 0.
+//! A point (X, Y, Z) projects to (f X / Z, f Y / Z). Lines map to lines: the edge from P to P' and the projection
+//! centre span a plane of normal N = P x (P' - P), and the edge's projection is N.(x, y, f) = 0.
 
 use glam::DVec3;
 use raypencil_scene::{Camera, Mounted};

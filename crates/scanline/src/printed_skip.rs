@@ -8,11 +8,12 @@
 //! | 3b | "all the vertices are in the SS but their range exceeds the maximum range of the sensor" | faces whose interior is nearer than their vertices |
 //! | 3c | "none of the vertices or the sides of the triangle intersect the SS and the center point of the SS is not in the triangle" | camera: nothing. Its sides are straight, so a screen that no side meets is in the triangle, with its centre, or apart from it. Beam: faces whose curved sides enter the screen where the straight ones do not |
 //!
-//! **1b for a beam** is one decision per face, taken from the origin (0, 0, 0) of the beam's frame: a face is scanned if
-//! it shows that point its front. It replaces the test that the exact form makes for every row. It errs where the plane
-//! of a face passes between the middle of the sheet and a row's own origin (0, y, 0). It *loses* a front that such a
-//! row sees while the middle sees the back. It *adds* a back that such a row sees while the middle sees the front. An
-//! added back is scanned like any face: it may hide a true hit behind it, and its cosine of incidence is negative.
+//! **1b for a beam** is one decision per face, taken from the origin (0, 0, 0) of the beam's frame: a face is scanned
+//! if it shows that point its front. It replaces the test that the exact form makes for every row. It errs where the
+//! plane of a face passes between the middle of the sheet and a row's own origin (0, y, 0). It *loses* a front that
+//! such a row sees while the middle sees the back. It *adds* a back that such a row sees while the middle sees the
+//! front. An added back is scanned like any face: it may hide a true hit behind it, and its cosine of incidence is
+//! negative.
 //!
 //! CHOICE: rules 3 are applied to each triangle that clipping leaves (`clip`, `stripe`), not to whole faces. §5 clips
 //! before it transforms, §4 transforms before it applies the rules, and only what clipping leaves has a projection: a

@@ -104,8 +104,8 @@ impl Scanline {
     /// use raypencil_scanline::Scanline;
     /// use raypencil_scene::{Renderer, Request};
     ///
-    /// // From 10 m above, the vertices are at sqrt(100 + 64 + 9) = 13.2 m, twice, and sqrt(100 + 9) = 10.4 m. The point
-    /// // straight below is at 10 m. The maximum range is 10.2 m.
+    /// // From 10 m above, the ranges of the vertices are sqrt(100 + 64 + 9) = 13.2 m, twice, and
+    /// // sqrt(100 + 9) = 10.4 m. The point straight below is at 10 m. The maximum range is 10.2 m.
     /// let scene = scene_above([[-8.0, -3.0, 0.0], [8.0, -3.0, 0.0], [0.0, 3.0, 0.0]], 10.2);
     /// let range_below = |renderer: Scanline| {
     ///     let camera = renderer.render(&scene, &Request::MAPS).camera.expect("asked for");

@@ -1,4 +1,4 @@
-//! Unit tests of `bins`.
+//! Unit tests of `bins`: order, look-up, and the pixels that a face touches.
 
 use glam::DVec3;
 use raypencil_scene::{Camera, Pixel};
@@ -7,12 +7,12 @@ use super::*;
 use crate::fixtures::camera;
 use crate::points::ImagePoint;
 
-/// A camera of 8 x 8 pixels, 1 m wide on its SPP, the principal point in the middle.
+/// A camera of 8 x 8 pixels, each 1 m wide on the SPP, with the principal point in the middle.
 fn pixels() -> PixelGrid {
     PixelGrid::new(&Camera { pixel_pitch: [1.0; 2], ..camera() })
 }
 
-/// A point in the middle of pixel (i, j), at t = 2 + i.
+/// A point at the centre of pixel (i, j), at t = 2 + i.
 fn point(i: u32, j: u32) -> StripePoint {
     let at = SppPoint { x: f64::from(i) - 3.5, y: f64::from(j) - 3.5 };
     StripePoint {
@@ -29,8 +29,8 @@ fn point(i: u32, j: u32) -> StripePoint {
     }
 }
 
-/// Points in all pixels of columns 2 to 5 and rows 3 to 6, twice in (4, 4), in no order; and what lands nowhere,
-/// or shows the camera its back.
+/// Points in all pixels of columns 2 to 5 and rows 3 to 6, two of them in (4, 4), the last row first. Then three that
+/// are not binned: a point off the image, a point on a back, and a pencil without a hit.
 fn points() -> Vec<Option<StripePoint>> {
     let cells = (3..7).rev().flat_map(|j| (2..6).map(move |i| (i, j)));
     let mut points: Vec<_> = cells.map(|(i, j)| Some(point(i, j))).collect();
@@ -41,7 +41,7 @@ fn points() -> Vec<Option<StripePoint>> {
     points
 }
 
-/// The pixels that some points are in.
+/// The pixels that contain some points.
 fn cells(bins: &Bins, points: std::ops::Range<usize>) -> Vec<[i64; 2]> {
     bins.points()[points].iter().map(|point| pixels().cell(point.on_spp)).collect()
 }
@@ -54,7 +54,8 @@ fn points_are_sorted_by_pixel_and_keep_their_order_in_it() {
     expected.insert(6, [4, 4]);
     assert_eq!(cells(&bins, 0..bins.points().len()), expected);
     let of_pixel: Vec<u32> = bins.points()[6..8].iter().map(|point| point.index).collect();
-    // Rows came last first: (4, 4) is the third of the third row, and then the one that was added.
+    // The last row was given first, so row 4 is the third one given and (4, 4) has the index 10. The second point of
+    // that pixel has the index 16.
     assert_eq!(of_pixel, [10, 16]);
     let nothing = Bins::new(pixels(), points[17..].iter().map(Option::as_ref));
     assert!(nothing.points().is_empty());
@@ -62,7 +63,7 @@ fn points_are_sorted_by_pixel_and_keep_their_order_in_it() {
 }
 
 #[test]
-fn a_row_of_pixels_is_looked_up() {
+fn the_points_of_a_row_are_found() {
     let points = points();
     let bins = Bins::new(pixels(), points.iter().map(Option::as_ref));
     assert_eq!(cells(&bins, bins.in_row(4, 3..5)), [[3, 4], [4, 4], [4, 4]]);
@@ -74,7 +75,7 @@ fn a_row_of_pixels_is_looked_up() {
 }
 
 #[test]
-fn a_face_looks_at_the_pixels_it_can_touch_and_no_others() {
+fn a_face_is_tested_in_the_pixels_that_it_touches() {
     let points = points();
     let bins = Bins::new(pixels(), points.iter().map(Option::as_ref));
     let rows_touched = |low: [f64; 2], high: [f64; 2], nearest: f64| -> Vec<[i64; 2]> {
@@ -85,9 +86,9 @@ fn a_face_looks_at_the_pixels_it_can_touch_and_no_others() {
     // x from -0.9 to 0.1: columns 3 and 4; y from -0.5 to 1.5: rows 3 to 5.
     let some = [[3, 3], [4, 3], [3, 4], [4, 4], [4, 4], [3, 5], [4, 5]];
     assert_eq!(rows_touched([-0.9, -0.5], [0.1, 1.5], 1.0), some);
-    // Everything, from far beyond the points.
+    // Bounds that contain all points.
     assert_eq!(rows_touched([-9.0, -9.0], [9.0, 9.0], 1.0).len(), 17);
-    // Beside them: nothing.
+    // Bounds beside all points.
     for (low, high) in [
         ([-4.0, -4.0], [-2.1, 4.0]),
         ([2.1, -4.0], [4.0, 4.0]),
@@ -96,12 +97,12 @@ fn a_face_looks_at_the_pixels_it_can_touch_and_no_others() {
     ] {
         assert_eq!(rows_touched(low, high, 1.0), [[0; 2]; 0]);
     }
-    // The deepest point of each row is at 1/t = 1/7: a face that is nowhere nearer hides nothing.
+    // The deepest point of each row is at 1/t = 1/7. A face that is nowhere nearer hides no point.
     assert_eq!(rows_touched([-0.9, -0.5], [0.1, 1.5], 1.0 / 7.0), [[0; 2]; 0]);
     assert_eq!(rows_touched([-0.9, -0.5], [0.1, 1.5], 1.01 / 7.0), some);
 }
 
-/// A straight side from one approximate_index to another.
+/// A straight side between two points.
 #[derive(Clone, Copy)]
 struct Straight(SppPoint, SppPoint);
 
@@ -113,7 +114,7 @@ impl ProjectedLine for Straight {
 }
 
 #[test]
-fn a_face_that_leans_across_many_rows_looks_at_few_pixels_of_each() {
+fn a_face_that_leans_across_many_rows_is_tested_in_few_pixels_of_each() {
     let points = points();
     let bins = Bins::new(pixels(), points.iter().map(Option::as_ref));
     // A sliver along the diagonal: in the row of centres y it is at x = y + 0.2 to y + 0.4.
@@ -125,6 +126,6 @@ fn a_face_that_leans_across_many_rows_looks_at_few_pixels_of_each() {
         .rows_touched(&ProjectedBounds { low, high, max_inverse_t: 1.0 })
         .flat_map(|rows_touched| cells(&bins, bins.narrow(rows_touched, &triangle)))
         .collect();
-    // In row j, y = j - 3.5: x from j - 3.3 on, so column j alone.
+    // In row j, y = j - 3.5: x is from j - 3.3 to j - 3.1, which is in column j alone.
     assert_eq!(found, [[3, 3], [4, 4], [4, 4], [5, 5]]);
 }

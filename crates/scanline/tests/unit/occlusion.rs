@@ -1,4 +1,4 @@
-//! Unit tests of `occlusion`.
+//! Unit tests of `occlusion`: the tolerance, and the paper's claim about faces turned away.
 
 use super::*;
 use glam::DVec3;
@@ -14,8 +14,8 @@ use crate::rounding::PointError;
 use crate::tables::CameraTables;
 use crate::{Options, Switches, bands};
 
-/// What is hidden of the default rig's stripes, its rasters four times coarser and 2 cm thick, if those faces
-/// occlude.
+/// Which stripe points of a rig are hidden if the faces of that `facing` occlude. It is the default rig with rasters
+/// four times coarser and sheets 2 cm thick.
 fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
     let z = height_at(mesh, 0.0, 0.0).expect("ground under the vehicle");
     let mount = |height: f64, pitch_down_deg: f64| {
@@ -52,8 +52,8 @@ fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
     for (height, down) in [(1.8, 31.0), (2.0, 22.0)] {
         let beam = Mounted { scene_from_sensor: mount(height, down), sensor: beam };
         let cylindrical = Cylindrical::new(&beam, Switches::EXACT);
-        let of = SensorId::Beam(0);
-        let map = bands::render(mesh, &cylindrical, of, Quantities::RANGE_MAP, Options::EXACT);
+        let sensor = SensorId::Beam(0);
+        let map = bands::render(mesh, &cylindrical, sensor, Quantities::RANGE_MAP, Options::EXACT);
         let hits = map.face.expect("asked for");
         stripes.extend(points::stripe_points(mesh, &cylindrical, &perspective, pixels, &hits));
     }
@@ -62,27 +62,27 @@ fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
     hidden(&Occluders::new(mesh, &perspective, facing, f64::INFINITY), &bins, true)
 }
 
-/// Hills, rocks, mushrooms, floating slabs and walls: all of it closed.
+/// Hills, rocks, mushrooms, floating slabs and walls, all of them closed surfaces.
 fn closed(seed: u64) -> RandomGround {
     RandomGround { slivers: 0, duplicate_faces: 0, zero_area_faces: 0, ..RandomGround::nasty(seed, 4000) }
 }
 
 #[test]
-fn a_face_holds_a_point_within_rounding_of_its_plane() {
-    // Sides of 3, 4 and 5 m in the plane z = 2, d = -12 * 2 or 24; the farthest corner (3, 0, 2) or (0, 4, 2) is
-    // sqrt 20 m from the camera.
+fn a_plane_contains_a_point_within_rounding() {
+    // Edges of 3, 4 and 5 m in the plane z = 2, so |d| = 12 * 2 = 24. The farthest vertex, (0, 4, 2), is sqrt 20 m from
+    // the camera.
     let ground = mesh(&[[[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [0.0, 4.0, 2.0]]]);
     let tables = CameraTables::new(&camera());
     let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
     let perspective = Perspective::new(&mounted, &tables);
     let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
-    let holds_at = |beyond: f64, error: PointError| {
+    let contained_at = |beyond: f64, error: PointError| {
         let mut answers = Vec::new();
         occluders.visit_face(
             FaceId(0),
             |_| true,
             |occluder| {
-                // |d| (1/t - 1/t_P) / (1/t_P) = |d| beyond.
+                // By this choice |d| (1/t - 1/t_P) / (1/t_P) = |d| beyond.
                 let inverse_t = 0.5;
                 let point = BinnedPoint {
                     on_spp: SppPoint { x: 0.0, y: 0.0 },
@@ -99,18 +99,21 @@ fn a_face_holds_a_point_within_rounding_of_its_plane() {
     };
     let exact = PointError { along_pencil: DVec3::ZERO, any_direction: 0.0 };
     let bound = RELATIVE_ROUNDING * 20.0 * (20_f64.sqrt() + 3.0) / 24.0;
-    assert_eq!((holds_at(0.99 * bound, exact), holds_at(1.01 * bound, exact)), (vec![true], vec![false]));
-    // And the point's own error, |n| = 12 times 1e-9 m: as much again as 1e-9 12 / 24.
+    assert_eq!(
+        (contained_at(0.99 * bound, exact), contained_at(1.01 * bound, exact)),
+        (vec![true], vec![false])
+    );
+    // The point's own error of 1e-9 m times |n| = 12 shifts the bound to 1e-9 * 12 / 24 = 5e-10.
     let inexact = PointError { along_pencil: DVec3::ZERO, any_direction: 1e-9 };
-    assert_eq!((holds_at(4.99e-10, inexact), holds_at(5.01e-10, inexact)), (vec![true], vec![false]));
+    assert_eq!((contained_at(4.99e-10, inexact), contained_at(5.01e-10, inexact)), (vec![true], vec![false]));
 }
 
 #[test]
 fn faces_turned_away_suffice_on_closed_ground() {
     // §6: "a ray from the camera to a stripe is occluded by the terrain if the ray passes through a triangle on
-    // the back side of the terrain." True if the ground is closed, camera and laser are outside of it, the
-    // camera is on the front side of the face hit, and facing is judged from the camera's position: the ray
-    // starts outside and ends at a front from outside, so each time it goes in it must come out by a back.
+    // the back side of the terrain." This is true if the ground is closed, camera and laser are outside of it, the
+    // camera is on the front side of the hit face, and facing is judged from the camera's position. The ray then starts
+    // outside and ends outside, at a front. So each time it enters a solid it must leave it through a back.
     let grounds = (0..6).map(|seed| closed(seed).build());
     let mut count = 0;
     for ground in grounds.chain(BUILTIN_NAMES.iter().map(|name| builtin(name, 0.25).unwrap())) {
@@ -124,7 +127,7 @@ fn faces_turned_away_suffice_on_closed_ground() {
 
 #[test]
 fn faces_turned_away_do_not_suffice_on_open_ground() {
-    // With loose slivers, every second of which shows the camera its front.
+    // The ground has loose slivers, half of which show the camera their front.
     let differs = |seed| {
         let mesh = RandomGround { slivers: 600, ..closed(seed) }.build().into_mesh().unwrap();
         hidden_by(&mesh, Facing::Every) != hidden_by(&mesh, Facing::AwayFromCamera)

@@ -1,9 +1,9 @@
-//! Unit tests of `scan`.
+//! Unit tests of `scan`: spans and their bounds.
 
 use super::*;
 use proptest::prelude::*;
 
-/// As the camera's lines are computed.
+/// A line n_x x + n_y y + c = 0, computed like the camera's lines.
 #[derive(Debug, Clone, Copy)]
 struct Straight([f64; 3]);
 
@@ -21,7 +21,7 @@ fn triangle(points: [[f64; 2]; 3]) -> SplitTriangle<Straight> {
 }
 
 proptest! {
-    // Of triangles as flat as rounding, too: y of the corners in multiples of 2^-52 around 1.
+    // Also for triangles as flat as rounding: the corners' y in steps of 2^-52 from 1.
     #[test]
     fn no_span_leaves_the_bounds_of_its_rows(
         x in [-1.0f64..1.0, -1.0..1.0, -1.0..1.0],
@@ -46,8 +46,8 @@ proptest! {
 }
 
 #[test]
-fn the_bounds_of_rows_are_no_wider_than_they_are() {
-    // From (0, 0) down to (4, 8).
+fn the_bounds_of_a_side_are_tight() {
+    // A side from (0, 0) down to (4, 8).
     let side = triangle([[0.0, 0.0], [4.0, 8.0], [10.0, 12.0]]).upper;
     for ((low, high), expected) in [
         ((2.0, 4.0), Some((1.0, 2.0))),
@@ -61,10 +61,10 @@ fn the_bounds_of_rows_are_no_wider_than_they_are() {
     ] {
         assert_eq!(side.crossing_bounds(low, high), expected, "{low} to {high}");
     }
-    // One that falls to the left.
+    // A side that runs down to the left.
     let side = triangle([[4.0, 0.0], [0.0, 8.0], [10.0, 12.0]]).upper;
     assert_eq!(side.crossing_bounds(2.0, 4.0), Some((2.0, 3.0)));
-    // One along the rows has no approximate_index of its own: all of it.
+    // A side along the rows: its bounds are its ends.
     let side = triangle([[1.0, 2.0], [5.0, 2.0], [3.0, 9.0]]).upper;
     assert_eq!((side.top.y, side.bottom.y), (2.0, 2.0));
     assert_eq!(side.crossing_bounds(1.0, 3.0), Some((1.0, 5.0)));

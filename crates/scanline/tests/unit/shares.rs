@@ -1,4 +1,4 @@
-//! Unit tests of `shares`.
+//! Unit tests of `shares`: sums and single shares against closed forms.
 
 use super::*;
 
@@ -24,10 +24,10 @@ fn sum(beam: &Beam) -> f64 {
 
 #[test]
 fn the_papers_shares_fall_short_of_the_whole() {
-    // The mean of cos(alpha) over the grid is the mean of 1 / sqrt(1 + u^2) over |u| < tan(a), midpoint rule;
-    // its limit is asinh(tan a) / tan a = ln(sec a + tan a) / tan a = 0.549306 / 0.577350 = 0.951426 at 30
-    // degrees. The midpoint rule exceeds it by h^2/24 (f'(-b) - f'(b)) / (2b), f' = -u / (1 + u^2)^(3/2), so
-    // h^2/24 cos^3(a) with h = 2 tan(a) / columns: 0.6495 (4/3) / 24 / columns^2 = 0.0361 / columns^2, which is
+    // The sum is the mean of cos(alpha) over the grid: the midpoint rule for the mean of 1 / sqrt(1 + u^2) over
+    // |u| < tan(a). Its limit is asinh(tan a) / tan a = ln(sec a + tan a) / tan a = 0.549306 / 0.577350 = 0.951426
+    // at 30 degrees. The midpoint rule exceeds the limit by h^2/24 (f'(-b) - f'(b)) / (2b), f' = -u / (1 + u^2)^(3/2),
+    // which is h^2/24 cos^3(a) with h = 2 tan(a) / columns: 0.6495 (4/3) / 24 / columns^2 = 0.0361 / columns^2. That is
     // 1.4e-4 for 16 columns and 3.4e-8 for 1024.
     let limit = 3_f64.sqrt() * libm::log(3_f64.sqrt());
     assert!((limit - 0.951_426).abs() < 5e-7);
@@ -68,7 +68,7 @@ fn four_columns_by_hand() {
 
 #[test]
 fn a_beam_narrower_than_its_pencils_keeps_its_power() {
-    // All exponentials of the definition vanish: exp(-2 (0.14 / 1e-6)^2).
+    // All exponentials of the definition are 0 in f64: exp(-2 (0.14 / 1e-6)^2).
     let narrow = beam(4, 1, Profile::Gaussian { half_width: 1e-6 });
     assert_eq!(ColumnShares::new(&narrow).watts, [0.0, 1.5, 1.5, 0.0]);
 }

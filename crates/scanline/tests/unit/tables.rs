@@ -1,12 +1,12 @@
-//! Unit tests of `tables`.
+//! Unit tests of `tables`: the search for a cell.
 
 use super::*;
 use proptest::prelude::*;
 
 proptest! {
-    // Against a linear search of the same table.
+    // Expected: the answer of a linear search of the same table.
     #[test]
-    fn cells_are_found_like_by_looking_at_each(
+    fn a_search_finds_what_a_linear_search_finds(
         count in 1u32..40,
         centre in -50.0f64..50.0,
         pitch in 1e-6f64..1.0,
@@ -16,7 +16,7 @@ proptest! {
     ) {
         let axis = Axis::pixels(count, centre, pitch);
         let [low, high] = axis.borders();
-        // Anywhere around the screen, or on a centre, or next to one: there the first guess errs.
+        // Anywhere around the screen; or on a centre or next to one, where the first guess errs.
         let value = match on {
             Some(i) if i < count => match beside {
                 -1 => axis.centre(i).next_down(),
@@ -33,8 +33,8 @@ proptest! {
 }
 
 #[test]
-fn the_first_guess_is_the_cell() {
-    // Else the search would find it too, but cell by cell.
+fn the_first_guess_of_a_centre_is_its_cell() {
+    // With a wrong guess the search would still find the cell, but step by step.
     let axes = [
         Axis::pixels(7, 2.25, 0.5),
         Axis::pixels(640, -300.0, 7.4e-6),
