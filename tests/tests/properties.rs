@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError, TestCaseResult, TestError, TestRunner};
 use raypencil::harness::Contender;
 use raypencil::judge::{Class, Judge, JudgeShare, Side};
-use raypencil::scanline::{Options, Scanline, Switches};
+use raypencil::scanline::{Scanline, ScanlineOptions, Switches};
 use raypencil::tracer::Tracer;
 use raypencil::{Mesh, Mounted, RenderOutput, Renderer, Request, Scene};
 use raypencil_tests::lattice::hash;
@@ -143,7 +143,7 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
         let b = render(&tracer, &scene);
         let judge = Judge::new(&scene, JudgeShare::Sample);
         for switches in sets(few, any) {
-            let scanline = Scanline::new(Options { switches, ..Options::EXACT });
+            let scanline = Scanline::new(ScanlineOptions { switches, ..ScanlineOptions::EXACT });
             let a = render(&scanline, &scene);
             let attributions = raypencil::harness::attribute(&judge, &a, switches, scanline.precision());
             let a = Side { attributions: Some(&attributions), ..side(&scanline, &a) };
@@ -206,8 +206,10 @@ fn skipping_faces_never_changes_a_map() {
     check(3000, cases(), |case: Case| {
         let scene = case.scene();
         let skipping = render(&Scanline::default(), &scene);
-        let looking_at_all =
-            render(&Scanline::new(Options { skip_unseen: false, ..Options::default() }), &scene);
+        let looking_at_all = render(
+            &Scanline::new(ScanlineOptions { skip_unseen: false, ..ScanlineOptions::default() }),
+            &scene,
+        );
         same_bits("skipping", &looking_at_all, &skipping)
     });
 }

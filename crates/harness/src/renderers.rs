@@ -4,7 +4,7 @@ use std::fmt;
 
 use raypencil_judge::{Attributions, Judge};
 use raypencil_referee::ExactRenderer;
-use raypencil_scanline::{Options, Scanline};
+use raypencil_scanline::{Scanline, ScanlineOptions};
 use raypencil_scene::{Fidelity, Precision, RenderOutput, Renderer, Request, Switches};
 use raypencil_scene_io::quoted;
 use raypencil_tracer::Tracer;
@@ -23,7 +23,7 @@ pub struct Contender {
 impl Contender {
     /// The scanline renderer with these switches.
     pub fn scanline(switches: Switches) -> Self {
-        let options = Options { switches, ..Options::EXACT };
+        let options = ScanlineOptions { switches, ..ScanlineOptions::EXACT };
         Self { renderer: Box::new(Scanline::new(options)), switches: Some(switches) }
     }
 
@@ -83,7 +83,7 @@ pub fn attribute(
     precision: Precision,
 ) -> Attributions {
     let rerender = |switches: Switches, request: Request| {
-        Scanline::new(Options { switches, ..Options::EXACT }).render(judge.scene(), &request)
+        Scanline::new(ScanlineOptions { switches, ..ScanlineOptions::EXACT }).render(judge.scene(), &request)
     };
     Attributions::find(judge, output, switches, precision, &rerender)
 }

@@ -1,24 +1,28 @@
-//! The main loop of §4: faces are sorted into bands of rows, and bands are scanned in parallel.
+//! The main loop of §4: faces are sorted into bands of rows, and the bands are scanned in parallel.
 
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 
-use crate::clip::{Edge, NewLines, Piece, clip_at_plane};
-use crate::printed::Screen;
-use crate::raster::{Nearest, Plane, Raster, Transformation, scene_plane};
-use crate::scan::{Line, SplitTriangle};
-use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT};
-use crate::vertices::{self, Vertex, widen};
-use crate::{Fidelity, Options, sides};
+use crate::clip::{AddedLines, ClippedTriangle, Edge, clip_at_spp};
+use crate::options::ScanlineOptions;
+use crate::plane::{Plane, plane_in_scene};
+use crate::printed_skip::SensorScreen;
+use crate::raster::{InverseTLimits, Raster};
+use crate::scan::SplitTriangle;
+use crate::skip::{ABOVE, BEHIND_SPP, BELOW, LEFT, RIGHT};
+use crate::spp::ProjectedLine;
+use crate::transformation::Transformation;
+use crate::vertices::{self, SensorVertex, widen};
+use crate::{Fidelity, edges};
 
-/// Faces that one task sorts into bands.
+/// Number of faces that one task sorts into bands.
 const FACES_PER_TASK: usize = 8192;
 
-/// Cells of a band: 1/t and face of that many fit a core's own cache.
+/// Number of cells of a band: 1/t and face of that many fit a core's own cache.
 const CELLS_PER_BAND: u32 = 32_768;
 
-/// Rows of a band: all of a small raster, one of a very wide one.
+/// Rows of a band: all rows of a small raster, one row of a very wide one.
 fn rows_per_band(width: u32, height: u32) -> u32 {
     (CELLS_PER_BAND / width).clamp(1, height)
 }
@@ -29,7 +33,7 @@ pub(crate) fn render<T: Transformation>(
     transformation: &T,
     sensor: SensorId,
     quantities: Quantities,
-    options: Options,
+    options: ScanlineOptions,
 ) -> SensorMap {
     let (width, height) = (transformation.columns().count(), transformation.rows().count());
     let mut map = SensorMap::empty(sensor, width, height, quantities);
@@ -37,24 +41,24 @@ pub(crate) fn render<T: Transformation>(
     // Step 2: all vertices into the sensor's frame.
     let vertices = vertices::transform(mesh, |scene_point| {
         let sensor_from_scene = transformation.sensor_from_scene();
-        let position = sensor_from_scene.turn(sensor_from_scene.relative(scene_point));
-        let corner = transformation.project(position);
-        Vertex { position, corner, outside: transformation.outside(position) }
+        let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
+        let projection = transformation.project(position);
+        SensorVertex { position, projection, outside: transformation.outside(position) }
     });
 
     // Steps 1 and 3: drop the faces that cannot be seen, sort the others into bands of rows.
     let rows_per_band = rows_per_band(width, height);
     let band_count = height.div_ceil(rows_per_band) as usize;
     let as_printed = options.switches.skip_rules == Fidelity::Paper;
-    let faces = Faces {
+    let scanner = FaceScanner {
         mesh,
         vertices: &vertices,
         transformation,
         skip_unseen: options.skip_unseen && !as_printed,
-        screen: Screen::new(transformation.columns(), transformation.rows()),
+        screen: SensorScreen::new(transformation.columns(), transformation.rows()),
     };
-    let by_printed_rules_3 = options.skip_unseen && as_printed;
-    let sorted: Vec<Vec<Vec<FaceId>>> = (0..mesh.faces().len().div_ceil(FACES_PER_TASK))
+    let printed_rules_3 = options.skip_unseen && as_printed;
+    let faces_by_task: Vec<Vec<Vec<FaceId>>> = (0..mesh.faces().len().div_ceil(FACES_PER_TASK))
         .into_par_iter()
         .map(|task| {
             let mut bands = vec![Vec::new(); band_count];
@@ -62,7 +66,7 @@ pub(crate) fn render<T: Transformation>(
             let end = (first + FACES_PER_TASK).min(mesh.faces().len());
             for index in first..end {
                 let id = FaceId(index as u32);
-                if let Some(rows) = faces.rows(id) {
+                if let Some(rows) = scanner.rows(id) {
                     for band in rows.start / rows_per_band..=(rows.end - 1) / rows_per_band {
                         bands[band as usize].push(id);
                     }
@@ -72,16 +76,16 @@ pub(crate) fn render<T: Transformation>(
         })
         .collect();
 
-    // Step 4, band by band.
+    // Step 4, band by band. A band scans its faces in ascending order for any number of threads.
     let mut rows = map.rows_mut();
     rows.par_chunks_mut(rows_per_band as usize).enumerate().for_each(|(band, rows)| {
         let mut raster = Raster::new(rows[0].j, rows.len() as u32, width);
-        for task in &sorted {
-            // Asked here, not for every face: that would cost the exact rules some 3 % of their time.
-            if by_printed_rules_3 {
-                faces.scan::<true>(&task[band], rows, &mut raster);
+        for bands in &faces_by_task {
+            // Decided here, not for every face: that would cost the exact rules some 3 % of their time.
+            if printed_rules_3 {
+                scanner.scan::<true>(&bands[band], rows, &mut raster);
             } else {
-                faces.scan::<false>(&task[band], rows, &mut raster);
+                scanner.scan::<false>(&bands[band], rows, &mut raster);
             }
         }
         raster.resolve(mesh, transformation, quantities, rows);
@@ -90,34 +94,37 @@ pub(crate) fn render<T: Transformation>(
     map
 }
 
-/// The terrain as one sensor sees it.
-struct Faces<'a, T> {
+/// The terrain's faces in the frame of one sensor, and the rules by which they are skipped.
+struct FaceScanner<'a, T> {
     mesh: &'a Mesh,
-    vertices: &'a [Vertex],
+    vertices: &'a [SensorVertex],
     transformation: &'a T,
-    /// Whether to skip what the conservative forms of rules 1 and 3 find unseen.
+    /// Whether faces are skipped by the conservative forms of rules 1 and 3.
     skip_unseen: bool,
-    /// For rules 3 as printed.
-    screen: Screen,
+    /// The screen of rules 3 as printed.
+    screen: SensorScreen,
 }
 
-impl<T: Transformation> Faces<'_, T> {
-    /// Steps 1 and 3: the rows that a face may touch, or `None` if it cannot be seen. (As printed, 1b is asked
-    /// in `Transformation::inverse_t` and rules 3 in `scan_piece`: those see what clipping leaves.)
+impl<T: Transformation> FaceScanner<'_, T> {
+    /// Steps 1 and 3: the rows that a face may touch, or `None` if it cannot be seen.
+    ///
+    /// The printed rules are applied later, since they concern what clipping leaves: 1b in
+    /// `Transformation::row_inverse_t`, rules 3 in `scan_clipped`.
     #[inline]
     fn rows(&self, id: FaceId) -> Option<std::ops::Range<u32>> {
         let transformation = self.transformation;
         let face = self.mesh.faces()[id.0 as usize];
         let [a, b, c] = face.map(|v| &self.vertices[v as usize]);
         let (all, any) = (a.outside & b.outside & c.outside, a.outside | b.outside | c.outside);
+        // 1a, 3a, 3b.
         if self.skip_unseen && all != 0 {
             return None;
         }
-        if any & BEHIND_PLANE != 0 {
-            // What clipping will leave of it is not known yet.
-            return if all & BEHIND_PLANE != 0 { None } else { Some(0..transformation.rows().count()) };
+        if any & BEHIND_SPP != 0 {
+            // The rows of what clipping will leave are not known yet.
+            return if all & BEHIND_SPP != 0 { None } else { Some(0..transformation.rows().count()) };
         }
-        let corners = [a.corner, b.corner, c.corner];
+        let corners = [a.projection, b.projection, c.projection];
         let top = corners.iter().fold(f64::INFINITY, |top, corner| top.min(corner.y));
         let bottom = corners.iter().fold(f64::NEG_INFINITY, |bottom, corner| bottom.max(corner.y));
         let first = transformation.rows().first_at_or_after(top);
@@ -133,20 +140,23 @@ impl<T: Transformation> Faces<'_, T> {
             if columns.first_at_or_after(left) >= columns.end_at_or_before(right) {
                 return None;
             }
-            // 1b, where it holds for every row. (A beam's rows differ: those are asked one by one.)
+            // 1b, if no row sees the front. (The rows of a beam differ. Between the first and the last the offset is
+            // affine in y.)
             let scene_vertices = face.map(|v| widen(self.mesh.vertices()[v as usize]));
-            let (n, distance) = scene_plane(&scene_vertices, transformation.sensor_from_scene());
+            let (n, offset) = plane_in_scene(&scene_vertices, transformation.sensor_from_scene());
             let plane = Plane {
-                normal: transformation.sensor_from_scene().turn(n),
-                distance,
-                normal_over_distance: n,
+                normal: transformation.sensor_from_scene().in_sensor_axes(n),
+                offset,
+                // Not used by `row_offset`; a division less.
+                normal_over_offset: n,
             };
             let rows = transformation.rows();
-            if transformation.row_distance(&plane, rows.centre(first)) >= 0.0
-                && transformation.row_distance(&plane, rows.centre(end - 1)) >= 0.0
+            if transformation.row_offset(&plane, rows.centre(first)) >= 0.0
+                && transformation.row_offset(&plane, rows.centre(end - 1)) >= 0.0
             {
                 return None;
             }
+            // 3c.
             if any & (LEFT | RIGHT | ABOVE | BELOW) != 0
                 && transformation.misses_screen(&[a.position, b.position, c.position])
             {
@@ -156,56 +166,75 @@ impl<T: Transformation> Faces<'_, T> {
         Some(first..end)
     }
 
-    /// Step 4: scans faces into some rows; `BY_RULES_3`: those that rules 3 as printed leave.
+    /// Step 4: scans faces into some rows. With `PRINTED_RULES_3` it first applies rules 3 as printed.
     #[inline(never)]
-    fn scan<const BY_RULES_3: bool>(&self, ids: &[FaceId], rows: &[SensorRow<'_>], raster: &mut Raster) {
+    fn scan<const PRINTED_RULES_3: bool>(&self, ids: &[FaceId], rows: &[SensorRow<'_>], raster: &mut Raster) {
         for &id in ids {
-            self.scan_face::<BY_RULES_3>(id, rows, raster);
+            self.scan_face::<PRINTED_RULES_3>(id, rows, raster);
         }
     }
 
     /// Step 4: scans a face into some rows.
     #[inline]
-    fn scan_face<const BY_RULES_3: bool>(&self, id: FaceId, rows: &[SensorRow<'_>], raster: &mut Raster) {
+    fn scan_face<const PRINTED_RULES_3: bool>(
+        &self,
+        id: FaceId,
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
         let face = self.mesh.faces()[id.0 as usize];
-        let stored = face.map(|v| self.mesh.vertices()[v as usize]);
-        let plane = Plane::of(&stored.map(widen), self.transformation.sensor_from_scene());
-        let seen = face.map(|v| &self.vertices[v as usize]);
-        if self.transformation.stripe().is_some() {
-            self.scan_within_stripe::<BY_RULES_3>(id, &plane, rows, raster);
-        } else if seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE == 0) {
-            let piece = Piece {
-                points: seen.map(|vertex| vertex.position),
-                corners: seen.map(|vertex| vertex.corner),
+        let in_scene = face.map(|v| self.mesh.vertices()[v as usize]);
+        let plane = Plane::new(&in_scene.map(widen), self.transformation.sensor_from_scene());
+        let in_sensor = face.map(|v| &self.vertices[v as usize]);
+        if self.transformation.stripe_volume().is_some() {
+            self.scan_within_stripe::<PRINTED_RULES_3>(id, &plane, rows, raster);
+        } else if in_sensor.iter().all(|vertex| vertex.outside & BEHIND_SPP == 0) {
+            let triangle = ClippedTriangle {
+                points: in_sensor.map(|vertex| vertex.position),
+                corners: in_sensor.map(|vertex| vertex.projection),
                 lines: [
-                    self.edge(&stored, &seen, 0, 1).line,
-                    self.edge(&stored, &seen, 1, 2).line,
-                    self.edge(&stored, &seen, 2, 0).line,
+                    self.edge(&in_scene, &in_sensor, 0, 1).line,
+                    self.edge(&in_scene, &in_sensor, 1, 2).line,
+                    self.edge(&in_scene, &in_sensor, 2, 0).line,
                 ],
             };
-            // All of the face is at or beyond the SPP.
-            self.scan_piece::<_, BY_RULES_3>(&piece, &plane, Nearest::ANY, id, rows, raster);
+            // The whole face is at or beyond the SPP.
+            self.scan_clipped::<_, PRINTED_RULES_3>(
+                &triangle,
+                &plane,
+                InverseTLimits::NONE,
+                id,
+                rows,
+                raster,
+            );
         } else {
-            self.scan_beyond_spp::<BY_RULES_3>(id, &plane, rows, raster);
+            self.scan_beyond_spp::<PRINTED_RULES_3>(id, &plane, rows, raster);
         }
     }
 
-    /// The edge of a face from corner k to the next.
+    /// The edge of a face from vertex k to `next`.
     #[inline]
-    fn edge(&self, stored: &[[f32; 3]; 3], seen: &[&Vertex; 3], k: usize, next: usize) -> Edge<T::Line> {
-        sides::edge(self.transformation, stored, seen, k, next)
+    fn edge(
+        &self,
+        in_scene: &[[f32; 3]; 3],
+        in_sensor: &[&SensorVertex; 3],
+        k: usize,
+        next: usize,
+    ) -> Edge<T::Line> {
+        edges::edge(self.transformation, in_scene, in_sensor, k, next)
     }
 
+    /// The three edges of a face.
     fn edges(&self, id: FaceId) -> [Edge<T::Line>; 3] {
         let face = self.mesh.faces()[id.0 as usize];
-        let stored = face.map(|v| self.mesh.vertices()[v as usize]);
-        let seen = face.map(|v| &self.vertices[v as usize]);
-        sides::edges(self.transformation, &stored, &seen)
+        let in_scene = face.map(|v| self.mesh.vertices()[v as usize]);
+        let in_sensor = face.map(|v| &self.vertices[v as usize]);
+        edges::edges(self.transformation, &in_scene, &in_sensor)
     }
 
-    /// Step 4 for a face that the SPP cuts. Few are: kept out of line of the others.
+    /// Step 4 for a face that the SPP cuts. Few are: it is kept out of line of the others.
     #[inline(never)]
-    fn scan_beyond_spp<const BY_RULES_3: bool>(
+    fn scan_beyond_spp<const PRINTED_RULES_3: bool>(
         &self,
         id: FaceId,
         plane: &Plane,
@@ -213,21 +242,23 @@ impl<T: Transformation> Faces<'_, T> {
         raster: &mut Raster,
     ) {
         let transformation = self.transformation;
-        let seen = self.mesh.faces()[id.0 as usize].map(|v| &self.vertices[v as usize]);
-        let (points, corners) = (seen.map(|vertex| vertex.position), seen.map(|vertex| vertex.corner));
-        let new_lines = NewLines {
-            along_plane: |from, to| transformation.line_along_plane(from, to, plane),
-            diagonal: |from: DVec3, to: DVec3| transformation.line(from, to, to - from),
+        let vertices = self.mesh.faces()[id.0 as usize].map(|v| &self.vertices[v as usize]);
+        let points = vertices.map(|vertex| vertex.position);
+        let corners = vertices.map(|vertex| vertex.projection);
+        let added_lines = AddedLines {
+            along_spp: |from, to| transformation.project_spp_cut(from, to, plane),
+            diagonal: |from: DVec3, to: DVec3| transformation.project_edge(from, to, to - from),
         };
-        let spp = transformation.plane_distance();
-        clip_at_plane(spp, points, corners, &self.edges(id), new_lines, |piece| {
-            self.scan_piece::<_, BY_RULES_3>(piece, plane, Nearest::HELD_AT_SPP, id, rows, raster);
+        let spp = transformation.spp_distance();
+        clip_at_spp(spp, points, corners, &self.edges(id), added_lines, |triangle| {
+            let limits = InverseTLimits::CLAMP_TO_SPP;
+            self.scan_clipped::<_, PRINTED_RULES_3>(triangle, plane, limits, id, rows, raster);
         });
     }
 
     /// Step 4 with straight sides (`beam-edges = paper`), kept out of line of the exact ones.
     #[inline(never)]
-    fn scan_within_stripe<const BY_RULES_3: bool>(
+    fn scan_within_stripe<const PRINTED_RULES_3: bool>(
         &self,
         id: FaceId,
         plane: &Plane,
@@ -235,42 +266,43 @@ impl<T: Transformation> Faces<'_, T> {
         raster: &mut Raster,
     ) {
         let points = self.mesh.faces()[id.0 as usize].map(|v| self.vertices[v as usize].position);
-        if let Some(stripe) = self.transformation.stripe() {
-            stripe.clip(points, &self.edges(id), |piece| {
-                self.scan_piece::<_, BY_RULES_3>(piece, plane, Nearest::BEYOND_SPP, id, rows, raster);
+        if let Some(volume) = self.transformation.stripe_volume() {
+            volume.clip(points, &self.edges(id), |triangle| {
+                let limits = InverseTLimits::REJECT_BEFORE_SPP;
+                self.scan_clipped::<_, PRINTED_RULES_3>(triangle, plane, limits, id, rows, raster);
             });
         }
     }
 
-    /// Step 3 as printed, and step 4 for what it leaves.
+    /// Step 3 as printed, and step 4 for the triangles that it leaves.
     #[inline]
-    fn scan_piece<L: Line, const BY_RULES_3: bool>(
+    fn scan_clipped<L: ProjectedLine, const PRINTED_RULES_3: bool>(
         &self,
-        piece: &Piece<L>,
+        triangle: &ClippedTriangle<L>,
         plane: &Plane,
-        nearest: Nearest,
+        limits: InverseTLimits,
         id: FaceId,
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
     ) {
-        if BY_RULES_3 {
+        if PRINTED_RULES_3 {
             let max_range = self.transformation.max_range();
-            let too_far = |k: usize| self.transformation.range(piece.points[k]) > max_range;
-            if self.screen.skips(&piece.corners, too_far) {
+            let too_far = |k: usize| self.transformation.range(triangle.points[k]) > max_range;
+            if self.screen.skips(&triangle.corners, too_far) {
                 return;
             }
         }
-        let triangle = SplitTriangle::new(piece.corners, piece.lines);
-        self.scan_triangle(&triangle, plane, nearest, id, rows, raster);
+        let split = SplitTriangle::new(triangle.corners, triangle.lines);
+        self.scan_split(&split, plane, limits, id, rows, raster);
     }
 
     /// Step 4b: the rows of one projected triangle.
     #[inline(always)]
-    fn scan_triangle<L: Line>(
+    fn scan_split<L: ProjectedLine>(
         &self,
         triangle: &SplitTriangle<L>,
         plane: &Plane,
-        nearest: Nearest,
+        limits: InverseTLimits,
         id: FaceId,
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
@@ -286,107 +318,13 @@ impl<T: Transformation> Faces<'_, T> {
             if columns.is_empty() {
                 continue;
             }
-            if let Some(inverse_t) = self.transformation.inverse_t(plane, y) {
-                raster.scan_row(j, columns, x.centres(), inverse_t, nearest, id);
+            if let Some(row_inverse_t) = self.transformation.row_inverse_t(plane, y) {
+                raster.scan_row(j, columns, x.centres(), row_inverse_t, limits, id);
             }
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use raypencil_scene::{Mounted, Pose};
-
-    use super::*;
-    use crate::fixtures::{camera, mesh};
-    use crate::perspective::Perspective;
-    use crate::tables::CameraTables;
-
-    /// The rows that a face may touch, for a camera at the origin that looks along +z.
-    fn rows_of(corners: [[f32; 3]; 3], skip_unseen: bool) -> Option<std::ops::Range<u32>> {
-        let (camera, mesh) = (camera(), mesh(&[corners]));
-        let tables = CameraTables::of(&camera);
-        let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
-        let transformation = Perspective::new(&mounted, &tables);
-        let vertices = vertices::transform(&mesh, |position| Vertex {
-            position,
-            corner: transformation.project(position),
-            outside: transformation.outside(position),
-        });
-        let faces = Faces {
-            mesh: &mesh,
-            vertices: &vertices,
-            transformation: &transformation,
-            skip_unseen,
-            screen: Screen::new(transformation.columns(), transformation.rows()),
-        };
-        faces.rows(FaceId(0))
-    }
-
-    /// A front at depth z; x and y as on the SPP.
-    fn front(z: f32, corners: [[f32; 2]; 3]) -> [[f32; 3]; 3] {
-        corners.map(|[x, y]| [x * z, y * z, z])
-    }
-
-    #[test]
-    fn a_band_has_as_many_rows_as_fit() {
-        for ((width, height), rows) in
-            [((1024, 1024), 32), ((1000, 1000), 32), ((64, 48), 48), ((40_000, 5), 1), ((1, 1), 1)]
-        {
-            assert_eq!(rows_per_band(width, height), rows, "{width} {height}");
-        }
-    }
-
-    #[test]
-    fn a_face_is_scanned_in_the_rows_that_it_touches() {
-        // Centres of rows: -7/8, -5/8, ... 7/8. From y = -0.3 to 0.4: those at -1/8, 1/8, 3/8.
-        let face = front(2.0, [[-0.5, -0.3], [0.0, 0.4], [0.5, -0.3]]);
-        for skip_unseen in [true, false] {
-            assert_eq!(rows_of(face, skip_unseen), Some(3..6));
-        }
-        // Between two rows' centres: none, whatever may be skipped.
-        let thin = front(2.0, [[-0.5, -0.3], [0.0, -0.2], [0.5, -0.3]]);
-        assert_eq!((rows_of(thin, true), rows_of(thin, false)), (None, None));
-    }
-
-    #[test]
-    fn what_cannot_be_seen_is_skipped_if_that_may_be() {
-        let across = |x: f32, y: f32| front(2.0, [[x - 0.5, y - 0.3], [x, y + 0.4], [x + 0.5, y - 0.3]]);
-        let [a, b, c] = across(0.0, 0.0);
-        let unseen = [
-            ("left (3a)", across(-1.6, 0.0)),
-            ("right (3a)", across(1.6, 0.0)),
-            ("deeper than the maximum range (3b)", front(101.0, [[-0.5, -0.3], [0.0, 0.4], [0.5, -0.3]])),
-            ("a back (1b)", [a, c, b]),
-            // x from -0.09 to 0.09: between the centres -1/8 and 1/8.
-            ("between two columns", front(2.0, [[-0.09, -0.3], [0.0, 0.4], [0.09, -0.3]])),
-            // Partly above and partly left of the screen's corner (-1, -1), which the side x + y = -2.5 passes by.
-            ("beyond one side (3c)", front(2.0, [[-2.2, -2.2], [-2.2, -0.3], [-0.3, -2.2]])),
-            ("beyond one side (3c)", front(2.0, [[2.2, 2.2], [2.2, 0.3], [0.3, 2.2]])),
-        ];
-        for (why, face) in unseen {
-            assert_eq!(rows_of(face, true), None, "{why}");
-            assert!(rows_of(face, false).is_some(), "{why}");
-        }
-        // Above and below there are no rows anyway.
-        for y in [-1.6, 1.6] {
-            assert_eq!((rows_of(across(0.0, y), true), rows_of(across(0.0, y), false)), (None, None));
-        }
-        // Across the corner of the screen, and partly beyond each of its sides.
-        let corner = front(2.0, [[-2.0, -2.0], [-2.0, 1.5], [1.5, -2.0]]);
-        assert_eq!(rows_of(corner, true), Some(0..8));
-        for (x, y) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
-            assert!(rows_of(across(x, y), true).is_some(), "{x} {y}");
-        }
-    }
-
-    #[test]
-    fn what_the_spp_cuts_may_be_in_any_row() {
-        let cut = [[-0.5, -0.3, 2.0], [0.0, 0.4, 0.5], [0.5, -0.3, 2.0]];
-        let behind = [[-0.5, -0.3, 0.9], [0.0, 0.4, 0.5], [0.5, -0.3, 0.9]];
-        for skip_unseen in [true, false] {
-            assert_eq!(rows_of(cut, skip_unseen), Some(0..8));
-            assert_eq!(rows_of(behind, skip_unseen), None);
-        }
-    }
-}
+#[path = "../tests/unit/bands.rs"]
+mod tests;

@@ -1,113 +1,114 @@
-//! Stripe points sorted by the pixel they land in, so that a face meets those on its rows and no others. (§6:
-//! "Checking only pixels that 'see' the stripe is one way of lowering the cost.")
+//! The stripe points sorted by pixel, so that a face is tested only against points on its rows. (§6: "Checking only
+//! pixels that 'see' the stripe is one way of lowering the cost.")
 
 use raypencil_scene::FaceId;
 
-use crate::points::{Pixels, StripePoint};
+use crate::points::{PixelGrid, StripePoint};
 use crate::rounding::PointError;
-use crate::scan::{Corner, Line, SplitTriangle};
+use crate::scan::SplitTriangle;
+use crate::spp::{ProjectedLine, SppPoint};
 
-/// A point that something may hide.
+/// A stripe point that a face may hide.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Binned {
-    /// Its place on the SPP, metres.
-    pub(crate) at: Corner,
-    /// 1/t of it: f_c / r.
+pub(crate) struct BinnedPoint {
+    /// The point on the SPP.
+    pub(crate) on_spp: SppPoint,
+    /// 1/t of the point: f_c / r.
     pub(crate) inverse_t: f64,
     /// d, metres.
     pub(crate) distance: f64,
-    /// How far rounding may have moved it.
+    /// Displacement of the point by rounding.
     pub(crate) error: PointError,
-    /// The face it is on.
+    /// The face that the point is on.
     pub(crate) face: FaceId,
-    /// Which of the points it was made from.
+    /// Index of the point among those that the bins were made from.
     pub(crate) index: u32,
 }
 
-/// The part of the SPP that a face, or what clipping leaves of it, can reach, and how near it comes.
+/// Bounds of a projected triangle: a rectangle on the SPP, and the largest 1/t.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reach {
-    pub(crate) low: Corner,
-    pub(crate) high: Corner,
-    /// 1/t of its nearest corner. Over the face 1/t is nowhere larger.
-    pub(crate) nearest: f64,
+pub(crate) struct ProjectedBounds {
+    pub(crate) low: SppPoint,
+    pub(crate) high: SppPoint,
+    /// 1/t of the nearest corner. 1/t is nowhere larger on the triangle.
+    pub(crate) max_inverse_t: f64,
 }
 
-/// Points by pixel, over the smallest rectangle of pixels that holds them all: a counting sort.
+/// The points by pixel, over the smallest rectangle of pixels that contains them all. (A counting sort.)
 #[derive(Debug)]
 pub(crate) struct Bins {
-    pixels: Pixels,
+    pixels: PixelGrid,
     /// Column and row of the rectangle's first pixel.
     first: [i64; 2],
     columns: i64,
     rows: i64,
-    /// Where the points of each pixel start, row by row, and at last their count.
+    /// Index of the first point of each pixel, row by row; the last entry is the number of points.
     starts: Vec<u32>,
-    points: Vec<Binned>,
-    contents: Vec<Row>,
+    points: Vec<BinnedPoint>,
+    row_extents: Vec<RowExtent>,
 }
 
-/// What a row of pixels holds.
+/// The extent of the points in one row of pixels.
 #[derive(Debug, Clone, Copy)]
-struct Row {
-    /// 1/t of its deepest point.
-    deepest: f64,
-    /// y of its uppermost and of its lowest point, metres on the SPP.
+struct RowExtent {
+    /// 1/t of the deepest point.
+    min_inverse_t: f64,
+    /// y of the uppermost and of the lowest point, metres on the SPP.
     top: f64,
     bottom: f64,
 }
 
-/// Some points in a row of pixels.
+/// The points of one row of pixels that a triangle may hide.
 #[derive(Debug, Clone)]
-pub(crate) struct Touched {
+pub(crate) struct RowPoints {
     row: usize,
-    /// Which of all points.
+    /// A range of [`Bins::points`].
     pub(crate) points: std::ops::Range<usize>,
 }
 
 impl Bins {
-    /// Of those points that land on the image, their front turned to the camera: all others are invisible.
-    pub(crate) fn of<'a>(
-        pixels: Pixels,
+    /// Sorts the points that are on the image and show the camera their front. All others are invisible anyway.
+    pub(crate) fn new<'a>(
+        pixels: PixelGrid,
         points: impl Iterator<Item = Option<&'a StripePoint>> + Clone,
     ) -> Self {
-        let landed = points.enumerate().filter_map(|(index, point)| {
-            let point = point.filter(|point| point.cos_view > 0.0)?;
-            let landing = point.landing?;
-            let binned = Binned {
-                at: landing.at,
-                inverse_t: landing.inverse_t,
+        let on_image = points.enumerate().filter_map(|(index, point)| {
+            let point = point.filter(|point| point.cos_theta > 0.0)?;
+            let image = point.image?;
+            let binned = BinnedPoint {
+                on_spp: image.on_spp,
+                inverse_t: image.inverse_t,
                 distance: point.distance,
                 error: point.error,
                 face: point.face,
                 index: index as u32,
             };
-            Some(([i64::from(landing.pixel.i), i64::from(landing.pixel.j)], binned))
+            Some(([i64::from(image.pixel.i), i64::from(image.pixel.j)], binned))
         });
         let (mut first, mut last) = ([i64::MAX; 2], [i64::MIN; 2]);
         let mut count = 0;
-        for (cell, _) in landed.clone() {
+        for (cell, _) in on_image.clone() {
             first = [first[0].min(cell[0]), first[1].min(cell[1])];
             last = [last[0].max(cell[0]), last[1].max(cell[1])];
             count += 1;
         }
         if count == 0 {
-            let (starts, points, contents) = (vec![0], Vec::new(), Vec::new());
-            return Self { pixels, first: [0; 2], columns: 0, rows: 0, starts, points, contents };
+            let (starts, points, row_extents) = (vec![0], Vec::new(), Vec::new());
+            return Self { pixels, first: [0; 2], columns: 0, rows: 0, starts, points, row_extents };
         }
         let (columns, rows) = (last[0] - first[0] + 1, last[1] - first[1] + 1);
-        let place = |[i, j]: [i64; 2]| ((j - first[1]) * columns + (i - first[0])) as usize;
+        let cell_index = |[i, j]: [i64; 2]| ((j - first[1]) * columns + (i - first[0])) as usize;
 
-        // Count, add up, put: points of one pixel stay in their order.
+        // Count, sum up, place: the points of one pixel keep their order.
         let mut starts = vec![0_u32; (columns * rows) as usize + 1];
-        let nothing = Row { deepest: f64::INFINITY, top: f64::INFINITY, bottom: f64::NEG_INFINITY };
-        let mut contents = vec![nothing; rows as usize];
+        let empty = RowExtent { min_inverse_t: f64::INFINITY, top: f64::INFINITY, bottom: f64::NEG_INFINITY };
+        let mut row_extents = vec![empty; rows as usize];
         let mut any = None;
-        for (cell, point) in landed.clone() {
-            starts[place(cell) + 1] += 1;
-            let row = &mut contents[(cell[1] - first[1]) as usize];
-            row.deepest = row.deepest.min(point.inverse_t);
-            (row.top, row.bottom) = (row.top.min(point.at.y), row.bottom.max(point.at.y));
+        for (cell, point) in on_image.clone() {
+            starts[cell_index(cell) + 1] += 1;
+            let row = &mut row_extents[(cell[1] - first[1]) as usize];
+            row.min_inverse_t = row.min_inverse_t.min(point.inverse_t);
+            (row.top, row.bottom) = (row.top.min(point.on_spp.y), row.bottom.max(point.on_spp.y));
             any = Some(point);
         }
         for k in 1..starts.len() {
@@ -115,23 +116,23 @@ impl Bins {
         }
         let mut next = starts.clone();
         let mut sorted = vec![any; count];
-        for (cell, point) in landed {
-            let next = &mut next[place(cell)];
+        for (cell, point) in on_image {
+            let next = &mut next[cell_index(cell)];
             sorted[*next as usize] = Some(point);
             *next += 1;
         }
         let points = sorted.into_iter().flatten().collect();
-        Self { pixels, first, columns, rows, starts, points, contents }
+        Self { pixels, first, columns, rows, starts, points, row_extents }
     }
 
     /// All points, pixel by pixel.
-    pub(crate) fn points(&self) -> &[Binned] {
+    pub(crate) fn points(&self) -> &[BinnedPoint] {
         &self.points
     }
 
-    /// The points in the pixels of row `j`, columns `from..end`, as a range of all.
+    /// The points in some pixels of row `j`, as a range of [`Self::points`].
     #[inline]
-    pub(crate) fn within(&self, j: u32, columns: std::ops::Range<u32>) -> std::ops::Range<usize> {
+    pub(crate) fn in_row(&self, j: u32, columns: std::ops::Range<u32>) -> std::ops::Range<usize> {
         let row = i64::from(j) - self.first[1];
         let from = (i64::from(columns.start) - self.first[0]).clamp(0, self.columns);
         let end = (i64::from(columns.end) - self.first[0]).clamp(from, self.columns);
@@ -141,41 +142,44 @@ impl Bins {
         self.in_columns(row, from, end)
     }
 
-    /// For every row of pixels that a face can touch, all of each pixel, the points in it, if they are not all
-    /// nearer than the face.
+    /// The points in the pixels that some bounds touch, by row. A row is left out if all its points are nearer than
+    /// the bounds.
     #[inline]
-    pub(crate) fn touched<'a>(&'a self, reach: &Reach) -> impl Iterator<Item = Touched> + use<'a> {
-        let (low, high) = (self.pixels.cell(reach.low), self.pixels.cell(reach.high));
+    pub(crate) fn rows_touched<'a>(
+        &'a self,
+        bounds: &ProjectedBounds,
+    ) -> impl Iterator<Item = RowPoints> + use<'a> {
+        let (low, high) = (self.pixels.cell(bounds.low), self.pixels.cell(bounds.high));
         let from = (low[0] - self.first[0]).max(0);
         let end = (high[0] - self.first[0] + 1).min(self.columns);
         let top = (low[1] - self.first[1]).max(0);
         let bottom = if from < end { (high[1] - self.first[1] + 1).min(self.rows) } else { top };
-        let nearest = reach.nearest;
+        let max_inverse_t = bounds.max_inverse_t;
         (top..bottom).filter_map(move |row| {
-            if !(nearest > self.contents[row as usize].deepest) {
+            if !(max_inverse_t > self.row_extents[row as usize].min_inverse_t) {
                 return None;
             }
             let points = self.in_columns(row, from, end);
-            (!points.is_empty()).then_some(Touched { row: row as usize, points })
+            (!points.is_empty()).then_some(RowPoints { row: row as usize, points })
         })
     }
 
-    /// Those of the points that are in the pixels which a triangle touches in their own row, rather than anywhere.
-    /// A triangle that leans across many rows has few of them.
-    pub(crate) fn narrowed<L: Line>(
+    /// The points in those pixels that a triangle touches within their own row. They are few for a triangle that
+    /// leans across many rows.
+    pub(crate) fn narrow<L: ProjectedLine>(
         &self,
-        touched: Touched,
+        row_points: RowPoints,
         triangle: &SplitTriangle<L>,
     ) -> std::ops::Range<usize> {
-        let Row { top, bottom, .. } = self.contents[touched.row];
-        let (left, right) = triangle.spans(top, bottom);
+        let RowExtent { top, bottom, .. } = self.row_extents[row_points.row];
+        let (left, right) = triangle.span_bounds(top, bottom);
         if left > right {
             return 0..0;
         }
-        let from = self.pixels.cell(Corner { x: left, y: top })[0] - self.first[0];
-        let end = self.pixels.cell(Corner { x: right, y: top })[0] - self.first[0] + 1;
+        let from = self.pixels.cell(SppPoint { x: left, y: top })[0] - self.first[0];
+        let end = self.pixels.cell(SppPoint { x: right, y: top })[0] - self.first[0] + 1;
         let (from, end) = (from.clamp(0, self.columns), end.clamp(0, self.columns));
-        self.in_columns(touched.row as i64, from, end)
+        self.in_columns(row_points.row as i64, from, end)
     }
 
     #[inline]
@@ -186,133 +190,5 @@ impl Bins {
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::DVec3;
-    use raypencil_scene::{Camera, Pixel};
-
-    use super::*;
-    use crate::fixtures::camera;
-    use crate::points::Landing;
-
-    /// A camera of 8 x 8 pixels, 1 m wide on its SPP, the principal point in the middle.
-    fn pixels() -> Pixels {
-        Pixels::of(&Camera { pixel_pitch: [1.0; 2], ..camera() })
-    }
-
-    /// A point in the middle of pixel (i, j), at t = 2 + i.
-    fn point(i: u32, j: u32) -> StripePoint {
-        let at = Corner { x: f64::from(i) - 3.5, y: f64::from(j) - 3.5 };
-        StripePoint {
-            face: FaceId(0),
-            range: 1.0,
-            cos_incidence: 1.0,
-            cos_view: 1.0,
-            depth: 1.0,
-            distance: 1.0,
-            cos_off_axis: 1.0,
-            sin_squared: 0.0,
-            landing: Some(Landing { pixel: Pixel { i, j }, at, inverse_t: 1.0 / f64::from(2 + i) }),
-            error: PointError { along: DVec3::ZERO, anywhere: 0.0 },
-        }
-    }
-
-    /// Points in all pixels of columns 2 to 5 and rows 3 to 6, twice in (4, 4), in no order; and what lands nowhere,
-    /// or shows the camera its back.
-    fn points() -> Vec<Option<StripePoint>> {
-        let cells = (3..7).rev().flat_map(|j| (2..6).map(move |i| (i, j)));
-        let mut points: Vec<_> = cells.map(|(i, j)| Some(point(i, j))).collect();
-        points.push(Some(point(4, 4)));
-        points.push(Some(StripePoint { landing: None, ..point(0, 0) }));
-        points.push(Some(StripePoint { cos_view: 0.0, ..point(0, 0) }));
-        points.push(None);
-        points
-    }
-
-    /// The pixels that some points are in.
-    fn cells(bins: &Bins, points: std::ops::Range<usize>) -> Vec<[i64; 2]> {
-        bins.points()[points].iter().map(|point| pixels().cell(point.at)).collect()
-    }
-
-    #[test]
-    fn points_are_sorted_by_pixel_and_keep_their_order_in_it() {
-        let points = points();
-        let bins = Bins::of(pixels(), points.iter().map(Option::as_ref));
-        let mut expected: Vec<[i64; 2]> = (3..7).flat_map(|j| (2..6).map(move |i| [i, j])).collect();
-        expected.insert(6, [4, 4]);
-        assert_eq!(cells(&bins, 0..bins.points().len()), expected);
-        let of_pixel: Vec<u32> = bins.points()[6..8].iter().map(|point| point.index).collect();
-        // Rows came last first: (4, 4) is the third of the third row, and then the one that was added.
-        assert_eq!(of_pixel, [10, 16]);
-        let nothing = Bins::of(pixels(), points[17..].iter().map(Option::as_ref));
-        assert!(nothing.points().is_empty());
-        assert_eq!(nothing.within(3, 0..8), 0..0);
-    }
-
-    #[test]
-    fn a_row_of_pixels_is_looked_up() {
-        let points = points();
-        let bins = Bins::of(pixels(), points.iter().map(Option::as_ref));
-        assert_eq!(cells(&bins, bins.within(4, 3..5)), [[3, 4], [4, 4], [4, 4]]);
-        assert_eq!(cells(&bins, bins.within(6, 0..8)), [[2, 6], [3, 6], [4, 6], [5, 6]]);
-        assert_eq!(cells(&bins, bins.within(3, 5..6)), [[5, 3]]);
-        for (row, columns) in [(2, 0..8), (7, 0..8), (4, 0..2), (4, 6..8), (4, 3..3)] {
-            assert!(bins.within(row, columns.clone()).is_empty(), "{row} {columns:?}");
-        }
-    }
-
-    #[test]
-    fn a_face_looks_at_the_pixels_it_can_touch_and_no_others() {
-        let points = points();
-        let bins = Bins::of(pixels(), points.iter().map(Option::as_ref));
-        let touched = |low: [f64; 2], high: [f64; 2], nearest: f64| -> Vec<[i64; 2]> {
-            let [low, high] = [low, high].map(|[x, y]| Corner { x, y });
-            let rows = bins.touched(&Reach { low, high, nearest });
-            rows.flat_map(|touched| cells(&bins, touched.points)).collect()
-        };
-        // x from -0.9 to 0.1: columns 3 and 4; y from -0.5 to 1.5: rows 3 to 5.
-        let some = [[3, 3], [4, 3], [3, 4], [4, 4], [4, 4], [3, 5], [4, 5]];
-        assert_eq!(touched([-0.9, -0.5], [0.1, 1.5], 1.0), some);
-        // Everything, from far beyond the points.
-        assert_eq!(touched([-9.0, -9.0], [9.0, 9.0], 1.0).len(), 17);
-        // Beside them: nothing.
-        for (low, high) in [
-            ([-4.0, -4.0], [-2.1, 4.0]),
-            ([2.1, -4.0], [4.0, 4.0]),
-            ([-4.0, -4.0], [4.0, -1.1]),
-            ([-4.0, 3.1], [4.0, 4.0]),
-        ] {
-            assert_eq!(touched(low, high, 1.0), [[0; 2]; 0]);
-        }
-        // The deepest point of each row is at 1/t = 1/7: a face that is nowhere nearer hides nothing.
-        assert_eq!(touched([-0.9, -0.5], [0.1, 1.5], 1.0 / 7.0), [[0; 2]; 0]);
-        assert_eq!(touched([-0.9, -0.5], [0.1, 1.5], 1.01 / 7.0), some);
-    }
-
-    /// A straight side from one place to another.
-    #[derive(Clone, Copy)]
-    struct Straight(Corner, Corner);
-
-    impl Line for Straight {
-        fn x_at(&self, y: f64) -> f64 {
-            let Self(a, b) = *self;
-            a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y)
-        }
-    }
-
-    #[test]
-    fn a_face_that_leans_across_many_rows_looks_at_few_pixels_of_each() {
-        let points = points();
-        let bins = Bins::of(pixels(), points.iter().map(Option::as_ref));
-        // A sliver along the diagonal: in the row of centres y it is at x = y + 0.2 to y + 0.4.
-        let corners = [[-3.8, -4.0], [4.2, 4.0], [-3.4, -3.6]].map(|[x, y]| Corner { x, y });
-        let [a, b, c] = corners;
-        let triangle = SplitTriangle::new(corners, [Straight(a, b), Straight(b, c), Straight(c, a)]);
-        let (low, high) = (Corner { x: -3.8, y: -4.0 }, Corner { x: 4.2, y: 4.0 });
-        let found: Vec<[i64; 2]> = bins
-            .touched(&Reach { low, high, nearest: 1.0 })
-            .flat_map(|touched| cells(&bins, bins.narrowed(touched, &triangle)))
-            .collect();
-        // In row j, y = j - 3.5: x from j - 3.3 on, so column j alone.
-        assert_eq!(found, [[3, 3], [4, 4], [4, 4], [5, 5]]);
-    }
-}
+#[path = "../tests/unit/bins.rs"]
+mod tests;

@@ -1,5 +1,5 @@
-//! Step 4: the flux that each pencil delivers to its pixel, by equation (1) or by the radiometric model, and the
-//! tables it takes. (§5)
+//! Step 4: the flux that each pencil delivers into its pixel, by equation (1) or by the radiometric model, and the
+//! tables for it. (§3, step 4; §5)
 
 use std::f64::consts::{FRAC_PI_4, LN_2};
 
@@ -9,19 +9,19 @@ use raypencil_scene::{Beam, Camera, Filter, FluxModel, Mounted, Pixel, Scene};
 use crate::points::StripePoint;
 use crate::tables::CameraTables;
 
-/// What equation (1) needs of each pixel: "tables of F(phi) are computed for each camera pixel before simulation
-/// starts. The cosines [...] are also pre-computed". (§5)
+/// The terms of equation (1) that depend on the pixel: "tables of F(phi) are computed for each camera pixel before
+/// simulation starts. The cosines [...] are also pre-computed". (§5)
 #[derive(Debug)]
 pub(crate) struct PixelTables {
     camera: Camera,
     /// cos^4(phi) of every pixel's centre, row by row.
     cos_4_phi: Vec<f64>,
-    /// F(phi) of every pixel's centre by wavelength; without a filter none is needed.
+    /// F(phi) of every pixel's centre, row by row, for each wavelength in metres. Empty without a filter.
     filters: Vec<(f64, Vec<f64>)>,
 }
 
 impl PixelTables {
-    pub(crate) fn of(camera: &Camera, tables: &CameraTables, beams: &[Mounted<Beam>]) -> Self {
+    pub(crate) fn new(camera: &Camera, tables: &CameraTables, beams: &[Mounted<Beam>]) -> Self {
         // cos(phi) = f_c / |q|.
         let cos_4_phi = |q_length: &f64| {
             let cosine = camera.focal_length / q_length;
@@ -29,17 +29,18 @@ impl PixelTables {
         };
         let cos_4_phi = tables.q_length.par_iter().map(cos_4_phi).collect();
         let mut filters: Vec<(f64, Vec<f64>)> = Vec::new();
-        for wavelength in wavelengths(camera, beams) {
+        for wavelength in filtered_wavelengths(camera, beams) {
             if filters.iter().all(|(known, _)| *known != wavelength) {
-                filters.push((wavelength, f_phi(camera, tables, wavelength)));
+                filters.push((wavelength, f_phi_table(camera, tables, wavelength)));
             }
         }
         Self { camera: *camera, cos_4_phi, filters }
     }
 
-    pub(crate) fn are_of(&self, camera: &Camera, beams: &[Mounted<Beam>]) -> bool {
+    /// Whether these tables serve `camera` and `beams`.
+    pub(crate) fn fit(&self, camera: &Camera, beams: &[Mounted<Beam>]) -> bool {
         self.camera == *camera
-            && wavelengths(camera, beams).all(|wavelength| self.f_phi(wavelength).is_some())
+            && filtered_wavelengths(camera, beams).all(|wavelength| self.f_phi(wavelength).is_some())
     }
 
     fn f_phi(&self, wavelength: f64) -> Option<&[f64]> {
@@ -48,104 +49,104 @@ impl PixelTables {
 }
 
 /// F(phi) of every pixel's centre, row by row.
-fn f_phi(camera: &Camera, tables: &CameraTables, wavelength: f64) -> Vec<f64> {
-    let mut of_pixels = vec![0.0; tables.q_length.len()];
+fn f_phi_table(camera: &Camera, tables: &CameraTables, wavelength: f64) -> Vec<f64> {
+    let mut table = vec![0.0; tables.q_length.len()];
     let width = camera.width as usize;
-    of_pixels.par_chunks_mut(width).enumerate().for_each(|(j, row)| {
+    table.par_chunks_mut(width).enumerate().for_each(|(j, row)| {
         let y = tables.y.centre(j as u32);
         let q_lengths = &tables.q_length[j * width..][..width];
         for ((f_phi, x), q_length) in row.iter_mut().zip(tables.x.centres()).zip(q_lengths) {
             let sin_squared = (x * x + y * y) / (q_length * q_length);
-            *f_phi = pass(camera.lens.filter, wavelength, sin_squared);
+            *f_phi = filter_transmittance(camera.lens.filter, wavelength, sin_squared);
         }
     });
-    of_pixels
+    table
 }
 
-/// The wavelengths that a filter is asked about.
-fn wavelengths(camera: &Camera, beams: &[Mounted<Beam>]) -> impl Iterator<Item = f64> {
-    let filters = camera.lens.filter != Filter::None;
-    beams.iter().filter(move |_| filters).map(|beam| beam.sensor.wavelength)
+/// The wavelengths for which F(phi) is needed, metres: those of all beams if the lens has a filter, else none.
+fn filtered_wavelengths(camera: &Camera, beams: &[Mounted<Beam>]) -> impl Iterator<Item = f64> {
+    let has_filter = camera.lens.filter != Filter::None;
+    beams.iter().filter(move |_| has_filter).map(|beam| beam.sensor.wavelength)
 }
 
-/// F(phi): how much of the light a filter lets through.
-fn pass(filter: Filter, wavelength: f64, sin_squared: f64) -> f64 {
+/// F(phi): the fraction of the light that a filter transmits, by sin^2(phi).
+fn filter_transmittance(filter: Filter, wavelength: f64, sin_squared: f64) -> f64 {
     match filter {
         Filter::None => 1.0,
         Filter::Interference { centre, width, index } => {
-            // Rounding may take a sine of grazing light a little beyond 1.
-            let seen_centre = centre * (1.0 - sin_squared / (index * index)).max(0.0).sqrt();
-            let off = (wavelength - seen_centre) / width;
-            libm::exp(-4.0 * LN_2 * (off * off))
+            // Rounding may take the sine of grazing light a little beyond 1.
+            let shifted_centre = centre * (1.0 - sin_squared / (index * index)).max(0.0).sqrt();
+            let widths = (wavelength - shifted_centre) / width;
+            libm::exp(-4.0 * LN_2 * (widths * widths))
         }
     }
 }
 
 /// The flux of one beam's pencils.
 #[derive(Debug)]
-pub(crate) struct Flux<'a> {
+pub(crate) struct BeamFlux<'a> {
     camera: &'a Camera,
     wavelength: f64,
     /// sigma, 1/m.
     attenuation: f64,
-    model: Model<'a>,
+    equation: Equation<'a>,
 }
 
 #[derive(Debug)]
-enum Model<'a> {
+enum Equation<'a> {
     Radiometric,
     Eq1 { tables: &'a PixelTables, f_phi: Option<&'a [f64]> },
 }
 
-impl<'a> Flux<'a> {
-    /// `tables` are wanted by equation (1).
+impl<'a> BeamFlux<'a> {
+    /// Equation (1) needs `tables`.
     pub(crate) fn new(scene: &'a Scene, beam: &Beam, tables: Option<&'a PixelTables>) -> Self {
-        let model = match (scene.flux_model(), tables) {
-            (FluxModel::Eq1, Some(tables)) => Model::Eq1 { tables, f_phi: tables.f_phi(beam.wavelength) },
-            _ => Model::Radiometric,
+        let equation = match (scene.flux_model(), tables) {
+            (FluxModel::Eq1, Some(tables)) => Equation::Eq1 { tables, f_phi: tables.f_phi(beam.wavelength) },
+            _ => Equation::Radiometric,
         };
         Self {
             camera: &scene.camera().sensor,
             wavelength: beam.wavelength,
             attenuation: scene.atmosphere().attenuation,
-            model,
+            equation,
         }
     }
 
-    /// I_k of a visible point in a pixel: `share` is P_k, watts, `reflectivity` r_d.
-    pub(crate) fn of(&self, share: f64, reflectivity: f64, point: &StripePoint, pixel: Pixel) -> f64 {
+    /// I_k of a visible point, into its pixel, watts (`eq1`: W/m). `power` is P_k, watts; `reflectivity` is r_d.
+    pub(crate) fn flux(&self, power: f64, reflectivity: f64, point: &StripePoint, pixel: Pixel) -> f64 {
         let camera = self.camera;
         let (c_loss, f_c, aperture) = (camera.lens.transmission, camera.focal_length, camera.aperture);
         let (big_r, r) = (point.range, point.depth);
-        match &self.model {
-            // What P_k watts really deliver: a Lambertian patch, r_d/pi per steradian, seen through the aperture
+        match &self.equation {
+            // What P_k watts deliver: a Lambertian patch, r_d/pi per steradian, seen through the aperture
             // (pi D^2/4) cos(phi) at the distance d = r / cos(phi). phi is the ray's own.
-            Model::Radiometric => {
-                let f_phi = pass(camera.lens.filter, self.wavelength, point.sin_squared);
-                let cos_3_phi = point.cos_off_axis * point.cos_off_axis * point.cos_off_axis;
-                share
+            Equation::Radiometric => {
+                let f_phi = filter_transmittance(camera.lens.filter, self.wavelength, point.sin_squared_phi);
+                let cos_3_phi = point.cos_phi * point.cos_phi * point.cos_phi;
+                power
                     * reflectivity
                     * c_loss
                     * f_phi
                     * (0.25 * aperture * aperture)
-                    * point.cos_view
+                    * point.cos_theta
                     * cos_3_phi
                     / (r * r)
-                    * self.transmission(big_r + point.distance)
+                    * self.air_transmittance(big_r + point.distance)
             }
-            // Equation (1) as printed, W/m; phi is that of the pixel's centre, from the tables.
-            Model::Eq1 { tables, f_phi } => {
-                // CHOICE: the laser behind the face (a back that rule 1b as printed has let be hit) delivers
-                // nothing: power is not negative.
-                if !(point.cos_incidence > 0.0) {
+            // Equation (1) as printed, W/m. phi is that of the pixel's centre, from the tables.
+            Equation::Eq1 { tables, f_phi } => {
+                // CHOICE: a laser behind the face (possible where rule 1b as printed adds a hit on a back) delivers
+                // nothing, since power is not negative.
+                if !(point.cos_psi > 0.0) {
                     return 0.0;
                 }
-                let of_pixel = pixel.j as usize * camera.width as usize + pixel.i as usize;
-                let f_phi = f_phi.map_or(1.0, |table| table[of_pixel]);
-                let cos_4_phi = tables.cos_4_phi[of_pixel];
+                let index = pixel.j as usize * camera.width as usize + pixel.i as usize;
+                let f_phi = f_phi.map_or(1.0, |table| table[index]);
+                let cos_4_phi = tables.cos_4_phi[index];
                 let d_over_f = aperture / f_c;
                 let a_cp = camera.pixel_pitch[0] * camera.pixel_pitch[1];
-                share
+                power
                     * reflectivity
                     * FRAC_PI_4
                     * (d_over_f * d_over_f)
@@ -153,20 +154,20 @@ impl<'a> Flux<'a> {
                     * f_phi
                     * a_cp
                     * cos_4_phi
-                    * point.cos_view
-                    * point.cos_incidence
+                    * point.cos_theta
+                    * point.cos_psi
                     / (big_r * (r * r))
-                    * self.transmission(r)
-                    * self.transmission(big_r)
+                    * self.air_transmittance(r)
+                    * self.air_transmittance(big_r)
             }
         }
     }
 
-    /// e^(-sigma length).
+    /// e^(-sigma length), `length` in metres.
     ///
     /// DIFFERENCE: the paper pre-computes "attenuation factors" too. A table of them over R and r would have to be
-    /// interpolated; only visible points ask.
-    fn transmission(&self, length: f64) -> f64 {
+    /// interpolated; here they are computed, for visible points only.
+    fn air_transmittance(&self, length: f64) -> f64 {
         libm::exp(-self.attenuation * length)
     }
 }

@@ -1,165 +1,169 @@
-//! The faces that may stand between a stripe and the camera, clipped to the part at or beyond the SPP. (§6)
+//! The faces that may stand between a stripe and the camera, clipped to their part at or beyond the SPP. (§6)
 
 use glam::DVec3;
 use raypencil_scene::{FaceId, Mesh};
 
-use crate::bins::Reach;
-use crate::clip::{NewLines, Piece, clip_at_plane};
+use crate::bins::ProjectedBounds;
+use crate::clip::{AddedLines, ClippedTriangle, clip_at_spp};
+use crate::edges;
 use crate::perspective::{Perspective, StraightLine};
-use crate::raster::{Plane, Transformation};
-use crate::scan::Corner;
-use crate::skip::{self, BEHIND_PLANE};
-use crate::vertices::{self, Vertex, widen};
-use crate::{Fidelity, Switches, sides};
+use crate::plane::Plane;
+use crate::skip::{self, BEHIND_SPP};
+use crate::spp::SppPoint;
+use crate::transformation::Transformation;
+use crate::vertices::{self, SensorVertex, widen};
+use crate::{Fidelity, Switches};
 
-/// Which faces occlude.
+/// The faces that occlude, by the side that they show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Facing {
     /// Every face, from either side.
     Every,
-    /// Those that show the camera's position their back.
+    /// Faces that show the camera's position their back.
     AwayFromCamera,
-    /// "an angle of less than 90 degrees with respect to the camera axis vector, or, equivalently, the dot product
-    /// of these two vectors is a positive number": `facing = paper`.
+    /// `facing = paper`: faces whose normal makes "an angle of less than 90 degrees with respect to the camera axis
+    /// vector, or, equivalently, the dot product of these two vectors is a positive number".
     AwayFromAxis,
 }
 
 impl Facing {
-    pub(crate) fn by(switches: Switches) -> Self {
+    pub(crate) fn from_switches(switches: Switches) -> Self {
         match (switches.facing, switches.place) {
             (Fidelity::Paper, _) => Self::AwayFromAxis,
-            // At the centre of its pixel a point's own face is nearer than the point, or not, by chance.
+            // With `place = paper` a point is compared at its pixel's centre. There its own face is nearer than the
+            // point or not, by chance, so faces that show their front must not occlude.
             (Fidelity::Exact, Fidelity::Paper) => Self::AwayFromCamera,
             (Fidelity::Exact, Fidelity::Exact) => Self::Every,
         }
     }
 }
 
-/// The terrain as what may hide a stripe from the camera.
+/// The terrain's faces, ready to be tested as occluders.
 pub(crate) struct Occluders<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) camera: &'a Perspective<'a>,
-    vertices: Vec<Vertex>,
+    vertices: Vec<SensorVertex>,
     facing: Facing,
-    /// A face needs a vertex no deeper than this, metres.
+    /// An occluder needs a vertex no deeper than this, metres.
     extent: f64,
 }
 
-/// A face, or a triangle of what the SPP leaves of it.
+/// An occluding face, or one triangle of its part at or beyond the SPP.
 pub(crate) struct Occluder {
     pub(crate) face: FaceId,
-    pub(crate) piece: Piece<StraightLine>,
+    pub(crate) triangle: ClippedTriangle<StraightLine>,
     pub(crate) plane: Plane,
-    pub(crate) reach: Reach,
-    /// 1/t of its deepest corner.
-    pub(crate) farthest: f64,
+    pub(crate) bounds: ProjectedBounds,
+    /// 1/t of the deepest corner.
+    pub(crate) min_inverse_t: f64,
 }
 
 impl<'a> Occluders<'a> {
     pub(crate) fn new(mesh: &'a Mesh, camera: &'a Perspective<'a>, facing: Facing, extent: f64) -> Self {
-        let spp = camera.plane_distance();
-        // Step 2. The camera's maximum range and the borders of its screen play no role here.
+        let spp = camera.spp_distance();
+        // Step 2. The camera's maximum range and the borders of its screen do not matter here.
         let vertices = vertices::transform(mesh, |scene_point| {
             let sensor_from_scene = camera.sensor_from_scene();
-            let position = sensor_from_scene.turn(sensor_from_scene.relative(scene_point));
-            let outside = skip::bits(position.z < spp, false, false, false, false, false);
-            Vertex { position, corner: camera.project(position), outside }
+            let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
+            let outside = skip::outside_bits(position.z < spp, false, false, false, false, false);
+            SensorVertex { position, projection: camera.project(position), outside }
         });
         Self { mesh, camera, vertices, facing, extent }
     }
 
-    pub(crate) fn count(&self) -> usize {
+    pub(crate) fn face_count(&self) -> usize {
         self.mesh.faces().len()
     }
 
-    /// Calls `visit` with each triangle of a face that occludes, unless `concerns` says beforehand that its reach
-    /// concerns nobody.
+    /// Calls `visit` with each triangle of a face, if the face occludes. Triangles whose bounds are not `relevant` are
+    /// left out.
     #[inline]
-    pub(crate) fn pieces(
+    pub(crate) fn visit_face(
         &self,
         face: FaceId,
-        concerns: impl Fn(&Reach) -> bool,
+        relevant: impl Fn(&ProjectedBounds) -> bool,
         mut visit: impl FnMut(&Occluder),
     ) {
-        let seen = self.mesh.faces()[face.0 as usize].map(|v| &self.vertices[v as usize]);
-        if seen.iter().any(|vertex| vertex.outside & BEHIND_PLANE != 0) {
-            // 1a: all of it in front of the SPP.
-            if !seen.iter().all(|vertex| vertex.outside & BEHIND_PLANE != 0) {
-                self.pieces_beyond_spp(face, concerns, visit);
+        let vertices = self.mesh.faces()[face.0 as usize].map(|v| &self.vertices[v as usize]);
+        if vertices.iter().any(|vertex| vertex.outside & BEHIND_SPP != 0) {
+            // 1a: no part of it is beyond the SPP.
+            if !vertices.iter().all(|vertex| vertex.outside & BEHIND_SPP != 0) {
+                self.visit_cut_face(face, relevant, visit);
             }
             return;
         }
-        let points = seen.map(|vertex| vertex.position);
-        let corners = seen.map(|vertex| vertex.corner);
-        let (reach, farthest) = self.reach(&points, &corners);
-        if concerns(&reach)
-            && let Some(plane) = self.occludes(face, &points)
+        let points = vertices.map(|vertex| vertex.position);
+        let corners = vertices.map(|vertex| vertex.projection);
+        let (bounds, min_inverse_t) = self.bounds(&points, &corners);
+        if relevant(&bounds)
+            && let Some(plane) = self.occluding_plane(face, &points)
         {
-            let stored = self.mesh.faces()[face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
-            let lines = sides::edges(self.camera, &stored, &seen).map(|edge| edge.line);
-            visit(&Occluder { face, piece: Piece { points, corners, lines }, plane, reach, farthest });
+            let in_scene = self.mesh.faces()[face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
+            let lines = edges::edges(self.camera, &in_scene, &vertices).map(|edge| edge.line);
+            let triangle = ClippedTriangle { points, corners, lines };
+            visit(&Occluder { face, triangle, plane, bounds, min_inverse_t });
         }
     }
 
-    /// For a face that the SPP cuts. Few are: kept out of line of the others.
+    /// `visit_face` for a face that the SPP cuts. Few are: it is kept out of line of the others.
     #[inline(never)]
-    fn pieces_beyond_spp(
+    fn visit_cut_face(
         &self,
         face: FaceId,
-        concerns: impl Fn(&Reach) -> bool,
+        relevant: impl Fn(&ProjectedBounds) -> bool,
         mut visit: impl FnMut(&Occluder),
     ) {
         let indices = self.mesh.faces()[face.0 as usize];
-        let seen = indices.map(|v| &self.vertices[v as usize]);
-        let stored = indices.map(|v| self.mesh.vertices()[v as usize]);
-        let points = seen.map(|vertex| vertex.position);
-        let Some(plane) = self.occludes(face, &points) else { return };
-        let new_lines = NewLines {
-            along_plane: |from, to| self.camera.line_along_plane(from, to, &plane),
-            diagonal: |from: DVec3, to: DVec3| self.camera.line(from, to, to - from),
+        let vertices = indices.map(|v| &self.vertices[v as usize]);
+        let in_scene = indices.map(|v| self.mesh.vertices()[v as usize]);
+        let points = vertices.map(|vertex| vertex.position);
+        let Some(plane) = self.occluding_plane(face, &points) else { return };
+        let added_lines = AddedLines {
+            along_spp: |from, to| self.camera.project_spp_cut(from, to, &plane),
+            diagonal: |from: DVec3, to: DVec3| self.camera.project_edge(from, to, to - from),
         };
-        let corners = seen.map(|vertex| vertex.corner);
-        let edges = sides::edges(self.camera, &stored, &seen);
-        clip_at_plane(self.camera.plane_distance(), points, corners, &edges, new_lines, |piece| {
-            let (reach, farthest) = self.reach(&piece.points, &piece.corners);
-            if concerns(&reach) {
-                visit(&Occluder { face, piece: *piece, plane, reach, farthest });
+        let corners = vertices.map(|vertex| vertex.projection);
+        let edges = edges::edges(self.camera, &in_scene, &vertices);
+        clip_at_spp(self.camera.spp_distance(), points, corners, &edges, added_lines, |triangle| {
+            let (bounds, min_inverse_t) = self.bounds(&triangle.points, &triangle.corners);
+            if relevant(&bounds) {
+                visit(&Occluder { face, triangle: *triangle, plane, bounds, min_inverse_t });
             }
         });
     }
 
-    /// The plane of a face, if it is one of those that occlude.
+    /// The plane of a face, if the face occludes.
     #[inline]
-    fn occludes(&self, face: FaceId, points: &[DVec3; 3]) -> Option<Plane> {
+    fn occluding_plane(&self, face: FaceId, points: &[DVec3; 3]) -> Option<Plane> {
         // "only considering triangles with a least one vertex not past the furthest extent of the upper laser
-        // beam": no cull unless `extent = paper`.
+        // beam". The extent is infinite, and culls nothing, unless `extent = paper`.
         if !points.iter().any(|p| p.z <= self.extent) {
             return None;
         }
-        let stored = self.mesh.faces()[face.0 as usize].map(|v| widen(self.mesh.vertices()[v as usize]));
-        let plane = Plane::of(&stored, self.camera.sensor_from_scene());
+        let vertices = self.mesh.faces()[face.0 as usize].map(|v| widen(self.mesh.vertices()[v as usize]));
+        let plane = Plane::new(&vertices, self.camera.sensor_from_scene());
         let occludes = match self.facing {
-            // A plane through the projection centre is met by every ray there and nowhere else, or parallel to it.
-            // A face without area has no other plane.
-            Facing::Every => plane.distance != 0.0,
-            Facing::AwayFromCamera => plane.distance > 0.0,
-            Facing::AwayFromAxis => plane.normal.z > 0.0 && plane.distance != 0.0,
+            // d = 0: the plane contains the projection centre. Every ray meets it in that centre alone, or is parallel
+            // to it. Faces without area have d = 0 too.
+            Facing::Every => plane.offset != 0.0,
+            Facing::AwayFromCamera => plane.offset > 0.0,
+            Facing::AwayFromAxis => plane.normal.z > 0.0 && plane.offset != 0.0,
         };
         occludes.then_some(plane)
     }
 
-    /// Reach of a triangle, and 1/t of its deepest corner.
+    /// The bounds of a triangle, and 1/t of its deepest corner.
     #[inline]
-    fn reach(&self, points: &[DVec3; 3], [a, b, c]: &[Corner; 3]) -> (Reach, f64) {
-        let spp = self.camera.plane_distance();
-        let least = |a: f64, b: f64, c: f64| a.min(b).min(c);
-        let most = |a: f64, b: f64, c: f64| a.max(b).max(c);
+    fn bounds(&self, points: &[DVec3; 3], [a, b, c]: &[SppPoint; 3]) -> (ProjectedBounds, f64) {
+        let spp = self.camera.spp_distance();
+        let min = |a: f64, b: f64, c: f64| a.min(b).min(c);
+        let max = |a: f64, b: f64, c: f64| a.max(b).max(c);
         let [p, q, r] = points.map(|point| point.z);
-        let reach = Reach {
-            low: Corner { x: least(a.x, b.x, c.x), y: least(a.y, b.y, c.y) },
-            high: Corner { x: most(a.x, b.x, c.x), y: most(a.y, b.y, c.y) },
-            nearest: spp / least(p, q, r),
+        let bounds = ProjectedBounds {
+            low: SppPoint { x: min(a.x, b.x, c.x), y: min(a.y, b.y, c.y) },
+            high: SppPoint { x: max(a.x, b.x, c.x), y: max(a.y, b.y, c.y) },
+            max_inverse_t: spp / min(p, q, r),
         };
-        (reach, spp / most(p, q, r))
+        (bounds, spp / max(p, q, r))
     }
 }

@@ -1,25 +1,27 @@
 //! The camera's transformation: perspective. (§4)
 //!
-//! A point (X, Y, Z) projects to (f X / Z, f Y / Z). Lines map to lines: the edge from P to P' lies with
-//! the projection centre in a plane of normal N = P x (P' - P), and its image is N.(x, y, f) = 0.
+//! A point (X, Y, Z) projects to (f X / Z, f Y / Z). Lines map to lines: the edge from P to P' and the projection
+//! centre span a plane of normal N = P x (P' - P), and the edge's projection is N.(x, y, f) = 0.
 
 use glam::DVec3;
 use raypencil_scene::{Camera, Mounted};
 
-use crate::raster::{Affine, Plane, Transformation};
-use crate::scan::{Corner, Line};
+use crate::plane::Plane;
+use crate::sensor_from_scene::SensorFromScene;
 use crate::skip;
-use crate::stripe::Stripe;
+use crate::spp::{ProjectedLine, SppPoint};
+use crate::stripe::StripeVolume;
 use crate::tables::{Axis, CameraTables};
-use crate::vertices::SensorFromScene;
+use crate::transformation::{RowInverseT, Transformation};
 
-/// A posed camera with its tables.
+/// A camera with its pose and its tables.
 #[derive(Debug)]
 pub(crate) struct Perspective<'a> {
     sensor_from_scene: SensorFromScene,
     tables: &'a CameraTables,
     focal_length: f64,
     max_range: f64,
+    /// The rays' vectors through the corners of the screen.
     screen_corners: [DVec3; 4],
 }
 
@@ -30,7 +32,7 @@ impl<'a> Perspective<'a> {
         let [top, bottom] = tables.y.borders();
         let corner = |x, y| DVec3::new(x, y, camera.focal_length);
         Self {
-            sensor_from_scene: SensorFromScene::of(&mounted.scene_from_sensor),
+            sensor_from_scene: SensorFromScene::from_pose(&mounted.scene_from_sensor),
             tables,
             focal_length: camera.focal_length,
             max_range: camera.max_range,
@@ -44,18 +46,18 @@ impl<'a> Perspective<'a> {
     }
 }
 
-/// The image of an edge: N.(x, y, f) = 0, or N.x x + (N.y y + along) = 0.
+/// The projection of an edge: N.(x, y, f) = 0, or N.x x + (N.y y + constant) = 0.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StraightLine {
     normal: DVec3,
     /// N.z f, the same for every row.
-    along: f64,
+    constant: f64,
 }
 
-impl Line for StraightLine {
+impl ProjectedLine for StraightLine {
     #[inline]
     fn x_at(&self, y: f64) -> f64 {
-        -(self.normal.y * y + self.along) / self.normal.x
+        -(self.normal.y * y + self.constant) / self.normal.x
     }
 }
 
@@ -66,7 +68,7 @@ impl Transformation for Perspective<'_> {
         &self.sensor_from_scene
     }
 
-    fn plane_distance(&self) -> f64 {
+    fn spp_distance(&self) -> f64 {
         self.focal_length
     }
 
@@ -83,15 +85,15 @@ impl Transformation for Perspective<'_> {
     }
 
     #[inline]
-    fn project(&self, p: DVec3) -> Corner {
-        Corner { x: self.focal_length * p.x / p.z, y: self.focal_length * p.y / p.z }
+    fn project(&self, p: DVec3) -> SppPoint {
+        SppPoint { x: self.focal_length * p.x / p.z, y: self.focal_length * p.y / p.z }
     }
 
     #[inline]
     fn outside(&self, p: DVec3) -> u8 {
         let ([left, right], [top, bottom]) = (self.tables.x.borders(), self.tables.y.borders());
         let (x, y) = (self.focal_length * p.x, self.focal_length * p.y);
-        skip::bits(
+        skip::outside_bits(
             p.z < self.focal_length,
             x < left * p.z,
             x > right * p.z,
@@ -102,15 +104,15 @@ impl Transformation for Perspective<'_> {
     }
 
     #[inline]
-    fn line(&self, first: DVec3, _second: DVec3, along: DVec3) -> StraightLine {
+    fn project_edge(&self, first: DVec3, _second: DVec3, along: DVec3) -> StraightLine {
         let normal = first.cross(along);
-        StraightLine { normal, along: normal.z * self.focal_length }
+        StraightLine { normal, constant: normal.z * self.focal_length }
     }
 
-    fn line_along_plane(&self, _from: DVec3, _to: DVec3, face: &Plane) -> StraightLine {
+    fn project_spp_cut(&self, _from: DVec3, _to: DVec3, plane: &Plane) -> StraightLine {
         // On the SPP t = 1: n.(x, y, f) - d = 0.
-        let along = face.normal.z * self.focal_length - face.distance;
-        StraightLine { normal: face.normal, along }
+        let constant = plane.normal.z * self.focal_length - plane.offset;
+        StraightLine { normal: plane.normal, constant }
     }
 
     #[inline]
@@ -120,8 +122,8 @@ impl Transformation for Perspective<'_> {
     }
 
     #[inline]
-    fn stripe(&self) -> Option<&Stripe> {
-        // Lines map to lines: the paper's sides are the true ones.
+    fn stripe_volume(&self) -> Option<&StripeVolume> {
+        // Lines map to lines: the paper's straight sides are exact.
         None
     }
 
@@ -130,19 +132,19 @@ impl Transformation for Perspective<'_> {
     }
 
     #[inline]
-    fn inverse_t(&self, face: &Plane, y: f64) -> Option<Affine> {
-        // Rule 1b: all rays start in one point, which sees the front where d < 0.
-        if !(face.distance < 0.0) {
+    fn row_inverse_t(&self, plane: &Plane, y: f64) -> Option<RowInverseT> {
+        // Rule 1b: all rays start in one point, which sees the front if d < 0.
+        if !(plane.offset < 0.0) {
             return None;
         }
         // 1/t = n.q / d with q = (x, y, f).
-        let m = face.normal_over_distance;
-        Some(Affine { slope: m.x, start: m.y * y + m.z * self.focal_length })
+        let m = plane.normal_over_offset;
+        Some(RowInverseT { slope: m.x, start: m.y * y + m.z * self.focal_length })
     }
 
     #[inline]
-    fn row_distance(&self, face: &Plane, _y: f64) -> f64 {
-        face.distance
+    fn row_offset(&self, plane: &Plane, _y: f64) -> f64 {
+        plane.offset
     }
 
     #[inline]
@@ -168,14 +170,14 @@ mod tests {
 
     use super::*;
     use crate::fixtures::camera;
-    use crate::skip::{ABOVE, BEHIND_PLANE, BELOW, LEFT, RIGHT, TOO_DEEP};
+    use crate::skip::{ABOVE, BEHIND_SPP, BELOW, LEFT, RIGHT, TOO_DEEP};
 
     #[test]
-    fn a_point_is_outside_of_the_sides_it_is_beyond() {
-        let tables = CameraTables::of(&camera());
+    fn a_point_is_outside_the_sides_that_it_is_beyond() {
+        let tables = CameraTables::new(&camera());
         let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
         let camera = Perspective::new(&mounted, &tables);
-        // On the borders themselves it is not beyond them.
+        // A point on a border is not beyond it.
         for ([x, y, z], sides) in [
             ([0.0, 0.0, 2.0], 0),
             ([-2.0, -2.0, 2.0], 0),
@@ -186,7 +188,7 @@ mod tests {
             ([0.0, 2.1, 2.0], BELOW),
             ([-2.1, 2.1, 2.0], LEFT | BELOW),
             ([0.0, 0.0, 1.0], 0),
-            ([0.0, 0.0, 0.9], BEHIND_PLANE),
+            ([0.0, 0.0, 0.9], BEHIND_SPP),
             ([0.0, 0.0, 100.0], 0),
             ([0.0, 0.0, 100.1], TOO_DEEP),
         ] {

@@ -6,117 +6,116 @@ use raypencil_scene::{FaceId, FluxModel, Image, Maybe, Return, Returns, Scene, S
 
 use crate::bins::Bins;
 use crate::cylindrical::Cylindrical;
-use crate::flux::{Flux, PixelTables};
+use crate::flux::{BeamFlux, PixelTables};
 use crate::occluders::{Facing, Occluders};
+use crate::options::ScanlineOptions;
 use crate::perspective::Perspective;
-use crate::points::{self, Pixels, StripePoint};
-use crate::raster::Transformation;
-use crate::shares::Shares;
+use crate::points::{self, PixelGrid, StripePoint};
+use crate::shares::ColumnShares;
 use crate::tables::CameraTables;
-use crate::{Fidelity, Options, occlusion, printed_occlusion};
+use crate::transformation::Transformation;
+use crate::{Fidelity, occlusion, printed_occlusion};
 
-/// What is kept between frames.
-pub(crate) struct Tables<'a> {
+/// The tables that are cached between frames.
+pub(crate) struct ReturnTables<'a> {
     pub(crate) camera: &'a CameraTables,
-    pub(crate) shares: &'a [Shares],
-    /// For equation (1).
+    pub(crate) shares: &'a [ColumnShares],
+    /// For equation (1) alone.
     pub(crate) pixels: Option<&'a PixelTables>,
 }
 
-impl Tables<'_> {
-    /// Whether a scene wants the tables of pixels.
-    pub(crate) fn want_pixels(scene: &Scene) -> bool {
-        scene.flux_model() == FluxModel::Eq1
-    }
+/// Whether the flux of a scene needs [`PixelTables`].
+pub(crate) fn needs_pixel_tables(scene: &Scene) -> bool {
+    scene.flux_model() == FluxModel::Eq1
 }
 
-/// Returns and flux images of all beams, in the scene's order. `hits` is the faces that each beam's pencils hit.
-pub(crate) fn of_beams(
+/// Returns and flux images of all beams, in the scene's order. `hits` are the faces that each beam's pencils hit.
+pub(crate) fn render(
     scene: &Scene,
-    options: Options,
-    tables: &Tables<'_>,
+    options: ScanlineOptions,
+    tables: &ReturnTables<'_>,
     hits: &[Image<Maybe<FaceId>>],
     stages: &mut Vec<Stage>,
 ) -> (Vec<Returns>, Vec<Image<f64>>) {
-    // Step 3: where the reflected pencils land.
+    // Step 3: the points on the camera's image.
     let start = Instant::now();
     let camera = Perspective::new(scene.camera(), tables.camera);
-    let pixels = Pixels::of(&scene.camera().sensor);
-    let points_of = |(beam, hits)| {
+    let pixels = PixelGrid::new(&scene.camera().sensor);
+    let points_of_beam = |(beam, hits)| {
         let cylindrical = Cylindrical::new(beam, options.switches);
-        points::of_beam(scene.mesh(), &cylindrical, &camera, pixels, hits)
+        points::stripe_points(scene.mesh(), &cylindrical, &camera, pixels, hits)
     };
-    let stripes: Vec<_> = scene.beams().iter().zip(hits).map(points_of).collect();
+    let stripes: Vec<_> = scene.beams().iter().zip(hits).map(points_of_beam).collect();
     stages.push(Stage { name: "landing".into(), time: start.elapsed() });
 
-    // Step 5, before step 4: what is hidden delivers nothing.
+    // Step 5 comes before step 4: hidden points deliver no flux.
     let start = Instant::now();
-    let visible = visible(scene, options, &camera, pixels, &stripes);
+    let visible = visible_points(scene, options, &camera, pixels, &stripes);
     stages.push(Stage { name: "occlusion".into(), time: start.elapsed() });
 
-    // Step 4.
+    // Step 4: the flux.
     let start = Instant::now();
     let mut visible = visible.into_iter();
-    let mut all = (Vec::new(), Vec::new());
+    let (mut all_returns, mut all_images) = (Vec::new(), Vec::new());
     for ((beam, points), shares) in scene.beams().iter().zip(&stripes).zip(tables.shares) {
         let (columns, rows) = (beam.sensor.columns, beam.sensor.rows);
-        let flux = Flux::new(scene, &beam.sensor, tables.pixels);
+        let beam_flux = BeamFlux::new(scene, &beam.sensor, tables.pixels);
         let mut returns = Returns::empty(columns, rows);
         let camera = &scene.camera().sensor;
         let mut image = Image::filled(camera.width, camera.height, 0.0);
-        // Pencil by pencil, row by row: a pixel's sum is always taken in the same order.
+        // Row by row on one thread: the additions of each pixel's sum have one order.
         let mut points = points.iter();
         for j in 0..rows {
             for i in 0..columns {
                 let visible = visible.next().unwrap_or(false);
                 let Some(point) = points.next().and_then(Option::as_ref) else { continue };
-                let pixel = point.landing.map(|landing| landing.pixel);
-                let delivered = match pixel {
+                let pixel = point.image.map(|image| image.pixel);
+                let flux = match pixel {
                     Some(pixel) if visible => {
                         let material = scene.mesh().face_materials()[point.face.0 as usize];
                         let reflectivity = scene.mesh().materials()[material as usize].reflectivity;
-                        let share = shares.of_column[i as usize];
-                        let delivered = flux.of(share, reflectivity, point, pixel);
-                        image.set(pixel.i, pixel.j, image.at(pixel.i, pixel.j) + delivered);
-                        delivered
+                        let power = shares.watts[i as usize];
+                        let flux = beam_flux.flux(power, reflectivity, point, pixel);
+                        image.set(pixel.i, pixel.j, image.at(pixel.i, pixel.j) + flux);
+                        flux
                     }
                     _ => 0.0,
                 };
-                let back = Return {
+                let pencil_return = Return {
                     visible,
                     pixel,
                     depth: point.depth,
-                    cos_off_axis: point.cos_off_axis,
-                    cos_view: point.cos_view,
-                    flux: delivered,
+                    cos_off_axis: point.cos_phi,
+                    cos_view: point.cos_theta,
+                    flux,
                 };
-                returns.put(i, j, &back);
+                returns.put(i, j, &pencil_return);
             }
         }
-        all.0.push(returns);
-        all.1.push(image);
+        all_returns.push(returns);
+        all_images.push(image);
     }
     stages.push(Stage { name: "flux".into(), time: start.elapsed() });
-    all
+    (all_returns, all_images)
 }
 
-/// Whether the camera sees each pencil's point, of all beams one after the other.
-fn visible(
+/// Whether the camera sees the point of each pencil; all beams, one after the other.
+fn visible_points(
     scene: &Scene,
-    options: Options,
+    options: ScanlineOptions,
     camera: &Perspective<'_>,
-    pixels: Pixels,
+    pixels: PixelGrid,
     stripes: &[Vec<Option<StripePoint>>],
 ) -> Vec<bool> {
     let switches = options.switches;
-    let bins = Bins::of(pixels, stripes.iter().flatten().map(Option::as_ref));
+    let bins = Bins::new(pixels, stripes.iter().flatten().map(Option::as_ref));
     let extent = match switches.extent {
         Fidelity::Exact => f64::INFINITY,
         Fidelity::Paper => {
             printed_occlusion::upper_extent(camera.sensor_from_scene(), scene.beams(), stripes)
         }
     };
-    let occluders = Occluders::new(scene.mesh(), camera, Facing::by(switches), extent);
+    let occluders = Occluders::new(scene.mesh(), camera, Facing::from_switches(switches), extent);
     let hidden = match switches.place {
         Fidelity::Exact => occlusion::hidden(&occluders, &bins, options.skip_unseen),
         Fidelity::Paper => printed_occlusion::hidden_at_centres(&occluders, &bins, options.skip_unseen),

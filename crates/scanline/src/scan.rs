@@ -1,37 +1,25 @@
-//! Step 4a: a projected triangle as two triangles with a common horizontal side, and the span that a row
-//! cuts from it. (§4, figures 4 and 5)
+//! Step 4a: a projected triangle as two triangles with a common horizontal side, and the span that a row cuts from
+//! it. (§4, figures 4 and 5)
 //!
-//! Why no cell slips between two faces: where a row crosses a side is computed from that side alone, from
-//! its ends in one order (that of their positions in the scene), so both faces that share the side get the
-//! same bits x. The sides that a row crosses in a sheet of faces therefore cut it into intervals [x_0, x_1],
-//! [x_1, x_2], ... that leave out no number between the first and the last x, even if rounding has put some
-//! of them in the wrong order. Corners are compared with the row in the same way in every face. At a row
-//! that passes exactly through the middle corner, both halves count.
+//! Why no cell slips between two faces: the crossing of a row with a side is computed from that side alone, from its
+//! ends in one order (that of their positions in the scene). So both faces that share the side get the same bits x.
+//! The sides that a row crosses in a sheet of faces cut the row into intervals [x_0, x_1], [x_1, x_2], ... These leave
+//! out no number between the first and the last x, even if rounding has put some of the x in the wrong order.
+//! Corners are compared with the row in the same way in every face. In a row exactly through the middle corner, both
+//! halves of the triangle count.
 
-/// A corner of a triangle on the SPP, metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Corner {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-}
-
-/// The image of a straight line in space on the SPP: a straight line for the camera, a curve for a beam (or
-/// what the paper draws instead, `stripe::Chord`).
-pub(crate) trait Line: Copy {
-    /// Where it crosses the row at `y`. May be anything, even NaN, where the line runs along the row.
-    fn x_at(&self, y: f64) -> f64;
-}
+use crate::spp::{ProjectedLine, SppPoint};
 
 /// One side of a projected triangle.
 #[derive(Debug, Clone, Copy)]
 struct Side<L> {
-    top: Corner,
-    bottom: Corner,
+    top: SppPoint,
+    bottom: SppPoint,
     line: L,
 }
 
-impl<L: Line> Side<L> {
-    /// Where the row at `y`, not above the top and not below the bottom, crosses this side.
+impl<L: ProjectedLine> Side<L> {
+    /// The x at which the row at `y`, from the top to the bottom of this side, crosses it.
     #[inline]
     fn crossing(&self, y: f64) -> f64 {
         if y == self.top.y {
@@ -40,8 +28,8 @@ impl<L: Line> Side<L> {
         if y == self.bottom.y {
             return self.bottom.x;
         }
-        // Between its ends a side is monotonic in both transformations; rounding may overshoot where it
-        // runs almost along the row. `max` and `min` take the other operand for a NaN.
+        // Between its ends a side is monotonic in both transformations. Rounding may overshoot where it runs almost
+        // along the row. `max` and `min` return the other operand for a NaN.
         let (left, right) = if self.top.x <= self.bottom.x {
             (self.top.x, self.bottom.x)
         } else {
@@ -50,12 +38,13 @@ impl<L: Line> Side<L> {
         self.line.x_at(y).max(left).min(right)
     }
 
-    /// Bounds of every crossing by rows from `low` to `high`; `None` if none of them crosses this side. For the
+    /// Bounds of the crossings of all rows from `low` to `high`; `None` if no such row crosses this side. For the
     /// camera's straight lines only.
     ///
-    /// Exact ones, without room for rounding: where such a line crosses is monotonic in y *as it is computed*, its
-    /// product, sum and quotient each being so; unless it runs along the rows, which shows in what is not finite.
-    fn crossings(&self, low: f64, high: f64) -> Option<(f64, f64)> {
+    /// The bounds are exact, without a margin for rounding. The crossing of such a line is monotonic in y *as it is
+    /// computed*, because its product, sum and quotient are. The exception is a line that runs along the rows; its
+    /// crossings are not finite.
+    fn crossing_bounds(&self, low: f64, high: f64) -> Option<(f64, f64)> {
         let (low, high) = (low.max(self.top.y), high.min(self.bottom.y));
         if low > high {
             return None;
@@ -87,10 +76,10 @@ pub(crate) struct SplitTriangle<L> {
     lower: Side<L>,
 }
 
-impl<L: Line> SplitTriangle<L> {
-    /// From three corners; `lines[k]` joins corner k to corner k + 1.
+impl<L: ProjectedLine> SplitTriangle<L> {
+    /// Splits the triangle of three corners. `lines[k]` joins corner k to corner k + 1.
     #[inline]
-    pub(crate) fn new(corners: [Corner; 3], lines: [L; 3]) -> Self {
+    pub(crate) fn new(corners: [SppPoint; 3], lines: [L; 3]) -> Self {
         let [mut top, mut middle, mut bottom] = [0, 1, 2];
         if corners[middle].y < corners[top].y {
             (top, middle) = (middle, top);
@@ -101,21 +90,23 @@ impl<L: Line> SplitTriangle<L> {
         if corners[middle].y < corners[top].y {
             (top, middle) = (middle, top);
         }
-        // The line between corners m and n is the one that starts at the earlier of them in the cycle.
+        // The line between corners m and n has the index of the corner that comes first in the cycle.
         let line = |m: usize, n: usize| if (m + 1) % 3 == n { lines[m] } else { lines[n] };
         let side = |m: usize, n: usize| Side { top: corners[m], bottom: corners[n], line: line(m, n) };
         Self { long: side(top, bottom), upper: side(top, middle), lower: side(middle, bottom) }
     }
 
+    /// y of the top corner, metres.
     pub(crate) fn top(&self) -> f64 {
         self.long.top.y
     }
 
+    /// y of the bottom corner, metres.
     pub(crate) fn bottom(&self) -> f64 {
         self.long.bottom.y
     }
 
-    /// The closed interval of x that the row at `y`, within top and bottom, cuts from the triangle.
+    /// The closed interval of x that the row at `y`, from top to bottom, cuts from the triangle.
     #[inline]
     pub(crate) fn span(&self, y: f64) -> (f64, f64) {
         let x = self.long.crossing(y);
@@ -131,10 +122,11 @@ impl<L: Line> SplitTriangle<L> {
         (left, right)
     }
 
-    /// Bounds of the spans of all rows from `low` to `high`, for the camera's straight lines; the first is larger if none of them meets the triangle.
-    pub(crate) fn spans(&self, low: f64, high: f64) -> (f64, f64) {
+    /// Bounds of the spans of all rows from `low` to `high`; the first exceeds the second if no such row meets the
+    /// triangle. For the camera's straight lines only.
+    pub(crate) fn span_bounds(&self, low: f64, high: f64) -> (f64, f64) {
         let sides = [&self.long, &self.upper, &self.lower];
-        let crossings = sides.into_iter().filter_map(|side| side.crossings(low, high));
+        let crossings = sides.into_iter().filter_map(|side| side.crossing_bounds(low, high));
         crossings.fold((f64::INFINITY, f64::NEG_INFINITY), |bounds, (left, right)| {
             (bounds.0.min(left), bounds.1.max(right))
         })
@@ -142,74 +134,5 @@ impl<L: Line> SplitTriangle<L> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    /// As the camera's lines are computed.
-    #[derive(Debug, Clone, Copy)]
-    struct Straight([f64; 3]);
-
-    impl Line for Straight {
-        fn x_at(&self, y: f64) -> f64 {
-            -(self.0[1] * y + self.0[2]) / self.0[0]
-        }
-    }
-
-    fn triangle(points: [[f64; 2]; 3]) -> SplitTriangle<Straight> {
-        let line = |[x, y]: [f64; 2], [x2, y2]: [f64; 2]| Straight([y2 - y, x - x2, x2 * y - x * y2]);
-        let [a, b, c] = points;
-        let corners = points.map(|[x, y]| Corner { x, y });
-        SplitTriangle::new(corners, [line(a, b), line(b, c), line(c, a)])
-    }
-
-    proptest! {
-        // Of triangles as flat as rounding, too: y of the corners in multiples of 2^-52 around 1.
-        #[test]
-        fn no_span_leaves_the_bounds_of_its_rows(
-            x in [-1.0f64..1.0, -1.0..1.0, -1.0..1.0],
-            y in [0u32..9, 0u32..9, 0u32..9],
-            step in prop_oneof![Just(f64::EPSILON), Just(1e-3), Just(0.3)],
-            rows in (-0.1f64..1.1, -0.1f64..1.1),
-            at in 0.0f64..1.0,
-        ) {
-            let y = y.map(|steps| 1.0 + f64::from(steps) * step);
-            let triangle = triangle([[x[0], y[0]], [x[1], y[1]], [x[2], y[2]]]);
-            let height = |part: f64| 1.0 + part * 9.0 * step;
-            let (low, high) = (height(rows.0.min(rows.1)), height(rows.0.max(rows.1)));
-            let (left, right) = triangle.spans(low, high);
-            for y in [low, high, low + at * (high - low), triangle.top(), triangle.bottom(), y[0], y[1], y[2]] {
-                if y < low || y > high || y < triangle.top() || y > triangle.bottom() {
-                    continue;
-                }
-                let span = triangle.span(y);
-                prop_assert!(left <= span.0 && span.1 <= right, "{span:?} {left} {right}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_bounds_of_rows_are_no_wider_than_they_are() {
-        // From (0, 0) down to (4, 8).
-        let side = triangle([[0.0, 0.0], [4.0, 8.0], [10.0, 12.0]]).upper;
-        for ((low, high), expected) in [
-            ((2.0, 4.0), Some((1.0, 2.0))),
-            ((-1.0, 4.0), Some((0.0, 2.0))),
-            ((6.0, 9.0), Some((3.0, 4.0))),
-            ((8.0, 9.0), Some((4.0, 4.0))),
-            ((-3.0, 0.0), Some((0.0, 0.0))),
-            ((-9.0, 99.0), Some((0.0, 4.0))),
-            ((-3.0, -1.0), None),
-            ((8.5, 9.0), None),
-        ] {
-            assert_eq!(side.crossings(low, high), expected, "{low} to {high}");
-        }
-        // One that falls to the left.
-        let side = triangle([[4.0, 0.0], [0.0, 8.0], [10.0, 12.0]]).upper;
-        assert_eq!(side.crossings(2.0, 4.0), Some((2.0, 3.0)));
-        // One along the rows has no place of its own: all of it.
-        let side = triangle([[1.0, 2.0], [5.0, 2.0], [3.0, 9.0]]).upper;
-        assert_eq!((side.top.y, side.bottom.y), (2.0, 2.0));
-        assert_eq!(side.crossings(1.0, 3.0), Some((1.0, 5.0)));
-    }
-}
+#[path = "../tests/unit/scan.rs"]
+mod tests;

@@ -1,25 +1,25 @@
-//! Which part of a beam's power each of its pencils carries, by column. (§5, equation (1))
+//! The power P_k of each pencil of a beam, by column. (§5, equation (1), A_bp cos(alpha) / A_b)
 
 use raypencil_scene::{Beam, Mounted, Profile};
 
 use crate::tables::Axis;
 
-/// The pencils' shares of one beam: they depend on the column alone.
+/// The power of one beam's pencils. It depends on the column alone.
 #[derive(Debug)]
-pub(crate) struct Shares {
+pub(crate) struct ColumnShares {
     beam: Beam,
-    /// P_k of the pencils in each column, watts.
-    pub(crate) of_column: Vec<f64>,
+    /// P_k of a pencil in each column, watts.
+    pub(crate) watts: Vec<f64>,
 }
 
-impl Shares {
-    pub(crate) fn of(beam: &Beam) -> Self {
-        let x = Axis::of_grid(beam.columns, beam.half_width);
+impl ColumnShares {
+    pub(crate) fn new(beam: &Beam) -> Self {
+        let x = Axis::grid_columns(beam.columns, beam.half_width);
         let g = beam.grid_distance;
         // cos(alpha) = g / |q|, q = (x, 0, g).
         let cos_alpha = |x: f64| g / (x * x + g * g).sqrt();
         let rows = f64::from(beam.rows);
-        let of_column = match beam.profile {
+        let watts = match beam.profile {
             // P_k = I_b A_bp cos(alpha) / A_b. The sum over the grid falls short of I_b.
             Profile::Paper => {
                 let pencils = f64::from(beam.columns) * rows;
@@ -27,7 +27,7 @@ impl Shares {
             }
             Profile::UniformAngle => {
                 let weights = x.centres().iter().map(|x| cos_alpha(*x) * cos_alpha(*x)).collect();
-                by_weight(beam.power, rows, weights)
+                watts_by_weight(beam.power, rows, weights)
             }
             Profile::Gaussian { half_width } => {
                 let exponent = |x: &f64| {
@@ -35,99 +35,28 @@ impl Shares {
                     2.0 * widths * widths
                 };
                 let exponents: Vec<f64> = x.centres().iter().map(exponent).collect();
-                // CHOICE: weights relative to the brightest column's. That changes no share, and one remains where
-                // the beam is so narrow that all exponentials vanish.
+                // CHOICE: weights relative to the brightest column's. This changes no share, and keeps one where the
+                // beam is so narrow that all exponentials are 0 in f64.
                 let brightest = exponents.iter().copied().fold(f64::INFINITY, f64::min);
-                let weights = exponents.iter().map(|of| libm::exp(brightest - of)).collect();
-                by_weight(beam.power, rows, weights)
+                let weights = exponents.iter().map(|exponent| libm::exp(brightest - exponent)).collect();
+                watts_by_weight(beam.power, rows, weights)
             }
         };
-        Self { beam: *beam, of_column }
+        Self { beam: *beam, watts }
     }
 
-    pub(crate) fn are_of(all: &[Self], beams: &[Mounted<Beam>]) -> bool {
+    /// Whether `all` are the shares of `beams`, in order.
+    pub(crate) fn fit(all: &[Self], beams: &[Mounted<Beam>]) -> bool {
         all.len() == beams.len() && all.iter().zip(beams).all(|(shares, beam)| shares.beam == beam.sensor)
     }
 }
 
-/// Shares that add up to the whole power over all pencils, hit or not.
-fn by_weight(power: f64, rows: f64, weights: Vec<f64>) -> Vec<f64> {
+/// Powers in proportion to the columns' weights. Their sum over all pencils, hit or not, is the beam's `power`.
+fn watts_by_weight(power: f64, rows: f64, weights: Vec<f64>) -> Vec<f64> {
     let sum = rows * weights.iter().sum::<f64>();
     weights.into_iter().map(|weight| power * weight / sum).collect()
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn beam(columns: u32, rows: u32, profile: Profile) -> Beam {
-        let (g, fan) = (0.1, 60_f64.to_radians());
-        Beam {
-            columns,
-            rows,
-            thickness: 5e-3,
-            grid_distance: g,
-            half_width: Beam::half_width_of(g, fan),
-            max_range: 20.0,
-            power: 3.0,
-            wavelength: 810e-9,
-            profile,
-        }
-    }
-
-    fn sum(beam: &Beam) -> f64 {
-        let shares = Shares::of(beam);
-        (0..beam.rows).flat_map(|_| &shares.of_column).sum::<f64>() / beam.power
-    }
-
-    #[test]
-    fn the_papers_shares_fall_short_of_the_whole() {
-        // The mean of cos(alpha) over the grid is the mean of 1 / sqrt(1 + u^2) over |u| < tan(a), midpoint rule;
-        // its limit is asinh(tan a) / tan a = ln(sec a + tan a) / tan a = 0.549306 / 0.577350 = 0.951426 at 30
-        // degrees. The midpoint rule exceeds it by h^2/24 (f'(-b) - f'(b)) / (2b), f' = -u / (1 + u^2)^(3/2), so
-        // h^2/24 cos^3(a) with h = 2 tan(a) / columns: 0.6495 (4/3) / 24 / columns^2 = 0.0361 / columns^2, which is
-        // 1.4e-4 for 16 columns and 3.4e-8 for 1024.
-        let limit = 3_f64.sqrt() * libm::log(3_f64.sqrt());
-        assert!((limit - 0.951_426).abs() < 5e-7);
-        let fine = sum(&beam(1024, 16, Profile::Paper));
-        assert!((fine - 0.951_426_2).abs() < 5e-8 && (fine - limit - 3.4e-8).abs() < 1e-9, "{fine}");
-        let coarse = sum(&beam(16, 4, Profile::Paper));
-        assert!((coarse - 0.951_57).abs() < 5e-6 && (coarse - limit - 1.41e-4).abs() < 1e-6, "{coarse}");
-    }
-
-    #[test]
-    fn the_other_profiles_add_up_to_the_whole() {
-        for profile in [Profile::UniformAngle, Profile::Gaussian { half_width: 0.3 }] {
-            for columns in [1, 2, 16, 1023] {
-                assert!((sum(&beam(columns, 7, profile)) - 1.0).abs() < 1e-13);
-            }
-        }
-    }
-
-    #[test]
-    fn four_columns_by_hand() {
-        // x / g = t (-3, -1, 1, 3) / 4 with t = tan 30 = 1/sqrt(3): (x/g)^2 = 3/16 and 1/48, cos^2(alpha) = 16/19 and
-        // 48/49. Two rows of 3 W.
-        let (outer, inner) = (16.0 / 19.0, 48.0 / 49.0);
-        let close = |a: &[f64], b: [f64; 4]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-14);
-        let cosines = [outer, inner, inner, outer].map(|squared: f64| 3.0 * squared.sqrt() / 8.0);
-        assert!(close(&Shares::of(&beam(4, 2, Profile::Paper)).of_column, cosines));
-        let of_sum = [outer, inner, inner, outer].map(|weight| 3.0 * weight / (4.0 * (outer + inner)));
-        assert!(close(&Shares::of(&beam(4, 2, Profile::UniformAngle)).of_column, of_sum));
-        // tan(alpha) = sqrt(3)/4 and sqrt(3)/12: alpha = 0.408638 and 0.143348 rad; with w = 0.2 rad exp(-2 (alpha/w)^2)
-        // = exp(-8.34925) and exp(-1.02743): 2.3654e-4 and 0.357926.
-        let (outer, inner) = (2.3654e-4, 0.357_926);
-        let of_sum = [outer, inner, inner, outer].map(|weight: f64| 3.0 * weight / (4.0 * (outer + inner)));
-        let gaussian = Shares::of(&beam(4, 2, Profile::Gaussian { half_width: 0.2 }));
-        for (share, expected) in gaussian.of_column.iter().zip(of_sum) {
-            assert!((share / expected - 1.0).abs() < 1e-3, "{share} {expected}");
-        }
-    }
-
-    #[test]
-    fn a_beam_narrower_than_its_pencils_keeps_its_power() {
-        // All exponentials of the definition vanish: exp(-2 (0.14 / 1e-6)^2).
-        let narrow = beam(4, 1, Profile::Gaussian { half_width: 1e-6 });
-        assert_eq!(Shares::of(&narrow).of_column, [0.0, 1.5, 1.5, 0.0]);
-    }
-}
+#[path = "../tests/unit/shares.rs"]
+mod tests;

@@ -1,31 +1,31 @@
-//! Skip rules 1a, 1b, 3a, 3b and 3c in a form that never changes a map. (§4, 1 and 3) As the paper prints
-//! them, `skip-rules = paper`, they are in `printed`.
+//! Skip rules 1a, 1b, 3a, 3b and 3c in forms that never change a map. (§4, 1 and 3) The rules as the paper prints them,
+//! `skip-rules = paper`, are in `printed_skip`.
 //!
 //! | rule | as printed | here |
 //! | --- | --- | --- |
 //! | 1a | all vertices in front of the SPP | the same: the part beyond the plane is empty |
-//! | 1b | the back faces the sensor | the plane's signed distance, per row for a beam (no mere skip: a back is never hit) |
-//! | 3a | all vertices left, right, above or below the screen | the same, by planes through the origin, so that vertices behind the SPP can be judged too |
-//! | 3b | all vertices' *range* exceeds the maximum | all vertices' *depth* does. DIFFERENCE: with ranges the rule is not conservative, the interior of a face can be nearer than its vertices; the half-space beyond a depth is convex, and range is at least depth |
+//! | 1b | the back faces the sensor | the sign of the plane's offset, per row for a beam. (This does more than skip: a back is never hit) |
+//! | 3a | all vertices left, right, above or below the screen | the same, by planes through the origin, so that it applies to vertices behind the SPP too |
+//! | 3b | all vertices' *range* exceeds the maximum | all vertices' *depth* does. DIFFERENCE: with ranges the rule is not conservative, because the interior of a face can be nearer than its vertices. The half-space beyond a depth is convex, and range is at least depth |
 //! | 3c | no vertex, side or centre of the screen meets the triangle | all four corners of the screen lie outside one and the same side. For a beam, whose sides are curves, nothing is skipped here |
 //!
-//! The screen's borders lie half a cell beyond the outermost cell centres, and that half cell is far more
-//! than rounding: a face that is skipped by its borders covers no centre.
+//! The screen's borders lie half a cell beyond the outermost cell centres. Half a cell is far more than rounding, so a
+//! face that is skipped by a border covers no centre.
 
 use glam::DVec3;
 
-/// Bits of [`crate::vertices::Vertex::outside`]. A face all of whose vertices share a bit is not seen.
-pub(crate) const BEHIND_PLANE: u8 = 1;
+// Bits of `SensorVertex::outside`. A face whose vertices share a bit is not seen.
+pub(crate) const BEHIND_SPP: u8 = 1;
 pub(crate) const LEFT: u8 = 2;
 pub(crate) const RIGHT: u8 = 4;
 pub(crate) const ABOVE: u8 = 8;
 pub(crate) const BELOW: u8 = 16;
 pub(crate) const TOO_DEEP: u8 = 32;
 
-/// The bits of a point by what it fulfils.
+/// The bits of a point, by the conditions that it fulfils.
 #[inline]
-pub(crate) fn bits(
-    behind_plane: bool,
+pub(crate) fn outside_bits(
+    behind_spp: bool,
     left: bool,
     right: bool,
     above: bool,
@@ -33,7 +33,7 @@ pub(crate) fn bits(
     too_deep: bool,
 ) -> u8 {
     let bit = |is: bool, bit: u8| if is { bit } else { 0 };
-    bit(behind_plane, BEHIND_PLANE)
+    bit(behind_spp, BEHIND_SPP)
         | bit(left, LEFT)
         | bit(right, RIGHT)
         | bit(above, ABOVE)
@@ -41,11 +41,10 @@ pub(crate) fn bits(
         | bit(too_deep, TOO_DEEP)
 }
 
-/// Rule 3c for the camera: whether the rays through all four corners of the screen pass on the outer side
-/// of one edge.
+/// Rule 3c for the camera: whether the rays through all four corners of the screen pass on the outer side of one edge.
 ///
-/// For a face whose front is seen, the ray q passes on the inner side of the edge from p to p' where
-/// (p x p').q <= 0; `normals` holds those three cross products. The rays of the screen are a convex cone.
+/// For a face whose front is seen, the ray q passes on the inner side of the edge from p to p' where (p x p').q <= 0.
+/// `normals` are those three cross products. The rays of the screen form a convex cone.
 pub(crate) fn screen_is_beyond_one_edge(normals: [DVec3; 3], screen_corners: [DVec3; 4]) -> bool {
     normals.iter().any(|n| screen_corners.iter().all(|q| n.dot(*q) > 0.0))
 }

@@ -1,5 +1,5 @@
-//! Look-up tables: cell centres along an axis of the screen, and |q| of every pixel. (§5: "can, therefore,
-//! be fetched from pre-computed tables")
+//! Look-up tables: cell centres along the axes of the screen, and |q| of every pixel. (§5: "can, therefore, be fetched
+//! from pre-computed tables")
 
 use rayon::prelude::*;
 use raypencil_scene::Camera;
@@ -8,35 +8,40 @@ use raypencil_scene::Camera;
 #[derive(Debug, Clone)]
 pub(crate) struct Axis {
     centres: Vec<f64>,
-    /// Cells per metre and the place of the axis' origin, for a first guess that the table then corrects.
+    /// Cells per metre. With `origin_index` it gives the first guess of a search, which the table then corrects.
     cells_per_metre: f64,
-    origin: f64,
-    /// The screen's borders, half a cell beyond the outermost centres.
+    /// Index, in cells, at which the axis has the coordinate 0.
+    origin_index: f64,
+    /// The screen's two borders, half a cell beyond the outermost centres, metres.
     borders: [f64; 2],
 }
 
 impl Axis {
-    /// Pixel centres `(i + 1/2 - centre) pitch`.
-    pub(crate) fn of_pixels(count: u32, centre: f64, pitch: f64) -> Self {
-        let centres = (0..count).map(|i| (f64::from(i) + 0.5 - centre) * pitch).collect();
-        let borders = [-centre * pitch, (f64::from(count) - centre) * pitch];
-        Self { centres, cells_per_metre: 1.0 / pitch, origin: centre - 0.5, borders }
+    /// Pixel centres `(i + 1/2 - principal_point) pitch`.
+    pub(crate) fn pixels(count: u32, principal_point: f64, pitch: f64) -> Self {
+        let centres = (0..count).map(|i| (f64::from(i) + 0.5 - principal_point) * pitch).collect();
+        let borders = [-principal_point * pitch, (f64::from(count) - principal_point) * pitch];
+        Self { centres, cells_per_metre: 1.0 / pitch, origin_index: principal_point - 0.5, borders }
     }
 
-    /// Centres of `count` grid cells over `-half..half`: `half (2i + 1 - count) / count`.
-    pub(crate) fn of_grid(count: u32, half: f64) -> Self {
+    /// Column centres of a beam's grid over -w..w: `w (2i + 1 - count) / count`.
+    pub(crate) fn grid_columns(count: u32, half_width: f64) -> Self {
         let n = f64::from(count);
-        let centres = (0..count).map(|i| half * (2.0 * f64::from(i) + 1.0 - n) / n).collect();
-        Self { centres, cells_per_metre: n / (2.0 * half), origin: 0.5 * n - 0.5, borders: [-half, half] }
+        let centres = (0..count).map(|i| half_width * (2.0 * f64::from(i) + 1.0 - n) / n).collect();
+        Self {
+            centres,
+            cells_per_metre: n / (2.0 * half_width),
+            origin_index: 0.5 * n - 0.5,
+            borders: [-half_width, half_width],
+        }
     }
 
-    /// Centres of the rows of a beam's grid over a sheet of that thickness:
-    /// `T (2j + 1 - rows) / (2 rows)`.
-    pub(crate) fn of_rows(rows: u32, thickness: f64) -> Self {
-        let n = f64::from(rows);
-        let centres = (0..rows).map(|j| thickness * (2.0 * f64::from(j) + 1.0 - n) / (2.0 * n)).collect();
+    /// Row centres of a beam's grid over a sheet of thickness T: `T (2j + 1 - count) / (2 count)`.
+    pub(crate) fn grid_rows(count: u32, thickness: f64) -> Self {
+        let n = f64::from(count);
+        let centres = (0..count).map(|j| thickness * (2.0 * f64::from(j) + 1.0 - n) / (2.0 * n)).collect();
         let half = 0.5 * thickness;
-        Self { centres, cells_per_metre: n / thickness, origin: 0.5 * n - 0.5, borders: [-half, half] }
+        Self { centres, cells_per_metre: n / thickness, origin_index: 0.5 * n - 0.5, borders: [-half, half] }
     }
 
     pub(crate) fn count(&self) -> u32 {
@@ -56,20 +61,20 @@ impl Axis {
         self.borders
     }
 
-    /// Where `value` lies in cells, their centres at whole numbers: a first guess.
+    /// The index of `value` in cells, with centres at whole numbers. It is approximate: a first guess.
     #[inline]
-    fn place(&self, value: f64) -> f64 {
-        value * self.cells_per_metre + self.origin
+    fn approximate_index(&self, value: f64) -> f64 {
+        value * self.cells_per_metre + self.origin_index
     }
 
-    /// The first cell whose centre is at or after `value`; the count if there is none.
+    /// The first cell whose centre is at or after `value`; the cell count if there is none.
     ///
-    /// The comparison is with the centres themselves, so that every face asks the very same question.
+    /// The comparison is with the centres themselves, so that every face decides in the same way.
     #[inline]
     pub(crate) fn first_at_or_after(&self, value: f64) -> u32 {
         let count = self.count();
         // `as` saturates, and takes NaN to 0.
-        let mut index = self.place(value).ceil() as u32;
+        let mut index = self.approximate_index(value).ceil() as u32;
         index = index.min(count);
         while index > 0 && self.centres[index as usize - 1] >= value {
             index -= 1;
@@ -84,7 +89,7 @@ impl Axis {
     #[inline]
     pub(crate) fn end_at_or_before(&self, value: f64) -> u32 {
         let count = self.count();
-        let mut end = (self.place(value).floor() + 1.0) as u32;
+        let mut end = (self.approximate_index(value).floor() + 1.0) as u32;
         end = end.min(count);
         while end > 0 && self.centres[end as usize - 1] > value {
             end -= 1;
@@ -96,20 +101,20 @@ impl Axis {
     }
 }
 
-/// What depends on the camera alone.
+/// The tables that depend on the camera alone.
 #[derive(Debug)]
 pub(crate) struct CameraTables {
     camera: Camera,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
-    /// |q| of every pixel, row by row, metres: the range is |q| / (1/t).
+    /// |q| of every pixel, row by row, metres. The range is |q| / (1/t).
     pub(crate) q_length: Vec<f64>,
 }
 
 impl CameraTables {
-    pub(crate) fn of(camera: &Camera) -> Self {
-        let x = Axis::of_pixels(camera.width, camera.principal_point[0], camera.pixel_pitch[0]);
-        let y = Axis::of_pixels(camera.height, camera.principal_point[1], camera.pixel_pitch[1]);
+    pub(crate) fn new(camera: &Camera) -> Self {
+        let x = Axis::pixels(camera.width, camera.principal_point[0], camera.pixel_pitch[0]);
+        let y = Axis::pixels(camera.height, camera.principal_point[1], camera.pixel_pitch[1]);
         let f_squared = camera.focal_length * camera.focal_length;
         let mut q_length = vec![0.0; camera.width as usize * camera.height as usize];
         q_length.par_chunks_mut(camera.width as usize).enumerate().for_each(|(j, row)| {
@@ -121,69 +126,12 @@ impl CameraTables {
         Self { camera: *camera, x, y, q_length }
     }
 
-    pub(crate) fn are_of(&self, camera: &Camera) -> bool {
+    /// Whether these are the tables of `camera`.
+    pub(crate) fn fit(&self, camera: &Camera) -> bool {
         self.camera == *camera
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        // Against a linear search of the same table.
-        #[test]
-        fn cells_are_found_like_by_looking_at_each(
-            count in 1u32..40,
-            centre in -50.0f64..50.0,
-            pitch in 1e-6f64..1.0,
-            at in -2.0f64..3.0,
-            on in proptest::option::of(0u32..40),
-            beside in -1i8..=1,
-        ) {
-            let axis = Axis::of_pixels(count, centre, pitch);
-            let [low, high] = axis.borders();
-            // Anywhere around the screen, or on a centre, or next to one: there the first guess errs.
-            let value = match on {
-                Some(i) if i < count => match beside {
-                    -1 => axis.centre(i).next_down(),
-                    0 => axis.centre(i),
-                    _ => axis.centre(i).next_up(),
-                },
-                _ => low + at * (high - low),
-            };
-            let first = axis.centres().iter().position(|&c| c >= value).unwrap_or(count as usize);
-            let end = axis.centres().iter().rposition(|&c| c <= value).map_or(0, |last| last + 1);
-            prop_assert_eq!(axis.first_at_or_after(value), first as u32);
-            prop_assert_eq!(axis.end_at_or_before(value), end as u32);
-        }
-    }
-
-    #[test]
-    fn the_first_guess_is_the_cell() {
-        // Else the search would find it too, but cell by cell.
-        let axes = [
-            Axis::of_pixels(7, 2.25, 0.5),
-            Axis::of_pixels(640, -300.0, 7.4e-6),
-            Axis::of_grid(5, 0.3),
-            Axis::of_grid(1024, 0.1),
-            Axis::of_rows(3, 0.02),
-            Axis::of_rows(256, 0.005),
-        ];
-        for axis in axes {
-            for index in 0..axis.count() {
-                let off = axis.place(axis.centre(index)) - f64::from(index);
-                assert!(off.abs() < 1e-9, "{axis:?}: cell {index} is guessed {off} cells beside");
-            }
-        }
-    }
-
-    #[test]
-    fn infinities_and_nan_stay_on_the_screen() {
-        let axis = Axis::of_grid(8, 0.1);
-        assert_eq!((axis.first_at_or_after(f64::INFINITY), axis.end_at_or_before(f64::INFINITY)), (8, 8));
-        assert_eq!((axis.first_at_or_after(-f64::INFINITY), axis.end_at_or_before(-f64::INFINITY)), (0, 0));
-        assert_eq!(axis.end_at_or_before(f64::NAN), 0);
-    }
-}
+#[path = "../tests/unit/tables.rs"]
+mod tests;

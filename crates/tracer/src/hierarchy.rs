@@ -1,29 +1,36 @@
-//! Boxes around faces, widened for f32 traversal, in an obvhs `Bvh2`.
+//! The bounding volume hierarchy: boxes around faces, padded for f32 traversal, in an obvhs `Bvh2`.
 //!
-//! # How much wider
+//! # Padding
 //!
-//! A face's box B has f32 corners exactly. Let a ray from o along the unit vector d meet the face at range
-//! s <= reach, at the point P = o + s d inside B. Traversal sees o rounded (error u |o|, u = 2^-24), d
-//! rounded (error u |d_k| in axis k), components of d below 2^-23 replaced by 2^-23 (error at most 2^-22 =
-//! 4 u), and forms each slab distance with three roundings (relative error 3 u, of a distance that is at
-//! most s |d_k| from the origin). So along each axis the slab may be missed by at most
+//! The vertices of a face are f32 numbers, so its tight box B is exact. Let a ray from o along the unit vector d
+//! meet the face at range s <= D, at the point P = o + s d inside B; D is the maximum trace distance. The
+//! traversal computes with these errors, u = 2^-24:
+//!
+//! * o is rounded: u |o|;
+//! * d is rounded: u |d_k| in axis k;
+//! * components of d below 2^-23 are replaced by 2^-23: at most 2^-22 = 4 u;
+//! * each slab distance takes three roundings: a relative error of 3 u, of a distance along axis k that is at most
+//!   s |d_k| from the origin.
+//!
+//! So along each axis the slab may be missed by at most
 //!
 //! ```text
 //! u |o| + 4 u s + 3 u s  <=  u (|P| + s) + 7 u s  <=  8 u (|P| + s)
 //! ```
 //!
-//! A box widened by [`PADDING`] x (largest |coordinate| of the box + reach), u = 2^-24, rounded outward, is
-//! entered at a computed distance <= s and left at one >= s, whatever the rounding. [`PADDING`] is one u more
-//! than the 8 u: it is for the products of two of these errors, of the order of 2^-46, and for the roundings of
-//! the f64 test, of the order of 2^-53, by which it may admit a face that the ray misses by as much.
+//! Let a box be widened by [`RELATIVE_PADDING`] x (largest |coordinate| of the box + D) and rounded outward. The
+//! traversal then enters it at a computed distance <= s and leaves it at one >= s, whatever the rounding.
+//! [`RELATIVE_PADDING`] is 9 u, one u more than derived. The ninth covers products of two of these errors, of the
+//! order of 2^-46, and the roundings of the f64 test, of the order of 2^-53, by which it may admit a face that the
+//! exact ray misses.
 //!
 //! # Rays to a point
 //!
-//! The ray from the camera's centre c to a hit P has the f64 direction fl(P - c), and P is rounded too. That
-//! does not count against the boxes: boxes and triangle test are asked about one and the same ray (c, fl(P - c)),
-//! which is all that the bound is about. (It is a ray displaced by some 2^-52 of |P| + |c|: the answer for it
-//! can differ from that for the exact ray by rounding.) What does count is its length: the boxes are wide
-//! enough if |P - c| <= reach, and [`reach_of`] makes it so.
+//! The ray from the camera's centre c to a hit P has the f64 direction fl(P - c), and P is rounded too. That does
+//! not count against the boxes: boxes and triangle test take one and the same ray (c, fl(P - c)), and the bound
+//! above is about that ray. (It is a ray displaced by some 2^-52 of |P| + |c|. Its answer can differ from that of
+//! the exact ray by rounding.) Its length does count: the boxes are wide enough if |P - c| <= D, and
+//! [`max_trace_distance`] makes it so.
 
 use std::collections::HashMap;
 
@@ -32,93 +39,94 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use raypencil_scene::{Beam, FaceId, Mesh, Mounted, Scene};
 
-use crate::grouped;
+use crate::grouped_build;
 use crate::triangle::Triangle;
 
-/// Widening of a box in units of (largest |coordinate| + reach): 9 x 2^-24, derived above.
-const PADDING: f64 = 9.0 / (1u32 << 24) as f64;
+/// Padding of a box, relative to (largest |coordinate| + maximum trace distance): 9 x 2^-24, derived above.
+const RELATIVE_PADDING: f64 = 9.0 / (1u32 << 24) as f64;
 
-/// The longest way that any ray of this scene is traced, metres: every sensor's own range, and for the ray from
-/// the camera's centre to a hit of a beam, by the triangle inequality, the beam's range, half its thickness, and
-/// the distance between the two.
-pub(crate) fn reach_of(scene: &Scene) -> f64 {
+/// The length of the longest ray that is traced in this scene, metres.
+///
+/// This is the largest of the sensors' maximum ranges and of the bounds for rays from the camera's centre to a hit
+/// of a beam. By the triangle inequality such a ray is at most as long as the beam's maximum range, half its
+/// thickness, and the distance between camera and beam together.
+pub(crate) fn max_trace_distance(scene: &Scene) -> f64 {
     let camera = scene.camera();
     let from_camera = |beam: &Mounted<Beam>| {
-        let apart = (beam.scene_from_sensor.position - camera.scene_from_sensor.position).length();
-        beam.sensor.max_range + 0.5 * beam.sensor.thickness + apart
+        let baseline = (beam.scene_from_sensor.position - camera.scene_from_sensor.position).length();
+        beam.sensor.max_range + 0.5 * beam.sensor.thickness + baseline
     };
     scene.beams().iter().map(from_camera).fold(camera.sensor.max_range, f64::max)
 }
 
-/// The terrain, ready to be traced.
+/// The terrain's faces in a tree of padded boxes.
 pub(crate) struct Hierarchy {
     tree: Bvh2,
     /// Faces in the order of the tree's leaves.
     triangles: Vec<Triangle>,
-    /// `first_triangle[p]..first_triangle[p + 1]` are the faces of the p-th box in the tree's order.
+    /// `first_triangle[k]..first_triangle[k + 1]` are the faces of the k-th box in the tree's order.
     first_triangle: Vec<u32>,
-    reach: f64,
+    max_trace_distance: f64,
     stack_size: usize,
 }
 
 impl std::fmt::Debug for Hierarchy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { tree, triangles, reach, stack_size, .. } = self;
+        let Self { tree, triangles, max_trace_distance, stack_size, .. } = self;
         f.debug_struct("Hierarchy")
             .field("nodes", &tree.nodes.len())
             .field("triangles", &triangles.len())
-            .field("reach", reach)
+            .field("max_trace_distance", max_trace_distance)
             .field("stack_size", stack_size)
             .finish()
     }
 }
 
 impl Hierarchy {
-    /// Builds the tree for rays whose hits lie within `reach` metres of their origin.
-    pub(crate) fn build(mesh: &Mesh, reach: f64) -> Self {
-        // A face of no area is never hit, and faces of one and the same box share a leaf entry: many
+    /// Builds the tree for rays whose hits lie within `max_trace_distance` metres of their origin.
+    pub(crate) fn build(mesh: &Mesh, max_trace_distance: f64) -> Self {
+        // Faces without area are never hit and get no box. Faces with identical boxes share one leaf entry: many
         // identical boxes would make the build quadratic.
         let mut boxes: Vec<Aabb> = Vec::with_capacity(mesh.faces().len());
-        let mut box_of_corners: HashMap<[u32; 6], u32> = HashMap::with_capacity(mesh.faces().len());
-        let mut boxed: Vec<(u32, Triangle)> = Vec::with_capacity(mesh.faces().len());
+        let mut box_by_bounds: HashMap<[u32; 6], u32> = HashMap::with_capacity(mesh.faces().len());
+        let mut triangles_with_box: Vec<(u32, Triangle)> = Vec::with_capacity(mesh.faces().len());
         for (index, face) in mesh.faces().iter().enumerate() {
             let vertices = face.map(|v| mesh.vertices()[v as usize]);
             let triangle = Triangle::new(vertices, FaceId(index as u32));
             if triangle.normal() == glam::DVec3::ZERO {
                 continue;
             }
-            let corners = padded_box(&vertices, reach);
-            let bits =
-                [corners.min.x, corners.min.y, corners.min.z, corners.max.x, corners.max.y, corners.max.z]
-                    .map(f32::to_bits);
-            let number = *box_of_corners.entry(bits).or_insert_with(|| {
-                boxes.push(corners);
+            let bounds = padded_box(&vertices, max_trace_distance);
+            let bits = [bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z]
+                .map(f32::to_bits);
+            let box_index = *box_by_bounds.entry(bits).or_insert_with(|| {
+                boxes.push(bounds);
                 boxes.len() as u32 - 1
             });
-            boxed.push((number, triangle));
+            triangles_with_box.push((box_index, triangle));
         }
-        drop(box_of_corners);
+        drop(box_by_bounds);
 
-        let tree = grouped::build(&boxes);
-        // obvhs' fixed stacks overflow silently, so the search brings one that fits the real depth.
-        let stack_size = deepest(&tree) + 1;
+        let tree = grouped_build::build(&boxes);
+        // The fixed stacks of obvhs overflow silently, so the traversals bring one that fits the tree's depth.
+        let stack_size = max_depth(&tree) + 1;
 
         // Lay the faces out in the order of the leaves.
-        let mut place_of_box = vec![0u32; boxes.len()];
-        for (place, &number) in tree.primitive_indices.iter().enumerate() {
-            place_of_box[number as usize] = place as u32;
+        let mut rank_of_box = vec![0u32; boxes.len()];
+        for (rank, &box_index) in tree.primitive_indices.iter().enumerate() {
+            rank_of_box[box_index as usize] = rank as u32;
         }
-        // A stable sort: faces of one box stay in ascending order.
-        boxed.sort_by_key(|&(number, _)| place_of_box[number as usize]);
+        // The sort is stable: faces of one box stay in ascending order.
+        triangles_with_box.sort_by_key(|&(box_index, _)| rank_of_box[box_index as usize]);
         let mut first_triangle = vec![0u32; boxes.len() + 1];
-        for (number, _) in &boxed {
-            first_triangle[place_of_box[*number as usize] as usize + 1] += 1;
+        for (box_index, _) in &triangles_with_box {
+            first_triangle[rank_of_box[*box_index as usize] as usize + 1] += 1;
         }
-        for place in 0..boxes.len() {
-            first_triangle[place + 1] += first_triangle[place];
+        for rank in 0..boxes.len() {
+            first_triangle[rank + 1] += first_triangle[rank];
         }
-        let triangles = boxed.into_iter().map(|(_, triangle)| triangle).collect();
-        Self { tree, triangles, first_triangle, reach, stack_size }
+        let triangles = triangles_with_box.into_iter().map(|(_, triangle)| triangle).collect();
+        Self { tree, triangles, first_triangle, max_trace_distance, stack_size }
     }
 
     /// The tree of boxes.
@@ -126,31 +134,31 @@ impl Hierarchy {
         &self.tree
     }
 
-    /// The faces behind `count` boxes of the tree from `first` on.
+    /// The faces of `count` boxes in the tree's order, from box `first` on.
     #[inline]
-    pub(crate) fn triangles_of(&self, first: u32, count: u32) -> &[Triangle] {
+    pub(crate) fn leaf_triangles(&self, first: u32, count: u32) -> &[Triangle] {
         let start = self.first_triangle[first as usize] as usize;
         let end = self.first_triangle[(first + count) as usize] as usize;
         &self.triangles[start..end]
     }
 
-    /// The farthest hit that the boxes are wide enough for, metres.
-    pub(crate) fn reach(&self) -> f64 {
-        self.reach
+    /// The distance from a ray's origin up to which no hit is lost to the boxes, metres.
+    pub(crate) fn max_trace_distance(&self) -> f64 {
+        self.max_trace_distance
     }
 
-    /// Entries a traversal stack must hold.
+    /// The number of entries that a traversal stack must hold.
     pub(crate) fn stack_size(&self) -> usize {
         self.stack_size
     }
 }
 
-/// A box around three vertices, widened by [`PADDING`] and rounded outward.
-fn padded_box(vertices: &[[f32; 3]; 3], reach: f64) -> Aabb {
+/// The box around three vertices, widened by [`RELATIVE_PADDING`] and rounded outward.
+fn padded_box(vertices: &[[f32; 3]; 3], max_trace_distance: f64) -> Aabb {
     let [a, b, c] = vertices.map(Vec3A::from_array);
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let farthest = low.abs().max(high.abs()).max_element();
-    let padding = PADDING * (f64::from(farthest) + reach);
+    let max_coordinate = low.abs().max(high.abs()).max_element();
+    let padding = RELATIVE_PADDING * (f64::from(max_coordinate) + max_trace_distance);
     let down = |x: f32| round_down(f64::from(x) - padding);
     let up = |x: f32| round_up(f64::from(x) + padding);
     Aabb::new(
@@ -169,97 +177,21 @@ fn round_down(x: f64) -> f32 {
     (x as f32).next_down()
 }
 
-/// Inner nodes on the longest way from the root to a leaf: as many entries can wait on the stack.
-fn deepest(tree: &Bvh2) -> usize {
-    let mut deepest = 0;
-    let mut waiting: Vec<(u32, usize)> = tree.nodes.first().map(|_| (0, 0)).into_iter().collect();
-    while let Some((index, depth)) = waiting.pop() {
+/// The largest number of inner nodes between the root and a leaf. As many entries can wait on the stack.
+fn max_depth(tree: &Bvh2) -> usize {
+    let mut max_depth = 0;
+    let mut stack: Vec<(u32, usize)> = tree.nodes.first().map(|_| (0, 0)).into_iter().collect();
+    while let Some((index, depth)) = stack.pop() {
         let node = &tree.nodes[index as usize];
-        deepest = deepest.max(depth);
+        max_depth = max_depth.max(depth);
         if !node.is_leaf() {
-            waiting.push((node.first_index, depth + 1));
-            waiting.push((node.first_index + 1, depth + 1));
+            stack.push((node.first_index, depth + 1));
+            stack.push((node.first_index + 1, depth + 1));
         }
     }
-    deepest
+    max_depth
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use glam::DVec3;
-    use obvhs::bvh2::node::Bvh2Node;
-    use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Pose, Profile};
-
-    use super::*;
-
-    #[test]
-    fn the_reach_is_the_longest_way_of_any_ray() {
-        let camera = |max_range: f64| Camera {
-            width: 2,
-            height: 2,
-            pixel_pitch: [1e-3; 2],
-            focal_length: 1e-2,
-            principal_point: [1.0; 2],
-            aperture: 1e-3,
-            lens: Lens::CLEAR,
-            max_range,
-        };
-        let beam = |max_range: f64| Beam {
-            columns: 1,
-            rows: 1,
-            thickness: 0.5,
-            grid_distance: 0.1,
-            half_width: 0.1,
-            max_range,
-            power: 1.0,
-            wavelength: 8e-7,
-            profile: Profile::Paper,
-        };
-        let reach = |of_camera: f64, of_beams: [f64; 2]| {
-            let ground = vec![Material { name: "ground".into(), reflectivity: 0.5 }];
-            let mesh = Mesh::new(DVec3::ZERO, vec![[0.0; 3]; 3], vec![[0, 1, 2]], vec![0], ground).unwrap();
-            let at = Pose::from_position(DVec3::new(1.0, 1.0, 1.0));
-            // sqrt(4 + 4 + 1) = 3 m from the camera, and 9 m.
-            let apart = [DVec3::new(3.0, -1.0, 2.0), DVec3::new(1.0, 10.0, 1.0)].map(Pose::from_position);
-            let beams = [0, 1].map(|k| Mounted { scene_from_sensor: apart[k], sensor: beam(of_beams[k]) });
-            let camera = Mounted { scene_from_sensor: at, sensor: camera(of_camera) };
-            let air = Atmosphere { attenuation: 0.0 };
-            reach_of(&Scene::new(Arc::new(mesh), camera, beams.into(), air, FluxModel::Radiometric).unwrap())
-        };
-        // The camera's own; a beam's range, half its sheet, and the way between the two.
-        assert_eq!(reach(20.0, [5.0, 5.0]), 20.0);
-        assert_eq!(reach(10.0, [8.0, 1.0]), 11.25);
-        assert_eq!(reach(10.0, [1.0, 8.0]), 17.25);
-    }
-
-    #[test]
-    fn a_box_is_as_much_wider_as_was_derived() {
-        // 9 x 2^-24 of the largest coordinate, 9, and the reach, 100.
-        let padded = padded_box(&[[1.0, 2.0, 3.0], [-4.0, 5.0, 6.0], [7.0, -8.0, 9.0]], 100.0);
-        let padding = 9.0 / f64::from(1 << 24) * 109.0;
-        // Rounded outward, by no more than two steps of f32 below 16.
-        let outward = |wider: f64| (padding..=padding + 2.0 / f64::from(1 << 20)).contains(&wider);
-        for (axis, low, high) in [(0, -4.0, 7.0), (1, -8.0, 5.0), (2, 3.0, 9.0)] {
-            let (min, max) = (f64::from(padded.min[axis]), f64::from(padded.max[axis]));
-            assert!(outward(low - min) && outward(max - high), "{axis}: {min} to {max}");
-        }
-        // The largest may be a negative one.
-        let other = padded_box(&[[-1.0, -2.0, -3.0], [4.0, -5.0, -6.0], [-7.0, 8.0, -9.0]], 100.0);
-        assert_eq!((other.min, other.max), (-padded.max, -padded.min));
-    }
-
-    #[test]
-    fn the_stack_holds_the_longest_way_down() {
-        let leaf = Bvh2Node::new(Aabb::INVALID, 1, 0);
-        let inner = |first: u32| Bvh2Node::new(Aabb::INVALID, 0, first);
-        let tree = |nodes: Vec<Bvh2Node>| Bvh2 { nodes, ..Bvh2::default() };
-        assert_eq!(deepest(&Bvh2::default()), 0);
-        assert_eq!(deepest(&tree(vec![leaf])), 0);
-        assert_eq!(deepest(&tree(vec![inner(1), leaf, leaf])), 1);
-        // The longest way by the first child, and by the second.
-        assert_eq!(deepest(&tree(vec![inner(1), inner(3), leaf, inner(5), leaf, leaf, leaf])), 3);
-        assert_eq!(deepest(&tree(vec![inner(1), leaf, inner(3), leaf, inner(5), leaf, leaf])), 3);
-    }
-}
+#[path = "../tests/unit/hierarchy.rs"]
+mod tests;

@@ -1,383 +1,134 @@
-//! Does any face stand between a point that a pencil hits and the camera? (Paper, §6; contract: visible)
+//! Occlusion: does any face stand between a pencil's hit point and the camera? (Paper, §6; contract: visible)
 //!
-//! The segment is c + u (P - c), f_c / r <= u < 1: from the crossing of the image plane up to, but without,
-//! the point. Any face counts, from its front or its back, except those that the point lies on.
+//! The tested segment is c + u (P - c) with f_c / r <= u < 1. It runs from the crossing of the image plane up to the
+//! point P, without P itself. Every face counts, from its front or its back, except those that P lies on.
 //!
 //! # The end at the point
 //!
-//! u < 1 is not asked of a quotient. With u = n.(a - c) / n.(P - c) it is 1 - u = n.(P - a) / n.(P - c), so
-//! u < 1 says: *the point lies strictly behind the face's plane, as the camera sees it*. The sign of n.(P - a)
-//! is as good as P itself; no threshold is needed, and a lid one step of f32 above the ground hides it.
+//! u < 1 is not tested on a quotient. From u = n.(a - c) / n.(P - c) follows 1 - u = n.(P - a) / n.(P - c). So
+//! u < 1 means: *the point lies strictly behind the face's plane, as the camera sees it*. The sign of n.(P - a) is
+//! as accurate as P itself. No threshold is needed, and a lid one f32 step above the ground hides it.
 //!
-//! What is left is the rounding of P: some 2^-52 of its coordinates and of R, and along the pencil, that is
-//! within the hit face at grazing incidence, 1 / cos(psi) times that; 1e-14 m at 20 m. A face whose plane passes
-//! as close to P as that may be put on the wrong side of it: it hides the point or not, by rounding. For most
-//! such faces that cannot happen, because they are known to hold P itself:
+//! What remains is the rounding of P. It is some 2^-52 of P's coordinates and of R; along the pencil, which is
+//! within the hit face at grazing incidence, it is 1 / cos(psi) times that: 1e-14 m at 20 m. A face whose plane
+//! passes P that closely may come out on the wrong side of P, and then hide it or not by rounding. For most such
+//! faces this cannot happen, because they are known to contain P:
 //!
 //! * the hit face;
-//! * those that the pencil meets, from either side, at the very same bits of t: duplicates and reversed
-//!   duplicates always, and neighbours where the pencil runs into their common edge and t comes out alike;
-//! * those whose corners lie in the plane of the hit face. The segment leaves that plane in P and meets it nowhere
-//!   else, so they either hold P or are not met. (Faces that overlap without sharing corners: their t differ by
-//!   rounding although they are equal. The corners' f64 distance from the plane is exactly 0 for planes along
-//!   the axes; where it is 0 by rounding, the face lies within rounding of the plane, as above.)
+//! * faces that the pencil meets, from either side, at the very same bits of t: duplicates and reversed duplicates
+//!   always, and neighbours where the pencil runs into their common edge and t comes out alike;
+//! * faces whose vertices lie in the plane of the hit face. The segment leaves that plane in P and meets it nowhere
+//!   else, so such a face either contains P or is not met. (Faces may overlap without sharing vertices. Their t
+//!   are then equal, but differ as rounded. The vertices' f64 distance from the plane is exactly 0 for planes along
+//!   the axes. Where it is 0 by rounding, the face lies within rounding of the plane, as above.)
 //!
-//! So there remains a pencil within rounding of an edge between two faces of different slope. Which way it is
-//! decided there is a matter of rounding, not of definition: a ray displaced by as little decides otherwise.
+//! There remains a pencil within rounding of an edge between two faces of different slope. The definition does not
+//! decide that case, rounding does: a ray displaced by as little gets the other answer.
 
 use glam::DVec3;
 use obvhs::faststack::{FastStack, HeapStack};
 use obvhs::ray::RayHit;
 
+use crate::closest_hit::Intersection;
 use crate::hierarchy::{Hierarchy, round_up};
-use crate::nearest::Found;
 use crate::rays::TracedRay;
 use crate::triangle::{Triangle, widen};
 
-/// The line of sight from the camera to a point that a pencil hits.
+/// The line of sight from the camera to the point that a pencil hits.
 #[derive(Debug)]
-pub(crate) struct Sight<'a> {
-    /// From the projection centre along P - c: the point is at u = 1.
+pub(crate) struct LineOfSight<'a> {
+    /// The ray from the projection centre along P - c. The point is at u = 1.
     ray: TracedRay,
     /// P, scene frame, metres.
     point: DVec3,
-    /// u where the ray crosses the image plane is f_c / r: the two apart, metres.
+    /// f_c, metres. The ray crosses the image plane at u = f_c / r.
     focal_length: f64,
+    /// r, metres.
     depth: f64,
-    /// The pencil, and the face it hits.
     pencil: &'a TracedRay,
-    met: &'a Found,
+    /// The pencil's hit.
+    hit: &'a Intersection,
 }
 
-impl<'a> Sight<'a> {
-    /// From the camera's `centre` to `point`, at a `depth` beyond the focal length, where `pencil` has `met` a
-    /// face.
+impl<'a> LineOfSight<'a> {
+    /// From the camera's `centre` to `point`, the `hit` of `pencil`. The point's `depth` exceeds `focal_length`.
     pub(crate) fn new(
         centre: DVec3,
         focal_length: f64,
         point: DVec3,
         depth: f64,
         pencil: &'a TracedRay,
-        met: &'a Found,
+        hit: &'a Intersection,
     ) -> Self {
-        Self { ray: TracedRay::new(centre, point - centre), point, focal_length, depth, pencil, met }
+        Self { ray: TracedRay::new(centre, point - centre), point, focal_length, depth, pencil, hit }
     }
 
     /// Whether this face hides the point.
     #[inline]
     pub(crate) fn is_blocked_by(&self, triangle: &Triangle) -> bool {
-        let Some(crossing) = triangle.crosses(&self.ray) else { return false };
+        let Some(crossing) = triangle.intersect_either_side(&self.ray) else { return false };
         // Both inequalities are multiplied by |n.(P - c)|, the first by r too: no division rounds.
-        let side = crossing.along.signum();
+        let side = crossing.n_dot_q.signum();
         let beyond_image_plane =
-            side * crossing.to_plane * self.depth >= self.focal_length * (side * crossing.along);
+            side * crossing.n_dot_offset * self.depth >= self.focal_length * (side * crossing.n_dot_q);
         let before_point = side * crossing.normal.dot(self.point - widen(triangle.vertices[0])) > 0.0;
-        beyond_image_plane && before_point && !self.holds_point(triangle)
+        beyond_image_plane && before_point && !self.is_point_on(triangle)
     }
 
-    /// Whether the point is known to lie on this face. Few faces get as far as being asked.
+    /// Whether the point is known to lie on this face. Few faces get this far.
     #[cold]
-    fn holds_point(&self, triangle: &Triangle) -> bool {
-        let hit = &self.met.triangle;
-        if triangle.face == hit.face {
+    fn is_point_on(&self, triangle: &Triangle) -> bool {
+        let hit_face = &self.hit.triangle;
+        if triangle.face == hit_face.face {
             return true;
         }
-        let tied = triangle.crosses(self.pencil).is_some_and(|at| at.to_plane / at.along == self.met.t);
-        let (normal, corner) = (hit.normal(), widen(hit.vertices[0]));
-        tied || triangle.vertices.iter().all(|&v| normal.dot(widen(v) - corner) == 0.0)
+        let tied = triangle
+            .intersect_either_side(self.pencil)
+            .is_some_and(|crossing| crossing.n_dot_offset / crossing.n_dot_q == self.hit.t);
+        let (normal, vertex) = (hit_face.normal(), widen(hit_face.vertices[0]));
+        tied || triangle.vertices.iter().all(|&v| normal.dot(widen(v) - vertex) == 0.0)
     }
 }
 
-/// A search for anything in the way, with a stack of its own, for many points on one thread.
-pub(crate) struct Occlusion<'a> {
+/// An any-hit traversal with its own stack, for many points on one thread.
+pub(crate) struct OcclusionTraverser<'a> {
     hierarchy: &'a Hierarchy,
     stack: HeapStack<u32>,
 }
 
-impl<'a> Occlusion<'a> {
+impl<'a> OcclusionTraverser<'a> {
     pub(crate) fn new(hierarchy: &'a Hierarchy) -> Self {
         Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.stack_size()) }
     }
 
-    /// Whether any face hides the point at the end of `sight`.
-    pub(crate) fn hides(&mut self, sight: &Sight) -> bool {
-        let distance = sight.ray.metres_per_t;
-        debug_assert!(distance <= self.hierarchy.reach(), "{distance} m: the boxes are too narrow");
-        // obvhs enters a box only if it begins strictly before the far end, hence rounded up; it knows no near
-        // end, so faces before the image plane are proposed and refused.
-        let box_ray = sight.ray.for_boxes(round_up(distance));
-        // What an early end left on the stack belongs to another ray.
+    /// Whether any face hides the point at the end of `line_of_sight`.
+    pub(crate) fn is_occluded(&mut self, line_of_sight: &LineOfSight) -> bool {
+        let distance = line_of_sight.ray.metres_per_t;
+        debug_assert!(
+            distance <= self.hierarchy.max_trace_distance(),
+            "the line of sight is {distance} m long; the boxes are padded for {} m",
+            self.hierarchy.max_trace_distance()
+        );
+        // obvhs enters a box only if it begins strictly before the far end, hence rounded up. It knows no near
+        // end, so faces before the image plane are proposed too, and refused by the exact test.
+        let box_ray = line_of_sight.ray.box_ray(round_up(distance));
+        // A traversal that ended early leaves entries of its own ray on the stack.
         self.stack.clear();
-        let mut hidden = false;
+        let mut occluded = false;
         self.hierarchy.tree().ray_traverse_dynamic(
             &mut self.stack,
             box_ray,
             &mut RayHit::none(),
             |node, _, _| {
-                let triangles = self.hierarchy.triangles_of(node.first_index, node.prim_count);
-                hidden = triangles.iter().any(|triangle| sight.is_blocked_by(triangle));
-                !hidden
+                let triangles = self.hierarchy.leaf_triangles(node.first_index, node.prim_count);
+                occluded = triangles.iter().any(|triangle| line_of_sight.is_blocked_by(triangle));
+                !occluded
             },
         );
-        hidden
+        occluded
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use proptest::prelude::*;
-    use raypencil_scene::{
-        Atmosphere, Beam, Camera, FaceId, FluxModel, Lens, Material, Mesh, Mounted, Pose, Profile, Renderer,
-        Request, Sampling, Scene,
-    };
-    use raypencil_terrain::{RandomGround, height_at};
-
-    use super::*;
-    use crate::nearest::Search;
-    use crate::rays::{Grid, SensorRays};
-    use crate::view::Eye;
-
-    fn triangles(mesh: &Mesh) -> Vec<Triangle> {
-        let corners = |face: &[u32; 3]| face.map(|v| mesh.vertices()[v as usize]);
-        (0..).zip(mesh.faces()).map(|(k, face)| Triangle::new(corners(face), FaceId(k))).collect()
-    }
-
-    /// The twin: every face with an area, no tree.
-    fn exhaustive(triangles: &[Triangle], sight: &Sight) -> bool {
-        triangles.iter().any(|triangle| sight.is_blocked_by(triangle))
-    }
-
-    fn moved(mesh: &Mesh, offset: f32) -> Mesh {
-        let vertices = mesh.vertices().iter().map(|[x, y, z]| [x + offset, *y, *z]).collect();
-        let (faces, of_faces) = (mesh.faces().to_vec(), mesh.face_materials().to_vec());
-        Mesh::new(mesh.origin(), vertices, faces, of_faces, mesh.materials().to_vec()).unwrap()
-    }
-
-    /// The default rig on the middle of a ground, its beams 128 x 4 and its camera low, where much is hidden from it.
-    fn rig_on(mesh: Mesh, offset: f32) -> Scene {
-        let z = height_at(&mesh, 0.0, 0.0).unwrap();
-        let mesh = moved(&mesh, offset);
-        let scene_from_vehicle = Pose::from_position(DVec3::new(f64::from(offset), 0.0, z));
-        let mount = |height: f64, down: f64| {
-            scene_from_vehicle
-                * Pose::from_position(DVec3::new(0.3, 0.0, height))
-                * Pose::from_axis_angle(DVec3::Y, down.to_radians())
-                * Pose::VEHICLE_FROM_FORWARD_SENSOR
-        };
-        let camera = Camera {
-            width: 1024,
-            height: 1024,
-            pixel_pitch: [9e-6; 2],
-            focal_length: 8e-3,
-            principal_point: [512.0; 2],
-            aperture: 2e-3,
-            lens: Lens::CLEAR,
-            max_range: 20.0,
-        };
-        let beam = Beam {
-            columns: 128,
-            rows: 4,
-            thickness: 5e-3,
-            grid_distance: 0.1,
-            half_width: 0.0577,
-            max_range: 20.0,
-            power: 1.0,
-            wavelength: 810e-9,
-            profile: Profile::Paper,
-        };
-        let beams = [(1.8, 31.0), (2.0, 22.0)]
-            .map(|(height, down)| Mounted { scene_from_sensor: mount(height, down), sensor: beam });
-        let camera = Mounted { scene_from_sensor: mount(0.5, 5.0), sensor: camera };
-        let air = Atmosphere { attenuation: 0.0 };
-        Scene::new(Arc::new(mesh), camera, beams.to_vec(), air, FluxModel::Radiometric).unwrap()
-    }
-
-    #[test]
-    fn returns_on_nasty_grounds_agree_with_an_exhaustive_search_on_every_pencil() {
-        let mut seen = [0; 2];
-        for (seed, offset) in [(1, 0.0), (2, 0.0), (3, 0.0), (4, 3e4), (5, 0.0), (6, 2e6), (7, 0.0), (8, 0.0)]
-        {
-            let scene = rig_on(RandomGround::nasty(seed, 2500).build().into_mesh().unwrap(), offset);
-            let (all, eye) = (triangles(scene.mesh()), Eye::new(scene.camera()));
-            let sampling = if seed % 2 == 0 { Sampling::Centres } else { Sampling::Jittered { seed } };
-            let frame = crate::Tracer::new().render(&scene, &Request { sampling, ..Request::EVERYTHING });
-            let hierarchy = Hierarchy::build(scene.mesh(), crate::hierarchy::reach_of(&scene));
-            for (index, beam) in scene.beams().iter().enumerate() {
-                let rays = SensorRays::of_beam(beam, Grid::new(beam.sensor, index, sampling));
-                let visible = frame.returns[index].visible.as_ref().unwrap();
-                let cos_view = frame.returns[index].cos_view.as_ref().unwrap();
-                for (i, j) in (0..4).flat_map(|j| (0..128).map(move |i| (i, j))) {
-                    let pencil = rays.ray(i, j);
-                    let found = Search::new(&hierarchy).nearest(&pencil, rays.max_range());
-                    let expected = found.is_some_and(|met| {
-                        let point = met.hit(&pencil, 0.1).point;
-                        let view = eye.view(point);
-                        let depth = view.in_camera.z;
-                        let sight = Sight::new(eye.centre, 8e-3, point, depth, &pencil, &met);
-                        let faces_camera = cos_view.at(i, j).get().unwrap() > 0.0;
-                        faces_camera && view.pixel.is_some() && !exhaustive(&all, &sight)
-                    });
-                    assert_eq!(visible.at(i, j), expected, "beam {index}, pencil ({i}, {j}) of seed {seed}");
-                    seen[usize::from(expected)] += 1;
-                }
-            }
-        }
-        // Neither answer is rare.
-        assert!(seen.iter().all(|&count| count > 500), "{seen:?} hidden and seen");
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { max_shrink_iters: 200, ..ProptestConfig::default() })]
-
-        // From anywhere, along any line: pencils aimed at corners, edges and insides of faces, and cameras aimed so
-        // that the line of sight runs through a corner, an edge or the inside of another face, or along an axis.
-        #[test]
-        fn the_tree_hides_what_an_exhaustive_search_hides(
-            seed in any::<u64>(),
-            faces in 200usize..2000,
-            offset in prop_oneof![Just(0.0f32), Just(3e4), Just(2e6)],
-            aims in prop::collection::vec(
-                (any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0u8..4, 0.0f64..1.0, 0.0f64..1.0, 0.1f64..10.0),
-                40,
-            ),
-        ) {
-            let mesh = moved(&RandomGround::nasty(seed, faces).build().into_mesh().unwrap(), offset);
-            let all = triangles(&mesh);
-            let hierarchy = Hierarchy::build(&mesh, 60.0);
-            let mut occlusion = Occlusion::new(&hierarchy);
-            let mut search = Search::new(&hierarchy);
-            let place = |face: prop::sample::Index, kind: u8, u: f64, v: f64| {
-                let [a, b, c] = all[face.index(all.len())].vertices.map(widen);
-                match kind {
-                    0 => a,
-                    1 => a + (b - a) * u,
-                    _ => a + ((b - a) * u).lerp((c - a) * u, v),
-                }
-            };
-            for (target, between, kind, u, v, far) in aims {
-                let target = place(target, kind, u, v);
-                let from = target + DVec3::new(v - 0.5, u - 0.5, 1.0) * far;
-                let pencil = TracedRay::new(from, (target - from).normalize() * 0.01);
-                let Some(met) = search.nearest(&pencil, 20.0) else { continue };
-                let point = met.hit(&pencil, 0.01).point;
-                let centre = if kind == 3 {
-                    point + [DVec3::X, DVec3::NEG_Y, DVec3::Z][between.index(3)] * far
-                } else {
-                    let through = place(between, 2 - kind, v, u);
-                    // A fifth farther than what may be in the way, and not beyond the boxes' reach.
-                    point + ((through - point) * 1.2).clamp_length_max(50.0)
-                };
-                if centre == point {
-                    continue;
-                }
-                let sight = Sight::new(centre, 0.008, point, 0.8 * (point - centre).length(), &pencil, &met);
-                prop_assert_eq!(occlusion.hides(&sight), exhaustive(&all, &sight), "seed {}", seed);
-            }
-        }
-    }
-
-    /// Numbers from 0 to 1 for these tests. (Numerical Recipes' 64-bit generator, its upper bits)
-    struct Draws(u64);
-
-    impl Draws {
-        fn unit(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
-
-        fn below(&mut self, count: u32) -> u32 {
-            (self.unit() * f64::from(count)) as u32
-        }
-    }
-
-    /// A pencil that comes from beyond `point` and the face that it hits there, far away from any occluder and
-    /// slanting, so that nothing but the occluder counts.
-    fn lit(point: DVec3) -> (TracedRay, Found) {
-        let corners = [[0.0, 0.0, -900.0], [1.0, 0.0, -901.0], [0.0, 1.0, -903.0]];
-        let met = Found { triangle: Triangle::new(corners, FaceId(u32::MAX - 1)), t: 1.0 };
-        (TracedRay::new(point - DVec3::new(0.0, 0.3, 1.0), DVec3::new(0.0, 0.3, 1.0)), met)
-    }
-
-    #[test]
-    fn no_line_of_sight_slips_through_a_shared_edge_or_corner() {
-        // A sheet of 24 x 24 crumpled cells, so steep that a line from above meets fronts and backs: as a continuous
-        // surface it parts every point below it from every point above it, wherever a line crosses it.
-        const CELLS: u32 = 24;
-        let mut draws = Draws(7);
-        let mut vertices = Vec::new();
-        for (column, row) in (0..=CELLS).flat_map(|row| (0..=CELLS).map(move |column| (column, row))) {
-            let mut shaken = |index: u32| 0.3 * f64::from(index) + 0.2 * draws.unit();
-            let (x, y) = (shaken(column) as f32, shaken(row) as f32);
-            vertices.push([x, y, (2.0 * draws.unit() - 1.0) as f32]);
-        }
-        let mut faces = Vec::new();
-        for (column, row) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (column, row))) {
-            let at = |x: u32, y: u32| (row + y) * (CELLS + 1) + column + x;
-            let (a, b, c, d) = (at(0, 0), at(1, 0), at(1, 1), at(0, 1));
-            faces.extend(if draws.unit() < 0.5 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
-        }
-        let kinds = vec![Material { name: "sheet".into(), reflectivity: 0.5 }];
-        let mesh = Mesh::new(DVec3::ZERO, vertices, faces.clone(), vec![0; faces.len()], kinds).unwrap();
-        let hierarchy = Hierarchy::build(&mesh, 60.0);
-        let mut occlusion = Occlusion::new(&hierarchy);
-        for _ in 0..200_000 {
-            // Through a corner, an edge, or the inside of a face at least five cells from the border: the lines lean
-            // by less than 0.5, so that they cross heights -1 to 1 inside the sheet.
-            let (column, row) = (5 + draws.below(CELLS - 10), 5 + draws.below(CELLS - 10));
-            let face = faces[(2 * (row * CELLS + column) + draws.below(2)) as usize];
-            let [a, b, c] = face.map(|v| widen(mesh.vertices()[v as usize]));
-            let target = match draws.below(3) {
-                0 => a,
-                1 => a.lerp(b, draws.unit()),
-                _ => a.lerp(b, draws.unit()).lerp(c, draws.unit()),
-            };
-            let mut lean = || if draws.below(4) == 0 { 0.0 } else { draws.unit() - 0.5 };
-            let along = DVec3::new(lean(), lean(), 1.0);
-            let centre = target + along * (3.0 + draws.unit());
-            let point = target - along * (3.0 + draws.unit());
-            let (pencil, met) = lit(point);
-            let sight = Sight::new(centre, 1e-3, point, (point - centre).length(), &pencil, &met);
-            assert!(occlusion.hides(&sight), "from {centre} to {point}");
-        }
-    }
-
-    #[test]
-    fn whole_numbers_are_answered_as_integers_answer() {
-        // Corners, centre and point on a lattice, so that touching, running along an edge and ending on a face are
-        // frequent and f64 is exact: the definition itself, in i64, by volumes of tetrahedra.
-        let mut draws = Draws(3);
-        let mut counts = [0; 2];
-        for _ in 0..300_000 {
-            let mut whole = || [0; 3].map(|_: i64| i64::from(draws.below(7)) - 3);
-            let [a, b, c, o, p] = [whole(), whole(), whole(), whole(), whole()];
-            let minus = |a: [i64; 3], b: [i64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-            let volume = |u: [i64; 3], v: [i64; 3], w: [i64; 3]| {
-                u[0] * (v[1] * w[2] - v[2] * w[1])
-                    + u[1] * (v[2] * w[0] - v[0] * w[2])
-                    + u[2] * (v[0] * w[1] - v[1] * w[0])
-            };
-            let (d, [ao, bo, co]) = (minus(p, o), [a, b, c].map(|v| minus(v, o)));
-            if d == [0; 3] {
-                continue;
-            }
-            // The line passes on one side of all three edges; u = n.(a - o) / n.d from 1/4 to below 1.
-            let sides = [volume(d, ao, bo), volume(d, bo, co), volume(d, co, ao)];
-            let within = sides.iter().all(|&side| side >= 0) || sides.iter().all(|&side| side <= 0);
-            let along = volume(d, minus(b, a), minus(c, a));
-            let to_plane = volume(ao, minus(b, a), minus(c, a));
-            let (to_plane, along) = (to_plane * along.signum(), along.abs());
-            let expected = within && along != 0 && 4 * to_plane >= along && to_plane < along;
-
-            let float = |v: [i64; 3]| DVec3::new(v[0] as f64, v[1] as f64, v[2] as f64);
-            let corners = [a, b, c].map(|v| v.map(|x| x as f32));
-            let triangle = Triangle::new(corners, FaceId(0));
-            let (pencil, met) = lit(float(p));
-            let sight = Sight::new(float(o), 1.0, float(p), 4.0, &pencil, &met);
-            assert_eq!(sight.is_blocked_by(&triangle), expected, "{a:?} {b:?} {c:?} from {o:?} to {p:?}");
-            counts[usize::from(expected)] += 1;
-        }
-        assert!(counts[1] > 5000, "{counts:?} free and blocked");
-    }
-}
+#[path = "../tests/unit/occlusion.rs"]
+mod tests;

@@ -4,26 +4,26 @@ use glam::{DVec3, Vec3A};
 use obvhs::ray::Ray as BoxRay;
 use raypencil_scene::{Beam, Camera, Mounted, Pose, Sampling};
 
-/// One ray, made ready for many triangle tests.
+/// One ray, prepared for many triangle tests.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TracedRay {
-    /// Where it starts, scene frame, metres.
+    /// Start of the ray, scene frame, metres.
     pub(crate) origin: DVec3,
-    /// From the origin to the SPP, scene frame, metres.
+    /// Vector from the origin to the SPP, scene frame, metres.
     pub(crate) direction: DVec3,
     /// |direction|: metres per unit of t.
     pub(crate) metres_per_t: f64,
-    /// The axis along which the direction is longest, and the two others, in the order in which a face
-    /// whose front the ray meets runs counter-clockwise: see `triangle`.
+    /// The two shorter axes of the direction, then the longest. The first two are ordered so that a face whose
+    /// front the ray meets runs counter-clockwise in them: see `triangle`.
     pub(crate) axes: [usize; 3],
 }
 
 impl TracedRay {
     pub(crate) fn new(origin: DVec3, direction: DVec3) -> Self {
-        let along = direction.abs();
-        let longest = if along.x >= along.y && along.x >= along.z {
+        let size = direction.abs();
+        let longest = if size.x >= size.y && size.x >= size.z {
             0
-        } else if along.y >= along.z {
+        } else if size.y >= size.z {
             1
         } else {
             2
@@ -34,30 +34,30 @@ impl TracedRay {
         Self { origin, direction, metres_per_t: direction.length(), axes }
     }
 
-    /// The ray as obvhs knows it: f32, unit direction, so that its t is the range in metres.
-    pub(crate) fn for_boxes(&self, longest: f32) -> BoxRay {
+    /// The ray for obvhs: f32, with a unit direction, so that its t is the range in metres. It ends at `max_range`.
+    pub(crate) fn box_ray(&self, max_range: f32) -> BoxRay {
         let unit = self.direction / self.metres_per_t;
         let narrow = |v: DVec3| Vec3A::new(v.x as f32, v.y as f32, v.z as f32);
-        BoxRay::new(narrow(self.origin), narrow(unit), 0.0, longest)
+        BoxRay::new(narrow(self.origin), narrow(unit), 0.0, max_range)
     }
 }
 
-/// Where the rays of a beam's pencils cross its grid plane.
+/// A beam's grid: the points in which the rays of its pencils cross the grid plane.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Grid {
+pub(crate) struct PencilGrid {
     pub(crate) beam: Beam,
-    /// Of the beam in the scene: jittered rays are drawn by it.
+    /// Index of the beam in the scene. Jittered rays are drawn by it.
     index: usize,
     sampling: Sampling,
 }
 
-impl Grid {
+impl PencilGrid {
     pub(crate) fn new(beam: Beam, index: usize, sampling: Sampling) -> Self {
         Self { beam, index, sampling }
     }
 
-    /// x and y of the ray of pencil (i, j) on the grid plane, beam frame, metres. Its cell's middle, or the
-    /// place drawn in it: offsets are multiples of 2^-33, so i + dx is exact for every i.
+    /// x and y at which the ray of pencil (i, j) crosses the grid plane, beam frame, metres. This is the centre of
+    /// its cell, or the point drawn in the cell. Offsets are multiples of 2^-33, so i + dx is exact for every i.
     pub(crate) fn crossing(&self, i: u32, j: u32) -> (f64, f64) {
         let Beam { half_width, thickness, .. } = self.beam;
         let (columns, rows) = (f64::from(self.beam.columns), f64::from(self.beam.rows));
@@ -71,58 +71,58 @@ impl Grid {
 /// All rays of one sensor.
 #[derive(Debug)]
 pub(crate) struct SensorRays {
-    scene_from_sensor: Turn,
+    scene_from_sensor: Rotation,
     position: DVec3,
-    kind: Kind,
+    source: RaySource,
     max_range: f64,
 }
 
 #[derive(Debug)]
-enum Kind {
+enum RaySource {
     Camera(Camera),
-    Beam(Grid),
+    Beam(PencilGrid),
 }
 
 impl SensorRays {
     pub(crate) fn of_camera(mounted: &Mounted<Camera>) -> Self {
-        Self::new(mounted.scene_from_sensor, Kind::Camera(mounted.sensor), mounted.sensor.max_range)
+        Self::new(mounted.scene_from_sensor, RaySource::Camera(mounted.sensor), mounted.sensor.max_range)
     }
 
-    /// The rays that stand for the pencils of a beam, in its `grid`.
-    pub(crate) fn of_beam(mounted: &Mounted<Beam>, grid: Grid) -> Self {
-        Self::new(mounted.scene_from_sensor, Kind::Beam(grid), mounted.sensor.max_range)
+    /// The rays of a beam's pencils, one for each cell of its `grid`.
+    pub(crate) fn of_beam(mounted: &Mounted<Beam>, grid: PencilGrid) -> Self {
+        Self::new(mounted.scene_from_sensor, RaySource::Beam(grid), mounted.sensor.max_range)
     }
 
-    fn new(pose: Pose, kind: Kind, max_range: f64) -> Self {
-        Self { scene_from_sensor: Turn::of(&pose), position: pose.position, kind, max_range }
+    fn new(pose: Pose, source: RaySource, max_range: f64) -> Self {
+        Self { scene_from_sensor: Rotation::from_pose(&pose), position: pose.position, source, max_range }
     }
 
     /// Columns and rows.
     pub(crate) fn size(&self) -> (u32, u32) {
-        match &self.kind {
-            Kind::Camera(camera) => (camera.width, camera.height),
-            Kind::Beam(Grid { beam, .. }) => (beam.columns, beam.rows),
+        match &self.source {
+            RaySource::Camera(camera) => (camera.width, camera.height),
+            RaySource::Beam(PencilGrid { beam, .. }) => (beam.columns, beam.rows),
         }
     }
 
-    /// Longest range along a ray, metres.
+    /// Maximum range along a ray, metres.
     pub(crate) fn max_range(&self) -> f64 {
         self.max_range
     }
 
-    /// How far one unit of t leads along the sensor's normal axis, metres: f_c or g.
+    /// Depth along the sensor's normal axis per unit of t, metres: f_c or g.
     pub(crate) fn depth_per_t(&self) -> f64 {
-        match &self.kind {
-            Kind::Camera(camera) => camera.focal_length,
-            Kind::Beam(Grid { beam, .. }) => beam.grid_distance,
+        match &self.source {
+            RaySource::Camera(camera) => camera.focal_length,
+            RaySource::Beam(PencilGrid { beam, .. }) => beam.grid_distance,
         }
     }
 
     /// The ray of cell (i, j).
     pub(crate) fn ray(&self, i: u32, j: u32) -> TracedRay {
-        match &self.kind {
-            // From the projection centre through the middle of the pixel.
-            Kind::Camera(camera) => {
+        match &self.source {
+            // From the projection centre through the centre of the pixel.
+            RaySource::Camera(camera) => {
                 let [pitch_x, pitch_y] = camera.pixel_pitch;
                 let [centre_x, centre_y] = camera.principal_point;
                 let x = (f64::from(i) + 0.5 - centre_x) * pitch_x;
@@ -130,9 +130,9 @@ impl SensorRays {
                 let q = DVec3::new(x, y, camera.focal_length);
                 TracedRay::new(self.position, self.scene_from_sensor.apply(q))
             }
-            // From the focal axis at the height of the crossing, level through the grid plane. The two are
-            // kept apart: the origin of a ray is not on the projection centre.
-            Kind::Beam(grid) => {
+            // From the focal axis at the height y of the crossing, through the grid plane at the same height. (§5,
+            // figure 6: the thickness is constant.) The origin of the ray is not the origin of the beam.
+            RaySource::Beam(grid) => {
                 let (x, y) = grid.crossing(i, j);
                 let q = DVec3::new(x, 0.0, grid.beam.grid_distance);
                 let start = self.scene_from_sensor.apply(DVec3::new(0.0, y, 0.0));
@@ -145,23 +145,25 @@ impl SensorRays {
 /// The rotation of a pose, (q p q*) / (q . q), expanded as
 /// `((w^2 - u.u) p + 2 (u.p) u + 2 w (u x p)) / (w^2 + u.u)` for q = (u, w).
 #[derive(Debug)]
-pub(crate) struct Turn {
+pub(crate) struct Rotation {
     u: DVec3,
     w: f64,
-    along: f64,
+    /// w^2 - u.u
+    ww_minus_uu: f64,
+    /// w^2 + u.u
     norm_squared: f64,
 }
 
-impl Turn {
-    pub(crate) fn of(pose: &Pose) -> Self {
+impl Rotation {
+    pub(crate) fn from_pose(pose: &Pose) -> Self {
         let q = pose.rotation;
         let u = DVec3::new(q.x, q.y, q.z);
         let (ww, uu) = (q.w * q.w, u.dot(u));
-        Self { u, w: q.w, along: ww - uu, norm_squared: ww + uu }
+        Self { u, w: q.w, ww_minus_uu: ww - uu, norm_squared: ww + uu }
     }
 
     pub(crate) fn apply(&self, p: DVec3) -> DVec3 {
-        let sum = p * self.along + self.u * (2.0 * self.u.dot(p)) + self.u.cross(p) * (2.0 * self.w);
+        let sum = p * self.ww_minus_uu + self.u * (2.0 * self.u.dot(p)) + self.u.cross(p) * (2.0 * self.w);
         sum / self.norm_squared
     }
 }

@@ -1,128 +1,137 @@
-//! What comes back of a beam's pencils, each followed by itself: ground, line of sight, flux. (Paper, §5 and §6)
+//! The returns of a beam's pencils, one pencil at a time: ground, line of sight, flux. (Paper, §3, steps 2 to 5; §5
+//! and §6)
 
 use rayon::prelude::*;
 use raypencil_scene::{FaceId, Image, Mesh, Return, Returns, Scene};
 
-use crate::flux::{Light, Path};
+use crate::camera::PosedCamera;
+use crate::closest_hit::Intersection;
+use crate::flux::{FluxEquation, LightPath};
 use crate::hierarchy::Hierarchy;
-use crate::nearest::Found;
-use crate::occlusion::{Occlusion, Sight};
-use crate::rays::{Grid, SensorRays};
-use crate::shares::Shares;
+use crate::occlusion::{LineOfSight, OcclusionTraverser};
+use crate::rays::{PencilGrid, SensorRays};
+use crate::shares::PowerShares;
 use crate::triangle::{Triangle, widen};
-use crate::view::Eye;
 
-/// Which face a pencil hits, and at which t: what is kept of a search.
+/// The face that a pencil hits, and the t of the hit.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Met {
+pub(crate) struct PencilHit {
     pub(crate) face: FaceId,
     pub(crate) t: f64,
 }
 
-/// How many pencils are followed before their returns are written. Tuned: enough for any number of threads,
-/// and a memory of some megabytes however large the beam.
-const BATCH: usize = 1 << 17;
+/// Number of pencils that are traced before their returns are written. Tuned: enough for any number of threads, and
+/// a memory of some megabytes however large the beam.
+const PENCILS_PER_BATCH: usize = 1 << 17;
 
-/// All that it takes to follow the pencils of one beam.
-struct Follower<'a> {
+/// Everything that the returns of one beam depend on.
+struct BeamTracer<'a> {
     mesh: &'a Mesh,
     rays: &'a SensorRays,
-    shares: Shares,
-    light: Light,
-    eye: Eye,
+    shares: PowerShares,
+    flux_equation: FluxEquation,
+    camera: PosedCamera,
 }
 
-/// The returns of a beam and their flux on the camera's image. `met` is what its pencils hit, row by row.
-pub(crate) fn of_beam(
+/// The returns of a beam, and their flux on the camera's image. `hits` holds the hits of its pencils, row by row.
+pub(crate) fn trace_returns(
     scene: &Scene,
     hierarchy: &Hierarchy,
     rays: &SensorRays,
-    grid: Grid,
-    met: &[Option<Met>],
+    grid: PencilGrid,
+    hits: &[Option<PencilHit>],
 ) -> (Returns, Image<f64>) {
-    let follower = Follower {
+    let tracer = BeamTracer {
         mesh: scene.mesh(),
         rays,
-        shares: Shares::new(grid),
-        light: Light::new(scene, grid.beam.wavelength),
-        eye: Eye::new(scene.camera()),
+        shares: PowerShares::new(grid),
+        flux_equation: FluxEquation::new(scene, grid.beam.wavelength),
+        camera: PosedCamera::new(scene.camera()),
     };
     let (columns, rows) = rays.size();
     let camera = scene.camera().sensor;
     let mut returns = Returns::empty(columns, rows);
     let mut image = Image::filled(camera.width, camera.height, 0.0);
 
-    let place = |pencil: usize| ((pencil % columns as usize) as u32, (pencil / columns as usize) as u32);
+    let cell = |pencil: usize| ((pencil % columns as usize) as u32, (pencil / columns as usize) as u32);
     let mut batch = Vec::new();
-    for (start, met) in (0..).step_by(BATCH).zip(met.chunks(BATCH)) {
-        // Pencils are independent, so threads cannot change a bit.
-        met.par_iter()
+    for (start, hits) in (0..).step_by(PENCILS_PER_BATCH).zip(hits.chunks(PENCILS_PER_BATCH)) {
+        // Pencils are independent: the number of threads changes no bit.
+        hits.par_iter()
             .enumerate()
             .with_min_len(64)
             .map_init(
-                || Occlusion::new(hierarchy),
-                |occlusion, (index, met)| {
-                    let (i, j) = place(start + index);
-                    met.map(|met| follower.follow(occlusion, i, j, met))
+                || OcclusionTraverser::new(hierarchy),
+                |traverser, (index, hit)| {
+                    let (i, j) = cell(start + index);
+                    hit.map(|hit| tracer.trace_return(traverser, i, j, hit))
                 },
             )
             .collect_into_vec(&mut batch);
-        // One after another, in row-major order: each pixel's sum has one order of additions.
-        for (index, back) in batch.iter().enumerate() {
-            let Some(back) = back else { continue };
-            let (i, j) = place(start + index);
-            returns.put(i, j, back);
-            if let (true, Some(pixel)) = (back.visible, back.pixel) {
-                image.set(pixel.i, pixel.j, image.at(pixel.i, pixel.j) + back.flux);
+        // Row by row on one thread: the additions of each pixel's sum have one order.
+        for (index, pencil_return) in batch.iter().enumerate() {
+            let Some(pencil_return) = pencil_return else { continue };
+            let (i, j) = cell(start + index);
+            returns.put(i, j, pencil_return);
+            if let (true, Some(pixel)) = (pencil_return.visible, pencil_return.pixel) {
+                image.set(pixel.i, pixel.j, image.at(pixel.i, pixel.j) + pencil_return.flux);
             }
         }
     }
     (returns, image)
 }
 
-impl Follower<'_> {
-    /// What comes back of pencil (i, j), which has `met` a face.
-    fn follow(&self, occlusion: &mut Occlusion, i: u32, j: u32, met: Met) -> Return {
+impl BeamTracer<'_> {
+    /// The return of pencil (i, j), which has the given hit.
+    fn trace_return(&self, traverser: &mut OcclusionTraverser, i: u32, j: u32, hit: PencilHit) -> Return {
         let pencil = self.rays.ray(i, j);
-        let corners = self.mesh.faces()[met.face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
-        let met = Found { triangle: Triangle::new(corners, met.face), t: met.t };
-        let hit = met.hit(&pencil, self.rays.depth_per_t());
+        let vertices = self.mesh.faces()[hit.face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
+        let intersection = Intersection { triangle: Triangle::new(vertices, hit.face), t: hit.t };
+        let hit = intersection.hit(&pencil, self.rays.depth_per_t());
 
-        // The camera's side of it. A point in the very projection centre has no angles: it counts as seen at
-        // right angles to everything.
-        let view = self.eye.view(hit.point);
-        let (depth, distance) = (view.in_camera.z, view.distance);
-        let (cos_off_axis, cos_view) = if distance == 0.0 {
+        // The camera's angles. A point exactly in the projection centre has none; both cosines are 0 there.
+        let observed = self.camera.observe(hit.point);
+        let (depth, distance) = (observed.in_camera.z, observed.distance);
+        let (cos_phi, cos_theta) = if distance == 0.0 {
             (0.0, 0.0)
         } else {
-            // cos(theta) = n.(c - P) / (|n| d), and n.(c - P) = n.(c - a): a corner is not rounded, so that a
-            // camera in the face's own plane gets its 0 wherever the numbers are dyadic.
-            let normal = met.triangle.normal();
-            let above = normal.dot(self.eye.centre - widen(met.triangle.vertices[0]));
-            (depth / distance, above / normal.length() / distance)
+            // cos(theta) = n.(c - P) / (|n| d), and n.(c - P) = n.(c - a). The vertex a is not rounded, so a camera
+            // in the face's own plane gets exactly 0 wherever the numbers are dyadic.
+            let normal = intersection.triangle.normal();
+            let n_dot_offset = normal.dot(self.camera.centre - widen(intersection.triangle.vertices[0]));
+            (depth / distance, n_dot_offset / normal.length() / distance)
         };
 
-        // Seen: from the front, beyond the image plane and on the image, with nothing in between.
-        let focal_length = self.eye.camera.focal_length;
-        let lands = view.pixel.filter(|_| cos_view > 0.0);
-        let seen = lands.filter(|_| {
-            let sight = Sight::new(self.eye.centre, focal_length, hit.point, depth, &pencil, &met);
-            !occlusion.hides(&sight)
+        // Visible: from the front, beyond the image plane and on the image, with nothing in between. (Contract)
+        let focal_length = self.camera.intrinsics.focal_length;
+        let front_pixel = observed.pixel.filter(|_| cos_theta > 0.0);
+        let visible_pixel = front_pixel.filter(|_| {
+            let centre = self.camera.centre;
+            let line_of_sight =
+                LineOfSight::new(centre, focal_length, hit.point, depth, &pencil, &intersection);
+            !traverser.is_occluded(&line_of_sight)
         });
-        let flux = seen.map_or(0.0, |pixel| {
+        let flux = visible_pixel.map_or(0.0, |pixel| {
             let material = self.mesh.face_materials()[hit.face.0 as usize];
-            self.light.flux(&Path {
-                power: self.shares.of(i, j),
+            self.flux_equation.flux(&LightPath {
+                power: self.shares.power(i, j),
                 range: hit.range,
-                cos_incidence: hit.cos_incidence,
+                cos_psi: hit.cos_incidence,
                 reflectivity: self.mesh.materials()[usize::from(material)].reflectivity,
-                cos_view,
+                cos_theta,
                 depth,
                 distance,
-                point: view.in_camera,
-                through_middle: self.eye.through_middle(pixel),
+                point: observed.in_camera,
+                pixel_ray: self.camera.pixel_ray(pixel),
             })
         });
-        Return { visible: seen.is_some(), pixel: view.pixel, depth, cos_off_axis, cos_view, flux }
+        Return {
+            visible: visible_pixel.is_some(),
+            pixel: observed.pixel,
+            depth,
+            cos_off_axis: cos_phi,
+            cos_view: cos_theta,
+            flux,
+        }
     }
 }

@@ -1,50 +1,51 @@
-//! How a beam's power spreads over its pencils: P_k. (Paper, equation (1), A_bp cos(alpha) / A_b; contract: flux)
+//! The power P_k of each pencil of a beam. (Paper, equation (1), A_bp cos(alpha) / A_b; contract: flux)
 
 use rayon::prelude::*;
 use raypencil_scene::Profile;
 
-use crate::rays::Grid;
+use crate::rays::PencilGrid;
 
-/// The power of each pencil of a beam.
+/// The shares of a beam's power that its pencils carry.
 #[derive(Debug)]
-pub(crate) struct Shares {
-    grid: Grid,
-    /// Watts of a pencil of weight 1.
-    per_weight: f64,
-    /// alpha^2 of the pencil nearest to the normal axis, rad^2; for the Gaussian profile.
-    least: f64,
+pub(crate) struct PowerShares {
+    grid: PencilGrid,
+    /// Power of a pencil of weight 1, watts.
+    watts_per_weight: f64,
+    /// alpha^2 of the pencil nearest to the normal axis, rad^2. Used by the Gaussian profile.
+    min_alpha_squared: f64,
 }
 
-impl Shares {
-    pub(crate) fn new(grid: Grid) -> Self {
+impl PowerShares {
+    pub(crate) fn new(grid: PencilGrid) -> Self {
         let (columns, rows) = (grid.beam.columns, grid.beam.rows);
-        let mut shares = Self { grid, per_weight: 1.0, least: 0.0 };
-        let sum = match grid.beam.profile {
-            // A_bp / A_b is the same for all of them.
+        let mut shares = Self { grid, watts_per_weight: 1.0, min_alpha_squared: 0.0 };
+        let divisor = match grid.beam.profile {
+            // A_bp / A_b is the same for all pencils.
             Profile::Paper => f64::from(columns) * f64::from(rows),
             Profile::UniformAngle => shares.sum_of_weights(),
             Profile::Gaussian { .. } => {
-                // The pencil nearest to the axis gets the weight 1, the others theirs in proportion: a beam
-                // much narrower than a pencil would else have the weight 0 in all of them.
-                let least_of_row =
+                // The pencil nearest to the axis gets the weight 1, the others theirs in proportion. Otherwise a
+                // beam much narrower than a pencil would have the weight 0 in all of them.
+                let min_of_row =
                     |j| (0..columns).map(|i| shares.alpha_squared(i, j)).fold(f64::MAX, f64::min);
-                shares.least = (0..rows).into_par_iter().map(least_of_row).reduce(|| f64::MAX, f64::min);
+                shares.min_alpha_squared =
+                    (0..rows).into_par_iter().map(min_of_row).reduce(|| f64::MAX, f64::min);
                 shares.sum_of_weights()
             }
         };
-        shares.per_weight = grid.beam.power / sum;
+        shares.watts_per_weight = grid.beam.power / divisor;
         shares
     }
 
     /// P_k of pencil (i, j), watts.
-    pub(crate) fn of(&self, i: u32, j: u32) -> f64 {
-        self.weight(i, j) * self.per_weight
+    pub(crate) fn power(&self, i: u32, j: u32) -> f64 {
+        self.weight(i, j) * self.watts_per_weight
     }
 
-    /// Over all pencils, hit or not: rows on any thread, added in their order.
+    /// The sum over all pencils, hit or not. Rows are summed on any thread and added in their order.
     fn sum_of_weights(&self) -> f64 {
-        let of_row = |j| (0..self.grid.beam.columns).map(|i| self.weight(i, j)).sum();
-        let rows: Vec<f64> = (0..self.grid.beam.rows).into_par_iter().map(of_row).collect();
+        let sum_of_row = |j| (0..self.grid.beam.columns).map(|i| self.weight(i, j)).sum();
+        let rows: Vec<f64> = (0..self.grid.beam.rows).into_par_iter().map(sum_of_row).collect();
         rows.iter().sum()
     }
 
@@ -59,11 +60,13 @@ impl Shares {
             Profile::Paper => cos_squared().sqrt(),
             Profile::UniformAngle => cos_squared(),
             Profile::Gaussian { half_width } => {
-                libm::exp(-2.0 * ((self.alpha_squared(i, j) - self.least) / (half_width * half_width)))
+                let above_min = self.alpha_squared(i, j) - self.min_alpha_squared;
+                libm::exp(-2.0 * (above_min / (half_width * half_width)))
             }
         }
     }
 
+    /// alpha^2 of pencil (i, j), rad^2.
     fn alpha_squared(&self, i: u32, j: u32) -> f64 {
         let (x, _) = self.grid.crossing(i, j);
         let alpha = libm::atan(x / self.grid.beam.grid_distance);
@@ -72,80 +75,5 @@ impl Shares {
 }
 
 #[cfg(test)]
-mod tests {
-    use raypencil_scene::{Beam, Sampling};
-
-    use super::*;
-
-    const PAPER: Beam = Beam {
-        columns: 1024,
-        rows: 4,
-        thickness: 5e-3,
-        grid_distance: 0.1,
-        // 0.1 tan 30 degrees.
-        half_width: 0.057_735_026_918_962_574,
-        max_range: 20.0,
-        power: 2.0,
-        wavelength: 810e-9,
-        profile: Profile::Paper,
-    };
-    const JITTERED: Sampling = Sampling::Jittered { seed: 5 };
-
-    fn total(beam: Beam, sampling: Sampling) -> f64 {
-        let shares = Shares::new(Grid::new(beam, 0, sampling));
-        (0..beam.rows)
-            .flat_map(|j| (0..beam.columns).map(move |i| (i, j)))
-            .map(|(i, j)| shares.of(i, j))
-            .sum()
-    }
-
-    #[test]
-    fn the_paper_loses_a_twentieth_of_the_laser() {
-        // The mean of cos(alpha) over tan(alpha), ln(sec a + tan a) / tan a at a = 30 degrees:
-        // ln(3 / sqrt 3) / (1 / sqrt 3) = (sqrt 3 / 2) ln 3 = 0.951426... The midpoint sum over 1024 columns
-        // is off by h^2 / 24 times the difference of slopes, 1e-8.
-        let lost = 2.0 * 0.5 * 3f64.sqrt() * libm::log(3.0);
-        assert!((total(PAPER, Sampling::Centres) - lost).abs() < 1e-6);
-        // Stratified: the standard deviation is far below that of 4096 free draws, 0.04 / 64.
-        assert!((total(PAPER, JITTERED) - lost).abs() < 1e-4);
-    }
-
-    #[test]
-    fn the_other_profiles_add_up_to_the_laser() {
-        for profile in [Profile::UniformAngle, Profile::Gaussian { half_width: 0.2 }] {
-            for sampling in [Sampling::Centres, JITTERED] {
-                // 4096 additions of about 2^-52 of 2 W each at the most.
-                assert!((total(Beam { profile, ..PAPER }, sampling) - 2.0).abs() < 2e-12);
-            }
-        }
-    }
-
-    #[test]
-    fn weights_are_those_of_the_profile() {
-        // Four columns at x = -3w/4, -w/4, w/4, 3w/4 with w = g tan 30 degrees = g / sqrt 3: the outer
-        // pencils have tan(alpha) = 3/4 / sqrt 3, cos^2(alpha) = 1 / (1 + 3/16) = 16/19, the inner ones
-        // tan(alpha) = 1/4 / sqrt 3, cos^2(alpha) = 1 / (1 + 1/48) = 48/49. The ratio is 784 / 912 = 49/57.
-        let beam = Beam { columns: 4, rows: 1, ..PAPER };
-        let ratio = |profile| {
-            let shares = Shares::new(Grid::new(Beam { profile, ..beam }, 0, Sampling::Centres));
-            shares.of(0, 0) / shares.of(1, 0)
-        };
-        assert!((ratio(Profile::UniformAngle) - 49.0 / 57.0).abs() < 1e-15);
-        assert!((ratio(Profile::Paper) - (49.0_f64 / 57.0).sqrt()).abs() < 1e-15);
-        // 0.4086379^2 - 0.1433476^2 = 0.1669849 - 0.0205485 rad^2: times -2 / 0.4^2, exp(-1.8304548) = 0.1603407.
-        let half_width = 0.4;
-        let (outer, inner) = (libm::atan(0.75 / 3f64.sqrt()), libm::atan(0.25 / 3f64.sqrt()));
-        let gaussian = libm::exp(-2.0 * (outer * outer - inner * inner) / 0.16);
-        assert!((ratio(Profile::Gaussian { half_width }) - gaussian).abs() < 1e-15);
-        assert!((gaussian - 0.160_340_7).abs() < 1e-7);
-    }
-
-    #[test]
-    fn a_beam_narrower_than_a_pencil_goes_to_the_middle_ones() {
-        // exp(-2 (alpha / w)^2) of the innermost pencils, alpha = 5.6e-4 rad, is exp(-6e5): 0 in f64. They still
-        // share the 2 W: two columns of four rows.
-        let beam = Beam { profile: Profile::Gaussian { half_width: 1e-6 }, ..PAPER };
-        let shares = Shares::new(Grid::new(beam, 0, Sampling::Centres));
-        assert!((shares.of(511, 2) - 0.25).abs() < 1e-9 && shares.of(510, 2) == 0.0);
-    }
-}
+#[path = "../tests/unit/shares.rs"]
+mod tests;

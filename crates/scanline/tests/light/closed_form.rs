@@ -1,8 +1,8 @@
-//! Equation (1) and the radiometric model on a plane wall, by hand.
+//! Equation (1) and the radiometric model on a plane wall, against numbers derived by hand.
 
 use raypencil_scene::{Filter, FluxModel, Pixel, Profile};
 
-use crate::rig::{Rig, at, back, four_pencils, one_pencil, reversed, sum, wall};
+use crate::rig::{Rig, at, four_pencils, one_pencil, return_at, reversed, sum, wall};
 
 /// The scene of `Rig::new`, in air of sigma = 0.1 / m.
 ///
@@ -25,8 +25,8 @@ const PROFILES: [Profile; 3] = [Profile::Paper, Profile::UniformAngle, Profile::
 ///   of whose sum, twice, it is 0.02779301
 const SHARES: [f64; 3] = [0.8, 17.0 / 21.0, 4.0 * 0.027_793_005_388_567_366];
 
-/// A filter at 900 nm, 40 nm wide, n_eff = 2, and the wavelength 20 nm above where its centre seems to be from the
-/// last pencil's point: sin^2(phi) = 5/9, 900 sqrt(1 - 5/36) = 835.164654 nm. So F(phi) = 1/2 there.
+/// A filter at 900 nm, 40 nm wide, n_eff = 2. For the last pencil's point sin^2(phi) = 5/9, so its centre shifts to
+/// 900 sqrt(1 - 5/36) = 835.164654 nm. The wavelength is 20 nm above that: F(phi) = 1/2.
 const FILTER: Filter = Filter::Interference { centre: 900e-9, width: 40e-9, index: 2.0 };
 const WAVELENGTH: f64 = 855.164_654_424_503_3e-9;
 
@@ -37,12 +37,12 @@ fn assert_close(a: f64, b: f64) {
 
 #[test]
 fn geometry_of_a_return() {
-    let back = rig(FluxModel::Radiometric, Profile::Paper).pencil(3);
-    assert!(back.visible);
-    assert_eq!(back.pixel, Some(Pixel { i: 160, j: 192 }));
-    assert_close(back.depth, 2.0);
-    assert_close(back.cos_off_axis, 2.0 / 3.0);
-    assert_close(back.cos_view, 2.0 / 3.0);
+    let returned = rig(FluxModel::Radiometric, Profile::Paper).pencil_return(3);
+    assert!(returned.visible);
+    assert_eq!(returned.pixel, Some(Pixel { i: 160, j: 192 }));
+    assert_close(returned.depth, 2.0);
+    assert_close(returned.cos_off_axis, 2.0 / 3.0);
+    assert_close(returned.cos_view, 2.0 / 3.0);
 }
 
 #[test]
@@ -52,17 +52,17 @@ fn radiometric_flux() {
     let of_one_watt = 1e-6 / 90.0 * 0.576_949_810_380_486_7;
     for (profile, share) in PROFILES.into_iter().zip(SHARES) {
         let mut rig = rig(FluxModel::Radiometric, profile);
-        assert_close(rig.pencil(3).flux, share * of_one_watt);
+        assert_close(rig.pencil_return(3).flux, share * of_one_watt);
         rig.camera.lens.filter = FILTER;
         rig.beams[0].sensor.wavelength = WAVELENGTH;
-        assert_close(rig.pencil(3).flux, share * of_one_watt / 2.0);
+        assert_close(rig.pencil_return(3).flux, share * of_one_watt / 2.0);
     }
 }
 
 #[test]
 fn flux_by_equation_1() {
     // phi is that of the centre of pixel (160, 192), tan^2(phi) = (32.25^2 + 64.25^2) / 64^2 = 1.261749, so
-    // cos^4(phi) = 0.195483940 and sin^2(phi) = 0.557864342. F(phi): the filter's centre seems to be at
+    // cos^4(phi) = 0.195483940 and sin^2(phi) = 0.557864342. F(phi): the filter's centre shifts to
     // 900 sqrt(1 - 0.139466) = 834.884705 nm, 20.279949 nm below the wavelength: exp(-4 ln 2 0.506999^2) = 0.490324628.
     // I = P r_d (pi/4)(D/f_c)^2 C_loss F A_cp cos^4(phi) cos(theta) cos(psi) / (R r^2) e^(-0.2) e^(-0.25)
     //   = P 0.25 (pi/4) 0.256^2 0.9 F 8192^-2 0.195483940 (2/3)(4/5) / 10 0.637628151.
@@ -74,19 +74,19 @@ fn flux_by_equation_1() {
         * 0.637_628_151_621_773_3;
     for (profile, share) in PROFILES.into_iter().zip(SHARES) {
         let mut rig = rig(FluxModel::Eq1, profile);
-        assert_close(rig.pencil(3).flux, share * of_one_watt);
+        assert_close(rig.pencil_return(3).flux, share * of_one_watt);
         rig.camera.lens.filter = FILTER;
         rig.beams[0].sensor.wavelength = WAVELENGTH;
-        assert_close(rig.pencil(3).flux, share * of_one_watt * 0.490_324_627_604_355_47);
+        assert_close(rig.pencil_return(3).flux, share * of_one_watt * 0.490_324_627_604_355_47);
     }
 }
 
 #[test]
 fn flux_falls_with_the_square_of_depth_and_equation_1_with_range_too() {
-    // Camera and laser in one place, a pencil along both axes: R = r = d, all cosines are 1.
+    // Camera and laser are in one place, and the pencil runs along both axes: R = r = d, all cosines are 1.
     let flux = |model, z| {
         let beams = vec![at(0.0, -2.0, 0.0, one_pencil())];
-        Rig { faces: vec![wall(z)], beams, model, ..Rig::new() }.pencil(0).flux
+        Rig { faces: vec![wall(z)], beams, model, ..Rig::new() }.pencil_return(0).flux
     };
     // 1 W 0.25 0.9 1e-6 / 4.
     assert_close(flux(FluxModel::Radiometric, 2.0), 0.225e-6 / 4.0);
@@ -96,10 +96,10 @@ fn flux_falls_with_the_square_of_depth_and_equation_1_with_range_too() {
 
 #[test]
 fn the_models_differ_by_a_factor_of_angles_and_range() {
-    // Without air, without a filter and with one phi, equation (1) is the other times
-    // pi (A_cp / f_c^2) cos(phi) cos(psi) / R; A_cp / f_c^2 = 1/64^2. The pixel's centre is at cos^2(phi) = 0.442135658,
-    // the point's own phi at 4/9.
-    let flux = |model| Rig { attenuation: 0.0, ..rig(model, Profile::Paper) }.pencil(3).flux;
+    // Without air, without a filter and with one phi, equation (1) is the radiometric flux times
+    // pi (A_cp / f_c^2) cos(phi) cos(psi) / R, with A_cp / f_c^2 = 1/64^2. cos^2(phi) of the pixel's centre is
+    // 0.442135658, that of the point 4/9.
+    let flux = |model| Rig { attenuation: 0.0, ..rig(model, Profile::Paper) }.pencil_return(3).flux;
     let cos_4_phi = (4.0_f64 / 9.0) * (4.0 / 9.0);
     let at_own_phi = flux(FluxModel::Eq1) * cos_4_phi / 0.195_483_939_820_31;
     let factor = std::f64::consts::PI / 4096.0 * (2.0 / 3.0) * 0.8 / 2.5;
@@ -108,18 +108,18 @@ fn the_models_differ_by_a_factor_of_angles_and_range() {
 
 #[test]
 fn a_face_reflects_by_its_own_material() {
-    // Beyond x = 0, which the last two pencils reach, there is a darker face in front.
+    // The wall is split at x = 1/2 m. The last pencil hits the right face, which gets a darker material.
     let darker = [[0.5, -40.0, 2.0], [0.5, 40.0, 2.0], [40.0, 0.0, 2.0]];
-    let mut rig = Rig::new().and(&[darker]);
+    let mut rig = Rig::new().with(&[darker]);
     rig.faces[0] = [[0.5, -40.0, 2.0], [-40.0, 0.0, 2.0], [0.5, 40.0, 2.0]];
-    let bright = rig.pencil(3).flux;
+    let bright = rig.pencil_return(3).flux;
     rig.reflectivities = vec![0.25, 0.05];
-    assert_close(rig.pencil(3).flux, bright / 5.0);
-    assert_close(rig.pencil(0).flux, Rig::new().pencil(0).flux);
+    assert_close(rig.pencil_return(3).flux, bright / 5.0);
+    assert_close(rig.pencil_return(0).flux, Rig::new().pencil_return(0).flux);
 }
 
 #[test]
-fn a_pixel_has_the_sum_of_its_pencils_in_their_order() {
+fn the_flux_of_a_pixel_is_the_sum_over_its_pencils_in_their_order() {
     let mut rig = Rig::new();
     rig.beams[0].sensor = raypencil_scene::Beam { columns: 1024, rows: 16, ..four_pencils() };
     rig.beams.push(at(-0.4, 0.1, 0.0, four_pencils()));
@@ -130,10 +130,10 @@ fn a_pixel_has_the_sum_of_its_pencils_in_their_order() {
         let returns = &frame.returns[beam];
         for j in 0..returns.rows {
             for i in 0..returns.columns {
-                let back = back(&frame, beam, i, j).unwrap();
-                let Some(pixel) = back.pixel.filter(|_| back.visible) else { continue };
-                assert!(back.flux > 0.0);
-                expected[(pixel.j * 256 + pixel.i) as usize] += back.flux;
+                let returned = return_at(&frame, beam, i, j).unwrap();
+                let Some(pixel) = returned.pixel.filter(|_| returned.visible) else { continue };
+                assert!(returned.flux > 0.0);
+                expected[(pixel.j * 256 + pixel.i) as usize] += returned.flux;
             }
         }
         assert_eq!(image.cells(), expected);
@@ -143,38 +143,38 @@ fn a_pixel_has_the_sum_of_its_pencils_in_their_order() {
 
 #[test]
 fn a_point_off_the_image_has_no_pixel_and_no_flux() {
-    // Pitches half as large: the screen ends at x/z = 127.75/128, and the point is at y/z = 1.
+    // With half the pitch the screen ends at x/z = 127.75/128. The point is at y/z = 1.
     let mut rig = Rig::new();
     rig.camera.pixel_pitch = [1.0 / 16384.0; 2];
-    let back = rig.pencil(3);
-    assert_eq!((back.pixel, back.visible, back.flux), (None, false, 0.0));
-    assert_close(back.depth, 2.0);
-    assert_close(back.cos_view, 2.0 / 3.0);
-    // Nor has one behind the camera, whose depth is negative: the wall is seen from (0, -2, 4), at its back.
+    let returned = rig.pencil_return(3);
+    assert_eq!((returned.pixel, returned.visible, returned.flux), (None, false, 0.0));
+    assert_close(returned.depth, 2.0);
+    assert_close(returned.cos_view, 2.0 / 3.0);
+    // A point behind the camera has a negative depth: the camera is at (0, -2, 4), behind the wall, and looks away.
     let mut rig = Rig::new();
     rig.scene_from_camera.position.z = 4.0;
-    let back = rig.pencil(3);
-    assert_eq!((back.pixel, back.visible, back.flux), (None, false, 0.0));
-    assert_close(back.depth, -2.0);
-    assert_close(back.cos_off_axis, -2.0 / 3.0);
-    assert_close(back.cos_view, -2.0 / 3.0);
-    // Or in front of the SPP: f_c = 1/128 m, and the wall 1/256 m away.
+    let returned = rig.pencil_return(3);
+    assert_eq!((returned.pixel, returned.visible, returned.flux), (None, false, 0.0));
+    assert_close(returned.depth, -2.0);
+    assert_close(returned.cos_off_axis, -2.0 / 3.0);
+    assert_close(returned.cos_view, -2.0 / 3.0);
+    // A point in front of the SPP: f_c = 1/128 m, and the wall is 1/256 m away.
     let mut rig = Rig::new();
     rig.scene_from_camera.position.z = 2.0 - 1.0 / 256.0;
-    assert_eq!((rig.pencil(3).pixel, rig.pencil(3).visible), (None, false));
+    assert_eq!((rig.pencil_return(3).pixel, rig.pencil_return(3).visible), (None, false));
 }
 
 #[test]
-fn a_point_whose_front_is_turned_away_is_not_visible_but_lands() {
-    // The camera behind the wall, at z = 4, turned about y to look back.
+fn a_point_on_a_back_is_not_visible_but_has_a_pixel() {
+    // The camera is behind the wall, at z = 4, and looks back: half a turn about y.
     let mut rig = Rig::new();
     rig.scene_from_camera.position.z = 4.0;
     rig.scene_from_camera.rotation = glam::DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0);
-    let back = rig.pencil(3);
-    // Its x runs the other way: (-1, 2, 2).
-    assert_eq!(back.pixel, Some(Pixel { i: 96, j: 192 }));
-    assert_close(back.cos_view, -2.0 / 3.0);
-    assert_eq!((back.visible, back.flux), (false, 0.0));
-    // A second wall facing the camera in the same place shows it nothing of the laser either.
-    assert!(!rig.and(&[reversed(wall(2.0))]).pencil(3).visible);
+    let returned = rig.pencil_return(3);
+    // Its x axis is reversed: the point is at (-1, 2, 2).
+    assert_eq!(returned.pixel, Some(Pixel { i: 96, j: 192 }));
+    assert_close(returned.cos_view, -2.0 / 3.0);
+    assert_eq!((returned.visible, returned.flux), (false, 0.0));
+    // A second wall in the same place, facing the camera, does not make the point visible.
+    assert!(!rig.with(&[reversed(wall(2.0))]).pencil_return(3).visible);
 }

@@ -1,4 +1,4 @@
-//! What the camera sees of the pencils, on scenes whose numbers are derived beside them.
+//! The camera's view of the pencils, on scenes whose numbers are derived beside them.
 
 mod closed_form;
 mod hidden;

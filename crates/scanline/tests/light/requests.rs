@@ -1,7 +1,7 @@
-//! What is asked for is given, what cannot be given is left out, and the same bits come from any number of
-//! threads.
+//! Requests: the quantities asked for are rendered, unsupported ones are left out, and the number of threads changes no
+//! bit.
 
-use raypencil_scanline::{Options, Scanline, Switches};
+use raypencil_scanline::{Scanline, ScanlineOptions, Switches};
 use raypencil_scene::{Filter, Lens, Quantities, Renderer, Request, Returns, Sampling};
 use raypencil_terrain::{RandomGround, builtin};
 
@@ -26,11 +26,11 @@ fn returns_do_not_depend_on_what_else_is_asked_for() {
 }
 
 #[test]
-fn jittered_pencils_are_not_answered() {
+fn jittered_pencils_are_unsupported() {
     let scene = rig_on(builtin("pyramids", 0.25).unwrap(), 5e-3);
     let jittered = Request { sampling: Sampling::Jittered { seed: 1 }, ..Request::EVERYTHING };
     let frame = Scanline::exact().render(&scene, &jittered);
-    // The camera's map has no pencils.
+    // Sampling does not concern the camera's own map.
     assert_eq!(frame.camera, Scanline::exact().render(&scene, &Request::MAPS).camera);
     assert_eq!(frame.returns, [Returns::unsupported(256, 4), Returns::unsupported(256, 4)]);
     assert!(frame.flux.is_empty());
@@ -50,20 +50,21 @@ fn one_thread_and_two_give_the_same_bits() {
     let on = |threads: usize| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let scene = rig_on(RandomGround::nasty(3, 30_000).build(), 0.02);
     for switches in [Switches::EXACT, Switches::PAPER] {
-        let options = Options { switches, ..Options::EXACT };
+        let options = ScanlineOptions { switches, ..ScanlineOptions::EXACT };
         let [one, two] = [1, 2].map(|threads| on(threads).install(|| render(&scene, options)));
         assert!(one.returns == two.returns && one.flux == two.flux);
     }
 }
 
 #[test]
-fn tables_that_are_kept_are_those_of_the_scene() {
-    // One renderer for scenes that differ in one thing after the other, against a new renderer for each.
-    let kept = Scanline::exact();
+fn cached_tables_are_those_of_the_scene() {
+    // One renderer for a series of scenes, each of which differs from the last in one number, against a new renderer for
+    // each.
+    let caching = Scanline::exact();
     let mut rig = Rig { model: raypencil_scene::FluxModel::Eq1, ..Rig::new() };
     let check = |rig: &Rig| {
-        let (kept, new) = (kept.render(&rig.scene(), &Request::EVERYTHING), rig.render());
-        assert!(kept.returns == new.returns && kept.flux == new.flux);
+        let (cached, new) = (caching.render(&rig.scene(), &Request::EVERYTHING), rig.render());
+        assert!(cached.returns == new.returns && cached.flux == new.flux);
         new.returns[0].flux.clone().unwrap().at(3, 0)
     };
     let clear = check(&rig);

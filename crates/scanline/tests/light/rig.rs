@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use raypencil_scanline::{Options, Scanline};
+use raypencil_scanline::{Scanline, ScanlineOptions};
 use raypencil_scene::{
     Atmosphere, Beam, Camera, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Profile, RenderOutput,
     Renderer, Request, Return, Scene,
@@ -12,11 +12,11 @@ use raypencil_terrain::{Ground, height_at};
 
 pub(crate) type Face = [[f32; 3]; 3];
 
-/// Everything that a test may want to change.
+/// The numbers of a scene, to be changed and then rendered.
 #[derive(Clone)]
 pub(crate) struct Rig {
     pub(crate) faces: Vec<Face>,
-    /// Reflectivity of the faces, of all by turns.
+    /// Reflectivities; the k-th face has the k-th, cyclically.
     pub(crate) reflectivities: Vec<f64>,
     pub(crate) camera: Camera,
     pub(crate) scene_from_camera: Pose,
@@ -25,7 +25,7 @@ pub(crate) struct Rig {
     pub(crate) model: FluxModel,
 }
 
-/// The screen reaches from about -2 to 2 in x/z and y/z. Pixel (i, j) holds x/z from (i - 128.25)/64.
+/// A camera whose screen reaches from about -2 to 2 in x/z and y/z. Pixel (i, j) begins at x/z = (i - 128.25)/64.
 pub(crate) fn camera() -> Camera {
     Camera {
         width: 256,
@@ -39,7 +39,7 @@ pub(crate) fn camera() -> Camera {
     }
 }
 
-/// Four pencils in one row, at x/z = -3/4, -1/4, 1/4, 3/4. Its grid is 1/8 m away.
+/// A beam of four pencils in one row, at x/z = -3/4, -1/4, 1/4, 3/4. Its grid is 1/8 m away.
 pub(crate) fn four_pencils() -> Beam {
     Beam {
         columns: 4,
@@ -54,7 +54,7 @@ pub(crate) fn four_pencils() -> Beam {
     }
 }
 
-/// One pencil straight along its beam's axis.
+/// A beam of one pencil along its axis.
 pub(crate) fn one_pencil() -> Beam {
     Beam { columns: 1, power: 1.0, ..four_pencils() }
 }
@@ -64,7 +64,7 @@ pub(crate) fn wall(z: f32) -> Face {
     [[-40.0, -40.0, z], [0.0, 40.0, z], [40.0, -40.0, z]]
 }
 
-/// The same face seen from the other side.
+/// The same face with front and back exchanged.
 pub(crate) fn reversed([a, b, c]: Face) -> Face {
     [a, c, b]
 }
@@ -74,8 +74,8 @@ pub(crate) fn at<S>(x: f64, y: f64, z: f64, sensor: S) -> Mounted<S> {
 }
 
 impl Rig {
-    /// The camera at (0, -2, 0) and four pencils at (-1/2, 0, 0), all looking along z at a wall at 2 m. The last
-    /// pencil runs at x/z = 3/4 and hits (1, 0, 2), which is (1, 2, 2) from the camera.
+    /// A camera at (0, -2, 0) and four pencils from (-1/2, 0, 0), all looking along z at a wall at 2 m. The last
+    /// pencil runs at x/z = 3/4 and hits (1, 0, 2), which is (1, 2, 2) in the camera's frame.
     pub(crate) fn new() -> Self {
         Self {
             faces: vec![wall(2.0)],
@@ -88,8 +88,8 @@ impl Rig {
         }
     }
 
-    /// With more faces.
-    pub(crate) fn and(mut self, faces: &[Face]) -> Self {
+    /// Adds faces.
+    pub(crate) fn with(mut self, faces: &[Face]) -> Self {
         self.faces.extend(faces);
         self
     }
@@ -112,13 +112,13 @@ impl Rig {
     }
 
     /// The return of one pencil of the first beam.
-    pub(crate) fn pencil(&self, i: u32) -> Return {
-        back(&self.render(), 0, i, 0).expect("a hit")
+    pub(crate) fn pencil_return(&self, i: u32) -> Return {
+        return_at(&self.render(), 0, i, 0).expect("a hit")
     }
 }
 
-/// The return of a pencil that hits.
-pub(crate) fn back(frame: &RenderOutput, beam: usize, i: u32, j: u32) -> Option<Return> {
+/// The return of pencil (i, j), or `None` if it has no hit.
+pub(crate) fn return_at(frame: &RenderOutput, beam: usize, i: u32, j: u32) -> Option<Return> {
     let returns = &frame.returns[beam];
     Some(Return {
         depth: returns.depth.as_ref()?.at(i, j).get()?,
@@ -130,7 +130,7 @@ pub(crate) fn back(frame: &RenderOutput, beam: usize, i: u32, j: u32) -> Option<
     })
 }
 
-/// The default rig, its rasters four times coarser, on a ground; a sheet of that thickness, metres.
+/// The default rig on a ground, with rasters four times coarser and sheets of that thickness, metres.
 pub(crate) fn rig_on(ground: Ground, thickness: f64) -> Scene {
     let mesh = Arc::new(ground.into_mesh().expect("a valid ground"));
     let z = height_at(&mesh, 0.0, 0.0).expect("ground under the vehicle");
@@ -163,15 +163,15 @@ pub(crate) fn rig_on(ground: Ground, thickness: f64) -> Scene {
     Scene::new(mesh, camera, beams.to_vec(), air, FluxModel::Radiometric).expect("a valid scene")
 }
 
-/// The rig on a ground, skipping or not.
-pub(crate) fn render(scene: &Scene, options: Options) -> RenderOutput {
+/// Renders everything with these options.
+pub(crate) fn render(scene: &Scene, options: ScanlineOptions) -> RenderOutput {
     Scanline::new(options).render(scene, &Request::EVERYTHING)
 }
 
-/// Numbers without a pattern, in -1..1: a linear congruence (D. Knuth's MMIX).
-pub(crate) struct Numbers(pub(crate) u64);
+/// Pseudo-random numbers in -1..1, from a linear congruential generator (D. Knuth's MMIX).
+pub(crate) struct RandomNumbers(pub(crate) u64);
 
-impl Numbers {
+impl RandomNumbers {
     pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
@@ -181,7 +181,7 @@ impl Numbers {
         DVec3::new(self.next(), self.next(), self.next())
     }
 
-    /// Of no particular length.
+    /// A rotation by a small angle; the quaternion is not a unit.
     pub(crate) fn rotation(&mut self) -> DQuat {
         DQuat::from_xyzw(0.2 * self.next(), 0.2 * self.next(), 0.2 * self.next(), 1.0)
     }

@@ -1,4 +1,4 @@
-//! `beam-edges = paper`: where straight sides leave the true ones, by how much, and where they do not.
+//! `beam-edges = paper`: where straight sides differ from the exact curves, by how much, and where they agree.
 
 use raypencil_scanline::Switches;
 use raypencil_scene::{Beam, FaceId};
@@ -14,22 +14,23 @@ fn thick() -> Beam {
     square_beam(1024, 5, 0.078125, 20.0)
 }
 
-/// The plane z = 2 - (64/5) y: it is 1 m further away at the top of the sheet than at its bottom.
-const TOP: f32 = -0.078125;
-const BOTTOM: f32 = 0.078125;
+// y at which faces end, metres: half a thickness above and below the sheet. The plane z = 2 - (64/5) y is at z = 3 m and
+// 1 m there. At the top of the sheet it is 1 m farther away than at its bottom.
+const UPPER_Y_M: f32 = -0.078125;
+const LOWER_Y_M: f32 = 0.078125;
 
-/// A face with a side from (-2.25, TOP, 3) to (1.75, BOTTOM, 1); its third corner, at y = 0, z = 2, is far
-/// out at `x`. All else of it is beyond the screen.
+/// A face in that plane, with a side from (-2.25, UPPER_Y_M, 3) to (1.75, LOWER_Y_M, 1). Its third corner, at y = 0,
+/// z = 2, is far out at `x`. Its other sides are beyond the screen.
 fn leaning_side(x: f32) -> Face {
-    towards_origin([[-2.25, TOP, 3.0], [1.75, BOTTOM, 1.0], [x, 0.0, 2.0]])
+    towards_origin([[-2.25, UPPER_Y_M, 3.0], [1.75, LOWER_Y_M, 1.0], [x, 0.0, 2.0]])
 }
 
 #[test]
 fn a_leaning_side_is_off_by_64_columns() {
     // The sheet cuts the side at y = -T/2 in (-1.25, z = 2.5), x/z = -1/2, and at y = T/2 in (0.75, z = 1.5),
-    // x/z = 1/2. Row 2, halfway: the side is at (-0.25, z = 2), x/z = -1/8; the straight line at x/z = 0.
-    // A column is 1/512 wide: 64 columns between. First column from -128/1024 on: 2i - 1023 >= -128, i = 448.
-    // From 0 on: i = 512.
+    // x/z = 1/2. In row 2, halfway, the side is at (-0.25, z = 2), x/z = -1/8, and the straight line at x/z = 0.
+    // A column is 1/512 wide, so they are 64 columns apart. The first column from -128/1024 on has
+    // 2i - 1023 >= -128: i = 448. The first from 0 on is i = 512.
     let scene = seen_by_beam(&[leaning_side(1000.0)], thick());
     let (exact, paper) = (beam_map(&scene, Switches::EXACT), beam_map(&scene, BEAM_EDGES));
     assert_eq!(columns_hit(&exact, 2), (448..1024).collect::<Vec<_>>());
@@ -52,8 +53,8 @@ fn a_leaning_side_is_off_by_64_columns() {
 
 #[test]
 fn a_pencil_between_line_and_curve_hits_the_plane_of_the_face() {
-    // The same side with the face on its left: the straight line adds columns 448 to 511 in row 2, at the
-    // range of the plane, which row 2 meets at z = 2 everywhere.
+    // The same side with the face on its left. The straight line adds columns 448 to 511 in row 2, at the range of
+    // the plane, which row 2 meets at z = 2 everywhere.
     let scene = seen_by_beam(&[leaning_side(-1000.0)], thick());
     let (exact, paper) = (beam_map(&scene, Switches::EXACT), beam_map(&scene, BEAM_EDGES));
     assert_eq!(columns_hit(&exact, 2), (0..448).collect::<Vec<_>>());
@@ -65,7 +66,7 @@ fn a_pencil_between_line_and_curve_hits_the_plane_of_the_face() {
 
 #[test]
 fn two_faces_agree_on_the_line_between_them() {
-    // Both faces of that side: every pencil hits one, on either side of the same line, in both forms.
+    // Both faces of that side: every pencil hits one of them, with straight and with exact sides.
     let scene = seen_by_beam(&[leaning_side(-1000.0), leaning_side(1000.0)], thick());
     for (switches, first_of_second) in [(Switches::EXACT, 448), (BEAM_EDGES, 512)] {
         let map = beam_map(&scene, switches);
@@ -77,11 +78,11 @@ fn two_faces_agree_on_the_line_between_them() {
 }
 
 #[test]
-fn the_error_goes_with_the_thickness() {
-    // The same face cut by a sheet of 5/1024 m (4.9 mm), which it recedes through by 1/16 m, and runs across
-    // by 1/8 m: ends at x = -0.25 -+ 1/16, z = 2 +- 1/32. The middle of the line is at
-    // (-0.3125/2.03125 - 0.1875/1.96875) / 2 = -0.124543, of the curve at -0.125: 0.23 columns. On the
-    // middle row columns begin at half columns from -0.125: the same.
+fn a_thin_sheet_covers_the_same_columns() {
+    // The same face cut by a sheet of 5/1024 m (4.9 mm). Within the sheet the side moves by 1/16 m in z and by 1/8 m in
+    // x: its ends are at x = -0.25 -+ 1/16, z = 2 +- 1/32. The middle of the straight line is at
+    // (-0.3125/2.03125 - 0.1875/1.96875) / 2 = -0.124543, that of the curve at -0.125: 0.23 columns apart. The nearest
+    // column centres of the middle row are half a column from -0.125, so both cover the same columns.
     let scene = seen_by_beam(&[leaning_side(1000.0)], Beam { thickness: 5.0 / 1024.0, ..thick() });
     let (exact, paper) = (beam_map(&scene, Switches::EXACT), beam_map(&scene, BEAM_EDGES));
     assert_eq!(columns_hit(&exact, 2), columns_hit(&paper, 2));
@@ -89,15 +90,15 @@ fn the_error_goes_with_the_thickness() {
 
 #[test]
 fn vertical_and_horizontal_lines_stay_lines() {
-    // One side in the plane x/z = -1/2, one in a row (y = BOTTOM, beyond the sheet), the third beyond the
-    // screen: there is nothing to tell line from curve.
-    let vertical = towards_origin([[-1.5, TOP, 3.0], [-0.5, BOTTOM, 1.0], [1000.0, BOTTOM, 1.0]]);
+    // One side in the plane x/z = -1/2, one along a row (y = LOWER_Y_M, beyond the sheet), the third beyond the
+    // screen: straight line and curve are the same.
+    let vertical = towards_origin([[-1.5, UPPER_Y_M, 3.0], [-0.5, LOWER_Y_M, 1.0], [1000.0, LOWER_Y_M, 1.0]]);
     // A horizontal side within the sheet, at y = 1/64, from which the face reaches up; its slanting sides
     // are beyond the screen.
     let z = 1.8; // 2 - (64/5) / 64
-    let horizontal = towards_origin([[-1000.0, 0.015625, z], [1000.0, 0.015625, z], [0.0, TOP, 3.0]]);
-    // All of it at one z: any side is straight.
-    let upright = towards_origin([[-1.0, TOP, 2.0], [0.3, BOTTOM, 2.0], [1.1, TOP, 2.0]]);
+    let horizontal = towards_origin([[-1000.0, 0.015625, z], [1000.0, 0.015625, z], [0.0, UPPER_Y_M, 3.0]]);
+    // A face at one z: all its sides are straight.
+    let upright = towards_origin([[-1.0, UPPER_Y_M, 2.0], [0.3, LOWER_Y_M, 2.0], [1.1, UPPER_Y_M, 2.0]]);
     for face in [vertical, horizontal, upright] {
         let scene = seen_by_beam(&[face], thick());
         let exact = beam_map(&scene, Switches::EXACT);
@@ -108,8 +109,8 @@ fn vertical_and_horizontal_lines_stay_lines() {
 
 #[test]
 fn clipping_at_the_grid_plane_leaves_what_is_beyond() {
-    // Figure 9, one vertex behind and two behind. The plane z = 1/8 + 64 (1/100 - y) leaves the grid plane
-    // downwards at y = 0.01: rows at -0.03125, -0.015625 and 0 meet it beyond, those below do not.
+    // Figure 9, one vertex behind and two behind. The plane z = 1/8 + 64 (1/100 - y) crosses the grid plane at
+    // y = 0.01. The rows at -0.03125, -0.015625 and 0 meet it beyond the grid plane, those below do not.
     let z = |y: f32| 0.125 + 64.0 * (0.01 - y);
     let two_behind: Face = [[-900.0, 0.05, z(0.05)], [900.0, 0.05, z(0.05)], [0.0, -9.0, z(-9.0)]];
     let one_behind: Face = [[-900.0, -0.05, z(-0.05)], [900.0, -0.05, z(-0.05)], [0.0, 0.9, z(0.9)]];
@@ -122,7 +123,7 @@ fn clipping_at_the_grid_plane_leaves_what_is_beyond() {
 }
 
 #[test]
-fn skipping_what_is_unseen_changes_no_map() {
+fn skipping_unseen_faces_changes_no_map() {
     for seed in 0..4 {
         let scene = rig_on(RandomGround::nasty(seed, 2000).build(), 0.08, 9.0);
         for switches in [Switches::EXACT, BEAM_EDGES] {
@@ -132,16 +133,16 @@ fn skipping_what_is_unseen_changes_no_map() {
 }
 
 #[test]
-fn the_camera_is_not_concerned() {
+fn beam_edges_do_not_change_the_cameras_map() {
     let scene = rig_on(RandomGround::nasty(3, 2000).build(), 0.08, 20.0);
     assert_eq!(camera_map(&scene, Switches::EXACT), camera_map(&scene, BEAM_EDGES));
 }
 
 #[test]
 fn ground_has_no_cracks() {
-    // A height field is hit wherever it is hit exactly, however thick the sheet: shared sides are one line.
-    // The paper's claim holds on gentle ground, too: its faces are small, and few pencils in a thousand get
-    // another face, even at T = 80 mm.
+    // On a height field every pencil has a hit in both forms, however thick the sheet: a shared side is one line. The
+    // paper's claim holds on gentle ground: its faces are small, and a few pencils in a thousand get another face,
+    // even at T = 80 mm.
     for seed in 0..4 {
         let scene = rig_on(RandomGround::plain(seed, 4000, 40.0).build(), 0.08, 100.0);
         let (exact, paper) = (render(&scene, Switches::EXACT), render(&scene, BEAM_EDGES));

@@ -1,5 +1,5 @@
-//! `skip-rules = paper`: for each rule of §4 a scene on which the printed form changes nothing, and one on
-//! which it loses or adds hits; or, where it can do neither, why.
+//! `skip-rules = paper`: for each rule of §4, scenes in which the printed form changes nothing, and scenes in which it
+//! loses or adds hits; or the reason why it can do neither.
 
 use raypencil_scanline::Switches;
 use raypencil_scene::FluxModel;
@@ -11,34 +11,34 @@ use crate::scenes::{
     towards_origin,
 };
 
-/// Farther than any vertex of the grounds here: rule 3b skips nothing.
-const FAR: f64 = 1e3;
+/// A maximum range beyond all vertices of the grounds here, metres: rule 3b skips nothing.
+const RANGE_BEYOND_ALL_VERTICES_M: f64 = 1e3;
 
 #[test]
 fn rules_1a_3a_and_3c_lose_no_pixel() {
-    // 1a and 3a: a face whose vertices are all in an open half-space lies in it. The half-spaces are z < f
-    // and those beyond the planes through the projection centre and a border of the screen; none holds a
-    // point that a pixel sees. 3c: the sides are straight, so a screen that none of them meets is within the
-    // triangle, and then its centre is, or apart from it. 1b: all rays start in one point, which sees every
-    // part of a face from one side. Only 3b can lose a pixel, and here no vertex is too far.
+    // 1a and 3a: a face whose vertices are all in an open half-space lies in it. The half-spaces are z < f and those
+    // beyond the planes through the projection centre and a border of the screen. None contains a point that a pixel
+    // sees. 3c: the sides are straight. A screen that none of them meets is within the triangle, with its centre, or
+    // apart from it. 1b: all rays start in one point, which sees every part of a face from one side. Only 3b can lose
+    // a pixel, and here no vertex is too far.
     for seed in 0..6 {
-        let scene = rig_on(RandomGround::nasty(seed, 2000).build(), 5e-3, FAR);
+        let scene = rig_on(RandomGround::nasty(seed, 2000).build(), 5e-3, RANGE_BEYOND_ALL_VERTICES_M);
         let exact = camera_map(&scene, Switches::EXACT);
         assert!(hits(&exact) > 10_000);
         assert_eq!(exact, camera_map(&scene, Switches::PAPER));
     }
     for name in BUILTIN_NAMES {
-        let scene = rig_on(builtin(name, 0.25).unwrap(), 5e-3, FAR);
+        let scene = rig_on(builtin(name, 0.25).unwrap(), 5e-3, RANGE_BEYOND_ALL_VERTICES_M);
         assert_eq!(camera_map(&scene, Switches::EXACT), camera_map(&scene, Switches::PAPER));
     }
 }
 
 #[test]
 fn rules_3a_and_3c_skip_nothing_of_a_clipped_beam() {
-    // What is clipped to the stripe has all its vertices in the screen: 3a and 3c do not apply, and no
-    // vertex is too far for 3b. 1b is asked on either side.
+    // A triangle that is clipped to the stripe has all its vertices in the screen: 3a and 3c do not apply, and no vertex
+    // is too far for 3b. 1b is applied with and without skipping.
     for seed in 0..6 {
-        let scene = rig_on(RandomGround::nasty(seed, 2000).build(), 0.08, FAR);
+        let scene = rig_on(RandomGround::nasty(seed, 2000).build(), 0.08, RANGE_BEYOND_ALL_VERTICES_M);
         let paper = render(&scene, Switches::PAPER);
         assert!(hits(&paper.beams[0]) > 2000);
         assert!(same_maps(&paper, &render_unskipped(&scene, Switches::PAPER)));
@@ -46,10 +46,10 @@ fn rules_3a_and_3c_skip_nothing_of_a_clipped_beam() {
 }
 
 #[test]
-fn rule_1a_drops_what_is_in_front_of_the_spp_and_nothing_else() {
-    // The SPP is at 1/128 m. A face at z = 1/256 m is skipped; of one with a single vertex beyond, at
-    // (0, 0, 2), the part beyond stays. Its plane holds the line y = 1, z = -1 and that vertex:
-    // y = (2 - z) / 3. Straight down the axis, y = 0, it is met at z = 2.
+fn rule_1a_skips_faces_in_front_of_the_spp_and_no_others() {
+    // The SPP is at 1/128 m. A face at z = 1/256 m is skipped. A face with one vertex beyond the SPP, at (0, 0, 2), is
+    // hit in the part beyond. Its plane contains the line y = 1, z = -1 and that vertex: y = (2 - z) / 3. On the axis,
+    // y = 0, it is at z = 2.
     let near: Face = [[-1.0, -1.0, 0.00390625], [1.0, -1.0, 0.00390625], [0.0, 1.0, 0.00390625]];
     let across: Face = [[-4.0, 1.0, -1.0], [4.0, 1.0, -1.0], [0.0, 0.0, 2.0]];
     let scene = seen_by_camera(&[near, towards_origin(near)], square_camera(20.0));
@@ -63,13 +63,13 @@ fn rule_1a_drops_what_is_in_front_of_the_spp_and_nothing_else() {
     assert!((range(&paper, 64, 64).unwrap() - z * length).abs() < 1e-12);
 }
 
-/// T = 1/16 m and four rows: y = -3/128, -1/128, 1/128, 3/128.
+/// A beam of T = 1/16 m with four rows: y = -3/128, -1/128, 1/128, 3/128.
 fn four_rows() -> raypencil_scene::Beam {
     square_beam(64, 4, 0.0625, 20.0)
 }
 
-/// A face whose front looks up (-y), in the plane y = `at_origin` + `slope` z from z = 1 to 9. At z = 2 it
-/// is 14 m wide, and the fan 4 m.
+/// A face whose front looks up (-y), in the plane y = `at_origin` + `slope` z from z = 1 to 9. At z = 2 it is 14 m wide;
+/// the fan is 4 m wide there.
 fn floor(at_origin: f32, slope: f32) -> Face {
     let y = |z: f32| at_origin + slope * z;
     // n = (16, 0, 0) x (8, 8 slope, 8) = (0, -128, 128 slope).
@@ -92,8 +92,8 @@ fn rule_1b_is_right_where_all_rows_see_one_side() {
 #[test]
 fn rule_1b_loses_a_row_that_sees_the_front_where_the_middle_sees_the_back() {
     // Ground that rises as y = -2/128 - z/256. At the focal axis it is at -2/128: below row 0's origin at
-    // -3/128, above those of the others and above (0, 0, 0). So row 0 sees its front, at
-    // z = 256 (3 - 2)/128 = 2, the other rows look away from it, and the paper's one decision is "back".
+    // -3/128, above those of the others and above (0, 0, 0). So row 0 sees its front, at z = 256 (3 - 2)/128 = 2.
+    // The other rows see its back, and the paper's one decision is "back".
     let scene = seen_by_beam(&[floor(-2.0 / 128.0, -1.0 / 256.0)], four_rows());
     let exact = beam_map(&scene, Switches::EXACT);
     assert_eq!((columns_hit(&exact, 0).len(), hits(&exact)), (64, 64));
@@ -123,9 +123,9 @@ fn rule_1b_adds_a_row_that_sees_the_back_where_the_middle_sees_the_front() {
 }
 
 #[test]
-fn what_rule_1b_adds_returns_by_its_own_normal_and_not_by_equation_1() {
-    // The same ground. The camera stands at the beam's origin and sees the front, which row 3 meets from below at
-    // z = 2, y = 3/128: it lands in row 64 + 64 (3/256) = 64.75, and cos(theta) > 0.
+fn a_hit_that_rule_1b_adds_returns_flux_except_by_equation_1() {
+    // The same ground. The camera stands at the beam's origin and sees the front. Row 3 hits it from below at z = 2,
+    // y = 3/128, which is in image row 64 + 64 (3/256) = 64.75; and cos(theta) > 0.
     let faces = [floor(2.0 / 128.0, 1.0 / 256.0)];
     for (model, delivers) in [(FluxModel::Radiometric, true), (FluxModel::Eq1, false)] {
         let scene = seen_by_both(&faces, &[([0.0; 3], four_rows())], model);
@@ -135,7 +135,7 @@ fn what_rule_1b_adds_returns_by_its_own_normal_and_not_by_equation_1() {
         assert!(returns.cos_view.as_ref().unwrap().at(32, 3).get().unwrap() > 0.0);
         assert!(returns.visible.as_ref().unwrap().at(32, 3));
         assert_eq!(returns.pixel.as_ref().unwrap().at(32, 3).get().map(|pixel| pixel.j), Some(64));
-        // Equation (1) has cos(psi), and power is not negative; the other model has not.
+        // Equation (1) has the factor cos(psi) < 0, and power is not negative. The other model has no such factor.
         let flux = returns.flux.as_ref().unwrap().at(32, 3);
         assert_eq!((flux > 0.0, flux == 0.0), (delivers, !delivers));
     }
@@ -148,18 +148,18 @@ fn rule_3b_loses_pixels_nearer_than_all_vertices() {
     let wall = towards_origin([[-8.0, -8.0, 10.0], [8.0, -8.0, 10.0], [0.0, 8.0, 10.0]]);
     let at =
         |max_range: f64, switches| camera_map(&seen_by_camera(&[wall], square_camera(max_range)), switches);
-    // Of 12 m: in range is x^2 + y^2 <= 44, above the lower and between the slanting sides.
+    // A maximum range of 12 m: x^2 + y^2 <= 44 is in range, within the lower and the two slanting sides.
     let pixel = |i: u32| 10.0 * (f64::from(i) + 0.5 - 64.0) / 64.0;
-    let seen = |i: u32, j: u32| {
+    let in_range = |i: u32, j: u32| {
         let (x, y) = (pixel(i), pixel(j));
         x * x + y * y <= 44.0 && y >= -8.0 && 2.0 * x.abs() <= 8.0 - y
     };
-    let count = (0..128).flat_map(|j| (0..128).map(move |i| (i, j))).filter(|&(i, j)| seen(i, j)).count();
+    let count = (0..128).flat_map(|j| (0..128).map(move |i| (i, j))).filter(|&(i, j)| in_range(i, j)).count();
     let exact = at(12.0, Switches::EXACT);
     assert_eq!(hits(&exact), count);
     assert!(count > 2000 && range(&exact, 64, 64).is_some_and(|range| range < 10.01));
     assert_eq!(hits(&at(12.0, SKIP_RULES)), 0);
-    // Of 13 m one vertex is in range, and of 9 m nothing at all is: the rule changes nothing.
+    // With 13 m one vertex is in range, with 9 m nothing is: the rule changes nothing.
     for max_range in [13.0, 9.0] {
         assert_eq!(at(max_range, Switches::EXACT), at(max_range, SKIP_RULES));
     }
@@ -176,14 +176,14 @@ fn rule_3b_loses_the_whole_stripe_on_a_wall() {
     assert_eq!(hits(&beam_map(&scene, BEAM_EDGES)), 4 * 42);
     // The wall's own vertices are not in the screen: the rule does not apply.
     assert_eq!(hits(&beam_map(&scene, SKIP_RULES)), 4 * 42);
-    // Clipped to the stripe it is a rectangle, whose vertices, at |x| = z, all are, at 14.1 m.
+    // Clipped to the stripe it is a rectangle with vertices at |x| = z. All are in the screen, at a range of 14.1 m.
     assert_eq!(hits(&beam_map(&scene, Switches::PAPER)), 0);
     // With a maximum range of 15 m they are in range, and nothing is lost.
     let scene = seen_by_beam(&[wall], square_beam(64, 4, 0.0625, 15.0));
     assert_eq!(beam_map(&scene, Switches::EXACT), beam_map(&scene, Switches::PAPER));
 }
 
-/// A face from (a_0 z, -8, z) and (a_1 z, -8, z) at z = `top` down to (5, 8, 1).
+/// A face from (-z, -8, z) and (0, -8, z) at z = `top` down to (5, 8, 1).
 fn leaning(top: f32) -> Face {
     towards_origin([[-top, -8.0, top], [0.0, -8.0, top], [5.0, 8.0, 1.0]])
 }
@@ -191,9 +191,9 @@ fn leaning(top: f32) -> Face {
 #[test]
 fn rule_3c_loses_faces_with_curved_sides() {
     // The vertices are at x/z = -1, 0 and 5, y = -8, -8 and 8. Straight sides between them pass the sheet,
-    // y = 0, at x/z = (-1 + 5) / 2 = 2 and 2.5, beyond the screen, which ends at 1. But the upper vertices
-    // are at z = 7 and the lower at z = 1, and what the plane y = 0 cuts is halfway in space:
-    // x/z = (-7 + 5) / (7 + 1) = -1/4 and (0 + 5) / 8 = 5/8.
+    // y = 0, at x/z = (-1 + 5) / 2 = 2 and 2.5, beyond the screen, which ends at 1. But the upper vertices are at z = 7
+    // and the lower one at z = 1. The plane y = 0 cuts the sides halfway in space: x/z = (-7 + 5) / (7 + 1) = -1/4 and
+    // (0 + 5) / 8 = 5/8.
     let beam = square_beam(64, 2, 0.0625, 20.0);
     let scene = seen_by_beam(&[leaning(7.0)], beam);
     let exact = beam_map(&scene, Switches::EXACT);
@@ -210,12 +210,12 @@ fn rule_3c_loses_faces_with_curved_sides() {
 #[test]
 fn rule_3c_is_right_where_sides_are_straight_or_the_centre_is_within() {
     let beam = square_beam(64, 2, 0.0625, 20.0);
-    // All vertices at z = 1: sides are straight, pass beyond the screen, and the face is not seen.
+    // All vertices at z = 1: the sides are straight and pass beyond the screen, so the face is not seen.
     let scene = seen_by_beam(&[leaning(1.0)], beam);
     let exact = beam_map(&scene, Switches::EXACT);
     assert_eq!(hits(&exact), 0);
     assert_eq!(exact, beam_map(&scene, SKIP_RULES));
-    // No vertex or side meets the screen, its centre is in the triangle: the face is seen everywhere.
+    // No vertex or side meets the screen, but its centre is in the triangle: the face is seen everywhere.
     let around = towards_origin([[-40.0, -40.0, 2.0], [40.0, -40.0, 2.0], [0.0, 40.0, 2.0]]);
     let scene = seen_by_beam(&[around], beam);
     let exact = beam_map(&scene, Switches::EXACT);
@@ -225,8 +225,9 @@ fn rule_3c_is_right_where_sides_are_straight_or_the_centre_is_within() {
 
 #[test]
 fn rule_3a_is_right_for_curved_sides_too() {
-    // Left of the screen is x < -z, a half-space: three vertices at x/z = -1.1 and beyond, however far
-    // apart in z, have nothing in it; one at x/z = -0.5 may. So for y above and below the sheet.
+    // Left of the screen is the half-space x < -z. A face with three vertices at x/z = -1.1 and beyond, however far apart
+    // in z, has no point in the screen. A face with one vertex at x/z = -0.5 may have. The same holds for y above and
+    // below the sheet.
     let beam = square_beam(64, 2, 0.0625, 20.0);
     let left: Face = [[-1.1, -8.0, 1.0], [-9.9, 8.0, 9.0], [-30.0, 8.0, 20.0]];
     let above: Face = [[-4.0, -0.04, 1.0], [4.0, -0.04, 1.0], [0.0, -0.5, 9.0]];
@@ -247,11 +248,11 @@ fn rule_3a_is_right_for_curved_sides_too() {
 
 #[test]
 fn rule_3c_loses_part_of_a_stripe_on_the_papers_own_facets() {
-    // A known limit of the printed rule where faces are not clipped to the stripe: the facets are metres
-    // large, and the straight lines between their vertices pass the screen of a sheet of 5 mm where the
-    // curves do not. It is rule 3c: without rules 3 nothing is lost, 3a is right, and nothing is too far for
-    // 3b. The paper, which clips, loses nothing.
-    let scene = rig_on(builtin("facets", 0.25).unwrap(), 5e-3, FAR);
+    // A known limit of the printed rule where faces are not clipped to the stripe. The facets are metres large. The
+    // straight lines between their vertices miss the screen of a 5 mm sheet where the curves meet it. The loss is by rule
+    // 3c: without rules 3 nothing is lost, 3a is right, and nothing is too far for 3b. The paper, which clips, loses
+    // nothing.
+    let scene = rig_on(builtin("facets", 0.25).unwrap(), 5e-3, RANGE_BEYOND_ALL_VERTICES_M);
     let exact = render(&scene, Switches::EXACT);
     let printed = render(&scene, SKIP_RULES);
     assert!(hits(&printed.beams[0]) < hits(&exact.beams[0]));

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
+use raypencil_scanline::{Fidelity, Scanline, ScanlineOptions, Switches};
 use raypencil_scene::{
     Atmosphere, Beam, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Profile, RenderOutput,
     Renderer, Request, Scene, SensorMap,
@@ -13,7 +13,7 @@ use raypencil_terrain::{Ground, height_at};
 
 pub(crate) type Face = [[f32; 3]; 3];
 
-/// A camera of 128 x 128 pixels whose screen reaches from -1 to 1 in x/z and y/z: pixel (i, j) looks at
+/// A camera of 128 x 128 pixels whose screen reaches from -1 to 1 in x/z and y/z. The ray of pixel (i, j) has
 /// x/z = (i + 1/2 - 64) / 64.
 pub(crate) fn square_camera(max_range: f64) -> Camera {
     Camera {
@@ -28,8 +28,8 @@ pub(crate) fn square_camera(max_range: f64) -> Camera {
     }
 }
 
-/// A beam whose screen reaches from -1 to 1 in x/z: pencil (i, j) runs at x/z = (2i + 1 - columns) / columns
-/// and y = T (2j + 1 - rows) / (2 rows). Its grid is 1/8 m away.
+/// A beam whose screen reaches from -1 to 1 in x/z. Pencil (i, j) runs at x/z = (2i + 1 - columns) / columns and
+/// y = T (2j + 1 - rows) / (2 rows). Its grid is 1/8 m away.
 pub(crate) fn square_beam(columns: u32, rows: u32, thickness: f64, max_range: f64) -> Beam {
     Beam {
         columns,
@@ -66,7 +66,7 @@ pub(crate) fn seen_by_beam(faces: &[Face], beam: Beam) -> Scene {
         .expect("a valid scene")
 }
 
-/// `square_camera` at the scene's origin and beams at those places, all looking along z.
+/// `square_camera` at the scene's origin and beams at the given positions, all looking along z.
 pub(crate) fn seen_by_both(faces: &[Face], beams: &[([f64; 3], Beam)], model: FluxModel) -> Scene {
     let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: square_camera(20.0) };
     let mounted = |&(position, sensor): &([f64; 3], Beam)| Mounted {
@@ -77,7 +77,7 @@ pub(crate) fn seen_by_both(faces: &[Face], beams: &[([f64; 3], Beam)], model: Fl
     Scene::new(mesh_of(faces), camera, beams, Atmosphere { attenuation: 0.0 }, model).expect("a valid scene")
 }
 
-/// The default rig on a ground, with another thickness and range.
+/// The default rig on a ground, with this thickness and maximum range, metres.
 pub(crate) fn rig_on(ground: Ground, thickness: f64, max_range: f64) -> Scene {
     let mesh = Arc::new(ground.into_mesh().expect("a valid ground"));
     let z = height_at(&mesh, 0.0, 0.0).expect("ground under the vehicle");
@@ -110,7 +110,7 @@ pub(crate) fn rig_on(ground: Ground, thickness: f64, max_range: f64) -> Scene {
         .expect("a valid scene")
 }
 
-/// The face, or its back turned to the front, so that its front is seen from the origin.
+/// The face, reversed if necessary, so that its front is seen from the origin.
 pub(crate) fn towards_origin([a, b, c]: Face) -> Face {
     let p = |v: [f32; 3]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
     let n = (p(b) - p(a)).cross(p(c) - p(a));
@@ -124,12 +124,12 @@ pub(crate) const EXTENT: Switches = Switches { extent: Fidelity::Paper, ..Switch
 pub(crate) const PLACE: Switches = Switches { place: Fidelity::Paper, ..Switches::EXACT };
 
 pub(crate) fn render(scene: &Scene, switches: Switches) -> RenderOutput {
-    Scanline::new(Options { switches, ..Options::EXACT }).render(scene, &Request::EVERYTHING)
+    Scanline::new(ScanlineOptions { switches, ..ScanlineOptions::EXACT }).render(scene, &Request::EVERYTHING)
 }
 
-/// Without rules 3, and without 1a where it is a mere skip.
+/// Renders without rules 3, and without 1a where it only saves time.
 pub(crate) fn render_unskipped(scene: &Scene, switches: Switches) -> RenderOutput {
-    Scanline::new(Options { switches, skip_unseen: false }).render(scene, &Request::EVERYTHING)
+    Scanline::new(ScanlineOptions { switches, skip_unseen: false }).render(scene, &Request::EVERYTHING)
 }
 
 pub(crate) fn camera_map(scene: &Scene, switches: Switches) -> SensorMap {
@@ -144,8 +144,8 @@ pub(crate) fn same_maps(a: &RenderOutput, b: &RenderOutput) -> bool {
     a.maps().eq(b.maps())
 }
 
-/// Which pencils the camera sees, beam by beam, row by row.
-pub(crate) fn seen(scene: &Scene, switches: Switches) -> Vec<bool> {
+/// Whether the camera sees each pencil's point, beam by beam, row by row.
+pub(crate) fn visible_pencils(scene: &Scene, switches: Switches) -> Vec<bool> {
     let frame = render(scene, switches);
     frame.returns.iter().flat_map(|of| of.visible.as_ref().expect("served").cells().to_vec()).collect()
 }
@@ -155,16 +155,17 @@ pub(crate) fn range(map: &SensorMap, i: u32, j: u32) -> Option<f64> {
     map.range.as_ref().expect("asked for").at(i, j).get()
 }
 
-/// Columns of row `j` that are hit.
+/// The columns of row `j` that have a hit.
 pub(crate) fn columns_hit(map: &SensorMap, j: u32) -> Vec<u32> {
     (0..map.width).filter(|&i| range(map, i, j).is_some()).collect()
 }
 
+/// The number of cells that have a hit.
 pub(crate) fn hits(map: &SensorMap) -> usize {
     (0..map.height).map(|j| columns_hit(map, j).len()).sum()
 }
 
-/// Cells of which two maps do not say the same.
+/// The number of cells in which two maps have different faces.
 pub(crate) fn differing(a: &SensorMap, b: &SensorMap) -> usize {
     let (a, b) = (a.face.as_ref().expect("asked for"), b.face.as_ref().expect("asked for"));
     a.cells().iter().zip(b.cells()).filter(|(a, b)| a != b).count()

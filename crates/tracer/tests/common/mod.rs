@@ -1,5 +1,5 @@
-//! A bench of plain numbers: the camera at the scene's origin looking along z, x right, y down; a beam beside it
-//! that looks the same way; and screens at right angles to z.
+//! Scenes of plain numbers: a camera at the scene's origin that looks along z, with x right and y down; a beam beside
+//! it that looks the same way; and screens at right angles to z.
 
 // Each test binary compiles its own copy and uses a part of it.
 #![allow(dead_code)]
@@ -15,24 +15,24 @@ use raypencil_tracer::Tracer;
 
 pub type Corners = [[f32; 3]; 3];
 
-/// A scene to change and then to render.
+/// The numbers of a scene, to be changed and then rendered.
 #[derive(Clone)]
-pub struct Bench {
+pub struct SceneBuilder {
     pub faces: Vec<Corners>,
     pub reflectivity: f64,
     pub camera: Camera,
     pub beam: Beam,
-    /// Of the beam.
+    /// The beam's pose in the scene.
     pub pose: Pose,
     pub attenuation: f64,
     pub model: FluxModel,
 }
 
-impl Bench {
+impl SceneBuilder {
     /// A screen at z = 2 m and three pencils from (3, 0, 0) along (-3/4, 0, 1), (0, 0, 1) and (3/4, 0, 1): g = 1/4 m,
-    /// x_i = w (2i - 2) / 3, w = (9/8) g. They hit at x = 1.5, 3 and 4.5 m. 3 W in all.
+    /// x_i = w (2i - 2) / 3, w = (9/8) g. They hit at x = 1.5, 3 and 4.5 m. The beam has 3 W.
     ///
-    /// The camera has f_c = 1/64 m, pixels of 2^-10 m and an aperture of 1/2 m: x / z = 1 is 16 pixels.
+    /// The camera has f_c = 1/64 m, pixels of 2^-10 m and an aperture of 1/2 m, so x / z = 1 is 16 pixels wide.
     pub fn new() -> Self {
         let camera = Camera {
             width: 128,
@@ -66,7 +66,7 @@ impl Bench {
         }
     }
 
-    /// With more faces.
+    /// Adds faces.
     pub fn with(mut self, faces: impl IntoIterator<Item = Corners>) -> Self {
         self.faces.extend(faces);
         self
@@ -83,35 +83,35 @@ impl Bench {
         Scene::new(Arc::new(mesh), camera, vec![beam], air, self.model).unwrap()
     }
 
-    pub fn frame(&self) -> RenderOutput {
+    pub fn render(&self) -> RenderOutput {
         Tracer::new().render(&self.scene(), &Request::EVERYTHING)
     }
 
-    /// What comes back of pencil i.
-    pub fn back(&self, i: u32) -> Return {
-        back(&self.frame().returns[0], i, 0)
+    /// The return of pencil i of row 0.
+    pub fn pencil_return(&self, i: u32) -> Return {
+        return_at(&self.render().returns[0], i, 0)
     }
 }
 
-/// A rectangle at z = `z` of two faces that turn their fronts to the origin.
+/// A rectangle in the plane z = `z`: two faces whose fronts look towards the origin.
 pub fn screen(z: f32, [left, right]: [f32; 2], [top, bottom]: [f32; 2]) -> [Corners; 2] {
-    // Down the left side first: seen with y down this is counter-clockwise.
+    // Down the left side first: with y down this is counter-clockwise.
     let (a, b, c, d) = ([left, top, z], [left, bottom, z], [right, bottom, z], [right, top, z]);
     [[a, b, c], [a, c, d]]
 }
 
-/// The faces with their backs where their fronts were.
+/// The same faces with front and back exchanged.
 pub fn reversed<const N: usize>(faces: [Corners; N]) -> [Corners; N] {
     faces.map(|[a, b, c]| [a, c, b])
 }
 
-/// A beam at `position` that looks along -z.
+/// The pose of a beam at `position` that looks along -z.
 pub fn looking_back(position: DVec3) -> Pose {
     Pose { position, rotation: DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0) }
 }
 
-/// What comes back of pencil (i, j), which hits.
-pub fn back(returns: &Returns, i: u32, j: u32) -> Return {
+/// The return of pencil (i, j). Panics if the pencil has no hit.
+pub fn return_at(returns: &Returns, i: u32, j: u32) -> Return {
     fn of<T: Copy>(raster: &Option<Image<T>>, i: u32, j: u32) -> T {
         raster.as_ref().expect("a quantity").at(i, j)
     }
@@ -125,7 +125,7 @@ pub fn back(returns: &Returns, i: u32, j: u32) -> Return {
     }
 }
 
-/// Whether two numbers differ by no more than `relative` of the second.
+/// Whether two numbers differ by at most `relative` times the second.
 pub fn close(a: f64, b: f64, relative: f64) -> bool {
     (a - b).abs() <= relative * b.abs()
 }

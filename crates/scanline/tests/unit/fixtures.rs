@@ -1,9 +1,9 @@
-//! Sensors and grounds of this crate's own tests.
+//! Sensors and meshes for the unit tests.
 
 use glam::DVec3;
 use raypencil_scene::{Beam, Camera, Lens, Material, Mesh, Profile};
 
-/// x / z and y / z from -1 to 1 in 8 x 8 cells, each 1/4 m wide on the SPP at z = 1.
+/// A camera of 8 x 8 pixels that sees x / z and y / z from -1 to 1. A pixel is 1/4 m wide on the SPP at z = 1.
 pub(crate) fn camera() -> Camera {
     Camera {
         width: 8,
@@ -17,7 +17,7 @@ pub(crate) fn camera() -> Camera {
     }
 }
 
-/// Eight columns, x / z from -1 to 1; two rows, y from -1/2 to 1/2 m; the grid at z = 1.
+/// A beam of eight columns, x / z from -1 to 1, and two rows, y from -1/2 to 1/2 m. The grid is at z = 1.
 pub(crate) fn beam() -> Beam {
     Beam {
         columns: 8,
@@ -32,7 +32,7 @@ pub(crate) fn beam() -> Beam {
     }
 }
 
-/// Faces that share no vertex.
+/// A mesh of faces that share no vertex.
 pub(crate) fn mesh(faces: &[[[f32; 3]; 3]]) -> Mesh {
     let indices = (0..faces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
     let materials = vec![Material { name: "ground".into(), reflectivity: 0.5 }];
