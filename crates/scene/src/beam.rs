@@ -11,6 +11,17 @@ use crate::image::check_cells;
 ///
 /// The central ray of pencil (i, j) starts *on the focal axis* at `(0, y_j, 0)` and runs along
 /// `(x_i, 0, g)`: the sheet keeps its thickness. Row 0 is on top, so the lower edge plane is y = +T/2.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::rig;
+///
+/// // 4 columns of 1/16 m and 2 rows of 4 mm on a grid plane at 0.1 m.
+/// let beam = rig::beam(4, 2, [0.0625, 0.004], 0.1);
+/// // Column 3: its centre is 1.5 cells to the right of the middle. Row 0 starts half a row above it.
+/// assert_eq!(beam.direction(3), DVec3::new(0.09375, 0.0, 0.1));
+/// assert_eq!(beam.origin(0), DVec3::new(0.0, -0.002, 0.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
     /// Pencils across the fan.
@@ -29,11 +40,11 @@ pub struct Beam {
     pub power: f64,
     /// Wavelength, metres.
     pub wavelength: f64,
-    /// How the power spreads over the fan.
+    /// Distribution of the power over the fan.
     pub profile: Profile,
 }
 
-/// How a beam's power spreads over the angle alpha from its normal axis.
+/// Distribution of a beam's power over the angle alpha from its normal axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Profile {
     /// The paper's share, A_bp cos(alpha) / A_b. Its sum falls short of the whole power.
@@ -53,7 +64,7 @@ impl Beam {
         grid_distance * libm::tan(0.5 * fan)
     }
 
-    /// Where the central rays of row `j` start, in the beam frame: `y_j = T (2j + 1 - rows) / (2 rows)` on
+    /// Origin of the central rays of row `j` in the beam frame: `y_j = T (2j + 1 - rows) / (2 rows)` on
     /// the focal axis.
     pub fn origin(&self, j: u32) -> DVec3 {
         let rows = f64::from(self.rows);

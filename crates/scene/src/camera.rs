@@ -8,6 +8,16 @@ use crate::image::check_cells;
 
 /// A pinhole camera. Pixel (i, j) is the square `[i, i+1) x [j, j+1)` in units of the pixel pitch, row 0 on
 /// top; its ray runs from the projection centre through the pixel's middle.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::rig;
+///
+/// // 4 x 2 pixels of 1/8 m behind a focal length of 1/2 m; the principal point is the middle, (2, 1).
+/// let camera = rig::camera(4, 2, 0.125, 0.5);
+/// // Pixel (3, 0): (3.5 - 2)/8 to the right, (0.5 - 1)/8 down, which is up.
+/// assert_eq!(camera.direction(3, 0), DVec3::new(0.1875, -0.0625, 0.5));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// Columns of the image.
@@ -18,17 +28,17 @@ pub struct Camera {
     pub pixel_pitch: [f64; 2],
     /// Distance of the image plane (the SPP) from the projection centre, metres.
     pub focal_length: f64,
-    /// Where the normal axis meets the image, in pixels from the outer corner of pixel (0, 0).
+    /// Point where the normal axis meets the image, in pixels from the outer corner of pixel (0, 0).
     pub principal_point: [f64; 2],
     /// Diameter of the aperture, metres. Geometry is a pinhole's; this is for radiometry.
     pub aperture: f64,
-    /// What the lens and its filter let through.
+    /// Losses of the lens and its filter.
     pub lens: Lens,
     /// Longest range, along the ray, of the camera's own range map, metres. It does not limit the pencils.
     pub max_range: f64,
 }
 
-/// What of the light that enters the aperture arrives on the image.
+/// Losses between the aperture and the image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
     /// The share C_loss that the lens transmits, 0 to 1.
@@ -38,11 +48,11 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// It lets everything through.
+    /// A lens without losses.
     pub const CLEAR: Self = Self { transmission: 1.0, filter: Filter::None };
 }
 
-/// How much of a beam's light a filter lets through, by the angle phi between a ray and the camera's normal axis.
+/// Share of a beam's light that a filter transmits, by the angle phi between a ray and the camera's normal axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Filter {
     /// All of it: F = 1.
@@ -82,11 +92,11 @@ impl Camera {
         }
         check_range(|| name("focal_length"), self.focal_length, 1e-5, 1e2, "m")?;
         check_range(|| name("aperture"), self.aperture, 1e-6, 1e1, "m")?;
-        check_range(|| name("lens.transmission"), self.lens.transmission, 0.0, 1.0, "of 1")?;
+        check_range(|| name("lens.transmission"), self.lens.transmission, 0.0, 1.0, "")?;
         if let Filter::Interference { centre, width, index } = self.lens.filter {
             check_range(|| name("lens.filter.centre"), centre, 1e-8, 1e-3, "m")?;
             check_range(|| name("lens.filter.width"), width, 1e-12, 1e-3, "m")?;
-            check_range(|| name("lens.filter.index"), index, 1.0, 10.0, "of 1")?;
+            check_range(|| name("lens.filter.index"), index, 1.0, 10.0, "")?;
         }
         check_range(|| name("max_range"), self.max_range, 1e-3, 1e7, "m")
     }

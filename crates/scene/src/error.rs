@@ -24,6 +24,13 @@ impl SceneError {
 /// Refuses a `value` outside `low..=high` (and NaN, which is outside of everything). `field` is asked for the name
 /// only if the value is refused.
 ///
+/// ```
+/// use raypencil_scene::check_range;
+///
+/// let refused = check_range(|| "camera.focal_length".into(), f64::NAN, 1e-5, 1e2, "m").unwrap_err();
+/// assert_eq!(refused.to_string(), "camera.focal_length is NaN: expected 0.00001 to 100 m");
+/// ```
+///
 /// # Errors
 /// Names the field, the value, the limits and their unit.
 pub fn check_range(

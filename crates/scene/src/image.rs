@@ -5,6 +5,16 @@ use glam::DVec3;
 use crate::{FaceId, SceneError};
 
 /// A raster of `width x height` cells, row by row from the top.
+///
+/// ```
+/// use raypencil_scene::Image;
+///
+/// let mut image = Image::from_cells(3, 2, vec![1, 2, 3, 4, 5, 6]);
+/// // Column 2 of row 1 is the last cell.
+/// assert_eq!(image.at(2, 1), 6);
+/// image.set(0, 1, 9);
+/// assert_eq!(image.cells(), [1, 2, 3, 9, 5, 6]);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image<T> {
     width: u32,
@@ -38,12 +48,18 @@ impl<T: Copy> Image<T> {
     }
 
     /// The cell in column `i` of row `j`.
+    ///
+    /// # Panics
+    /// If the image has no such cell.
     pub fn at(&self, i: u32, j: u32) -> T {
         assert!(i < self.width && j < self.height, "({i}, {j}) in a {} x {} image", self.width, self.height);
         self.cells[j as usize * self.width as usize + i as usize]
     }
 
     /// Replaces the cell in column `i` of row `j`.
+    ///
+    /// # Panics
+    /// If the image has no such cell.
     pub fn set(&mut self, i: u32, j: u32, value: T) {
         assert!(i < self.width && j < self.height, "({i}, {j}) in a {} x {} image", self.width, self.height);
         self.cells[j as usize * self.width as usize + i as usize] = value;
@@ -90,6 +106,14 @@ impl Sample for FaceId {
 }
 
 /// An `Option<T>` that is no larger than `T`, so that a raster of a million of them stays compact.
+///
+/// ```
+/// use raypencil_scene::Maybe;
+///
+/// // Files write "no hit" as infinity; in code it is `None`.
+/// assert_eq!(Maybe::some(2.5).get(), Some(2.5));
+/// assert_eq!(Maybe::<f64>::NONE.get(), None);
+/// ```
 #[derive(Debug, Clone, Copy)]
 #[repr(transparent)]
 pub struct Maybe<T>(T);
@@ -122,10 +146,10 @@ impl<T: Sample + PartialEq> PartialEq for Maybe<T> {
     }
 }
 
-/// The most cells a sensor may have: 2^26, so that a frame's maps stay within a few gigabytes.
-const MOST_CELLS: u64 = 1 << 26;
+/// Maximum number of cells of a sensor: its maps stay within a few gigabytes.
+const MAX_CELLS: u64 = 1 << 26;
 
-/// Refuses a sensor without cells, or with more than memory should be asked for.
+/// Refuses a sensor without cells, or with more cells than memory should be asked for.
 pub(crate) fn check_cells(
     field: &str,
     across: &str,
@@ -138,11 +162,11 @@ pub(crate) fn check_cells(
             return Err(SceneError::new(format!("{field}.{name}"), count, "1 to 1048576"));
         }
     }
-    if u64::from(columns) * u64::from(rows) > MOST_CELLS {
+    if u64::from(columns) * u64::from(rows) > MAX_CELLS {
         return Err(SceneError::new(
             format!("{field}.{across} x {down}"),
             format!("{columns} x {rows}"),
-            format!("at most {MOST_CELLS} cells"),
+            format!("at most {MAX_CELLS} cells"),
         ));
     }
     Ok(())

@@ -1,9 +1,30 @@
-//! The shared vocabulary of raypencil.
+//! The definitions that all renderers share.
 //!
-//! Everything that two renderers must mean alike stands here, and nothing that they must do apart:
-//! poses, the terrain mesh, the camera, the laser beams, rays and hits as *definitions*, frames of
-//! results and the [`Renderer`] trait. There is no IO here and no intersection code; a test holds the
-//! public items of this crate to a list, so that no kernel can hide in it.
+//! Two renderers must mean the same by a pose, the terrain mesh, the camera, the laser beams, a ray and a hit; these
+//! stand here as *definitions*, with the [`Renderer`] trait and the form of its results. They must not share how they
+//! compute: there is no intersection code here and no IO. A test holds the public items of this crate to a list, so
+//! that no kernel can hide in it.
+//!
+//! ```text
+//! error         refused fields; check_range, check_count
+//! pose mesh camera beam ray      the world as numbers
+//! world         Scene: all of it, checked once
+//! image output returns           rasters of results
+//! renderer      the trait
+//! sampling      the ray that represents a pencil
+//! rig           the default rig
+//! approximations  the paper's approximations, by name
+//! place progress  names of rays; who is told what is being done
+//! ```
+//!
+//! ```
+//! use raypencil_scene::{SensorId, rig};
+//!
+//! // The default rig: one camera 1.5 m up, two beams above it.
+//! let (camera, beams) = rig::default_rig(1, glam::DVec3::ZERO, 0.0);
+//! assert_eq!((camera.sensor.width, beams.len()), (1024, 2));
+//! assert_eq!(SensorId::Beam(1).to_string(), "beam-1");
+//! ```
 //!
 //! Units are SI: metres, radians, watts. Geometry is `f64` throughout; only mesh vertices are stored
 //! as `f32` offsets from one `f64` origin.
@@ -50,3 +71,7 @@ pub use renderer::{Precision, Renderer};
 pub use returns::{Pixel, Return, Returns};
 pub use sampling::{Sampling, philox};
 pub use world::{Atmosphere, FluxModel, Mounted, Scene};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

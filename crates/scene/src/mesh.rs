@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use crate::SceneError;
 
-/// A kind of ground.
+/// A kind of ground: its name and its reflectivity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// For people.
+    /// Name, for reports and files.
     pub name: String,
     /// Reflectivity r_d of the Lambertian surface, 0 to 1.
     pub reflectivity: f64,
@@ -15,7 +15,19 @@ pub struct Material {
 
 /// The terrain as triangles, counter-clockwise seen from outside.
 ///
-/// A face's normal is n = (b - a) x (c - a). Faces of zero area are kept and counted, and never hit.
+/// The normal of a face is n = (b - a) x (c - a). Faces of zero area are kept and counted, and never hit.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::{Material, Mesh};
+///
+/// let ground = Material { name: "sand".into(), reflectivity: 0.25 };
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+/// let mesh = Mesh::from_global(&corners, vec![[0, 1, 2], [0, 0, 1]], vec![0, 0], vec![ground])?;
+/// // The second face has two corners in one place: it is kept, counted, and never hit.
+/// assert_eq!((mesh.faces().len(), mesh.zero_area_faces()), (2, 1));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     origin: DVec3,
@@ -26,12 +38,12 @@ pub struct Mesh {
     zero_area_faces: usize,
 }
 
-/// How far a vertex may lie from the scene origin, metres: three radii of Mars. It keeps every product of
+/// Greatest distance of a vertex from the scene origin along an axis, metres: three radii of Mars. It keeps every product of
 /// four coordinates far inside the range of `f64`, and box arithmetic inside that of `f32`.
-const FARTHEST_VERTEX: f32 = 1e7;
+const MAX_VERTEX_OFFSET_M: f32 = 1e7;
 
 /// Global coordinates beyond this, metres, move the scene origin: `f32` offsets of 1 km are good to 0.06 mm.
-const NEAR_ORIGIN: f64 = 1e3;
+const MAX_COORDINATE_WITHOUT_ORIGIN_M: f64 = 1e3;
 
 impl Mesh {
     /// Builds a mesh from vertices that are already `f32` offsets from `origin` (global frame).
@@ -54,7 +66,7 @@ impl Mesh {
         if let Some((index, [x, y, z])) = vertices
             .iter()
             .enumerate()
-            .find(|(_, v)| !v.iter().all(|coordinate| coordinate.abs() <= FARTHEST_VERTEX))
+            .find(|(_, v)| !v.iter().all(|coordinate| coordinate.abs() <= MAX_VERTEX_OFFSET_M))
         {
             return Err(SceneError::new(
                 format!("mesh.vertices[{index}]"),
@@ -126,7 +138,7 @@ impl Mesh {
     /// box if any |coordinate| exceeds 1 km, else 0.
     pub fn origin_for(vertices: &[DVec3]) -> DVec3 {
         let farthest = vertices.iter().fold(0.0_f64, |far, v| far.max(v.abs().max_element()));
-        if farthest <= NEAR_ORIGIN {
+        if farthest <= MAX_COORDINATE_WITHOUT_ORIGIN_M {
             return DVec3::ZERO;
         }
         let low = vertices.iter().fold(DVec3::INFINITY, |low, v| low.min(*v));

@@ -6,16 +6,16 @@ use glam::DVec3;
 
 use crate::{FaceId, Hit, Image, Maybe, Returns, Sampling, SensorId};
 
-/// What to render.
+/// The quantities to render.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Request {
     /// The camera's own range map.
     pub camera: bool,
     /// The maps of every beam.
     pub beams: bool,
-    /// What the camera sees of the pencils, and the flux that they add up to on its image.
+    /// Visibility and flux of the pencils, and the flux on the camera's image.
     pub returns: bool,
-    /// Which ray stands for a pencil, in the beams' maps as in their returns.
+    /// The ray that represents a pencil, in the maps of the beams and in their returns.
     pub sampling: Sampling,
     /// Which quantities of each map.
     pub quantities: Quantities,
@@ -30,14 +30,14 @@ impl Request {
         sampling: Sampling::Centres,
         quantities: Quantities::ALL,
     };
-    /// The range maps of every sensor, of which the camera sees nothing.
+    /// Range maps only: no visibility, no flux.
     pub const MAPS: Self = Self { returns: false, ..Self::EVERYTHING };
-    /// The flux of each beam on the camera's image, and no map.
+    /// Only the flux of each beam on the camera's image: no maps.
     pub const FLUX: Self =
         Self { camera: false, beams: false, quantities: Quantities::NONE, ..Self::EVERYTHING };
 }
 
-/// Which quantities of a map to fill; what is left out costs neither time nor memory.
+/// The quantities of a map to fill. A quantity that is left out costs neither time nor memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Quantities {
     /// Distance along the ray.
@@ -133,7 +133,7 @@ impl SensorMap {
             .collect()
     }
 
-    /// How many cells there are.
+    /// Number of cells of each raster.
     pub fn cell_count(&self) -> usize {
         self.width as usize * self.height as usize
     }
@@ -175,7 +175,7 @@ impl SensorRow<'_> {
     }
 }
 
-/// Everything one renderer says of one scene.
+/// All results of one renderer for one scene.
 #[derive(Debug, Clone)]
 pub struct RenderOutput {
     /// The camera's maps, if they were asked for and are known.
@@ -187,7 +187,7 @@ pub struct RenderOutput {
     /// The flux of each beam on the camera's image, in the scene's order, watts per pixel (`eq1`: W/m); empty if
     /// not asked for or not known.
     pub flux: Vec<Image<f64>>,
-    /// How long each part of the work took, in order.
+    /// Wall-clock time of each part of the work, in order.
     pub stages: Vec<Stage>,
 }
 
@@ -209,8 +209,8 @@ impl RenderOutput {
 /// A named part of a render and the wall-clock time it took. Times are reported, never compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
-    /// What was done.
+    /// Name of the part.
     pub name: String,
-    /// How long it took.
+    /// Wall-clock time.
     pub time: Duration,
 }

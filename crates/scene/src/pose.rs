@@ -11,6 +11,19 @@ use crate::SceneError;
 /// The quaternion need not be a unit: the rotation it stands for is *exactly* `(q p q*) / (q . q)`,
 /// a rational function of the four stored numbers. A resolved scene stores poses rounded once, and those
 /// seven numbers are the truth that every renderer approximates.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::Pose;
+///
+/// // A sensor 1.5 m above the vehicle's origin that looks forward: 2 m ahead of it is (2, 0, 1.5) on the vehicle.
+/// let vehicle_from_sensor =
+///     Pose { position: DVec3::new(0.0, 0.0, 1.5), ..Pose::VEHICLE_FROM_FORWARD_SENSOR };
+/// let p_sensor = DVec3::new(0.0, 0.0, 2.0);
+/// assert_eq!(vehicle_from_sensor * p_sensor, DVec3::new(2.0, 0.0, 1.5));
+/// // The inverse undoes it.
+/// assert_eq!(vehicle_from_sensor.inverse() * DVec3::new(2.0, 0.0, 1.5), p_sensor);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Origin of frame `b` in frame `a`, metres.
@@ -59,12 +72,12 @@ impl Pose {
         Self { position: -turned, rotation }
     }
 
-    /// Refuses what is no pose: a coordinate that is not finite or beyond 1e7 m, a quaternion whose
+    /// Refuses numbers that are no pose: a coordinate that is not finite or beyond 1e7 m, a quaternion whose
     /// length is not between 1e-3 and 1e3.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        const FARTHEST: f64 = 1e7;
+        const MAX_COORDINATE_M: f64 = 1e7;
         let p = self.position;
-        if !p.is_finite() || p.abs().max_element() > FARTHEST {
+        if !p.is_finite() || p.abs().max_element() > MAX_COORDINATE_M {
             return Err(SceneError::new(
                 format!("{field}.position"),
                 format!("({}, {}, {})", p.x, p.y, p.z),

@@ -12,7 +12,7 @@ pub struct FaceId(pub u32);
 /// projection plane (SPP); the direction is not a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where the ray starts, metres.
+    /// Origin of the ray, metres.
     pub origin: DVec3,
     /// From the origin to the crossing of the SPP, metres.
     pub direction: DVec3,
@@ -35,7 +35,16 @@ pub struct Hit {
     pub cos_incidence: f64,
 }
 
-/// One of a scene's sensors.
+/// One of a scene's sensors: something with a raster of rays.
+///
+/// The paper calls a beam a sensor too, since it computes "a range raster map from a sensor" for both. (§4)
+///
+/// ```
+/// use raypencil_scene::{Place, SensorId};
+///
+/// let place = Place { sensor: SensorId::Beam(1), i: 412, j: 3 };
+/// assert_eq!(place.to_string(), "beam-1 pencil 412,3");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SensorId {
     /// The camera, whose cells are pixels.

@@ -1,4 +1,4 @@
-//! What comes back of a beam's pencils: seen by the camera or not, where on its image, how much light.
+//! The returns of a beam's pencils: visible to the camera or not, at which pixel, and the flux that arrives.
 
 use crate::{Image, Maybe, Sample};
 
@@ -18,13 +18,13 @@ impl Sample for Pixel {
     }
 }
 
-/// What comes back of one pencil that hits.
+/// The return of one pencil that hits: its point as the camera sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Return {
     /// Whether the camera sees the point: its front is turned to the camera, it lies beyond the focal length
     /// and on the image, and no other face meets the segment between it and the image plane.
     pub visible: bool,
-    /// Where the point lands on the image, hidden or not; `None` if it does not.
+    /// Pixel in which the point lands, hidden or not; `None` if it lands outside the image.
     pub pixel: Option<Pixel>,
     /// r: distance of the point from the projection centre *along the camera's normal axis*, metres. Negative
     /// behind the camera.
@@ -61,7 +61,7 @@ pub struct Returns {
 }
 
 impl Returns {
-    /// Every quantity, nothing hit anywhere.
+    /// Rasters of every quantity, without a hit anywhere.
     pub fn empty(columns: u32, rows: u32) -> Self {
         Self {
             columns,
@@ -75,7 +75,7 @@ impl Returns {
         }
     }
 
-    /// No quantity: what a renderer answers that does not support what was asked for.
+    /// No quantity: the answer of a renderer that does not support the request.
     pub fn unsupported(columns: u32, rows: u32) -> Self {
         Self {
             columns,
@@ -89,7 +89,7 @@ impl Returns {
         }
     }
 
-    /// Writes the return of pencil (i, j) into those rasters that there are.
+    /// Writes the return of pencil (i, j) into the rasters that exist.
     pub fn put(&mut self, i: u32, j: u32, back: &Return) {
         fn write<T: Copy>(raster: &mut Option<Image<T>>, i: u32, j: u32, value: T) {
             if let Some(image) = raster {

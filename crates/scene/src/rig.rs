@@ -35,6 +35,16 @@ pub fn beam(columns: u32, rows: u32, cell: [f64; 2], grid_distance: f64) -> Beam
 
 /// A sensor on a level vehicle at the scene's origin: at `position` metres, looking along x, turned down
 /// by `pitch_down` radians. (Global frame and vehicle: x forward, y left, z up.)
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::rig;
+///
+/// // Turned down by 90 degrees, the normal axis (z of the sensor) points to the ground.
+/// let mounted = rig::pitched(DVec3::new(0.0, 0.0, 2.0), std::f64::consts::FRAC_PI_2, ());
+/// let down = mounted.scene_from_sensor.rotate(DVec3::Z);
+/// assert!((down - DVec3::NEG_Z).length() < 1e-15);
+/// ```
 pub fn pitched<S>(position: DVec3, pitch_down: f64, sensor: S) -> Mounted<S> {
     let vehicle_from_pitched = Pose { position, ..Pose::from_axis_angle(DVec3::Y, pitch_down) };
     Mounted { scene_from_sensor: vehicle_from_pitched * Pose::VEHICLE_FROM_FORWARD_SENSOR, sensor }

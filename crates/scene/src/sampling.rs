@@ -1,5 +1,5 @@
-//! Which ray stands for a pencil: its central ray, or one drawn within it. The draw is a definition, so that
-//! every renderer draws the same.
+//! The ray that represents a pencil: its central ray, or one drawn within it. The draw is a definition, so that
+//! every renderer draws the same ray.
 
 /// How pencils are sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -9,17 +9,27 @@ pub enum Sampling {
     Centres,
     /// One ray in each pencil's cell of the grid, uniform over it. alpha and y are that ray's.
     Jittered {
-        /// Other seeds give other rays.
+        /// Seed of the draws; other seeds give other rays.
         seed: u64,
     },
 }
 
 impl Sampling {
-    /// By how much the ray of pencil (i, j) of a beam is displaced from the centre of its cell: columns to the
-    /// right and rows down, in cells, from -1/2 up to but not 1/2.
+    /// Displacement of the ray of pencil (i, j) of a beam from the centre of its cell: columns to the right and
+    /// rows down, in cells, each in [-1/2, 1/2).
     ///
     /// Jittered: the first two words of Philox4x32-10 of key (seed) and counter (i, j, beam, 0), each an odd
     /// multiple of 2^-33 after the shift, so that it is exact in `f64`.
+    ///
+    /// ```
+    /// use raypencil_scene::Sampling;
+    ///
+    /// assert_eq!(Sampling::Centres.offset(0, 5, 7), [0.0, 0.0]);
+    /// let jittered = Sampling::Jittered { seed: 1 };
+    /// // The same pencil has the same ray in every renderer; its neighbour has another one.
+    /// assert_eq!(jittered.offset(0, 5, 7), jittered.offset(0, 5, 7));
+    /// assert_ne!(jittered.offset(0, 5, 7), jittered.offset(0, 6, 7));
+    /// ```
     pub fn offset(&self, beam: usize, i: u32, j: u32) -> [f64; 2] {
         let Self::Jittered { seed } = *self else { return [0.0; 2] };
         let [x, y, _, _] = philox([i, j, beam as u32, 0], [seed as u32, (seed >> 32) as u32]);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::check_range;
 use crate::{Beam, Camera, Mesh, Pose, Ray, SceneError, SensorId};
 
-/// A sensor and where it stands.
+/// A sensor and its pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mounted<S> {
     /// The sensor's frame in the scene frame.
@@ -14,17 +14,24 @@ pub struct Mounted<S> {
     pub sensor: S,
 }
 
-/// What the air does to light.
+/// The atmosphere between the sensors and the terrain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Atmosphere {
     /// Attenuation coefficient sigma, 1/m.
     pub attenuation: f64,
 }
 
-/// Which equation gives a pencil's flux on the camera.
+/// The equation for a pencil's flux on the camera.
+///
+/// ```
+/// use raypencil_scene::FluxModel;
+///
+/// assert_eq!(FluxModel::Radiometric.word(), "radiometric");
+/// assert_eq!(FluxModel::Radiometric.other(), FluxModel::Eq1);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FluxModel {
-    /// What a pencil's watts really deliver, in watts.
+    /// Flux that conserves energy, watts.
     Radiometric,
     /// Equation (1) of the paper as printed, in W/m.
     Eq1,
@@ -48,7 +55,22 @@ impl FluxModel {
     }
 }
 
-/// Everything a renderer needs to know, checked once when it is built.
+/// Everything that a renderer needs to know. It is checked once, when it is built.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::{Atmosphere, FluxModel, Material, Mesh, Scene, SensorId, rig};
+///
+/// let sand = Material { name: "sand".into(), reflectivity: 0.25 };
+/// let corners = [[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]].map(DVec3::from_array);
+/// let mesh = Mesh::from_global(&corners, vec![[0, 1, 2]], vec![0], vec![sand])?;
+/// let (camera, beams) = rig::default_rig(16, DVec3::ZERO, 0.0);
+/// let scene = Scene::new(mesh.into(), camera, beams, Atmosphere { attenuation: 0.0 }, FluxModel::Radiometric)?;
+/// // 1024 / 16 columns, 16 / 16 rows but two at least.
+/// assert_eq!(scene.size(SensorId::Beam(0)), Some((64, 2)));
+/// assert_eq!(scene.ray(SensorId::Beam(0), 64, 0), None);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     mesh: Arc<Mesh>,
