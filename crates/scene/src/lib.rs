@@ -10,6 +10,7 @@
 //! pose mesh camera beam ray      the world as numbers
 //! world         Scene: all of it, checked once
 //! image output returns           rasters of results
+//! hit_quantity  the values of a hit, and their channels in files
 //! renderer      the trait
 //! sampling      the ray that represents a pencil
 //! rig           the default rig
@@ -43,6 +44,7 @@ mod approximations;
 mod beam;
 mod camera;
 mod error;
+mod hit_quantity;
 mod image;
 mod mesh;
 mod output;
@@ -60,6 +62,7 @@ pub use approximations::{Fidelity, Switches, UnknownSwitch};
 pub use beam::{Beam, Profile};
 pub use camera::{Camera, Filter, Lens};
 pub use error::{SceneError, check_count, check_range};
+pub use hit_quantity::{HitQuantity, HitRaster, HitRasterMut};
 pub use image::{Image, Maybe, Sample};
 pub use mesh::{Material, Mesh};
 pub use output::{Quantities, RenderOutput, Request, SensorMap, SensorRow, Stage};

@@ -1,0 +1,8 @@
+//! The house itself: who stands on whom, no circle of files, the law of independence, what `scene` may hold.
+//! (ARCHITECTURE.md)
+
+mod circles;
+mod floors;
+mod kernels;
+mod scene_items;
+mod source;
