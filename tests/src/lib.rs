@@ -179,7 +179,7 @@ pub fn agreement(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Result<Vec<SensorRe
     }
     let mut message = format!("{defects} defects\n");
     for defect in sensors.iter().flat_map(|sensor| &sensor.defects).take(5) {
-        message += &format!("  {}, {}: {}\n", defect.place, defect.quantity, defect.what);
+        message += &format!("  {}, {}: {}\n", defect.place, defect.item.quantity, defect.what);
     }
     Err(message)
 }

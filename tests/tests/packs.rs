@@ -91,7 +91,7 @@ fn both_renderers_pass_and_nothing_of_theirs_is_left_out() {
     for pack in PACKS {
         for renderer in ["scanline", "tracer", "referee"] {
             let Checked { check, recorded, .. } = judged(pack, renderer);
-            assert!(check.passes(), "{pack} by {renderer}: {:?}", check.sensors[0].wrong.first());
+            assert!(check.passes(), "{pack} by {renderer}: {:?}", check.sensors[0].defects.first());
             assert_eq!(check.compared(), 96 * 72 + 2 * 128 * 4);
             assert_eq!(recorded.unknown, [""; 0]);
             let totals = check.totals();

@@ -108,7 +108,8 @@ pub fn check_pack(
         }
     };
     if let Some(uncertified) = truth.first_uncertified() {
-        let found = format!("its answer to {}, {}, is not the referee's", uncertified.place, uncertified.part);
+        let found =
+            format!("its answer to {}, {}, is not the referee's", uncertified.place, uncertified.part);
         return Err(answers(found, "correctly rounded answers, as this version finds them"));
     }
     let check = check(&truth, &recorded, progress);

@@ -30,7 +30,8 @@ fn the_json_keeps_to_its_schema() {
     // One with a defect and an unknown channel.
     checked.check.sensors[0].by_class[Class::Defect as usize] = 1;
     checked.recorded.unknown.push("camera/mine".into());
-    let largest = checked.check.sensors[0].items[&Quantity::Range.into()].ulps.clone().expect("compared");
+    let largest =
+        checked.check.sensors[0].items[&Quantity::Range.into()].worst_ulps.clone().expect("compared");
     checked.check.sensors[0].defects.push(raypencil_judge::Defect {
         place: largest.place,
         item: Quantity::Range.into(),
@@ -50,7 +51,10 @@ fn classes_add_up_and_nothing_of_a_perfect_candidate_is_off() {
         for (item, tally) in &sensor.items {
             assert!(tally.compared() <= sensor.compared(), "{item:?}");
             assert!(tally.others.is_empty(), "{item:?}");
-            assert!(tally.error.as_ref().is_none_or(|largest| largest.value == 0.0), "{item:?}: {tally:?}");
+            assert!(
+                tally.worst_error.as_ref().is_none_or(|largest| largest.value == 0.0),
+                "{item:?}: {tally:?}"
+            );
         }
     }
 }
@@ -72,7 +76,8 @@ fn frames_in_memory_are_judged_in_double_precision() {
         let totals = found.totals();
         let ratio = |quantity: Quantity| {
             let own = totals.iter().filter(|(item, _)| item.quantity == quantity);
-            own.filter_map(|(_, tally)| tally.ratio.as_ref()).fold(0.0, |most: f64, one| most.max(one.value))
+            own.filter_map(|(_, tally)| tally.worst_ratio.as_ref())
+                .fold(0.0, |most: f64, one| most.max(one.value))
         };
         for quantity in Quantity::ALL {
             // Derived bounds leave room; none is missing.

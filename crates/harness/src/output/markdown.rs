@@ -80,7 +80,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     let listed: Vec<Listed> = defects(validation)
         .take(LISTED)
         .map(|defect| Listed {
-            text: format!("{}, {}: {}", defect.place, defect.quantity, defect.what),
+            text: format!("{}, {}: {}", defect.place, defect.item.quantity, defect.what),
             command: code(&probe_command(subject, defect.place)),
         })
         .collect();

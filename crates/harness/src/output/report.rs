@@ -220,7 +220,7 @@ fn defects(validation: &Validation, pair: &Pair) -> Vec<Defects> {
             .take(LISTED)
             .map(|defect| Listed {
                 place: defect.place.to_string(),
-                quantity: defect.quantity.to_string(),
+                quantity: defect.item.quantity.to_string(),
                 what: defect.what.clone(),
                 command: probe_command(&validation.subject, defect.place),
             })

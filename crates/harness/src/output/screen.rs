@@ -187,8 +187,9 @@ fn approximations(validation: &Validation) -> String {
             count(tally.lost),
             count(tally.added)
         );
-        if let Some(found) = tally.worst_range {
-            let _ = write!(line, "; range off by {} at {}", worst(Some(found), "m"), short(found.place));
+        if let Some(found) = &tally.worst_range {
+            let _ =
+                write!(line, "; range off by {} at {}", worst(&tally.worst_range, "m"), short(found.place));
         }
         let _ = writeln!(text, "{}", cut(&line));
     }
@@ -256,7 +257,7 @@ fn verdict(validation: &Validation) -> String {
     }
     for defect in defects(validation).take(DEFECTS) {
         let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
-        let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.quantity, defect.what)));
+        let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.item.quantity, defect.what)));
     }
     text
 }
