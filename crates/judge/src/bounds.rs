@@ -92,8 +92,8 @@ impl HitBounds {
     }
 }
 
-/// Roundings of a point in the camera's frame, beside its own error: a subtraction, a rotation by a quaternion or a matrix
-/// formed from it (15 u), of a vector no longer than S' = |P| + |c| + d.
+/// Roundings of a point in the camera's frame, beside its own error: a subtraction, a rotation by a quaternion or a
+/// matrix formed from it (15 u), of a vector no longer than S' = |P| + |c| + d.
 const CAMERA_POINT_ROUNDINGS: f64 = 18.0;
 
 /// Roundings of a flux beside those of its lengths and cosines: two dozen products and quotients, a share of the power
@@ -280,8 +280,8 @@ fn incidence_angle(beam: &Beam, column: u32) -> f64 {
     libm::atan(beam.half_width * half_cells / (columns * beam.grid_distance))
 }
 
-/// The relative error of F(phi) = exp(-4 ln 2 away^2), away = (wavelength - c') / width, c' = c sqrt(1 - sin(phi)^2 / n^2),
-/// where cos(phi) is off by `off_axis_error`.
+/// The relative error of F(phi) = exp(-4 ln 2 away^2), away = (wavelength - c') / width, c' = c sqrt(1 - sin(phi)^2 /
+/// n^2), where cos(phi) is off by `off_axis_error`.
 ///
 /// |dc'| <= c^2 / (c' n^2) |cos(phi)| |d cos(phi)|, c' and the difference are rounded (8 u c), and the exponent
 /// itself (10 u of it): |d ln F| = 4 ln 2 |away| (2 |dc'| / width + 10 u |away|).

@@ -1,8 +1,8 @@
 //! The judge of raypencil: it says of every ray whether an answer is right, and how far its values are from right.
 //!
 //! Answers come from renderers of this project or from files of other programs. Faces, visibility and pixels are ruled
-//! on by the referee in exact arithmetic (`docs/theory/referee.md`). Values are held to bounds of rounding errors, which
-//! `bounds` derives. Nothing in this crate renders.
+//! on by the referee in exact arithmetic (`docs/theory/referee.md`). Values are held to bounds of rounding errors,
+//! which `bounds` derives. Nothing in this crate renders.
 //!
 //! ```
 //! # use std::sync::Arc;
@@ -33,9 +33,9 @@
 //! # Ok::<(), raypencil_scene::SceneError>(())
 //! ```
 //!
-//! There are two ways in. [`compare()`] holds two renderers against each other; the referee rules where they differ, and
-//! on a sample of the rays on which they agree. [`check()`] holds one recording against the [`GroundTruth`], every exact
-//! answer. Both make the same results of the same parts. The files, from the parts up:
+//! There are two ways in. [`compare()`] holds two renderers against each other; the referee rules where they differ,
+//! and on a sample of the rays on which they agree. [`check()`] holds one recording against the [`GroundTruth`], every
+//! exact answer. Both make the same results of the same parts. The files, from the parts up:
 //!
 //! ```text
 //! class, quantity        what a difference is, and of what
@@ -58,24 +58,25 @@
 //!
 //! * **Whether a ray hits.** `compare` asks for a face or a range, which every renderer gives. `check` takes any value
 //!   for a hit, since a recording may hold one channel alone.
-//! * **Bound of a value.** `compare` adds the bounds of two roundings: of both sides, or of one side and of the referee's
-//!   f64. `check` adds half a unit in the last place of the storage and of f64 to one bound, since its truth is correctly
-//!   rounded and its values went through a file.
+//! * **Bound of a value.** `compare` adds the bounds of two roundings: of both sides, or of one side and of the
+//!   referee's f64. `check` adds half a unit in the last place of the storage and of f64 to one bound, since its truth
+//!   is correctly rounded and its values went through a file.
 //! * **Values of tied faces.** `compare` leaves out the quantities in which two tied faces differ (normal, cosines,
 //!   flux). `check` has one side only, and judges all of its values by the face that this names.
 //! * **Flux of 0.** `compare` allows what a subnormal share of the power may leave, since both sides compute. `check`
 //!   allows no flux at all where the exact flux is 0, in any storage.
-//! * **Classes.** `compare` knows a renderer's causes, so it has [`Class::Approximation`]. `check` knows none; but it asks
-//!   for rounded fluxes, so it has [`Class::Undecided`].
-//! * **Order of blame.** Of several values of a hit that are off the face named, `compare` blames the first number before
-//!   any vector. `check` enters all of them in the order range, depth, point, normal, incidence.
-//! * **Units in the last place, lists of places.** `check` tallies them, since a file has a last place and `diff` asks for
-//!   single cells. `compare` leaves both out, and tallies approximations by cause instead.
-//! * **Rulings in words.** `check` keeps them for its reports. `compare` gives a place, which `raypencil probe` explains.
+//! * **Classes.** `compare` knows a renderer's causes, so it has [`Class::Approximation`]. `check` knows none; but it
+//!   asks for rounded fluxes, so it has [`Class::Undecided`].
+//! * **Order of blame.** Of several values of a hit that are off the face named, `compare` blames the first number
+//!   before any vector. `check` enters all of them in the order range, depth, point, normal, incidence.
+//! * **Units in the last place, lists of places.** `check` tallies them, since a file has a last place and `diff` asks
+//!   for single cells. `compare` leaves both out, and tallies approximations by cause instead.
+//! * **Rulings in words.** `check` keeps them for its reports. `compare` gives a place, which `raypencil probe`
+//!   explains.
 //! * **NaN.** It counts as the largest value. `compare` keeps the first ray with a NaN and `check` the last: nothing
 //!   depends on it but the place that is printed, and published results keep theirs.
-//! * **Flux of a pixel.** `compare` enters one class for all beams, since a pixel's cause may be in any of them. `check`
-//!   enters an item for each beam and model, as files hold them.
+//! * **Flux of a pixel.** `compare` enters one class for all beams, since a pixel's cause may be in any of them.
+//!   `check` enters an item for each beam and model, as files hold them.
 
 mod answer;
 mod attribution;

@@ -221,3 +221,54 @@ impl SensorResult {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(i: u32) -> Place {
+        Place { sensor: SensorId::Camera, i, j: 0 }
+    }
+
+    /// The tally of some errors, each of the ray of its index, with a bound of 2.
+    fn tally(errors: &[f64], ruling: Option<&str>) -> ItemTally {
+        let mut tally = ItemTally::default();
+        for (i, error) in errors.iter().enumerate() {
+            let difference = Difference::computed(Quantity::Range, *error, Some(2.0));
+            tally.enter(&difference, place(i as u32), ruling);
+        }
+        tally
+    }
+
+    #[test]
+    fn the_first_of_equal_errors_is_the_largest() {
+        // 3 is found at rays 1 and 2; its ratio is 3/2.
+        let all = tally(&[1.0, 3.0, 3.0], None);
+        assert_eq!(all.worst_error, Some(Largest { value: 3.0, place: place(1), ruling: None }));
+        assert_eq!(all.worst_ratio, Some(Largest { value: 1.5, place: place(1), ruling: None }));
+        assert_eq!(all.worst_ulps, None);
+    }
+
+    #[test]
+    fn nan_is_the_largest_the_first_of_two_renderers_and_the_last_of_a_recording() {
+        for (ruling, expected) in [(None, 1), (Some("exact"), 3)] {
+            let found = tally(&[1.0, f64::NAN, 5.0, f64::NAN, 7.0], ruling).worst_error.unwrap();
+            assert!(found.value.is_nan());
+            assert_eq!(found.place, place(expected), "{ruling:?}");
+            // Adding up two parts finds the same as entering all.
+            let mut parts = tally(&[1.0, f64::NAN, 5.0, 0.0, 7.0], ruling);
+            let mut later = ItemTally::default();
+            later.enter(&Difference::computed(Quantity::Range, f64::NAN, None), place(3), ruling);
+            parts.add(&later);
+            assert_eq!(parts.worst_error.unwrap().place, place(expected), "{ruling:?}");
+        }
+    }
+
+    #[test]
+    fn equal_numbers_agree_without_a_bound_and_nan_never_does() {
+        let is_within = |error, bound| Difference::computed(Quantity::Range, error, bound).is_within();
+        assert!(is_within(0.0, None) && is_within(0.0, Some(f64::NAN)) && is_within(2.0, Some(2.0)));
+        assert!(!is_within(1e-300, None) && !is_within(2.5, Some(2.0)));
+        assert!(!is_within(f64::NAN, Some(f64::INFINITY)) && !is_within(1.0, Some(f64::NAN)));
+    }
+}

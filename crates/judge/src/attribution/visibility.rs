@@ -32,8 +32,8 @@ impl StatedVisibility {
     }
 }
 
-/// A pencil whose visibility is not the contract's for the face that it is stated to hit: an admissible face, or one that
-/// has a cause.
+/// A pencil whose visibility is not the contract's for the face that it is stated to hit: an admissible face, or one
+/// that has a cause.
 struct WrongVisibility {
     place: Place,
     answer: StatedVisibility,

@@ -145,7 +145,8 @@ fn ruled_otherwise(
     }
 }
 
-/// A face that the recording does not name, found by its values: it ties with the true one, or a displaced ray meets it.
+/// A face that the recording does not name, found by its values: it ties with the true one, or a displaced ray meets
+/// it.
 fn unnamed_face(
     truth: &GroundTruth<'_>,
     recorded: &Recorded,

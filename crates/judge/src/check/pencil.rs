@@ -1,7 +1,7 @@
 //! One pencil's return in a recording against the truth: visibility, pixel and flux.
 //!
-//! What the recording leaves out (the face, the visibility, the pixel) is taken from the truth; if the values do not fit
-//! that, from another admissible answer that they fit.
+//! What the recording leaves out (the face, the visibility, the pixel) is taken from the truth; if the values do not
+//! fit that, from another admissible answer that they fit.
 
 use crate::answer::StatedReturn;
 use crate::bounds::{HitBounds, ReturnBounds, ReturnValues, min_normal};
@@ -79,8 +79,8 @@ struct RecordedPencil<'a> {
 }
 
 impl RecordedPencil<'_> {
-    /// Judges the recorded values under the hypothesis of this hit, visibility and pixel; `None` if the face has no such
-    /// point.
+    /// Judges the recorded values under the hypothesis of this hit, visibility and pixel; `None` if the face has no
+    /// such point.
     fn hypothesis(
         &self,
         (hit, of_hit, of_class): (&Hit, &HitBounds, Class),

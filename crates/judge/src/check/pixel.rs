@@ -1,8 +1,8 @@
 //! The flux of a beam on the image, pixel by pixel, against the sum over the pencils that land there.
 //!
 //! A recording that states where its pencils land is held to the exact sum over those pencils, each of which is judged
-//! by itself. A recording of the image alone is held to the true pencils; a pencil that may round into another pixel, or
-//! out of view, may then be in the sum or not, as a whole.
+//! by itself. A recording of the image alone is held to the true pencils; a pencil that may round into another pixel,
+//! or out of view, may then be in the sum or not, as a whole.
 
 use std::collections::HashMap;
 

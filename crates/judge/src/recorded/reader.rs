@@ -15,8 +15,8 @@ pub(super) fn limits(scene: &Scene) -> Limits {
     let sizes = scene.sensors().filter_map(|sensor| scene.size(sensor));
     let all: u64 = sizes.map(|(columns, rows)| u64::from(columns) * u64::from(rows)).sum();
     let most = Limits::default();
-    // CHOICE: a map of up to a million cells is read, and refused later by a message that names its size and its sensor.
-    // A recording has less than a thousand channels of doubles.
+    // CHOICE: a map of up to a million cells is read, and refused later by a message that names its size and its
+    // sensor. A recording has less than a thousand channels of doubles.
     Limits {
         cells: all.max(1 << 20).min(most.cells),
         bytes: ((1 << 26) + (all << 13)).min(most.bytes),
