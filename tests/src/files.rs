@@ -5,7 +5,7 @@ use std::path::Path;
 use raypencil::harness::write_maps;
 use raypencil::io::Subject;
 use raypencil::io::{ExrMap, Limits, Raster, SceneIoError, read_exr, scene_sha256, write_exr};
-use raypencil::judge::{Check, Class, Item, Recorded, RecordingError, Truth, check};
+use raypencil::judge::{Check, Class, GroundTruth, Item, Recorded, RecordingError, check};
 use raypencil::tracer::Tracer;
 use raypencil::{Image, Precision, Renderer, Request, Sampling, Scene};
 use raypencil::{Place, Silent};
@@ -170,7 +170,7 @@ pub fn caught(scene: &Scene, fault: Option<FileFault>) -> Option<Caught> {
         Ok(recorded) => recorded,
         Err(refusal) => return Some(Caught::Refused(refusal)),
     };
-    let found = check(&Truth::certified(scene, &Silent), &recorded, &Silent);
+    let found = check(&GroundTruth::certified(scene, &Silent), &recorded, &Silent);
     assert_eq!(found.passes(), found.of(Class::Defect) == 0, "a check without doubts");
     first_wrong(scene, &found)
 }
@@ -180,7 +180,7 @@ fn first_wrong(scene: &Scene, found: &Check) -> Option<Caught> {
     let mut before = 0;
     for sensor in found.sensors[1..].iter().chain(&found.sensors[..1]) {
         let (width, height) = scene.size(sensor.sensor).expect("a sensor of this scene");
-        if let Some(wrong) = sensor.wrong.first() {
+        if let Some(wrong) = sensor.defects.first() {
             let Place { i, j, .. } = wrong.place;
             let compared = before + u64::from(j) * u64::from(width) + u64::from(i) + 1;
             return Some(Caught::Wrong(wrong.place, wrong.item, compared));

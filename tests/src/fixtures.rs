@@ -6,7 +6,7 @@ use std::sync::Arc;
 use raypencil::Place;
 use raypencil::harness::{Estimate, Outsider, RadianceMap, Validation, WayImage, contender, validate};
 use raypencil::io::Subject;
-use raypencil::judge::{Class, Defect, JudgeShare, Quantity, Recorded, Worst};
+use raypencil::judge::{Class, Defect, JudgeShare, Largest, Quantity, Recorded};
 use raypencil::{
     Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Precision, Profile, Scene,
     SensorId, Silent,
@@ -136,20 +136,21 @@ pub fn defective() -> Validation {
     let sensor = validation.pairs[0].sensors.last_mut().unwrap();
     sensor.by_class[Class::Agree as usize] -= 2;
     sensor.by_class[Class::Defect as usize] += 2;
-    for (quantity, tally) in &mut sensor.quantities {
+    for (item, tally) in &mut sensor.items {
+        let quantity = item.quantity;
         if matches!(quantity, Quantity::Hit | Quantity::Range) {
             tally.by_class[Class::Agree as usize] -= 1;
             tally.by_class[Class::Defect as usize] += 1;
         }
-        if *quantity == Quantity::Range {
-            tally.worst_error = Some(Worst { value: f64::INFINITY, place: DEFECTS[1] });
-            tally.worst_ratio = Some(Worst { value: f64::NAN, place: DEFECTS[1] });
+        if quantity == Quantity::Range {
+            tally.worst_error = Some(Largest { value: f64::INFINITY, place: DEFECTS[1], ruling: None });
+            tally.worst_ratio = Some(Largest { value: f64::NAN, place: DEFECTS[1], ruling: None });
         }
     }
     let described = ["scanline: <no> & \"hit\"; tracer: face 3", "scanline: face 3; tracer: face 3"];
     for ((place, quantity), what) in DEFECTS.into_iter().zip([Quantity::Hit, Quantity::Range]).zip(described)
     {
-        sensor.defects.push(Defect { place, quantity, what: what.into() });
+        sensor.defects.push(Defect { place, item: quantity.into(), what: what.into() });
     }
     let map = validation.rendered[1].output.beams[0].range.as_mut().unwrap();
     let image: &mut Image<Maybe<f64>> = map;

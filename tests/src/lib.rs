@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 pub use raypencil::campaign::cases::{at_origin, lattice, mesh, random, scene};
-use raypencil::judge::{Class, SensorComparison, Side, compare};
+use raypencil::judge::{Class, SensorResult, Side, compare};
 pub use raypencil::rig;
 use raypencil::scanline::Scanline;
 use raypencil::tracer::Tracer;
@@ -158,16 +158,18 @@ pub fn first_difference(a: &RenderOutput, b: &RenderOutput) -> Option<String> {
 }
 
 /// Compares two frames of a scene; the error lists the first defects.
-pub fn agreement(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Result<Vec<SensorComparison>, String> {
+pub fn agreement(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Result<Vec<SensorResult>, String> {
     let sensors = compare(scene, a, b);
     for sensor in &sensors {
         let classes: u64 = sensor.by_class.iter().sum();
         let (width, height) = scene.size(sensor.sensor).expect("a sensor of this scene");
         let cells = u64::from(width) * u64::from(height);
-        if classes != sensor.compared || sensor.compared != cells || sensor.not_compared != 0 {
+        if classes != sensor.compared() || sensor.compared() != cells || sensor.not_compared != 0 {
             return Err(format!(
                 "{}: of {cells} rays {} compared, {} not; the classes hold {classes}",
-                sensor.sensor, sensor.compared, sensor.not_compared
+                sensor.sensor,
+                sensor.compared(),
+                sensor.not_compared
             ));
         }
     }
@@ -177,7 +179,7 @@ pub fn agreement(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Result<Vec<SensorCo
     }
     let mut message = format!("{defects} defects\n");
     for defect in sensors.iter().flat_map(|sensor| &sensor.defects).take(5) {
-        message += &format!("  {}, {}: {}\n", defect.place, defect.quantity, defect.what);
+        message += &format!("  {}, {}: {}\n", defect.place, defect.item.quantity, defect.what);
     }
     Err(message)
 }

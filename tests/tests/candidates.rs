@@ -9,7 +9,7 @@ use raypencil::harness::{
     compare_radiance, expected_images,
 };
 use raypencil::io::{Overrides, load};
-use raypencil::judge::{Class, Quantity, Truth};
+use raypencil::judge::{Class, GroundTruth, Quantity};
 use raypencil::pack::{Checked, check_pack};
 use raypencil::tracer::Tracer;
 use raypencil::{Beam, FluxModel, Image, Mounted, Precision, Renderer, Request, Sampling, Scene, SensorId};
@@ -62,7 +62,7 @@ fn embree_is_right_as_single_precision_goes() {
         assert!(
             found.check.passes(),
             "{pack}: {:?}",
-            found.check.sensors.iter().flat_map(|s| &s.wrong).next()
+            found.check.sensors.iter().flat_map(|s| &s.defects).next()
         );
         assert_eq!(found.check.compared(), 96 * 72 + 2 * 128 * 4, "{pack}");
         let compared: Vec<Quantity> = found
@@ -83,7 +83,7 @@ fn embree_is_right_as_single_precision_goes() {
 fn embree_is_off_by_micrometres_from_the_face_it_hits() {
     for pack in PACKS {
         let scene = scene(pack);
-        let truth = Truth::certified(&scene, &Silent);
+        let truth = GroundTruth::certified(&scene, &Silent);
         let said = Outsider::read(&data(&format!("candidates/embree/{pack}")), &scene)
             .expect("a recording")
             .recorded;
@@ -118,7 +118,7 @@ fn mitsuba_meets_the_right_faces_and_loses_a_shadow_by_its_offset() {
             let tally = &found.check.totals()[&quantity.into()];
             assert_eq!(tally.of(Class::Defect) + tally.of(Class::Rounding), 0, "{pack} {quantity}");
         }
-        let wrong: Vec<_> = found.check.sensors.iter().flat_map(|sensor| &sensor.wrong).collect();
+        let wrong: Vec<_> = found.check.sensors.iter().flat_map(|sensor| &sensor.defects).collect();
         let places: Vec<_> = wrong
             .iter()
             .map(|wrong| {
@@ -139,7 +139,7 @@ fn mitsubas_radiance_is_the_closed_form() {
     let mut lit = 0;
     for pack in PACKS {
         let scene = scene(pack);
-        let truth = Truth::certified(&scene, &Silent);
+        let truth = GroundTruth::certified(&scene, &Silent);
         let maps = outsider(pack).radiance;
         assert_eq!(maps.len(), 4, "{pack}: rays of the camera and of each beam, for both beams");
         for map in &maps {

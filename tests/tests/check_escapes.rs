@@ -7,7 +7,7 @@ use raypencil::Place;
 use raypencil::harness::contender;
 use raypencil::io::Storage;
 use raypencil::io::{Overrides, load};
-use raypencil::judge::{Check, Class, Item, Quantity, Recorded, Truth, check};
+use raypencil::judge::{Check, Class, GroundTruth, Item, Quantity, Recorded, check};
 use raypencil::pack::blind_scene;
 use raypencil::referee::Format;
 use raypencil::{FluxModel, Image, Maybe, Pixel, Precision, Request, Scene, SensorId, Silent};
@@ -70,12 +70,12 @@ fn keep(recorded: &mut Recorded, kept: &[Quantity]) {
 }
 
 fn judged(scene: &Scene, recorded: &Recorded) -> Check {
-    check(&Truth::certified(scene, &Silent), recorded, &Silent)
+    check(&GroundTruth::certified(scene, &Silent), recorded, &Silent)
 }
 
 #[track_caller]
 fn assert_passes(found: &Check) {
-    let wrong = found.sensors.iter().find_map(|sensor| sensor.wrong.first());
+    let wrong = found.sensors.iter().find_map(|sensor| sensor.defects.first());
     assert!(found.passes(), "{wrong:?}");
 }
 
@@ -87,7 +87,7 @@ fn cells(image: &Image<f64>) -> impl Iterator<Item = (u32, u32)> + use<> {
 #[test]
 fn a_pencil_near_a_border_is_not_lost_unseen() {
     let scene = scene_of("pyramids");
-    let truth = Truth::certified(&scene, &Silent);
+    let truth = GroundTruth::certified(&scene, &Silent);
     let referee = truth.judge().referee();
     let mut image_only = recorded(&scene, Precision::F64);
     let flux = image_only.answers.light[0].returns.flux.clone().unwrap();
@@ -101,7 +101,7 @@ fn a_pencil_near_a_border_is_not_lost_unseen() {
         })
     });
     let (i, j) = near.expect("such a pencil is in this pack");
-    let (_, pixel) = truth.sight(Place { sensor: SensorId::Beam(0), i, j });
+    let (_, pixel) = truth.visibility(Place { sensor: SensorId::Beam(0), i, j });
     let Pixel { i: column, j: row } = pixel.unwrap();
     let image = image_only.answers.light[0].image.as_mut().unwrap();
     image.set(column, row, (image.at(column, row) - flux.at(i, j)).max(0.0));
@@ -118,9 +118,9 @@ fn a_pencil_near_a_border_is_not_lost_unseen() {
 fn on_a_border() -> (Scene, Place) {
     let scene = scene_of("pyramids");
     let place = Place { sensor: SensorId::Beam(0), i: 37, j: 2 };
-    let truth = Truth::certified(&scene, &Silent);
+    let truth = GroundTruth::certified(&scene, &Silent);
     let hit = truth.hit(place).unwrap();
-    assert!(truth.sight(place).0);
+    assert!(truth.visibility(place).0);
     let mut camera = *scene.camera();
     let seen = camera.scene_from_sensor.inverse() * hit.point;
     let sensor = &mut camera.sensor;
@@ -139,7 +139,7 @@ fn on_a_border() -> (Scene, Place) {
 #[test]
 fn a_pencil_that_rounds_over_a_border_is_no_fault_of_either_pixel() {
     let (scene, Place { i, j, .. }) = on_a_border();
-    let truth = Truth::certified(&scene, &Silent);
+    let truth = GroundTruth::certified(&scene, &Silent);
     let mut moved = recorded(&scene, Precision::F32);
     let light = &mut moved.answers.light[0];
     let flux = light.returns.flux.as_ref().unwrap().at(i, j);
@@ -172,17 +172,17 @@ fn a_pencil_that_rounds_over_a_border_is_no_fault_of_either_pixel() {
     assert!(!check(&truth, &moved, &Silent).passes());
 }
 
-fn image_at(truth: &Truth<'_>, pixel: Pixel) -> f64 {
+fn image_at(truth: &GroundTruth<'_>, pixel: Pixel) -> f64 {
     truth.answers().light[0].image.as_ref().unwrap().at(pixel.i, pixel.j)
 }
 
 #[test]
 fn light_off_the_image_is_nothing() {
     let scene = scene_of("facets");
-    let truth = Truth::certified(&scene, &Silent);
+    let truth = GroundTruth::certified(&scene, &Silent);
     let off = (0..4)
         .flat_map(|j| (0..128).map(move |i| Place { sensor: SensorId::Beam(1), i, j }))
-        .find(|place| truth.hit(*place).is_some() && truth.sight(*place) == (false, None))
+        .find(|place| truth.hit(*place).is_some() && truth.visibility(*place) == (false, None))
         .expect("some pencils of this pack land off the image");
     for without in [[].as_slice(), &[Quantity::Visible], &[Quantity::Visible, Quantity::Pixel]] {
         let mut lying = recorded(&scene, Precision::F64);
@@ -211,7 +211,7 @@ fn a_hit_that_is_seen_lands_somewhere() {
 #[test]
 fn a_value_is_there_exactly_where_something_is_hit() {
     let scene = scene_of("facets");
-    let truth = Truth::certified(&scene, &Silent);
+    let truth = GroundTruth::certified(&scene, &Silent);
     let mut lying = recorded(&scene, Precision::F64);
     keep(&mut lying, &[Quantity::CameraDepth]);
     assert_passes(&check(&truth, &lying, &Silent));
@@ -255,16 +255,16 @@ fn faces_that_tie_may_deliver_unlike_light() {
         .find_map(|seed| {
             let scene = blind_scene(seed).unwrap();
             let found = {
-                let truth = Truth::certified(&scene, &Silent);
+                let truth = GroundTruth::certified(&scene, &Silent);
                 tied(&truth)
             };
             found.map(|(place, face)| (scene, place, face))
         })
         .expect("some seed has such a pencil");
-    let truth = Truth::certified(&scene, &Silent);
+    let truth = GroundTruth::certified(&scene, &Silent);
     let SensorId::Beam(beam) = place.sensor else { panic!("a pencil") };
     let Place { i, j, .. } = place;
-    let (visible, pixel) = truth.sight(place);
+    let (visible, pixel) = truth.visibility(place);
     let back = truth.judge().rounded_return(place, face, visible, pixel).unwrap();
     let other = back.in_format(Format::Double, scene.flux_model()).flux;
     for kept in [
@@ -286,12 +286,12 @@ fn faces_that_tie_may_deliver_unlike_light() {
 }
 
 /// A pencil that is seen, and a face that ties with the one it hits and delivers unlike light.
-fn tied(truth: &Truth<'_>) -> Option<(Place, raypencil::FaceId)> {
+fn tied(truth: &GroundTruth<'_>) -> Option<(Place, raypencil::FaceId)> {
     let model: FluxModel = truth.scene().flux_model();
     for beam in 0..truth.scene().beams().len() {
         let sensor = SensorId::Beam(beam);
         for place in (0..4).flat_map(|j| (0..128).map(move |i| Place { sensor, i, j })) {
-            let (true, Some(pixel)) = truth.sight(place) else { continue };
+            let (true, Some(pixel)) = truth.visibility(place) else { continue };
             let verdict = truth.judge().referee().verdict(sensor, place.i, place.j)?;
             for face in verdict.faces.into_iter().skip(1) {
                 let back = truth.judge().rounded_return(place, face, true, Some(pixel))?;

@@ -91,7 +91,7 @@ fn both_renderers_pass_and_nothing_of_theirs_is_left_out() {
     for pack in PACKS {
         for renderer in ["scanline", "tracer", "referee"] {
             let Checked { check, recorded, .. } = judged(pack, renderer);
-            assert!(check.passes(), "{pack} by {renderer}: {:?}", check.sensors[0].wrong.first());
+            assert!(check.passes(), "{pack} by {renderer}: {:?}", check.sensors[0].defects.first());
             assert_eq!(check.compared(), 96 * 72 + 2 * 128 * 4);
             assert_eq!(recorded.unknown, [""; 0]);
             let totals = check.totals();
@@ -104,7 +104,7 @@ fn both_renderers_pass_and_nothing_of_theirs_is_left_out() {
                     assert!(tally.compared() > 900, "{pack} by {renderer}: {quantity} is hardly compared");
                     assert_eq!(tally.not_compared, 0, "{pack} by {renderer}: {quantity}");
                     // Stored in single precision: half an ulp and what the arithmetic adds.
-                    if let Some(ulps) = &tally.ulps {
+                    if let Some(ulps) = &tally.worst_ulps {
                         assert!(ulps.value < 0.51, "{pack} by {renderer}: {quantity}, {ulps:?}");
                     }
                 }
@@ -119,5 +119,5 @@ fn a_candidate_with_the_papers_approximations_is_found_out() {
     let Checked { check, .. } = judged("facets", "scanline-paper");
     assert!(!check.passes());
     assert!(check.of(Class::Defect) > 0 && check.of(Class::Defect) < check.compared() / 10);
-    assert!(check.sensors.iter().any(|sensor| !sensor.wrong.is_empty()));
+    assert!(check.sensors.iter().any(|sensor| !sensor.defects.is_empty()));
 }

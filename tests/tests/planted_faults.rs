@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use raypencil::judge::{Class, SensorComparison, Side, compare};
+use raypencil::judge::{Class, SensorResult, Side, compare};
 use raypencil::scanline::Scanline;
 use raypencil::terrain::RandomGround;
 use raypencil::tracer::Tracer;
@@ -129,7 +129,7 @@ impl<'a> Judges<'a> {
     }
 
     /// The naive renderer compared with each of them.
-    fn compare(&self, naive: Naive) -> [(&'static str, Vec<SensorComparison>); 2] {
+    fn compare(&self, naive: Naive) -> [(&'static str, Vec<SensorResult>); 2] {
         let output = naive.render(self.scene, &Request::MAPS);
         let precision = naive.precision();
         [0, 1].map(|index| {
@@ -145,10 +145,10 @@ impl<'a> Judges<'a> {
         for (judge, sensors) in self.compare(Naive::default()) {
             for sensor in &sensors {
                 let cells = self.scene.size(sensor.sensor).map_or(0, |(w, h)| u64::from(w) * u64::from(h));
-                if sensor.compared != cells || sensor.of(Class::Defect) != 0 {
+                if sensor.compared() != cells || sensor.of(Class::Defect) != 0 {
                     return Err(format!(
                         "{} of {cells} compared with {judge}, {} defects, the first {:?}",
-                        sensor.compared,
+                        sensor.compared(),
                         sensor.of(Class::Defect),
                         sensor.defects.first()
                     ));

@@ -1,7 +1,7 @@
 //! Faults of light, planted in the naive renderer one by one: each must show as defects against both renderers,
 //! and nothing without it.
 
-use raypencil::judge::{Class, SensorComparison, Side, compare};
+use raypencil::judge::{Class, SensorResult, Side, compare};
 use raypencil::scanline::Scanline;
 use raypencil::tracer::Tracer;
 use raypencil::{FluxModel, RenderOutput, Renderer, Request, Scene, SensorId};
@@ -25,7 +25,7 @@ fn side<'a>(renderer: &dyn Renderer, name: &'a str, output: &'a RenderOutput) ->
     Side { name, output, precision: renderer.precision(), attributions: None }
 }
 
-fn compared(scene: &Scene, honest: &dyn Renderer, naive: Naive) -> Vec<SensorComparison> {
+fn compared(scene: &Scene, honest: &dyn Renderer, naive: Naive) -> Vec<SensorResult> {
     let render = |renderer: &dyn Renderer| renderer.render(scene, &Request::EVERYTHING);
     let (a, b) = (render(honest), render(&naive));
     compare(scene, side(honest, "honest", &a), side(&naive, "naive", &b))
@@ -38,7 +38,7 @@ fn every_fault_of_light_is_found() {
     let mut wrong = Vec::new();
     for fault in Fault::ALL.iter().copied().filter(|fault| fault.is_of_light()) {
         for (name, scene) in scenes(fault) {
-            let count = |sensors: &[SensorComparison], which: fn(SensorId) -> bool| -> u64 {
+            let count = |sensors: &[SensorResult], which: fn(SensorId) -> bool| -> u64 {
                 sensors.iter().filter(|of| which(of.sensor)).map(|of| of.of(Class::Defect)).sum()
             };
             let is_camera = |sensor| sensor == SensorId::Camera;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use raypencil::campaign::{Campaign, PartName, scene_of};
-use raypencil::judge::{Class, Judge, JudgeShare, Quantity, SensorComparison, Side, compare_judged};
+use raypencil::judge::{Class, Judge, JudgeShare, Quantity, SensorResult, Side, compare_judged};
 use raypencil::scanline::Scanline;
 use raypencil::terrain::builtin;
 use raypencil::tracer::Tracer;
@@ -13,7 +13,7 @@ use raypencil::{Maybe, Mesh, Mounted, Pose, RenderOutput, Renderer, Request, Sce
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene};
 
-fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorComparison> {
+fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorResult> {
     let outputs = [a, b].map(|renderer| renderer.render(scene, &Request::EVERYTHING));
     let side = |renderer: &dyn Renderer, output| Side {
         name: if renderer.name() == a.name() { "a" } else { "b" },
@@ -77,7 +77,7 @@ fn faces_one_ulp_apart_are_rounding() {
     assert_eq!(of(Class::Defect) + of(Class::Undecided), 0, "{:?}", found.defects);
     assert!(of(Class::Rounding) > 0, "no ray is close enough: {:?}", found.by_class);
     assert!(of(Class::Agree) > 4000, "{:?}", found.by_class);
-    assert_eq!(found.judged, found.compared);
+    assert_eq!(found.judged, found.compared());
 }
 
 /// The paper's algorithm, with some answers spoiled: of every 97th pencil that hits, unseen, the hit is lost; of every 89th
@@ -228,9 +228,9 @@ fn by_how_much_tied_faces_differ_is_no_error_of_flux() {
     let [a, b] = renderers();
     let sensors = compared(&scene, &*a, &*b);
     let beam = sensors.iter().find(|sensor| sensor.sensor == SensorId::Beam(0)).expect("a beam");
-    let flux = beam.quantities.iter().find(|(quantity, _)| *quantity == Quantity::PencilFlux);
+    let flux = beam.items.iter().find(|(item, _)| item.quantity == Quantity::PencilFlux);
     let (_, flux) = flux.expect("both say what each pencil delivers");
     assert!(flux.of(Class::Tie) > 20 && flux.of(Class::Defect) == 0, "{flux:?}");
-    let worst = flux.worst_ratio.expect("pencils that agree");
+    let worst = flux.worst_ratio.clone().expect("pencils that agree");
     assert!(worst.value < 0.1, "{worst:?}");
 }

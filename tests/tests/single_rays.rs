@@ -1,6 +1,8 @@
 //! Rays compared one by one have the classes that a whole comparison counts.
 
-use raypencil::judge::{Class, First, Judge, JudgeShare, class_at, compare_judged, first_of};
+use raypencil::judge::{
+    Class, FirstOfClass, Judge, JudgeShare, class_of_ray, compare_judged, first_of_class,
+};
 use raypencil::{Place, SensorId};
 use raypencil_tests::fixtures::approximate;
 
@@ -11,9 +13,9 @@ fn single_rays_have_the_classes_that_a_comparison_counts() {
     let judge = Judge::new(scene, JudgeShare::Sample);
     let [a, b] = [0, 1].map(|index| validation.rendered[index].side());
     let whole = compare_judged(&judge, a, b);
-    let mut first: Option<First> = None;
+    let mut first: Option<FirstOfClass> = None;
     let mut before = 0;
-    // In the order of `first_of`: the camera last.
+    // In the order of `first_of_class`: the camera last.
     for sensor in whole[1..].iter().chain(&whole[..1]) {
         // A row of the camera is enough: each of its pixels compares all beams.
         let (width, height) = scene.size(sensor.sensor).unwrap();
@@ -21,20 +23,20 @@ fn single_rays_have_the_classes_that_a_comparison_counts() {
         let mut by_class = [0; 6];
         for (i, j) in rows.flat_map(|j| (0..width).map(move |i| (i, j))) {
             let place = Place { sensor: sensor.sensor, i, j };
-            let (class, quantity) = class_at(&judge, a, b, place).unwrap();
+            let (class, quantity) = class_of_ray(&judge, a, b, place).unwrap();
             by_class[class as usize] += 1;
             before += 1;
             if class == Class::Approximation && first.is_none() {
-                first = Some(First { place, quantity, compared: before });
+                first = Some(FirstOfClass { place, quantity, compared: before });
             }
         }
         if sensor.sensor != SensorId::Camera {
             assert_eq!(by_class, sensor.by_class, "{}", sensor.sensor);
         }
         let outside = Place { sensor: sensor.sensor, i: width, j: 0 };
-        assert_eq!(class_at(&judge, a, b, outside), None);
+        assert_eq!(class_of_ray(&judge, a, b, outside), None);
     }
     assert!(first.is_some());
-    assert_eq!(first_of(&judge, a, b, Class::Approximation), first);
-    assert_eq!(first_of(&judge, a, b, Class::Undecided), None);
+    assert_eq!(first_of_class(&judge, a, b, Class::Approximation), first);
+    assert_eq!(first_of_class(&judge, a, b, Class::Undecided), None);
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::campaign::{Campaign, CampaignError};
 use raypencil_files::{FileError, write_atomically};
-use raypencil_judge::{Class, Quantity, SensorComparison, Worst};
+use raypencil_judge::{Class, ItemTally, Largest, Quantity, SensorResult};
 
 /// The number of the form of these files.
 pub(super) const FORMAT: u32 = 1;
@@ -123,7 +123,7 @@ const DESCRIBED: usize = 10;
 
 impl PartRecord {
     /// What a comparison found.
-    pub(super) fn of(part: PartName, sensors: &[SensorComparison]) -> Self {
+    pub(super) fn of(part: PartName, sensors: &[SensorResult]) -> Self {
         let mut record = Self {
             part,
             compared: 0,
@@ -133,27 +133,27 @@ impl PartRecord {
             quantities: Vec::new(),
             wrong: Vec::new(),
         };
-        let mut totals = Quantity::ALL.map(|quantity| (quantity, raypencil_judge::Tally::default()));
+        let mut totals = Quantity::ALL.map(|quantity| (quantity, ItemTally::default()));
         for sensor in sensors {
-            record.compared += sensor.compared;
+            record.compared += sensor.compared();
             record.not_compared += sensor.not_compared;
             record.judged += sensor.judged;
             for (mine, theirs) in record.by_class.iter_mut().zip(sensor.by_class) {
                 *mine += theirs;
             }
-            for (quantity, tally) in &sensor.quantities {
-                totals[*quantity as usize].1.add(tally);
+            for (item, tally) in &sensor.items {
+                totals[item.quantity as usize].1.add(tally);
             }
             let room = DESCRIBED.saturating_sub(record.wrong.len());
             record.wrong.extend(sensor.defects.iter().take(room).map(|defect| WrongRay {
                 sensor: defect.place.sensor.to_string(),
                 i: defect.place.i,
                 j: defect.place.j,
-                quantity: defect.quantity,
+                quantity: defect.item.quantity,
                 what: defect.what.clone(),
             }));
         }
-        let said = |(_, tally): &(Quantity, raypencil_judge::Tally)| {
+        let said = |(_, tally): &(Quantity, ItemTally)| {
             tally.not_compared > 0 || tally.by_class.iter().any(|count| *count > 0)
         };
         record.quantities = totals
@@ -176,7 +176,7 @@ impl PartRecord {
     }
 }
 
-fn worst(Worst { value, place }: Worst) -> WorstRecord {
+fn worst(Largest { value, place, .. }: Largest) -> WorstRecord {
     WorstRecord {
         value: value.is_finite().then_some(value),
         sensor: place.sensor.to_string(),

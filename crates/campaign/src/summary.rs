@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::merge::Merged;
 use crate::record::{PartName, PartRecord, TerrainRecord, WorstRecord, probe_words};
 use raypencil_files::{FolderError, begin};
-use raypencil_judge::{Class, Quantity};
+use raypencil_judge::{COMPARE_CLASSES, Class, Quantity, class_counts_json};
 use raypencil_report::{count, number};
 
 /// The number of the summary's form.
@@ -105,17 +105,6 @@ impl Merged {
     }
 }
 
-fn classes(by_class: &[u64; 6]) -> Value {
-    json!({
-        "agree": by_class[Class::Agree as usize],
-        "tie": by_class[Class::Tie as usize],
-        "rounding": by_class[Class::Rounding as usize],
-        "approximation": by_class[Class::Approximation as usize],
-        "undecided": by_class[Class::Undecided as usize],
-        "defects": by_class[Class::Defect as usize],
-    })
-}
-
 /// The campaign for programs.
 pub fn campaign_json(merged: &Merged) -> String {
     let found = |found: &Option<Found<'_>>| {
@@ -133,7 +122,7 @@ pub fn campaign_json(merged: &Merged) -> String {
         let quantities = total.quantities.iter().map(|(quantity, one)| {
             json!({
                 "quantity": quantity,
-                "classes": classes(&one.by_class),
+                "classes": class_counts_json(&one.by_class, &COMPARE_CLASSES),
                 "not_compared": one.not_compared,
                 "worst_error": found(&one.error),
                 "worst_ratio": found(&one.ratio),
@@ -141,7 +130,7 @@ pub fn campaign_json(merged: &Merged) -> String {
         });
         json!({
             "compared": total.compared,
-            "classes": classes(&total.by_class),
+            "classes": class_counts_json(&total.by_class, &COMPARE_CLASSES),
             "not_compared": total.not_compared,
             "judged": total.judged,
             "quantities": quantities.collect::<Vec<_>>(),

@@ -5,7 +5,7 @@ use std::path::Path;
 use raypencil::Progress;
 use raypencil::diff::{Sides, Thresholds, diff as compare, diff_json, diff_screen, rule, write_diff};
 use raypencil::io::{Channels, Limits, Overrides, load, read_channels};
-use raypencil::judge::{Recorded, Truth, check as judge};
+use raypencil::judge::{GroundTruth, Recorded, check as judge};
 use raypencil::pack::CheckError;
 
 use crate::args::Diff;
@@ -50,7 +50,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, precision));
         let [of_a, of_b] = recorded;
         let (of_a, of_b) = (of_a.map_err(CheckError::from)?, of_b.map_err(CheckError::from)?);
-        let truth = Truth::certified(&scene, &spinner);
+        let truth = GroundTruth::certified(&scene, &spinner);
         let [of_a, of_b] = [of_a, of_b].map(|recorded| judge(&truth, &recorded, &spinner));
         let rulings = rule(&difference, &sides, &truth, [&of_a, &of_b]);
         difference = difference.ruled(rulings);

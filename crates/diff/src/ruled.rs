@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::cells::{Differs, Thresholds, differs};
 use crate::difference::{Difference, Sides};
-use raypencil_judge::{Check, Class, Item, Quantity, Truth, Wrong};
+use raypencil_judge::{Check, Class, Defect, GroundTruth, Item, Quantity};
 use raypencil_scene::Place;
 
 /// What the referee says of the cells that differ.
@@ -52,7 +52,7 @@ impl ChannelRuling {
 }
 
 /// Rules on each cell that differs by more than is allowed, by the checks of both sides against the truth.
-pub fn rule(difference: &Difference, sides: &Sides, truth: &Truth<'_>, checks: [&Check; 2]) -> Rulings {
+pub fn rule(difference: &Difference, sides: &Sides, truth: &GroundTruth<'_>, checks: [&Check; 2]) -> Rulings {
     let lookup = checks.map(Lookup::new);
     let mut rulings = Rulings { channels: BTreeMap::new(), not_ruled: Vec::new() };
     for channel in difference.channels.iter().filter(|channel| channel.differing > 0) {
@@ -101,7 +101,7 @@ fn exceeds(thresholds: &Thresholds, x: f64, y: f64, ulp: f64) -> bool {
 struct Lookup<'a> {
     others: HashMap<(Item, Place), Class>,
     unjudged: HashSet<(Item, Place)>,
-    wrong: HashMap<Place, &'a Wrong>,
+    wrong: HashMap<Place, &'a Defect>,
 }
 
 impl<'a> Lookup<'a> {
@@ -112,7 +112,7 @@ impl<'a> Lookup<'a> {
         });
         let items = check.sensors.iter().flat_map(|sensor| &sensor.items);
         let unjudged = items.flat_map(|(item, tally)| tally.unjudged.iter().map(|place| (*item, *place)));
-        let wrong = check.sensors.iter().flat_map(|sensor| &sensor.wrong).map(|one| (one.place, one));
+        let wrong = check.sensors.iter().flat_map(|sensor| &sensor.defects).map(|one| (one.place, one));
         Self { others: others.collect(), unjudged: unjudged.collect(), wrong: wrong.collect() }
     }
 
@@ -136,7 +136,7 @@ impl<'a> Lookup<'a> {
 }
 
 /// The sensor and quantity of a channel, if it is one of the scene's.
-fn item_of(truth: &Truth<'_>, key: &str) -> Option<(raypencil_scene::SensorId, Item)> {
+fn item_of(truth: &GroundTruth<'_>, key: &str) -> Option<(raypencil_scene::SensorId, Item)> {
     let (sensor, name) = key.split_once('/')?;
     let sensor = truth.scene().sensors().find(|one| one.to_string() == sensor)?;
     Some((sensor, raypencil_judge::item_of_channel(truth.scene(), sensor, name)?))

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::panel::HeldOutsider;
 use raypencil_files::write_atomically;
-use raypencil_judge::{Quantity, Wrong, name_of};
+use raypencil_judge::{Defect, Quantity, name_of};
 use raypencil_minimise::single_ray;
 use raypencil_pack::{PackError, write_pack};
 use raypencil_referee::{Displacement, Format, Referee};
@@ -93,7 +93,7 @@ pub fn write_misses(
     Ok(written)
 }
 
-fn words(subject: &Subject, held: &HeldOutsider, wrong: &Wrong, small: &Subject, place: Place) -> String {
+fn words(subject: &Subject, held: &HeldOutsider, wrong: &Defect, small: &Subject, place: Place) -> String {
     let program = &held.outsider.name;
     let faces = small.scene.mesh().faces().len();
     let of = subject.scene.mesh().faces().len();

@@ -14,7 +14,7 @@ use crate::candidate::Outsider;
 use crate::monte_carlo::{self, ImageComparison, compare_images, expected_images};
 use crate::radiance::{RadianceComparison, compare_radiance};
 use crate::rendered::Rendered;
-use raypencil_judge::{Check, Recorded, Truth, Wrong, check};
+use raypencil_judge::{Check, Defect, GroundTruth, Recorded, check};
 use raypencil_scene::Progress;
 use raypencil_scene_io::Subject;
 
@@ -47,8 +47,8 @@ impl HeldOutsider {
     }
 
     /// The first rays on which it is wrong, sensor by sensor in reading order.
-    pub fn misses(&self) -> impl Iterator<Item = &Wrong> {
-        self.check.sensors.iter().flat_map(|sensor| &sensor.wrong)
+    pub fn misses(&self) -> impl Iterator<Item = &Defect> {
+        self.check.sensors.iter().flat_map(|sensor| &sensor.defects)
     }
 }
 
@@ -69,7 +69,7 @@ pub fn panel(
     progress: &dyn Progress,
 ) -> Panel {
     let scene = &subject.scene;
-    let truth = Truth::certified(scene, progress);
+    let truth = GroundTruth::certified(scene, progress);
     let ours = rendered.iter().map(|side| {
         let recorded = Recorded::of_output(&side.name, scene, &side.output, side.precision);
         Held { name: side.name.clone(), check: check(&truth, &recorded, progress) }

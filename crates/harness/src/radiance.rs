@@ -11,7 +11,7 @@
 use glam::DVec3;
 
 use crate::candidate::RadianceMap;
-use raypencil_judge::Truth;
+use raypencil_judge::GroundTruth;
 use raypencil_scene::Place;
 use raypencil_scene::{Beam, Profile, Scene, SensorId};
 
@@ -44,7 +44,7 @@ pub struct RadianceComparison {
 }
 
 /// Compares a map of radiance with the closed form at the exact points that the rays hit.
-pub fn compare_radiance(truth: &Truth<'_>, map: &RadianceMap) -> RadianceComparison {
+pub fn compare_radiance(truth: &GroundTruth<'_>, map: &RadianceMap) -> RadianceComparison {
     let scene = truth.scene();
     let light = Light::of(scene, map.beam);
     let mut found = RadianceComparison {
@@ -72,7 +72,7 @@ pub fn compare_radiance(truth: &Truth<'_>, map: &RadianceMap) -> RadianceCompari
                 continue;
             };
             // Of a pencil that the camera does not see, its ray shows something else.
-            if map.sensor != SensorId::Camera && !truth.sight(place).0 {
+            if map.sensor != SensorId::Camera && !truth.visibility(place).0 {
                 found.doubtful += 1;
                 continue;
             }

@@ -1,7 +1,9 @@
 //! Ready predicates: two renderers differ by a class. And the ray to begin with.
 
 use crate::renderers::{Contender, attribute};
-use raypencil_judge::{Class, First, Judge, JudgeShare, Side, class_at, compare_judged, first_of};
+use raypencil_judge::{
+    Class, FirstOfClass, Judge, JudgeShare, Side, class_of_ray, compare_judged, first_of_class,
+};
 use raypencil_scene::Place;
 use raypencil_scene::{Request, Scene, SensorId, Switches};
 
@@ -16,7 +18,7 @@ pub fn shows_class<'a>(
         let maps_camera = place.is_none_or(|place| place.sensor == SensorId::Camera);
         let request = Request { camera: maps_camera, ..Request::EVERYTHING };
         compared(contenders, scene, &request, JudgeShare::All, |judge, a, b| match place {
-            Some(place) => class_at(judge, a, b, place).is_some_and(|(of_ray, _)| of_ray == class),
+            Some(place) => class_of_ray(judge, a, b, place).is_some_and(|(of_ray, _)| of_ray == class),
             None => compare_judged(judge, a, b).iter().any(|sensor| sensor.of(class) > 0),
         })
     }
@@ -29,8 +31,8 @@ pub fn first_shown(
     scene: &Scene,
     class: Class,
     share: JudgeShare,
-) -> Option<First> {
-    compared(contenders, scene, &Request::EVERYTHING, share, |judge, a, b| first_of(judge, a, b, class))
+) -> Option<FirstOfClass> {
+    compared(contenders, scene, &Request::EVERYTHING, share, |judge, a, b| first_of_class(judge, a, b, class))
 }
 
 /// Has both render the scene, finds what the paper's approximations did, and hands it all to `ask`.

@@ -3,7 +3,7 @@ use std::time::Instant;
 use crate::candidate::Outsider;
 use crate::panel::{Panel, panel};
 use crate::rendered::Rendered;
-use raypencil_judge::{ApproximationTallies, Class, SensorComparison};
+use raypencil_judge::{ApproximationTallies, Class, SensorResult};
 use raypencil_scene::{Progress, Stage};
 use raypencil_scene_io::Subject;
 
@@ -15,7 +15,7 @@ pub struct Pair {
     /// Index of the other side.
     pub b: usize,
     /// Sensor by sensor, the camera first.
-    pub sensors: Vec<SensorComparison>,
+    pub sensors: Vec<SensorResult>,
 }
 
 /// A scene rendered by several renderers, and every pair of them compared.
@@ -61,7 +61,7 @@ impl Validation {
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         for sensor in self.pairs.iter().flat_map(|pair| &pair.sensors) {
-            counts.compared += sensor.compared;
+            counts.compared += sensor.compared();
             counts.agree += sensor.of(Class::Agree);
             counts.tie += sensor.of(Class::Tie);
             counts.rounding += sensor.of(Class::Rounding);

@@ -1,4 +1,4 @@
-//! How far two honest renderers may differ, per quantity: derived bounds on rounding.
+//! Bounds of the rounding error of an honest renderer, quantity by quantity, with their derivation.
 //!
 //! Let u be the unit roundoff, and for the face hit: e1 = b - a, e2 = c - a, n = e1 x e2,
 //! kappa = |e1| |e2| / |n| (its aspect: at most longest edge / smallest altitude), L its longest edge.
@@ -18,43 +18,44 @@
 //!   ((5 kappa + 6) S / R + 5 kappa + 15 + 3) u / c <= 34 kappa u S / (R c), as kappa >= 1 and S >= R.
 //! * R = t |q|, or |q| / (1/t): two more roundings at most, and a square root.
 //!
-//! [`RANGE`] = 36 rounds this up. The other quantities follow. Two renderers may differ by the sum of
-//! their bounds. Where the bound reaches the size of the quantity itself the first order says nothing, and
-//! the bound, being larger, does not pretend to.
+//! [`RANGE_ROUNDINGS`] = 36 rounds this up. The other quantities follow. Two renderers may differ by the sum of
+//! their bounds. Where a bound reaches the size of the quantity itself, the first order in u is no estimate any more;
+//! the bound then allows any value of that size.
 
 use glam::DVec3;
 
-use raypencil_scene::{Beam, FaceId, Filter, FluxModel, Mesh, Precision, Profile, Ray, Scene};
+use crate::answer::{StatedHit, StatedReturn};
+use raypencil_scene::{Beam, FaceId, Filter, FluxModel, Hit, Mesh, Precision, Profile, Ray, Return, Scene};
 
-/// |dR| <= RANGE kappa u S / c.
-const RANGE: f64 = 36.0;
+/// Roundings of the range: |dR| <= RANGE_ROUNDINGS kappa u S / c.
+const RANGE_ROUNDINGS: f64 = 36.0;
 
 /// Roundings of a point along a known range: rotation (12 u R), origin (4 u |o|), sum (u |P|), |P| <= S.
-const POINT: f64 = 18.0;
+const POINT_ROUNDINGS: f64 = 18.0;
 
-/// |dn^| <= 2 |dn| / |n| + 3 u <= 13 kappa u.
-const NORMAL: f64 = 13.0;
+/// Roundings of the unit normal: |dn^| <= 2 |dn| / |n| + 3 u <= 13 kappa u.
+const NORMAL_ROUNDINGS: f64 = 13.0;
 
-/// The longer of the two ways to cos(psi), -n.(a - o) (1/t) / (|n| |q|): the relative errors of
+/// Roundings of cos(psi) by the longer of its two formulas, -n.(a - o) (1/t) / (|n| |q|): the relative errors of
 /// n.(a - o) and of 1/t, each of which carries 1/c, times c: (11 + 34) kappa u S / R, and a few roundings.
-const INCIDENCE: f64 = 48.0;
+const INCIDENCE_ROUNDINGS: f64 = 48.0;
 
 /// The bounds of one hit by one renderer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub(crate) struct HitBounds {
     /// Range and depth, metres.
-    pub range: f64,
+    pub(crate) range: f64,
     /// Distance of the point, metres.
-    pub point: f64,
+    pub(crate) point: f64,
     /// Distance of the unit normal.
-    pub normal: f64,
+    pub(crate) normal: f64,
     /// Cosine of incidence.
-    pub cos_incidence: f64,
+    pub(crate) cos_incidence: f64,
 }
 
-impl Bounds {
+impl HitBounds {
     /// The bounds for a hit on `face` at `range` metres along `ray`.
-    pub fn of(mesh: &Mesh, face: FaceId, ray: &Ray, range: f64, precision: Precision) -> Self {
+    pub(crate) fn of(mesh: &Mesh, face: FaceId, ray: &Ray, range: f64, precision: Precision) -> Self {
         let u = precision.unit_roundoff;
         let [a, b, c] = mesh.faces()[face.0 as usize].map(|v| {
             let [x, y, z] = mesh.vertices()[v as usize];
@@ -66,17 +67,22 @@ impl Bounds {
         let longest_edge = e1.length().max(e2.length()).max((c - b).length());
         let scale = range + longest_edge + ray.origin.length();
         let cosine = (n.dot(ray.direction) / (n.length() * ray.direction.length())).abs();
-        let range_bound = RANGE * aspect * u * scale / cosine;
+        let range_bound = RANGE_ROUNDINGS * aspect * u * scale / cosine;
         Self {
             range: range_bound,
-            point: range_bound + POINT * u * scale,
-            normal: NORMAL * aspect * u,
-            cos_incidence: INCIDENCE * aspect * u * scale / range,
+            point: range_bound + POINT_ROUNDINGS * u * scale,
+            normal: NORMAL_ROUNDINGS * aspect * u,
+            cos_incidence: INCIDENCE_ROUNDINGS * aspect * u * scale / range,
         }
     }
 
+    /// The bounds for an exact hit along `ray`.
+    pub(crate) fn of_exact(scene: &Scene, ray: &Ray, hit: &Hit, precision: Precision) -> Self {
+        Self::of(scene.mesh(), hit.face, ray, hit.range, precision)
+    }
+
     /// How far two renderers with these bounds may differ.
-    pub fn plus(&self, other: &Self) -> Self {
+    pub(crate) fn plus(&self, other: &Self) -> Self {
         Self {
             range: self.range + other.range,
             point: self.point + other.point,
@@ -86,19 +92,19 @@ impl Bounds {
     }
 }
 
-/// Roundings of a point in the camera's frame beside its own error: a subtraction, a rotation by a quaternion or a matrix
-/// formed from it (15 u), of a vector no longer than S' = |P| + |c| + d.
-const SEEN: f64 = 18.0;
+/// Roundings of a point in the camera's frame, beside its own error: a subtraction, a rotation by a quaternion or a
+/// matrix formed from it (15 u), of a vector no longer than S' = |P| + |c| + d.
+const CAMERA_POINT_ROUNDINGS: f64 = 18.0;
 
 /// Roundings of a flux beside those of its lengths and cosines: two dozen products and quotients, a share of the power
 /// (four), an `exp` or two of `libm` (1 ulp, and the rounding of its argument).
-const FLUX: f64 = 64.0;
+const FLUX_ROUNDINGS: f64 = 64.0;
 
-/// The bounds of what one renderer says comes back of one pencil.
+/// Error bounds of one pencil's return by one renderer.
 ///
-/// Let dP bound the error of the point as the camera sees it, [`Bounds::point`] + [`SEEN`] u S', and let it be
-/// at distance d from the projection centre, r deep. Then r is off by at most dP, and the direction to it by the
-/// angle dP / d, so cos(phi) and cos(theta) by at most that, and the latter by the error of the normal as well.
+/// Let dP = [`HitBounds::point`] + [`CAMERA_POINT_ROUNDINGS`] u S' bound the error of the point in the camera's frame,
+/// let d be its distance from the projection centre and r its depth. Then r is off by at most dP, and the direction to
+/// the point by the angle dP / d. cos(phi) is off by at most that angle, cos(theta) by the error of the normal as well.
 /// The flux is a product of powers of these: its relative error is the sum of theirs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ReturnBounds {
@@ -110,13 +116,13 @@ pub(crate) struct ReturnBounds {
     pub(crate) cos_view: f64,
     /// The flux, relative.
     pub(crate) flux: f64,
-    /// The flux, watts (`eq1`: W/m): where a share of the power is so small that it has no 53 digits left.
-    pub(crate) least_flux: f64,
+    /// The flux, watts (`eq1`: W/m): a share of the power below the smallest normal number has lost digits.
+    pub(crate) subnormal_flux: f64,
 }
 
-/// What the bounds of a return depend on.
+/// The values that the bounds of a return depend on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Returned {
+pub(crate) struct ReturnValues {
     /// R, metres.
     pub(crate) range: f64,
     /// cos(psi).
@@ -131,22 +137,52 @@ pub(crate) struct Returned {
     pub(crate) distance: f64,
 }
 
+impl ReturnValues {
+    /// The values of an exact hit and its exact return.
+    pub(crate) fn of_exact(scene: &Scene, hit: &Hit, exact: &Return) -> Self {
+        Self {
+            range: hit.range,
+            cos_incidence: hit.cos_incidence,
+            depth: exact.depth,
+            cos_off_axis: exact.cos_off_axis,
+            cos_view: exact.cos_view,
+            distance: hit.point.distance(scene.camera().scene_from_sensor.position),
+        }
+    }
+
+    /// The values that a side states; `None` if it leaves one out.
+    pub(crate) fn of_stated(scene: &Scene, hit: &StatedHit, stated: &StatedReturn) -> Option<Self> {
+        let (depth, cos_off_axis) = (stated.depth?, stated.cos_off_axis?);
+        Some(Self {
+            range: hit.range?,
+            cos_incidence: hit.cos_incidence?,
+            depth,
+            cos_off_axis,
+            cos_view: stated.cos_view?,
+            distance: match hit.point {
+                Some(point) => point.distance(scene.camera().scene_from_sensor.position),
+                None => (depth / cos_off_axis).abs(),
+            },
+        })
+    }
+}
+
 impl ReturnBounds {
-    /// The bounds of what comes back to the camera of a hit of `beam`.
+    /// The bounds of a return to the camera from a hit of a beam, the pencil being in `column`.
     pub(crate) fn of(
         scene: &Scene,
         (beam, column): (usize, u32),
-        hit: &Bounds,
-        values: Returned,
+        hit: &HitBounds,
+        values: ReturnValues,
         precision: Precision,
         model: FluxModel,
     ) -> Self {
         let u = precision.unit_roundoff;
-        let Returned { range, cos_incidence, depth, cos_off_axis, cos_view, distance } = values;
+        let ReturnValues { range, cos_incidence, depth, cos_off_axis, cos_view, distance } = values;
         let centre = scene.camera().scene_from_sensor.position.length();
-        let point = hit.point + SEEN * u * (2.0 * centre + 2.0 * distance);
+        let point = hit.point + CAMERA_POINT_ROUNDINGS * u * (2.0 * centre + 2.0 * distance);
         let direction = point / distance;
-        let (of_off_axis, of_emission) = (direction + 8.0 * u, direction + hit.normal + 8.0 * u);
+        let (off_axis_error, view_error) = (direction + 8.0 * u, direction + hit.normal + 8.0 * u);
 
         let beam = &scene.beams()[beam].sensor;
         let sigma = scene.atmosphere().attenuation;
@@ -162,17 +198,17 @@ impl ReturnBounds {
                 weights + 2.0 * alpha * alpha * 20.0 * u
             }
         };
-        let shared = (2.0 * point / depth + of_emission / cos_view).abs() + FLUX * u + sum;
+        let shared = (2.0 * point / depth + view_error / cos_view).abs() + FLUX_ROUNDINGS * u + sum;
         let relative = match model {
             FluxModel::Radiometric => {
-                let filter = filter_bound(scene, beam, cos_off_axis, of_off_axis, u);
+                let filter = filter_bound(scene, beam, cos_off_axis, off_axis_error, u);
                 shared
-                    + (3.0 * of_off_axis / cos_off_axis).abs()
+                    + (3.0 * off_axis_error / cos_off_axis).abs()
                     + filter
                     + sigma * (hit.range + point)
                     + sigma * (range + distance) * 4.0 * u
             }
-            // phi is the pixel's own: rounding only.
+            // phi is that of the pixel's centre: rounding only.
             FluxModel::Eq1 => {
                 shared
                     + hit.range / range
@@ -182,7 +218,7 @@ impl ReturnBounds {
                     + sigma * (range + distance) * 4.0 * u
             }
         };
-        // What is left of a subnormal share, times all that it is multiplied by.
+        // The error of a subnormal share, times all that it is multiplied by.
         let camera = &scene.camera().sensor;
         let squares = camera.aperture * camera.aperture / (depth * depth);
         let gain = match model {
@@ -192,8 +228,31 @@ impl ReturnBounds {
                 squares * area / (camera.focal_length * camera.focal_length * range)
             }
         };
-        let least_flux = least_normal(precision) * (1.0 + beam.power) * (1.0 + gain);
-        Self { depth: point, cos_off_axis: of_off_axis, cos_view: of_emission, flux: relative, least_flux }
+        let subnormal_flux = min_normal(precision) * (1.0 + beam.power) * (1.0 + gain);
+        Self {
+            depth: point,
+            cos_off_axis: off_axis_error,
+            cos_view: view_error,
+            flux: relative,
+            subnormal_flux,
+        }
+    }
+
+    /// The bounds by the scene's flux model, and by the other.
+    pub(crate) fn by_both_models(
+        scene: &Scene,
+        pencil: (usize, u32),
+        hit: &HitBounds,
+        values: ReturnValues,
+        precision: Precision,
+    ) -> [Self; 2] {
+        let model = scene.flux_model();
+        [model, model.other()].map(|model| Self::of(scene, pencil, hit, values, precision, model))
+    }
+
+    /// The bound of a flux, watts (`eq1`: W/m).
+    pub(crate) fn of_flux(&self, flux: f64) -> f64 {
+        self.flux * flux + self.subnormal_flux
     }
 
     /// How far two renderers with these bounds may differ.
@@ -203,36 +262,36 @@ impl ReturnBounds {
             cos_off_axis: self.cos_off_axis + other.cos_off_axis,
             cos_view: self.cos_view + other.cos_view,
             flux: self.flux + other.flux,
-            least_flux: self.least_flux + other.least_flux,
+            subnormal_flux: self.subnormal_flux + other.subnormal_flux,
         }
     }
 }
 
-/// Below this an arithmetic loses digits: its smallest normal number.
-pub(crate) fn least_normal(precision: Precision) -> f64 {
+/// The smallest normal number of an arithmetic: smaller numbers have lost digits.
+pub(crate) fn min_normal(precision: Precision) -> f64 {
     let is_double = precision.unit_roundoff <= Precision::F64.unit_roundoff;
     if is_double { f64::MIN_POSITIVE } else { f64::from(f32::MIN_POSITIVE) }
 }
 
-/// alpha of the pencils of a column, roughly.
+/// alpha of the pencils of a column, to a few roundings.
 fn incidence_angle(beam: &Beam, column: u32) -> f64 {
     let columns = f64::from(beam.columns);
     let half_cells = 2.0 * f64::from(column) + 1.0 - columns;
     libm::atan(beam.half_width * half_cells / (columns * beam.grid_distance))
 }
 
-/// The relative error of F(phi) = exp(-4 ln 2 away^2), away = (wavelength - c') / width, c' = c sqrt(1 - sin(phi)^2 / n^2),
-/// where cos(phi) is off by `of_off_axis`.
+/// The relative error of F(phi) = exp(-4 ln 2 away^2), away = (wavelength - c') / width, c' = c sqrt(1 - sin(phi)^2 /
+/// n^2), where cos(phi) is off by `off_axis_error`.
 ///
 /// |dc'| <= c^2 / (c' n^2) |cos(phi)| |d cos(phi)|, c' and the difference are rounded (8 u c), and the exponent
 /// itself (10 u of it): |d ln F| = 4 ln 2 |away| (2 |dc'| / width + 10 u |away|).
-fn filter_bound(scene: &Scene, beam: &Beam, cos_off_axis: f64, of_off_axis: f64, u: f64) -> f64 {
+fn filter_bound(scene: &Scene, beam: &Beam, cos_off_axis: f64, off_axis_error: f64, u: f64) -> f64 {
     let Filter::Interference { centre, width, index } = scene.camera().sensor.lens.filter else { return 0.0 };
     let sin_squared = (1.0 - cos_off_axis * cos_off_axis).max(0.0);
     let shifted = centre * (1.0 - sin_squared / (index * index)).sqrt();
-    let of_shifted = centre * centre / (shifted * index * index) * of_off_axis + 8.0 * u * centre;
-    let away = ((beam.wavelength - shifted).abs() + of_shifted) / width;
-    4.0 * std::f64::consts::LN_2 * away * (2.0 * of_shifted / width + 10.0 * u * away)
+    let shift_error = centre * centre / (shifted * index * index) * off_axis_error + 8.0 * u * centre;
+    let away = ((beam.wavelength - shifted).abs() + shift_error) / width;
+    4.0 * std::f64::consts::LN_2 * away * (2.0 * shift_error / width + 10.0 * u * away)
 }
 
 #[cfg(test)]
@@ -253,7 +312,7 @@ mod tests {
         )
         .unwrap();
         let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: DVec3::new(0.0, 0.0, -0.5) };
-        let bounds = Bounds::of(&mesh, FaceId(0), &ray, 3.0, Precision::F64);
+        let bounds = HitBounds::of(&mesh, FaceId(0), &ray, 3.0, Precision::F64);
         let u = 2.0_f64.recip() * f64::EPSILON;
         let scale = 6.0 + 2.0_f64.sqrt();
         // To a few roundings of the bound itself.

@@ -1,14 +1,13 @@
-//! When the referee is asked, and with what tolerance.
+//! The judge: which rays the referee is asked about, and with what tolerance.
 
-use crate::bounds::Bounds;
+use crate::bounds::HitBounds;
 use raypencil_referee::{
     Approximations, Displacement, Explained, ExplainedVisibility, Format, Referee, RoundedReturn, Ruling,
     Tolerance, VisibilityApproximations, VisibilityRuling,
 };
-use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Hit, Pixel, Precision, Return, Sampling, Scene, SensorId};
+use raypencil_scene::{FaceId, Hit, Pixel, Place, Precision, Return, Sampling, Scene, SensorId};
 
-/// Which of the rays that agree are judged as well; those that do not are always judged.
+/// Rays of agreeing answers that are judged as well; rays of differing answers are always judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum JudgeShare {
     /// One in a hundred or more, chosen by a hash of the cell.
@@ -18,17 +17,47 @@ pub enum JudgeShare {
     All,
 }
 
-/// One in so many rays that agree is judged: 64, so that chance does not leave less than 1 %.
-const ONE_IN: u64 = 64;
+/// Number of rays of which one is sampled: 64, so that chance does not leave less than 1 % of them.
+const SAMPLE_ONE_IN_RAYS: u64 = 64;
 
 /// Roundings of a direction: a vertex is subtracted from the origin and turned into the sensor's frame (15 u S,
 /// see `bounds`), and an edge's crossing formed from it (6 u S). As an angle, divided by the range.
-const DIRECTION: f64 = 21.0;
+const DIRECTION_ROUNDINGS: f64 = 21.0;
 
-/// The finest lateral resolution that any renderer is held to, in cells.
-const FINEST: f64 = 1e-9;
+/// The smallest lateral tolerance that any renderer is held to, in cells.
+const MIN_LATERAL_TOLERANCE_CELLS: f64 = 1e-9;
 
-/// The referee, and whom it asks.
+/// The referee, and the rays that it is asked about.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// # use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene};
+/// # let corners = vec![[0.125, -40.0, 2.0], [-90.0, 0.0, 2.0], [0.125, 40.0, 2.0]];
+/// # let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+/// # let wall = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], vec![plaster])?;
+/// # let camera = Camera {
+/// #     width: 9, height: 9, pixel_pitch: [0.0625; 2], focal_length: 0.5, principal_point: [4.5; 2],
+/// #     aperture: 0.01, lens: Lens::CLEAR, max_range: 20.0,
+/// # };
+/// # let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(wall), camera, vec![], air, FluxModel::Radiometric)?;
+/// // A wall at z = 2 m that ends at x = 1/8 m, before a camera of 9 x 9 pixels at the origin that looks along z.
+/// use raypencil_judge::{Judge, JudgeShare};
+/// use raypencil_referee::Ruling;
+/// use raypencil_scene::{FaceId, Place, Precision, SensorId};
+///
+/// let judge = Judge::new(&scene, JudgeShare::Sample);
+/// let rule = |i| {
+///     let place = Place { sensor: SensorId::Camera, i, j: 4 };
+///     judge.rule(place, Some(FaceId(0)), Some(2.0), Precision::F64)
+/// };
+/// // Pixel (4, 4) hits the wall at x = 0. Pixel (5, 4) passes it at x = 1/4 m, half a pixel from its edge.
+/// assert_eq!(rule(4), Ruling::Exact);
+/// assert_eq!(rule(5), Ruling::Wrong);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 #[derive(Debug)]
 pub struct Judge<'s> {
     referee: Referee<'s>,
@@ -42,12 +71,12 @@ impl<'s> Judge<'s> {
         Self { referee: Referee::new(scene), scene, share }
     }
 
-    /// Whether a ray that agrees is judged.
+    /// Whether a ray of agreeing answers is judged.
     pub fn samples(&self, place: Place) -> bool {
-        self.share == JudgeShare::All || hash(place).is_multiple_of(ONE_IN)
+        self.share == JudgeShare::All || hash(place).is_multiple_of(SAMPLE_ONE_IN_RAYS)
     }
 
-    /// Rules on one side's answer to a ray, with the range it gave if it gave one.
+    /// Rules on the face that one side states for a ray (`None`: no hit), with the range if it states one.
     pub fn rule(
         &self,
         place: Place,
@@ -60,7 +89,7 @@ impl<'s> Judge<'s> {
         self.referee.rule(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
     }
 
-    /// Rules on what one side says of the camera's view of a pencil's hit on `face`.
+    /// Rules on the visibility and the pixel that one side states for a pencil's hit on `face`.
     pub fn rule_visibility(
         &self,
         place: Place,
@@ -76,13 +105,13 @@ impl<'s> Judge<'s> {
         self.referee.rule_visibility(beam, i, j, Displacement::ZERO, face, visible, pixel, tolerance)
     }
 
-    /// The values of where a ray meets the plane of a face, the nearest f64; `None` if they are not finite.
+    /// The hit of a ray on the plane of a face, rounded to the nearest f64; `None` if it is not finite.
     pub fn plane_hit(&self, Place { sensor, i, j }: Place, face: FaceId) -> Option<Hit> {
         let hit = self.referee.plane_hit(sensor, i, j, face)?.in_format(Format::Double);
         (hit.range.is_finite() && hit.range > 0.0 && hit.point.is_finite()).then_some(hit)
     }
 
-    /// What comes back of a pencil from the plane of a face, seen or not and landing as is said.
+    /// The return of a pencil from the plane of a face, with this visibility and this pixel, rounded to f64.
     pub fn returned_as(
         &self,
         place: Place,
@@ -90,11 +119,11 @@ impl<'s> Judge<'s> {
         visible: bool,
         pixel: Option<Pixel>,
     ) -> Option<Return> {
-        let back = self.rounded_return(place, face, visible, pixel)?;
-        Some(back.in_format(Format::Double, self.scene.flux_model()))
+        let exact = self.rounded_return(place, face, visible, pixel)?;
+        Some(exact.in_format(Format::Double, self.scene.flux_model()))
     }
 
-    /// What comes back of a pencil from the plane of a face, by both models, correctly rounded.
+    /// The return of a pencil from the plane of a face, by both flux models, correctly rounded.
     pub fn rounded_return(
         &self,
         Place { sensor, i, j }: Place,
@@ -106,13 +135,13 @@ impl<'s> Judge<'s> {
         self.referee.light(beam, Sampling::Centres)?.returned_as(i, j, face, visible, pixel)
     }
 
-    /// The faces that a ray may meet which is displaced by no more than a renderer may displace it.
+    /// The faces that a ray may meet if it is displaced by no more than this precision may displace it.
     pub fn candidate_faces(&self, place: Place, range: Option<f64>, precision: Precision) -> Vec<FaceId> {
         let Tolerance { lateral, .. } = self.tolerance(place, None, range, precision);
         self.referee.candidate_faces(place.sensor, place.i, place.j, lateral).unwrap_or_default()
     }
 
-    /// Explains one side's answer to a ray by the approximations it was made with; `None` if they do not.
+    /// Explains the face that one side states by the approximations it uses; `None` if they do not explain it.
     pub fn explain(
         &self,
         place: Place,
@@ -125,7 +154,7 @@ impl<'s> Judge<'s> {
         self.referee.explain(place.sensor, place.i, place.j, answer, with, tolerance)
     }
 
-    /// Explains what one side says of whether the camera sees a pencil's hit; `None` if the approximations do not.
+    /// Explains the visibility that one side states by the approximations it uses; `None` if they do not explain it.
     pub fn explain_visibility(
         &self,
         place: Place,
@@ -140,28 +169,29 @@ impl<'s> Judge<'s> {
         self.referee.explain_visibility(beam, place.i, place.j, face, visible, with, tolerance)
     }
 
-    /// delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S
+    /// Tolerances delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S
     /// as a length along the focal axis, in cells); epsilon is the bound of the range.
     fn tolerance(
         &self,
         Place { sensor, i, j }: Place,
         answer: Option<FaceId>,
-        claimed: Option<f64>,
+        stated_range: Option<f64>,
         precision: Precision,
     ) -> Tolerance {
         let scene = self.scene;
         let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
-            return Tolerance { lateral: FINEST, depth: 0.0, position: 0.0 };
+            return Tolerance { lateral: MIN_LATERAL_TOLERANCE_CELLS, depth: 0.0, position: 0.0 };
         };
         let mesh = scene.mesh();
         let known = answer.filter(|face| (face.0 as usize) < mesh.faces().len());
-        // The range of the face itself: what is claimed must not set the tolerance that it is judged by.
+        // The range of the face itself: a stated range must not set the tolerance that it is judged by.
         let place = Place { sensor, i, j };
         let range = known.and_then(|face| self.plane_hit(place, face)).map(|hit| hit.range);
-        let range = range.or(claimed.filter(|range| range.is_finite() && *range > 0.0)).unwrap_or(max_range);
-        let depth = known.map_or(0.0, |face| Bounds::of(mesh, face, &ray, range, precision).range);
+        let stated_range = stated_range.filter(|range| range.is_finite() && *range > 0.0);
+        let range = range.or(stated_range).unwrap_or(max_range);
+        let depth = known.map_or(0.0, |face| HitBounds::of(mesh, face, &ray, range, precision).range);
         let edge = known.map_or(0.0, |face| longest_edge(scene, face));
-        let error = DIRECTION * precision.unit_roundoff * (range + edge + ray.origin.length());
+        let error = DIRECTION_ROUNDINGS * precision.unit_roundoff * (range + edge + ray.origin.length());
         let q = ray.direction.length();
         // The smallest angle between neighbouring cells' rays here: across the ray, a cell is at least its
         // size times the cosine of the obliquity.
@@ -179,7 +209,7 @@ impl<'s> Judge<'s> {
                 (error / range / cell).max(error / row)
             }
         };
-        Tolerance { lateral: lateral.clamp(FINEST, 1.0), depth, position: error }
+        Tolerance { lateral: lateral.clamp(MIN_LATERAL_TOLERANCE_CELLS, 1.0), depth, position: error }
     }
 
     /// The scene whose rays are judged.

@@ -1,133 +1,274 @@
-use rayon::prelude::*;
+//! Results by quantity and by sensor: class counts, largest errors with their places, defects, causes.
+
 use std::collections::BTreeMap;
 
-use crate::class::{CLASSES, Class, Quantity};
+use crate::class::{Class, ClassCounts};
+use crate::difference::Difference;
+use crate::quantity::{Item, Quantity};
 use raypencil_scene::{Image, Maybe, Place, SensorId, Switches};
 
-/// The largest of something, and where it was found first.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Worst {
+/// The largest value of something, and the ray that has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Largest {
     /// The value.
     pub value: f64,
-    /// The first place in reading order that has it.
+    /// The first ray in reading order that has it; for the NaN of a value with a ruling, the last.
     pub place: Place,
+    /// The referee's ruling on that ray, in words; `compare` keeps none.
+    pub ruling: Option<String>,
 }
 
-impl Worst {
-    pub(crate) fn keep(slot: &mut Option<Self>, value: f64, place: Place) {
-        // NaN counts as worst: a bound that is not a number bounds nothing.
-        if slot.is_none_or(|worst| value > worst.value || (value.is_nan() && !worst.value.is_nan())) {
-            *slot = Some(Self { value, place });
+impl Largest {
+    /// Replaces the largest value so far if `value` is larger.
+    ///
+    /// NaN counts as the largest: a bound that is not a number bounds nothing. Rules on a second NaN: see "Two rules"
+    /// on the first page of this crate.
+    pub(crate) fn update(slot: &mut Option<Self>, value: f64, place: Place, ruling: Option<&str>) {
+        let is_larger = |largest: &Self| {
+            value > largest.value || value.is_nan() && (ruling.is_some() || !largest.value.is_nan())
+        };
+        if slot.as_ref().is_none_or(is_larger) {
+            *slot = Some(Self { value, place, ruling: ruling.map(String::from) });
+        }
+    }
+
+    fn add(slot: &mut Option<Self>, later: &Option<Self>) {
+        if let Some(Self { value, place, ruling }) = later {
+            Self::update(slot, *value, *place, ruling.as_deref());
         }
     }
 }
 
-/// How one quantity fared over many rays.
+/// One quantity over many rays.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Tally {
-    /// Rays by class, in the order of [`Class`].
-    pub by_class: [u64; CLASSES],
-    /// Rays of which one side does not say it.
+pub struct ItemTally {
+    /// Rays of which it was compared, by class.
+    pub by_class: ClassCounts,
+    /// Rays of which a side does not state it, or stores it in a type that cannot hold it.
     pub not_compared: u64,
-    /// The largest difference, in [`Quantity::unit`], over rays that hit the same face or tie.
-    pub worst_error: Option<Worst>,
-    /// The largest ratio of a difference to its bound.
-    pub worst_ratio: Option<Worst>,
+    /// `check`: rays on which it does not agree, in reading order.
+    pub others: Vec<(Place, Class)>,
+    /// `check`: rays whose storage cannot hold it, in reading order. They are among those not compared.
+    pub unjudged: Vec<Place>,
+    /// `check`: the largest error in units in the last place of the storage.
+    pub worst_ulps: Option<Largest>,
+    /// The largest error in the quantity's unit. `compare`: over rays of which both sides name the same face or tie.
+    pub worst_error: Option<Largest>,
+    /// The largest ratio of an error to its bound.
+    pub worst_ratio: Option<Largest>,
 }
 
-impl Tally {
+impl ItemTally {
+    /// Rays of which it was compared.
+    pub fn compared(&self) -> u64 {
+        self.by_class.iter().sum()
+    }
+
     /// Rays in a class.
     pub fn of(&self, class: Class) -> u64 {
         self.by_class[class as usize]
     }
 
-    /// Adds what is said of later rays.
+    /// Enters the error of one ray into the largest ones.
+    pub(crate) fn enter(&mut self, difference: &Difference, place: Place, ruling: Option<&str>) {
+        Largest::update(&mut self.worst_error, difference.error, place, ruling);
+        if let Some(ratio) = difference.ratio() {
+            Largest::update(&mut self.worst_ratio, ratio, place, ruling);
+        }
+        if let Some(ulps) = difference.ulps {
+            Largest::update(&mut self.worst_ulps, ulps, place, ruling);
+        }
+    }
+
+    /// Adds the tally of later rays.
     pub fn add(&mut self, later: &Self) {
-        for (mine, theirs) in self.by_class.iter_mut().zip(later.by_class) {
-            *mine += theirs;
-        }
+        add_counts(&mut self.by_class, &later.by_class);
         self.not_compared += later.not_compared;
-        for (mine, theirs) in
-            [(&mut self.worst_error, later.worst_error), (&mut self.worst_ratio, later.worst_ratio)]
-        {
-            if let Some(worst) = theirs {
-                Worst::keep(mine, worst.value, worst.place);
-            }
-        }
+        self.others.extend_from_slice(&later.others);
+        self.unjudged.extend_from_slice(&later.unjudged);
+        Largest::add(&mut self.worst_ulps, &later.worst_ulps);
+        Largest::add(&mut self.worst_error, &later.worst_error);
+        Largest::add(&mut self.worst_ratio, &later.worst_ratio);
     }
 }
 
-/// What one set of the paper's approximations did to a sensor's rays.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+fn add_counts(counts: &mut ClassCounts, later: &ClassCounts) {
+    for (mine, theirs) in counts.iter_mut().zip(later) {
+        *mine += theirs;
+    }
+}
+
+/// Effect of one set of the paper's approximations on a sensor's rays.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ApproximationTally {
     /// Rays.
     pub rays: u64,
-    /// Those that hit in truth, and miss.
+    /// Rays that truly hit and are stated to miss.
     pub lost: u64,
-    /// Those that miss in truth, and hit.
+    /// Rays that truly miss and are stated to hit.
     pub added: u64,
-    /// By how much it changed the flux of pencils, each difference taken positive, watts (`eq1`: W/m).
+    /// Sum over pencils of the absolute change of their flux, watts (`eq1`: W/m).
     pub flux_changed: f64,
-    /// The largest error of a range, metres, over rays that hit in truth and hit another face.
-    pub worst_range: Option<Worst>,
+    /// The largest error of a range, metres, over rays that truly hit and are stated to hit another face.
+    pub worst_range: Option<Largest>,
 }
 
 impl ApproximationTally {
-    /// Adds what is said of later rays.
+    /// Adds the tally of later rays.
     pub fn add(&mut self, later: &Self) {
         self.rays += later.rays;
         self.lost += later.lost;
         self.added += later.added;
         self.flux_changed += later.flux_changed;
-        if let Some(worst) = later.worst_range {
-            Worst::keep(&mut self.worst_range, worst.value, worst.place);
-        }
+        Largest::add(&mut self.worst_range, &later.worst_range);
     }
 }
 
-/// The tallies of each set of approximations that caused a difference.
+/// The tally of each set of approximations that caused a difference.
 pub type ApproximationTallies = BTreeMap<Switches, ApproximationTally>;
 
-/// A ray on which the two sides differ beyond doubt.
+/// A ray that is a defect, or (`check`) undecided.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Defect {
-    /// Which ray.
+    /// The ray.
     pub place: Place,
-    /// The quantity that is worst.
-    pub quantity: Quantity,
-    /// What each side says, in words.
+    /// The worst quantity; of several the first that was entered.
+    pub item: Item,
+    /// The answers in words. `compare`: of each side; `check`: stated, true, and the ruling.
     pub what: String,
 }
 
-/// The comparison of one sensor's maps.
+/// Defects that are described for each sensor; all are counted.
+const MAX_DEFECTS_DESCRIBED: usize = 100;
+
+/// One sensor, judged.
 #[derive(Debug, Clone)]
-pub struct SensorComparison {
-    /// Whose maps.
+pub struct SensorResult {
+    /// The sensor.
     pub sensor: SensorId,
-    /// Rays compared at least by hit or miss.
-    pub compared: u64,
-    /// Rays whose maps one side does not have at all.
+    /// Rays of which anything was compared, by the worst class of their quantities.
+    pub by_class: ClassCounts,
+    /// Rays of which nothing was compared.
     pub not_compared: u64,
-    /// Rays by class, in the order of [`Class`]; they add up to `compared`.
-    pub by_class: [u64; CLASSES],
-    /// Rays that the referee ruled on.
+    /// Rays that the referee ruled on. `check`: those whose answer is not the exact one; `compare`: also a sample of
+    /// those that agree.
     pub judged: u64,
-    /// Rays of [`Class::Approximation`] by cause; they add up to that class.
-    pub approximations: ApproximationTallies,
-    /// Each quantity by itself.
-    pub quantities: Vec<(Quantity, Tally)>,
+    /// Each quantity. `compare` has all of [`Quantity::ALL`], `check` those that were asked about.
+    pub items: BTreeMap<Item, ItemTally>,
     /// The first defects, in reading order.
     pub defects: Vec<Defect>,
-    /// Difference of the ranges, metres: `b - a`, where both hit.
+    /// `compare`: rays of [`Class::Approximation`] by cause. They add up to that class.
+    pub approximations: ApproximationTallies,
+    /// `compare`: difference of the ranges, metres: `b - a`, where both sides hit.
     pub range_difference: Option<Image<Maybe<f64>>>,
 }
 
-impl SensorComparison {
+impl SensorResult {
+    /// A sensor of which nothing is judged yet.
+    pub(crate) fn new(sensor: SensorId) -> Self {
+        Self {
+            sensor,
+            by_class: [0; Class::COUNT],
+            not_compared: 0,
+            judged: 0,
+            items: BTreeMap::new(),
+            defects: Vec::new(),
+            approximations: BTreeMap::new(),
+            range_difference: None,
+        }
+    }
+
+    /// The same with a tally of every quantity: reports of `compare` list also those that a sensor does not have.
+    pub(crate) fn with_all_quantities(sensor: SensorId) -> Self {
+        let items = Quantity::ALL.map(|quantity| (quantity.into(), ItemTally::default())).into();
+        Self { items, ..Self::new(sensor) }
+    }
+
+    /// Rays of which anything was compared: the sum of the classes.
+    pub fn compared(&self) -> u64 {
+        self.by_class.iter().sum()
+    }
+
     /// Rays in a class.
     pub fn of(&self, class: Class) -> u64 {
         self.by_class[class as usize]
     }
+
+    /// The tally of an item.
+    pub(crate) fn tally(&mut self, item: Item) -> &mut ItemTally {
+        self.items.entry(item).or_default()
+    }
+
+    /// Describes a defect, if there are not too many yet.
+    pub(crate) fn describe(&mut self, defect: impl FnOnce() -> Defect) {
+        if self.defects.len() < MAX_DEFECTS_DESCRIBED {
+            self.defects.push(defect());
+        }
+    }
+
+    /// Adds the results of later rays.
+    pub(crate) fn add(&mut self, later: Self) {
+        add_counts(&mut self.by_class, &later.by_class);
+        self.not_compared += later.not_compared;
+        self.judged += later.judged;
+        for (item, tally) in later.items {
+            self.tally(item).add(&tally);
+        }
+        let room = MAX_DEFECTS_DESCRIBED.saturating_sub(self.defects.len());
+        self.defects.extend(later.defects.into_iter().take(room));
+        for (cause, tally) in later.approximations {
+            self.approximations.entry(cause).or_default().add(&tally);
+        }
+    }
 }
 
-/// How many defects a comparison describes; all are counted.
-pub(crate) const DEFECTS_DESCRIBED: usize = 100;
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(i: u32) -> Place {
+        Place { sensor: SensorId::Camera, i, j: 0 }
+    }
+
+    /// The tally of some errors, each of the ray of its index, with a bound of 2.
+    fn tally(errors: &[f64], ruling: Option<&str>) -> ItemTally {
+        let mut tally = ItemTally::default();
+        for (i, error) in errors.iter().enumerate() {
+            let difference = Difference::computed(Quantity::Range, *error, Some(2.0));
+            tally.enter(&difference, place(i as u32), ruling);
+        }
+        tally
+    }
+
+    #[test]
+    fn the_first_of_equal_errors_is_the_largest() {
+        // 3 is found at rays 1 and 2; its ratio is 3/2.
+        let all = tally(&[1.0, 3.0, 3.0], None);
+        assert_eq!(all.worst_error, Some(Largest { value: 3.0, place: place(1), ruling: None }));
+        assert_eq!(all.worst_ratio, Some(Largest { value: 1.5, place: place(1), ruling: None }));
+        assert_eq!(all.worst_ulps, None);
+    }
+
+    #[test]
+    fn nan_is_the_largest_the_first_of_two_renderers_and_the_last_of_a_recording() {
+        for (ruling, expected) in [(None, 1), (Some("exact"), 3)] {
+            let found = tally(&[1.0, f64::NAN, 5.0, f64::NAN, 7.0], ruling).worst_error.unwrap();
+            assert!(found.value.is_nan());
+            assert_eq!(found.place, place(expected), "{ruling:?}");
+            // Adding up two parts finds the same as entering all.
+            let mut parts = tally(&[1.0, f64::NAN, 5.0, 0.0, 7.0], ruling);
+            let mut later = ItemTally::default();
+            later.enter(&Difference::computed(Quantity::Range, f64::NAN, None), place(3), ruling);
+            parts.add(&later);
+            assert_eq!(parts.worst_error.unwrap().place, place(expected), "{ruling:?}");
+        }
+    }
+
+    #[test]
+    fn equal_numbers_agree_without_a_bound_and_nan_never_does() {
+        let is_within = |error, bound| Difference::computed(Quantity::Range, error, bound).is_within();
+        assert!(is_within(0.0, None) && is_within(0.0, Some(f64::NAN)) && is_within(2.0, Some(2.0)));
+        assert!(!is_within(1e-300, None) && !is_within(2.5, Some(2.0)));
+        assert!(!is_within(f64::NAN, Some(f64::INFINITY)) && !is_within(1.0, Some(f64::NAN)));
+    }
+}

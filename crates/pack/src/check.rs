@@ -6,7 +6,7 @@ use crate::blind::blind_scene;
 use crate::manifest::{FileRole, Manifest, PackKind};
 use crate::provenance::{ProvenanceError, note, precision_of};
 use raypencil_files::{FileError, Limits, Storage, read_listed};
-use raypencil_judge::{Check, Item, Quantity, Recorded, RecordingError, Truth, check};
+use raypencil_judge::{Check, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
 use raypencil_scene::Place;
 use raypencil_scene::{Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, scene_sha256};
@@ -100,15 +100,16 @@ pub fn check_pack(
                 let version = format!("a blind pack of this version, {}", env!("CARGO_PKG_VERSION"));
                 return Err(answers(found, &version));
             }
-            Truth::certified(&scene, progress)
+            GroundTruth::certified(&scene, progress)
         }
         _ => {
             progress.stage("reading the answers");
             read_answers(pack, &manifest, &scene)?
         }
     };
-    if let Some(not_ours) = truth.first_not_ours() {
-        let found = format!("its answer to {}, {}, is not the referee's", not_ours.place, not_ours.quantity);
+    if let Some(uncertified) = truth.first_uncertified() {
+        let found =
+            format!("its answer to {}, {}, is not the referee's", uncertified.place, uncertified.part);
         return Err(answers(found, "correctly rounded answers, as this version finds them"));
     }
     let check = check(&truth, &recorded, progress);
@@ -123,7 +124,11 @@ pub fn check_pack(
 }
 
 /// The answers of a pack that holds them, in f64.
-fn read_answers<'s>(pack: &Path, manifest: &Manifest, scene: &'s Scene) -> Result<Truth<'s>, CheckError> {
+fn read_answers<'s>(
+    pack: &Path,
+    manifest: &Manifest,
+    scene: &'s Scene,
+) -> Result<GroundTruth<'s>, CheckError> {
     // What is not listed is none of the pack's.
     let answers = manifest.files.iter().filter(|file| file.role == FileRole::Answers);
     let channels = read_listed(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
@@ -149,5 +154,5 @@ fn read_answers<'s>(pack: &Path, manifest: &Manifest, scene: &'s Scene) -> Resul
             }
         }
     }
-    Ok(Truth::of_answers(scene, recorded.answers))
+    Ok(GroundTruth::of_answers(scene, recorded.answers))
 }

@@ -7,7 +7,10 @@ use std::path::{Path, PathBuf};
 
 use crate::check::Checked;
 use raypencil_files::{FileError, FolderError, begin, write_atomically};
-use raypencil_judge::{Check, Class, Item, ItemTally, Largest, SensorCheck, Wrong, key_of, name_of, unit_of};
+use raypencil_judge::{
+    CHECK_CLASSES, Check, Class, Defect, Item, ItemTally, Largest, SensorResult, class_counts_json, key_of,
+    name_of, unit_of,
+};
 use raypencil_report::{count, number, quantity};
 use raypencil_scene::Precision;
 
@@ -67,10 +70,10 @@ pub fn check_screen(checked: &Checked) -> String {
             count(tally.of(Class::Rounding)),
             count(tally.of(Class::Defect)),
             count(tally.not_compared),
-            largest(&tally.ulps, ""),
-            largest(&tally.error, unit_of(model, item)),
-            largest(&tally.ratio, ""),
-            tally.ratio.as_ref().map_or("-".into(), |largest| {
+            largest(&tally.worst_ulps, ""),
+            largest(&tally.worst_error, unit_of(model, item)),
+            largest(&tally.worst_ratio, ""),
+            tally.worst_ratio.as_ref().map_or("-".into(), |largest| {
                 let place = largest.place;
                 format!("{} {},{}", place.sensor, place.i, place.j)
             }),
@@ -95,7 +98,7 @@ pub fn check_screen(checked: &Checked) -> String {
             not_compared.join(", ")
         );
     }
-    let wrong: Vec<&Wrong> = check.sensors.iter().flat_map(|sensor| &sensor.wrong).collect();
+    let wrong: Vec<&Defect> = check.sensors.iter().flat_map(|sensor| &sensor.defects).collect();
     for one in wrong.iter().take(SHOWN) {
         let _ = writeln!(text, "{}, {}: {}", one.place, name_of(one.item), one.what);
         let _ = writeln!(text, "    {}", checked.repro(one.place));
@@ -140,16 +143,6 @@ fn aligned(lines: &[Vec<String>]) -> String {
     text
 }
 
-fn of_classes(by_class: &[u64; 6]) -> Value {
-    json!({
-        "agree": by_class[Class::Agree as usize],
-        "tie": by_class[Class::Tie as usize],
-        "rounding": by_class[Class::Rounding as usize],
-        "undecided": by_class[Class::Undecided as usize],
-        "defects": by_class[Class::Defect as usize],
-    })
-}
-
 /// The check for programs. Its schema is `docs/formats/check.schema.json`.
 pub fn check_json(checked: &Checked) -> String {
     let Checked { subject, recorded, check, is_blind } = checked;
@@ -169,15 +162,15 @@ pub fn check_json(checked: &Checked) -> String {
             "quantity": key_of(model, *item),
             "unit": unit_of(model, *item),
             "compared": tally.compared(),
-            "classes": of_classes(&tally.by_class),
+            "classes": class_counts_json(&tally.by_class, &CHECK_CLASSES),
             "not_compared": tally.not_compared,
-            "worst_ulp": largest(&tally.ulps),
-            "worst_error": largest(&tally.error),
-            "worst_ratio": largest(&tally.ratio),
+            "worst_ulp": largest(&tally.worst_ulps),
+            "worst_error": largest(&tally.worst_error),
+            "worst_ratio": largest(&tally.worst_ratio),
         })
     };
-    let of_sensor = |sensor: &SensorCheck| {
-        let wrong = sensor.wrong.iter().map(|one| {
+    let of_sensor = |sensor: &SensorResult| {
+        let wrong = sensor.defects.iter().map(|one| {
             json!({
                 "i": one.place.i, "j": one.place.j,
                 "quantity": key_of(model, one.item),
@@ -188,9 +181,9 @@ pub fn check_json(checked: &Checked) -> String {
         json!({
             "sensor": sensor.sensor.to_string(),
             "compared": sensor.compared(),
-            "classes": of_classes(&sensor.by_class),
+            "classes": class_counts_json(&sensor.by_class, &CHECK_CLASSES),
             "not_compared": sensor.not_compared,
-            "ruled": sensor.ruled,
+            "ruled": sensor.judged,
             "quantities": sensor.items.iter().map(of_item).collect::<Vec<_>>(),
             "first_defects": wrong.collect::<Vec<_>>(),
         })
@@ -205,7 +198,7 @@ pub fn check_json(checked: &Checked) -> String {
         "scene": { "name": subject.name, "sha256": subject.sha256 },
         "blind": is_blind,
         "compared": check.compared(),
-        "classes": of_classes(&all),
+        "classes": class_counts_json(&all, &CHECK_CLASSES),
         "unknown_channels": recorded.unknown,
         "sensors": check.sensors.iter().map(of_sensor).collect::<Vec<_>>(),
     });
@@ -234,7 +227,7 @@ fn junit(checked: &Checked) -> Result<String, quick_junit::SerializeError> {
     report.to_string()
 }
 
-fn status(checked: &Checked, sensor: &SensorCheck, item: Item, tally: &ItemTally) -> TestCaseStatus {
+fn status(checked: &Checked, sensor: &SensorResult, item: Item, tally: &ItemTally) -> TestCaseStatus {
     let bad = tally.of(Class::Defect) + tally.of(Class::Undecided);
     if bad == 0 {
         return if tally.compared() == 0 {
@@ -254,14 +247,18 @@ fn status(checked: &Checked, sensor: &SensorCheck, item: Item, tally: &ItemTally
         count(bad),
         count(tally.compared())
     ));
-    let own = || sensor.wrong.iter().filter(|one| one.item == item);
+    let own = || sensor.defects.iter().filter(|one| one.item == item);
     let mut lines: Vec<String> = own()
         .take(SHOWN)
         .flat_map(|one| [format!("{}: {}", one.place, one.what), format!("    {}", checked.repro(one.place))])
         .collect();
-    if let Some(largest) = &tally.ulps {
+    if let Some(largest) = &tally.worst_ulps {
         let value = number(largest.value);
-        lines.push(format!("Largest error: {value} ulp at {} ({})", largest.place, largest.ruling));
+        lines.push(format!(
+            "Largest error: {value} ulp at {} ({})",
+            largest.place,
+            largest.ruling.as_deref().unwrap_or("exact")
+        ));
         lines.push(format!("    {}", checked.repro(largest.place)));
     }
     status.set_description(lines.join("\n"));

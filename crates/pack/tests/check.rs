@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 use raypencil_harness::contender;
-use raypencil_judge::{Class, Quantity, Recorded, Truth, check};
+use raypencil_judge::{Class, GroundTruth, Quantity, Recorded, check};
 use raypencil_pack::{Checked, check_json, check_pack};
 use raypencil_scene::{Precision, Request, Silent};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
@@ -30,8 +30,9 @@ fn the_json_keeps_to_its_schema() {
     // One with a defect and an unknown channel.
     checked.check.sensors[0].by_class[Class::Defect as usize] = 1;
     checked.recorded.unknown.push("camera/mine".into());
-    let largest = checked.check.sensors[0].items[&Quantity::Range.into()].ulps.clone().expect("compared");
-    checked.check.sensors[0].wrong.push(check::Wrong {
+    let largest =
+        checked.check.sensors[0].items[&Quantity::Range.into()].worst_ulps.clone().expect("compared");
+    checked.check.sensors[0].defects.push(raypencil_judge::Defect {
         place: largest.place,
         item: Quantity::Range.into(),
         what: "off".into(),
@@ -50,7 +51,10 @@ fn classes_add_up_and_nothing_of_a_perfect_candidate_is_off() {
         for (item, tally) in &sensor.items {
             assert!(tally.compared() <= sensor.compared(), "{item:?}");
             assert!(tally.others.is_empty(), "{item:?}");
-            assert!(tally.error.as_ref().is_none_or(|largest| largest.value == 0.0), "{item:?}: {tally:?}");
+            assert!(
+                tally.worst_error.as_ref().is_none_or(|largest| largest.value == 0.0),
+                "{item:?}: {tally:?}"
+            );
         }
     }
 }
@@ -63,7 +67,7 @@ fn frames_in_memory_are_judged_in_double_precision() {
     )
     .expect("the pack's scene")
     .scene;
-    let truth = Truth::certified(&scene, &Silent);
+    let truth = GroundTruth::certified(&scene, &Silent);
     for renderer in ["scanline", "tracer"] {
         let frame = contender(renderer).unwrap().renderer.render(&scene, &Request::EVERYTHING);
         let mut recorded = Recorded::of_output(renderer, &scene, &frame, Precision::F64);
@@ -72,7 +76,8 @@ fn frames_in_memory_are_judged_in_double_precision() {
         let totals = found.totals();
         let ratio = |quantity: Quantity| {
             let own = totals.iter().filter(|(item, _)| item.quantity == quantity);
-            own.filter_map(|(_, tally)| tally.ratio.as_ref()).fold(0.0, |most: f64, one| most.max(one.value))
+            own.filter_map(|(_, tally)| tally.worst_ratio.as_ref())
+                .fold(0.0, |most: f64, one| most.max(one.value))
         };
         for quantity in Quantity::ALL {
             // Derived bounds leave room; none is missing.
@@ -90,7 +95,7 @@ fn frames_in_memory_are_judged_in_double_precision() {
             !matches!(item.quantity, Quantity::Face | Quantity::Pixel | Quantity::Visible)
         });
         let found = check(&truth, &recorded, &Silent);
-        assert!(found.passes(), "{renderer}: {:?}", found.sensors.iter().find_map(|s| s.wrong.first()));
+        assert!(found.passes(), "{renderer}: {:?}", found.sensors.iter().find_map(|s| s.defects.first()));
         // An image without one of its pencils is wrong all the same.
         let image = recorded.answers.light[0].image.as_mut().unwrap();
         let at = image.cells().iter().position(|flux| *flux > 0.0).unwrap();

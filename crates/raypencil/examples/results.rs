@@ -10,7 +10,7 @@ use std::path::Path;
 
 use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
-use raypencil::judge::{Check, Class, Quantity, Recorded, Truth, check};
+use raypencil::judge::{Check, Class, GroundTruth, Quantity, Recorded, check};
 use raypencil::{FluxModel, Progress, Request};
 
 struct Stages;
@@ -61,7 +61,7 @@ fn page(scene: &str, name: &str) -> Result<(), Box<dyn std::error::Error>> {
     for flux_model in [FluxModel::Radiometric, FluxModel::Eq1] {
         let overrides = Overrides { flux_model: Some(flux_model), ..Overrides::default() };
         let loaded = load(scene, &overrides)?;
-        let truth = Truth::certified(&loaded.scene, &Stages);
+        let truth = GroundTruth::certified(&loaded.scene, &Stages);
         for renderer in RENDERERS {
             let contender = contender(renderer).ok_or("a renderer of this house")?;
             let output = contender.renderer.render(&loaded.scene, &Request::EVERYTHING);
@@ -97,7 +97,7 @@ fn page(scene: &str, name: &str) -> Result<(), Box<dyn std::error::Error>> {
             let cells = pair.iter().map(|(_, found)| {
                 let totals = found.totals();
                 let of_quantity = totals.iter().filter(|(item, _)| item.quantity == quantity);
-                let largest = of_quantity.filter_map(|(_, tally)| tally.ulps.clone());
+                let largest = of_quantity.filter_map(|(_, tally)| tally.worst_ulps.clone());
                 let largest = largest.max_by(|a, b| a.value.total_cmp(&b.value));
                 largest.map_or("none".into(), |one| format!("{:.0}, {}", one.value, one.place))
             });

@@ -66,7 +66,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
             sensors.push(Sensor {
                 name: sensor.sensor.to_string(),
                 pair: format!("{} against {}", a.name, b.name),
-                compared: count(sensor.compared),
+                compared: count(sensor.compared()),
                 hits: format!("{} / {}", of(a), of(b)),
                 agree: count(sensor.of(Class::Agree)),
                 tie: count(sensor.of(Class::Tie)),
@@ -80,7 +80,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     let listed: Vec<Listed> = defects(validation)
         .take(LISTED)
         .map(|defect| Listed {
-            text: format!("{}, {}: {}", defect.place, defect.quantity, defect.what),
+            text: format!("{}, {}: {}", defect.place, defect.item.quantity, defect.what),
             command: code(&probe_command(subject, defect.place)),
         })
         .collect();

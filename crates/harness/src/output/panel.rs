@@ -143,14 +143,15 @@ fn cell(subject: &Subject, item: Item, tally: &ItemTally) -> Option<Cell> {
     }
     let unit = unit_of(subject.scene.flux_model(), item);
     let largest = |largest: &Option<Largest>, unit: &str| largest.as_ref().map(|it| quantity(it.value, unit));
-    let ratio = largest(&tally.ratio, "").map_or(String::new(), |ratio| format!("{ratio} of its bound"));
+    let ratio =
+        largest(&tally.worst_ratio, "").map_or(String::new(), |ratio| format!("{ratio} of its bound"));
     Some(Cell {
         is_wrong: wrong(tally) > 0,
         wrong: format!("{} wrong", count(wrong(tally))),
         classes: classes.join(", "),
-        error: largest(&tally.error, unit).unwrap_or_default(),
+        error: largest(&tally.worst_error, unit).unwrap_or_default(),
         ratio,
-        place: tally.error.as_ref().map_or(String::new(), |it| it.place.to_string()),
+        place: tally.worst_error.as_ref().map_or(String::new(), |it| it.place.to_string()),
     })
 }
 
@@ -328,7 +329,7 @@ pub(crate) fn summary(validation: &Validation) -> Option<PanelSummary> {
         summary.outside = true;
         summary.images = held.images.iter().map(of_image).collect();
         summary.radiance = held.radiance.iter().map(of_radiance).collect();
-        let of_miss = |(index, wrong): (usize, &raypencil_judge::check::Wrong)| MissSummary {
+        let of_miss = |(index, wrong): (usize, &raypencil_judge::Defect)| MissSummary {
             sensor: wrong.place.sensor.to_string(),
             i: wrong.place.i,
             j: wrong.place.j,
@@ -352,8 +353,8 @@ fn of_check(subject: &Subject, name: &str, check: &Check) -> HeldSummary {
         tie: tally.of(Class::Tie),
         rounding: tally.of(Class::Rounding),
         wrong: wrong(&tally),
-        worst_error: tally.error.as_ref().and_then(|largest| finite(largest.value)),
-        worst_ratio: tally.ratio.as_ref().and_then(|largest| finite(largest.value)),
+        worst_error: tally.worst_error.as_ref().and_then(|largest| finite(largest.value)),
+        worst_ratio: tally.worst_ratio.as_ref().and_then(|largest| finite(largest.value)),
     };
     HeldSummary {
         name: name.into(),

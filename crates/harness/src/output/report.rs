@@ -10,7 +10,7 @@ use crate::output::plots::Plots;
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
 use crate::output::verdict::{CAVEAT, Verdict, explanation, headline};
 use crate::validation::{Pair, Validation};
-use raypencil_judge::{Class, SensorComparison};
+use raypencil_judge::{Class, SensorResult};
 use raypencil_report::{VERSION, count, counted, list, page_head, time};
 use raypencil_scene_io::probe_command;
 
@@ -167,7 +167,7 @@ fn tiles(validation: &Validation) -> Vec<Tile> {
 
 fn comparison(validation: &Validation, pair: &Pair) -> Comparison {
     let subject = &validation.subject;
-    let sensor_table = |sensor: &SensorComparison| SensorTable {
+    let sensor_table = |sensor: &SensorResult| SensorTable {
         title: sensor.sensor.to_string(),
         rows: rows(subject, [sensor]),
     };
@@ -212,7 +212,7 @@ fn numbers(validation: &Validation, sensor: raypencil_scene::SensorId) -> Vec<St
 }
 
 fn defects(validation: &Validation, pair: &Pair) -> Vec<Defects> {
-    let of_sensor = |sensor: &SensorComparison| {
+    let of_sensor = |sensor: &SensorResult| {
         let total = sensor.of(Class::Defect);
         let listed: Vec<Listed> = sensor
             .defects
@@ -220,7 +220,7 @@ fn defects(validation: &Validation, pair: &Pair) -> Vec<Defects> {
             .take(LISTED)
             .map(|defect| Listed {
                 place: defect.place.to_string(),
-                quantity: defect.quantity.to_string(),
+                quantity: defect.item.quantity.to_string(),
                 what: defect.what.clone(),
                 command: probe_command(&validation.subject, defect.place),
             })

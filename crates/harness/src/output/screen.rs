@@ -8,7 +8,7 @@ use crate::output::VERSION;
 use crate::output::table::{hits, totals, worst};
 use crate::output::verdict::{Verdict, defects, explanation, headline, rays};
 use crate::validation::Validation;
-use raypencil_judge::{Class, SensorComparison};
+use raypencil_judge::{Class, SensorResult};
 use raypencil_report::{count, counted, list, time};
 use raypencil_scene::Place;
 use raypencil_scene::{SensorId, Stage};
@@ -74,9 +74,9 @@ fn quantities(validation: &Validation) -> String {
             count(tally.of(Class::Rounding)),
             count(tally.of(Class::Approximation)),
             count(tally.of(Class::Defect)),
-            or_dash(worst(tally.worst_error, quantity.unit(validation.subject.scene.flux_model()))),
-            or_dash(tally.worst_error.map_or(String::new(), |worst| short(worst.place))),
-            or_dash(worst(tally.worst_ratio, "")),
+            or_dash(worst(&tally.worst_error, quantity.unit(validation.subject.scene.flux_model()))),
+            or_dash(tally.worst_error.as_ref().map_or(String::new(), |worst| short(worst.place))),
+            or_dash(worst(&tally.worst_ratio, "")),
         ]);
     }
     let without = |lines: Vec<Vec<String>>, out: usize| -> Vec<Vec<String>> {
@@ -149,7 +149,7 @@ fn sensors(validation: &Validation) -> String {
         let comparisons =
             || validation.pairs.iter().flat_map(|pair| &pair.sensors).filter(|found| found.sensor == sensor);
         let of = |class| comparisons().map(|comparison| comparison.of(class)).sum::<u64>();
-        let missing: u64 = comparisons().map(|SensorComparison { not_compared, .. }| not_compared).sum();
+        let missing: u64 = comparisons().map(|SensorResult { not_compared, .. }| not_compared).sum();
         let mut line = format!(
             "{:<7} {} rays: {} agree, {} tie, {} defect",
             sensor.to_string(),
@@ -187,8 +187,9 @@ fn approximations(validation: &Validation) -> String {
             count(tally.lost),
             count(tally.added)
         );
-        if let Some(found) = tally.worst_range {
-            let _ = write!(line, "; range off by {} at {}", worst(Some(found), "m"), short(found.place));
+        if let Some(found) = &tally.worst_range {
+            let _ =
+                write!(line, "; range off by {} at {}", worst(&tally.worst_range, "m"), short(found.place));
         }
         let _ = writeln!(text, "{}", cut(&line));
     }
@@ -256,7 +257,7 @@ fn verdict(validation: &Validation) -> String {
     }
     for defect in defects(validation).take(DEFECTS) {
         let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
-        let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.quantity, defect.what)));
+        let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.item.quantity, defect.what)));
     }
     text
 }

@@ -10,7 +10,7 @@ use crate::output::verdict::Verdict;
 use crate::output::{VERSION, map_file};
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
-use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Quantity, SensorComparison, Worst};
+use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Largest, Quantity, SensorResult};
 use raypencil_scene::Switches;
 use raypencil_scene_io::{Subject, probe_command};
 
@@ -201,10 +201,10 @@ fn of_pair<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'a> {
     PairSummary { a: name(pair.a), b: name(pair.b), sensors }
 }
 
-fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorComparison) -> SensorSummary<'a> {
-    let quantities = comparison.quantities.iter().map(|(quantity, tally)| QuantitySummary {
-        quantity: *quantity,
-        unit: quantity.unit(subject.scene.flux_model()),
+fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorResult) -> SensorSummary<'a> {
+    let quantities = comparison.items.iter().map(|(item, tally)| QuantitySummary {
+        quantity: item.quantity,
+        unit: item.quantity.unit(subject.scene.flux_model()),
         agree: tally.of(Class::Agree),
         tie: tally.of(Class::Tie),
         rounding: tally.of(Class::Rounding),
@@ -212,20 +212,20 @@ fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorComparison) -> SensorS
         undecided: tally.of(Class::Undecided),
         defects: tally.of(Class::Defect),
         not_compared: tally.not_compared,
-        worst_error: worst(subject, tally.worst_error),
-        worst_ratio: worst(subject, tally.worst_ratio),
+        worst_error: worst(subject, &tally.worst_error),
+        worst_ratio: worst(subject, &tally.worst_ratio),
     });
     let defects = comparison.defects.iter().map(|defect| DefectSummary {
         i: defect.place.i,
         j: defect.place.j,
-        quantity: defect.quantity,
+        quantity: defect.item.quantity,
         what: &defect.what,
         probe: probe_command(subject, defect.place),
     });
     SensorSummary {
         sensor: comparison.sensor.to_string(),
         classes: Classes {
-            compared: comparison.compared,
+            compared: comparison.compared(),
             agree: comparison.of(Class::Agree),
             tie: comparison.of(Class::Tie),
             rounding: comparison.of(Class::Rounding),
@@ -251,14 +251,14 @@ fn of_causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<Ca
         rays: tally.rays,
         lost: tally.lost,
         added: tally.added,
-        worst_range_error_m: worst(subject, tally.worst_range),
+        worst_range_error_m: worst(subject, &tally.worst_range),
         flux_changed: tally.flux_changed,
     };
     approximations.iter().map(of_cause).collect()
 }
 
-fn worst(subject: &Subject, worst: Option<Worst>) -> Option<WorstSummary> {
-    worst.map(|Worst { value, place }| WorstSummary {
+fn worst(subject: &Subject, worst: &Option<Largest>) -> Option<WorstSummary> {
+    worst.as_ref().map(|&Largest { value, place, .. }| WorstSummary {
         value: finite(value),
         sensor: place.sensor.to_string(),
         i: place.i,

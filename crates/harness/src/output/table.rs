@@ -1,7 +1,7 @@
 //! The table of quantities and classes, ready to be printed by anything.
 
 use raypencil_judge::{
-    ApproximationTallies, ApproximationTally, Class, Quantity, SensorComparison, Tally, Worst,
+    ApproximationTallies, ApproximationTally, Class, ItemTally, Largest, Quantity, SensorResult,
 };
 use raypencil_report as text;
 use raypencil_report::quantity;
@@ -33,10 +33,7 @@ pub(crate) struct Extreme {
 }
 
 /// The rows of some sensors, each quantity summed over them.
-pub(crate) fn rows<'a>(
-    subject: &Subject,
-    sensors: impl IntoIterator<Item = &'a SensorComparison>,
-) -> Vec<Row> {
+pub(crate) fn rows<'a>(subject: &Subject, sensors: impl IntoIterator<Item = &'a SensorResult>) -> Vec<Row> {
     totals(sensors)
         .into_iter()
         .map(|(quantity, tally)| Row {
@@ -48,8 +45,8 @@ pub(crate) fn rows<'a>(
             defects: text::count(tally.of(Class::Defect)),
             fails: tally.of(Class::Defect) > 0,
             not_compared: text::count(tally.not_compared),
-            error: extreme(subject, tally.worst_error, quantity.unit(subject.scene.flux_model())),
-            ratio: extreme(subject, tally.worst_ratio, ""),
+            error: extreme(subject, &tally.worst_error, quantity.unit(subject.scene.flux_model())),
+            ratio: extreme(subject, &tally.worst_ratio, ""),
         })
         .collect()
 }
@@ -71,13 +68,13 @@ pub(crate) fn causes(subject: &Subject, approximations: &ApproximationTallies) -
         rays: text::count(tally.rays),
         lost: text::count(tally.lost),
         added: text::count(tally.added),
-        error: extreme(subject, tally.worst_range, "m"),
+        error: extreme(subject, &tally.worst_range, "m"),
     };
     approximations.iter().map(row).collect()
 }
 
-fn extreme(subject: &Subject, worst: Option<Worst>, unit: &str) -> Option<Extreme> {
-    worst.map(|Worst { value, place }| Extreme {
+fn extreme(subject: &Subject, worst: &Option<Largest>, unit: &str) -> Option<Extreme> {
+    worst.as_ref().map(|&Largest { value, place, .. }| Extreme {
         value: quantity(value, unit),
         place: place.to_string(),
         command: probe_command(subject, place),
@@ -85,13 +82,13 @@ fn extreme(subject: &Subject, worst: Option<Worst>, unit: &str) -> Option<Extrem
 }
 
 /// Each quantity summed over some sensors.
-pub(crate) fn totals<'a>(sensors: impl IntoIterator<Item = &'a SensorComparison>) -> Vec<(Quantity, Tally)> {
-    let mut totals = Quantity::ALL.map(|quantity| (quantity, Tally::default()));
-    for (quantity, tally) in sensors.into_iter().flat_map(|sensor| &sensor.quantities) {
-        totals[*quantity as usize].1.add(tally);
+pub(crate) fn totals<'a>(sensors: impl IntoIterator<Item = &'a SensorResult>) -> Vec<(Quantity, ItemTally)> {
+    let mut totals = Quantity::ALL.map(|quantity| (quantity, ItemTally::default()));
+    for (item, tally) in sensors.into_iter().flat_map(|sensor| &sensor.items) {
+        totals[item.quantity as usize].1.add(tally);
     }
     // A quantity that no sensor has, or that was not asked for, has no row.
-    let is_there = |(_, tally): &(Quantity, Tally)| {
+    let is_there = |(_, tally): &(Quantity, ItemTally)| {
         tally.not_compared > 0 || tally.by_class.iter().any(|count| *count > 0)
     };
     totals.into_iter().filter(is_there).collect()
@@ -107,6 +104,6 @@ pub(crate) fn hits(map: &SensorMap) -> Option<u64> {
 }
 
 /// The worst of something without its place; nothing if there is none.
-pub(crate) fn worst(worst: Option<Worst>, unit: &str) -> String {
-    worst.map_or(String::new(), |worst| quantity(worst.value, unit))
+pub(crate) fn worst(worst: &Option<Largest>, unit: &str) -> String {
+    worst.as_ref().map_or(String::new(), |worst| quantity(worst.value, unit))
 }

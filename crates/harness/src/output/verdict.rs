@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::validation::Validation;
-use raypencil_judge::{Class, Defect, Quantity, Worst};
+use raypencil_judge::{Class, Defect, Largest, Quantity};
 use raypencil_report::{count, counted, list, number};
 
 /// What came of it all.
@@ -85,7 +85,8 @@ pub(crate) fn explanation(validation: &Validation) -> String {
                 "{who} differ by more than the rounding errors that both sides can make, or on what is hit."
             );
             if let Some(defect) = defects(validation).next() {
-                let Defect { place, quantity, what } = defect;
+                let Defect { place, item, what } = defect;
+                let quantity = item.quantity;
                 text.push_str(&format!(" The first: {place}, {quantity}. {what}."));
             }
             text
@@ -129,12 +130,11 @@ pub(crate) fn defects(validation: &Validation) -> impl Iterator<Item = &Defect> 
 }
 
 /// The largest ratio of an error to its bound among all quantities that have any error.
-fn worst_ratio(validation: &Validation) -> Option<(Quantity, Worst)> {
-    let tallies =
-        validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.quantities);
+fn worst_ratio(validation: &Validation) -> Option<(Quantity, &Largest)> {
+    let tallies = validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.items);
     tallies
         .filter(|(_, tally)| tally.of(Class::Agree) > 0)
-        .filter_map(|(quantity, tally)| tally.worst_ratio.map(|worst| (*quantity, worst)))
+        .filter_map(|(item, tally)| tally.worst_ratio.as_ref().map(|worst| (item.quantity, worst)))
         .filter(|(_, worst)| worst.value > 0.0)
         .fold(None, |best, next| match best {
             Some((_, worst)) if worst.value >= next.1.value => best,

@@ -1,16 +1,16 @@
-//! Finds the causes of one frame, first of what is hit, then of what the camera sees.
+//! Finds the causes of one output, first of its hits, then of its visibility.
 
 use std::collections::HashMap;
 
 use raypencil_scene::{Place, Precision, RenderOutput, Switches};
 
 use crate::attribution::cause::Attributions;
-use crate::attribution::court::{Court, Rerender};
-use crate::attribution::{geometry, sight};
+use crate::attribution::context::{AttributionContext, Rerender};
+use crate::attribution::{geometry, visibility};
 use crate::judge::Judge;
 
 impl Attributions {
-    /// Finds the causes of `output`, which the scanline renderer made of the judge's scene with `switches`.
+    /// Finds the causes of `output`, which `rerender` made of the judge's scene with `switches`.
     pub fn find(
         judge: &Judge<'_>,
         output: &RenderOutput,
@@ -18,12 +18,12 @@ impl Attributions {
         precision: Precision,
         rerender: &Rerender<'_>,
     ) -> Self {
-        let court = Court { judge, switches, precision, rerender };
+        let context = AttributionContext { judge, switches, precision, rerender };
         let key = |Place { sensor, i, j }: Place| (sensor, i, j);
-        let by_ray =
-            geometry::causes(court, output).into_iter().map(|(at, cause)| (key(at), cause)).collect();
-        let mut found = Self { by_ray, of_visibility: HashMap::new() };
-        let of_visibility = sight::causes(court, output, &found);
+        let of_hit =
+            geometry::causes(context, output).into_iter().map(|(at, cause)| (key(at), cause)).collect();
+        let mut found = Self { of_hit, of_visibility: HashMap::new() };
+        let of_visibility = visibility::causes(context, output, &found);
         found.of_visibility = of_visibility.into_iter().map(|(at, cause)| (key(at), cause)).collect();
         found
     }

@@ -1,53 +1,37 @@
-//! Causes of what a ray is said to meet.
+//! Causes of wrong hits.
 
 use rayon::prelude::*;
 
+use crate::answer::StatedHit;
 use crate::attribution::cause::Cause;
-use crate::attribution::court::{Court, sets_of};
+use crate::attribution::context::{AttributionContext, sets_of};
 use raypencil_referee::{Approximations, Explained, Ruling};
-use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Fidelity, Quantities, RenderOutput, Request, SensorMap, Switches};
+use raypencil_scene::{Fidelity, Place, Quantities, RenderOutput, Request, SensorMap, Switches};
 
-/// A ray whose answer is not the contract's.
-struct Wrong {
+/// A ray whose hit is not the contract's.
+struct WrongHit {
     place: Place,
-    answer: Answer,
-    /// The answers that are wrong with other switches on `exact`, by which.
-    without: Vec<(Switches, Answer)>,
+    answer: StatedHit,
+    /// The answers that are still wrong with other switches on `exact`, and those switches.
+    without: Vec<(Switches, StatedHit)>,
     cause: Option<Cause>,
 }
 
-/// One side's answer to a ray.
-#[derive(Debug, Clone, Copy)]
-struct Answer {
-    face: Option<FaceId>,
-    range: Option<f64>,
-}
-
-impl Answer {
-    fn of(map: &SensorMap, i: u32, j: u32) -> Self {
-        Self {
-            face: map.face.as_ref().and_then(|faces| faces.at(i, j).get()),
-            range: map.range.as_ref().and_then(|ranges| ranges.at(i, j).get()),
-        }
-    }
-}
-
-impl Court<'_> {
-    fn is_wrong(&self, place: Place, answer: Answer) -> bool {
+impl AttributionContext<'_> {
+    fn is_wrong(&self, place: Place, answer: StatedHit) -> bool {
         self.judge.rule(place, answer.face, answer.range, self.precision) == Ruling::Wrong
     }
 
     /// Explains an answer that was made with the renderer's switches but for `exact`.
-    fn explain(&self, place: Place, answer: Answer, exact: Switches) -> Option<Vec<Explained>> {
+    fn explain(&self, place: Place, answer: StatedHit, exact: Switches) -> Option<Vec<Explained>> {
         let with = approximations(self.switches.without(exact));
         self.judge.explain(place, answer.face, answer.range, with, self.precision)
     }
 }
 
-/// The rays of a frame whose errors have a confirmed cause.
-pub(super) fn causes(court: Court<'_>, output: &RenderOutput) -> Vec<(Place, Cause)> {
-    let of_geometry = court.switches.without(Switches {
+/// The rays of an output whose errors have a confirmed cause.
+pub(super) fn causes(context: AttributionContext<'_>, output: &RenderOutput) -> Vec<(Place, Cause)> {
+    let of_geometry = context.switches.without(Switches {
         beam_edges: Fidelity::Exact,
         skip_rules: Fidelity::Exact,
         ..Switches::PAPER
@@ -62,32 +46,32 @@ pub(super) fn causes(court: Court<'_>, output: &RenderOutput) -> Vec<(Place, Cau
         ..Request::MAPS
     };
 
-    // What differs from the same algorithm without any approximation, and is wrong.
-    let exact = court.render(Switches::EXACT, request);
-    let mut wrong: Vec<Wrong> = output
+    // The rays that differ from the same algorithm without any approximation, and are wrong.
+    let exact = context.render(Switches::EXACT, request);
+    let mut wrong: Vec<WrongHit> = output
         .maps()
         .filter_map(|map| Some((map, exact.map(map.sensor)?)))
-        .flat_map(|(map, of_exact)| wrong_answers(court, map, of_exact))
+        .flat_map(|(map, of_exact)| wrong_hits(context, map, of_exact))
         .collect();
 
     for cause in sets_of(of_geometry) {
-        let mut open: Vec<&mut Wrong> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
+        let mut open: Vec<&mut WrongHit> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
         if open.is_empty() {
             break;
         }
-        let without = court.render(court.switches.without(cause), request);
-        open.par_iter_mut().for_each(|ray| ray.attribute_to(cause, &without, court));
+        let without = context.render(context.switches.without(cause), request);
+        open.par_iter_mut().for_each(|ray| ray.attribute_to(cause, &without, context));
     }
     wrong.into_iter().filter_map(|ray| Some((ray.place, ray.cause?))).collect()
 }
 
 /// The rays of a map that differ from what the same algorithm gives without approximations, and are wrong.
-fn wrong_answers(court: Court<'_>, map: &SensorMap, of_exact: &SensorMap) -> Vec<Wrong> {
+fn wrong_hits(context: AttributionContext<'_>, map: &SensorMap, of_exact: &SensorMap) -> Vec<WrongHit> {
     let rows = (0..map.height).into_par_iter().flat_map_iter(|j| {
         (0..map.width).filter_map(move |i| {
-            let (answer, place) = (Answer::of(map, i, j), Place { sensor: map.sensor, i, j });
-            let differs = answer.face != Answer::of(of_exact, i, j).face;
-            (differs && court.is_wrong(place, answer)).then(|| Wrong {
+            let (answer, place) = (StatedHit::of(map, i, j), Place { sensor: map.sensor, i, j });
+            let differs = answer.face != StatedHit::of(of_exact, i, j).face;
+            (differs && context.is_wrong(place, answer)).then(|| WrongHit {
                 place,
                 answer,
                 without: Vec::new(),
@@ -98,23 +82,23 @@ fn wrong_answers(court: Court<'_>, map: &SensorMap, of_exact: &SensorMap) -> Vec
     rows.collect()
 }
 
-impl Wrong {
-    /// Takes `cause` for the cause if the frame `without` it restores this ray and the referee confirms it.
-    fn attribute_to(&mut self, cause: Switches, without: &RenderOutput, court: Court<'_>) {
+impl WrongHit {
+    /// Takes `cause` for the cause if the output `without` it restores this ray and the referee confirms it.
+    fn attribute_to(&mut self, cause: Switches, without: &RenderOutput, context: AttributionContext<'_>) {
         let Place { sensor, i, j } = self.place;
         let Some(map) = without.map(sensor) else { return };
-        let restored = Answer::of(map, i, j);
-        if court.is_wrong(self.place, restored) {
+        let restored = StatedHit::of(map, i, j);
+        if context.is_wrong(self.place, restored) {
             self.without.push((cause, restored));
             return;
         }
-        let Some(explained) = court.explain(self.place, self.answer, Switches::EXACT) else { return };
+        let Some(explained) = context.explain(self.place, self.answer, Switches::EXACT) else { return };
         let mut open = cause.without(reasons(&explained));
         let mut explained_without = Vec::new();
         for &(part, answer) in &self.without {
             if open != Switches::EXACT
                 && cause.contains(part)
-                && let Some(explained) = court.explain(self.place, answer, part)
+                && let Some(explained) = context.explain(self.place, answer, part)
             {
                 open = open.without(reasons(&explained));
                 explained_without.push((part, explained));
@@ -127,7 +111,7 @@ impl Wrong {
     }
 }
 
-/// The switches in the referee's own words.
+/// The switches as the referee's type.
 fn approximations(switches: Switches) -> Approximations {
     Approximations {
         beam_edges: switches.beam_edges == Fidelity::Paper,

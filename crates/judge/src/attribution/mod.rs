@@ -5,17 +5,17 @@
 //! 1. *It restores.* With the switches of the cause on `exact`, and all others as they are, the same
 //!    algorithm gives an answer that the referee admits.
 //! 2. *It is confirmed.* The referee finds, from the paper's text and by itself, that the approximations lose
-//!    every face of which the answer is silent and add the one that it names
+//!    every true face that the answer leaves out and add the one that it names
 //!    ([`raypencil_referee::Referee::explain`]), and each switch of the set is the reason for one of them.
 //!    Where one approximation hides what another does (the true face is lost by either alone, say), the reason
 //!    is sought in the answers that are left wrong when only a part of the set is exact.
 //!
-//! Of the sets that do both, one of the smallest is the cause. (A smaller one may restore an answer by luck, as
-//! where the one rule skips what the other adds; it is not confirmed then.) What no set satisfies has no cause,
-//! and is a defect.
+//! One of the smallest sets that do both is the cause. (A smaller set may restore an answer by luck, as where one
+//! rule skips what another adds; it is not confirmed then.) An answer that no set explains has no cause, and is a
+//! defect.
 
 pub(crate) mod cause;
-pub(crate) mod court;
+pub(crate) mod context;
 mod find;
-pub(crate) mod geometry;
-pub(crate) mod sight;
+mod geometry;
+mod visibility;

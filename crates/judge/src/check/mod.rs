@@ -1,38 +1,36 @@
 //! A recording judged by the truth, ray by ray and quantity by quantity.
 //!
-//! What is exact, ties, or is right for a ray that the declared arithmetic may have displaced is no fault; every
-//! value must be that of the face that is named, to within what the arithmetic and the storage explain. What is
-//! not said is not compared, which is no pass.
+//! An answer is no fault if it is exact, ties, or is right for a ray that the declared arithmetic may have displaced.
+//! Every value must be that of the face that is named, to within the error that the arithmetic and the storage explain.
+//! A channel that is absent is not compared, which is no pass.
 
-pub(crate) mod doubt;
-pub(crate) mod pencil;
-pub(crate) mod pixel;
-pub(crate) mod ray;
-pub(crate) mod said;
-pub(crate) mod tally;
-pub(crate) mod truth;
+pub(crate) mod ground_truth;
+mod hit;
+mod pencil;
+mod pixel;
+mod stored;
+mod uncertain;
 
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-use crate::check::doubt::alternatives;
-use crate::check::pencil::{Landing, judge_back};
+use crate::check::ground_truth::GroundTruth;
+use crate::check::hit::judge_hit;
+use crate::check::pencil::{PencilContribution, judge_return, tells_light};
 use crate::check::pixel::BeamImage;
-use crate::check::ray::{Judged, judge_hit};
-use crate::check::said::SaidBack;
-use crate::class::{Class, Item};
+use crate::check::uncertain::uncertain_fluxes;
+use crate::class::Class;
+use crate::entry::RayEntry;
+use crate::quantity::Item;
 use crate::recorded::Recorded;
-use raypencil_scene::Place;
-use raypencil_scene::{Progress, SensorId};
-
-pub use crate::check::tally::{ItemTally, Largest, SensorCheck, Wrong};
-pub use crate::check::truth::Truth;
+use crate::tally::{ItemTally, SensorResult};
+use raypencil_scene::{Place, Progress, SensorId};
 
 /// A recording judged.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Check {
     /// Each sensor, the camera first.
-    pub sensors: Vec<SensorCheck>,
+    pub sensors: Vec<SensorResult>,
 }
 
 impl Check {
@@ -43,14 +41,14 @@ impl Check {
 
     /// Rays of which anything was compared.
     pub fn compared(&self) -> u64 {
-        self.sensors.iter().map(SensorCheck::compared).sum()
+        self.sensors.iter().map(SensorResult::compared).sum()
     }
 
     /// Each quantity over all sensors.
     pub fn totals(&self) -> BTreeMap<Item, ItemTally> {
         let mut totals: BTreeMap<Item, ItemTally> = BTreeMap::new();
         for (item, tally) in self.sensors.iter().flat_map(|sensor| &sensor.items) {
-            totals.entry(*item).or_default().add(tally.clone());
+            totals.entry(*item).or_default().add(tally);
         }
         totals
     }
@@ -62,7 +60,39 @@ impl Check {
 }
 
 /// Judges a recording of the truth's scene.
-pub fn check(truth: &Truth<'_>, recorded: &Recorded, progress: &dyn Progress) -> Check {
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// # use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene};
+/// # let corners = vec![[0.125, -40.0, 2.0], [-90.0, 0.0, 2.0], [0.125, 40.0, 2.0]];
+/// # let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+/// # let wall = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], vec![plaster])?;
+/// # let camera = Camera {
+/// #     width: 9, height: 9, pixel_pitch: [0.0625; 2], focal_length: 0.5, principal_point: [4.5; 2],
+/// #     aperture: 0.01, lens: Lens::CLEAR, max_range: 20.0,
+/// # };
+/// # let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(wall), camera, vec![], air, FluxModel::Radiometric)?;
+/// // A wall at z = 2 m that ends at x = 1/8 m, before a camera of 9 x 9 pixels at the origin that looks along z.
+/// use raypencil_judge::{GroundTruth, Quantity, Recorded, check};
+/// use raypencil_referee::ExactRenderer;
+/// use raypencil_scene::{Precision, Renderer, Request, Silent};
+///
+/// let output = ExactRenderer.render(&scene, &Request::MAPS);
+/// let recorded = Recorded::of_output("exact", &scene, &output, Precision::F64);
+/// let found = check(&GroundTruth::certified(&scene, &Silent), &recorded, &Silent);
+///
+/// // The five columns of pixels from x = -1 m to x = 0 hit the wall: 45 ranges, all of them exact.
+/// assert!(found.passes());
+/// assert_eq!(found.compared(), 81);
+/// let ranges = &found.totals()[&Quantity::Range.into()];
+/// assert_eq!(ranges.compared(), 45);
+/// assert_eq!(ranges.worst_ulps.as_ref().unwrap().value, 0.0);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+pub fn check(truth: &GroundTruth<'_>, recorded: &Recorded, progress: &dyn Progress) -> Check {
     let scene = truth.scene();
     // The beams first: a pixel is judged by the pencils that land there.
     let mut images = Vec::new();
@@ -72,50 +102,55 @@ pub fn check(truth: &Truth<'_>, recorded: &Recorded, progress: &dyn Progress) ->
         progress.stage(&format!("{sensor}: judging"));
         let (checked, delivered) = check_beam(truth, recorded, beam);
         let mut image = BeamImage::empty(truth, beam);
-        delivered.iter().for_each(|landing| image.land(landing));
+        delivered.iter().for_each(|contribution| image.add(contribution));
         let light = &recorded.answers.light[beam];
         let says_image = light.image.is_some() || light.other_image.is_some();
-        if says_image && !SaidBack::tells_light(light) {
+        if says_image && !tells_light(light) {
             progress.stage(&format!("{sensor}: pencils that may go either way"));
-            let possible: Vec<_> = places(truth, sensor)
+            let uncertain: Vec<_> = places(truth, sensor)
                 .into_par_iter()
-                .map(|place| alternatives(truth, recorded, place))
+                .map(|place| uncertain_fluxes(truth, recorded, place))
                 .collect();
-            possible.into_iter().for_each(|possible| image.may_land(possible));
+            uncertain.into_iter().for_each(|fluxes| image.add_uncertain(fluxes));
         }
         images.push(image);
         beams.push(checked);
     }
     progress.stage("camera: judging");
     let camera = by_rows(truth, SensorId::Camera, |place, row| {
-        let mut judged = Judged::new(place, row);
-        judge_hit(truth, recorded, &mut judged);
-        images.iter().for_each(|image| image.judge(truth, recorded, &mut judged));
-        judged.finish();
+        let mut entry = RayEntry::checked(place, row);
+        judge_hit(truth, recorded, &mut entry);
+        images.iter().for_each(|image| image.judge(truth, recorded, &mut entry));
+        entry.finish(String::new);
     });
     Check { sensors: std::iter::once(camera).chain(beams).collect() }
 }
 
-/// A beam's pencils, and what each delivers in row-major order. The truth's own, if the recording does not tell.
-fn check_beam(truth: &Truth<'_>, recorded: &Recorded, beam: usize) -> (SensorCheck, Vec<Landing>) {
+/// Judges a beam's pencils, and gives what each contributes to the image, in row-major order: the true light where the
+/// recording does not tell.
+fn check_beam(
+    truth: &GroundTruth<'_>,
+    recorded: &Recorded,
+    beam: usize,
+) -> (SensorResult, Vec<PencilContribution>) {
     let sensor = SensorId::Beam(beam);
     let (width, height) = truth.scene().size(sensor).expect("a sensor of this scene");
-    let rows: Vec<(SensorCheck, Vec<Landing>)> = (0..height)
+    let rows: Vec<(SensorResult, Vec<PencilContribution>)> = (0..height)
         .into_par_iter()
         .map(|j| {
-            let mut row = SensorCheck::new(sensor);
+            let mut row = SensorResult::new(sensor);
             let delivered = (0..width).map(|i| {
-                let mut judged = Judged::new(Place { sensor, i, j }, &mut row);
-                let reference = judge_hit(truth, recorded, &mut judged);
-                let delivered = judge_back(truth, recorded, &mut judged, &reference);
-                judged.finish();
-                delivered
+                let mut entry = RayEntry::checked(Place { sensor, i, j }, &mut row);
+                let assumed = judge_hit(truth, recorded, &mut entry);
+                let contribution = judge_return(truth, recorded, &mut entry, &assumed);
+                entry.finish(String::new);
+                contribution
             });
             let delivered = delivered.collect();
             (row, delivered)
         })
         .collect();
-    let mut all = SensorCheck::new(sensor);
+    let mut all = SensorResult::new(sensor);
     let mut delivered = Vec::with_capacity(width as usize * height as usize);
     for (row, of_row) in rows {
         all.add(row);
@@ -124,27 +159,27 @@ fn check_beam(truth: &Truth<'_>, recorded: &Recorded, beam: usize) -> (SensorChe
     (all, delivered)
 }
 
-/// Rows in parallel, added up in their order: the result does not depend on threads.
+/// Judges rows in parallel and adds them up in their order: the result does not depend on threads.
 fn by_rows(
-    truth: &Truth<'_>,
+    truth: &GroundTruth<'_>,
     sensor: SensorId,
-    judge: impl Fn(Place, &mut SensorCheck) + Sync,
-) -> SensorCheck {
+    judge: impl Fn(Place, &mut SensorResult) + Sync,
+) -> SensorResult {
     let (width, height) = truth.scene().size(sensor).expect("a sensor of this scene");
-    let rows: Vec<SensorCheck> = (0..height)
+    let rows: Vec<SensorResult> = (0..height)
         .into_par_iter()
         .map(|j| {
-            let mut row = SensorCheck::new(sensor);
+            let mut row = SensorResult::new(sensor);
             (0..width).for_each(|i| judge(Place { sensor, i, j }, &mut row));
             row
         })
         .collect();
-    let mut all = SensorCheck::new(sensor);
+    let mut all = SensorResult::new(sensor);
     rows.into_iter().for_each(|row| all.add(row));
     all
 }
 
-fn places(truth: &Truth<'_>, sensor: SensorId) -> Vec<Place> {
+fn places(truth: &GroundTruth<'_>, sensor: SensorId) -> Vec<Place> {
     let (width, height) = truth.scene().size(sensor).expect("a sensor of this scene");
     (0..height).flat_map(|j| (0..width).map(move |i| Place { sensor, i, j })).collect()
 }

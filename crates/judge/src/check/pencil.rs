@@ -1,81 +1,93 @@
-//! One pencil of a recording against the truth: whether the camera sees it, where, and what it delivers.
+//! One pencil's return in a recording against the truth: visibility, pixel and flux.
 //!
-//! What is not said (the face, whether it is seen, the pixel) is taken from the truth, or else from what else is
-//! admissible and explains the values that are said.
+//! What the recording leaves out (the face, the visibility, the pixel) is taken from the truth; if the values do not
+//! fit that, from another admissible answer that they fit.
 
-use crate::bounds::{Bounds, ReturnBounds, Returned, least_normal};
-use crate::check::ray::{Judged, Reference, words};
-use crate::check::said::{Difference, SaidBack, flux_bound};
-use crate::check::truth::Truth;
-use crate::class::{Class, Item, Quantity};
+use crate::answer::StatedReturn;
+use crate::bounds::{HitBounds, ReturnBounds, ReturnValues, min_normal};
+use crate::check::ground_truth::GroundTruth;
+use crate::check::hit::{AssumedHit, words};
+use crate::check::stored::stored_difference;
+use crate::class::Class;
+use crate::difference::{Difference, StatedValue, return_values};
+use crate::entry::RayEntry;
+use crate::quantity::{Item, Quantity};
 use crate::recorded::Recorded;
+use crate::scene_answers::BeamLight;
 use raypencil_referee::{Format, RoundedReturn};
-use raypencil_scene::Place;
-use raypencil_scene::{FluxModel, Hit, Pixel, Precision, SensorId};
+use raypencil_scene::{Hit, Pixel, Place, SensorId};
 
-/// What a pencil delivers, exactly, where it is said to land.
+/// The exact light of a pencil in the pixel where it is stated to land.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Delivered {
+pub(super) struct DeliveredLight {
     pub(super) pixel: Pixel,
-    /// By the scene's model, and by the other.
+    /// Flux by the scene's model and by the other, watts (`eq1`: W/m).
     pub(super) flux: [f64; 2],
-    /// How far the recording's own may be off.
+    /// How far the recording's own flux may be off.
     pub(super) bound: [f64; 2],
-    /// What the pencil's answers are.
+    /// The class of the pencil's answers.
     pub(super) class: Class,
 }
 
-/// Where a pencil's light goes, as it is said.
+/// A pencil's part in the image, as the recording states it.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Landing {
-    pub(super) delivered: Option<Delivered>,
-    /// The pixel in which it truly lands, if it is said not to, and what that answer is.
-    pub(super) left: Option<(Pixel, Class)>,
+pub(super) struct PencilContribution {
+    /// The light where it is stated to land; `None` if it delivers nothing.
+    pub(super) delivered: Option<DeliveredLight>,
+    /// The pixel in which it truly lands, if it is stated not to, and the class of that answer.
+    pub(super) missing_from: Option<(Pixel, Class)>,
 }
 
-/// The flux of pencils by one of the two models.
-fn flux_item(k: usize) -> Item {
-    Item { is_other_model: k == 1, ..Quantity::PencilFlux.into() }
+/// How far a flux may be off, watts (`eq1`: W/m). No light at all is exactly 0.
+pub(super) fn flux_bound(bounds: &ReturnBounds, flux: f64) -> f64 {
+    if flux == 0.0 { 0.0 } else { bounds.of_flux(flux) }
 }
 
-/// What the answers about a pencil's light are taken to mean.
-struct Meaning {
+/// Whether a recording tells which pixels the pencils of a beam light.
+pub(super) fn tells_light(light: &BeamLight) -> bool {
+    light.returns.pixel.is_some() && (light.returns.flux.is_some() || light.other_flux.is_some())
+}
+
+/// The recorded values of a pencil under one hypothesis of its hit, visibility and pixel.
+struct Hypothesis {
     visible: bool,
     pixel: Option<Pixel>,
-    /// Of seeing, and of landing.
+    /// The classes of visibility and pixel.
     classes: [Class; 2],
     ruling: Option<String>,
-    /// The worst of those and of what is hit.
+    /// The worst class of hit, visibility and pixel.
     class: Class,
     exact: RoundedReturn,
     bounds: [ReturnBounds; 2],
     differences: Vec<Difference>,
 }
 
-impl Meaning {
+impl Hypothesis {
+    /// Whether it is admissible and all values fit it.
     fn fits(&self) -> bool {
         !self.classes.contains(&Class::Defect) && self.differences.iter().all(Difference::is_within)
     }
 }
 
-/// One pencil and all that is known of it.
-struct Question<'a> {
-    truth: &'a Truth<'a>,
+/// One pencil of a recording and all that is known of it.
+struct RecordedPencil<'a> {
+    truth: &'a GroundTruth<'a>,
     recorded: &'a Recorded,
     place: Place,
     beam: usize,
-    said: SaidBack,
+    stated: StatedReturn,
 }
 
-impl Question<'_> {
-    /// What the answers mean if this is what is hit, seen and landed on; `None` if there is no such point.
-    fn meaning(
+impl RecordedPencil<'_> {
+    /// Judges the recorded values under the hypothesis of this hit, visibility and pixel; `None` if the face has no
+    /// such point.
+    fn hypothesis(
         &self,
-        (hit, of_hit, of_class): (&Hit, &Bounds, Class),
+        (hit, of_hit, of_class): (&Hit, &HitBounds, Class),
         visible: bool,
         pixel: Option<Pixel>,
         is_true: bool,
-    ) -> Option<Meaning> {
+    ) -> Option<Hypothesis> {
         let (judge, precision) = (self.truth.judge(), self.recorded.precision);
         let (classes, ruling) = if is_true {
             ([Class::Agree; 2], None)
@@ -91,110 +103,129 @@ impl Question<'_> {
             }
         };
         let exact = judge.rounded_return(self.place, hit.face, visible, pixel)?;
-        let model = self.truth.scene().flux_model();
-        let bounds = return_bounds(self.truth, self.beam, self.place.i, hit, &exact, of_hit, precision);
-        let differences =
-            self.said.differences(self.recorded, self.place.sensor, &exact, model, [&bounds[0], &bounds[1]]);
+        let (scene, model) = (self.truth.scene(), self.truth.scene().flux_model());
+        let [own, other] = [model, model.other()].map(|model| exact.in_format(Format::Double, model));
+        let values = ReturnValues::of_exact(scene, hit, &own);
+        let bounds =
+            ReturnBounds::by_both_models(scene, (self.beam, self.place.i), of_hit, values, precision);
+        let values = return_values(&self.stated, &own, &bounds[0]);
+        let mut differences = self.recorded.differences(self.place.sensor, values);
+        differences.extend((0..2).filter_map(|k| self.flux_difference(k, [own, other][k].flux, &bounds[k])));
         let class = of_class.max(classes[0]).max(classes[1]);
-        Some(Meaning { visible, pixel, classes, ruling, class, exact, bounds, differences })
+        Some(Hypothesis { visible, pixel, classes, ruling, class, exact, bounds, differences })
     }
 
-    /// Whether it is taken to be seen, if that is not said, and would land on `pixel`.
-    fn inferred(&self, pixel: Option<Pixel>) -> bool {
+    /// The difference of the flux by one of the two models.
+    fn flux_difference(&self, k: usize, exact: f64, bounds: &ReturnBounds) -> Option<Difference> {
+        let item = Item::pencil_flux(k == 1);
+        let value = StatedValue::scalar(item, self.stated.flux[k], exact, flux_bound(bounds, exact))?;
+        let difference = stored_difference(&value, self.recorded.storage_of(self.place.sensor, item));
+        // No light at all is exactly 0, however it is stored.
+        Some(if exact == 0.0 { Difference { bound: Some(0.0), ..difference } } else { difference })
+    }
+
+    /// Whether the hit is taken to be visible, if that is not stated, and would land on `pixel`.
+    fn infers_visible(&self, pixel: Option<Pixel>) -> bool {
         if pixel.is_none() {
             return false;
         }
-        let (truly, _) = self.truth.sight(self.place);
-        let said: Vec<(usize, f64)> =
-            (0..2).filter_map(|k| self.said.flux[k].map(|flux| (k, flux))).collect();
-        if said.iter().any(|(_, flux)| *flux > 0.0) {
+        let (truly, _) = self.truth.visibility(self.place);
+        let stated: Vec<(usize, f64)> =
+            (0..2).filter_map(|k| self.stated.flux[k].map(|flux| (k, flux))).collect();
+        if stated.iter().any(|(_, flux)| *flux > 0.0) {
             return true;
         }
-        // A flux of 0 says that it is not seen, unless the true one is too small to be told from 0.
-        let is_told = said.iter().any(|&(k, _)| {
-            let storage = self.recorded.storage_of(self.place.sensor, flux_item(k));
-            let least = least_normal(self.recorded.precision);
+        // A flux of 0 tells that it is hidden, unless the true flux is too small to be told from 0.
+        let is_told = stated.iter().any(|&(k, _)| {
+            let storage = self.recorded.storage_of(self.place.sensor, Item::pencil_flux(k == 1));
+            let least = min_normal(self.recorded.precision);
             self.truth.flux(self.place)[k] > 2.0 * (storage.ulp(0.0) + least)
         });
         truly && !is_told
     }
 }
 
-/// Judges what is said to come back of a pencil.
-pub(crate) fn judge_back(
-    truth: &Truth<'_>,
+/// Judges the return of a pencil, whose hit is judged already.
+pub(super) fn judge_return(
+    truth: &GroundTruth<'_>,
     recorded: &Recorded,
-    judged: &mut Judged<'_>,
-    reference: &Reference,
-) -> Landing {
-    let place = judged.place;
-    let SensorId::Beam(beam) = place.sensor else { return Landing::default() };
-    let said = SaidBack::of(&recorded.answers.light[beam], place.i, place.j);
-    missing(judged, recorded);
-    let true_sight = truth.sight(place);
-    let true_pixel = true_sight.1.filter(|_| true_sight.0);
-    let (Some(hit), Some(of_hit)) = (&reference.hit, &reference.bounds) else {
-        // Nothing comes back of what is not hit.
-        let class = if reference.is_true { Class::Agree } else { reference.class };
-        nothing(judged, recorded, &said, class);
-        return Landing { delivered: None, left: true_pixel.map(|pixel| (pixel, class)) };
+    entry: &mut RayEntry<'_>,
+    assumed: &AssumedHit,
+) -> PencilContribution {
+    let place = entry.place;
+    let SensorId::Beam(beam) = place.sensor else { return PencilContribution::default() };
+    let light = &recorded.answers.light[beam];
+    let stated = StatedReturn::of(&light.returns, light.other_flux.as_ref(), place.i, place.j);
+    missing_values(entry, recorded);
+    let true_visibility = truth.visibility(place);
+    let true_pixel = true_visibility.1.filter(|_| true_visibility.0);
+    let (Some(hit), Some(of_hit)) = (&assumed.hit, &assumed.bounds) else {
+        // A pencil without a hit has no return.
+        let class = if assumed.is_true { Class::Agree } else { assumed.class };
+        judge_no_return(entry, recorded, &stated, class);
+        return PencilContribution { delivered: None, missing_from: true_pixel.map(|pixel| (pixel, class)) };
     };
-    let question = Question { truth, recorded, place, beam, said };
-    let of_hit = (hit, of_hit, reference.class);
+    let pencil = RecordedPencil { truth, recorded, place, beam, stated };
+    let of_hit = (hit, of_hit, assumed.class);
 
-    let pixel = said.pixel.unwrap_or(true_sight.1);
-    let mut visible = said.visible.unwrap_or_else(|| question.inferred(pixel));
+    let pixel = stated.pixel.unwrap_or(true_visibility.1);
+    let mut visible = stated.visible.unwrap_or_else(|| pencil.infers_visible(pixel));
     let contradicts = visible && pixel.is_none();
     if contradicts {
-        judged.note("it says that the hit is seen, and lands on no pixel");
+        entry.note("it says that the hit is seen, and lands on no pixel");
         visible = false;
     }
-    let is_true = reference.is_true && (visible, pixel) == true_sight;
-    let Some(plain) = question.meaning(of_hit, visible, pixel, is_true) else { return Landing::default() };
-    let meaning = if plain.fits() || contradicts {
-        plain
-    } else {
-        otherwise(&question, reference, of_hit, (visible, pixel)).unwrap_or(plain)
+    let is_true = assumed.is_true && (visible, pixel) == true_visibility;
+    let Some(direct) = pencil.hypothesis(of_hit, visible, pixel, is_true) else {
+        return PencilContribution::default();
     };
-    enter(judged, &question, &meaning, contradicts);
+    let hypothesis = if direct.fits() || contradicts {
+        direct
+    } else {
+        alternative(&pencil, assumed, of_hit, (visible, pixel)).unwrap_or(direct)
+    };
+    enter(entry, &pencil, &hypothesis, contradicts);
 
     let model = truth.scene().flux_model();
-    let flux = [model, model.other()].map(|model| meaning.exact.in_format(Format::Double, model).flux);
-    let delivered = meaning.pixel.filter(|_| meaning.visible).map(|pixel| Delivered {
+    let flux = [model, model.other()].map(|model| hypothesis.exact.in_format(Format::Double, model).flux);
+    let delivered = hypothesis.pixel.filter(|_| hypothesis.visible).map(|pixel| DeliveredLight {
         pixel,
         flux,
-        bound: [flux_bound(&meaning.bounds[0], flux[0]), flux_bound(&meaning.bounds[1], flux[1])],
-        class: judged.worst().max(meaning.class),
+        bound: [flux_bound(&hypothesis.bounds[0], flux[0]), flux_bound(&hypothesis.bounds[1], flux[1])],
+        class: entry.worst().max(hypothesis.class),
     });
     let lands = delivered.map(|delivered| delivered.pixel);
-    let class = judged.worst().max(meaning.class);
-    Landing { delivered, left: true_pixel.filter(|pixel| lands != Some(*pixel)).map(|pixel| (pixel, class)) }
+    let class = entry.worst().max(hypothesis.class);
+    PencilContribution {
+        delivered,
+        missing_from: true_pixel.filter(|pixel| lands != Some(*pixel)).map(|pixel| (pixel, class)),
+    }
 }
 
-/// Another meaning that is admissible and fits all values, if what is not said leaves one.
-fn otherwise(
-    question: &Question<'_>,
-    reference: &Reference,
-    of_hit: (&Hit, &Bounds, Class),
+/// Another hypothesis that is admissible and that all values fit, if what is not stated leaves one.
+fn alternative(
+    pencil: &RecordedPencil<'_>,
+    assumed: &AssumedHit,
+    of_hit: (&Hit, &HitBounds, Class),
     (visible, pixel): (bool, Option<Pixel>),
-) -> Option<Meaning> {
-    let Question { truth, recorded, place, said, .. } = question;
+) -> Option<Hypothesis> {
+    let RecordedPencil { truth, recorded, place, stated, .. } = pencil;
     let judge = truth.judge();
-    // Faces that tie with the true one, if none is named: each has its own reflectivity.
-    let mut hits: Vec<(Hit, Bounds, Class)> = vec![(*of_hit.0, *of_hit.1, of_hit.2)];
-    if !reference.is_named {
+    // Faces that tie with the true one, if the recording names none: each has its own reflectivity.
+    let mut hits: Vec<(Hit, HitBounds, Class)> = vec![(*of_hit.0, *of_hit.1, of_hit.2)];
+    if !assumed.is_named {
         let verdict = judge.referee().verdict(place.sensor, place.i, place.j);
         let ray = truth.scene().ray(place.sensor, place.i, place.j)?;
         for face in verdict.map(|verdict| verdict.faces).unwrap_or_default() {
             if let Some(hit) = judge.plane_hit(*place, face).filter(|hit| hit.face != of_hit.0.face) {
-                let bounds = Bounds::of(truth.scene().mesh(), face, &ray, hit.range, recorded.precision);
+                let bounds = HitBounds::of_exact(truth.scene(), &ray, &hit, recorded.precision);
                 hits.push((hit, bounds, Class::Tie));
             }
         }
     }
-    // The neighbours of the pixel, if none is said: equation (1) goes by the pixel's centre.
+    // The neighbours of the pixel, if the recording states none: equation (1) goes by the pixel's centre.
     let mut pixels = vec![pixel];
-    if let (None, Some(Pixel { i, j })) = (said.pixel, pixel) {
+    if let (None, Some(Pixel { i, j })) = (stated.pixel, pixel) {
         let camera = &truth.scene().camera().sensor;
         let around = (-1i64..=1).flat_map(|dj| (-1i64..=1).map(move |di| (di, dj)));
         let beside = around.filter_map(|(di, dj)| {
@@ -206,126 +237,113 @@ fn otherwise(
     }
     for (hit, bounds, class) in &hits {
         for &pixel in &pixels {
-            if let Some(meaning) = question.meaning((hit, bounds, *class), visible, pixel, false)
-                && meaning.fits()
+            if let Some(hypothesis) = pencil.hypothesis((hit, bounds, *class), visible, pixel, false)
+                && hypothesis.fits()
             {
-                return Some(meaning);
+                return Some(hypothesis);
             }
         }
     }
     None
 }
 
-/// Enters a meaning: what is said of seeing and landing, and every value.
-fn enter(judged: &mut Judged<'_>, question: &Question<'_>, meaning: &Meaning, contradicts: bool) {
-    let Question { truth, recorded, place, said, .. } = question;
-    if let Some(ruling) = &meaning.ruling {
-        judged.ruled(ruling);
+/// Enters a hypothesis: the classes of visibility and pixel, and every value.
+fn enter(entry: &mut RayEntry<'_>, pencil: &RecordedPencil<'_>, hypothesis: &Hypothesis, contradicts: bool) {
+    let RecordedPencil { truth, recorded, place, stated, .. } = pencil;
+    if let Some(ruling) = &hypothesis.ruling {
+        entry.ruled(ruling);
     }
-    let [mut of_visible, mut of_pixel] = meaning.classes;
+    let [mut of_visible, mut of_pixel] = hypothesis.classes;
     if contradicts {
         of_visible = Class::Defect;
     }
     if of_visible == Class::Defect || of_pixel == Class::Defect {
-        let (truly, true_pixel) = truth.sight(*place);
-        judged.note(&format!(
+        let (truly, true_pixel) = truth.visibility(*place);
+        entry.note(&format!(
             "it says {}, true is {}",
-            sight_words(meaning.visible, meaning.pixel),
-            sight_words(truly, true_pixel)
+            visibility_words(hypothesis.visible, hypothesis.pixel),
+            visibility_words(truly, true_pixel)
         ));
-        // What is not said cannot be at fault: what leads to it is.
-        if said.visible.is_none() && said.pixel.is_some() {
+        // A channel that is absent cannot be at fault: the one that leads to its value is.
+        if stated.visible.is_none() && stated.pixel.is_some() {
             of_pixel = of_pixel.max(of_visible);
         }
-        if said.pixel.is_none() && said.visible.is_some() {
+        if stated.pixel.is_none() && stated.visible.is_some() {
             of_visible = of_visible.max(of_pixel);
         }
     }
-    if said.visible.is_some() {
-        judged.class(Quantity::Visible, of_visible);
+    if stated.visible.is_some() {
+        entry.class(Quantity::Visible, of_visible);
     }
-    if said.pixel.is_some() {
-        judged.class(Quantity::Pixel, of_pixel);
+    if stated.pixel.is_some() {
+        entry.class(Quantity::Pixel, of_pixel);
     }
     let is_blamed =
-        of_visible.max(of_pixel) == Class::Defect && said.visible.is_none() && said.pixel.is_none();
+        of_visible.max(of_pixel) == Class::Defect && stated.visible.is_none() && stated.pixel.is_none();
 
     let model = truth.scene().flux_model();
-    let is_undecided = [meaning.exact.flux(model).is_err(), meaning.exact.flux(model.other()).is_err()];
-    let of_value = if meaning.class == Class::Defect { Class::Agree } else { meaning.class };
-    for difference in &meaning.differences {
+    let is_undecided = [hypothesis.exact.flux(model).is_err(), hypothesis.exact.flux(model.other()).is_err()];
+    let of_value = if hypothesis.class == Class::Defect { Class::Agree } else { hypothesis.class };
+    for difference in &hypothesis.differences {
         let k = usize::from(difference.item.is_other_model);
         let is_flux = difference.item.quantity == Quantity::PencilFlux;
         if is_flux && is_undecided[k] {
-            judged.class(difference.item, Class::Undecided);
+            entry.class(difference.item, Class::Undecided);
         } else if is_flux && is_blamed {
-            judged.class(difference.item, Class::Defect);
+            entry.class(difference.item, Class::Defect);
         } else {
-            judged.difference(difference, of_value);
+            entry.difference(difference, of_value);
         }
     }
-    // A number there must be where something is hit.
-    for (quantity, is_said) in said.values() {
-        if !is_said && recorded.storage.contains_key(&(place.sensor, quantity.into())) {
-            judged.note(&format!("it gives no {quantity} of a hit"));
-            judged.class(quantity, Class::Defect);
+    // A hit must have a number in every channel.
+    for (quantity, is_stated) in optional_values(stated) {
+        if !is_stated && recorded.storage.contains_key(&(place.sensor, quantity.into())) {
+            entry.note(&format!("it gives no {quantity} of a hit"));
+            entry.class(quantity, Class::Defect);
         }
     }
 }
 
-/// The bounds of what comes back of a hit, by the scene's model and by the other.
-pub(crate) fn return_bounds(
-    truth: &Truth<'_>,
-    beam: usize,
-    column: u32,
-    hit: &Hit,
-    exact: &RoundedReturn,
-    of_hit: &Bounds,
-    precision: Precision,
-) -> [ReturnBounds; 2] {
-    let scene = truth.scene();
-    let values = Returned {
-        range: hit.range,
-        cos_incidence: hit.cos_incidence,
-        depth: exact.depth.double,
-        cos_off_axis: exact.cos_off_axis.double,
-        cos_view: exact.cos_view.double,
-        distance: hit.point.distance(scene.camera().scene_from_sensor.position),
-    };
-    let of = |model: FluxModel| ReturnBounds::of(scene, (beam, column), of_hit, values, precision, model);
-    [of(scene.flux_model()), of(scene.flux_model().other())]
+/// The values that only a hit has, and whether they are stated.
+fn optional_values(stated: &StatedReturn) -> [(Quantity, bool); 3] {
+    [
+        (Quantity::CameraDepth, stated.depth.is_some()),
+        (Quantity::CosOffAxis, stated.cos_off_axis.is_some()),
+        (Quantity::CosView, stated.cos_view.is_some()),
+    ]
 }
 
-/// Nothing is hit: nothing may be seen, land, be measured or be delivered.
-fn nothing(judged: &mut Judged<'_>, recorded: &Recorded, said: &SaidBack, class: Class) {
+/// Judges the return of a pencil that is taken to hit nothing: no value but "none" is right.
+fn judge_no_return(entry: &mut RayEntry<'_>, recorded: &Recorded, stated: &StatedReturn, class: Class) {
     let mut enter = |item: Item, is_wrong: bool, words: &str| {
         if is_wrong {
-            judged.note(words);
+            entry.note(words);
         }
-        judged.class(item, if is_wrong { Class::Defect } else { class });
+        entry.class(item, if is_wrong { Class::Defect } else { class });
     };
-    if let Some(visible) = said.visible {
+    if let Some(visible) = stated.visible {
         enter(Quantity::Visible.into(), visible, "it says that what is not hit is seen");
     }
-    if let Some(pixel) = said.pixel {
+    if let Some(pixel) = stated.pixel {
         enter(Quantity::Pixel.into(), pixel.is_some(), "it says that what is not hit lands on a pixel");
     }
     for k in 0..2 {
-        if let Some(flux) = said.flux[k] {
-            enter(flux_item(k), flux != 0.0, "it says that what is not hit delivers");
+        if let Some(flux) = stated.flux[k] {
+            enter(Item::pencil_flux(k == 1), flux != 0.0, "it says that what is not hit delivers");
         }
     }
-    let sensor = judged.place.sensor;
-    for (quantity, is_said) in said.values() {
-        if is_said && recorded.storage.contains_key(&(sensor, quantity.into())) {
-            judged.note(&format!("it gives a {quantity} of what is not hit"));
-            judged.class(quantity, Class::Defect);
+    let sensor = entry.place.sensor;
+    for (quantity, is_stated) in optional_values(stated) {
+        if is_stated && recorded.storage.contains_key(&(sensor, quantity.into())) {
+            entry.note(&format!("it gives a {quantity} of what is not hit"));
+            entry.class(quantity, Class::Defect);
         }
     }
 }
 
-fn missing(judged: &mut Judged<'_>, recorded: &Recorded) {
-    let plain = [
+/// Enters the values of which the recording has no channel.
+fn missing_values(entry: &mut RayEntry<'_>, recorded: &Recorded) {
+    let quantities = [
         Quantity::Visible,
         Quantity::Pixel,
         Quantity::CameraDepth,
@@ -333,14 +351,14 @@ fn missing(judged: &mut Judged<'_>, recorded: &Recorded) {
         Quantity::CosView,
         Quantity::PencilFlux,
     ];
-    for item in plain.map(Item::from).into_iter().chain([flux_item(1)]) {
-        if !recorded.storage.contains_key(&(judged.place.sensor, item)) {
-            judged.missing(item);
+    for item in quantities.map(Item::from).into_iter().chain([Item::pencil_flux(true)]) {
+        if !recorded.storage.contains_key(&(entry.place.sensor, item)) {
+            entry.missing(item);
         }
     }
 }
 
-fn sight_words(visible: bool, pixel: Option<Pixel>) -> String {
+fn visibility_words(visible: bool, pixel: Option<Pixel>) -> String {
     let seen = if visible { "seen" } else { "not seen" };
     match pixel {
         Some(Pixel { i, j }) => format!("{seen}, in pixel {i},{j}"),

@@ -1,68 +1,95 @@
-//! Two frames of one scene, ray by ray: what agrees, and what each difference is.
+//! Two renderers' outputs of one scene, ray by ray: what agrees, and what each difference is.
 //!
-//! A ray is a cell of a sensor: a pencil or a pixel. Its class is the worst of its quantities', and the
-//! classes of all rays add up to those compared. The referee rules on every ray whose two answers differ, and
-//! on a sample of those that agree: two renderers may share a mistake.
+//! A ray is a cell of a sensor: a pencil or a pixel. Its class is the worst of its quantities', and the classes of all
+//! rays add up to those compared. The referee rules on every ray whose two answers differ, and on a sample of those
+//! that agree: two renderers may share a mistake.
 
-pub(crate) mod answer;
-pub(crate) mod entry;
-pub(crate) mod light;
-pub(crate) mod pencil;
-pub(crate) mod pixel;
-pub(crate) mod ray;
+mod flux_pair;
+mod hit;
+mod pencil;
+mod pixel;
+mod ray;
 pub(crate) mod side;
 pub(crate) mod single;
 
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
-use crate::class::{CLASSES, Quantity};
-use crate::compare::entry::Gathered;
-use crate::compare::light::PencilLight;
-use crate::compare::pixel::PixelLight;
-use crate::compare::ray::compare_ray;
+use crate::compare::flux_pair::FluxPair;
+use crate::compare::pixel::BeamImages;
+use crate::compare::ray::{ComparedRays, compare_ray};
 use crate::compare::side::Side;
 use crate::judge::{Judge, JudgeShare};
-use crate::tally::{DEFECTS_DESCRIBED, SensorComparison, Tally};
+use crate::quantity::{Item, Quantity};
+use crate::tally::SensorResult;
 use raypencil_scene::{Image, Place, Scene, SensorId, SensorMap};
 
-pub use crate::compare::single::{First, class_at, first_of};
-
-/// Compares two frames of `scene`, sensor by sensor, with a judge of its own.
-pub fn compare(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Vec<SensorComparison> {
+/// Compares two outputs of `scene`, sensor by sensor, with a judge of its own.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// # use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene};
+/// # let corners = vec![[0.125, -40.0, 2.0], [-90.0, 0.0, 2.0], [0.125, 40.0, 2.0]];
+/// # let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+/// # let wall = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], vec![plaster])?;
+/// # let camera = Camera {
+/// #     width: 9, height: 9, pixel_pitch: [0.0625; 2], focal_length: 0.5, principal_point: [4.5; 2],
+/// #     aperture: 0.01, lens: Lens::CLEAR, max_range: 20.0,
+/// # };
+/// # let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(wall), camera, vec![], air, FluxModel::Radiometric)?;
+/// // A wall at z = 2 m that ends at x = 1/8 m, before a camera of 9 x 9 pixels at the origin that looks along z.
+/// use raypencil_judge::{Class, Quantity, Side, compare};
+/// use raypencil_referee::ExactRenderer;
+/// use raypencil_scene::{Maybe, Precision, Renderer, Request};
+///
+/// let right = ExactRenderer.render(&scene, &Request::MAPS);
+/// let mut wrong = right.clone();
+/// wrong.camera.as_mut().unwrap().range.as_mut().unwrap().set(4, 4, Maybe::some(2.001));
+/// let side = |name, output| Side { name, output, precision: Precision::F64, attributions: None };
+/// let sensors = compare(&scene, side("right", &right), side("wrong", &wrong));
+///
+/// // Pixel (4, 4) looks along z: its range is 2 m. An error of 1 mm is 10^10 times more than rounding explains.
+/// assert_eq!(sensors[0].of(Class::Agree), 80);
+/// assert_eq!(sensors[0].of(Class::Defect), 1);
+/// assert_eq!(sensors[0].defects[0].item.quantity, Quantity::Range);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+pub fn compare(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Vec<SensorResult> {
     compare_judged(&Judge::new(scene, JudgeShare::Sample), a, b)
 }
 
-/// Compares two frames of the judge's scene, sensor by sensor, the camera first.
-pub fn compare_judged(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>) -> Vec<SensorComparison> {
+/// Compares two outputs of the judge's scene, sensor by sensor, the camera first.
+pub fn compare_judged(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>) -> Vec<SensorResult> {
     let (beams, light) = compare_beams(judge, a, b);
     let (camera, _) = compare_sensor(judge, SensorId::Camera, a, b, &light);
     std::iter::once(camera).chain(beams).collect()
 }
 
-/// The beams, which come first: a pixel's flux is judged by the pencils that contribute to it.
-pub(crate) fn compare_beams<'f>(
+/// Compares the beams, which come first: a pixel's flux is judged by the pencils that contribute to it.
+fn compare_beams<'f>(
     judge: &Judge<'_>,
     a: Side<'f>,
     b: Side<'f>,
-) -> (Vec<SensorComparison>, Vec<PixelLight<'f>>) {
+) -> (Vec<SensorResult>, Vec<BeamImages<'f>>) {
     let mut light = Vec::new();
     let mut beams = Vec::new();
     for index in 0..judge.scene().beams().len() {
         let (comparison, pencils) = compare_sensor(judge, SensorId::Beam(index), a, b, &[]);
         beams.push(comparison);
-        light.extend(light_of(judge, index, [a, b], pencils));
+        light.extend(images_of(judge, index, [a, b], pencils));
     }
     (beams, light)
 }
 
-/// The light of a beam on the image, if both sides have an image of it and pencils to judge that by.
-pub(crate) fn light_of<'f>(
+/// The images of a beam, if both sides have one and the pencils to judge it by.
+fn images_of<'f>(
     judge: &Judge<'_>,
     beam: usize,
     sides: [Side<'f>; 2],
-    pencils: Vec<PencilLight>,
-) -> Option<PixelLight<'f>> {
+    pencils: Vec<FluxPair>,
+) -> Option<BeamImages<'f>> {
     let tells_pencils = sides.iter().all(|side| {
         let returns = side.output.returns.get(beam);
         returns.is_some_and(|returns| returns.pixel.is_some() && returns.flux.is_some())
@@ -70,7 +97,7 @@ pub(crate) fn light_of<'f>(
     let [of_a, of_b] = sides.map(|side| side.output.flux.get(beam));
     let images = [of_a?, of_b?];
     let [a, b] = sides.map(|side| side.precision.unit_roundoff);
-    tells_pencils.then(|| PixelLight::new(judge.scene(), images, pencils, a.max(b)))
+    tells_pencils.then(|| BeamImages::new(judge.scene(), images, pencils, a.max(b)))
 }
 
 fn compare_sensor(
@@ -78,36 +105,25 @@ fn compare_sensor(
     sensor: SensorId,
     a: Side<'_>,
     b: Side<'_>,
-    light: &[PixelLight<'_>],
-) -> (SensorComparison, Vec<PencilLight>) {
+    light: &[BeamImages<'_>],
+) -> (SensorResult, Vec<FluxPair>) {
     if let (Some(of_a), Some(of_b)) = (a.output.map(sensor), b.output.map(sensor))
-        && says_hit(of_a)
-        && says_hit(of_b)
+        && tells_hits(of_a)
+        && tells_hits(of_b)
     {
         return compare_maps(judge, sensor, (of_a, a), (of_b, b), light);
     }
     let (width, height) = judge.scene().size(sensor).expect("a sensor of this scene");
     let not_compared = u64::from(width) * u64::from(height);
-    let tally = |quantity: Quantity| {
-        let not_compared = if quantity.is_of(sensor) { not_compared } else { 0 };
-        (quantity, Tally { not_compared, ..Tally::default() })
-    };
-    let comparison = SensorComparison {
-        sensor,
-        compared: 0,
-        not_compared,
-        by_class: [0; CLASSES],
-        judged: 0,
-        approximations: BTreeMap::new(),
-        quantities: Quantity::ALL.map(tally).to_vec(),
-        defects: Vec::new(),
-        range_difference: None,
-    };
-    (comparison, Vec::new())
+    let mut result = SensorResult { not_compared, ..SensorResult::with_all_quantities(sensor) };
+    for quantity in Quantity::ALL.into_iter().filter(|quantity| quantity.is_of(sensor)) {
+        result.tally(Item::from(quantity)).not_compared = not_compared;
+    }
+    (result, Vec::new())
 }
 
-/// Whether a map says of each ray if it hits.
-pub(crate) fn says_hit(map: &SensorMap) -> bool {
+/// Whether a map tells of each ray if it hits.
+fn tells_hits(map: &SensorMap) -> bool {
     map.range.is_some() || map.face.is_some()
 }
 
@@ -116,47 +132,26 @@ fn compare_maps(
     sensor: SensorId,
     (map_a, a): (&SensorMap, Side<'_>),
     (map_b, b): (&SensorMap, Side<'_>),
-    light: &[PixelLight<'_>],
-) -> (SensorComparison, Vec<PencilLight>) {
+    light: &[BeamImages<'_>],
+) -> (SensorResult, Vec<FluxPair>) {
     let (width, height) = judge.scene().size(sensor).expect("a sensor of this scene");
     // Rows in parallel, added up in their order: the result does not depend on threads.
-    let rows: Vec<Gathered> = (0..height)
+    let rows: Vec<ComparedRays> = (0..height)
         .into_par_iter()
         .map(|j| {
-            let mut row = Gathered::default();
+            let mut row = ComparedRays::none(sensor);
             for i in 0..width {
                 compare_ray(judge, Place { sensor, i, j }, (map_a, a), (map_b, b), light, &mut row);
             }
             row
         })
         .collect();
-    let mut all = Gathered::default();
+    let mut all = ComparedRays::none(sensor);
     for row in rows {
-        for (mine, theirs) in all.by_class.iter_mut().zip(row.by_class) {
-            *mine += theirs;
-        }
-        all.judged += row.judged;
-        for (cause, tally) in row.approximations {
-            all.approximations.entry(cause).or_default().add(&tally);
-        }
-        for (mine, theirs) in all.tallies.iter_mut().zip(&row.tallies) {
-            mine.add(theirs);
-        }
-        let room = DEFECTS_DESCRIBED.saturating_sub(all.defects.len());
-        all.defects.extend(row.defects.into_iter().take(room));
-        all.differences.extend(row.differences);
+        all.result.add(row.result);
+        all.range_differences.extend(row.range_differences);
         all.light.extend(row.light);
     }
-    let comparison = SensorComparison {
-        sensor,
-        compared: u64::from(width) * u64::from(height),
-        not_compared: 0,
-        by_class: all.by_class,
-        judged: all.judged,
-        approximations: all.approximations,
-        quantities: Quantity::ALL.into_iter().zip(all.tallies).collect(),
-        defects: all.defects,
-        range_difference: Some(Image::from_cells(width, height, all.differences)),
-    };
-    (comparison, all.light)
+    let range_difference = Some(Image::from_cells(width, height, all.range_differences));
+    (SensorResult { range_difference, ..all.result }, all.light)
 }

@@ -1,17 +1,19 @@
-//! One pencil of two frames: whether the camera sees its hit, where, and what it delivers.
+//! One pencil's return on two sides: whether the camera sees the hit, in which pixel it lands, and its flux.
 
-use crate::bounds::{Bounds, ReturnBounds, Returned};
-use crate::class::{Class, Quantity};
-use crate::compare::answer::Back;
-use crate::compare::entry::{Entry, Geometry};
-use crate::compare::light::PencilLight;
+use crate::answer::StatedReturn;
+use crate::bounds::{HitBounds, ReturnBounds, ReturnValues};
+use crate::class::Class;
+use crate::compare::flux_pair::FluxPair;
+use crate::compare::hit::HitComparison;
 use crate::compare::side::Side;
+use crate::difference::{Difference, StatedValue, return_values};
+use crate::entry::RayEntry;
 use crate::judge::Judge;
-use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Precision, Returns, SensorId, Switches};
+use crate::quantity::{Item, Quantity};
+use raypencil_scene::{FaceId, Place, Precision, Returns, SensorId};
 
 /// The quantities of a pencil's return.
-const QUANTITIES: [Quantity; 6] = [
+const RETURN_QUANTITIES: [Quantity; 6] = [
     Quantity::Visible,
     Quantity::Pixel,
     Quantity::CameraDepth,
@@ -20,53 +22,54 @@ const QUANTITIES: [Quantity; 6] = [
     Quantity::PencilFlux,
 ];
 
-/// Compares what comes back of one pencil.
-pub(crate) fn compare_pencil(
+/// Compares the return of one pencil, whose hit is compared already.
+pub(super) fn compare_return(
     judge: &Judge<'_>,
-    entry: &mut Entry<'_>,
-    geometry: Geometry,
+    entry: &mut RayEntry<'_>,
+    hit: HitComparison,
     returns: [Option<&Returns>; 2],
     sides: [Side<'_>; 2],
-) -> PencilLight {
+) -> FluxPair {
     let place = entry.place;
-    let mut light =
-        PencilLight { class: Class::Agree, causes: Switches::EXACT, delivered: [None; 2], bound: 0.0 };
-    let [Some(of_a), Some(of_b)] = returns.map(|returns| Some(Back::of(returns?, place.i, place.j))) else {
-        QUANTITIES.into_iter().for_each(|quantity| entry.missing(quantity));
-        return light;
+    let mut pair = FluxPair::NOTHING;
+    let stated = returns.map(|returns| Some(StatedReturn::of(returns?, None, place.i, place.j)));
+    let [Some(of_a), Some(of_b)] = stated else {
+        RETURN_QUANTITIES.into_iter().for_each(|quantity| entry.missing(quantity));
+        return pair;
     };
     // Both are answers about the same point, or about two that have nothing to do with each other.
-    let both_hit = geometry.answers.iter().all(|answer| answer.hit);
-    let is_one_point = both_hit && (geometry.same_face || geometry.class == Class::Tie);
+    let both_hit = hit.both_hit();
+    let is_one_point = both_hit && (hit.same_face || hit.class == Class::Tie);
     let differ = of_a.visible != of_b.visible || of_a.pixel != of_b.pixel;
 
-    // Whether it is seen, and where it lands: each side by the face that it names itself.
+    // Visibility and pixel: each side is ruled on by the face that it names itself.
     let [mut of_visible, mut of_pixel] = [Class::Agree; 2];
-    if differ || !is_one_point && geometry.answers.iter().any(|answer| answer.hit) || judge.samples(place) {
+    let any_hits = hit.answers.iter().any(|answer| answer.hits());
+    if differ || !is_one_point && any_hits || judge.samples(place) {
         entry.judged();
-        for ((back, answer), side) in [of_a, of_b].iter().zip(geometry.answers).zip(sides) {
-            let Some(face) = answer.face.filter(|_| answer.hit) else { continue };
-            match ruled(judge, entry, side, face, answer.range, back) {
+        for ((stated, answer), side) in [of_a, of_b].iter().zip(hit.answers).zip(sides) {
+            let Some(face) = answer.face.filter(|_| answer.hits()) else { continue };
+            match rule(judge, entry, side, face, answer.range, stated) {
                 Some([visible, pixel]) => {
                     (of_visible, of_pixel) = (of_visible.max(visible), of_pixel.max(pixel));
                 }
-                // Answers that cannot be named can only be compared by being the same.
+                // Answers without a ruling agree only if they are the same.
                 None if differ => (of_visible, of_pixel) = (Class::Defect, Class::Defect),
                 None => {}
             }
         }
     }
     if !is_one_point {
-        // Two points have nothing to do with each other: what differs goes with what is hit.
-        of_visible = of_visible.max(if of_a.visible == of_b.visible { Class::Agree } else { geometry.class });
-        of_pixel = of_pixel.max(if of_a.pixel == of_b.pixel { Class::Agree } else { geometry.class });
+        // At two points, visibility and pixel may differ: that is of the class of the hits.
+        of_visible = of_visible.max(if of_a.visible == of_b.visible { Class::Agree } else { hit.class });
+        of_pixel = of_pixel.max(if of_a.pixel == of_b.pixel { Class::Agree } else { hit.class });
     }
-    for (back, answer) in [of_a, of_b].iter().zip(geometry.answers) {
-        // What is seen lands somewhere; what is not seen, or not hit, delivers nothing.
-        let delivers = back.flux.is_some_and(|flux| flux != 0.0);
-        let is_seen = back.visible == Some(true);
-        let contradicts = is_seen && (back.pixel == Some(None) || !answer.hit)
-            || delivers && (back.visible == Some(false) || !answer.hit);
+    for (stated, answer) in [of_a, of_b].iter().zip(hit.answers) {
+        // A visible hit lands in a pixel; a hidden one, or none, delivers nothing.
+        let delivers = stated.flux[0].is_some_and(|flux| flux != 0.0);
+        let is_visible = stated.visible == Some(true);
+        let contradicts = is_visible && (stated.pixel == Some(None) || !answer.hits())
+            || delivers && (stated.visible == Some(false) || !answer.hits());
         if contradicts {
             of_visible = Class::Defect;
         }
@@ -81,8 +84,7 @@ pub(crate) fn compare_pencil(
     }
 
     // The values of one point.
-    let bounds =
-        is_one_point.then(|| return_bounds(judge, &geometry, [&of_a, &of_b], place, sides)).flatten();
+    let bounds = is_one_point.then(|| bounds_of_both(judge, &hit, [&of_a, &of_b], place, sides)).flatten();
     let scalars = [
         (Quantity::CameraDepth, of_a.depth, of_b.depth, bounds.map(|bounds| bounds.depth), true),
         (
@@ -97,66 +99,65 @@ pub(crate) fn compare_pencil(
             of_a.cos_view,
             of_b.cos_view,
             bounds.map(|bounds| bounds.cos_view),
-            geometry.same_face,
+            hit.same_face,
         ),
     ];
-    for (quantity, x, y, bound, comparable) in scalars {
+    for (quantity, x, y, bound, is_comparable) in scalars {
         match (x, y) {
-            (Some(x), Some(y)) if is_one_point && comparable => {
-                entry.value(quantity, (x - y).abs(), bound);
+            (Some(x), Some(y)) if is_one_point && is_comparable => {
+                entry.difference(&Difference::computed(quantity, (x - y).abs(), bound), Class::Agree);
             }
             _ if both_hit && (x.is_none() || y.is_none()) => entry.missing(quantity),
             _ => {}
         }
     }
 
-    // What it delivers.
-    if let (Some(x), Some(y)) = (of_a.flux, of_b.flux) {
-        let bound = bounds.map_or(0.0, |bounds| bounds.flux * x.abs().max(y.abs()) + bounds.least_flux);
-        light.bound = bound;
-        let difference = (x - y).abs();
-        // Tied faces have cosines of their own: by how much their fluxes differ is no error of either.
-        if difference == 0.0 || geometry.same_face && difference <= bound {
-            entry.value(Quantity::PencilFlux, difference, Some(bound));
+    if let (Some(x), Some(y)) = (of_a.flux[0], of_b.flux[0]) {
+        let bound = bounds.map_or(0.0, |bounds| bounds.of_flux(x.abs().max(y.abs())));
+        pair.bound = bound;
+        let difference = Difference::computed(Quantity::PencilFlux, (x - y).abs(), Some(bound));
+        // Tied faces have cosines of their own: the difference of their fluxes is no error of either.
+        if difference.error == 0.0 || hit.same_face && difference.is_within() {
+            entry.difference(&difference, Class::Agree);
         } else {
-            // It goes with whether and where the point is seen, and with what is hit.
-            let of_face = if is_one_point && geometry.same_face { Class::Agree } else { geometry.class };
+            // It is of the class of the hit, the visibility or the pixel; without such an excuse a defect.
+            let of_face = if is_one_point && hit.same_face { Class::Agree } else { hit.class };
             let excuse = of_visible.max(of_pixel).max(of_face);
             entry.class(Quantity::PencilFlux, if excuse == Class::Agree { Class::Defect } else { excuse });
         }
     } else {
         entry.missing(Quantity::PencilFlux);
     }
-    light.class = entry.worst();
-    if light.class == Class::Approximation {
+    pair.class = entry.worst();
+    if pair.class == Class::Approximation {
         for attributions in sides.iter().filter_map(|side| side.attributions) {
-            let of_geometry = attributions.cause(place).map(|cause| cause.switches);
+            let of_hit = attributions.cause(place).map(|cause| cause.switches);
             let of_visibility = attributions.visibility_cause(place).map(|cause| cause.switches);
-            for switches in of_geometry.into_iter().chain(of_visibility) {
-                light.causes = light.causes.union(switches);
+            for switches in of_hit.into_iter().chain(of_visibility) {
+                pair.causes = pair.causes.union(switches);
             }
         }
     }
-    light.delivered = [of_a, of_b].map(|back| {
-        let flux = back.flux.filter(|_| back.visible != Some(false))?;
-        back.pixel.flatten().map(|pixel| (pixel, flux))
+    pair.delivered = [of_a, of_b].map(|stated| {
+        let flux = stated.flux[0].filter(|_| stated.visible != Some(false))?;
+        stated.pixel.flatten().map(|pixel| (pixel, flux))
     });
-    light
+    pair
 }
 
-/// The classes of one side's answers about visibility and pixel; `None` if they cannot be named. Its values are held to
-/// the referee's for the face, the visibility and the pixel that it says.
-fn ruled(
+/// The classes of one side's visibility and pixel; `None` if it does not state both. Its values are held to the
+/// referee's for the face, the visibility and the pixel that it states.
+fn rule(
     judge: &Judge<'_>,
-    entry: &mut Entry<'_>,
+    entry: &mut RayEntry<'_>,
     side: Side<'_>,
     face: FaceId,
     range: Option<f64>,
-    back: &Back,
+    stated: &StatedReturn,
 ) -> Option<[Class; 2]> {
     let place = entry.place;
-    let (visible, pixel) = (back.visible?, back.pixel?);
-    entry.spoil(off_its_face(judge, place, side, face, back));
+    let (visible, pixel) = (stated.visible?, stated.pixel?);
+    entry.force_defect(item_off_its_face(judge, place, side, face, stated));
     let has_cause = side.attributions.is_some_and(|causes| causes.visibility_cause(place).is_some());
     Some(match judge.rule_visibility(place, face, range, visible, pixel, side.precision) {
         Some(ruling) => [Class::of(ruling.visible, has_cause), Class::of(ruling.pixel, false)],
@@ -164,71 +165,47 @@ fn ruled(
     })
 }
 
-/// The quantity of what comes back, if any, that is not within its bound of what comes back of the face named.
-fn off_its_face(
+/// The item of a return, if any, that is not within its bound of the return from the face that is named.
+fn item_off_its_face(
     judge: &Judge<'_>,
     place: Place,
     side: Side<'_>,
     face: FaceId,
-    back: &Back,
-) -> Option<Quantity> {
+    stated: &StatedReturn,
+) -> Option<Item> {
     let (scene, SensorId::Beam(beam)) = (judge.scene(), place.sensor) else { return None };
     let hit = judge.plane_hit(place, face)?;
-    let exact = judge.returned_as(place, face, back.visible?, back.pixel?)?;
+    let exact = judge.returned_as(place, face, stated.visible?, stated.pixel?)?;
     let ray = scene.ray(place.sensor, place.i, place.j)?;
-    let values = Returned {
-        range: hit.range,
-        cos_incidence: hit.cos_incidence,
-        depth: exact.depth,
-        cos_off_axis: exact.cos_off_axis,
-        cos_view: exact.cos_view,
-        distance: hit.point.distance(scene.camera().scene_from_sensor.position),
-    };
+    let values = ReturnValues::of_exact(scene, &hit, &exact);
     let bounds = |precision| {
-        let of_hit = Bounds::of(scene.mesh(), face, &ray, hit.range, precision);
+        let of_hit = HitBounds::of_exact(scene, &ray, &hit, precision);
         ReturnBounds::of(scene, (beam, place.i), &of_hit, values, precision, scene.flux_model())
     };
     // The referee's values are rounded to f64.
     let bounds = bounds(side.precision).plus(&bounds(Precision::F64));
-    // A negative cos(psi), of a back that rule 1b adds, delivers nothing by equation (1). CHOICE: see `docs/theory/radiometry.md`.
+    // A back that rule 1b adds has a negative cos(psi), and delivers nothing by equation (1). CHOICE: see
+    // `docs/theory/radiometry.md`.
     let flux = exact.flux.max(0.0);
-    let all = [
-        (Quantity::CameraDepth, back.depth, exact.depth, bounds.depth),
-        (Quantity::CosOffAxis, back.cos_off_axis, exact.cos_off_axis, bounds.cos_off_axis),
-        (Quantity::CosView, back.cos_view, exact.cos_view, bounds.cos_view),
-        (Quantity::PencilFlux, back.flux, flux, bounds.flux * flux + bounds.least_flux),
-    ];
-    // What is not a number is off.
-    let off = |said: f64, exact: f64, bound: f64| !(said == exact || (said - exact).abs() <= bound);
-    all.into_iter()
-        .find(|(_, said, exact, bound)| said.is_some_and(|said| off(said, *exact, *bound)))
-        .map(|(quantity, ..)| quantity)
+    let flux = StatedValue::scalar(Quantity::PencilFlux, stated.flux[0], flux, bounds.of_flux(flux));
+    let mut values = return_values(stated, &exact, &bounds).chain(flux);
+    values.find(|value| !value.difference().is_within()).map(|value| value.item)
 }
 
-fn return_bounds(
+/// How far the values of two returns from one point may differ; `None` if a side leaves out what that depends on.
+fn bounds_of_both(
     judge: &Judge<'_>,
-    geometry: &Geometry,
-    backs: [&Back; 2],
+    hit: &HitComparison,
+    stated: [&StatedReturn; 2],
     place: Place,
     sides: [Side<'_>; 2],
 ) -> Option<ReturnBounds> {
-    let SensorId::Beam(beam) = place.sensor else { return None };
-    let bounds = geometry.bounds?;
+    let (scene, SensorId::Beam(beam)) = (judge.scene(), place.sensor) else { return None };
+    let bounds = hit.bounds?;
     let of = |k: usize| {
-        let (answer, back) = (&geometry.answers[k], backs[k]);
-        let values = Returned {
-            range: answer.range?,
-            cos_incidence: answer.cos_incidence?,
-            depth: back.depth?,
-            cos_off_axis: back.cos_off_axis?,
-            cos_view: back.cos_view?,
-            distance: match answer.point {
-                Some(point) => point.distance(judge.scene().camera().scene_from_sensor.position),
-                None => (back.depth? / back.cos_off_axis?).abs(),
-            },
-        };
-        let model = judge.scene().flux_model();
-        Some(ReturnBounds::of(judge.scene(), (beam, place.i), &bounds[k], values, sides[k].precision, model))
+        let values = ReturnValues::of_stated(scene, &hit.answers[k], stated[k])?;
+        let (pencil, precision) = ((beam, place.i), sides[k].precision);
+        Some(ReturnBounds::of(scene, pencil, &bounds[k], values, precision, scene.flux_model()))
     };
     Some(of(0)?.plus(&of(1)?))
 }

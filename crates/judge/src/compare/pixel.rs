@@ -1,64 +1,64 @@
 //! The flux of one beam on the camera's image, pixel by pixel, judged by the pencils that contribute to it.
 //!
-//! A pixel's flux is a sum in a fixed order of what its pencils deliver, n of them. Two sums differ by no more
-//! than the differences of their parts may add up to, and the roundings of both, n u Sigma each. Where a pencil
-//! is not alike on both sides (it rounds to another pixel, say) the pixel is of that pencil's class, and may
-//! differ by what the pencil delivers; anything more is a defect.
+//! A pixel's flux is a sum in a fixed order of the fluxes of its n pencils. Two sums differ by no more than the
+//! differences of their parts may add up to, and the roundings of both, n u Sigma each. Where a pencil is not alike on
+//! both sides (it rounds to another pixel, say) the pixel is of that pencil's class, and may differ by that pencil's
+//! flux; anything more is a defect.
 
-use crate::class::{Class, Quantity};
-use crate::compare::entry::Entry;
-use crate::compare::light::PencilLight;
+use crate::class::Class;
+use crate::compare::flux_pair::FluxPair;
+use crate::difference::Difference;
+use crate::entry::RayEntry;
+use crate::quantity::Quantity;
 use raypencil_scene::{Image, Scene, Switches};
 
-/// The light of one beam on the image, from both sides.
-pub(crate) struct PixelLight<'a> {
+/// The images of one beam on both sides, and the pencils that contribute to each pixel.
+pub(super) struct BeamImages<'a> {
     images: [&'a Image<f64>; 2],
-    pixels: Vec<Contributions>,
+    pixels: Vec<PixelPencils>,
     /// u, of the coarser of the two arithmetics.
     unit_roundoff: f64,
 }
 
-/// What the pencils that land in one pixel have to say.
+/// The pencils that land in one pixel.
 #[derive(Debug, Clone, Copy)]
-struct Contributions {
-    /// How many there are on either side.
+struct PixelPencils {
+    /// Their number, on both sides together.
     count: u32,
     /// The worst class of those that are not alike.
     class: Class,
     causes: Switches,
-    /// What those deliver that are alike, summed over both sides; and how far these sums may differ.
+    /// Flux of those that are alike, summed over both sides; and how far the two sums may differ.
     total: f64,
     bound: f64,
-    /// What the others deliver.
+    /// Flux of the others, summed over both sides.
     unlike: f64,
-    /// What each side's pencils add up to.
+    /// Flux of all, for each side.
     sums: [f64; 2],
 }
 
-impl Default for Contributions {
-    fn default() -> Self {
-        Self {
-            count: 0,
-            class: Class::Agree,
-            causes: Switches::EXACT,
-            total: 0.0,
-            bound: 0.0,
-            unlike: 0.0,
-            sums: [0.0; 2],
-        }
-    }
+impl PixelPencils {
+    const NONE: Self = Self {
+        count: 0,
+        class: Class::Agree,
+        causes: Switches::EXACT,
+        total: 0.0,
+        bound: 0.0,
+        unlike: 0.0,
+        sums: [0.0; 2],
+    };
 }
 
-impl<'a> PixelLight<'a> {
+impl<'a> BeamImages<'a> {
     /// `pencils` in row-major order.
     pub(super) fn new(
         scene: &Scene,
         images: [&'a Image<f64>; 2],
-        pencils: Vec<PencilLight>,
+        pencils: Vec<FluxPair>,
         unit_roundoff: f64,
     ) -> Self {
         let camera = &scene.camera().sensor;
-        let mut pixels = vec![Contributions::default(); camera.width as usize * camera.height as usize];
+        let mut pixels = vec![PixelPencils::NONE; camera.width as usize * camera.height as usize];
         for pencil in pencils {
             let index = |k: usize| {
                 pencil.delivered[k]
@@ -67,8 +67,8 @@ impl<'a> PixelLight<'a> {
             };
             let [a, b] = [index(0), index(1)];
             let is_alike = a.map(|(at, _)| at) == b.map(|(at, _)| at) && pencil.class == Class::Agree;
-            for (k, landed) in [a, b].into_iter().enumerate() {
-                let Some((at, flux)) = landed else { continue };
+            for (k, delivered) in [a, b].into_iter().enumerate() {
+                let Some((at, flux)) = delivered else { continue };
                 let pixel = &mut pixels[at];
                 pixel.count += 1;
                 pixel.sums[k] += flux;
@@ -86,15 +86,19 @@ impl<'a> PixelLight<'a> {
         Self { images, pixels, unit_roundoff }
     }
 
-    /// The causes of what is not alike in a pixel.
-    pub(super) fn causes(&self, i: u32, j: u32) -> Switches {
-        self.pixels[j as usize * self.images[0].width() as usize + i as usize].causes
+    fn pencils(&self, i: u32, j: u32) -> &PixelPencils {
+        &self.pixels[j as usize * self.images[0].width() as usize + i as usize]
     }
 
-    /// How far the two sums of a pixel are apart, how far they may be, and its class.
-    fn compare(&self, i: u32, j: u32) -> (f64, f64, Class) {
+    /// The causes of the pencils in a pixel that are not alike.
+    pub(super) fn causes(&self, i: u32, j: u32) -> Switches {
+        self.pencils(i, j).causes
+    }
+
+    /// The difference of a pixel's two sums, and its class.
+    fn compare(&self, i: u32, j: u32) -> (Difference, Class) {
         let [a, b] = self.images.map(|image| image.at(i, j));
-        let pixel = &self.pixels[j as usize * self.images[0].width() as usize + i as usize];
+        let pixel = self.pencils(i, j);
         // n u Sigma of each sum, and of the sums formed here.
         let rounding = 2.0 * f64::from(pixel.count) * self.unit_roundoff * (pixel.total + pixel.unlike);
         let bound = pixel.bound + rounding;
@@ -105,25 +109,25 @@ impl<'a> PixelLight<'a> {
         } else {
             pixel.class
         };
-        (difference, bound, class)
+        (Difference::computed(Quantity::PixelFlux, difference, Some(bound)), class)
     }
 }
 
 /// Compares the flux of all beams in one pixel.
-pub(crate) fn compare_pixel(entry: &mut Entry<'_>, light: &[PixelLight<'_>], beams: usize) {
+pub(super) fn compare_pixel(entry: &mut RayEntry<'_>, light: &[BeamImages<'_>], beams: usize) {
     if light.len() < beams {
-        // A beam without an image or without pencils to judge it by.
+        // A beam without an image, or without pencils to judge it by.
         entry.missing(Quantity::PixelFlux);
     }
     if light.is_empty() {
         return;
     }
     let mut class = Class::Agree;
-    for of_beam in light {
-        let (difference, bound, of_pixel) = of_beam.compare(entry.place.i, entry.place.j);
+    for images in light {
+        let (difference, of_pixel) = images.compare(entry.place.i, entry.place.j);
         class = class.max(of_pixel);
         if matches!(of_pixel, Class::Agree | Class::Defect) {
-            entry.extremes(Quantity::PixelFlux, difference, Some(bound));
+            entry.extremes(&difference);
         }
     }
     entry.class(Quantity::PixelFlux, class);

@@ -1,15 +1,17 @@
+//! One side of a comparison: a renderer and its output.
+
 use crate::attribution::cause::Attributions;
 use raypencil_scene::{Precision, RenderOutput};
 
 /// One side of a comparison.
 #[derive(Debug, Clone, Copy)]
 pub struct Side<'a> {
-    /// The renderer's name.
+    /// Name of the renderer.
     pub name: &'a str,
-    /// What it rendered.
+    /// Output of the renderer.
     pub output: &'a RenderOutput,
-    /// How finely it computes.
+    /// Precision that the renderer declares.
     pub precision: Precision,
-    /// The causes of its errors, if it follows the paper into some.
+    /// Causes of the renderer's errors, if it follows the paper into some.
     pub attributions: Option<&'a Attributions>,
 }

@@ -8,7 +8,7 @@ use raypencil_files::FileError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// A file; the message names it.
+    /// A file that cannot be read; the message names it.
     #[error(transparent)]
     File(#[from] FileError),
     /// A cell that breaks the conventions, or a channel that does not fit the scene.
@@ -18,21 +18,21 @@ pub enum RecordingError {
         file: PathBuf,
         /// The channel.
         channel: String,
-        /// Column and row of the cell, if it is one.
+        /// Column and row of the cell, if one cell is at fault.
         cell: Option<(u32, u32)>,
         /// What was found.
         found: String,
         /// What was expected.
         expected: String,
     },
-    /// A channel of which there is a part only.
+    /// A vector of which only some components are there.
     #[error("{}: `{channel}` is absent; expected all of {all}", folder.display())]
     Part {
         /// The recording.
         folder: PathBuf,
-        /// The absent part.
+        /// The absent component.
         channel: String,
-        /// All parts.
+        /// All components.
         all: String,
     },
     /// A folder of several recordings.
@@ -40,10 +40,10 @@ pub enum RecordingError {
     Several {
         /// The folder.
         folder: PathBuf,
-        /// What it holds, by name.
+        /// Names of the recordings.
         found: String,
     },
-    /// Nothing in it is known.
+    /// A folder without any known channel.
     #[error("{}: holds no channel of this scene; expected files such as camera.exr or beam-0/range.T.npy with the names of docs/formats/files.md{}", folder.display(), there(unknown))]
     Nothing {
         /// The folder.

@@ -1,15 +1,16 @@
-//! What another program recorded in files, as answers: names, sizes and conventions are checked, and nothing is
-//! guessed. The conventions are those of `docs/formats/files.md`.
+//! Recordings: answers of another program, read from files by the conventions of `docs/formats/files.md`.
+//!
+//! Names, sizes and conventions are checked, and nothing is guessed.
 
 pub(crate) mod error;
 pub(crate) mod names;
 mod reader;
 
-use crate::answers::Answers;
-use crate::class::{Item, Quantity};
+use crate::quantity::{Item, Quantity};
 use crate::recorded::error::RecordingError;
-use crate::recorded::names::is_of_outsiders;
+use crate::recorded::names::is_path_tracer_channel;
 use crate::recorded::reader::{Reader, limits, recordings_in};
+use crate::scene_answers::Answers;
 use raypencil_files::{Channels, Storage, read_channels};
 use raypencil_scene::{Precision, RenderOutput, Renderer, Request, Scene, SensorId};
 use std::collections::BTreeMap;
@@ -18,15 +19,15 @@ use std::path::Path;
 /// A recording of answers about one scene.
 #[derive(Debug, Clone)]
 pub struct Recorded {
-    /// Its folder's name.
+    /// Name of the recording's folder.
     pub name: String,
-    /// What it says.
+    /// The answers.
     pub answers: Answers,
-    /// How it stores each quantity that it has.
+    /// The number format of each quantity that it has.
     pub storage: BTreeMap<(SensorId, Item), Storage>,
-    /// Channels whose names mean nothing here.
+    /// Channels whose names are not known.
     pub unknown: Vec<String>,
-    /// How finely it computes, as declared.
+    /// Declared precision of the program's arithmetic.
     pub precision: Precision,
 }
 
@@ -39,7 +40,7 @@ impl Renderer for Recorded {
         self.precision
     }
 
-    /// What was recorded, of whatever scene: the caller sees to it that it is this one.
+    /// The recorded answers, whatever the scene is: the caller passes the scene that was recorded.
     fn render(&self, _: &Scene, _: &Request) -> RenderOutput {
         self.answers.to_output()
     }
@@ -48,13 +49,47 @@ impl Renderer for Recorded {
 impl Recorded {
     /// Reads the recording of a scene's sensors from a folder.
     ///
+    /// ```
+    /// # use std::sync::Arc;
+    /// # use glam::DVec3;
+    /// # use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene};
+    /// # let corners = vec![[0.125, -40.0, 2.0], [-90.0, 0.0, 2.0], [0.125, 40.0, 2.0]];
+    /// # let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+    /// # let wall = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], vec![plaster])?;
+    /// # let camera = Camera {
+    /// #     width: 9, height: 9, pixel_pitch: [0.0625; 2], focal_length: 0.5, principal_point: [4.5; 2],
+    /// #     aperture: 0.01, lens: Lens::CLEAR, max_range: 20.0,
+    /// # };
+    /// # let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+    /// # let air = Atmosphere { attenuation: 0.0 };
+    /// # let scene = Scene::new(Arc::new(wall), camera, vec![], air, FluxModel::Radiometric)?;
+    /// // A wall at z = 2 m that ends at x = 1/8 m, before a camera of 9 x 9 pixels at the origin that looks along z.
+    /// use raypencil_files::write_npy;
+    /// use raypencil_judge::Recorded;
+    /// use raypencil_scene::{Image, Precision};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// std::fs::create_dir(folder.path().join("camera"))?;
+    /// let ranges = Image::from_cells(9, 9, vec![f32::INFINITY; 81]);
+    /// write_npy(folder.path().join("camera/range.T.npy"), &[&ranges])?;
+    ///
+    /// // +Inf is the range of a ray that hits nothing.
+    /// let recorded = Recorded::read(folder.path(), &scene, Precision::F32)?;
+    /// let range = recorded.answers.maps[0].range.as_ref().unwrap();
+    /// assert!(range.cells().iter().all(|range| range.get().is_none()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Names the file, the channel and the cell that breaks the conventions.
     pub fn read(folder: &Path, scene: &Scene, precision: Precision) -> Result<Self, RecordingError> {
         Self::of_folder(folder, scene, precision, &Self::channels(folder, scene)?)
     }
 
-    /// The channels of a folder that holds one recording of a scene.
+    /// Reads the channels of a folder that holds one recording of a scene.
+    ///
+    /// # Errors
+    /// Names the file that cannot be read, or the several recordings that the folder holds.
     pub fn channels(folder: &Path, scene: &Scene) -> Result<Channels, RecordingError> {
         let several = recordings_in(folder);
         if !several.is_empty() {
@@ -67,7 +102,10 @@ impl Recorded {
         Ok(read_channels(folder, &limits(scene))?)
     }
 
-    /// What the channels of a folder say of a scene's sensors.
+    /// Takes the channels of a folder as a recording, which has the folder's name.
+    ///
+    /// # Errors
+    /// Names the file, the channel and the cell that breaks the conventions.
     pub fn of_folder(
         folder: &Path,
         scene: &Scene,
@@ -78,7 +116,7 @@ impl Recorded {
         Self::of_channels(name, folder, scene, precision, channels)
     }
 
-    /// What a renderer of this house says, as it computed it.
+    /// The output of a renderer of this project, as computed, as a recording in f64.
     pub fn of_output(name: &str, scene: &Scene, output: &RenderOutput, precision: Precision) -> Self {
         let answers = Answers::of_output(scene, output);
         let mut storage = BTreeMap::new();
@@ -111,6 +149,10 @@ impl Recorded {
         Self { name: name.into(), answers, storage, unknown: Vec::new(), precision }
     }
 
+    /// Takes channels as a recording of this name; `folder` is for messages.
+    ///
+    /// # Errors
+    /// Names the file, the channel and the cell that breaks the conventions.
     pub fn of_channels(
         name: String,
         folder: &Path,
@@ -134,11 +176,11 @@ impl Recorded {
             reader.light(beam)?;
         }
         let Reader { answers, storage, used, .. } = reader;
-        // Of packs: what no candidate has to say. And what is judged by chance, or not by pencils.
+        // Packs also hold margins and rays. Estimates and radiance are judged elsewhere.
         let is_known = |key: &str| {
             key.split_once('/').is_some_and(|(_, name)| name.starts_with("margin."))
                 || key.starts_with("rays-")
-                || is_of_outsiders(key)
+                || is_path_tracer_channel(key)
         };
         let unknown: Vec<String> =
             channels.by_key.keys().filter(|key| !used.contains(*key) && !is_known(key)).cloned().collect();

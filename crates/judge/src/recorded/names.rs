@@ -1,23 +1,23 @@
 //! Names of the channels of a recording, as `docs/formats/files.md` lists them.
 
-use crate::class::{Item, Quantity};
+use crate::quantity::{Item, Quantity};
 use raypencil_scene::{FluxModel, Scene, SensorId};
 
-pub(crate) const RANGE: &str = "range.T";
-pub(crate) const DEPTH: &str = "depth.Z";
-pub(crate) const FACE: &str = "face.I";
-pub(crate) const POINT: [&str; 3] = ["P.X", "P.Y", "P.Z"];
-pub(crate) const NORMAL: [&str; 3] = ["N.X", "N.Y", "N.Z"];
-pub(crate) const INCIDENCE: &str = "incidence.V";
-pub(crate) const VISIBLE: &str = "visible.V";
-pub(crate) const PIXEL: [&str; 2] = ["pixel.I", "pixel.J"];
-pub(crate) const VIEW: &str = "view.Z";
-pub(crate) const OFF_AXIS: &str = "offAxis.V";
-pub(crate) const EMISSION: &str = "emission.V";
-pub(crate) const FLUX: &str = "flux.V";
+pub(super) const RANGE: &str = "range.T";
+pub(super) const DEPTH: &str = "depth.Z";
+pub(super) const FACE: &str = "face.I";
+pub(super) const POINT: [&str; 3] = ["P.X", "P.Y", "P.Z"];
+pub(super) const NORMAL: [&str; 3] = ["N.X", "N.Y", "N.Z"];
+pub(super) const INCIDENCE: &str = "incidence.V";
+pub(super) const VISIBLE: &str = "visible.V";
+pub(super) const PIXEL: [&str; 2] = ["pixel.I", "pixel.J"];
+pub(super) const VIEW: &str = "view.Z";
+pub(super) const OFF_AXIS: &str = "offAxis.V";
+pub(super) const EMISSION: &str = "emission.V";
+pub(super) const FLUX: &str = "flux.V";
 
-/// Whether a channel holds something that only another kind of renderer has.
-pub fn is_of_outsiders(key: &str) -> bool {
+/// Whether a channel holds radiance or a Monte Carlo estimate, which only a path tracer has.
+pub(super) fn is_path_tracer_channel(key: &str) -> bool {
     let Some((sensor, name)) = key.split_once('/') else { return false };
     let is_camera = sensor == SensorId::Camera.to_string();
     let parts: Vec<&str> = name.split('.').collect();
@@ -29,7 +29,7 @@ pub fn is_of_outsiders(key: &str) -> bool {
     }
 }
 
-/// `flux.V`, or `flux.eq1.V` for the model that is not the scene's.
+/// Name of the channel of a beam's flux: `flux.V`, or `flux.eq1.V` for the model that is not the scene's.
 pub fn flux_channel(model: Option<FluxModel>) -> String {
     match model {
         None => FLUX.into(),
@@ -37,7 +37,7 @@ pub fn flux_channel(model: Option<FluxModel>) -> String {
     }
 }
 
-/// `flux.beam0`, or `flux.eq1.beam0`.
+/// Name of the camera's channel of a beam's flux: `flux.beam0`, or `flux.eq1.beam0`.
 pub fn image_channel(beam: usize, model: Option<FluxModel>) -> String {
     match model {
         None => format!("flux.beam{beam}"),
@@ -45,7 +45,7 @@ pub fn image_channel(beam: usize, model: Option<FluxModel>) -> String {
     }
 }
 
-/// What a channel of a sensor holds, if its name means anything.
+/// The item that a channel of a sensor holds; `None` if its name is not known.
 pub fn item_of_channel(scene: &Scene, sensor: SensorId, name: &str) -> Option<Item> {
     let second = scene.flux_model().other();
     let of_flux = |item: Item, own: &str, others: &str| {
@@ -97,7 +97,7 @@ mod tests {
             ("camera/range.T", false),
             ("direct.mean.beam0", false),
         ] {
-            assert_eq!(is_of_outsiders(key), is_known, "{key}");
+            assert_eq!(is_path_tracer_channel(key), is_known, "{key}");
         }
     }
 }

@@ -1,23 +1,22 @@
-//! Reads the channels of a recording into answers: names, sizes and conventions are checked, and nothing is guessed.
+//! Reader of a recording's channels: checks their names, sizes and conventions, and fills in answers.
 
-use crate::answers::Answers;
-use crate::class::{Item, Quantity};
+use crate::quantity::{Item, Quantity};
 use crate::recorded::error::RecordingError;
-use crate::recorded::names;
-use crate::recorded::names::{flux_channel, image_channel};
+use crate::recorded::names::{self, flux_channel, image_channel};
+use crate::scene_answers::Answers;
 use glam::DVec3;
 use raypencil_files::{Channel, Channels, Limits, Storage, Values};
-use raypencil_scene::{FaceId, Image, Maybe, Pixel, Renderer, Sample, Scene, SensorId};
+use raypencil_scene::{FaceId, Image, Maybe, Pixel, Sample, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// How much a recording of a scene may ask for: a small file can hold a map of 2^26 zeros, which is no sensor's.
+/// Limits on the size of a scene's recording: a small file can hold a map of 2^26 zeros, which fits no sensor.
 pub(super) fn limits(scene: &Scene) -> Limits {
     let sizes = scene.sensors().filter_map(|sensor| scene.size(sensor));
     let all: u64 = sizes.map(|(columns, rows)| u64::from(columns) * u64::from(rows)).sum();
     let most = Limits::default();
-    // CHOICE: a map of a million cells is little, and is refused by its size and its sensor later; a thousand channels of
-    // doubles are more than a recording has.
+    // CHOICE: a map of up to a million cells is read, and refused later by a message that names its size and its
+    // sensor. A recording has less than a thousand channels of doubles.
     Limits {
         cells: all.max(1 << 20).min(most.cells),
         bytes: ((1 << 26) + (all << 13)).min(most.bytes),
@@ -25,7 +24,7 @@ pub(super) fn limits(scene: &Scene) -> Limits {
     }
 }
 
-/// Names of folders in a folder that each hold maps, if it holds none itself.
+/// Names of the subfolders that hold maps, if the folder holds none itself.
 pub(super) fn recordings_in(folder: &Path) -> Vec<String> {
     let is_map = |path: &Path| {
         let stem = path.file_stem().is_some_and(|stem| {
@@ -49,28 +48,30 @@ pub(super) fn recordings_in(folder: &Path) -> Vec<String> {
     own.iter().filter(holds_maps).filter_map(name).collect()
 }
 
+/// A recording while it is read.
 pub(super) struct Reader<'a> {
     pub(super) scene: &'a Scene,
     pub(super) folder: &'a Path,
     pub(super) channels: &'a Channels,
     pub(super) answers: Answers,
     pub(super) storage: BTreeMap<(SensorId, Item), Storage>,
+    /// Channels that were read.
     pub(super) used: Vec<String>,
-    /// Of each sensor, what says which rays hit, and which.
+    /// For each sensor, the channel that tells which rays hit, and whether each does.
     pub(super) hits: Vec<Option<(String, Vec<bool>)>>,
 }
 
-/// Real numbers of a channel, and where they come from.
+/// The real numbers of a channel.
 #[derive(Clone, Copy)]
-pub(super) struct Reals<'a> {
-    /// The channel's name, also where the file gives it none.
+struct Reals<'a> {
+    /// Name of the channel; of a file without channel names, that of the file.
     name: &'a str,
     channel: &'a Channel,
     image: &'a Image<f64>,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn fault(
+    fn fault(
         (name, channel): (&str, &Channel),
         cell: Option<(u32, u32)>,
         found: String,
@@ -85,8 +86,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A channel of a sensor, of the right size, and its name.
-    pub(super) fn channel(
+    /// A channel of a sensor and its name, if it is there. Its size is checked.
+    fn channel(
         &mut self,
         sensor: SensorId,
         name: &str,
@@ -108,11 +109,8 @@ impl<'a> Reader<'a> {
         Ok(Some((name, channel)))
     }
 
-    pub(super) fn reals(
-        &mut self,
-        sensor: SensorId,
-        name: &str,
-    ) -> Result<Option<Reals<'a>>, RecordingError> {
+    /// Real numbers of a channel, if it is there.
+    fn reals(&mut self, sensor: SensorId, name: &str) -> Result<Option<Reals<'a>>, RecordingError> {
         match self.channel(sensor, name)? {
             None => Ok(None),
             Some((name, channel)) => match &channel.values {
@@ -124,12 +122,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whole numbers, also if they are stored as floating-point ones; what is not finite or -1 is "none".
-    pub(super) fn wholes(
-        &mut self,
-        sensor: SensorId,
-        name: &str,
-    ) -> Result<Option<Image<u32>>, RecordingError> {
+    /// Whole numbers, also if they are stored as floating-point ones; -1 and numbers that are not finite mean "none".
+    fn wholes(&mut self, sensor: SensorId, name: &str) -> Result<Option<Image<u32>>, RecordingError> {
         let Some((name, channel)) = self.channel(sensor, name)? else { return Ok(None) };
         let image = match &channel.values {
             Values::Wholes(image) => return Ok(Some(image.clone())),
@@ -137,7 +131,7 @@ impl<'a> Reader<'a> {
         };
         let mut cells = Vec::with_capacity(image.cells().len());
         for (index, &value) in image.cells().iter().enumerate() {
-            // Singles hold whole numbers up to 2^24 only; the one for "none" is 2^32 there.
+            // f32 holds whole numbers up to 2^24 only; 4294967295 for "none" is 2^32 there.
             let none = !value.is_finite() || value == -1.0 || value >= f64::from(u32::MAX);
             if !none && (value < 0.0 || value != value.trunc()) {
                 let cell = Some(cell(image, index));
@@ -153,18 +147,18 @@ impl<'a> Reader<'a> {
         Ok(Some(Image::from_cells(image.width(), image.height(), cells)))
     }
 
-    pub(super) fn store(&mut self, sensor: SensorId, item: impl Into<Item>, storage: Storage) {
+    fn store(&mut self, sensor: SensorId, item: impl Into<Item>, storage: Storage) {
         self.storage.insert((sensor, item.into()), storage);
     }
 
-    /// What each ray of a sensor meets.
+    /// Reads the hits of a sensor.
     pub(super) fn geometry(&mut self, index: usize, sensor: SensorId) -> Result<(), RecordingError> {
         let faces = self.wholes(sensor, names::FACE)?;
         let (range, depth) = (self.reals(sensor, names::RANGE)?, self.reals(sensor, names::DEPTH)?);
         let cos_incidence = self.reals(sensor, names::INCIDENCE)?;
         let (point, normal) = (self.vector(sensor, names::POINT)?, self.vector(sensor, names::NORMAL)?);
 
-        // Whether each ray hits: the first of these that is there says so, and the others must agree.
+        // The first channel that is there tells which rays hit; the others must agree with it.
         let hits: Option<(String, Vec<bool>)> = if let Some(faces) = &faces {
             Some((names::FACE.into(), faces.cells().iter().map(|face| *face != u32::MAX).collect()))
         } else {
@@ -221,7 +215,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    pub(super) fn vector(
+    /// The components of a vector, if they are there; a part of them is an error.
+    fn vector(
         &mut self,
         sensor: SensorId,
         names: [&str; 3],
@@ -245,11 +240,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What comes back of a beam.
+    /// Reads the returns of a beam.
     pub(super) fn light(&mut self, beam: usize) -> Result<(), RecordingError> {
         let sensor = SensorId::Beam(beam);
         let (width, height) = self.scene.size(sensor).expect("a sensor of this scene");
-        // Whether each pencil hits, as far as the geometry says.
+        // Which pencils hit, if a channel of hits is there.
         let hits = self.hits[beam + 1].clone();
 
         if let Some((name, channel)) = self.channel(sensor, names::VISIBLE)? {
@@ -319,7 +314,7 @@ impl<'a> Reader<'a> {
             let image = match &hits {
                 Some((speaker, hits)) => maybe_signed(reals, hits, speaker, is_length)?,
                 None => {
-                    // Nothing else says what is hit: the truth will.
+                    // No other channel tells which pencils hit; `check` takes that from the truth.
                     let own: Vec<bool> = reals.image.cells().iter().map(|x| x.is_finite()).collect();
                     maybe_signed(reals, &own, name, is_length)?
                 }
@@ -358,13 +353,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Column and row of the cell of that index.
-pub(super) fn cell<T: Copy>(image: &Image<T>, index: usize) -> (u32, u32) {
+/// Column and row of the cell with this index.
+fn cell<T: Copy>(image: &Image<T>, index: usize) -> (u32, u32) {
     (index as u32 % image.width(), index as u32 / image.width())
 }
 
-/// Numbers where there are hits and none elsewhere; lengths are not negative, and +Inf where nothing is hit.
-pub(super) fn maybe(
+/// A map with numbers where rays hit and none elsewhere. Lengths are not negative, and +Inf where nothing is hit.
+fn maybe(
     reals: Reals<'_>,
     hits: &[bool],
     speaker: &str,
@@ -383,8 +378,8 @@ pub(super) fn maybe(
     Ok(image)
 }
 
-/// The same, of any sign: a point may lie behind the camera.
-pub(super) fn maybe_signed(
+/// The same, with numbers of any sign: a point may lie behind the camera.
+fn maybe_signed(
     Reals { name, channel, image }: Reals<'_>,
     hits: &[bool],
     speaker: &str,
@@ -412,8 +407,8 @@ pub(super) fn maybe_signed(
     Ok(Image::from_cells(image.width(), image.height(), cells))
 }
 
-/// Flux: never negative, never infinite, 0 where there is none.
-pub(super) fn flux(Reals { name, channel, image }: Reals<'_>) -> Result<Image<f64>, RecordingError> {
+/// A map of flux: never negative, never infinite, 0 where there is none.
+fn flux(Reals { name, channel, image }: Reals<'_>) -> Result<Image<f64>, RecordingError> {
     if let Some(index) = image.cells().iter().position(|flux| !(*flux >= 0.0 && flux.is_finite())) {
         let found = image.cells()[index].to_string();
         let expected = "a flux that is not negative, and 0 where there is none";

@@ -1,4 +1,4 @@
-//! Whom to ask about the answers of one renderer that follows the paper.
+//! The renderer whose answers are explained, and the judge that is asked about them.
 
 use raypencil_scene::{Precision, RenderOutput, Request, Switches};
 
@@ -6,19 +6,19 @@ use crate::judge::Judge;
 
 /// Renders the judge's scene as the paper's renderer does with these switches.
 ///
-/// The judge knows no renderer: whoever asks for causes hands in the one whose answers are to be explained.
+/// The judge knows no renderer: the caller passes the one whose answers are explained.
 pub type Rerender<'a> = dyn Fn(Switches, Request) -> RenderOutput + Sync + 'a;
 
-/// The judge, and how the renderer whose answers are explained computes.
+/// The renderer whose answers are explained, and the judge that is asked about them.
 #[derive(Clone, Copy)]
-pub(super) struct Court<'a> {
+pub(super) struct AttributionContext<'a> {
     pub(super) judge: &'a Judge<'a>,
     pub(super) switches: Switches,
     pub(super) precision: Precision,
     pub(super) rerender: &'a Rerender<'a>,
 }
 
-impl Court<'_> {
+impl AttributionContext<'_> {
     /// Renders the scene as the renderer would with these switches.
     pub(super) fn render(&self, switches: Switches, request: Request) -> RenderOutput {
         (self.rerender)(switches, request)

@@ -1,4 +1,4 @@
-//! All answers about a scene, by whoever gives them: the referee, correctly rounded, or a recording.
+//! All answers to the rays of a scene: of a renderer or recording, or of the referee, correctly rounded.
 
 use std::time::Instant;
 
@@ -8,19 +8,19 @@ use raypencil_scene::{
     Stage,
 };
 
-/// What somebody says of each ray of a scene. Every quantity is optional.
+/// Answers to all rays of a scene. Every quantity is optional.
 #[derive(Debug, Clone)]
 pub struct Answers {
     /// The maps of each sensor, the camera first.
     pub maps: Vec<SensorMap>,
-    /// What comes back of each beam.
+    /// The returns of each beam.
     pub light: Vec<BeamLight>,
 }
 
-/// What comes back of one beam.
+/// The returns of one beam to the camera.
 #[derive(Debug, Clone)]
 pub struct BeamLight {
-    /// Pencil by pencil, the flux by the scene's model.
+    /// The return of each pencil, its flux by the scene's model.
     pub returns: Returns,
     /// The flux on the camera's image by the scene's model.
     pub image: Option<Image<f64>>,
@@ -31,7 +31,7 @@ pub struct BeamLight {
 }
 
 impl Answers {
-    /// Nothing said of a scene's sensors.
+    /// Answers without any channel.
     pub(crate) fn none(scene: &Scene) -> Self {
         let nothing = Quantities {
             range: false,
@@ -54,7 +54,7 @@ impl Answers {
         Self { maps: maps.collect(), light: light.collect() }
     }
 
-    /// What a renderer's frame says.
+    /// The answers of a renderer's output.
     pub fn of_output(scene: &Scene, output: &RenderOutput) -> Self {
         let mut answers = Self::none(scene);
         for (mine, sensor) in answers.maps.iter_mut().zip(scene.sensors()) {
@@ -71,8 +71,8 @@ impl Answers {
         answers
     }
 
-    /// The same as a frame, as far as a frame holds it: an image that one beam does not have leaves out those of
-    /// later beams.
+    /// The answers as a renderer's output. That has no place for a missing image, so that images end before the first
+    /// beam without one.
     pub(crate) fn to_output(&self) -> RenderOutput {
         RenderOutput {
             camera: self.maps.first().cloned(),
@@ -92,17 +92,17 @@ impl Answers {
     }
 }
 
-/// Every answer of the referee, correctly rounded.
+/// The referee's answers to all rays of a scene, correctly rounded.
 #[derive(Debug)]
 pub struct Certified {
     maps: Vec<CertifiedMap>,
     light: Vec<CertifiedReturns>,
-    /// How long each sensor took.
+    /// Time that each sensor took.
     pub stages: Vec<Stage>,
 }
 
 impl Certified {
-    /// Asks about every ray.
+    /// Asks the referee about every ray.
     pub fn new(scene: &Scene, progress: &dyn Progress) -> Self {
         let mut stages = Vec::new();
         let mut start = Instant::now();
@@ -126,7 +126,7 @@ impl Certified {
         Self { maps, light, stages }
     }
 
-    /// All of it in one format, the flux of the returns by `model`.
+    /// The answers in one format, the flux of the returns by `model`.
     pub fn in_format(&self, format: Format, model: FluxModel) -> Answers {
         let light = self.light.iter().map(|light| BeamLight {
             returns: light.returns_in(format, model),
@@ -140,7 +140,7 @@ impl Certified {
         }
     }
 
-    /// Values that the budget of bits did not decide.
+    /// Number of values that the budget of bits did not decide.
     pub fn undecided(&self) -> usize {
         self.light.iter().map(CertifiedReturns::undecided).sum()
     }

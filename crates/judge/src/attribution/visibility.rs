@@ -1,24 +1,25 @@
-//! Causes of what the camera is said to see of a pencil's hit.
+//! Causes of wrong visibility.
 
 use rayon::prelude::*;
 
 use crate::attribution::cause::{Attributions, VisibilityCause};
-use crate::attribution::court::{Court, sets_of};
+use crate::attribution::context::{AttributionContext, sets_of};
 use raypencil_referee::{ExplainedVisibility, Ruling, VisibilityApproximations, VisibilityReason};
-use raypencil_scene::Place;
-use raypencil_scene::{FaceId, Fidelity, Pixel, Quantities, RenderOutput, Request, SensorId, Switches};
+use raypencil_scene::{
+    FaceId, Fidelity, Pixel, Place, Quantities, RenderOutput, Request, SensorId, Switches,
+};
 
-/// What a frame says of one pencil's hit.
+/// Visibility of one pencil's hit as an output states it.
 #[derive(Debug, Clone, Copy)]
-struct Answer {
+struct StatedVisibility {
     face: FaceId,
     range: Option<f64>,
     visible: bool,
     pixel: Option<Pixel>,
 }
 
-impl Answer {
-    /// `None` where there is no hit, or the frame does not say.
+impl StatedVisibility {
+    /// `None` where there is no hit, or where the output leaves out a part.
     fn of(output: &RenderOutput, Place { sensor, i, j }: Place) -> Option<Self> {
         let SensorId::Beam(index) = sensor else { return None };
         let (map, returns) = (output.map(sensor)?, output.returns.get(index)?);
@@ -31,52 +32,53 @@ impl Answer {
     }
 }
 
-/// A pencil whose visibility is not the contract's for the face that it is said to hit: the right one, or one that has
-/// a cause.
-struct Wrong {
+/// A pencil whose visibility is not the contract's for the face that it is stated to hit: an admissible face, or one
+/// that has a cause.
+struct WrongVisibility {
     place: Place,
-    answer: Answer,
-    /// The answers that are wrong with other switches on `exact`, by which.
-    without: Vec<(Switches, Answer)>,
+    answer: StatedVisibility,
+    /// The answers that are still wrong with other switches on `exact`, and those switches.
+    without: Vec<(Switches, StatedVisibility)>,
     cause: Option<VisibilityCause>,
 }
 
-/// The pencils of a frame whose visibility is wrong for a confirmed cause.
+/// The pencils of an output whose visibility is wrong for a confirmed cause.
 pub(super) fn causes(
-    court: Court<'_>,
+    context: AttributionContext<'_>,
     output: &RenderOutput,
     of_geometry: &Attributions,
 ) -> Vec<(Place, VisibilityCause)> {
-    let Switches { facing, extent, place, .. } = court.switches;
+    let Switches { facing, extent, place, .. } = context.switches;
     let of_visibility = Switches { facing, extent, place, ..Switches::EXACT };
     if of_visibility == Switches::EXACT || output.returns.is_empty() {
         return Vec::new();
     }
     let request = Request { camera: false, quantities: Quantities::RANGE_MAP, ..Request::EVERYTHING };
-    let reach = upper_extent(court, output);
+    let extent_m = upper_extent(context, output);
 
-    // What differs from the same algorithm without any approximation of sight, and is wrong.
-    let exact = court.render(court.switches.without(of_visibility), request);
-    let mut wrong: Vec<Wrong> = output
+    // The pencils that differ from the same algorithm without any approximation of visibility, and are wrong.
+    let exact = context.render(context.switches.without(of_visibility), request);
+    let mut wrong: Vec<WrongVisibility> = output
         .beams
         .iter()
-        .flat_map(|map| wrong_answers(court, output, &exact, map.sensor, of_geometry))
+        .flat_map(|map| wrong_visibilities(context, output, &exact, map.sensor, of_geometry))
         .collect();
     for cause in sets_of(of_visibility) {
-        let mut open: Vec<&mut Wrong> = wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
+        let mut open: Vec<&mut WrongVisibility> =
+            wrong.iter_mut().filter(|ray| ray.cause.is_none()).collect();
         if open.is_empty() {
             break;
         }
-        let without = court.render(court.switches.without(cause), request);
-        open.par_iter_mut().for_each(|ray| ray.attribute_to(cause, &without, reach, court));
+        let without = context.render(context.switches.without(cause), request);
+        open.par_iter_mut().for_each(|ray| ray.attribute_to(cause, &without, extent_m, context));
     }
     wrong.into_iter().filter_map(|ray| Some((ray.place, ray.cause?))).collect()
 }
 
-/// The greatest camera depth of the upper beam's hits in a frame: that of the beam whose origin is highest in the
-/// camera's image, of several the last.
-fn upper_extent(court: Court<'_>, output: &RenderOutput) -> Option<f64> {
-    let scene = court.judge.scene();
+/// The greatest camera depth of the upper beam's hits, metres. The upper beam is the one whose origin is highest in the
+/// camera's image; of several the last.
+fn upper_extent(context: AttributionContext<'_>, output: &RenderOutput) -> Option<f64> {
+    let scene = context.judge.scene();
     let camera_from_scene = scene.camera().scene_from_sensor.inverse();
     let down = |index: usize| (camera_from_scene * scene.beams()[index].scene_from_sensor.position).y;
     let upper = (0..scene.beams().len()).min_by(|&a, &b| down(a).total_cmp(&down(b)).then(b.cmp(&a)))?;
@@ -84,39 +86,36 @@ fn upper_extent(court: Court<'_>, output: &RenderOutput) -> Option<f64> {
     depths.reduce(f64::max)
 }
 
-fn wrong_answers(
-    court: Court<'_>,
+fn wrong_visibilities(
+    context: AttributionContext<'_>,
     output: &RenderOutput,
     exact: &RenderOutput,
     sensor: SensorId,
     of_geometry: &Attributions,
-) -> Vec<Wrong> {
-    let (columns, rows) = court.judge.scene().size(sensor).expect("a sensor of this scene");
+) -> Vec<WrongVisibility> {
+    let (columns, rows) = context.judge.scene().size(sensor).expect("a sensor of this scene");
     let rows = (0..rows).into_par_iter().flat_map_iter(|j| {
         (0..columns).filter_map(move |i| {
             let place = Place { sensor, i, j };
-            let (answer, of_exact) = (Answer::of(output, place)?, Answer::of(exact, place)?);
+            let (answer, of_exact) =
+                (StatedVisibility::of(output, place)?, StatedVisibility::of(exact, place)?);
             let differs = answer.visible != of_exact.visible;
             let face_is_accounted_for = || {
                 let (face, range) = (Some(answer.face), answer.range);
                 of_geometry.cause(place).is_some()
-                    || court.judge.rule(place, face, range, court.precision) != Ruling::Wrong
+                    || context.judge.rule(place, face, range, context.precision) != Ruling::Wrong
             };
-            (differs && face_is_accounted_for() && court.is_sight_wrong(place, answer)).then(|| Wrong {
-                place,
-                answer,
-                without: Vec::new(),
-                cause: None,
-            })
+            (differs && face_is_accounted_for() && context.is_visibility_wrong(place, answer))
+                .then(|| WrongVisibility { place, answer, without: Vec::new(), cause: None })
         })
     });
     rows.collect()
 }
 
-impl Court<'_> {
-    /// Whether what is said of a pencil's visibility is wrong.
-    fn is_sight_wrong(&self, place: Place, answer: Answer) -> bool {
-        let Answer { face, range, visible, pixel } = answer;
+impl AttributionContext<'_> {
+    /// Whether a pencil's stated visibility is wrong.
+    fn is_visibility_wrong(&self, place: Place, answer: StatedVisibility) -> bool {
+        let StatedVisibility { face, range, visible, pixel } = answer;
         let ruling = self.judge.rule_visibility(place, face, range, visible, pixel, self.precision);
         ruling.is_none_or(|ruling| ruling.visible == Ruling::Wrong)
     }
@@ -125,35 +124,35 @@ impl Court<'_> {
     fn explain_visibility(
         &self,
         place: Place,
-        answer: Answer,
+        answer: StatedVisibility,
         exact: Switches,
-        reach: Option<f64>,
+        extent_m: Option<f64>,
     ) -> Option<Vec<ExplainedVisibility>> {
         let switches = self.switches.without(exact);
         let with = VisibilityApproximations {
             facing: switches.facing == Fidelity::Paper,
-            extent: reach.filter(|_| switches.extent == Fidelity::Paper),
+            extent: extent_m.filter(|_| switches.extent == Fidelity::Paper),
             place: switches.place == Fidelity::Paper,
         };
         self.judge.explain_visibility(place, answer.face, answer.range, answer.visible, with, self.precision)
     }
 }
 
-impl Wrong {
-    /// Takes `cause` for the cause if the frame `without` it restores this pencil and the referee confirms it.
+impl WrongVisibility {
+    /// Takes `cause` for the cause if the output `without` it restores this pencil and the referee confirms it.
     fn attribute_to(
         &mut self,
         cause: Switches,
         without: &RenderOutput,
-        reach: Option<f64>,
-        court: Court<'_>,
+        extent_m: Option<f64>,
+        context: AttributionContext<'_>,
     ) {
-        let Some(restored) = Answer::of(without, self.place) else { return };
-        if court.is_sight_wrong(self.place, restored) {
+        let Some(restored) = StatedVisibility::of(without, self.place) else { return };
+        if context.is_visibility_wrong(self.place, restored) {
             self.without.push((cause, restored));
             return;
         }
-        let Some(explained) = court.explain_visibility(self.place, self.answer, Switches::EXACT, reach)
+        let Some(explained) = context.explain_visibility(self.place, self.answer, Switches::EXACT, extent_m)
         else {
             return;
         };
@@ -162,7 +161,7 @@ impl Wrong {
         for &(part, answer) in &self.without {
             if open != Switches::EXACT
                 && cause.contains(part)
-                && let Some(explained) = court.explain_visibility(self.place, answer, part, reach)
+                && let Some(explained) = context.explain_visibility(self.place, answer, part, extent_m)
             {
                 open = open.without(reasons(&explained));
                 explained_without.push((part, explained));

@@ -1,0 +1,88 @@
+//! What a side states of one ray's hit and of one pencil's return. A side is a renderer or a recording.
+
+use glam::DVec3;
+
+use raypencil_scene::{FaceId, Image, Maybe, Pixel, Returns, Sample, SensorMap};
+
+fn at<T: Sample>(image: &Option<Image<Maybe<T>>>, i: u32, j: u32) -> Option<T> {
+    image.as_ref().and_then(|image| image.at(i, j).get())
+}
+
+/// One ray's hit as a side states it. A value is `None` if its channel is absent or the ray misses.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StatedHit {
+    /// Whether the map has any channel.
+    has_channels: bool,
+    /// Whether the map has a channel of faces.
+    pub(crate) names_faces: bool,
+    pub(crate) face: Option<FaceId>,
+    pub(crate) range: Option<f64>,
+    pub(crate) depth: Option<f64>,
+    pub(crate) point: Option<DVec3>,
+    pub(crate) normal: Option<DVec3>,
+    pub(crate) cos_incidence: Option<f64>,
+}
+
+impl StatedHit {
+    /// The answer to ray (i, j) of a map.
+    pub(crate) fn of(map: &SensorMap, i: u32, j: u32) -> Self {
+        Self {
+            has_channels: map.face.is_some()
+                || map.range.is_some()
+                || map.depth.is_some()
+                || map.point.is_some()
+                || map.normal.is_some()
+                || map.cos_incidence.is_some(),
+            names_faces: map.face.is_some(),
+            face: at(&map.face, i, j),
+            range: at(&map.range, i, j),
+            depth: at(&map.depth, i, j),
+            point: at(&map.point, i, j),
+            normal: at(&map.normal, i, j),
+            cos_incidence: at(&map.cos_incidence, i, j),
+        }
+    }
+
+    /// Whether a renderer's ray hits: by its range or its face.
+    pub(crate) fn hits(&self) -> bool {
+        self.range.is_some() || self.face.is_some()
+    }
+
+    /// Whether a recording's ray hits, by any of its values; `None` if the recording has no channel.
+    pub(crate) fn hits_by_any_value(&self) -> Option<bool> {
+        let hits = self.hits()
+            || self.depth.is_some()
+            || self.point.is_some()
+            || self.normal.is_some()
+            || self.cos_incidence.is_some();
+        self.has_channels.then_some(hits)
+    }
+}
+
+/// One pencil's return to the camera as a side states it. A value is `None` if its channel is absent, or if the
+/// pencil has none.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StatedReturn {
+    pub(crate) visible: Option<bool>,
+    /// `Some(None)`: the hit lands on no pixel.
+    pub(crate) pixel: Option<Option<Pixel>>,
+    pub(crate) depth: Option<f64>,
+    pub(crate) cos_off_axis: Option<f64>,
+    pub(crate) cos_view: Option<f64>,
+    /// Flux by the scene's model and by the other, watts (`eq1`: W/m).
+    pub(crate) flux: [Option<f64>; 2],
+}
+
+impl StatedReturn {
+    /// The answer to pencil (i, j) of a beam. `other_flux`: the beam's flux by the model that is not the scene's.
+    pub(crate) fn of(returns: &Returns, other_flux: Option<&Image<f64>>, i: u32, j: u32) -> Self {
+        Self {
+            visible: returns.visible.as_ref().map(|image| image.at(i, j)),
+            pixel: returns.pixel.as_ref().map(|image| image.at(i, j).get()),
+            depth: at(&returns.depth, i, j),
+            cos_off_axis: at(&returns.cos_off_axis, i, j),
+            cos_view: at(&returns.cos_view, i, j),
+            flux: [returns.flux.as_ref(), other_flux].map(|image| image.map(|image| image.at(i, j))),
+        }
+    }
+}
