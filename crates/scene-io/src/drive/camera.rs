@@ -31,7 +31,8 @@ const ICE_POINT_K: f64 = 273.15;
 const CELSIUS: RangeInclusive<f64> = -223.15..=226.85;
 
 /// Dust on the lens before the keys of `dust`: it takes away no light.
-const CLEAN: Dust = Dust { transmission: 1.0, halo_share: 0.0, halo_sigma: ImageLength::Pixels(DEFAULT_HALO_PX) };
+const CLEAN: Dust =
+    Dust { transmission: 1.0, halo_share: 0.0, halo_sigma: ImageLength::Pixels(DEFAULT_HALO_PX) };
 
 /// Standard deviation of the halo of dust, pixels.
 const DEFAULT_HALO_PX: f64 = 20.0;
@@ -105,7 +106,12 @@ impl Source<'_> {
             }
             let mut blurs = Vec::new();
             for (index, keys) in list.get_ref().iter().enumerate() {
-                blurs.push(self.blur(keys, &format!("drive.optics.blurs[{index}]"), drive, &mut kernel_digests)?);
+                blurs.push(self.blur(
+                    keys,
+                    &format!("drive.optics.blurs[{index}]"),
+                    drive,
+                    &mut kernel_digests,
+                )?);
             }
             drive.optics.blurs = blurs;
         }
@@ -180,10 +186,24 @@ impl Source<'_> {
         let (dark_at, to_infinity) = (&mut dark.reference_temperature, 1.0..=f64::INFINITY);
         let numbers = [
             ("exposure_ms", &keys.exposure_ms, &mut sensor.exposure, milli, 1e-6..=1e8, "milliseconds"),
-            ("quantum_efficiency", &keys.quantum_efficiency, &mut sensor.quantum_efficiency, same, SHARE, "of 1"),
+            (
+                "quantum_efficiency",
+                &keys.quantum_efficiency,
+                &mut sensor.quantum_efficiency,
+                same,
+                SHARE,
+                "of 1",
+            ),
             ("dark_e_per_s", &keys.dark_e_per_s, &mut dark.rate, same, 0.0..=1e9, "electrons per second"),
             ("dark_at_c", &keys.dark_at_c, dark_at, kelvin, CELSIUS, "degrees Celsius"),
-            ("dark_doubling_k", &keys.dark_doubling_k, &mut dark.doubling_kelvins, same, 1.0..=100.0, "kelvin"),
+            (
+                "dark_doubling_k",
+                &keys.dark_doubling_k,
+                &mut dark.doubling_kelvins,
+                same,
+                1.0..=100.0,
+                "kelvin",
+            ),
             ("temperature_c", &keys.temperature_c, &mut dark.temperature, kelvin, CELSIUS, "degrees Celsius"),
             ("read_noise_e", &keys.read_noise_e, &mut sensor.read_noise, same, 0.0..=1e6, "electrons"),
             ("prnu", &keys.prnu, &mut sensor.prnu, same, SHARE, "of 1"),

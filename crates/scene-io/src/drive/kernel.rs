@@ -24,8 +24,8 @@ impl Source<'_> {
                 file.display()
             )));
         }
-        let bytes =
-            bytes::read_file(&file, MAX_KERNEL_BYTES).map_err(|error| SceneIoError::io(&file, "read", error))?;
+        let bytes = bytes::read_file(&file, MAX_KERNEL_BYTES)
+            .map_err(|error| SceneIoError::io(&file, "read", error))?;
         let limits = Limits { bytes: MAX_KERNEL_BYTES, ..Limits::default() };
         let array = npy_from_bytes(&bytes, &file, &limits)?;
         let [plane] = array.planes.as_slice() else {

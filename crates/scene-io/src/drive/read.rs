@@ -286,7 +286,8 @@ impl Source<'_> {
             Ok(points) if (3..=2001).contains(&points) && points % 2 == 1 => Ok(points),
             _ => {
                 let points = key.get_ref();
-                let message = format!("`drive.map_points` is {points}; expected an odd number from 3 to 2001");
+                let message =
+                    format!("`drive.map_points` is {points}; expected an odd number from 3 to 2001");
                 Err(self.error(key.span(), message))
             }
         }

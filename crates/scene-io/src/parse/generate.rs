@@ -117,7 +117,13 @@ impl Source<'_> {
             ("crater_largest_m", &keys.crater_largest_m, &mut craters.largest, 0.01..=1e4, "metres"),
             ("crevasse_width_m", &keys.crevasse_width_m, &mut crevasses.width, 1e-3..=100.0, "metres"),
             ("crevasse_depth_m", &keys.crevasse_depth_m, &mut crevasses.depth, 1e-3..=1e3, "metres"),
-            ("crevasse_overhang_m", &keys.crevasse_overhang_m, &mut crevasses.overhang, 0.0..=100.0, "metres"),
+            (
+                "crevasse_overhang_m",
+                &keys.crevasse_overhang_m,
+                &mut crevasses.overhang,
+                0.0..=100.0,
+                "metres",
+            ),
         ];
         for (name, key, slot, range, unit) in numbers {
             self.number(key, &format!("terrain.generate.{name}"), slot, range, unit)?;

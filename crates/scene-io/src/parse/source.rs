@@ -96,7 +96,8 @@ impl Source<'_> {
         let Some(key) = key else { return Ok(()) };
         let value = *key.get_ref();
         if !range.contains(&value) {
-            let message = format!("`{name}` is {value}; expected {} to {} {unit}", range.start(), range.end());
+            let message =
+                format!("`{name}` is {value}; expected {} to {} {unit}", range.start(), range.end());
             return Err(self.error(key.span(), message.trim_end()));
         }
         let Ok(value) = T::try_from(value) else { unreachable!("`{name}`: a range within its type") };

@@ -192,7 +192,11 @@ fn count(
     Ok(count)
 }
 
-fn camera(source: &Source, keys: CameraKeys, places: &mut FieldPlaces) -> Result<Mounted<Camera>, SceneIoError> {
+fn camera(
+    source: &Source,
+    keys: CameraKeys,
+    places: &mut FieldPlaces,
+) -> Result<Mounted<Camera>, SceneIoError> {
     let scene_from_sensor = pose(keys.scene_from_camera, "camera", "camera.scene_from_camera", places);
     let key = |name: &str| format!("camera.{name}");
     // An error of "camera.width x height" points to the width: its field starts so.
