@@ -22,7 +22,7 @@ const DEFAULT_RANDOM_FACES: usize = 10_000;
 /// Distance between posts, metres.
 const POST_SPACING_M: RangeInclusive<f64> = 1e-3..=1e4;
 
-#[derive(Default, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GenerateKeys {
     kind: Key<String>,

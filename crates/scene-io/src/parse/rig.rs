@@ -64,7 +64,7 @@ struct FilterKeys {
     index: Key<f64>,
 }
 
-#[derive(Default, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BeamKeys {
     position_m: Key<Vec<f64>>,

@@ -12,7 +12,7 @@ use crate::parse::source::Source;
 use crate::plan::{DemPart, ScenePlan, Terrain};
 use crate::scene_error::SceneIoError;
 
-#[derive(Default, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TerrainKeys {
     builtin: Key<String>,
