@@ -157,7 +157,10 @@ fn load_rig(
     finish(source, plan, parts, mesh, overrides).map_err(|error| match error {
         // A vehicle off the ground is the fault of a line in the file, unless the command line put it there.
         SceneIoError::NoGround { x, y, ground, .. } if overrides.at.is_none() => {
-            let message = format!("`vehicle.position_m`: no ground under ({x}, {y}); expected a place within {ground}, or a height as the third number");
+            let message = format!(
+                "`vehicle.position_m`: no ground under ({x}, {y}); expected a place within {ground}, or a height as \
+                 the third number"
+            );
             file.error(position_span, message)
         }
         other => other,

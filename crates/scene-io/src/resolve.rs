@@ -67,8 +67,8 @@ pub(crate) fn resolve(
     Scene::new(mesh, camera, beams.collect(), atmosphere, plan.flux_model)
 }
 
-/// Place, seen from above, where a vehicle can stand and that is nearest to the centre of the ground: the centre itself,
-/// else the middle of the nearest face that is not too steep. `None` if there is no such face.
+/// Place for a vehicle, seen from above: the centre of the ground, else the middle of the nearest face that is not too
+/// steep. `None` if there is no such face.
 pub(crate) fn central_place(mesh: &Mesh) -> Option<[f64; 2]> {
     let [low, high] = mesh.bounds()?;
     let centre = 0.5 * low + 0.5 * high;

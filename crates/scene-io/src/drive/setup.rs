@@ -16,9 +16,9 @@ const DEFAULT_PENCILS_PER_PIXEL: f64 = 4.0;
 /// A drive as a scene file describes it, in SI. All that a file leaves out has the default of `rover` or of the sensor
 /// preset.
 ///
-/// Keys are written straight into these values while the file is read, so that a message can point to its key. Poses of
-/// the rig, start and heading are known later, once the ground is loaded and the vehicle stands on it:
-/// [`DriveSetup::place`] is the step that remains.
+/// The keys are written straight into these values while the file is read, so that a message can point to its key. Rig,
+/// start and heading follow later, once the ground is loaded and the vehicle stands on it: [`DriveSetup::place`] is the
+/// step that remains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveSetup {
     /// Plan of the rover.
@@ -35,14 +35,16 @@ pub struct DriveSetup {
     pub subtract_unlit: bool,
     /// Minimum number of pencils across each pixel of the camera; beams with fewer get more columns.
     pub pencils_per_pixel: f64,
-    /// Light or electronics in words, if [`default_threshold`] is in use and does not account for them.
+    /// Change of the light or the electronics, in words, that the [`default_threshold`] in use does not account for.
+    /// `None`: no such change, or the file gives the threshold. The numbers alone cannot tell: a file may give the
+    /// default.
     pub threshold_ignores: Option<&'static str>,
 }
 
 /// Default threshold between lit and dark pixels for a sensor preset, DN; for an unknown name that of `ideal`.
 ///
-/// CHOICE: about a fiftieth of a stripe of the default rig (24,000, 84 and 1620 DN, docs/theory/sensor.md) above the bias,
-/// so that a stripe 10 m away still passes; several times what noise reaches.
+/// CHOICE: about a fiftieth of a stripe of the default rig (24,000, 84 and 1620 DN, docs/theory/sensor.md) above the
+/// bias, so that a stripe 10 m away still passes; several times what noise reaches.
 pub fn default_threshold(preset: &str) -> f64 {
     match preset {
         "ccd_1989" => 4.0,
@@ -96,8 +98,8 @@ impl DriveSetup {
         self.fit_to_camera();
     }
 
-    /// Places the drive in a resolved scene, with the vehicle at `vehicle` in the global frame: sets rig, start, heading,
-    /// air and model of the flux, and the diffraction of the rig's camera.
+    /// Places the drive in a resolved scene, with the vehicle at `vehicle` in the global frame. Sets rig, start,
+    /// heading, air and model of the flux, and fits optics and sensor to the rig.
     pub fn place(&mut self, scene: &Scene, vehicle: &Pose) {
         let forward = vehicle.rotate(DVec3::X);
         self.plan.rig = rig_of(scene, vehicle);

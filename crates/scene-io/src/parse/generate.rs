@@ -96,7 +96,8 @@ impl Source<'_> {
     /// Mars-like ground of the preset `name`; `place` is that of all keys.
     fn mars(&self, name: &str, keys: &GenerateKeys, place: Range<usize>) -> Result<Terrain, SceneIoError> {
         if let Some(faces) = &keys.faces {
-            let message = "`terrain.generate.faces` beside `preset`; expected `post_spacing_m` and `rock_smallest_m`, from which they follow";
+            let message = "`terrain.generate.faces` beside `preset`; expected `post_spacing_m` and \
+                           `rock_smallest_m`, from which they follow";
             return Err(self.error(faces.span(), message));
         }
         let seed = self.seed(&keys.seed)?;

@@ -1,4 +1,4 @@
-//! Scene TOML to a [`crate::plan::ScenePlan`]: each key is checked alone, and each error points to its place in the file.
+//! Scene TOML to a [`crate::plan::ScenePlan`]. Each key is checked alone; each error points to its place in the file.
 
 pub(crate) mod dem;
 pub(crate) mod generate;

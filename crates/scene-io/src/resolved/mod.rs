@@ -1,4 +1,4 @@
-//! Resolved scenes: scene files of `kind = "resolved"` with all numbers of a scene and all poses. Keys: `docs/guide/scene.md`.
+//! Resolved scenes: scene files of `kind = "resolved"`, with all numbers and poses of a scene.
 
 pub(crate) mod read;
 pub(crate) mod write;

@@ -121,8 +121,8 @@ fn far_ground_keeps_its_precision() {
     assert_eq!(scene.flux_model(), FluxModel::Eq1);
     let origin = scene.mesh().origin();
     near(origin, DVec3::new(1e6, -2e6, 100.0), 20.0);
-    // The sensors' offsets from the vehicle are those of the default rig to 1e-14 m: nothing was added to a coordinate of
-    // 1e6 m, whose spacing of doubles is 1e-10 m.
+    // The sensors' offsets from the vehicle are those of the default rig to 1e-14 m: nothing was added to a coordinate
+    // of 1e6 m, whose spacing of doubles is 1e-10 m.
     let vehicle = loaded.vehicle.position - origin;
     let camera = scene.camera().scene_from_sensor.position;
     near(camera - vehicle, DVec3::new(0.3, 0.0, 1.5), 1e-14);
@@ -167,8 +167,8 @@ fn a_terrain_alone_gets_the_default_rig_at_its_centre() {
 #[test]
 fn around_a_hole_the_vehicle_stands_on_the_nearest_face_that_looks_up() {
     // Two ramps, 40 m to either side of the centre, which has no ground. The nearest middles of faces are
-    // ((-56 - 24 - 24) / 3, -16 / 3) = (-104 / 3, -16 / 3) of face 0 and its mirror image of face 3. They are equally near:
-    // the first face wins. There z = (x + 40) / 4 = 4 / 3.
+    // ((-56 - 24 - 24) / 3, -16 / 3) = (-104 / 3, -16 / 3) of face 0 and its mirror image of face 3. They are equally
+    // near: the first face wins. There z = (x + 40) / 4 = 4 / 3.
     let text = std::fs::read_to_string(scenes().join("ramp.gltf")).unwrap();
     let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
     json["nodes"] =
