@@ -6,7 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
 use raypencil::drive::{DriveJob, DriveProgress, drive as run, drive_json, drive_screen, write_drive};
-use raypencil::io::{DriveSettings, load};
+use raypencil::io::{DriveSetup, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
 use crate::console::{Spinner, say};
@@ -53,8 +53,9 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let mut loaded = load(&command.scene.scene, &command.scene.overrides())?;
     let mut words = command.scene.typed();
     if !command.to.is_empty() {
-        let settings = loaded.drive.unwrap_or_default();
-        loaded.drive = Some(DriveSettings { waypoints: command.to.clone(), ..settings });
+        let rig = loaded.rig();
+        let drive = loaded.drive.get_or_insert_with(|| DriveSetup::new(rig, Vec::new()));
+        drive.plan.route.waypoints = command.to.iter().map(|&to| to.into()).collect();
     }
     for [x, y] in &command.to {
         words.push_str(&format!(" --to {x},{y}"));

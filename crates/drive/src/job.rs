@@ -1,13 +1,13 @@
 //! What is driven: a scene and its drive become a rover's plan and a camera that turns light into numbers.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::sync::Arc;
 
-use crate::warnings::{PENCILS_PER_PIXEL, beams_out_of_order, blind_threshold, with_columns};
+use crate::warnings::{beams_out_of_order, blind_threshold, with_columns};
 use raypencil_files::FolderError;
 use raypencil_rover::{DrivePlan, Rig};
-use raypencil_scene::{FluxModel, Image, Mesh, Pose, SceneError};
-use raypencil_scene_io::{DriveSettings, LoadedScene, SceneSource, SensorWord, camera_chain, plan, sunlight};
+use raypencil_scene::{FluxModel, Image, Mesh, SceneError};
+use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource};
 use raypencil_sensor::{ImageSensor, Optics, Sunlight};
 
 /// A drive has no more frames: an hour of them at ten a second. Each leaves some two thousand edge points in memory.
@@ -52,8 +52,8 @@ pub struct DriveJob {
     pub mesh: Arc<Mesh>,
     /// The rover's plan.
     pub plan: DrivePlan,
-    /// Which sensor.
-    pub sensor_word: SensorWord,
+    /// Name of the sensor preset.
+    pub preset: &'static str,
     /// Step 6.
     pub optics: Optics,
     /// Steps 7 and 8.
@@ -68,27 +68,29 @@ pub struct DriveJob {
     pub warnings: Vec<String>,
 }
 
-/// The drive of a built-in ground: where it starts, and the rest.
-fn builtin(name: &str) -> Option<(DVec2, DriveSettings)> {
-    let drive = |waypoint: [f64; 2]| DriveSettings {
-        waypoints: vec![waypoint],
-        // CHOICE: a frame each 0.1 m, a grid spacing, which its own extrapolation closes; ten frames a second would be one
-        // each 3 cm.
-        frame_rate: Some(BUILTIN_FRAMES_PER_S),
-        // Twice each metre, and at the very end.
-        obstacles_every: Some(5),
-        // CHOICE: no scans: what figures 12 and 15 leave open, stripes alone could not see.
-        scans: Some(false),
-        ..DriveSettings::default()
-    };
+/// Start of the drive of a built-in ground, global x and y, metres; all of them end at the origin.
+fn builtin_start(name: &str) -> Option<DVec2> {
     match name {
         // "The vehicle starts at 7.5 meters from where the view from the camera in Figure 11 was taken." (§8)
-        "pyramids" => Some((DVec2::new(-7.5, 0.0), drive([0.0, 0.0]))),
+        "pyramids" => Some(DVec2::new(-7.5, 0.0)),
         // CHOICE: 6 m up to where the ground is calm and the scene's own view is from. The near stripe is 3.3 m ahead and the
         // vehicle's wheels reach 0.95 m back: only after 4.2 m has it seen what it stands on.
-        "facets" => Some((DVec2::new(-6.0, 0.0), drive([0.0, 0.0]))),
+        "facets" => Some(DVec2::new(-6.0, 0.0)),
         _ => None,
     }
+}
+
+/// Drive of a rig on a built-in ground.
+fn builtin(rig: Rig) -> DriveSetup {
+    let mut drive = DriveSetup::new(rig, vec![DVec2::ZERO]);
+    // CHOICE: a frame each 0.1 m, a grid spacing, which its own extrapolation closes; ten frames a second would be one each
+    // 3 cm.
+    drive.plan.route.frame_rate = BUILTIN_FRAMES_PER_S;
+    // Twice each metre, and at the very end.
+    drive.plan.obstacles_every = 5;
+    // CHOICE: no scans: what figures 12 and 15 leave open, stripes alone could not see.
+    drive.plan.scans = None;
+    drive
 }
 
 /// At 0.3 m/s a frame each 0.1 m.
@@ -105,34 +107,27 @@ impl DriveJob {
             return Err(DriveError::Unit);
         }
         let mut notes = Vec::new();
-        let vehicle = loaded.vehicle;
-        let (start, settings) = match (&loaded.drive, &loaded.source) {
-            (Some(settings), _) => (vehicle.position.truncate(), settings.clone()),
+        let (mut drive, start) = match (&loaded.drive, &loaded.source) {
+            (Some(drive), _) => (drive.clone(), None),
             (None, SceneSource::Builtin(name)) => {
-                let (start, settings) = builtin(name).ok_or(DriveError::NoDrive)?;
+                let start = builtin_start(name).ok_or(DriveError::NoDrive)?;
                 notes.push(
                     "built-in drive: a frame each 0.1 m, not ten a second, and no vertical scans".to_string(),
                 );
-                (at.map_or(start, DVec2::from_array), settings)
+                (builtin(loaded.rig()), Some(at.map_or(start, DVec2::from_array)))
             }
             (None, _) => return Err(DriveError::NoDrive),
         };
-        // Localisation are on the vehicle wherever it stands.
-        let position = vehicle.position - scene.mesh().origin();
-        let rig = Rig::from_scene(scene, Pose { position, ..vehicle });
-        let forward = vehicle.rotate(DVec3::X);
-        let heading = libm::atan2(forward.y, forward.x);
+        // A drive from a file was placed by the loader, but the scene may have changed since.
+        drive.place(scene, &loaded.vehicle);
+        drive.validate_camera()?;
+        let mut plan = drive.plan;
+        plan.route.start = start.unwrap_or(plan.route.start);
 
-        let sensor_word = settings.sensor.unwrap_or(SensorWord::Ideal);
-        let (optics, sensor) = camera_chain(&settings, sensor_word, &rig)?;
-
-        let (rig, mut warnings) =
-            with_columns(rig, settings.pencils_per_pixel.unwrap_or(PENCILS_PER_PIXEL), &mut notes);
-        warnings.extend(blind_threshold(&settings));
-        warnings.extend(beams_out_of_order(&settings, &rig));
-        let mut plan = plan(&settings, rig, start, heading, sensor_word);
-        plan.atmosphere = scene.atmosphere();
-        plan.flux_model = scene.flux_model();
+        let (rig, mut warnings) = with_columns(plan.rig, drive.pencils_per_pixel, &mut notes);
+        plan.rig = rig;
+        warnings.extend(drive.threshold_ignores.map(blind_threshold));
+        warnings.extend(beams_out_of_order(&plan));
         plan.validate("drive")?;
         Ok(Self {
             name: loaded.name.clone(),
@@ -140,11 +135,11 @@ impl DriveJob {
             sha256: loaded.source_sha256.clone(),
             mesh: Arc::clone(scene.mesh()),
             plan,
-            sensor_word,
-            optics,
-            sensor,
-            sunlight: settings.sun.map(sunlight),
-            subtract_unlit: settings.subtract_unlit == Some(true),
+            preset: drive.preset,
+            optics: drive.optics,
+            sensor: drive.sensor,
+            sunlight: drive.sunlight,
+            subtract_unlit: drive.subtract_unlit,
             notes,
             warnings,
         })

@@ -86,7 +86,7 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
                 run.renderers.join(" and ")
             ),
         ),
-        ("camera", job.sensor_word.word().to_string()),
+        ("camera", job.preset.to_string()),
         ("frames", format!("{}{short}{scans}, one each {} m", run.frames.len(), number(frame_step(route)))),
         ("driven", format!("{:.2} m at {} m/s", run.driven(), number(route.speed))),
         ("points", points),

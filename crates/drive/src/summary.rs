@@ -61,7 +61,7 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "arguments": job.arguments,
         "source_sha256": job.sha256,
         "renderers": run.renderers,
-        "sensor": job.sensor_word.word(),
+        "sensor": job.preset,
         "sun": job.sunlight.map(|sun| json!({
             "elevation_rad": sun.elevation,
             "azimuth_rad": sun.azimuth,

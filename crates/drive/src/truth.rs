@@ -9,7 +9,7 @@ use raypencil_rover::{
     DrivePlan, ElevationMap, LocalisationErrors, PositionFixes, Traversability, TraversabilityRules,
 };
 use raypencil_scene::Pose;
-use raypencil_scene_io::{SensorWord, threshold};
+use raypencil_scene_io::default_threshold;
 use raypencil_sensor::preset;
 use raypencil_terrain::HeightIndex;
 
@@ -194,11 +194,12 @@ impl NoiseLevel {
         }
     }
 
-    fn sensor(self) -> SensorWord {
+    /// Name of the sensor preset.
+    fn preset(self) -> &'static str {
         match self {
-            Self::None => SensorWord::Ideal,
-            Self::Modest => SensorWord::Cmos,
-            Self::Coarse => SensorWord::Ccd1989,
+            Self::None => "ideal",
+            Self::Modest => "cmos",
+            Self::Coarse => "ccd_1989",
         }
     }
 
@@ -234,13 +235,12 @@ impl NoiseLevel {
     /// The drive with these errors in place of its own, seeds 0, and the rules as the paper prints them: no gap is crossed.
     #[must_use]
     pub fn applied(self, mut job: DriveJob) -> DriveJob {
-        let word = self.sensor();
         let wavelength = job.sensor.wavelength;
-        let (optics, sensor) = preset(word.word()).expect("every word of scene files is a preset");
-        job.sensor_word = word;
+        job.preset = self.preset();
+        let (optics, sensor) = preset(job.preset).expect("the name of a preset");
         job.optics = optics;
         job.sensor = raypencil_sensor::ImageSensor { wavelength, seed: 0, ..sensor };
-        job.plan.extraction.detection = raypencil_rover::Detection::Fixed(threshold(word));
+        job.plan.extraction.detection = raypencil_rover::Detection::Fixed(default_threshold(job.preset));
         job.plan.errors = self.errors(job.plan.route.speed);
         job.plan.seed = 0;
         job.plan.rules = TraversabilityRules::for_vehicle(&job.plan.vehicle);

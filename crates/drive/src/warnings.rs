@@ -4,13 +4,8 @@
 use glam::DVec3;
 
 use raypencil_report::number;
-use raypencil_rover::{OnVehicle, Rig};
+use raypencil_rover::{DrivePlan, ExposureMode, OnVehicle, Rig};
 use raypencil_scene::Camera;
-use raypencil_scene_io::{DetectionWord, DriveSettings, ElectronicsSettings};
-
-/// Pencils across each pixel of the camera, along the fan. CHOICE: with fewer than two some columns of the image see no
-/// pencil and the stripe has gaps; four leave it unbroken on slanted ground too.
-pub(crate) const PENCILS_PER_PIXEL: f64 = 4.0;
 
 /// Below this a stripe is broken, and the run says so.
 const FEWEST_PENCILS_PER_PIXEL: f64 = 2.0;
@@ -55,27 +50,16 @@ pub(crate) fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -
 }
 
 /// A warning where beams that are told apart by their order, the lowest in the image first, look down the other way round.
-pub(crate) fn beams_out_of_order(settings: &DriveSettings, rig: &Rig) -> Option<String> {
+pub(crate) fn beams_out_of_order(plan: &DrivePlan) -> Option<String> {
     let down = |beam: &OnVehicle<_>| -beam.vehicle_from_sensor.rotate(DVec3::Z).z;
-    let steeper = rig.beams.windows(2).position(|pair| down(&pair[0]) <= down(&pair[1]))?;
-    (settings.lit_together == Some(true)).then(|| {
+    let steeper = plan.rig.beams.windows(2).position(|pair| down(&pair[0]) <= down(&pair[1]))?;
+    (plan.exposures == ExposureMode::Together).then(|| {
         format!("beam {steeper} looks down no more than beam {}: together, the lowest stripe is taken for beam 0's", steeper + 1)
     })
 }
 
-/// A warning where the usual threshold knows nothing of what the file changes. Where a sun is subtracted its noise is not.
-pub(crate) fn blind_threshold(settings: &DriveSettings) -> Option<String> {
-    let changed = if settings.sun.is_some() {
-        "a sun behind the stripes"
-    } else if settings.electronics != ElectronicsSettings::default() {
-        "other electronics"
-    } else {
-        return None;
-    };
-    let usual = settings.threshold.is_none() && settings.detection != Some(DetectionWord::Otsu);
-    usual.then(|| {
-        format!(
-            "the usual threshold is for the preset alone and knows nothing of {changed}: give threshold_dn"
-        )
-    })
+/// A warning that the default threshold does not account for light or electronics that the file changes. Where a sun is
+/// subtracted its noise is not.
+pub(crate) fn blind_threshold(ignored: &str) -> String {
+    format!("the usual threshold is for the preset alone and knows nothing of {ignored}: give threshold_dn")
 }

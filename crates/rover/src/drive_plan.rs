@@ -1,8 +1,7 @@
 //! The plan of a drive: all its settings. (Paper, §7 and §8)
 
-use raypencil_scene::{Atmosphere, FluxModel, SceneError};
+use raypencil_scene::{Atmosphere, FluxModel, SceneError, check_count};
 
-use crate::check::check_count;
 use crate::elevation_map::MapSize;
 use crate::localisation::LocalisationErrors;
 use crate::navigator_map::VectorRules;
@@ -98,7 +97,7 @@ impl DrivePlan {
             scans.validate(&name("scans"))?;
         }
         self.sweep.validate(&name("sweep"))?;
-        check_count(field, "obstacles_every", self.obstacles_every, 1, u64::MAX)?;
+        check_count(|| format!("{field}.obstacles_every"), self.obstacles_every, 1, u64::MAX)?;
         self.rules.validate(&name("rules"))?;
         self.grid.validate(&name("grid"))?;
         self.vectors.validate(&name("vectors"))

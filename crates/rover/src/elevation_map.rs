@@ -1,9 +1,7 @@
 //! The elevation map, the paper's local terrain map (LTM): a square grid that moves with the vehicle. (Paper, §7)
 
 use glam::{DVec2, DVec3};
-use raypencil_scene::SceneError;
-
-use crate::check::{check_count, check_range};
+use raypencil_scene::{SceneError, check_count, check_range};
 
 /// Size of an elevation map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -261,8 +259,8 @@ impl ElevationMap {
 impl MapSize {
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "spacing", self.spacing, 1e-4, 1e3, "m")?;
-        check_count(field, "points", self.points.into(), 3, 8191)?;
+        check_range(|| format!("{field}.spacing"), self.spacing, 1e-4, 1e3, "m")?;
+        check_count(|| format!("{field}.points"), self.points.into(), 3, 8191)?;
         if self.points.is_multiple_of(2) {
             return Err(SceneError::new(format!("{field}.points"), self.points, "an odd number"));
         }

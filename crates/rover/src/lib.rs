@@ -49,7 +49,6 @@
 //! assert_eq!(vectors[14].label, Label::Obstacle);
 //! ```
 
-mod check;
 mod drive;
 mod drive_plan;
 mod elevation_map;

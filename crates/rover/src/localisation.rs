@@ -1,10 +1,9 @@
 //! Localisation of the vehicle: inertial sensors with their errors, beacons, and the proximity sensor. (Paper, §7)
 
 use glam::DVec2;
-use raypencil_scene::SceneError;
+use raypencil_scene::{SceneError, check_count, check_range};
 use raypencil_terrain::HeightIndex;
 
-use crate::check::{check_count, check_range};
 use crate::noise_stream::{NoiseStream, Purpose};
 use crate::vehicle::{Attitude, Stance};
 
@@ -121,9 +120,9 @@ impl Localisation {
 impl LocalisationErrors {
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "position_drift.x", self.position_drift.x, -1e3, 1e3, "m/s")?;
-        check_range(field, "position_drift.y", self.position_drift.y, -1e3, 1e3, "m/s")?;
-        check_range(field, "position_walk", self.position_walk, 0.0, 1e3, "m")?;
+        check_range(|| format!("{field}.position_drift.x"), self.position_drift.x, -1e3, 1e3, "m/s")?;
+        check_range(|| format!("{field}.position_drift.y"), self.position_drift.y, -1e3, 1e3, "m/s")?;
+        check_range(|| format!("{field}.position_walk"), self.position_walk, 0.0, 1e3, "m")?;
         let bias = self.attitude_bias;
         for (name, angle) in [
             ("attitude_bias.heading", bias.heading),
@@ -131,13 +130,13 @@ impl LocalisationErrors {
             ("attitude_bias.roll_right", bias.roll_right),
             ("heading_drift", self.heading_drift),
         ] {
-            check_range(field, name, angle, -10.0, 10.0, "rad")?;
+            check_range(|| format!("{field}.{name}"), angle, -10.0, 10.0, "rad")?;
         }
-        check_range(field, "attitude_noise", self.attitude_noise, 0.0, 10.0, "rad")?;
-        check_range(field, "proximity_noise", self.proximity_noise, 0.0, 1e2, "m")?;
+        check_range(|| format!("{field}.attitude_noise"), self.attitude_noise, 0.0, 10.0, "rad")?;
+        check_range(|| format!("{field}.proximity_noise"), self.proximity_noise, 0.0, 1e2, "m")?;
         if let Some(fixes) = self.fixes {
-            check_count(field, "fixes.every_frames", fixes.every_frames, 1, u64::MAX)?;
-            check_range(field, "fixes.noise", fixes.noise, 0.0, 1e3, "m")?;
+            check_count(|| format!("{field}.fixes.every_frames"), fixes.every_frames, 1, u64::MAX)?;
+            check_range(|| format!("{field}.fixes.noise"), fixes.noise, 0.0, 1e3, "m")?;
         }
         Ok(())
     }

@@ -1,9 +1,8 @@
 //! The local navigator map: labelled vectors between the ends of neighbouring sectors. (Paper, §7)
 
 use glam::DVec2;
-use raypencil_scene::SceneError;
+use raypencil_scene::{SceneError, check_range};
 
-use crate::check::check_range;
 use crate::obstacle_map::{Label, ObstacleMap, SectorEnd};
 use crate::vehicle::Vehicle;
 
@@ -48,8 +47,8 @@ impl VectorRules {
 
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "large", self.large, 0.0, 1e3, "m")?;
-        check_range(field, "small", self.small, 0.0, 1e3, "m")
+        check_range(|| format!("{field}.large"), self.large, 0.0, 1e3, "m")?;
+        check_range(|| format!("{field}.small"), self.small, 0.0, 1e3, "m")
     }
 }
 

@@ -1,9 +1,8 @@
 //! The obstacle map: a radial grid over the elevation map, tested outwards along each sector. (Paper, §7)
 
 use glam::DVec2;
-use raypencil_scene::{Pose, SceneError};
+use raypencil_scene::{Pose, SceneError, check_count, check_range};
 
-use crate::check::{check_count, check_range};
 use crate::elevation_map::ElevationMap;
 use crate::traversability::{Traversability, TraversabilityRules, TraversabilityTest};
 use crate::vehicle::Vehicle;
@@ -87,11 +86,11 @@ impl RadialGrid {
 
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_count(field, "sectors", self.sectors.into(), 1, 100_000)?;
-        check_range(field, "half_angle", self.half_angle, 0.0, std::f64::consts::PI, "rad")?;
-        check_range(field, "first", self.first, 0.0, 1e3, "m")?;
-        check_range(field, "step", self.step, 1e-3, 1e3, "m")?;
-        check_range(field, "last", self.last, self.first, 1e3, "m (from `first`)")?;
+        check_count(|| format!("{field}.sectors"), self.sectors.into(), 1, 100_000)?;
+        check_range(|| format!("{field}.half_angle"), self.half_angle, 0.0, std::f64::consts::PI, "rad")?;
+        check_range(|| format!("{field}.first"), self.first, 0.0, 1e3, "m")?;
+        check_range(|| format!("{field}.step"), self.step, 1e-3, 1e3, "m")?;
+        check_range(|| format!("{field}.last"), self.last, self.first, 1e3, "m (from `first`)")?;
         // Each number may be in range while the grid has too many points.
         let radii = self.radii();
         let max_sectors = MAX_GRID_POINTS / radii;

@@ -1,9 +1,7 @@
 //! The commanded route: waypoints, speed, and the pose of the vehicle in each frame.
 
 use glam::DVec2;
-use raypencil_scene::SceneError;
-
-use crate::check::check_range;
+use raypencil_scene::{SceneError, check_range};
 
 /// A route of straight legs from a start over waypoints.
 ///
@@ -101,10 +99,10 @@ impl Route {
                 return Err(SceneError::new(name, point, "two numbers from -1e12 to 1e12 m"));
             }
         }
-        check_range(field, "heading", self.heading, -1e3, 1e3, "rad")?;
-        check_range(field, "speed", self.speed, 1e-4, 1e2, "m/s")?;
-        check_range(field, "turn_rate", self.turn_rate, 1e-4, 1e2, "rad/s")?;
-        check_range(field, "frame_rate", self.frame_rate, 1e-3, 1e4, "1/s")
+        check_range(|| format!("{field}.heading"), self.heading, -1e3, 1e3, "rad")?;
+        check_range(|| format!("{field}.speed"), self.speed, 1e-4, 1e2, "m/s")?;
+        check_range(|| format!("{field}.turn_rate"), self.turn_rate, 1e-4, 1e2, "rad/s")?;
+        check_range(|| format!("{field}.frame_rate"), self.frame_rate, 1e-3, 1e4, "1/s")
     }
 }
 

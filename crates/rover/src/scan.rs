@@ -1,8 +1,7 @@
 //! The vertical scan: when the vehicle stops to pan its beams, and through which angles. (Paper, §2 and §7)
 
-use raypencil_scene::SceneError;
+use raypencil_scene::{SceneError, check_count, check_range};
 
-use crate::check::{check_count, check_range};
 use crate::elevation_map::Inconsistency;
 use crate::rig::Pan;
 
@@ -43,9 +42,9 @@ impl Sweep {
 
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "from", self.from, -3.2, 3.2, "rad")?;
-        check_range(field, "to", self.to, -3.2, 3.2, "rad")?;
-        check_count(field, "steps", self.steps.into(), 1, 100_000)
+        check_range(|| format!("{field}.from"), self.from, -3.2, 3.2, "rad")?;
+        check_range(|| format!("{field}.to"), self.to, -3.2, 3.2, "rad")?;
+        check_count(|| format!("{field}.steps"), self.steps.into(), 1, 100_000)
     }
 }
 
@@ -116,10 +115,10 @@ impl ScanRule {
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         if let Some(every) = self.every {
-            check_range(field, "every", every, 1e-3, 1e9, "m")?;
+            check_range(|| format!("{field}.every"), every, 1e-3, 1e9, "m")?;
         }
         if let Some(inconsistency) = self.inconsistency {
-            check_range(field, "inconsistency", inconsistency, 0.0, 1e3, "m")?;
+            check_range(|| format!("{field}.inconsistency"), inconsistency, 0.0, 1e3, "m")?;
         }
         Ok(())
     }

@@ -1,9 +1,8 @@
 //! Step 9: extraction of the light stripes, column by column. (Paper, §3 and §6)
 
 use rayon::prelude::*;
-use raypencil_scene::{Image, SceneError};
+use raypencil_scene::{Image, SceneError, check_range};
 
-use crate::check::check_range;
 use crate::otsu::otsu_threshold;
 
 /// Method that separates lit from dark pixels. "Finally, thresholding or edge detection is performed to extract the
@@ -179,11 +178,13 @@ impl Extraction {
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         match self.detection {
-            Detection::Fixed(level) => check_range(field, "level", level, -1e30, 1e30, "")?,
-            Detection::Gradient(level) => check_range(field, "gradient", level, 1e-300, 1e30, "")?,
+            Detection::Fixed(level) => check_range(|| format!("{field}.level"), level, -1e30, 1e30, "")?,
+            Detection::Gradient(level) => {
+                check_range(|| format!("{field}.gradient"), level, 1e-300, 1e30, "")?
+            }
             Detection::Otsu => {}
         }
-        check_range(field, "least_rows", f64::from(self.least_rows), 1.0, 1e6, "rows")
+        check_range(|| format!("{field}.least_rows"), f64::from(self.least_rows), 1.0, 1e6, "rows")
     }
 }
 

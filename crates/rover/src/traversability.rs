@@ -1,9 +1,8 @@
 //! Traversability of a point: the slope tests and the belly test of a vehicle with its front axle there. (Paper, §7)
 
 use glam::DVec2;
-use raypencil_scene::SceneError;
+use raypencil_scene::{SceneError, check_range};
 
-use crate::check::check_range;
 use crate::elevation_map::ElevationMap;
 use crate::gap::GapRule;
 use crate::vehicle::Vehicle;
@@ -193,11 +192,17 @@ impl TraversabilityRules {
             ("slopes.length", length),
             ("slopes.closer", closer),
         ] {
-            check_range(field, name, slope, 0.0, 1e3, "(rise over distance)")?;
+            check_range(|| format!("{field}.{name}"), slope, 0.0, 1e3, "(rise over distance)")?;
         }
-        check_range(field, "closer_share", self.closer_share, 1e-3, 1.0, "of half the wheelbase")?;
+        check_range(
+            || format!("{field}.closer_share"),
+            self.closer_share,
+            1e-3,
+            1.0,
+            "of half the wheelbase",
+        )?;
         if let Some(gaps) = self.gaps {
-            check_range(field, "gaps.max_width", gaps.max_width, 0.0, 1e2, "m")?;
+            check_range(|| format!("{field}.gaps.max_width"), gaps.max_width, 0.0, 1e2, "m")?;
         }
         Ok(())
     }

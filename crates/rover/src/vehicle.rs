@@ -1,10 +1,8 @@
 //! The vehicle: its dimensions, and how it stands on the ground.
 
 use glam::{DVec2, DVec3};
-use raypencil_scene::{Pose, SceneError};
+use raypencil_scene::{Pose, SceneError, check_count, check_range};
 use raypencil_terrain::HeightIndex;
-
-use crate::check::{check_count, check_range};
 
 /// Dimensions of a vehicle on four wheels.
 ///
@@ -185,17 +183,16 @@ impl Vehicle {
             ("wheel_width", self.wheel_width),
             ("clearance", self.clearance),
         ] {
-            check_range(field, name, length, 1e-2, 1e2, "m")?;
+            check_range(|| format!("{field}.{name}"), length, 1e-2, 1e2, "m")?;
         }
         check_range(
-            field,
-            "wheel_radius",
+            || format!("{field}.wheel_radius"),
             self.wheel_radius,
             1e-2,
             0.5 * self.wheelbase,
             "m (half the wheelbase)",
         )?;
-        check_range(field, "wheel_width", self.wheel_width, 1e-2, self.track, "m (the track)")?;
-        check_count(field, "rim_points", self.rim_points.into(), 1, 1001)
+        check_range(|| format!("{field}.wheel_width"), self.wheel_width, 1e-2, self.track, "m (the track)")?;
+        check_count(|| format!("{field}.rim_points"), self.rim_points.into(), 1, 1001)
     }
 }

@@ -1,17 +1,30 @@
-//! SHA-256 of what a scene comes from, and of what it came to.
+//! SHA-256 of the numbers of a scene.
 
 use sha2::{Digest, Sha256};
 
 use raypencil_files::{Sha, hex};
 use raypencil_scene::{Filter, FluxModel, Mesh, Pose, Profile, Scene};
 
-/// The SHA-256 of a resolved scene: of every number that a renderer sees, as little-endian bytes, and of
-/// no name. Two files that resolve to the same numbers have the same digest.
+/// SHA-256 of a resolved scene, in hexadecimal digits. It covers every number that a renderer sees, as little-endian
+/// bytes, and no name: two files that resolve to the same numbers have the same digest.
+///
+/// ```
+/// use raypencil_scene_io::{load_text, scene_sha256};
+///
+/// // The wavelength 810 nm is the default, so writing it out changes no number; 811 nm does.
+/// let sha = |nm: &str| {
+///     let text = format!("version = 1\n[[beam]]\n{nm}\n");
+///     load_text(&text, "scene").map(|loaded| scene_sha256(&loaded.scene))
+/// };
+/// assert_eq!(sha("")?, sha("wavelength_nm = 810")?);
+/// assert_ne!(sha("")?, sha("wavelength_nm = 811")?);
+/// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+/// ```
 pub fn scene_sha256(scene: &Scene) -> String {
     hex(&resolved(scene))
 }
 
-/// See [`scene_sha256`].
+/// [`scene_sha256`] as bytes.
 pub(crate) fn resolved(scene: &Scene) -> Sha {
     let mut hash = Numbers(Sha256::new());
     hash.mesh(scene.mesh());
@@ -55,14 +68,14 @@ pub(crate) fn resolved(scene: &Scene) -> Sha {
     hash.0.finalize().into()
 }
 
-/// The SHA-256 of a mesh alone.
+/// SHA-256 of a mesh alone.
 pub(crate) fn mesh(mesh: &Mesh) -> Sha {
     let mut hash = Numbers(Sha256::new());
     hash.mesh(mesh);
     hash.0.finalize().into()
 }
 
-/// A hash that is fed numbers. Every list is preceded by its length, so that no two lists run together.
+/// Hash of numbers. Before every list stands its length, so that no two lists run together.
 struct Numbers(Sha256);
 
 impl Numbers {

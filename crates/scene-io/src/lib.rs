@@ -1,49 +1,63 @@
-//! Every file format of raypencil, in and out. Nothing else below the harness touches files.
+//! Scenes from files: a built-in name, a scene TOML, a glTF terrain or an elevation model becomes a
+//! [`raypencil_scene::Scene`], and a scene becomes a file again.
 //!
-//! * [`load`]: a built-in name, a scene TOML or a glTF terrain becomes a [`LoadedScene`]. The keys of a
-//!   scene file are described in `docs/guide/scene.md`.
-//! * [`write_resolved`]: a scene's own numbers, which [`load`] gives back bit for bit.
-//! * [`load_mesh`]: a `.glb` or `.gltf` file becomes a [`raypencil_scene::Mesh`]; [`write_glb`] and [`mesh_of_offsets`]
-//!   keep one bit for bit, [`write_terrain_glb`] does so for people, with the ground where it belongs.
-//! * [`read_dem`]: the heights of a GeoTIFF, all or a part of them, and the mesh that they make.
-//! * [`write_exr_map`], [`read_exr_map`]: the maps of one sensor as OpenEXR; [`ExrMap`] for files of any
-//!   channels. Conventions are in `docs/formats/files.md`.
-//! * [`read_npy`], [`write_npy`], [`read_pfm`], [`write_pfm`]: arrays of numbers, as NumPy and image programs
-//!   have them.
-//! * [`read_channels`]: a recording of any program, in any of these formats, as [`Channels`].
-//! * [`write_geotiff`], [`write_occupancy`], [`write_ply`], [`vectors_geojson`], [`vectors_csv`], [`camera_info`]: what a
-//!   drive leaves behind, as map servers, geographers and robots have it.
-//! * [`Manifest`]: what belongs to a pack, each file by its digest.
-//! * [`write_atomically`]: a file is either the old one or the whole new one, never a part.
+//! Source: the paper describes its scenes by pictures; the keys are this project's own, described in
+//! `docs/guide/scene.md` and `docs/guide/drive.md`. The files follow each other from floor to top:
 //!
-//! Every error names the file, the place in it, what was found there and what was expected.
+//! 1. `scene_error`, `toml_problem`: errors, which name the file, the line, the value found and the values expected;
+//! 2. `parse/key`, `parse/source`, `parse/shared`: values with their places, and the readers that check them;
+//! 3. `drive`: keys of `[drive]`, written straight into a [`DriveSetup`];
+//! 4. `plan`: a scene as checked numbers; `parse/kind`, `parse/rig`, `parse/terrain` (with `dem`, `generate`) and
+//!    `parse/scene` fill it in;
+//! 5. `resolve`: a plan and a mesh become a scene; `resolved`: files that hold the scene's own numbers;
+//! 6. `digest`: SHA-256 of a scene's numbers;
+//! 7. `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
 //!
-//! ```no_run
-//! use raypencil_scene_io::{Overrides, load};
-//! let loaded = load("data/scenes/default.toml", &Overrides::default())?;
-//! println!("{}: {} faces", loaded.name, loaded.scene.mesh().faces().len());
+//! `subject` stands alone: a scene under test, and the commands that show it.
+//!
+//! ```
+//! use raypencil_scene_io::load_text;
+//!
+//! // Beam 0 stands at x = 0.3 m, 2 m up, and looks down by 45 degrees: it meets level ground at x = 2.3 m.
+//! let text = "version = 1
+//! [vehicle]
+//! position_m = [0, 0, 0]
+//! [[beam]]
+//! position_m = [0.3, 0, 2]
+//! pitch_down_deg = 45
+//! ";
+//! let beam = load_text(text, "steep")?.scene.beams()[0];
+//! let (position, axis) = (beam.scene_from_sensor.position, beam.scene_from_sensor.rotate(glam::DVec3::Z));
+//! let meets = position + axis * (position.z / -axis.z);
+//! assert!((meets - glam::DVec3::new(2.3, 0.0, 0.0)).length() < 1e-12);
 //! # Ok::<(), raypencil_scene_io::SceneIoError>(())
 //! ```
 
-pub mod digest;
+mod digest;
 mod drive;
-mod keys;
+mod ground;
 mod load;
+mod overrides;
 mod parse;
 mod plan;
 mod resolve;
 mod resolved;
 mod scene_error;
+mod scene_source;
 mod subject;
 mod toml_problem;
 
 pub use digest::scene_sha256;
-pub use drive::camera::{MOST_FINE_CELLS, camera_chain, sunlight};
-pub use drive::camera_settings::{BlurSettings, ElectronicsSettings, OpticsSettings};
-pub use drive::plan::{plan, threshold};
-pub use drive::settings::{DetectionWord, DriveSettings, PlaceWord, SensorWord, SunSettings};
-pub use load::{LoadedScene, MAX_TOML_BYTES, Overrides, SceneSource, load, load_text};
+pub use drive::setup::{DriveSetup, default_threshold};
+pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_text};
+pub use overrides::Overrides;
 pub use resolved::write::write_resolved;
 pub use scene_error::SceneIoError;
+pub use scene_source::SceneSource;
 pub use subject::{Subject, probe_command, quoted};
 pub use toml_problem::TomlProblem;
+
+/// The README's example, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,29 +1,33 @@
-//! From checked numbers and a mesh to a scene: poses are composed here, and rounded once.
+//! From checked numbers and a mesh to a scene.
 
 use glam::DVec3;
 use std::sync::Arc;
 
-use crate::plan::{Mount, Plan, Vehicle};
+use raypencil_rover::{OnVehicle, Rig};
 use raypencil_scene::{Atmosphere, Mesh, Mounted, Pose, Scene, SceneError};
 
-/// A turn about z, then y, then x, each about the axis that the turns before it left: yaw (or heading) to
-/// the left, pitch down, roll to the right. In a frame with x forward, y left and z up all three are
-/// right-handed.
+use crate::plan::{Mount, ScenePlan, VehiclePlacement};
+
+/// Minimum cosine between the vertical and the normal of a face on which a vehicle can stand: slopes up to 60 degrees.
+const MIN_COS_SLOPE: f64 = 0.5;
+
+/// Turns about z, then y, then x, each about the axis as the turns before left it: yaw (or heading) to the left, pitch
+/// down, roll to the right. In a frame with x forward, y left and z up all three are right-handed.
 fn turned(yaw_left_deg: f64, pitch_down_deg: f64, roll_right_deg: f64) -> Pose {
     let turn = |axis, degrees: f64| Pose::from_axis_angle(axis, degrees.to_radians());
     turn(DVec3::Z, yaw_left_deg) * turn(DVec3::Y, pitch_down_deg) * turn(DVec3::X, roll_right_deg)
 }
 
 impl Mount {
-    /// Where the sensor stands on the vehicle.
+    /// Pose of the sensor in the vehicle frame.
     fn vehicle_from_sensor(&self) -> Pose {
         let turned = turned(self.yaw_left_deg, self.pitch_down_deg, self.roll_right_deg);
         Pose { position: self.position, ..turned * Pose::VEHICLE_FROM_FORWARD_SENSOR }
     }
 }
 
-impl Vehicle {
-    /// Where the vehicle stands, or `None` if it should stand on ground that is not there.
+impl VehiclePlacement {
+    /// Pose of the vehicle; `None` if it should stand on the ground where there is none.
     pub(crate) fn global_from_vehicle(&self, mesh: &Mesh) -> Option<Pose> {
         let [x, y] = self.position;
         let z = match self.height {
@@ -35,10 +39,21 @@ impl Vehicle {
     }
 }
 
-/// Puts the scene together.
-pub(crate) fn resolve(plan: &Plan, mesh: Arc<Mesh>, global_from_vehicle: Pose) -> Result<Scene, SceneError> {
-    // The origin is taken off first: at 1e6 m, sensor offsets added to global coordinates would lose seven
-    // digits.
+/// Rig of a plan, in the vehicle frame.
+pub(crate) fn mounted_rig(plan: &ScenePlan) -> Rig {
+    fn mounted<S: Copy>((mount, sensor): &(Mount, S)) -> OnVehicle<S> {
+        OnVehicle { vehicle_from_sensor: mount.vehicle_from_sensor(), sensor: *sensor }
+    }
+    Rig { camera: mounted(&plan.camera), beams: plan.beams.iter().map(mounted).collect() }
+}
+
+/// Scene of a plan. Each pose is composed and rounded once.
+pub(crate) fn resolve(
+    plan: &ScenePlan,
+    mesh: Arc<Mesh>,
+    global_from_vehicle: Pose,
+) -> Result<Scene, SceneError> {
+    // Subtract the origin first: at 1e6 m, sensor offsets added to global coordinates would lose seven digits.
     let scene_from_vehicle =
         Pose { position: global_from_vehicle.position - mesh.origin(), ..global_from_vehicle };
     let (mount, camera) = plan.camera;
@@ -52,8 +67,8 @@ pub(crate) fn resolve(plan: &Plan, mesh: Arc<Mesh>, global_from_vehicle: Pose) -
     Scene::new(mesh, camera, beams.collect(), atmosphere, plan.flux_model)
 }
 
-/// The place nearest the centre of the ground, seen from above, where a vehicle can stand: the centre
-/// itself, else the middle of the face that is nearest to it among those that look up.
+/// Place for a vehicle, seen from above: the centre of the ground, else the middle of the nearest face that is not too
+/// steep. `None` if there is no such face.
 pub(crate) fn central_place(mesh: &Mesh) -> Option<[f64; 2]> {
     let [low, high] = mesh.bounds()?;
     let centre = 0.5 * low + 0.5 * high;
@@ -71,14 +86,13 @@ pub(crate) fn central_place(mesh: &Mesh) -> Option<[f64; 2]> {
     for face in mesh.faces() {
         let [a, b, c] = face.map(vertex);
         let normal = (b - a).cross(c - a);
-        // A vehicle does not stand on a wall: steeper than 60 degrees is none of ours.
-        if normal.z <= 0.5 * normal.length() {
+        if normal.z <= MIN_COS_SLOPE * normal.length() {
             continue;
         }
         let middle = (a + b + c) / 3.0;
         let (dx, dy) = (middle.x - centre.x, middle.y - centre.y);
         let distance = dx * dx + dy * dy;
-        // Strictly nearer: of equals the lowest index stays.
+        // Strictly nearer: of equally near faces the first one stays.
         if nearest.is_none_or(|(least, _)| distance < least) {
             nearest = Some((distance, middle));
         }
@@ -86,7 +100,7 @@ pub(crate) fn central_place(mesh: &Mesh) -> Option<[f64; 2]> {
     nearest.map(|(_, middle)| global(middle))
 }
 
-/// The extent of the ground seen from above, in words.
+/// Extent of the ground seen from above, in words.
 pub(crate) fn extent(mesh: &Mesh) -> String {
     match mesh.bounds() {
         None => "a ground that has faces (this one has none)".to_string(),

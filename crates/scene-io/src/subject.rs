@@ -1,7 +1,39 @@
-use raypencil_scene::Place;
-use raypencil_scene::{Scene, SensorId};
+//! A scene under test, and the commands that people type to see it.
 
-/// The command that shows everything about one ray.
+use raypencil_scene::{Place, Scene, SensorId};
+
+/// Scene under test, with the names that people give it.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// Resolved scene.
+    pub scene: Scene,
+    /// Short name, fit for a folder.
+    pub name: String,
+    /// Words after `raypencil validate` or `raypencil probe` that give this scene and its renderers again.
+    pub arguments: String,
+    /// SHA-256 of what defines the scene, in hexadecimal digits.
+    pub sha256: String,
+}
+
+/// Command that shows everything about one ray.
+///
+/// ```
+/// use raypencil_scene::{Place, SensorId};
+/// use raypencil_scene_io::{Overrides, Subject, load, probe_command, quoted};
+///
+/// let loaded = load("pyramids", &Overrides::default())?;
+/// let subject = Subject {
+///     scene: loaded.scene,
+///     name: loaded.name,
+///     // A shell splits words at spaces, so this path needs quotes.
+///     arguments: quoted("my scenes/pyramids.toml"),
+///     sha256: loaded.source_sha256,
+/// };
+/// let place = Place { sensor: SensorId::Beam(1), i: 412, j: 3 };
+/// let command = "raypencil probe 'my scenes/pyramids.toml' --beam 1 --pencil 412,3";
+/// assert_eq!(probe_command(&subject, place), command);
+/// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+/// ```
 pub fn probe_command(subject: &Subject, place: Place) -> String {
     let Place { sensor, i, j } = place;
     let arguments = &subject.arguments;
@@ -11,7 +43,16 @@ pub fn probe_command(subject: &Subject, place: Place) -> String {
     }
 }
 
-/// A word as a shell takes it for one.
+/// Text that a shell reads as this one word, with quotes only if they are needed.
+///
+/// ```
+/// use raypencil_scene_io::quoted;
+///
+/// assert_eq!(quoted("data/scenes/default.toml"), "data/scenes/default.toml");
+/// assert_eq!(quoted("a b"), "'a b'");
+/// // A quote ends the quoted text, is escaped, and the text goes on.
+/// assert_eq!(quoted("it's"), r"'it'\''s'");
+/// ```
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "._-/+@%:,=".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -19,17 +60,4 @@ pub fn quoted(word: &str) -> String {
     } else {
         format!("'{}'", word.replace('\'', r"'\''"))
     }
-}
-
-/// The scene under test, and how people name it.
-#[derive(Debug, Clone)]
-pub struct Subject {
-    /// The resolved scene.
-    pub scene: Scene,
-    /// A short name, fit for a folder.
-    pub name: String,
-    /// The words after `raypencil validate` or `raypencil probe` that give this scene and its renderers again.
-    pub arguments: String,
-    /// SHA-256 of what defines the scene, in hexadecimal digits.
-    pub sha256: String,
 }

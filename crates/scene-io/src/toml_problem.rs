@@ -1,4 +1,4 @@
-//! A place in a scene TOML and what is wrong there, with the line to look at.
+//! An error at a line and column of a scene file, with that line for the reader.
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::borrow::Cow;
@@ -8,25 +8,25 @@ use thiserror::Error;
 
 use raypencil_files::shortened;
 
-/// The longest line that is shown, and the longest part of a file that is marked, bytes.
-const LONGEST: usize = 200;
+/// Maximum length of a line that is shown, and of the part of it that is marked, bytes.
+const MAX_SHOWN_BYTES: usize = 200;
 
-/// A line and column of a scene TOML and what is wrong there.
+/// Error at a line and column of a scene file.
 #[derive(Debug, Error, Diagnostic)]
 #[error("{file}:{line}:{column}: {message}")]
 #[diagnostic(code(raypencil::toml))]
 pub struct TomlProblem {
-    /// The file.
+    /// Path of the file.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What was found there and what was expected.
+    /// Key, value found and values expected.
     pub message: String,
     #[source_code]
     text: NamedSource<String>,
-    /// `None` if the place is too far to the right to be shown.
+    /// Bytes of the shown text; `None` if the place is too far to the right to be shown.
     #[label("here")]
     span: Option<SourceSpan>,
 }
@@ -41,37 +41,37 @@ impl TomlProblem {
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = 1 + before.bytes().filter(|&byte| byte == b'\n').count();
         let column = 1 + before[line_start..].chars().count();
-        // Long lines are cut, so the place moves up by what is gone before it.
+        // Long lines are cut: the place moves up by the bytes that are cut off before it.
         let shown: String = text.split_inclusive('\n').map(cut).collect();
         let lines_before =
             before[..line_start].split_inclusive('\n').map(|line| cut(line).len()).sum::<usize>();
         let shown_start = lines_before + start - line_start;
-        let length = span.end.saturating_sub(start).min(LONGEST);
+        let length = span.end.saturating_sub(start).min(MAX_SHOWN_BYTES);
         let shown_end = floor(&shown, (shown_start + length).min(shown.len()));
         // A place too far to the right is not shown at all.
-        let span = (start - line_start < LONGEST)
+        let span = (start - line_start < MAX_SHOWN_BYTES)
             .then(|| SourceSpan::new(shown_start.into(), shown_end.saturating_sub(shown_start)));
         let text = NamedSource::new(&file, shown);
         Self { file, line, column, message: shortened(message.into()), text, span }
     }
 
-    /// The bytes of the file that the caret marks.
+    /// Part of the file that the caret marks.
     pub fn marked(&self) -> &str {
         let Some(span) = &self.span else { return "" };
         self.text.inner().get(span.offset()..span.offset() + span.len()).unwrap_or("")
     }
 }
 
-/// A line, its end cut off if it is too long to be looked at.
+/// Line, with its end cut off if it is too long.
 fn cut(line: &str) -> Cow<'_, str> {
-    if line.len() <= LONGEST + 2 {
+    if line.len() <= MAX_SHOWN_BYTES + 2 {
         return line.into();
     }
     let end = if line.ends_with('\n') { "\n" } else { "" };
-    format!("{}...{end}", &line[..floor(line, LONGEST)]).into()
+    format!("{}...{end}", &line[..floor(line, MAX_SHOWN_BYTES)]).into()
 }
 
-/// The last place at or before `at` where a letter starts.
+/// Last start of a character at or before `at`.
 fn floor(text: &str, at: usize) -> usize {
     (0..=at).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
 }

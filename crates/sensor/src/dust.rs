@@ -1,8 +1,7 @@
 //! Dust on the front of the lens: it absorbs light and scatters a part of the rest. (Paper, step 6)
 
-use raypencil_scene::{Image, SceneError};
+use raypencil_scene::{Image, SceneError, check_range};
 
-use crate::check::check_range;
 use crate::{ImageLength, Kernel, convolve};
 
 /// Dust on the lens, evenly spread and far out of focus: it casts no shape on the image.
@@ -62,8 +61,8 @@ impl Dust {
     /// # Errors
     /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "transmission", self.transmission, 0.0, 1.0, "")?;
-        check_range(field, "halo_share", self.halo_share, 0.0, 1.0, "")?;
+        check_range(|| format!("{field}.transmission"), self.transmission, 0.0, 1.0, "")?;
+        check_range(|| format!("{field}.halo_share"), self.halo_share, 0.0, 1.0, "")?;
         self.halo_sigma.validate(&format!("{field}.halo_sigma"))
     }
 }

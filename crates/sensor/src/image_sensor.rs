@@ -2,9 +2,9 @@
 //! release 4.0.
 
 use rayon::prelude::*;
-use raypencil_scene::{Image, SceneError};
+use raypencil_scene::{Image, SceneError, check_range};
 
-use crate::check::{assert_same_size, check_range};
+use crate::same_size::assert_same_size;
 use crate::{NoiseSource, NoiseStream, photon_energy, poisson};
 
 /// Dark current: electrons that collect without light.
@@ -115,10 +115,10 @@ impl ImageSensor {
     ///
     /// ```
     /// use raypencil_scene::Image;
-    /// use raypencil_sensor::Sensor;
+    /// use raypencil_sensor::ImageSensor;
     ///
     /// // 8 bits, and 1 DN per electron: the converter clips at 255.
-    /// let sensor = Sensor { gain: 1.0, bits: 8, ..Sensor::ideal() };
+    /// let sensor = ImageSensor { gain: 1.0, bits: 8, ..ImageSensor::ideal() };
     /// let one_electron = 1.0 / sensor.photoelectrons(1.0);
     /// let flux = Image::from_cells(3, 1, vec![0.0, 200.0 * one_electron, 300.0 * one_electron]);
     /// assert_eq!(sensor.expose(&flux, None, 0).numbers.cells(), &[0, 200, 255]);
@@ -190,10 +190,10 @@ impl ImageSensor {
     ///
     /// ```
     /// use raypencil_scene::Image;
-    /// use raypencil_sensor::Sensor;
+    /// use raypencil_sensor::ImageSensor;
     ///
     /// // Without noise the background cancels: the difference is the laser's part.
-    /// let sensor = Sensor { gain: 1.0, bias: 7.0, ..Sensor::ideal() };
+    /// let sensor = ImageSensor { gain: 1.0, bias: 7.0, ..ImageSensor::ideal() };
     /// let one_electron = 1.0 / sensor.photoelectrons(1.0);
     /// let laser = Image::filled(4, 4, 100.0 * one_electron);
     /// let sun = Image::filled(4, 4, 30.0 * one_electron);
@@ -276,27 +276,44 @@ impl ImageSensor {
     /// # Errors
     /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "exposure", self.exposure, 0.0, 1e5, "s")?;
-        check_range(field, "wavelength", self.wavelength, 1e-8, 1e-3, "m")?;
-        check_range(field, "quantum_efficiency", self.quantum_efficiency, 0.0, 1.0, "")?;
-        check_range(field, "dark_current.rate", self.dark_current.rate, 0.0, 1e9, "electrons/s")?;
+        check_range(|| format!("{field}.exposure"), self.exposure, 0.0, 1e5, "s")?;
+        check_range(|| format!("{field}.wavelength"), self.wavelength, 1e-8, 1e-3, "m")?;
+        check_range(|| format!("{field}.quantum_efficiency"), self.quantum_efficiency, 0.0, 1.0, "")?;
         check_range(
-            field,
-            "dark_current.reference_temperature",
+            || format!("{field}.dark_current.rate"),
+            self.dark_current.rate,
+            0.0,
+            1e9,
+            "electrons/s",
+        )?;
+        check_range(
+            || format!("{field}.dark_current.reference_temperature"),
             self.dark_current.reference_temperature,
             50.0,
             500.0,
             "K",
         )?;
-        check_range(field, "dark_current.doubling", self.dark_current.doubling_kelvins, 1.0, 100.0, "K")?;
-        check_range(field, "dark_current.temperature", self.dark_current.temperature, 50.0, 500.0, "K")?;
-        check_range(field, "read_noise", self.read_noise, 0.0, 1e6, "electrons")?;
-        check_range(field, "prnu", self.prnu, 0.0, 1.0, "")?;
-        check_range(field, "dsnu", self.dsnu, 0.0, 1e6, "electrons")?;
-        check_range(field, "full_well", self.full_well, 1.0, f64::INFINITY, "electrons")?;
-        check_range(field, "gain", self.gain, 1e-9, 1e6, "DN per electron")?;
-        check_range(field, "bits", f64::from(self.bits), 1.0, 16.0, "bits")?;
-        check_range(field, "bias", self.bias, 0.0, self.max_number(), "DN")
+        check_range(
+            || format!("{field}.dark_current.doubling"),
+            self.dark_current.doubling_kelvins,
+            1.0,
+            100.0,
+            "K",
+        )?;
+        check_range(
+            || format!("{field}.dark_current.temperature"),
+            self.dark_current.temperature,
+            50.0,
+            500.0,
+            "K",
+        )?;
+        check_range(|| format!("{field}.read_noise"), self.read_noise, 0.0, 1e6, "electrons")?;
+        check_range(|| format!("{field}.prnu"), self.prnu, 0.0, 1.0, "")?;
+        check_range(|| format!("{field}.dsnu"), self.dsnu, 0.0, 1e6, "electrons")?;
+        check_range(|| format!("{field}.full_well"), self.full_well, 1.0, f64::INFINITY, "electrons")?;
+        check_range(|| format!("{field}.gain"), self.gain, 1e-9, 1e6, "DN per electron")?;
+        check_range(|| format!("{field}.bits"), f64::from(self.bits), 1.0, 16.0, "bits")?;
+        check_range(|| format!("{field}.bias"), self.bias, 0.0, self.max_number(), "DN")
     }
 }
 

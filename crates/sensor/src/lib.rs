@@ -16,10 +16,10 @@
 //!
 //! ```
 //! use raypencil_scene::Image;
-//! use raypencil_sensor::Sensor;
+//! use raypencil_sensor::ImageSensor;
 //!
 //! // No noise and one electron per photon: 0.25 DN per electron, rounded.
-//! let sensor = Sensor::ideal();
+//! let sensor = ImageSensor::ideal();
 //! let flux = Image::filled(64, 48, 2e-12);
 //! let frame = sensor.expose(&flux, None, 0);
 //! let expected = (0.25 * sensor.photoelectrons(2e-12)).round();
@@ -27,7 +27,6 @@
 //! ```
 
 mod airy;
-mod check;
 mod convolve;
 mod disc;
 mod dust;
@@ -39,6 +38,7 @@ mod photon;
 mod poisson;
 mod presets;
 mod psf;
+mod same_size;
 mod splat;
 mod sunlight;
 

@@ -1,8 +1,7 @@
 //! Step 6 of the paper: the image that the optics make of points of light, and the balance of its flux.
 
-use raypencil_scene::{Camera, Image, SceneError};
+use raypencil_scene::{Camera, Image, SceneError, check_range};
 
-use crate::check::check_range;
 use crate::{Dust, PointSource, Psf, SplatImage, ThinLens, binned, convolve, splat, splat_defocused};
 
 /// Optics of a camera: focus, blurs and dust.
@@ -69,9 +68,9 @@ impl Optics {
     /// # };
     /// let source = PointSource { x: 16.5, y: 16.5, watts: 1.0, depth: 4.0 };
     /// // Perfect optics put all light into its pixel.
-    /// assert_eq!(Optics::PERFECT.form(&camera, [source]).optical.at(16, 16), 1.0);
+    /// assert_eq!(Optics::PERFECT.form_image(&camera, [source]).optical.at(16, 16), 1.0);
     /// // Dusty optics absorb a tenth, and every part of the flux is accounted for.
-    /// let budget = Optics::dusty().form(&camera, [source]).budget;
+    /// let budget = Optics::dusty().form_image(&camera, [source]).budget;
     /// assert!((budget.absorbed - 0.1).abs() < 1e-3);
     /// let out = budget.missed + budget.blurred_out + budget.absorbed + budget.scattered_out + budget.arrived;
     /// assert!((budget.entered - out).abs() < 1e-12);
@@ -138,9 +137,9 @@ impl Optics {
     /// # Errors
     /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "oversampling", f64::from(self.oversampling), 1.0, 64.0, "cells")?;
+        check_range(|| format!("{field}.oversampling"), f64::from(self.oversampling), 1.0, 64.0, "cells")?;
         if let Some(focus) = self.focus {
-            check_range(field, "focus", focus, 1e-3, f64::INFINITY, "m")?;
+            check_range(|| format!("{field}.focus"), focus, 1e-3, f64::INFINITY, "m")?;
         }
         for (index, blur) in self.blurs.iter().enumerate() {
             blur.validate(&format!("{field}.blurs[{index}]"))?;

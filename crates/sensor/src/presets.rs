@@ -9,9 +9,9 @@ pub const PRESET_NAMES: &[&str] = &["ideal", "ccd_1989", "cmos"];
 /// Optics and sensor by name; `None` for an unknown name.
 ///
 /// ```
-/// use raypencil_sensor::{PRESETS, preset};
+/// use raypencil_sensor::{PRESET_NAMES, preset};
 ///
-/// assert_eq!(PRESETS, ["ideal", "ccd_1989", "cmos"]);
+/// assert_eq!(PRESET_NAMES, ["ideal", "ccd_1989", "cmos"]);
 /// // The camera of 1989 has 8 bits: its largest number is 2^8 - 1.
 /// let (optics, sensor) = preset("ccd_1989").expect("a preset name");
 /// assert_eq!(sensor.max_number(), 255.0);

@@ -1,10 +1,9 @@
 //! Point spread functions: what the optics make of a point. (Paper, §5; Goodman, Introduction to Fourier Optics,
 //! its reference 3)
 
-use raypencil_scene::SceneError;
+use raypencil_scene::{SceneError, check_range};
 
 use crate::Kernel;
-use crate::check::check_range;
 
 /// Length on the image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +25,8 @@ impl ImageLength {
 
     pub(crate) fn validate(self, field: &str) -> Result<(), SceneError> {
         match self {
-            Self::Pixels(pixels) => check_range(field, "pixels", pixels, 0.0, 1e3, "pixels"),
-            Self::Metres(metres) => check_range(field, "metres", metres, 0.0, 1e-2, "m"),
+            Self::Pixels(pixels) => check_range(|| format!("{field}.pixels"), pixels, 0.0, 1e3, "pixels"),
+            Self::Metres(metres) => check_range(|| format!("{field}.metres"), metres, 0.0, 1e-2, "m"),
         }
     }
 }
@@ -72,9 +71,9 @@ impl Psf {
         match self {
             Self::Gaussian { sigma } => sigma.validate(&format!("{field}.sigma")),
             Self::Airy { wavelength, f_number, rings } => {
-                check_range(field, "wavelength", *wavelength, 1e-8, 1e-3, "m")?;
-                check_range(field, "f_number", *f_number, 0.1, 1e4, "")?;
-                check_range(field, "rings", f64::from(*rings), 1.0, 100.0, "rings")
+                check_range(|| format!("{field}.wavelength"), *wavelength, 1e-8, 1e-3, "m")?;
+                check_range(|| format!("{field}.f_number"), *f_number, 0.1, 1e4, "")?;
+                check_range(|| format!("{field}.rings"), f64::from(*rings), 1.0, 100.0, "rings")
             }
             // A kernel is valid by construction.
             Self::Sampled(_) => Ok(()),

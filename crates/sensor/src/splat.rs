@@ -3,9 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use raypencil_scene::{Camera, Image, SceneError};
+use raypencil_scene::{Camera, Image, SceneError, check_range};
 
-use crate::check::check_range;
 use crate::disc;
 
 /// Light that converges in one point of the image, from one pencil.
@@ -158,9 +157,9 @@ impl ThinLens {
     /// # Errors
     /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "aperture", self.aperture, 1e-6, 1e1, "m")?;
-        check_range(field, "focal_length", self.focal_length, 1e-5, 1e2, "m")?;
+        check_range(|| format!("{field}.aperture"), self.aperture, 1e-6, 1e1, "m")?;
+        check_range(|| format!("{field}.focal_length"), self.focal_length, 1e-5, 1e2, "m")?;
         let nearest = 1.001 * self.focal_length;
-        check_range(field, "focus", self.focus, nearest, f64::INFINITY, "m")
+        check_range(|| format!("{field}.focus"), self.focus, nearest, f64::INFINITY, "m")
     }
 }

@@ -4,9 +4,9 @@ use std::f64::consts::{LN_2, PI};
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_scene::{Camera, Filter, Image, Maybe, SceneError};
+use raypencil_scene::{Camera, Filter, Image, Maybe, SceneError, check_range};
 
-use crate::check::{assert_same_size, check_range};
+use crate::same_size::assert_same_size;
 
 /// Spectral irradiance of the sun at 1 AU near 810 nm, W/m^2 per metre of wavelength: 1.110 W/m^2/nm, the mean of the
 /// ten rows 801 to 819 nm of ASTM E490-00a (1142, 1129, 1115, 1120, 1095, 1114, 1115, 1107, 1104 and
@@ -59,11 +59,12 @@ impl Sunlight {
     /// much: a fifth for tau = 2 and the sun at 60 degrees.
     ///
     /// ```
-    /// use raypencil_sensor::{MARS_ORBIT, SOLAR_SPECTRUM_810, Sunlight};
+    /// use raypencil_sensor::{MARS_SEMI_MAJOR_AXIS_AU, SOLAR_IRRADIANCE_810_NM, Sunlight};
     ///
     /// // Without dust the sun at the zenith is the solar spectrum over the squared distance, 1.110 / 2.3216 W/m^2/nm.
     /// let sun = Sunlight::mars(std::f64::consts::FRAC_PI_2, 0.0, 0.0);
-    /// assert_eq!(sun.direct, SOLAR_SPECTRUM_810 / (MARS_ORBIT * MARS_ORBIT));
+    /// let above = SOLAR_IRRADIANCE_810_NM / (MARS_SEMI_MAJOR_AXIS_AU * MARS_SEMI_MAJOR_AXIS_AU);
+    /// assert_eq!(sun.direct, above);
     /// assert_eq!(sun.sky, 0.0);
     /// // With tau = 0.5 the sun keeps exp(-0.5) = 0.6065, and the sky gets 0.7 of the rest.
     /// let dusty = Sunlight::mars(std::f64::consts::FRAC_PI_2, 0.0, 0.5);
@@ -159,12 +160,12 @@ impl Sunlight {
     /// # Errors
     /// Names the first invalid field, as a part of `field`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        check_range(field, "elevation", self.elevation, -PI / 2.0, PI / 2.0, "rad")?;
-        check_range(field, "azimuth", self.azimuth, -2.0 * PI, 2.0 * PI, "rad")?;
-        check_range(field, "direct", self.direct, 0.0, 1e12, "W/m^3")?;
-        check_range(field, "sky", self.sky, 0.0, 1e12, "W/m^3")?;
-        check_range(field, "reference", self.reference, 1e-8, 1e-3, "m")?;
-        check_range(field, "slope", self.slope, -1e9, 1e9, "1/m")?;
-        check_range(field, "open_band", self.open_band, 0.0, 1e-5, "m")
+        check_range(|| format!("{field}.elevation"), self.elevation, -PI / 2.0, PI / 2.0, "rad")?;
+        check_range(|| format!("{field}.azimuth"), self.azimuth, -2.0 * PI, 2.0 * PI, "rad")?;
+        check_range(|| format!("{field}.direct"), self.direct, 0.0, 1e12, "W/m^3")?;
+        check_range(|| format!("{field}.sky"), self.sky, 0.0, 1e12, "W/m^3")?;
+        check_range(|| format!("{field}.reference"), self.reference, 1e-8, 1e-3, "m")?;
+        check_range(|| format!("{field}.slope"), self.slope, -1e9, 1e9, "1/m")?;
+        check_range(|| format!("{field}.open_band"), self.open_band, 0.0, 1e-5, "m")
     }
 }

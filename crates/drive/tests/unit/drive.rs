@@ -18,7 +18,7 @@ use raypencil_rover::{
 use raypencil_scene::{
     Image, Material, Mesh, Pose, Precision, RenderOutput, Renderer, Request, Scene, Silent,
 };
-use raypencil_scene_io::{LoadedScene, SensorWord, load, load_text};
+use raypencil_scene_io::{LoadedScene, load, load_text};
 use raypencil_sensor::{DarkCurrent, Dust, ImageLength, ImageSensor, Optics, Psf};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 use raypencil_tracer::Tracer;
@@ -225,7 +225,7 @@ fn the_file_says_what_is_driven() {
     let route = &plan.route;
     assert_eq!((route.speed, route.frame_rate, route.waypoints.len()), (0.5, 5.0, 2));
     assert_eq!(route.turn_rate, 90.0_f64.to_radians());
-    assert_eq!((job.sensor_word, job.sensor.seed, job.sensor.bits), (SensorWord::Cmos, 4, 12));
+    assert_eq!((job.preset, job.sensor.seed, job.sensor.bits), ("cmos", 4, 12));
     assert_eq!((plan.seed, plan.map.points, plan.map.spacing, plan.obstacles_every), (9, 101, 0.2, 4));
     assert_eq!(plan.exposures, raypencil_rover::ExposureMode::Together);
     assert_eq!(plan.extraction.detection, raypencil_rover::Detection::Gradient(30.0));

@@ -1,88 +1,220 @@
-//! The camera of a drive, steps 6 to 8: a preset, and what the scene file has in its place; and the sun.
+//! `[drive.optics]` and `[drive.electronics]`: changes of the sensor preset.
 
-use crate::drive::camera_settings::BlurSettings;
-use crate::drive::settings::{DriveSettings, SensorWord, SunSettings};
-use raypencil_rover::Rig;
-use raypencil_scene::SceneError;
-use raypencil_sensor::{
-    ImageSensor, MARS_SEMI_MAJOR_AXIS_AU, Optics, Psf, SOLAR_IRRADIANCE_810_NM, Sunlight, preset,
-};
+use serde::Deserialize;
+use std::ops::RangeInclusive;
+use toml::Spanned;
 
-/// Cells of the fine image on which optics blur: 2 GiB of them.
-pub const MOST_FINE_CELLS: u64 = 1 << 28;
+use raypencil_files::Sha;
+use raypencil_sensor::{Dust, ImageLength, ImageSensor, Psf};
 
-/// Steps 6 to 8: the preset, but for what the file says.
-pub fn camera_chain(
-    settings: &DriveSettings,
-    word: SensorWord,
-    rig: &Rig,
-) -> Result<(Optics, ImageSensor), SceneError> {
-    let (mut optics, mut sensor) = preset(word.word()).expect("every word of scene files is a preset");
-    let camera = rig.camera.sensor;
-    if let Some(beam) = rig.beams.first() {
-        sensor.wavelength = beam.sensor.wavelength;
-    }
+use crate::drive::setup::DriveSetup;
+use crate::parse::key::Key;
+use crate::parse::source::Source;
+use crate::scene_error::SceneIoError;
 
-    let given = &settings.optics;
-    let airy = |rings| Psf::Airy {
-        wavelength: sensor.wavelength,
-        f_number: camera.focal_length / camera.aperture,
-        rings,
-    };
-    if let Some(blurs) = &given.blurs {
-        let blur = |blur: &BlurSettings| match blur {
-            BlurSettings::Airy { rings } => airy(*rings),
-            BlurSettings::Gaussian(sigma) => Psf::Gaussian { sigma: *sigma },
-            BlurSettings::Kernel(kernel) => Psf::Sampled(kernel.clone()),
-        };
-        optics.blurs = blurs.iter().map(blur).collect();
-    }
-    for blur in &mut optics.blurs {
-        // A preset's diffraction is that of the camera it is put on.
-        if let Psf::Airy { rings, .. } = *blur {
-            *blur = airy(rings);
-        }
-    }
-    optics.oversampling = given.oversampling.unwrap_or(optics.oversampling);
-    optics.focus = given.focus.or(optics.focus);
-    optics.dust = given.dust.or(optics.dust);
-    optics.validate("drive.optics")?;
-    if let Some(focus) = optics.focus.filter(|&focus| focus <= camera.focal_length) {
-        let expected = format!("beyond the focal length, {} m", camera.focal_length);
-        return Err(SceneError::new("drive.optics.focus", focus, expected));
-    }
-    let fine = [camera.width, camera.height].map(|side| u64::from(side) * u64::from(optics.oversampling));
-    if fine[0] * fine[1] > MOST_FINE_CELLS {
-        let value = format!("{}, an image of {} x {} cells", optics.oversampling, fine[0], fine[1]);
-        let expected = format!("an image of at most {MOST_FINE_CELLS} cells");
-        return Err(SceneError::new("drive.optics.oversampling", value, expected));
-    }
+/// Maximum number of blurs, applied one after another.
+const MAX_BLURS: usize = 16;
 
-    let given = settings.electronics;
-    let dark = &mut sensor.dark_current;
-    dark.rate = given.dark_rate.unwrap_or(dark.rate);
-    dark.reference_temperature = given.dark_at.unwrap_or(dark.reference_temperature);
-    dark.doubling_kelvins = given.dark_doubling.unwrap_or(dark.doubling_kelvins);
-    dark.temperature = given.temperature.unwrap_or(dark.temperature);
-    sensor.exposure = given.exposure.unwrap_or(sensor.exposure);
-    sensor.quantum_efficiency = given.quantum_efficiency.unwrap_or(sensor.quantum_efficiency);
-    sensor.shot_noise = given.shot_noise.unwrap_or(sensor.shot_noise);
-    sensor.read_noise = given.read_noise.unwrap_or(sensor.read_noise);
-    sensor.prnu = given.prnu.unwrap_or(sensor.prnu);
-    sensor.dsnu = given.dsnu.unwrap_or(sensor.dsnu);
-    sensor.full_well = given.full_well.unwrap_or(sensor.full_well);
-    sensor.gain = given.gain.unwrap_or(sensor.gain);
-    sensor.bias = given.bias.unwrap_or(sensor.bias);
-    sensor.bits = given.bits.unwrap_or(sensor.bits);
-    sensor.seed = settings.sensor_seed.unwrap_or(sensor.seed);
-    sensor.validate("drive.electronics")?;
-    Ok((optics, sensor))
+/// Standard deviation of a blur, pixels. A wider one is no blur of a camera.
+const BLUR_PX: RangeInclusive<f64> = 0.0..=100.0;
+
+/// Standard deviation of a blur, micrometres.
+const BLUR_UM: RangeInclusive<f64> = 0.0..=1e4;
+
+/// Share of a whole.
+const SHARE: RangeInclusive<f64> = 0.0..=1.0;
+
+/// 0 degrees Celsius, kelvin.
+const ICE_POINT_K: f64 = 273.15;
+
+/// Temperature, degrees Celsius: 50 to 500 K.
+const CELSIUS: RangeInclusive<f64> = -223.15..=226.85;
+
+/// Dust on the lens before the keys of `dust`: it takes away no light.
+const CLEAN: Dust =
+    Dust { transmission: 1.0, halo_share: 0.0, halo_sigma: ImageLength::Pixels(DEFAULT_HALO_PX) };
+
+/// Standard deviation of the halo of dust, pixels.
+const DEFAULT_HALO_PX: f64 = 20.0;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OpticsKeys {
+    oversampling: Key<i64>,
+    focus_m: Key<f64>,
+    blurs: Key<Vec<Spanned<BlurKeys>>>,
+    dust: Key<DustKeys>,
 }
 
-/// Light on Mars, its sun as bright as the file says.
-pub fn sunlight(settings: SunSettings) -> Sunlight {
-    let mars = Sunlight::mars(settings.elevation, settings.azimuth, settings.optical_depth);
-    let usual = SOLAR_IRRADIANCE_810_NM / (MARS_SEMI_MAJOR_AXIS_AU * MARS_SEMI_MAJOR_AXIS_AU);
-    let share = settings.spectral_irradiance.map_or(1.0, |irradiance| irradiance / usual);
-    Sunlight { direct: share * mars.direct, sky: share * mars.sky, ..mars }
+/// One of `blurs`: exactly one of these keys.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BlurKeys {
+    airy_rings: Key<i64>,
+    gaussian_px: Key<f64>,
+    gaussian_um: Key<f64>,
+    kernel: Key<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DustKeys {
+    transmission: Key<f64>,
+    halo_share: Key<f64>,
+    halo_px: Key<f64>,
+}
+
+#[derive(Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ElectronicsKeys {
+    exposure_ms: Key<f64>,
+    quantum_efficiency: Key<f64>,
+    shot_noise: Option<bool>,
+    dark_e_per_s: Key<f64>,
+    dark_at_c: Key<f64>,
+    dark_doubling_k: Key<f64>,
+    temperature_c: Key<f64>,
+    read_noise_e: Key<f64>,
+    prnu: Key<f64>,
+    dsnu_e: Key<f64>,
+    full_well_e: Key<f64>,
+    gain_dn_per_e: Key<f64>,
+    bias_dn: Key<f64>,
+    bits: Key<i64>,
+}
+
+impl ElectronicsKeys {
+    /// Whether no key is given.
+    pub(super) fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Source<'_> {
+    /// Changes the optics of a drive. The result is the digests of the kernels' files, in their order.
+    pub(super) fn optics(&self, keys: &OpticsKeys, drive: &mut DriveSetup) -> Result<Vec<Sha>, SceneIoError> {
+        let mut kernel_digests = Vec::new();
+        let name = "drive.optics.oversampling";
+        self.integer(&keys.oversampling, name, &mut drive.optics.oversampling, 1..=64, "")?;
+        let focus = self.optional(&keys.focus_m, "drive.optics.focus_m", 1e-3..=f64::INFINITY, "metres")?;
+        drive.optics.focus = focus.or(drive.optics.focus);
+        if let Some(list) = &keys.blurs {
+            let count = list.get_ref().len();
+            if count > MAX_BLURS {
+                let message = format!("`drive.optics.blurs` has {count} blurs; expected up to {MAX_BLURS}");
+                return Err(self.error(list.span(), message));
+            }
+            let mut blurs = Vec::new();
+            for (index, keys) in list.get_ref().iter().enumerate() {
+                blurs.push(self.blur(
+                    keys,
+                    &format!("drive.optics.blurs[{index}]"),
+                    drive,
+                    &mut kernel_digests,
+                )?);
+            }
+            drive.optics.blurs = blurs;
+        }
+        if let Some(dust) = &keys.dust {
+            drive.optics.dust = Some(self.dust(dust.get_ref())?);
+        }
+        Ok(kernel_digests)
+    }
+
+    fn blur(
+        &self,
+        keys: &Spanned<BlurKeys>,
+        name: &str,
+        drive: &DriveSetup,
+        kernel_digests: &mut Vec<Sha>,
+    ) -> Result<Psf, SceneIoError> {
+        let BlurKeys { airy_rings, gaussian_px, gaussian_um, kernel } = keys.get_ref();
+        match (airy_rings, gaussian_px, gaussian_um, kernel) {
+            (Some(_), None, None, None) => {
+                let mut rings = 0;
+                self.integer(airy_rings, &format!("{name}.airy_rings"), &mut rings, 1..=100, "")?;
+                Ok(drive.airy(rings))
+            }
+            (None, Some(_), None, None) => {
+                let mut sigma = 0.0;
+                self.number(gaussian_px, &format!("{name}.gaussian_px"), &mut sigma, BLUR_PX, "pixels")?;
+                Ok(Psf::Gaussian { sigma: ImageLength::Pixels(sigma) })
+            }
+            (None, None, Some(_), None) => {
+                let mut sigma = 0.0;
+                let name = format!("{name}.gaussian_um");
+                self.converted(gaussian_um, &name, &mut sigma, BLUR_UM, "micrometres", |um| 1e-6 * um)?;
+                Ok(Psf::Gaussian { sigma: ImageLength::Metres(sigma) })
+            }
+            (None, None, None, Some(file)) => {
+                let (kernel, digest) = self.kernel(file, &format!("{name}.kernel"))?;
+                kernel_digests.push(digest);
+                Ok(Psf::Sampled(kernel))
+            }
+            _ => {
+                let message = format!(
+                    "`{name}`: expected exactly one of `airy_rings`, `gaussian_px`, `gaussian_um`, `kernel`"
+                );
+                Err(self.error(keys.span(), message))
+            }
+        }
+    }
+
+    fn dust(&self, keys: &DustKeys) -> Result<Dust, SceneIoError> {
+        let mut dust = CLEAN;
+        let name = "drive.optics.dust.transmission";
+        self.number(&keys.transmission, name, &mut dust.transmission, SHARE, "of 1")?;
+        let name = "drive.optics.dust.halo_share";
+        self.number(&keys.halo_share, name, &mut dust.halo_share, SHARE, "of 1")?;
+        let mut halo = DEFAULT_HALO_PX;
+        self.number(&keys.halo_px, "drive.optics.dust.halo_px", &mut halo, BLUR_PX, "pixels")?;
+        Ok(Dust { halo_sigma: ImageLength::Pixels(halo), ..dust })
+    }
+
+    /// Changes the image sensor of a drive.
+    pub(super) fn electronics(
+        &self,
+        keys: &ElectronicsKeys,
+        sensor: &mut ImageSensor,
+    ) -> Result<(), SceneIoError> {
+        let same = |value| value;
+        let milli: fn(f64) -> f64 = |value| 1e-3 * value;
+        let kelvin: fn(f64) -> f64 = |celsius| celsius + ICE_POINT_K;
+        self.integer(&keys.bits, "drive.electronics.bits", &mut sensor.bits, 1..=16, "")?;
+        sensor.shot_noise = keys.shot_noise.unwrap_or(sensor.shot_noise);
+        let dark = &mut sensor.dark_current;
+        let (dark_at, to_infinity) = (&mut dark.reference_temperature, 1.0..=f64::INFINITY);
+        let numbers = [
+            ("exposure_ms", &keys.exposure_ms, &mut sensor.exposure, milli, 1e-6..=1e8, "milliseconds"),
+            (
+                "quantum_efficiency",
+                &keys.quantum_efficiency,
+                &mut sensor.quantum_efficiency,
+                same,
+                SHARE,
+                "of 1",
+            ),
+            ("dark_e_per_s", &keys.dark_e_per_s, &mut dark.rate, same, 0.0..=1e9, "electrons per second"),
+            ("dark_at_c", &keys.dark_at_c, dark_at, kelvin, CELSIUS, "degrees Celsius"),
+            (
+                "dark_doubling_k",
+                &keys.dark_doubling_k,
+                &mut dark.doubling_kelvins,
+                same,
+                1.0..=100.0,
+                "kelvin",
+            ),
+            ("temperature_c", &keys.temperature_c, &mut dark.temperature, kelvin, CELSIUS, "degrees Celsius"),
+            ("read_noise_e", &keys.read_noise_e, &mut sensor.read_noise, same, 0.0..=1e6, "electrons"),
+            ("prnu", &keys.prnu, &mut sensor.prnu, same, SHARE, "of 1"),
+            ("dsnu_e", &keys.dsnu_e, &mut sensor.dsnu, same, 0.0..=1e6, "electrons"),
+            ("full_well_e", &keys.full_well_e, &mut sensor.full_well, same, to_infinity, "electrons"),
+            ("gain_dn_per_e", &keys.gain_dn_per_e, &mut sensor.gain, same, 1e-9..=1e6, "DN per electron"),
+            ("bias_dn", &keys.bias_dn, &mut sensor.bias, same, 0.0..=65535.0, "DN"),
+        ];
+        for (name, key, slot, si, range, unit) in numbers {
+            self.converted(key, &format!("drive.electronics.{name}"), slot, range, unit, si)?;
+        }
+        Ok(())
+    }
 }

@@ -1,8 +1,6 @@
-//! drive
+//! `[drive]`: route, rover and camera of a drive.
 
 pub(crate) mod camera;
-pub(crate) mod camera_keys;
-pub(crate) mod camera_settings;
-pub(crate) mod keys;
-pub(crate) mod plan;
-pub(crate) mod settings;
+pub(crate) mod kernel;
+pub(crate) mod read;
+pub(crate) mod setup;

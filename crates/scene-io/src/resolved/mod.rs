@@ -1,6 +1,4 @@
-//! Resolved scenes: scene files with the numbers of a scene itself, poses and all. Keys: `docs/guide/scene.md`.
+//! Resolved scenes: scene files of `kind = "resolved"`, with all numbers and poses of a scene.
 
 pub(crate) mod read;
 pub(crate) mod write;
-
-pub(crate) use crate::resolved::read::parse;

@@ -5,37 +5,39 @@ use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
 
-use crate::parse::{FLUX_MODELS, GLOBAL_M, Source};
-use crate::scene_error::SceneIoError;
 use raypencil_scene::{Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Mounted, Pose, SceneError};
 
-/// Everything of a scene but its mesh.
+use crate::parse::shared::GLOBAL_M;
+use crate::parse::source::Source;
+use crate::scene_error::SceneIoError;
+
+/// All of a resolved scene except for its mesh.
 pub(crate) struct Resolved {
     pub camera: Mounted<Camera>,
     pub beams: Vec<Mounted<Beam>>,
     pub atmosphere: Atmosphere,
     pub flux_model: FluxModel,
-    /// The ground's file, relative to the scene file, and where it is named.
+    /// File of the ground, relative to the scene file, and its place in it.
     pub file: Spanned<String>,
-    /// The scene origin, global frame, metres.
+    /// Scene origin, global frame, metres.
     pub origin: DVec3,
-    places: Places,
+    places: FieldPlaces,
 }
 
 impl Resolved {
-    /// Points to the key whose value makes no scene, if it stands in the file.
-    pub(crate) fn unfit(&self, source: &Source, error: SceneError) -> SceneIoError {
+    /// The error of [`raypencil_scene::Scene::new`], pointed to its key if the field stands in the file.
+    pub(crate) fn point_to(&self, source: &Source, error: SceneError) -> SceneIoError {
         placed(&self.places, source, error)
     }
 }
 
-/// The whole file. Every key is required but two: what is left out would be a guess.
+/// The whole file. All keys are required but `filter` and the width of a Gaussian: a default would be a guess.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
-    #[allow(dead_code, reason = "checked before; named here so that it is known")]
+    #[allow(dead_code, reason = "checked before; named here so that it is a known key")]
     version: i64,
-    #[allow(dead_code, reason = "checked before; named here so that it is known")]
+    #[allow(dead_code, reason = "checked before; named here so that it is a known key")]
     kind: String,
     camera: CameraKeys,
     #[serde(default)]
@@ -110,22 +112,21 @@ struct FluxKeys {
     model: Spanned<String>,
 }
 
-/// Where in the file each field of a scene stands. The limits are the scene's own; only its errors' places
-/// are found here.
+/// Place of each field of a scene in the file. The limits are checked by `scene`; its errors find their places here.
 #[derive(Default)]
-struct Places(Vec<Place>);
+struct FieldPlaces(Vec<FieldPlace>);
 
-struct Place {
-    /// As [`SceneError::field`] starts.
+struct FieldPlace {
+    /// Start of [`SceneError::field`].
     field: String,
     key: String,
     span: Range<usize>,
 }
 
-impl Places {
-    /// The value of `key`, which becomes `field` of a scene.
+impl FieldPlaces {
+    /// Value of `key`, which becomes `field` of a scene.
     fn take<T>(&mut self, field: String, key: String, value: Spanned<T>) -> T {
-        self.0.push(Place { field, key, span: value.span() });
+        self.0.push(FieldPlace { field, key, span: value.span() });
         value.into_inner()
     }
 
@@ -140,11 +141,11 @@ impl Places {
     }
 }
 
-/// Reads a resolved scene, whose version and kind are known to be right. Its numbers are checked by what
-/// they are for, but not yet together with the ground.
-pub(crate) fn parse(source: &Source) -> Result<Resolved, SceneIoError> {
+/// Reads a scene file whose kind is [`crate::parse::kind::Kind::Resolved`]. Sensors are checked alone, not yet together
+/// with the ground.
+pub(crate) fn parse_resolved(source: &Source) -> Result<Resolved, SceneIoError> {
     let keys: Keys = source.deserialize()?;
-    let mut places = Places::default();
+    let mut places = FieldPlaces::default();
     let camera = camera(source, keys.camera, &mut places)?;
     let mut beams = Vec::with_capacity(keys.beam.len());
     for (index, beam_keys) in keys.beam.into_iter().enumerate() {
@@ -161,27 +162,27 @@ pub(crate) fn parse(source: &Source) -> Result<Resolved, SceneIoError> {
         camera,
         beams,
         atmosphere: Atmosphere { attenuation },
-        flux_model: source.word(&keys.flux.model, "flux.model", &FLUX_MODELS)?,
+        flux_model: source.flux_model(&keys.flux.model)?,
         file: keys.terrain.file,
         origin: DVec3::from_array(origin.into_inner()),
         places,
     })
 }
 
-fn pose(keys: PoseKeys, field: &str, key: &str, places: &mut Places) -> Pose {
+fn pose(keys: PoseKeys, field: &str, key: &str, places: &mut FieldPlaces) -> Pose {
     let position = places.take(format!("{field}.position"), format!("{key}.position_m"), keys.position_m);
     let rotation =
         places.take(format!("{field}.rotation"), format!("{key}.quaternion_xyzw"), keys.quaternion_xyzw);
     Pose { position: DVec3::from_array(position), rotation: DQuat::from_array(rotation) }
 }
 
-/// A count of cells: the scene has its own limits below those of the type.
+/// Number of columns or rows. `scene` checks its own limits, which are narrower than those of the type.
 fn count(
     source: &Source,
     value: Spanned<i64>,
     field: String,
     key: String,
-    places: &mut Places,
+    places: &mut FieldPlaces,
 ) -> Result<u32, SceneIoError> {
     let span = value.span();
     let given = *value.get_ref();
@@ -191,10 +192,14 @@ fn count(
     Ok(count)
 }
 
-fn camera(source: &Source, keys: CameraKeys, places: &mut Places) -> Result<Mounted<Camera>, SceneIoError> {
+fn camera(
+    source: &Source,
+    keys: CameraKeys,
+    places: &mut FieldPlaces,
+) -> Result<Mounted<Camera>, SceneIoError> {
     let scene_from_sensor = pose(keys.scene_from_camera, "camera", "camera.scene_from_camera", places);
     let key = |name: &str| format!("camera.{name}");
-    // "camera.width x height" is found by the first of the two.
+    // An error of "camera.width x height" points to the width: its field starts so.
     let width = count(source, keys.width_px, key("width"), key("width_px"), places)?;
     let height = count(source, keys.height_px, key("height"), key("height_px"), places)?;
     let mut take = |field: &str, name: &str, value| places.take(key(field), key(name), value);
@@ -224,7 +229,7 @@ fn beam(
     source: &Source,
     index: usize,
     keys: BeamKeys,
-    places: &mut Places,
+    places: &mut FieldPlaces,
 ) -> Result<Mounted<Beam>, SceneIoError> {
     let name = format!("beam {index}");
     let scene_from_sensor = pose(keys.scene_from_beam, &name, &format!("{name}.scene_from_beam"), places);
@@ -242,15 +247,15 @@ fn beam(
         take("profile.half_width", "gaussian_half_width_rad", width.clone());
     }
     let width = keys.gaussian_half_width_rad;
-    let profile = source.shape(&name, &keys.profile, width, "gaussian_half_width_rad")?;
+    let profile = source.profile_word(&name, &keys.profile, &width, "gaussian_half_width_rad")?;
     let sensor =
         Beam { columns, rows, thickness, grid_distance, half_width, max_range, power, wavelength, profile };
     sensor.validate(&name).map_err(|error| placed(places, source, error))?;
     Ok(Mounted { scene_from_sensor, sensor })
 }
 
-/// An error with its place, if the field stands in the file.
-fn placed(places: &Places, source: &Source, error: SceneError) -> SceneIoError {
+/// Error with its place, if the field stands in the file.
+fn placed(places: &FieldPlaces, source: &Source, error: SceneError) -> SceneIoError {
     places
         .error(source, error)
         .unwrap_or_else(|error| SceneIoError::scene(source.file.display().to_string(), error))

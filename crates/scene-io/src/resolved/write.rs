@@ -1,36 +1,45 @@
-//! A resolved scene to TOML and GLB: every number so that it reads back to the last bit.
+//! A resolved scene to TOML and GLB. Every number reads back to the last bit.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
-use raypencil_files::FileError;
-use raypencil_files::{Fault, write_atomically};
+use raypencil_files::{Fault, FileError, write_atomically};
 use raypencil_mesh_io::write_glb;
-use raypencil_scene::{Filter, FluxModel, Pose, Profile, Scene};
+use raypencil_scene::{Filter, Pose, Profile, Scene};
 
 /// Writes `scene` as a resolved scene file `path` and, beside it, its mesh as the GLB `mesh_file_name`.
-/// [`crate::load::load`] gives back the same scene bit for bit: the same [`crate::digest::scene_sha256`]. The same scene
-/// gives the same bytes.
+/// [`load`](crate::load()) gives back the same scene bit for bit. The same scene gives the same bytes.
 ///
 /// # Errors
-/// A mesh file name with a folder in it or without `.glb` at its end; as [`write_glb`]; what the file system
-/// says.
+/// A mesh file name that contains a folder or does not end in `.glb`; errors of [`write_glb`] and of the file system.
+///
+/// ```
+/// use raypencil_scene_io::{Overrides, load, write_resolved};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("copy.toml");
+/// let scene = load("pyramids", &Overrides::default())?.scene;
+/// write_resolved(&path, &scene, "copy.glb")?;
+/// // Every number is written so that it reads back to the last bit.
+/// assert_eq!(load(&path.to_string_lossy(), &Overrides::default())?.scene, scene);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write_resolved(path: impl AsRef<Path>, scene: &Scene, mesh_file_name: &str) -> Result<(), FileError> {
     let path = path.as_ref();
-    // The name stands in the file, between quotes, and must mean the same on any system.
+    // The name stands between quotes in the file, and must mean the same on any system.
     let plain = |c: char| c.is_ascii_alphanumeric() || "._- ".contains(c);
     if !mesh_file_name.ends_with(".glb") || !mesh_file_name.chars().all(plain) {
         let expected = "a plain file name that ends in .glb";
         let fault = Fault::new("terrain.file", format!("{mesh_file_name:?}"), expected);
         return Err(FileError::Gltf(fault.in_file(path)));
     }
-    // The mesh first: a scene file that is there has its ground.
+    // The mesh comes first: where there is a scene file, there is its ground.
     write_glb(path.with_file_name(mesh_file_name), scene.mesh())?;
     let text = text(scene, mesh_file_name);
     write_atomically(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// The scene file. Keys and units are those of `docs/guide/scene.md`.
+/// Text of the scene file. Keys and units are those of `docs/guide/scene.md`.
 fn text(scene: &Scene, mesh_file_name: &str) -> String {
     let mut text = String::from(
         "# A resolved scene: the very numbers that renderers compute with, in SI units.\nversion = 1\nkind = \"resolved\"\n",
@@ -90,16 +99,12 @@ fn text(scene: &Scene, mesh_file_name: &str) -> String {
     line("[atmosphere]", heading());
     line("attenuation_per_m", real(scene.atmosphere().attenuation));
     line("[flux]", heading());
-    let model = match scene.flux_model() {
-        FluxModel::Radiometric => "radiometric",
-        FluxModel::Eq1 => "eq1",
-    };
-    line("model", format!("\"{model}\""));
+    line("model", format!("\"{}\"", scene.flux_model().word()));
     text
 }
 
-/// The shortest decimal that reads back as the same double: `{:?}` always has a point or an exponent, which
-/// is how TOML tells a float.
+/// Shortest decimal that reads back as the same double. `{:?}` always has a point or an exponent, by which TOML tells a
+/// float from an integer.
 fn real(value: f64) -> String {
     format!("{value:?}")
 }

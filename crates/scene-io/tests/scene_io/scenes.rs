@@ -1,4 +1,4 @@
-//! Scenes from files and names: what the numbers of a file become, by hand-derived values.
+//! Scenes from files and names, against values derived by hand.
 
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -6,12 +6,10 @@ use std::path::{Path, PathBuf};
 use raypencil_scene::{FluxModel, Profile, SensorId};
 use raypencil_scene_io::{LoadedScene, Overrides, SceneIoError, SceneSource, load};
 
+use crate::load_path;
+
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes")
-}
-
-fn load_path(path: &Path, overrides: &Overrides) -> Result<LoadedScene, SceneIoError> {
-    load(path.to_str().expect("a path in UTF-8"), overrides)
 }
 
 fn load_text(text: &str) -> Result<LoadedScene, SceneIoError> {
@@ -34,7 +32,7 @@ fn the_written_out_defaults_are_the_defaults() {
     assert_eq!((written.name.as_str(), named.name.as_str()), ("default", "pyramids"));
     let least = load_text("version = 1\n").unwrap();
     assert_eq!(least.scene, named.scene);
-    // Each table may be there without its keys.
+    // A table may be empty.
     let empty =
         load_text("version = 1\n[vehicle]\n[camera]\n[[beam]]\n[[beam]]\n[atmosphere]\n[flux]\n").unwrap();
     assert_eq!(empty.scene, named.scene);
@@ -123,18 +121,18 @@ fn far_ground_keeps_its_precision() {
     assert_eq!(scene.flux_model(), FluxModel::Eq1);
     let origin = scene.mesh().origin();
     near(origin, DVec3::new(1e6, -2e6, 100.0), 20.0);
-    // The sensors' offsets from the vehicle are those of the default rig to 1e-14 m: nothing was added to
-    // a coordinate of a million.
+    // The sensors' offsets from the vehicle are those of the default rig to 1e-14 m: nothing was added to a coordinate
+    // of 1e6 m, whose spacing of doubles is 1e-10 m.
     let vehicle = loaded.vehicle.position - origin;
     let camera = scene.camera().scene_from_sensor.position;
     near(camera - vehicle, DVec3::new(0.3, 0.0, 1.5), 1e-14);
-    // By height_at of the same mesh.
+    // The vehicle stands on the same mesh.
     let z = raypencil_terrain::height_at(scene.mesh(), 1_000_003.0, -1_999_998.0).unwrap();
     assert_eq!(loaded.vehicle.position.z, z);
 }
 
 #[test]
-fn a_reflectivity_is_for_what_brings_none() {
+fn a_reflectivity_is_for_materials_without_their_own() {
     let ground = |terrain: &str| {
         let text = format!("version = 1\n[terrain]\n{terrain}\n");
         load_text(&text).unwrap().scene.mesh().materials().to_vec()
@@ -167,10 +165,10 @@ fn a_terrain_alone_gets_the_default_rig_at_its_centre() {
 }
 
 #[test]
-fn around_a_hole_the_nearest_face_that_looks_up_is_stood_on() {
+fn around_a_hole_the_vehicle_stands_on_the_nearest_face_that_looks_up() {
     // Two ramps, 40 m to either side of the centre, which has no ground. The nearest middles of faces are
-    // ((-56 - 24 - 24) / 3, -16 / 3) = (-104 / 3, -16 / 3) of face 0 and its mirror image of face 3: of
-    // equals the lower index. There z = (x + 40) / 4 = 4 / 3.
+    // ((-56 - 24 - 24) / 3, -16 / 3) = (-104 / 3, -16 / 3) of face 0 and its mirror image of face 3. They are equally
+    // near: the first face wins. There z = (x + 40) / 4 = 4 / 3.
     let text = std::fs::read_to_string(scenes().join("ramp.gltf")).unwrap();
     let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
     json["nodes"] =
@@ -181,7 +179,7 @@ fn around_a_hole_the_nearest_face_that_looks_up_is_stood_on() {
     std::fs::write(&path, json.to_string()).unwrap();
     let loaded = load_path(&path, &Overrides::default()).unwrap();
     near(loaded.vehicle.position, DVec3::new(-104.0 / 3.0, -16.0 / 3.0, 4.0 / 3.0), 1e-5);
-    // Turned over, it has no face that looks up.
+    // Turned over, it has no face on which a vehicle can stand.
     json["nodes"][0]["scale"] = serde_json::json!([1, -1, -1]);
     json["scenes"][0]["nodes"] = serde_json::json!([0]);
     std::fs::write(&path, json.to_string()).unwrap();
@@ -238,7 +236,7 @@ fn overrides_out_of_range_are_named() {
 }
 
 #[test]
-fn a_source_that_is_none_lists_what_there_is() {
+fn an_unknown_source_lists_the_known_ones() {
     let refuse = |source: &str| load(source, &Overrides::default()).unwrap_err().to_string();
     let message = refuse("pyramid");
     assert!(message.starts_with("`pyramid` is neither a built-in name nor a file; expected"), "{message}");

@@ -1,4 +1,4 @@
-//! Resolved scenes: what is written is read back bit for bit; what is wrong is marked.
+//! Resolved scenes: they come back bit for bit, and errors are marked.
 
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
@@ -10,9 +10,7 @@ use raypencil_scene::{
 };
 use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem, load, scene_sha256, write_resolved};
 
-fn load_path(path: &Path, overrides: &Overrides) -> Result<raypencil_scene_io::LoadedScene, SceneIoError> {
-    load(path.to_str().unwrap(), overrides)
-}
+use crate::load_path;
 
 /// A folder with the resolved scene of a built-in ground.
 fn written() -> (tempfile::TempDir, PathBuf, Scene) {
@@ -30,7 +28,7 @@ fn a_built_in_scene_comes_back() {
     assert_eq!(back.scene, scene);
     assert_eq!(back.scene_sha256, scene_sha256(&scene));
     assert_eq!(back.vehicle, Pose::from_position(scene.mesh().origin()));
-    // Written again, it is the same two files.
+    // Written again, it gives the same two files.
     let second = folder.path().join("again.toml");
     write_resolved(&second, &back.scene, "again.glb").unwrap();
     let text = |path: &Path| std::fs::read_to_string(path).unwrap();
@@ -45,7 +43,7 @@ fn a_built_in_scene_comes_back() {
 fn the_ground_takes_part_in_the_source_digest() {
     let (folder, path, _) = written();
     let first = load_path(&path, &Overrides::default()).unwrap().source_sha256;
-    // A trailing byte that no reader looks at.
+    // A trailing byte, which readers ignore.
     let ground = folder.path().join("terrain.glb");
     let mut bytes = std::fs::read(&ground).unwrap();
     bytes.push(0);
@@ -84,7 +82,7 @@ fn overrides_of_light_apply_and_those_of_a_vehicle_do_not() {
     );
 }
 
-/// What is wrong after a change of the text.
+/// Problem of the written text with `to` in place of `from`.
 fn problem(from: &str, to: &str) -> TomlProblem {
     let (_folder, path, _) = written();
     let text = std::fs::read_to_string(&path).unwrap();
@@ -106,11 +104,11 @@ fn every_key_is_required_but_two() {
         let key = line.split_once(' ').unwrap().0;
         let problem = problem(&format!("{line}\n"), "");
         assert_eq!(problem.message, format!("missing field `{key}`"), "{line}");
-        // The table that lacks it is marked.
+        // The table without the key is marked.
         assert!(problem.line > 3 && !problem.marked().is_empty(), "{line}: {problem}");
         checked += 1;
     }
-    // Nine of the camera, ten of each of two beams, two of the ground, one of the air and of the light.
+    // Nine keys of the camera, ten of each of the two beams, two of the ground, one of the air, one of the flux.
     assert_eq!(checked, 9 + 2 * 10 + 2 + 1 + 1);
     assert_eq!(problem("[flux]\nmodel = \"radiometric\"\n", "").message, "missing field `flux`");
     let pose = problem("position_m = ", "position = ");
@@ -196,7 +194,7 @@ fn wrong_keys_and_values_are_marked() {
         assert!(problem.message.starts_with(message), "{to}: {problem}");
         assert_eq!(problem.marked(), marked, "{to}: {problem}");
     }
-    // A quaternion that is no rotation, a sensor out of the world.
+    // A quaternion that is no rotation; a sensor too far away.
     let (_folder, path, _) = written();
     let text = std::fs::read_to_string(&path).unwrap();
     for (key, value, expected) in [
@@ -222,7 +220,7 @@ fn a_mesh_name_that_leads_elsewhere_is_refused() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
-/// Any double within some bounds, of any size and with all its digits, or one of its bounds.
+/// Any double within the bounds, with all its digits, or one of the bounds, or a tiny one.
 fn real(low: f64, high: f64) -> impl Strategy<Value = f64> {
     let small = (low > -1.0).then_some(low.max(1e-300));
     prop_oneof![4 => low..=high, 1 => Just(low), 1 => Just(high), 1 => Just(small.unwrap_or(-0.0))]

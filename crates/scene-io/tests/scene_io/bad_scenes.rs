@@ -1,22 +1,24 @@
-//! Scene files that are wrong: the line, the column, the marked text and the message of each.
+//! Wrong scene files: line, column, marked text and message of each error.
 
 use miette::Diagnostic;
 
 use raypencil_files::write_npy;
 use raypencil_scene::Image;
-use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem, load};
+use raypencil_scene_io::{Overrides, SceneIoError, TomlProblem};
+
+use crate::load_path;
 
 fn problem(text: &str) -> TomlProblem {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.toml");
     std::fs::write(&path, text).unwrap();
-    match load(path.to_str().unwrap(), &Overrides::default()).unwrap_err() {
+    match load_path(&path, &Overrides::default()).unwrap_err() {
         SceneIoError::Toml(problem) => *problem,
         other => panic!("not a problem of a line: {other}"),
     }
 }
 
-/// What is wrong in the third line, after `version = 1` and a table's header.
+/// Checks the error in the third line, after `version = 1` and the header of a table.
 fn third_line(table: &str, line: &str, marked: &str, message: &str) {
     let problem = problem(&format!("version = 1\n{table}\n{line}\n"));
     assert_eq!(problem.message, message, "{line}");
@@ -225,7 +227,7 @@ fn wrong_types_are_marked() {
 }
 
 #[test]
-fn the_version_is_asked_first() {
+fn the_version_is_read_first() {
     let missing = problem("[camera]\nnew_key = 1\n");
     assert_eq!(missing.message, "`version` is missing; expected `version = 1`, the only version there is");
     assert_eq!((missing.line, missing.column), (1, 1));
@@ -241,7 +243,7 @@ fn the_version_is_asked_first() {
 }
 
 #[test]
-fn what_is_no_toml_is_marked() {
+fn text_that_is_no_toml_is_marked() {
     let broken = problem("version = 1\n[camera]\nwidth_px = \n");
     assert_eq!(broken.line, 3, "{broken}");
     let twice = problem("version = 1\n[camera]\nwidth_px = 3\nwidth_px = 4\n");
@@ -266,7 +268,7 @@ fn exactly_one_ground() {
 }
 
 #[test]
-fn a_gaussian_has_a_width_and_nothing_else_has() {
+fn only_a_gaussian_has_a_width() {
     let without = problem("version = 1\n[[beam]]\nprofile = \"gaussian\"\n");
     assert_eq!(
         without.message,
@@ -337,10 +339,10 @@ fn a_file_that_is_no_text_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("binary.toml");
     std::fs::write(&path, b"version = 1\n# \xff\n").unwrap();
-    let message = load(path.to_str().unwrap(), &Overrides::default()).unwrap_err().to_string();
+    let message = load_path(&path, &Overrides::default()).unwrap_err().to_string();
     assert!(message.contains("binary.toml: cannot read: invalid utf-8"), "{message}");
     std::fs::write(&path, vec![b' '; (1 << 20) + 1]).unwrap();
-    let message = load(path.to_str().unwrap(), &Overrides::default()).unwrap_err().to_string();
+    let message = load_path(&path, &Overrides::default()).unwrap_err().to_string();
     assert!(message.contains("larger than 1048576 bytes"), "{message}");
 }
 
@@ -458,7 +460,7 @@ fn a_kernel_file_is_checked() {
         "version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n[drive.optics]\nblurs = [{ kernel = \"k.npy\" }]\n";
     std::fs::write(&scene, text).unwrap();
     let kernel = folder.path().join("k.npy");
-    let message = || load(scene.to_str().unwrap(), &Overrides::default()).unwrap_err().to_string();
+    let message = || load_path(&scene, &Overrides::default()).unwrap_err().to_string();
     let write = |planes: &[&Image<f64>]| write_npy(&kernel, planes).unwrap();
     let odd = Image::filled(3, 3, 1.0);
     assert!(message().contains("`drive.optics.blurs[0].kernel`: there is no file "), "{}", message());
@@ -471,5 +473,5 @@ fn a_kernel_file_is_checked() {
     std::fs::write(&kernel, b"not an array").unwrap();
     assert!(message().contains("k.npy"), "{}", message());
     write(&[&odd]);
-    assert!(load(scene.to_str().unwrap(), &Overrides::default()).is_ok());
+    assert!(load_path(&scene, &Overrides::default()).is_ok());
 }

@@ -1,0 +1,377 @@
+//! Keys of `[drive]`, written straight into a [`DriveSetup`].
+
+use glam::DVec2;
+use serde::Deserialize;
+use std::ops::RangeInclusive;
+use toml::Spanned;
+
+use raypencil_files::Sha;
+use raypencil_rover::{
+    Detection, DrivePlan, ExposureMode, PositionFixes, RadialGrid, Rig, ScanRule, StripeLocation,
+    TraversabilityRules, VectorRules, Vehicle,
+};
+use raypencil_sensor::{MARS_SEMI_MAJOR_AXIS_AU, PRESET_NAMES, SOLAR_IRRADIANCE_810_NM, Sunlight};
+
+use crate::drive::camera::{ElectronicsKeys, OpticsKeys};
+use crate::drive::setup::{DriveSetup, default_threshold};
+use crate::parse::key::{Key, span};
+use crate::parse::shared::GLOBAL_M;
+use crate::parse::source::Source;
+use crate::scene_error::SceneIoError;
+
+/// Length of the vehicle, metres: the limits of `rover`.
+const VEHICLE_M: RangeInclusive<f64> = 1e-2..=1e2;
+
+/// Maximum number of waypoints of a route.
+const MAX_WAYPOINTS: usize = 10_000;
+
+/// CHOICE: a clear day on Mars.
+const DEFAULT_OPTICAL_DEPTH: f64 = 0.5;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DriveKeys {
+    waypoints_m: Spanned<Vec<Spanned<Vec<f64>>>>,
+    speed_m_per_s: Key<f64>,
+    turn_deg_per_s: Key<f64>,
+    frames_per_s: Key<f64>,
+    seed: Key<i64>,
+    sensor: Key<String>,
+    sensor_seed: Key<i64>,
+    sun: Option<SunKeys>,
+    subtract_unlit: Option<bool>,
+    pencils_per_pixel: Key<f64>,
+    exposures: Key<String>,
+    detection: Key<String>,
+    threshold_dn: Key<f64>,
+    place: Key<String>,
+    least_rows: Key<i64>,
+    map_spacing_m: Key<f64>,
+    map_points: Key<i64>,
+    obstacles_every_frames: Key<i64>,
+    cross_gaps: Option<bool>,
+    slope_front: Key<f64>,
+    slope_rear: Key<f64>,
+    slope_length: Key<f64>,
+    slope_closer: Key<f64>,
+    grid_first_m: Key<f64>,
+    grid_last_m: Key<f64>,
+    grid_step_m: Key<f64>,
+    grid_half_angle_deg: Key<f64>,
+    grid_sectors: Key<i64>,
+    vector_large_m: Key<f64>,
+    vector_small_m: Key<f64>,
+    scans: Option<bool>,
+    scan_every_m: Key<f64>,
+    scan_steps: Key<i64>,
+    scan_from_deg: Key<f64>,
+    scan_to_deg: Key<f64>,
+    scan_inconsistency_m: Key<f64>,
+    scan_least_points: Key<i64>,
+    wheelbase_m: Key<f64>,
+    track_m: Key<f64>,
+    wheel_radius_m: Key<f64>,
+    wheel_width_m: Key<f64>,
+    clearance_m: Key<f64>,
+    position_drift_m_per_s: Key<Vec<f64>>,
+    position_walk_m: Key<f64>,
+    heading_bias_deg: Key<f64>,
+    pitch_bias_deg: Key<f64>,
+    roll_bias_deg: Key<f64>,
+    heading_drift_deg_per_s: Key<f64>,
+    attitude_noise_deg: Key<f64>,
+    proximity_noise_m: Key<f64>,
+    fix_every_frames: Key<i64>,
+    fix_noise_m: Key<f64>,
+    optics: Option<OpticsKeys>,
+    electronics: Option<ElectronicsKeys>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SunKeys {
+    elevation_deg: Spanned<f64>,
+    azimuth_deg: Key<f64>,
+    optical_depth: Key<f64>,
+    irradiance_w_per_m2_nm: Key<f64>,
+}
+
+impl Source<'_> {
+    /// Drive of a rig, and the digests of the files of its kernels.
+    ///
+    /// The order matters where a default depends on other keys: the preset comes before seed, threshold, optics and
+    /// electronics, and the vehicle before the rules of traversability, the radial grid and the navigator map.
+    pub(crate) fn drive(&self, keys: &DriveKeys, rig: Rig) -> Result<(DriveSetup, Vec<Sha>), SceneIoError> {
+        let mut drive = DriveSetup::new(rig, self.waypoints(&keys.waypoints_m)?);
+        self.route(keys, &mut drive.plan)?;
+        self.light(keys, &mut drive)?;
+        self.extraction(keys, &mut drive)?;
+        self.vehicle_lengths(keys, &mut drive.plan.vehicle)?;
+        self.maps(keys, &mut drive.plan)?;
+        self.scans(keys, &mut drive.plan)?;
+        self.localisation(keys, &mut drive.plan)?;
+        let mut kernel_digests = Vec::new();
+        if let Some(keys) = &keys.optics {
+            kernel_digests = self.optics(keys, &mut drive)?;
+        }
+        if let Some(keys) = &keys.electronics {
+            self.electronics(keys, &mut drive.sensor)?;
+        }
+        let by_default = keys.threshold_dn.is_none() && drive.plan.extraction.detection != Detection::Otsu;
+        drive.threshold_ignores = if !by_default {
+            None
+        } else if keys.sun.is_some() {
+            Some("a sun behind the stripes")
+        } else if keys.electronics.as_ref().is_some_and(|keys| !keys.is_empty()) {
+            Some("other electronics")
+        } else {
+            None
+        };
+        Ok((drive, kernel_digests))
+    }
+
+    fn waypoints(&self, list: &Spanned<Vec<Spanned<Vec<f64>>>>) -> Result<Vec<DVec2>, SceneIoError> {
+        let count = list.get_ref().len();
+        if !(1..=MAX_WAYPOINTS).contains(&count) {
+            let message = format!("`drive.waypoints_m` has {count} places; expected 1 to {MAX_WAYPOINTS}");
+            return Err(self.error(list.span(), message));
+        }
+        let waypoint = |key| {
+            let numbers = self.list(key, "drive.waypoints_m", &[2], GLOBAL_M, "metres")?;
+            Ok(DVec2::from_slice(numbers))
+        };
+        list.get_ref().iter().map(waypoint).collect()
+    }
+
+    fn route(&self, keys: &DriveKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {
+        let route = &mut plan.route;
+        let (speed, name) = (&keys.speed_m_per_s, "drive.speed_m_per_s");
+        self.number(speed, name, &mut route.speed, 1e-4..=1e2, "metres per second")?;
+        let (turn, name) = (&keys.turn_deg_per_s, "drive.turn_deg_per_s");
+        let range = 1e-2..=3600.0;
+        self.converted(turn, name, &mut route.turn_rate, range, "degrees per second", f64::to_radians)?;
+        let (rate, name) = (&keys.frames_per_s, "drive.frames_per_s");
+        self.number(rate, name, &mut route.frame_rate, 1e-3..=1e4, "per second")?;
+        self.integer(&keys.seed, "drive.seed", &mut plan.seed, 0..=i64::MAX, "")
+    }
+
+    /// Sensor, sun and exposures.
+    fn light(&self, keys: &DriveKeys, drive: &mut DriveSetup) -> Result<(), SceneIoError> {
+        if let Some(sensor) = &keys.sensor {
+            let presets: Vec<_> = PRESET_NAMES.iter().map(|name| (*name, *name)).collect();
+            drive.use_preset(self.word(sensor, "drive.sensor", &presets)?);
+        }
+        self.integer(&keys.sensor_seed, "drive.sensor_seed", &mut drive.sensor.seed, 0..=i64::MAX, "")?;
+        drive.sunlight = keys.sun.as_ref().map(|sun| self.sun(sun)).transpose()?;
+        drive.subtract_unlit = keys.subtract_unlit == Some(true);
+        let (pencils, name) = (&keys.pencils_per_pixel, "drive.pencils_per_pixel");
+        self.number(pencils, name, &mut drive.pencils_per_pixel, 0.1..=64.0, "pencils")?;
+        let modes = [("in_turn", ExposureMode::InTurn), ("together", ExposureMode::Together)];
+        self.choice(&keys.exposures, "drive.exposures", &mut drive.plan.exposures, &modes)
+    }
+
+    /// Light on Mars, its sun as bright as the file says.
+    fn sun(&self, keys: &SunKeys) -> Result<Sunlight, SceneIoError> {
+        let elevation = &keys.elevation_deg;
+        self.check(*elevation.get_ref(), elevation.span(), "drive.sun.elevation_deg", 0.0..=90.0, "degrees")?;
+        let mut azimuth_deg = 0.0;
+        let (key, name) = (&keys.azimuth_deg, "drive.sun.azimuth_deg");
+        self.number(key, name, &mut azimuth_deg, -360.0..=360.0, "degrees")?;
+        let mut optical_depth = DEFAULT_OPTICAL_DEPTH;
+        let (key, name) = (&keys.optical_depth, "drive.sun.optical_depth");
+        self.number(key, name, &mut optical_depth, 0.0..=10.0, "of dust")?;
+        let (key, name) = (&keys.irradiance_w_per_m2_nm, "drive.sun.irradiance_w_per_m2_nm");
+        let irradiance = self.optional(key, name, 0.0..=100.0, "W/m^2 per nm")?;
+
+        let mars = Sunlight::mars(elevation.get_ref().to_radians(), azimuth_deg.to_radians(), optical_depth);
+        // W/m^2 per metre of wavelength, above the air.
+        let usual = SOLAR_IRRADIANCE_810_NM / (MARS_SEMI_MAJOR_AXIS_AU * MARS_SEMI_MAJOR_AXIS_AU);
+        let share = irradiance.map_or(1.0, |per_nm| per_nm * 1e9 / usual);
+        Ok(Sunlight { direct: share * mars.direct, sky: share * mars.sky, ..mars })
+    }
+
+    fn extraction(&self, keys: &DriveKeys, drive: &mut DriveSetup) -> Result<(), SceneIoError> {
+        // The difference to an unlit image has no bias.
+        let bias = if drive.subtract_unlit { drive.sensor.bias } else { 0.0 };
+        let by_default = default_threshold(drive.preset) - bias;
+        let level = keys.threshold_dn.as_ref().map_or(by_default, |key| *key.get_ref());
+        let extraction = &mut drive.plan.extraction;
+        extraction.detection = Detection::Fixed(level);
+        let detections = [
+            ("fixed", Detection::Fixed(level)),
+            ("otsu", Detection::Otsu),
+            ("gradient", Detection::Gradient(level)),
+        ];
+        self.choice(&keys.detection, "drive.detection", &mut extraction.detection, &detections)?;
+        if let (Detection::Otsu, Some(threshold)) = (extraction.detection, &keys.threshold_dn) {
+            let message = "`drive.threshold_dn` is given; expected none with detection = \"otsu\"";
+            return Err(self.error(threshold.span(), message));
+        }
+        self.optional(&keys.threshold_dn, "drive.threshold_dn", 1e-3..=65535.0, "digital numbers")?;
+        let places = [
+            ("pixel", StripeLocation::Pixel),
+            ("sub_pixel", StripeLocation::SubPixel),
+            ("centroid", StripeLocation::Centroid),
+        ];
+        self.choice(&keys.place, "drive.place", &mut extraction.place, &places)?;
+        self.integer(&keys.least_rows, "drive.least_rows", &mut extraction.least_rows, 1..=1_000_000, "")
+    }
+
+    fn vehicle_lengths(&self, keys: &DriveKeys, vehicle: &mut Vehicle) -> Result<(), SceneIoError> {
+        let lengths = [
+            ("wheelbase_m", &keys.wheelbase_m, &mut vehicle.wheelbase),
+            ("track_m", &keys.track_m, &mut vehicle.track),
+            ("wheel_radius_m", &keys.wheel_radius_m, &mut vehicle.wheel_radius),
+            ("wheel_width_m", &keys.wheel_width_m, &mut vehicle.wheel_width),
+            ("clearance_m", &keys.clearance_m, &mut vehicle.clearance),
+        ];
+        for (name, key, slot) in lengths {
+            self.number(key, &format!("drive.{name}"), slot, VEHICLE_M, "metres")?;
+        }
+        Ok(())
+    }
+
+    /// Elevation map, obstacle map and navigator map.
+    fn maps(&self, keys: &DriveKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {
+        self.number(&keys.map_spacing_m, "drive.map_spacing_m", &mut plan.map.spacing, 1e-3..=1e3, "metres")?;
+        if let Some(points) = &keys.map_points {
+            plan.map.points = self.odd(points)?;
+        }
+        let (every, name) = (&keys.obstacles_every_frames, "drive.obstacles_every_frames");
+        self.integer(every, name, &mut plan.obstacles_every, 1..=i64::MAX, "")?;
+
+        plan.rules = TraversabilityRules::for_vehicle(&plan.vehicle);
+        if keys.cross_gaps == Some(true) {
+            plan.rules = plan.rules.crossing_gaps(&plan.vehicle);
+        }
+        let limits = &mut plan.rules.slopes;
+        let slopes = [
+            ("slope_front", &keys.slope_front, &mut limits.front),
+            ("slope_rear", &keys.slope_rear, &mut limits.rear),
+            ("slope_length", &keys.slope_length, &mut limits.length),
+            ("slope_closer", &keys.slope_closer, &mut limits.closer),
+        ];
+        for (name, key, slot) in slopes {
+            self.number(key, &format!("drive.{name}"), slot, 0.0..=1e3, "of rise over distance")?;
+        }
+
+        if let (Some(first), Some(last)) = (&keys.grid_first_m, &keys.grid_last_m)
+            && last.get_ref() < first.get_ref()
+        {
+            let message = format!(
+                "`drive.grid_last_m` is {}; expected `grid_first_m` or more, {}",
+                last.get_ref(),
+                first.get_ref()
+            );
+            return Err(self.error(last.span(), message));
+        }
+        plan.grid = RadialGrid::for_vehicle(&plan.vehicle);
+        let grid = &mut plan.grid;
+        self.number(&keys.grid_first_m, "drive.grid_first_m", &mut grid.first, 0.0..=1e3, "metres")?;
+        self.number(&keys.grid_last_m, "drive.grid_last_m", &mut grid.last, 0.0..=1e3, "metres")?;
+        self.number(&keys.grid_step_m, "drive.grid_step_m", &mut grid.step, 1e-3..=1e3, "metres")?;
+        let (angle, name) = (&keys.grid_half_angle_deg, "drive.grid_half_angle_deg");
+        self.converted(angle, name, &mut grid.half_angle, 0.0..=180.0, "degrees", f64::to_radians)?;
+        self.integer(&keys.grid_sectors, "drive.grid_sectors", &mut grid.sectors, 1..=100_000, "")?;
+
+        plan.vectors = VectorRules::for_vehicle(&plan.vehicle);
+        let vectors = &mut plan.vectors;
+        self.number(&keys.vector_large_m, "drive.vector_large_m", &mut vectors.large, 0.0..=1e3, "metres")?;
+        self.number(&keys.vector_small_m, "drive.vector_small_m", &mut vectors.small, 0.0..=1e3, "metres")
+    }
+
+    /// Number of points along a side of the map: odd, so that one is in the middle.
+    fn odd(&self, key: &Spanned<i64>) -> Result<u32, SceneIoError> {
+        match u32::try_from(*key.get_ref()) {
+            Ok(points) if (3..=2001).contains(&points) && points % 2 == 1 => Ok(points),
+            _ => {
+                let points = key.get_ref();
+                let message =
+                    format!("`drive.map_points` is {points}; expected an odd number from 3 to 2001");
+                Err(self.error(key.span(), message))
+            }
+        }
+    }
+
+    fn scans(&self, keys: &DriveKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {
+        let of_scans = [
+            span(&keys.scan_every_m),
+            span(&keys.scan_steps),
+            span(&keys.scan_from_deg),
+            span(&keys.scan_to_deg),
+            span(&keys.scan_inconsistency_m),
+            span(&keys.scan_least_points),
+        ];
+        if keys.scans == Some(false) {
+            plan.scans = None;
+            return match of_scans.into_iter().flatten().next() {
+                Some(span) => {
+                    Err(self.error(span, "a scan's number beside `scans = false`; expected one of the two"))
+                }
+                None => Ok(()),
+            };
+        }
+        let mut rule = ScanRule::default();
+        let every = self.optional(&keys.scan_every_m, "drive.scan_every_m", 1e-3..=1e9, "metres")?;
+        rule.every = every.or(rule.every);
+        let sweep = &mut plan.sweep;
+        self.integer(&keys.scan_steps, "drive.scan_steps", &mut sweep.steps, 1..=1000, "")?;
+        let angles = [
+            ("scan_from_deg", &keys.scan_from_deg, &mut sweep.from),
+            ("scan_to_deg", &keys.scan_to_deg, &mut sweep.to),
+        ];
+        for (name, key, slot) in angles {
+            let name = format!("drive.{name}");
+            self.converted(key, &name, slot, -180.0..=180.0, "degrees", f64::to_radians)?;
+        }
+        let (key, name) = (&keys.scan_inconsistency_m, "drive.scan_inconsistency_m");
+        rule.inconsistency = self.optional(key, name, 0.0..=1e3, "metres")?.or(rule.inconsistency);
+        let (key, name) = (&keys.scan_least_points, "drive.scan_least_points");
+        self.integer(key, name, &mut rule.least_points, 1..=1_000_000, "")?;
+        plan.scans = Some(rule);
+        Ok(())
+    }
+
+    /// Errors of the localisation sensors.
+    fn localisation(&self, keys: &DriveKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {
+        let errors = &mut plan.errors;
+        if let Some(drift) = &keys.position_drift_m_per_s {
+            let name = "drive.position_drift_m_per_s";
+            let drift = self.list(drift, name, &[2], -1e2..=1e2, "metres per second")?;
+            errors.position_drift = DVec2::from_slice(drift);
+        }
+        let (walk, name) = (&keys.position_walk_m, "drive.position_walk_m");
+        self.number(walk, name, &mut errors.position_walk, 0.0..=1e2, "metres")?;
+        let bias = &mut errors.attitude_bias;
+        let angles = [
+            ("heading_bias_deg", &keys.heading_bias_deg, &mut bias.heading, -50.0, "degrees"),
+            ("pitch_bias_deg", &keys.pitch_bias_deg, &mut bias.pitch_down, -50.0, "degrees"),
+            ("roll_bias_deg", &keys.roll_bias_deg, &mut bias.roll_right, -50.0, "degrees"),
+            (
+                "heading_drift_deg_per_s",
+                &keys.heading_drift_deg_per_s,
+                &mut errors.heading_drift,
+                -50.0,
+                "degrees per second",
+            ),
+            ("attitude_noise_deg", &keys.attitude_noise_deg, &mut errors.attitude_noise, 0.0, "degrees"),
+        ];
+        for (name, key, slot, low, unit) in angles {
+            self.converted(key, &format!("drive.{name}"), slot, low..=50.0, unit, f64::to_radians)?;
+        }
+        let (noise, name) = (&keys.proximity_noise_m, "drive.proximity_noise_m");
+        self.number(noise, name, &mut errors.proximity_noise, 0.0..=1e2, "metres")?;
+
+        if keys.fix_every_frames.is_none() {
+            let Some(noise) = &keys.fix_noise_m else { return Ok(()) };
+            let message = "`drive.fix_noise_m` is given; expected it only with `fix_every_frames`";
+            return Err(self.error(noise.span(), message));
+        }
+        let mut fixes = PositionFixes { every_frames: 1, noise: 0.0 };
+        let (every, name) = (&keys.fix_every_frames, "drive.fix_every_frames");
+        self.integer(every, name, &mut fixes.every_frames, 1..=i64::MAX, "")?;
+        self.number(&keys.fix_noise_m, "drive.fix_noise_m", &mut fixes.noise, 0.0..=1e3, "metres")?;
+        errors.fixes = Some(fixes);
+        Ok(())
+    }
+}
