@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use raypencil::Progress as _;
-use raypencil::harness::{Outsider, one_screen, summary_json, validate as run, write_validation};
+use raypencil::harness::{Candidate, one_screen, summary_json, validate as run, write_validation};
 use raypencil::judge::JudgeShare;
 
 use crate::args::{JudgeWhich, Validate, typed_renderers};
@@ -26,12 +26,12 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
     };
     // Others first: what is wrong with their files is said soon.
     spinner.stage("reading what others recorded");
-    let outsiders: Result<Vec<Outsider>, _> =
-        command.candidates.iter().map(|folder| Outsider::read(folder, &subject.scene)).collect();
-    let outsiders = outsiders?;
+    let candidates: Result<Vec<Candidate>, _> =
+        command.candidates.iter().map(|folder| Candidate::read(folder, &subject.scene)).collect();
+    let candidates = candidates?;
     let mut validation = run(subject, &contenders, share, &spinner);
-    if !outsiders.is_empty() {
-        validation.hold(outsiders, &spinner);
+    if !candidates.is_empty() {
+        validation.evaluate(candidates, &spinner);
     }
     write_validation(&validation, &folder, &spinner)?;
     drop(spinner);

@@ -295,7 +295,7 @@ fn assert_well_formed(xml: &str) {
 #[test]
 fn an_outsiders_misses_are_told_and_reproduced() {
     let folder = tempfile::tempdir().unwrap();
-    let validation = fixtures::with_outsider();
+    let validation = fixtures::with_candidate();
     let written = write_validation(&validation, folder.path(), &Silent).unwrap();
 
     // On the page, its name no tag.
@@ -321,11 +321,13 @@ fn an_outsiders_misses_are_told_and_reproduced() {
 
     // For programs.
     let summary: Value = serde_json::from_slice(&fs::read(written.summary).unwrap()).unwrap();
-    let panel = summary["panel"]["renderers"].as_array().unwrap();
-    let wrong: Vec<(&str, u64)> =
-        panel.iter().map(|held| (held["name"].as_str().unwrap(), held["wrong"].as_u64().unwrap())).collect();
+    let scoreboard = summary["panel"]["renderers"].as_array().unwrap();
+    let wrong: Vec<(&str, u64)> = scoreboard
+        .iter()
+        .map(|held| (held["name"].as_str().unwrap(), held["wrong"].as_u64().unwrap()))
+        .collect();
     assert_eq!(wrong, [("scanline", 0), ("tracer", 0), ("Odd <renderer> 1", 2)]);
-    let misses = panel[2]["misses"].as_array().unwrap();
+    let misses = scoreboard[2]["misses"].as_array().unwrap();
     assert_eq!(misses.len(), 2);
     assert!(misses.iter().all(|miss| miss["quantity"] == "visible"));
     // What the verdict is on: our own.
