@@ -82,8 +82,8 @@ pub fn approximate() -> Validation {
 /// The ray that [`with_candidate`]'s candidate answers wrongly: it says that the camera does not see the point.
 pub const MISS: Place = Place { sensor: SensorId::Beam(0), i: 30, j: 2 };
 
-/// [`agreeing`] with a candidate of an odd name. It is right except on [`MISS`] and on the first hidden pencil, which it
-/// says is visible. Its image is twice too bright, and it has radiance on all of the ground.
+/// [`agreeing`] with a candidate of an odd name. It is right except on [`MISS`] and on the first hidden pencil, which
+/// it says is visible. Its image is twice too bright, and it has radiance on all of the ground.
 pub fn with_candidate() -> Validation {
     let mut validation = agreeing();
     let scene = &validation.subject.scene;

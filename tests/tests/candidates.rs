@@ -213,9 +213,9 @@ fn subdivided(beam: &Mounted<Beam>) -> Mounted<Beam> {
     Mounted { sensor: Beam { columns: 8 * columns, rows: 8 * rows, ..beam.sensor }, ..*beam }
 }
 
-/// The expected images of Mitsuba's integrator `ptracer`. It evaluates the reflection along its *shadow ray*, which begins
-/// not at the lit point p but (1 + max |p_k|) 1500 / 2^24 above it, so as not to hit that face again. From there the
-/// camera is lower over the ground. (Mitsuba 3.9.1, `ptracer`, `Interaction::offset_p`)
+/// The expected images of Mitsuba's integrator `ptracer`. It evaluates the reflection along its *shadow ray*, which
+/// begins not at the lit point p but (1 + max |p_k|) 1500 / 2^24 above it, so as not to hit that face again. From there
+/// the camera is lower over the ground. (Mitsuba 3.9.1, `ptracer`, `Interaction::offset_p`)
 fn expected_of_ptracer(scene: &Scene, realisations: u64) -> Vec<Estimate> {
     let scene = with(scene, *scene.camera(), scene.beams().iter().map(subdivided).collect());
     let camera = scene.camera();

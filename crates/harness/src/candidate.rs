@@ -41,8 +41,8 @@ pub struct Candidate {
 
 /// Radiance of one beam's light along the rays of a sensor, W m^-2 sr^-1.
 ///
-/// A camera's map has the radiance along its own rays. A beam's map has the radiance from each pencil's hit point towards
-/// the camera, NaN where the pencil hits nothing.
+/// A camera's map has the radiance along its own rays. A beam's map has the radiance from each pencil's hit point
+/// towards the camera, NaN where the pencil hits nothing.
 #[derive(Debug, Clone)]
 pub struct RadianceMap {
     /// The sensor whose rays these are.

@@ -77,7 +77,6 @@ mod validation;
 pub use candidate::{Candidate, CandidateError, RadianceMap};
 pub use estimate::{Estimate, MonteCarloImage};
 pub use interestingness::{first_shown, shows_class};
-pub use misses::{MissReproducer, write_misses};
 pub use monte_carlo::{ImageComparison, Z_TEST_LIMITS, ZTestLimits, compare_images, expected_images};
 pub use output::folder::{HarnessError, Written, write_maps, write_validation};
 pub use output::junit::junit as junit_xml;
@@ -91,7 +90,7 @@ pub use rendered::Rendered;
 pub use renderers::{Contender, RENDERER_NAMES, attribute, contender, typed_contenders};
 pub use reproducer::{Reproducer, write_reproducer};
 pub use run::validate;
-pub use scoreboard::{CandidateReport, RendererReport, Scoreboard, evaluate};
+pub use scoreboard::{CandidateReport, RendererReport, Scoreboard};
 pub use validation::{Counts, Pair, Validation};
 
 /// The README's example, compiled and run with the documentation tests.

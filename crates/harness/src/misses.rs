@@ -1,7 +1,7 @@
 //! Misses: rays that a candidate answers wrongly, each written as a pack of that ray, so that the candidate's author
 //! can reproduce it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use raypencil_files::write_atomically;
 use raypencil_judge::{Quantity, Wrong, name_of};
@@ -18,15 +18,6 @@ const MAX_MISSES: usize = 10;
 
 /// Maximum faces of a miss's terrain: those nearest the ray.
 const MAX_FACES: usize = 1000;
-
-/// A miss that was written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MissReproducer {
-    /// The ray in the whole scene.
-    pub place: Place,
-    /// The folder of its pack.
-    pub folder: PathBuf,
-}
 
 /// The exact answer to a ray, with the reason for its visibility.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,13 +49,12 @@ impl TrueAnswer {
 ///
 /// # Errors
 /// A file that could not be written; the message names it.
-pub fn write_misses(
+pub(crate) fn write_misses(
     subject: &Subject,
     report: &CandidateReport,
     folder: &Path,
     progress: &dyn Progress,
-) -> Result<Vec<MissReproducer>, PackError> {
-    let mut written = Vec::new();
+) -> Result<(), PackError> {
     for (index, wrong) in report.misses().take(MAX_MISSES).enumerate() {
         progress.stage(&format!("{}: miss {}", report.candidate.name, index + 1));
         let name = report.miss_name(index);
@@ -90,9 +80,8 @@ pub fn write_misses(
         let text = readme(subject, report, wrong, &small, place);
         let path = folder.join("README.md");
         write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
-        written.push(MissReproducer { place: wrong.place, folder });
     }
-    Ok(written)
+    Ok(())
 }
 
 /// Contents of a miss's README.md.
@@ -107,8 +96,10 @@ fn readme(
     let faces = small.scene.mesh().faces().len();
     let of = subject.scene.mesh().faces().len();
     format!(
-        "# {program}, {at}\n\n{quantity}: {what}\n\nThis folder is a reference pack of that ray ({place} here) over {faces} of the {of} faces; the exact\n\
-         answer to the ray is that of the whole scene. To see the exact answer, and to ask a program again:\n\n```sh\n{probe}\n\
+        "# {program}, {at}\n\n{quantity}: {what}\n\n\
+         This folder is a reference pack of that ray ({place} here) over {faces} of the {of} faces; the exact\n\
+         answer to the ray is that of the whole scene. To see the exact answer, and to ask a program again:\n\n\
+         ```sh\n{probe}\n\
          raypencil check . CANDIDATE    # reference/make.py --pack . makes one by Embree and one by Mitsuba\n```\n\n\
          In the scene {name}, {sha256}: `{again}`\n",
         at = wrong.place,

@@ -114,8 +114,8 @@ impl Running {
 
 /// Limits within which chance explains the difference between two estimates.
 ///
-/// Tuned: among 500 pixels the largest |z| exceeds 5 once in 3,000 times if z is normal, and about once in 50 with errors
-/// from 24 images.
+/// Tuned: among 500 pixels the largest |z| exceeds 5 once in 3,000 times if z is normal, and about once in 50 with
+/// errors from 24 images.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZTestLimits {
     /// Maximum relative difference of the totals.

@@ -18,8 +18,8 @@ use crate::candidate::RadianceMap;
 /// Maximum relative error of radiance computed in single precision. Tuned: some 80 roundings.
 const MAX_RELATIVE_ERROR: f64 = 5e-6;
 
-/// Relative half-width of the sheet's border, 16 roundings in single precision. A point nearer to the border may be lit or
-/// dark.
+/// Relative half-width of the sheet's border, 16 roundings in single precision. A point nearer to the border may be lit
+/// or dark.
 const BORDER_HALF_WIDTH: f64 = 16.0 / (1 << 24) as f64;
 
 /// The comparison of a radiance map with the closed form; the counts are numbers of rays.

@@ -13,8 +13,8 @@ pub struct Reproducer<'a> {
     pub name: &'a str,
     /// The difference that it shows, as a sentence.
     pub what: &'a str,
-    /// Command-line arguments that choose the two renderers, from [`crate::typed_contenders`]. If empty, the commands use
-    /// the default renderers.
+    /// Command-line arguments that choose the two renderers, from [`crate::typed_contenders`]. If empty, the commands
+    /// use the default renderers.
     pub with: &'a str,
 }
 

@@ -56,7 +56,7 @@ pub struct Scoreboard {
 }
 
 /// Checks `rendered` and `candidates` against the exact answer to every ray of the scene.
-pub fn evaluate(
+pub(crate) fn evaluate(
     subject: &Subject,
     rendered: &[Rendered],
     candidates: Vec<Candidate>,

@@ -201,10 +201,10 @@ fn check_names(rendered: &[Rendered]) -> Result<(), HarnessError> {
         let mut components = Path::new(name).components();
         let only = (components.next(), components.next());
         if !matches!(only, (Some(Component::Normal(part)), None) if part == OsStr::new(name)) {
-            return refuse("is fit for no folder");
+            return refuse("cannot be the name of a folder");
         }
         if !names.insert(name) {
-            return refuse("is there twice");
+            return refuse("is used twice");
         }
     }
     Ok(())

@@ -155,7 +155,7 @@ fn tiles(validation: &Validation) -> Vec<Tile> {
         tile(counts.tie, "tie", "several faces at exactly one point", false),
         tile(counts.rounding, "rounding", "exact for a ray displaced within the renderer's precision", false),
         tile(counts.approximation, "approximation", "an error of the paper, its cause confirmed", false),
-        tile(counts.defects, "defects", "wrong, for no such reason", counts.defects > 0),
+        tile(counts.defects, "defects", "anything else", counts.defects > 0),
         tile(counts.judged, "judged", "ruled on in exact arithmetic", false),
     ];
     if counts.not_compared > 0 {

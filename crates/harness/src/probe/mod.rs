@@ -47,7 +47,8 @@ pub struct ProbedAnswer {
     pub hit: Option<Hit>,
     /// The referee's ruling on the hit.
     pub ruling: Ruling,
-    /// The class of that ruling. The values of an agreeing answer are not judged here and may still exceed their bounds.
+    /// The class of that ruling. The values of an agreeing answer are not judged here and may still exceed their
+    /// bounds.
     pub class: Class,
     /// The confirmed cause of a wrong hit.
     pub cause: Option<Cause>,
