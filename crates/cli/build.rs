@@ -1,4 +1,4 @@
-//! Which commit the command is built from, where git tells.
+//! Tells the command the commit that it is built from, if git is available.
 
 use std::process::Command;
 
@@ -9,7 +9,7 @@ fn git(words: &[&str]) -> Option<String> {
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // It grows with every commit. (A file that is not there would have the command built every time.)
+    // This file grows with every commit. (A missing file would cause a build every time.)
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"])
         && std::path::Path::new(&log).exists()
     {

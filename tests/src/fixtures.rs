@@ -1,18 +1,20 @@
-//! Small validations: one that agrees, one with defects, one with approximations, one with a candidate.
+//! Small validations: one that agrees, one with defects, one with approximations, one with a candidate, and one with a
+//! single renderer.
 
-use glam::DVec3;
 use std::sync::Arc;
 
-use raypencil::Place;
-use raypencil::harness::{Estimate, Outsider, RadianceMap, Validation, WayImage, contender, validate};
+use glam::DVec3;
+use raypencil::harness::{
+    Candidate, Estimate, MonteCarloImage, RadianceMap, Validation, contender, validate,
+};
 use raypencil::io::Subject;
 use raypencil::judge::{Class, Defect, JudgeShare, Largest, Quantity, Recorded};
 use raypencil::{
-    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Pose, Precision, Profile, Scene,
+    Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Place, Pose, Precision, Profile, Scene,
     SensorId, Silent,
 };
 
-/// The pyramids through a small camera and one small beam.
+/// The pyramids with a small camera and one small beam.
 pub fn subject() -> Subject {
     let mesh = Arc::new(raypencil::terrain::builtin("pyramids", 0.25).unwrap().into_mesh().unwrap());
     let mount = |height: f64, down: f64| {
@@ -56,17 +58,17 @@ pub fn subject() -> Subject {
     }
 }
 
-/// Both renderers, in agreement.
+/// Both renderers, which agree.
 pub fn agreeing() -> Validation {
     of(subject(), ["scanline", "tracer"])
 }
 
-/// One renderer, and so nothing to compare.
+/// One renderer, so that nothing is compared.
 pub fn lonely() -> Validation {
     of(subject(), ["tracer"])
 }
 
-/// The paper's algorithm with a sheet of 80 mm against the tracer.
+/// The paper's algorithm against the tracer, with a sheet of 80 mm.
 pub fn approximate() -> Validation {
     let mut subject = subject();
     let scene = &subject.scene;
@@ -77,12 +79,12 @@ pub fn approximate() -> Validation {
     of(subject, ["scanline-paper", "tracer"])
 }
 
-/// Where [`with_outsider`]'s is wrong: it says that the camera does not see the point.
+/// The ray that [`with_candidate`]'s candidate answers wrongly: it says that the camera does not see the point.
 pub const MISS: Place = Place { sensor: SensorId::Beam(0), i: 30, j: 2 };
 
-/// [`agreeing`], and somebody with an odd name who is right but for that pencil and the first one that is hidden, has an image that is twice too bright and
-/// radiance on all of the ground.
-pub fn with_outsider() -> Validation {
+/// [`agreeing`] with a candidate of an odd name. It is right except on [`MISS`] and on the first hidden pencil, which
+/// it says is visible. Its image is twice too bright, and it has radiance on all of the ground.
+pub fn with_candidate() -> Validation {
     let mut validation = agreeing();
     let scene = &validation.subject.scene;
     let output = &validation.rendered[1].output;
@@ -96,28 +98,31 @@ pub fn with_outsider() -> Validation {
         .find(|&(i, j)| !seen.at(i, j) && (i, j) != (MISS.i, MISS.j) && lands.at(i, j).get().is_some())
         .expect("a pencil that is hidden");
     seen.set(i, j, true);
-    // What it does not say of the light is no contradiction.
+    // Its light is left out: flux would contradict the changed visibility.
     recorded.answers.light[0].returns.flux = None;
     recorded.answers.light[0].image = None;
     let camera = scene.camera().sensor;
     let twice = output.flux[0].cells().iter().map(|flux| 2.0 * flux).collect();
     let mean = Image::from_cells(camera.width, camera.height, twice);
     let error = Image::filled(camera.width, camera.height, 1e-12);
-    let image =
-        WayImage { way: "guess".into(), beam: 0, estimate: Estimate::of_independent_pixels(mean, error) };
+    let image = MonteCarloImage {
+        integrator: "guess".into(),
+        beam: 0,
+        estimate: Estimate::of_independent_pixels(mean, error),
+    };
     let radiance = RadianceMap {
         sensor: SensorId::Camera,
         beam: 0,
         image: Image::filled(camera.width, camera.height, 1.0),
     };
-    let outsider = Outsider {
+    let candidate = Candidate {
         name: "Odd <renderer> 1".into(),
         folder: "odd".into(),
         recorded,
         images: vec![image],
         radiance: vec![radiance],
     };
-    validation.hold(vec![outsider], &Silent);
+    validation.evaluate(vec![candidate], &Silent);
     validation
 }
 
@@ -126,11 +131,11 @@ fn of<const N: usize>(subject: Subject, names: [&str; N]) -> Validation {
     validate(subject, &contenders, JudgeShare::Sample, &Silent)
 }
 
-/// Where [`defective`] has its defects: a hit on one side only, and an error that is no number.
+/// The defects of [`defective`]: a hit on one side only, and an error that is NaN.
 pub const DEFECTS: [Place; 2] =
     [Place { sensor: SensorId::Beam(0), i: 7, j: 1 }, Place { sensor: SensorId::Beam(0), i: 9, j: 2 }];
 
-/// [`agreeing`], and two defects in the beam with text that no format must take for its own.
+/// [`agreeing`] with two defects in the beam. Their text contains markup that every report must escape.
 pub fn defective() -> Validation {
     let mut validation = agreeing();
     let sensor = validation.pairs[0].sensors.last_mut().unwrap();

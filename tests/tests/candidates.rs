@@ -1,22 +1,24 @@
-//! What Embree and Mitsuba recorded of the committed packs (`data/candidates`), held to the truth. `reference/README.md`
-//! tells how the recordings were made.
+//! Recordings of the committed packs by Embree and Mitsuba (`data/candidates`), checked against the exact answers.
+//! `reference/README.md` explains how the recordings were made.
 
 use std::path::{Path, PathBuf};
 
 use raypencil::Silent;
 use raypencil::harness::{
-    CHANCE_LIMITS, Estimate, ImageComparison, Outsider, RadianceComparison, WayImage, compare_images,
-    compare_radiance, expected_images,
+    Candidate, Estimate, ImageComparison, MonteCarloImage, RadianceComparison, RadianceMap, Z_TEST_LIMITS,
+    compare_images, compare_radiance, expected_images,
 };
 use raypencil::io::{Overrides, load};
 use raypencil::judge::{Class, GroundTruth, Quantity};
 use raypencil::pack::{Checked, check_pack};
 use raypencil::tracer::Tracer;
-use raypencil::{Beam, FluxModel, Image, Mounted, Precision, Renderer, Request, Sampling, Scene, SensorId};
+use raypencil::{
+    Beam, Camera, FluxModel, Image, Mounted, Precision, Renderer, Request, Sampling, Scene, SensorId,
+};
 
 const PACKS: [&str; 2] = ["pyramids", "facets"];
-/// How often pencils are drawn.
-const DRAWS: u64 = 24;
+/// Number of realisations of an expected image.
+const REALISATIONS: u64 = 24;
 
 fn data(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../data").join(path)
@@ -27,7 +29,7 @@ fn scene(pack: &str) -> Scene {
     load(&file.to_string_lossy(), &Overrides::default()).expect("the pack's scene").scene
 }
 
-fn with(scene: &Scene, camera: Mounted<raypencil::Camera>, beams: Vec<Mounted<Beam>>) -> Scene {
+fn with(scene: &Scene, camera: Mounted<Camera>, beams: Vec<Mounted<Beam>>) -> Scene {
     Scene::new(scene.mesh().clone(), camera, beams, scene.atmosphere(), FluxModel::Radiometric)
         .expect("a scene")
 }
@@ -37,26 +39,27 @@ fn checked(pack: &str, renderer: &str, precision: Option<Precision>) -> Checked 
     check_pack(&data(&format!("packs/{pack}")), &candidate, precision, &Silent).expect("a candidate")
 }
 
-fn outsider(pack: &str) -> Outsider {
-    Outsider::read(&data(&format!("candidates/mitsuba/{pack}")), &scene(pack)).expect("a recording")
+/// The recording by Mitsuba.
+fn mitsuba(pack: &str) -> Candidate {
+    Candidate::read(&data(&format!("candidates/mitsuba/{pack}")), &scene(pack)).expect("a recording")
 }
 
-/// The images of one way, by beam.
-fn images(pack: &str, way: &str) -> Vec<WayImage> {
-    let mut images = outsider(pack).images;
-    images.retain(|image| image.way == way);
-    assert_eq!(images.iter().map(|image| image.beam).collect::<Vec<_>>(), [0, 1], "{pack} {way}");
+/// The images of one integrator, by beam.
+fn images(pack: &str, integrator: &str) -> Vec<MonteCarloImage> {
+    let mut images = mitsuba(pack).images;
+    images.retain(|image| image.integrator == integrator);
+    assert_eq!(images.iter().map(|image| image.beam).collect::<Vec<_>>(), [0, 1], "{pack} {integrator}");
     images
 }
 
-fn compared(images: &[WayImage], expected: &[Estimate]) -> Vec<ImageComparison> {
+fn compared(images: &[MonteCarloImage], expected: &[Estimate]) -> Vec<ImageComparison> {
     images.iter().map(|image| compare_images(image, &expected[image.beam])).collect()
 }
 
 #[test]
-fn embree_is_right_as_single_precision_goes() {
+fn embree_is_right_within_single_precision() {
     for pack in PACKS {
-        // Its note says that it computes in single precision.
+        // Its candidate.json says that it computes in single precision.
         let found = checked(pack, "embree", None);
         assert_eq!(found.recorded.precision, Precision::F32);
         assert!(
@@ -74,17 +77,17 @@ fn embree_is_right_as_single_precision_goes() {
             .collect();
         assert_eq!(compared, [Quantity::Hit, Quantity::Face, Quantity::Range, Quantity::Visible], "{pack}");
         assert_eq!(found.check.of(Class::Rounding), 0, "{pack}");
-        // It would not do as double precision.
+        // Judged as double precision it fails.
         assert!(!checked(pack, "embree", Some(Precision::F64)).check.passes(), "{pack}");
     }
 }
 
 #[test]
-fn embree_is_off_by_micrometres_from_the_face_it_hits() {
+fn embrees_hits_are_micrometres_off_the_face() {
     for pack in PACKS {
         let scene = scene(pack);
         let truth = GroundTruth::certified(&scene, &Silent);
-        let said = Outsider::read(&data(&format!("candidates/embree/{pack}")), &scene)
+        let said = Candidate::read(&data(&format!("candidates/embree/{pack}")), &scene)
             .expect("a recording")
             .recorded;
         let (mut off_face, mut steep, mut grazing) = (0.0_f64, 0.0_f64, 0);
@@ -96,7 +99,7 @@ fn embree_is_off_by_micrometres_from_the_face_it_hits() {
                 assert_eq!(range.is_some(), hit.is_some(), "{pack} {sensor} {i},{j}");
                 let (Some(range), Some(hit)) = (range, hit) else { continue };
                 let off = (range - hit.range).abs();
-                // A ray that is displaced sideways by e is off by e / cos(psi) along the ray, whoever computes it.
+                // A ray displaced sideways by e changes its range by e / cos(psi), in any renderer.
                 off_face = off_face.max(off * hit.cos_incidence);
                 if hit.cos_incidence >= 0.05 {
                     steep = steep.max(off);
@@ -111,7 +114,7 @@ fn embree_is_off_by_micrometres_from_the_face_it_hits() {
 }
 
 #[test]
-fn mitsuba_meets_the_right_faces_and_loses_a_shadow_by_its_offset() {
+fn mitsuba_hits_the_right_faces_and_loses_a_shadow_by_its_offset() {
     for (pack, lost) in PACKS.into_iter().zip([&[][..], &[(1, 65, 0)]]) {
         let found = checked(pack, "mitsuba", None);
         for quantity in [Quantity::Hit, Quantity::Face, Quantity::Range] {
@@ -129,7 +132,7 @@ fn mitsuba_meets_the_right_faces_and_loses_a_shadow_by_its_offset() {
             })
             .collect();
         assert_eq!(places, lost, "{pack}");
-        // Nothing that only such a renderer has is taken for a channel with a wrong name.
+        // Monte Carlo images and radiance are not mistaken for channels with a wrong name.
         assert_eq!(found.recorded.unknown, [""; 0], "{pack}");
     }
 }
@@ -140,7 +143,7 @@ fn mitsubas_radiance_is_the_closed_form() {
     for pack in PACKS {
         let scene = scene(pack);
         let truth = GroundTruth::certified(&scene, &Silent);
-        let maps = outsider(pack).radiance;
+        let maps = mitsuba(pack).radiance;
         assert_eq!(maps.len(), 4, "{pack}: rays of the camera and of each beam, for both beams");
         for map in &maps {
             let found = compare_radiance(&truth, map);
@@ -152,11 +155,11 @@ fn mitsubas_radiance_is_the_closed_form() {
             );
             lit += found.lit;
         }
-        // It is compared: 0.1 % more is wrong everywhere.
-        let brighter = |map: &raypencil::harness::RadianceMap| {
+        // Sensitivity: radiance 0.1 % too large is wrong on every ray.
+        let brighter = |map: &RadianceMap| {
             let cells = map.image.cells().iter().map(|radiance| 1.001 * radiance).collect();
             let image = Image::from_cells(map.image.width(), map.image.height(), cells);
-            compare_radiance(&truth, &raypencil::harness::RadianceMap { image, ..map.clone() })
+            compare_radiance(&truth, &RadianceMap { image, ..map.clone() })
         };
         let is_all_wrong = |found: RadianceComparison| found.wrong == found.lit;
         assert!(maps.iter().map(brighter).all(is_all_wrong), "{pack}");
@@ -165,17 +168,17 @@ fn mitsubas_radiance_is_the_closed_form() {
 }
 
 #[test]
-fn mitsubas_images_are_of_the_same_light_and_of_no_other() {
+fn mitsubas_images_pass_the_z_test_and_changed_ones_fail() {
     for pack in PACKS {
         let scene = scene(pack);
         let images = images(pack, "direct");
-        let expected = expected_images(&scene, DRAWS, &Silent);
+        let expected = expected_images(&scene, REALISATIONS, &Silent);
         for found in compared(&images, &expected) {
             println!("{pack} {found:?}");
-            assert!(found.pixels >= 50 && found.is_within(&CHANCE_LIMITS), "{pack} {found:?}");
+            assert!(found.pixels >= 50 && found.is_within(&Z_TEST_LIMITS), "{pack} {found:?}");
         }
 
-        // Ours 0.5 % too bright.
+        // Sensitivity: expected images 0.5 % too bright.
         let scaled = |estimate: &Estimate| {
             let of = |image: &Image<f64>| {
                 let cells = image.cells().iter().map(|value| 1.005 * value).collect();
@@ -186,41 +189,42 @@ fn mitsubas_images_are_of_the_same_light_and_of_no_other() {
         };
         let brighter: Vec<Estimate> = expected.iter().map(scaled).collect();
         for found in compared(&images, &brighter) {
-            assert!(found.total_off().abs() > CHANCE_LIMITS.total, "{pack} {found:?}");
-            assert!(!found.is_within(&CHANCE_LIMITS), "{pack} {found:?}");
+            assert!(found.total_off().abs() > Z_TEST_LIMITS.max_total_relative, "{pack} {found:?}");
+            assert!(!found.is_within(&Z_TEST_LIMITS), "{pack} {found:?}");
         }
 
-        // Ours shifted by half a pixel, either way.
+        // Sensitivity: expected images shifted by half a pixel along each axis.
         for axis in 0..2 {
             let mut camera = *scene.camera();
             camera.sensor.principal_point[axis] += 0.5;
-            let shifted = expected_images(&with(&scene, camera, scene.beams().to_vec()), DRAWS, &Silent);
+            let shifted =
+                expected_images(&with(&scene, camera, scene.beams().to_vec()), REALISATIONS, &Silent);
             for found in compared(&images, &shifted) {
-                assert!(found.z_rms > CHANCE_LIMITS.rms, "{pack} {found:?}");
-                assert!(!found.is_within(&CHANCE_LIMITS), "{pack} {found:?}");
+                assert!(found.z_rms > Z_TEST_LIMITS.max_z_rms, "{pack} {found:?}");
+                assert!(!found.is_within(&Z_TEST_LIMITS), "{pack} {found:?}");
             }
         }
     }
 }
 
-/// A beam whose pencils are cut into 8 x 8.
-fn finer(beam: &Mounted<Beam>) -> Mounted<Beam> {
+/// A beam with each pencil subdivided into 8 x 8.
+fn subdivided(beam: &Mounted<Beam>) -> Mounted<Beam> {
     let Beam { columns, rows, .. } = beam.sensor;
     Mounted { sensor: Beam { columns: 8 * columns, rows: 8 * rows, ..beam.sensor }, ..*beam }
 }
 
-/// What `ptracer` is expected to find: it asks the ground how much it sends along its *shadow ray*, which does not begin
-/// at the point p that is lit, but (1 + max |p_k|) 1500 / 2^24 above it, so as not to meet that face again. Seen from there the
-/// camera stands lower over the ground. (Mitsuba 3.9.1, `ptracer`, `Interaction::offset_p`)
-fn expected_of_ptracer(scene: &Scene, draws: u64) -> Vec<Estimate> {
-    let scene = with(scene, *scene.camera(), scene.beams().iter().map(finer).collect());
+/// The expected images of Mitsuba's integrator `ptracer`. It evaluates the reflection along its *shadow ray*, which
+/// begins not at the lit point p but (1 + max |p_k|) 1500 / 2^24 above it, so as not to hit that face again. From there
+/// the camera is lower over the ground. (Mitsuba 3.9.1, `ptracer`, `Interaction::offset_p`)
+fn expected_of_ptracer(scene: &Scene, realisations: u64) -> Vec<Estimate> {
+    let scene = with(scene, *scene.camera(), scene.beams().iter().map(subdivided).collect());
     let camera = scene.camera();
     let eye = camera.scene_from_sensor.position;
     let (width, height) = (camera.sensor.width, camera.sensor.height);
     let cells = width as usize * height as usize;
-    // Of each pixel, and last of their sum: the sum over the draws, and that of the squares.
+    // Sum and sum of squares over the realisations, for each pixel; the last entry is for the sum over all pixels.
     let mut moments = vec![vec![[0.0_f64; 2]; cells + 1]; scene.beams().len()];
-    for seed in 1..=draws {
+    for seed in 1..=realisations {
         let request = Request { camera: false, sampling: Sampling::Jittered { seed }, ..Request::EVERYTHING };
         let output = Tracer::default().render(&scene, &request);
         for (beam, moments) in moments.iter_mut().enumerate() {
@@ -247,7 +251,7 @@ fn expected_of_ptracer(scene: &Scene, draws: u64) -> Vec<Estimate> {
             }
         }
     }
-    let count = draws as f64;
+    let count = realisations as f64;
     let estimate = |[sum, squares]: [f64; 2]| {
         let mean = sum / count;
         (mean, ((squares / count - mean * mean).max(0.0) / (count - 1.0)).sqrt())
@@ -261,18 +265,18 @@ fn expected_of_ptracer(scene: &Scene, draws: u64) -> Vec<Estimate> {
     moments.into_iter().map(of_beam).collect()
 }
 
-/// An image without some pixels, which get what is expected of them.
-fn without(image: &WayImage, expected: &Estimate, pixels: &[[u32; 2]]) -> WayImage {
+/// An image in which `pixels` have their expected values.
+fn without(image: &MonteCarloImage, expected: &Estimate, pixels: &[[u32; 2]]) -> MonteCarloImage {
     let mut estimate = image.estimate.clone();
     for &[i, j] in pixels {
         estimate.total += expected.mean.at(i, j) - estimate.mean.at(i, j);
         estimate.mean.set(i, j, expected.mean.at(i, j));
     }
-    WayImage { estimate, ..image.clone() }
+    MonteCarloImage { estimate, ..image.clone() }
 }
 
-/// Pixels of the second stripe of `facets` in which shadow rays begin beyond what hides the point, the one of the lost
-/// shadow above among them: some 580 of 676,000 points of that stripe.
+/// Pixels of the second stripe of `facets` where shadow rays begin beyond the occluder, among them the lost shadow of
+/// the test above: some 580 of the stripe's 676,000 points.
 const LEAKS: [[u32; 2]; 4] = [[48, 29], [49, 29], [58, 32], [59, 32]];
 
 #[test]
@@ -282,14 +286,17 @@ fn light_sent_out_from_the_laser_arrives_as_the_camera_equation_says() {
     {
         let scene = scene(pack);
         let image = &images(pack, "ptracer")[beam];
-        let as_it_should_be = compare_images(image, &expected_images(&scene, DRAWS, &Silent)[beam]);
-        assert!(as_it_should_be.total_off().abs() <= CHANCE_LIMITS.total, "{pack} {as_it_should_be:?}");
+        let as_it_should_be = compare_images(image, &expected_images(&scene, REALISATIONS, &Silent)[beam]);
+        assert!(
+            as_it_should_be.total_off().abs() <= Z_TEST_LIMITS.max_total_relative,
+            "{pack} {as_it_should_be:?}"
+        );
 
-        // Where its shadow rays begin explains all the rest.
-        let expected = &expected_of_ptracer(&scene, DRAWS)[beam];
+        // The origin of its shadow rays explains the rest.
+        let expected = &expected_of_ptracer(&scene, REALISATIONS)[beam];
         let found = compare_images(&without(image, expected, leaks), expected);
         println!("{pack} {found:?}");
-        assert!(found.is_within(&CHANCE_LIMITS), "{pack} {found:?}");
+        assert!(found.is_within(&Z_TEST_LIMITS), "{pack} {found:?}");
         for &[i, j] in leaks {
             assert!(
                 image.estimate.mean.at(i, j) > expected.mean.at(i, j),
@@ -297,13 +304,13 @@ fn light_sent_out_from_the_laser_arrives_as_the_camera_equation_says() {
             );
         }
         let with_leaks = compare_images(image, expected);
-        assert_eq!(with_leaks.is_within(&CHANCE_LIMITS), leaks.is_empty(), "{pack} {with_leaks:?}");
+        assert_eq!(with_leaks.is_within(&Z_TEST_LIMITS), leaks.is_empty(), "{pack} {with_leaks:?}");
     }
-    // In `facets` the explanation is needed: what its first beam sends arrives 7e-5 short, some five standard errors.
+    // In `facets` this explanation is needed: the first beam's total is 7e-5 too small, some five standard errors.
     let scene = scene("facets");
     let image = &images("facets", "ptracer")[0];
-    let plain = compare_images(image, &expected_images(&scene, DRAWS, &Silent)[0]);
-    let explained = compare_images(image, &expected_of_ptracer(&scene, DRAWS)[0]);
-    assert!(plain.total_z() < -CHANCE_LIMITS.total_z, "{plain:?}");
-    assert!(explained.total_z().abs() < CHANCE_LIMITS.total_z, "{explained:?}");
+    let plain = compare_images(image, &expected_images(&scene, REALISATIONS, &Silent)[0]);
+    let explained = compare_images(image, &expected_of_ptracer(&scene, REALISATIONS)[0]);
+    assert!(plain.total_z() < -Z_TEST_LIMITS.max_total_z, "{plain:?}");
+    assert!(explained.total_z().abs() < Z_TEST_LIMITS.max_total_z, "{explained:?}");
 }

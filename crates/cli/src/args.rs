@@ -1,27 +1,30 @@
-//! The command line's words.
+//! The arguments of the command line. Their doc comments are the help texts.
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use raypencil::Fidelity;
-use raypencil::campaign::Shard;
-use raypencil::io::Overrides;
-use raypencil::io::quoted;
-use raypencil::{FluxModel, Precision};
+use clap::{Args, Parser, Subcommand};
+use raypencil::campaign::{PartName, Shard};
+use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, quoted};
+use raypencil::judge::{Class, JudgeShare};
+use raypencil::{Fidelity, FluxModel, Precision};
 
-/// A Mars rover's structured-light vision, simulated twice by two unlike algorithms and compared ray by ray.
+use crate::parsers::{
+    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, shard, switch, threshold,
+};
+
+/// Simulates a Mars rover's structured-light vision system with two independent renderers and compares every ray.
 ///
-/// Without a command it validates the built-in pyramids into out/pyramids.
+/// Without a command it validates the built-in terrain `pyramids` and writes to out/pyramids.
 ///
-/// Exit codes are those of diff: 0 all agree, 1 a defect or difference, 2 trouble.
+/// Exit codes: 0 all agree, 1 a defect or a difference, 2 an error.
 #[derive(Debug, Parser)]
 #[command(name = "raypencil", version)]
 pub(crate) struct Arguments {
-    /// Print JSON instead of a screen.
+    /// Print JSON instead of text.
     #[arg(long, global = true)]
     pub(crate) json: bool,
 
-    /// Worker threads; all cores if not given. Results do not depend on it.
+    /// Number of worker threads; default: all cores. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
@@ -31,33 +34,33 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Render a scene with every renderer, compare every ray, write maps and a report.
+    /// Render a scene with two or more renderers, compare every ray, write maps and a report.
     Validate(Validate),
     /// Render a scene with one renderer and write its maps.
     Render(Render),
-    /// Everything about one ray, from every renderer.
+    /// Print every renderer's answer to one ray, with the exact answer.
     Probe(Probe),
-    /// Write a scene, its rays and every answer, correctly rounded, for other renderers to check themselves against.
+    /// Write a reference pack for other renderers: a scene, its rays and every answer, correctly rounded.
     Pack(Pack),
-    /// Judge another program's answers by a pack, ray by ray.
+    /// Check another program's answers against a reference pack, ray by ray.
     Check(Check),
-    /// Look hard: many random terrains, both renderers, every difference judged.
+    /// Run both renderers on many random terrains and judge every difference.
     Campaign(Campaign),
-    /// Find the smallest scene on which two renderers still differ so. Exit code 1: they do not.
+    /// Reduce a scene to the smallest one on which two renderers still differ. Exit code 1: they do not differ.
     Minimise(Minimise),
-    /// Drive a rover: images, stripes, terrain map, obstacle map, navigator map, frame by frame.
+    /// Drive a rover and write images, stripes, terrain map, obstacle map and navigator map.
     Drive(Drive),
-    /// Compare two recordings of anything, channel by channel: files or folders of EXR, NPY and PFM.
+    /// Compare two recordings channel by channel: files or folders of EXR, NPY and PFM.
     Diff(Diff),
-    /// Grounds as files: make, import, inspect.
+    /// Generate, import or inspect terrains.
     #[command(subcommand)]
     Terrain(TerrainCommand),
 }
 
-/// Which scene.
+/// The scene, and what is changed in it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// A built-in ground (pyramids, facets), a scene .toml, a terrain .glb or .gltf, or an elevation model .tif.
+    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain .glb or .gltf, or an elevation model .tif.
     #[arg(value_name = "SCENE", default_value = "pyramids")]
     pub(crate) scene: String,
 
@@ -65,38 +68,36 @@ pub(crate) struct SceneArguments {
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub(crate) fan: Option<f64>,
 
-    /// Thickness of every beam's sheet, millimetres.
+    /// Thickness of every beam, millimetres.
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub(crate) thickness: Option<f64>,
 
-    /// Equation of a pencil's flux; the scene's own if not given.
-    #[arg(long, value_name = "MODEL")]
-    pub(crate) flux: Option<FluxWord>,
+    /// Flux model; default: the scene's.
+    #[arg(long, value_name = "MODEL", value_parser = flux_model())]
+    pub(crate) flux: Option<FluxModel>,
 
-    /// Stand here on the ground: global x,y in metres.
+    /// Position of the vehicle on the ground: global x,y in metres.
     #[arg(long, value_name = "X,Y", value_parser = pair::<f64>, allow_hyphen_values = true)]
     pub(crate) at: Option<[f64; 2]>,
 
-    /// Heading, degrees to the left of the global x axis.
+    /// Heading of the vehicle, degrees to the left of the global x axis.
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub(crate) heading: Option<f64>,
 }
 
 impl SceneArguments {
+    /// The changes of the scene.
     pub(crate) fn overrides(&self) -> Overrides {
         Overrides {
             at: self.at,
             heading_deg: self.heading,
             fan_deg: self.fan,
             thickness_mm: self.thickness,
-            flux_model: self.flux.map(|word| match word {
-                FluxWord::Radiometric => FluxModel::Radiometric,
-                FluxWord::Eq1 => FluxModel::Eq1,
-            }),
+            flux_model: self.flux,
         }
     }
 
-    /// These arguments again, as one would type them.
+    /// These arguments as typed on the command line.
     pub(crate) fn typed(&self) -> String {
         let mut words = vec![quoted(&self.scene)];
         if let Some(fan) = self.fan {
@@ -105,10 +106,8 @@ impl SceneArguments {
         if let Some(thickness) = self.thickness {
             words.push(format!("--thickness {thickness}"));
         }
-        match self.flux {
-            Some(FluxWord::Radiometric) => words.push("--flux radiometric".into()),
-            Some(FluxWord::Eq1) => words.push("--flux eq1".into()),
-            None => {}
+        if let Some(flux) = self.flux {
+            words.push(format!("--flux {}", flux.word()));
         }
         if let Some([x, y]) = self.at {
             words.push(format!("--at {x},{y}"));
@@ -120,31 +119,22 @@ impl SceneArguments {
     }
 }
 
-/// What `--flux` takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FluxWord {
-    /// What a pencil's watts really deliver, in watts.
-    Radiometric,
-    /// Equation (1) of the paper as printed, in W/m.
-    Eq1,
-}
-
-/// Which sides of the scanline renderer's switches.
+/// Switches of the scanline renderer.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SwitchArguments {
-    /// Set a switch of the scanline renderer to the paper's approximation or to exact: beam-edges, skip-rules,
-    /// facing, extent, place. May be given several times.
+    /// Set a switch of the scanline renderer to the paper's approximation or to exact. Switches: beam-edges,
+    /// skip-rules, facing, extent, place. May be repeated.
     #[arg(long = "switch", value_name = "NAME=paper|exact", value_parser = switch)]
     pub(crate) set: Vec<(String, Fidelity)>,
 }
 
-/// The renderers that are compared if none are named.
+/// The default renderers of a comparison.
 pub(crate) const DEFAULT_WITH: [&str; 2] = ["scanline", "tracer"];
 
-/// The renderer of a drive if none is named: it takes half the time of `tracer`, on 224 faces as on 225,280.
+/// The default renderer of a drive. It takes half the time of `tracer`, both on 224 and on 225,280 faces.
 pub(crate) const DRIVE_WITH: &str = "scanline";
 
-/// The words that choose renderers, as one would type them after a scene; nothing for the default.
+/// The arguments that choose renderers, as typed after a scene; empty for the default.
 pub(crate) fn typed_renderers(with: &[String], switches: &SwitchArguments) -> String {
     let mut text = String::new();
     if with != DEFAULT_WITH {
@@ -157,42 +147,33 @@ pub(crate) fn typed_renderers(with: &[String], switches: &SwitchArguments) -> St
     text
 }
 
-/// What `--judge` takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum JudgeWhich {
-    /// One in a hundred or more.
-    Sample,
-    /// Every ray.
-    All,
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct Validate {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
-    /// Renderers to compare, two or more.
+    /// Two or more renderers to compare: scanline, scanline-paper, tracer, referee.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = DEFAULT_WITH)]
     pub(crate) with: Vec<String>,
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
 
-    /// Which of the rays that agree the referee rules on as well; it always rules on those that do not.
-    #[arg(long, value_name = "WHICH", default_value = "sample")]
-    pub(crate) judge: JudgeWhich,
+    /// Share of the agreeing rays that the referee checks; it always checks the rays that differ.
+    #[arg(long, value_name = "WHICH", default_value = "sample", value_parser = judge_share())]
+    pub(crate) judge: JudgeShare,
 
-    /// A folder with another program's answers to this scene, held to the truth beside ours. May be given several times.
+    /// Folder with another program's answers to this scene, to be checked beside the renderers. May be repeated.
     #[arg(long = "candidate", value_name = "DIR")]
     pub(crate) candidates: Vec<PathBuf>,
 
-    /// Folder to write to; out/<scene's name> if not given.
+    /// Output folder; default: out/<scene's name>.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }
 
 impl Validate {
-    /// What `raypencil` does without a command.
+    /// The default command: the built-in pyramids.
     pub(crate) fn pyramids() -> Self {
         Self {
             scene: SceneArguments {
@@ -205,7 +186,7 @@ impl Validate {
             },
             with: DEFAULT_WITH.map(String::from).to_vec(),
             switches: SwitchArguments::default(),
-            judge: JudgeWhich::Sample,
+            judge: JudgeShare::Sample,
             candidates: Vec::new(),
             output: None,
         }
@@ -217,18 +198,18 @@ pub(crate) struct Render {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
-    /// The renderer.
+    /// The renderer: scanline, scanline-paper, tracer or referee.
     #[arg(long, value_name = "NAME")]
     pub(crate) with: String,
 
-    /// Draw one ray at random within each pencil, by this seed, instead of its central ray.
+    /// Trace one random ray within each pencil, drawn with this seed, instead of the central ray.
     #[arg(long, value_name = "SEED", allow_hyphen_values = true)]
     pub(crate) jitter: Option<u64>,
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
 
-    /// Folder to write to.
+    /// Output folder.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
 }
@@ -238,24 +219,24 @@ pub(crate) struct Drive {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
-    /// Drive here, in metres of the global frame, in place of where the scene's own drive goes; may be given several times.
-    /// From where the scene's vehicle stands.
+    /// Waypoint in the global frame, metres; replaces the waypoints of the scene's drive. The drive begins at the
+    /// scene's vehicle. May be repeated.
     #[arg(long, value_name = "X,Y", value_parser = pair::<f64>, allow_hyphen_values = true)]
     pub(crate) to: Vec<[f64; 2]>,
 
-    /// The renderer of the rover's images.
+    /// Renderer of the rover's images.
     #[arg(long, value_name = "NAME", default_value = DRIVE_WITH)]
     pub(crate) with: String,
 
-    /// Drive scanline and tracer in lockstep, and tell how far a difference of theirs gets. Exit code 1: to a pixel of the
-    /// digital image, or farther.
+    /// Drive with scanline and tracer in lockstep and report how far a difference between them propagates. Exit code 1:
+    /// to a pixel of the digital image, or further.
     #[arg(long, conflicts_with = "with")]
     pub(crate) both: bool,
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
 
-    /// Folder to write to; out/<scene's name>-drive if not given.
+    /// Output folder; default: out/<scene's name>-drive.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }
@@ -265,11 +246,11 @@ pub(crate) struct Pack {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
-    /// Write the questions alone, of a hostile scene that this seed makes; `check` makes the answers from it again.
+    /// Write a difficult random scene with this seed, and its rays without answers; `check` computes the answers.
     #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading"])]
     pub(crate) blind: Option<u64>,
 
-    /// Folder to write to.
+    /// Output folder.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
 }
@@ -286,83 +267,59 @@ pub(crate) struct Campaign {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum CampaignCommand {
-    /// Put the results of all shards together, in any order.
+    /// Merge the results of all shards, in any order.
     Merge(CampaignMerge),
-    /// Write a scene of a terrain, to look at one of its rays again.
+    /// Write one scene of a campaign, so that its rays can be probed.
     Replay(CampaignReplay),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct CampaignRun {
-    /// How many terrains.
+    /// Number of terrains.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) terrains: u64,
 
-    /// Of everything that is drawn: the same seed is the same campaign.
+    /// Seed of all random numbers; the same seed gives the same campaign.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub(crate) seed: u64,
 
-    /// Run part I of N of the campaign, from 1; the parts are put together by `campaign merge`.
+    /// Run part I of N of the campaign, from 1; `campaign merge` merges the parts.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: Shard,
 
-    /// Folder to write to; a campaign that was broken off there goes on.
+    /// Output folder; a campaign that was interrupted there is resumed.
     #[arg(short, long, value_name = "DIR", default_value = "out/campaign")]
     pub(crate) output: PathBuf,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct CampaignMerge {
-    /// Folders with the results of shards.
+    /// Folders with the results of the shards.
     #[arg(value_name = "DIR", required = true)]
     pub(crate) folders: Vec<PathBuf>,
 
-    /// Folder to write summary.json to; none is written if not given.
+    /// Folder for summary.json; without it none is written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct CampaignReplay {
-    /// The campaign's seed.
+    /// Seed of the campaign.
     #[arg(long, value_name = "SEED")]
     pub(crate) seed: u64,
 
-    /// The terrain's number.
+    /// Number of the terrain, from 0.
     #[arg(long, value_name = "K")]
     pub(crate) terrain: u64,
 
-    /// Which of its scenes.
-    #[arg(long, value_name = "PART", default_value = "own")]
-    pub(crate) part: PartWord,
+    /// Scene of that terrain.
+    #[arg(long, value_name = "PART", default_value = "own", value_parser = part_name())]
+    pub(crate) part: PartName,
 
-    /// Folder to write scene.toml and its terrain to.
+    /// Output folder for scene.toml and its terrain.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
-}
-
-/// What `--part` takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PartWord {
-    /// A random rig's own sensors.
-    Own,
-    /// The same, with the paper's approximations.
-    Paper,
-    /// Narrow sensors at what is hard.
-    Aimed,
-    /// A lattice whose vertices lie exactly on rays.
-    Lattice,
-}
-
-/// `I/N`, from 1.
-fn shard(text: &str) -> Result<Shard, String> {
-    let wrong = || "expected a part and how many there are, such as 2/4".to_string();
-    let (index, count) = text.split_once('/').ok_or_else(wrong)?;
-    let one = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
-    match (one(index)?, one(count)?) {
-        (index, count) if (1..=count).contains(&index) => Ok(Shard { index: index - 1, count }),
-        _ => Err(wrong()),
-    }
 }
 
 #[derive(Debug, Args)]
@@ -370,73 +327,40 @@ pub(crate) struct Minimise {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
-    /// What two renderers must differ by, on one ray at least.
-    #[arg(long, value_name = "CLASS", default_value = "defect")]
-    pub(crate) class: ClassWord,
+    /// Class of the difference that the reduced scene must keep on at least one ray.
+    #[arg(long, value_name = "CLASS", default_value = "defect", value_parser = class())]
+    pub(crate) class: Class,
 
-    /// The two renderers.
+    /// Two renderers to compare: scanline, scanline-paper, tracer, referee.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = DEFAULT_WITH)]
     pub(crate) with: Vec<String>,
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
 
-    /// Folder to write the smallest scene to.
+    /// Output folder for the reduced scene.
     #[arg(short, long, value_name = "DIR", default_value = "out/minimised")]
     pub(crate) output: PathBuf,
 }
 
-/// What `--class` takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ClassWord {
-    /// One of them is wrong.
-    Defect,
-    /// The referee could not tell.
-    Undecided,
-    /// An approximation of the paper.
-    Approximation,
-    /// Faces nearer to each other, or to the ray, than rounding.
-    Rounding,
-    /// Several faces met at exactly the same point.
-    Tie,
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// Folder of the pack, with its manifest.json.
+    /// Folder of the reference pack, with its manifest.json.
     #[arg(value_name = "PACK")]
     pub(crate) pack: PathBuf,
 
-    /// Folder of the answers to judge: EXR, NPY or PFM files with the names of docs/formats/files.md.
+    /// Folder of the answers to check: EXR, NPY or PFM files, named as docs/formats/files.md says.
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
 
-    /// The arithmetic that the answers were computed in, whatever they are stored as. If not given, what their own
-    /// candidate.json says; without one f64.
-    #[arg(long, value_name = "ARITHMETIC")]
-    pub(crate) arithmetic: Option<ArithmeticWord>,
+    /// Arithmetic in which the answers were computed, which may differ from their storage. Default: as their
+    /// candidate.json says, else f64.
+    #[arg(long, value_name = "ARITHMETIC", value_parser = precision())]
+    pub(crate) arithmetic: Option<Precision>,
 
-    /// Folder to write junit.xml and check.json to.
+    /// Folder for junit.xml and check.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
-}
-
-/// What `--arithmetic` takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ArithmeticWord {
-    /// Double precision.
-    F64,
-    /// Single precision.
-    F32,
-}
-
-impl ArithmeticWord {
-    pub(crate) fn precision(self) -> Precision {
-        match self {
-            Self::F64 => Precision::F64,
-            Self::F32 => Precision::F32,
-        }
-    }
 }
 
 #[derive(Debug, Args)]
@@ -444,19 +368,19 @@ pub(crate) struct Probe {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
-    /// Index of the beam whose pencil to probe, from 0.
+    /// Index of the beam, from 0.
     #[arg(long, value_name = "N", requires = "pencil", conflicts_with = "pixel")]
     pub(crate) beam: Option<usize>,
 
-    /// Column and row of the pencil, from 0; row 0 is on top.
+    /// Column and row of the beam's pencil, from 0; row 0 is at the top.
     #[arg(long, value_name = "I,J", value_parser = pair::<u32>, requires = "beam")]
     pub(crate) pencil: Option<[u32; 2]>,
 
-    /// Column and row of the camera's pixel, from 0; row 0 is on top.
+    /// Column and row of the camera's pixel, from 0; row 0 is at the top.
     #[arg(long, value_name = "I,J", value_parser = pair::<u32>, required_unless_present = "beam")]
     pub(crate) pixel: Option<[u32; 2]>,
 
-    /// Renderers to ask.
+    /// Renderers to ask: scanline, scanline-paper, tracer, referee.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = DEFAULT_WITH)]
     pub(crate) with: Vec<String>,
 
@@ -470,94 +394,94 @@ pub(crate) struct Diff {
     #[arg(value_name = "A")]
     pub(crate) a: PathBuf,
 
-    /// Another one.
+    /// The file or folder to compare it with.
     #[arg(value_name = "B")]
     pub(crate) b: PathBuf,
 
-    /// Allow an absolute difference of X, in the channel's unit. A cell passes if any of --fail, --fail-relative
-    /// and --fail-ulp allows its difference.
+    /// Allow an absolute difference of X, in the unit of the channel. A cell passes if --fail, --fail-relative or
+    /// --fail-ulp allows its difference.
     #[arg(long, value_name = "X", default_value = "0", value_parser = threshold)]
     pub(crate) fail: f64,
 
-    /// Allow a difference of X relative to the larger of the two numbers.
+    /// Allow a relative difference of X, relative to the larger of both numbers.
     #[arg(long, value_name = "X", default_value = "0", value_parser = threshold)]
     pub(crate) fail_relative: f64,
 
-    /// Allow a difference of N units in the last place of the coarser of the two files.
+    /// Allow a difference of N units in the last place of the file with the lower precision.
     #[arg(long, value_name = "N", default_value = "0", value_parser = threshold)]
     pub(crate) fail_ulp: f64,
 
-    /// Allow P percent of a channel's cells to differ.
+    /// Allow P percent of the cells of a channel to fail.
     #[arg(long, value_name = "P", default_value = "0", value_parser = percent)]
     pub(crate) fail_percent: f64,
 
-    /// Fail if any cell differs by more than X, whatever else is allowed.
+    /// Fail if any cell differs by more than X, whatever the other options allow.
     #[arg(long, value_name = "X", value_parser = threshold)]
     pub(crate) hard_fail: Option<f64>,
 
-    /// Do not fail for channels that only one side has.
+    /// Ignore channels that only one side has.
     #[arg(long)]
     pub(crate) shared_only: bool,
 
-    /// The scene that both recorded: the referee rules on each cell that differs by more than is allowed, and only
-    /// a side that is wrong fails. A built-in ground, a scene .toml (of a pack, too), a .glb or .gltf, a .tif.
+    /// The scene of both recordings. The referee then rules on each cell that differs by more than is allowed, and a
+    /// channel fails only if a side is wrong. A built-in terrain, a scene .toml, .glb, .gltf or .tif.
     #[arg(long, value_name = "SCENE")]
     pub(crate) scene: Option<String>,
 
-    /// The arithmetic that both were computed in, for the referee.
-    #[arg(long, value_name = "ARITHMETIC", default_value = "f64", requires = "scene")]
-    pub(crate) arithmetic: ArithmeticWord,
+    /// Arithmetic in which both recordings were computed, for the referee.
+    #[arg(long, value_name = "ARITHMETIC", default_value = "f64", requires = "scene", value_parser = precision())]
+    pub(crate) arithmetic: Precision,
 
-    /// Folder for report.html, junit.xml and summary.json; none are written if not given.
+    /// Folder for report.html, junit.xml and summary.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum TerrainCommand {
-    /// Make ground as Mars has it: relief, rocks, craters and crevasses by their laws.
+    /// Generate a Mars-like terrain with relief, rocks, craters and crevasses.
     Generate(TerrainGenerate),
-    /// Make a GLB terrain of an elevation model (GeoTIFF).
+    /// Convert an elevation model (GeoTIFF) to a GLB terrain.
     Import(TerrainImport),
-    /// Tell what is wrong with a mesh, and mend what needs no guess. Exit code 1: something is.
+    /// Report the faults of a mesh, and repair those with only one possible repair. Exit code 1: the mesh has faults.
     Inspect(TerrainInspect),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainInspect {
-    /// A terrain .glb or .gltf, a scene .toml, or a built-in ground (pyramids, facets).
+    /// A terrain .glb or .gltf, a scene .toml, or a built-in terrain (pyramids, facets).
     #[arg(value_name = "MESH")]
     pub(crate) mesh: String,
 
-    /// Drop faces without area, copies of faces and unused vertices, weld vertices in one place, turn faces that are
-    /// the wrong way round; the exit code is then that of what is left.
+    /// Remove faces without area, duplicate faces and unused vertices, weld vertices at the same position, and flip
+    /// inverted faces. The exit code is then that of the repaired mesh.
     #[arg(long, requires = "output")]
     pub(crate) repair: bool,
 
-    /// The repaired mesh, a .glb file other than MESH.
+    /// File for the repaired mesh, a .glb other than MESH.
     #[arg(short, long, value_name = "OUT.glb", requires = "repair")]
     pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainGenerate {
-    /// Where all numbers start from: smooth, viking1, pathfinder, crater_field, crevassed or worst; docs/guide/terrain.md.
+    /// Preset of all parameters: smooth, viking1, pathfinder, crater_field, crevassed or worst (docs/guide/terrain.md).
     #[arg(long, value_name = "NAME", default_value = "viking1")]
     pub(crate) preset: String,
 
-    /// Which of the grounds with these numbers.
+    /// Seed of all random numbers; the same seed gives the same terrain.
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// Side of the square, metres.
+    /// Side length of the square terrain, metres.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) extent: Option<f64>,
 
-    /// Distance of its posts, metres.
+    /// Distance between neighbouring posts, metres.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) post_spacing: Option<f64>,
 
-    /// Share of the ground that rocks cover, 0 to 0.4.
+    /// Fraction of the area that rocks cover, 0 to 0.4.
     #[arg(long, value_name = "K", allow_hyphen_values = true)]
     pub(crate) rock_coverage: Option<f64>,
 
@@ -565,82 +489,40 @@ pub(crate) struct TerrainGenerate {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) rock_smallest: Option<f64>,
 
-    /// How many crevasses.
+    /// Number of crevasses.
     #[arg(long, value_name = "N")]
     pub(crate) crevasses: Option<u32>,
 
-    /// An elevation model (GeoTIFF) whose posts the surface passes through; the ground is as large as it is.
+    /// Elevation model (GeoTIFF) whose posts the surface interpolates; the terrain gets its extent.
     #[arg(long, value_name = "DEM", conflicts_with = "extent")]
     pub(crate) coarse: Option<PathBuf>,
 
-    /// The GLB file to write.
+    /// Output file.
     #[arg(short, long, value_name = "FILE.glb")]
     pub(crate) output: PathBuf,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainImport {
-    /// A GeoTIFF of one band, in metres.
+    /// A GeoTIFF with one band, in metres.
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
 
-    /// Take the posts in this part alone: x and y of its lower left corner, width and height, metres of the map.
+    /// Import only the posts in this window: x and y of its lower left corner, width and height, metres of the map.
     #[arg(long, value_name = "X,Y,W,H", value_parser = numbers::<4>, allow_hyphen_values = true)]
     pub(crate) window: Option<[f64; 4]>,
 
-    /// Make fewer faces, so that no post is farther from the ground than this along z, metres.
+    /// Simplify the mesh; maximum vertical distance of a post from the simplified terrain, metres.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
 
-    /// Reflectivity of the ground, 0 to 1.
-    #[arg(long, value_name = "R", default_value_t = raypencil::io::DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
+    /// Reflectivity of the terrain, 0 to 1.
+    #[arg(long, value_name = "R", default_value_t = DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
     pub(crate) reflectivity: f64,
 
-    /// The GLB file to write.
+    /// Output file.
     #[arg(short, long, value_name = "FILE.glb")]
     pub(crate) output: PathBuf,
-}
-
-/// A number that may be allowed to differ: finite and not negative.
-fn threshold(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
-        _ => Err("expected a number from 0 on, such as 1e-6".into()),
-    }
-}
-
-/// A share of all cells.
-fn percent(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if (0.0..=100.0).contains(&number) => Ok(number),
-        _ => Err("expected a share from 0 to 100 percent".into()),
-    }
-}
-
-/// `NAME=paper` or `NAME=exact`; the name is judged where the switches are known.
-fn switch(text: &str) -> Result<(String, Fidelity), String> {
-    let (name, side) = text.split_once('=').unwrap_or((text, ""));
-    match side {
-        "paper" => Ok((name.into(), Fidelity::Paper)),
-        "exact" => Ok((name.into(), Fidelity::Exact)),
-        _ => Err("expected a switch and its side, such as beam-edges=paper or skip-rules=exact".into()),
-    }
-}
-
-/// As many numbers with commas between them.
-fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
-    let all: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    all.ok()
-        .and_then(|all| all.try_into().ok())
-        .ok_or_else(|| format!("expected {N} numbers with commas between them"))
-}
-
-/// `A,B`.
-fn pair<T: std::str::FromStr>(text: &str) -> Result<[T; 2], String> {
-    let wrong = || "expected two numbers with a comma between them, such as 3,4".to_string();
-    let (a, b) = text.split_once(',').ok_or_else(wrong)?;
-    let one = |text: &str| text.trim().parse().map_err(|_| wrong());
-    Ok([one(a)?, one(b)?])
 }
 
 #[cfg(test)]
@@ -649,12 +531,12 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_words_are_well_formed() {
+    fn the_arguments_are_well_formed() {
         Arguments::command().debug_assert();
     }
 
     #[test]
-    fn what_was_typed_comes_back_as_a_shell_would_take_it() {
+    fn typed_arguments_are_quoted_for_a_shell() {
         let parse = |words: &[&str]| {
             let words = ["raypencil", "validate"].into_iter().chain(words.iter().copied());
             match Arguments::try_parse_from(words).unwrap().command {

@@ -1,4 +1,4 @@
-//! `raypencil campaign`: many random terrains, in shards; `merge` and `replay`.
+//! `raypencil campaign`: validations of many random terrains, in shards; `merge` and `replay`.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
 use raypencil::campaign::{
-    Campaign, CampaignProgress, Merged, PartName, Shard, campaign_json, campaign_screen, merge, run_shard,
-    scene_of, write_campaign,
+    Campaign, CampaignProgress, Merged, Shard, campaign_json, campaign_screen, merge, run_shard, scene_of,
+    write_campaign,
 };
 use raypencil::io::{create, write_resolved};
 
-use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun, PartWord};
+use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
 
@@ -23,11 +23,11 @@ pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, 
     }
 }
 
-/// Terrains done, rays a second, and the time that is left. Hidden where standard error is no terminal.
+/// Progress bar: finished terrains, rays per second, time left. Hidden if standard error is not a terminal.
 struct Bar {
     bar: ProgressBar,
     start: Instant,
-    /// Rays of this run: what a run before it left is no work of this one.
+    /// Rays of this run; those of an interrupted earlier run do not count.
     rays: AtomicU64,
 }
 
@@ -59,11 +59,11 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     let result = run_shard(&campaign, command.shard, &command.output, &bar)?;
     bar.bar.finish_and_clear();
     if command.shard != Shard::WHOLE {
-        // Its summary is that of a part: only all parts together are a campaign.
+        // One shard has no summary of its own: the campaign is all shards together.
         let text = match json {
             true => format!("{:#}\n", serde_json::json!({ "result": result.display().to_string() })),
             false => format!(
-                "{}: finished in {:.1} s; put together by `raypencil campaign merge`\n",
+                "{}: finished in {:.1} s; merge all shards with `raypencil campaign merge`\n",
                 result.display(),
                 start.elapsed().as_secs_f64()
             ),
@@ -77,7 +77,7 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     let rays = bar.rays.load(Ordering::Relaxed);
     let rate = rays as f64 / seconds / 1e6;
     let before = merged.compared() - rays;
-    let before = if before > 0 { format!(" ({before} rays are of earlier runs)") } else { String::new() };
+    let before = if before > 0 { format!(" ({before} rays from earlier runs)") } else { String::new() };
     let commit = option_env!("RAYPENCIL_COMMIT").map_or(String::new(), |commit| format!(", commit {commit}"));
     let time = format!("seed {}{commit}; {seconds:.1} s, {rate:.2} million rays/s{before}\n", command.seed);
     tell(&merged, json, &time)
@@ -91,6 +91,7 @@ fn merged(command: &CampaignMerge, json: bool) -> Result<Outcome, Trouble> {
     tell(&merged, json, "")
 }
 
+/// Prints the result and tells the exit code.
 fn tell(merged: &Merged, json: bool, time: &str) -> Result<Outcome, Trouble> {
     say(&if json { campaign_json(merged) } else { campaign_screen(merged) + time });
     Ok(if merged.passes() { Outcome::Fine } else { Outcome::Differs })
@@ -99,14 +100,8 @@ fn tell(merged: &Merged, json: bool, time: &str) -> Result<Outcome, Trouble> {
 fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     spinner.stage(&format!("terrain {}", command.terrain));
-    let part = match command.part {
-        PartWord::Own => PartName::Own,
-        PartWord::Paper => PartName::Paper,
-        PartWord::Aimed => PartName::Aimed,
-        PartWord::Lattice => PartName::Lattice,
-    };
-    // How many terrains there are does not change one of them.
-    let scene = scene_of(&Campaign::new(command.seed, command.terrain + 1), command.terrain, part);
+    // A terrain does not depend on the number of terrains.
+    let scene = scene_of(&Campaign::new(command.seed, command.terrain + 1), command.terrain, command.part);
     let folder = &command.output;
     create(folder)?;
     let file = folder.join("scene.toml");

@@ -1,15 +1,14 @@
-//! `raypencil check`: another program's answers judged by a pack.
+//! `raypencil check`: another program's answers against a reference pack.
 
 use raypencil::pack::{check_json, check_pack, check_screen, write_check};
 
-use crate::args::{ArithmeticWord, Check};
+use crate::args::Check;
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
-    let precision = command.arithmetic.map(ArithmeticWord::precision);
-    let checked = check_pack(&command.pack, &command.candidate, precision, &spinner)?;
+    let checked = check_pack(&command.pack, &command.candidate, command.arithmetic, &spinner)?;
     if let Some(folder) = &command.output {
         write_check(&checked, folder)?;
     }

@@ -1,4 +1,4 @@
-//! Standard output and error: a spinner while there is someone to watch it, quiet where there is not.
+//! Standard output and standard error, and a spinner if standard error is a terminal.
 
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
@@ -7,7 +7,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
 
-/// Prints to standard output. A reader that has gone away (`| head`) is no trouble of ours.
+/// Prints to standard output. A closed pipe (`| head`) is not an error.
 pub(crate) fn say(text: &str) {
     let mut out = std::io::stdout().lock();
     let _ = out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush());
@@ -18,35 +18,35 @@ pub(crate) fn complain(text: &str) {
     let _ = std::io::stderr().lock().write_all(harmless(text).as_bytes());
 }
 
-/// A text without what commands a terminal, or turns the direction of writing: names come from files that anybody may
-/// have made. Colours stay.
+/// Replaces control codes of terminals and changes of the writing direction, since names come from untrusted files.
+/// Colours stay.
 fn harmless(text: &str) -> Cow<'_, str> {
-    let commands = |letter: char| letter.is_control() && !"\n\t".contains(letter);
-    let turns = |letter: char| matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    if !text.contains(|letter| commands(letter) || turns(letter)) {
+    let is_control = |letter: char| letter.is_control() && !"\n\t".contains(letter);
+    let changes_direction = |letter: char| matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    if !text.contains(|letter| is_control(letter) || changes_direction(letter)) {
         return text.into();
     }
     let mut out = String::with_capacity(text.len());
     for (at, letter) in text.char_indices() {
-        let stays = !(commands(letter) || turns(letter)) || is_colour(&text[at..]);
+        let stays = !(is_control(letter) || changes_direction(letter)) || is_colour(&text[at..]);
         out.push(if stays { letter } else { char::REPLACEMENT_CHARACTER });
     }
     out.into()
 }
 
-/// Whether a text starts with a code that changes the colour: ESC, `[`, numbers, `m`. (ECMA-48, 8.3.117)
+/// Whether a text begins with a colour code: ESC, `[`, numbers, `m`. (ECMA-48, 8.3.117)
 fn is_colour(text: &str) -> bool {
     let Some(code) = text.strip_prefix("\u{1b}[") else { return false };
     in_colour()
         && code.trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == ';').starts_with('m')
 }
 
-/// Whether standard error takes colours.
+/// Whether standard error shows colours.
 pub(crate) fn in_colour() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
-/// A spinner that names the stage at work. It stays hidden where standard error is no terminal.
+/// A spinner with the name of the current stage. Hidden if standard error is not a terminal.
 #[derive(Debug)]
 pub(crate) struct Spinner {
     bar: ProgressBar,
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_commands_a_terminal() {
+    fn control_codes_are_replaced() {
         assert_eq!(harmless("caf\u{e9}\n\t\u{3c6}"), "caf\u{e9}\n\t\u{3c6}");
         for code in ["\u{1b}[2J", "\u{7}", "\r", "\u{9b}2J", "\u{202e}", "\0"] {
             let first = code.chars().next().expect("a letter");

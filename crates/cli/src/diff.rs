@@ -1,4 +1,4 @@
-//! `raypencil diff`: two recordings, channel by channel.
+//! `raypencil diff`: compares two recordings channel by channel.
 
 use std::path::Path;
 
@@ -19,14 +19,14 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         Ok(read_channels(path, &Limits::default())?)
     };
     if let Some(folder) = &command.output {
-        // A summary of the recording's own, such as that of a validation, would be taken for ours.
+        // Its files would overwrite those of the recording, such as the summary.json of a validation.
         let same = |path: &Path| {
             path.canonicalize().ok().is_some_and(|path| folder.canonicalize().ok() == Some(path))
         };
         if same(&command.a) || same(&command.b) {
             let folder = folder.display();
             return Err(Trouble::Usage(format!(
-                "--output {folder}: is one of the folders to compare; expected a folder of its own"
+                "--output {folder}: is one of the folders to compare; expected another folder"
             )));
         }
     }
@@ -46,8 +46,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     if let Some(scene) = &command.scene {
         spinner.stage(&format!("{scene}: loading"));
         let scene = load(scene, &Overrides::default())?.scene;
-        let precision = command.arithmetic.precision();
-        let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, precision));
+        let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, command.arithmetic));
         let [of_a, of_b] = recorded;
         let (of_a, of_b) = (of_a.map_err(CheckError::from)?, of_b.map_err(CheckError::from)?);
         let truth = GroundTruth::certified(&scene, &spinner);

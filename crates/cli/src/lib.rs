@@ -1,6 +1,31 @@
-//! The command `raypencil`: arguments in, one screen and an exit code out.
+//! The command `raypencil`: parses arguments, calls the library, prints one screen and gives an exit code.
 //!
-//! Exit codes are those of `diff`: 0 all agree, 1 a defect or difference, 2 trouble.
+//! It uses the crate `raypencil` alone. Exit codes are those of `diff`: 0 all agree, 1 a defect or a difference, 2 an
+//! error ("trouble").
+//!
+//! ```
+//! use std::process::ExitCode;
+//!
+//! use raypencil::harness::contender;
+//! use raypencil_cli::main_with;
+//!
+//! let run = |words: &[&str]| main_with(words.iter().map(Into::into), &contender);
+//! assert_eq!(run(&["raypencil", "--version"]), ExitCode::SUCCESS);
+//! // There is no such scene.
+//! assert_eq!(run(&["raypencil", "validate", "nowhere.toml"]), ExitCode::from(2));
+//! ```
+//!
+//! The files, from the floor to the top:
+//!
+//! ```text
+//! outcome               results and errors of the commands
+//! console               standard output, standard error, the spinner
+//! parsers               values of options
+//! args                  the arguments and their help texts
+//! subject               the scene and the renderers that the arguments name
+//! validate, render, ... one file per command
+//! lib                   runs the command and prints its error
+//! ```
 
 mod args;
 mod campaign;
@@ -9,7 +34,9 @@ mod console;
 mod diff;
 mod drive;
 mod minimise;
+mod outcome;
 mod pack;
+mod parsers;
 mod probe;
 mod render;
 mod subject;
@@ -21,94 +48,19 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
-use raypencil::campaign::CampaignError;
-use raypencil::diff::DiffError;
-use raypencil::drive::DriveError;
-use raypencil::harness::{CandidateError, Contender, HarnessError, NoSuchRay};
-use raypencil::io::{FileError, FolderError, SceneIoError};
-use raypencil::pack::{CheckError, PackError};
-use thiserror::Error;
+use miette::{GraphicalReportHandler, GraphicalTheme};
 
-use args::{Arguments, Command};
+use crate::args::{Arguments, Command, Validate};
 
-/// Where the command finds renderers by name.
-pub type Registry = dyn Fn(&str) -> Option<Contender> + Sync;
+pub use crate::outcome::Registry;
+pub(crate) use crate::outcome::{Outcome, Trouble};
 
-/// What a command that ran to its end found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outcome {
-    /// All agree, or there was nothing to disagree about.
-    Fine,
-    /// A defect or a difference.
-    Differs,
-}
-
-/// Why a command could not do its work.
-#[derive(Debug, Error, Diagnostic)]
-enum Trouble {
-    /// A scene, or a file that it needs.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Scene(#[from] SceneIoError),
-
-    /// A file of another kind.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    File(#[from] FileError),
-
-    /// The output folder.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-
-    /// The folder of a validation.
-    #[error(transparent)]
-    Validation(#[from] HarnessError),
-
-    /// A ray that the scene does not have.
-    #[error(transparent)]
-    Ray(#[from] NoSuchRay),
-
-    /// A pack that could not be written.
-    #[error(transparent)]
-    Pack(#[from] PackError),
-
-    /// A pack or a candidate that cannot be judged.
-    #[error(transparent)]
-    Check(#[from] CheckError),
-
-    /// What another program recorded of a scene.
-    #[error(transparent)]
-    Candidate(#[from] CandidateError),
-
-    /// Two recordings that do not fit together.
-    #[error(transparent)]
-    Diff(#[from] DiffError),
-
-    /// A campaign that cannot go on.
-    #[error(transparent)]
-    Campaign(#[from] CampaignError),
-
-    /// A drive that cannot be driven.
-    #[error("{scene}: {error}")]
-    Drive {
-        /// As it was given.
-        scene: String,
-        /// Why not.
-        error: DriveError,
-    },
-
-    /// Words that clap cannot judge.
-    #[error("{0}")]
-    Usage(String),
-}
-
-/// Runs the command with `arguments` (the program's name first), taking renderers from `registry`.
+/// Runs the command with `arguments`, the program's name first. Renderers come from `registry`.
 pub fn main_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // `--help` and `--version` are no trouble. Printing may fail only on a closed pipe.
+            // `--help` and `--version` are not errors. Printing fails on a closed pipe only.
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
             let _ = error.print();
             return ExitCode::from(if asked { 0 } else { 2 });
@@ -138,7 +90,7 @@ fn run(arguments: Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
 
 fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
     match &arguments.command {
-        None => validate::validate(&args::Validate::pyramids(), arguments.json, registry),
+        None => validate::validate(&Validate::pyramids(), arguments.json, registry),
         Some(Command::Validate(command)) => validate::validate(command, arguments.json, registry),
         Some(Command::Render(command)) => render::render(command, arguments.json, registry),
         Some(Command::Pack(command)) => pack::pack(command, arguments.json),
@@ -152,7 +104,7 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
     }
 }
 
-/// One clear message: what is wrong, where, what was expected; with the line and a caret where there is one.
+/// The message of an error: what is wrong, where, what was expected; for a scene file with the line and a caret.
 fn render_trouble(trouble: &Trouble) -> String {
     let mut text = String::new();
     let theme =
@@ -164,3 +116,8 @@ fn render_trouble(trouble: &Trouble) -> String {
     }
     text
 }
+
+/// The README's example, compiled and run with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

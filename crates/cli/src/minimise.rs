@@ -1,42 +1,26 @@
-//! `raypencil minimise`: the smallest scene on which two renderers still differ so.
+//! `raypencil minimise`: reduces a scene to the smallest one on which two renderers still differ.
 
-use clap::ValueEnum as _;
 use raypencil::Progress as _;
 use raypencil::harness::{Reproducer, first_shown, shows_class, typed_contenders, write_reproducer};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::minimise::{MINIMISE_BUDGET, minimise as search};
 use serde_json::json;
 
-use crate::args::{ClassWord, Minimise, typed_renderers};
+use crate::args::{Minimise, typed_renderers};
 use crate::console::{Spinner, say};
+use crate::parsers::class_name;
 use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble};
 
-impl ClassWord {
-    fn class(self) -> Class {
-        match self {
-            Self::Defect => Class::Defect,
-            Self::Undecided => Class::Undecided,
-            Self::Approximation => Class::Approximation,
-            Self::Rounding => Class::Rounding,
-            Self::Tie => Class::Tie,
-        }
-    }
-
-    /// As it is typed.
-    fn word(self) -> String {
-        self.to_possible_value().map_or(String::new(), |value| value.get_name().to_string())
-    }
-
-    /// What of two renderers, as the end of a sentence.
-    fn words(self) -> &'static str {
-        match self {
-            Self::Defect => "differ beyond doubt",
-            Self::Undecided => "differ, and the referee cannot tell who is right",
-            Self::Approximation => "differ by an approximation of the paper",
-            Self::Rounding => "differ by rounding",
-            Self::Tie => "meet several faces at exactly the same point",
-        }
+/// How two renderers differ, as the end of a sentence that begins with their names.
+fn difference(class: Class) -> &'static str {
+    match class {
+        Class::Agree => "agree",
+        Class::Defect => "differ, and one of them is wrong",
+        Class::Undecided => "differ, and the referee cannot decide which is right",
+        Class::Approximation => "differ by an approximation of the paper",
+        Class::Rounding => "differ by rounding",
+        Class::Tie => "hit several faces at exactly the same point",
     }
 }
 
@@ -44,31 +28,28 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
     let spinner = Spinner::new();
     let contenders = contenders(&command.with, &command.switches, 2, registry)?;
     let [a, b] = contenders.as_slice() else {
-        return Err(Trouble::Usage(format!(
-            "--with {}: expected two renderers, no more",
-            command.with.join(",")
-        )));
+        return Err(Trouble::Usage(format!("--with {}: expected two renderers", command.with.join(","))));
     };
     let words = typed_renderers(&command.with, &command.switches);
     let subject = subject(&command.scene, &words, &spinner)?;
-    let class = command.class.class();
+    let class = command.class;
     let [of_a, of_b] = [a, b].map(|contender| contender.renderer.name());
-    let what = format!("{of_a} and {of_b} {}", command.class.words());
+    let what = format!("{of_a} and {of_b} {}", difference(class));
 
-    spinner.stage("looking for the first such ray");
+    spinner.stage("searching for the first such ray");
     let found = first_shown([a, b], &subject.scene, class, JudgeShare::All).and_then(|first| {
-        let shows = shows_class([a, b], class);
-        search(&subject.scene, Some(first.place), &shows, MINIMISE_BUDGET, &spinner).ok()
+        let is_interesting = shows_class([a, b], class);
+        search(&subject.scene, Some(first.place), &is_interesting, MINIMISE_BUDGET, &spinner).ok()
     });
     let Some(minimised) = found else {
         drop(spinner);
         say(&match json {
             true => format!("{:#}\n", json!({ "scene": null })),
-            false => format!("There is no ray of {} on which {what}: nothing to minimise.\n", subject.name),
+            false => format!("{} has no ray on which {what}: nothing to minimise.\n", subject.name),
         });
         return Ok(Outcome::Differs);
     };
-    let name = format!("{}-{}", subject.name, command.class.word());
+    let name = format!("{}-{}", subject.name, class_name(class));
     let with = typed_contenders(&[a, b]);
     let reproducer = Reproducer { name: &name, what: &format!("{what}."), with: &with };
     let files = write_reproducer(&command.output, &minimised, reproducer)?;
@@ -90,7 +71,8 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
             format!("{report:#}\n")
         }
         false => format!(
-            "{what}: {} of {} faces are left, after {} trials.\n{scene}\n  beside it: its ground {ground}, and how to see it again {text}\n",
+            "{what}: {} of {} faces are left, after {} trials.\n\
+             {scene}\n  its terrain: {ground}\n  how to reproduce it: {text}\n",
             minimised.faces_after, minimised.faces_before, minimised.calls
         ),
     });

@@ -1,4 +1,4 @@
-//! `raypencil pack`: the reference pack of a scene, or the questions of a blind one.
+//! `raypencil pack`: writes the reference pack of a scene, or a blind one, which has no answers.
 
 use raypencil::pack::{blind_subject, write_pack};
 

@@ -1,8 +1,7 @@
-//! `raypencil probe`: one ray.
+//! `raypencil probe`: prints every renderer's answer to one ray.
 
-use raypencil::Place;
-use raypencil::SensorId;
 use raypencil::harness::probe as ask;
+use raypencil::{Place, SensorId};
 
 use crate::args::{Probe, typed_renderers};
 use crate::console::{Spinner, say};

@@ -1,8 +1,7 @@
-//! `raypencil render`: one renderer's maps.
+//! `raypencil render`: writes the maps of one renderer.
 
-use raypencil::Progress;
 use raypencil::harness::write_maps;
-use raypencil::{Request, Sampling};
+use raypencil::{Progress, Request, Sampling};
 
 use crate::args::Render;
 use crate::console::{Spinner, say};
@@ -17,17 +16,17 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     let subject = subject(&command.scene, "", &spinner)?;
     spinner.stage(&format!("{}: rendering", renderer.name()));
     let sampling = command.jitter.map_or(Sampling::Centres, |seed| Sampling::Jittered { seed });
-    let frame = renderer.render(&subject.scene, &Request { sampling, ..Request::EVERYTHING });
+    let output = renderer.render(&subject.scene, &Request { sampling, ..Request::EVERYTHING });
     if let Some(seed) = command.jitter
-        && frame.beams.iter().any(|map| map.range.is_none())
+        && output.beams.iter().any(|map| map.range.is_none())
     {
         return Err(Trouble::Usage(format!(
-            "--jitter {seed}: {} has no rays of its own to displace; expected tracer or referee",
+            "--jitter {seed}: {} cannot trace random rays; expected tracer or referee",
             renderer.name()
         )));
     }
     spinner.stage(&format!("{}: writing", command.output.display()));
-    let files = write_maps(&frame, renderer.name(), &subject, sampling, &command.output)?;
+    let files = write_maps(&output, renderer.name(), &subject, sampling, &command.output)?;
     drop(spinner);
     let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     if json {

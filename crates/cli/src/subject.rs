@@ -1,14 +1,13 @@
-//! From words to a scene and renderers.
+//! The scene and the renderers that the arguments name.
 
 use raypencil::Progress;
 use raypencil::harness::{Contender, RENDERER_NAMES};
-use raypencil::io::Subject;
-use raypencil::io::load;
+use raypencil::io::{Subject, load};
 
 use crate::args::{SceneArguments, SwitchArguments};
 use crate::{Registry, Trouble};
 
-/// Loads the scene that was asked for; `renderers` are the words that chose who renders it.
+/// Loads the scene. `renderers` are the arguments that choose its renderers, from [`crate::args::typed_renderers`].
 pub(crate) fn subject(
     arguments: &SceneArguments,
     renderers: &str,
@@ -24,24 +23,24 @@ pub(crate) fn subject(
     })
 }
 
-/// Finds the renderers that were asked for, at least `least` of them, none twice, with the switches set.
+/// The renderers with these names and with the switches set: at least `min_count`, no two of the same name.
 pub(crate) fn contenders(
     names: &[String],
     switches: &SwitchArguments,
-    least: usize,
+    min_count: usize,
     registry: &Registry,
 ) -> Result<Vec<Contender>, Trouble> {
-    if names.len() < least {
+    if names.len() < min_count {
         let given = names.join(",");
         return Err(Trouble::Usage(format!(
-            "--with {given}: expected at least {least} renderers to compare"
+            "--with {given}: expected at least {min_count} renderers to compare"
         )));
     }
     let mut contenders = Vec::new();
     for name in names {
         let mut contender = registry(name).ok_or_else(|| {
             let known = RENDERER_NAMES.join(", ");
-            Trouble::Usage(format!("--with {name}: there is no such renderer; expected some of {known}"))
+            Trouble::Usage(format!("--with {name}: there is no such renderer; expected one of {known}"))
         })?;
         for (switch, fidelity) in &switches.set {
             contender = contender
@@ -63,7 +62,7 @@ pub(crate) fn contenders(
         let name = contender.renderer.name();
         if contenders[..k].iter().any(|other| other.renderer.name() == name) {
             return Err(Trouble::Usage(format!(
-                "--with {}: {name} is there twice; expected different renderers",
+                "--with {}: {name} is named twice; expected different renderers",
                 names.join(",")
             )));
         }

@@ -1,12 +1,11 @@
-//! `raypencil validate`: render, compare, report.
+//! `raypencil validate`: renders a scene, compares every ray and writes the report.
 
 use std::path::{Path, PathBuf};
 
 use raypencil::Progress as _;
-use raypencil::harness::{Outsider, one_screen, summary_json, validate as run, write_validation};
-use raypencil::judge::JudgeShare;
+use raypencil::harness::{Candidate, one_screen, summary_json, validate as run, write_validation};
 
-use crate::args::{JudgeWhich, Validate, typed_renderers};
+use crate::args::{Validate, typed_renderers};
 use crate::console::{Spinner, say};
 use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble};
@@ -20,18 +19,14 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(&subject.name),
     };
-    let share = match command.judge {
-        JudgeWhich::Sample => JudgeShare::Sample,
-        JudgeWhich::All => JudgeShare::All,
-    };
-    // Others first: what is wrong with their files is said soon.
-    spinner.stage("reading what others recorded");
-    let outsiders: Result<Vec<Outsider>, _> =
-        command.candidates.iter().map(|folder| Outsider::read(folder, &subject.scene)).collect();
-    let outsiders = outsiders?;
-    let mut validation = run(subject, &contenders, share, &spinner);
-    if !outsiders.is_empty() {
-        validation.hold(outsiders, &spinner);
+    // Candidates first, so that an error in their files is reported before the rendering.
+    spinner.stage("reading candidates");
+    let candidates: Result<Vec<Candidate>, _> =
+        command.candidates.iter().map(|folder| Candidate::read(folder, &subject.scene)).collect();
+    let candidates = candidates?;
+    let mut validation = run(subject, &contenders, command.judge, &spinner);
+    if !candidates.is_empty() {
+        validation.evaluate(candidates, &spinner);
     }
     write_validation(&validation, &folder, &spinner)?;
     drop(spinner);

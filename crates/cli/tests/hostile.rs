@@ -1,6 +1,6 @@
-//! Hostile files against the binary: each in a process of its own, under limits of memory and of processor time.
+//! Malformed files against the binary: each in its own process, with limits of memory and processor time.
 #![cfg(unix)]
-// CHOICE: of Unix alone, because the limits are those of its shell. The readers are the same elsewhere.
+// CHOICE: Unix only, because the limits are set by its shell. The readers are the same elsewhere.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -12,21 +12,21 @@ use std::time::{Duration, Instant};
 
 use raypencil_tests::hostile::{Case, all, good, table, tiffs};
 
-/// The limits: 512 MB of data, 2 s of processor time. Memory is what can be written to (`-d`): address space (`-v`) would
-/// count the 64 MB that each thread's allocator sets apart and never touches.
+/// The limits: 512 MB of data, 2 s of processor time. `-d` limits writable memory; `-v`, the address space, would count
+/// the 64 MB that each thread's allocator reserves and never touches.
 const LIMITED: &str = "ulimit -d 524288 && ulimit -t 2 && exec \"$@\"";
-/// A process that waits for something, a pipe's writer above all, uses no processor time. This ends it: long, because a busy
-/// machine is no fault.
+/// Ends a process that waits, for example for a pipe's writer, and so uses no processor time. Long, because a busy
+/// machine is not a fault.
 const DEADLINE: Duration = Duration::from_secs(20);
-/// The longest message, bytes: a screen of text.
-const LONGEST: usize = 4096;
+/// Maximum length of a message, bytes: a screen of text.
+const MAX_MESSAGE_BYTES: usize = 4096;
 
-/// What a run left behind.
+/// The result of a run.
 struct Run {
     status: Option<ExitStatus>,
     printed: String,
     message: String,
-    /// Files that were not there before, and those that are gone.
+    /// Files that appeared or disappeared.
     changed: Vec<String>,
 }
 
@@ -88,7 +88,7 @@ fn run(case: &Case) -> Run {
     Run { status, printed: text(&printed), message: text(&message), changed }
 }
 
-/// What is wrong with a refusal.
+/// The faults of a refusal.
 fn faults(case: &Case) -> Vec<String> {
     let run = run(case);
     let mut faults = Vec::new();
@@ -102,13 +102,13 @@ fn faults(case: &Case) -> Vec<String> {
         Some(status) => hold(status.code() == Some(2), format!("{status}, not exit code 2")),
     }
     hold(run.printed.is_empty(), format!("printed {:?}", short(&run.printed)));
-    hold(run.changed.is_empty(), format!("left behind or took away {:?}", run.changed));
+    hold(run.changed.is_empty(), format!("changed files {:?}", run.changed));
     hold(run.message.matches('×').count() == 1, "not exactly one message".into());
     hold(!run.message.contains("panicked"), "a panic".into());
-    hold(run.message.len() <= LONGEST, format!("a message of {} bytes", run.message.len()));
-    let commands = |letter: char| letter.is_control() && letter != '\n';
-    hold(!run.message.contains(commands), "a message with codes that command a terminal".into());
-    // The message may be broken into lines, anywhere in long words, with a bar before each.
+    hold(run.message.len() <= MAX_MESSAGE_BYTES, format!("a message of {} bytes", run.message.len()));
+    let is_control = |letter: char| letter.is_control() && letter != '\n';
+    hold(!run.message.contains(is_control), "a message with control codes".into());
+    // The message may be wrapped, even inside long words, with a bar before each line.
     let bare = |text: &str| {
         text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│').collect::<String>()
     };
@@ -126,7 +126,7 @@ fn short(text: &str) -> String {
     text.chars().take(600).collect()
 }
 
-/// Runs every case, several at a time, and reports all that is wrong at once.
+/// Runs all cases in parallel and reports all faults together.
 fn judge(cases: &[Case], faults: impl Fn(&Case) -> Vec<String> + Sync) {
     let next = AtomicUsize::new(0);
     let found = Mutex::new(Vec::new());
@@ -149,7 +149,7 @@ fn judge(cases: &[Case], faults: impl Fn(&Case) -> Vec<String> + Sync) {
 }
 
 #[test]
-fn every_hostile_file_is_refused() {
+fn every_malformed_file_is_refused() {
     let cases = all();
     let names: BTreeSet<&str> = cases.iter().map(|case| case.name.as_str()).collect();
     assert_eq!(names.len(), cases.len(), "each name once");
@@ -158,7 +158,7 @@ fn every_hostile_file_is_refused() {
 }
 
 #[test]
-fn every_hostile_tiff_is_refused() {
+fn every_malformed_tiff_is_refused() {
     judge(&tiffs(), faults);
 }
 
@@ -167,7 +167,7 @@ fn good_files_pass_under_the_same_limits() {
     judge(&good(), |case| {
         let run = run(case);
         match run.status.and_then(|status| status.code()) {
-            // 1: a difference was found, which is work done.
+            // Exit code 1 is a difference: the command did its work.
             Some(0 | 1) if run.message.is_empty() => Vec::new(),
             other => vec![format!("exit code {other:?}"), short(&run.message)],
         }

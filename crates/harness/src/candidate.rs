@@ -1,18 +1,20 @@
-//! What somebody recorded of a scene: maps for `check`, and what only another kind of renderer has.
+//! Candidates: recordings that other people's renderers made of a scene. Maps are judged as by `check`; Monte Carlo
+//! images and radiance are what only another kind of renderer has.
 
 use std::path::{Path, PathBuf};
 
-use crate::estimate::{Estimate, WayImage};
 use raypencil_files::{Channels, Values};
 use raypencil_judge::{Recorded, RecordingError};
 use raypencil_pack::{Provenance, ProvenanceError, note, precision_of};
 use raypencil_scene::{Image, Precision, Scene, SensorId};
 
-/// Why a candidate could not be held to a scene.
+use crate::estimate::{Estimate, MonteCarloImage};
+
+/// Why a candidate could not be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CandidateError {
-    /// The note of what made it; the message names the file.
+    /// Its `candidate.json`; the message names the file.
     #[error(transparent)]
     Provenance(#[from] ProvenanceError),
     /// Its files; the message names the file, the channel and the cell.
@@ -20,86 +22,110 @@ pub enum CandidateError {
     Recording(#[from] RecordingError),
 }
 
-/// A recording by somebody else.
+/// A recording of a scene by another program.
+///
+/// [`Candidate::read`] reads one from a folder.
 #[derive(Debug, Clone)]
-pub struct Outsider {
-    /// The program, or the name of the folder if nothing tells.
+pub struct Candidate {
+    /// Name of the program as `candidate.json` gives it; without that file, the folder's name.
     pub name: String,
-    /// Where it was read.
+    /// The folder that it was read from.
     pub folder: PathBuf,
-    /// Its maps.
+    /// The maps.
     pub recorded: Recorded,
-    /// Its images by chance.
-    pub images: Vec<WayImage>,
-    /// Its radiance.
+    /// The Monte Carlo images of the camera.
+    pub images: Vec<MonteCarloImage>,
+    /// The radiance maps.
     pub radiance: Vec<RadianceMap>,
 }
 
-/// Radiance of one beam's light along rays of a sensor, W m^-2 sr^-1. Of the camera: along its rays. Of the beam: from
-/// what each pencil hits towards the camera, NaN where it hits nothing.
+/// Radiance of one beam's light along the rays of a sensor, W m^-2 sr^-1.
+///
+/// A camera's map has the radiance along its own rays. A beam's map has the radiance from each pencil's hit point
+/// towards the camera, NaN where the pencil hits nothing.
 #[derive(Debug, Clone)]
 pub struct RadianceMap {
-    /// Which rays.
+    /// The sensor whose rays these are.
     pub sensor: SensorId,
-    /// Which beam's light.
+    /// Index of the beam whose light it is.
     pub beam: usize,
-    /// The radiance.
+    /// The radiance, one value per cell of the sensor.
     pub image: Image<f64>,
 }
 
-impl Outsider {
-    /// Reads what somebody recorded of a scene. How finely it computes its own note says; without one, double precision.
+impl Candidate {
+    /// Reads a recording of `scene` from a folder. `candidate.json` in it states the precision; without that file it is
+    /// double precision.
     ///
     /// # Errors
-    /// Names the file, the channel and the cell that breaks the conventions; a recording of another scene.
+    /// A file, channel or cell that breaks the conventions (the message names it), or a recording of another scene.
+    ///
+    /// ```
+    /// # use std::path::Path;
+    /// use raypencil_harness::Candidate;
+    /// # use raypencil_scene::Precision;
+    /// use raypencil_scene_io::{Overrides, load};
+    ///
+    /// # let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    /// let scene = data.join("packs/pyramids/scene.toml");
+    /// let scene = load(&scene.to_string_lossy(), &Overrides::default())?.scene;
+    /// let embree = Candidate::read(&data.join("candidates/embree/pyramids"), &scene)?;
+    /// // Its candidate.json says "Embree 4" and "f32". Embree answers rays and has no integrator, so no images.
+    /// assert_eq!((embree.name.as_str(), embree.recorded.precision), ("Embree 4", Precision::F32));
+    /// assert!(embree.images.is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn read(folder: &Path, scene: &Scene) -> Result<Self, CandidateError> {
         let note = note(folder, scene)?;
         let precision = note.as_ref().map_or(Precision::F64, |note| precision_of(note.arithmetic));
         let channels = Recorded::channels(folder, scene)?;
         let recorded = Recorded::of_folder(folder, scene, precision, &channels)?;
         let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
-        let reader = Extras { folder, scene, channels: &channels };
+        let reader = ExtraChannels { folder, scene, channels: &channels };
         let images = reader.images(note.as_ref())?;
         let radiance = reader.radiance()?;
         Ok(Self { name, folder: folder.to_path_buf(), recorded, images, radiance })
     }
 }
 
-/// What is beside the maps.
-struct Extras<'a> {
+/// Reads what a recording has beside the maps.
+struct ExtraChannels<'a> {
     folder: &'a Path,
     scene: &'a Scene,
     channels: &'a Channels,
 }
 
-impl Extras<'_> {
-    fn images(&self, note: Option<&Provenance>) -> Result<Vec<WayImage>, CandidateError> {
+impl ExtraChannels<'_> {
+    fn images(&self, note: Option<&Provenance>) -> Result<Vec<MonteCarloImage>, CandidateError> {
         let mut images = Vec::new();
         let camera = SensorId::Camera.to_string();
         for key in self.channels.by_key.keys() {
-            let Some((way, beam)) = key.strip_prefix(&format!("{camera}/")).and_then(|name| {
-                let (way, beam) = name.split_once(".mean.beam")?;
-                Some((way, beam.parse::<usize>().ok().filter(|beam| *beam < self.scene.beams().len())?))
+            let Some((integrator, beam)) = key.strip_prefix(&format!("{camera}/")).and_then(|name| {
+                let (integrator, beam) = name.split_once(".mean.beam")?;
+                Some((
+                    integrator,
+                    beam.parse::<usize>().ok().filter(|beam| *beam < self.scene.beams().len())?,
+                ))
             }) else {
                 continue;
             };
-            let mean = self.reals(SensorId::Camera, &format!("{way}.mean.beam{beam}"))?;
-            let name = format!("{way}.error.beam{beam}");
+            let mean = self.reals(SensorId::Camera, &format!("{integrator}.mean.beam{beam}"))?;
+            let name = format!("{integrator}.error.beam{beam}");
             let (Some(mean), Some(error)) = (mean, self.reals(SensorId::Camera, &name)?) else {
                 return Err(RecordingError::Part {
                     folder: self.folder.to_path_buf(),
                     channel: format!("{camera}/{name}"),
-                    all: format!("{way}.mean.beam{beam} and {way}.error.beam{beam}"),
+                    all: format!("{integrator}.mean.beam{beam} and {integrator}.error.beam{beam}"),
                 }
                 .into());
             };
             let totals = note.iter().flat_map(|note| &note.totals);
-            let total = totals.clone().find(|total| total.way == way && total.beam == beam);
+            let total = totals.clone().find(|total| total.way == integrator && total.beam == beam);
             let estimate = match total {
                 Some(total) => Estimate { mean, error, total: total.mean, total_error: total.error },
                 None => Estimate::of_independent_pixels(mean, error),
             };
-            images.push(WayImage { way: way.to_string(), beam, estimate });
+            images.push(MonteCarloImage { integrator: integrator.to_string(), beam, estimate });
         }
         Ok(images)
     }
@@ -119,7 +145,7 @@ impl Extras<'_> {
         Ok(maps)
     }
 
-    /// A channel of real numbers of the sensor's size, if it is there.
+    /// A channel of floating-point numbers with the sensor's size; `None` if it is absent.
     fn reals(&self, sensor: SensorId, name: &str) -> Result<Option<Image<f64>>, CandidateError> {
         let Some(channel) = self.channels.by_key.get(&format!("{sensor}/{name}")) else { return Ok(None) };
         let fault = |found: String, expected: String| {

@@ -1,20 +1,22 @@
+//! Monte Carlo images: the mean of independent images and its standard error.
+
 use raypencil_scene::Image;
 
-/// An image that is known by chance, W per pixel.
+/// A Monte Carlo estimate of an image, watts per pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// The mean of independent images.
+    /// Mean of independent images.
     pub mean: Image<f64>,
-    /// Its standard error.
+    /// Standard error of the mean.
     pub error: Image<f64>,
-    /// The mean of what the images add up to, W.
+    /// Mean of the images' sums over all pixels, watts.
     pub total: f64,
-    /// Its standard error.
+    /// Standard error of the total, watts.
     pub total_error: f64,
 }
 
 impl Estimate {
-    /// Of an image whose pixels are independent of one another.
+    /// An estimate whose pixels are statistically independent, so that their variances add up to that of the total.
     pub fn of_independent_pixels(mean: Image<f64>, error: Image<f64>) -> Self {
         let total = mean.cells().iter().sum();
         let variance: f64 = error.cells().iter().map(|error| error * error).sum();
@@ -22,13 +24,13 @@ impl Estimate {
     }
 }
 
-/// An image by chance: mean and standard error of independent ones.
+/// A Monte Carlo image by a candidate: one beam's light on the camera's image.
 #[derive(Debug, Clone)]
-pub struct WayImage {
-    /// How it was made: `direct` of `direct.mean.beam0`.
-    pub way: String,
-    /// Which beam's light.
+pub struct MonteCarloImage {
+    /// Name of the integrator that computed it: `direct` in the channel `direct.mean.beam0`.
+    pub integrator: String,
+    /// Index of the beam.
     pub beam: usize,
-    /// The image, W per pixel.
+    /// The image, watts per pixel.
     pub estimate: Estimate,
 }

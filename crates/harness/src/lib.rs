@@ -1,36 +1,99 @@
-//! Runs renderers over one scene, compares every ray, reports.
+//! Renders one scene with several renderers, compares every ray, and reports the result.
+//!
+//! A *validation* renders a scene with two or more renderers, compares each pair of them ray by ray, and has the
+//! referee rule on every ray whose answers differ (and on a sample of the others). *Candidates*, recordings that other
+//! people's renderers made of the same scene, can be evaluated beside them. The paper simulates its vision system once;
+//! this crate is how two simulations check each other.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use glam::DVec3;
+//! use raypencil_harness::{contender, one_screen, validate};
+//! use raypencil_judge::JudgeShare;
+//! use raypencil_scene::{Atmosphere, FluxModel, Scene, Silent, rig};
+//! use raypencil_scene_io::Subject;
+//!
+//! // The pyramids under the default rig, 32 times coarser: 32 x 32 pixels and two beams of 32 x 2 pencils.
+//! let mesh = raypencil_terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
+//! let (camera, beams) = rig::default_rig(32, DVec3::ZERO, 0.0);
+//! let air = Atmosphere { attenuation: 0.0 };
+//! let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
+//! let subject =
+//!     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+//!
+//! let contenders = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
+//! let validation = validate(subject, &contenders, JudgeShare::Sample, &Silent);
+//! // 32 x 32 + 2 (32 x 2) = 1152 rays, each compared once: there is one pair.
+//! assert_eq!(validation.counts().compared, 1152);
+//! assert!(validation.passes());
+//! assert!(one_screen(&validation, None).ends_with("All 1,152 rays agree.\n"));
+//! # Ok::<(), raypencil_scene::SceneError>(())
+//! ```
+//!
+//! The files, from the floor to the top:
+//!
+//! ```text
+//! renderers            raypencil's own renderers by name, with their switches
+//! rendered             what one renderer computed
+//! interestingness      do two renderers still differ by a class? (for test-case reduction)
+//! reproducer           a reduced scene as files, with the commands that show the difference
+//! probe                one ray, as every renderer and the referee answer it
+//! estimate             a Monte Carlo image: mean and standard error
+//! candidate            what another program recorded of a scene
+//! monte_carlo          a candidate's Monte Carlo images against pencils drawn at random (z-test)
+//! radiance             a candidate's radiance along single rays against the closed form
+//! scoreboard           every renderer and candidate, checked against the exact answers
+//! misses               a ray that a candidate answers wrongly, as a pack of that ray
+//! validation           all results of one scene
+//! run                  `validate`: from a scene to its validation
+//! output/table         the table of quantities and classes
+//! output/verdict       the verdict in words
+//! output/candidates    the scoreboard, ready to be printed
+//! output/plots, light  range maps, differences and flux as pictures
+//! output/screen        one terminal screen
+//! output/summary       summary.json
+//! output/junit         junit.xml
+//! output/markdown      summary.md
+//! output/report        report.html
+//! output/folder        the folder with all of these and the maps
+//! ```
 
 mod candidate;
 mod estimate;
+mod interestingness;
 mod misses;
 mod monte_carlo;
 mod output;
-mod panel;
 mod probe;
 mod radiance;
 mod rendered;
 mod renderers;
 mod reproducer;
 mod run;
-mod shows;
+mod scoreboard;
 mod validation;
 
-pub use candidate::{CandidateError, Outsider, RadianceMap};
-pub use estimate::{Estimate, WayImage};
-pub use misses::{MissReproducer, write_misses};
-pub use monte_carlo::{CHANCE_LIMITS, ChanceLimits, ImageComparison, compare_images, expected_images};
+pub use candidate::{Candidate, CandidateError, RadianceMap};
+pub use estimate::{Estimate, MonteCarloImage};
+pub use interestingness::{first_shown, shows_class};
+pub use monte_carlo::{ImageComparison, Z_TEST_LIMITS, ZTestLimits, compare_images, expected_images};
+pub use output::folder::{HarnessError, Written, write_maps, write_validation};
 pub use output::junit::junit as junit_xml;
 pub use output::markdown::markdown as summary_markdown;
 pub use output::report::html as report_html;
 pub use output::screen::one_screen;
 pub use output::summary::summary_json;
-pub use output::{HarnessError, Written, write_maps, write_validation};
-pub use panel::{Held, HeldOutsider, Panel, panel};
 pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedReturn, probe};
 pub use radiance::{RadianceComparison, compare_radiance};
 pub use rendered::Rendered;
 pub use renderers::{Contender, RENDERER_NAMES, attribute, contender, typed_contenders};
 pub use reproducer::{Reproducer, write_reproducer};
 pub use run::validate;
-pub use shows::{first_shown, shows_class};
+pub use scoreboard::{CandidateReport, RendererReport, Scoreboard};
 pub use validation::{Counts, Pair, Validation};
+
+/// The README's example, compiled and run with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

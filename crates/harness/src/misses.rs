@@ -1,40 +1,32 @@
-//! A miss of an outsider as a pack of its one ray: whoever has the program can see it again.
+//! Misses: rays that a candidate answers wrongly, each written as a pack of that ray, so that the candidate's author
+//! can reproduce it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::panel::HeldOutsider;
 use raypencil_files::write_atomically;
 use raypencil_judge::{Defect, Quantity, name_of};
 use raypencil_minimise::single_ray;
 use raypencil_pack::{PackError, write_pack};
 use raypencil_referee::{Displacement, Format, Referee};
-use raypencil_scene::Place;
-use raypencil_scene::{Progress, Sampling, Scene, SensorId};
+use raypencil_scene::{Place, Progress, Sampling, Scene, SensorId};
 use raypencil_scene_io::{Subject, probe_command, quoted, scene_sha256};
 
-/// How many misses of each outsider get a reproducer.
-pub const REPRODUCED: usize = 10;
+use crate::scoreboard::CandidateReport;
 
-/// The most faces of a reproducer's ground: those nearest the ray.
-const FACES: usize = 1000;
+/// Maximum misses per candidate that are written.
+const MAX_MISSES: usize = 10;
 
-/// A reproducer that was written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MissReproducer {
-    /// Which ray of the scene.
-    pub place: Place,
-    /// Its folder.
-    pub folder: PathBuf,
-}
+/// Maximum faces of a miss's terrain: those nearest the ray.
+const MAX_FACES: usize = 1000;
 
-/// What is true of a ray, and for what reason.
+/// The exact answer to a ray, with the reason for its visibility.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct TrueAnswer {
-    /// The bits of its range.
+    /// Bits of the range, metres in f64; `None` if nothing is hit.
     range: Option<u64>,
-    /// Of a pencil's hit: whether it is seen, lands on the image, and is hidden by a face.
+    /// A pencil's hit: whether the camera sees it, whether it lands on the image, whether a face hides it.
     sight: Option<[bool; 3]>,
-    /// The bits of what the pencil delivers.
+    /// Bits of the pencil's flux.
     flux: Option<u64>,
 }
 
@@ -52,23 +44,23 @@ impl TrueAnswer {
     }
 }
 
-/// Writes a pack of the one ray for each of the first ten misses of an outsider, as `folder/NAME-1`, `NAME-2`, ..., each
-/// with a README.md that says what was said and what is true.
+/// Writes each of a candidate's first ten misses as a pack of that ray, in `folder/NAME-1`, `folder/NAME-2`, ... A
+/// README.md in it states the candidate's answer and the exact one.
 ///
 /// # Errors
-/// Names the file that could not be written.
-pub fn write_misses(
+/// A file that could not be written; the message names it.
+pub(crate) fn write_misses(
     subject: &Subject,
-    held: &HeldOutsider,
+    report: &CandidateReport,
     folder: &Path,
     progress: &dyn Progress,
-) -> Result<Vec<MissReproducer>, PackError> {
-    let mut written = Vec::new();
-    for (index, wrong) in held.misses().take(REPRODUCED).enumerate() {
-        progress.stage(&format!("{}: miss {}", held.outsider.name, index + 1));
-        let name = held.miss_name(index);
+) -> Result<(), PackError> {
+    for (index, wrong) in report.misses().take(MAX_MISSES).enumerate() {
+        progress.stage(&format!("{}: miss {}", report.candidate.name, index + 1));
+        let name = report.miss_name(index);
         let folder = folder.join(&name);
-        // A pencil's flux is that of the others too, where the profile is divided by its sum; a pixel's is of many pencils.
+        // Where the profile is divided by its sum, the flux of a pencil depends on the other pencils, so it is compared
+        // only if the miss is in the flux. The flux of a pixel is a sum over many pencils and is not reduced at all.
         let of_ray = |scene: &Scene, place: Place| {
             let answer = TrueAnswer::of(scene, place);
             if wrong.item.quantity == Quantity::PencilFlux {
@@ -79,28 +71,37 @@ pub fn write_misses(
         };
         let true_answer = of_ray(&subject.scene, wrong.place);
         let is_sum = wrong.item.quantity == Quantity::PixelFlux;
-        let shows = |scene: &Scene, place: Option<Place>| {
+        let is_interesting = |scene: &Scene, place: Option<Place>| {
             !is_sum && place.is_some_and(|place| of_ray(scene, place) == true_answer)
         };
-        let (scene, place) = single_ray(&subject.scene, wrong.place, FACES, &shows, progress);
+        let (scene, place) = single_ray(&subject.scene, wrong.place, MAX_FACES, &is_interesting, progress);
         let small = Subject { arguments: quoted("scene.toml"), name, sha256: scene_sha256(&scene), scene };
         write_pack(&small, None, &folder, progress)?;
-        let text = words(subject, held, wrong, &small, place);
-        let readme = folder.join("README.md");
-        write_atomically(&readme, |file| file.write_all(text.as_bytes()))?;
-        written.push(MissReproducer { place: wrong.place, folder });
+        let text = readme(subject, report, wrong, &small, place);
+        let path = folder.join("README.md");
+        write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
     }
-    Ok(written)
+    Ok(())
 }
 
-fn words(subject: &Subject, held: &HeldOutsider, wrong: &Defect, small: &Subject, place: Place) -> String {
-    let program = &held.outsider.name;
+/// Contents of a miss's README.md.
+fn readme(
+    subject: &Subject,
+    report: &CandidateReport,
+    wrong: &Defect,
+    small: &Subject,
+    place: Place,
+) -> String {
+    let program = &report.candidate.name;
     let faces = small.scene.mesh().faces().len();
     let of = subject.scene.mesh().faces().len();
     format!(
-        "# {program}, {at}\n\n{quantity}: {what}\n\nThis folder is a reference pack of that ray ({place} here) over {faces} of the {of} faces; its answer to the\n\
-         ray is that of the whole scene. To see what is true, and to ask a program again:\n\n```sh\n{probe}\nraypencil check . CANDIDATE    # of Embree and Mitsuba reference/make.py --pack . makes one\n```\n\n\
-         Of the scene {name}, {sha256}: `{again}`\n",
+        "# {program}, {at}\n\n{quantity}: {what}\n\n\
+         This folder is a reference pack of that ray ({place} here) over {faces} of the {of} faces; the exact\n\
+         answer to the ray is that of the whole scene. To see the exact answer, and to ask a program again:\n\n\
+         ```sh\n{probe}\n\
+         raypencil check . CANDIDATE    # reference/make.py --pack . makes one by Embree and one by Mitsuba\n```\n\n\
+         In the scene {name}, {sha256}: `{again}`\n",
         at = wrong.place,
         quantity = name_of(wrong.item),
         what = wrong.what,

@@ -1,38 +1,61 @@
-//! Images by chance: a renderer that samples light at random against pencils drawn at random.
+//! A candidate's Monte Carlo images against pencils drawn at random, by a z-test of each pixel.
 //!
-//! Both have the same expectation in each pixel, the camera equation's (docs/theory/radiometry.md), and each brings the standard
-//! error of its mean. Then z = (theirs - ours) / sqrt(their error^2 + our error^2) has mean 0 and variance 1, but for the
-//! errors being estimates themselves: from n images its variance is (n - 1) / (n - 3), 1.095 for 24.
+//! Both have the same expectation in each pixel, the camera equation's (docs/theory/radiometry.md), and each brings the
+//! standard error of its mean. Then z = (theirs - ours) / sqrt(their error^2 + our error^2) has mean 0 and variance 1,
+//! except that the errors are estimates themselves: from n images the variance of z is (n - 1) / (n - 3), 1.095 for 24.
 
-use crate::estimate::{Estimate, WayImage};
-use raypencil_scene::Place;
-use raypencil_scene::{Beam, FluxModel, Image, Mounted, Progress, Renderer, Request, Sampling, Scene};
+use raypencil_scene::{
+    Beam, FluxModel, Image, Mounted, Place, Progress, Renderer, Request, Sampling, Scene, SensorId,
+};
 use raypencil_tracer::Tracer;
 
-/// How often pencils are drawn for an expectation.
-pub(super) const DRAWS: u64 = 64;
+use crate::estimate::{Estimate, MonteCarloImage};
 
-/// As many pencils a beam is cut into at most, unless it has more.
-const FINEST: u64 = 1 << 16;
+/// Number of realisations of an expected image: sets of pencils drawn at random.
+pub(crate) const REALISATIONS: u64 = 64;
 
-/// A pixel counts if it is expected to get this part of the brightest one's flux.
-const BRIGHT: f64 = 0.01;
+/// Beams are subdivided up to this many pencils; a beam that already has more is left as it is.
+const MAX_PENCILS: u64 = 1 << 16;
 
-/// What each beam's image is expected to be, from pencils drawn `draws` times, each by its own seed from 1 on. By the
-/// radiometric model, whatever the scene's: the other is not what light does. Pencils are cut into finer ones, which are
-/// the same light: their share is that of their area, and a profile that is divided by the sum over pencils comes nearer to
-/// one that is divided by the integral.
-pub fn expected_images(scene: &Scene, draws: u64, progress: &dyn Progress) -> Vec<Estimate> {
+/// Pixels count if their expected flux is above this share of the brightest pixel's.
+const MIN_RELATIVE_FLUX: f64 = 0.01;
+
+/// The expected image of each beam, from `realisations` sets of random pencils with the seeds 1, 2, ...
+///
+/// The flux model is radiometric whatever the scene's: a Monte Carlo renderer does not compute equation (1). Pencils
+/// are subdivided, which changes no light: each part gets the share of its area, and a profile that is divided by its
+/// sum over the pencils approaches one that is divided by its integral.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// use raypencil_harness::{MonteCarloImage, Z_TEST_LIMITS, compare_images, expected_images};
+/// # use raypencil_scene::{Atmosphere, FluxModel, Scene, Silent, rig};
+///
+/// # let mesh = raypencil_terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
+/// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
+/// let expected = expected_images(&scene, 4, &Silent);
+/// // The expected image compared with itself: every z is 0.
+/// let image = MonteCarloImage { integrator: "direct".into(), beam: 0, estimate: expected[0].clone() };
+/// let comparison = compare_images(&image, &expected[0]);
+/// assert_eq!((comparison.z_rms, comparison.total_off()), (0.0, 0.0));
+/// assert!(comparison.is_within(&Z_TEST_LIMITS));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+pub fn expected_images(scene: &Scene, realisations: u64, progress: &dyn Progress) -> Vec<Estimate> {
     let mesh = scene.mesh().clone();
-    let beams = scene.beams().iter().map(|beam| Mounted { sensor: finer(beam.sensor), ..*beam }).collect();
+    let beams =
+        scene.beams().iter().map(|beam| Mounted { sensor: subdivided(beam.sensor), ..*beam }).collect();
     let scene = Scene::new(mesh, *scene.camera(), beams, scene.atmosphere(), FluxModel::Radiometric)
-        .expect("a scene is one by either model");
+        .expect("a scene is valid with either flux model");
     let camera = scene.camera().sensor;
     let mut running = vec![Running::new(camera.width as usize * camera.height as usize); scene.beams().len()];
     let tracer = Tracer::default();
-    for seed in 1..=draws {
+    for seed in 1..=realisations {
         if seed % 16 == 1 {
-            progress.stage(&format!("drawing pencils at random: {} of {draws} times", seed - 1));
+            progress.stage(&format!("drawing pencils at random: {} of {realisations} times", seed - 1));
         }
         let sampling = Sampling::Jittered { seed };
         let output = tracer.render(&scene, &Request { camera: false, sampling, ..Request::EVERYTHING });
@@ -43,20 +66,20 @@ pub fn expected_images(scene: &Scene, draws: u64, progress: &dyn Progress) -> Ve
     running.into_iter().map(|running| running.finish(camera.width, camera.height)).collect()
 }
 
-/// A beam whose pencils are halved in both ways as often as [`FINEST`] allows.
-fn finer(mut beam: Beam) -> Beam {
-    while 4 * u64::from(beam.columns) * u64::from(beam.rows) <= FINEST {
+/// A beam whose pencils are halved along both axes as often as [`MAX_PENCILS`] allows.
+fn subdivided(mut beam: Beam) -> Beam {
+    while 4 * u64::from(beam.columns) * u64::from(beam.rows) <= MAX_PENCILS {
         (beam.columns, beam.rows) = (2 * beam.columns, 2 * beam.rows);
     }
     beam
 }
 
-/// Mean and scatter as images come in. (B. P. Welford, "Note on a method for calculating corrected sums of squares and
+/// Running mean and variance of images. (B. P. Welford, "Note on a method for calculating corrected sums of squares and
 /// products", Technometrics 4, 1962)
 #[derive(Debug, Clone)]
 struct Running {
     count: f64,
-    /// Of each pixel, and last of their sum: the mean, and the sum of squares about it.
+    /// Mean and sum of squared deviations of each pixel; the last entry is for the sum over all pixels.
     moments: Vec<[f64; 2]>,
 }
 
@@ -89,77 +112,79 @@ impl Running {
     }
 }
 
-/// How far two estimates may be apart before it is no chance any more. Tuned: the z of 500 pixels goes beyond 5 once in
-/// 3,000 times if they are normal, and about once in 50 with errors from 24 images.
+/// Limits within which chance explains the difference between two estimates.
+///
+/// Tuned: among 500 pixels the largest |z| exceeds 5 once in 3,000 times if z is normal, and about once in 50 with
+/// errors from 24 images.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChanceLimits {
-    /// Of the totals, relative.
-    pub total: f64,
-    /// Of the totals, in combined standard errors.
-    pub total_z: f64,
-    /// Of the root mean square of z.
-    pub rms: f64,
-    /// Of the size of the mean of z.
-    pub mean: f64,
-    /// Of the size of any z.
-    pub largest: f64,
+pub struct ZTestLimits {
+    /// Maximum relative difference of the totals.
+    pub max_total_relative: f64,
+    /// Maximum difference of the totals, in combined standard errors.
+    pub max_total_z: f64,
+    /// Maximum root mean square of z.
+    pub max_z_rms: f64,
+    /// Maximum |mean of z|.
+    pub max_z_mean: f64,
+    /// Maximum |z| of a pixel.
+    pub max_z: f64,
 }
 
-/// The limits by which images are held to be of the same light.
-pub const CHANCE_LIMITS: ChanceLimits =
-    ChanceLimits { total: 1e-3, total_z: 3.0, rms: 1.25, mean: 0.25, largest: 5.0 };
+/// The limits that decide whether two images show the same light.
+pub const Z_TEST_LIMITS: ZTestLimits =
+    ZTestLimits { max_total_relative: 1e-3, max_total_z: 3.0, max_z_rms: 1.25, max_z_mean: 0.25, max_z: 5.0 };
 
-/// An outsider's image and what was expected.
+/// The comparison of a candidate's image with the expected one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageComparison {
-    /// How it was made.
-    pub way: String,
-    /// Which beam's light.
+    /// Name of the integrator that computed the image.
+    pub integrator: String,
+    /// Index of the beam.
     pub beam: usize,
-    /// Bright pixels, those that count.
+    /// Number of bright pixels: those that count.
     pub pixels: usize,
-    /// Their total and its standard error, W.
+    /// The candidate's total and its standard error, watts.
     pub theirs: [f64; 2],
-    /// The total that was expected and its standard error, W.
+    /// The expected total and its standard error, watts.
     pub ours: [f64; 2],
     /// Root mean square of z over the bright pixels.
     pub z_rms: f64,
     /// Mean of z.
     pub z_mean: f64,
-    /// The z of the largest size.
+    /// The z of the largest absolute value.
     pub z_largest: f64,
-    /// Where that is; nowhere if no pixel counts.
+    /// The pixel with that z; `None` if no pixel counts.
     pub at: Option<Place>,
 }
 
 impl ImageComparison {
-    /// By what part of the expected total theirs is larger.
+    /// Relative difference of the totals, (theirs - ours) / ours.
     pub fn total_off(&self) -> f64 {
         self.theirs[0] / self.ours[0] - 1.0
     }
 
-    /// The same in combined standard errors.
+    /// Difference of the totals in combined standard errors.
     pub fn total_z(&self) -> f64 {
         (self.theirs[0] - self.ours[0]) / libm::hypot(self.theirs[1], self.ours[1])
     }
 
-    /// Whether chance explains the difference. Without a bright pixel nothing was compared, which is no pass.
-    pub fn is_within(&self, limits: &ChanceLimits) -> bool {
+    /// Whether chance explains the difference. An image without a bright pixel does not pass: nothing was compared.
+    pub fn is_within(&self, limits: &ZTestLimits) -> bool {
         self.pixels > 0
-            && self.total_off().abs() <= limits.total
-            && self.total_z().abs() <= limits.total_z
-            && self.z_rms <= limits.rms
-            && self.z_mean.abs() <= limits.mean
-            && self.z_largest.abs() <= limits.largest
+            && self.total_off().abs() <= limits.max_total_relative
+            && self.total_z().abs() <= limits.max_total_z
+            && self.z_rms <= limits.max_z_rms
+            && self.z_mean.abs() <= limits.max_z_mean
+            && self.z_largest.abs() <= limits.max_z
     }
 }
 
-/// Compares an image by chance with the expected one of its beam.
-pub fn compare_images(image: &WayImage, expected: &Estimate) -> ImageComparison {
+/// Compares a Monte Carlo image with the expected image of its beam.
+pub fn compare_images(image: &MonteCarloImage, expected: &Estimate) -> ImageComparison {
     let theirs = &image.estimate;
     let brightest = expected.mean.cells().iter().copied().fold(0.0, f64::max);
     let mut found = ImageComparison {
-        way: image.way.clone(),
+        integrator: image.integrator.clone(),
         beam: image.beam,
         pixels: 0,
         theirs: [theirs.total, theirs.total_error],
@@ -171,7 +196,7 @@ pub fn compare_images(image: &WayImage, expected: &Estimate) -> ImageComparison 
     };
     for j in 0..expected.mean.height() {
         for i in 0..expected.mean.width() {
-            if expected.mean.at(i, j) <= BRIGHT * brightest {
+            if expected.mean.at(i, j) <= MIN_RELATIVE_FLUX * brightest {
                 continue;
             }
             let off = theirs.mean.at(i, j) - expected.mean.at(i, j);
@@ -179,10 +204,10 @@ pub fn compare_images(image: &WayImage, expected: &Estimate) -> ImageComparison 
             found.pixels += 1;
             found.z_rms += z * z;
             found.z_mean += z;
-            // What is not a number counts as largest.
+            // NaN counts as the largest.
             if found.at.is_none() || z.abs() > found.z_largest.abs() || z.is_nan() {
                 found.z_largest = z;
-                found.at = Some(Place { sensor: raypencil_scene::SensorId::Camera, i, j });
+                found.at = Some(Place { sensor: SensorId::Camera, i, j });
             }
         }
     }
@@ -221,7 +246,8 @@ mod tests {
         // Pixels of 100, 50, 2 and 0.5: the last is below 1 % of the brightest. z = 5 / hypot(3, 4) = 1, -2 / 1, 0.
         let ours = estimate([100.0, 50.0, 2.0, 0.5], [4.0, 0.0, 0.1, 0.0]);
         let theirs = estimate([105.0, 48.0, 2.0, 9.0], [3.0, 1.0, 0.1, 0.0]);
-        let found = compare_images(&WayImage { way: "w".into(), beam: 0, estimate: theirs }, &ours);
+        let found =
+            compare_images(&MonteCarloImage { integrator: "w".into(), beam: 0, estimate: theirs }, &ours);
         assert_eq!(found.pixels, 3);
         assert!((found.z_rms - (5.0_f64 / 3.0).sqrt()).abs() < 1e-15);
         assert!((found.z_mean + 1.0 / 3.0).abs() < 1e-15);
@@ -229,17 +255,21 @@ mod tests {
         // 164 against 152.5; errors sqrt(9 + 1 + 0.01) and sqrt(16 + 0.01).
         assert!((found.total_off() - (164.0 / 152.5 - 1.0)).abs() < 1e-15);
         assert!((found.total_z() - 11.5 / 26.02_f64.sqrt()).abs() < 1e-12);
-        assert!(!found.is_within(&CHANCE_LIMITS), "7.5 % too much");
+        assert!(!found.is_within(&Z_TEST_LIMITS), "7.5 % too much");
     }
 
     #[test]
-    fn what_is_no_number_and_what_is_dark_does_not_pass() {
+    fn nan_and_dark_images_do_not_pass() {
         let ours = estimate([1.0; 4], [1.0; 4]);
         let nan = estimate([1.0, f64::NAN, 1.0, 1.0], [1.0; 4]);
-        let found = compare_images(&WayImage { way: "w".into(), beam: 0, estimate: nan }, &ours);
-        assert!(!found.is_within(&CHANCE_LIMITS));
+        let found =
+            compare_images(&MonteCarloImage { integrator: "w".into(), beam: 0, estimate: nan }, &ours);
+        assert!(!found.is_within(&Z_TEST_LIMITS));
         let dark = estimate([0.0; 4], [0.0; 4]);
-        let found = compare_images(&WayImage { way: "w".into(), beam: 0, estimate: dark.clone() }, &dark);
-        assert!(!found.is_within(&CHANCE_LIMITS));
+        let found = compare_images(
+            &MonteCarloImage { integrator: "w".into(), beam: 0, estimate: dark.clone() },
+            &dark,
+        );
+        assert!(!found.is_within(&Z_TEST_LIMITS));
     }
 }

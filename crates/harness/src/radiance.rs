@@ -1,52 +1,52 @@
-//! Radiance along single rays, without chance, against the closed form
+//! A candidate's radiance along single rays, which is not random, against the closed form
 //!
 //! ```text
 //! L = r_d E / pi,    E = (I_b / T) p(x) (g / cos^2(alpha)) (1 / R) cos(psi) exp(-sigma R)
 //! ```
 //!
-//! with x = g tan(alpha) the place on the grid, T the sheet's thickness and p(x) the part of the power per metre of x. For
-//! the paper's profile p = cos(alpha) / 2w, and E is the (I_b / A_b)(R_g / R) cos(psi) of docs/theory/radiometry.md. The others are
-//! here divided by their integral over the fan, not by the sum over the pencils, for this light knows of no pencils.
+//! with x = g tan(alpha) the position on the grid, T the sheet's thickness and p(x) the share of the power per metre of
+//! x. For the paper's profile p = cos(alpha) / 2w, and E is the (I_b / A_b)(R_g / R) cos(psi) of
+//! docs/theory/radiometry.md. The other profiles are divided by their integral over the fan, not by their sum over the
+//! pencils: this light is not divided into pencils.
 
 use glam::DVec3;
+use raypencil_judge::GroundTruth;
+use raypencil_scene::{Beam, Mounted, Place, Profile, Scene, SensorId};
 
 use crate::candidate::RadianceMap;
-use raypencil_judge::GroundTruth;
-use raypencil_scene::Place;
-use raypencil_scene::{Beam, Profile, Scene, SensorId};
 
-/// How far radiance that was computed in single precision may be off, relative. Tuned: some 80 roundings.
-const LARGEST_OFF: f64 = 5e-6;
+/// Maximum relative error of radiance computed in single precision. Tuned: some 80 roundings.
+const MAX_RELATIVE_ERROR: f64 = 5e-6;
 
-/// Points nearer than this to the border of the sheet, as a part of their coordinates, may be taken for lit or dark in
-/// single precision: 16 roundings.
-const BORDER: f64 = 16.0 / (1 << 24) as f64;
+/// Relative half-width of the sheet's border, 16 roundings in single precision. A point nearer to the border may be lit
+/// or dark.
+const BORDER_HALF_WIDTH: f64 = 16.0 / (1 << 24) as f64;
 
-/// How the radiance along a sensor's rays fares.
+/// The comparison of a radiance map with the closed form; the counts are numbers of rays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadianceComparison {
-    /// Whose rays.
+    /// The sensor whose rays these are.
     pub sensor: SensorId,
-    /// Which beam's light.
+    /// Index of the beam whose light it is.
     pub beam: usize,
-    /// Rays that end on ground lit by that beam, on both sides: their radiance is compared.
+    /// Rays that hit terrain lit by that beam and have radiance: they are compared.
     pub lit: u64,
-    /// Rays that end outside the sheet, or nowhere, and have no radiance, as is right.
+    /// Rays that hit unlit terrain, or nothing, and have no radiance, which is right.
     pub dark: u64,
-    /// Rays that end within the sheet and have no radiance: in a shadow, or wrong; nothing here tells.
+    /// Rays that hit within the sheet and have no radiance: in a shadow or wrong, which this comparison cannot tell.
     pub shadowed: u64,
-    /// Rays too near the sheet's border to be sure.
+    /// Rays that are not compared: too near the sheet's border, or to a point that the camera does not see.
     pub doubtful: u64,
-    /// The largest relative error of the lit ones, and where.
+    /// The largest relative error of the lit rays, and its ray.
     pub worst: Option<(f64, Place)>,
-    /// Rays that are off by more than 5e-6 of the radiance, or have radiance where there is no light.
+    /// Rays with a relative error above 5e-6, or with radiance where there is no light.
     pub wrong: u64,
 }
 
-/// Compares a map of radiance with the closed form at the exact points that the rays hit.
+/// Compares a radiance map with the closed form at the exact hit points.
 pub fn compare_radiance(truth: &GroundTruth<'_>, map: &RadianceMap) -> RadianceComparison {
     let scene = truth.scene();
-    let light = Light::of(scene, map.beam);
+    let light = BeamLight::of(scene, map.beam);
     let mut found = RadianceComparison {
         sensor: map.sensor,
         beam: map.beam,
@@ -62,7 +62,7 @@ pub fn compare_radiance(truth: &GroundTruth<'_>, map: &RadianceMap) -> RadianceC
             let place = Place { sensor: map.sensor, i, j };
             let said = map.image.at(i, j);
             let Some(hit) = truth.hit(place) else {
-                // Nothing is hit: a camera sees black, and of a pencil there is nothing to say.
+                // Nothing is hit: a camera's ray is black, a pencil's radiance may also be NaN.
                 let is_dark = said == 0.0 || (said.is_nan() && map.sensor != SensorId::Camera);
                 if is_dark {
                     found.dark += 1
@@ -71,20 +71,20 @@ pub fn compare_radiance(truth: &GroundTruth<'_>, map: &RadianceMap) -> RadianceC
                 }
                 continue;
             };
-            // Of a pencil that the camera does not see, its ray shows something else.
+            // The camera does not see this pencil's hit: its ray there meets another point.
             if map.sensor != SensorId::Camera && !truth.visibility(place).0 {
                 found.doubtful += 1;
                 continue;
             }
-            match light.radiance(hit.point, hit.normal, reflectivity(scene, hit.face.0)) {
-                Lit::Unsure => found.doubtful += 1,
-                Lit::Dark if said == 0.0 => found.dark += 1,
-                Lit::Dark => found.wrong += 1,
-                Lit::By(_) if said == 0.0 && map.sensor == SensorId::Camera => found.shadowed += 1,
-                Lit::By(exact) => {
+            match light.at(hit.point, hit.normal, reflectivity(scene, hit.face.0)) {
+                Lighting::Unsure => found.doubtful += 1,
+                Lighting::Dark if said == 0.0 => found.dark += 1,
+                Lighting::Dark => found.wrong += 1,
+                Lighting::Radiance(_) if said == 0.0 && map.sensor == SensorId::Camera => found.shadowed += 1,
+                Lighting::Radiance(exact) => {
                     let off = (said / exact - 1.0).abs();
                     found.lit += 1;
-                    found.wrong += u64::from(off.is_nan() || off > LARGEST_OFF);
+                    found.wrong += u64::from(off.is_nan() || off > MAX_RELATIVE_ERROR);
                     if found.worst.is_none_or(|(worst, _)| off > worst || off.is_nan()) {
                         found.worst = Some((off, place));
                     }
@@ -95,51 +95,52 @@ pub fn compare_radiance(truth: &GroundTruth<'_>, map: &RadianceMap) -> RadianceC
     found
 }
 
+/// Reflectivity of a face's material.
 fn reflectivity(scene: &Scene, face: u32) -> f64 {
     let mesh = scene.mesh();
     mesh.materials()[mesh.face_materials()[face as usize] as usize].reflectivity
 }
 
-/// What light falls on a point.
-enum Lit {
-    /// None: it is outside the sheet, or its back is lit.
+/// How a beam lights a point.
+enum Lighting {
+    /// No light: the point is outside the sheet, or the face shows its back.
     Dark,
-    /// Too near a border to tell in single precision.
+    /// Too near the sheet's border to tell in single precision.
     Unsure,
-    /// So much radiance, if nothing stands in between, W m^-2 sr^-1.
-    By(f64),
+    /// The radiance if nothing stands in between, W m^-2 sr^-1.
+    Radiance(f64),
 }
 
 /// A beam's light as a function of the point.
-struct Light<'a> {
+struct BeamLight<'a> {
     scene: &'a Scene,
-    beam: &'a raypencil_scene::Mounted<Beam>,
-    /// The integral of the profile's weight over x, or 2w for the paper's.
+    beam: &'a Mounted<Beam>,
+    /// Integral of the profile's weight over x, metres; 2w for the paper's profile.
     integral: f64,
 }
 
-impl<'a> Light<'a> {
+impl<'a> BeamLight<'a> {
     fn of(scene: &'a Scene, beam: usize) -> Self {
         let beam = &scene.beams()[beam];
         Self { scene, beam, integral: integral(&beam.sensor) }
     }
 
-    fn radiance(&self, point: DVec3, normal: DVec3, reflectivity: f64) -> Lit {
+    fn at(&self, point: DVec3, normal: DVec3, reflectivity: f64) -> Lighting {
         let pose = self.beam.scene_from_sensor;
         let Beam { thickness, grid_distance: g, half_width, max_range, power, .. } = self.beam.sensor;
         let turned = pose.inverse();
         let DVec3 { x, y, z } = turned.rotate(point - pose.position);
         let range = libm::hypot(x, z);
-        // How far inside the sheet it is, by its thickness, its fan and its ends, metres.
+        // Distances inside the sheet's thickness, its fan and its two ends, metres.
         let inside =
             [0.5 * thickness - y.abs(), (half_width * z - x.abs() * g) / g, z - g, max_range - range];
         let inside = inside.into_iter().fold(f64::INFINITY, f64::min);
-        if inside.abs() <= BORDER * (1.0 + point.length()) {
-            return Lit::Unsure;
+        if inside.abs() <= BORDER_HALF_WIDTH * (1.0 + point.length()) {
+            return Lighting::Unsure;
         }
         let cos_incidence = -pose.rotate(DVec3::new(x, 0.0, z)).dot(normal) / range;
         if inside < 0.0 || cos_incidence <= 0.0 {
-            return Lit::Dark;
+            return Lighting::Dark;
         }
         let alpha = libm::atan(x / z);
         let cos = z / range;
@@ -148,11 +149,11 @@ impl<'a> Light<'a> {
         let irradiance = power / thickness * density * g / (cos * cos) / range
             * cos_incidence
             * libm::exp(-attenuation * range);
-        Lit::By(reflectivity * irradiance / std::f64::consts::PI)
+        Lighting::Radiance(reflectivity * irradiance / std::f64::consts::PI)
     }
 }
 
-/// The weight of a pencil of a beam's grid by its angle.
+/// Weight of a beam's profile at an angle to its axis, radians.
 fn weight(beam: &Beam, alpha: f64) -> f64 {
     let cos = libm::cos(alpha);
     match beam.profile {
@@ -162,9 +163,9 @@ fn weight(beam: &Beam, alpha: f64) -> f64 {
     }
 }
 
-/// What the weight is divided by: for the paper's profile the grid's width, as printed, for the others the integral
-/// of the weight over it. (Simpson's rule over `PARTS` parts: of fans up to 170 degrees and Gaussians of a tenth of
-/// the fan off by less than 1e-9.)
+/// Divisor of the weight: the grid's width for the paper's profile, as printed; the integral of the weight over that
+/// width for the others, metres. (Simpson's rule over `PARTS` parts. Its error is below 1e-9 for fans up to 170 degrees
+/// and Gaussians of a tenth of the fan.)
 fn integral(beam: &Beam) -> f64 {
     const PARTS: u32 = 20_000;
     let (g, w) = (beam.grid_distance, beam.half_width);
@@ -196,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn integrals_are_those_by_hand() {
+    fn integrals_match_those_by_hand() {
         // g = w = 0.1: 45 degrees to either side. cos^2(alpha) dx = g dalpha: 0.1 pi / 2.
         assert_eq!(integral(&beam(Profile::Paper)), 0.2);
         let uniform = integral(&beam(Profile::UniformAngle));

@@ -1,4 +1,4 @@
-//! The renderers of this house, by name, and which of the paper's approximations each makes.
+//! raypencil's own renderers, by name, and which of the paper's approximations each makes.
 
 use std::fmt;
 
@@ -9,14 +9,27 @@ use raypencil_scene::{Fidelity, Precision, RenderOutput, Renderer, Request, Swit
 use raypencil_scene_io::quoted;
 use raypencil_tracer::Tracer;
 
-/// The names [`contender`] knows.
+/// The names that [`contender`] accepts.
 pub const RENDERER_NAMES: &[&str] = &["scanline", "scanline-paper", "tracer", "referee"];
 
-/// A renderer to be compared with others.
+/// A renderer chosen for a comparison, with its switches.
+///
+/// ```
+/// use raypencil_harness::{Contender, typed_contenders};
+/// use raypencil_scene::{Fidelity, Switches};
+/// use raypencil_tracer::Tracer;
+///
+/// let paper = Contender::scanline(Switches::PAPER);
+/// let tracer = Contender::from(Tracer::new());
+/// assert_eq!(typed_contenders(&[&paper, &tracer]), "--with scanline-paper,tracer");
+/// // The tracer has no switches: it makes none of the paper's approximations, and setting one changes nothing.
+/// let tracer = tracer.with_switch("facing", Fidelity::Paper).expect("a switch's name");
+/// assert_eq!(tracer.approximations(), Switches::EXACT);
+/// ```
 pub struct Contender {
     /// The renderer.
     pub renderer: Box<dyn Renderer>,
-    /// Which side each of its switches stands on; `None` for a renderer that has none.
+    /// Its switches between the paper's approximations and exact computation; `None` for a renderer without any.
     pub switches: Option<Switches>,
 }
 
@@ -27,25 +40,25 @@ impl Contender {
         Self { renderer: Box::new(Scanline::new(options)), switches: Some(switches) }
     }
 
-    /// The same with one switch set; a renderer without switches stays as it is.
+    /// This contender with one switch set; a renderer without switches stays as it is.
     ///
     /// # Errors
-    /// If there is no switch of that name: says which there are.
+    /// There is no switch of that name; the message lists the names.
     pub fn with_switch(self, name: &str, fidelity: Fidelity) -> Result<Self, String> {
-        // The name is judged even where no switch is set.
+        // A wrong name is refused even for a renderer without switches.
         let mut switches = self.switches.unwrap_or_default();
         switches.set(name, fidelity).map_err(|error| error.to_string())?;
         Ok(if self.switches.is_some() { Self::scanline(switches) } else { self })
     }
 
-    /// The approximations that it makes; none for a renderer without switches.
+    /// The paper's approximations that it makes; none for a renderer without switches.
     pub fn approximations(&self) -> Switches {
         self.switches.unwrap_or(Switches::EXACT)
     }
 }
 
-/// The words that choose these renderers on the command line: `--with scanline,tracer --switch beam-edges=paper`.
-/// Switches are meant for every scanline renderer among them.
+/// The command-line arguments that choose these renderers: `--with scanline,tracer --switch beam-edges=paper`.
+/// A `--switch` applies to every scanline renderer among them.
 pub fn typed_contenders(contenders: &[&Contender]) -> String {
     let name = |contender: &&Contender| match contender.switches {
         None => quoted(contender.renderer.name()),
@@ -75,7 +88,8 @@ impl fmt::Debug for Contender {
     }
 }
 
-/// Finds the causes of what `output` has wrong, which the scanline renderer made of the judge's scene with `switches`.
+/// Finds the causes of the errors in `output`, which the scanline renderer computed with `switches` for the judge's
+/// scene.
 pub fn attribute(
     judge: &Judge<'_>,
     output: &RenderOutput,
@@ -88,7 +102,17 @@ pub fn attribute(
     Attributions::find(judge, output, switches, precision, &rerender)
 }
 
-/// A renderer by its name.
+/// The renderer of this name, one of [`RENDERER_NAMES`]; `None` for any other name.
+///
+/// ```
+/// use raypencil_harness::contender;
+/// use raypencil_scene::Switches;
+///
+/// // `scanline-paper` makes every approximation of the paper; `scanline` makes none.
+/// assert_eq!(contender("scanline-paper").and_then(|it| it.switches), Some(Switches::PAPER));
+/// assert_eq!(contender("scanline").and_then(|it| it.switches), Some(Switches::EXACT));
+/// assert!(contender("mitsuba").is_none());
+/// ```
 pub fn contender(name: &str) -> Option<Contender> {
     match name {
         "scanline" => Some(Contender::scanline(Switches::EXACT)),
@@ -105,7 +129,7 @@ mod tests {
 
     #[test]
     fn contenders_are_typed_as_the_command_line_takes_them() {
-        let named = |name| contender(name).expect("a renderer of this house");
+        let named = |name| contender(name).expect("a renderer's name");
         assert_eq!(typed_contenders(&[&named("scanline"), &named("tracer")]), "--with scanline,tracer");
         assert_eq!(
             typed_contenders(&[&named("tracer"), &named("scanline-paper")]),

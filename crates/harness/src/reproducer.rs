@@ -1,4 +1,4 @@
-//! A minimised scene as files: the scene, its ground, and the commands that show it again.
+//! A reduced scene as files: the scene, its terrain, and a text with the commands that show the difference again.
 
 use std::path::{Path, PathBuf};
 
@@ -6,23 +6,23 @@ use raypencil_files::{FileError, write_atomically};
 use raypencil_minimise::Minimised;
 use raypencil_scene_io::{Subject, probe_command, quoted, scene_sha256, write_resolved};
 
-/// What a reproducer is of, in words.
+/// Name and description of a reproducer.
 #[derive(Debug, Clone, Copy)]
 pub struct Reproducer<'a> {
-    /// The name of its files, without an ending: letters, digits, `.`, `_` and `-`.
+    /// Name of its files without the extension: letters, digits, `.`, `_` and `-`.
     pub name: &'a str,
-    /// What it shows, as a sentence.
+    /// The difference that it shows, as a sentence.
     pub what: &'a str,
-    /// The words that choose the renderers that show it, as [`crate::renderers::typed_contenders`] has them. Without any, the
-    /// command line's own tell what is right.
+    /// Command-line arguments that choose the two renderers, from [`crate::typed_contenders`]. If empty, the commands
+    /// use the default renderers.
     pub with: &'a str,
 }
 
-/// Writes `NAME.toml` and `NAME.glb`, the scene to the last bit, and last `NAME.md`, which says what it shows and how
-/// to see it again. The three paths, in this order. The same scene gives the same bytes.
+/// Writes `NAME.toml` and `NAME.glb`, the scene to the last bit, then `NAME.md`, which describes the difference and the
+/// commands that show it. Returns the three paths in this order. The same scene gives the same bytes.
 ///
 /// # Errors
-/// A name that is none for a file of a scene; what the file system says.
+/// A name that is not fit for a scene's file, or an error of the file system.
 pub fn write_reproducer(
     folder: &Path,
     minimised: &Minimised,
@@ -34,14 +34,15 @@ pub fn write_reproducer(
         action: "create",
         source,
     })?;
-    let [scene, ground, words] = ["toml", "glb", "md"].map(path);
+    let [scene, ground, description] = ["toml", "glb", "md"].map(path);
     write_resolved(&scene, &minimised.scene, &format!("{}.glb", reproducer.name))?;
-    let text = words_of(minimised, reproducer);
-    write_atomically(&words, |file| file.write_all(text.as_bytes()))?;
-    Ok([scene, ground, words])
+    let text = description_of(minimised, reproducer);
+    write_atomically(&description, |file| file.write_all(text.as_bytes()))?;
+    Ok([scene, ground, description])
 }
 
-fn words_of(minimised: &Minimised, Reproducer { name, what, with }: Reproducer<'_>) -> String {
+/// Contents of `NAME.md`.
+fn description_of(minimised: &Minimised, Reproducer { name, what, with }: Reproducer<'_>) -> String {
     let Minimised { scene, place, faces_before, faces_after, is_finished, .. } = minimised;
     let arguments = format!("{} {with}", quoted(&format!("{name}.toml")));
     let arguments = arguments.trim_end().to_string();

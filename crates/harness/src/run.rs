@@ -1,16 +1,42 @@
-//! One validation, from a scene to its verdict, as one readable pass.
+//! `validate`: renders, judges and compares one scene.
 
 use std::time::Instant;
 
-use crate::rendered::Rendered;
-use crate::renderers::{Contender, attribute};
-use crate::validation::{Pair, Validation};
 use raypencil_judge::{Attributions, Judge, JudgeShare, compare_judged};
 use raypencil_scene::{Progress, Request, Stage, Switches};
 use raypencil_scene_io::Subject;
 
-/// Renders `subject` with each of `contenders`, compares every pair, and has the referee judge what differs and
-/// that `share` of what agrees.
+use crate::rendered::Rendered;
+use crate::renderers::{Contender, attribute};
+use crate::validation::{Pair, Validation};
+
+/// Renders `subject` with each of `contenders` and compares every pair of them. The referee rules on every ray whose
+/// answers differ, and on `share` of the rays that agree.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// use raypencil_harness::{contender, validate};
+/// use raypencil_judge::JudgeShare;
+/// # use raypencil_scene::{Atmosphere, FluxModel, Scene, Silent, rig};
+/// # use raypencil_scene_io::Subject;
+///
+/// # let mesh = raypencil_terrain::builtin("facets", 0.25).expect("a built-in name").into_mesh()?;
+/// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
+/// // `scene`: the facets under the default rig, 64 times coarser: 16 x 16 pixels, two beams of 16 x 2 pencils.
+/// let subject =
+///     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+/// let contenders = ["scanline", "tracer", "referee"].map(|name| contender(name).expect("a renderer's name"));
+/// let validation = validate(subject, &contenders, JudgeShare::All, &Silent);
+/// // Three renderers are three pairs, and each compares 16 x 16 + 2 (16 x 2) = 320 rays.
+/// assert_eq!(validation.pairs.len(), 3);
+/// assert_eq!(validation.counts().compared, 3 * 320);
+/// // All rays were judged, and no renderer is wrong.
+/// assert_eq!((validation.counts().judged, validation.counts().defects), (3 * 320, 0));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 pub fn validate(
     subject: Subject,
     contenders: &[Contender],
@@ -44,13 +70,13 @@ pub fn validate(
         });
     }
 
-    // The referee reads the scene by itself.
+    // The referee prepares the scene independently of the renderers.
     progress.stage("referee: preparing");
     let start = Instant::now();
     let judge = Judge::new(&subject.scene, share);
     stages.push(Stage { name: "referee: preparing".into(), time: start.elapsed() });
 
-    // Find what the paper's approximations did.
+    // Attribute errors to the paper's approximations.
     for side in rendered.iter_mut().filter(|side| side.approximations != Switches::EXACT) {
         let what = format!("attributing {}", side.name);
         progress.stage(&what);
@@ -59,7 +85,7 @@ pub fn validate(
         stages.push(Stage { name: what, time: start.elapsed() });
     }
 
-    // Compare every pair, and judge.
+    // Compare every pair, and judge the differences.
     let mut pairs = Vec::new();
     for a in 0..rendered.len() {
         for b in a + 1..rendered.len() {
@@ -72,5 +98,5 @@ pub fn validate(
         }
     }
     drop(judge);
-    Validation { subject, rendered, pairs, panel: None, stages }
+    Validation { subject, rendered, pairs, scoreboard: None, stages }
 }

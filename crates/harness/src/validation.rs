@@ -1,63 +1,66 @@
+//! All results of one scene: what was rendered, every pair compared, candidates evaluated.
+
 use std::time::Instant;
 
-use crate::candidate::Outsider;
-use crate::panel::{Panel, panel};
-use crate::rendered::Rendered;
 use raypencil_judge::{ApproximationTallies, Class, SensorResult};
 use raypencil_scene::{Progress, Stage};
 use raypencil_scene_io::Subject;
 
-/// Two renderers compared.
+use crate::candidate::Candidate;
+use crate::rendered::Rendered;
+use crate::scoreboard::{Scoreboard, evaluate};
+
+/// The comparison of two renderers.
 #[derive(Debug)]
 pub struct Pair {
-    /// Index of the one side in [`Validation::rendered`].
+    /// Index of the first side in [`Validation::rendered`].
     pub a: usize,
-    /// Index of the other side.
+    /// Index of the second side.
     pub b: usize,
-    /// Sensor by sensor, the camera first.
+    /// One comparison per sensor, the camera first.
     pub sensors: Vec<SensorResult>,
 }
 
-/// A scene rendered by several renderers, and every pair of them compared.
+/// A scene rendered by several renderers, with every pair of them compared.
 #[derive(Debug)]
 pub struct Validation {
     /// The scene.
     pub subject: Subject,
-    /// Each renderer's frame, in the order asked for.
+    /// Each renderer's output, in the order of the contenders.
     pub rendered: Vec<Rendered>,
-    /// Every pair.
+    /// Every pair of renderers: (0, 1), (0, 2), ..., (1, 2), ...
     pub pairs: Vec<Pair>,
-    /// Everyone's answers held to the truth, if others were asked as well.
-    pub panel: Option<Panel>,
-    /// How long each part of the work took, in order.
+    /// Renderers and candidates checked against the exact answers; `None` until [`Validation::evaluate`].
+    pub scoreboard: Option<Scoreboard>,
+    /// Wall-clock time of each step, in order.
     pub stages: Vec<Stage>,
 }
 
-/// Rays by what became of them, over all sensors and pairs.
+/// Numbers of rays by class, summed over all sensors and pairs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Rays compared; the classes add up to it.
+    /// Rays compared: the sum of all classes.
     pub compared: u64,
-    /// Rays that agree.
+    /// Rays on which both sides agree.
     pub agree: u64,
-    /// Rays on which two faces tie.
+    /// Rays that meet several faces at exactly the same point.
     pub tie: u64,
-    /// Rays answered as a displaced ray would be.
+    /// Rays with the exact answer of a ray displaced within the renderer's precision.
     pub rounding: u64,
-    /// Rays on which one side follows the paper into error, for a confirmed cause.
+    /// Rays on which one side makes an error of the paper, for a confirmed cause.
     pub approximation: u64,
-    /// Rays on which the referee gave up.
+    /// Rays that the referee could not decide.
     pub undecided: u64,
-    /// Rays that differ beyond doubt.
+    /// Rays on which a side is wrong.
     pub defects: u64,
-    /// Rays that one side does not have.
+    /// Rays missing from one side's output.
     pub not_compared: u64,
     /// Rays that the referee ruled on.
     pub judged: u64,
 }
 
 impl Validation {
-    /// All rays of all pairs.
+    /// Numbers of rays by class, over all pairs.
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         for sensor in self.pairs.iter().flat_map(|pair| &pair.sensors) {
@@ -74,7 +77,7 @@ impl Validation {
         counts
     }
 
-    /// What each set of the paper's approximations did, over all sensors and pairs.
+    /// Effects of each set of the paper's approximations, over all sensors and pairs.
     pub fn approximations(&self) -> ApproximationTallies {
         let mut all = ApproximationTallies::new();
         for sensor in self.pairs.iter().flat_map(|pair| &pair.sensors) {
@@ -85,14 +88,14 @@ impl Validation {
         all
     }
 
-    /// Holds the renderers and what others recorded of the same scene to the truth about every ray.
-    pub fn hold(&mut self, outsiders: Vec<Outsider>, progress: &dyn Progress) {
+    /// Checks the renderers and `candidates`, recordings of the same scene, against the exact answer to every ray.
+    pub fn evaluate(&mut self, candidates: Vec<Candidate>, progress: &dyn Progress) {
         let start = Instant::now();
-        self.panel = Some(panel(&self.subject, &self.rendered, outsiders, progress));
-        self.stages.push(Stage { name: "holding all to the truth".into(), time: start.elapsed() });
+        self.scoreboard = Some(evaluate(&self.subject, &self.rendered, candidates, progress));
+        self.stages.push(Stage { name: "evaluating candidates".into(), time: start.elapsed() });
     }
 
-    /// Whether everything that was compared agrees or has a confirmed cause, and something was.
+    /// Whether at least one ray was compared, and none is a defect or undecided.
     pub fn passes(&self) -> bool {
         let counts = self.counts();
         counts.defects == 0 && counts.undecided == 0 && counts.compared > 0

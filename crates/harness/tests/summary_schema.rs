@@ -19,7 +19,7 @@ fn every_summary_keeps_to_the_schema() {
         fixtures::defective(),
         fixtures::approximate(),
         fixtures::lonely(),
-        fixtures::with_outsider(),
+        fixtures::with_candidate(),
     ] {
         let summary: Value = serde_json::from_str(&summary_json(&validation)).unwrap();
         assert_eq!(faults_of(&summary), Vec::<String>::new());

@@ -1,6 +1,6 @@
 //! "The computation can be speeded up in the future by converting the code from floating point to integer arithmetic."
-//! (Paper, §8) The three inner computations of both renderers in f64, and in fixed point of 64 and of 128 bits; see
-//! `docs/evidence/results.md` for the bits that each needs.
+//! (Paper, section 8) The three inner computations of both renderers in f64, and in fixed point with 64 and 128 bits;
+//! `docs/evidence/results.md` has the bits that each needs.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -9,10 +9,10 @@ fn main() {
     divan::main();
 }
 
-/// Operands of each kind; all fit the caches.
+/// Number of operands; they fit the caches.
 const COUNT: usize = 4096;
 
-/// A number type with its operands: so many bits below the point for places and for directions.
+/// A number type: f64, or fixed point with a given number of fractional bits.
 trait Number: Copy + Send + Sync + 'static {
     fn new(place: f64, bits: u32) -> Self;
     fn times(self, other: Self) -> Self;
@@ -28,7 +28,7 @@ macro_rules! integer {
             fn new(place: f64, bits: u32) -> Self {
                 (place * (1_u64 << bits) as f64) as Self
             }
-            // Wrapping: what a release build does, without its checks elsewhere.
+            // Wrapping, as integers behave in a release build.
             fn times(self, other: Self) -> Self {
                 self.wrapping_mul(other)
             }
@@ -73,7 +73,7 @@ impl Number for f64 {
     }
 }
 
-/// Places within 32 m and directions within 1, by turns; the same for every type.
+/// Two positions within 32 m, then a direction within 1, repeated; the same numbers for every type.
 fn operands<N: Number>(place_bits: u32, direction_bits: u32) -> Vec<[N; 3]> {
     let mut state = 1_u64;
     let mut next = || {
@@ -89,7 +89,7 @@ fn operands<N: Number>(place_bits: u32, direction_bits: u32) -> Vec<[N; 3]> {
         .collect()
 }
 
-/// Which side of an edge a ray passes: the determinant of two vertices, seen from the sensor, and the direction.
+/// The side on which a ray passes an edge: the determinant of two vertices relative to the sensor and the direction.
 fn side<N: Number>(bencher: Bencher, place_bits: u32, direction_bits: u32) {
     let vectors = operands::<N>(place_bits, direction_bits);
     let determinant = |[a, b, q]: [[N; 3]; 3]| {
@@ -120,7 +120,7 @@ fn side_of_edge_i128_38_and_40_bits(bencher: Bencher) {
     side::<i128>(bencher, 38, 40);
 }
 
-/// 1/t along a row as `scanline` has it: afresh at each pixel, so that no error adds up, and the nearest stays.
+/// 1/t along a row as in `scanline`: computed anew at each pixel, so that errors do not accumulate; the nearest stays.
 #[divan::bench]
 fn row_of_pixels_f64_afresh(bencher: Bencher) {
     let nearest: Vec<f64> = operands::<f64>(0, 0).iter().map(|vector| vector[0]).collect();
@@ -134,7 +134,7 @@ fn row_of_pixels_f64_afresh(bencher: Bencher) {
     });
 }
 
-/// The same by an addition for each pixel.
+/// The same, stepped by one addition per pixel.
 fn row<N: Number>(bencher: Bencher, bits: u32) {
     let nearest: Vec<N> = operands::<N>(bits, bits).iter().map(|vector| vector[0]).collect();
     let step = N::new(1.0 / 1024.0, bits);
@@ -159,7 +159,7 @@ fn row_of_pixels_i64_stepped(bencher: Bencher) {
     row::<i64>(bencher, 40);
 }
 
-/// t = d / (n.q): a product of each part, and a division.
+/// t = d / (n.q): a dot product and a division.
 fn distance<N: Number>(bencher: Bencher, place_bits: u32, direction_bits: u32) {
     let vectors = operands::<N>(place_bits, direction_bits);
     bencher.counter(ItemsCount::new(COUNT / 3)).bench_local(|| {

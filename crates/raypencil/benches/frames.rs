@@ -1,12 +1,12 @@
-//! Whole frames, as the paper's step 1 to 5: both beams' range maps, visibility and flux, and the camera's range map.
+//! Whole frames, the paper's steps 1 to 5: both beams' range maps, visibility and flux, and the camera's range map.
 //!
-//! The paper: "processing of a single camera scene with 256 triangles requires about 8 seconds on a Mac II". Here the
-//! built-in facets, about as many, and a generated ground of half a million. What a renderer keeps between the
-//! frames of a drive is kept here too.
+//! The paper: "processing of a single camera scene with 256 triangles requires about 8 seconds on a Mac II". The scenes
+//! are the built-in facets with about as many triangles, and a generated terrain with half a million. Cached data of a
+//! renderer is reused, as between the frames of a drive.
 
-use divan::{Bencher, black_box};
 use std::sync::LazyLock;
 
+use divan::{Bencher, black_box};
 use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
 use raypencil::{Request, Scene};
@@ -31,20 +31,21 @@ static PLAIN: LazyLock<Scene> = LazyLock::new(|| {
     load(path.to_str().expect("a path in UTF-8"), &Overrides::default()).expect("a valid scene").scene
 });
 
-fn output(bencher: Bencher<'_, '_>, scene: &Scene, name: &str) {
-    let renderer = contender(name).expect("a renderer of this house").renderer;
+/// Measures a renderer after a first frame.
+fn measure(bencher: Bencher<'_, '_>, scene: &Scene, name: &str) {
+    let renderer = contender(name).expect("a renderer's name").renderer;
     let render = || renderer.render(black_box(scene), &Request::EVERYTHING);
-    // Tables and trees are made once.
+    // The first frame constructs the cached data.
     render();
     bencher.bench_local(render);
 }
 
 #[divan::bench(args = ["scanline", "scanline-paper", "tracer"], sample_count = 11, sample_size = 1)]
 fn facets(bencher: Bencher<'_, '_>, name: &str) {
-    output(bencher, &FACETS, name);
+    measure(bencher, &FACETS, name);
 }
 
 #[divan::bench(args = ["scanline", "scanline-paper", "tracer"], sample_count = 11, sample_size = 1)]
 fn half_a_million(bencher: Bencher<'_, '_>, name: &str) {
-    output(bencher, &PLAIN, name);
+    measure(bencher, &PLAIN, name);
 }

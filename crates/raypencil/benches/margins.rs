@@ -1,16 +1,16 @@
-//! Exact verdicts with all their margins, and correctly rounded values, per second, on one thread and on all.
+//! The referee: exact verdicts per second, with and without margins, and correctly rounded values, on one thread and on
+//! all cores.
 //!
-//! The ground is the yard of half a million triangles if RAYPENCIL_EXTRA_DATA names the folder that holds
-//! `marsyard2021.glb`, under the default rig where the scene puts it; else a generated height field of as many
-//! faces under the same rig. Rays are drawn from the camera and both beams, two thirds from the camera: the same
-//! ones in every run.
+//! The terrain is the Mars yard of half a million triangles if RAYPENCIL_EXTRA_DATA names the folder with
+//! `marsyard2021.glb`, else a generated terrain with as many faces, each under the default rig. Two thirds of the rays
+//! are the camera's, the rest are those of both beams. They are the same in every run.
+
+use std::path::Path;
+use std::sync::LazyLock;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
-use std::path::Path;
-use std::sync::LazyLock;
-
 use raypencil::io::load;
 use raypencil::referee::Referee;
 use raypencil::{Scene, SensorId};
@@ -19,10 +19,10 @@ fn main() {
     divan::main();
 }
 
-/// Rays of one run.
+/// Number of rays of one run.
 const RAYS: u64 = 60_000;
 
-/// As many faces as the yard has, on as much ground.
+/// A terrain with as many faces and the same extent as the yard.
 const GENERATED: &str = r#"
 version = 1
 [terrain]
@@ -46,7 +46,7 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
 
 static REFEREE: LazyLock<Referee<'static>> = LazyLock::new(|| Referee::new(&SCENE));
 
-/// The rays: a Weyl sequence over each sensor's cells.
+/// The rays: a Weyl sequence over the cells of each sensor.
 static PLACES: LazyLock<Vec<(SensorId, u32, u32)>> = LazyLock::new(|| {
     (0..RAYS)
         .map(|k| {
@@ -56,14 +56,14 @@ static PLACES: LazyLock<Vec<(SensorId, u32, u32)>> = LazyLock::new(|| {
                 _ => SensorId::Camera,
             };
             let (width, height) = SCENE.size(sensor).expect("the default rig");
-            // The roots of x^3 = x + 1, squared and not, inverted: a plane is filled evenly.
+            // 1/x and 1/x^2 for the root x of x^3 = x + 1: the points fill a plane evenly.
             let part = |step: f64, count: u32| ((k as f64 * step).fract() * f64::from(count)) as u32;
             (sensor, part(0.754_877_666_246_692_8, width), part(0.569_840_290_998_053_3, height))
         })
         .collect()
 });
 
-/// Asks about every ray on so many threads; 0 is all cores.
+/// Measures `ask` over every ray on `threads` threads; 0 is all cores.
 fn all_rays<T: Send>(
     bencher: Bencher,
     threads: usize,
@@ -75,7 +75,7 @@ fn all_rays<T: Send>(
     bencher.counter(ItemsCount::new(RAYS)).bench_local(run);
 }
 
-/// The camera's pixels among them: the verdict and all values, correctly rounded to f64 and f32.
+/// The camera's pixels among the rays: the verdict and all values, correctly rounded to f64 and f32.
 #[divan::bench(args = [1, 0], sample_count = 11, sample_size = 1)]
 fn certified_camera_pixels(bencher: Bencher, threads: usize) {
     let pixels: Vec<_> = PLACES.iter().filter(|place| place.0 == SensorId::Camera).collect();

@@ -1,32 +1,37 @@
-//! Draws `docs/figures/eq1-along-stripe.svg`: what the pencils along a stripe on flat ground deliver in both flux
-//! models, each over its largest, and their quotient.
+//! Draws `docs/figures/eq1-along-stripe.svg`: the flux of the pencils along a stripe on flat ground with both flux
+//! models, each divided by its maximum, and the quotient of both.
 //!
 //! ```text
-//! cargo run --release -p raypencil-harness --example eq1_along_stripe > docs/figures/eq1-along-stripe.svg
+//! cargo run --release -p raypencil --example eq1_along_stripe > docs/figures/eq1-along-stripe.svg
 //! ```
 
-use glam::DVec3;
 use std::sync::Arc;
 
+use glam::DVec3;
 use raypencil::io::{Overrides, load};
 use raypencil::scanline::Scanline;
 use raypencil::{FluxModel, Material, Mesh, Renderer, Request, Scene};
 
-/// The box of the curves, and the margins around it, in user units.
+/// Width of the chart's box, SVG units.
 const WIDTH: f64 = 720.0;
 
+/// Height of the chart's box, SVG units.
 const HEIGHT: f64 = 300.0;
 
+/// Left margin, SVG units.
 const LEFT: f64 = 60.0;
 
+/// Top margin, SVG units.
 const TOP: f64 = 20.0;
 
+/// Right margin with the legend, SVG units.
 const RIGHT: f64 = 170.0;
 
+/// Bottom margin, SVG units.
 const BOTTOM: f64 = 50.0;
 
 fn main() {
-    // The default rig, on level ground instead of the pyramids.
+    // The default rig on level ground instead of the pyramids.
     let rig = load("pyramids", &Overrides::default()).expect("a built-in scene").scene;
     let vertices = vec![[-50.0, -50.0, 0.0], [50.0, -50.0, 0.0], [50.0, 50.0, 0.0], [-50.0, 50.0, 0.0]];
     let ground = vec![Material { name: "ground".into(), reflectivity: 0.25 }];
@@ -42,7 +47,7 @@ fn main() {
         (0..flux.width()).map(|i| flux.at(i, flux.height() / 2)).collect()
     };
     let (radiometric, eq1) = (flux(FluxModel::Radiometric), flux(FluxModel::Eq1));
-    // The ends of the stripe are out of the camera's view.
+    // The ends of the stripe are outside the camera's view.
     let seen: Vec<usize> = (0..radiometric.len()).filter(|&i| radiometric[i] > 0.0).collect();
     let (radiometric, eq1): (Vec<f64>, Vec<f64>) = seen.iter().map(|&i| (radiometric[i], eq1[i])).unzip();
     let quotient: Vec<f64> = radiometric.iter().zip(&eq1).map(|(a, b)| b / a).collect();
@@ -76,7 +81,7 @@ fn main() {
     }
 }
 
-/// The curves, each over its largest value, by angle in degrees.
+/// The SVG: the curves over the angle in degrees, each divided by its maximum.
 fn figure(angles: &[f64], curves: &[(&str, &str, &Vec<f64>)]) -> String {
     let (first, last) = (angles[0], angles[angles.len() - 1]);
     let x = |angle: f64| LEFT + WIDTH * (angle - first) / (last - first);
@@ -112,13 +117,13 @@ fn figure(angles: &[f64], curves: &[(&str, &str, &Vec<f64>)]) -> String {
         TOP + HEIGHT + 40.0
     );
     for (index, (name, colour, values)) in curves.iter().enumerate() {
-        let most = values.iter().fold(0.0_f64, |most, value| most.max(*value));
-        // Every fourth pencil is as smooth.
+        let max = values.iter().fold(0.0_f64, |max, value| max.max(*value));
+        // Every fourth pencil gives a curve that is smooth enough.
         let points: Vec<String> = angles
             .iter()
             .zip(values.iter())
             .step_by(4)
-            .map(|(angle, value)| format!("{:.1},{:.1}", x(*angle), y(value / most)))
+            .map(|(angle, value)| format!("{:.1},{:.1}", x(*angle), y(value / max)))
             .collect();
         let line = TOP + 20.0 + 22.0 * index as f64;
         svg += &format!(

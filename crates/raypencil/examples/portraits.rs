@@ -1,16 +1,16 @@
-//! Draws `docs/figures/ground-NAME.svg`: each preset of generated ground from above, and as a camera 1.8 m above it sees
-//! it, under a low sun.
+//! Draws `docs/figures/ground-NAME.svg`: each preset of generated terrain under a low sun, from above and as a camera
+//! 1.8 m above it sees it.
 //!
 //! ```text
-//! cargo run --release -p raypencil-harness --example portraits -- docs/figures
+//! cargo run --release -p raypencil --example portraits -- docs/figures
 //! ```
+
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::{DQuat, DVec3};
-use std::path::PathBuf;
-use std::sync::Arc;
-
 use raypencil::io::write_atomically;
 use raypencil::terrain::{MarsGround, PRESET_NAMES, height_at};
 use raypencil::tracer::Tracer;
@@ -18,32 +18,35 @@ use raypencil::{
     Atmosphere, Camera, FluxModel, Mesh, Mounted, Pose, Renderer, Request, Scene, SensorId, SensorMap, rig,
 };
 
-/// The seed of all portraits.
+/// Seed of all terrains.
 const SEED: u64 = 7;
 
 /// Height of both pictures, pixels.
 const HEIGHT: u32 = 420;
 
 /// Width of the camera's picture, pixels.
-const WIDE: u32 = 760;
+const VIEW_WIDTH: u32 = 760;
 
-/// Each pixel is the mean of this many squared.
-const FINER: u32 = 3;
+/// Supersampling: each pixel is the mean of a square with this many rays on each side.
+const RAYS_PER_PIXEL_SIDE: u32 = 3;
 
-/// Towards the sun: 22 degrees high, behind the camera to its left.
-const SUN: (f64, f64) = (22.0, 140.0);
+/// Elevation of the sun, degrees.
+const SUN_ELEVATION_DEG: f64 = 22.0;
 
-/// How far the camera looks to the left of an axis, degrees.
-const ASIDE: f64 = 8.0;
+/// Azimuth of the sun, degrees to the left of the x axis: behind the camera to its left.
+const SUN_AZIMUTH_DEG: f64 = 140.0;
 
-/// Light of the sky on the whole ground, a share of the sun's.
-const SKY: f64 = 0.18;
+/// Angle of the camera's view to the left of an axis, degrees.
+const YAW_DEG: f64 = 8.0;
 
-/// How far away the camera of the shadows is, metres.
-const SUN_DISTANCE: f64 = 2_000.0;
+/// Light of the sky relative to that of the sun.
+const SKY_LIGHT: f64 = 0.18;
 
-/// Side of the shadow map, pixels.
-const SHADOW_SIDE: u32 = 4_096;
+/// Distance of the shadow map's camera, metres.
+const SUN_DISTANCE_M: f64 = 2_000.0;
+
+/// Side length of the shadow map, pixels.
+const SHADOW_MAP_SIDE: u32 = 4_096;
 
 fn main() {
     let folder = PathBuf::from(std::env::args().nth(1).expect("a folder to write to"));
@@ -58,38 +61,38 @@ fn main() {
     }
 }
 
-/// Both pictures under a title, with the scales of the one from above.
+/// The SVG: both pictures under a title, with the scale of the picture from above.
 fn figure(name: &str, extent: f64, along_y: bool, mesh: &Arc<Mesh>) -> String {
     let tracer = Tracer::new();
     let sun = Sun::new(mesh, &tracer, extent);
     let above = {
-        let side = HEIGHT * FINER;
+        let side = HEIGHT * RAYS_PER_PIXEL_SIDE;
         let distance = 1_000.0;
-        // One side of the ground fills the picture at the height of the origin.
+        // The terrain's side fills the picture at the height of the origin.
         let pitch = 1e-5;
         let focal_length = distance * f64::from(side) * pitch / extent;
         let camera = Camera { max_range: 2.0 * distance, ..rig::camera(side, side, pitch, focal_length) };
-        // Looking down, north (y) on top: the sensor's x is the scene's x, its y the scene's -y.
+        // Looks down with y upwards: the sensor's x is the scene's x, its y the scene's -y.
         let rotation = DQuat::from_rotation_x(std::f64::consts::PI);
         let pose = Pose { position: DVec3::new(0.0, 0.0, distance), rotation };
         picture(mesh, &tracer, &sun, Mounted { scene_from_sensor: pose, sensor: camera })
     };
     let seen = {
-        let (width, height) = (WIDE * FINER, HEIGHT * FINER);
+        let (width, height) = (VIEW_WIDTH * RAYS_PER_PIXEL_SIDE, HEIGHT * RAYS_PER_PIXEL_SIDE);
         // 70 degrees across.
         let pitch = 1e-5;
         let focal_length = 0.5 * f64::from(width) * pitch / libm::tan(35_f64.to_radians());
         let camera = Camera { max_range: 1e3, ..rig::camera(width, height, pitch, focal_length) };
         let eye = height_at(mesh, 0.0, 0.0).expect("ground in its middle") + 1.8;
-        // Crevasses run along x: look across them. Turned a little, so that no line of posts is seen end on.
-        let heading = ASIDE.to_radians() + if along_y { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+        // Crevasses run along x, so the camera looks across them. The yaw avoids looking exactly along a line of posts.
+        let heading = YAW_DEG.to_radians() + if along_y { std::f64::consts::FRAC_PI_2 } else { 0.0 };
         let turned = Pose { position: DVec3::new(0.0, 0.0, eye), ..Pose::from_axis_angle(DVec3::Z, heading) };
         let pitched = rig::pitched(DVec3::ZERO, 12_f64.to_radians(), camera);
         let scene_from_sensor = turned * pitched.scene_from_sensor;
         picture(mesh, &tracer, &sun, Mounted { scene_from_sensor, ..pitched })
     };
     let (top, gap) = (26, 16);
-    let (all_wide, all_high) = (HEIGHT + gap + WIDE, top + HEIGHT + 40);
+    let (all_wide, all_high) = (HEIGHT + gap + VIEW_WIDTH, top + HEIGHT + 40);
     let bar = 10.0 / extent * f64::from(HEIGHT);
     let base = top + HEIGHT;
     format!(
@@ -97,10 +100,10 @@ fn figure(name: &str, extent: f64, along_y: bool, mesh: &Arc<Mesh>) -> String {
 <rect width="100%" height="100%" fill="#fff"/>
 <text x="0" y="17" font-weight="bold">{name}, seed {SEED}: {faces} faces on {extent} x {extent} m</text>
 <image x="0" y="{top}" width="{HEIGHT}" height="{HEIGHT}" href="data:image/png;base64,{above}"/>
-<image x="{left}" y="{top}" width="{WIDE}" height="{HEIGHT}" href="data:image/png;base64,{seen}"/>
+<image x="{left}" y="{top}" width="{VIEW_WIDTH}" height="{HEIGHT}" href="data:image/png;base64,{seen}"/>
 <path d="M1 {tick} v8 M1 {bar_y} h{bar:.1} m0 -4 v8" stroke="#000" stroke-width="2" fill="none"/>
 <text x="{bar_text:.1}" y="{text_y}">10 m; x to the right, y up</text>
-<text x="{left}" y="{text_y}">from (0, 0), 1.8 m above ground, {ASIDE} degrees left of {axis}, 12 degrees down, 70 degrees across; sun {sun_high} degrees high</text>
+<text x="{left}" y="{text_y}">from (0, 0), 1.8 m above ground, {YAW_DEG} degrees left of {axis}, 12 degrees down, 70 degrees across; sun {sun_high} degrees high</text>
 </svg>
 "##,
         faces = mesh.faces().len(),
@@ -112,21 +115,21 @@ fn figure(name: &str, extent: f64, along_y: bool, mesh: &Arc<Mesh>) -> String {
         bar_text = bar + 10.0,
         text_y = base + 21,
         axis = if along_y { "y" } else { "x" },
-        sun_high = SUN.0,
+        sun_high = SUN_ELEVATION_DEG,
     )
 }
 
-/// The camera's map of a mesh.
+/// A scene of a mesh and a camera, and the camera's map.
 fn map_of(mesh: &Arc<Mesh>, tracer: &Tracer, camera: Mounted<Camera>) -> (Scene, SensorMap) {
     let clear = Atmosphere { attenuation: 0.0 };
     let scene =
         Scene::new(Arc::clone(mesh), camera, Vec::new(), clear, FluxModel::Radiometric).expect("a scene");
-    let mut frame = tracer.render(&scene, &Request::MAPS);
-    let map = frame.camera.take().expect("a camera has a map");
+    let mut output = tracer.render(&scene, &Request::MAPS);
+    let map = output.camera.take().expect("a camera has a map");
     (scene, map)
 }
 
-/// The sun: its direction, and what of the ground it reaches, by a picture taken from there.
+/// The sun's direction, and a shadow map: the ranges that a camera at the sun sees.
 struct Sun {
     direction: DVec3,
     camera: Mounted<Camera>,
@@ -135,30 +138,30 @@ struct Sun {
 
 impl Sun {
     fn new(mesh: &Arc<Mesh>, tracer: &Tracer, extent: f64) -> Self {
-        let (high, side) = (SUN.0.to_radians(), SUN.1.to_radians());
-        let ((sin_h, cos_h), (sin_s, cos_s)) = (libm::sincos(high), libm::sincos(side));
+        let (elevation, azimuth) = (SUN_ELEVATION_DEG.to_radians(), SUN_AZIMUTH_DEG.to_radians());
+        let ((sin_h, cos_h), (sin_s, cos_s)) = (libm::sincos(elevation), libm::sincos(azimuth));
         let direction = DVec3::new(cos_h * cos_s, cos_h * sin_s, sin_h);
         let pitch = 1e-5;
-        // As wide as the ground's diagonal.
-        let focal_length = SUN_DISTANCE * f64::from(SHADOW_SIDE) * pitch / (1.5 * extent);
+        // As wide as the terrain's diagonal.
+        let focal_length = SUN_DISTANCE_M * f64::from(SHADOW_MAP_SIDE) * pitch / (1.5 * extent);
         let sensor = Camera {
-            max_range: 2.0 * SUN_DISTANCE,
-            ..rig::camera(SHADOW_SIDE, SHADOW_SIDE, pitch, focal_length)
+            max_range: 2.0 * SUN_DISTANCE_M,
+            ..rig::camera(SHADOW_MAP_SIDE, SHADOW_MAP_SIDE, pitch, focal_length)
         };
-        // z towards the ground, y down in the picture.
+        // z points to the ground, y down in the picture.
         let z = -direction;
         let x = z.cross(DVec3::Z).normalize();
         let rotation = DQuat::from_mat3(&glam::DMat3::from_cols(x, z.cross(x), z));
-        let pose = Pose { position: direction * SUN_DISTANCE, rotation };
+        let pose = Pose { position: direction * SUN_DISTANCE_M, rotation };
         let camera = Mounted { scene_from_sensor: pose, sensor };
         let (_, map) = map_of(mesh, tracer, camera);
         Self { direction, camera, map }
     }
 
-    /// Whether the sun reaches a point.
-    fn reaches(&self, point: DVec3, normal: DVec3) -> bool {
+    /// Whether the sun lights a point.
+    fn lights(&self, point: DVec3, normal: DVec3) -> bool {
         let camera = &self.camera.sensor;
-        // A little above its surface: a texel of the shadow map is 1.5 cm wide.
+        // A point slightly above the surface, since a texel of the shadow map is 1.5 cm wide.
         let local = self.camera.scene_from_sensor.inverse();
         let lifted = point + normal * 0.02;
         let local = local.position + local.rotate(lifted);
@@ -167,7 +170,7 @@ impl Sun {
             (pixels + camera.principal_point[axis]).floor()
         };
         let (i, j) = (at(0, local.x), at(1, local.y));
-        let side = f64::from(SHADOW_SIDE);
+        let side = f64::from(SHADOW_MAP_SIDE);
         if !((0.0..side).contains(&i) && (0.0..side).contains(&j)) {
             return true;
         }
@@ -176,7 +179,7 @@ impl Sun {
     }
 }
 
-/// What a camera sees, shaded, as an indexed PNG.
+/// The shaded view of a camera, as an indexed PNG.
 fn picture(mesh: &Arc<Mesh>, tracer: &Tracer, sun: &Sun, camera: Mounted<Camera>) -> Vec<u8> {
     let (scene, map) = map_of(mesh, tracer, camera);
     let (width, height) = scene.size(SensorId::Camera).expect("there is a camera");
@@ -187,35 +190,37 @@ fn picture(mesh: &Arc<Mesh>, tracer: &Tracer, sun: &Sun, camera: Mounted<Camera>
         let kind = mesh.face_materials()[face.0 as usize];
         let reflectivity = mesh.materials()[usize::from(kind)].reflectivity;
         let direct = normal.dot(sun.direction).max(0.0);
-        let direct = if direct > 0.0 && sun.reaches(point, normal) { direct } else { 0.0 };
-        // The sky is bright above and dark below.
-        let sky = SKY * (0.6 + 0.4 * normal.z);
+        let direct = if direct > 0.0 && sun.lights(point, normal) { direct } else { 0.0 };
+        // Faces that look up get more light from the sky.
+        let sky = SKY_LIGHT * (0.6 + 0.4 * normal.z);
         Some((direct + sky) * reflectivity)
     };
     let shades: Vec<Vec<Option<f64>>> =
         (0..height).map(|j| (0..width).map(|i| bright(i, j)).collect()).collect();
-    // Level soil in full sun is at two thirds of the scale.
-    let full = 0.25 * (sun.direction.z + SKY) * 1.6;
-    let (columns, rows) = (width / FINER, height / FINER);
+    // Level soil in full sun is at about two thirds of the scale.
+    let full = 0.25 * (sun.direction.z + SKY_LIGHT) * 1.6;
+    let (columns, rows) = (width / RAYS_PER_PIXEL_SIDE, height / RAYS_PER_PIXEL_SIDE);
     let mut cells = Vec::with_capacity((columns * rows) as usize);
     for j in 0..rows {
         for i in 0..columns {
-            let block = (0..FINER * FINER)
-                .map(|k| shades[(j * FINER + k / FINER) as usize][(i * FINER + k % FINER) as usize]);
+            let block = (0..RAYS_PER_PIXEL_SIDE * RAYS_PER_PIXEL_SIDE).map(|k| {
+                shades[(j * RAYS_PER_PIXEL_SIDE + k / RAYS_PER_PIXEL_SIDE) as usize]
+                    [(i * RAYS_PER_PIXEL_SIDE + k % RAYS_PER_PIXEL_SIDE) as usize]
+            });
             let (mut sum, mut ground) = (0.0, 0_u32);
             for shade in block.flatten() {
-                // As the eye has it: a square root for the screen's gamma.
+                // The square root approximates the screen's gamma.
                 sum += (shade / full).min(1.0).sqrt();
                 ground += 1;
             }
-            let is_ground = 2 * ground >= FINER * FINER;
+            let is_ground = 2 * ground >= RAYS_PER_PIXEL_SIDE * RAYS_PER_PIXEL_SIDE;
             cells.push(if is_ground { (sum / f64::from(ground) * 250.0).round() as u8 } else { 255 });
         }
     }
     encode(columns, rows, &cells)
 }
 
-/// Browns for the ground, one colour for the sky.
+/// Encodes the picture with a palette of browns for the ground and one colour for the sky.
 fn encode(width: u32, height: u32, cells: &[u8]) -> Vec<u8> {
     let shade = |index: u8| {
         let t = f64::from(index) / 250.0;

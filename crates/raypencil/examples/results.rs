@@ -1,9 +1,9 @@
-//! How exact each renderer is: its largest error in ulp, quantity by quantity, against correctly rounded values, over
-//! every ray of some scenes, in both models of flux. Writes the first half of `docs/evidence/results.md`, above its mark, to
-//! standard output; the example `truth` the tables below.
+//! Accuracy of each renderer: its largest error in ulp against correctly rounded values, for each quantity, over every
+//! ray of the given scenes, with both flux models. Prints the first half of `docs/evidence/results.md`, above its mark;
+//! the example `truth` prints the tables below it.
 //!
 //! ```sh
-//! cargo run --release -p raypencil-harness --example results -- pyramids facets marsyard2021.glb
+//! cargo run --release -p raypencil --example results -- pyramids facets marsyard2021.glb
 //! ```
 
 use std::path::Path;
@@ -13,9 +13,10 @@ use raypencil::io::{Overrides, load};
 use raypencil::judge::{Check, Class, GroundTruth, Quantity, Recorded, check};
 use raypencil::{FluxModel, Progress, Request};
 
-struct Stages;
+/// Prints progress messages to standard error.
+struct StandardError;
 
-impl Progress for Stages {
+impl Progress for StandardError {
     fn stage(&self, what: &str) {
         eprintln!("{what}");
     }
@@ -40,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!(
         "The tables are made by\n\
-         `cargo run --release -p raypencil-harness --example results -- {}`.\n\
+         `cargo run --release -p raypencil --example results -- {}`.\n\
          The last scene is the Mars yard of half a million triangles, which is not part of this repository. The\n\
          numbers are the same on any machine.\n",
         names.join(" ")
@@ -51,24 +52,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// The name of a scene: its file without the folder.
 fn name(scene: &str) -> String {
     Path::new(scene).file_name().map_or(scene.into(), |name| name.to_string_lossy().into_owned())
 }
 
+/// Prints the tables of one scene.
 fn page(scene: &str, name: &str) -> Result<(), Box<dyn std::error::Error>> {
     println!("## {name}\n");
     let mut columns: Vec<(String, Check)> = Vec::new();
     for flux_model in [FluxModel::Radiometric, FluxModel::Eq1] {
         let overrides = Overrides { flux_model: Some(flux_model), ..Overrides::default() };
         let loaded = load(scene, &overrides)?;
-        let truth = GroundTruth::certified(&loaded.scene, &Stages);
+        let truth = GroundTruth::certified(&loaded.scene, &StandardError);
         for renderer in RENDERERS {
-            let contender = contender(renderer).ok_or("a renderer of this house")?;
+            let contender = contender(renderer).ok_or("a renderer's name")?;
             let output = contender.renderer.render(&loaded.scene, &Request::EVERYTHING);
             let precision = contender.renderer.precision();
             let recorded = Recorded::of_output(renderer, &loaded.scene, &output, precision);
-            let model = if flux_model == FluxModel::Eq1 { "eq1" } else { "radiometric" };
-            columns.push((format!("{renderer} {model}"), check(&truth, &recorded, &Stages)));
+            let model = flux_model.word();
+            columns.push((format!("{renderer} {model}"), check(&truth, &recorded, &StandardError)));
         }
     }
 
@@ -90,7 +93,7 @@ fn page(scene: &str, name: &str) -> Result<(), Box<dyn std::error::Error>> {
     });
     for quantity in valued {
         let is_flux = matches!(quantity, Quantity::PencilFlux | Quantity::PixelFlux);
-        // Geometry is the same in both models.
+        // The flux model does not change the geometry.
         for pair in columns.chunks(RENDERERS.len()).take(if is_flux { 2 } else { 1 }) {
             let model = pair[0].0.split_once(' ').map_or("", |(_, model)| model);
             let title = if is_flux { format!("{quantity}, {model}") } else { quantity.to_string() };

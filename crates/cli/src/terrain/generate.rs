@@ -1,14 +1,13 @@
-//! `raypencil terrain generate`: a GLB terrain of ground as Mars has it.
+//! `raypencil terrain generate`: generates a Mars-like terrain as GLB.
 
-use raypencil::Mesh;
-use raypencil::Progress as _;
 use raypencil::io::{FileError, read_dem, write_terrain_glb};
-use raypencil::terrain::{MarsGround, PRESET_NAMES};
+use raypencil::terrain::{Ground, MarsGround, PRESET_NAMES};
+use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
 
-use super::{check_output, create_folder};
 use crate::args::TerrainGenerate;
 use crate::console::{Spinner, say};
+use crate::terrain::output::{check_output, create_folder};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome, Trouble> {
@@ -38,7 +37,7 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     spinner.stage(&format!("{}, seed {}: making faces", command.preset, command.seed));
     let origin = || format!("terrain generate --preset {}", command.preset);
     let unfit = |source| FileError::Scene { origin: origin(), source };
-    let mesh = ground.build().and_then(raypencil::terrain::Ground::into_mesh).map_err(unfit)?;
+    let mesh = ground.build().and_then(Ground::into_mesh).map_err(unfit)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
     create_folder(&command.output)?;
     write_terrain_glb(&command.output, &mesh, &parameters(command, &ground))?;
@@ -48,7 +47,7 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     Ok(Outcome::Fine)
 }
 
-/// What the ground was made from, for the file's own extras and for programs.
+/// The parameters of the ground, for the extras of its file and for the report.
 fn parameters(command: &TerrainGenerate, ground: &MarsGround) -> Value {
     let MarsGround { roughness, rocks, craters, crevasses, .. } = ground;
     let coarse = command.coarse.as_ref().and_then(|coarse| coarse.file_name());
@@ -74,12 +73,12 @@ fn parameters(command: &TerrainGenerate, ground: &MarsGround) -> Value {
     })
 }
 
-/// All that there is to say, for programs; people get the same.
+/// The report for programs, from which that for people is made.
 fn report(command: &TerrainGenerate, ground: &MarsGround, mesh: &Mesh) -> Value {
     let bounds = mesh.bounds().map(|bounds| bounds.map(|corner| (corner + mesh.origin()).to_array()));
     let along = |axis: usize| bounds.map(|[low, high]| [low[axis], high[axis]]);
     let diameters = ground.rock_diameters();
-    // Sums of areas on the whole square, rocks at its border included.
+    // Area of all rocks of the square, including the parts of rocks beyond its border.
     let covered: f64 = diameters.iter().map(|d| std::f64::consts::FRAC_PI_4 * d * d).sum();
     let extents = ground.extents();
     json!({

@@ -1,13 +1,12 @@
-//! `raypencil terrain import`: a GLB terrain of an elevation model.
+//! `raypencil terrain import`: converts an elevation model to a GLB terrain.
 
-use raypencil::Mesh;
-use raypencil::Progress as _;
 use raypencil::io::{Dem, read_dem, write_terrain_glb};
+use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
 
-use super::{check_output, create_folder};
 use crate::args::TerrainImport;
 use crate::console::{Spinner, say};
+use crate::terrain::output::{check_output, create_folder};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Trouble> {
@@ -26,7 +25,7 @@ pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Tro
     Ok(Outcome::Fine)
 }
 
-/// Where the ground comes from, for the file's own extras. No folder of this machine is part of it.
+/// The source of the terrain, for the extras of its file: the file's name without its folder.
 fn source(command: &TerrainImport, dem: &Dem) -> Value {
     json!({
         "source": command.dem.file_name().map(|name| name.to_string_lossy()),
@@ -37,7 +36,7 @@ fn source(command: &TerrainImport, dem: &Dem) -> Value {
     })
 }
 
-/// All that there is to say, for programs; people get the same.
+/// The report for programs, from which that for people is made.
 fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
     let posts = &dem.posts;
     let last = posts.at(posts.columns - 1, posts.rows - 1);
@@ -65,7 +64,7 @@ fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
 fn screen(report: &Value) -> String {
     let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
     let at = |pointer: &str| report.pointer(pointer).map_or(String::new(), text);
-    let said = match report["registration_is_stated"] == true {
+    let stated = match report["registration_is_stated"] == true {
         true => "as the file says",
         false => "by default: the file does not say",
     };
@@ -98,7 +97,7 @@ fn screen(report: &Value) -> String {
         (
             "registration",
             format!(
-                "a pixel is {}, {said}",
+                "a pixel is {}, {stated}",
                 if report["registration"] == "area" { "an area" } else { "a point" }
             ),
         ),

@@ -1,4 +1,4 @@
-//! Everyday work: `validate`, `render`, `probe`, `minimise`, and trouble.
+//! `validate`, `render`, `probe`, `minimise`, and their errors.
 
 use std::process::ExitCode;
 
@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, text};
 
-/// A folder with `small.toml`: the pyramids under small sensors, so that a run takes a moment.
+/// A folder with `small.toml`: the pyramids with small sensors, so that a run is short.
 fn folder() -> TempDir {
     let folder = TempDir::new().expect("a temporary folder");
     let scene = "version = 1\n\
@@ -19,7 +19,7 @@ fn folder() -> TempDir {
 }
 
 #[test]
-fn bare_it_validates_the_pyramids() {
+fn without_a_command_it_validates_the_pyramids() {
     let folder = TempDir::new().unwrap();
     let output = raypencil(folder.path(), &[]);
     let screen = text(&output.stdout);
@@ -33,7 +33,7 @@ fn bare_it_validates_the_pyramids() {
     {
         assert!(folder.path().join("out/pyramids").join(file).is_file(), "{file} is missing");
     }
-    // No terminal, no progress.
+    // Standard error is not a terminal, so there is no spinner.
     assert_eq!(text(&output.stderr), "");
 }
 
@@ -52,7 +52,7 @@ fn json_is_the_summary_that_was_written() {
 }
 
 #[test]
-fn threads_change_nothing_that_is_written() {
+fn maps_do_not_depend_on_the_number_of_threads() {
     let folder = folder();
     for threads in ["1", "3"] {
         let output =
@@ -66,7 +66,7 @@ fn threads_change_nothing_that_is_written() {
 }
 
 #[test]
-fn probe_tells_what_both_say_of_one_ray() {
+fn probe_prints_every_answer_to_one_ray() {
     let folder = folder();
     let output = raypencil(folder.path(), &["probe", "small.toml", "--beam", "0", "--pencil", "20,3"]);
     let said = text(&output.stdout);
@@ -92,7 +92,7 @@ fn probe_tells_what_both_say_of_one_ray() {
 
 #[test]
 fn the_papers_errors_have_causes() {
-    // A sheet of 80 mm: at pencil 715,4 the straight side of a pyramid's face is drawn beyond the pencil.
+    // With a sheet of 80 mm, the straight side of a pyramid's face is drawn beyond pencil 715,4.
     let folder = folder();
     let paper = ["--thickness", "80", "--with", "scanline-paper,tracer"];
     let arguments = [["validate", "pyramids", "--json", "-o", "out"].as_slice(), &paper].concat();
@@ -122,18 +122,18 @@ fn the_papers_errors_have_causes() {
     ] {
         assert!(said.contains(words), "`{words}` is not in:\n{said}");
     }
-    // One switch of the default renderer does the same; the renderer says so in its name.
+    // One switch of the default renderer has the same effect; the renderer's name states it.
     let arguments = ["probe", "pyramids", "--thickness", "80", "--switch", "beam-edges=paper"];
     let said = text(&raypencil(folder.path(), &[arguments.as_slice(), &ray].concat()).stdout);
     assert!(said.contains("scanline-paper-beam-edges: face 54 (approximation: beam-edges)"), "{said}");
-    // And the other one does not.
+    // Another switch does not.
     let arguments = ["probe", "pyramids", "--thickness", "80", "--switch", "skip-rules=paper"];
     let said = text(&raypencil(folder.path(), &[arguments.as_slice(), &ray].concat()).stdout);
     assert!(said.contains("scanline-paper-skip-rules: face 130 (exact)"), "{said}");
 }
 
 #[test]
-fn jittered_pencils_are_drawn_or_refused() {
+fn random_pencils_are_rendered_or_refused() {
     let folder = folder();
     let render = |with: &str, seed: &str, to: &str| {
         raypencil(folder.path(), &["render", "small.toml", "--with", with, "--jitter", seed, "-o", to])
@@ -143,7 +143,7 @@ fn jittered_pencils_are_drawn_or_refused() {
         let output = render("tracer", seed, to);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     }
-    assert!(read("a") == read("b") && read("a") != read("c"), "a seed is a seed");
+    assert!(read("a") == read("b") && read("a") != read("c"), "the seed alone decides");
     assert_trouble(&render("scanline", "1", "d"), &["--jitter 1", "scanline", "tracer or referee"]);
     assert!(!folder.path().join("d").exists());
 }
@@ -162,7 +162,7 @@ fn render_writes_one_renderers_maps() {
 }
 
 #[test]
-fn trouble_is_one_clear_message() {
+fn errors_are_one_clear_message() {
     let folder = folder();
     let at = folder.path();
     assert_trouble(&raypencil(at, &["validate", "moon"]), &["`moon`", "pyramids", ".glb"]);
@@ -187,7 +187,7 @@ fn trouble_is_one_clear_message() {
     let others = ["skip-rules", "facing", "extent", "place"].map(|name| format!("{name}=paper"));
     let others: Vec<&str> = others.iter().flat_map(|setting| ["--switch", setting]).collect();
     let twice = [twice.as_slice(), &others].concat();
-    assert_trouble(&raypencil(at, &twice), &["scanline-paper is there twice"]);
+    assert_trouble(&raypencil(at, &twice), &["scanline-paper is named twice"]);
     assert_trouble(&raypencil(at, &["validate", "small.toml", "--fan", "180"]), &["fan", "180"]);
     assert_trouble(&raypencil(at, &["validate", "small.toml", "--at", "1000,0"]), &["no ground", "1000"]);
     assert_trouble(&raypencil(at, &["probe", "small.toml", "--pixel", "64,0"]), &["64,0", "64 x 48"]);
@@ -203,13 +203,13 @@ fn trouble_is_one_clear_message() {
     std::fs::write(at.join("rubbish.glb"), b"glTF rubbish that is no GLB at all").unwrap();
     assert_trouble(&raypencil(at, &["validate", "rubbish.glb"]), &["rubbish.glb"]);
 
-    // A file where the output folder should be, and nothing left behind by all of the above.
+    // A file in place of the output folder; none of the errors above left a file.
     std::fs::write(at.join("taken"), "").unwrap();
     assert_trouble(&raypencil(at, &["validate", "small.toml", "-o", "taken"]), &["taken"]);
     assert!(!at.join("out").exists());
 }
 
-/// A renderer whose normals have the sign of x turned.
+/// A renderer whose normals have the wrong sign in x.
 struct Flipped {
     inner: Box<dyn Renderer>,
 }
@@ -224,8 +224,8 @@ impl Renderer for Flipped {
     }
 
     fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
-        let mut frame = self.inner.render(scene, request);
-        for map in frame.camera.iter_mut().chain(&mut frame.beams) {
+        let mut output = self.inner.render(scene, request);
+        for map in output.camera.iter_mut().chain(&mut output.beams) {
             for normal in map.normal.iter_mut().flat_map(|image| image.cells_mut()) {
                 *normal = normal
                     .get()
@@ -236,7 +236,7 @@ impl Renderer for Flipped {
                     .into();
             }
         }
-        frame
+        output
     }
 }
 
@@ -254,13 +254,13 @@ fn a_renderer_with_one_sign_flipped_is_a_defect() {
     let summary = std::fs::read(folder.path().join("out/summary.json")).expect("a summary of what failed");
     let summary: serde_json::Value = serde_json::from_slice(&summary).expect("JSON");
     assert!(summary["defects"].as_u64() > Some(100), "{summary:#}");
-    // And the same arguments with the honest renderers agree.
+    // The same arguments with the correct renderers agree.
     let arguments = ["raypencil", "validate", scene.as_str(), "-o", out.as_str()].map(Into::into);
     assert_eq!(raypencil_cli::main_with(arguments, &raypencil::harness::contender), ExitCode::SUCCESS);
 }
 
 #[test]
-fn the_smallest_scene_that_shows_a_defect_is_found_and_replayed() {
+fn a_defect_is_reduced_and_reproduced() {
     let folder = folder();
     let registry = |name: &str| {
         let contender = raypencil::harness::contender(name)?;
@@ -276,16 +276,16 @@ fn the_smallest_scene_that_shows_a_defect_is_found_and_replayed() {
         raypencil_cli::main_with(arguments, registry)
     };
     assert_eq!(validate(&registry), ExitCode::from(1));
-    // One face; of one fault of one renderer.
+    // One face suffices for this fault.
     let text = std::fs::read_to_string(folder.path().join("out/small-defect.md")).unwrap();
     assert!(text.contains("1 face of 224 is left."), "{text}");
     assert_eq!(validate(&raypencil::harness::contender), ExitCode::SUCCESS);
 }
 
 #[test]
-fn a_class_may_be_chosen_and_may_not_be_there() {
+fn a_class_may_be_chosen_and_may_be_absent() {
     let folder = folder();
-    // Sheets so thick that the paper's straight sides are seen to be none.
+    // Sheets so thick that the paper's straight sides are visibly wrong.
     let thick =
         "minimise small.toml --thickness 300 --with scanline-paper,tracer --class approximation -o out";
     let output = raypencil(folder.path(), &thick.split(' ').collect::<Vec<_>>());

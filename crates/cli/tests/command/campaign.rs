@@ -1,4 +1,4 @@
-//! Campaigns as their users meet them: shards, interruptions, damage.
+//! `campaign`: shards, interruptions, damaged files.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use crate::{assert_trouble, command, raypencil, screen};
 
-/// The words of a command line that needs no quotes.
+/// The words of a command line without quotes.
 fn words(text: &str) -> Vec<&str> {
     text.split_whitespace().collect()
 }
@@ -41,7 +41,7 @@ fn shards_in_any_order_are_the_whole_campaign() {
     let whole = summary(folder, "whole");
     let json: serde_json::Value = serde_json::from_str(&whole).unwrap();
     assert_eq!(json["all"]["classes"]["defects"], 0);
-    // Every kind of scene has its rays, and the aimed ones are hard: they tie.
+    // Every kind of scene has rays, and the aimed ones are difficult: some tie.
     for part in ["own", "paper", "aimed", "lattice"] {
         assert!(json["parts"][part]["compared"].as_u64().unwrap() > 1000, "{part}");
     }
@@ -71,13 +71,13 @@ fn shards_in_any_order_are_the_whole_campaign() {
 }
 
 #[test]
-fn an_interrupted_campaign_goes_on_where_it_was() {
+fn an_interrupted_campaign_is_resumed() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
     let line = "campaign --terrains 5 --seed 3 -o broken";
     let mut child =
         command(folder, &words(line)).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    // Killed, as kill -9 does, when the first records are there.
+    // Killed, as by kill -9, once the first records exist.
     let records = || fs::read_dir(folder.join("broken/terrains")).map_or(0, Iterator::count);
     while records() < 2 && child.try_wait().unwrap().is_none() {
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -86,7 +86,7 @@ fn an_interrupted_campaign_goes_on_where_it_was() {
     child.wait().unwrap();
     let kept: Vec<_> =
         fs::read_dir(folder.join("broken/terrains")).unwrap().map(|one| one.unwrap().path()).collect();
-    // A record that the interruption damaged is made again.
+    // A record that the interruption damaged is computed again.
     if let Some(last) = kept.iter().filter(|path| path.extension().is_some_and(|end| end == "json")).max() {
         let text = fs::read_to_string(last).unwrap();
         fs::write(last, &text[..text.len() - 9]).unwrap();
@@ -94,13 +94,13 @@ fn an_interrupted_campaign_goes_on_where_it_was() {
     passes(folder, line);
     passes(folder, "campaign --terrains 5 --seed 3 -o straight");
     assert_eq!(summary(folder, "broken"), summary(folder, "straight"));
-    // A finished one is not run again, and says the same.
+    // A finished campaign is not run again and gives the same summary.
     passes(folder, line);
     assert_eq!(summary(folder, "broken"), summary(folder, "straight"));
 }
 
 #[test]
-fn a_terrain_can_be_looked_at_again() {
+fn a_scene_of_a_campaign_can_be_replayed() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
     for part in ["own", "aimed", "lattice"] {

@@ -1,4 +1,4 @@
-//! `pack` and `check` as their users meet them: what passes, what fails and where, and what is refused.
+//! `pack` and `check`: what passes, what fails and where, and what is refused.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn pack(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs").join(name)
 }
 
-/// A folder with `mine`: what the tracer makes of a pack's scene.
+/// A folder with `mine`: the tracer's maps of a pack's scene.
 fn folder(name: &str) -> TempDir {
     let folder = TempDir::new().expect("a temporary folder");
     let scene = pack(name).join("scene.toml");
@@ -64,7 +64,7 @@ fn assert_fails(output: &Output, words: &[&str]) {
 }
 
 #[test]
-fn two_ulp_of_one_range_are_found_and_named() {
+fn an_error_of_two_ulp_is_found_and_named() {
     let folder = folder("pyramids");
     assert_passes(&check(folder.path(), "pyramids", &[]));
     edit(&folder, "camera.exr", |map| {
@@ -85,18 +85,18 @@ fn two_ulp_of_one_range_are_found_and_named() {
     assert_eq!(json["sensors"][0]["first_defects"][0]["quantity"], "range");
     let junit = fs::read_to_string(folder.path().join("out/junit.xml")).unwrap();
     assert!(junit.contains("failures=\"1\"") && junit.contains("camera pixel 40,50"), "{junit}");
-    // The command that is named shows the ray.
+    // The printed command shows the ray.
     let repro = raypencil(
         folder.path(),
         &["probe", &pack("pyramids").join("scene.toml").to_string_lossy(), "--pixel", "40,50"],
     );
     assert_passes(&repro);
-    // In single precision a rounding or two are no fault.
+    // In single precision an error of two ulp is within the bound.
     assert_passes(&check(folder.path(), "pyramids", &["--arithmetic", "f32"]));
 }
 
 #[test]
-fn every_quantity_is_held_to_the_truth() {
+fn every_quantity_is_checked() {
     let spoil: [(&str, &str, f32); 10] = [
         ("camera.exr", "depth.Z", 1.0 + 1e-6),
         ("camera.exr", "P.X", 1.0 + 1e-6),
@@ -128,7 +128,7 @@ fn every_quantity_is_held_to_the_truth() {
         let output = check(folder.path(), "facets", &[]);
         assert_fails(&output, &["rays are wrong"]);
     }
-    // And what is no number: a wrong face, a pixel next to the true one, a hit that is called hidden.
+    // Discrete quantities: a wrong face, a neighbour of the true pixel, a visible hit that is called hidden.
     for (file, change) in [
         ("camera.exr", (|map| shift(map, "face.I")) as Change),
         ("beam-0.exr", |map| shift(map, "pixel.I")),
@@ -147,10 +147,10 @@ fn every_quantity_is_held_to_the_truth() {
     }
 }
 
-/// What is done to a recording.
+/// A change of a recording.
 type Change = fn(&mut ExrMap);
 
-/// Moves the first index that is one to its neighbour.
+/// Changes the first index of a channel to its neighbour.
 fn shift(map: &mut ExrMap, channel: &str) {
     let Some(Raster::U32(image)) = map.channels.get_mut(channel) else { panic!("no wholes in {channel}") };
     let at = image.cells().iter().position(|index| *index != u32::MAX).unwrap();
@@ -159,7 +159,7 @@ fn shift(map: &mut ExrMap, channel: &str) {
 }
 
 #[test]
-fn what_is_not_there_is_not_compared_and_what_is_unknown_is_named() {
+fn absent_channels_are_not_compared_and_unknown_ones_are_named() {
     let folder = folder("pyramids");
     edit(&folder, "camera.exr", |map| {
         map.channels.remove("incidence.V");
@@ -176,7 +176,7 @@ fn what_is_not_there_is_not_compared_and_what_is_unknown_is_named() {
     assert!(row("incidence").contains("7,424"), "{screen}");
     assert!(row("range").contains(" 512 "), "{screen}");
 
-    // A name that means nothing here, alone, is nothing to compare: trouble, not a pass.
+    // An unknown channel alone leaves nothing to compare: an error, not a pass.
     let only = folder.path().join("mine/camera.exr");
     let mut map = read_exr(&only, &Limits::default()).unwrap();
     map.channels.retain(|name, _| name == "rangeOfMine");
@@ -189,7 +189,7 @@ fn what_is_not_there_is_not_compared_and_what_is_unknown_is_named() {
 }
 
 #[test]
-fn conventions_that_are_broken_are_named_with_their_cell() {
+fn broken_conventions_are_named_with_their_cell() {
     let cases: [(Change, &[&str]); 6] = [
         (
             |map| reals(map, "range.T").set(40, 50, f32::NAN),
@@ -214,7 +214,7 @@ fn conventions_that_are_broken_are_named_with_their_cell() {
         edit(&folder, "camera.exr", change);
         assert_trouble(&check(folder.path(), "pyramids", &[]), words);
     }
-    // Another size, a file that is cut off, no folder at all.
+    // Another size, a truncated file, a missing folder.
     let small = Image::filled(95, 72, 1.0_f32);
     let mut map = ExrMap::new(95, 72);
     map.insert("range.T", Raster::F32(small));
@@ -239,12 +239,12 @@ fn a_folder_of_several_recordings_is_refused_by_name() {
 }
 
 #[test]
-fn a_pack_that_was_changed_is_refused() {
+fn a_changed_pack_is_refused() {
     let folder = folder("pyramids");
     let copy = folder.path().join("pack");
     copy_tree(&pack("pyramids"), &copy);
     let check = || raypencil(folder.path(), &["check", "pack", "mine"]);
-    // What the manifest does not list is none of the pack's, whatever it is.
+    // Files that the manifest does not list are ignored.
     fs::write(copy.join("camera/rubbish.exr"), b"rubbish").unwrap();
     fs::write(copy.join("camera/range.T.pfm"), b"rubbish").unwrap();
     assert_passes(&check());
@@ -258,7 +258,7 @@ fn a_pack_that_was_changed_is_refused() {
     assert_trouble(&check(), &["range.T.npy"]);
     fs::write(&range, &clean).unwrap();
 
-    // With a manifest that says so itself, the referee notices: every answer of a column is the next number up.
+    // If the manifest is changed as well, the referee notices: every range is the next number up.
     let shape = read_channels(&range, &Limits::default()).unwrap();
     let Values::Reals(image) = &shape.by_key["range.T"].values else { panic!("reals") };
     let up = image.cells().iter().map(|x| if x.is_finite() { x.next_up() } else { *x }).collect();
@@ -293,7 +293,7 @@ fn copy_tree(from: &Path, to: &Path) {
 }
 
 #[test]
-fn a_blind_pack_has_no_answers_and_is_judged_all_the_same() {
+fn a_blind_pack_has_no_answers_and_can_be_checked() {
     let folder = TempDir::new().unwrap();
     assert_passes(&raypencil(folder.path(), &["pack", "--blind", "7", "-o", "blind"]));
     let blind = folder.path().join("blind");
@@ -320,12 +320,12 @@ fn a_blind_pack_has_no_answers_and_is_judged_all_the_same() {
         assert_passes(&output);
         assert!(text(&output.stdout).contains("blind-7 (blind)"), "{}", text(&output.stdout));
     }
-    // A blind pack in the place of one with answers leaves none of them behind.
+    // A blind pack that replaces a pack with answers removes those answers.
     let there = folder.path().join("there");
     copy_tree(&pack("pyramids"), &there);
     assert_passes(&raypencil(folder.path(), &["pack", "--blind", "7", "-o", "there"]));
     assert!(!there.join("camera/range.T.npy").exists() && !there.join("camera.exr").exists());
-    // Another ground with the same seed on its manifest is found out.
+    // Another terrain under the seed of this one is noticed.
     assert_passes(&raypencil(folder.path(), &["pack", "--blind", "8", "-o", "other"]));
     let manifest = fs::read_to_string(folder.path().join("other/manifest.json")).unwrap();
     let lied = manifest.replace("\"blindSeed\": 8", "\"blindSeed\": 7");
@@ -336,7 +336,7 @@ fn a_blind_pack_has_no_answers_and_is_judged_all_the_same() {
 }
 
 #[test]
-fn arrays_of_any_kind_are_judged_by_what_they_store() {
+fn arrays_are_judged_by_their_stored_type() {
     let folder = folder("pyramids");
     let channels = read_channels(pack("pyramids"), &Limits::default()).unwrap();
     let mine = folder.path().join("mine");
@@ -346,7 +346,7 @@ fn arrays_of_any_kind_are_judged_by_what_they_store() {
         Values::Reals(image) => image.clone(),
         Values::Wholes(_) => panic!("{key} is whole"),
     };
-    // The truth in double precision, but for one cell that is an ulp of that off: nothing explains it.
+    // The exact answers in double precision; then one cell with a relative error of 1e-13, which nothing explains.
     let range = reals("camera/range.T");
     write_npy(mine.join("camera/range.T.npy"), &[&range]).unwrap();
     assert_passes(&check(folder.path(), "pyramids", &[]));
@@ -355,13 +355,13 @@ fn arrays_of_any_kind_are_judged_by_what_they_store() {
     write_npy(mine.join("camera/range.T.npy"), &[&off]).unwrap();
     assert_fails(&check(folder.path(), "pyramids", &[]), &["camera pixel 40,50, range"]);
     fs::remove_file(mine.join("camera/range.T.npy")).unwrap();
-    // In single precision as PFM, which counts rows from below.
+    // In single precision as PFM, which stores the bottom row first.
     let single = |image: &Image<f64>| {
         Image::from_cells(image.width(), image.height(), image.cells().iter().map(|x| *x as f32).collect())
     };
     write_pfm(mine.join("camera/range.T.pfm"), &[&single(&range)]).unwrap();
     assert_passes(&check(folder.path(), "pyramids", &[]));
-    // The flux image alone, without a pencil: held to the sums of the true ones.
+    // The flux image without the pencils: compared with the sums over the exact pencils.
     fs::remove_file(mine.join("camera/range.T.pfm")).unwrap();
     let flux = reals("camera/flux.beam0");
     write_npy(mine.join("camera/flux.beam0.npy"), &[&single(&flux)]).unwrap();
@@ -381,7 +381,7 @@ fn the_pack_is_a_candidate_for_itself() {
     let output = raypencil(folder.path(), &["check", &pack.to_string_lossy(), &pack.to_string_lossy()]);
     assert_passes(&output);
     let screen = text(&output.stdout);
-    // Everything, by both models, and not an ulp off.
+    // Everything is there, for both flux models, without an error of even one ulp.
     assert!(!screen.contains("Not compared") && !screen.contains("Unknown"), "{screen}");
     let range = screen.lines().find(|line| line.starts_with("range")).unwrap();
     assert!(range.split_whitespace().any(|cell| cell == "0"), "{screen}");
@@ -398,7 +398,7 @@ fn the_pack_is_a_candidate_for_itself() {
 }
 
 #[test]
-fn a_difference_between_two_recordings_is_ruled_on() {
+fn the_referee_rules_on_a_difference_of_two_recordings() {
     let folder = folder("pyramids");
     let scene = pack("pyramids").join("scene.toml");
     let scene = scene.to_string_lossy();
@@ -407,16 +407,16 @@ fn a_difference_between_two_recordings_is_ruled_on() {
         let all: Vec<&str> = ["diff", "mine", "theirs"].into_iter().chain(more.iter().copied()).collect();
         raypencil(folder.path(), &all)
     };
-    // Heights about 0 differ by any number of ulps, and neither side is wrong.
+    // Heights near 0 may differ by any number of ulps, and neither side is wrong.
     assert_fails(&diff(&["--fail-ulp", "1"]), &["P.Z"]);
     assert_passes(&diff(&["--fail-ulp", "1", "--scene", &scene]));
-    // A range that is off is one side's fault, and it is said whose.
+    // A wrong range is a fault of one side, which is named.
     edit(&folder, "camera.exr", |map| {
         let range = reals(map, "range.T");
         let value = range.at(40, 50);
         range.set(40, 50, value * 1.001);
     });
-    // The hard limit holds whoever is right.
+    // The hard limit applies whichever side is right.
     assert_fails(&diff(&["--fail-ulp", "1e9", "--hard-fail", "0", "--scene", &scene]), &["P.Z"]);
     let output = diff(&["--fail-ulp", "1", "--scene", &scene, "-o", "out"]);
     assert_fails(&output, &["referee on camera/range.T: 1 A wrong, B right", "A, camera pixel 40,50"]);
@@ -427,14 +427,14 @@ fn a_difference_between_two_recordings_is_ruled_on() {
     assert_eq!(range["faults"], 1);
 }
 
-/// What somebody else's renderer recorded of a pack of this repository.
+/// A candidate of this repository: the recording of a pack by another renderer.
 fn recording(renderer: &str, pack: &str) -> String {
     let candidates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/candidates");
     candidates.join(renderer).join(pack).to_string_lossy().into_owned()
 }
 
 #[test]
-fn a_recordings_note_says_how_finely_it_was_computed() {
+fn candidate_json_states_the_precision() {
     let folder = TempDir::new().expect("a temporary folder");
     let (pack, embree) = (pack("pyramids").to_string_lossy().into_owned(), recording("embree", "pyramids"));
     let found = screen(folder.path(), &["check", &pack, &embree], 0);
@@ -443,7 +443,7 @@ fn a_recordings_note_says_how_finely_it_was_computed() {
 }
 
 #[test]
-fn a_recording_of_another_scene_or_with_a_broken_note_is_refused() {
+fn a_recording_of_another_scene_or_with_a_broken_candidate_json_is_refused() {
     let folder = TempDir::new().expect("a temporary folder");
     let (pack, facets) = (pack("pyramids").to_string_lossy().into_owned(), recording("embree", "facets"));
     let other_scene = ["candidates/embree/facets", "candidate.json is of the scene", "expected"];
@@ -451,7 +451,7 @@ fn a_recording_of_another_scene_or_with_a_broken_note_is_refused() {
     let scene = format!("{pack}/scene.toml");
     let validate = ["validate", &scene, "--candidate", &facets, "-o", "out"];
     assert_trouble(&raypencil(folder.path(), &validate), &other_scene);
-    assert!(!folder.path().join("out").exists(), "nothing is begun");
+    assert!(!folder.path().join("out").exists(), "nothing was written");
 
     let mine = folder.path().join("mine/camera");
     fs::create_dir_all(&mine).expect("a folder");
@@ -468,7 +468,7 @@ fn a_recording_of_another_scene_or_with_a_broken_note_is_refused() {
 }
 
 #[test]
-fn renderers_of_others_are_held_to_the_truth_beside_ours() {
+fn candidates_are_evaluated_beside_the_renderers() {
     let folder = TempDir::new().expect("a temporary folder");
     let scene = pack("facets").join("scene.toml").to_string_lossy().into_owned();
     let (embree, mitsuba) = (recording("embree", "facets"), recording("mitsuba", "facets"));
@@ -482,7 +482,7 @@ fn renderers_of_others_are_held_to_the_truth_beside_ours() {
         found.contains("Mitsuba 3: 1 of 7,936 rays wrong; 2 of 4 images, 4 of 4 radiances fit"),
         "{found}"
     );
-    // The one ray as a pack, which can be asked again.
+    // The missed ray is written as a pack.
     let miss = folder.path().join("out/misses/mitsuba-3-1");
     assert!(miss.join("README.md").exists() && miss.join("manifest.json").exists());
     assert!(!folder.path().join("out/misses/mitsuba-3-2").exists());

@@ -1,4 +1,4 @@
-//! `diff`.
+//! `diff`: thresholds, reports, errors.
 
 use std::path::Path;
 
@@ -8,12 +8,12 @@ use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, screen, text};
 
-/// A folder with `scanline/` and `tracer/`, the maps of both renderers on the facets under small sensors.
+/// A folder with `scanline/` and `tracer/`: the maps of both renderers of the facets with small sensors.
 fn rendered() -> TempDir {
     rendered_on("facets")
 }
 
-/// The same on any built-in ground.
+/// The same for any built-in terrain.
 fn rendered_on(ground: &str) -> TempDir {
     let folder = TempDir::new().expect("a temporary folder");
     let scene = format!(
@@ -50,9 +50,8 @@ fn two_renderers_agree_to_a_rounding() {
 
 #[test]
 fn heights_about_zero_need_an_absolute_threshold() {
-    // The pyramids stand on a plane at z = 0, of which both renderers miss exactly 0 by a rounding of their
-    // f64: within some ulps of the longest range of 20 m, 20 x 2^-52 = 4.4e-15. That is any number of ulps
-    // of what is left.
+    // The pyramids stand on a plane at z = 0. There both renderers compute z with an absolute error of some ulps of
+    // the maximum range of 20 m, 20 x 2^-52 = 4.4e-15. Relative to such a small z that can be any number of ulps.
     let folder = rendered_on("pyramids");
     let shown = screen(folder.path(), &["diff", "scanline", "tracer", "--fail-ulp", "1"], 1);
     let failing: Vec<&str> = shown
@@ -74,7 +73,7 @@ fn plant(folder: &Path, channel: &str, i: u32, j: u32, value: f32) {
 }
 
 #[test]
-fn a_planted_nan_is_found_and_nothing_allows_it() {
+fn no_threshold_allows_a_nan() {
     let folder = rendered();
     plant(folder.path(), "depth.Z", 12, 34, f32::NAN);
     let allow =
@@ -93,7 +92,7 @@ fn a_planted_nan_is_found_and_nothing_allows_it() {
 }
 
 #[test]
-fn a_report_is_left_behind() {
+fn a_report_is_written() {
     let folder = rendered();
     plant(folder.path(), "range.T", 3, 40, 1.0);
     let shown = screen(folder.path(), &["diff", "scanline", "tracer", "--fail-ulp", "1", "-o", "out/d"], 1);
@@ -117,9 +116,9 @@ fn a_report_is_left_behind() {
 }
 
 #[test]
-fn arrays_and_maps_go_together() {
+fn arrays_and_maps_can_be_compared() {
     let folder = rendered();
-    // The tracer's ranges as an array of NumPy's, beside nothing else.
+    // The tracer's ranges as a NumPy array, and nothing else.
     let map = read_exr(folder.path().join("tracer/camera.exr"), &Limits::default()).unwrap();
     let image = map.channels["range.T"].as_f32().unwrap();
     std::fs::create_dir_all(folder.path().join("mine/camera")).unwrap();
@@ -131,7 +130,7 @@ fn arrays_and_maps_go_together() {
 }
 
 #[test]
-fn trouble_is_one_clear_message() {
+fn errors_are_one_clear_message() {
     let folder = rendered();
     assert_trouble(&raypencil(folder.path(), &["diff", "nowhere", "tracer"]), &["nowhere: cannot read"]);
     assert_trouble(
@@ -147,8 +146,8 @@ fn trouble_is_one_clear_message() {
     assert_trouble(&raypencil(folder.path(), &["diff", "mine", "tracer"]), &sizes);
     let own = ["--output tracer: is one of the folders to compare"];
     assert_trouble(&raypencil(folder.path(), &["diff", "scanline", "tracer", "-o", "tracer"]), &own);
-    let number = "expected a number from 0 on";
-    let share = "expected a share from 0 to 100 percent";
+    let number = "expected a number of at least 0";
+    let share = "expected a percentage from 0 to 100";
     for (option, value, expected) in [
         ("--fail", "-1", number),
         ("--fail-ulp", "nan", number),

@@ -1,4 +1,4 @@
-//! `raypencil drive`: exit codes, the screen, the folder, trouble.
+//! `drive`: exit codes, the screen, the folder, errors.
 
 use std::process::ExitCode;
 
@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, screen, text};
 
-/// A folder with `small.toml`: a short drive of a small camera on level ground.
+/// A folder with `small.toml`: a short drive with a small camera on level ground.
 fn folder() -> TempDir {
     let folder = TempDir::new().expect("a temporary folder");
     let scene = "version = 1\n\
@@ -45,7 +45,7 @@ const FILES: [&str; 20] = [
 ];
 
 #[test]
-fn both_renderers_drive_alike_and_leave_every_file() {
+fn both_renderers_drive_identically_and_write_every_file() {
     let folder = folder();
     let said = screen(folder.path(), &["drive", "small.toml", "--both", "-o", "here"], 0);
     assert!(said.contains("Both sides are identical over 7 frames"), "{said}");
@@ -72,10 +72,10 @@ fn json_is_the_summary_that_was_written_and_the_folder_has_the_scenes_name() {
 }
 
 #[test]
-fn any_scene_is_driven_to_where_the_command_line_says() {
+fn waypoints_of_the_command_line_replace_those_of_the_scene() {
     let folder = folder();
     let path = folder.path();
-    // The scene's own drive, but for where it goes: from -0.6 to 0.2 and back to 0, half a turn between them.
+    // The scene's drive with other waypoints: from -0.6 to 0.2 and back to 0, with half a turn in between.
     let there = ["drive", "small.toml", "--to", "0.2,0", "--to", "0,0", "--json"];
     let said: serde_json::Value = serde_json::from_str(&screen(path, &there, 0)).expect("JSON");
     assert!((said["driven_m"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{}", said["driven_m"]);
@@ -83,7 +83,7 @@ fn any_scene_is_driven_to_where_the_command_line_says() {
         (&said["arguments"], &said["frames_per_s"]),
         (&"small.toml --to 0.2,0 --to 0,0".into(), &3.0.into())
     );
-    // A scene that has none, by the defaults: ten frames a second, and a vertical scan first.
+    // A scene without a drive uses the defaults: ten frames per second, and a vertical scan first.
     let text = std::fs::read_to_string(path.join("small.toml")).unwrap();
     let still = text.split("[drive]").next().unwrap();
     std::fs::write(path.join("still.toml"), still).unwrap();
@@ -95,7 +95,7 @@ fn any_scene_is_driven_to_where_the_command_line_says() {
 }
 
 #[test]
-fn trouble_leaves_no_folder_that_looks_complete() {
+fn errors_leave_no_folder_that_looks_complete() {
     let folder = folder();
     let path = folder.path();
     let still = "version = 1\n[terrain]\nbuiltin = \"pyramids\"\n";
@@ -118,7 +118,7 @@ fn trouble_leaves_no_folder_that_looks_complete() {
         &["cannot be used with"],
     );
     assert!(!path.join("out").exists());
-    // A file that cannot be put in its place: the summary of an earlier run is gone, and nothing is half written.
+    // A file cannot be written: the summary of an earlier run is gone, and no file is half written.
     screen(path, &["drive", "small.toml", "-o", "here"], 0);
     std::fs::remove_file(path.join("here/local-map.npy")).unwrap();
     std::fs::create_dir(path.join("here/local-map.npy")).unwrap();
@@ -132,7 +132,7 @@ fn trouble_leaves_no_folder_that_looks_complete() {
     assert!(names.iter().all(|name| !name.ends_with(".part")), "{names:?}");
 }
 
-/// A tracer that sees light where there is none.
+/// A tracer with light in a pixel that has none.
 struct Bright(raypencil::harness::Contender);
 
 impl Renderer for Bright {
@@ -145,9 +145,9 @@ impl Renderer for Bright {
     }
 
     fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
-        let mut frame = self.0.renderer.render(scene, request);
-        frame.flux.iter_mut().for_each(|image| image.set(30, 10, 1e-9));
-        frame
+        let mut output = self.0.renderer.render(scene, request);
+        output.flux.iter_mut().for_each(|image| image.set(30, 10, 1e-9));
+        output
     }
 }
 
@@ -172,7 +172,7 @@ fn a_difference_is_exit_code_1() {
 }
 
 #[test]
-fn a_wrong_drive_is_marked_in_its_file() {
+fn a_wrong_drive_is_marked_in_the_scene_file() {
     let folder = folder();
     let path = folder.path().join("wrong.toml");
     std::fs::write(&path, "version = 1\n[drive]\nwaypoints_m = [[0, 0]]\nspeed_m_per_s = -1\n").unwrap();

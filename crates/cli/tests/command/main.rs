@@ -1,10 +1,11 @@
-//! The command as its users meet it: exit codes, what it prints, what it leaves behind.
+//! The command as users run it: exit codes, output, files.
 
 mod basics;
 mod campaign;
 mod check;
 mod diff;
 mod drive;
+mod help;
 mod terrain;
 
 use std::path::Path;
@@ -25,7 +26,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Asserts the exit code and gives what was printed.
+/// Asserts the exit code and returns the standard output.
 #[track_caller]
 fn screen(folder: &Path, arguments: &[&str], code: i32) -> String {
     let output = raypencil(folder, arguments);
@@ -34,10 +35,10 @@ fn screen(folder: &Path, arguments: &[&str], code: i32) -> String {
     screen
 }
 
-/// Asserts trouble: exit 2, nothing on standard output, and a message with all of `words`.
+/// Asserts an error: exit code 2, empty standard output, and a message that contains all of `words`.
 #[track_caller]
 fn assert_trouble(output: &Output, words: &[&str]) {
-    // The message may be broken into lines, with a bar before each.
+    // The message may be wrapped, with a bar before each line.
     let message = text(&output.stderr);
     let message: Vec<&str> = message.split_whitespace().filter(|word| *word != "│").collect();
     let message = message.join(" ");

@@ -1,11 +1,11 @@
-//! The light of the beams, for the page: what falls on the camera's image, and what the pencils along a stripe
-//! deliver.
+//! The light of the beams, for the page: the flux on the camera's image, and the flux of the pencils along a stripe.
 
-use crate::validation::Validation;
 use raypencil_report::{ColourMap, Picture, Reduction, Scale, Tick, number, quantity};
 use raypencil_scene::{FluxModel, Image, Maybe};
 
-/// One renderer's image of all beams.
+use crate::validation::Validation;
+
+/// One renderer's image of the light of all beams.
 pub(crate) struct FluxImage {
     pub(crate) title: String,
     pub(crate) alt: String,
@@ -15,24 +15,24 @@ pub(crate) struct FluxImage {
     pub(crate) note: String,
 }
 
-/// The scale that all images share.
+/// The colour scale that all images share.
 pub(crate) struct FluxScale {
     pub(crate) gradient: String,
     pub(crate) ticks: Vec<Tick>,
     pub(crate) label: String,
 }
 
-/// What the pencils of a beam's middle row deliver, column by column, by every renderer.
+/// Flux of the pencils in a beam's middle row, column by column, with a curve for each renderer.
 pub(crate) struct StripeChart {
     pub(crate) title: String,
-    /// Ticks of the columns and of the flux, places from 0 to 1 (of the flux upwards).
+    /// Ticks of the columns and of the flux, at positions from 0 to 1; those of the flux go upwards.
     pub(crate) columns: Vec<Tick>,
     pub(crate) values: Vec<Tick>,
     pub(crate) curves: Vec<Curve>,
     pub(crate) unit: &'static str,
 }
 
-/// One renderer's line in a [`StripeChart`], in a box of 1000 by 240.
+/// One renderer's curve in a [`StripeChart`], in a box of 1000 by 240 units.
 pub(crate) struct Curve {
     pub(crate) name: String,
     pub(crate) colour: &'static str,
@@ -40,7 +40,7 @@ pub(crate) struct Curve {
     pub(crate) points: String,
 }
 
-/// Everything the page shows of light.
+/// The page's section about light.
 #[derive(Default)]
 pub(crate) struct Light {
     pub(crate) images: Vec<FluxImage>,
@@ -48,20 +48,21 @@ pub(crate) struct Light {
     pub(crate) stripes: Vec<StripeChart>,
 }
 
-/// Width and height of a chart's box.
-const CHART: [f64; 2] = [1000.0, 240.0];
+/// Width and height of a chart's box, SVG units.
+const CHART_SIZE: [f64; 2] = [1000.0, 240.0];
 
-/// Lines of later renderers are thinner, so that those below show beside them.
-const CURVES: [(&str, f64); 4] = [("#e69f00", 6.0), ("#0072b2", 2.5), ("#009e73", 1.2), ("#cc79a7", 0.8)];
+/// Colour and width of each renderer's curve. Later curves are thinner, so that the curves below stay visible.
+const CURVE_STYLES: [(&str, f64); 4] =
+    [("#e69f00", 6.0), ("#0072b2", 2.5), ("#009e73", 1.2), ("#cc79a7", 0.8)];
 
-/// The light of a validation; empty if no renderer computed any.
-pub(crate) fn light(validation: &Validation, most: u32) -> Light {
+/// The light of a validation; empty if no renderer computed flux.
+pub(crate) fn light(validation: &Validation, max_columns: u32) -> Light {
     let scene = &validation.subject.scene;
     let unit = match scene.flux_model() {
         FluxModel::Radiometric => "W",
         FluxModel::Eq1 => "W/m",
     };
-    // All beams together: zero is no light.
+    // The sum over all beams; a pixel with zero flux is drawn as unlit.
     let sums: Vec<(&str, Image<Maybe<f64>>, f64)> = validation
         .rendered
         .iter()
@@ -86,8 +87,11 @@ pub(crate) fn light(validation: &Validation, most: u32) -> Light {
     let images = sums
         .iter()
         .map(|(name, image, total)| {
-            let picture =
-                Picture::of_light(image, scale, Reduction::to_fit(image.width(), image.height(), most));
+            let picture = Picture::of_light(
+                image,
+                scale,
+                Reduction::to_fit(image.width(), image.height(), max_columns),
+            );
             let lit = image.cells().iter().filter(|cell| cell.get().is_some()).count();
             FluxImage {
                 title: (*name).to_string(),
@@ -110,7 +114,7 @@ pub(crate) fn light(validation: &Validation, most: u32) -> Light {
     }
 }
 
-/// The middle row of one beam.
+/// The chart of one beam's middle row; `None` if no pencil has flux.
 fn stripe(validation: &Validation, beam: usize, unit: &'static str) -> Option<StripeChart> {
     let sensor = &validation.subject.scene.beams()[beam].sensor;
     let (columns, row) = (sensor.columns, sensor.rows / 2);
@@ -127,9 +131,9 @@ fn stripe(validation: &Validation, beam: usize, unit: &'static str) -> Option<St
         return None;
     }
     let scale = Scale::linear(0.0, most);
-    let [width, height] = CHART;
+    let [width, height] = CHART_SIZE;
     let curve = |(index, (name, line)): (usize, &(&str, Vec<f64>))| {
-        let (colour, stroke) = CURVES[index.min(CURVES.len() - 1)];
+        let (colour, stroke) = CURVE_STYLES[index.min(CURVE_STYLES.len() - 1)];
         let points = line.iter().enumerate().map(|(i, flux)| {
             let x = width * (i as f64 + 0.5) / f64::from(columns);
             format!("{x:.1},{:.1}", height * (1.0 - scale.fraction(*flux)))

@@ -1,19 +1,18 @@
-//! `summary.md`: the validation in a comment on a change.
+//! `summary.md`: the validation as a comment on a pull request.
 
-use crate::output::panel;
 use askama::Template;
-
-use crate::output::VERSION;
-use crate::output::table::{CauseRow, Row, causes, hits, rows};
-use crate::output::verdict::{CAVEAT, Verdict, defects, explanation, headline};
-use crate::validation::Validation;
 use raypencil_judge::Class;
-use raypencil_report as text;
-use raypencil_report::count;
+use raypencil_report::{VERSION, count, counted, time};
 use raypencil_scene_io::probe_command;
 
-/// How many defects are listed.
-const LISTED: usize = 10;
+use crate::output::candidates;
+use crate::output::table::{CauseRow, Row, causes, hits, rows};
+use crate::output::verdict::{CAVEAT, Verdict, defects, explanation, headline};
+use crate::rendered::Rendered;
+use crate::validation::Validation;
+
+/// Maximum listed defects.
+const MAX_LISTED: usize = 10;
 
 #[derive(Template)]
 #[template(path = "summary.md")]
@@ -29,7 +28,7 @@ struct Page {
     rows: Vec<Row>,
     sensors: Vec<Sensor>,
     causes: Vec<CauseRow>,
-    outsiders: Vec<String>,
+    candidates: Vec<String>,
     defects: Vec<Listed>,
     more_defects: String,
     stages: Vec<String>,
@@ -52,7 +51,7 @@ struct Listed {
     command: String,
 }
 
-/// The whole text.
+/// The contents of `summary.md`.
 pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     let subject = &validation.subject;
     let verdict = Verdict::of(validation);
@@ -60,7 +59,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     for pair in &validation.pairs {
         let [a, b] = [pair.a, pair.b].map(|index| &validation.rendered[index]);
         for sensor in &pair.sensors {
-            let of = |side: &crate::rendered::Rendered| {
+            let of = |side: &Rendered| {
                 side.output.map(sensor.sensor).and_then(hits).map_or("unknown".into(), count)
             };
             sensors.push(Sensor {
@@ -78,7 +77,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     }
     let total = validation.counts().defects;
     let listed: Vec<Listed> = defects(validation)
-        .take(LISTED)
+        .take(MAX_LISTED)
         .map(|defect| Listed {
             text: format!("{}, {}: {}", defect.place, defect.item.quantity, defect.what),
             command: code(&probe_command(subject, defect.place)),
@@ -97,17 +96,22 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
         scene: code(&subject.name),
         sha256: code(&subject.sha256),
         version: VERSION,
-        command: code(&format!("raypencil validate {}{}", subject.arguments, panel::typed(validation))),
+        command: code(&format!("raypencil validate {}{}", subject.arguments, candidates::typed(validation))),
         rows: rows(subject, validation.pairs.iter().flat_map(|pair| &pair.sensors)),
         sensors,
         causes: causes(subject, &validation.approximations()),
-        outsiders: validation.panel.iter().flat_map(panel::lines).map(|line| escaped(&line)).collect(),
+        candidates: validation
+            .scoreboard
+            .iter()
+            .flat_map(candidates::lines)
+            .map(|line| escaped(&line))
+            .collect(),
         defects: listed,
-        more_defects: if more > 0 { text::counted(more, "more is", "more are") } else { String::new() },
+        more_defects: if more > 0 { counted(more, "more is", "more are") } else { String::new() },
         stages: validation
             .stages
             .iter()
-            .map(|stage| format!("{} {}", stage.name, text::time(stage.time)))
+            .map(|stage| format!("{} {}", stage.name, time(stage.time)))
             .collect(),
     };
     let mut text = page.render()?;
@@ -115,7 +119,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     Ok(text)
 }
 
-/// Text that holds no markup: names of programs are anybody's.
+/// Text with its markup escaped: a candidate's name is untrusted.
 fn escaped(text: &str) -> String {
     text.chars()
         .flat_map(|c| {
@@ -125,7 +129,7 @@ fn escaped(text: &str) -> String {
         .collect()
 }
 
-/// A code span, fenced wider than any backtick in it.
+/// A code span, with a fence longer than any run of backticks in the text.
 fn code(text: &str) -> String {
     let longest = text.split(|character| character != '`').map(str::len).max().unwrap_or(0);
     let fence = "`".repeat(longest + 1);
@@ -138,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn code_spans_hold_backticks() {
+    fn code_spans_may_contain_backticks() {
         assert_eq!(code("pyramids"), "`pyramids`");
         assert_eq!(code("a`b"), "`` a`b ``");
     }

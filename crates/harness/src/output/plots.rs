@@ -1,44 +1,44 @@
-//! A sensor's maps as plots: pictures with axes, scale bars and marks, ready for the page.
+//! Plots of a sensor's maps for the page: pictures with axes, colour bars and marks.
 
-use crate::rendered::Rendered;
-use crate::validation::{Pair, Validation};
 use raypencil_report::{
     Bar, ColourMap, Picture, Plot, Reduction, Ring, Scale, Spread, Tick, cells_axis, count, number,
     reduced_to, shape, stretch,
 };
-use raypencil_scene::Place;
-use raypencil_scene::{Image, Maybe, SensorId};
+use raypencil_scene::{Image, Maybe, Place, SensorId};
 
-/// All pictures together have at most this many cells. An indexed picture takes at most a byte a cell, base64
-/// a third more: 4 MB for the pictures of the default rig at full size, in practice less than half of it.
-const MOST_CELLS: u64 = 3_300_000;
+use crate::rendered::Rendered;
+use crate::validation::{Pair, Validation};
 
-/// No picture has more columns or rows; more than a page shows.
-const MOST_ACROSS: u32 = 1024;
+/// Maximum cells of all pictures together. An indexed picture takes at most one byte per cell, and base64 a third more:
+/// at most 4.4 MB, in practice less than half of that.
+const MAX_CELLS: u64 = 3_300_000;
 
-/// How many defects are marked in a picture.
-const MARKED: usize = 100;
+/// Maximum columns and rows of a picture; a page shows no more.
+const MAX_COLUMNS: u32 = 1024;
+
+/// Maximum marked defects in a picture.
+const MAX_MARKS: usize = 100;
 
 /// The pictures of one sensor and their axes.
 #[derive(Debug)]
 pub(crate) struct Plots {
-    /// Width to height of a picture as CSS has it.
+    /// Aspect ratio of a picture, in the notation of CSS.
     pub(crate) aspect: String,
-    /// Whether a picture takes the width of the page.
+    /// Whether a picture is as wide as the page.
     pub(crate) wide: bool,
     pub(crate) columns: Vec<Tick>,
     pub(crate) rows: Vec<Tick>,
     pub(crate) column: &'static str,
-    /// How the pictures differ from the maps: stretched, reduced.
+    /// Remark if the pictures are stretched or reduced.
     pub(crate) note: String,
     pub(crate) plots: Vec<Plot>,
 }
 
-/// The reduction that keeps all pictures of a page within [`MOST_CELLS`].
-pub(crate) fn most_across(validation: &Validation) -> u32 {
+/// Maximum columns and rows of a picture that keep all pictures of the page within [`MAX_CELLS`].
+pub(crate) fn max_columns(validation: &Validation) -> u32 {
     let pictures = (validation.rendered.len() + validation.pairs.len()) as u64;
     let scene = &validation.subject.scene;
-    let mut most = MOST_ACROSS;
+    let mut most = MAX_COLUMNS;
     let cells = |most: u32| -> u64 {
         let sizes = scene.sensors().filter_map(|sensor| scene.size(sensor));
         let drawn = sizes.map(|(width, height)| {
@@ -47,16 +47,16 @@ pub(crate) fn most_across(validation: &Validation) -> u32 {
         });
         pictures * drawn.sum::<u64>()
     };
-    while most > 32 && cells(most) > MOST_CELLS {
+    while most > 32 && cells(most) > MAX_CELLS {
         most /= 2;
     }
     most
 }
 
-/// Draws one sensor.
-pub(crate) fn plots(validation: &Validation, sensor: SensorId, most: u32) -> Plots {
+/// The plots of one sensor, each picture with at most `max_columns` columns and rows.
+pub(crate) fn plots(validation: &Validation, sensor: SensorId, max_columns: u32) -> Plots {
     let (width, height) = validation.subject.scene.size(sensor).expect("a sensor of this scene");
-    let reduction = Reduction::to_fit(width, height, most);
+    let reduction = Reduction::to_fit(width, height, max_columns);
     let (wide, drawn_height) = shape(width, height);
     Plots {
         aspect: format!("{width} / {drawn_height}"),
@@ -65,17 +65,20 @@ pub(crate) fn plots(validation: &Validation, sensor: SensorId, most: u32) -> Plo
         rows: cells_axis(height, if wide { 3 } else { 6 }),
         column: if sensor == SensorId::Camera { "pixel column" } else { "pencil column" },
         note: note(reduction, stretch(width, height)),
-        plots: of_ranges(validation, sensor, reduction, wide)
+        plots: range_plots(validation, sensor, reduction, wide)
             .into_iter()
             .chain(
-                validation.pairs.iter().filter_map(|pair| of_difference(validation, pair, sensor, reduction)),
+                validation
+                    .pairs
+                    .iter()
+                    .filter_map(|pair| difference_plot(validation, pair, sensor, reduction)),
             )
             .collect(),
     }
 }
 
-/// The range maps of all renderers on one scale.
-fn of_ranges(validation: &Validation, sensor: SensorId, reduction: Reduction, wide: bool) -> Vec<Plot> {
+/// Plots of the range maps of all renderers, on one scale.
+fn range_plots(validation: &Validation, sensor: SensorId, reduction: Reduction, wide: bool) -> Vec<Plot> {
     let maps: Vec<_> = validation
         .rendered
         .iter()
@@ -108,7 +111,7 @@ fn of_ranges(validation: &Validation, sensor: SensorId, reduction: Reduction, wi
                 width: picture.width,
                 height: picture.height,
                 of_differences: false,
-                // Pictures below one another share the bar of the last.
+                // Pictures below one another share the colour bar of the last.
                 bar: bar.clone().filter(|_| !wide || index == last),
                 note: String::new(),
                 marks: Vec::new(),
@@ -117,8 +120,8 @@ fn of_ranges(validation: &Validation, sensor: SensorId, reduction: Reduction, wi
         .collect()
 }
 
-/// The difference of two range maps, its defects marked.
-fn of_difference(
+/// Plot of the difference of two range maps, with its defects marked.
+fn difference_plot(
     validation: &Validation,
     pair: &Pair,
     sensor: SensorId,
@@ -141,10 +144,10 @@ fn of_difference(
     let note = if all == 0 {
         "No ray hits on both sides.".into()
     } else if limit == 0.0 {
-        format!("All {} ranges are the very same number.", count(all))
+        format!("All {} ranges are equal to the last bit.", count(all))
     } else {
         format!(
-            "Colours span ±{} m, the largest difference. {} of {} ranges ({}\u{a0}%) are the very same number.",
+            "Colours span ±{} m, the largest difference. {} of {} ranges ({}\u{a0}%) are equal to the last bit.",
             number(limit),
             count(same),
             count(all),
@@ -164,7 +167,7 @@ fn of_difference(
         bar: Some(Bar {
             gradient: ColourMap::Diverging.css(),
             ticks: scale.map_or(Vec::new(), |scale| scale.ticks(5)),
-            label: "difference, m (even steps of its root)",
+            label: "difference, m (even steps of its square root)",
             one_sided: any_one_sided,
             marked: !marks.is_empty(),
         }),
@@ -173,14 +176,14 @@ fn of_difference(
     })
 }
 
-/// Marks of the first places; one mark serves for those so near that another would hide it.
+/// Marks of the first places; a place so near to a mark that the rings would overlap gets none of its own.
 fn marks(places: impl Iterator<Item = Place>, map: &Image<Maybe<f64>>) -> Vec<Ring> {
     let middle = |cell: u32, cells: u32| (f64::from(cell) + 0.5) / f64::from(cells);
     let (wide, drawn_height) = shape(map.width(), map.height());
     // A ring is 18 CSS pixels across, a picture about 1100 or 360.
     let (apart, height) = (if wide { 0.02 } else { 0.05 }, drawn_height as f64 / f64::from(map.width()));
     let mut marks: Vec<Ring> = Vec::new();
-    for place in places.take(MARKED) {
+    for place in places.take(MAX_MARKS) {
         let (across, down) = (middle(place.i, map.width()), middle(place.j, map.height()));
         let near = |mark: &Ring| (mark.across - across).abs().max((mark.down - down).abs() * height) < apart;
         if !marks.iter().any(near) {
@@ -190,7 +193,7 @@ fn marks(places: impl Iterator<Item = Place>, map: &Image<Maybe<f64>>) -> Vec<Ri
     marks
 }
 
-/// How a picture differs from its map.
+/// Remark on how a picture differs from its map.
 fn note(reduction: Reduction, stretch: u32) -> String {
     let mut notes = Vec::new();
     if stretch > 1 {

@@ -1,26 +1,25 @@
 //! `report.html`: the validation for people, as one file that links to nothing.
 
-use crate::output::panel;
 use askama::Template;
+use raypencil_judge::{Class, SensorResult};
+use raypencil_report::{VERSION, count, counted, list, page_head, time};
+use raypencil_scene::SensorId;
+use raypencil_scene_io::probe_command;
 
+use crate::output::candidates::{CandidatesSection, candidates_section, typed};
 use crate::output::light::{Light, light};
-use crate::output::panel::{Outside, outside};
-use crate::output::plots;
-use crate::output::plots::Plots;
+use crate::output::plots::{Plots, max_columns, plots};
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
 use crate::output::verdict::{CAVEAT, Verdict, explanation, headline};
 use crate::validation::{Pair, Validation};
-use raypencil_judge::{Class, SensorResult};
-use raypencil_report::{VERSION, count, counted, list, page_head, time};
-use raypencil_scene_io::probe_command;
 
-/// How many defects of a sensor are listed.
-const LISTED: usize = 10;
+/// Maximum listed defects per sensor.
+const MAX_LISTED: usize = 10;
 
 #[derive(Template)]
 #[template(path = "report.html")]
 struct Page<'a> {
-    /// The start of the page.
+    /// The head of the page, as HTML.
     head: String,
     verdict: &'static str,
     sign: &'static str,
@@ -37,12 +36,12 @@ struct Page<'a> {
     causes: Vec<CauseRow>,
     sensors: Vec<Sensor>,
     light: Light,
-    outside: Outside,
+    candidates: CandidatesSection,
     defects: Vec<Defects>,
     stages: Vec<Timed>,
 }
 
-/// One big number.
+/// A large number with its name.
 struct Tile {
     number: String,
     name: &'static str,
@@ -50,7 +49,7 @@ struct Tile {
     bad: bool,
 }
 
-/// Two renderers.
+/// The tables of a pair of renderers.
 struct Comparison {
     title: String,
     all: Vec<Row>,
@@ -62,7 +61,7 @@ struct SensorTable {
     rows: Vec<Row>,
 }
 
-/// One sensor's pictures and numbers.
+/// The pictures and numbers of a sensor.
 struct Sensor {
     name: String,
     size: String,
@@ -70,7 +69,7 @@ struct Sensor {
     plots: Plots,
 }
 
-/// The defects of one sensor and pair.
+/// The defects of a sensor and a pair.
 struct Defects {
     title: String,
     listed: Vec<Listed>,
@@ -84,20 +83,20 @@ struct Listed {
     command: String,
 }
 
-/// A stage and how its time compares with the longest.
+/// A stage and its time, also as a percentage of the longest.
 struct Timed {
     name: String,
     time: String,
     percent: f64,
 }
 
-/// The whole page.
+/// The contents of `report.html`.
 pub fn html(validation: &Validation) -> Result<String, askama::Error> {
-    let Validation { subject, rendered, pairs, panel: _, stages } = validation;
+    let Validation { subject, rendered, pairs, scoreboard: _, stages } = validation;
     let verdict = Verdict::of(validation);
     let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let longest = stages.iter().map(|stage| stage.time).max().unwrap_or_default().as_secs_f64();
-    let most = plots::most_across(validation);
+    let max_columns = max_columns(validation);
     let headline = headline(validation);
     let head = page_head(&format!("{} {headline}: {}", verdict.sign(), subject.name), "");
     let page = Page {
@@ -114,7 +113,7 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
         scene: &subject.name,
         sha256: &subject.sha256,
         version: VERSION,
-        command: format!("raypencil validate {}{}", subject.arguments, panel::typed(validation)),
+        command: format!("raypencil validate {}{}", subject.arguments, typed(validation)),
         renderers: list(&names),
         tiles: tiles(validation),
         comparisons: pairs.iter().map(|pair| comparison(validation, pair)).collect(),
@@ -128,12 +127,12 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
                     name: id.to_string(),
                     size: format!("{width} × {height}"),
                     numbers: numbers(validation, id),
-                    plots: plots::plots(validation, id, most),
+                    plots: plots(validation, id, max_columns),
                 }
             })
             .collect(),
-        light: light(validation, most),
-        outside: outside(validation),
+        light: light(validation, max_columns),
+        candidates: candidates_section(validation),
         defects: pairs.iter().flat_map(|pair| defects(validation, pair)).collect(),
         stages: stages
             .iter()
@@ -151,11 +150,11 @@ fn tiles(validation: &Validation) -> Vec<Tile> {
     let counts = validation.counts();
     let tile = |number, name, meaning, bad| Tile { number: count(number), name, meaning, bad };
     let mut tiles = vec![
-        tile(counts.compared, "compared", "rays, pencils and pixels alike", counts.compared == 0),
+        tile(counts.compared, "compared", "rays: pencils and pixels", counts.compared == 0),
         tile(counts.agree, "agree", "same face or none, values within the bound", false),
         tile(counts.tie, "tie", "several faces at exactly one point", false),
-        tile(counts.rounding, "rounding", "right for a ray displaced within the arithmetic", false),
-        tile(counts.approximation, "approximation", "the paper's own error, its cause confirmed", false),
+        tile(counts.rounding, "rounding", "exact for a ray displaced within the renderer's precision", false),
+        tile(counts.approximation, "approximation", "an error of the paper, its cause confirmed", false),
         tile(counts.defects, "defects", "anything else", counts.defects > 0),
         tile(counts.judged, "judged", "ruled on in exact arithmetic", false),
     ];
@@ -182,8 +181,8 @@ fn title(validation: &Validation, pair: &Pair) -> String {
     format!("{} against {}", validation.rendered[pair.a].name, validation.rendered[pair.b].name)
 }
 
-/// What there is to say of a sensor, pair by pair.
-fn numbers(validation: &Validation, sensor: raypencil_scene::SensorId) -> Vec<String> {
+/// Hits of each renderer and classes of each pair, for one sensor.
+fn numbers(validation: &Validation, sensor: SensorId) -> Vec<String> {
     let mut numbers: Vec<String> = Vec::new();
     for rendered in &validation.rendered {
         numbers.push(match rendered.output.map(sensor).and_then(hits) {
@@ -217,7 +216,7 @@ fn defects(validation: &Validation, pair: &Pair) -> Vec<Defects> {
         let listed: Vec<Listed> = sensor
             .defects
             .iter()
-            .take(LISTED)
+            .take(MAX_LISTED)
             .map(|defect| Listed {
                 place: defect.place.to_string(),
                 quantity: defect.item.quantity.to_string(),

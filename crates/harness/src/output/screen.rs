@@ -1,48 +1,70 @@
-//! What the command prints: a validation on one screen of 80 columns and 40 lines.
+//! The screen that the command prints: a validation in at most 80 columns and 40 lines.
 
-use crate::output::panel;
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::output::VERSION;
+use raypencil_judge::{Class, SensorResult};
+use raypencil_report::{VERSION, count, counted, list, time};
+use raypencil_scene::{Place, SensorId, Stage};
+use raypencil_scene_io::probe_command;
+
+use crate::output::candidates;
 use crate::output::table::{hits, totals, worst};
 use crate::output::verdict::{Verdict, defects, explanation, headline, rays};
 use crate::validation::Validation;
-use raypencil_judge::{Class, SensorResult};
-use raypencil_report::{count, counted, list, time};
-use raypencil_scene::Place;
-use raypencil_scene::{SensorId, Stage};
-use raypencil_scene_io::probe_command;
 
-/// Columns of the screen. Only paths and commands, which are there to be copied, may be longer.
-const COLUMNS: usize = 80;
+/// Maximum columns of a line. Only paths and commands, which are for copying, may be longer.
+const MAX_COLUMNS: usize = 80;
 
-/// Sensors that get a line.
-const SENSORS: usize = 5;
+/// Maximum lines of sensors.
+const MAX_SENSORS: usize = 5;
 
-/// Lines of stage times.
-const TIMES: usize = 4;
+/// Maximum lines of stage times.
+const MAX_TIME_LINES: usize = 4;
 
-/// Causes that get a line.
-const CAUSES: usize = 4;
+/// Maximum lines of causes.
+const MAX_CAUSES: usize = 4;
 
-/// Outsiders that get a line.
-const OUTSIDERS: usize = 4;
+/// Maximum lines of candidates.
+const MAX_CANDIDATES: usize = 4;
 
-/// Column of the paper's approximations in the table of quantities.
-const APPROXIMATIONS: usize = 4;
+/// Index of the column of the paper's approximations in the table of quantities.
+const APPROXIMATION_COLUMN: usize = 4;
 
-/// Defects that get their lines.
-const DEFECTS: usize = 5;
+/// Maximum described defects.
+const MAX_DEFECTS: usize = 5;
 
-/// The validation on one terminal screen; `folder` is where [`crate::output::write_validation`] put its files.
+/// The validation on one terminal screen. `folder` is the folder that [`crate::write_validation`] wrote.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// use raypencil_harness::{contender, one_screen, validate};
+/// # use raypencil_judge::JudgeShare;
+/// # use raypencil_scene::{Atmosphere, FluxModel, Scene, Silent, rig};
+/// # use raypencil_scene_io::Subject;
+///
+/// # let mesh = raypencil_terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
+/// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
+/// # let subject =
+/// #     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+/// // One renderer alone is no comparison: the screen says so, and it is no pass.
+/// let alone = validate(subject, &[contender("tracer").expect("a name")], JudgeShare::Sample, &Silent);
+/// let screen = one_screen(&alone, None);
+/// assert!(screen.contains("Nothing was compared.") && !alone.passes());
+/// // It is one screen of a terminal.
+/// assert!(screen.lines().count() <= 40 && screen.lines().all(|line| line.len() <= 80));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
 pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
     let blocks = [
         head(validation),
         quantities(validation),
         sensors(validation),
         approximations(validation),
-        outsiders(validation),
+        candidates(validation),
         times(validation),
         files(validation, folder),
         verdict(validation),
@@ -50,7 +72,7 @@ pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
     blocks.into_iter().filter(|block| !block.is_empty()).collect::<Vec<_>>().join("\n")
 }
 
-/// The scene and who rendered it.
+/// The scene and its renderers.
 fn head(validation: &Validation) -> String {
     let subject = &validation.subject;
     let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
@@ -60,12 +82,12 @@ fn head(validation: &Validation) -> String {
 
 /// The table of quantities and classes over all sensors.
 fn quantities(validation: &Validation) -> String {
-    // The paper's approximations have a column where there are any.
+    // The paper's approximations have a column only if there are any.
     let has_approximations = validation.counts().approximation > 0;
     let heads = ["", "agree", "tie", "rounding", "approx.", "defect", "error", "at", "/bound"];
     let mut lines = vec![heads.map(String::from)];
     for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
-        // No cell holds blanks for a value that is not there.
+        // A missing value is a dash, so that no cell is empty.
         let or_dash = |text: String| if text.is_empty() { "-".into() } else { text };
         lines.push([
             quantity.to_string(),
@@ -87,7 +109,7 @@ fn quantities(validation: &Validation) -> String {
     };
     let mut lines: Vec<Vec<String>> = lines.into_iter().map(Vec::from).collect();
     if !has_approximations {
-        lines = without(lines, APPROXIMATIONS);
+        lines = without(lines, APPROXIMATION_COLUMN);
     }
     let widths_of = |lines: &[Vec<String>]| -> Vec<usize> {
         (0..lines[0].len())
@@ -95,15 +117,15 @@ fn quantities(validation: &Validation) -> String {
             .collect()
     };
     let is_too_wide = |widths: &[usize], blanks: usize| {
-        widths.iter().sum::<usize>() + blanks * (widths.len() - 1) > COLUMNS
+        widths.iter().sum::<usize>() + blanks * (widths.len() - 1) > MAX_COLUMNS
     };
-    // Text is on the left, numbers on the right.
+    // Text is aligned to the left, numbers to the right.
     let mut place = lines[0].iter().position(|head| head == "at");
     let mut widths = widths_of(&lines);
     if let Some(column) = place
         && is_too_wide(&widths, 1)
     {
-        // Where counts are huge the report has the places.
+        // With huge counts there is no room for the places; the report has them.
         lines = without(lines, column);
         (place, widths) = (None, widths_of(&lines));
     }
@@ -124,7 +146,7 @@ fn quantities(validation: &Validation) -> String {
     text
 }
 
-/// A place in as few letters as tell it.
+/// A place in few letters.
 fn short(Place { sensor, i, j }: Place) -> String {
     format!("{sensor} {i},{j}")
 }
@@ -133,14 +155,14 @@ fn short(Place { sensor, i, j }: Place) -> String {
 fn sensors(validation: &Validation) -> String {
     let mut text = String::new();
     let sensors: Vec<SensorId> = validation.subject.scene.sensors().collect();
-    for &sensor in sensors.iter().take(SENSORS) {
+    for &sensor in sensors.iter().take(MAX_SENSORS) {
         let (width, height) = validation.subject.scene.size(sensor).expect("a sensor of this scene");
         let hit: Vec<String> = validation
             .rendered
             .iter()
             .map(|rendered| rendered.output.map(sensor).and_then(hits).map_or("?".into(), count))
             .collect();
-        // One number where all say the same.
+        // One number if all renderers have the same.
         let hit = if hit.windows(2).all(|two| two[0] == two[1]) {
             hit.into_iter().next().unwrap_or_default()
         } else {
@@ -170,17 +192,17 @@ fn sensors(validation: &Validation) -> String {
         let _ = write!(line, "; {hit} hit");
         let _ = writeln!(text, "{}", cut(&line));
     }
-    if sensors.len() > SENSORS {
-        let _ = writeln!(text, "... and {} more sensors in the summary", sensors.len() - SENSORS);
+    if sensors.len() > MAX_SENSORS {
+        let _ = writeln!(text, "... and {} more sensors in the summary", sensors.len() - MAX_SENSORS);
     }
     text
 }
 
-/// What each set of the paper's approximations did.
+/// A line for each set of the paper's approximations that changed a ray.
 fn approximations(validation: &Validation) -> String {
     let mut text = String::new();
     let all = validation.approximations();
-    for (cause, tally) in all.iter().take(CAUSES) {
+    for (cause, tally) in all.iter().take(MAX_CAUSES) {
         let mut line = format!(
             "{cause}: {}, {} lost, {} added",
             counted(tally.rays, "ray", "rays"),
@@ -193,19 +215,19 @@ fn approximations(validation: &Validation) -> String {
         }
         let _ = writeln!(text, "{}", cut(&line));
     }
-    if all.len() > CAUSES {
-        let _ = writeln!(text, "... and {} more causes in the summary", all.len() - CAUSES);
+    if all.len() > MAX_CAUSES {
+        let _ = writeln!(text, "... and {} more causes in the summary", all.len() - MAX_CAUSES);
     }
     text
 }
 
-/// How others fare.
-fn outsiders(validation: &Validation) -> String {
-    let lines = validation.panel.iter().flat_map(panel::lines).take(OUTSIDERS);
+/// A line for each candidate.
+fn candidates(validation: &Validation) -> String {
+    let lines = validation.scoreboard.iter().flat_map(candidates::lines).take(MAX_CANDIDATES);
     lines.map(|line| format!("{}\n", cut(&line))).collect()
 }
 
-/// Stage times, a renderer a line.
+/// Stage times: a line for each renderer, then the other stages.
 fn times(validation: &Validation) -> String {
     let mut text = String::new();
     for rendered in &validation.rendered {
@@ -213,7 +235,7 @@ fn times(validation: &Validation) -> String {
             rendered.output.stages.iter().map(|stage| format!("{} {}", stage.name, time(stage.time)));
         text.push_str(&wrap(&format!("{} {}: ", rendered.name, time(rendered.time)), stages, 1));
     }
-    // The other stages are named after no renderer.
+    // Stages of a renderer are named `renderer: stage`; the others are not.
     let of_renderer = |stage: &&Stage| {
         let stage = stage.name.split_once(": ").map(|(renderer, _)| renderer);
         validation.rendered.iter().any(|rendered| stage == Some(rendered.name.as_str()))
@@ -223,10 +245,10 @@ fn times(validation: &Validation) -> String {
     if !others.is_empty() {
         text.push_str(&wrap("", others, 1));
     }
-    text.lines().take(TIMES).map(|line| format!("{line}\n")).collect()
+    text.lines().take(MAX_TIME_LINES).map(|line| format!("{line}\n")).collect()
 }
 
-/// What was written.
+/// The files that were written.
 fn files(validation: &Validation, folder: Option<&Path>) -> String {
     let Some(folder) = folder else { return String::new() };
     let mut text = format!("{}\n", folder.join("report.html").display());
@@ -237,7 +259,7 @@ fn files(validation: &Validation, folder: Option<&Path>) -> String {
     text
 }
 
-/// The verdict, and how to see the first defects.
+/// The verdict, and the commands that show the first defects.
 fn verdict(validation: &Validation) -> String {
     let verdict = Verdict::of(validation);
     let mut text = format!("{}\n", cut(&format!("{}.", headline(validation))));
@@ -255,28 +277,29 @@ fn verdict(validation: &Validation) -> String {
         }
         _ => {}
     }
-    for defect in defects(validation).take(DEFECTS) {
+    for defect in defects(validation).take(MAX_DEFECTS) {
         let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
         let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.item.quantity, defect.what)));
     }
     text
 }
 
-/// Parts with commas on lines that begin with `head` or as many blanks; what exceeds `most` lines is counted.
-fn wrap(head: &str, parts: impl IntoIterator<Item = String>, most: usize) -> String {
+/// Joins `parts` with commas on lines that begin with `head` or as many blanks. Parts beyond `max_lines` lines are
+/// counted.
+fn wrap(head: &str, parts: impl IntoIterator<Item = String>, max_lines: usize) -> String {
     let parts: Vec<String> = parts.into_iter().collect();
     let (mut lines, mut line) = (Vec::new(), head.to_string());
     for (index, part) in parts.iter().enumerate() {
         let part = if index + 1 < parts.len() { format!("{part},") } else { part.clone() };
-        // All but the last part leave room for the count of what does not fit.
-        let room = if index + 1 == parts.len() { COLUMNS } else { COLUMNS - 12 };
+        // All parts but the last leave room for the count of the parts that do not fit.
+        let room = if index + 1 == parts.len() { MAX_COLUMNS } else { MAX_COLUMNS - 12 };
         let needed = line.chars().count() + 1 + part.chars().count();
         if index == 0 {
             line.push_str(&part);
         } else if needed <= room {
             line.push(' ');
             line.push_str(&part);
-        } else if lines.len() + 1 < most {
+        } else if lines.len() + 1 < max_lines {
             lines.push(std::mem::replace(&mut line, format!("{}{part}", " ".repeat(head.chars().count()))));
         } else {
             line.push_str(&format!(" {} more", parts.len() - index));
@@ -287,12 +310,12 @@ fn wrap(head: &str, parts: impl IntoIterator<Item = String>, most: usize) -> Str
     lines.into_iter().map(|line| cut(&line) + "\n").collect()
 }
 
-/// A line that ends at the edge of the screen.
+/// A line cut at the edge of the screen.
 fn cut(line: &str) -> String {
-    if line.chars().count() <= COLUMNS {
+    if line.chars().count() <= MAX_COLUMNS {
         return line.into();
     }
-    let mut short: String = line.chars().take(COLUMNS - 3).collect();
+    let mut short: String = line.chars().take(MAX_COLUMNS - 3).collect();
     short.push_str("...");
     short
 }
@@ -307,7 +330,7 @@ mod tests {
         let text = wrap("times: ", parts, 3);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 3);
-        assert!(lines.iter().all(|line| line.chars().count() <= COLUMNS), "{text}");
+        assert!(lines.iter().all(|line| line.chars().count() <= MAX_COLUMNS), "{text}");
         assert!(lines[0].starts_with("times: stage number 0 12.3 ms, stage"), "{text}");
         assert!(lines[1].starts_with("       stage"), "{text}");
         assert!(lines[2].ends_with("more"), "{text}");

@@ -1,20 +1,20 @@
 //! `summary.json`: the validation for programs. Its schema is `docs/formats/summary.schema.json`.
 
-use crate::output::panel;
-use serde::Serialize;
 use std::collections::BTreeMap;
 
-use crate::output::panel::PanelSummary;
-use crate::output::table::hits;
-use crate::output::verdict::Verdict;
-use crate::output::{VERSION, map_file};
-use crate::rendered::Rendered;
-use crate::validation::{Pair, Validation};
 use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Largest, Quantity, SensorResult};
+use raypencil_report::VERSION;
 use raypencil_scene::Switches;
 use raypencil_scene_io::{Subject, probe_command};
+use serde::Serialize;
 
-/// The number of the schema; it grows when a key changes its meaning or goes away.
+use crate::output::candidates::{ScoreboardSummary, scoreboard_summary};
+use crate::output::table::hits;
+use crate::output::verdict::Verdict;
+use crate::rendered::Rendered;
+use crate::validation::{Pair, Validation};
+
+/// Version of the schema; it grows when a key changes its meaning or is removed.
 const FORMAT: u32 = 1;
 
 #[derive(Serialize)]
@@ -24,18 +24,19 @@ struct Summary<'a> {
     verdict: Verdict,
     #[serde(flatten)]
     classes: Classes,
-    /// Rays of each set of the paper's approximations, by the names of its switches.
+    /// Rays that each set of the paper's approximations changed, by the names of its switches.
     approximations: BTreeMap<String, u64>,
     causes: Vec<CauseSummary>,
     scene: SceneName<'a>,
     renderers: Vec<RendererSummary<'a>>,
     pairs: Vec<PairSummary<'a>>,
-    /// Everyone's answers held to the truth; null unless others were asked as well.
-    panel: Option<PanelSummary>,
+    /// Renderers and candidates checked against the exact answers; null without candidates.
+    #[serde(rename = "panel")]
+    scoreboard: Option<ScoreboardSummary>,
     stages: Vec<StageSummary<'a>>,
 }
 
-/// Rays by class; those and all approximations add up to `compared`.
+/// Rays by class. Together with all approximations they add up to `compared`.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Classes {
     compared: u64,
@@ -61,7 +62,7 @@ struct RendererSummary<'a> {
     name: &'a str,
     unit_roundoff: Option<f64>,
     seconds: f64,
-    /// The flux of each beam on the camera's image, added up over its pixels.
+    /// Flux of each beam, summed over the camera's pixels.
     flux: Vec<f64>,
     sensors: Vec<MapSummary>,
 }
@@ -120,7 +121,7 @@ struct QuantitySummary {
 
 #[derive(Serialize)]
 struct WorstSummary {
-    /// `None` where it is no finite number, as JSON has no other.
+    /// `None` if not finite: JSON has finite numbers only.
     value: Option<f64>,
     sensor: String,
     i: u32,
@@ -143,9 +144,9 @@ struct StageSummary<'a> {
     seconds: f64,
 }
 
-/// The summary as JSON with line breaks, as it stands in `summary.json`.
+/// The contents of `summary.json`.
 pub fn summary_json(validation: &Validation) -> String {
-    let Validation { subject, rendered, pairs, panel: _, stages } = validation;
+    let Validation { subject, rendered, pairs, scoreboard: _, stages } = validation;
     let counts = validation.counts();
     let approximations = validation.approximations();
     let summary = Summary {
@@ -162,12 +163,12 @@ pub fn summary_json(validation: &Validation) -> String {
             not_compared: counts.not_compared,
             judged: counts.judged,
         },
-        approximations: counts_of(&approximations),
-        causes: of_causes(subject, &approximations),
+        approximations: rays_by_cause(&approximations),
+        causes: cause_summaries(subject, &approximations),
         scene: SceneName { name: &subject.name, sha256: &subject.sha256, arguments: &subject.arguments },
-        renderers: rendered.iter().map(of_renderer).collect(),
-        pairs: pairs.iter().map(|pair| of_pair(validation, pair)).collect(),
-        panel: panel::summary(validation),
+        renderers: rendered.iter().map(renderer_summary).collect(),
+        pairs: pairs.iter().map(|pair| pair_summary(validation, pair)).collect(),
+        scoreboard: scoreboard_summary(validation),
         stages: stages
             .iter()
             .map(|stage| StageSummary { name: &stage.name, seconds: stage.time.as_secs_f64() })
@@ -178,13 +179,13 @@ pub fn summary_json(validation: &Validation) -> String {
     json
 }
 
-fn of_renderer(rendered: &Rendered) -> RendererSummary<'_> {
+fn renderer_summary(rendered: &Rendered) -> RendererSummary<'_> {
     let sensors = rendered.output.maps().map(|map| MapSummary {
         sensor: map.sensor.to_string(),
         columns: map.width,
         rows: map.height,
         hits: hits(map),
-        file: map_file(rendered, map.sensor),
+        file: rendered.map_file(map.sensor),
     });
     RendererSummary {
         name: &rendered.name,
@@ -195,13 +196,13 @@ fn of_renderer(rendered: &Rendered) -> RendererSummary<'_> {
     }
 }
 
-fn of_pair<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'a> {
+fn pair_summary<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'a> {
     let name = |index: usize| validation.rendered[index].name.as_str();
-    let sensors = pair.sensors.iter().map(|sensor| of_sensor(&validation.subject, sensor)).collect();
+    let sensors = pair.sensors.iter().map(|sensor| sensor_summary(&validation.subject, sensor)).collect();
     PairSummary { a: name(pair.a), b: name(pair.b), sensors }
 }
 
-fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorResult) -> SensorSummary<'a> {
+fn sensor_summary<'a>(subject: &Subject, comparison: &'a SensorResult) -> SensorSummary<'a> {
     let quantities = comparison.items.iter().map(|(item, tally)| QuantitySummary {
         quantity: item.quantity,
         unit: item.quantity.unit(subject.scene.flux_model()),
@@ -234,19 +235,19 @@ fn of_sensor<'a>(subject: &Subject, comparison: &'a SensorResult) -> SensorSumma
             not_compared: comparison.not_compared,
             judged: comparison.judged,
         },
-        approximations: counts_of(&comparison.approximations),
-        causes: of_causes(subject, &comparison.approximations),
+        approximations: rays_by_cause(&comparison.approximations),
+        causes: cause_summaries(subject, &comparison.approximations),
         quantities: quantities.collect(),
         first_defects: defects.collect(),
     }
 }
 
-fn counts_of(approximations: &ApproximationTallies) -> BTreeMap<String, u64> {
+fn rays_by_cause(approximations: &ApproximationTallies) -> BTreeMap<String, u64> {
     approximations.iter().map(|(cause, tally)| (cause.to_string(), tally.rays)).collect()
 }
 
-fn of_causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<CauseSummary> {
-    let of_cause = |(cause, tally): (&Switches, &ApproximationTally)| CauseSummary {
+fn cause_summaries(subject: &Subject, approximations: &ApproximationTallies) -> Vec<CauseSummary> {
+    let summary = |(cause, tally): (&Switches, &ApproximationTally)| CauseSummary {
         switches: cause.to_string(),
         rays: tally.rays,
         lost: tally.lost,
@@ -254,7 +255,7 @@ fn of_causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<Ca
         worst_range_error_m: worst(subject, &tally.worst_range),
         flux_changed: tally.flux_changed,
     };
-    approximations.iter().map(of_cause).collect()
+    approximations.iter().map(summary).collect()
 }
 
 fn worst(subject: &Subject, worst: &Option<Largest>) -> Option<WorstSummary> {

@@ -1,27 +1,27 @@
-//! The verdict on a validation, in words that claim no more than was shown.
+//! The verdict on a validation in words, which claim no more than was shown.
 
+use raypencil_judge::{Class, Defect, Largest, Quantity};
+use raypencil_report::{count, counted, list, number};
 use serde::Serialize;
 
 use crate::validation::Validation;
-use raypencil_judge::{Class, Defect, Largest, Quantity};
-use raypencil_report::{count, counted, list, number};
 
-/// What came of it all.
+/// The verdict on a validation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Verdict {
-    /// Something was compared, and nothing of it is a defect or undecided.
+    /// Rays were compared, and none is a defect.
     Agree,
-    /// There are defects.
+    /// At least one ray is a defect.
     Defects,
-    /// There was nothing to compare.
+    /// No ray was compared.
     NothingCompared,
 }
 
-/// What a pass does not say.
-pub(crate) const CAVEAT: &str = "Which face is hit, and what the camera sees of it, was checked in exact \
-    arithmetic on every ray whose answers differ and on a sample of the others, and their values were held to a third \
-    evaluation. An error of a value that both sides make alike on the other rays alone does not show here.";
+/// The limits of a pass: what was checked, and what was not.
+pub(crate) const CAVEAT: &str = "Which face is hit, and whether the camera sees it, was checked in exact \
+    arithmetic on every ray whose answers differ and on a sample of the others; the values of these rays were compared \
+    with a third computation. A value error that both renderers share, on rays that were not sampled, would go unnoticed.";
 
 impl Verdict {
     pub(crate) fn of(validation: &Validation) -> Self {
@@ -35,7 +35,7 @@ impl Verdict {
         }
     }
 
-    /// A sign for it that does not rest on its colour.
+    /// A sign that does not depend on colour.
     pub(crate) fn sign(self) -> &'static str {
         match self {
             Self::Agree => "✓",
@@ -45,7 +45,7 @@ impl Verdict {
     }
 }
 
-/// What one compares: a ray for each pair of renderers.
+/// A number of compared rays, in words; with several pairs a ray is compared more than once.
 pub(crate) fn rays(validation: &Validation, how_many: u64) -> String {
     match validation.pairs.len() {
         0 | 1 => counted(how_many, "ray", "rays"),
@@ -53,7 +53,7 @@ pub(crate) fn rays(validation: &Validation, how_many: u64) -> String {
     }
 }
 
-/// The verdict in a few words.
+/// The verdict as a headline.
 pub(crate) fn headline(validation: &Validation) -> String {
     let counts = validation.counts();
     let compared = rays(validation, counts.compared);
@@ -63,26 +63,26 @@ pub(crate) fn headline(validation: &Validation) -> String {
         Verdict::Defects => format!("{} of {compared} differ", count(counts.defects)),
         Verdict::Agree if counts.compared == 1 => format!("The only {} agrees", &compared[2..]),
         Verdict::Agree if counts.approximation > 0 => format!(
-            "All {compared} agree, but for {} that err as the paper does",
+            "All {compared} agree, except {} with an error of the paper's approximations",
             count(counts.approximation)
         ),
         Verdict::Agree => format!("All {compared} agree"),
     }
 }
 
-/// What the verdict rests on, in one or two sentences.
+/// The reasons for the verdict, in one or two sentences.
 pub(crate) fn explanation(validation: &Validation) -> String {
     let counts = validation.counts();
     let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let who = list(&names);
     let mut text = match Verdict::of(validation) {
         Verdict::NothingCompared => match names.len() {
-            0 | 1 => "It takes two renderers to compare.".into(),
-            _ => format!("No sensor has maps of {who} that both say which rays hit."),
+            0 | 1 => "A comparison needs two renderers.".into(),
+            _ => format!("No sensor has maps of {who} that both state which rays hit."),
         },
         Verdict::Defects => {
             let mut text = format!(
-                "{who} differ by more than the rounding errors that both sides can make, or on what is hit."
+                "{who} differ in the face that is hit, or by more than their rounding errors explain."
             );
             if let Some(defect) = defects(validation).next() {
                 let Defect { place, item, what } = defect;
@@ -95,41 +95,40 @@ pub(crate) fn explanation(validation: &Validation) -> String {
             let faces = match (counts.tie, counts.rounding) {
                 (0, 0) => "the same faces",
                 (_, 0) => "the same faces, or faces at the same point",
-                _ => "the same faces, but for rays within rounding of an edge",
+                _ => "the same faces, except on rays within rounding of an edge",
             };
             let faces = match counts.approximation {
                 0 => faces.to_string(),
                 some => format!(
-                    "{faces}, but for {} that follow the paper into error for a cause that was confirmed",
+                    "{faces}, except on {} where a confirmed approximation of the paper causes the error",
                     rays(validation, some)
                 ),
             };
             let largest = worst_ratio(validation);
             let largest = largest.map_or(String::new(), |(quantity, worst)| {
                 let percent = number(100.0 * worst.value);
-                format!(" The largest share of that bound: {percent} %, in {quantity} at {}.", worst.place)
+                format!(" The largest error is {percent} % of its bound, in {quantity} at {}.", worst.place)
             });
             format!(
-                "{who} hit {faces}, and no value differs by more than the rounding errors that both sides can \
-                 make.{largest}"
+                "{who} hit {faces}, and no value differs by more than their rounding errors explain.{largest}"
             )
         }
     };
     if counts.not_compared > 0 && counts.compared > 0 {
         text.push_str(&format!(
-            " {} could not be compared: one side has no maps of them.",
+            " {} could not be compared: one side has no maps for them.",
             rays(validation, counts.not_compared)
         ));
     }
     text
 }
 
-/// The defects described, pair by pair and sensor by sensor.
+/// The described defects, pair by pair and sensor by sensor.
 pub(crate) fn defects(validation: &Validation) -> impl Iterator<Item = &Defect> {
     validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.defects)
 }
 
-/// The largest ratio of an error to its bound among all quantities that have any error.
+/// The largest ratio of an error to its bound, and its quantity; `None` if no error is above 0.
 fn worst_ratio(validation: &Validation) -> Option<(Quantity, &Largest)> {
     let tallies = validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.items);
     tallies

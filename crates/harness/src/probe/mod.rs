@@ -1,102 +1,128 @@
-//! Everything about one ray, from every renderer.
+//! One ray: the answers of the renderers and of the referee, with the margins of the exact answer.
 
-pub(crate) mod words;
+mod text;
 
-use crate::renderers::{Contender, attribute};
 use raypencil_judge::{Cause, Class, Judge, JudgeShare, Quantity, VisibilityCause};
 use raypencil_referee::{Format, Margin, Margins, Ruling, Verdict, VisibilityMargins, VisibilityRuling};
-use raypencil_scene::Place;
-use raypencil_scene::{Hit, Progress, Ray, RenderOutput, Request, Return, Sampling, SensorId};
+use raypencil_scene::{Hit, Place, Progress, Ray, RenderOutput, Request, Return, Sampling, SensorId};
 use raypencil_scene_io::{Subject, probe_command};
 
-/// One ray and what each renderer says of it.
+use crate::renderers::{Contender, attribute};
+
+/// One ray with every renderer's answer and the exact one.
 #[derive(Debug, Clone)]
 pub struct Probe {
-    /// Which ray.
+    /// The ray's sensor and cell.
     pub place: Place,
-    /// The command that repeats this.
+    /// The command that shows this ray.
     pub command: String,
-    /// The contract's ray, rounded to f64, scene frame.
+    /// The ray in the scene frame, rounded to f64, metres.
     pub ray: Ray,
-    /// The longest range along it, metres.
+    /// Maximum range along the ray, metres.
     pub max_range: f64,
     /// Each renderer's answer.
     pub answers: Vec<ProbedAnswer>,
     /// The exact verdict.
     pub verdict: Verdict,
-    /// What is hit exactly, its values rounded; the lowest face of a tie.
+    /// The exact hit with its values rounded to f64; on a tie, that of the face with the lowest index.
     pub exact: Option<Hit>,
-    /// What comes back of the exact hit of a pencil.
+    /// The exact return of a pencil that hits, rounded to f64; `None` for a camera.
     pub exact_return: Option<Return>,
-    /// Unit of a flux.
+    /// Unit of the flux.
     pub flux_unit: &'static str,
-    /// The least displacement that changes the set of nearest faces.
+    /// Smallest displacement that changes the set of nearest faces, cells.
     pub face_margin: Margin,
-    /// The least displacement at which the range jumps.
+    /// Smallest displacement at which the range is discontinuous, cells.
     pub surface_margin: Margin,
-    /// Of a pencil that hits: how far the camera's view of it is from changing.
+    /// Smallest displacements that change a pencil's visibility; `None` for a camera or a pencil that hits nothing.
     pub visibility_margins: Option<VisibilityMargins>,
 }
 
-/// One renderer's answer to a ray, and what it is.
+/// One renderer's answer to a ray, with the referee's ruling.
 #[derive(Debug, Clone)]
 pub struct ProbedAnswer {
     /// The renderer's name.
     pub renderer: String,
-    /// What it says; `None` for a miss.
+    /// The hit; `None` if the renderer says that the ray hits nothing.
     pub hit: Option<Hit>,
-    /// What the referee rules on it.
+    /// The referee's ruling on the hit.
     pub ruling: Ruling,
-    /// What `validate` makes of that; an agreeing answer's values may still be out of bounds.
+    /// The class of that ruling. The values of an agreeing answer are not judged here and may still exceed their
+    /// bounds.
     pub class: Class,
-    /// Why it is wrong, if a cause is confirmed.
+    /// The confirmed cause of a wrong hit.
     pub cause: Option<Cause>,
-    /// What it says comes back of a pencil that it says hits.
+    /// The return of a pencil; `None` for a camera, and for a pencil that hits nothing by this answer.
     pub back: Option<ProbedReturn>,
 }
 
-/// What one renderer says comes back of a pencil, and what that is.
+/// One renderer's return of a pencil, with the referee's ruling.
 #[derive(Debug, Clone)]
 pub struct ProbedReturn {
-    /// What it says.
+    /// The return.
     pub back: Return,
-    /// What the referee rules on whether the point is seen, and on where it lands.
+    /// The referee's ruling on the visibility of the point and on its pixel.
     pub ruling: VisibilityRuling,
-    /// Why it is wrong about being seen, if a cause is confirmed.
+    /// The confirmed cause of a wrong visibility.
     pub cause: Option<VisibilityCause>,
 }
 
-/// Why there is no such ray.
+/// The scene does not have the requested ray.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoSuchRay {
-    /// The scene has fewer beams.
+    /// The scene does not have that beam.
     #[error("there is no beam {index}: the scene has {count}, counted from 0")]
     Beam {
-        /// The beam asked for.
+        /// Index of the requested beam.
         index: usize,
-        /// How many there are.
+        /// Number of beams.
         count: usize,
     },
-    /// The sensor has fewer cells.
+    /// The sensor does not have that cell.
     #[error("{sensor} has no cell {i},{j}: it is {width} x {height}, counted from 0,0")]
     Cell {
-        /// The sensor asked for.
+        /// The requested sensor.
         sensor: SensorId,
-        /// The column asked for.
+        /// The requested column.
         i: u32,
-        /// The row asked for.
+        /// The requested row.
         j: u32,
-        /// Its columns.
+        /// Number of columns.
         width: u32,
-        /// Its rows.
+        /// Number of rows.
         height: u32,
     },
 }
 
-/// Asks every renderer about one ray.
+/// Asks every renderer and the referee about one ray.
 ///
 /// # Errors
-/// If the scene has no such ray.
+/// The scene does not have this ray.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// use raypencil_harness::{contender, probe};
+/// use raypencil_scene::{Place, SensorId};
+/// # use raypencil_scene::{Atmosphere, FluxModel, Scene, Silent, rig};
+/// # use raypencil_scene_io::Subject;
+///
+/// # let mesh = raypencil_terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
+/// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
+/// # let subject =
+/// #     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+/// // The lowest row of the camera's 16 x 16 pixels looks at the ground.
+/// let place = Place { sensor: SensorId::Camera, i: 8, j: 15 };
+/// let found = probe(&subject, place, &[contender("tracer").expect("a name")], &Silent)?;
+/// assert!(found.exact.is_some());
+/// assert_eq!(found.answers[0].hit.map(|hit| hit.face), found.exact.map(|hit| hit.face));
+/// assert_eq!(found.command, "raypencil probe small.toml --pixel 8,15");
+/// // Rows are counted from 0, so there is no row 16.
+/// assert!(probe(&subject, Place { j: 16, ..place }, &[], &Silent).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn probe(
     subject: &Subject,
     place: Place,
@@ -159,7 +185,7 @@ pub fn probe(
 /// One renderer's answer.
 fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
     let Place { sensor, i, j } = place;
-    // A whole sensor is rendered for one ray: the answer must be the one that `validate` compares.
+    // The whole sensor is rendered for one ray, so that the answer is the one that `validate` compares.
     let request = Request {
         camera: sensor == SensorId::Camera,
         beams: sensor != SensorId::Camera,
@@ -194,7 +220,7 @@ fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
     ProbedAnswer { renderer: renderer.name().to_string(), hit, ruling, class, cause, back }
 }
 
-/// What one renderer says comes back of a pencil.
+/// One renderer's return of a pencil.
 fn returned(
     judge: &Judge<'_>,
     place: Place,

@@ -1,11 +1,12 @@
-//! The same for programs.
+//! The report for programs.
 
 use raypencil::terrain::{Inspection, MeshElement, Occurrence, Occurrences, OpenEdgePiece};
 use serde_json::{Value, json};
 
-use super::Report;
+use super::report::Report;
 
-pub(super) fn json(report: &Report) -> String {
+/// The report as JSON.
+pub(super) fn report_json(report: &Report) -> String {
     let mut printed = inspection(&report.found);
     printed["mesh"] = report.mesh.into();
     if let Some(repaired) = &report.repaired {
@@ -24,6 +25,7 @@ pub(super) fn json(report: &Report) -> String {
     format!("{printed:#}\n")
 }
 
+/// An inspection as JSON.
 fn inspection(found: &Inspection) -> Value {
     let kinds = &found.zero_area_kinds;
     let open = &found.open_edges;
@@ -37,20 +39,20 @@ fn inspection(found: &Inspection) -> Value {
         "volume_m3": found.volume,
         "components": found.components,
         "closed_components": found.closed_components,
-        "unused_vertices": of(&found.unused_vertices),
-        "split_vertices": of(&found.split_vertices),
-        "zero_area": of(&found.zero_area),
+        "unused_vertices": occurrences(&found.unused_vertices),
+        "split_vertices": occurrences(&found.split_vertices),
+        "zero_area": occurrences(&found.zero_area),
         "zero_area_kinds": {
             "repeated_vertex": kinds.repeated_vertex,
             "coincident_vertices": kinds.coincident_vertices,
             "collinear": kinds.collinear,
         },
-        "duplicates": of(&found.duplicates),
+        "duplicates": occurrences(&found.duplicates),
         "duplicates_of_other_material": found.duplicate_faces_of_other_material,
-        "double_sided": of(&found.double_sided_sheets),
-        "slender": of(&found.slender),
+        "double_sided": occurrences(&found.double_sided_sheets),
+        "slender": occurrences(&found.slender),
         "worst_aspect": found.worst_aspect,
-        "down": of(&found.down),
+        "down": occurrences(&found.down),
         "down_area_m2": found.downward_area,
         "upside_down": found.upside_down,
         "open_edges": {
@@ -61,23 +63,26 @@ fn inspection(found: &Inspection) -> Value {
             "pieces": open.pieces,
             "longest": open.longest.iter().map(piece).collect::<Vec<Value>>(),
         },
-        "crowded_edges": of(&found.non_manifold_edges),
-        "mismatched_edges": of(&found.inconsistent_edges),
-        "inverted": of(&found.inverted),
+        "crowded_edges": occurrences(&found.non_manifold_edges),
+        "mismatched_edges": occurrences(&found.inconsistent_edges),
+        "inverted": occurrences(&found.inverted),
         "inside_out_components": found.inside_out_components,
-        "undecided_patches": of(&found.undecided_patches),
-        "one_sided_patches": of(&found.non_orientable_patches),
+        "undecided_patches": occurrences(&found.undecided_patches),
+        "one_sided_patches": occurrences(&found.non_orientable_patches),
     })
 }
 
-fn of(found: &Occurrences) -> Value {
+/// The number of occurrences and the first of them.
+fn occurrences(found: &Occurrences) -> Value {
     json!({ "count": found.count, "examples": found.examples.iter().map(example).collect::<Vec<Value>>() })
 }
 
+/// A connected piece of open edges.
 fn piece(piece: &OpenEdgePiece) -> Value {
     json!({ "edges": piece.edges, "length_m": piece.length, "example": example(&piece.example) })
 }
 
+/// One occurrence.
 fn example(example: &Occurrence) -> Value {
     let place = example.place.to_array();
     match example.item {

@@ -1,15 +1,19 @@
-//! The screen: at most 40 lines of 100 characters.
+//! The report for people: at most 40 lines of 100 characters.
 
 use std::fmt::Write as _;
 
 use raypencil::report::count;
 use raypencil::terrain::{Inspection, MeshElement, Occurrence, Occurrences, Repairs};
 
-use super::Report;
+use super::report::Report;
 
-/// Characters of a line.
-const WIDTH: usize = 100;
+/// Maximum characters of a line.
+const MAX_WIDTH: usize = 100;
 
+/// Blanks before a list of examples.
+const INDENT: usize = 15;
+
+/// The report as text.
 pub(super) fn screen(report: &Report) -> String {
     let found = &report.found;
     let mut text = String::new();
@@ -22,10 +26,10 @@ pub(super) fn screen(report: &Report) -> String {
         line(&words);
     }
     line("");
-    for row in wrong(found) {
+    for row in fault_rows(found) {
         line(&format!("{} {:>11}  {}", if row.count > 0 { '!' } else { ' ' }, counted(row.count), row.words));
         if !row.places.is_empty() {
-            line(&format!("{:15}{}", "", row.places));
+            line(&format!("{:INDENT$}{}", "", row.places));
         }
     }
     line("");
@@ -35,7 +39,7 @@ pub(super) fn screen(report: &Report) -> String {
     line("");
     if let Some(repaired) = &report.repaired {
         let left = &repaired.left;
-        line(&format!("Repaired: {}.", done(&repaired.repairs)));
+        line(&format!("Repaired: {}.", repairs_made(&repaired.repairs)));
         let (faces, vertices) = (counted(left.faces), counted(left.vertices));
         line(&format!("Written: {}: {faces} faces, {vertices} vertices", repaired.file.display()));
     }
@@ -43,25 +47,26 @@ pub(super) fn screen(report: &Report) -> String {
     text
 }
 
-/// Something that may be wrong.
-struct Row {
+/// A line of the list of faults.
+struct FaultRow {
     count: usize,
     words: String,
-    /// Where to find some of it.
+    /// The first occurrences.
     places: String,
 }
 
-fn row(words: &str, found: &Occurrences) -> Row {
-    Row { count: found.count, words: words.into(), places: listed(&found.examples) }
+/// A row of the list of faults.
+fn row(words: &str, found: &Occurrences) -> FaultRow {
+    FaultRow { count: found.count, words: words.into(), places: listed(&found.examples) }
 }
 
-/// The same, with more words if there is any.
-fn row_with(words: &str, more: &str, found: &Occurrences) -> Row {
+/// A row with more words if there are any occurrences.
+fn row_with(words: &str, more: &str, found: &Occurrences) -> FaultRow {
     row(&format!("{words}{}", if found.count > 0 { more } else { "" }), found)
 }
 
-/// All that counts as wrong, whether it was found or not.
-fn wrong(found: &Inspection) -> Vec<Row> {
+/// All kinds of faults, found or not.
+fn fault_rows(found: &Inspection) -> Vec<FaultRow> {
     let kinds = &found.zero_area_kinds;
     let of_kinds = format!(
         ": {} repeat a vertex, {} a place, {} are lines",
@@ -89,16 +94,16 @@ fn wrong(found: &Inspection) -> Vec<Row> {
         row("edges whose two faces contradict each other in winding", &found.inconsistent_edges),
         row_with("faces the wrong way round", &inside_out_components, &found.inverted),
         row("patches that have only one side", &found.non_orientable_patches),
-        Row {
+        FaultRow {
             count: found.excess_loops(),
             words: "loops of open edges beside a border".into(),
             places: holes,
         },
-        Row { count: usize::from(found.upside_down), words: back.into(), places: String::new() },
+        FaultRow { count: usize::from(found.upside_down), words: back.into(), places: String::new() },
     ]
 }
 
-/// Where the mesh is, and how large.
+/// Position, size and components of the mesh.
 fn extent(found: &Inspection) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some([low, high]) = found.bounds {
@@ -114,7 +119,7 @@ fn extent(found: &Inspection) -> Vec<String> {
     lines
 }
 
-/// What is not wrong, but good to know.
+/// Facts about the mesh that are not faults.
 fn facts(found: &Inspection) -> Vec<String> {
     let open = &found.open_edges;
     let line = |count: usize, words: String| format!("  {:>11}  {words}", counted(count));
@@ -137,8 +142,8 @@ fn facts(found: &Inspection) -> Vec<String> {
     facts
 }
 
-/// What a repair did, as a list.
-fn done(repairs: &Repairs) -> String {
+/// The repairs, as a list.
+fn repairs_made(repairs: &Repairs) -> String {
     let Repairs { zero_area_faces, duplicate_faces, turned_faces, welded_vertices, unused_vertices, .. } =
         *repairs;
     let all = [
@@ -153,18 +158,21 @@ fn done(repairs: &Repairs) -> String {
         .filter(|(count, _)| *count > 0)
         .map(|(count, what)| format!("{what} {}", counted(*count)))
         .collect();
-    if words.is_empty() { "nothing, for there was nothing to repair".into() } else { words.join(", ") }
+    if words.is_empty() { "nothing, as there was nothing to repair".into() } else { words.join(", ") }
 }
 
+/// The last line.
 fn verdict(report: &Report) -> String {
     let last = report.last();
-    let checks = wrong(last).len();
+    let checks = fault_rows(last).len();
     let place = if report.repaired.is_some() { " in the repaired mesh" } else { "" };
     match last.fault_kinds() {
         0 => format!("PASS {checks} checks found nothing{place}."),
         some => {
             let would = match &report.repaired {
-                None if mendable(last) => " `--repair -o OUT.glb` mends what needs no guess.",
+                None if is_repairable(last) => {
+                    " `--repair -o OUT.glb` repairs the faults with only one possible repair."
+                }
                 _ => "",
             };
             format!("FAIL {some} of {checks} checks found something{place}.{would}")
@@ -172,19 +180,19 @@ fn verdict(report: &Report) -> String {
     }
 }
 
-/// Whether a repair would do something about what is wrong.
-fn mendable(found: &Inspection) -> bool {
+/// Whether a repair would remove any of the faults.
+fn is_repairable(found: &Inspection) -> bool {
     [&found.unused_vertices, &found.zero_area, &found.duplicates, &found.inverted]
         .iter()
         .any(|found| found.count > 0)
 }
 
-/// As many examples as a line takes.
+/// As many examples as fit on a line.
 fn listed(examples: &[Occurrence]) -> String {
     let mut line = String::new();
     for (index, example) in examples.iter().enumerate() {
         let words = format!("{}{}", if index == 0 { "" } else { "; " }, at(example));
-        if index > 0 && line.chars().count() + words.chars().count() > WIDTH - 15 {
+        if index > 0 && line.chars().count() + words.chars().count() > MAX_WIDTH - INDENT {
             break;
         }
         line.push_str(&words);
@@ -192,6 +200,7 @@ fn listed(examples: &[Occurrence]) -> String {
     line
 }
 
+/// An example with its position.
 fn at(example: &Occurrence) -> String {
     let place = place(example.place.to_array());
     match example.item {
@@ -200,7 +209,7 @@ fn at(example: &Occurrence) -> String {
     }
 }
 
-/// A place to a millimetre; -0.000 is 0.000.
+/// A position in metres to a millimetre; -0.000 is written 0.000.
 fn place(place: [f64; 3]) -> String {
     let [x, y, z] = place.map(|coordinate| match format!("{coordinate:.3}") {
         zero if zero == "-0.000" => "0.000".into(),

@@ -1,4 +1,4 @@
-//! `terrain generate`.
+//! `terrain generate`: reports, determinism, errors.
 
 use raypencil::io::load_mesh;
 use raypencil::terrain::height_at;
@@ -8,13 +8,13 @@ use tempfile::TempDir;
 use super::import::geotiff;
 use crate::{assert_trouble, raypencil, screen};
 
-/// `terrain generate` of a small ground, and more.
+/// `terrain generate` of a small terrain, with more arguments.
 fn generate<'a>(more: &[&'a str]) -> Vec<&'a str> {
     [&["terrain", "generate", "--extent", "6", "--post-spacing", "0.3"], more].concat()
 }
 
 #[test]
-fn a_ground_is_made_told_and_kept_with_its_parameters() {
+fn a_terrain_is_generated_reported_and_written_with_its_parameters() {
     let folder = TempDir::new().expect("a temporary folder");
     let arguments = generate(&["--preset", "pathfinder", "--seed", "3", "-o", "made/ground.glb"]);
     let shown = screen(folder.path(), &arguments, 0);
@@ -27,14 +27,14 @@ fn a_ground_is_made_told_and_kept_with_its_parameters() {
     ] {
         assert!(shown.contains(line), "{line} is not in:\n{shown}");
     }
-    // Again the same bytes; another seed others.
+    // The same seed gives the same bytes; another seed gives others.
     let bytes = |name: &str| std::fs::read(folder.path().join("made").join(name)).expect("a file");
     screen(folder.path(), &generate(&["--preset", "pathfinder", "--seed", "3", "-o", "made/again.glb"]), 0);
     screen(folder.path(), &generate(&["--preset", "pathfinder", "--seed", "4", "-o", "made/other.glb"]), 0);
     assert_eq!(bytes("ground.glb"), bytes("again.glb"));
     assert_ne!(bytes("ground.glb"), bytes("other.glb"));
 
-    // The file says what it was made from: its JSON chunk begins after 20 bytes.
+    // The file states its parameters. The JSON chunk begins after 20 bytes.
     let glb = bytes("ground.glb");
     let length = u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
     let document: Value = serde_json::from_slice(&glb[20..20 + length]).expect("JSON");
@@ -48,12 +48,12 @@ fn a_ground_is_made_told_and_kept_with_its_parameters() {
         .filter_map(|m| m["name"].as_str())
         .collect();
     assert_eq!(names, ["soil", "rock", "crevasse wall"]);
-    // It is a terrain like any other, with nothing wrong.
+    // The terrain has no faults.
     assert!(screen(folder.path(), &["terrain", "inspect", "made/ground.glb"], 0).contains("PASS"));
 }
 
 #[test]
-fn coarse_posts_of_a_model_are_met() {
+fn the_surface_interpolates_the_coarse_posts() {
     let folder = TempDir::new().expect("a temporary folder");
     // 5 x 4 posts 2 m apart, the north-west one at (1000001, 499); rows from the north.
     let heights: Vec<f32> = (0..20_u16).map(|k| f32::from(k * k % 7) * 0.25).collect();
@@ -82,7 +82,7 @@ fn coarse_posts_of_a_model_are_met() {
         let z = height_at(&mesh, x, y).expect("ground there");
         assert!((z - f64::from(*height)).abs() < 2e-7, "{z} for {height} at {x}, {y}");
     }
-    // A scene says the same.
+    // The same parameters in a scene give the same terrain.
     let scene = "version = 1\n[vehicle]\nposition_m = [1000005, 496]\n[terrain]\n\
         generate = { preset = \"smooth\", rock_coverage = 0, post_spacing_m = 0.3, coarse = \"mola.tif\" }\n";
     std::fs::write(folder.path().join("fine.toml"), scene).expect("a file");
@@ -94,7 +94,7 @@ fn coarse_posts_of_a_model_are_met() {
 }
 
 #[test]
-fn trouble_is_named_and_leaves_nothing() {
+fn errors_are_named_and_leave_no_file() {
     let folder = TempDir::new().expect("a temporary folder");
     let trouble = |more: &[&str], words: &[&str]| {
         assert_trouble(&raypencil(folder.path(), &generate(more)), words);

@@ -1,12 +1,12 @@
-//! `terrain import`.
+//! `terrain import`: reports, options, errors.
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, screen, text};
 
-/// A folder with `hill.tif`: 5 x 4 pixels of 2 m whose tie point, their north-west corner, is at (1000000, 500), with
-/// heights of 10 column + row and one that is not known.
+/// A folder with `hill.tif`: 5 x 4 pixels of 2 m. The tie point is their north-west corner at (1000000, 500), heights
+/// are 10 column + row, and one height is unknown.
 fn folder() -> TempDir {
     let folder = TempDir::new().expect("a temporary folder");
     let heights: Vec<f32> = (0..20_u8)
@@ -64,8 +64,9 @@ pub(super) fn geotiff(width: u32, height: u32, heights: &[f32]) -> Vec<u8> {
 fn an_elevation_model_becomes_a_terrain() {
     let folder = folder();
     let out = screen(folder.path(), &["terrain", "import", "hill.tif", "-o", "hill.glb"], 0);
-    // Posts are 1 m inside: x 1000001 to 1000009, y 493 to 499. 12 cells; the one unknown corner takes one: 22 faces.
-    // Heights are 0 to 10 * 4 + 2, the south-east post, 43, is not known. The middle of x is 1000005; of y 496; of z 21.
+    // Posts are 1 m inside the border: x 1000001 to 1000009, y 493 to 499. There are 12 cells, and the unknown corner
+    // removes one: 22 faces. Heights are 0 to 10 * 4 + 2; the south-east post, 43, is unknown. The middle is at x
+    // 1000005, y 496, z 21.
     for line in [
         "extent         x 1000001.0 to 1000009.0, y 493.0 to 499.0 m",
         "posts          5 x 4, 2.0 x 2.0 m apart",
@@ -97,17 +98,17 @@ fn an_elevation_model_becomes_a_terrain() {
         0,
     );
     let report: Value = serde_json::from_str(&json).expect("JSON");
-    // x 1000001, 3, 5: 2 x 3 cells in squares of 2 x 2, of which one and a half are there.
+    // Columns at x 1000001, 3, 5: 2 x 3 cells, that is one and a half squares of 2 x 2 cells.
     assert_eq!((&report["posts"], &report["unknown_posts"]), (&serde_json::json!([3, 4]), &0.into()));
     assert_eq!(report["registration_is_stated"], false);
     assert!(report["faces"].as_u64().is_some_and(|faces| faces < 12), "{report}");
-    // What was written is a terrain like any other.
+    // The file is a terrain that other commands accept.
     let probe = screen(folder.path(), &["probe", "hill.glb", "--pixel", "512,900", "--with", "tracer"], 0);
     assert!(probe.contains("hill"), "{probe}");
 }
 
 #[test]
-fn trouble_is_named_and_leaves_nothing() {
+fn errors_are_named_and_leave_no_file() {
     let folder = folder();
     let import = |arguments: &[&str]| {
         let output = raypencil(folder.path(), &[&["terrain", "import"], arguments].concat());

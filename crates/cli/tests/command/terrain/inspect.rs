@@ -1,4 +1,4 @@
-//! `terrain inspect`.
+//! `terrain inspect`: faults, repairs, errors.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use crate::{assert_trouble, raypencil, screen, text};
 
-/// A tetrahedron of 1 m: face 3 the wrong way round, face 1 once more, a face without area, a vertex of no face.
+/// A tetrahedron of 1 m with an inverted face 3, a duplicate of face 1, a face without area and an unused vertex.
 fn faulty() -> Mesh {
     let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [5.0, 6.0, 7.0]];
     let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 3, 2], [1, 3, 0], [2, 2, 0]];
@@ -29,14 +29,14 @@ fn inspected(folder: &Path, arguments: &[&str], code: i32) -> Value {
     serde_json::from_str(&screen(folder, &arguments, code)).expect("JSON")
 }
 
-/// The lines that say that something is wrong.
+/// The lines that report a fault.
 fn marked(screen: &str) -> Vec<String> {
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     screen.lines().filter(|line| line.starts_with('!')).map(words).collect()
 }
 
 #[test]
-fn faults_are_told_on_one_screen() {
+fn faults_are_reported_on_one_screen() {
     let folder = folder();
     let shown = screen(folder.path(), &["terrain", "inspect", "faulty.glb"], 1);
     assert_eq!(
@@ -56,7 +56,7 @@ fn faults_are_told_on_one_screen() {
         "components: 1, 1 of them closed, which enclose 0.167 m3",
         "vertex 4 (5.000, 6.000, 7.000)",
         "face 3 (0.333, 0.333, 0.333)",
-        "FAIL 5 of 9 checks found something. `--repair -o OUT.glb` mends what needs no guess.",
+        "FAIL 5 of 9 checks found something. `--repair -o OUT.glb` repairs the faults with only one possible repair.",
     ] {
         assert!(shown.contains(words), "`{words}` is not in:\n{shown}");
     }
@@ -64,7 +64,7 @@ fn faults_are_told_on_one_screen() {
 }
 
 #[test]
-fn json_has_all_of_it() {
+fn json_has_every_number() {
     let folder = folder();
     let found = inspected(folder.path(), &["faulty.glb"], 1);
     assert_eq!(
@@ -79,7 +79,7 @@ fn json_has_all_of_it() {
 }
 
 #[test]
-fn a_repaired_mesh_is_written_and_sound() {
+fn a_repaired_mesh_is_written_and_has_no_faults() {
     let folder = folder();
     let before = fs::read(folder.path().join("faulty.glb")).unwrap();
     let shown =
@@ -104,17 +104,17 @@ fn a_repaired_mesh_is_written_and_sound() {
         assert_eq!(again["repaired"][done], 0, "{done}");
     }
     assert_eq!(again["repaired"]["left"]["faces"], 4);
-    // The files differ only in what they say that they are made of.
+    // The files differ only in the source that their extras state.
     let mesh = |name: &str| load_mesh(folder.path().join(name)).unwrap();
     assert!(mesh("again.glb") == mesh("sound.glb"));
 }
 
 #[test]
-fn any_ground_of_a_scene_can_be_looked_at() {
+fn the_terrain_of_any_scene_can_be_inspected() {
     let folder = folder();
     let facets = inspected(folder.path(), &["facets"], 0);
     assert_eq!(facets["passes"], true);
-    // The promises of a nasty ground: of 2000 faces a 20th are copies, and as many have no area; a 50th, vertices.
+    // A nasty ground of 2000 faces: a 20th are duplicates, a 20th have no area, and a 50th as many vertices are unused.
     let scene = "version = 1\n[terrain]\ngenerate = { kind = \"nasty\", seed = 4, faces = 2000 }\n";
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
     let nasty = inspected(folder.path(), &["scene.toml", "--repair", "-o", "mended.glb"], 1);
@@ -126,17 +126,17 @@ fn any_ground_of_a_scene_can_be_looked_at() {
     let shown = screen(folder.path(), &["terrain", "inspect", "scene.toml"], 1);
     assert_eq!(marked(&shown).len(), 4, "{shown}");
     assert!(shown.lines().count() <= 40 && shown.lines().all(|line| line.chars().count() <= 100), "{shown}");
-    // Loose slivers have borders of their own, which no repair closes.
+    // Loose slivers have borders, which no repair closes.
     let left = &nasty["repaired"]["left"];
     assert_eq!((&left["kinds_wrong"], &left["duplicates"]["count"]), (&json!(1), &json!(0)));
     assert!(left["open_edges"]["excess_loops"].as_u64().unwrap() >= 90, "{left:#}");
-    // A scene's own terrain may be behind it, so nothing is written over.
+    // The file may be the scene's terrain, so it is not overwritten.
     let arguments = ["terrain", "inspect", "scene.toml", "--repair", "-o", "mended.glb"];
     assert_trouble(&raypencil(folder.path(), &arguments), &["mended.glb: exists", "expected a new file"]);
 }
 
 #[test]
-fn repair_does_not_change_what_rays_meet() {
+fn repair_does_not_change_what_rays_hit() {
     let folder = folder();
     let sensors = "version = 1\n\
         [camera]\nwidth_px = 64\nheight_px = 48\npixel_pitch_um = 144\n\
@@ -155,7 +155,7 @@ fn repair_does_not_change_what_rays_meet() {
                 let scene = format!("{name}.toml");
                 screen(folder.path(), &["render", &scene, "--with", renderer, "-o", name], 0);
             }
-            // To the last bit. In this ground what is dropped comes last, so that faces keep their numbers, too.
+            // Equal to the last bit. Removed faces come last in this ground, so that faces keep their indices.
             let shown = screen(folder.path(), &["diff", "nasty", "mended"], 0);
             assert!(shown.contains("PASS 28 channels compared"), "{shown}");
         }
@@ -163,7 +163,7 @@ fn repair_does_not_change_what_rays_meet() {
 }
 
 #[test]
-fn trouble_is_one_clear_message() {
+fn errors_are_one_clear_message() {
     let folder = folder();
     let inspect = |more: &[&str]| raypencil(folder.path(), &[&["terrain", "inspect"], more].concat());
     assert_trouble(&inspect(&["nowhere.glb"]), &["`nowhere.glb` does not exist"]);
@@ -171,16 +171,16 @@ fn trouble_is_one_clear_message() {
     assert_trouble(&inspect(&["faulty.glb", "-o", "x.glb"]), &["--repair"]);
     let own = ["--output ./faulty.glb: is the mesh to repair", "expected another file"];
     assert_trouble(&inspect(&["faulty.glb", "--repair", "-o", "./faulty.glb"]), &own);
-    let kind = ["--output x.ply: is no GLB file", "ends in .glb"];
+    let kind = ["--output x.ply: is not a GLB file", "ends in .glb"];
     assert_trouble(&inspect(&["faulty.glb", "--repair", "-o", "x.ply"]), &kind);
     let far = "version = 1\n[terrain]\ngenerate = { kind = \"plain\", faces = 50, offset_m = [1e5, 0, 0] }\n\
         [vehicle]\nposition_m = [1e5, 0]\n";
     fs::write(folder.path().join("far.toml"), far).unwrap();
-    // Far ground is written where it is, and reads back there: nothing is left to repair.
+    // A terrain far from the origin is written and read back in place: nothing is left to repair.
     screen(folder.path(), &["terrain", "inspect", "far.toml", "--repair", "-o", "far.glb"], 0);
     let far = load_mesh(folder.path().join("far.glb")).unwrap();
     assert_eq!(far.origin().x, 1e5);
-    // A file is no folder to write into.
+    // The output folder is a file.
     let no_folder = inspect(&["faulty.glb", "--repair", "-o", "faulty.glb/such.glb"]);
     assert_trouble(&no_folder, &["faulty.glb"]);
     assert!(text(&inspect(&["--help"]).stdout).contains("OUT.glb"));

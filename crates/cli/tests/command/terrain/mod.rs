@@ -1,4 +1,4 @@
-//! `terrain`: grounds as files.
+//! `terrain`: terrains as files.
 
 mod generate;
 mod import;

@@ -1,22 +1,23 @@
-//! Everyone's answers held to the truth, ready to be printed: the renderers of this house beside those of others.
+//! The scoreboard, ready to be printed: raypencil's renderers beside candidates, for the page, the screen and programs.
 
-use serde::Serialize;
 use std::collections::BTreeMap;
 
-use crate::monte_carlo::{CHANCE_LIMITS, ImageComparison};
-use crate::panel::{HeldOutsider, Panel};
-use crate::radiance::RadianceComparison;
-use crate::validation::Validation;
-use raypencil_judge::{Check, Class, Item, ItemTally, Largest, key_of, name_of, unit_of};
+use raypencil_judge::{Check, Class, Defect, Item, ItemTally, Largest, key_of, name_of, unit_of};
 use raypencil_report::{count, counted, number, quantity};
 use raypencil_scene_io::{Subject, probe_command, quoted};
+use serde::Serialize;
 
-/// How many misses of an outsider are listed.
-const LISTED: usize = 10;
+use crate::monte_carlo::{ImageComparison, Z_TEST_LIMITS};
+use crate::radiance::RadianceComparison;
+use crate::scoreboard::{CandidateReport, Scoreboard};
+use crate::validation::Validation;
 
-/// The section of the page; empty if there is no outsider.
+/// Maximum listed misses per candidate.
+const MAX_LISTED: usize = 10;
+
+/// The page's section about candidates; empty if there are none.
 #[derive(Debug, Default)]
-pub(crate) struct Outside {
+pub(crate) struct CandidatesSection {
     pub(crate) names: Vec<String>,
     pub(crate) rows: Vec<QuantityRow>,
     pub(crate) images: Vec<ImageRow>,
@@ -24,26 +25,27 @@ pub(crate) struct Outside {
     pub(crate) misses: Vec<Misses>,
 }
 
-/// One quantity, and how each renderer fares.
+/// One quantity: a cell for each renderer and candidate.
 #[derive(Debug)]
 pub(crate) struct QuantityRow {
     pub(crate) quantity: String,
     pub(crate) cells: Vec<Option<Cell>>,
 }
 
-/// How a renderer fares in a quantity.
+/// Classes and worst errors of one renderer in one quantity.
 #[derive(Debug)]
 pub(crate) struct Cell {
     pub(crate) is_wrong: bool,
     pub(crate) wrong: String,
     pub(crate) classes: String,
-    /// The worst error, and that as a part of its bound; empty where there is no number.
+    /// Largest error; empty if no numbers were compared.
     pub(crate) error: String,
+    /// Largest ratio of an error to its bound; empty if no numbers were compared.
     pub(crate) ratio: String,
     pub(crate) place: String,
 }
 
-/// An image by chance.
+/// A candidate's Monte Carlo image.
 #[derive(Debug)]
 pub(crate) struct ImageRow {
     pub(crate) who: String,
@@ -56,7 +58,7 @@ pub(crate) struct ImageRow {
     pub(crate) z: String,
 }
 
-/// Radiance along rays.
+/// A candidate's radiance map.
 #[derive(Debug)]
 pub(crate) struct RadianceRow {
     pub(crate) who: String,
@@ -69,7 +71,7 @@ pub(crate) struct RadianceRow {
     pub(crate) wrong: String,
 }
 
-/// The misses of an outsider.
+/// The misses of a candidate.
 #[derive(Debug)]
 pub(crate) struct Misses {
     pub(crate) title: String,
@@ -77,7 +79,7 @@ pub(crate) struct Misses {
     pub(crate) more: String,
 }
 
-/// One of them.
+/// One miss.
 #[derive(Debug)]
 pub(crate) struct Miss {
     pub(crate) place: String,
@@ -87,21 +89,22 @@ pub(crate) struct Miss {
     pub(crate) folder: String,
 }
 
+/// Rays that are wrong or could not be decided.
 fn wrong(tally: &ItemTally) -> u64 {
     tally.of(Class::Defect) + tally.of(Class::Undecided)
 }
 
-/// Where the reproducer of a miss is, from the folder of the validation.
-fn miss_folder(held: &HeldOutsider, index: usize) -> String {
-    format!("misses/{}", held.miss_name(index))
+/// Path of a miss's folder, relative to the folder of the validation.
+fn miss_folder(report: &CandidateReport, index: usize) -> String {
+    format!("misses/{}", report.miss_name(index))
 }
 
-/// What the page says of a validation's outsiders.
-pub(crate) fn outside(validation: &Validation) -> Outside {
-    let Some(panel) = &validation.panel else { return Outside::default() };
+/// The page's section about a validation's candidates.
+pub(crate) fn candidates_section(validation: &Validation) -> CandidatesSection {
+    let Some(scoreboard) = &validation.scoreboard else { return CandidatesSection::default() };
     let subject = &validation.subject;
-    let who: Vec<(&str, &Check)> = everyone(panel);
-    let totals: Vec<BTreeMap<Item, ItemTally>> = who.iter().map(|(_, check)| check.totals()).collect();
+    let checks: Vec<(&str, &Check)> = all_checks(scoreboard);
+    let totals: Vec<BTreeMap<Item, ItemTally>> = checks.iter().map(|(_, check)| check.totals()).collect();
     let mut items: Vec<Item> = totals.iter().flat_map(|totals| totals.keys().copied()).collect();
     items.sort();
     items.dedup();
@@ -110,25 +113,29 @@ pub(crate) fn outside(validation: &Validation) -> Outside {
         cells: totals.iter().map(|totals| cell(subject, item, totals.get(&item)?)).collect(),
     };
     let rows = items.into_iter().map(row);
-    Outside {
-        names: who.iter().map(|(name, _)| name.to_string()).collect(),
-        // What nobody says has no row.
+    CandidatesSection {
+        names: checks.iter().map(|(name, _)| name.to_string()).collect(),
+        // A quantity that nobody provides has no row.
         rows: rows.filter(|row| row.cells.iter().any(Option::is_some)).collect(),
-        images: of_outsiders(panel, |held| held.images.iter().map(|image| image_row(held, image)).collect()),
-        radiance: of_outsiders(panel, |held| {
-            held.radiance.iter().map(|map| radiance_row(held, map)).collect()
+        images: of_candidates(scoreboard, |report| {
+            report.images.iter().map(|image| image_row(report, image)).collect()
         }),
-        misses: panel.outsiders.iter().map(|held| misses(subject, held)).collect(),
+        radiance: of_candidates(scoreboard, |report| {
+            report.radiance.iter().map(|map| radiance_row(report, map)).collect()
+        }),
+        misses: scoreboard.candidates.iter().map(|report| misses(subject, report)).collect(),
     }
 }
 
-fn of_outsiders<T>(panel: &Panel, rows: impl Fn(&HeldOutsider) -> Vec<T>) -> Vec<T> {
-    panel.outsiders.iter().flat_map(rows).collect()
+fn of_candidates<T>(scoreboard: &Scoreboard, rows: impl Fn(&CandidateReport) -> Vec<T>) -> Vec<T> {
+    scoreboard.candidates.iter().flat_map(rows).collect()
 }
 
-fn everyone(panel: &Panel) -> Vec<(&str, &Check)> {
-    let ours = panel.ours.iter().map(|held| (held.name.as_str(), &held.check));
-    ours.chain(panel.outsiders.iter().map(|held| (held.outsider.name.as_str(), &held.check))).collect()
+/// Names and checks, raypencil's renderers first.
+fn all_checks(scoreboard: &Scoreboard) -> Vec<(&str, &Check)> {
+    let ours = scoreboard.ours.iter().map(|report| (report.name.as_str(), &report.check));
+    ours.chain(scoreboard.candidates.iter().map(|report| (report.candidate.name.as_str(), &report.check)))
+        .collect()
 }
 
 fn cell(subject: &Subject, item: Item, tally: &ItemTally) -> Option<Cell> {
@@ -155,19 +162,20 @@ fn cell(subject: &Subject, item: Item, tally: &ItemTally) -> Option<Cell> {
     })
 }
 
+/// A number with its sign.
 fn signed(value: f64) -> String {
     if value > 0.0 { format!("+{}", number(value)) } else { number(value) }
 }
 
-fn image_row(held: &HeldOutsider, image: &ImageComparison) -> ImageRow {
-    // As a part of it: an absolute error would end beyond the digits that are shown.
+fn image_row(report: &CandidateReport, image: &ImageComparison) -> ImageRow {
+    // The error is relative: an absolute one would be beyond the printed digits of the value.
     let with_error =
         |[value, error]: [f64; 2]| format!("{} W (1 ± {})", number(value), number(error / value));
     let at = image.at.map_or(String::new(), |at| format!(" at {at}"));
     ImageRow {
-        who: held.outsider.name.clone(),
-        what: format!("{}, beam {}", image.way, image.beam),
-        is_wrong: !image.is_within(&CHANCE_LIMITS),
+        who: report.candidate.name.clone(),
+        what: format!("{}, beam {}", image.integrator, image.beam),
+        is_wrong: !image.is_within(&Z_TEST_LIMITS),
         pixels: count(image.pixels as u64),
         theirs: with_error(image.theirs),
         ours: with_error(image.ours),
@@ -181,9 +189,9 @@ fn image_row(held: &HeldOutsider, image: &ImageComparison) -> ImageRow {
     }
 }
 
-fn radiance_row(held: &HeldOutsider, map: &RadianceComparison) -> RadianceRow {
+fn radiance_row(report: &CandidateReport, map: &RadianceComparison) -> RadianceRow {
     RadianceRow {
-        who: held.outsider.name.clone(),
+        who: report.candidate.name.clone(),
         what: format!("{} rays, beam {}", map.sensor, map.beam),
         is_wrong: map.wrong > 0,
         lit: count(map.lit),
@@ -194,65 +202,70 @@ fn radiance_row(held: &HeldOutsider, map: &RadianceComparison) -> RadianceRow {
     }
 }
 
-fn misses(subject: &Subject, held: &HeldOutsider) -> Misses {
-    let total = held.check.of(Class::Defect) + held.check.of(Class::Undecided);
-    let listed: Vec<Miss> = held
+fn misses(subject: &Subject, report: &CandidateReport) -> Misses {
+    let total = report.check.of(Class::Defect) + report.check.of(Class::Undecided);
+    let listed: Vec<Miss> = report
         .misses()
-        .take(LISTED)
+        .take(MAX_LISTED)
         .enumerate()
         .map(|(index, wrong)| Miss {
             place: wrong.place.to_string(),
             quantity: name_of(wrong.item),
             what: wrong.what.clone(),
             command: probe_command(subject, wrong.place),
-            folder: miss_folder(held, index),
+            folder: miss_folder(report, index),
         })
         .collect();
     let more = total - total.min(listed.len() as u64);
     Misses {
-        title: format!("{}: {} wrong", held.outsider.name, counted(total, "ray", "rays")),
+        title: format!("{}: {} wrong", report.candidate.name, counted(total, "ray", "rays")),
         listed,
         more: if more > 0 { counted(more, "more ray", "more rays") } else { String::new() },
     }
 }
 
-/// The words that name the recordings again on the command line.
+/// Command-line arguments that name the candidates: ` --candidate DIR` for each.
 pub(crate) fn typed(validation: &Validation) -> String {
-    let outsiders = validation.panel.iter().flat_map(|panel| &panel.outsiders);
-    outsiders
-        .map(|held| format!(" --candidate {}", quoted(&held.outsider.folder.to_string_lossy())))
+    let candidates = validation.scoreboard.iter().flat_map(|scoreboard| &scoreboard.candidates);
+    candidates
+        .map(|report| format!(" --candidate {}", quoted(&report.candidate.folder.to_string_lossy())))
         .collect()
 }
 
-/// A line of the screen for each outsider.
-pub(crate) fn lines(panel: &Panel) -> Vec<String> {
-    panel.outsiders.iter().map(line).collect()
+/// A line of the screen for each candidate.
+pub(crate) fn lines(scoreboard: &Scoreboard) -> Vec<String> {
+    scoreboard.candidates.iter().map(line).collect()
 }
 
-fn line(held: &HeldOutsider) -> String {
-    let wrong = held.check.of(Class::Defect) + held.check.of(Class::Undecided);
-    let rays =
-        format!("{}: {} of {} rays wrong", held.outsider.name, count(wrong), count(held.check.compared()));
+fn line(report: &CandidateReport) -> String {
+    let wrong = report.check.of(Class::Defect) + report.check.of(Class::Undecided);
+    let rays = format!(
+        "{}: {} of {} rays wrong",
+        report.candidate.name,
+        count(wrong),
+        count(report.check.compared())
+    );
     let of = |kind: &str, fit: usize, all: usize| (all > 0).then(|| format!("{fit} of {all} {kind}"));
-    let images = held.images.iter().filter(|image| image.is_within(&CHANCE_LIMITS)).count();
-    let radiance = held.radiance.iter().filter(|map| map.wrong == 0).count();
-    let fit = [of("images", images, held.images.len()), of("radiances", radiance, held.radiance.len())];
+    let images = report.images.iter().filter(|image| image.is_within(&Z_TEST_LIMITS)).count();
+    let radiance = report.radiance.iter().filter(|map| map.wrong == 0).count();
+    let fit = [of("images", images, report.images.len()), of("radiances", radiance, report.radiance.len())];
     match fit.into_iter().flatten().collect::<Vec<_>>().as_slice() {
         [] => rays,
         some => format!("{rays}; {} fit", some.join(", ")),
     }
 }
 
-/// Everyone in `summary.json`.
+/// The scoreboard in `summary.json`, under the key `panel`.
 #[derive(Serialize)]
-pub(crate) struct PanelSummary {
-    renderers: Vec<HeldSummary>,
+pub(crate) struct ScoreboardSummary {
+    renderers: Vec<CheckSummary>,
 }
 
 #[derive(Serialize)]
-struct HeldSummary {
+struct CheckSummary {
     name: String,
-    outside: bool,
+    #[serde(rename = "outside")]
+    is_candidate: bool,
     compared: u64,
     tie: u64,
     rounding: u64,
@@ -277,7 +290,8 @@ struct ItemSummary {
 
 #[derive(Serialize)]
 struct ImageSummary {
-    way: String,
+    #[serde(rename = "way")]
+    integrator: String,
     beam: usize,
     pixels: usize,
     total_w: Option<f64>,
@@ -289,7 +303,8 @@ struct ImageSummary {
     z_rms: Option<f64>,
     z_mean: Option<f64>,
     z_largest: Option<f64>,
-    within_limits: bool,
+    #[serde(rename = "within_limits")]
+    is_within_limits: bool,
 }
 
 #[derive(Serialize)]
@@ -319,32 +334,32 @@ fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// What `summary.json` says of a validation's outsiders.
-pub(crate) fn summary(validation: &Validation) -> Option<PanelSummary> {
-    let panel = validation.panel.as_ref()?;
+/// The scoreboard of a validation for `summary.json`; `None` without candidates.
+pub(crate) fn scoreboard_summary(validation: &Validation) -> Option<ScoreboardSummary> {
+    let scoreboard = validation.scoreboard.as_ref()?;
     let subject = &validation.subject;
-    let ours = panel.ours.iter().map(|held| of_check(subject, &held.name, &held.check));
-    let theirs = panel.outsiders.iter().map(|held| {
-        let mut summary = of_check(subject, &held.outsider.name, &held.check);
-        summary.outside = true;
-        summary.images = held.images.iter().map(of_image).collect();
-        summary.radiance = held.radiance.iter().map(of_radiance).collect();
-        let of_miss = |(index, wrong): (usize, &raypencil_judge::Defect)| MissSummary {
+    let ours = scoreboard.ours.iter().map(|report| check_summary(subject, &report.name, &report.check));
+    let theirs = scoreboard.candidates.iter().map(|report| {
+        let mut summary = check_summary(subject, &report.candidate.name, &report.check);
+        summary.is_candidate = true;
+        summary.images = report.images.iter().map(image_summary).collect();
+        summary.radiance = report.radiance.iter().map(radiance_summary).collect();
+        let of_miss = |(index, wrong): (usize, &Defect)| MissSummary {
             sensor: wrong.place.sensor.to_string(),
             i: wrong.place.i,
             j: wrong.place.j,
             quantity: key_of(subject.scene.flux_model(), wrong.item),
             what: wrong.what.clone(),
             probe: probe_command(subject, wrong.place),
-            reproducer: miss_folder(held, index),
+            reproducer: miss_folder(report, index),
         };
-        summary.misses = held.misses().take(LISTED).enumerate().map(of_miss).collect();
+        summary.misses = report.misses().take(MAX_LISTED).enumerate().map(of_miss).collect();
         summary
     });
-    Some(PanelSummary { renderers: ours.chain(theirs).collect() })
+    Some(ScoreboardSummary { renderers: ours.chain(theirs).collect() })
 }
 
-fn of_check(subject: &Subject, name: &str, check: &Check) -> HeldSummary {
+fn check_summary(subject: &Subject, name: &str, check: &Check) -> CheckSummary {
     let model = subject.scene.flux_model();
     let of_item = |(item, tally): (Item, ItemTally)| ItemSummary {
         quantity: key_of(model, item),
@@ -356,9 +371,9 @@ fn of_check(subject: &Subject, name: &str, check: &Check) -> HeldSummary {
         worst_error: tally.worst_error.as_ref().and_then(|largest| finite(largest.value)),
         worst_ratio: tally.worst_ratio.as_ref().and_then(|largest| finite(largest.value)),
     };
-    HeldSummary {
+    CheckSummary {
         name: name.into(),
-        outside: false,
+        is_candidate: false,
         compared: check.compared(),
         tie: check.of(Class::Tie),
         rounding: check.of(Class::Rounding),
@@ -370,9 +385,9 @@ fn of_check(subject: &Subject, name: &str, check: &Check) -> HeldSummary {
     }
 }
 
-fn of_image(image: &ImageComparison) -> ImageSummary {
+fn image_summary(image: &ImageComparison) -> ImageSummary {
     ImageSummary {
-        way: image.way.clone(),
+        integrator: image.integrator.clone(),
         beam: image.beam,
         pixels: image.pixels,
         total_w: finite(image.theirs[0]),
@@ -384,11 +399,11 @@ fn of_image(image: &ImageComparison) -> ImageSummary {
         z_rms: finite(image.z_rms),
         z_mean: finite(image.z_mean),
         z_largest: finite(image.z_largest),
-        within_limits: image.is_within(&CHANCE_LIMITS),
+        is_within_limits: image.is_within(&Z_TEST_LIMITS),
     }
 }
 
-fn of_radiance(map: &RadianceComparison) -> RadianceSummary {
+fn radiance_summary(map: &RadianceComparison) -> RadianceSummary {
     RadianceSummary {
         sensor: map.sensor.to_string(),
         beam: map.beam,

@@ -1,14 +1,16 @@
 //! A probe as text and as JSON.
 
-use serde::Serialize;
 use std::fmt;
 
-use crate::probe::{Probe, ProbedReturn};
+use glam::DVec3;
 use raypencil_referee::{Explained, Margin, Ruling};
 use raypencil_scene::{Hit, Ray, Return};
+use serde::Serialize;
+
+use crate::probe::{Probe, ProbedReturn};
 
 impl Probe {
-    /// The same as a value for `--json`.
+    /// The probe as JSON, for `--json`.
     pub fn to_json(&self) -> serde_json::Value {
         #[derive(Serialize)]
         struct HitValues {
@@ -104,7 +106,7 @@ impl Probe {
     }
 }
 
-/// Why a face is seen or not, in words.
+/// The reasons for which a face is added or lost, in words.
 fn explained_in_words(one: &Explained) -> String {
     let reasons: Vec<String> = one.reasons.iter().map(ToString::to_string).collect();
     format!("face {} is {}: {}", one.face.0, if one.added { "added" } else { "lost" }, reasons.join("; "))
@@ -222,6 +224,7 @@ fn write_ruled_return(f: &mut fmt::Formatter<'_>, answer: &ProbedReturn, unit: &
     Ok(())
 }
 
-fn vector(v: glam::DVec3) -> String {
+/// A vector with all its digits.
+fn vector(v: DVec3) -> String {
     format!("({:?}, {:?}, {:?})", v.x, v.y, v.z)
 }

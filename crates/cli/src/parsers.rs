@@ -1,0 +1,126 @@
+//! Parsers of option values. Their messages say what was expected.
+
+use std::str::FromStr;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use raypencil::campaign::{PartName, Shard};
+use raypencil::judge::{Class, JudgeShare};
+use raypencil::{Fidelity, FluxModel, Precision};
+
+/// A value that an option accepts: its name, its line of help, and what it stands for.
+type Named<T> = (&'static str, &'static str, T);
+
+/// The classes that `--class` accepts.
+const CLASSES: [Named<Class>; 5] = [
+    ("defect", "One of them is wrong", Class::Defect),
+    ("undecided", "The referee could not decide", Class::Undecided),
+    ("approximation", "An approximation of the paper", Class::Approximation),
+    ("rounding", "An exact answer to a ray displaced within the renderer's precision", Class::Rounding),
+    ("tie", "Several faces at exactly the same point", Class::Tie),
+];
+
+/// Parses one of some named values.
+fn one_of<T, const N: usize>(values: [Named<T>; N]) -> impl TypedValueParser<Value = T>
+where
+    T: Clone + Send + Sync + 'static,
+{
+    let names = values.iter().map(|(name, help, _)| PossibleValue::new(*name).help(*help));
+    PossibleValuesParser::new(names.collect::<Vec<_>>()).map(move |given| {
+        let found = values.iter().find(|(name, _, _)| *name == given);
+        found.expect("clap accepts these names alone").2.clone()
+    })
+}
+
+/// `--flux`.
+pub(crate) fn flux_model() -> impl TypedValueParser<Value = FluxModel> {
+    one_of([
+        (FluxModel::Radiometric.word(), "Radiometric, in watts", FluxModel::Radiometric),
+        (FluxModel::Eq1.word(), "Equation (1) of the paper as printed, in W/m", FluxModel::Eq1),
+    ])
+}
+
+/// `--judge`.
+pub(crate) fn judge_share() -> impl TypedValueParser<Value = JudgeShare> {
+    one_of([
+        ("sample", "At least one in a hundred", JudgeShare::Sample),
+        ("all", "Every ray", JudgeShare::All),
+    ])
+}
+
+/// `--arithmetic`.
+pub(crate) fn precision() -> impl TypedValueParser<Value = Precision> {
+    one_of([("f64", "Double precision", Precision::F64), ("f32", "Single precision", Precision::F32)])
+}
+
+/// `--part`.
+pub(crate) fn part_name() -> impl TypedValueParser<Value = PartName> {
+    one_of([
+        ("own", "The sensors of a random rig", PartName::Own),
+        ("paper", "The same, with the paper's approximations", PartName::Paper),
+        ("aimed", "Narrow sensors aimed at difficult places", PartName::Aimed),
+        ("lattice", "A lattice whose vertices lie exactly on rays", PartName::Lattice),
+    ])
+}
+
+/// `--class`.
+pub(crate) fn class() -> impl TypedValueParser<Value = Class> {
+    one_of(CLASSES)
+}
+
+/// The name of a class as `--class` accepts it; `agree` for the class that it does not accept.
+pub(crate) fn class_name(class: Class) -> &'static str {
+    CLASSES.iter().find(|(_, _, one)| *one == class).map_or("agree", |(name, _, _)| name)
+}
+
+/// `I/N`, counted from 1.
+pub(crate) fn shard(text: &str) -> Result<Shard, String> {
+    let wrong = || "expected a part and the number of parts, such as 2/4".to_string();
+    let (index, count) = text.split_once('/').ok_or_else(wrong)?;
+    let one = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
+    match (one(index)?, one(count)?) {
+        (index, count) if (1..=count).contains(&index) => Ok(Shard { index: index - 1, count }),
+        _ => Err(wrong()),
+    }
+}
+
+/// A difference that is allowed: finite and not negative.
+pub(crate) fn threshold(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        _ => Err("expected a number of at least 0, such as 1e-6".into()),
+    }
+}
+
+/// A percentage of all cells.
+pub(crate) fn percent(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=100.0).contains(&number) => Ok(number),
+        _ => Err("expected a percentage from 0 to 100".into()),
+    }
+}
+
+/// `NAME=paper` or `NAME=exact`. Whether the switch exists is checked with the renderer.
+pub(crate) fn switch(text: &str) -> Result<(String, Fidelity), String> {
+    let (name, fidelity) = text.split_once('=').unwrap_or((text, ""));
+    match fidelity {
+        "paper" => Ok((name.into(), Fidelity::Paper)),
+        "exact" => Ok((name.into(), Fidelity::Exact)),
+        _ => Err("expected a switch and its setting, such as beam-edges=paper or skip-rules=exact".into()),
+    }
+}
+
+/// `N` numbers separated by commas.
+pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let all: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    all.ok()
+        .and_then(|all| all.try_into().ok())
+        .ok_or_else(|| format!("expected {N} numbers separated by commas"))
+}
+
+/// Two numbers separated by a comma.
+pub(crate) fn pair<T: FromStr>(text: &str) -> Result<[T; 2], String> {
+    let wrong = || "expected two numbers separated by a comma, such as 3,4".to_string();
+    let (a, b) = text.split_once(',').ok_or_else(wrong)?;
+    let one = |text: &str| text.trim().parse().map_err(|_| wrong());
+    Ok([one(a)?, one(b)?])
+}

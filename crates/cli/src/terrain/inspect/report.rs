@@ -1,0 +1,37 @@
+//! The result of an inspection.
+
+use std::path::Path;
+
+use raypencil::terrain::{Inspection, Repairs};
+
+/// The result of `terrain inspect`.
+pub(super) struct Report<'a> {
+    /// The mesh as the command line names it.
+    pub(super) mesh: &'a str,
+    /// The inspection of that mesh.
+    pub(super) found: Inspection,
+    /// The repair; `None` without `--repair`.
+    pub(super) repaired: Option<Repaired<'a>>,
+}
+
+/// A repaired mesh.
+pub(super) struct Repaired<'a> {
+    /// Its file.
+    pub(super) file: &'a Path,
+    /// The repairs.
+    pub(super) repairs: Repairs,
+    /// The inspection of the repaired mesh.
+    pub(super) left: Inspection,
+}
+
+impl Report<'_> {
+    /// Whether the last inspection found no faults.
+    pub(super) fn passes(&self) -> bool {
+        self.last().passes()
+    }
+
+    /// The inspection of the repaired mesh, or, without one, of the given mesh.
+    pub(super) fn last(&self) -> &Inspection {
+        self.repaired.as_ref().map_or(&self.found, |repaired| &repaired.left)
+    }
+}

@@ -1,0 +1,28 @@
+//! The output file of a terrain command.
+
+use std::path::Path;
+
+use raypencil::io::create;
+
+use crate::Trouble;
+
+/// Creates the folder of an output file.
+pub(super) fn create_folder(output: &Path) -> Result<(), Trouble> {
+    match output.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => Ok(create(folder)?),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a file's name ends in `.glb`.
+pub(super) fn is_glb(output: &Path) -> bool {
+    output.extension().is_some_and(|end| end.eq_ignore_ascii_case("glb"))
+}
+
+/// Refuses an output file that is not a GLB, before any work is done.
+pub(super) fn check_output(output: &Path) -> Result<(), Trouble> {
+    if is_glb(output) {
+        return Ok(());
+    }
+    Err(Trouble::Usage(format!("-o {}: expected a file that ends in .glb", output.display())))
+}
