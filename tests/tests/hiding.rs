@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil::{Beam, Mesh, Mounted, Pose, Request, Scene};
-use raypencil_tests::light::{Draws, evaluations, fluxes, is_visible, relative, total};
+use raypencil_tests::draws::SplitMix64;
+use raypencil_tests::light::{evaluations, fluxes, is_visible, relative, total};
 use raypencil_tests::{at_origin, cells_hit, hit, rig, scene};
 
 /// Ranges that are the plane's own, but for a few roundings.
@@ -130,13 +131,13 @@ fn nothing_before_the_image_plane_hides() {
 /// A height field of 12 x 12 m, closed by sides and a bottom, with turned boxes, on it and half in it, all below 0.9 m.
 fn closed_ground(seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     const CELLS: u32 = 12;
-    let mut draws = Draws(seed);
+    let mut random = SplitMix64::new(seed);
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     let across = CELLS + 1;
     for j in 0..across {
         for i in 0..across {
             let place = |k: u32| f64::from(k) * 12.0 / f64::from(CELLS) - 6.0;
-            vertices.push(DVec3::new(place(i), place(j), draws.between(-0.25, 0.25)));
+            vertices.push(DVec3::new(place(i), place(j), random.between(-0.25, 0.25)));
         }
     }
     for j in 0..CELLS {
@@ -167,10 +168,12 @@ fn closed_ground(seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         ]);
     }
     for _ in 0..20 {
-        let centre = DVec3::new(draws.between(1.0, 5.0), draws.between(-2.5, 2.5), draws.between(-0.1, 0.3));
+        let centre =
+            DVec3::new(random.between(1.0, 5.0), random.between(-2.5, 2.5), random.between(-0.1, 0.3));
         let turn =
-            Pose { position: centre, ..Pose::from_axis_angle(draws.direction(), draws.between(0.0, PI)) };
-        let half = DVec3::new(draws.between(0.02, 0.4), draws.between(0.02, 0.4), draws.between(0.02, 0.2));
+            Pose { position: centre, ..Pose::from_axis_angle(random.direction(), random.between(0.0, PI)) };
+        let half =
+            DVec3::new(random.between(0.02, 0.4), random.between(0.02, 0.4), random.between(0.02, 0.2));
         let first = vertices.len() as u32;
         for corner in 0..8_u32 {
             let sign = |axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
@@ -241,10 +244,10 @@ fn on_closed_ground_backs_hide_all_that_is_hidden() {
         assert!(corners.iter().map(|[a, b, c]| a.dot(b.cross(*c))).sum::<f64>() > 0.0);
         assert!(vertices.iter().all(|vertex| vertex[2] < 0.9));
 
-        let mut draws = Draws(100 + seed);
+        let mut random = SplitMix64::new(100 + seed);
         let mut mount = |height: f64| {
-            let place = DVec3::new(draws.between(-1.0, 0.0), draws.between(-1.0, 1.0), height);
-            (place, draws.between(0.35, 0.6))
+            let place = DVec3::new(random.between(-1.0, 0.0), random.between(-1.0, 1.0), height);
+            (place, random.between(0.35, 0.6))
         };
         let ((at, down), beams) = (mount(1.2), [mount(1.6), mount(2.2)]);
         let beams = beams.map(|(at, down)| rig::pitched(at, down, beam)).to_vec();

@@ -10,7 +10,8 @@ use raypencil::{
     Atmosphere, Beam, Camera, Filter, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
     RenderOutput, Renderer, Request, Returns, Sampling, Scene, SensorId,
 };
-use raypencil_tests::light::{Draws, LIGHT, evaluations, fluxes, is_visible, looking, relative, total};
+use raypencil_tests::draws::SplitMix64;
+use raypencil_tests::light::{LIGHT, evaluations, fluxes, is_visible, looking, relative, total};
 use raypencil_tests::quadrature::{gauss_legendre, over_rectangle};
 use raypencil_tests::{at_origin, hit, rig, scene};
 
@@ -274,32 +275,32 @@ fn irradiance_falls_with_range() {
 
 /// A plane of any slope before a camera and a beam of 5 x 3 pencils in any pose, both before its front and looking
 /// at about the same place.
-fn tilted(draws: &mut Draws) -> (Scene, Plane) {
-    let (target, normal) = (draws.vector(3.0), draws.direction());
-    let (mesh, plane) = Plane::mesh(target, normal, draws.between(0.1, 1.0));
-    let pose = |draws: &mut Draws| {
+fn tilted(random: &mut SplitMix64) -> (Scene, Plane) {
+    let (target, normal) = (random.vector(3.0), random.direction());
+    let (mesh, plane) = Plane::mesh(target, normal, random.between(0.1, 1.0));
+    let pose = |random: &mut SplitMix64| {
         let up = loop {
-            let up = draws.direction();
+            let up = random.direction();
             // Not more aslant than 72 degrees: roundings grow with 1 / cos.
             if up.dot(normal) > 0.3 {
                 break up;
             }
         };
-        let distance = draws.between(0.5, 5.0);
-        let aim = draws.vector(0.1);
-        looking(target + up * distance, aim - up, draws.between(-PI, PI))
+        let distance = random.between(0.5, 5.0);
+        let aim = random.vector(0.1);
+        looking(target + up * distance, aim - up, random.between(-PI, PI))
     };
     let camera = Camera {
         pixel_pitch: [1.0 / 4096.0, 1.0 / 3072.0],
-        aperture: draws.between(1e-3, 1e-2),
-        ..rig::camera(64, 64, 1.0, draws.between(0.006, 0.008))
+        aperture: random.between(1e-3, 1e-2),
+        ..rig::camera(64, 64, 1.0, random.between(0.006, 0.008))
     };
-    let grid_distance = draws.between(0.05, 0.2);
-    let half_width = Beam::half_width_of(grid_distance, draws.between(0.1, 0.7));
-    let (thickness, power) = (draws.between(1e-3, 1e-2), draws.between(0.1, 10.0));
+    let grid_distance = random.between(0.05, 0.2);
+    let half_width = Beam::half_width_of(grid_distance, random.between(0.1, 0.7));
+    let (thickness, power) = (random.between(1e-3, 1e-2), random.between(0.1, 10.0));
     let beam = Beam { half_width, thickness, power, ..rig::beam(5, 3, [1.0, 1.0], grid_distance) };
-    let camera = Mounted { scene_from_sensor: pose(draws), sensor: camera };
-    let beam = Mounted { scene_from_sensor: pose(draws), sensor: beam };
+    let camera = Mounted { scene_from_sensor: pose(random), sensor: camera };
+    let beam = Mounted { scene_from_sensor: pose(random), sensor: beam };
     (scene(mesh, camera, vec![beam]), plane)
 }
 
@@ -308,8 +309,8 @@ fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
     // The flux that falls into a pixel, if all of what the pixel sees were lit as the pencil's spot is: the pencil's
     // flux times the pixel's footprint over the pencil's.
     const TOLERANCE: f64 = 1e-12;
-    let mut draws = Draws(1);
-    let cases: Vec<(Scene, Plane)> = (0..200).map(|_| tilted(&mut draws)).collect();
+    let mut random = SplitMix64::new(1);
+    let cases: Vec<(Scene, Plane)> = (0..200).map(|_| tilted(&mut random)).collect();
     for renderer in evaluations() {
         let (mut tested, mut worst) = (0, [0.0_f64; 3]);
         for (scene, plane) in &cases {
@@ -533,7 +534,7 @@ fn jittered_rays_have_the_right_mean() {
 
     // A ray is uniform in its pencil's cell, so that the expectation of a pixel is the integral of flux over that
     // part of the grid that lands in it. By the midpoint rule with FINE x FINE nodes a pencil: where the border of a
-    // pixel cuts a pencil, the part is wrong by about 0.3 / FINE of the pencil, while the mean of SEEDS draws of
+    // pixel cuts a pencil, the part is wrong by about 0.3 / FINE of the pencil, while the mean of SEEDS random of
     // being in or out errs by about 0.4 / sqrt(SEEDS): 11 % of it, which adds 0.7 % to the rms below.
     const FINE: u32 = 32;
     let mut expected = vec![[0.0, 0.0]; size * size];

@@ -32,7 +32,7 @@ fn a_crack_is_a_defect_however_thin() {
     // through. The crack is some 1e-13 cells wide, where an honest renderer may displace a ray by 1e-9: but
     // no displaced ray misses.
     let scene = lattice::turned(101);
-    let leaking = Naive { fault: Some(Fault::EdgesReckonedApart) };
+    let leaking = Naive { fault: Some(Fault::EdgesComputedApart) };
     let map = leaking.render(&scene, &Request::EVERYTHING).camera.expect("the camera was asked for");
     let through: u64 = (0..101)
         .flat_map(|j| (0..101).map(move |i| (i, j)))
