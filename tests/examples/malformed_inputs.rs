@@ -1,5 +1,5 @@
-//! The hostile files: `just hostile` prints their table to `docs/evidence/malformed-inputs.md`. With a folder as its argument the files are
-//! made in it, as seeds for the fuzz targets (`just fuzz`).
+//! The malformed inputs: `just malformed-inputs` writes their table to `docs/evidence/malformed-inputs.md`. With a folder
+//! as its argument the example writes the files there, as seeds for the fuzz targets (`just fuzz`).
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ fn main() -> std::io::Result<()> {
     for case in all().into_iter().chain(good()).chain(tiffs()) {
         for (path, item) in &case.items {
             let Item::File(bytes) = item else { continue };
-            // What is larger teaches a fuzzer nothing.
+            // Larger files slow a fuzzer down and add no coverage.
             if let Some(target) = target(Path::new(path)).filter(|_| bytes.len() <= 1 << 14) {
                 let folder = Path::new(&folder).join(target);
                 fs::create_dir_all(&folder)?;
@@ -25,7 +25,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-/// The fuzz target that reads such a file.
+/// The fuzz target for a file.
 fn target(path: &Path) -> Option<&'static str> {
     match (path.file_name()?.to_str()?, path.extension()?.to_str()?) {
         ("manifest.json", _) => Some("manifest"),

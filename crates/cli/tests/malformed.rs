@@ -1,6 +1,6 @@
-//! Hostile files against the binary: each in a process of its own, under limits of memory and of processor time.
+//! Malformed inputs: the command refuses each, in its own process with limited memory and processor time.
 #![cfg(unix)]
-// CHOICE: of Unix alone, because the limits are those of its shell. The readers are the same elsewhere.
+// CHOICE: Unix only, because a shell sets the limits. The readers are the same on other systems.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -12,21 +12,21 @@ use std::time::{Duration, Instant};
 
 use raypencil_tests::malformed::{Case, all, good, table, tiffs};
 
-/// The limits: 512 MB of data, 2 s of processor time. Memory is what can be written to (`-d`): address space (`-v`) would
-/// count the 64 MB that each thread's allocator sets apart and never touches.
-const LIMITED: &str = "ulimit -d 524288 && ulimit -t 2 && exec \"$@\"";
-/// A process that waits for something, a pipe's writer above all, uses no processor time. This ends it: long, because a busy
-/// machine is no fault.
+/// Shell command that runs its arguments with at most 512 MB of data and 2 s of processor time. The limit is on writable
+/// memory (`-d`): address space (`-v`) would include the 64 MB that the allocator reserves for each thread.
+const RUN_WITH_LIMITS: &str = "ulimit -d 524288 && ulimit -t 2 && exec \"$@\"";
+/// Time after which a process is stopped. A process that waits, for example for the writer of a pipe, uses no processor
+/// time. The deadline is long because the machine may be busy.
 const DEADLINE: Duration = Duration::from_secs(20);
-/// The longest message, bytes: a screen of text.
-const LONGEST: usize = 4096;
+/// Maximum length of a message in bytes: about one screen of text.
+const MAX_MESSAGE_BYTES: usize = 4096;
 
-/// What a run left behind.
+/// The result of a run.
 struct Run {
     status: Option<ExitStatus>,
     printed: String,
     message: String,
-    /// Files that were not there before, and those that are gone.
+    /// Files that the run created or deleted.
     changed: Vec<String>,
 }
 
@@ -60,7 +60,7 @@ fn run(case: &Case) -> Run {
     let arguments = case.command.iter().map(|word| if word == "PACK" { &pack } else { word });
     let mut command = Command::new("sh");
     command
-        .args(["-c", LIMITED, "sh", env!("CARGO_BIN_EXE_raypencil")])
+        .args(["-c", RUN_WITH_LIMITS, "sh", env!("CARGO_BIN_EXE_raypencil")])
         .args(arguments)
         .current_dir(&home)
         .env("NO_COLOR", "1")
@@ -88,7 +88,7 @@ fn run(case: &Case) -> Run {
     Run { status, printed: text(&printed), message: text(&message), changed }
 }
 
-/// What is wrong with a refusal.
+/// The defects of a refusal.
 fn faults(case: &Case) -> Vec<String> {
     let run = run(case);
     let mut faults = Vec::new();
@@ -98,17 +98,17 @@ fn faults(case: &Case) -> Vec<String> {
         }
     };
     match run.status {
-        None => hold(false, format!("still at work after {} s", DEADLINE.as_secs())),
+        None => hold(false, format!("still running after {} s", DEADLINE.as_secs())),
         Some(status) => hold(status.code() == Some(2), format!("{status}, not exit code 2")),
     }
     hold(run.printed.is_empty(), format!("printed {:?}", short(&run.printed)));
-    hold(run.changed.is_empty(), format!("left behind or took away {:?}", run.changed));
+    hold(run.changed.is_empty(), format!("created or deleted {:?}", run.changed));
     hold(run.message.matches('×').count() == 1, "not exactly one message".into());
     hold(!run.message.contains("panicked"), "a panic".into());
-    hold(run.message.len() <= LONGEST, format!("a message of {} bytes", run.message.len()));
-    let commands = |letter: char| letter.is_control() && letter != '\n';
-    hold(!run.message.contains(commands), "a message with codes that command a terminal".into());
-    // The message may be broken into lines, anywhere in long words, with a bar before each.
+    hold(run.message.len() <= MAX_MESSAGE_BYTES, format!("a message of {} bytes", run.message.len()));
+    let is_control = |letter: char| letter.is_control() && letter != '\n';
+    hold(!run.message.contains(is_control), "control characters in the message".into());
+    // The message may be wrapped, even within long words, with a bar at the start of each line.
     let bare = |text: &str| {
         text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│').collect::<String>()
     };
@@ -126,8 +126,8 @@ fn short(text: &str) -> String {
     text.chars().take(600).collect()
 }
 
-/// Runs every case, several at a time, and reports all that is wrong at once.
-fn judge(cases: &[Case], faults: impl Fn(&Case) -> Vec<String> + Sync) {
+/// Runs all cases in parallel, and reports all defects together.
+fn assert_all(cases: &[Case], faults: impl Fn(&Case) -> Vec<String> + Sync) {
     let next = AtomicUsize::new(0);
     let found = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
@@ -149,25 +149,25 @@ fn judge(cases: &[Case], faults: impl Fn(&Case) -> Vec<String> + Sync) {
 }
 
 #[test]
-fn every_hostile_file_is_refused() {
+fn every_malformed_file_is_refused() {
     let cases = all();
     let names: BTreeSet<&str> = cases.iter().map(|case| case.name.as_str()).collect();
     assert_eq!(names.len(), cases.len(), "each name once");
     assert!(cases.len() >= 100, "{} cases", cases.len());
-    judge(&cases, faults);
+    assert_all(&cases, faults);
 }
 
 #[test]
-fn every_hostile_tiff_is_refused() {
-    judge(&tiffs(), faults);
+fn every_malformed_tiff_is_refused() {
+    assert_all(&tiffs(), faults);
 }
 
 #[test]
 fn good_files_pass_under_the_same_limits() {
-    judge(&good(), |case| {
+    assert_all(&good(), |case| {
         let run = run(case);
         match run.status.and_then(|status| status.code()) {
-            // 1: a difference was found, which is work done.
+            // Exit code 1 means that a difference was found.
             Some(0 | 1) if run.message.is_empty() => Vec::new(),
             other => vec![format!("exit code {other:?}"), short(&run.message)],
         }
@@ -178,5 +178,8 @@ fn good_files_pass_under_the_same_limits() {
 fn the_document_lists_every_case() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/evidence/malformed-inputs.md");
     let written = fs::read_to_string(path).unwrap_or_default();
-    assert!(written == table(), "docs/evidence/malformed-inputs.md is not what `just hostile` writes");
+    assert!(
+        written == table(),
+        "docs/evidence/malformed-inputs.md is not what `just malformed-inputs` writes"
+    );
 }

@@ -1,42 +1,42 @@
-//! One malformed input: its files, the command that reads them, and the words of the refusal.
+//! A malformed input: its files, the command that reads them, and the words of the refusal.
 
 use std::fs;
 use std::io;
 use std::path::Path;
 
-/// What is found at a place.
+/// The content of a path.
 #[derive(Debug, Clone)]
 pub enum Item {
     /// A file of these bytes.
     File(Vec<u8>),
     /// An empty folder.
     Folder,
-    /// A named pipe, into which nobody writes.
+    /// A named pipe without a writer.
     Pipe,
     /// A symbolic link to this path.
     Link(String),
-    /// A copy of a committed pack, all of it.
+    /// A copy of a whole committed pack, by name.
     Pack(&'static str),
 }
 
-/// A hostile input.
+/// A malformed input.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// Its own name: letters, digits and hyphens.
+    /// A unique name of letters, digits and hyphens.
     pub name: String,
-    /// What is wrong with it, in a few words.
+    /// The defect, in a few words.
     pub what: &'static str,
-    /// What to make, by path from a folder of its own; parents are made too. Links that lead out lead to files beside
-    /// the folder `case`, in which the command is run.
+    /// The items to create, by path relative to the folder of the case; missing parent folders are created. Links out
+    /// of the folder lead to files beside it.
     pub items: Vec<(String, Item)>,
-    /// What to run in the folder. `PACK` stands for the path of a good pack.
+    /// The command to run in the folder, word by word. `PACK` stands for the path of a good pack.
     pub command: Vec<String>,
-    /// Words that the message must have: the file and the place.
+    /// Words that the message must contain: the file and the place in it.
     pub words: Vec<String>,
 }
 
 impl Case {
-    /// A case whose command is `command`, split at blanks.
+    /// A case without items. The words of `command` are separated by blanks.
     pub(super) fn new(name: impl Into<String>, what: &'static str, command: &str, words: &[&str]) -> Self {
         Self {
             name: name.into(),
@@ -52,12 +52,13 @@ impl Case {
         self.item(path, Item::File(bytes.into()))
     }
 
+    /// Adds an item at a path.
     pub(super) fn item(mut self, path: &str, item: Item) -> Self {
         self.items.push((path.to_string(), item));
         self
     }
 
-    /// One file, its name first among the words.
+    /// A case of one file, whose name is the first of the words.
     pub(super) fn of_file(
         name: &str,
         what: &'static str,
@@ -69,16 +70,16 @@ impl Case {
         Self::new(name, what, command, &[file, place]).file(file, bytes)
     }
 
-    /// With other words instead of the file's name and the place.
+    /// Replaces the words of the message.
     pub(super) fn says(mut self, words: &[&str]) -> Self {
         self.words = words.iter().map(ToString::to_string).collect();
         self
     }
 
-    /// Makes everything in `folder`, which is empty. `packs` holds the committed packs.
+    /// Creates all items in `folder`, which must be empty. `packs` is the folder of the committed packs.
     ///
     /// # Errors
-    /// What the file system says.
+    /// If an item cannot be created.
     pub fn make(&self, folder: &Path, packs: &Path) -> io::Result<()> {
         for (path, item) in &self.items {
             let path = folder.join(path);
@@ -98,15 +99,16 @@ impl Case {
     }
 }
 
+/// Creates a named pipe.
 fn pipe(path: &Path) -> io::Result<()> {
-    // The standard library makes none.
+    // The standard library cannot create one.
     match std::process::Command::new("mkfifo").arg(path).status()?.success() {
         true => Ok(()),
         false => Err(io::Error::other("mkfifo failed")),
     }
 }
 
-/// A copy of a folder; a file that is there already stays.
+/// Copies a folder. Files that exist already are not overwritten.
 fn copy(from: &Path, to: &Path) -> io::Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {

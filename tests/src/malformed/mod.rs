@@ -1,9 +1,22 @@
-//! Files that somebody made to hurt: each with the command that meets it and the words of the refusal. `docs/evidence/malformed-inputs.md`
-//! lists them.
+//! Malformed and malicious files for every reader, each with the command that reads it and the words of the refusal.
+//! `docs/evidence/malformed-inputs.md` lists them.
 //!
-//! They are made here, byte by byte, and none is committed. What is true of every refusal (exit code 2, one short message
-//! that names the file, nothing else printed, no file written, little memory and time) is asserted in
-//! `crates/cli/tests/hostile.rs`, where the binary's path is known.
+//! The files are made here, byte by byte; none is committed. `crates/cli/tests/malformed.rs`, where the binary's path is
+//! known, asserts what holds for every refusal: exit code 2, one short message that names the file, no other output, no
+//! file written, little memory and time.
+//!
+//! * [`Case`]: one input. `bytes`: truncation, deflate streams.
+//! * `glb`, `gltf`, `tiff`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `manifest`, `candidate`:
+//!   packs and recordings.
+//! * [`all`], [`tiffs`]: every case. [`good`]: well-formed files of the same formats. [`table`]: the page.
+//!
+//! ```
+//! use raypencil_tests::malformed::all;
+//!
+//! // Each case has a name of its own.
+//! let names: std::collections::BTreeSet<String> = all().into_iter().map(|case| case.name).collect();
+//! assert_eq!(names.len(), all().len());
+//! ```
 
 pub mod bytes;
 mod candidate;
@@ -21,7 +34,7 @@ mod tiff;
 pub use case::{Case, Item};
 pub use tiff::tiffs;
 
-/// Every case but the TIFFs.
+/// Every case except the TIFFs.
 pub fn all() -> Vec<Case> {
     [
         gltf::cases(),
@@ -37,8 +50,8 @@ pub fn all() -> Vec<Case> {
     .concat()
 }
 
-/// Good files, under the names of the hostile ones: what is refused is refused for what is wrong with it, and the limits
-/// are no narrower than good files need. The command may find differences, but no trouble.
+/// Well-formed files under the names of the malformed ones. The command must accept them under the same limits: so a
+/// refusal is due to the malformed part. It may report differences.
 pub fn good() -> Vec<Case> {
     let scene = "version = 1\n[camera]\nwidth_px = 16\nheight_px = 16\n[[beam]]\ncolumns = 16\nrows = 2\n\
                  [vehicle]\nposition_m = [-0.5, 0.5, 0]\n[terrain]\nfile = \"ground.glb\"\n";
@@ -54,7 +67,7 @@ pub fn good() -> Vec<Case> {
         diff("exr", exr::good()),
         diff("npy", npy::good()),
         diff("pfm", pfm::good()),
-        Case::new("good-pack", "a good pack, judged by itself", "check PACK PACK -o out", &[]),
+        Case::new("good-pack", "a good pack, checked against itself", "check PACK PACK -o out", &[]),
         Case::new("good-note", "a good note", "check PACK mine -o out", &[])
             .item("mine", Item::Pack("facets"))
             .file("mine/candidate.json", candidate::good()),
@@ -64,9 +77,12 @@ pub fn good() -> Vec<Case> {
 /// The cases as the table of `docs/evidence/malformed-inputs.md`.
 pub fn table() -> String {
     let mut text = String::from(
-        "# Hostile files\n\nMade by `tests/src/hostile`, run by `crates/cli/tests/hostile.rs`: each in a process of its own \
-         under a limit of 512 MB of\nmemory and 2 s of processor time. Asserted of each: exit code 2, one short message with \
-         these words, nothing on standard\noutput, no file written. `just hostile` writes this page.\n\n| case | what it is | words of the message |\n| --- | --- | --- |\n",
+        "# Malformed inputs\n\n\
+         The command refuses each of these inputs. `tests/src/malformed` makes them; `crates/cli/tests/malformed.rs` runs the\n\
+         command on each of them in its own process, with at most 512 MB of memory and 2 s of processor time. It asserts exit\n\
+         code 2, one short message with the words below, nothing on standard output, and no file written. The readers have\n\
+         [fuzz targets](../../fuzz/README.md) too. `just malformed-inputs` writes this page.\n\n\
+         | case | input | words of the message |\n| --- | --- | --- |\n",
     );
     for case in all().iter().chain(&tiffs()) {
         let words =

@@ -1,11 +1,11 @@
-//! Scene TOML, of rigs and of resolved scenes.
+//! Malformed scene files: rigs and resolved scenes.
 
 use super::case::{Case, Item};
 
 const FILE: &str = "scene.toml";
 const RUN: &str = "validate scene.toml -o out";
 
-/// A resolved scene that is fine but for its ground, which is not there.
+/// A well-formed resolved scene whose terrain file is missing.
 const RESOLVED: &str = r#"version = 1
 kind = "resolved"
 [camera]
@@ -55,16 +55,16 @@ pub(super) fn cases() -> Vec<Case> {
     vec![
         case("empty", "an empty file", "`version` is missing", b""),
         case("null", "null bytes", "scene.toml:1:", &[0; 64]),
-        case("not-utf8", "a byte that is no UTF-8", "utf-8", b"version = 1\n# \xff\n"),
+        case("not-utf8", "a byte that is not UTF-8", "utf-8", b"version = 1\n# \xff\n"),
         case("large", "a comment of two megabytes", "larger than", &vec![b'#'; 1 << 21]),
-        case("version-2", "a version that is not yet", "scene.toml:1:11", b"version = 2"),
+        case("version-2", "an unknown version", "scene.toml:1:11", b"version = 2"),
         case("version-text", "a version in quotes", "scene.toml:1:11", b"version = \"1\""),
         case("version-beyond", "a version beyond 2^64", "scene.toml:1:", b"version = 99999999999999999999"),
-        case("kind", "a kind of nobody", "scene.toml:2:", b"version = 1\nkind = \"evil\""),
+        case("kind", "an unknown kind", "scene.toml:2:", b"version = 1\nkind = \"evil\""),
         rig("cut-key", "a key without a value", "scene.toml:2:", "camera ="),
-        rig("cut-table", "a table that is cut off", "scene.toml:2:", "[camera"),
-        rig("cut-text", "a text that does not end", "scene.toml:2:", "kind = \"res"),
-        rig("cut-list", "a list that does not end", "scene.toml:", "[vehicle]\nposition_m = [0,"),
+        rig("cut-table", "a truncated table header", "scene.toml:2:", "[camera"),
+        rig("cut-text", "an unterminated string", "scene.toml:2:", "kind = \"res"),
+        rig("cut-list", "an unterminated list", "scene.toml:", "[vehicle]\nposition_m = [0,"),
         rig(
             "deep-lists",
             "a hundred thousand open brackets",
@@ -109,32 +109,27 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         rig(
             "many-keys",
-            "a hundred thousand keys of nobody",
+            "a hundred thousand unknown keys",
             "scene.toml:2:",
             &(0..100_000).map(|key| format!("k{key}=1\n")).collect::<String>(),
         ),
         rig(
             "many-tables",
-            "fifty thousand tables of nobody",
+            "fifty thousand unknown tables",
             "scene.toml:2:",
             &(0..50_000).map(|key| format!("[t.k{key}]\n")).collect::<String>(),
         ),
         rig("many-beams", "a hundred thousand beams", "", &"[[beam]]\n".repeat(100_000)),
-        rig("escape", "codes that would command a terminal", "scene.toml:2:", "camera = \"\u{1b}[2J\""),
+        rig("escape", "terminal escape codes", "scene.toml:2:", "camera = \"\u{1b}[2J\""),
         rig(
             "escape-written",
-            "the same codes, as TOML writes them",
+            "terminal escape codes, escaped in TOML",
             "scene.toml:3:",
             "[flux]\nmodel = \"\\u001b[2J\\u0007\"",
         ),
-        rig(
-            "key-twice",
-            "a key that is there twice",
-            "scene.toml:4:",
-            "[flux]\nmodel = \"eq1\"\nmodel = \"eq1\"",
-        ),
-        rig("table-twice", "a table that is there twice", "scene.toml:3:", "[flux]\n[flux]"),
-        rig("table-number", "a number where a table belongs", "scene.toml:2:", "camera = 1"),
+        rig("key-twice", "a duplicate key", "scene.toml:4:", "[flux]\nmodel = \"eq1\"\nmodel = \"eq1\""),
+        rig("table-twice", "a duplicate table", "scene.toml:3:", "[flux]\n[flux]"),
+        rig("table-number", "a number in place of a table", "scene.toml:2:", "camera = 1"),
         rig("nan", "a range that is not a number", "scene.toml:3:", "[camera]\nmax_range_m = nan"),
         rig("infinite", "a heading of infinity", "scene.toml:3:", "[vehicle]\nheading_deg = -inf"),
         rig("beyond-double", "a position of 1e999", "scene.toml:3:", "[vehicle]\nposition_m = [1e999, 0]"),
@@ -144,7 +139,7 @@ pub(super) fn cases() -> Vec<Case> {
         rig("width-real", "a width of 16.5", "scene.toml:3:", "[camera]\nwidth_px = 16.5"),
         rig(
             "square",
-            "a million pixels square",
+            "2^20 x 2^20 pixels",
             "scene.toml:4:",
             "[camera]\nwidth_px = 1048576\nheight_px = 1048576",
         ),
@@ -164,13 +159,13 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         rig(
             "position-tall",
-            "the same, a line each",
+            "a position of a hundred thousand numbers, one in each line",
             "scene.toml:3:",
             &format!("[vehicle]\nposition_m = [{}]", "0,\n".repeat(100_000)),
         ),
         rig(
             "far-right",
-            "a fault a hundred thousand letters to the right",
+            "a syntax error a hundred thousand columns to the right",
             "scene.toml:2:",
             &format!("a = [{}]]", " ".repeat(100_000)),
         ),
@@ -182,38 +177,38 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         rig(
             "turned",
-            "letters that turn the direction of writing",
+            "letters that reverse the direction of writing",
             "scene.toml:2:",
             "evil = \"\u{202e}\u{2066}\"",
         ),
         rig(
             "two-grounds",
-            "two grounds",
+            "two terrains",
             "scene.toml:4:",
             "[terrain]\nbuiltin = \"pyramids\"\nfile = \"a.glb\"",
         ),
         rig(
             "off-ground",
-            "a vehicle far from any ground",
+            "a vehicle far from the terrain",
             "scene.toml:3:",
             "[vehicle]\nposition_m = [1e9, 0]",
         ),
-        terrain("missing", "a ground that is not there", "ground.glb"),
-        terrain("not-known", "a password file as ground", "/etc/passwd"),
-        terrain("null", "a ground with an ending that is none", "ground.glb%00"),
+        terrain("missing", "a missing terrain", "ground.glb"),
+        terrain("not-known", "/etc/passwd as terrain", "/etc/passwd"),
+        terrain("null", "a terrain with an unknown file extension", "ground.glb%00"),
         rig(
             "terrain-null-byte",
-            "a ground with a null byte in its name",
+            "a terrain with a null byte in its name",
             "scene.toml:3:",
             "[terrain]\nfile = \"ground\\u0000.glb\"",
         ),
-        terrain("folder", "a folder as ground", "ground.glb").item("ground.glb", Item::Folder),
-        terrain("pipe", "a pipe as ground", "ground.glb").item("ground.glb", Item::Pipe),
-        terrain("device", "a device without an end as ground", "ground.glb")
+        terrain("folder", "a folder in place of the terrain", "ground.glb").item("ground.glb", Item::Folder),
+        terrain("pipe", "a pipe in place of the terrain", "ground.glb").item("ground.glb", Item::Pipe),
+        terrain("device", "a link to /dev/zero in place of the terrain", "ground.glb")
             .item("ground.glb", Item::Link("/dev/zero".into())),
         rig(
-            "terrain-hostile",
-            "a good scene on a ground of no bytes",
+            "terrain-empty",
+            "a good scene with an empty terrain file",
             "ground.glb",
             "[terrain]\nfile = \"ground.glb\"",
         )
@@ -228,7 +223,7 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         resolved(
             "key-unknown",
-            "a resolved scene with a key more",
+            "a resolved scene with an unknown key",
             "scene.toml:",
             "[flux]\n",
             "[flux]\nevil = 1\n",
@@ -245,7 +240,7 @@ pub(super) fn cases() -> Vec<Case> {
             .file("ground.glb", super::glb::good()),
         resolved(
             "quaternion-tiny",
-            "a rotation whose square is 0",
+            "a rotation whose squared length underflows to 0",
             "scene.toml",
             "[1, 0, 0, 0]",
             "[1e-200, 0, 0, 0]",
@@ -260,19 +255,13 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         resolved(
             "square",
-            "2^20 pixels square",
+            "2^20 x 2^20 pixels",
             "scene.toml:5:",
             "width_px = 16\nheight_px = 16",
             "width_px = 1048576\nheight_px = 1048576",
         ),
         resolved("range", "a range of infinity", "scene.toml:12:", "max_range_m = 20", "max_range_m = inf"),
-        resolved(
-            "half-width",
-            "a fan that is 0 wide",
-            "scene.toml:",
-            "half_width_m = 0.05",
-            "half_width_m = 0",
-        ),
+        resolved("half-width", "a fan of width 0", "scene.toml:", "half_width_m = 0.05", "half_width_m = 0"),
         resolved(
             "origin",
             "an origin at 1e300 m",
@@ -287,16 +276,10 @@ pub(super) fn cases() -> Vec<Case> {
             "origin_m = [0, 0, 0]",
             "origin_m = [0, 0]",
         ),
-        resolved(
-            "ground-missing",
-            "a ground that is not there",
-            "scene.toml:25:",
-            "ground.glb",
-            "ground.glb",
-        ),
-        Case::new("toml-folder", "a folder with the name of a file", RUN, &[FILE, "folder"])
+        resolved("ground-missing", "a missing terrain", "scene.toml:25:", "ground.glb", "ground.glb"),
+        Case::new("toml-folder", "a folder in place of the file", RUN, &[FILE, "folder"])
             .item(FILE, Item::Folder),
-        Case::new("toml-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"])
+        Case::new("toml-pipe", "a pipe in place of the file", RUN, &[FILE, "not a regular file"])
             .item(FILE, Item::Pipe),
         Case::new("toml-missing", "no file", RUN, &[FILE, "does not exist"]),
     ]

@@ -1,4 +1,4 @@
-//! TIFF, as elevation models come in. (TIFF 6.0; BigTIFF; GeoTIFF 1.1, OGC 19-008r4)
+//! Malformed GeoTIFF elevation models. (TIFF 6.0; BigTIFF; GeoTIFF 1.1, OGC 19-008r4)
 
 use super::bytes::{bomb, cuts, zlib};
 use super::case::{Case, Item};
@@ -19,10 +19,11 @@ const SCALE: u16 = 33550;
 const TIEPOINT: u16 = 33922;
 const DEFLATE: u32 = 8;
 
-/// An entry of a directory: its tag, its type, how many values, and their bytes.
+/// An entry of a directory: tag, type, number of values, and the bytes of the values.
 type Entry = (u16, u16, u32, Vec<u8>);
 
-/// A little-endian file of one directory, to be spoiled.
+/// A little-endian file of one strip and one directory with any entries. (The writer of well-formed files, with types,
+/// codecs and tiles, is in `crates/mesh-io/tests/dem/write.rs`.)
 #[derive(Clone)]
 struct Tiff {
     entries: Vec<Entry>,
@@ -30,11 +31,11 @@ struct Tiff {
     next: u32,
 }
 
-/// Where the strip starts: after the first eight bytes.
-const STRIP_AT: u32 = 8;
+/// Offset of the strip in bytes: after the header.
+const STRIP_OFFSET: u32 = 8;
 
 impl Tiff {
-    /// 4 x 3 posts of single precision, half a metre apart.
+    /// A well-formed file: 4 x 3 posts of single precision, 0.5 m apart.
     fn good() -> Self {
         let doubles =
             |numbers: &[f64]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
@@ -45,7 +46,7 @@ impl Tiff {
             (BITS, 32),
             (COMPRESSION, 1),
             (262, 1),
-            (OFFSETS, STRIP_AT),
+            (OFFSETS, STRIP_OFFSET),
             (SAMPLES, 1),
             (ROWS, 3),
             (COUNTS, strip.len() as u32),
@@ -58,11 +59,13 @@ impl Tiff {
         Self { entries, strip, next: 0 }
     }
 
+    /// Sets an entry to one 32-bit integer.
     fn with(mut self, tag: u16, value: u32) -> Self {
         self.entries.retain(|entry| entry.0 != tag);
         self.entry((tag, 4, 1, value.to_le_bytes().to_vec()))
     }
 
+    /// Sets an entry.
     fn entry(mut self, entry: Entry) -> Self {
         self.entries.retain(|known| known.0 != entry.0);
         self.entries.push(entry);
@@ -70,19 +73,22 @@ impl Tiff {
         self
     }
 
+    /// Removes an entry.
     fn without(mut self, tag: u16) -> Self {
         self.entries.retain(|entry| entry.0 != tag);
         self
     }
 
+    /// Sets the bytes of the strip and their count.
     fn strip(mut self, bytes: Vec<u8>) -> Self {
         self.strip = bytes;
         let count = self.strip.len() as u32;
         self.with(COUNTS, count)
     }
 
+    /// The bytes of the file.
     fn bytes(&self) -> Vec<u8> {
-        let directory = (STRIP_AT as usize + self.strip.len()).next_multiple_of(2);
+        let directory = (STRIP_OFFSET as usize + self.strip.len()).next_multiple_of(2);
         let mut bytes = b"II\x2a\0".to_vec();
         bytes.extend((directory as u32).to_le_bytes());
         bytes.extend(&self.strip);
@@ -110,7 +116,7 @@ impl Tiff {
     }
 }
 
-/// The TIFFs.
+/// The malformed TIFFs.
 pub fn tiffs() -> Vec<Case> {
     let good = Tiff::good;
     let case = |name: &str, what, place: &'static str, bytes: Vec<u8>| {
@@ -125,14 +131,9 @@ pub fn tiffs() -> Vec<Case> {
     endless.next = directory as u32;
     let mut cases = vec![
         case("empty", "an empty file", "first bytes", Vec::new()),
-        case("words", "a letter, not a file", "first bytes", b"Dear rover,".to_vec()),
-        case(
-            "magic",
-            "a magic number that is none",
-            "first bytes",
-            [b"II\x2c\0", &good().bytes()[4..]].concat(),
-        ),
-        case("order", "two orders of bytes", "first bytes", [b"IM\x2a\0", &good().bytes()[4..]].concat()),
+        case("words", "plain text of another kind", "first bytes", b"Dear rover,".to_vec()),
+        case("magic", "an unknown magic number", "first bytes", [b"II\x2c\0", &good().bytes()[4..]].concat()),
+        case("order", "a mixed byte order", "first bytes", [b"IM\x2a\0", &good().bytes()[4..]].concat()),
         case("directory-0", "a directory at byte 0", "directory at byte 0", b"II\x2a\0\0\0\0\0".to_vec()),
         case(
             "directory-beyond",
@@ -146,8 +147,8 @@ pub fn tiffs() -> Vec<Case> {
             "directory at byte 18446744073709551615",
             big,
         ),
-        case("endless", "a directory that is followed by itself", "ImageWidth: missing", {
-            // Without a width, so that it is refused even if later directories are not looked at.
+        case("endless", "a directory that names itself as the next", "ImageWidth: missing", {
+            // Without a width, so that a reader of the first directory alone refuses it too.
             Tiff { entries: good().without(WIDTH).entries, ..endless }.bytes()
         }),
         case("entries", "a directory of 65535 entries in a few bytes", "directory at byte 56: 65535 tags", {
@@ -159,11 +160,11 @@ pub fn tiffs() -> Vec<Case> {
         case("width-0", "a width of 0", "ImageWidth: 0", good().with(WIDTH, 0).bytes()),
         case(
             "square",
-            "two million posts square in a few hundred bytes",
+            "2,000,000 x 2,000,000 posts in a few hundred bytes",
             "2000000 x 2000000 posts",
             good().with(WIDTH, 2_000_000).with(HEIGHT, 2_000_000).with(ROWS, 2_000_000).bytes(),
         ),
-        case("square-deflate", "the same, compressed", "2000000 x 2000000 posts", {
+        case("square-deflate", "the same size, compressed", "2000000 x 2000000 posts", {
             good()
                 .with(WIDTH, 2_000_000)
                 .with(HEIGHT, 2_000_000)
@@ -174,7 +175,7 @@ pub fn tiffs() -> Vec<Case> {
         }),
         case(
             "wraps",
-            "2^32 - 1 posts square, whose bytes overflow",
+            "2^32 - 1 posts along each side, whose bytes overflow 64 bits",
             "ImageWidth: 4294967295",
             good().with(WIDTH, u32::MAX).with(HEIGHT, u32::MAX).bytes(),
         ),
@@ -206,13 +207,13 @@ pub fn tiffs() -> Vec<Case> {
         ),
         case(
             "strips-many",
-            "four milliards of strips",
+            "2^32 - 1 strips",
             "StripOffsets: 4294967295 values",
             good().entry((OFFSETS, 4, u32::MAX, vec![8; 8])).bytes(),
         ),
         case(
             "bomb",
-            "sixteen kilobytes of deflate that are sixteen megabytes, of sixty-four that are promised",
+            "a deflate stream of 16 kB that expands to 16 MB, where the header promises 64 MB",
             "strip 0",
             good()
                 .with(WIDTH, 4000)
@@ -224,36 +225,36 @@ pub fn tiffs() -> Vec<Case> {
         ),
         case(
             "deflate-garbage",
-            "a strip that is no deflate",
+            "a strip that is not a deflate stream",
             "strip 0: corrupt deflate",
             good().with(COMPRESSION, DEFLATE).strip(vec![0x5a; 40]).bytes(),
         ),
         case(
             "deflate-short",
-            "deflate of too few posts",
+            "a deflate stream with too few posts",
             "strip 0",
             good().with(COMPRESSION, DEFLATE).strip(zlib(&[0; 12])).bytes(),
         ),
         case(
             "lzw-garbage",
-            "a strip that is no LZW",
+            "a strip that is not an LZW stream",
             "strip 0: invalid code",
             good().with(COMPRESSION, 5).strip(vec![0xff; 40]).bytes(),
         ),
         case(
             "compression",
-            "a compression that is none",
+            "an unknown compression",
             "Compression: 60000",
             good().with(COMPRESSION, 60_000).bytes(),
         ),
         case(
             "samples",
-            "65535 numbers a post",
+            "65535 samples for each post",
             "SamplesPerPixel: 65535",
             good().with(SAMPLES, 65_535).bytes(),
         ),
         case("bits-0", "posts of 0 bits", "BitsPerSample: 0", good().with(BITS, 0).bytes()),
-        case("complex", "posts of complex numbers", "SampleFormat: 6", good().with(FORMAT, 6).bytes()),
+        case("complex", "complex posts", "SampleFormat: 6", good().with(FORMAT, 6).bytes()),
         case(
             "value-type",
             "a width of an unknown type",
@@ -268,13 +269,13 @@ pub fn tiffs() -> Vec<Case> {
         ),
         case(
             "scale-nan",
-            "posts that are not a number apart",
+            "a spacing of posts that is not a number",
             "ModelPixelScaleTag: [NaN, 0.5, 0.0]",
             good().entry((SCALE, 12, 3, doubles(&[f64::NAN, 0.5, 0.0]))).bytes(),
         ),
         case(
             "scale-many",
-            "two milliards of scales",
+            "2^31 scales",
             "ModelPixelScaleTag: 2147483648 values",
             good().entry((SCALE, 12, 1 << 31, vec![0; 8])).bytes(),
         ),
@@ -284,19 +285,19 @@ pub fn tiffs() -> Vec<Case> {
             "pixel (0, 0)",
             good().entry((TIEPOINT, 12, 6, doubles(&[0.0, 0.0, 0.0, 1e300, 0.0, 0.0]))).bytes(),
         ),
-        case("all-nan", "posts of which none is a number", "12 of 12 posts not known", {
+        case("all-nan", "posts that are all not a number", "12 of 12 posts not known", {
             good().strip([f32::NAN; 12].iter().flat_map(|post| post.to_le_bytes()).collect()).bytes()
         }),
-        Case::new("tiff-folder", "a folder with the name of a file", RUN, &[FILE, "a folder"])
+        Case::new("tiff-folder", "a folder in place of the file", RUN, &[FILE, "a folder"])
             .item(FILE, Item::Folder),
-        Case::new("tiff-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"])
+        Case::new("tiff-pipe", "a pipe in place of the file", RUN, &[FILE, "not a regular file"])
             .item(FILE, Item::Pipe),
     ];
     let length = good().bytes().len();
-    // Two runs of doubles, of 3 and 6, come last.
+    // Two arrays of 3 and 6 doubles come last.
     let values_at = length - 8 * (3 + 6);
     for at in cuts(length, &[2, 4, 8, 56, 58, length - 1], 3) {
-        // The header, the strip's bytes and the directory after it, the values that the directory refers to.
+        // Header; strip and directory; values that the directory refers to.
         let place = match at {
             0..8 => "first bytes",
             _ if at < values_at => "directory at byte 56",
@@ -304,7 +305,7 @@ pub fn tiffs() -> Vec<Case> {
         };
         cases.push(case(
             &format!("cut-at-{at}"),
-            "a good file, cut off",
+            "a truncated good file",
             place,
             good().bytes()[..at].to_vec(),
         ));

@@ -1,6 +1,6 @@
 //! Elevation models: files written by hand and by an encoder, read back, and files that are none.
 
-pub(crate) mod malformed;
+pub(crate) mod hostile;
 pub(crate) mod placement;
 pub(crate) mod samples;
 pub(crate) mod scenes;

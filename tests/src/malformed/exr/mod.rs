@@ -1,5 +1,4 @@
-//! OpenEXR: headers that claim too much, offset tables and blocks that do not hold what they should.
-//! (OpenEXR file layout, openexr.com)
+//! Malformed OpenEXR files: headers, offset tables, blocks. (OpenEXR file layout, openexr.com)
 
 mod write;
 
@@ -14,7 +13,7 @@ pub(super) fn good() -> Vec<u8> {
     Exr::small().bytes()
 }
 
-/// One block of 4 x 2 cells under a compression.
+/// A file of 4 x 2 cells in one compressed block.
 fn packed(compression: u8, data: Vec<u8>) -> Vec<u8> {
     Exr::new(4, 2, compression).block(0, data).bytes()
 }
@@ -26,13 +25,14 @@ pub(super) fn cases() -> Vec<Case> {
     [headers(&case), windows(&case), tables(&case), blocks(&case), cut(&case)].concat()
 }
 
+/// Makes a case from its name, its defect, the place in the message and the bytes.
 type Make<'a> = &'a dyn Fn(&str, &'static str, &str, Vec<u8>) -> Case;
 
 fn headers(case: Make<'_>) -> Vec<Case> {
     let small = Exr::small;
     let version = |flags: [u8; 4]| Exr { version: flags, ..small() }.bytes();
     let list = |list: &[(&str, i32, i32)]| small().with("channels", channels(list)).bytes();
-    // The length of the attribute `compression` as the header says it.
+    // A file with another length of the attribute `compression` in its header.
     let sized = |length: i32| {
         let mut bytes = good();
         let name = b"compression\0compression\0";
@@ -42,24 +42,24 @@ fn headers(case: Make<'_>) -> Vec<Case> {
     };
     vec![
         case("empty", "an empty file", "header", Vec::new()),
-        case("words", "a letter, not a file", "header", b"Dear rover, this is no picture.".to_vec()),
-        case("version-99", "a version that is not yet", "header", version([99, 0, 0, 0])),
+        case("words", "plain text of another kind", "header", b"Dear rover, this is no picture.".to_vec()),
+        case("version-99", "an unknown version", "header", version([99, 0, 0, 0])),
         case("flags", "every flag of the version set", "header", version([2, 255, 255, 255])),
         case("deep", "the flag of deep data", "header", version([2, 8, 0, 0])),
         case("multi-part", "the flag of several parts, without parts", "header", version([2, 16, 0, 0])),
-        case("no-end", "a header that does not end", "header", small().header()[..250].to_vec()),
+        case("no-end", "an unterminated header", "header", small().header()[..250].to_vec()),
         case("no-channels", "no list of channels", "header", small().without("channels").bytes()),
         case("no-window", "no data window", "header", small().without("dataWindow").bytes()),
         case("no-compression", "no compression", "header", small().without("compression").bytes()),
         case("channels-none", "an empty list of channels", "header", list(&[])),
-        case("channel-twice", "two channels of one name", "", list(&[("Z", 2, 1), ("Z", 2, 1)])),
-        case("channel-type", "numbers of a type that is none", "header", list(&[("Z", 7, 1)])),
+        case("channel-twice", "two channels with the same name", "", list(&[("Z", 2, 1), ("Z", 2, 1)])),
+        case("channel-type", "a channel of an unknown type", "header", list(&[("Z", 7, 1)])),
         case("step-0", "a sample every 0 cells", "", list(&[("Z", 2, 0)])),
         case("step-2", "a sample every 2 cells", "", list(&[("Z", 2, 2)])),
         case("step-negative", "a sample every -1 cells", "", list(&[("Z", 2, -1)])),
         case(
             "channel-open",
-            "a list of channels without an end",
+            "an unterminated list of channels",
             "header",
             small().with("channels", b"range.T\0\x02\0".to_vec()).bytes(),
         ),
@@ -72,20 +72,15 @@ fn headers(case: Make<'_>) -> Vec<Case> {
         case("attribute-top", "an attribute of 2^31 - 1 bytes", "header", sized(i32::MAX)),
         case(
             "compression-99",
-            "a compression that is none",
+            "an unknown compression",
             "header",
             small().with("compression", vec![99]).bytes(),
         ),
-        case("lossy", "a compression that changes numbers", "header", packed(B44, vec![0; 16])),
-        case(
-            "line-order",
-            "an order of lines that is none",
-            "header",
-            small().with("lineOrder", vec![9]).bytes(),
-        ),
+        case("lossy", "a lossy compression", "header", packed(B44, vec![0; 16])),
+        case("line-order", "an unknown order of lines", "header", small().with("lineOrder", vec![9]).bytes()),
         case(
             "long-name",
-            "a name of a thousand letters",
+            "an attribute with a name of a thousand letters",
             "header",
             small().more(&"n".repeat(1000), "string", vec![0]).bytes(),
         ),
@@ -102,8 +97,8 @@ fn headers(case: Make<'_>) -> Vec<Case> {
             small().more("preview", "preview", words(&[1 << 30, 4])).bytes(),
         ),
         case(
-            "texts",
-            "a list of texts with one of 2^31 - 1 bytes",
+            "strings",
+            "a list of strings with one of 2^31 - 1 bytes",
             "header",
             small().more("t", "stringvector", words(&[i32::MAX])).bytes(),
         ),
@@ -123,12 +118,12 @@ fn windows(case: Make<'_>) -> Vec<Case> {
     let square = |compression| Exr::new(side, side, compression).block(0, zlib(&[0; 64])).bytes();
     let window = |numbers: [i32; 4]| Exr::small().windows(numbers).bytes();
     vec![
-        case("square", "two million cells square in a few hundred bytes", "", square(NONE)),
-        case("square-zip", "the same, compressed", "", square(ZIP)),
-        case("square-piz", "the same, as wavelets", "", square(PIZ)),
-        case("wide", "2^26 cells in a row", "", Exr::new(1 << 26, 1, ZIP).block(0, zlib(&[0; 64])).bytes()),
-        case("tall", "2^26 rows of a cell", "", Exr::new(1, 1 << 26, ZIP).block(0, zlib(&[0; 64])).bytes()),
-        case("window-back", "a window that ends before it starts", "", window([3, 1, 0, 0])),
+        case("square", "2,000,000 x 2,000,000 cells in a few hundred bytes", "", square(NONE)),
+        case("square-zip", "the same size, compressed", "", square(ZIP)),
+        case("square-piz", "the same size, as wavelets", "", square(PIZ)),
+        case("wide", "one row of 2^26 cells", "", Exr::new(1 << 26, 1, ZIP).block(0, zlib(&[0; 64])).bytes()),
+        case("tall", "2^26 rows of one cell", "", Exr::new(1, 1 << 26, ZIP).block(0, zlib(&[0; 64])).bytes()),
+        case("window-back", "a window whose end is before its start", "", window([3, 1, 0, 0])),
         case("window-empty", "a window of no cells", "", window([0, 0, -1, -1])),
         case(
             "window-ends",
@@ -139,7 +134,7 @@ fn windows(case: Make<'_>) -> Vec<Case> {
         case("window-top", "a window at 2^31 - 1", "", window([i32::MAX, i32::MAX, i32::MAX, i32::MAX])),
         case(
             "crop",
-            "a window that is a part of the picture",
+            "a data window smaller than the display window",
             "data window",
             Exr::small().with("displayWindow", words(&[0, 0, 7, 7])).bytes(),
         ),
@@ -153,7 +148,7 @@ fn tables(case: Make<'_>) -> Vec<Case> {
         case("offset-0", "blocks at byte 0", "pixels", table([0, 0])),
         case("offset-beyond", "blocks beyond the file", "pixels", table([1 << 40, 1 << 41])),
         case("offset-top", "blocks at byte 2^64 - 1", "pixels", table([u64::MAX; 2])),
-        case("offset-twice", "two blocks at one place", "pixels", table([first; 2])),
+        case("offset-twice", "two blocks at the same offset", "pixels", table([first; 2])),
     ]
 }
 
@@ -161,19 +156,18 @@ fn blocks(case: Make<'_>) -> Vec<Case> {
     let lines = |first: i32, second: i32| {
         Exr::new(4, 2, NONE).block(first, vec![0; 16]).block(second, vec![0; 16]).bytes()
     };
-    // The size of the second block as it says itself.
+    // A file with another size of the second block in its header.
     let sized = |size: i32| {
         let mut bytes = good();
         let at = bytes.len() - 20;
         bytes[at..at + 4].copy_from_slice(&size.to_le_bytes());
         bytes
     };
-    // A window of a thousand lines of one block each, so that the block itself is refused.
     let garbage: Vec<u8> = (0..40_u32).map(|byte| (byte * 97 + 13) as u8).collect();
     vec![
-        case("line-99", "a block of a line that is not there", "pixels", lines(0, 99)),
-        case("line-negative", "a block of line -2^31", "pixels", lines(0, i32::MIN)),
-        case("line-twice", "two blocks of one line", "pixels", lines(0, 0)),
+        case("line-99", "a block for a line outside the image", "pixels", lines(0, 99)),
+        case("line-negative", "a block for line -2^31", "pixels", lines(0, i32::MIN)),
+        case("line-twice", "two blocks for the same line", "pixels", lines(0, 0)),
         case(
             "line-between",
             "a block of sixteen lines that starts at the second",
@@ -190,28 +184,37 @@ fn blocks(case: Make<'_>) -> Vec<Case> {
         case("block-top", "a block of 2^31 - 1 bytes", "pixels", sized(i32::MAX)),
         case("block-0", "a block of no bytes", "pixels", sized(0)),
         case("block-short", "a block of too few cells", "pixels", sized(12)),
-        case("zip-garbage", "a block that is no deflate", "pixels", packed(ZIP, garbage[..31].to_vec())),
-        case("zip-short", "deflate of too few cells", "pixels", packed(ZIP, zlib(&[0; 12]))),
+        case(
+            "zip-garbage",
+            "a block that is not a deflate stream",
+            "pixels",
+            packed(ZIP, garbage[..31].to_vec()),
+        ),
+        case("zip-short", "a deflate stream with too few cells", "pixels", packed(ZIP, zlib(&[0; 12]))),
         case(
             "zip-bomb",
-            "sixteen kilobytes of deflate that are sixteen megabytes",
+            "a deflate stream of 16 kB that expands to 16 MB",
             "pixels",
             packed(ZIP, bomb(0, 1 << 24)),
         ),
         case(
             "zip-bomb-large",
-            "a quarter of a megabyte that is a quarter of a gigabyte",
+            "a deflate stream of 256 kB that expands to 256 MB",
             "pixels",
             packed(ZIP, bomb(0, 1 << 28)),
         ),
-        case("zip-cut", "deflate that is cut off", "pixels", packed(ZIP, zlib(&[7; 32])[..6].to_vec())),
-        case("rle-garbage", "runs of nothing", "pixels", packed(RLE, vec![127, 0, 200])),
-        case("rle-bomb", "runs of far too many bytes", "pixels", packed(RLE, [127, 0].repeat(15))),
-        case("piz-garbage", "wavelets of noise", "pixels", packed(PIZ, garbage[..31].to_vec())),
-        case("piz-range", "wavelets whose values are out of range", "pixels", packed(PIZ, vec![255; 31])),
-        Case::new("exr-folder", "a folder with the name of a file", RUN, &["map.exr"])
-            .item(FILE, Item::Folder),
-        Case::new("exr-pipe", "a pipe with the name of a file", RUN, &["map.exr", "not a regular file"])
+        case("zip-cut", "a truncated deflate stream", "pixels", packed(ZIP, zlib(&[7; 32])[..6].to_vec())),
+        case("rle-garbage", "invalid run-length codes", "pixels", packed(RLE, vec![127, 0, 200])),
+        case(
+            "rle-bomb",
+            "run-length codes of far too many bytes",
+            "pixels",
+            packed(RLE, [127, 0].repeat(15)),
+        ),
+        case("piz-garbage", "a wavelet block of noise", "pixels", packed(PIZ, garbage[..31].to_vec())),
+        case("piz-range", "a wavelet block with values out of range", "pixels", packed(PIZ, vec![255; 31])),
+        Case::new("exr-folder", "a folder in place of the file", RUN, &["map.exr"]).item(FILE, Item::Folder),
+        Case::new("exr-pipe", "a pipe in place of the file", RUN, &["map.exr", "not a regular file"])
             .item(FILE, Item::Pipe),
     ]
 }
@@ -222,12 +225,12 @@ fn cut(case: Make<'_>) -> Vec<Case> {
     let places = [3, 4, 7, 8, 9, header - 1, header, header + 8, header + 16, header + 23, length - 1];
     let cut = |at: usize| {
         let place = if at <= header { "" } else { "EXR" };
-        case(&format!("cut-at-{at}"), "a good file, cut off", place, good()[..at].to_vec())
+        case(&format!("cut-at-{at}"), "a truncated good file", place, good()[..at].to_vec())
     };
     cuts(length, &places, 6).into_iter().map(cut).collect()
 }
 
-/// A good file of one channel of zeros, in blocks of sixteen lines that all are `block`.
+/// A well-formed file of one channel of zeros. Every block of sixteen lines is `block`.
 pub(super) fn zeros(columns: i32, rows: i32, block: &[u8]) -> Vec<u8> {
     let blocks = (0..rows / 16).map(|index| (16 * index, block.to_vec()));
     Exr { blocks: blocks.collect(), ..Exr::new(columns, rows, ZIP) }.bytes()

@@ -1,23 +1,27 @@
-//! Changes of a well-formed square.
+//! Changes of a well-formed glTF square.
 
 use serde_json::Value;
 
 use crate::glb::{glb, square};
 use crate::malformed::case::Case;
 
+/// Name of the GLB file.
 pub(super) const FILE: &str = "ground.glb";
+/// Command that reads it.
 pub(super) const RUN: &str = "validate ground.glb -o out";
-pub(super) const TEXT: &str = "ground.gltf";
-pub(super) const RUN_TEXT: &str = "validate ground.gltf -o out";
+/// Name of the text file.
+const TEXT: &str = "ground.gltf";
+/// Command that reads it.
+const RUN_TEXT: &str = "validate ground.gltf -o out";
 
-/// The square after a change of its JSON.
+/// The square with changed JSON.
 pub(super) fn changed(name: &str, what: &'static str, place: &str, change: impl FnOnce(&mut Value)) -> Case {
     let (mut json, bin) = square();
     change(&mut json);
     Case::of_file(&format!("gltf-{name}"), what, RUN, FILE, glb(&json, &bin), place)
 }
 
-/// The square with one value set, which may be a new key of an object.
+/// The square with one value of its JSON set. The value may be a new key of an object.
 pub(super) fn set(name: &str, what: &'static str, pointer: &str, value: Value, place: &str) -> Case {
     changed(name, what, place, |json| {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
@@ -29,7 +33,7 @@ pub(super) fn set(name: &str, what: &'static str, pointer: &str, value: Value, p
     })
 }
 
-/// The square with other numbers in its buffer.
+/// The square with a changed buffer.
 pub(super) fn numbers(
     name: &str,
     what: &'static str,
@@ -41,7 +45,7 @@ pub(super) fn numbers(
     Case::of_file(&format!("gltf-{name}"), what, RUN, FILE, glb(&json, &bin), place)
 }
 
-/// A text file as it stands.
+/// A `.gltf` file of any bytes.
 pub(super) fn text(name: &str, what: &'static str, place: &str, bytes: impl Into<Vec<u8>>) -> Case {
     Case::of_file(&format!("gltf-{name}"), what, RUN_TEXT, TEXT, bytes.into(), place)
 }

@@ -1,4 +1,4 @@
-//! glTF JSON: what is none, what is of the wrong kind, what asks for much; references, counts, nodes and storage beside.
+//! Malformed glTF: syntax, versions and types, excessive sizes. Counts, nodes and storage are in files of their own.
 
 mod changes;
 mod counts;
@@ -15,41 +15,41 @@ pub(super) fn cases() -> Vec<Case> {
     [texts(), heads(), counts::cases(), nodes::cases(), storage::layouts(), storage::uris(), bombs()].concat()
 }
 
-/// What is no JSON, or not the right one.
+/// Malformed JSON.
 fn texts() -> Vec<Case> {
     let nested = |depth: usize| ["[".repeat(depth), "]".repeat(depth)].concat();
     vec![
         text("empty", "an empty file", "first bytes", ""),
-        text("words", "a letter, not a file", "first bytes", "Dear rover,"),
+        text("words", "plain text of another kind", "first bytes", "Dear rover,"),
         text("byte-order-mark", "a byte order mark before the JSON", "first bytes", "\u{feff}{}"),
         text(
             "not-utf8",
-            "a byte that is no UTF-8",
+            "a byte that is not UTF-8",
             "JSON",
             b"{\"asset\": {\"version\": \"2.0\xff\"}}".to_vec(),
         ),
         text(
             "lone-surrogate",
-            "half a surrogate pair",
+            "one half of a surrogate pair",
             "JSON",
             r#"{"asset": {"version": "2.0", "generator": "\ud800"}}"#,
         ),
-        text("open", "JSON that never ends", "JSON", r#"{"asset": {"version": "2.0"}, "nodes": [{"#),
+        text("open", "unterminated JSON", "JSON", r#"{"asset": {"version": "2.0"}, "nodes": [{"#),
         text("deep-extras", "two hundred thousand open brackets in extras", "JSON", {
             format!(r#"{{"asset": {{"version": "2.0"}}, "extras": {}"#, "[".repeat(200_000))
         }),
         text("deep-extensions", "extensions nested a thousand deep", "JSON", {
             format!(r#"{{"asset": {{"version": "2.0"}}, "accessors": [{{"min": {}}}]}}"#, nested(1000))
         }),
-        text("nan", "NaN where JSON has no such word", "JSON", {
+        text("nan", "NaN, which is not JSON", "JSON", {
             square().0.to_string().replace(r#""mesh":0"#, r#""mesh":0,"scale":[NaN,1,1]"#)
         }),
-        text("key-twice", "a key that is there twice", "JSON", {
+        text("key-twice", "a duplicate key", "JSON", {
             square().0.to_string().replacen('{', r#"{"nodes":[],"#, 1)
         }),
-        Case::new("gltf-folder", "a folder with the name of a file", RUN, &[FILE, "folder"])
+        Case::new("gltf-folder", "a folder in place of the file", RUN, &[FILE, "folder"])
             .item(FILE, Item::Folder),
-        Case::new("gltf-pipe", "a pipe with the name of a file", RUN, &[FILE, "not a regular file"])
+        Case::new("gltf-pipe", "a pipe in place of the file", RUN, &[FILE, "not a regular file"])
             .item(FILE, Item::Pipe),
         Case::new("gltf-missing", "no file", RUN, &[FILE, "does not exist"]),
         Case::new("gltf-link-to-itself", "a link to itself", RUN, &[FILE])
@@ -57,7 +57,7 @@ fn texts() -> Vec<Case> {
     ]
 }
 
-/// Versions, extensions and types.
+/// Wrong versions, extensions and types.
 fn heads() -> Vec<Case> {
     vec![
         set("version-1", "glTF 1.0", "/asset/version", json!("1.0"), "asset"),
@@ -72,20 +72,20 @@ fn heads() -> Vec<Case> {
         ),
         set(
             "unknown-extension",
-            "a required extension of nobody",
+            "an unknown required extension",
             "/extensionsRequired",
             json!(["EVIL_\u{1b}[31m"]),
             "EVIL_",
         ),
         set(
             "instancing",
-            "instances that only an extension knows",
+            "instances by an extension",
             "/extensionsUsed",
             json!(["EXT_mesh_gpu_instancing"]),
             "EXT_mesh",
         ),
-        set("nodes-object", "an object where a list belongs", "/nodes", json!({"0": {}}), "JSON"),
-        set("mesh-text", "a text where an index belongs", "/nodes/0/mesh", json!("0"), "JSON"),
+        set("nodes-object", "an object in place of a list", "/nodes", json!({"0": {}}), "JSON"),
+        set("mesh-text", "a string in place of an index", "/nodes/0/mesh", json!("0"), "JSON"),
         set("mode-7", "a primitive of an unknown mode", "/meshes/0/primitives/0/mode", json!(7), "primitive"),
         set(
             "no-position",
@@ -111,24 +111,24 @@ fn heads() -> Vec<Case> {
         ),
         set(
             "float-indices",
-            "indices that are reals",
+            "indices of floating point",
             "/accessors/1/componentType",
             json!(5126),
             "accessor 1",
         ),
-        set("flat", "positions of two numbers", "/accessors/0/type", json!("VEC2"), "accessor 0"),
+        set("flat", "positions with two components", "/accessors/0/type", json!("VEC2"), "accessor 0"),
         set("skin", "a skin", "/nodes/0/skin", json!(0), "node 0"),
         set("weights", "morph weights", "/nodes/0/weights", json!([1.0]), "node 0"),
         set(
             "reflectivity-2",
-            "ground that reflects twice the light",
+            "a reflectivity of 2",
             "/materials",
             json!([{"extras": {"reflectivity": 2}}]),
             "material 0",
         ),
         set(
             "reflectivity-text",
-            "a reflectivity in words",
+            "a reflectivity that is a string",
             "/materials",
             json!([{"extras": {"reflectivity": "NaN"}}]),
             "material 0",
@@ -140,13 +140,19 @@ fn heads() -> Vec<Case> {
             Value::Array(vec![json!({}); 70_000]),
             "materials",
         ),
-        set("no-mesh", "no mesh at all", "/nodes/0", json!({}), "no triangles"),
-        set("points", "a cloud of points alone", "/meshes/0/primitives/0/mode", json!(0), "no triangles"),
-        set("no-scenes", "a scene that is not there", "/scenes", json!([]), "scene 0"),
+        set("no-mesh", "no mesh", "/nodes/0", json!({}), "no triangles"),
+        set(
+            "points",
+            "a point cloud without triangles",
+            "/meshes/0/primitives/0/mode",
+            json!(0),
+            "no triangles",
+        ),
+        set("no-scenes", "a missing scene", "/scenes", json!([]), "scene 0"),
     ]
 }
 
-/// Small files that ask for much.
+/// Small files with excessive demands.
 fn bombs() -> Vec<Case> {
     let instances = |name: &str, what, mesh: Value, count: usize, place: &str| {
         changed(name, what, place, |json| {
@@ -158,7 +164,7 @@ fn bombs() -> Vec<Case> {
     let points = json!({"attributes": {"POSITION": 0}, "mode": 0});
     vec![
         {
-            // A thousand triangles, all on vertex 0.
+            // A thousand triangles, all of them on vertex 0.
             let (mut json, mut bin) = square();
             bin.resize(60 + 6000, 0);
             json["buffers"][0]["byteLength"] = json!(bin.len());
@@ -167,12 +173,12 @@ fn bombs() -> Vec<Case> {
             json["accessors"][1]["count"] = json!(3000);
             json["nodes"] = Value::Array(vec![json!({"mesh": 0}); 100_000]);
             json["scenes"][0]["nodes"] = (0..100_000).collect();
-            let what = "a thousand faces, drawn a hundred thousand times";
+            let what = "a thousand faces in a hundred thousand instances";
             Case::of_file("gltf-instances", what, RUN, FILE, glb(&json, &bin), "faces")
         },
         instances(
             "primitives",
-            "twenty thousand point clouds, drawn twenty thousand times",
+            "twenty thousand point clouds in twenty thousand instances",
             Value::Array(vec![points; 20_000]),
             20_000,
             "primitives",

@@ -1,4 +1,4 @@
-//! Nodes that make no tree, and transforms that make no ground.
+//! Nodes that do not form a tree, and invalid transforms.
 
 use serde_json::{Value, json};
 
@@ -15,13 +15,13 @@ pub(super) fn cases() -> Vec<Case> {
         nodes("own-child", "a node that is its own child", json!([{"children": [0]}]), "node 0"),
         nodes(
             "cycle",
-            "two nodes that are each other's children",
+            "two nodes that are children of each other",
             json!([{"children": [1]}, {"children": [0]}]),
             "node",
         ),
         nodes(
             "cycle-aside",
-            "a cycle that no scene shows",
+            "a cycle outside every scene",
             json!([{"mesh": 0}, {"children": [2]}, {"children": [1]}]),
             "node 1",
         ),
@@ -31,33 +31,28 @@ pub(super) fn cases() -> Vec<Case> {
             json!([{"children": [1, 2]}, {"children": [2]}, {"mesh": 0}]),
             "node 2",
         ),
-        nodes(
-            "child-twice",
-            "a child that is named twice",
-            json!([{"children": [1, 1]}, {"mesh": 0}]),
-            "node 1",
-        ),
-        nodes("child-missing", "a child that is not there", json!([{"children": [9]}]), "node 0"),
+        nodes("child-twice", "a duplicate child", json!([{"children": [1, 1]}, {"mesh": 0}]), "node 1"),
+        nodes("child-missing", "a missing child", json!([{"children": [9]}]), "node 0"),
         nodes("tower", "five thousand levels of nodes", Value::Array(tower), "levels"),
         nodes(
             "overflow",
-            "scales whose product is infinite",
+            "scales whose product overflows",
             json!([{"children": [1], "scale": [1e38, 1e38, 1e38]}, {"mesh": 0, "scale": [1e38, 1e38, 1e38]}]),
             "node 1",
         ),
-        set("root-missing", "a root that is not there", "/scenes/0/nodes", json!([5]), "scene 0"),
+        set("root-missing", "a missing root", "/scenes/0/nodes", json!([5]), "scene 0"),
         set("root-negative", "a root of index -1", "/scenes/0/nodes", json!([-1]), "JSON"),
         set("matrix-short", "a matrix of 15 numbers", "/nodes/0/matrix", json!(vec![1.0; 15]), "JSON"),
         set(
             "matrix-infinite",
-            "a matrix of 1e39, which single precision has not",
+            "a matrix of 1e39, too large for single precision",
             "/nodes/0/matrix",
             json!(vec![1e39; 16]),
             "JSON",
         ),
         set(
             "matrix-beyond",
-            "a matrix of 1e400, which no double is",
+            "a translation of 1e400, too large for a double",
             "/nodes/0/translation",
             Value::Null,
             "JSON",
@@ -84,8 +79,11 @@ pub(super) fn cases() -> Vec<Case> {
         numbers("index-beyond", "an index beyond the vertices", "accessor 1", |bin| {
             bin[58..60].copy_from_slice(&[4, 0])
         }),
-        numbers("index-restart", "an index of 65535, which restarts strips elsewhere", "accessor 1", |bin| {
-            bin[58..60].fill(255)
-        }),
+        numbers(
+            "index-restart",
+            "an index of 65535, the restart value of other formats",
+            "accessor 1",
+            |bin| bin[58..60].fill(255),
+        ),
     ]
 }
