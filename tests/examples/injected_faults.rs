@@ -21,11 +21,12 @@ const HEAD: &str = "\
 
 This page measures whether a comparison finds an error. Each fault is injected into a third, naive renderer
 ([`tests/src/naive`](../../tests/src/naive/mod.rs)), or into the files of a correct one
-([`tests/src/injected_faults`](../../tests/src/injected_faults/mod.rs)). The scenes of its kind are compared one after the
-other until a ray reveals the fault. `just injected-faults` writes this page.
+([`tests/src/injected_faults`](../../tests/src/injected_faults/mod.rs)). The scenes of its kind are compared one after
+the other until a ray reveals the fault. `just injected-faults` writes this page.
 
 * *Imitates* is the real mistake behind the fault.
-* *Caught by* is the first scene that reveals it, the first wrong ray, the quantity with the largest error, and its class.
+* *Caught by* is the first scene that reveals it, the first wrong ray, the quantity with the largest error, and its
+  class.
 * *Rays* is the number of rays compared up to that ray, those of earlier scenes included.
 * *Faces* is the number of faces of the smallest scene that still reveals the fault, out of the faces of the first one.
   Without the fault this scene shows no defect. The search is delta debugging: it ends when no face can be left out.

@@ -1,5 +1,5 @@
-//! The malformed inputs: `just malformed-inputs` writes their table to `docs/evidence/malformed-inputs.md`. With a folder
-//! as its argument the example writes the files there, as seeds for the fuzz targets (`just fuzz`).
+//! The malformed inputs: `just malformed-inputs` writes their table to `docs/evidence/malformed-inputs.md`. With a
+//! folder as its argument the example writes the files there, as seeds for the fuzz targets (`just fuzz`).
 
 use std::fs;
 use std::path::Path;

@@ -116,7 +116,8 @@ fn a_missing_pencil_near_a_border_is_a_defect() {
     }
 }
 
-/// A pencil, and a scene with the camera's principal point moved so that this pencil lands 1e-7 pixels right of a border.
+/// A pencil, and a scene with the camera's principal point moved so that this pencil lands 1e-7 pixels right of a
+/// border.
 fn on_a_border() -> (Scene, Place) {
     let scene = scene_of("pyramids");
     let place = Place { sensor: SensorId::Beam(0), i: 37, j: 2 };

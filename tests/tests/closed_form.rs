@@ -1,7 +1,7 @@
 //! Scenes whose answer is known in closed form, asserted on both renderers. (Contract: camera, beam, hit)
 //!
-//! Unless stated otherwise, the sensor is at the scene's origin with the scene's axes: z is forward, x right and y down.
-//! Both sensors have dyadic numbers: see [`small_camera`] and [`small_beam`].
+//! Unless stated otherwise, the sensor is at the scene's origin with the scene's axes: z is forward, x right and y
+//! down. Both sensors have dyadic numbers: see [`small_camera`] and [`small_beam`].
 
 use std::f64::consts::FRAC_PI_6;
 use std::sync::Arc;
@@ -11,8 +11,8 @@ use glam::{DQuat, DVec3};
 use raypencil::{Beam, Camera, FaceId, Mesh, Mounted, Pose, Scene, SensorId, SensorMap};
 use raypencil_tests::{at_origin, cells_hit, for_each_map, for_each_map_of, hit, mesh, rig, scene};
 
-/// Maximum error of a renderer, in metres or without a unit: the bound 36 kappa u S / c of the comparison for the widest
-/// of these scenes (S = R + longest edge <= 200 m, aspect kappa <= 3, cosine c >= 1/30).
+/// Maximum error of a renderer, in metres or without a unit: the bound 36 kappa u S / c of the comparison for the
+/// widest of these scenes (S = R + longest edge <= 200 m, aspect kappa <= 3, cosine c >= 1/30).
 const MAX_ERROR: f64 = 36.0 * 3.0 * 1.2e-16 * 200.0 * 30.0;
 
 type Triangle = [[f32; 3]; 3];
@@ -301,9 +301,9 @@ fn among_coincident_faces_the_lowest_index_is_reported() {
 
 // ---- The SPP ----------------------------------------------------------------------------------------
 
-/// A floor y = 1/4 m under [`small_camera`], and a wall x = 1/4 m right of [`small_beam`], both cut by the SPP z = 1/2 m:
-/// the ray of row (column) k meets it at t = 1/4 / centre(k), which is at least 1 up to centre(k) = 7/32
-/// (k = 11), and below 1 from 9/32 on. `triangle` gives the (across, z) of the corners.
+/// A floor y = 1/4 m under [`small_camera`], and a wall x = 1/4 m right of [`small_beam`], both cut by the SPP z = 1/2
+/// m: the ray of row (column) k meets it at t = 1/4 / centre(k), which is at least 1 up to centre(k) = 7/32 (k = 11),
+/// and below 1 from 9/32 on. `triangle` gives the (across, z) of the corners.
 fn cut_by_the_spp(triangle: [[f32; 2]; 3]) -> Scene {
     let floor = facing([0.0; 3], triangle.map(|[across, z]| [across, 0.25, z]));
     let wall = facing([0.0; 3], triangle.map(|[across, z]| [0.25, across, z]));

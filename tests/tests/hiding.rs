@@ -1,5 +1,5 @@
-//! Occlusion of pencils from the camera, by every renderer; and the paper's claim that on closed ground back faces suffice.
-//! (§6)
+//! Occlusion of pencils from the camera, by every renderer; and the paper's claim that on closed ground back faces
+//! suffice. (§6)
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -13,8 +13,8 @@ use raypencil_tests::{at_origin, cells_hit, hit, rig, scene};
 /// Maximum relative error of a range: a few roundings.
 const MAX_RELATIVE_ERROR: f64 = 1e-14;
 
-/// A mesh of rectangles, each with its bounds in x, its bounds in y, and its depth z. The front faces -z, or +z if it is
-/// turned away.
+/// A mesh of rectangles, each with its bounds in x, its bounds in y, and its depth z. The front faces -z, or +z if it
+/// is turned away.
 fn plates(plates: &[([f32; 2], [f32; 2], f32, bool)]) -> Arc<Mesh> {
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for &([left, right], [top, bottom], z, turned_away) in plates {
@@ -57,9 +57,9 @@ fn for_each_pencil(scene: &Scene, mut visit: impl FnMut(&str, u32, f64, f64)) {
 #[test]
 fn a_lid_a_tenth_of_a_millimetre_before_the_wall_hides_it() {
     // The camera is 2 m above the sheet, so that it sees the stripe along a slope of 1. In the plane 0.1 mm before the
-    // wall, the lines of sight are 0.1 mm above the sheet, within half of its thickness, 12 um. A lid in this plane that
-    // begins 0.05 mm above the sheet does not meet the laser and hides the stripe. One that begins at 0.15 mm does not
-    // hide it. Both hold for a lid that faces either side.
+    // wall, the lines of sight are 0.1 mm above the sheet, within half of its thickness, 12 um. A lid in this plane
+    // that begins 0.05 mm above the sheet does not meet the laser and hides the stripe. One that begins at 0.15 mm
+    // does not hide it. Both hold for a lid that faces either side.
     let camera = DVec3::new(0.0, -2.0, 0.0);
     let z = 2.0 - 1e-4_f32;
     let lid = |bottom: f32, turned_away| ([-8.0, 8.0], [-1.0, bottom], z, turned_away);
@@ -72,8 +72,8 @@ fn a_lid_a_tenth_of_a_millimetre_before_the_wall_hides_it() {
             });
         }
     }
-    // A lid across the sheet blocks the laser and returns its light. If it shows its back, the laser passes, because backs
-    // are not hit, and the lid hides the wall.
+    // A lid across the sheet blocks the laser and returns its light. If it shows its back, the laser passes, because
+    // backs are not hit, and the lid hides the wall.
     let secant = |i: u32| {
         let tan = (2.0 * f64::from(i) - 15.0) / 1024.0 / 0.125;
         (1.0 + tan * tan).sqrt()
@@ -88,9 +88,9 @@ fn a_lid_a_tenth_of_a_millimetre_before_the_wall_hides_it() {
 
 #[test]
 fn a_blade_a_millimetre_beyond_the_grid_blocks_the_laser() {
-    // The grid is at 1/8 m. A blade covers the left half of the fan. 1 mm beyond the grid it stops columns 0 to 7, which
-    // return nothing, because the camera is at z = 1/2 m. 1 mm before the grid, or with its back to the laser, the blade
-    // has no effect.
+    // The grid is at 1/8 m. A blade covers the left half of the fan. 1 mm beyond the grid it stops columns 0 to 7,
+    // which return nothing, because the camera is at z = 1/2 m. 1 mm before the grid, or with its back to the laser,
+    // the blade has no effect.
     let camera = DVec3::new(0.0, -1.0, 0.5);
     let blade = |z: f32, turned_away| ([-1.0, 0.0], [-1.0, 1.0], z, turned_away);
     let mut bare = Vec::new();
@@ -115,8 +115,8 @@ fn a_blade_a_millimetre_beyond_the_grid_blocks_the_laser() {
 
 #[test]
 fn faces_nearer_than_the_image_plane_do_not_hide() {
-    // The image plane is 1/64 m in front of the projection centre. A plate at 0.99 of this distance hides nothing, one at
-    // 1.01 everything.
+    // The image plane is 1/64 m in front of the projection centre. A plate at 0.99 of this distance hides nothing, one
+    // at 1.01 everything.
     let camera = DVec3::new(0.0, -1.0, 0.0);
     for (share, hides) in [(0.99, false), (1.01, true)] {
         for turned_away in [false, true] {
@@ -128,8 +128,8 @@ fn faces_nearer_than_the_image_plane_do_not_hide() {
     }
 }
 
-/// A height field of 12 x 12 m, closed by sides and a bottom, with rotated boxes on it and partly in it. All vertices are
-/// below 0.9 m.
+/// A height field of 12 x 12 m, closed by sides and a bottom, with rotated boxes on it and partly in it. All vertices
+/// are below 0.9 m.
 fn closed_ground(seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     const CELLS: u32 = 12;
     let mut random = SplitMix64::new(seed);

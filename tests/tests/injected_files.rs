@@ -1,5 +1,5 @@
-//! Faults injected into files: correct maps are corrupted on their way to a file. The reader must refuse each of them, or
-//! the check must find it, in the quantity that the fault changes.
+//! Faults injected into files: correct maps are corrupted on their way to a file. The reader must refuse each of them,
+//! or the check must find it, in the quantity that the fault changes.
 
 use std::fs;
 
@@ -30,7 +30,8 @@ fn every_fault_of_files_is_found_in_the_quantity_it_changes() {
             let found = check_files(&scene, Some(fault));
             let quantity = match (&found, fault) {
                 (Some(FileRejection::Refused(refusal)), FileFault::MinusOneForNoHit) => {
-                    // The message names the first miss. On the wall this is the first cell: it is beyond the maximum range.
+                    // The message names the first miss. On the wall this is the first cell: it is beyond the maximum
+                    // range.
                     let message = refusal.to_string();
                     let says = ["`range.T` at", "-1", "+Inf"].iter().all(|word| message.contains(word));
                     assert!(says, "{name}: {message}");

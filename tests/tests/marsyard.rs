@@ -1,5 +1,5 @@
-//! MarsYard 2021, a real ground of half a million triangles. The mesh is not part of the project: the tests run where the
-//! variable RAYPENCIL_EXTRA_DATA names the folder with `marsyard2021.glb`, and are skipped elsewhere.
+//! MarsYard 2021, a real ground of half a million triangles. The mesh is not part of the project: the tests run where
+//! the variable RAYPENCIL_EXTRA_DATA names the folder with `marsyard2021.glb`, and are skipped elsewhere.
 
 use std::path::{Path, PathBuf};
 

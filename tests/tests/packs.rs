@@ -1,5 +1,5 @@
-//! The reference packs of `data/packs`: the same bytes for any number of threads and any build, small, and passed by every
-//! renderer.
+//! The reference packs of `data/packs`: the same bytes for any number of threads and any build, small, and passed by
+//! every renderer.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -36,8 +36,8 @@ fn check<S: Strategy<Value: Debug>>(
     });
 }
 
-/// [`check`] with a reproducer. A failing case is printed with its seed, the commit, and the line that `reproduce` returns.
-/// Returns whether these were the default cases: only for them the frequency of rare events is known.
+/// [`check`] with a reproducer. A failing case is printed with its seed, the commit, and the line that `reproduce`
+/// returns. Returns whether these were the default cases: only for them the frequency of rare events is known.
 fn check_and_reproduce<S: Strategy<Value: Debug>>(
     default_cases: u32,
     strategy: S,
@@ -260,7 +260,8 @@ fn the_order_of_faces_does_not_matter() {
     });
 }
 
-/// The mesh with every vertex doubled, and half of the faces on the copies, as exporters split a mesh where normals differ.
+/// The mesh with every vertex doubled, and half of the faces on the copies, as exporters split a mesh where normals
+/// differ.
 fn split(original: &Mesh, seed: u64) -> Arc<Mesh> {
     let count = original.vertices().len() as u32;
     let vertices = [original.vertices(), original.vertices()].concat();

@@ -1,5 +1,5 @@
-//! Laws of light, tested on every renderer: shares of the beam's power, laws of distance, the camera equation as the limit
-//! of fine pencils, energy, and statistics of jittered rays. (docs/theory/radiometry.md)
+//! Laws of light, tested on every renderer: shares of the beam's power, laws of distance, the camera equation as the
+//! limit of fine pencils, energy, and statistics of jittered rays. (docs/theory/radiometry.md)
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_6, LN_2, PI, TAU};
 use std::sync::Arc;
@@ -25,7 +25,8 @@ struct Plane {
 }
 
 impl Plane {
-    /// One face that extends at least 100 m around `point`, its vertices rounded to `f32`; and the plane of these vertices.
+    /// One face that extends at least 100 m around `point`, its vertices rounded to `f32`; and the plane of these
+    /// vertices.
     fn mesh(point: DVec3, normal: DVec3, reflectivity: f64) -> (Arc<Mesh>, Self) {
         let along = normal.any_orthonormal_vector();
         let across = normal.cross(along);
@@ -38,7 +39,8 @@ impl Plane {
     }
 }
 
-/// The point where the ray through (x, y) on the beam's grid meets a plane, with angles and distances to beam and camera.
+/// The point where the ray through (x, y) on the beam's grid meets a plane, with angles and distances to beam and
+/// camera.
 #[derive(Debug, Clone, Copy)]
 struct Landing {
     /// cos(alpha), alpha between the ray and the normal axis.
@@ -282,8 +284,8 @@ fn irradiance_falls_with_range() {
 
 // ---- The camera equation ----------------------------------------------------------------------------
 
-/// A plane of any slope, a camera, and a beam of 5 x 3 pencils. Both are on the side of the front, and look at about the
-/// same point.
+/// A plane of any slope, a camera, and a beam of 5 x 3 pencils. Both are on the side of the front, and look at about
+/// the same point.
 fn tilted(random: &mut SplitMix64) -> (Scene, Plane) {
     let (target, normal) = (random.vector(3.0), random.direction());
     let (mesh, plane) = Plane::mesh(target, normal, random.between(0.1, 1.0));
@@ -315,8 +317,8 @@ fn tilted(random: &mut SplitMix64) -> (Scene, Plane) {
 
 #[test]
 fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
-    // If the whole footprint of a pixel were lit as the pencil's spot is, the pixel would receive the pencil's flux times
-    // the area of the footprint over the area of the spot.
+    // If the whole footprint of a pixel were lit as the pencil's spot is, the pixel would receive the pencil's flux
+    // times the area of the footprint over the area of the spot.
     const TOLERANCE: f64 = 1e-12;
     let mut random = SplitMix64::new(1);
     let cases: Vec<(Scene, Plane)> = (0..200).map(|_| tilted(&mut random)).collect();
@@ -363,10 +365,10 @@ fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
 
 #[test]
 fn the_light_that_leaves_a_point_is_the_reflectivity_times_the_light_on_it() {
-    // One pencil of 2 W (alpha = 0, so P = 2 W) on a slope, r_d = 0.3; lenses of D = 2 mm in all directions from the point,
-    // 0.75 m away. Flux over the solid angle of the aperture, (pi D^2 / 4) cos(phi) / d^2, is radiant intensity; over the
-    // hemisphere before the face it adds up to 0.6 W, behind the face it is 0. Gauss-Legendre nodes in cos(theta),
-    // even steps in azimuth. The lens is aimed at the point, or 0.3 rad beside it.
+    // One pencil of 2 W (alpha = 0, so P = 2 W) on a slope, r_d = 0.3; lenses of D = 2 mm in all directions from the
+    // point, 0.75 m away. Flux over the solid angle of the aperture, (pi D^2 / 4) cos(phi) / d^2, is radiant
+    // intensity; over the hemisphere before the face it adds up to 0.6 W, behind the face it is 0. Gauss-Legendre
+    // nodes in cos(theta), even steps in azimuth. The lens is aimed at the point, or 0.3 rad beside it.
     let normal = DVec3::new(0.3, -0.4, -0.8).normalize();
     let (mesh, plane) = Plane::mesh(DVec3::new(0.0, 0.0, 2.0), normal, 0.3);
     let beam = Beam { power: 2.0, ..rig::beam(1, 1, [0.0625, 0.001], 0.1) };
@@ -405,9 +407,9 @@ fn the_light_that_leaves_a_point_is_the_reflectivity_times_the_light_on_it() {
     }
 }
 
-/// A rover's rig on a slope: the camera is 1.5 m above the origin of a plane that rises by 0.1 ahead and 0.05 to the left,
-/// the beam 0.3 m above the camera. A fan of 60 degrees is wholly on the image of 64 x 64 pixels, in attenuating air,
-/// through a filter.
+/// A rover's rig on a slope: the camera is 1.5 m above the origin of a plane that rises by 0.1 ahead and 0.05 to the
+/// left, the beam 0.3 m above the camera. A fan of 60 degrees is wholly on the image of 64 x 64 pixels, in attenuating
+/// air, through a filter.
 fn slope(
     columns: u32,
     rows: u32,
@@ -469,8 +471,8 @@ fn air_attenuates_by_the_length_of_the_path() {
                     let at = landing(&scene, plane, i, j);
                     let back = if model == FluxModel::Radiometric { at.distance } else { at.depth };
                     let derived = whole * libm::exp(-sigma * (at.range + back));
-                    // The relative error of exp is the absolute error of its argument. This is up to 2 * 9 here: a few times
-                    // 2e-15.
+                    // The relative error of exp is the absolute error of its argument. This is up to 2 * 9 here: a few
+                    // times 2e-15.
                     assert!(
                         relative(of, derived) < 2e-14,
                         "{} {i},{j}: {of:e}, {derived:e}",
@@ -486,8 +488,8 @@ fn air_attenuates_by_the_length_of_the_path() {
 
 #[test]
 fn the_flux_of_a_stripe_converges_to_the_camera_equation() {
-    // The camera equation, integrated over the image of the sheet: in coordinates of the grid, with the derivative of the
-    // image by the grid. The flux of infinitely many pencils is the same integral.
+    // The camera equation, integrated over the image of the sheet: in coordinates of the grid, with the derivative of
+    // the image by the grid. The flux of infinitely many pencils is the same integral.
     let (scene, plane) = slope(1, 1, 5e-3, 0.25, 0.05, FluxModel::Radiometric);
     let beam = scene.beams()[0].sensor;
     let grid = [[-beam.half_width, beam.half_width], [-0.5 * beam.thickness, 0.5 * beam.thickness]];
@@ -582,8 +584,8 @@ fn jittered_rays_have_the_right_mean() {
         }
     }
     // With a standard error of 24 samples z follows Student's t of 23 degrees of freedom, whose variance is 23 / 21:
-    // an rms of 1.0465. The rms of n of them scatters by sqrt((kurtosis - 1) / n) / 2, kurtosis 3 + 6 / 19: by 1.3 % for
-    // four times 900 pixels, so that 5 % are four of its standard deviations.
+    // an rms of 1.0465. The rms of n of them scatters by sqrt((kurtosis - 1) / n) / 2, kurtosis 3 + 6 / 19: by 1.3 %
+    // for four times 900 pixels, so that 5 % are four of its standard deviations.
     let count = z_squared.len();
     let rms = (z_squared.iter().sum::<f64>() / count as f64).sqrt();
     let derived = (23.0_f64 / 21.0).sqrt();

@@ -1,5 +1,5 @@
-//! Classes of differences at the limit of arithmetic: a crack is a defect at any width, and a choice between faces closer
-//! than the rounding error is not.
+//! Classes of differences at the limit of arithmetic: a crack is a defect at any width, and a choice between faces
+//! closer than the rounding error is not.
 
 use std::sync::Arc;
 
@@ -31,7 +31,8 @@ fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorComp
 fn a_crack_of_any_width_is_a_defect() {
     // Every ray passes an edge of two faces within a relative distance of 1e-16, and nothing is behind the edge. A
     // renderer that computes the edge twice, with the rounding of two different corners, misses with some of the rays.
-    // The crack is about 1e-13 cells wide, and a correct renderer may displace a ray by 1e-9: but no displaced ray misses.
+    // The crack is about 1e-13 cells wide, and a correct renderer may displace a ray by 1e-9: but no displaced ray
+    // misses.
     let scene = lattice::turned(101);
     let cracked = Naive { fault: Some(Fault::EdgesComputedApart) };
     let map = cracked.render(&scene, &Request::EVERYTHING).camera.expect("the camera was asked for");
@@ -49,8 +50,8 @@ fn a_crack_of_any_width_is_a_defect() {
     assert_eq!(compared(&scene, &*a, &*b)[0].of(Class::Defect), 0);
 }
 
-/// Two faces with a common edge in a row of pixels. The third corner of the second is moved by one unit in the last place
-/// of `f32`. The camera has a general orientation.
+/// Two faces with a common edge in a row of pixels. The third corner of the second is moved by one unit in the last
+/// place of `f32`. The camera has a general orientation.
 fn nearly_coincident() -> Scene {
     let pose =
         Pose { position: DVec3::new(0.3, -1.7, 2.9), rotation: DQuat::from_xyzw(0.31, -0.52, 0.23, 0.74) };
@@ -137,7 +138,8 @@ fn an_approximation_does_not_cover_other_errors() {
 
 #[test]
 fn an_approximation_does_not_cover_a_wrong_value() {
-    // Where the paper's face is wrong, its range or flux is doubled: the correct values of that face are known all the same.
+    // Where the paper's face is wrong, its range or flux is doubled: the correct values of that face are known all the
+    // same.
     let ground = builtin("facets", 0.25).expect("a built-in name").into_mesh().expect("a mesh");
     let (camera, mut beams) = rig::default_rig(2, DVec3::ZERO, 0.3);
     for beam in &mut beams {
@@ -192,10 +194,10 @@ fn an_approximation_does_not_cover_a_wrong_value() {
     }
 }
 
-/// Found by a campaign. The ray of pixel (0, 0) meets an edge of the second face exactly on the projection plane, t = 1,
-/// and behind it, at t = 2, exactly a corner of the first face: two coincidences, each of measure zero. To lose the nearer
-/// hit by the rounding of 1/t would be admissible, because a neighbouring ray misses. But then the corner behind would be
-/// reported, which no neighbouring ray meets first.
+/// Found by a campaign. The ray of pixel (0, 0) meets an edge of the second face exactly on the projection plane, t =
+/// 1, and behind it, at t = 2, exactly a corner of the first face: two coincidences, each of measure zero. To lose the
+/// nearer hit by the rounding of 1/t would be admissible, because a neighbouring ray misses. But then the corner
+/// behind would be reported, which no neighbouring ray meets first.
 #[test]
 fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
     let corner = [-0.0234375, -0.0234375, 0.125];
@@ -220,8 +222,8 @@ fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
     assert_eq!(compared(&scene, &*scanline, &*tracer)[0].of(Class::Defect), 0);
 }
 
-/// Found by a campaign. Two faces tie, and the pencil grazes both at different angles: their fluxes differ by nearly the
-/// error bound of the flux at grazing incidence.
+/// Found by a campaign. Two faces tie, and the pencil grazes both at different angles: their fluxes differ by nearly
+/// the error bound of the flux at grazing incidence.
 #[test]
 fn the_difference_of_tied_faces_is_not_an_error_of_flux() {
     let scene = scene_of(&Campaign::new(1, 911), 910, PartName::Lattice);

@@ -1,5 +1,5 @@
-//! Watertightness: over a million rays exactly through edges and vertices, and as many within rounding of them, all hit the
-//! mesh.
+//! Watertightness: over a million rays exactly through edges and vertices, and as many within rounding of them, all
+//! hit the mesh.
 
 use std::sync::Arc;
 
@@ -14,16 +14,16 @@ const FLAT: &[f64] = &[4.0];
 /// Hills: neighbours differ by up to 7/256 of the range, several cells.
 const HILLS: &[f64] = &[4.0, 4.015625, 4.03125, 4.046875, 4.0625, 4.078125, 4.09375, 4.109375];
 
-/// Spikes: neighbours are up to three times as far, so that faces are needles along the rays. (On large sensors the boxes of
-/// hundreds of such needles overlap.)
+/// Spikes: neighbours are up to three times as far, so that faces are needles along the rays. (On large sensors the
+/// boxes of hundreds of such needles overlap.)
 const SPIKES: &[f64] = &[2.0, 2.25, 2.5, 3.0, 4.0, 6.0];
 
-/// Hills that the SPP cuts. A ray between two vertices hits unless both are nearer than the SPP: the mean of 7/8 and any
-/// other, arithmetic or harmonic, is at least 1.029 (7/8 and 5/4).
+/// Hills that the SPP cuts. A ray between two vertices hits unless both are nearer than the SPP: the mean of 7/8 and
+/// any other, arithmetic or harmonic, is at least 1.029 (7/8 and 5/4).
 const CUT: &[f64] = &[0.875, 1.25, 1.5];
 
-/// Maximum range of these sensors, metres. No hit is farther than 6 * 0.62 m. The tracer pads its boxes by a few ulp (of
-/// f32) of this range: with a longer one every ray would test hundreds of these small faces.
+/// Maximum range of these sensors, metres. No hit is farther than 6 * 0.62 m. The tracer pads its boxes by a few ulp
+/// (of f32) of this range: with a longer one every ray would test hundreds of these small faces.
 const MAX_RANGE_M: f64 = 8.0;
 
 /// A camera whose rays are dyadic: pixels of 2^-11 m, f = 1/2 m.
@@ -102,8 +102,8 @@ fn assert_watertight(
     );
 }
 
-/// Maximum relative error of a range at a vertex: the bound 36 kappa u S / c of the comparison, with S below three ranges
-/// and kappa / c below 2000 even on the spikes, which are cells wide and metres long.
+/// Maximum relative error of a range at a vertex: the bound 36 kappa u S / c of the comparison, with S below three
+/// ranges and kappa / c below 2000 even on the spikes, which are cells wide and metres long.
 const MAX_VERTEX_ERROR: f64 = 36.0 * 2000.0 * 1.2e-16 * 3.0;
 
 #[test]
@@ -148,7 +148,8 @@ fn a_million_rays_exactly_on_edges_and_vertices_hit() {
     );
 }
 
-/// The 24 rotations that permute the axes, as quaternions of small integers: (q p q*) / (q . q) is exact in floating point.
+/// The 24 rotations that permute the axes, as quaternions of small integers: (q p q*) / (q . q) is exact in floating
+/// point.
 fn axis_permutations() -> Vec<DQuat> {
     let mut rotations = Vec::new();
     for code in 0..81 {
@@ -193,8 +194,8 @@ fn rays_on_edges_hit_along_every_axis() {
     }
 }
 
-/// A sensor with the same rays, but with numbers that are rounded. Where the SPP cuts the lattice the sensor is not changed,
-/// because its SPP would move.
+/// A sensor with the same rays, but with numbers that are rounded. Where the SPP cuts the lattice the sensor is not
+/// changed, because its SPP would move.
 fn a_third_as_large(sensor: Sensor, ts: &[f64]) -> Sensor {
     match sensor {
         _ if ts == CUT => sensor,
@@ -213,9 +214,9 @@ fn a_third_as_large(sensor: Sensor, ts: &[f64]) -> Sensor {
 
 #[test]
 fn rays_within_rounding_of_edges_hit() {
-    // The same rotations and rays with numbers that are rounded: quaternions times 0.7, 0.3 and so on; sensors a third as
-    // large. Every ray then misses its edge by about 1e-16 m. The lattice has one more ring of cells, because rays at the
-    // border may miss.
+    // The same rotations and rays with numbers that are rounded: quaternions times 0.7, 0.3 and so on; sensors a third
+    // as large. Every ray then misses its edge by about 1e-16 m. The lattice has one more ring of cells, because rays
+    // at the border may miss.
     for (index, rotation) in axis_permutations().into_iter().enumerate() {
         for (what, sensor, ts) in small_sensors() {
             let lattice = Lattice::before(sensor, 1, 100 + index as u64, ts);
@@ -276,9 +277,9 @@ fn enlarged(sensor: Sensor, factor: f64) -> Sensor {
 
 #[test]
 fn rays_on_edges_hit_at_rational_rotations() {
-    // Sensors D / 32 times as large: D cancels, and the lattice's vertices are dyadic in the scene. So the
-    // contract's rays pass exactly through vertices and edges, while a renderer rounds every vertex or ray that it rotates.
-    // A value that is computed differently for two neighbours opens a gap here.
+    // Sensors D / 32 times as large: D cancels, and the lattice's vertices are dyadic in the scene. So the contract's
+    // rays pass exactly through vertices and edges, while a renderer rounds every vertex or ray that it rotates. A
+    // value that is computed differently for two neighbours opens a gap here.
     for (index, &([x, y, z, w], position)) in RATIONAL_POSES.iter().enumerate() {
         let pose = Pose { position: DVec3::from_array(position), rotation: DQuat::from_xyzw(x, y, z, w) };
         let factor = (x * x + y * y + z * z + w * w) / 32.0;
@@ -298,8 +299,9 @@ fn rays_on_edges_hit_at_rational_rotations() {
 
 #[test]
 fn rays_near_edges_hit_at_any_pose() {
-    // Any rotation, up to 170 m from the origin. Vertices are rounded to f32, by up to 1e-5 m; cells are 2^-10 t m wide,
-    // at least 8e-4 m, so that none folds over. The lattice has one more ring of cells, because rays at the border may miss.
+    // Any rotation, up to 170 m from the origin. Vertices are rounded to f32, by up to 1e-5 m; cells are 2^-10 t m
+    // wide, at least 8e-4 m, so that none folds over. The lattice has one more ring of cells, because rays at the
+    // border may miss.
     for seed in 0..30 {
         let number = |index| hash_unit(1000 + seed, index);
         let far = [0.0, 10.0, 100.0][seed as usize % 3];

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use raypencil_tests::malformed::{Case, all, good, table, tiffs};
 
-/// Shell command that runs its arguments with at most 512 MB of data and 2 s of processor time. The limit is on writable
-/// memory (`-d`): address space (`-v`) would include the 64 MB that the allocator reserves for each thread.
+/// Shell command that runs its arguments with at most 512 MB of data and 2 s of processor time. The limit is on
+/// writable memory (`-d`): address space (`-v`) would include the 64 MB that the allocator reserves for each thread.
 const RUN_WITH_LIMITS: &str = "ulimit -d 524288 && ulimit -t 2 && exec \"$@\"";
 /// Time after which a process is stopped. A process that waits, for example for the writer of a pipe, uses no processor
 /// time. The deadline is long because the machine may be busy.

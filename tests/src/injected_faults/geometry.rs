@@ -9,8 +9,8 @@ use raypencil::{Beam, Camera, Mesh, Mounted, Pose, Scene};
 
 use crate::{mesh, scene};
 
-/// The default rig with fewer and oblong pixels, at `position` in metres, turned to `heading` in radians, with quaternions
-/// of `length`.
+/// The default rig with fewer and oblong pixels, at `position` in metres, turned to `heading` in radians, with
+/// quaternions of `length`.
 pub fn small_rig(mesh: Arc<Mesh>, position: DVec3, heading: f64, length: f64) -> Scene {
     let pose = |mount: DefaultMount| {
         let turned = Pose::from_axis_angle(DVec3::Z, heading)
@@ -59,8 +59,8 @@ pub fn far_ground() -> Scene {
     small_rig(Arc::new(mesh), DVec3::ZERO, 0.0, 1.0)
 }
 
-/// A camera and a beam at the scene's origin, looking along z: `size` x `size` cells, rays `slope` apart in x / z, SPP at
-/// `plane` metres, maximum range `max_range` metres. The beam's rows are `step` metres apart.
+/// A camera and a beam at the scene's origin, looking along z: `size` x `size` cells, rays `slope` apart in x / z, SPP
+/// at `plane` metres, maximum range `max_range` metres. The beam's rows are `step` metres apart.
 fn along_z(mesh: Arc<Mesh>, size: u32, plane: f64, slope: f64, step: f64, max_range: f64) -> Scene {
     let camera = Camera { max_range, ..rig::camera(size, size, slope * plane, plane) };
     let beam = Beam { max_range, ..rig::beam(size, size, [slope * plane, step], plane) };
@@ -128,8 +128,8 @@ pub fn range_cut_wall() -> Scene {
     along_z(mesh(vertices, faces), 15, 0.5, 1.0 / 16.0, 1.0 / 8.0, 2.1)
 }
 
-/// A roof with its ridge on the line x = 0 at z = 2 m, and slopes that recede on either side. The middle column of 5 x 5
-/// rays meets the ridge.
+/// A roof with its ridge on the line x = 0 at z = 2 m, and slopes that recede on either side. The middle column of 5 x
+/// 5 rays meets the ridge.
 pub fn ridge() -> Scene {
     let across = [(-1.0, 3.0), (0.0, 2.0), (1.0, 3.0)];
     let vertices = across.iter().flat_map(|&(x, z)| [[x, -1.0, z], [x, 1.0, z]]).collect();

@@ -11,8 +11,8 @@ use raypencil::{
 
 use crate::mesh;
 
-/// The pyramids with two reflectivities, in thin dust, through a filter, lit by two beams of different power and profile.
-/// The camera's maximum range is 3 m; the stripes are 2.5 and 5 m away.
+/// The pyramids with two reflectivities, in thin dust, through a filter, lit by two beams of different power and
+/// profile. The camera's maximum range is 3 m; the stripes are 2.5 and 5 m away.
 pub fn lit(model: FluxModel) -> Scene {
     let ground = builtin("pyramids", 0.25).expect("a built-in name").into_mesh().expect("a mesh");
     let materials =
@@ -68,8 +68,8 @@ pub fn screened(before: f32, turned_away: bool) -> Scene {
     ];
     let plate = if turned_away { [[4, 6, 5], [4, 7, 6]] } else { [[4, 5, 6], [4, 6, 7]] };
     let mesh = mesh(vertices, [[[0, 1, 2], [0, 2, 3]], plate].concat());
-    // A pixel is 1/32 of slope wide, so that slopes reach 1; the stripe is at the slope 1/2. The sheet is 0.09 mm thick;
-    // the plate begins at least 0.12 mm above its middle.
+    // A pixel is 1/32 of slope wide, so that slopes reach 1; the stripe is at the slope 1/2. The sheet is 0.09 mm
+    // thick; the plate begins at least 0.12 mm above its middle.
     let camera = rig::camera(64, 64, 1.0 / 2048.0, 1.0 / 64.0);
     let beam = rig::beam(33, 3, [1.0 / 512.0, 1.0 / 32768.0], 0.125);
     let at = |y: f64| Pose::from_position(DVec3::new(0.0, y, 0.0));

@@ -102,8 +102,8 @@ fn many() -> String {
     let sensors = manifest["sensors"].as_array_mut().expect("the sensors");
     sensors.extend((0..100_000).map(beam));
     let file = |index: u32| {
-        json!({"path": format!("beam-{}/{index}.npy", 60_000 + index), "role": "answers", "bytes": 0, "sha256": SHA256_OF_EMPTY,
-               "type": "float64", "shape": [2, 4]})
+        json!({"path": format!("beam-{}/{index}.npy", 60_000 + index), "role": "answers",
+               "bytes": 0, "sha256": SHA256_OF_EMPTY, "type": "float64", "shape": [2, 4]})
     };
     manifest["files"] = (0..40_000).map(file).collect();
     manifest.to_string()
@@ -147,8 +147,8 @@ fn keys() -> Vec<Case> {
             manifest["files"][0]["type"] = json!("float64");
         }),
         changed("shape-other", "a map of another size than its sensor", "files[0]", |manifest| {
-            manifest["files"][0] = json!({"path": "camera/range.T.npy", "role": "answers", "bytes": 0, "sha256": SHA256_OF_EMPTY,
-                "type": "float64", "shape": [2, 5]});
+            manifest["files"][0] = json!({"path": "camera/range.T.npy", "role": "answers", "bytes": 0,
+                "sha256": SHA256_OF_EMPTY, "type": "float64", "shape": [2, 5]});
         }),
     ]
 }

@@ -1,9 +1,9 @@
 //! Malformed and malicious files for every reader, each with the command that reads it and the words of the refusal.
 //! `docs/evidence/malformed-inputs.md` lists them.
 //!
-//! The files are made here, byte by byte; none is committed. `crates/cli/tests/malformed.rs`, where the binary's path is
-//! known, asserts what holds for every refusal: exit code 2, one short message that names the file, no other output, no
-//! file written, little memory and time.
+//! The files are made here, byte by byte; none is committed. `crates/cli/tests/malformed.rs`, where the binary's path
+//! is known, asserts what holds for every refusal: exit code 2, one short message that names the file, no other
+//! output, no file written, little memory and time.
 //!
 //! * [`Case`]: one input. `bytes`: truncation, deflate streams.
 //! * `glb`, `gltf`, `tiff`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `manifest`, `candidate`:
@@ -78,10 +78,11 @@ pub fn good() -> Vec<Case> {
 pub fn table() -> String {
     let mut text = String::from(
         "# Malformed inputs\n\n\
-         The command refuses each of these inputs. `tests/src/malformed` makes them; `crates/cli/tests/malformed.rs` runs the\n\
-         command on each of them in its own process, with at most 512 MB of memory and 2 s of processor time. It asserts exit\n\
-         code 2, one short message with the words below, nothing on standard output, and no file written. The readers have\n\
-         [fuzz targets](../../fuzz/README.md) too. `just malformed-inputs` writes this page.\n\n\
+         The command refuses each of these inputs. `tests/src/malformed` makes them;\n\
+         `crates/cli/tests/malformed.rs` runs the command on each of them in its own process, with at most 512 MB\n\
+         of memory and 2 s of processor time. It asserts exit code 2, one short message with the words below,\n\
+         nothing on standard output, and no file written. The readers have [fuzz targets](../../fuzz/README.md)\n\
+         too. `just malformed-inputs` writes this page.\n\n\
          | case | input | words of the message |\n| --- | --- | --- |\n",
     );
     for case in all().iter().chain(&tiffs()) {

@@ -1,8 +1,8 @@
 //! A third, brute-force renderer: every ray is tested against every face.
 //!
-//! It is written from the contract alone: its own rotation, its own rays, its own triangle test, no tables, no tree, no
-//! order of faces. It is slow, and its purpose is to be wrong: a [`Fault`] can be injected into it, and a comparison with
-//! the other renderers must find it.
+//! It is written from the contract alone: its own rotation, its own rays, its own triangle test, no tables, no tree,
+//! no order of faces. It is slow, and its purpose is to be wrong: a [`Fault`] can be injected into it, and a
+//! comparison with the other renderers must find it.
 
 mod fault;
 mod light;
@@ -172,8 +172,8 @@ impl Naive {
         [DVec3::ZERO, DVec3::new(x, y, camera.focal_length)]
     }
 
-    /// A pencil's ray: from (0, y_j, 0) on the focal axis along (x_i, 0, g), where x_i = w (2i + 1 - columns) / columns and
-    /// y_j = T (2j + 1 - rows) / (2 rows).
+    /// A pencil's ray: from (0, y_j, 0) on the focal axis along (x_i, 0, g), where x_i = w (2i + 1 - columns) /
+    /// columns and y_j = T (2j + 1 - rows) / (2 rows).
     fn pencil_ray(&self, beam: &Beam, i: u32, j: u32) -> [DVec3; 2] {
         let (i, j, middle) = self.sample(i, j, beam.rows);
         let g = beam.grid_distance;

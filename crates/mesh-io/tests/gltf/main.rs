@@ -1,5 +1,5 @@
-//! glTF and GLB: derived numbers for transforms, storage and hierarchies; the message for each malformed file; and files
-//! that are written and read back.
+//! glTF and GLB: derived numbers for transforms, storage and hierarchies; the message for each malformed file; and
+//! files that are written and read back.
 
 pub(crate) mod any_bytes;
 pub(crate) mod container;
