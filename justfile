@@ -21,34 +21,34 @@ lint:
 deny:
     cargo deny check bans licenses sources
 
-# The committed digest and packs at -O0 and in release: same bits at any optimisation level
+# The committed digest and packs at -O0 and in release: the bits are the same at any optimisation level
 digest:
     cargo test --profile unoptimised -p raypencil-tests --test digest --test packs
     cargo test --release -p raypencil-tests --test digest --test packs
 
-# The packs of data/packs, made again, and the programs of reference/ against them
+# Writes the packs of data/packs again, and runs the programs of reference/ on them
 packs:
     cargo run --release --bin raypencil -- pack data/scenes/pyramids-small.toml -o data/packs/pyramids
     cargo run --release --bin raypencil -- pack data/scenes/facets-small.toml -o data/packs/facets
     reference/run.sh target/release/raypencil
 
-# The largest errors in ulp, as the first half of docs/evidence/results.md; YARD is a mesh of your own
-results YARD:
-    cargo run --release -p raypencil-harness --example results -- pyramids facets {{ quote(YARD) }}
+# The largest errors in ulp, as in the first half of docs/evidence/results.md; MESH is a mesh of your own
+results MESH:
+    cargo run --release -p raypencil --example results -- pyramids facets {{ quote(MESH) }}
 
-# What the rover finds of what is there, as the tables of its second half
+# The confusion matrices of the rover's detections, as in the second half of that page
 truth:
-    cargo run --release -p raypencil-harness --example truth
+    cargo run --release -p raypencil --example truth
 
-# What catches each planted fault, and the smallest scene that does: docs/evidence/injected-faults.md
-planted-faults:
-    cargo run --release -p raypencil-tests --example planted_faults > docs/evidence/injected-faults.md
+# The detection of each injected fault, and the smallest scene that reveals it: docs/evidence/injected-faults.md
+injected-faults:
+    cargo run --release -p raypencil-tests --example injected_faults > docs/evidence/injected-faults.md
 
 # Pictures of the presets of generated ground: docs/figures/ground-*.svg
 portraits:
-    cargo run --release -p raypencil-harness --example portraits -- docs/figures
+    cargo run --release -p raypencil --example portraits -- docs/figures
 
-# The property tests on CASES cases each that nobody has tried
+# The property tests on CASES cases each, from a random seed
 properties CASES:
     PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test properties
 
@@ -57,14 +57,14 @@ mutants CRATE:
     rm -rf out/mutants/clone && git clone --quiet . out/mutants/clone
     out/mutants/clone/tests/mutants.sh {{ CRATE }} "$PWD/out/mutants/{{ CRATE }}"
 
-# The hostile files, as docs/evidence/malformed-inputs.md lists them
-hostile:
-    cargo run --release -p raypencil-tests --example hostile > docs/evidence/malformed-inputs.md
+# The malformed inputs and their refusals: docs/evidence/malformed-inputs.md
+malformed-inputs:
+    cargo run --release -p raypencil-tests --example malformed_inputs > docs/evidence/malformed-inputs.md
 
-# Any bytes for SECONDS at a reader, starting from the hostile files: scene_toml, resolved_scene, glb, dem, exr, npy,
-# pfm, manifest, candidate. Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
+# Fuzzes a reader for SECONDS, starting from the malformed inputs: scene_toml, resolved_scene, glb, dem, exr, npy, pfm,
+# manifest, candidate. Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
 fuzz TARGET SECONDS:
-    cargo run --release -p raypencil-tests --example hostile fuzz/corpus
+    cargo run --release -p raypencil-tests --example malformed_inputs fuzz/corpus
     cd fuzz && cargo +nightly fuzz run {{ TARGET }} -- -rss_limit_mb=512 -timeout=5 -max_total_time={{ SECONDS }}
 
 # All benchmarks
@@ -72,5 +72,5 @@ bench:
     cargo bench --workspace
 
 # Validate both renderers on a mesh of your own (GLB, glTF or scene TOML)
-yard MESH:
-    cargo run --release --bin raypencil -- validate {{ quote(MESH) }} -o out/yard
+marsyard MESH:
+    cargo run --release --bin raypencil -- validate {{ quote(MESH) }} -o out/marsyard

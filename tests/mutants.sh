@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Mutants of a kernel crate, drawn at random, against its fast tests: tests/mutants.sh CRATE OUT [COUNT [SHARD]]
+# Runs random mutants of a kernel crate against its fast tests: tests/mutants.sh CRATE OUT [COUNT [SHARD]]
 #   CRATE  scanline, tracer or referee
-#   OUT    a folder for what cargo-mutants writes (mutants.out)
-#   COUNT  how many mutants to draw, 400 unless told; the same ones every time
-#   SHARD  K/N: part K, from 0, of N parts
-# The sources are mutated in place: run it in a clone of its own, one clone per part.
+#   OUT    a folder for the output of cargo-mutants (mutants.out)
+#   COUNT  the number of mutants to draw, 400 by default; every run draws the same ones
+#   SHARD  K/N: part K of N, counted from 0
+# The script mutates the sources in place: run it in a separate clone, one for each part.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -15,7 +15,7 @@ declare -A tests=(
     [referee]="--lib --test digest --test verdicts --test light"
 )
 
-# The same draw every time: shuf reads its randomness from a fixed stream.
+# shuf reads its random bytes from a fixed stream, so that every run draws the same mutants.
 stream() { openssl enc -aes-256-ctr -pass "pass:$crate" -nosalt </dev/zero 2>/dev/null; }
 draw() { shuf -n "$count" --random-source=<(stream); }
 
@@ -34,8 +34,8 @@ if [[ "${set[0]}" == --package ]]; then
     packages+=("${set[1]}")
     set=("${set[@]:2}")
 fi
-# Without a mutant they must pass. (cargo-mutants would try that in the first package alone. With its
-# flags, or everything is built twice.)
+# Without a mutant the tests must pass. cargo-mutants would run them in the first package only. The flags are those of
+# cargo-mutants, so that the build is reused.
 RUSTFLAGS=--cap-lints=warn cargo nextest run --cargo-profile mutants "${packages[@]/#/--package=}" "${set[@]}"
 exec cargo mutants --config "$out/mutants.toml" --in-place --package "raypencil-$crate" --baseline skip \
     --timeout 60 --build-timeout 300 --test-package "$(IFS=, && echo "${packages[*]}")" --shard "$shard" --output "$out" \

@@ -1,12 +1,11 @@
-//! Any bytes as `candidate.json`, the note of a recording.
-
-use libfuzzer_sys::fuzz_target;
-
-use raypencil_pack::Provenance;
+//! Fuzz target: any bytes as `candidate.json`, the note of a recording.
 
 #![no_main]
 
 use std::path::Path;
+
+use libfuzzer_sys::fuzz_target;
+use raypencil::pack::Provenance;
 
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(note) = Provenance::from_bytes(bytes, Path::new("candidate.json")) {

@@ -1,13 +1,12 @@
-//! Any bytes as an OpenEXR file, under limits that a fuzzer's memory allows.
-
-use libfuzzer_sys::fuzz_target;
-
-use raypencil_scene::SensorId;
-use raypencil_files::{Limits, exr_from_bytes};
+//! Fuzz target: any bytes as an OpenEXR file, with limits that fit a fuzzer's memory.
 
 #![no_main]
 
 use std::path::Path;
+
+use libfuzzer_sys::fuzz_target;
+use raypencil::SensorId;
+use raypencil::io::{Limits, exr_from_bytes};
 
 fuzz_target!(|bytes: &[u8]| {
     let file = Path::new("any.exr");

@@ -1,14 +1,13 @@
-//! Any bytes as a terrain: `.glb` or `.gltf`.
-
-use libfuzzer_sys::fuzz_target;
-
-use raypencil_mesh_io::mesh_from_bytes;
+//! Fuzz target: any bytes as a terrain, `.glb` or `.gltf`.
 
 #![no_main]
 
 use std::path::Path;
 
+use libfuzzer_sys::fuzz_target;
+use raypencil::io::mesh_from_bytes;
+
 fuzz_target!(|bytes: &[u8]| {
-    // A folder that is not there: buffers in files of their own are looked for, and not found.
+    // The folder does not exist: external buffers are missing.
     let _ = mesh_from_bytes(bytes, Path::new("no-such-folder/any.glb"), 0.25);
 });

@@ -1,12 +1,11 @@
-//! Any bytes as an NPY file.
-
-use libfuzzer_sys::fuzz_target;
-
-use raypencil_files::{Limits, npy_from_bytes};
+//! Fuzz target: any bytes as an NPY file.
 
 #![no_main]
 
 use std::path::Path;
+
+use libfuzzer_sys::fuzz_target;
+use raypencil::io::{Limits, npy_from_bytes};
 
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(array) = npy_from_bytes(bytes, Path::new("any.npy"), &Limits::default()) {

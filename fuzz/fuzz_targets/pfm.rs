@@ -1,12 +1,11 @@
-//! Any bytes as a PFM file.
-
-use libfuzzer_sys::fuzz_target;
-
-use raypencil_files::{Limits, pfm_from_bytes};
+//! Fuzz target: any bytes as a PFM file.
 
 #![no_main]
 
 use std::path::Path;
+
+use libfuzzer_sys::fuzz_target;
+use raypencil::io::{Limits, pfm_from_bytes};
 
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(array) = pfm_from_bytes(bytes, Path::new("any.pfm"), &Limits::default()) {

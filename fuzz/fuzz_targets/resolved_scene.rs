@@ -1,10 +1,9 @@
-//! Any text below the first lines of a resolved scene, whose terrain is not there.
-
-use raypencil_scene_io::load_text;
+//! Fuzz target: any text after the first lines of a resolved scene. Its terrain file is missing.
 
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use raypencil::io::load_text;
 
 fuzz_target!(|text: &str| {
     let text = format!("version = 1\nkind = \"resolved\"\n{text}");

@@ -1,24 +1,23 @@
-//! What a failing property leaves behind: the smallest scene that still shows it, the seed and the commit.
+//! Reproducers of failing properties: the smallest scene that still fails, and the commit.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use raypencil::Scene;
-use raypencil::Silent;
 use raypencil::harness::{
     Contender, Reproducer, first_shown, shows_class, typed_contenders, write_reproducer,
 };
 use raypencil::io::scene_sha256;
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::minimise::{MINIMISE_BUDGET, minimise};
+use raypencil::{Scene, Silent};
 
-/// Where reproducers of tests go: `reproducers` in the folder that cargo builds in.
+/// The folder for reproducers: `reproducers` in the target folder of cargo.
 pub fn folder() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     target.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target")).join("reproducers")
 }
 
-/// The commit that the tests are run on, or the version of the package where there is no git.
+/// The commit under test, or the version of the package where there is no git repository.
 pub fn commit() -> String {
     let git = Command::new("git")
         .args(["rev-parse", "--short", "HEAD"])
@@ -32,8 +31,8 @@ pub fn commit() -> String {
     }
 }
 
-/// Minimises the first defect between two renderers on a scene, writes what is left into `folder`, and says in a line
-/// where it is, or why there is nothing.
+/// Minimises the first defect between two renderers on a scene, and writes the smallest scene to `folder`. Returns one
+/// line: the path of the reproducer, or the reason why there is none.
 pub fn reproduce(folder: &Path, property: &str, contenders: [&Contender; 2], scene: &Scene) -> String {
     let shows = shows_class(contenders, Class::Defect);
     let minimised = first_shown(contenders, scene, Class::Defect, JudgeShare::Sample)
@@ -41,7 +40,7 @@ pub fn reproduce(folder: &Path, property: &str, contenders: [&Contender; 2], sce
     let Some(minimised) = minimised else {
         return "no reproducer: the two renderers show no defect on this scene".into();
     };
-    // Of another scene or another result another name: one failure does not take the place of another.
+    // The name contains digests of scene and result, so that one failure does not overwrite another.
     let [of_scene, of_result] = [scene, &minimised.scene].map(|scene| scene_sha256(scene)[..8].to_string());
     let name = format!("{property}-{of_scene}-{of_result}");
     let [a, b] = contenders.map(|contender| contender.renderer.name());

@@ -1,31 +1,32 @@
-//! What must not escape a check, and what must not be blamed: recordings that are spoilt, or say little.
+//! Checks of altered and partial recordings: which errors must be found, and which differences must be accepted.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use raypencil::Place;
 use raypencil::harness::contender;
-use raypencil::io::Storage;
-use raypencil::io::{Overrides, load};
+use raypencil::io::{Overrides, Storage, load};
 use raypencil::judge::{Check, Class, GroundTruth, Item, Quantity, Recorded, check};
 use raypencil::pack::blind_scene;
 use raypencil::referee::Format;
-use raypencil::{FluxModel, Image, Maybe, Pixel, Precision, Request, Scene, SensorId, Silent};
+use raypencil::{
+    FaceId, FluxModel, Image, Maybe, Pixel, Place, Precision, Profile, Request, Scene, SensorId, Silent,
+};
 
+/// The scene of a committed pack.
 fn scene_of(pack: &str) -> Scene {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/packs").join(pack).join("scene.toml");
     load(&file.to_string_lossy(), &Overrides::default()).expect("a pack's scene").scene
 }
 
-/// What the tracer says, declared to be of this arithmetic.
-pub fn recorded(scene: &Scene, precision: Precision) -> Recorded {
+/// The tracer's recording of a scene, declared to have this precision.
+fn recorded(scene: &Scene, precision: Precision) -> Recorded {
     let output = contender("tracer").unwrap().renderer.render(scene, &Request::EVERYTHING);
     Recorded::of_output("tracer", scene, &output, precision)
 }
 
-/// Leaves only some quantities of a recording.
-fn keep(recorded: &mut Recorded, kept: &[Quantity]) {
-    // Values that no test here is about are never kept.
+/// Removes all other quantities from a recording.
+fn keep_only(recorded: &mut Recorded, kept: &[Quantity]) {
+    // No test here uses these quantities.
     let is_kept = |quantity: Quantity| {
         let is_other = matches!(
             quantity,
@@ -69,6 +70,7 @@ fn keep(recorded: &mut Recorded, kept: &[Quantity]) {
     }
 }
 
+/// Checks a recording against the exact answers.
 fn judged(scene: &Scene, recorded: &Recorded) -> Check {
     check(&GroundTruth::certified(scene, &Silent), recorded, &Silent)
 }
@@ -79,21 +81,22 @@ fn assert_passes(found: &Check) {
     assert!(found.passes(), "{wrong:?}");
 }
 
+/// Column and row of all cells.
 fn cells(image: &Image<f64>) -> impl Iterator<Item = (u32, u32)> + use<> {
     let (width, height) = (image.width(), image.height());
     (0..height).flat_map(move |j| (0..width).map(move |i| (i, j)))
 }
 
 #[test]
-fn a_pencil_near_a_border_is_not_lost_unseen() {
+fn a_missing_pencil_near_a_border_is_a_defect() {
     let scene = scene_of("pyramids");
     let truth = GroundTruth::certified(&scene, &Silent);
     let referee = truth.judge().referee();
     let mut image_only = recorded(&scene, Precision::F64);
     let flux = image_only.answers.light[0].returns.flux.clone().unwrap();
-    keep(&mut image_only, &[Quantity::PixelFlux]);
+    keep_only(&mut image_only, &[Quantity::PixelFlux]);
     assert_passes(&check(&truth, &image_only, &Silent));
-    // Near, but thousands of times as far as any arithmetic reaches.
+    // Near the border, but thousands of times farther than any rounding error.
     let near = cells(&flux).find(|&(i, j)| {
         let sight = referee.visibility_margins(0, i, j);
         sight.is_some_and(|sight| {
@@ -113,8 +116,8 @@ fn a_pencil_near_a_border_is_not_lost_unseen() {
     }
 }
 
-/// The scene with the camera's principal point moved so that a pencil lands 1e-7 pixels right of a border; and that
-/// pencil.
+/// A pencil, and a scene with the camera's principal point moved so that this pencil lands 1e-7 pixels right of a
+/// border.
 fn on_a_border() -> (Scene, Place) {
     let scene = scene_of("pyramids");
     let place = Place { sensor: SensorId::Beam(0), i: 37, j: 2 };
@@ -137,7 +140,7 @@ fn on_a_border() -> (Scene, Place) {
 }
 
 #[test]
-fn a_pencil_that_rounds_over_a_border_is_no_fault_of_either_pixel() {
+fn a_pencil_that_rounds_over_a_border_is_rounding_in_both_pixels() {
     let (scene, Place { i, j, .. }) = on_a_border();
     let truth = GroundTruth::certified(&scene, &Silent);
     let mut moved = recorded(&scene, Precision::F32);
@@ -154,30 +157,31 @@ fn a_pencil_that_rounds_over_a_border_is_no_fault_of_either_pixel() {
     // The pencil and the two pixels.
     assert_eq!(found.of(Class::Rounding), 3);
 
-    // The image alone, a little off as single precision is.
-    keep(&mut moved, &[Quantity::PixelFlux]);
+    // The image alone, with errors of single precision.
+    keep_only(&mut moved, &[Quantity::PixelFlux]);
     for flux in moved.answers.light[0].image.as_mut().unwrap().cells_mut() {
         *flux *= 1.0 + 1e-7;
     }
     let found = check(&truth, &moved, &Silent);
     assert_passes(&found);
     assert_eq!(found.of(Class::Rounding), 2);
-    // A part of a pencil is never what goes over.
+    // Only a whole pencil can cross the border.
     let image = moved.answers.light[0].image.as_mut().unwrap();
     image.set(to.i, to.j, image.at(to.i, to.j) - 0.4 * flux);
     assert_eq!(check(&truth, &moved, &Silent).of(Class::Defect), 1);
-    // And by double precision nothing went over.
+    // In double precision no pencil can cross the border.
     moved.answers.light[0].image.as_mut().unwrap().set(to.i, to.j, image_at(&truth, to) + flux);
     moved.precision = Precision::F64;
     assert!(!check(&truth, &moved, &Silent).passes());
 }
 
+/// The exact flux of a pixel by beam 0, W.
 fn image_at(truth: &GroundTruth<'_>, pixel: Pixel) -> f64 {
     truth.answers().light[0].image.as_ref().unwrap().at(pixel.i, pixel.j)
 }
 
 #[test]
-fn light_off_the_image_is_nothing() {
+fn a_pencil_off_the_image_delivers_no_flux() {
     let scene = scene_of("facets");
     let truth = GroundTruth::certified(&scene, &Silent);
     let off = (0..4)
@@ -185,72 +189,72 @@ fn light_off_the_image_is_nothing() {
         .find(|place| truth.hit(*place).is_some() && truth.visibility(*place) == (false, None))
         .expect("some pencils of this pack land off the image");
     for without in [[].as_slice(), &[Quantity::Visible], &[Quantity::Visible, Quantity::Pixel]] {
-        let mut lying = recorded(&scene, Precision::F64);
+        let mut altered = recorded(&scene, Precision::F64);
         let all = Quantity::ALL.into_iter().filter(|quantity| !without.contains(quantity));
-        keep(&mut lying, &all.collect::<Vec<_>>());
-        assert_passes(&check(&truth, &lying, &Silent));
-        lying.answers.light[1].returns.flux.as_mut().unwrap().set(off.i, off.j, 1e3);
-        let found = check(&truth, &lying, &Silent);
+        keep_only(&mut altered, &all.collect::<Vec<_>>());
+        assert_passes(&check(&truth, &altered, &Silent));
+        altered.answers.light[1].returns.flux.as_mut().unwrap().set(off.i, off.j, 1e3);
+        let found = check(&truth, &altered, &Silent);
         assert_eq!(found.of(Class::Defect), 1, "without {without:?}");
     }
 }
 
 #[test]
-fn a_hit_that_is_seen_lands_somewhere() {
+fn a_visible_hit_has_a_pixel() {
     let scene = scene_of("pyramids");
-    let mut lying = recorded(&scene, Precision::F64);
-    keep(&mut lying, &[Quantity::Face, Quantity::Range, Quantity::Pixel, Quantity::PencilFlux]);
-    let pixels = lying.answers.light[0].returns.pixel.as_mut().unwrap();
+    let mut altered = recorded(&scene, Precision::F64);
+    keep_only(&mut altered, &[Quantity::Face, Quantity::Range, Quantity::Pixel, Quantity::PencilFlux]);
+    let pixels = altered.answers.light[0].returns.pixel.as_mut().unwrap();
     let landed = pixels.cells().iter().filter(|pixel| pixel.get().is_some()).count() as u64;
     pixels.cells_mut().fill(Maybe::NONE);
-    let found = judged(&scene, &lying);
+    let found = judged(&scene, &altered);
     let of_pixel = &found.totals()[&Quantity::Pixel.into()];
     assert_eq!(of_pixel.of(Class::Defect), landed);
 }
 
 #[test]
-fn a_value_is_there_exactly_where_something_is_hit() {
+fn a_value_is_present_exactly_where_a_ray_hits() {
     let scene = scene_of("facets");
     let truth = GroundTruth::certified(&scene, &Silent);
-    let mut lying = recorded(&scene, Precision::F64);
-    keep(&mut lying, &[Quantity::CameraDepth]);
-    assert_passes(&check(&truth, &lying, &Silent));
-    let depth = lying.answers.light[0].returns.depth.clone().unwrap();
+    let mut altered = recorded(&scene, Precision::F64);
+    keep_only(&mut altered, &[Quantity::CameraDepth]);
+    assert_passes(&check(&truth, &altered, &Silent));
+    let depth = altered.answers.light[0].returns.depth.clone().unwrap();
     let places: Vec<_> = (0..4).flat_map(|j| (0..128).map(move |i| (i, j))).collect();
     let hit = places.iter().copied().find(|&(i, j)| depth.at(i, j).get().is_some()).unwrap();
     let beam = usize::from(places.iter().all(|&(i, j)| depth.at(i, j).get().is_some()));
-    let depth = lying.answers.light[beam].returns.depth.clone().unwrap();
+    let depth = altered.answers.light[beam].returns.depth.clone().unwrap();
     let miss = places.iter().copied().find(|&(i, j)| depth.at(i, j).get().is_none()).expect("a miss");
     for ((beam, (i, j)), value) in [((0, hit), Maybe::NONE), ((beam, miss), Maybe::some(3.0))] {
-        let mut lying = lying.clone();
-        lying.answers.light[beam].returns.depth.as_mut().unwrap().set(i, j, value);
-        assert_eq!(check(&truth, &lying, &Silent).of(Class::Defect), 1);
+        let mut altered = altered.clone();
+        altered.answers.light[beam].returns.depth.as_mut().unwrap().set(i, j, value);
+        assert_eq!(check(&truth, &altered, &Silent).of(Class::Defect), 1);
     }
 }
 
 #[test]
-fn each_beams_image_is_judged_by_its_own_type() {
+fn each_beams_image_is_checked_in_its_own_storage_type() {
     let scene = scene_of("pyramids");
-    let mut lying = recorded(&scene, Precision::F64);
-    lying.answers.light[0].image.as_mut().unwrap().cells_mut().fill(0.0);
-    lying.storage.insert((SensorId::Camera, Item::of_image(1)), Storage::F16);
-    let found = judged(&scene, &lying);
+    let mut altered = recorded(&scene, Precision::F64);
+    altered.answers.light[0].image.as_mut().unwrap().cells_mut().fill(0.0);
+    altered.storage.insert((SensorId::Camera, Item::of_image(1)), Storage::F16);
+    let found = judged(&scene, &altered);
     assert!(found.of(Class::Defect) > 50);
     let totals = found.totals();
     assert!(totals[&Item::of_image(0)].of(Class::Defect) > 50);
-    // Half precision holds no flux as small as these: none is compared, but those that are exactly 0.
+    // Half precision cannot hold so small a flux: only pixels with exactly 0 are compared.
     let second = &totals[&Item::of_image(1)];
     assert!(second.not_compared > 50 && second.not_compared == second.unjudged.len() as u64);
     assert_eq!(second.of(Class::Defect), 0);
-    // One that is far too large for the truth is wrong all the same.
-    let image = lying.answers.light[1].image.as_mut().unwrap();
+    // A value far too large is a defect all the same.
+    let image = altered.answers.light[1].image.as_mut().unwrap();
     image.set(3, 3, 0.5);
-    assert!(judged(&scene, &lying).totals()[&Item::of_image(1)].of(Class::Defect) == 1);
+    assert!(judged(&scene, &altered).totals()[&Item::of_image(1)].of(Class::Defect) == 1);
 }
 
 #[test]
-fn faces_that_tie_may_deliver_unlike_light() {
-    // Copies of faces in other materials: whoever names none may have taken either.
+fn faces_that_tie_may_deliver_different_flux() {
+    // Faces are copied with other materials: a recording without face indices may contain either.
     let (scene, place, face) = (1..40)
         .find_map(|seed| {
             let scene = blind_scene(seed).unwrap();
@@ -260,7 +264,7 @@ fn faces_that_tie_may_deliver_unlike_light() {
             };
             found.map(|(place, face)| (scene, place, face))
         })
-        .expect("some seed has such a pencil");
+        .expect("a seed with such a pencil");
     let truth = GroundTruth::certified(&scene, &Silent);
     let SensorId::Beam(beam) = place.sensor else { panic!("a pencil") };
     let Place { i, j, .. } = place;
@@ -280,13 +284,13 @@ fn faces_that_tie_may_deliver_unlike_light() {
         let Pixel { i: column, j: row } = pixel.unwrap();
         let image = light.image.as_mut().unwrap();
         image.set(column, row, image.at(column, row) - own + other);
-        keep(&mut taken, kept);
+        keep_only(&mut taken, kept);
         assert_passes(&check(&truth, &taken, &Silent));
     }
 }
 
-/// A pencil that is seen, and a face that ties with the one it hits and delivers unlike light.
-fn tied(truth: &GroundTruth<'_>) -> Option<(Place, raypencil::FaceId)> {
+/// A visible pencil, and a face that ties with the hit face and delivers another flux.
+fn tied(truth: &GroundTruth<'_>) -> Option<(Place, FaceId)> {
     let model: FluxModel = truth.scene().flux_model();
     for beam in 0..truth.scene().beams().len() {
         let sensor = SensorId::Beam(beam);
@@ -306,16 +310,16 @@ fn tied(truth: &GroundTruth<'_>) -> Option<(Place, raypencil::FaceId)> {
 }
 
 #[test]
-fn what_single_precision_loses_is_not_called_hidden() {
-    // A narrow Gaussian: the light of outer pencils is below the least single.
+fn underflow_in_single_precision_is_not_taken_for_hidden() {
+    // A narrow Gaussian: the flux of outer pencils is below the smallest single-precision number.
     let scene = scene_of("pyramids");
     let mut beams = scene.beams().to_vec();
-    beams[0].sensor.profile = raypencil::Profile::Gaussian { half_width: 0.03 };
+    beams[0].sensor.profile = Profile::Gaussian { half_width: 0.03 };
     let scene =
         Scene::new(Arc::clone(scene.mesh()), *scene.camera(), beams, scene.atmosphere(), scene.flux_model())
             .unwrap();
     let mut single = recorded(&scene, Precision::F32);
-    keep(&mut single, &[Quantity::Face, Quantity::Range, Quantity::PencilFlux]);
+    keep_only(&mut single, &[Quantity::Face, Quantity::Range, Quantity::PencilFlux]);
     let flux = single.answers.light[0].returns.flux.as_mut().unwrap();
     flux.cells_mut().iter_mut().for_each(|flux| *flux = f64::from(*flux as f32));
     assert!(flux.cells().iter().filter(|flux| **flux == 0.0).count() > 100);

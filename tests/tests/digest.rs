@@ -1,9 +1,9 @@
-//! The same bits for any number of threads, optimisation level and machine: digests of whole frames, committed
-//! here. (Contract: same bits)
+//! Committed digests of whole outputs: the bits are the same for any number of threads, optimisation level and machine.
+//! (Contract: same bits)
 //!
-//! Run with `--profile unoptimised` and with `--release` too. A digest changes with any change of a ground, a
-//! rig, or the order of a renderer's operations. When it does, say in the change why, and print the new ones
-//! with `cargo test -p raypencil-tests --test digest -- --nocapture`.
+//! CI runs the tests with `--profile unoptimised` and with `--release` too. A digest changes with any change of a
+//! ground, of a rig, or of the order of a renderer's operations. Such a commit must state the reason. The command
+//! `cargo test -p raypencil-tests --test digest -- --nocapture` prints the new digests.
 
 use glam::DVec3;
 use raypencil::terrain::{Crevasses, MarsGround, RandomGround, Rocks, builtin, height_at};
@@ -11,7 +11,7 @@ use raypencil::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request,
 use raypencil_tests::{bits, light_bits, renderers, rig, scene};
 use sha2::{Digest, Sha256};
 
-/// Scene, renderer and SHA-256 of all bits of all its maps.
+/// Scene, renderer and SHA-256 of the bits of all maps.
 const DIGESTS: &[[&str; 3]] = &[
     ["pyramids", "scanline", "7b629a8e4df0ba1bdfeceb5aef350a3d800583773a898091367e69faef4ba7f0"],
     ["pyramids", "tracer", "dd31d1b2a3e579423aedfb2311d707c9012fa71fc56e6e5b2f90265b1254ee56"],
@@ -23,7 +23,7 @@ const DIGESTS: &[[&str; 3]] = &[
     ["worst", "tracer", "8d7a02db598507fce37de0b2aa717521362fd0906f8b6859eafc39d346cab8fd"],
 ];
 
-/// Scene, renderer, sampling and SHA-256 of all bits of its light.
+/// Scene, renderer, sampling and SHA-256 of the bits of all light.
 const DIGESTS_OF_LIGHT: &[[&str; 4]] = &[
     [
         "radiometric",
@@ -38,7 +38,7 @@ const DIGESTS_OF_LIGHT: &[[&str; 4]] = &[
     ["eq1", "tracer", "jittered", "f2bad6dd3b9831a676a414c1d227d221ebbdca2a719f4f0bd5a2d1698499a339"],
 ];
 
-/// The scenes under digest, by name: small, since this runs without optimisation too.
+/// The scenes with their names. They are small, because the test runs without optimisation too.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let grounds = [
         ("pyramids", builtin("pyramids", 0.25).expect("a built-in name")),
@@ -48,7 +48,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
     ];
     let built = grounds.map(|(name, ground)| {
         let mesh = std::sync::Arc::new(ground.into_mesh().expect("a mesh"));
-        // At the middle of the ground, on its surface, turned a little: no ray is along an axis.
+        // The rig is on the surface in the middle, turned by 0.4 rad, so that no ray is parallel to an axis.
         let ground_height = height_at(&mesh, 0.0, 0.0).unwrap_or(0.0);
         let (camera, beams) = rig::default_rig(16, DVec3::new(0.0, 0.0, ground_height), 0.4);
         (name, scene(mesh, camera, beams))
@@ -56,7 +56,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
     built.into()
 }
 
-/// Generated ground with everything in it, as far as the stripes reach.
+/// Generated ground with all features, as large as the stripes reach.
 fn worst() -> MarsGround {
     let worst = MarsGround::preset("worst", 20).expect("a preset");
     let crevasses = Crevasses { count: 2, width: 0.4, ..worst.crevasses };
@@ -64,6 +64,7 @@ fn worst() -> MarsGround {
     MarsGround { extent: 16.0, post_spacing: 0.8, crevasses, rocks, ..worst }
 }
 
+/// SHA-256 of the bits of all maps.
 fn digest(renderer: &dyn Renderer, scene: &Scene) -> String {
     let output = renderer.render(scene, &Request::EVERYTHING);
     let mut sha256 = Sha256::new();
@@ -91,7 +92,7 @@ fn every_number_of_threads_and_every_build_gives_the_committed_bits() {
     assert!(found == DIGESTS, "the digests are now {found:#?}");
 }
 
-/// The pyramids through a filter in thin air, by beams of two profiles, in both models.
+/// The pyramids in both flux models, through a filter in attenuating air, with beams of two profiles.
 fn lit_scenes() -> Vec<(&'static str, Scene)> {
     let mesh =
         std::sync::Arc::new(builtin("pyramids", 0.25).expect("a built-in name").into_mesh().expect("a mesh"));
@@ -117,7 +118,7 @@ fn light_has_the_committed_bits_too() {
             for (how, sampling) in
                 [("centres", Sampling::Centres), ("jittered", Sampling::Jittered { seed: 3 })]
             {
-                // The scanline renderer has no rays to displace.
+                // The scanline renderer does not support jittered rays.
                 if how == "jittered" && renderer.name() == "scanline" {
                     continue;
                 }
@@ -140,8 +141,8 @@ fn light_has_the_committed_bits_too() {
 }
 
 #[test]
-fn the_scenes_under_digest_are_seen() {
-    // A digest of empty maps would hold nothing.
+fn at_least_half_of_the_rays_hit() {
+    // A digest of empty maps would prove nothing.
     for (name, scene) in scenes() {
         for (renderer, output) in raypencil_tests::render_both(&scene) {
             for map in output.maps() {

@@ -1,19 +1,20 @@
-//! What hides what from the camera, whoever computes it, and the paper's claim that backs are enough on closed ground.
-//! (§6)
+//! Occlusion of pencils from the camera, by every renderer; and the paper's claim that on closed ground back faces
+//! suffice. (§6)
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil::{Beam, Mesh, Mounted, Pose, Request, Scene};
-use raypencil_tests::light::{Draws, evaluations, fluxes, is_visible, relative, total};
+use raypencil_tests::draws::SplitMix64;
+use raypencil_tests::light::{evaluations, fluxes, is_visible, relative, total};
 use raypencil_tests::{at_origin, cells_hit, hit, rig, scene};
 
-/// Ranges that are the plane's own, but for a few roundings.
-const CLOSE: f64 = 1e-14;
+/// Maximum relative error of a range: a few roundings.
+const MAX_RELATIVE_ERROR: f64 = 1e-14;
 
-/// A mesh of rectangles, each between two corners [x, y, z] that have one z in common: its front towards -z, or
-/// turned away.
+/// A mesh of rectangles, each with its bounds in x, its bounds in y, and its depth z. The front faces -z, or +z if it
+/// is turned away.
 fn plates(plates: &[([f32; 2], [f32; 2], f32, bool)]) -> Arc<Mesh> {
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for &([left, right], [top, bottom], z, turned_away) in plates {
@@ -25,7 +26,7 @@ fn plates(plates: &[([f32; 2], [f32; 2], f32, bool)]) -> Arc<Mesh> {
     raypencil_tests::mesh(vertices, faces)
 }
 
-/// The ground: a wall 2 m ahead.
+/// The ground: a wall at z = 2 m.
 const WALL: ([f32; 2], [f32; 2], f32, bool) = ([-8.0, 8.0], [-8.0, 8.0], 2.0, false);
 
 /// A beam along z from the origin, 16 x 3 pencils, its sheet in the plane y = 0 and 23 um thick, its grid at 1/8 m;
@@ -37,8 +38,8 @@ fn beside(mesh: Arc<Mesh>, position: DVec3) -> Scene {
     scene(mesh, camera, vec![at_origin(beam)])
 }
 
-/// Calls `visit` with column, range and flux of every pencil, by every renderer; checks that what is seen is what
-/// returns light, and that the image holds all of it.
+/// Calls `visit` with the column, range and flux of every pencil, for every renderer. Asserts that exactly the visible
+/// pencils return flux, and that the image holds all of it.
 fn for_each_pencil(scene: &Scene, mut visit: impl FnMut(&str, u32, f64, f64)) {
     for renderer in evaluations() {
         let output = renderer.render(scene, &Request::EVERYTHING);
@@ -54,11 +55,11 @@ fn for_each_pencil(scene: &Scene, mut visit: impl FnMut(&str, u32, f64, f64)) {
 }
 
 #[test]
-fn a_lid_a_tenth_of_a_millimetre_above_the_ground_hides_it() {
-    // The camera is 2 m above the sheet, so that it sees the stripe along a slope of 1: the ways pass the plane 0.1 mm
-    // before the wall 0.1 mm above the sheet, give or take the 12 um of half of it. A lid there that begins 0.05 mm
-    // above the sheet does not meet the laser and hides the stripe, one that begins at 0.15 mm does not, whichever way
-    // it faces.
+fn a_lid_a_tenth_of_a_millimetre_before_the_wall_hides_it() {
+    // The camera is 2 m above the sheet, so that it sees the stripe along a slope of 1. In the plane 0.1 mm before the
+    // wall, the lines of sight are 0.1 mm above the sheet, within half of its thickness, 12 um. A lid in this plane
+    // that begins 0.05 mm above the sheet does not meet the laser and hides the stripe. One that begins at 0.15 mm
+    // does not hide it. Both hold for a lid that faces either side.
     let camera = DVec3::new(0.0, -2.0, 0.0);
     let z = 2.0 - 1e-4_f32;
     let lid = |bottom: f32, turned_away| ([-8.0, 8.0], [-1.0, bottom], z, turned_away);
@@ -66,20 +67,20 @@ fn a_lid_a_tenth_of_a_millimetre_above_the_ground_hides_it() {
         for (bottom, hides) in [(-0.5e-4, true), (-1.5e-4, false)] {
             let scene = beside(plates(&[WALL, lid(bottom, turned_away)]), camera);
             for_each_pencil(&scene, |what, _, range, flux| {
-                assert!(range >= 2.0, "{what}: the lid at {bottom} m takes the laser");
+                assert!(range >= 2.0, "{what}: the lid at {bottom} m blocks the laser");
                 assert_eq!(flux == 0.0, hides, "{what}: {flux:e} W past a lid at {bottom} m");
             });
         }
     }
-    // One across the sheet too takes the laser, and returns its light; its back lets the laser through (backs are not
-    // hit), and hides the wall.
+    // A lid across the sheet blocks the laser and returns its light. If it shows its back, the laser passes, because
+    // backs are not hit, and the lid hides the wall.
     let secant = |i: u32| {
         let tan = (2.0 * f64::from(i) - 15.0) / 1024.0 / 0.125;
         (1.0 + tan * tan).sqrt()
     };
     for (turned_away, depth) in [(false, f64::from(z)), (true, 2.0)] {
         for_each_pencil(&beside(plates(&[WALL, lid(1.0, turned_away)]), camera), |what, i, range, flux| {
-            assert!(relative(range, depth * secant(i)) < CLOSE, "{what}: {range} m");
+            assert!(relative(range, depth * secant(i)) < MAX_RELATIVE_ERROR, "{what}: {range} m");
             assert_eq!(flux == 0.0, turned_away, "{what}: {flux:e} W");
         });
     }
@@ -87,9 +88,9 @@ fn a_lid_a_tenth_of_a_millimetre_above_the_ground_hides_it() {
 
 #[test]
 fn a_blade_a_millimetre_beyond_the_grid_blocks_the_laser() {
-    // The grid is at 1/8 m. A blade over the left half of the fan: 1 mm beyond it columns 0 to 7 end there, behind
-    // the camera, which is at z = 1/2 m, and return nothing. 1 mm before it, or with its back to the laser, it does
-    // nothing.
+    // The grid is at 1/8 m. A blade covers the left half of the fan. 1 mm beyond the grid it stops columns 0 to 7,
+    // which return nothing, because the camera is at z = 1/2 m. 1 mm before the grid, or with its back to the laser,
+    // the blade has no effect.
     let camera = DVec3::new(0.0, -1.0, 0.5);
     let blade = |z: f32, turned_away| ([-1.0, 0.0], [-1.0, 1.0], z, turned_away);
     let mut bare = Vec::new();
@@ -99,23 +100,23 @@ fn a_blade_a_millimetre_beyond_the_grid_blocks_the_laser() {
         let mut bare = bare.iter();
         let scene = beside(plates(&[WALL, blade(z, turned_away)]), camera);
         for_each_pencil(&scene, |what, i, range, flux| {
-            let whole = *bare.next().expect("as many pencils");
+            let unblocked = *bare.next().expect("as many pencils");
             if blocks && i < 8 {
                 // Slopes are up to 15 / 128.
                 assert!((0.126..0.127).contains(&range), "{what}: {range} m");
                 assert_eq!(flux, 0.0, "{what}");
             } else {
                 assert!(range >= 2.0, "{what}: {range} m");
-                assert_eq!(flux, whole, "{what}");
+                assert_eq!(flux, unblocked, "{what}");
             }
         });
     }
 }
 
 #[test]
-fn nothing_before_the_image_plane_hides() {
-    // The image plane is 1/64 m before the projection centre: a plate at 0.99 of that hides nothing, at 1.01
-    // everything.
+fn faces_nearer_than_the_image_plane_do_not_hide() {
+    // The image plane is 1/64 m in front of the projection centre. A plate at 0.99 of this distance hides nothing, one
+    // at 1.01 everything.
     let camera = DVec3::new(0.0, -1.0, 0.0);
     for (share, hides) in [(0.99, false), (1.01, true)] {
         for turned_away in [false, true] {
@@ -127,16 +128,17 @@ fn nothing_before_the_image_plane_hides() {
     }
 }
 
-/// A height field of 12 x 12 m, closed by sides and a bottom, with turned boxes, on it and half in it, all below 0.9 m.
+/// A height field of 12 x 12 m, closed by sides and a bottom, with rotated boxes on it and partly in it. All vertices
+/// are below 0.9 m.
 fn closed_ground(seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     const CELLS: u32 = 12;
-    let mut draws = Draws(seed);
+    let mut random = SplitMix64::new(seed);
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     let across = CELLS + 1;
     for j in 0..across {
         for i in 0..across {
             let place = |k: u32| f64::from(k) * 12.0 / f64::from(CELLS) - 6.0;
-            vertices.push(DVec3::new(place(i), place(j), draws.between(-0.25, 0.25)));
+            vertices.push(DVec3::new(place(i), place(j), random.between(-0.25, 0.25)));
         }
     }
     for j in 0..CELLS {
@@ -145,7 +147,7 @@ fn closed_ground(seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
             faces.extend([[a, b, b + across], [a, b + across, a + across]]);
         }
     }
-    // The border, counter-clockwise from above, and its sides; the bottom as a fan around its middle.
+    // The border, counter-clockwise from above, with its sides, and the bottom as a fan around its middle.
     let mut border: Vec<u32> = (0..CELLS).collect();
     border.extend((0..CELLS).map(|j| j * across + CELLS));
     border.extend((1..across).rev().map(|i| CELLS * across + i));
@@ -167,10 +169,12 @@ fn closed_ground(seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         ]);
     }
     for _ in 0..20 {
-        let centre = DVec3::new(draws.between(1.0, 5.0), draws.between(-2.5, 2.5), draws.between(-0.1, 0.3));
+        let centre =
+            DVec3::new(random.between(1.0, 5.0), random.between(-2.5, 2.5), random.between(-0.1, 0.3));
         let turn =
-            Pose { position: centre, ..Pose::from_axis_angle(draws.direction(), draws.between(0.0, PI)) };
-        let half = DVec3::new(draws.between(0.02, 0.4), draws.between(0.02, 0.4), draws.between(0.02, 0.2));
+            Pose { position: centre, ..Pose::from_axis_angle(random.direction(), random.between(0.0, PI)) };
+        let half =
+            DVec3::new(random.between(0.02, 0.4), random.between(0.02, 0.4), random.between(0.02, 0.2));
         let first = vertices.len() as u32;
         for corner in 0..8_u32 {
             let sign = |axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
@@ -184,15 +188,15 @@ fn closed_ground(seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (vertices, faces)
 }
 
-/// Whether one of `faces` meets the segment c + u (P - c), nearest <= u < 1, but for the face that was hit.
+/// Whether one of `faces`, except the hit face, meets the segment c + u (P - c), nearest <= u < 1.
 fn is_hidden(faces: &[Face], hit: u32, centre: DVec3, point: DVec3, nearest: f64) -> bool {
-    let way = point - centre;
+    let to_point = point - centre;
     faces.iter().any(|&(face, corners)| {
         let [a, b, c] = corners.map(|corner| corner - centre);
         let n = (b - a).cross(c - a);
-        let towards = n.dot(way);
-        // Corners are the same numbers to every face that shares them, and so is a common side up to its sign.
-        let side = |a: DVec3, b: DVec3| way.dot(a.cross(b));
+        let towards = n.dot(to_point);
+        // Faces with a common edge compute the same side function for it, up to the sign.
+        let side = |a: DVec3, b: DVec3| to_point.dot(a.cross(b));
         let sides = [side(a, b), side(b, c), side(c, a)];
         let is_inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
         face != hit && towards != 0.0 && is_inside && {
@@ -205,7 +209,7 @@ fn is_hidden(faces: &[Face], hit: u32, centre: DVec3, point: DVec3, nearest: f64
 /// A face's index and corners.
 type Face = (u32, [DVec3; 3]);
 
-/// All faces of a scene, and those whose back is turned to the camera's position.
+/// All faces of a scene, and those that show their back to the camera.
 fn faces_and_backs(scene: &Scene) -> [Vec<Face>; 2] {
     let (mesh, centre) = (scene.mesh(), scene.camera().scene_from_sensor.position);
     let corner = |v: u32| DVec3::from_array(mesh.vertices()[v as usize].map(f64::from));
@@ -216,10 +220,10 @@ fn faces_and_backs(scene: &Scene) -> [Vec<Face>; 2] {
 }
 
 #[test]
-fn on_closed_ground_backs_hide_all_that_is_hidden() {
-    // The paper asks only faces whose back is turned to the camera (section 6). A segment from a point in the open to
-    // the camera that meets a solid enters it, from the point's side, through a face that looks at the point and away
-    // from the camera; so that backs are enough, if every solid is closed and camera, beams and points are outside.
+fn on_closed_ground_backs_alone_decide_what_is_hidden() {
+    // The paper tests only faces that show their back to the camera (section 6). A segment from a point outside all
+    // solids to the camera that meets a solid enters it through a face whose front is to the point and whose back is to
+    // the camera. So backs suffice if every solid is closed, and camera, beams and points are outside.
     let (mut pencils, mut in_shadow) = (0, 0);
     let camera = rig::camera(96, 96, 1e-4, 8e-3);
     let beam = Beam {
@@ -230,21 +234,21 @@ fn on_closed_ground_backs_hide_all_that_is_hidden() {
     for seed in 0..6 {
         let (vertices, faces) = closed_ground(seed);
         let vertices: Vec<[f32; 3]> = vertices.iter().map(|v| v.as_vec3().to_array()).collect();
-        // Closed: every side of a face is one of another's, the other way round.
+        // Closed: every edge of a face is an edge of another face, in the opposite direction.
         let mut sides: Vec<[u32; 2]> = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         sides.sort_unstable();
         let turned = |[a, b]: &[u32; 2]| sides.binary_search(&[*b, *a]).is_ok();
         assert!(sides.iter().all(turned) && sides.windows(2).all(|pair| pair[0] != pair[1]), "not closed");
-        // Outward: six times the volume is positive. The sensors are above everything, at 1.2 m and more.
+        // Fronts outside: six times the volume is positive. The sensors are above all vertices, at 1.2 m or more.
         let corner = |v: u32| DVec3::from_array(vertices[v as usize].map(f64::from));
         let corners: Vec<[DVec3; 3]> = faces.iter().map(|face| face.map(corner)).collect();
         assert!(corners.iter().map(|[a, b, c]| a.dot(b.cross(*c))).sum::<f64>() > 0.0);
         assert!(vertices.iter().all(|vertex| vertex[2] < 0.9));
 
-        let mut draws = Draws(100 + seed);
+        let mut random = SplitMix64::new(100 + seed);
         let mut mount = |height: f64| {
-            let place = DVec3::new(draws.between(-1.0, 0.0), draws.between(-1.0, 1.0), height);
-            (place, draws.between(0.35, 0.6))
+            let place = DVec3::new(random.between(-1.0, 0.0), random.between(-1.0, 1.0), height);
+            (place, random.between(0.35, 0.6))
         };
         let ((at, down), beams) = (mount(1.2), [mount(1.6), mount(2.2)]);
         let beams = beams.map(|(at, down)| rig::pitched(at, down, beam)).to_vec();
@@ -262,7 +266,7 @@ fn on_closed_ground_backs_hide_all_that_is_hidden() {
                 let pixels = returns.pixel.as_ref().expect("pixels are known");
                 for (i, j) in cells_hit(map) {
                     let met = hit(map, i, j).expect("a hit");
-                    // What is beside the image or turned away is not seen anyway.
+                    // Points off the image and faces turned away are never visible.
                     let turned_to = emissions.at(i, j).get().expect("of a hit") > 0.0;
                     if !turned_to || pixels.at(i, j).get().is_none() {
                         assert!(!is_visible(returns, i, j));
@@ -281,16 +285,16 @@ fn on_closed_ground_backs_hide_all_that_is_hidden() {
         }
     }
     println!(
-        "{pencils} pencils that land on the image and are turned to the camera, {in_shadow} of them hidden"
+        "{pencils} pencils land on the image on faces turned to the camera, {in_shadow} of them are hidden"
     );
-    // Enough of both kinds to mean something.
+    // Enough pencils of both kinds for a meaningful test.
     assert!(pencils > 6_000 && in_shadow > pencils / 50 && in_shadow < pencils / 2);
 }
 
 #[test]
 fn on_open_ground_fronts_hide_too() {
-    // The same question where the answer differs: a single plate, its front to the camera, half way to the wall. The
-    // renderers ask all faces, and say hidden; of backs there is none to hide anything.
+    // The claim does not hold on open ground: a single plate shows its front to the camera, half way to the wall. The
+    // renderers test all faces and find the wall hidden. No face shows its back.
     let plate = ([-8.0, 8.0], [-0.75, -0.25], 1.0, false);
     let scene = beside(plates(&[WALL, plate]), DVec3::new(0.0, -1.0, 0.0));
     assert!(faces_and_backs(&scene)[1].is_empty());

@@ -1,4 +1,5 @@
-//! The minimiser on whole renderers: planted faults and ties, from grounds of thousands of faces to the few that matter.
+//! Minimisation with complete renderers: injected faults and ties, from grounds of thousands of faces to the few that
+//! matter.
 
 use std::sync::Arc;
 
@@ -10,20 +11,19 @@ use raypencil::io::{Overrides, load};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::minimise::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
 use raypencil::terrain::RandomGround;
-use raypencil::{FaceId, Mesh, Precision, RenderOutput, Renderer, Request, Scene, SensorId};
-use raypencil::{Place, Silent};
+use raypencil::{FaceId, Mesh, Place, Precision, RenderOutput, Renderer, Request, Scene, SensorId, Silent};
+use raypencil_tests::injected_faults::detection::shows_fault;
+use raypencil_tests::injected_faults::geometry::{lattice, ridge, small_rig};
 use raypencil_tests::naive::{Fault, Naive};
-use raypencil_tests::plants::geometry::{lattice, ridge, rig};
-use raypencil_tests::plants::hunt::shows_fault;
 
-/// Rough ground of 2,000 faces and more, with slivers, walls and overhangs, before the small rig.
+/// Rough ground of at least 2,000 faces, with slivers, walls and overhangs, before the small rig.
 fn rough() -> Scene {
     let mesh = RandomGround::nasty(2, 2100).build().into_mesh().expect("a mesh");
     assert!(mesh.faces().len() >= 2000, "{}", mesh.faces().len());
-    rig(Arc::new(mesh), DVec3::ZERO, 0.3, 1.0)
+    small_rig(Arc::new(mesh), DVec3::ZERO, 0.3, 1.0)
 }
 
-/// The first ray on which two renderers differ so.
+/// The first ray of a class between two renderers.
 fn first_place(contenders: [&Contender; 2], scene: &Scene, class: Class) -> Option<Place> {
     first_shown(contenders, scene, class, JudgeShare::All).map(|first| first.place)
 }
@@ -32,17 +32,17 @@ fn tracer() -> Contender {
     contender("tracer").expect("a renderer of this house")
 }
 
-fn planted(fault: Fault) -> Contender {
+fn faulty(fault: Fault) -> Contender {
     Naive { fault: Some(fault) }.into()
 }
 
 #[test]
 fn a_fault_on_two_thousand_faces_shrinks_to_those_that_matter() {
     let scene = rough();
-    // A wrong range needs something to be hit; a wrong choice of faces two to choose from.
-    for (fault, faces) in [(Fault::DepthForRange, 1), (Fault::FarthestWins, 2), (Fault::EmissionForgotten, 1)]
+    // A wrong range needs one face that is hit; a wrong choice between faces needs two.
+    for (fault, faces) in [(Fault::DepthForRange, 1), (Fault::FarthestWins, 2), (Fault::ViewCosineOmitted, 1)]
     {
-        let contenders = [tracer(), planted(fault)];
+        let contenders = [tracer(), faulty(fault)];
         let [a, b] = &contenders;
         let place = first_place([a, b], &scene, Class::Defect);
         assert!(place.is_some(), "{fault:?} shows somewhere");
@@ -57,10 +57,10 @@ fn a_fault_on_two_thousand_faces_shrinks_to_those_that_matter() {
 #[test]
 fn without_a_place_any_ray_will_do() {
     let scene = lattice();
-    let [a, b] = [tracer(), planted(Fault::EdgesExcluded)];
+    let [a, b] = [tracer(), faulty(Fault::EdgesExcluded)];
     let shows = shows_class([&a, &b], Class::Defect);
     let found = minimise(&scene, None, &shows, MINIMISE_BUDGET, &Silent).expect("it shows");
-    // An inner edge has two faces; the miss of a border is rounding.
+    // An inner edge has two faces. A miss at the border is rounding.
     assert_eq!((found.faces_before, found.faces_after), (32, 2));
     assert_eq!(found.place, None);
     let camera = &found.scene.camera().sensor;
@@ -70,7 +70,7 @@ fn without_a_place_any_ray_will_do() {
 
 #[test]
 fn a_tie_needs_two_faces() {
-    // The naive renderer names the last of two, the tracer the first: no defect with the normal of either.
+    // One renderer reports the last of two faces, the tracer the first. Neither is a defect.
     let scene = ridge();
     let [a, b] = [tracer(), Contender::from(LastOfTies)];
     let place = first_place([&a, &b], &scene, Class::Tie);
@@ -79,7 +79,7 @@ fn a_tie_needs_two_faces() {
     assert_eq!((found.faces_before, found.faces_after), (4, 2));
 }
 
-/// The tracer on the mesh with its faces in reverse: of faces met at one point the last one wins.
+/// The tracer on the mesh with its faces in reverse order: among faces met at the same point the last one wins.
 struct LastOfTies;
 
 impl Renderer for LastOfTies {
@@ -134,10 +134,10 @@ fn the_papers_errors_are_minimised_by_their_cause() {
 }
 
 #[test]
-fn what_is_written_shows_it_again_and_is_the_same_twice() {
+fn a_written_reproducer_shows_the_fault_and_is_deterministic() {
     let scene = rough();
     let fault = Fault::FarthestWins;
-    let [a, b] = [tracer(), planted(fault)];
+    let [a, b] = [tracer(), faulty(fault)];
     let place = first_place([&a, &b], &scene, Class::Defect);
     let shows = shows_fault(fault);
     let search = || minimise(&scene, place, &shows, MINIMISE_BUDGET, &Silent).expect("it shows");

@@ -1,17 +1,15 @@
-//! The reference packs of `data/packs`: the same bytes wherever they are made, small enough to be cloned, and passed
-//! by both renderers.
+//! The reference packs of `data/packs`: the same bytes for any number of threads and any build, small, and passed by
+//! every renderer.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use raypencil::Silent;
 use raypencil::harness::{contender, write_maps};
-use raypencil::io::Subject;
-use raypencil::io::{Overrides, load};
+use raypencil::io::{Overrides, Subject, load};
 use raypencil::judge::{Class, Quantity};
 use raypencil::pack::{Checked, check_pack, write_pack};
-use raypencil::{Precision, Request, Sampling};
+use raypencil::{Precision, Request, Sampling, Silent};
 
 const PACKS: [&str; 2] = ["pyramids", "facets"];
 
@@ -19,7 +17,7 @@ fn data(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../data").join(path)
 }
 
-/// The scene that a pack of `data/packs` is made of.
+/// The scene from which a pack of `data/packs` is made.
 fn subject(pack: &str) -> Subject {
     let file = data(&format!("scenes/{pack}-small.toml"));
     let loaded = load(&file.to_string_lossy(), &Overrides::default()).expect("a scene of this repository");
@@ -27,7 +25,7 @@ fn subject(pack: &str) -> Subject {
     Subject { scene: loaded.scene, arguments: name.clone(), name, sha256: loaded.source_sha256 }
 }
 
-/// Every file below a folder, by its path in it.
+/// Every file below a folder, by its relative path.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -68,7 +66,7 @@ fn packs_are_small() {
     }
 }
 
-/// What a renderer of this house makes of a pack's own scene file, judged by the pack.
+/// Renders the scene file of a pack, and checks the recording against the pack.
 fn judged(pack: &str, renderer: &str) -> Checked {
     let pack = data(&format!("packs/{pack}"));
     let scene_file = pack.join("scene.toml");
@@ -79,7 +77,7 @@ fn judged(pack: &str, renderer: &str) -> Checked {
         arguments: String::new(),
         sha256: loaded.source_sha256,
     };
-    let contender = contender(renderer).expect("a renderer of this house");
+    let contender = contender(renderer).expect("a renderer of the workspace");
     let output = contender.renderer.render(&subject.scene, &Request::EVERYTHING);
     let folder = tempfile::tempdir().expect("a folder");
     write_maps(&output, renderer, &subject, Sampling::Centres, folder.path()).expect("maps");
@@ -87,7 +85,7 @@ fn judged(pack: &str, renderer: &str) -> Checked {
 }
 
 #[test]
-fn both_renderers_pass_and_nothing_of_theirs_is_left_out() {
+fn every_renderer_passes_with_all_its_quantities_compared() {
     for pack in PACKS {
         for renderer in ["scanline", "tracer", "referee"] {
             let Checked { check, recorded, .. } = judged(pack, renderer);
@@ -98,12 +96,12 @@ fn both_renderers_pass_and_nothing_of_theirs_is_left_out() {
             for quantity in Quantity::ALL {
                 let own = totals.iter().filter(|(item, _)| item.quantity == quantity && !item.is_other_model);
                 let own: Vec<_> = own.collect();
-                // The flux on the image is a quantity of each beam.
+                // The flux on the image is counted for each of the two beams.
                 assert_eq!(own.len(), if quantity == Quantity::PixelFlux { 2 } else { 1 });
                 for (_, tally) in own {
                     assert!(tally.compared() > 900, "{pack} by {renderer}: {quantity} is hardly compared");
                     assert_eq!(tally.not_compared, 0, "{pack} by {renderer}: {quantity}");
-                    // Stored in single precision: half an ulp and what the arithmetic adds.
+                    // Storage in single precision gives half an ulp, and the arithmetic a little more.
                     if let Some(ulps) = &tally.worst_ulps {
                         assert!(ulps.value < 0.51, "{pack} by {renderer}: {quantity}, {ulps:?}");
                     }
@@ -114,7 +112,7 @@ fn both_renderers_pass_and_nothing_of_theirs_is_left_out() {
 }
 
 #[test]
-fn a_candidate_with_the_papers_approximations_is_found_out() {
+fn a_candidate_with_the_papers_approximations_fails() {
     // `facets` has sheets of 20 mm and rocks that hide stripes: the paper's visibility is wrong there.
     let Checked { check, .. } = judged("facets", "scanline-paper");
     assert!(!check.passes());

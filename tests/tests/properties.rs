@@ -1,5 +1,5 @@
-//! What must hold for any rig on any ground, by proptest. `PROPTEST_CASES` changes the number of cases,
-//! `PROPTEST_RNG_SEED` the cases.
+//! Properties of any rig on any ground, tested by proptest. `PROPTEST_CASES` sets the number of cases, and
+//! `PROPTEST_RNG_SEED` their seed.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -22,39 +22,38 @@ use raypencil_tests::{
     agreement, bits, first_difference, hit, light_bits, remeshed, renderers, scene, unindexed,
 };
 
-/// The seed of `.cargo/config.toml`.
-const USUAL_SEED: u64 = 1990;
+/// The seed in `.cargo/config.toml`.
+const DEFAULT_SEED: u64 = 1990;
 
-/// Runs `property` on `usually` cases, or on as many as `PROPTEST_CASES` says.
+/// Runs `property` on `default_cases` cases, or on as many as `PROPTEST_CASES` says.
 fn check<S: Strategy<Value: Debug>>(
-    usually: u32,
+    default_cases: u32,
     strategy: S,
     property: impl Fn(S::Value) -> TestCaseResult,
 ) {
-    let _ = check_and_reproduce(usually, strategy, property, |_| {
+    let _ = check_and_reproduce(default_cases, strategy, property, |_| {
         "no reproducer: no defect between two renderers".into()
     });
 }
 
-/// The same. A case that fails is printed whole, with the seed that leads to it again, the commit, and what
-/// `reproduce` makes of it. Returns whether these were the usual cases: only of those is it known how often something
-/// rare comes up.
+/// [`check`] with a reproducer. A failing case is printed with its seed, the commit, and the line that `reproduce`
+/// returns. Returns whether these were the default cases: only for them the frequency of rare events is known.
 fn check_and_reproduce<S: Strategy<Value: Debug>>(
-    usually: u32,
+    default_cases: u32,
     strategy: S,
     property: impl Fn(S::Value) -> TestCaseResult,
     reproduce: impl Fn(&S::Value) -> String,
 ) -> bool {
     let from_environment = std::env::var_os("PROPTEST_CASES").is_some();
     let default = ProptestConfig::default();
-    let cases = if from_environment { default.cases } else { usually };
+    let cases = if from_environment { default.cases } else { default_cases };
     let seed = match default.rng_seed {
         RngSeed::Fixed(seed) => seed,
-        // The keys of a hash map are random.
+        // The keys of a hash map come from the system's random numbers.
         RngSeed::Random => RandomState::new().hash_one("seed"),
     };
     let rng_seed = RngSeed::Fixed(seed);
-    // No file is kept of a failing case.
+    // proptest writes no file of failing cases.
     let config =
         ProptestConfig { cases, rng_seed, failure_persistence: None, max_shrink_iters: 400, ..default };
     if let Err(failure) = TestRunner::new(config).run(&strategy, property) {
@@ -64,11 +63,11 @@ fn check_and_reproduce<S: Strategy<Value: Debug>>(
         };
         panic!("{failure}\n{left}\nPROPTEST_RNG_SEED={seed} PROPTEST_CASES={cases}, {}", commit());
     }
-    seed == USUAL_SEED && !from_environment
+    seed == DEFAULT_SEED && !from_environment
 }
 
-/// What is left of a case on which both renderers do not agree.
-fn of_both(property: &'static str) -> impl Fn(&Case) -> String {
+/// Writes the reproducer of a case on which both renderers do not agree.
+fn reproduce_both(property: &'static str) -> impl Fn(&Case) -> String {
     move |case| {
         let [a, b] = [Contender::from(Scanline::default()), Contender::from(Tracer::new())];
         reproduce(&folder(), property, [&a, &b], &case.scene())
@@ -83,7 +82,7 @@ fn side<'a>(renderer: &'a dyn Renderer, output: &'a RenderOutput) -> Side<'a> {
     Side { name: renderer.name(), output, precision: renderer.precision(), attributions: None }
 }
 
-/// Fails unless both frames hold the same bits.
+/// Fails unless both outputs hold the same bits.
 fn same_bits(what: &str, expected: &RenderOutput, found: &RenderOutput) -> TestCaseResult {
     match first_difference(expected, found) {
         None => Ok(()),
@@ -91,7 +90,7 @@ fn same_bits(what: &str, expected: &RenderOutput, found: &RenderOutput) -> TestC
     }
 }
 
-/// Rays of a frame, and those of them that hit.
+/// The number of rays of an output, and the number of hits.
 fn count_hits(output: &RenderOutput) -> [u64; 2] {
     let mut counts = [0, 0];
     for map in output.maps() {
@@ -102,7 +101,7 @@ fn count_hits(output: &RenderOutput) -> [u64; 2] {
     counts
 }
 
-/// Both renderers agree on every ray of so many cases.
+/// Asserts that both renderers agree on every ray of `count` cases.
 fn both_agree(count: u32, cases: impl Strategy<Value = Case>, name: &'static str) {
     let (rays, hits) = (Cell::new(0), Cell::new(0));
     let property = |case: Case| {
@@ -114,9 +113,9 @@ fn both_agree(count: u32, cases: impl Strategy<Value = Case>, name: &'static str
         hits.set(hits.get() + hits_of_case);
         agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
     };
-    let usual = check_and_reproduce(count, cases, property, of_both(name));
-    // The rigs are no good if they look past the ground.
-    assert!(!usual || 5 * hits.get() >= rays.get(), "{} of {} rays hit", hits.get(), rays.get());
+    let is_default = check_and_reproduce(count, cases, property, reproduce_both(name));
+    // Enough rays must hit the ground.
+    assert!(!is_default || 5 * hits.get() >= rays.get(), "{} of {} rays hit", hits.get(), rays.get());
 }
 
 #[test]
@@ -125,16 +124,16 @@ fn both_renderers_agree_on_every_ray() {
 }
 
 #[test]
-fn both_renderers_agree_on_ground_as_mars_has_it() {
+fn both_renderers_agree_on_mars_like_ground() {
     both_agree(1000, mars_cases(), "both-renderers-agree-on-mars");
 }
 
 #[test]
 fn every_error_of_the_paper_has_a_confirmed_cause() {
     let approximated = RefCell::new(BTreeMap::new());
-    // Half of the rigs are such that the camera sees the stripes.
+    // In half of the cases the camera sees the stripes.
     let cases = prop_oneof![cases().boxed(), lit_cases().boxed()];
-    // The paper's own, one or a few switches, and any set of them.
+    // Three sets of switches: the paper's own, a set of one or two, and any set.
     let all: Vec<Switches> = Switches::subsets().collect();
     let sets = |few: usize, any: usize| [Switches::PAPER, all[[0, 1, 2, 3, 4, 8, 16, 28][few]], all[any]];
     let property = |(case, few, any): (Case, usize, usize)| {
@@ -168,13 +167,13 @@ fn every_error_of_the_paper_has_a_confirmed_cause() {
         };
         sets(*few, *any).map(with_switches).join("\n")
     };
-    let usual = check_and_reproduce(1500, (cases, 0..8_usize, 0..32_usize), property, reproduced);
-    // Sheets of up to a metre and ranges from 30 cm: the paper errs often enough to be seen.
+    let is_default = check_and_reproduce(1500, (cases, 0..8_usize, 0..32_usize), property, reproduced);
+    // Sheets are up to a metre thick and ranges start at 30 cm: the approximations err often.
     let approximated = approximated.into_inner();
     let of = |switches: Switches| approximated.get(&switches).copied().unwrap_or(0);
     let sets: Vec<Switches> = Switches::subsets().collect();
-    for (set, least) in [(1, 5000), (2, 5000), (3, 50), (4, 100), (8, 10), (16, 500)] {
-        assert!(!usual || of(sets[set]) > least, "{}: {approximated:?}", sets[set]);
+    for (set, min_rays) in [(1, 5000), (2, 5000), (3, 50), (4, 100), (8, 10), (16, 500)] {
+        assert!(!is_default || of(sets[set]) > min_rays, "{}: {approximated:?}", sets[set]);
     }
 }
 
@@ -192,9 +191,10 @@ fn both_renderers_agree_on_what_the_camera_sees() {
         }
         agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
     };
-    let usual = check_and_reproduce(3000, lit_cases(), property, of_both("both-renderers-see-alike"));
+    let is_default =
+        check_and_reproduce(3000, lit_cases(), property, reproduce_both("both-renderers-see-alike"));
     assert!(
-        !usual || 20 * seen.get() > pencils.get(),
+        !is_default || 20 * seen.get() > pencils.get(),
         "{} of {} pencils are seen",
         seen.get(),
         pencils.get()
@@ -206,11 +206,11 @@ fn skipping_faces_never_changes_a_map() {
     check(3000, cases(), |case: Case| {
         let scene = case.scene();
         let skipping = render(&Scanline::default(), &scene);
-        let looking_at_all = render(
+        let testing_all = render(
             &Scanline::new(ScanlineOptions { skip_unseen: false, ..ScanlineOptions::default() }),
             &scene,
         );
-        same_bits("skipping", &looking_at_all, &skipping)
+        same_bits("skipping", &testing_all, &skipping)
     });
 }
 
@@ -245,8 +245,7 @@ fn the_order_of_faces_does_not_matter() {
                             prop_assert_eq!(expected.normal, found.normal, "{}", what);
                             prop_assert_eq!(expected.point, found.point, "{}", what);
                         } else {
-                            // Two faces at the very same range: each order reports the one that comes first
-                            // in it.
+                            // Two faces at the same range: the one that is first in the order of the mesh is reported.
                             prop_assert!(
                                 expected.face.0 < face,
                                 "{what}: face {face} before {:?}",
@@ -263,8 +262,8 @@ fn the_order_of_faces_does_not_matter() {
     });
 }
 
-/// The mesh with every vertex doubled, half of the faces on the copies: as exporters split a mesh where
-/// normals differ.
+/// The mesh with every vertex doubled, and half of the faces on the copies, as exporters split a mesh where normals
+/// differ.
 fn split(original: &Mesh, seed: u64) -> Arc<Mesh> {
     let count = original.vertices().len() as u32;
     let vertices = [original.vertices(), original.vertices()].concat();
@@ -312,14 +311,14 @@ fn the_length_of_a_quaternion_does_not_matter() {
 
 #[test]
 fn rendering_again_gives_the_same_bits() {
-    // A renderer keeps tables and trees between frames: they must not be those of another scene.
+    // A renderer caches tables and trees between renders: it must not use those of another scene.
     check(600, (lit_cases(), lit_cases()), |(first, second): (Case, Case)| {
         let scenes = [first.scene(), second.scene()];
-        for (kept, fresh) in renderers().into_iter().zip(renderers()) {
-            render(&*kept, &scenes[1]);
-            let (again, anew) = (render(&*kept, &scenes[0]), render(&*fresh, &scenes[0]));
-            prop_assert!(bits(&again) == bits(&anew), "{}", kept.name());
-            prop_assert!(light_bits(&again) == light_bits(&anew), "light of {}", kept.name());
+        for (reused, fresh) in renderers().into_iter().zip(renderers()) {
+            render(&*reused, &scenes[1]);
+            let (again, anew) = (render(&*reused, &scenes[0]), render(&*fresh, &scenes[0]));
+            prop_assert!(bits(&again) == bits(&anew), "{}", reused.name());
+            prop_assert!(light_bits(&again) == light_bits(&anew), "light of {}", reused.name());
         }
         Ok(())
     });

@@ -1,5 +1,5 @@
-//! What light must do whoever computes it: shares of the beam's power, laws of distance, the camera equation as
-//! pencils get fine, energy, and statistics of jittered rays. (docs/theory/radiometry.md)
+//! Laws of light, tested on every renderer: shares of the beam's power, laws of distance, the camera equation as the
+//! limit of fine pencils, energy, and statistics of jittered rays. (docs/theory/radiometry.md)
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_6, LN_2, PI, TAU};
 use std::sync::Arc;
@@ -10,13 +10,14 @@ use raypencil::{
     Atmosphere, Beam, Camera, Filter, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Profile,
     RenderOutput, Renderer, Request, Returns, Sampling, Scene, SensorId,
 };
-use raypencil_tests::light::{Draws, LIGHT, evaluations, fluxes, is_visible, looking, relative, total};
+use raypencil_tests::draws::SplitMix64;
+use raypencil_tests::light::{LIGHT, evaluations, fluxes, is_visible, looking, relative, total};
 use raypencil_tests::quadrature::{gauss_legendre, over_rectangle};
 use raypencil_tests::{at_origin, hit, rig, scene};
 
-// ---- The definitions once more, by closed form ------------------------------------------------------
+// ---- The definitions in closed form -----------------------------------------------------------------
 
-/// A plane through `point`, its front the side to which the unit vector `normal` points.
+/// A plane through `point`. The unit vector `normal` points to the side of its front.
 #[derive(Debug, Clone, Copy)]
 struct Plane {
     point: DVec3,
@@ -24,7 +25,8 @@ struct Plane {
 }
 
 impl Plane {
-    /// One face of 100 m and more around `point`, its vertices rounded to `f32`; and the plane that it is in then.
+    /// One face that extends at least 100 m around `point`, its vertices rounded to `f32`; and the plane of these
+    /// vertices.
     fn mesh(point: DVec3, normal: DVec3, reflectivity: f64) -> (Arc<Mesh>, Self) {
         let along = normal.any_orthonormal_vector();
         let across = normal.cross(along);
@@ -37,23 +39,29 @@ impl Plane {
     }
 }
 
-/// Where the ray through (x, y) on the beam's grid lands on a plane, and how camera and beam are seen from there.
+/// The point where the ray through (x, y) on the beam's grid meets a plane, with angles and distances to beam and
+/// camera.
 #[derive(Debug, Clone, Copy)]
 struct Landing {
-    /// cos(alpha) of the ray.
+    /// cos(alpha), alpha between the ray and the normal axis.
     cos_alpha: f64,
-    /// R.
+    /// Range R, metres.
     range: f64,
+    /// Cosine of the angle of incidence psi.
     cos_psi: f64,
-    /// r, d, cos(phi).
+    /// Depth r in the camera, metres.
     depth: f64,
+    /// Distance d from the camera, metres.
     distance: f64,
+    /// Cosine of the off-axis angle phi.
     cos_phi: f64,
+    /// Cosine of the viewing angle theta.
     cos_theta: f64,
-    /// Place on the image, in pixels.
+    /// Position on the image, pixels.
     place: [f64; 2],
-    /// Area of the plane per area of the grid, and area of the image per area of the grid: of exact derivatives.
+    /// Area of the plane per area of the grid, from exact derivatives.
     plane_per_grid: f64,
+    /// Area of the image per area of the grid, from exact derivatives.
     image_per_grid: f64,
 }
 
@@ -98,7 +106,7 @@ impl Landing {
         }
     }
 
-    /// C_loss F(phi) exp(-sigma (R + d)).
+    /// The transmission of lens, filter and air, C_loss F(phi) exp(-sigma (R + d)).
     fn transmitted(&self, scene: &Scene) -> f64 {
         let lens = scene.camera().sensor.lens;
         let loss = match lens.filter {
@@ -114,7 +122,7 @@ impl Landing {
         lens.transmission * loss * libm::exp(air)
     }
 
-    /// The flux of the `radiometric` model per area of the grid, of the profile `paper`.
+    /// The flux of the `radiometric` model per area of the grid, with the profile `paper`, W/m^2.
     fn flux_per_grid(&self, scene: &Scene) -> f64 {
         let (beam, aperture) = (scene.beams()[0].sensor, scene.camera().sensor.aperture);
         let power = beam.power * self.cos_alpha / (2.0 * beam.half_width * beam.thickness);
@@ -123,7 +131,7 @@ impl Landing {
             * self.transmitted(scene)
     }
 
-    /// The camera equation: flux per area of the image, (pi / 4) L (D / f)^2 cos^4(phi), with L = r_d E / pi and
+    /// The camera equation: flux per area of the image, W/m^2, (pi / 4) L (D / f)^2 cos^4(phi), with L = r_d E / pi and
     /// E = (I_b / A_b) (R_g / R) cos(psi).
     fn flux_per_image(&self, scene: &Scene) -> f64 {
         let (beam, camera) = (scene.beams()[0].sensor, scene.camera().sensor);
@@ -135,7 +143,7 @@ impl Landing {
     }
 }
 
-/// Of the first material.
+/// The reflectivity of the first material.
 fn reflectivity(scene: &Scene) -> f64 {
     scene.mesh().materials()[0].reflectivity
 }
@@ -153,8 +161,8 @@ fn landing(scene: &Scene, plane: Plane, i: u32, j: u32) -> Landing {
 
 #[test]
 fn shares_add_up_to_what_their_profile_says() {
-    // A wall 2 m away, square to the beam, and the camera in the beam's own place: cos(theta) = cos(phi), r = 2 m,
-    // and all of a pencil's flux is known but its share:
+    // A wall 2 m away, square to the beam, and the camera at the position of the beam: cos(theta) = cos(phi), r = 2 m,
+    // and only the share P_k of a pencil's flux is unknown:
     // I_k = P_k (1/4) (D^2 / 4) cos^4(phi) / 4, tan^2(phi) = tan^2(alpha) + (y / 2 m)^2.
     let (mesh, _) = Plane::mesh(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, 0.25);
     // Slopes up to 1: a fan of 30 degrees to either side reaches 0.577.
@@ -211,8 +219,8 @@ fn shares_add_up_to_what_their_profile_says() {
 
 // ---- Laws of distance -------------------------------------------------------------------------------
 
-/// Some 60 roundings of 2^-53 on the way of a single flux, of well-conditioned numbers.
-const CLOSE: f64 = 1e-14;
+/// Maximum relative error of a flux: about 60 roundings of 2^-53 with well-conditioned numbers.
+const MAX_RELATIVE_ERROR: f64 = 1e-14;
 
 #[test]
 fn flux_falls_with_the_square_of_depth() {
@@ -229,14 +237,18 @@ fn flux_falls_with_the_square_of_depth() {
             let scene = scene(Arc::clone(&mesh), camera, vec![at_origin(beam)]);
             let flux = fluxes(&renderer.render(&scene, &LIGHT).returns[0]).at(0, 0);
             let derived = 0.25 * 0.25 * 4e-6 * (64.0 / 69.0) * (64.0 / 69.0) / (s * s);
-            assert!(relative(flux, derived) < CLOSE, "{} at {s} m: {flux:e}, {derived:e}", renderer.name());
+            assert!(
+                relative(flux, derived) < MAX_RELATIVE_ERROR,
+                "{} at {s} m: {flux:e}, {derived:e}",
+                renderer.name()
+            );
         }
     }
 }
 
 #[test]
 fn irradiance_falls_with_range() {
-    // A wall square to the beam at R = 1, 2, 4 m, seen from 1 m before it. Neighbours of the middle pencil land
+    // A wall square to the beam at R = 1, 2, 4 m, seen from 1 m before it. The neighbours of the middle pencil meet it
     // (R / g) (1/512 m) and 1/1024 m beside it: the area of its spot is 2^-19 R / g, its flux the same, and so
     // irradiance falls as 1 / R.
     let camera = rig::camera(64, 64, 1.0 / 4096.0, 1.0 / 128.0);
@@ -263,7 +275,7 @@ fn irradiance_falls_with_range() {
                 "{name} at {range} m: {area:e}"
             );
             let (area_1, flux_1) = *first.get_or_insert((area, flux));
-            assert!(relative(flux, flux_1) < CLOSE, "{name} at {range} m: {flux:e}");
+            assert!(relative(flux, flux_1) < MAX_RELATIVE_ERROR, "{name} at {range} m: {flux:e}");
             let irradiance = flux / area / (flux_1 / area_1);
             assert!(relative(irradiance, 1.0 / range) < 1e-12, "{name} at {range} m: {irradiance}");
         }
@@ -272,44 +284,44 @@ fn irradiance_falls_with_range() {
 
 // ---- The camera equation ----------------------------------------------------------------------------
 
-/// A plane of any slope before a camera and a beam of 5 x 3 pencils in any pose, both before its front and looking
-/// at about the same place.
-fn tilted(draws: &mut Draws) -> (Scene, Plane) {
-    let (target, normal) = (draws.vector(3.0), draws.direction());
-    let (mesh, plane) = Plane::mesh(target, normal, draws.between(0.1, 1.0));
-    let pose = |draws: &mut Draws| {
+/// A plane of any slope, a camera, and a beam of 5 x 3 pencils. Both are on the side of the front, and look at about
+/// the same point.
+fn tilted(random: &mut SplitMix64) -> (Scene, Plane) {
+    let (target, normal) = (random.vector(3.0), random.direction());
+    let (mesh, plane) = Plane::mesh(target, normal, random.between(0.1, 1.0));
+    let pose = |random: &mut SplitMix64| {
         let up = loop {
-            let up = draws.direction();
-            // Not more aslant than 72 degrees: roundings grow with 1 / cos.
+            let up = random.direction();
+            // At most 72 degrees from the normal: rounding errors grow with 1 / cos.
             if up.dot(normal) > 0.3 {
                 break up;
             }
         };
-        let distance = draws.between(0.5, 5.0);
-        let aim = draws.vector(0.1);
-        looking(target + up * distance, aim - up, draws.between(-PI, PI))
+        let distance = random.between(0.5, 5.0);
+        let aim = random.vector(0.1);
+        looking(target + up * distance, aim - up, random.between(-PI, PI))
     };
     let camera = Camera {
         pixel_pitch: [1.0 / 4096.0, 1.0 / 3072.0],
-        aperture: draws.between(1e-3, 1e-2),
-        ..rig::camera(64, 64, 1.0, draws.between(0.006, 0.008))
+        aperture: random.between(1e-3, 1e-2),
+        ..rig::camera(64, 64, 1.0, random.between(0.006, 0.008))
     };
-    let grid_distance = draws.between(0.05, 0.2);
-    let half_width = Beam::half_width_of(grid_distance, draws.between(0.1, 0.7));
-    let (thickness, power) = (draws.between(1e-3, 1e-2), draws.between(0.1, 10.0));
+    let grid_distance = random.between(0.05, 0.2);
+    let half_width = Beam::half_width_of(grid_distance, random.between(0.1, 0.7));
+    let (thickness, power) = (random.between(1e-3, 1e-2), random.between(0.1, 10.0));
     let beam = Beam { half_width, thickness, power, ..rig::beam(5, 3, [1.0, 1.0], grid_distance) };
-    let camera = Mounted { scene_from_sensor: pose(draws), sensor: camera };
-    let beam = Mounted { scene_from_sensor: pose(draws), sensor: beam };
+    let camera = Mounted { scene_from_sensor: pose(random), sensor: camera };
+    let beam = Mounted { scene_from_sensor: pose(random), sensor: beam };
     (scene(mesh, camera, vec![beam]), plane)
 }
 
 #[test]
 fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
-    // The flux that falls into a pixel, if all of what the pixel sees were lit as the pencil's spot is: the pencil's
-    // flux times the pixel's footprint over the pencil's.
+    // If the whole footprint of a pixel were lit as the pencil's spot is, the pixel would receive the pencil's flux
+    // times the area of the footprint over the area of the spot.
     const TOLERANCE: f64 = 1e-12;
-    let mut draws = Draws(1);
-    let cases: Vec<(Scene, Plane)> = (0..200).map(|_| tilted(&mut draws)).collect();
+    let mut random = SplitMix64::new(1);
+    let cases: Vec<(Scene, Plane)> = (0..200).map(|_| tilted(&mut random)).collect();
     for renderer in evaluations() {
         let (mut tested, mut worst) = (0, [0.0_f64; 3]);
         for (scene, plane) in &cases {
@@ -317,7 +329,7 @@ fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
             let output = renderer.render(scene, &LIGHT);
             for (i, j) in (0..3).flat_map(|j| (0..5).map(move |i| (i, j))) {
                 let at = landing(scene, *plane, i, j);
-                // The rest of a fan may run along the plane, or out of the image.
+                // Other pencils of the fan may graze the plane or miss the image.
                 if !is_visible(&output.returns[0], i, j) || at.cos_psi < 0.1 || at.cos_theta < 0.1 {
                     continue;
                 }
@@ -328,7 +340,7 @@ fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
                 let spot = of_pencil * at.cos_alpha * (at.range / grid_range) / at.cos_psi;
                 let patch = of_pixel * at.depth * at.depth * at.cos_phi
                     / (camera.focal_length * camera.focal_length * at.cos_theta);
-                // The same two areas of exact derivatives of the point by the place on grid and image.
+                // The same two areas from exact derivatives of the point by the position on grid and image.
                 let spot_2 = of_pencil * at.plane_per_grid;
                 let patch_2 = of_pixel * at.plane_per_grid / at.image_per_grid;
                 let found = fluxes(&output.returns[0]).at(i, j) * patch / spot;
@@ -352,11 +364,11 @@ fn a_pencil_s_flux_over_its_spot_is_the_camera_equation() {
 // ---- Energy -----------------------------------------------------------------------------------------
 
 #[test]
-fn what_leaves_a_point_is_what_falls_on_it_times_the_reflectivity() {
-    // One pencil of 2 W (alpha = 0, so P = 2 W) on a slope, r_d = 0.3; lenses of D = 2 mm all around the point, 0.75 m
-    // away. Flux over the solid angle of the aperture, (pi D^2 / 4) cos(phi) / d^2, is radiant intensity; over the
-    // hemisphere before the face it adds up to 0.6 W, behind the face it is 0. Gauss-Legendre nodes in cos(theta),
-    // even steps in azimuth. The lens looks at the point, or 0.3 rad beside it.
+fn the_light_that_leaves_a_point_is_the_reflectivity_times_the_light_on_it() {
+    // One pencil of 2 W (alpha = 0, so P = 2 W) on a slope, r_d = 0.3; lenses of D = 2 mm in all directions from the
+    // point, 0.75 m away. Flux over the solid angle of the aperture, (pi D^2 / 4) cos(phi) / d^2, is radiant
+    // intensity; over the hemisphere before the face it adds up to 0.6 W, behind the face it is 0. Gauss-Legendre
+    // nodes in cos(theta), even steps in azimuth. The lens is aimed at the point, or 0.3 rad beside it.
     let normal = DVec3::new(0.3, -0.4, -0.8).normalize();
     let (mesh, plane) = Plane::mesh(DVec3::new(0.0, 0.0, 2.0), normal, 0.3);
     let beam = Beam { power: 2.0, ..rig::beam(1, 1, [0.0625, 0.001], 0.1) };
@@ -395,9 +407,9 @@ fn what_leaves_a_point_is_what_falls_on_it_times_the_reflectivity() {
     }
 }
 
-/// A rover's rig before a slope: camera 1.5 m above the origin of a plane that rises 0.1 ahead and 0.05 to the left,
-/// the beam 0.3 m above the camera; a fan of 60 degrees, all of it on the image of 64 x 64 pixels, in thin dust, through
-/// a filter.
+/// A rover's rig on a slope: the camera is 1.5 m above the origin of a plane that rises by 0.1 ahead and 0.05 to the
+/// left, the beam 0.3 m above the camera. A fan of 60 degrees is wholly on the image of 64 x 64 pixels, in attenuating
+/// air, through a filter.
 fn slope(
     columns: u32,
     rows: u32,
@@ -426,7 +438,7 @@ fn black_ground_returns_nothing() {
         for model in [FluxModel::Radiometric, FluxModel::Eq1] {
             let (scene, _) = slope(64, 4, 5e-3, 0.0, 0.05, model);
             let output = renderer.render(&scene, &LIGHT);
-            // Seen it is all the same.
+            // The stripe is visible all the same.
             assert!((0..64).all(|i| is_visible(&output.returns[0], i, 2)), "{}", renderer.name());
             assert!(
                 fluxes(&output.returns[0]).cells().iter().all(|flux| *flux == 0.0),
@@ -439,8 +451,8 @@ fn black_ground_returns_nothing() {
 }
 
 #[test]
-fn air_only_takes() {
-    // exp(-sigma (R + d)), of equation (1) exp(-sigma (R + r)).
+fn air_attenuates_by_the_length_of_the_path() {
+    // The factor is exp(-sigma (R + d)), in equation (1) exp(-sigma (R + r)).
     for renderer in evaluations() {
         for model in [FluxModel::Radiometric, FluxModel::Eq1] {
             let fluxes_at = |attenuation| {
@@ -459,7 +471,8 @@ fn air_only_takes() {
                     let at = landing(&scene, plane, i, j);
                     let back = if model == FluxModel::Radiometric { at.distance } else { at.depth };
                     let derived = whole * libm::exp(-sigma * (at.range + back));
-                    // exp passes on the absolute error of its argument, up to 2 * 9 m here: a few of 2e-15.
+                    // The relative error of exp is the absolute error of its argument. This is up to 2 * 9 here: a few
+                    // times 2e-15.
                     assert!(
                         relative(of, derived) < 2e-14,
                         "{} {i},{j}: {of:e}, {derived:e}",
@@ -475,8 +488,8 @@ fn air_only_takes() {
 
 #[test]
 fn the_flux_of_a_stripe_converges_to_the_camera_equation() {
-    // The camera equation, integrated over the image of the sheet: by place on the grid, with the derivative of the
-    // image by the grid. And the flux of pencils without end. They are the same function of the place.
+    // The camera equation, integrated over the image of the sheet: in coordinates of the grid, with the derivative of
+    // the image by the grid. The flux of infinitely many pencils is the same integral.
     let (scene, plane) = slope(1, 1, 5e-3, 0.25, 0.05, FluxModel::Radiometric);
     let beam = scene.beams()[0].sensor;
     let grid = [[-beam.half_width, beam.half_width], [-0.5 * beam.thickness, 0.5 * beam.thickness]];
@@ -496,7 +509,7 @@ fn the_flux_of_a_stripe_converges_to_the_camera_equation() {
         let name = renderer.name().to_string();
         let mut before: Option<f64> = None;
         for (columns, rows, most) in [(512_u32, 16_u32, 1e-6), (2048, 64, 1e-7), (8192, 192, 1e-8)] {
-            // The referee's arithmetic is exact: a few thousand pencils are enough of it.
+            // The referee's arithmetic is exact and slow: it computes the coarsest grid only.
             if name == "referee" && columns > 512 {
                 continue;
             }
@@ -505,7 +518,7 @@ fn the_flux_of_a_stripe_converges_to_the_camera_equation() {
             let visible = output.returns[0].visible.as_ref().expect("what is visible is known");
             assert!(visible.cells().iter().all(|seen| *seen), "{name}: the stripe is not wholly in view");
             let error = relative(total(&output.flux[0]), derived);
-            // The sheet is so thin that its rows matter little: the error is that of the columns.
+            // The sheet is so thin that the error depends on the columns alone.
             let order = before.map(|before| libm::log2(before / error) / 2.0);
             println!("{name}: {columns} x {rows} pencils: {error:e}, order {order:?}");
             assert!(error < most, "{name}: {columns} x {rows} pencils: {error:e}");
@@ -517,7 +530,7 @@ fn the_flux_of_a_stripe_converges_to_the_camera_equation() {
 
 // ---- Jittered pencils -------------------------------------------------------------------------------
 
-/// A sheet of 1 m, so that it covers many pixels, of 256 x 128 pencils.
+/// A sheet of 1 m, which covers many pixels, of 256 x 128 pencils.
 fn thick() -> (Scene, Plane) {
     slope(256, 128, 1.0, 0.25, 0.05, FluxModel::Radiometric)
 }
@@ -531,9 +544,9 @@ fn jittered_rays_have_the_right_mean() {
     let Beam { columns, rows, half_width, thickness, .. } = scene.beams()[0].sensor;
     let size = scene.camera().sensor.width as usize;
 
-    // A ray is uniform in its pencil's cell, so that the expectation of a pixel is the integral of flux over that
+    // A ray is uniform in its pencil's cell, so that the expectation of a pixel is the integral of flux over the
     // part of the grid that lands in it. By the midpoint rule with FINE x FINE nodes a pencil: where the border of a
-    // pixel cuts a pencil, the part is wrong by about 0.3 / FINE of the pencil, while the mean of SEEDS draws of
+    // pixel cuts a pencil, the part is wrong by about 0.3 / FINE of the pencil, while the mean of SEEDS random of
     // being in or out errs by about 0.4 / sqrt(SEEDS): 11 % of it, which adds 0.7 % to the rms below.
     const FINE: u32 = 32;
     let mut expected = vec![[0.0, 0.0]; size * size];
@@ -552,7 +565,7 @@ fn jittered_rays_have_the_right_mean() {
         }
     }
 
-    let tracer = contender("tracer").expect("a renderer of this house").renderer;
+    let tracer = contender("tracer").expect("a renderer of the workspace").renderer;
     let images: Vec<Image<f64>> = (1..=(SERIES * SEEDS) as u64)
         .map(|seed| {
             let request = Request { sampling: Sampling::Jittered { seed }, ..LIGHT };
@@ -562,7 +575,7 @@ fn jittered_rays_have_the_right_mean() {
     let mut z_squared = Vec::new();
     for (index, [expectation, pencils]) in expected.into_iter().enumerate() {
         let values: Vec<f64> = images.iter().map(|image| image.cells()[index]).collect();
-        // Fewer pencils are too coarse a sum to be normal.
+        // A sum of fewer pencils is not close to a normal distribution.
         if pencils >= 16.0 {
             z_squared.extend(values.chunks(SEEDS).map(|series| {
                 let z = standardised(series, expectation);
@@ -571,8 +584,8 @@ fn jittered_rays_have_the_right_mean() {
         }
     }
     // With a standard error of 24 samples z follows Student's t of 23 degrees of freedom, whose variance is 23 / 21:
-    // an rms of 1.0465. The rms of n of them scatters by sqrt((kurtosis - 1) / n) / 2, kurtosis 3 + 6 / 19: by 1.3 % for
-    // four times 900 pixels, so that 5 % are four of its standard deviations.
+    // an rms of 1.0465. The rms of n of them scatters by sqrt((kurtosis - 1) / n) / 2, kurtosis 3 + 6 / 19: by 1.3 %
+    // for four times 900 pixels, so that 5 % are four of its standard deviations.
     let count = z_squared.len();
     let rms = (z_squared.iter().sum::<f64>() / count as f64).sqrt();
     let derived = (23.0_f64 / 21.0).sqrt();
@@ -580,18 +593,18 @@ fn jittered_rays_have_the_right_mean() {
     assert!(count > SERIES * 800, "{count} means");
     assert!(relative(rms, derived) < 0.05, "rms of z {rms}, derived {derived}");
 
-    // All light together, most of whose pencils stay on the image whatever the draw, by Gauss-Legendre: no
-    // systematic error that single pixels would not show. Stratified, so that it scatters little.
+    // The total flux, integrated by Gauss-Legendre, shows systematic errors that are too small for single pixels. Most
+    // pencils stay on the image in every draw, so that the total varies little.
     let totals: Vec<f64> = images.iter().map(total).collect();
     let grid = [[-half_width, half_width], [-0.5 * thickness, 0.5 * thickness]];
     let all = over_rectangle(grid, [64, 32], |x, y| Landing::new(&scene, plane, x, y).flux_per_grid(&scene));
     let z = standardised(&totals, all);
     println!("total: {all:e} W, z = {z}");
-    // Of 96 samples: |z| > 4 has a probability of 1e-4.
+    // With 96 samples, |z| > 4 has a probability of 1e-4.
     assert!(z.abs() < 4.0, "total: {all:e} W, z = {z}");
 }
 
-/// The mean of samples less its expectation, in standard errors.
+/// The mean of samples minus its expectation, in standard errors.
 fn standardised(samples: &[f64], expectation: f64) -> f64 {
     let count = samples.len() as f64;
     let mean = samples.iter().sum::<f64>() / count;
@@ -603,7 +616,7 @@ fn standardised(samples: &[f64], expectation: f64) -> f64 {
 fn jittered_rays_are_the_same_for_all() {
     let render = |name: &str, scene: &Scene, seed| {
         let request = Request { sampling: Sampling::Jittered { seed }, ..Request::EVERYTHING };
-        contender(name).expect("a renderer of this house").renderer.render(scene, &request)
+        contender(name).expect("a renderer of the workspace").renderer.render(scene, &request)
     };
     let ground = raypencil::terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh();
     let (mesh, (plane, _)) =
@@ -627,11 +640,11 @@ fn jittered_rays_are_the_same_for_all() {
                 assert_ne!(
                     fluxes(&first.returns[0]),
                     fluxes(&a.returns[0]),
-                    "{what}: another seed, other rays"
+                    "{what}: another seed gives other rays"
                 );
             }
             first = Some(a);
-            // What `scanline` cannot do it leaves out, and says nothing wrong.
+            // `scanline` does not support jittered rays: it leaves the returns out.
             let none = render("scanline", scene, seed);
             assert_eq!(none.returns, [Returns::unsupported(96, 12)], "{what}");
             assert!(none.flux.is_empty(), "{what}");

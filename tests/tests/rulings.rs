@@ -1,5 +1,5 @@
-//! What the harness makes of answers at the limit of arithmetic: a crack is a defect however thin it is, and
-//! faces closer than rounding are no defect.
+//! Classes of differences at the limit of arithmetic: a crack is a defect at any width, and a choice between faces
+//! closer than the rounding error is not.
 
 use std::sync::Arc;
 
@@ -9,7 +9,9 @@ use raypencil::judge::{Class, Judge, JudgeShare, Quantity, SensorResult, Side, c
 use raypencil::scanline::Scanline;
 use raypencil::terrain::builtin;
 use raypencil::tracer::Tracer;
-use raypencil::{Maybe, Mesh, Mounted, Pose, RenderOutput, Renderer, Request, Scene, SensorId};
+use raypencil::{
+    Camera, Maybe, Mesh, Mounted, Place, Pose, RenderOutput, Renderer, Request, Scene, SensorId,
+};
 use raypencil_tests::naive::{Fault, Naive};
 use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene};
 
@@ -26,21 +28,21 @@ fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorResu
 }
 
 #[test]
-fn a_crack_is_a_defect_however_thin() {
-    // Every ray passes within 1e-16 of itself of an edge that two faces share, and nothing is behind them. A
-    // renderer that reckons the edge twice, with the rounding of two different corners, lets some of the rays
-    // through. The crack is some 1e-13 cells wide, where an honest renderer may displace a ray by 1e-9: but
-    // no displaced ray misses.
+fn a_crack_of_any_width_is_a_defect() {
+    // Every ray passes an edge of two faces within a relative distance of 1e-16, and nothing is behind the edge. A
+    // renderer that computes the edge twice, with the rounding of two different corners, misses with some of the rays.
+    // The crack is about 1e-13 cells wide, and a correct renderer may displace a ray by 1e-9: but no displaced ray
+    // misses.
     let scene = lattice::turned(101);
-    let leaking = Naive { fault: Some(Fault::EdgesReckonedApart) };
-    let map = leaking.render(&scene, &Request::EVERYTHING).camera.expect("the camera was asked for");
+    let cracked = Naive { fault: Some(Fault::EdgesComputedApart) };
+    let map = cracked.render(&scene, &Request::EVERYTHING).camera.expect("the camera was asked for");
     let through: u64 = (0..101)
         .flat_map(|j| (0..101).map(move |i| (i, j)))
         .filter(|&(i, j)| hit(&map, i, j).is_none())
         .count() as u64;
-    assert!(through > 20, "{through} of 10201 rays slip through");
+    assert!(through > 20, "{through} of 10201 rays miss");
     for honest in renderers() {
-        let sensors = compared(&scene, &*honest, &leaking);
+        let sensors = compared(&scene, &*honest, &cracked);
         assert_eq!(sensors[0].sensor, SensorId::Camera);
         assert_eq!(sensors[0].of(Class::Defect), through, "{}", honest.name());
     }
@@ -48,8 +50,8 @@ fn a_crack_is_a_defect_however_thin() {
     assert_eq!(compared(&scene, &*a, &*b)[0].of(Class::Defect), 0);
 }
 
-/// Two faces with a common edge that a row of pixels looks along, the far corner of the second moved by one unit
-/// in the last place of `f32`; from a camera at no special angle.
+/// Two faces with a common edge in a row of pixels. The third corner of the second is moved by one unit in the last
+/// place of `f32`. The camera has a general orientation.
 fn nearly_coincident() -> Scene {
     let pose =
         Pose { position: DVec3::new(0.3, -1.7, 2.9), rotation: DQuat::from_xyzw(0.31, -0.52, 0.23, 0.74) };
@@ -73,43 +75,43 @@ fn faces_one_ulp_apart_are_rounding() {
     let [a, b] = renderers();
     let found = &compared(&scene, &*a, &*b)[0];
     let of = |class| found.of(class);
-    // Below the edge the two faces are up to 2e-7 m apart, which f64 tells; along it less than 1e-15 m.
+    // Far from the edge the two faces are up to 2e-7 m apart, which f64 resolves; at the edge less than 1e-15 m.
     assert_eq!(of(Class::Defect) + of(Class::Undecided), 0, "{:?}", found.defects);
     assert!(of(Class::Rounding) > 0, "no ray is close enough: {:?}", found.by_class);
     assert!(of(Class::Agree) > 4000, "{:?}", found.by_class);
     assert_eq!(found.judged, found.compared());
 }
 
-/// The paper's algorithm, with some answers spoiled: of every 97th pencil that hits, unseen, the hit is lost; of every 89th
-/// it is said the other way whether the camera sees it.
-fn spoiled(scene: &Scene, paper: &Scanline) -> (RenderOutput, u64) {
+/// The output of the paper's algorithm with injected errors, and their number. Every 97th pencil loses its hit if it is
+/// not visible; every 89th has its visibility inverted.
+fn altered(scene: &Scene, paper: &Scanline) -> (RenderOutput, u64) {
     let mut output = paper.render(scene, &Request::EVERYTHING);
-    let mut spoilt = 0;
+    let mut altered_count = 0;
     for (map, returns) in output.beams.iter_mut().zip(&mut output.returns) {
         for j in 0..map.height {
             for i in 0..map.width {
                 let index = j * map.width + i;
                 let Some(hit) = hit(map, i, j) else { continue };
-                let visible = returns.visible.as_mut().expect("what is visible is known");
+                let visible = returns.visible.as_mut().expect("visibility was asked for");
                 let seen = visible.at(i, j);
                 if index % 97 == 0 && !seen {
-                    // Seen or not, it hits: the flux of what is not seen stays as it is.
+                    // The pencil is not visible, so that its flux of 0 stays correct.
                     map.face.as_mut().expect("faces").set(i, j, Maybe::NONE);
                     map.range.as_mut().expect("ranges").set(i, j, Maybe::NONE);
-                    spoilt += 1;
+                    altered_count += 1;
                 } else if index % 89 == 0 && hit.cos_incidence > 0.1 {
                     visible.set(i, j, !seen);
-                    spoilt += 1;
+                    altered_count += 1;
                 }
             }
         }
     }
-    (output, spoilt)
+    (output, altered_count)
 }
 
 #[test]
-fn an_approximation_is_no_excuse_for_anything_else() {
-    // Thick sheets, so that the paper errs by itself too; the spoiled answers have nothing to do with it.
+fn an_approximation_does_not_cover_other_errors() {
+    // Thick sheets, so that the paper's approximations err too. The injected errors are independent of them.
     let ground = builtin("facets", 0.25).expect("a built-in name").into_mesh().expect("a mesh");
     let (camera, mut beams) = rig::default_rig(4, DVec3::ZERO, 0.3);
     for beam in &mut beams {
@@ -117,8 +119,8 @@ fn an_approximation_is_no_excuse_for_anything_else() {
     }
     let scene = scene(Arc::new(ground), camera, beams);
     let (paper, tracer) = (Scanline::paper(), Tracer::new());
-    let (output, spoilt) = spoiled(&scene, &paper);
-    assert!(spoilt > 15, "{spoilt} answers are spoiled");
+    let (output, altered_count) = altered(&scene, &paper);
+    assert!(altered_count > 15, "{altered_count} answers are altered");
     let honest = tracer.render(&scene, &Request::EVERYTHING);
     let judge = Judge::new(&scene, JudgeShare::Sample);
     let attributions =
@@ -126,17 +128,18 @@ fn an_approximation_is_no_excuse_for_anything_else() {
     let side =
         |name, output, attributions| Side { name, output, precision: tracer.precision(), attributions };
     let sensors =
-        compare_judged(&judge, side("spoiled", &output, Some(&attributions)), side("tracer", &honest, None));
+        compare_judged(&judge, side("altered", &output, Some(&attributions)), side("tracer", &honest, None));
     let beams = &sensors[1..];
     let defects: u64 = beams.iter().map(|sensor| sensor.of(Class::Defect)).sum();
     let approximated: u64 = beams.iter().map(|sensor| sensor.of(Class::Approximation)).sum();
-    assert_eq!(defects, spoilt);
+    assert_eq!(defects, altered_count);
     assert!(approximated > 0, "the paper errs as well");
 }
 
 #[test]
-fn an_approximation_is_no_excuse_for_a_wrong_value() {
-    // Where the paper errs, its range or its flux is doubled: what its own face has is known all the same.
+fn an_approximation_does_not_cover_a_wrong_value() {
+    // Where the paper's face is wrong, its range or flux is doubled: the correct values of that face are known all the
+    // same.
     let ground = builtin("facets", 0.25).expect("a built-in name").into_mesh().expect("a mesh");
     let (camera, mut beams) = rig::default_rig(2, DVec3::ZERO, 0.3);
     for beam in &mut beams {
@@ -164,21 +167,21 @@ fn an_approximation_is_no_excuse_for_a_wrong_value() {
     assert_eq!(defects, 0);
     assert!(approximated > 20, "{approximated}");
 
-    let mut spoilt = [output.clone(), output];
+    let mut altered_outputs = [output.clone(), output];
     let mut counts = [0, 0];
     for index in 0..scene.beams().len() {
         let (columns, rows) = scene.size(SensorId::Beam(index)).expect("a beam");
         for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
-            let place = raypencil::Place { sensor: SensorId::Beam(index), i, j };
+            let place = Place { sensor: SensorId::Beam(index), i, j };
             if attributions.cause(place).is_none() && attributions.visibility_cause(place).is_none() {
                 continue;
             }
-            let ranges = spoilt[0].beams[index].range.as_mut().expect("ranges");
+            let ranges = altered_outputs[0].beams[index].range.as_mut().expect("ranges");
             if let Some(range) = ranges.at(i, j).get() {
                 ranges.set(i, j, Maybe::some(2.0 * range));
                 counts[0] += 1;
             }
-            let fluxes = spoilt[1].returns[index].flux.as_mut().expect("fluxes");
+            let fluxes = altered_outputs[1].returns[index].flux.as_mut().expect("fluxes");
             if fluxes.at(i, j) > 0.0 {
                 fluxes.set(i, j, 2.0 * fluxes.at(i, j));
                 counts[1] += 1;
@@ -186,15 +189,15 @@ fn an_approximation_is_no_excuse_for_a_wrong_value() {
         }
     }
     assert!(counts.iter().all(|count| *count > 5), "{counts:?}");
-    for (output, count) in spoilt.iter().zip(counts) {
+    for (output, count) in altered_outputs.iter().zip(counts) {
         assert_eq!(compared(output)[0], count);
     }
 }
 
-/// Found by a campaign. The ray of pixel (0, 0) meets the side of the second face exactly where that crosses the
-/// projection plane, t = 1, and behind it, at t = 2, exactly a corner of the first: two hairs at once, each of
-/// measure zero. To lose the nearer hit to the rounding of 1/t would be admissible by itself, as a ray beside it
-/// misses; but then the corner behind would be named, which no ray beside this one meets first.
+/// Found by a campaign. The ray of pixel (0, 0) meets an edge of the second face exactly on the projection plane, t =
+/// 1, and behind it, at t = 2, exactly a corner of the first face: two coincidences, each of measure zero. To lose the
+/// nearer hit by the rounding of 1/t would be admissible, because a neighbouring ray misses. But then the corner
+/// behind would be reported, which no neighbouring ray meets first.
 #[test]
 fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
     let corner = [-0.0234375, -0.0234375, 0.125];
@@ -207,8 +210,7 @@ fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
         [0.0, -0.0078125, 0.125],
     ];
     let ground = mesh(vertices, vec![[0, 2, 1], [3, 4, 5]]);
-    let camera =
-        raypencil::Camera { principal_point: [12.5, 12.5], ..rig::camera(1, 1, 1.0 / 1024.0, 1.0 / 16.0) };
+    let camera = Camera { principal_point: [12.5, 12.5], ..rig::camera(1, 1, 1.0 / 1024.0, 1.0 / 16.0) };
     let scene = scene(ground, raypencil_tests::at_origin(camera), Vec::new());
     let [scanline, tracer] = renderers();
     let face = |renderer: &dyn Renderer| {
@@ -220,10 +222,10 @@ fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
     assert_eq!(compared(&scene, &*scanline, &*tracer)[0].of(Class::Defect), 0);
 }
 
-/// Found by a campaign. Two faces that tie, each grazed by the pencil, have cosines of their own: their fluxes differ by
-/// nearly what a grazed face's own flux may err by.
+/// Found by a campaign. Two faces tie, and the pencil grazes both at different angles: their fluxes differ by nearly
+/// the error bound of the flux at grazing incidence.
 #[test]
-fn by_how_much_tied_faces_differ_is_no_error_of_flux() {
+fn the_difference_of_tied_faces_is_not_an_error_of_flux() {
     let scene = scene_of(&Campaign::new(1, 911), 910, PartName::Lattice);
     let [a, b] = renderers();
     let sensors = compared(&scene, &*a, &*b);

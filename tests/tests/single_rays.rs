@@ -1,4 +1,4 @@
-//! Rays compared one by one have the classes that a whole comparison counts.
+//! Rays compared one by one have the same classes as in a comparison of whole outputs.
 
 use raypencil::judge::{
     Class, FirstOfClass, Judge, JudgeShare, class_of_ray, compare_judged, first_of_class,
@@ -15,9 +15,9 @@ fn single_rays_have_the_classes_that_a_comparison_counts() {
     let whole = compare_judged(&judge, a, b);
     let mut first: Option<FirstOfClass> = None;
     let mut before = 0;
-    // In the order of `first_of_class`: the camera last.
+    // The order is that of `first_of_class`: the camera is last.
     for sensor in whole[1..].iter().chain(&whole[..1]) {
-        // A row of the camera is enough: each of its pixels compares all beams.
+        // One row of the camera is enough, because each of its pixels compares all beams.
         let (width, height) = scene.size(sensor.sensor).unwrap();
         let rows = if sensor.sensor == SensorId::Camera { 20..21 } else { 0..height };
         let mut by_class = [0; 6];

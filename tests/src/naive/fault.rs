@@ -1,31 +1,31 @@
-//! Faults to plant in the naive renderer, each the likeness of one that real renderers had or could have.
+//! Faults of the naive renderer. Each imitates a mistake that real renderers made or could make.
 
 use std::fmt;
 
-/// What a fault gets wrong.
+/// The part of a result that a fault changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
-    /// Rays, poses, which face is nearest, and the values of a hit.
+pub enum FaultKind {
+    /// Rays, poses, the choice of the nearest face, and the values of a hit.
     Geometry,
-    /// What the SPP and the maximum range cut off.
+    /// Clipping by the SPP and by the maximum range.
     Clipping,
-    /// Rays through edges, and faces met at one point.
+    /// Rays through edges, and faces that a ray meets at the same point.
     Ties,
-    /// Whether the camera sees a pencil's hit, and where.
+    /// Visibility of a pencil's hit, and the pixel that it lands in.
     Visibility,
-    /// How much light arrives.
+    /// The amount of light that arrives.
     Flux,
-    /// What is written, not what is computed.
+    /// Writing, not computing.
     Files,
 }
 
-impl Kind {
-    /// All of them.
+impl FaultKind {
+    /// All kinds.
     pub const ALL: [Self; 6] =
         [Self::Geometry, Self::Clipping, Self::Ties, Self::Visibility, Self::Flux, Self::Files];
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for FaultKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Geometry => "geometry",
@@ -38,23 +38,23 @@ impl fmt::Display for Kind {
     }
 }
 
-/// The faults, each with its kind and the real mistake that it imitates: one list for all that goes through them.
+/// Defines the faults in one list: each with its kind and the real mistake that it imitates.
 macro_rules! faults {
     ($($(#[$doc:meta])* $name:ident: $kind:ident, $imitates:literal;)*) => {
-        /// A way to be wrong. Each changes one step, at the place that asks for it by name.
+        /// An error of the naive renderer. Each changes one step of it.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Fault {
             $($(#[$doc])* $name,)*
         }
 
         impl Fault {
-            /// All of them.
+            /// All faults.
             pub const ALL: &'static [Self] = &[$(Self::$name,)*];
 
-            /// What it gets wrong.
-            pub fn kind(self) -> Kind {
+            /// The part of a result that it changes.
+            pub fn kind(self) -> FaultKind {
                 match self {
-                    $(Self::$name => Kind::$kind,)*
+                    $(Self::$name => FaultKind::$kind,)*
                 }
             }
 
@@ -69,115 +69,115 @@ macro_rules! faults {
 }
 
 impl Fault {
-    /// Whether it is of light, not of what a ray meets.
+    /// Whether it concerns light, not the hits of rays.
     pub fn is_of_light(self) -> bool {
-        matches!(self.kind(), Kind::Visibility | Kind::Flux)
+        matches!(self.kind(), FaultKind::Visibility | FaultKind::Flux)
     }
 }
 
 faults! {
     /// Cells are sampled at their upper left corner.
-    HalfCellShift: Geometry, "the forgotten `+ 0.5` of a pixel loop";
+    HalfCellShift: Geometry, "a forgotten `+ 0.5` in a pixel loop";
     /// Column i is rendered as column i + 1.
     ColumnOffByOne: Geometry, "columns counted from 1, as in MATLAB and Fortran";
     /// Row 0 is at the bottom.
     RowsBottomUp: Geometry, "OpenGL's image order, or a y axis that points up";
     /// Pixel pitches exchanged, p_y across and p_x down.
-    PitchesSwapped: Geometry, "width for height: unseen as long as pixels are square";
+    PitchesSwapped: Geometry, "width in place of height: invisible while pixels are square";
     /// The principal point is rounded to whole pixels.
     PrincipalPointRounded: Geometry, "an `int` in a calibration file";
     /// A beam's grid is as wide as the sheet is thick, and as thick as it should be wide.
-    FanAndThicknessSwapped: Geometry, "two lengths of one type in the wrong order";
+    FanAndThicknessSwapped: Geometry, "two arguments of the same type in the wrong order";
     /// x_i divides the grid by its rows, not by its columns.
-    ColumnsCountedAsRows: Geometry, "one name for both counts";
+    ColumnsCountedAsRows: Geometry, "one variable for both counts";
     /// The grid's half width is g tan(fan), not g tan(fan / 2).
-    GridOfWholeFan: Geometry, "a whole angle given for a half";
+    GridOfWholeFan: Geometry, "a full angle in place of a half";
     /// Pencils start in the beam's centre and spread in both directions.
-    PencilsFromCentre: Geometry, "a projector modelled as a camera turned round, without the cylindrical lens";
+    PencilsFromCentre: Geometry, "a projector modelled as an inverse camera, without the cylindrical lens";
     /// The camera's quaternion is conjugated.
-    CameraPoseConjugated: Geometry, "`scene_from_camera` taken for `camera_from_scene`, or a library of the other handedness";
+    CameraPoseConjugated: Geometry, "`scene_from_camera` in place of `camera_from_scene`, or a library of the other handedness";
     /// q p q* is not divided by q.q.
-    QuaternionTakenAsUnit: Geometry, "a quaternion from a file taken for a unit";
-    /// The scene origin is taken off vertices that are offsets from it already.
-    OriginTakenOffTwice: Geometry, "one offset taken off by the loader and by the renderer";
-    /// Vertices, seen from where the ray starts, are rounded once to `f32`.
+    QuaternionTakenAsUnit: Geometry, "a quaternion from a file, assumed to be a unit";
+    /// The scene origin is subtracted from vertices that are offsets from it already.
+    OriginTakenOffTwice: Geometry, "one offset subtracted by the loader and by the renderer";
+    /// Vertices relative to the origin of the ray are rounded once to `f32`.
     VerticesInSinglePrecision: Geometry, "a vertex buffer in single precision";
     /// Ray directions are rounded once to `f32`.
     DirectionsInSinglePrecision: Geometry, "the ray type of a tracing library in single precision";
-    /// Fronts and backs are met alike.
-    BackFacesKept: Geometry, "culling left off";
-    /// In the lower right quadrant of the sensor backs are met and fronts are not.
-    WindingOfOneQuadrant: Geometry, "a change of axes by the signs of the direction that forgets to exchange two in one case";
+    /// Rays meet backs as well as fronts.
+    BackFacesHit: Geometry, "back-face culling switched off";
+    /// In the lower right quadrant of the sensor, rays meet backs and not fronts.
+    WindingOfOneQuadrant: Geometry, "a permutation of axes by the signs of the direction, with one exchange forgotten";
     /// Faces with exactly one vertex behind the SPP are left out.
     ClipCaseLost: Clipping, "the clip case that leaves a quadrilateral was never written";
     /// A ray exactly on an edge meets neither face.
     EdgesExcluded: Ties, "`u > 0` where it should be `u >= 0`";
-    /// Two neighbours reckon their common edge each from a corner of its own, so that rounding opens a crack.
-    EdgesReckonedApart: Ties, "the published test of Moeller and Trumbore as it stands";
-    /// Faces are widened by a millionth of their size.
-    EdgesWidened: Ties, "barycentric coordinates from `-EPSILON` on";
-    /// Of faces met at one point the last is named, with the normal of the first.
-    TieOfTwoRecords: Ties, "`<=` where the face is kept and `<` where its normal is";
-    /// Two faces met at one point count as none.
-    TiesCancel: Ties, "crossings counted by parity, as in tests of points in solids";
+    /// Two neighbours compute their common edge from different corners, so that rounding opens a crack.
+    EdgesComputedApart: Ties, "the published test of Moeller and Trumbore, unchanged";
+    /// Faces are enlarged by a millionth of their size.
+    EdgesWidened: Ties, "barycentric coordinates accepted from `-EPSILON`";
+    /// Among faces met at the same point the last is reported, with the normal of the first.
+    TieOfTwoRecords: Ties, "`<=` in the update of the face and `<` in that of its normal";
+    /// Two faces met at the same point cancel.
+    TiesCancel: Ties, "the parity rule of point-in-solid tests";
     /// Faces with |n.q| below 1e-6 count as parallel to the ray, so that small faces and short directions are lost.
     SmallDeterminantsDropped: Geometry, "the `EPSILON` of the published test of Moeller and Trumbore, which has a unit";
     /// Hits from t = 0 on count, before the SPP.
-    HitsBeforePlane: Clipping, "a near plane left out";
+    HitsBeforePlane: Clipping, "a near plane that is not applied";
     /// The maximum range limits the depth, not the range.
-    MaxRangeLimitsDepth: Clipping, "a far plane for a range";
+    MaxRangeLimitsDepth: Clipping, "a far plane in place of a maximum range";
     /// The first face in the file that is hit wins.
-    FirstInOrderWins: Geometry, "a search for any hit where the nearest was meant";
+    FirstInOrderWins: Geometry, "an any-hit query in place of a closest-hit query";
     /// The farthest face wins.
-    FarthestWins: Geometry, "a comparison the wrong way round";
+    FarthestWins: Geometry, "a reversed comparison";
     /// The depth is reported as the range.
     DepthForRange: Geometry, "a z buffer read as distances";
-    /// Ranges count from the SPP: t - 1 for t.
+    /// Ranges are measured from the SPP: t - 1 in place of t.
     RangeFromPlane: Geometry, "rays that start on the near plane";
     /// Normals are as long as twice the face's area.
-    NormalNotNormalised: Geometry, "a cross product taken for a normal";
-    /// Normals along the sensor's axes, not the scene's.
+    NormalNotNormalised: Geometry, "a cross product used as a normal";
+    /// Normals are in the sensor frame, not in the scene frame.
     NormalInSensorFrame: Geometry, "normals in view space, as shaders have them";
-    /// The incidence is reckoned against the sensor's axis, not against the ray.
-    IncidenceAgainstAxis: Geometry, "one direction of light for all rays: right for a distant sun";
-    /// cos(psi) where cos(theta) should be.
-    IncidenceForEmission: Flux, "the light's angle for the camera's";
-    /// cos(theta) left out.
-    EmissionForgotten: Flux, "a face taken to be as bright from every side";
-    /// The air weakens light on its way to the ground only.
-    AttenuationOnce: Flux, "one way of two";
-    /// 1 / R^2 for 1 / r^2.
+    /// The incidence is measured against the sensor's axis, not against the ray.
+    IncidenceAgainstAxis: Geometry, "one direction of light for all rays, as for a distant sun";
+    /// cos(psi) in place of cos(theta).
+    IncidenceForViewCosine: Flux, "the angle of incidence in place of the viewing angle";
+    /// cos(theta) is left out.
+    ViewCosineOmitted: Flux, "a face that is equally bright from every side";
+    /// The air attenuates light on its way to the ground only.
+    AttenuationOnce: Flux, "one of two paths";
+    /// 1 / R^2 in place of 1 / r^2.
     RangeForCameraDepth: Flux, "the wrong one of two distances";
-    /// Shares of power from the first beam's profile for all.
-    StaleShares: Flux, "a table made for the first beam and kept";
-    /// phi of the pixel's centre in the radiometric model too.
-    PhiOfPixelCentre: Flux, "a table by pixel for what belongs to the point";
-    /// cos^4(phi) where a pencil's flux has cos^3(phi).
-    FourthPower: Flux, "the law of a lens's image taken for a point's";
-    /// Four times as bright.
-    ApertureAsRadius: Flux, "a diameter taken for a radius";
+    /// All beams use the shares of power of the first.
+    StaleShares: Flux, "a table cached for the first beam";
+    /// phi of the pixel's centre, in the radiometric model too.
+    PhiOfPixelCentre: Flux, "a table for each pixel of a quantity of the point";
+    /// cos^4(phi) in place of cos^3(phi) in a pencil's flux.
+    FourthPower: Flux, "the law of image irradiance applied to a point";
+    /// Flux four times too large.
+    ApertureAsRadius: Flux, "a diameter used as a radius";
     /// The filter's pass band does not move with the angle.
-    FilterAlongAxis: Flux, "a filter's data sheet, which is for light along the axis";
+    FilterAlongAxis: Flux, "the data sheet of a filter, which holds along the axis";
     /// A normalised profile is not divided by its sum.
-    ProfileNotNormalised: Flux, "weights taken for shares";
+    ProfileNotNormalised: Flux, "weights used as shares";
     /// All ground has the reflectivity of the first material.
-    ReflectivityOfFirst: Flux, "one material bound for the whole mesh";
+    ReflectivityOfFirst: Flux, "one material for the whole mesh";
     /// Faces within a millimetre of the point do not hide it.
     ShadowEpsilon: Visibility, "the epsilon of a shadow ray";
-    /// Only fronts cast shadows.
-    ShadowsOfFronts: Visibility, "culling left on for shadow rays";
-    /// Shadow rays go on beyond the point.
-    ShadowsFromBehind: Visibility, "a shadow ray without an end";
-    /// Faces at the point itself hide it.
-    DoublesHide: Visibility, "the shadow acne of ground that is doubled";
-    /// What is hidden is lit all the same.
-    HiddenLit: Visibility, "a flag that is computed and not asked";
-    /// The camera's maximum range limits what it sees of the stripes.
+    /// Only front faces cast shadows.
+    ShadowsOfFronts: Visibility, "back-face culling left on for shadow rays";
+    /// Shadow rays continue beyond the point.
+    ShadowsFromBehind: Visibility, "a shadow ray without a maximum distance";
+    /// Faces through the point hide it.
+    FacesAtPointHide: Visibility, "shadow acne on doubled faces";
+    /// Hidden points deliver light too.
+    HiddenLit: Visibility, "a flag that is computed and never read";
+    /// The camera's maximum range limits the visibility of stripes.
     CameraRangeLimits: Visibility, "a limit of one map applied to another";
-    /// A pixel's row for its column.
-    PixelTransposed: Visibility, "`image[x][y]` for `image[y][x]`";
-    /// A point lands in the pixel whose centre is nearest by coordinates that count from corners.
-    PixelRounded: Visibility, "`round` where coordinates that count from corners want `floor`";
-    /// A pixel keeps the flux of its last pencil.
-    LastPencilWins: Flux, "`=` for `+=`";
+    /// Row and column of a pixel are exchanged.
+    PixelTransposed: Visibility, "`image[x][y]` in place of `image[y][x]`";
+    /// A coordinate that counts from pixel corners is rounded to the nearest integer.
+    PixelRounded: Visibility, "`round` in place of `floor`";
+    /// A pixel holds the flux of its last pencil only.
+    LastPencilWins: Flux, "`=` in place of `+=`";
 }

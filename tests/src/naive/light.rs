@@ -1,4 +1,4 @@
-//! The naive renderer's light: every formula by its definition, every face asked for every shadow.
+//! The naive renderer's light: every formula by its definition, every shadow ray against every face.
 
 use std::f64::consts::{LN_2, PI};
 
@@ -7,25 +7,36 @@ use raypencil::{
     Beam, Filter, FluxModel, Hit, Image, Mounted, Pixel, Profile, Return, Returns, Scene, SensorMap,
 };
 
-use super::{Fault, Naive};
+use super::fault::Fault;
+use super::quaternion::{conjugate, rotate};
 
-/// What a scene's camera makes of pencils.
-struct Lit<'a> {
-    naive: &'a Naive,
+/// The light that a scene's camera receives, computed with a fault or without.
+struct Light<'a> {
+    fault: Option<Fault>,
     scene: &'a Scene,
     faces: &'a [[DVec3; 3]],
 }
 
-impl Naive {
-    /// What comes back of a beam's pencils, and their flux on the camera's image.
-    pub(super) fn returns(
-        &self,
-        scene: &Scene,
-        faces: &[[DVec3; 3]],
-        index: usize,
-        map: &SensorMap,
-    ) -> (Returns, Image<f64>) {
-        let lit = Lit { naive: self, scene, faces };
+/// The returns of a beam's pencils, and their flux on the camera's image, W.
+pub(super) fn returns(
+    fault: Option<Fault>,
+    scene: &Scene,
+    faces: &[[DVec3; 3]],
+    index: usize,
+    map: &SensorMap,
+) -> (Returns, Image<f64>) {
+    Light { fault, scene, faces }.returns(index, map)
+}
+
+impl Light<'_> {
+    /// Whether this fault is injected.
+    fn has(&self, fault: Fault) -> bool {
+        self.fault == Some(fault)
+    }
+
+    /// The returns of beam `index` from the hits of its map, and their flux on the image, W.
+    fn returns(&self, index: usize, map: &SensorMap) -> (Returns, Image<f64>) {
+        let scene = self.scene;
         let Mounted { sensor: beam, .. } = scene.beams()[index];
         let shares = self.shares(if self.has(Fault::StaleShares) { &scene.beams()[0].sensor } else { &beam });
         let mut returns = Returns::empty(beam.columns, beam.rows);
@@ -35,19 +46,19 @@ impl Naive {
             for i in 0..beam.columns {
                 let Some(hit) = crate::hit(map, i, j) else { continue };
                 let power = beam.power * shares[i as usize % shares.len()];
-                let back = lit.back(&hit, &beam, power);
-                returns.put(i, j, &back);
-                let lands = back.visible || (self.has(Fault::HiddenLit) && back.flux > 0.0);
-                if let (true, Some(Pixel { i, j })) = (lands, back.pixel) {
+                let of_hit = self.return_of(&hit, &beam, power);
+                returns.put(i, j, &of_hit);
+                let is_received = of_hit.visible || (self.has(Fault::HiddenLit) && of_hit.flux > 0.0);
+                if let (true, Some(Pixel { i, j })) = (is_received, of_hit.pixel) {
                     let before = if self.has(Fault::LastPencilWins) { 0.0 } else { image.at(i, j) };
-                    image.set(i, j, before + back.flux);
+                    image.set(i, j, before + of_hit.flux);
                 }
             }
         }
         (returns, image)
     }
 
-    /// The share of the power that each pencil of a row has.
+    /// The share of the beam's power in each pencil of a row.
     fn shares(&self, beam: &Beam) -> Vec<f64> {
         let (columns, rows) = (f64::from(beam.columns), f64::from(beam.rows));
         let angle = |i: u32| {
@@ -61,32 +72,26 @@ impl Naive {
                 libm::exp(-2.0 * (angle(i) / half_width) * (angle(i) / half_width))
             }
         };
-        let whole: f64 = match beam.profile {
+        let weight_sum: f64 = match beam.profile {
             Profile::Paper => 1.0,
             _ if self.has(Fault::ProfileNotNormalised) => columns * rows,
             _ => rows * (0..beam.columns).map(weight).sum::<f64>(),
         };
-        (0..beam.columns).map(|i| weight(i) / whole).collect()
-    }
-}
-
-impl Lit<'_> {
-    fn has(&self, fault: Fault) -> bool {
-        self.naive.has(fault)
+        (0..beam.columns).map(|i| weight(i) / weight_sum).collect()
     }
 
-    /// What comes back of one hit.
-    fn back(&self, hit: &Hit, beam: &Beam, power: f64) -> Return {
+    /// The return of one hit.
+    fn return_of(&self, hit: &Hit, beam: &Beam, power: f64) -> Return {
         let Mounted { scene_from_sensor, sensor: camera } = self.scene.camera();
         let centre = scene_from_sensor.position;
         let to_point = hit.point - centre;
-        let conjugate = super::conjugate(scene_from_sensor.rotation);
-        let seen = self.naive.rotate(conjugate, to_point);
+        let sensor_from_scene = conjugate(scene_from_sensor.rotation);
+        let seen = rotate(sensor_from_scene, to_point, self.has(Fault::QuaternionTakenAsUnit));
         let (depth, distance) = (seen.z, seen.length());
         let cos_off_axis = depth / distance;
         let cos_view = -hit.normal.dot(to_point) / distance;
 
-        // Where it lands: pixel (i, j) is [i, i + 1) x [j, j + 1).
+        // The pixel that the light reaches: pixel (i, j) is [i, i + 1) x [j, j + 1).
         let place = [0, 1].map(|axis: usize| {
             let at = camera.focal_length * seen[axis] / depth / camera.pixel_pitch[axis]
                 + camera.principal_point[axis];
@@ -117,17 +122,17 @@ impl Lit<'_> {
     }
 
     /// Whether a face, front or back, meets the segment c + u (P - c), f_c / r <= u < 1. A face through P does not
-    /// hide it: the hit face, those that tie with it and backs at the same place.
+    /// hide P: neither the hit face, nor faces that tie with it, nor backs at the same place.
     fn is_hidden(&self, hit: &Hit, centre: DVec3, to_point: DVec3, nearest: f64) -> bool {
-        let reach = to_point.length();
-        let at_point = 1e-12 * (1.0 + (reach + centre.length()) / reach);
-        let doubles_hide = self.has(Fault::DoublesHide);
+        let distance = to_point.length();
+        let at_point = 1e-12 * (1.0 + (distance + centre.length()) / distance);
+        let faces_at_point_hide = self.has(Fault::FacesAtPointHide);
         let farthest = if self.has(Fault::ShadowsFromBehind) {
             2.0
-        } else if doubles_hide {
+        } else if faces_at_point_hide {
             1.0 + at_point
         } else if self.has(Fault::ShadowEpsilon) {
-            1.0 - 1e-3 / reach
+            1.0 - 1e-3 / distance
         } else {
             1.0 - at_point
         };
@@ -144,10 +149,11 @@ impl Lit<'_> {
             let corners = [a - centre, b - centre, c - centre];
             let sides = [0, 1, 2].map(|k: usize| to_point.dot(corners[k].cross(corners[(k + 1) % 3])));
             let is_inside = sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0);
-            is_inside && u >= nearest && u < farthest && (doubles_hide || (u - 1.0).abs() > at_point)
+            is_inside && u >= nearest && u < farthest && (faces_at_point_hide || (u - 1.0).abs() > at_point)
         })
     }
 
+    /// The flux of a pencil on the image, W.
     fn flux(
         &self,
         hit: &Hit,
@@ -166,9 +172,9 @@ impl Lit<'_> {
         let sigma = scene.atmosphere().attenuation;
         let d = if self.has(Fault::ApertureAsRadius) { 2.0 * camera.aperture } else { camera.aperture };
         let depth = if self.has(Fault::RangeForCameraDepth) { hit.range } else { depth };
-        let cos_theta = if self.has(Fault::IncidenceForEmission) {
+        let cos_theta = if self.has(Fault::IncidenceForViewCosine) {
             hit.cos_incidence
-        } else if self.has(Fault::EmissionForgotten) {
+        } else if self.has(Fault::ViewCosineOmitted) {
             1.0
         } else {
             cos_view
@@ -207,6 +213,7 @@ impl Lit<'_> {
         }
     }
 
+    /// The transmission of the lens's filter.
     fn filter(&self, beam: &Beam, cos_phi: f64) -> f64 {
         let Filter::Interference { centre, width, index } = self.scene.camera().sensor.lens.filter else {
             return 1.0;

@@ -1,0 +1,73 @@
+//! Faults of light, injected into the naive renderer one by one: a comparison with either renderer must report defects.
+//! Without a fault it must report none.
+
+use raypencil::judge::{Class, SensorResult, Side, compare};
+use raypencil::scanline::Scanline;
+use raypencil::tracer::Tracer;
+use raypencil::{FluxModel, RenderOutput, Renderer, Request, Scene, SensorId};
+use raypencil_tests::injected_faults::light::{doubled, lit, screened};
+use raypencil_tests::naive::{Fault, Naive};
+
+/// The scenes that must reveal a fault.
+fn scenes(fault: Fault) -> Vec<(&'static str, Scene)> {
+    let both = || [FluxModel::Radiometric, FluxModel::Eq1].map(|model| ("lit pyramids", lit(model))).to_vec();
+    match fault {
+        // These faults concern one model only.
+        Fault::PhiOfPixelCentre | Fault::FourthPower => vec![("lit pyramids", lit(FluxModel::Radiometric))],
+        Fault::ShadowEpsilon => vec![("a plate 0.5 mm before a wall", screened(1.0 / 2048.0, false))],
+        Fault::FacesAtPointHide => vec![("a wall of doubled faces", doubled())],
+        Fault::ShadowsOfFronts => vec![("a plate that shows its back to the camera", screened(0.25, true))],
+        _ => both(),
+    }
+}
+
+fn side<'a>(renderer: &dyn Renderer, name: &'a str, output: &'a RenderOutput) -> Side<'a> {
+    Side { name, output, precision: renderer.precision(), attributions: None }
+}
+
+fn compared(scene: &Scene, honest: &dyn Renderer, naive: Naive) -> Vec<SensorResult> {
+    let render = |renderer: &dyn Renderer| renderer.render(scene, &Request::EVERYTHING);
+    let (a, b) = (render(honest), render(&naive));
+    compare(scene, side(honest, "honest", &a), side(&naive, "naive", &b))
+}
+
+#[test]
+fn every_fault_of_light_is_found() {
+    let honest: [Box<dyn Renderer>; 2] = [Box::new(Scanline::default()), Box::new(Tracer::new())];
+    println!("{:<24} {:<42} {:<9} {:>9} {:>9}", "fault", "scene", "sensor", "scanline", "tracer");
+    let mut wrong = Vec::new();
+    for fault in Fault::ALL.iter().copied().filter(|fault| fault.is_of_light()) {
+        for (name, scene) in scenes(fault) {
+            let count = |sensors: &[SensorResult], which: fn(SensorId) -> bool| -> u64 {
+                sensors.iter().filter(|of| which(of.sensor)).map(|of| of.of(Class::Defect)).sum()
+            };
+            let is_camera = |sensor| sensor == SensorId::Camera;
+            let is_beam = |sensor| sensor != SensorId::Camera;
+            let found = honest.each_ref().map(|honest| {
+                let without = compared(&scene, &**honest, Naive::default());
+                for of in &without {
+                    if of.of(Class::Defect) + of.of(Class::Undecided) != 0 {
+                        wrong.push(format!("{name} without a fault: {:?}", of.defects.first()));
+                    }
+                }
+                let with = compared(&scene, &**honest, Naive { fault: Some(fault) });
+                [count(&with, is_camera), count(&with, is_beam)]
+            });
+            for (index, sensor) in ["camera", "beams"].into_iter().enumerate() {
+                let [by_scanline, by_tracer] = found.map(|counts| counts[index]);
+                println!(
+                    "{:<24} {name:<42} {sensor:<9} {by_scanline:>9} {by_tracer:>9}",
+                    format!("{fault:?}")
+                );
+            }
+            // A wrong flux of a pencil shows on the image too. A wrong sum shows on the image alone.
+            let only_image = fault == Fault::LastPencilWins;
+            for [on_camera, on_beams] in found {
+                if on_camera == 0 || (on_beams == 0) != only_image {
+                    wrong.push(format!("{fault:?} on {name}: {found:?}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
