@@ -1,59 +1,25 @@
-//! Who is right where two recordings of one scene differ: the referee on each cell beyond what is allowed.
+//! Rules on the cells of two recordings of one scene that differ by more than is allowed: which side is right.
 //!
-//! A difference that both sides may have, by the truth and the arithmetic that they declare, is none of either's
-//! faults; a cell on which one is wrong fails whatever the share of cells that is allowed.
+//! A difference that the truth and both declared arithmetics explain is no fault of either side. A cell on which a side
+//! is wrong fails its channel, whatever share of differing cells is allowed.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use crate::cells::{Differs, Thresholds, differs};
+use raypencil_judge::{Check, Class, Item, Quantity, Truth, Wrong, item_of_channel};
+use raypencil_scene::{Place, SensorId};
+
+use crate::cells::{Comparison, Thresholds, compare_numbers};
 use crate::difference::{Difference, Sides};
-use raypencil_judge::{Check, Class, Item, Quantity, Truth, Wrong};
-use raypencil_scene::Place;
+use crate::rulings::{ChannelRuling, RuledCell, Rulings};
 
-/// What the referee says of the cells that differ.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rulings {
-    /// Channels of the scene that have such cells, by key.
-    pub channels: BTreeMap<String, ChannelRuling>,
-    /// Channels with such cells that are none of the scene's: what was allowed decides.
-    pub not_ruled: Vec<String>,
-}
+/// Maximum number of wrong cells per channel that are described; all are counted.
+const MAX_DESCRIBED_CELLS: usize = 5;
 
-/// One channel.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct ChannelRuling {
-    /// Cells ruled on, by what A and B say there.
-    pub by_class: BTreeMap<(Class, Class), u64>,
-    /// Cells of which nothing can be told on one side: what was allowed decides.
-    pub not_judged: u64,
-    /// The first cells on which a side is wrong, which side, and why.
-    pub wrong: Vec<RuledCell>,
-}
-
-/// A cell on which a side is wrong.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RuledCell {
-    /// Which ray.
-    pub place: Place,
-    /// `A`, `B` or `A and B`.
-    pub who: &'static str,
-    /// What is said, what is true, and the ruling.
-    pub what: String,
-}
-
-/// How many cells of a channel are described; all are counted.
-const DESCRIBED: usize = 5;
-
-impl ChannelRuling {
-    /// Cells on which a side is wrong, or the referee's budget ran out.
-    pub fn faults(&self) -> u64 {
-        self.by_class.iter().filter(|((a, b), _)| *a.max(b) >= Class::Undecided).map(|(_, count)| count).sum()
-    }
-}
-
-/// Rules on each cell that differs by more than is allowed, by the checks of both sides against the truth.
+/// Rules on each cell that differs by more than is allowed. `checks` are the checks of A and B against `truth`.
+///
+/// Add the result to the difference with [`Difference::ruled`].
 pub fn rule(difference: &Difference, sides: &Sides, truth: &Truth<'_>, checks: [&Check; 2]) -> Rulings {
-    let lookup = checks.map(Lookup::new);
+    let lookup = checks.map(ClassLookup::new);
     let mut rulings = Rulings { channels: BTreeMap::new(), not_ruled: Vec::new() };
     for channel in difference.channels.iter().filter(|channel| channel.differing > 0) {
         let Some((sensor, item)) = item_of(truth, &channel.key) else {
@@ -69,18 +35,19 @@ pub fn rule(difference: &Difference, sides: &Sides, truth: &Truth<'_>, checks: [
             }
             let (i, j) = (index as u32 % channel.width, index as u32 / channel.width);
             let place = Place { sensor, i, j };
-            let [Some(of_a), Some(of_b)] = lookup.each_ref().map(|lookup| lookup.class(item, place)) else {
+            let [Some(class_a), Some(class_b)] = lookup.each_ref().map(|lookup| lookup.class(item, place))
+            else {
                 ruling.not_judged += 1;
                 continue;
             };
-            *ruling.by_class.entry((of_a, of_b)).or_default() += 1;
-            if of_a.max(of_b) >= Class::Undecided && ruling.wrong.len() < DESCRIBED {
-                let (who, side) = match (of_a >= Class::Undecided, of_b >= Class::Undecided) {
+            *ruling.by_class.entry((class_a, class_b)).or_default() += 1;
+            if class_a.max(class_b) >= Class::Undecided && ruling.wrong.len() < MAX_DESCRIBED_CELLS {
+                let (who, side) = match (class_a >= Class::Undecided, class_b >= Class::Undecided) {
                     (true, true) => ("A and B", 0),
                     (true, false) => ("A", 0),
                     _ => ("B", 1),
                 };
-                let what = lookup[side].words(place);
+                let what = lookup[side].description(place);
                 ruling.wrong.push(RuledCell { place, who, what });
             }
         }
@@ -89,22 +56,26 @@ pub fn rule(difference: &Difference, sides: &Sides, truth: &Truth<'_>, checks: [
     rulings
 }
 
+/// Whether two numbers differ by more than is allowed.
 fn exceeds(thresholds: &Thresholds, x: f64, y: f64, ulp: f64) -> bool {
-    match differs(x, y) {
-        Differs::Same => false,
-        Differs::Incomparable => true,
-        Differs::By(by) => !thresholds.allow(x, y, by, ulp),
+    match compare_numbers(x, y) {
+        Comparison::Equal => false,
+        Comparison::Incomparable => true,
+        Comparison::Apart(difference) => !thresholds.allow(x, y, difference, ulp),
     }
 }
 
-/// What one side's check says of each ray.
-struct Lookup<'a> {
+/// The class of each ray according to the check of one side.
+struct ClassLookup<'a> {
+    /// Classes other than `Agree`.
     others: HashMap<(Item, Place), Class>,
+    /// Rays that were not judged.
     unjudged: HashSet<(Item, Place)>,
+    /// The wrong rays that are described.
     wrong: HashMap<Place, &'a Wrong>,
 }
 
-impl<'a> Lookup<'a> {
+impl<'a> ClassLookup<'a> {
     fn new(check: &'a Check) -> Self {
         let items = check.sensors.iter().flat_map(|sensor| &sensor.items);
         let others = items.flat_map(|(item, tally)| {
@@ -116,28 +87,29 @@ impl<'a> Lookup<'a> {
         Self { others: others.collect(), unjudged: unjudged.collect(), wrong: wrong.collect() }
     }
 
-    /// The class of a quantity of a ray, if it was judged. Whether something is hit goes before its values.
+    /// The class of a quantity of a ray: the worst of its own and those of hit and face. `None`: it was not judged.
     fn class(&self, item: Item, place: Place) -> Option<Class> {
         if self.unjudged.contains(&(item, place)) {
             return None;
         }
-        let of = |item: Item| self.others.get(&(item, place)).copied().unwrap_or(Class::Agree);
-        // What a pencil delivers goes with whether and where it is seen.
-        let of_visibility = match item.quantity {
-            Quantity::PencilFlux => of(Quantity::Visible.into()).max(of(Quantity::Pixel.into())),
+        let class = |item: Item| self.others.get(&(item, place)).copied().unwrap_or(Class::Agree);
+        // A pencil's flux depends on whether and where the camera sees it.
+        let visibility = match item.quantity {
+            Quantity::PencilFlux => class(Quantity::Visible.into()).max(class(Quantity::Pixel.into())),
             _ => Class::Agree,
         };
-        Some(of(item).max(of_visibility).max(of(Quantity::Hit.into())).max(of(Quantity::Face.into())))
+        Some(class(item).max(visibility).max(class(Quantity::Hit.into())).max(class(Quantity::Face.into())))
     }
 
-    fn words(&self, place: Place) -> String {
+    /// What is wrong with a ray, in words.
+    fn description(&self, place: Place) -> String {
         self.wrong.get(&place).map_or("one of many wrong rays".into(), |wrong| wrong.what.clone())
     }
 }
 
-/// The sensor and quantity of a channel, if it is one of the scene's.
-fn item_of(truth: &Truth<'_>, key: &str) -> Option<(raypencil_scene::SensorId, Item)> {
+/// The sensor and quantity of a channel. `None`: the scene has no such channel.
+fn item_of(truth: &Truth<'_>, key: &str) -> Option<(SensorId, Item)> {
     let (sensor, name) = key.split_once('/')?;
     let sensor = truth.scene().sensors().find(|one| one.to_string() == sensor)?;
-    Some((sensor, raypencil_judge::item_of_channel(truth.scene(), sensor, name)?))
+    Some((sensor, item_of_channel(truth.scene(), sensor, name)?))
 }
