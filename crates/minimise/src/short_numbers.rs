@@ -1,151 +1,156 @@
-//! Shorter numbers: a frame that makes them so, then each in as few binary digits as still show it.
+//! Shorter numbers: a simpler frame of axes, then each number in as few binary digits as keep the scene interesting.
 
 use glam::{DQuat, DVec3, Vec3};
-
-use crate::draft::Draft;
-use crate::trials::Trials;
 use raypencil_scene::Pose;
 
-/// Significant binary digits to try, the fewest first.
-const DIGITS: [u32; 11] = [1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
+use crate::reducer::Reducer;
+use crate::reduction::Reduction;
 
-/// Binary places to try for all vertices at once, whole metres first.
-const PLACES: [i32; 9] = [0, 1, 2, 3, 4, 6, 8, 11, 15];
+/// Numbers of significant binary digits to try, the fewest first.
+const SIGNIFICANT_DIGITS: [u32; 11] = [1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
 
-/// Binary places of a quaternion whose largest entry is 1.
+/// Numbers of binary places of metres to try, for positions and for all vertices together. 0 places are whole metres.
+const LENGTH_PLACES: [i32; 9] = [0, 1, 2, 3, 4, 6, 8, 11, 15];
+
+/// Numbers of binary places to try for a quaternion whose largest entry is 1.
 const QUATERNION_PLACES: [i32; 8] = [0, 1, 2, 3, 4, 6, 9, 13];
 
-/// With more vertices than that they are rounded all at once only.
-const FEW_VERTICES: usize = 24;
+/// Maximum number of vertices that are rounded one by one; more are only rounded together.
+const MAX_SINGLE_VERTICES: usize = 24;
 
-pub(super) fn shortest(trials: &mut Trials<'_>) {
-    trials.stage("shorter numbers");
-    plainer_frame(trials);
-    poses(trials);
-    vertices_together(trials);
-    for number in of_rig(trials.best()) {
-        round(trials, &number);
+/// Shortens all numbers of rig and vertices.
+pub(super) fn shorten_numbers(reducer: &mut Reducer<'_>) {
+    reducer.stage("shorter numbers");
+    simplify_frame(reducer);
+    shorten_poses(reducer);
+    shorten_vertices_together(reducer);
+    for number in rig_numbers(reducer.best()) {
+        shorten_number(reducer, &number);
     }
-    for number in of_vertices(trials.best()) {
-        round(trials, &number);
+    for number in vertex_numbers(reducer.best()) {
+        shorten_number(reducer, &number);
     }
 }
 
-/// Moves the scene so that the sensor in question stands at the origin and looks along z, or at least stands there.
-/// Everything is rounded on the way: it is a proposal like any other.
-fn plainer_frame(trials: &mut Trials<'_>) {
-    let pose = trials.best().pose();
+/// Moves the scene so that the sensor in question is at the origin and looks along z, or at least is at the origin. The
+/// move rounds all vertices, so it must pass the test like any other change.
+fn simplify_frame(reducer: &mut Reducer<'_>) {
+    let pose = reducer.best().pose();
     let moves = [pose.inverse(), Pose::from_position(-pose.position)];
-    trials.plainest_of(moves, |draft, new_from_old| {
+    reducer.accept_simplest(moves, |reduction, new_from_old| {
         let moved =
             |_: usize, at: [f32; 3]| (new_from_old * Vec3::from_array(at).as_dvec3()).as_vec3().to_array();
-        let mut draft = draft.with_vertices(moved)?;
-        let own = draft.pose();
-        for pose in draft.poses_mut() {
-            // What is the identity is to be it to the last bit.
-            *pose = match *pose == own && new_from_old != Pose::from_position(-own.position) {
+        let mut reduction = reduction.with_vertices(moved)?;
+        let moved_pose = reduction.pose();
+        for pose in reduction.poses_mut() {
+            // The sensor's own pose becomes the identity exactly, without rounding errors.
+            *pose = match *pose == moved_pose && new_from_old != Pose::from_position(-moved_pose.position) {
                 true => Pose::IDENTITY,
                 false => new_from_old * *pose,
             };
         }
-        Some(draft)
+        Some(reduction)
     });
 }
 
-fn poses(trials: &mut Trials<'_>) {
-    for index in 0..1 + trials.best().beams.len() {
-        let rotation =
-            |draft: &Draft| draft.clone().poses_mut().nth(index).map(|pose| pose.rotation.to_array());
-        let Some(entries) = rotation(trials.best()) else { continue };
+fn shorten_poses(reducer: &mut Reducer<'_>) {
+    for index in 0..1 + reducer.best().beams.len() {
+        let rotation = |reduction: &Reduction| {
+            reduction.clone().poses_mut().nth(index).map(|pose| pose.rotation.to_array())
+        };
+        let Some(entries) = rotation(reducer.best()) else { continue };
         let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-        trials.plainest_of(QUATERNION_PLACES, |draft, places| {
-            let mut draft = draft.clone();
-            let rounded = entries.map(|entry| at_places(entry / largest, places));
-            draft.poses_mut().nth(index)?.rotation = DQuat::from_array(rounded);
-            Some(draft)
+        reducer.accept_simplest(QUATERNION_PLACES, |reduction, places| {
+            let mut reduction = reduction.clone();
+            let rounded = entries.map(|entry| round_to_places(entry / largest, places));
+            reduction.poses_mut().nth(index)?.rotation = DQuat::from_array(rounded);
+            Some(reduction)
         });
-        trials.plainest_of(PLACES, |draft, places| {
-            let mut draft = draft.clone();
-            let position = &mut draft.poses_mut().nth(index)?.position;
-            *position = DVec3::from_array(position.to_array().map(|x| at_places(x, places)));
-            Some(draft)
+        reducer.accept_simplest(LENGTH_PLACES, |reduction, places| {
+            let mut reduction = reduction.clone();
+            let position = &mut reduction.poses_mut().nth(index)?.position;
+            *position = DVec3::from_array(position.to_array().map(|x| round_to_places(x, places)));
+            Some(reduction)
         });
     }
 }
 
-fn vertices_together(trials: &mut Trials<'_>) {
-    trials.plainest_of(PLACES, |draft, places| {
-        draft.with_vertices(|_, at| at.map(|x| at_places(f64::from(x), places) as f32))
+fn shorten_vertices_together(reducer: &mut Reducer<'_>) {
+    reducer.accept_simplest(LENGTH_PLACES, |reduction, places| {
+        reduction.with_vertices(|_, at| at.map(|x| round_to_places(f64::from(x), places) as f32))
     });
 }
 
-/// A draft with another number in its place; `None` if that is none.
-type Replace = dyn Fn(&Draft, f64) -> Option<Draft>;
+/// A copy of a reduction with another value of a number. `None`: the copy is invalid.
+type SetNumber = dyn Fn(&Reduction, f64) -> Option<Reduction>;
 
-/// One number of a draft, to be replaced.
+/// A number of a reduction.
 struct Number {
-    get: Box<dyn Fn(&Draft) -> f64>,
-    set: Box<Replace>,
-    /// What it is a multiple of, if that is to be short instead: of a grid's extent the number of cells, so that a
-    /// cell's size is.
+    get: Box<dyn Fn(&Reduction) -> f64>,
+    set: Box<SetNumber>,
+    /// The search shortens the number divided by `unit`. For the extent of a grid it is the number of cells, so that the
+    /// size of a cell becomes short. For other numbers it is 1.
     unit: f64,
 }
 
-/// Tries 0, then ever more digits.
-fn round(trials: &mut Trials<'_>, number: &Number) {
-    let value = (number.get)(trials.best());
-    let shorter = DIGITS.map(|digits| significant(value / number.unit, digits) * number.unit);
-    let candidates = std::iter::once(0.0).chain(shorter);
-    trials.plainest_of(candidates, |draft, value| (number.set)(draft, value));
+/// Tries 0, then more and more digits.
+fn shorten_number(reducer: &mut Reducer<'_>, number: &Number) {
+    let value = (number.get)(reducer.best());
+    let shorter = SIGNIFICANT_DIGITS.map(|digits| round_to_digits(value / number.unit, digits) * number.unit);
+    let values = std::iter::once(0.0).chain(shorter);
+    reducer.accept_simplest(values, |reduction, value| (number.set)(reduction, value));
 }
 
 /// The numbers of sensors and their poses.
-fn of_rig(draft: &Draft) -> Vec<Number> {
-    fn number(field: impl Fn(&mut Draft) -> &mut f64 + Clone + 'static, unit: f64) -> Number {
+fn rig_numbers(reduction: &Reduction) -> Vec<Number> {
+    fn number(field: impl Fn(&mut Reduction) -> &mut f64 + Clone + 'static, unit: f64) -> Number {
         let read = field.clone();
         Number {
-            get: Box::new(move |draft| *read(&mut draft.clone())),
-            set: Box::new(move |draft, value| {
-                let mut draft = draft.clone();
-                *field(&mut draft) = value;
-                Some(draft)
+            get: Box::new(move |reduction| *read(&mut reduction.clone())),
+            set: Box::new(move |reduction, value| {
+                let mut reduction = reduction.clone();
+                *field(&mut reduction) = value;
+                Some(reduction)
             }),
             unit,
         }
     }
     let mut all = vec![
-        number(|draft| &mut draft.camera.sensor.focal_length, 1.0),
-        number(|draft| &mut draft.camera.sensor.aperture, 1.0),
-        number(|draft| &mut draft.camera.sensor.max_range, 1.0),
+        number(|reduction| &mut reduction.camera.sensor.focal_length, 1.0),
+        number(|reduction| &mut reduction.camera.sensor.aperture, 1.0),
+        number(|reduction| &mut reduction.camera.sensor.max_range, 1.0),
     ];
     for axis in 0..2 {
-        all.push(number(move |draft| &mut draft.camera.sensor.pixel_pitch[axis], 1.0));
-        all.push(number(move |draft| &mut draft.camera.sensor.principal_point[axis], 1.0));
+        all.push(number(move |reduction| &mut reduction.camera.sensor.pixel_pitch[axis], 1.0));
+        all.push(number(move |reduction| &mut reduction.camera.sensor.principal_point[axis], 1.0));
     }
     for axis in 0..3 {
-        all.push(number(move |draft| &mut draft.camera.scene_from_sensor.position[axis], 1.0));
+        all.push(number(move |reduction| &mut reduction.camera.scene_from_sensor.position[axis], 1.0));
     }
-    for (index, beam) in draft.beams.iter().enumerate() {
+    for (index, beam) in reduction.beams.iter().enumerate() {
         let (columns, rows) = (f64::from(beam.sensor.columns), f64::from(beam.sensor.rows));
-        all.push(number(move |draft| &mut draft.beams[index].sensor.grid_distance, 1.0));
-        all.push(number(move |draft| &mut draft.beams[index].sensor.half_width, columns));
-        all.push(number(move |draft| &mut draft.beams[index].sensor.thickness, rows));
-        all.push(number(move |draft| &mut draft.beams[index].sensor.max_range, 1.0));
+        all.push(number(move |reduction| &mut reduction.beams[index].sensor.grid_distance, 1.0));
+        all.push(number(move |reduction| &mut reduction.beams[index].sensor.half_width, columns));
+        all.push(number(move |reduction| &mut reduction.beams[index].sensor.thickness, rows));
+        all.push(number(move |reduction| &mut reduction.beams[index].sensor.max_range, 1.0));
         for axis in 0..3 {
-            all.push(number(move |draft| &mut draft.beams[index].scene_from_sensor.position[axis], 1.0));
+            all.push(number(
+                move |reduction| &mut reduction.beams[index].scene_from_sensor.position[axis],
+                1.0,
+            ));
         }
     }
     all
 }
 
-/// The coordinates of vertices, if they are few.
-fn of_vertices(draft: &Draft) -> Vec<Number> {
-    let count = draft.mesh.vertices().len();
+/// The coordinates of all vertices; none if there are more than [`MAX_SINGLE_VERTICES`] vertices.
+fn vertex_numbers(reduction: &Reduction) -> Vec<Number> {
+    let count = reduction.mesh.vertices().len();
     let coordinates = (0..count).flat_map(|vertex| (0..3).map(move |axis| (vertex, axis)));
     let number = |(vertex, axis): (usize, usize)| Number {
-        get: Box::new(move |draft| f64::from(draft.mesh.vertices()[vertex][axis])),
-        set: Box::new(move |draft, value| {
-            draft.with_vertices(|index, mut at| {
+        get: Box::new(move |reduction| f64::from(reduction.mesh.vertices()[vertex][axis])),
+        set: Box::new(move |reduction, value| {
+            reduction.with_vertices(|index, mut at| {
                 if index == vertex {
                     at[axis] = value as f32;
                 }
@@ -154,20 +159,20 @@ fn of_vertices(draft: &Draft) -> Vec<Number> {
         }),
         unit: 1.0,
     };
-    if count <= FEW_VERTICES { coordinates.map(number).collect() } else { Vec::new() }
+    if count <= MAX_SINGLE_VERTICES { coordinates.map(number).collect() } else { Vec::new() }
 }
 
-/// `x` in so many significant binary digits, 1 to 52, halves away from 0.
-fn significant(x: f64, digits: u32) -> f64 {
+/// `x` rounded to `digits` significant binary digits, 1 to 52; halves are rounded away from 0.
+fn round_to_digits(x: f64, digits: u32) -> f64 {
     let dropped = 53 - digits;
-    // The carry of a mantissa of all ones goes where it belongs, into the exponent.
+    // A carry out of the mantissa increments the exponent, as it should.
     f64::from_bits((x.to_bits() + (1 << (dropped - 1))) >> dropped << dropped)
 }
 
-/// `x` as a whole multiple of 2^-places, halves away from 0.
-fn at_places(x: f64, places: i32) -> f64 {
+/// `x` rounded to a multiple of 2^-places; halves are rounded away from 0.
+fn round_to_places(x: f64, places: i32) -> f64 {
     let unit = libm::ldexp(1.0, -places);
-    // -0 is no plainer than 0.
+    // Adding 0 turns -0 into 0.
     (x / unit).round() * unit + 0.0
 }
 
@@ -178,11 +183,11 @@ mod tests {
     #[test]
     fn numbers_are_rounded_to_the_nearest_with_so_many_digits() {
         // 0.7 = 0.1011001...b
-        assert_eq!([1, 2, 3, 4].map(|digits| significant(0.7, digits)), [0.5, 0.75, 0.75, 0.6875]);
+        assert_eq!([1, 2, 3, 4].map(|digits| round_to_digits(0.7, digits)), [0.5, 0.75, 0.75, 0.6875]);
         // 0.1111b: the carry doubles it.
-        assert_eq!(significant(-0.9375, 3), -1.0);
-        assert_eq!(significant(0.0, 1), 0.0);
-        assert_eq!([0, 1, 2].map(|places| at_places(-0.7, places)), [-1.0, -0.5, -0.75]);
-        assert!(at_places(-0.2, 0).is_sign_positive());
+        assert_eq!(round_to_digits(-0.9375, 3), -1.0);
+        assert_eq!(round_to_digits(0.0, 1), 0.0);
+        assert_eq!([0, 1, 2].map(|places| round_to_places(-0.7, places)), [-1.0, -0.5, -0.75]);
+        assert!(round_to_places(-0.2, 0).is_sign_positive());
     }
 }

@@ -1,58 +1,65 @@
-//! The plainest values of what is not geometry: each is tried once by itself.
+//! The simplest values of everything but geometry. Each is tried once, by itself.
 
-use glam::DVec3;
 use std::sync::Arc;
 
-use crate::draft::Draft;
-use crate::trials::Trials;
+use glam::DVec3;
 use raypencil_scene::{Filter, FluxModel, Lens, Material, Mesh, Profile};
 
-/// The reflectivity of the default ground, `docs/guide/scene.md`.
-const REFLECTIVITY: f64 = 0.25;
+use crate::reducer::Reducer;
+use crate::reduction::Reduction;
 
-/// Farther than rovers see, metres; one binary digit, so that it is as short as can be.
-const FAR: f64 = 1024.0;
+/// Reflectivity of the default ground, `docs/guide/scene.md`.
+const GROUND_REFLECTIVITY: f64 = 0.25;
 
-pub(super) fn plainest(trials: &mut Trials<'_>) {
-    trials.stage("plain values");
-    trials.change(|draft| draft.flux_model = FluxModel::Radiometric);
-    trials.change(|draft| draft.atmosphere.attenuation = 0.0);
-    // The whole lens, or as much of it as can be.
-    if !trials.change(|draft| draft.camera.sensor.lens = Lens::CLEAR) {
-        trials.change(|draft| draft.camera.sensor.lens.filter = Filter::None);
-        trials.change(|draft| draft.camera.sensor.lens.transmission = 1.0);
+/// Maximum range that exceeds those of rovers, m. It has one binary digit, the fewest possible.
+const LONG_RANGE_M: f64 = 1024.0;
+
+/// Tries the simplest flux model, air, lens, ranges, profiles, powers, materials and mesh origin.
+pub(super) fn simplify_values(reducer: &mut Reducer<'_>) {
+    reducer.stage("simplest values");
+    reducer.try_change(|reduction| reduction.flux_model = FluxModel::Radiometric);
+    reducer.try_change(|reduction| reduction.atmosphere.attenuation = 0.0);
+    // The clear lens, or else its parts.
+    if !reducer.try_change(|reduction| reduction.camera.sensor.lens = Lens::CLEAR) {
+        reducer.try_change(|reduction| reduction.camera.sensor.lens.filter = Filter::None);
+        reducer.try_change(|reduction| reduction.camera.sensor.lens.transmission = 1.0);
     }
-    trials.change(|draft| draft.camera.sensor.max_range = FAR);
-    for index in 0..trials.best().beams.len() {
-        trials.change(|draft| draft.beams[index].sensor.profile = Profile::Paper);
-        trials.change(|draft| draft.beams[index].sensor.power = 1.0);
-        trials.change(|draft| draft.beams[index].sensor.max_range = FAR);
+    reducer.try_change(|reduction| reduction.camera.sensor.max_range = LONG_RANGE_M);
+    for index in 0..reducer.best().beams.len() {
+        reducer.try_change(|reduction| reduction.beams[index].sensor.profile = Profile::Paper);
+        reducer.try_change(|reduction| reduction.beams[index].sensor.power = 1.0);
+        reducer.try_change(|reduction| reduction.beams[index].sensor.max_range = LONG_RANGE_M);
     }
-    trials.change(|draft| {
-        let ground = Material { name: "ground".into(), reflectivity: REFLECTIVITY };
-        remade(draft, draft.mesh.origin(), |_| 0, vec![ground]);
+    reducer.try_change(|reduction| {
+        let ground = Material { name: "ground".into(), reflectivity: GROUND_REFLECTIVITY };
+        remake_mesh(reduction, reduction.mesh.origin(), |_| 0, vec![ground]);
     });
-    trials.change(|draft| {
-        // Only the materials that a face has.
-        let mut used = draft.mesh.face_materials().to_vec();
+    reducer.try_change(|reduction| {
+        // Only materials that a face has.
+        let mut used = reduction.mesh.face_materials().to_vec();
         used.sort_unstable();
         used.dedup();
-        let materials = used.iter().map(|kind| draft.mesh.materials()[*kind as usize].clone()).collect();
+        let materials = used.iter().map(|kind| reduction.mesh.materials()[*kind as usize].clone()).collect();
         let rename = |kind: u16| used.binary_search(&kind).map_or(0, |index| index as u16);
-        remade(draft, draft.mesh.origin(), rename, materials);
+        remake_mesh(reduction, reduction.mesh.origin(), rename, materials);
     });
-    trials.change(|draft| {
-        let materials = draft.mesh.materials().to_vec();
-        remade(draft, DVec3::ZERO, |kind| kind, materials);
+    reducer.try_change(|reduction| {
+        let materials = reduction.mesh.materials().to_vec();
+        remake_mesh(reduction, DVec3::ZERO, |kind| kind, materials);
     });
 }
 
-/// Gives a draft's mesh another origin and other materials.
-fn remade(draft: &mut Draft, origin: DVec3, kind: impl Fn(u16) -> u16, materials: Vec<Material>) {
-    let old = &draft.mesh;
+/// Replaces origin and materials of the mesh. Nothing changes if they make no valid mesh.
+fn remake_mesh(
+    reduction: &mut Reduction,
+    origin: DVec3,
+    kind: impl Fn(u16) -> u16,
+    materials: Vec<Material>,
+) {
+    let old = &reduction.mesh;
     let kinds = old.face_materials().iter().map(|&material| kind(material)).collect();
     let mesh = Mesh::new(origin, old.vertices().to_vec(), old.faces().to_vec(), kinds, materials);
     if let Ok(mesh) = mesh {
-        draft.mesh = Arc::new(mesh);
+        reduction.mesh = Arc::new(mesh);
     }
 }
