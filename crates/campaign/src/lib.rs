@@ -1,16 +1,53 @@
-//! Many random terrains, both renderers, the referee on all that differs.
+//! Campaigns: both renderers on many random terrains, and the referee's ruling on every ray on which they differ.
+//!
+//! A terrain depends only on the campaign's seed and its own number. So a campaign can be divided into shards, which run
+//! anywhere, can be interrupted, and are merged into one summary. `docs/guide/campaign.md` is the user's guide; the
+//! classes of rays are those of `raypencil-judge`.
+//!
+//! ```text
+//! plan, error        campaign and shards; errors
+//! record -> sealed   the record of a terrain; files with a digest of their content
+//! cases/             test scenes, which property tests use, too
+//! scenes             the scenes of a terrain
+//! terrain -> shard   runs one terrain; runs the terrains of a shard
+//! merge -> totals    the records of all shards; counts and worst errors over them
+//! summary, screen    reports for programs and for people
+//! ```
+//!
+//! ```
+//! use raypencil_campaign::{Campaign, Shard};
+//!
+//! // Ten terrains in four shards: each terrain is in exactly one shard.
+//! let campaign = Campaign::new(5, 10);
+//! let shards = (0..4).map(|index| Shard { index, count: 4 });
+//! let mut terrains: Vec<u64> = shards.flat_map(|shard| shard.terrains(&campaign)).collect();
+//! terrains.sort();
+//! assert_eq!(terrains, (0..10).collect::<Vec<_>>());
+//! ```
 
-mod campaign;
 pub mod cases;
+mod error;
 mod merge;
+mod plan;
 mod record;
+mod scenes;
+mod screen;
+mod sealed;
 mod shard;
 mod summary;
 mod terrain;
+mod totals;
 
-pub use campaign::{Campaign, CampaignError, Shard};
+pub use error::CampaignError;
 pub use merge::{Merged, merge};
+pub use plan::{Campaign, Shard};
 pub use record::{PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay};
+pub use scenes::scene_of;
+pub use screen::campaign_screen;
 pub use shard::{CampaignProgress, run_shard};
-pub use summary::{campaign_json, campaign_screen, write_campaign};
-pub use terrain::{scene_of, terrain};
+pub use summary::{campaign_json, write_campaign};
+pub use terrain::terrain;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

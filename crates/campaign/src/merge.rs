@@ -1,45 +1,48 @@
-//! All shards of a campaign as one: in whatever order they are given, each exactly once, none damaged.
+//! Merges the results of all shards of a campaign. Each shard must be given exactly once, in any order.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::campaign::{Campaign, CampaignError, Shard};
-use crate::record::{TerrainRecord, read_sealed};
+use raypencil_files::FileError;
+
+use crate::error::CampaignError;
+use crate::plan::{Campaign, Shard};
+use crate::record::TerrainRecord;
+use crate::sealed::read_sealed;
 use crate::shard::ShardResult;
 
-/// The results of a whole campaign.
+/// Results of a whole campaign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Merged {
-    /// Which.
+    /// The campaign.
     pub campaign: Campaign,
-    /// Every terrain, in order.
+    /// Records of all terrains, by their number.
     pub terrains: Vec<TerrainRecord>,
 }
 
-/// Puts the results of all shards together, from the folders that hold them.
+/// Reads the results of all shards from `folders` and merges them.
 ///
 /// # Errors
-/// Names the file that is damaged or of another campaign, the shard that is there twice, or those that are absent.
+/// Names the file that is damaged or belongs to another campaign, the shard that is given twice, or the shards that are
+/// missing.
 pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
     let mut campaign: Option<(Campaign, u64, String)> = None;
     let mut shards: BTreeMap<Shard, String> = BTreeMap::new();
     let mut terrains: BTreeMap<u64, TerrainRecord> = BTreeMap::new();
     for file in results_in(folders)? {
         let name = file.display().to_string();
-        let (of, ShardResult { shard, terrains: records }) = read_sealed(&file)?;
+        let (own, ShardResult { shard, terrains: records }) = read_sealed(&file)?;
         let refuse =
             |found: String, expected: String| CampaignError::Record { file: name.clone(), found, expected };
         match &campaign {
-            None => campaign = Some((of.clone(), shard.count, name.clone())),
-            Some((first, count, first_name)) if *first != of || *count != shard.count => {
-                let words = |of: &Campaign, count: u64| {
-                    format!(
-                        "{} terrains, seed {}, version {}, in {count} shards",
-                        of.terrains, of.seed, of.version
-                    )
+            None => campaign = Some((own.clone(), shard.count, name.clone())),
+            Some((first, count, first_name)) if *first != own || *count != shard.count => {
+                let words = |campaign: &Campaign, count: u64| {
+                    let Campaign { seed, terrains, version } = campaign;
+                    format!("{terrains} terrains, seed {seed}, version {version}, in {count} shards")
                 };
                 let expected = format!("{}, as in {first_name}", words(first, *count));
-                return Err(refuse(words(&of, shard.count), expected));
+                return Err(refuse(words(&own, shard.count), expected));
             }
             Some(_) => {}
         }
@@ -47,9 +50,9 @@ pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
             let found = format!("shard {} of {} again", shard.index + 1, shard.count);
             return Err(refuse(found, format!("each shard once: it is in {other} too")));
         }
-        let numbers: Vec<u64> = shard.terrains(&of).collect();
+        let numbers: Vec<u64> = shard.terrains(&own).collect();
         if shard.index >= shard.count || !records.iter().map(|one| one.terrain).eq(numbers) {
-            let expected = "exactly the terrains of its shard, in order".to_string();
+            let expected = "exactly the terrains of its shard, by their number".to_string();
             return Err(refuse(format!("{} terrains", records.len()), expected));
         }
         terrains.extend(records.into_iter().map(|record| (record.terrain, record)));
@@ -58,7 +61,7 @@ pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
         let given: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
         return Err(CampaignError::Shards {
             found: format!("no result in {}", given.join(", ")),
-            expected: "folders with a shard-I-of-N.json, as a campaign leaves when it is finished".into(),
+            expected: "folders with a shard-I-of-N.json, which a finished shard leaves".into(),
         });
     };
     let absent: Vec<String> = (0..count)
@@ -74,11 +77,11 @@ pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
     Ok(Merged { campaign, terrains: terrains.into_values().collect() })
 }
 
-/// The results that the folders hold, by name.
+/// Paths of the results in the folders, sorted.
 fn results_in(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CampaignError> {
     let mut found = Vec::new();
     for folder in folders {
-        let refuse = |source| raypencil_files::FileError::Io { path: folder.clone(), action: "read", source };
+        let refuse = |source| FileError::Io { path: folder.clone(), action: "read", source };
         for entry in std::fs::read_dir(folder).map_err(refuse)? {
             let path = entry.map_err(refuse)?.path();
             if is_result(&path) {
@@ -90,6 +93,7 @@ fn results_in(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CampaignError> {
     Ok(found)
 }
 
+/// Whether a file is the result of a shard, by its name.
 fn is_result(path: &Path) -> bool {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     name.starts_with("shard-") && name.ends_with(".json")

@@ -1,35 +1,30 @@
-//! What is kept of a terrain: counts, worst errors, wrong rays. No times, so that the same terrain gives the same bytes.
+//! The record of a terrain: counts, worst errors, wrong rays. It has no times, so the same terrain gives the same bytes.
 
-use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-use std::path::Path;
-
-use crate::campaign::{Campaign, CampaignError};
-use raypencil_files::{FileError, write_atomically};
 use raypencil_judge::{Class, ItemTally, Largest, Quantity, SensorResult};
+use serde::{Deserialize, Serialize};
 
-/// The number of the form of these files.
-pub(super) const FORMAT: u32 = 1;
+/// Maximum number of wrong rays per scene that are described; all are counted.
+const MAX_DESCRIBED_RAYS: usize = 10;
 
-/// Which scene of a terrain.
+/// One of the scenes of a terrain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PartName {
-    /// A random rig's own sensors, both renderers exact.
+    /// A random rig; both renderers are exact.
     Own,
-    /// The same with the paper's approximations.
+    /// The same scene; scanline renders it with the paper's approximations.
     Paper,
-    /// Narrow sensors at what is hard, every ray judged.
+    /// Narrow beams aimed at vertices, edges, silhouettes and grazing faces. The referee rules on every ray.
     Aimed,
-    /// A lattice whose vertices lie exactly on rays, every ray judged.
+    /// A lattice whose vertices lie exactly on rays. The referee rules on every ray.
     Lattice,
 }
 
 impl PartName {
-    /// All of them.
+    /// All scenes, in the order of reports.
     pub const ALL: [Self; 4] = [Self::Own, Self::Paper, Self::Aimed, Self::Lattice];
 
-    /// As in files.
+    /// The name in files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Own => "own",
@@ -40,61 +35,61 @@ impl PartName {
     }
 }
 
-/// One terrain.
+/// Record of a terrain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TerrainRecord {
-    /// Its number.
+    /// Number of the terrain.
     pub terrain: u64,
-    /// Triangles of the ground.
+    /// Number of triangles of the ground.
     pub faces: u64,
-    /// Its scenes.
+    /// Records of its scenes.
     pub parts: Vec<PartRecord>,
 }
 
-/// One scene of a terrain.
+/// Record of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartRecord {
-    /// Which.
+    /// The scene.
     pub part: PartName,
-    /// Rays compared.
+    /// Number of rays compared.
     pub compared: u64,
-    /// By class, in the order of [`Class`].
+    /// Number of rays by class, in the order of [`Class`].
     pub by_class: [u64; 6],
-    /// Rays that one side does not have.
+    /// Number of rays that one side lacks.
     pub not_compared: u64,
-    /// Rays that the referee ruled on.
+    /// Number of rays that the referee ruled on.
     pub judged: u64,
-    /// Each quantity that was compared.
+    /// Records of the quantities that were compared.
     pub quantities: Vec<QuantityRecord>,
     /// The first wrong rays.
     pub wrong: Vec<WrongRay>,
 }
 
-/// One quantity of a scene.
+/// Record of a quantity of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuantityRecord {
-    /// Which.
+    /// The quantity.
     pub quantity: Quantity,
-    /// Rays by class, in the order of [`Class`].
+    /// Number of rays by class, in the order of [`Class`].
     pub by_class: [u64; 6],
-    /// Rays of which one side does not say it.
+    /// Number of rays for which one side lacks the quantity.
     pub not_compared: u64,
-    /// The largest difference.
+    /// Largest difference, in the quantity's unit.
     pub worst_error: Option<WorstRecord>,
-    /// The largest ratio of a difference to its bound.
+    /// Largest ratio of a difference to its bound.
     pub worst_ratio: Option<WorstRecord>,
 }
 
-/// The largest of something, and where.
+/// A largest value and its ray.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorstRecord {
-    /// The value; `None` if it is no finite number.
+    /// The value; `None` if it is not finite.
     pub value: Option<f64>,
-    /// `camera`, `beam-0`, ...
+    /// Name of the sensor: `camera`, `beam-0`, ...
     pub sensor: String,
     /// Column.
     pub i: u32,
@@ -102,28 +97,25 @@ pub struct WorstRecord {
     pub j: u32,
 }
 
-/// A ray that is a defect, or undecided.
+/// A ray that is a defect or undecided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WrongRay {
-    /// `camera`, `beam-0`, ...
+    /// Name of the sensor: `camera`, `beam-0`, ...
     pub sensor: String,
     /// Column.
     pub i: u32,
     /// Row.
     pub j: u32,
-    /// The quantity that is worst.
+    /// The quantity of the worst class.
     pub quantity: Quantity,
-    /// What each side says, in words.
+    /// The values of both sides and the ruling, in words.
     pub what: String,
 }
 
-/// How many wrong rays of a scene are described; all are counted.
-const DESCRIBED: usize = 10;
-
 impl PartRecord {
-    /// What a comparison found.
-    pub(super) fn of(part: PartName, sensors: &[SensorResult]) -> Self {
+    /// The record of a comparison of all sensors.
+    pub(crate) fn of(part: PartName, sensors: &[SensorResult]) -> Self {
         let mut record = Self {
             part,
             compared: 0,
@@ -144,7 +136,7 @@ impl PartRecord {
             for (item, tally) in &sensor.items {
                 totals[item.quantity as usize].1.add(tally);
             }
-            let room = DESCRIBED.saturating_sub(record.wrong.len());
+            let room = MAX_DESCRIBED_RAYS.saturating_sub(record.wrong.len());
             record.wrong.extend(sensor.defects.iter().take(room).map(|defect| WrongRay {
                 sensor: defect.place.sensor.to_string(),
                 i: defect.place.i,
@@ -153,30 +145,31 @@ impl PartRecord {
                 what: defect.what.clone(),
             }));
         }
-        let said = |(_, tally): &(Quantity, ItemTally)| {
+        let is_present = |(_, tally): &(Quantity, ItemTally)| {
             tally.not_compared > 0 || tally.by_class.iter().any(|count| *count > 0)
         };
         record.quantities = totals
             .into_iter()
-            .filter(said)
+            .filter(is_present)
             .map(|(quantity, tally)| QuantityRecord {
                 quantity,
                 by_class: tally.by_class,
                 not_compared: tally.not_compared,
-                worst_error: tally.worst_error.map(worst),
-                worst_ratio: tally.worst_ratio.map(worst),
+                worst_error: tally.worst_error.map(worst_record),
+                worst_ratio: tally.worst_ratio.map(worst_record),
             })
             .collect();
         record
     }
 
-    /// Rays in a class.
+    /// Number of rays of a class.
     pub fn of_class(&self, class: Class) -> u64 {
         self.by_class[class as usize]
     }
 }
 
-fn worst(Largest { value, place, .. }: Largest) -> WorstRecord {
+/// The record of a largest value.
+fn worst_record(Largest { value, place, .. }: Largest) -> WorstRecord {
     WorstRecord {
         value: value.is_finite().then_some(value),
         sensor: place.sensor.to_string(),
@@ -186,74 +179,16 @@ fn worst(Largest { value, place, .. }: Largest) -> WorstRecord {
 }
 
 impl WorstRecord {
-    /// The words of `raypencil probe` that name the ray.
-    pub(super) fn cell(&self) -> String {
-        probe_words(&self.sensor, self.i, self.j)
+    /// The arguments of `raypencil probe` that select the ray.
+    pub(crate) fn probe_arguments(&self) -> String {
+        probe_arguments(&self.sensor, self.i, self.j)
     }
 }
 
-/// The words of `raypencil probe` that name a ray.
-pub(crate) fn probe_words(sensor: &str, i: u32, j: u32) -> String {
+/// The arguments of `raypencil probe` that select a ray.
+pub(crate) fn probe_arguments(sensor: &str, i: u32, j: u32) -> String {
     match sensor.strip_prefix("beam-") {
         Some(beam) => format!("--beam {beam} --pencil {i},{j}"),
         None => format!("--pixel {i},{j}"),
     }
-}
-
-/// A file of a campaign: what it holds, of which campaign, and the digest of both.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Sealed<T> {
-    format: u32,
-    campaign: Campaign,
-    /// Of the compact JSON of `(format, campaign, contents)`.
-    sha256: String,
-    contents: T,
-}
-
-fn digest<T: Serialize>(campaign: &Campaign, contents: &T) -> String {
-    let text = serde_json::to_string(&(FORMAT, campaign, contents)).expect("JSON of numbers and texts");
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// Writes a file that proves to be whole when it is read.
-pub(crate) fn write_sealed<T: Serialize>(
-    path: &Path,
-    campaign: &Campaign,
-    contents: &T,
-) -> Result<(), FileError> {
-    let sealed = serde_json::json!({
-        "format": FORMAT,
-        "campaign": campaign,
-        "sha256": digest(campaign, contents),
-        "contents": contents,
-    });
-    let text = format!("{sealed}\n");
-    write_atomically(path, |file| file.write_all(text.as_bytes()))
-}
-
-/// Reads it back: the campaign and the contents.
-pub(crate) fn read_sealed<T: Serialize + for<'de> Deserialize<'de>>(
-    path: &Path,
-) -> Result<(Campaign, T), CampaignError> {
-    let file = path.display().to_string();
-    let refuse = |found: String, expected: &str| CampaignError::Record {
-        file: file.clone(),
-        found,
-        expected: expected.into(),
-    };
-    let text = std::fs::read_to_string(path).map_err(|source| FileError::Io {
-        path: path.to_path_buf(),
-        action: "read",
-        source,
-    })?;
-    let sealed: Sealed<T> =
-        serde_json::from_str(&text).map_err(|error| refuse(error.to_string(), "a result of a campaign"))?;
-    if sealed.format != FORMAT {
-        return Err(refuse(format!("format {}", sealed.format), &format!("format {FORMAT}")));
-    }
-    if digest(&sealed.campaign, &sealed.contents) != sealed.sha256 {
-        return Err(refuse("the digest of its contents is another".into(), "a file as it was written"));
-    }
-    Ok((sealed.campaign, sealed.contents))
 }

@@ -1,43 +1,47 @@
-//! The terrains of one shard, one after the other. Each leaves a file; what is there already is not done again.
+//! Runs the terrains of one shard, one after the other. Each leaves a file, so an interrupted shard can continue.
 
-use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-use crate::campaign::{Campaign, CampaignError, Shard};
-use crate::record::{TerrainRecord, read_sealed, write_sealed};
-use crate::terrain::terrain;
 use raypencil_files::create;
+use serde::{Deserialize, Serialize};
 
-/// Who wants to hear how a campaign goes.
+use crate::error::CampaignError;
+use crate::plan::{Campaign, Shard};
+use crate::record::TerrainRecord;
+use crate::sealed::{read_sealed, write_sealed};
+use crate::terrain::terrain;
+
+/// Receives the progress of a campaign.
 pub trait CampaignProgress: Sync {
-    /// So many terrains of the shard are done, and this many rays of them in this run.
+    /// `terrains` of the shard's `of` terrains are done, with `rays` rays compared in this run.
     fn done(&self, terrains: u64, of: u64, rays: u64);
 }
 
-/// What a finished shard leaves: its terrains, in their order.
+/// Result of a finished shard: the records of its terrains, by their number.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ShardResult {
-    pub(super) shard: Shard,
-    pub(super) terrains: Vec<TerrainRecord>,
+    pub(crate) shard: Shard,
+    pub(crate) terrains: Vec<TerrainRecord>,
 }
 
-/// Where a shard's result is.
-pub(super) fn result_file(folder: &Path, shard: Shard) -> PathBuf {
+/// Path of a shard's result.
+fn result_file(folder: &Path, shard: Shard) -> PathBuf {
     folder.join(format!("shard-{}-of-{}.json", shard.index + 1, shard.count))
 }
 
-/// Where a terrain's record is while its shard runs.
+/// Path of a terrain's record while its shard runs.
 fn terrain_file(folder: &Path, terrain: u64) -> PathBuf {
     folder.join("terrains").join(format!("terrain-{terrain:06}.json"))
 }
 
-/// Runs a shard into `folder`, and returns where its result is. A terrain whose record is there, whole and of this
-/// campaign, is not run again: after an interruption at most the one that was running is lost. Scenes of terrains with
-/// a wrong ray are left in `folder/wrong`.
+/// Runs a shard into `folder`, and returns the path of its result.
+///
+/// A terrain whose record is in the folder, undamaged, is not run again. So an interruption loses at most the terrain
+/// that was running. Scenes with a wrong ray are written to `folder/wrong`.
 ///
 /// # Errors
-/// A folder that holds another campaign; what the file system says.
+/// A folder that holds another campaign; a file that cannot be read or written.
 pub fn run_shard(
     campaign: &Campaign,
     shard: Shard,
@@ -51,8 +55,8 @@ pub fn run_shard(
     let mut rays = 0;
     for (done, &number) in (1..).zip(&numbers) {
         let file = terrain_file(folder, number);
-        let kept = if file.exists() { kept(&file, campaign, number)? } else { None };
-        let record = match kept {
+        let earlier = if file.exists() { earlier_record(&file, campaign, number)? } else { None };
+        let record = match earlier {
             Some(record) => record,
             None => {
                 let record = terrain(campaign, number, Some(&folder.join("wrong")))?;
@@ -68,13 +72,23 @@ pub fn run_shard(
     Ok(result)
 }
 
-/// A record that is there, if it is whole. A damaged one is made again; one of another campaign is refused.
-fn kept(file: &Path, campaign: &Campaign, number: u64) -> Result<Option<TerrainRecord>, CampaignError> {
+/// The record of an earlier run. `None`: it is damaged, and the terrain must be run again.
+///
+/// # Errors
+/// A record of another campaign; a file that cannot be read.
+fn earlier_record(
+    file: &Path,
+    campaign: &Campaign,
+    number: u64,
+) -> Result<Option<TerrainRecord>, CampaignError> {
     match read_sealed::<TerrainRecord>(file) {
-        Ok((of, record)) if of == *campaign && record.terrain == number => Ok(Some(record)),
-        Ok((of, _)) => Err(CampaignError::Record {
+        Ok((own, record)) if own == *campaign && record.terrain == number => Ok(Some(record)),
+        Ok((own, _)) => Err(CampaignError::Record {
             file: file.display().to_string(),
-            found: format!("a record of {} terrains, seed {}, version {}", of.terrains, of.seed, of.version),
+            found: format!(
+                "a record of {} terrains, seed {}, version {}",
+                own.terrains, own.seed, own.version
+            ),
             expected: format!(
                 "one of {} terrains, seed {}, version {}: give another campaign a folder of its own",
                 campaign.terrains, campaign.seed, campaign.version

@@ -1,70 +1,91 @@
-//! The rule for one cell, and what a channel's cells add up to.
+//! The rule for one cell, and the statistics of one channel's cells.
 
 use raypencil_files::{Storage, Values};
 
-/// What may differ. A cell passes if *any* of the first three allows its difference; all are 0 by default,
-/// which allows nothing.
+/// Allowed differences. A cell passes if *any* of `fail`, `fail_relative` and `fail_ulp` allows its difference. All are
+/// 0 by default, which allows none.
+///
+/// ```
+/// use std::path::PathBuf;
+///
+/// use raypencil_diff::{Thresholds, diff};
+/// use raypencil_files::{Channel, Channels, Storage, Values};
+/// use raypencil_scene::Image;
+///
+/// let recording = |range: f64| {
+///     let values = Values::Reals(Image::filled(1, 1, range));
+///     let channel = Channel { file: PathBuf::new(), name: String::new(), storage: Storage::F32, values };
+///     Channels { by_key: [("camera/range.T".into(), channel)].into(), ..Channels::default() }
+/// };
+/// let passes = |thresholds| diff(&recording(8.0), &recording(8.5), &thresholds).is_ok_and(|found| found.passes());
+/// // |8.5 - 8| = 0.5, and 0.5 / 8.5 = 0.0588...: one threshold that allows the cell is enough.
+/// assert!(!passes(Thresholds::default()));
+/// assert!(passes(Thresholds { fail: 0.5, ..Thresholds::default() }));
+/// assert!(passes(Thresholds { fail_relative: 0.059, fail: 1e-9, ..Thresholds::default() }));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Thresholds {
-    /// An absolute difference, in the channel's own unit.
+    /// Absolute difference, in the channel's unit.
     pub fail: f64,
-    /// A difference relative to the larger magnitude of the two numbers.
+    /// Difference relative to the larger magnitude of the two numbers.
     pub fail_relative: f64,
-    /// A difference in ulps of the coarser storage of the two, at the larger magnitude.
+    /// Difference in ulps of the coarser storage of the two, at the larger magnitude.
     pub fail_ulp: f64,
-    /// The share of differing cells that is allowed in a channel, percent.
+    /// Share of a channel's cells that may differ by more than the above, percent.
     pub fail_percent: f64,
-    /// An absolute difference that no cell of reals may exceed, whatever else is allowed.
+    /// Absolute difference that no cell of real numbers may exceed, in the channel's unit, whatever else is allowed.
     pub hard_fail: Option<f64>,
-    /// Whether channels that only one side has are no failure.
+    /// Whether a channel that only one side has is ignored. Otherwise it is a failure.
     pub shared_only: bool,
 }
 
-/// A cell and what both sides have there.
+/// A cell and the values of both sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellDifference {
     /// Column.
     pub i: u32,
-    /// Row; 0 is on top.
+    /// Row; row 0 is at the top.
     pub j: u32,
-    /// A's value.
+    /// Value of side A.
     pub a: f64,
-    /// B's value.
+    /// Value of side B.
     pub b: f64,
 }
 
-/// How two numbers of a cell differ.
+/// Comparison of two numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Differs {
-    /// Not at all: NaN is NaN, an infinity is itself, -0 is 0.
-    Same,
-    /// By this absolute difference of two finite numbers.
-    By(f64),
-    /// One is no finite number, and the other is not the same: no threshold allows that.
+pub(crate) enum Comparison {
+    /// Equal: NaN equals NaN, an infinity equals itself, -0 equals 0.
+    Equal,
+    /// Two finite numbers and their absolute difference.
+    Apart(f64),
+    /// Unequal, and at least one is not finite. No threshold allows that.
     Incomparable,
 }
 
 /// Compares two numbers.
-pub(crate) fn differs(a: f64, b: f64) -> Differs {
+pub(crate) fn compare_numbers(a: f64, b: f64) -> Comparison {
     if a == b || a.is_nan() && b.is_nan() {
-        Differs::Same
+        Comparison::Equal
     } else if a.is_finite() && b.is_finite() {
-        Differs::By((a - b).abs())
+        Comparison::Apart((a - b).abs())
     } else {
-        Differs::Incomparable
+        Comparison::Incomparable
     }
 }
 
 impl Thresholds {
-    /// Whether a difference `by` of two finite numbers passes; `ulp` is the unit of the third threshold.
-    pub(super) fn allow(&self, a: f64, b: f64, by: f64, ulp: f64) -> bool {
-        by <= self.fail || by <= self.fail_relative * a.abs().max(b.abs()) || by <= self.fail_ulp * ulp
+    /// Whether the difference of two finite numbers passes. `ulp` is the unit of `fail_ulp`.
+    pub(crate) fn allow(&self, a: f64, b: f64, difference: f64, ulp: f64) -> bool {
+        difference <= self.fail
+            || difference <= self.fail_relative * a.abs().max(b.abs())
+            || difference <= self.fail_ulp * ulp
     }
 }
 
-/// The numbers of a channel; see [`crate::difference::diff::ChannelDifference`].
+/// Statistics of a channel's cells. [`crate::ChannelDifference`] describes the fields.
 #[derive(Debug, Default)]
-pub(super) struct Numbers {
+pub(crate) struct CellStatistics {
     pub unequal: u64,
     pub differing: u64,
     pub incomparable: u64,
@@ -76,10 +97,15 @@ pub(super) struct Numbers {
     pub worst: Option<CellDifference>,
 }
 
-/// Goes through all cells of two channels of one size, row by row.
-pub(super) fn compare(a: &Values, b: &Values, storage: Storage, thresholds: &Thresholds) -> Numbers {
+/// Compares all cells of two channels of the same size, row by row.
+pub(crate) fn compare_cells(
+    a: &Values,
+    b: &Values,
+    storage: Storage,
+    thresholds: &Thresholds,
+) -> CellStatistics {
     let (width, height) = a.size();
-    let mut numbers = Numbers::default();
+    let mut found = CellStatistics::default();
     let cell = |index: usize| CellDifference {
         i: (index % width as usize) as u32,
         j: (index / width as usize) as u32,
@@ -88,53 +114,53 @@ pub(super) fn compare(a: &Values, b: &Values, storage: Storage, thresholds: &Thr
     };
     let cells = width as usize * height as usize;
     if storage == Storage::Whole {
-        // Indices and truth values: how far apart two of them are means nothing.
+        // Indices and truth values are equal or not; the size of their difference has no meaning.
         for index in (0..cells).filter(|&index| a.real(index) != b.real(index)) {
-            numbers.unequal += 1;
-            numbers.worst.get_or_insert_with(|| cell(index));
+            found.unequal += 1;
+            found.worst.get_or_insert_with(|| cell(index));
         }
-        numbers.differing = numbers.unequal;
-        return numbers;
+        found.differing = found.unequal;
+        return found;
     }
 
     let (mut finite, mut sum, mut squares) = (0_u64, 0.0, 0.0);
     let (mut largest, mut largest_ulp) = (0.0_f64, 0.0_f64);
-    let (mut first_incomparable, mut farthest) = (None, None);
+    let (mut first_incomparable, mut index_of_largest) = (None, None);
     for index in 0..cells {
         let (x, y) = (a.real(index), b.real(index));
-        match differs(x, y) {
-            Differs::Same => finite += u64::from(x.is_finite()),
-            Differs::Incomparable => {
-                numbers.unequal += 1;
-                numbers.incomparable += 1;
+        match compare_numbers(x, y) {
+            Comparison::Equal => finite += u64::from(x.is_finite()),
+            Comparison::Incomparable => {
+                found.unequal += 1;
+                found.incomparable += 1;
                 first_incomparable.get_or_insert(index);
             }
-            Differs::By(by) => {
+            Comparison::Apart(difference) => {
                 finite += 1;
-                numbers.unequal += 1;
+                found.unequal += 1;
                 let ulp = storage.ulp(x.abs().max(y.abs()));
-                numbers.differing += u64::from(!thresholds.allow(x, y, by, ulp));
-                numbers.beyond_hard += u64::from(thresholds.hard_fail.is_some_and(|most| by > most));
-                // Strictly larger: of equals the first stays.
-                if by > largest {
-                    (largest, farthest) = (by, Some(index));
+                found.differing += u64::from(!thresholds.allow(x, y, difference, ulp));
+                found.beyond_hard += u64::from(thresholds.hard_fail.is_some_and(|limit| difference > limit));
+                // Strictly larger: of equal differences the first one stays.
+                if difference > largest {
+                    (largest, index_of_largest) = (difference, Some(index));
                 }
-                largest_ulp = largest_ulp.max(by / ulp);
-                sum += by;
-                squares += by * by;
+                largest_ulp = largest_ulp.max(difference / ulp);
+                sum += difference;
+                squares += difference * difference;
             }
         }
     }
-    numbers.differing += numbers.incomparable;
+    found.differing += found.incomparable;
     if thresholds.hard_fail.is_some() {
-        numbers.beyond_hard += numbers.incomparable;
+        found.beyond_hard += found.incomparable;
     }
     if finite > 0 {
-        numbers.largest = Some(largest);
-        numbers.largest_ulp = Some(largest_ulp);
-        numbers.mean = Some(sum / finite as f64);
-        numbers.rms = Some((squares / finite as f64).sqrt());
+        found.largest = Some(largest);
+        found.largest_ulp = Some(largest_ulp);
+        found.mean = Some(sum / finite as f64);
+        found.rms = Some((squares / finite as f64).sqrt());
     }
-    numbers.worst = first_incomparable.or(farthest).map(cell);
-    numbers
+    found.worst = first_incomparable.or(index_of_largest).map(cell);
+    found
 }

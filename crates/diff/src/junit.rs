@@ -1,12 +1,13 @@
-//! `junit.xml` of a comparison: one test case per channel, for CI that reads JUnit.
+//! `junit.xml` of a comparison for CI: one test case per channel.
 
 use quick_junit::{NonSuccessKind, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
-
-use crate::difference::{ChannelDifference, Difference, Sides};
-use crate::screen::{allowed, at};
 use raypencil_report::{count, counted, number, quantity};
 
-/// The whole document.
+use crate::difference::{ChannelDifference, Difference, Sides};
+use crate::rulings::RuledCell;
+use crate::words::{allowed, at};
+
+/// The document.
 pub(crate) fn junit(difference: &Difference, sides: &Sides) -> Result<String, SerializeError> {
     let [a, b] = sides.names;
     let mut report = Report::new(format!("raypencil diff {a} {b}"));
@@ -28,6 +29,7 @@ pub(crate) fn junit(difference: &Difference, sides: &Sides) -> Result<String, Se
     report.to_string()
 }
 
+/// The outcome of one channel.
 fn status(difference: &Difference, channel: &ChannelDifference) -> TestCaseStatus {
     if !channel.fails {
         return TestCaseStatus::success();
@@ -46,7 +48,7 @@ fn status(difference: &Difference, channel: &ChannelDifference) -> TestCaseStatu
         ));
     }
     if let Some(ruling) = difference.rulings.as_ref().and_then(|rulings| rulings.channels.get(&channel.key)) {
-        let of = |cell: &crate::ruled::RuledCell| format!("{}, {}: {}", cell.who, cell.place, cell.what);
+        let of = |cell: &RuledCell| format!("{}, {}: {}", cell.who, cell.place, cell.what);
         lines.extend(ruling.wrong.iter().map(of));
     }
     status.set_description(lines.join("\n"));

@@ -1,18 +1,60 @@
-//! Any two recordings, channel by channel.
+//! Compares two recordings of anything, channel by channel: what differs, by how much, and whether that is allowed.
+//!
+//! A recording is a set of named channels, as `raypencil-files` reads them from folders and files; no scene is needed.
+//! If there is one, the referee's checks (`raypencil-judge`) tell which side is right. `docs/guide/diff.md` has the
+//! rules.
+//!
+//! ```text
+//! cells                          the rule for one cell, the statistics of one channel
+//! rulings -> difference          the structure of a difference, with the referee's rulings
+//! unit -> compare                compares two recordings
+//! rule                           which side is right, where there is a scene
+//! words -> screen, html, junit   reports for people and for CI
+//! summary                        the report for programs
+//! folder                         all reports as files
+//! ```
+//!
+//! ```
+//! use std::path::PathBuf;
+//!
+//! use raypencil_diff::{Thresholds, diff};
+//! use raypencil_files::{Channel, Channels, Storage, Values};
+//! use raypencil_scene::Image;
+//!
+//! let recording = |range: f64| {
+//!     let values = Values::Reals(Image::filled(2, 1, range));
+//!     let channel = Channel { file: PathBuf::new(), name: String::new(), storage: Storage::F32, values };
+//!     Channels { by_key: [("camera/range.T".into(), channel)].into(), ..Channels::default() }
+//! };
+//! // One ulp of f32 at 1 is 2^-23 = 1 / 8388608.
+//! let (a, b) = (recording(1.0), recording(1.0 + 1.0 / 8_388_608.0));
+//! assert!(!diff(&a, &b, &Thresholds::default())?.passes());
+//! assert!(diff(&a, &b, &Thresholds { fail_ulp: 1.0, ..Thresholds::default() })?.passes());
+//! # Ok::<(), raypencil_diff::DiffError>(())
+//! ```
 
 mod cells;
+mod compare;
 mod difference;
 mod folder;
+mod html;
 mod junit;
-mod report;
-mod ruled;
+mod rule;
+mod rulings;
 mod screen;
 mod summary;
 mod unit;
+mod words;
 
 pub use cells::{CellDifference, Thresholds};
-pub use difference::{ChannelDifference, DiffError, Difference, Sides, diff};
+pub use compare::{DiffError, diff};
+pub use difference::{ChannelDifference, Difference, Sides};
 pub use folder::{WrittenDiff, write_diff};
-pub use ruled::{ChannelRuling, RuledCell, Rulings, rule};
+pub use rule::rule;
+pub use rulings::{ChannelRuling, RuledCell, Rulings};
 pub use screen::diff_screen;
 pub use summary::diff_json;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

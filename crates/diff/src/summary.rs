@@ -1,14 +1,18 @@
-//! `summary.json` of a comparison: everything counted, for programs. `docs/guide/diff.md` lists the keys.
+//! `summary.json` of a comparison, for programs. `docs/guide/diff.md` lists the keys.
 
+use raypencil_report::VERSION;
+use raypencil_scene::Place;
 use serde_json::{Value, json};
 
 use crate::difference::{ChannelDifference, Difference, Sides};
-use crate::ruled::{ChannelRuling, Rulings};
-use crate::screen::name;
-use raypencil_report::VERSION;
-use raypencil_scene::Place;
+use crate::rulings::{ChannelRuling, Rulings};
+use crate::words::class_name;
 
-/// The summary. Numbers are finite; a value that is no finite number is null, or its name where it is a cell's.
+/// Number of the format. It grows when a key changes its meaning or goes away.
+const FORMAT: u32 = 1;
+
+/// The JSON document. A statistic that is not finite is null; a cell's value that is not finite is a string such as
+/// `"NaN"`.
 pub fn diff_json(difference: &Difference, sides: &Sides) -> String {
     let side = |index: usize| {
         let files: Vec<String> =
@@ -23,7 +27,7 @@ pub fn diff_json(difference: &Difference, sides: &Sides) -> String {
         (true, false) => "within_thresholds",
     };
     let summary = json!({
-        "format": 1,
+        "format": FORMAT,
         "version": VERSION,
         "verdict": verdict,
         "a": side(0),
@@ -44,13 +48,13 @@ pub fn diff_json(difference: &Difference, sides: &Sides) -> String {
     format!("{summary:#}\n")
 }
 
-/// What the referee says, channel by channel.
+/// The referee's rulings, channel by channel.
 fn rulings(rulings: &Rulings) -> Value {
-    let of = |(key, ruling): (&String, &ChannelRuling)| {
+    let channel = |(key, ruling): (&String, &ChannelRuling)| {
         let classes = ruling
             .by_class
             .iter()
-            .map(|((a, b), cells)| json!({ "a": name(*a), "b": name(*b), "cells": cells }));
+            .map(|((a, b), cells)| json!({ "a": class_name(*a), "b": class_name(*b), "cells": cells }));
         let wrong = ruling.wrong.iter().map(|cell| {
             let Place { sensor, i, j } = cell.place;
             json!({ "sensor": sensor.to_string(), "column": i, "row": j, "who": cell.who, "what": cell.what })
@@ -63,9 +67,10 @@ fn rulings(rulings: &Rulings) -> Value {
             "first_wrong": wrong.collect::<Vec<_>>(),
         })
     };
-    json!({ "channels": rulings.channels.iter().map(of).collect::<Vec<_>>(), "not_ruled": rulings.not_ruled })
+    json!({ "channels": rulings.channels.iter().map(channel).collect::<Vec<_>>(), "not_ruled": rulings.not_ruled })
 }
 
+/// One channel.
 fn channel(channel: &ChannelDifference) -> Value {
     let worst = channel.worst.map(
         |worst| json!({ "column": worst.i, "row": worst.j, "a": number(worst.a), "b": number(worst.b) }),
@@ -91,11 +96,12 @@ fn channel(channel: &ChannelDifference) -> Value {
     })
 }
 
+/// A statistic; null if it is not finite.
 fn finite(value: Option<f64>) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
-/// A cell's number; what JSON has no number for has a name.
+/// A cell's value. JSON has no number for NaN and infinities, so they are strings.
 fn number(value: f64) -> Value {
     match value {
         finite if finite.is_finite() => finite.into(),

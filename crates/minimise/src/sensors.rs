@@ -1,91 +1,92 @@
-//! Fewer beams and smaller sensors, down to the one ray in question, which stays the very same.
+//! Fewer beams and smaller sensors, down to the one ray in question, which stays exactly the same.
 
-use crate::draft::Draft;
-use crate::exact::{cropped, narrowed};
-use crate::trials::Trials;
-use raypencil_scene::Place;
-use raypencil_scene::SensorId;
+use raypencil_scene::{Place, SensorId};
+
+use crate::reducer::Reducer;
+use crate::reduction::Reduction;
+use crate::same_ray::{cropped, narrowed};
 
 /// Columns, then rows.
 const AXES: [usize; 2] = [0, 1];
 
-/// No beam that is not needed, and of the sensor in question the one ray, the very same: a few calls.
-pub(super) fn cut_to_ray(trials: &mut Trials<'_>) {
-    trials.stage("fewer beams, a single ray");
-    drop_beams(trials);
-    match trials.best().place {
+/// Removes beams, and cuts the sensor in question down to the ray in question. Takes a few calls.
+pub(super) fn cut_to_ray(reducer: &mut Reducer<'_>) {
+    reducer.stage("fewer beams, a single ray");
+    drop_beams(reducer);
+    match reducer.best().place {
         Some(Place { sensor: SensorId::Camera, i, j }) => {
-            trials.plainest_of([()], |draft, ()| crop(draft, [i, j], [1, 1]));
+            reducer.accept_simplest([()], |reduction, ()| crop(reduction, [i, j], [1, 1]));
         }
         Some(Place { sensor: SensorId::Beam(index), i, j }) => {
-            let beams = narrowed(&trials.best().beams[index].sensor, [i, j]);
-            trials.plainest_of(beams, |draft, (beam, [i, j])| {
-                let mut draft = draft.clone();
-                draft.beams[index].sensor = beam;
-                draft.place = Some(Place { sensor: SensorId::Beam(index), i, j });
-                Some(draft)
+            let beams = narrowed(&reducer.best().beams[index].sensor, [i, j]);
+            reducer.accept_simplest(beams, |reduction, (beam, [i, j])| {
+                let mut reduction = reduction.clone();
+                reduction.beams[index].sensor = beam;
+                reduction.place = Some(Place { sensor: SensorId::Beam(index), i, j });
+                Some(reduction)
             });
         }
         None => {}
     }
 }
 
-/// The other sensors as small as can be, and that of the ray in question if it could not be cut to it: some twenty calls
-/// each.
-pub(super) fn cut_others(trials: &mut Trials<'_>) {
-    trials.stage("smaller sensors");
-    trim_camera(trials);
-    coarsen_beams(trials);
+/// Makes the sensors as small as possible that [`cut_to_ray`] did not cut down. Takes about twenty calls each.
+pub(super) fn cut_others(reducer: &mut Reducer<'_>) {
+    reducer.stage("smaller sensors");
+    trim_camera(reducer);
+    coarsen_beams(reducer);
 }
 
-/// Leaves out every beam that is not needed. Those after it get other indices, that of the ray in question too.
-fn drop_beams(trials: &mut Trials<'_>) {
-    let own = |draft: &Draft| match draft.place.map(|place| place.sensor) {
+/// Removes every beam that is not needed. The indices of later beams change, also in the ray in question.
+fn drop_beams(reducer: &mut Reducer<'_>) {
+    let beam_in_question = |reduction: &Reduction| match reduction.place.map(|place| place.sensor) {
         Some(SensorId::Beam(index)) => Some(index),
         _ => None,
     };
-    let without = |draft: &Draft, beams: &[usize]| {
-        let mut rest = draft.clone();
+    let without = |reduction: &Reduction, beams: &[usize]| {
+        let mut rest = reduction.clone();
         let mut index = 0;
         rest.beams.retain(|_| {
             index += 1;
             !beams.contains(&(index - 1))
         });
-        if let (Some(own), Some(place)) = (own(draft), &mut rest.place) {
+        if let (Some(own), Some(place)) = (beam_in_question(reduction), &mut rest.place) {
             place.sensor = SensorId::Beam(own - beams.iter().filter(|beam| **beam < own).count());
         }
         rest
     };
-    let best = trials.best();
-    let others: Vec<usize> = (0..best.beams.len()).filter(|index| Some(*index) != own(best)).collect();
-    if others.is_empty() || trials.keep(without(best, &others)) {
+    let best = reducer.best();
+    let others: Vec<usize> =
+        (0..best.beams.len()).filter(|index| Some(*index) != beam_in_question(best)).collect();
+    if others.is_empty() || reducer.try_variant(without(best, &others)) {
         return;
     }
     for &beam in others.iter().rev() {
-        trials.keep(without(trials.best(), &[beam]));
+        reducer.try_variant(without(reducer.best(), &[beam]));
     }
 }
 
-/// The image from pixel `first` on, of `size` pixels; `None` if the rays or the place would not be the same.
-fn crop(draft: &Draft, first: [u32; 2], size: [u32; 2]) -> Option<Draft> {
-    let mut draft = draft.clone();
-    draft.camera.sensor = cropped(&draft.camera.sensor, first, size)?;
-    if let Some(place) = draft.place.as_mut().filter(|place| place.sensor == SensorId::Camera) {
+/// A copy with the image's part of `size` pixels from pixel `first` on. `None`: the rays would change, or the ray in
+/// question would be lost.
+fn crop(reduction: &Reduction, first: [u32; 2], size: [u32; 2]) -> Option<Reduction> {
+    let mut reduction = reduction.clone();
+    reduction.camera.sensor = cropped(&reduction.camera.sensor, first, size)?;
+    if let Some(place) = reduction.place.as_mut().filter(|place| place.sensor == SensorId::Camera) {
         (place.i, place.j) = (place.i.checked_sub(first[0])?, place.j.checked_sub(first[1])?);
         if place.i >= size[0] || place.j >= size[1] {
             return None;
         }
     }
-    Some(draft)
+    Some(reduction)
 }
 
-/// Cuts strips off the image, on either side: halves first, then ever thinner ones.
-fn trim_camera(trials: &mut Trials<'_>) {
-    let size = |draft: &Draft| [draft.camera.sensor.width, draft.camera.sensor.height];
+/// Cuts strips off both sides of the image: first halves, then thinner and thinner strips.
+fn trim_camera(reducer: &mut Reducer<'_>) {
+    let size = |reduction: &Reduction| [reduction.camera.sensor.width, reduction.camera.sensor.height];
     for axis in AXES {
-        let mut strip = size(trials.best())[axis] / 2;
-        while strip > 0 && !trials.is_spent() {
-            let rest = size(trials.best());
+        let mut strip = size(reducer.best())[axis] / 2;
+        while strip > 0 && !reducer.is_spent() {
+            let rest = size(reducer.best());
             if strip >= rest[axis] {
                 strip = rest[axis] / 2;
                 continue;
@@ -94,9 +95,9 @@ fn trim_camera(trials: &mut Trials<'_>) {
             smaller[axis] -= strip;
             let mut left = [0; 2];
             left[axis] = strip;
-            let is_cut = [[0; 2], left]
-                .into_iter()
-                .any(|first| crop(trials.best(), first, smaller).is_some_and(|draft| trials.keep(draft)));
+            let is_cut = [[0; 2], left].into_iter().any(|first| {
+                crop(reducer.best(), first, smaller).is_some_and(|reduction| reducer.try_variant(reduction))
+            });
             if !is_cut {
                 strip /= 2;
             }
@@ -104,19 +105,20 @@ fn trim_camera(trials: &mut Trials<'_>) {
     }
 }
 
-/// Gives each beam but that of the ray in question fewer columns and rows: other rays, over the same fan.
-fn coarsen_beams(trials: &mut Trials<'_>) {
-    let own = trials.best().place.map(|place| place.sensor);
-    for index in (0..trials.best().beams.len()).filter(|index| own != Some(SensorId::Beam(*index))) {
+/// Gives each beam fewer columns and rows, which makes other rays over the same fan. The beam of the ray in question
+/// stays.
+fn coarsen_beams(reducer: &mut Reducer<'_>) {
+    let in_question = reducer.best().place.map(|place| place.sensor);
+    for index in (0..reducer.best().beams.len()).filter(|index| in_question != Some(SensorId::Beam(*index))) {
         for axis in AXES {
-            let beam = &trials.best().beams[index].sensor;
+            let beam = &reducer.best().beams[index].sensor;
             let count = [beam.columns, beam.rows][axis];
             let fewer = std::iter::successors(Some(1), |count: &u32| Some(2 * count));
-            trials.plainest_of(fewer.take_while(|fewer| *fewer < count), |draft, fewer| {
-                let mut draft = draft.clone();
-                let beam = &mut draft.beams[index].sensor;
+            reducer.accept_simplest(fewer.take_while(|fewer| *fewer < count), |reduction, fewer| {
+                let mut reduction = reduction.clone();
+                let beam = &mut reduction.beams[index].sensor;
                 *(if axis == 0 { &mut beam.columns } else { &mut beam.rows }) = fewer;
-                Some(draft)
+                Some(reduction)
             });
         }
     }

@@ -1,36 +1,36 @@
-//! The answers of a sensor as NPY arrays, by the names of `docs/formats/files.md`.
+//! The answers of a sensor as NPY arrays. `docs/formats/files.md` has their names.
 
-use glam::DVec3;
 use std::path::Path;
 
-use crate::manifest::{ChannelType, FileRole, FileType, ManifestChannel, ManifestFile};
-use crate::margins::SensorMargins;
+use glam::DVec3;
 use raypencil_files::{FileError, write_npy};
 use raypencil_judge::{Answers, BeamLight, flux_channel, image_channel};
-use raypencil_scene::{FluxModel, Image, Maybe, Pixel, Sample, SensorId};
+use raypencil_scene::{FaceId, FluxModel, Image, Maybe, Pixel, Sample, SensorId};
 
-/// Writes arrays into one folder of a pack and keeps the list of them.
-pub(crate) struct Arrays<'a> {
+use crate::canonical_nan::CANONICAL_NAN;
+use crate::manifest::{ChannelType, FileRole, FileType, ManifestChannel, ManifestFile};
+use crate::margins::SensorMargins;
+use crate::units::unit_of_flux;
+
+/// Writes the arrays of one sensor into a pack, and lists them.
+pub(crate) struct ArrayWriter<'a> {
     pack: &'a Path,
     sensor: SensorId,
-    pub(super) files: Vec<ManifestFile>,
+    files: Vec<ManifestFile>,
 }
 
-/// The one NaN that stands for nothing.
-const NOTHING: f64 = f64::from_bits(0x7ff8_0000_0000_0000);
-
-impl<'a> Arrays<'a> {
-    pub(super) fn new(pack: &'a Path, sensor: SensorId) -> Self {
+impl<'a> ArrayWriter<'a> {
+    pub(crate) fn new(pack: &'a Path, sensor: SensorId) -> Self {
         Self { pack, sensor, files: Vec::new() }
     }
 
-    /// Everything that is said of this sensor.
-    pub(super) fn write(
-        &mut self,
+    /// Writes every quantity and every margin of the sensor. Returns the manifest's entries.
+    pub(crate) fn write(
+        mut self,
         answers: &Answers,
         margins: &SensorMargins,
         model: FluxModel,
-    ) -> Result<(), FileError> {
+    ) -> Result<Vec<ManifestFile>, FileError> {
         let map = answers.map(self.sensor);
         for (name, image) in [("range.T", &map.range), ("depth.Z", &map.depth)] {
             self.lengths(name, image.as_ref())?;
@@ -39,8 +39,8 @@ impl<'a> Arrays<'a> {
         self.vectors("N", "1", map.normal.as_ref())?;
         self.cosines("incidence.V", map.cos_incidence.as_ref())?;
         if let Some(faces) = &map.face {
-            let index = |face: Maybe<_>| face.get().map_or(u32::MAX, |raypencil_scene::FaceId(index)| index);
-            self.wholes("face.I", &convert(faces, index))?;
+            let index = |face: Maybe<FaceId>| face.get().map_or(u32::MAX, |FaceId(index)| index);
+            self.integers("face.I", &convert(faces, index))?;
         }
         match self.sensor {
             SensorId::Camera => {
@@ -50,15 +50,16 @@ impl<'a> Arrays<'a> {
                     self.flux(&image_channel(beam, Some(second)), second, light.other_image.as_ref())?;
                 }
             }
-            SensorId::Beam(beam) => self.light(&answers.light[beam], model)?,
+            SensorId::Beam(beam) => self.returns(&answers.light[beam], model)?,
         }
         for (name, unit, image) in margins.channels() {
             self.reals(name, unit, image)?;
         }
-        Ok(())
+        Ok(self.files)
     }
 
-    fn light(&mut self, light: &BeamLight, model: FluxModel) -> Result<(), FileError> {
+    /// What the camera receives of each pencil.
+    fn returns(&mut self, light: &BeamLight, model: FluxModel) -> Result<(), FileError> {
         let returns = &light.returns;
         if let Some(visible) = &returns.visible {
             let path = self.path("visible.V");
@@ -72,11 +73,11 @@ impl<'a> Arrays<'a> {
             )?;
         }
         if let Some(pixel) = &returns.pixel {
-            let part = |of: fn(Pixel) -> u32| {
-                convert(pixel, |cell: Maybe<Pixel>| of(cell.get().unwrap_or(Pixel::NOTHING)))
+            let index = |axis: fn(Pixel) -> u32| {
+                convert(pixel, |cell: Maybe<Pixel>| axis(cell.get().unwrap_or(Pixel::NOTHING)))
             };
-            self.wholes("pixel.I", &part(|pixel| pixel.i))?;
-            self.wholes("pixel.J", &part(|pixel| pixel.j))?;
+            self.integers("pixel.I", &index(|pixel| pixel.i))?;
+            self.integers("pixel.J", &index(|pixel| pixel.j))?;
         }
         self.lengths("view.Z", returns.depth.as_ref())?;
         self.cosines("offAxis.V", returns.cos_off_axis.as_ref())?;
@@ -86,20 +87,23 @@ impl<'a> Arrays<'a> {
         self.flux(&flux_channel(Some(second)), second, light.other_flux.as_ref())
     }
 
+    /// Metres; infinity where nothing is hit.
     fn lengths(&mut self, name: &str, image: Option<&Image<Maybe<f64>>>) -> Result<(), FileError> {
         let Some(image) = image else { return Ok(()) };
         self.reals(name, "m", &convert(image, |cell: Maybe<f64>| cell.get().unwrap_or(f64::INFINITY)))
     }
 
+    /// Cosines; NaN where nothing is hit.
     fn cosines(&mut self, name: &str, image: Option<&Image<Maybe<f64>>>) -> Result<(), FileError> {
         let Some(image) = image else { return Ok(()) };
-        self.reals(name, "1", &convert(image, |cell: Maybe<f64>| cell.get().unwrap_or(NOTHING)))
+        self.reals(name, "1", &convert(image, |cell: Maybe<f64>| cell.get().unwrap_or(CANONICAL_NAN)))
     }
 
     fn flux(&mut self, name: &str, model: FluxModel, image: Option<&Image<f64>>) -> Result<(), FileError> {
         image.map_or(Ok(()), |image| self.reals(name, unit_of_flux(model), image))
     }
 
+    /// Vectors as arrays of shape (rows, columns, 3); NaN where nothing is hit.
     fn vectors(
         &mut self,
         name: &str,
@@ -107,32 +111,14 @@ impl<'a> Arrays<'a> {
         image: Option<&Image<Maybe<DVec3>>>,
     ) -> Result<(), FileError> {
         let Some(image) = image else { return Ok(()) };
-        let part = |axis: usize| {
-            convert(image, |cell: Maybe<DVec3>| cell.get().map_or(NOTHING, |vector| vector[axis]))
-        };
-        let planes = [part(0), part(1), part(2)];
-        self.planes(name, &[&planes[0], &planes[1], &planes[2]], &[".X", ".Y", ".Z"], unit)
-    }
-
-    /// Several planes as one array of their components.
-    fn planes(
-        &mut self,
-        name: &str,
-        planes: &[&Image<f64>],
-        parts: &[&str],
-        unit: &str,
-    ) -> Result<(), FileError> {
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| {
+            convert(image, |cell: Maybe<DVec3>| cell.get().map_or(CANONICAL_NAN, |vector| vector[axis]))
+        });
         let path = self.path(name);
-        write_npy(self.pack.join(&path), planes)?;
-        let names: Vec<String> = parts.iter().map(|part| format!("{name}{part}")).collect();
-        let channels: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), unit)).collect();
-        self.list(
-            path,
-            (FileType::Float64, ChannelType::Float64),
-            planes[0].width(),
-            planes[0].height(),
-            &channels,
-        )
+        write_npy(self.pack.join(&path), &[&x, &y, &z])?;
+        let names = [".X", ".Y", ".Z"].map(|axis| format!("{name}{axis}"));
+        let channels = names.each_ref().map(|name| (name.as_str(), unit));
+        self.list(path, (FileType::Float64, ChannelType::Float64), x.width(), x.height(), &channels)
     }
 
     fn reals(&mut self, name: &str, unit: &str, image: &Image<f64>) -> Result<(), FileError> {
@@ -147,7 +133,7 @@ impl<'a> Arrays<'a> {
         )
     }
 
-    fn wholes(&mut self, name: &str, image: &Image<u32>) -> Result<(), FileError> {
+    fn integers(&mut self, name: &str, image: &Image<u32>) -> Result<(), FileError> {
         let path = self.path(name);
         write_npy(self.pack.join(&path), &[image])?;
         self.list(
@@ -159,14 +145,16 @@ impl<'a> Arrays<'a> {
         )
     }
 
+    /// The path of an array from the pack's folder.
     fn path(&self, name: &str) -> String {
         format!("{}/{name}.npy", self.sensor)
     }
 
+    /// Lists an array that was written. Its shape has a third axis if it has several channels.
     fn list(
         &mut self,
         path: String,
-        (kind, of_channel): (FileType, ChannelType),
+        (kind, channel_kind): (FileType, ChannelType),
         width: u32,
         height: u32,
         channels: &[(&str, &str)],
@@ -178,26 +166,19 @@ impl<'a> Arrays<'a> {
         self.files.push(ManifestFile {
             kind: Some(kind),
             shape: Some(shape),
-            channels: channels.iter().map(|(name, unit)| channel(name, unit, of_channel)).collect(),
+            channels: channels.iter().map(|(name, unit)| channel(name, unit, channel_kind)).collect(),
             ..ManifestFile::of(self.pack, path, FileRole::Answers)?
         });
         Ok(())
     }
 }
 
+/// A manifest's entry of a channel.
 pub(crate) fn channel(name: &str, unit: &str, kind: ChannelType) -> ManifestChannel {
     ManifestChannel { name: name.to_string(), unit: unit.to_string(), kind }
 }
 
-/// The unit of a flux.
-pub(crate) fn unit_of_flux(model: FluxModel) -> &'static str {
-    match model {
-        FluxModel::Radiometric => "W",
-        FluxModel::Eq1 => "W/m",
-    }
-}
-
-/// An image cell by cell.
-pub(crate) fn convert<T: Copy, U: Copy>(image: &Image<T>, of: impl Fn(T) -> U) -> Image<U> {
-    Image::from_cells(image.width(), image.height(), image.cells().iter().map(|cell| of(*cell)).collect())
+/// An image with `change` applied to each cell.
+pub(crate) fn convert<T: Copy, U: Copy>(image: &Image<T>, change: impl Fn(T) -> U) -> Image<U> {
+    Image::from_cells(image.width(), image.height(), image.cells().iter().map(|cell| change(*cell)).collect())
 }

@@ -1,36 +1,36 @@
-//! A candidate held to a pack.
+//! Checks a candidate, another program's recording, against the answers of a pack.
 
 use std::path::{Path, PathBuf};
+
+use raypencil_files::{FileError, Limits, Storage, read_listed};
+use raypencil_judge::{Check, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
+use raypencil_scene::{Place, Precision, Progress, Scene};
+use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
 use crate::manifest::{FileRole, Manifest, PackKind};
 use crate::provenance::{ProvenanceError, note, precision_of};
-use raypencil_files::{FileError, Limits, Storage, read_listed};
-use raypencil_judge::{Check, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
-use raypencil_scene::Place;
-use raypencil_scene::{Precision, Progress, Scene};
-use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, scene_sha256};
 
-/// Why a candidate could not be held to a pack.
+/// Why a candidate could not be checked against a pack.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {
-    /// The pack; the message names the file.
+    /// A file of the pack; the message names it.
     #[error(transparent)]
     Pack(#[from] FileError),
     /// The scene of the pack; the message names the file.
     #[error(transparent)]
     Scene(#[from] SceneIoError),
-    /// The candidate; the message names the file, the channel and the cell.
+    /// A file of the candidate; the message names it, the channel and the cell.
     #[error(transparent)]
     Candidate(#[from] RecordingError),
-    /// The note of what made the candidate.
+    /// The note of the candidate.
     #[error(transparent)]
     Note(#[from] ProvenanceError),
-    /// The pack's answers.
+    /// The answers of the pack, or its scene.
     #[error("{}: {found}; expected {expected}", pack.display())]
     Answers {
-        /// The pack.
+        /// Folder of the pack.
         pack: PathBuf,
         /// What was found.
         found: String,
@@ -39,32 +39,48 @@ pub enum CheckError {
     },
 }
 
-/// What came of it.
+/// A candidate and its check against a pack.
 #[derive(Debug)]
 pub struct Checked {
-    /// The scene of the pack, with the words that show a ray of it again.
+    /// The pack's scene, with the arguments that select it on the command line.
     pub subject: Subject,
     /// The candidate.
     pub recorded: Recorded,
-    /// What is right and wrong in it.
+    /// Classes and errors of the candidate's rays.
     pub check: Check,
-    /// Whether the answers were made from a seed.
+    /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
 }
 
 impl Checked {
-    /// The command that shows everything about a ray.
+    /// The `raypencil probe` command that shows everything about a ray.
     pub fn repro(&self, place: Place) -> String {
         probe_command(&self.subject, place)
     }
 }
 
-/// Holds a candidate to a pack. Its arithmetic is as fine as `precision` says; if nothing is said, as its own
-/// `candidate.json` does, and else that of doubles.
+/// Checks a candidate against a pack.
+///
+/// `precision` is that of the candidate's arithmetic. `None`: `candidate.json` states it; without that file it is f64.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use raypencil_judge::Class;
+/// use raypencil_pack::check_pack;
+/// use raypencil_scene::Silent;
+///
+/// // A pack is a perfect candidate: each ray has exactly the value of the answer.
+/// let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids");
+/// let checked = check_pack(&pack, &pack, None, &Silent)?;
+/// assert!(checked.check.passes());
+/// assert_eq!(checked.check.of(Class::Agree), checked.check.compared());
+/// # Ok::<(), raypencil_pack::CheckError>(())
+/// ```
 ///
 /// # Errors
-/// A pack that is not complete and unchanged; a candidate that breaks the conventions, or that its `candidate.json`
-/// says is of another scene.
+/// A pack that is not complete and unchanged; a candidate that breaks the conventions of `docs/formats/files.md`, or
+/// whose `candidate.json` names another scene.
 pub fn check_pack(
     pack: &Path,
     candidate: &Path,
@@ -85,20 +101,19 @@ pub fn check_pack(
         let found = format!("scene.toml and terrain.glb have the digest {sha256}");
         return Err(answers(found, &format!("the manifest's {}", manifest.scene.sha256)));
     }
-    // The candidate before the truth: what is wrong with it is said soon.
+    // The candidate before the answers, so that its faults are reported soon.
     progress.stage("reading the candidate");
     let note = note(candidate, &scene)?;
-    let own = note.map(|note| precision_of(note.arithmetic));
-    let precision = precision.or(own).unwrap_or(Precision::F64);
+    let noted = note.map(|note| precision_of(note.arithmetic));
+    let precision = precision.or(noted).unwrap_or(Precision::F64);
     let recorded = Recorded::read(candidate, &scene, precision)?;
 
     let truth = match (manifest.kind, manifest.blind_seed) {
         (PackKind::Blind, Some(seed)) => {
-            let own = blind_scene(seed)?;
-            if scene_sha256(&own) != sha256 {
-                let found = format!("its scene is not the one that seed {seed} makes");
-                let version = format!("a blind pack of this version, {}", env!("CARGO_PKG_VERSION"));
-                return Err(answers(found, &version));
+            if scene_sha256(&blind_scene(seed)?) != sha256 {
+                let found = format!("its scene differs from that of seed {seed}");
+                let expected = format!("a blind pack of this version, {}", env!("CARGO_PKG_VERSION"));
+                return Err(answers(found, &expected));
             }
             GroundTruth::certified(&scene, progress)
         }
@@ -110,45 +125,45 @@ pub fn check_pack(
     if let Some(uncertified) = truth.first_uncertified() {
         let found =
             format!("its answer to {}, {}, is not the referee's", uncertified.place, uncertified.part);
-        return Err(answers(found, "correctly rounded answers, as this version finds them"));
+        return Err(answers(found, "correctly rounded answers, as this version computes them"));
     }
     let check = check(&truth, &recorded, progress);
     drop(truth);
     let subject = Subject {
         name: manifest.scene.name,
-        arguments: raypencil_scene_io::quoted(&scene_file.to_string_lossy()),
+        arguments: quoted(&scene_file.to_string_lossy()),
         sha256,
         scene,
     };
     Ok(Checked { subject, recorded, check, is_blind: manifest.kind == PackKind::Blind })
 }
 
-/// The answers of a pack that holds them, in f64.
+/// Reads the answers of a pack that holds them, in f64.
 fn read_answers<'s>(
     pack: &Path,
     manifest: &Manifest,
     scene: &'s Scene,
 ) -> Result<GroundTruth<'s>, CheckError> {
-    // What is not listed is none of the pack's.
+    // Only listed files belong to the pack.
     let answers = manifest.files.iter().filter(|file| file.role == FileRole::Answers);
     let channels = read_listed(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
     let name = manifest.scene.name.clone();
     let recorded = Recorded::of_channels(name, pack, scene, Precision::F64, &channels)?;
     for sensor in scene.sensors() {
         for quantity in Quantity::ALL.into_iter().filter(|one| one.is_of(sensor) && *one != Quantity::Hit) {
-            let own: Vec<Item> = match quantity {
+            let items: Vec<Item> = match quantity {
                 Quantity::PixelFlux => (0..scene.beams().len()).map(Item::of_image).collect(),
                 _ => vec![quantity.into()],
             };
             let is_flux = matches!(quantity, Quantity::PencilFlux | Quantity::PixelFlux);
-            let others = own.iter().filter(|_| is_flux).map(|item| Item { is_other_model: true, ..*item });
-            for item in own.iter().copied().chain(others) {
+            let others = items.iter().filter(|_| is_flux).map(|item| Item { is_other_model: true, ..*item });
+            for item in items.iter().copied().chain(others) {
                 let storage = recorded.storage.get(&(sensor, item));
                 if !matches!(storage, Some(Storage::F64 | Storage::Whole)) {
                     return Err(CheckError::Answers {
                         pack: pack.to_path_buf(),
                         found: format!("no {quantity} of {sensor} in double precision"),
-                        expected: "every quantity".into(),
+                        expected: "every quantity, in double precision".into(),
                     });
                 }
             }

@@ -1,55 +1,54 @@
-//! How far the answer to each ray is from changing: the margins of a sensor, as channels.
+//! The margins of a sensor's rays, as channels: how far each ray is from another answer.
 //!
-//! What is written is the proven end, lo, rounded down to f32: no ray displaced by less has another answer.
+//! A channel holds the proven lower bound `lo`, rounded down to f32: no ray displaced by less has another answer.
 
 use rayon::prelude::*;
-
 use raypencil_referee::Referee;
 use raypencil_scene::{Image, Scene, SensorId};
+
+use crate::canonical_nan::CANONICAL_NAN;
 
 /// The margins of one sensor's rays.
 #[derive(Debug)]
 pub(crate) struct SensorMargins {
-    /// Cells: the set of nearest faces.
+    /// Until the set of nearest faces changes, cells.
     face: Image<f64>,
-    /// Cells: hit or miss, or a jump of the range.
+    /// Until a hit becomes a miss, or the range jumps, cells.
     surface: Image<f64>,
-    /// Of a beam: cells, whether the hit is seen; and camera pixels, from the border of the pixel it lands in.
-    sight: Option<[Image<f64>; 2]>,
+    /// Beams only. Until the hit becomes visible or hidden, cells; until it lands in another pixel, camera pixels.
+    visibility_and_landing: Option<[Image<f64>; 2]>,
 }
 
-/// The one NaN that stands for nothing.
-const NOTHING: f64 = f64::from_bits(0x7ff8_0000_0000_0000);
-
 impl SensorMargins {
-    pub(super) fn find(referee: &Referee<'_>, scene: &Scene, sensor: SensorId) -> Self {
+    /// The margins of all rays of `sensor`.
+    pub(crate) fn find(referee: &Referee<'_>, scene: &Scene, sensor: SensorId) -> Self {
         let (width, height) = scene.size(sensor).expect("a sensor of this scene");
-        let of = |j: u32| {
+        let row = |j: u32| {
             (0..width).map(move |i| {
                 let margins = referee.margins(sensor, i, j).expect("a cell of this sensor");
                 let (visibility, landing) = match sensor {
-                    SensorId::Camera => (NOTHING, NOTHING),
+                    SensorId::Camera => (CANONICAL_NAN, CANONICAL_NAN),
                     SensorId::Beam(beam) => match referee.visibility_margins(beam, i, j) {
-                        Some(sight) => {
-                            (sight.visibility.lo, sight.landing.map_or(NOTHING, |[lo, _]| lo.min(1.0)))
+                        Some(beam) => {
+                            (beam.visibility.lo, beam.landing.map_or(CANONICAL_NAN, |[lo, _]| lo.min(1.0)))
                         }
-                        None => (NOTHING, NOTHING),
+                        None => (CANONICAL_NAN, CANONICAL_NAN),
                     },
                 };
-                [margins.face.lo, margins.surface.lo, visibility, landing].map(single_below)
+                [margins.face.lo, margins.surface.lo, visibility, landing].map(round_down_to_f32)
             })
         };
-        let cells: Vec<[f64; 4]> = (0..height).into_par_iter().flat_map_iter(of).collect();
+        let cells: Vec<[f64; 4]> = (0..height).into_par_iter().flat_map_iter(row).collect();
         let image = |k: usize| Image::from_cells(width, height, cells.iter().map(|cell| cell[k]).collect());
-        let sight = (sensor != SensorId::Camera).then(|| [image(2), image(3)]);
-        Self { face: image(0), surface: image(1), sight }
+        let visibility_and_landing = (sensor != SensorId::Camera).then(|| [image(2), image(3)]);
+        Self { face: image(0), surface: image(1), visibility_and_landing }
     }
 
     /// Name, unit and cells of each channel.
-    pub(super) fn channels(&self) -> Vec<(&'static str, &'static str, &Image<f64>)> {
+    pub(crate) fn channels(&self) -> Vec<(&'static str, &'static str, &Image<f64>)> {
         let mut channels =
             vec![("margin.face", "cell", &self.face), ("margin.surface", "cell", &self.surface)];
-        if let Some([visibility, landing]) = &self.sight {
+        if let Some([visibility, landing]) = &self.visibility_and_landing {
             channels.push(("margin.visibility", "cell", visibility));
             channels.push(("margin.landing", "pixel", landing));
         }
@@ -57,11 +56,10 @@ impl SensorMargins {
     }
 }
 
-/// The nearest f32 that is not above, so that what is proven of the one is proven of the other, and f32 files hold
-/// the same numbers.
-fn single_below(margin: f64) -> f64 {
+/// The largest f32 that is at most `margin`. A lower bound stays one, and f32 files hold the same numbers as f64 files.
+fn round_down_to_f32(margin: f64) -> f64 {
     if margin.is_nan() {
-        return NOTHING;
+        return CANONICAL_NAN;
     }
     let single = margin as f32;
     f64::from(if f64::from(single) > margin { single.next_down() } else { single })

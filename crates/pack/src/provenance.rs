@@ -1,84 +1,45 @@
-//! `candidate.json`: what made a recording, and of which scene. Optional; `docs/formats/files.md` describes it.
+//! `candidate.json`, the optional note of a recording: which program made it, and of which scene.
+//! `docs/formats/files.md` describes it.
 
-use serde::Deserialize;
-use std::path::Path;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use crate::manifest::ManifestScene;
-use raypencil_files::bytes;
-use raypencil_files::{Fault, FileError};
+use raypencil_files::{Fault, FileError, bytes};
 use raypencil_scene::{Precision, Scene};
 use raypencil_scene_io::scene_sha256;
+use serde::Deserialize;
 
-/// Why the note of a recording cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ProvenanceError {
-    /// The file itself; the message names it.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// It answers another scene.
-    #[error(
-        "{}: its candidate.json is of the scene {theirs}; expected {ours}, the resolved scene that it is held to",
-        folder.display()
-    )]
-    OtherScene {
-        /// The recording.
-        folder: PathBuf,
-        /// The digest that it names.
-        theirs: String,
-        /// That of the scene at hand.
-        ours: String,
-    },
-}
+use crate::manifest::ManifestScene;
 
-/// The resolution of an arithmetic.
-pub fn precision_of(arithmetic: Arithmetic) -> Precision {
-    match arithmetic {
-        Arithmetic::F32 => Precision::F32,
-        Arithmetic::F64 => Precision::F64,
-    }
-}
-
-/// The note of a recording, if it has one, which must be of this scene.
-pub fn note(folder: &Path, scene: &Scene) -> Result<Option<Provenance>, ProvenanceError> {
-    let note = Provenance::read(folder)?;
-    let ours = scene_sha256(scene);
-    match note {
-        Some(note) if note.scene.sha256 != ours => {
-            Err(ProvenanceError::OtherScene { folder: folder.to_path_buf(), theirs: note.scene.sha256, ours })
-        }
-        note => Ok(note),
-    }
-}
-
-/// The file's name in the folder of a recording.
+/// The note's file name.
 const FILE_NAME: &str = "candidate.json";
 
-/// The number of its form.
+/// Number of the format.
 const FORMAT: u64 = 1;
 
-/// A note larger than this is none: 1 MiB.
-const LARGEST: u64 = 1 << 20;
+/// Maximum size of a note: 1 MiB.
+const MAX_NOTE_BYTES: u64 = 1 << 20;
 
-/// The longest text that people are shown, bytes.
-const LONGEST: usize = 1 << 10;
+/// Maximum length of a text that reports show, bytes.
+const MAX_TEXT_BYTES: usize = 1 << 10;
 
-/// What a recording says of itself. Other keys, such as versions and seeds, are for people.
+/// Maximum length of a digest, bytes.
+const MAX_DIGEST_BYTES: usize = 64;
+
+/// Content of `candidate.json`. Other keys, such as versions and seeds, are for people and are ignored.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Provenance {
-    /// The program that made it, with its version if it likes.
+    /// Name of the program that made the recording, with its version if it gives one.
     pub program: String,
-    /// How finely the program computes.
+    /// Arithmetic that the program computes in.
     pub arithmetic: Arithmetic,
-    /// The scene that it answers.
+    /// The scene that the recording belongs to.
     pub scene: ManifestScene,
-    /// What images by chance add up to.
+    /// Total fluxes of Monte Carlo images.
     #[serde(default)]
-    pub totals: Vec<Total>,
+    pub totals: Vec<MonteCarloTotal>,
 }
 
-/// The arithmetic that a program computes in, whatever it stores.
+/// Arithmetic that a program computes in, whichever type it stores.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Arithmetic {
@@ -88,21 +49,44 @@ pub enum Arithmetic {
     F64,
 }
 
-/// The sum over the pixels of an image by chance.
+/// Total flux of a Monte Carlo image, summed over its pixels.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Total {
-    /// The word before the image's name: `direct` of `direct.mean.beam0`.
+pub struct MonteCarloTotal {
+    /// The integrator, which is the first word of the image's name: `direct` for `direct.mean.beam0`.
+    #[serde(rename = "way")]
     pub way: String,
-    /// Which beam's light.
+    /// Index of the beam whose light the image shows.
     pub beam: usize,
-    /// The mean, watts.
+    /// Mean, watts.
     pub mean: f64,
-    /// Its standard error, watts.
+    /// Standard error of the mean, watts.
     pub error: f64,
 }
 
+/// Why the note of a recording cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProvenanceError {
+    /// The file; the message names it.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The recording belongs to another scene.
+    #[error(
+        "{}: its candidate.json is of the scene {theirs}; expected {ours}, the resolved scene that it is compared with",
+        folder.display()
+    )]
+    OtherScene {
+        /// Folder of the recording.
+        folder: PathBuf,
+        /// Digest that the note names.
+        theirs: String,
+        /// Digest of the scene to compare with.
+        ours: String,
+    },
+}
+
 impl Provenance {
-    /// Reads the note of a recording in `folder`, if it has one.
+    /// Reads the note of the recording in `folder`. `None`: the recording has no note.
     ///
     /// # Errors
     /// Names the file, the place in it, what was found and what was expected.
@@ -111,37 +95,53 @@ impl Provenance {
         if !path.exists() {
             return Ok(None);
         }
-        let text = bytes::read_file(&path, LARGEST).map_err(|error| FileError::io(&path, "read", error))?;
+        let text =
+            bytes::read_file(&path, MAX_NOTE_BYTES).map_err(|error| FileError::io(&path, "read", error))?;
         Self::from_bytes(&text, &path).map(Some)
     }
 
-    /// A note from the bytes of its file; `file` is for messages.
+    /// Parses the bytes of a note. `file` is the path that messages name.
+    ///
+    /// ```
+    /// use std::path::Path;
+    ///
+    /// use raypencil_pack::{Arithmetic, Provenance, precision_of};
+    /// use raypencil_scene::Precision;
+    ///
+    /// let json = br#"{"format": 1, "program": "mine 2.1", "arithmetic": "f32",
+    ///     "scene": {"name": "pyramids", "sha256": "00ff"}, "seed": 5}"#;
+    /// let note = Provenance::from_bytes(json, Path::new("candidate.json"))?;
+    /// // f32 has a unit roundoff of 2^-24. The key `seed` is for people.
+    /// assert_eq!(note.arithmetic, Arithmetic::F32);
+    /// assert_eq!(precision_of(note.arithmetic), Precision::F32);
+    /// # Ok::<(), raypencil_files::FileError>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Provenance::read`].
     pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Self, FileError> {
-        let unfit = |fault: Fault| FileError::Recording(fault.in_file(file));
+        let refuse = |fault: Fault| FileError::Recording(fault.in_file(file));
         let invalid = |error: serde_json::Error| {
-            unfit(Fault::new("JSON", error.to_string(), "what docs/formats/files.md describes"))
+            refuse(Fault::new("JSON", error.to_string(), "what docs/formats/files.md describes"))
         };
-        // A newer format fails by its number and not by a key.
+        // The number first: a newer format is refused by it, not by a key.
         #[derive(Deserialize)]
         struct Head {
             format: u64,
         }
         let Head { format } = serde_json::from_slice(bytes).map_err(invalid)?;
         if format != FORMAT {
-            return Err(unfit(Fault::new("format", format.to_string(), FORMAT.to_string())));
+            return Err(refuse(Fault::new("format", format.to_string(), FORMAT.to_string())));
         }
         let read: Self = serde_json::from_slice(bytes).map_err(invalid)?;
         let texts = [
-            ("program", &read.program, LONGEST),
-            ("scene.name", &read.scene.name, LONGEST),
-            ("scene.sha256", &read.scene.sha256, 64),
+            ("program", &read.program, MAX_TEXT_BYTES),
+            ("scene.name", &read.scene.name, MAX_TEXT_BYTES),
+            ("scene.sha256", &read.scene.sha256, MAX_DIGEST_BYTES),
         ];
         for (place, text, most) in texts {
             if text.len() > most {
-                return Err(unfit(Fault::new(
+                return Err(refuse(Fault::new(
                     place,
                     format!("{} bytes", text.len()),
                     format!("at most {most}"),
@@ -152,15 +152,38 @@ impl Provenance {
         if let Some(index) =
             read.totals.iter().position(|total| !is_flux(total.mean) || !is_flux(total.error))
         {
-            let Total { mean, error, .. } = &read.totals[index];
+            let MonteCarloTotal { mean, error, .. } = &read.totals[index];
             let found = format!("mean {mean}, error {error}");
-            return Err(unfit(Fault::new(
+            return Err(refuse(Fault::new(
                 format!("totals[{index}]"),
                 found,
                 "two finite numbers, not negative",
             )));
         }
         Ok(read)
+    }
+}
+
+/// The precision of an arithmetic.
+pub fn precision_of(arithmetic: Arithmetic) -> Precision {
+    match arithmetic {
+        Arithmetic::F32 => Precision::F32,
+        Arithmetic::F64 => Precision::F64,
+    }
+}
+
+/// Reads the note of the recording in `folder`, and checks that it belongs to `scene`. `None`: there is no note.
+///
+/// # Errors
+/// A note that cannot be read, or that belongs to another scene.
+pub fn note(folder: &Path, scene: &Scene) -> Result<Option<Provenance>, ProvenanceError> {
+    let note = Provenance::read(folder)?;
+    let ours = scene_sha256(scene);
+    match note {
+        Some(note) if note.scene.sha256 != ours => {
+            Err(ProvenanceError::OtherScene { folder: folder.to_path_buf(), theirs: note.scene.sha256, ours })
+        }
+        note => Ok(note),
     }
 }
 
@@ -187,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_note_is_refused_by_place() {
+    fn invalid_notes_are_refused_with_the_place() {
         for (text, words) in [
             ("{", vec!["candidate.json", "JSON"]),
             (r#"{"format": 2}"#, vec!["candidate.json", "format", "2", "1"]),

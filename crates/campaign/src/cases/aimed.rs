@@ -1,96 +1,63 @@
-//! Narrow sensors aimed at what is hard: vertices, edges, silhouettes, faces seen at a grazing angle.
+//! Narrow beams aimed at hard targets: vertices, edges, silhouettes, faces seen at a grazing angle.
 //!
-//! Each is a beam of a few rows and columns whose middle ray goes through the target, to the rounding of its pose,
-//! and whose other rays pass it at distances from a part of a micrometre on. A scene holds up to 64 beams, so that
-//! one tree serves them all.
+//! Each beam has a few rows and columns. Its middle ray goes through the target, up to the rounding of its pose. Its
+//! other rays pass the target at distances from less than a micrometre on. A scene holds up to 64 beams, so that one
+//! tree serves them all.
 
-use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use crate::cases::at_origin;
-use crate::cases::lattice::hash;
+use glam::{DQuat, DVec3};
 use raypencil_scene::{Atmosphere, Beam, FluxModel, Mesh, Mounted, Pose, Scene, rig};
 
-/// What a sensor is aimed at.
+use crate::cases::at_origin;
+use crate::cases::split_mix::SplitMix64;
+
+/// Target of a beam.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// A corner of a face.
     Vertex,
-    /// A point of a side of a face.
+    /// A point on a side of a face.
     Edge,
-    /// A point of a side of a face that the sensor sees edge on: it stands in the face's plane, or all but.
+    /// A point on a side of a face. The beam stands in the face's plane, or almost.
     Silhouette,
-    /// A point inside a face, from so near its plane that it is grazed.
+    /// A point inside a face, seen from almost in the face's plane.
     Grazing,
 }
 
 const TARGETS: [Target; 4] = [Target::Vertex, Target::Edge, Target::Silhouette, Target::Grazing];
 
-/// The most beams of a scene.
-pub const MOST: usize = 64;
+/// Maximum number of beams of a scene.
+pub const MAX_BEAMS: usize = 64;
 
-/// Numbers of one scene, in order.
-struct Draws {
-    seed: u64,
-    next: u64,
-}
-
-impl Draws {
-    fn bits(&mut self) -> u64 {
-        self.next += 1;
-        hash(self.seed, self.next)
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.bits() % count as u64) as usize
-    }
-
-    /// From 0 to 1.
-    fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// 10^x for x between the two.
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        libm::pow(10.0, low + (high - low) * self.unit())
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        let z = 2.0 * self.unit() - 1.0;
-        let (sin, cos) = libm::sincos(TAU * self.unit());
-        let level = (1.0 - z * z).sqrt();
-        DVec3::new(level * cos, level * sin, z)
-    }
-}
-
-/// A scene of `count` aimed beams of 17 columns and 3 rows before `mesh`, at most [`MOST`]; fewer if faces without
-/// area are drawn too often, and none before a mesh without faces.
+/// A scene of `count` beams of 17 columns and 3 rows aimed at `mesh`, at most [`MAX_BEAMS`]. There are fewer if faces
+/// without area are chosen too often, and none if the mesh has no faces.
 pub fn scene(mesh: &Arc<Mesh>, seed: u64, count: usize) -> Scene {
-    let mut draws = Draws { seed, next: 0 };
-    let tries = 4 * count.min(MOST);
+    let mut random = SplitMix64::new(seed);
+    let tries = 4 * count.min(MAX_BEAMS);
     let faces = mesh.faces().len();
     let beams: Vec<Mounted<Beam>> = (0..if faces == 0 { 0 } else { tries })
         .filter_map(|k| {
             let target = TARGETS[k % TARGETS.len()];
-            let face = draws.below(faces);
-            aimed(mesh, face, target, &mut draws)
+            let face = random.below(faces);
+            aimed_beam(mesh, face, target, &mut random)
         })
-        .take(count.min(MOST))
+        .take(count.min(MAX_BEAMS))
         .collect();
-    // A camera there must be; it looks away from everything.
+    // Every scene has a camera; this one has a single pixel and is of no interest.
     let camera = at_origin(rig::camera(1, 1, 1e-5, 1e-2));
     let air = Atmosphere { attenuation: 0.0 };
     Scene::new(Arc::clone(mesh), camera, beams, air, FluxModel::Radiometric).expect("a scene of narrow beams")
 }
 
-/// A beam aimed at a target of a face; `None` if the face has no area to speak of.
-pub(crate) fn aimed(mesh: &Mesh, face: usize, target: Target, draws: &mut Draws) -> Option<Mounted<Beam>> {
+/// A beam aimed at a target of a face. `None`: the face has almost no area.
+fn aimed_beam(mesh: &Mesh, face: usize, target: Target, random: &mut SplitMix64) -> Option<Mounted<Beam>> {
     let corners = mesh.faces()[face].map(|v| {
         let [x, y, z] = mesh.vertices()[v as usize];
         DVec3::new(f64::from(x), f64::from(y), f64::from(z))
     });
-    let first = draws.below(3);
+    let first = random.below(3);
     let [a, b, c] = [0, 1, 2].map(|k: usize| corners[(first + k) % 3]);
     let (along, normal) = (b - a, (b - a).cross(c - a));
     let (length, area) = (along.length(), normal.length());
@@ -98,34 +65,34 @@ pub(crate) fn aimed(mesh: &Mesh, face: usize, target: Target, draws: &mut Draws)
         return None;
     }
     let normal = normal / area;
-    let (s, t) = (draws.unit(), draws.unit());
+    let (s, t) = (random.unit(), random.unit());
     let inside = a + (b - a) * (s * (1.0 - t)) + (c - a) * t;
     let point = match target {
         Target::Vertex => a,
         Target::Edge | Target::Silhouette => a + along * s,
         Target::Grazing => inside,
     };
-    // From where it is seen.
-    let distance = draws.decades(-1.5, 1.2);
+    // The beam's position.
+    let distance = random.power_of_ten(-1.5, 1.2);
     let in_plane = along.cross(normal) / length;
     let from = match target {
         Target::Vertex | Target::Edge => {
-            let direction = draws.direction();
+            let direction = random.direction();
             if direction.dot(normal) < 0.0 { -direction } else { direction }
         }
-        // Across the side, in the plane of the face but for a hair on either side.
-        Target::Silhouette => in_plane + normal * (draws.decades(-12.0, -3.0) * sign(draws)),
-        // Any way along the plane, a hair above it.
+        // Across the side, in the plane of the face, except for a tiny angle to either side.
+        Target::Silhouette => in_plane + normal * (random.power_of_ten(-12.0, -3.0) * random.sign()),
+        // In any direction along the plane, a tiny angle above it.
         Target::Grazing => {
-            let (sin, cos) = libm::sincos(TAU * draws.unit());
-            (along / length) * cos + in_plane * sin + normal * draws.decades(-9.0, -2.0)
+            let (sin, cos) = libm::sincos(TAU * random.unit());
+            (along / length) * cos + in_plane * sin + normal * random.power_of_ten(-9.0, -2.0)
         }
     }
     .normalize();
     let scene_from_sensor =
-        Pose { position: point + from * distance, rotation: looking(-from, draws.unit()) };
-    // Half the fan and half the sheet, as seen at the target: from 10 nm to a tenth of the distance.
-    let spread = draws.decades(-8.0, -1.0);
+        Pose { position: point + from * distance, rotation: looking(-from, random.unit()) };
+    // Half the fan and half the sheet at the target, as a fraction of the distance: 1e-8 to 0.1.
+    let spread = random.power_of_ten(-8.0, -1.0);
     let grid_distance = 0.02;
     let beam = Beam {
         half_width: (grid_distance * spread).max(2e-6 * grid_distance),
@@ -136,11 +103,7 @@ pub(crate) fn aimed(mesh: &Mesh, face: usize, target: Target, draws: &mut Draws)
     Some(Mounted { scene_from_sensor, sensor: beam })
 }
 
-fn sign(draws: &mut Draws) -> f64 {
-    if draws.bits() & 1 == 0 { 1.0 } else { -1.0 }
-}
-
-/// A rotation that turns z to `direction`, rolled by a part of a turn.
+/// A rotation that turns z to `direction`, after a roll about z by the fraction `roll` of a turn.
 fn looking(direction: DVec3, roll: f64) -> DQuat {
     let (sin, cos) = libm::sincos(0.5 * TAU * roll);
     let rolled = DQuat::from_xyzw(0.0, 0.0, sin, cos);
@@ -157,22 +120,24 @@ fn looking(direction: DVec3, roll: f64) -> DQuat {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use raypencil_referee::Referee;
     use raypencil_scene::SensorId;
     use raypencil_terrain::RandomGround;
 
+    use super::*;
+
     #[test]
-    fn aimed_rays_are_hard() {
+    fn aimed_rays_are_close_to_other_answers() {
         let mesh = Arc::new(RandomGround::nasty(3, 800).build().into_mesh().expect("a ground"));
-        let scene = scene(&mesh, 5, MOST);
-        assert_eq!(scene.beams().len(), MOST);
+        let scene = scene(&mesh, 5, MAX_BEAMS);
+        assert_eq!(scene.beams().len(), MAX_BEAMS);
         let referee = Referee::new(&scene);
-        // Of the middle rays most see the target or what hides it, and many of those change within a cell.
-        let margins: Vec<_> = (0..MOST).filter_map(|k| referee.margins(SensorId::Beam(k), 8, 1)).collect();
+        // Most middle rays hit the target or a face before it. Many of them have another answer within 1e-3 cells.
+        let margins: Vec<_> =
+            (0..MAX_BEAMS).filter_map(|k| referee.margins(SensorId::Beam(k), 8, 1)).collect();
         let hits = margins.iter().filter(|margins| margins.verdict.is_hit()).count();
-        assert!(hits > MOST / 2, "{hits} of {MOST} hit");
+        assert!(hits > MAX_BEAMS / 2, "{hits} of {MAX_BEAMS} hit");
         let close = margins.iter().filter(|margins| margins.face.lo < 1e-3).count();
-        assert!(close > MOST / 4, "{close} of {MOST} are close to another answer");
+        assert!(close > MAX_BEAMS / 4, "{close} of {MAX_BEAMS} are close to another answer");
     }
 }

@@ -1,28 +1,31 @@
 //! Lattice meshes whose vertices lie exactly on every second ray of a sensor, and exact counts of the rays
 //! that pass through their vertices and edges.
 //!
-//! A vertex stands at `origin + t q` on the ray of an even column and an even row, t one of few dyadic
-//! numbers. With dyadic sensors all of this is exact in `f32`. What the rays between meet:
+//! A vertex is at `origin + t q` on the ray of an even column and an even row; t is one of a few dyadic numbers. With
+//! dyadic sensors all vertices are exact in `f32`. The rays in between meet the mesh as follows:
 //!
 //! * camera: the image of an edge is the straight line between two pixel centres two apart, horizontal,
 //!   vertical or diagonal; the pixel centre between them lies on it. Every ray meets a vertex or an edge.
 //!   1/t is affine on the image: between t and t' it is (1/t + 1/t') / 2.
-//! * beam: along a row the same. Along a column both ends lie in the plane x / z = x_i / g, and the row
-//!   between meets the edge at (t + t') / 2. A diagonal is met where its ends have one t, else missed by a
-//!   little.
+//! * beam: along a row it is the same. Along a column both ends lie in the plane x / z = x_i / g, and the row
+//!   between meets the edge at (t + t') / 2. A diagonal is met if its ends have the same t; otherwise the ray
+//!   passes beside it.
 
-use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-use crate::cases::{mesh, scene};
+use glam::{DQuat, DVec3};
 use raypencil_scene::{Beam, Camera, Mesh, Mounted, Pose, Scene, rig};
 
-/// A sensor of dyadic numbers, in its own frame.
+use crate::cases::{mesh, scene};
+
+pub use crate::cases::split_mix::{hash, hash_unit};
+
+/// A sensor whose numbers are dyadic, in its own frame.
 #[derive(Debug, Clone, Copy)]
 pub enum Sensor {
-    /// Rays are pixels.
+    /// A camera; its rays are those of pixels.
     Camera(Camera),
-    /// Rays are pencils.
+    /// A beam; its rays are those of pencils.
     Beam(Beam),
 }
 
@@ -35,8 +38,8 @@ impl Sensor {
         }
     }
 
-    /// Origin and direction of the ray in column `i` of row `j`, also beyond the sensor's border: the
-    /// contract's formulas, exact for dyadic numbers.
+    /// Origin and direction of the ray in column `i` of row `j`, also beyond the sensor's border. The formulas are
+    /// those of the contract, and exact for dyadic numbers.
     pub fn ray(&self, i: i64, j: i64) -> [DVec3; 2] {
         let (i, j) = (i as f64, j as f64);
         match self {
@@ -55,13 +58,13 @@ impl Sensor {
     }
 }
 
-/// A lattice before a sensor with odd columns and rows, whose corners it meets exactly.
+/// A lattice in front of a sensor with odd numbers of columns and rows, whose rays meet its vertices exactly.
 #[derive(Debug, Clone)]
 pub struct Lattice {
     sensor: Sensor,
-    /// Rings of cells beyond the sensor's border.
+    /// Number of rings of cells beyond the sensor's border.
     rings: u32,
-    /// Vertices across and down.
+    /// Numbers of vertices across and down.
     size: [usize; 2],
     /// The t of each vertex, row by row.
     t: Vec<f64>,
@@ -69,8 +72,8 @@ pub struct Lattice {
     falling: Vec<bool>,
 }
 
-/// Hills before a camera of `size` x `size` pixels, turned by (1, 2, 3, 4) / sqrt 30, all of whose rays pass within
-/// 1e-16 of themselves of a vertex, an edge or a diagonal.
+/// A lattice in front of a camera of `size` x `size` pixels that is turned by the quaternion (1, 2, 3, 4) / sqrt 30. Each
+/// ray passes a vertex, an edge or a diagonal at a distance of about 1e-16 of its own length.
 ///
 /// # Panics
 /// If `size` is even.
@@ -87,7 +90,7 @@ pub fn turned(size: u32) -> Scene {
     let lattice = Lattice::before(Sensor::Camera(camera), 1, 5, &[24.0, 26.0, 30.0, 32.0]);
     let (mesh, moved) = lattice.mesh(&pose);
     assert!(moved <= 1e-14, "vertices are exact in f32, not {moved} m off");
-    // A third as large, the rays are the same but for rounding.
+    // A camera a third as large has the same rays, except for rounding.
     let sensor = Camera {
         pixel_pitch: camera.pixel_pitch.map(|pitch| pitch / 3.0),
         focal_length: camera.focal_length / 3.0,
@@ -96,23 +99,23 @@ pub fn turned(size: u32) -> Scene {
     scene(mesh, Mounted { scene_from_sensor: pose, sensor }, Vec::new())
 }
 
-/// What a ray is known to do.
+/// The known outcome of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
-    /// It hits.
+    /// The ray hits the mesh.
     Hit,
-    /// All of the mesh that it meets lies before the SPP.
+    /// The ray misses: it meets the mesh only in front of the sensor projection plane (SPP).
     Miss,
-    /// It passes beside a diagonal, on one of two faces that the SPP may cut.
+    /// Not known: the ray passes beside a diagonal, through one of two faces that the SPP may cut.
     Unknown,
 }
 
 impl Lattice {
-    /// A lattice with `rings` rings of cells beyond the sensor. The t of a vertex and the way of each cell's
-    /// diagonal come from hashes of `seed`: one of `ts`, at random.
+    /// A lattice with `rings` rings of cells beyond the sensor's border. `seed` chooses the t of each vertex from `ts`,
+    /// and the direction of each cell's diagonal.
     ///
     /// # Panics
-    /// If the sensor's columns or rows are even.
+    /// If the number of the sensor's columns or rows is even.
     pub fn before(sensor: Sensor, rings: u32, seed: u64, ts: &[f64]) -> Self {
         let (width, height) = sensor.size();
         assert!(width % 2 == 1 && height % 2 == 1, "{width} x {height}");
@@ -123,20 +126,20 @@ impl Lattice {
         Self { sensor, rings, size, t, falling }
     }
 
-    /// Vertex (u, v) in the sensor's frame.
+    /// Vertex (u, v) in the sensor's frame, metres.
     fn vertex(&self, u: usize, v: usize) -> DVec3 {
         let [i, j] = [u, v].map(|index| 2 * (index as i64 - i64::from(self.rings)));
         let [origin, q] = self.sensor.ray(i, j);
         origin + q * self.t[v * self.size[0] + u]
     }
 
-    /// Corners of the two faces of cell (u, v), their fronts to the sensor: counter-clockwise as seen.
+    /// Corners of the two faces of cell (u, v), counter-clockwise as seen from the sensor.
     fn faces(&self, u: usize, v: usize) -> [[[usize; 2]; 3]; 2] {
         let (a, b, c, d) = ([u, v], [u, v + 1], [u + 1, v + 1], [u + 1, v]);
         if self.falling[v * self.size[0] + u] { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
     }
 
-    /// The mesh, in the scene, and how far the farthest vertex moved when it was rounded to `f32`, metres.
+    /// The mesh in the scene frame, and the largest distance that the rounding to `f32` moved a vertex, metres.
     pub fn mesh(&self, scene_from_sensor: &Pose) -> (Arc<Mesh>, f64) {
         let [across, down] = self.size;
         let mut moved = 0.0_f64;
@@ -144,7 +147,7 @@ impl Lattice {
         for v in 0..down {
             for u in 0..across {
                 let exact = *scene_from_sensor * self.vertex(u, v);
-                // What is a whole multiple of 2^-24 m but for the rounding of the turn, is made one.
+                // A coordinate that is a multiple of 2^-24 m, up to the rounding of the turn, becomes one exactly.
                 let whole = (exact * f64::from(1 << 24)).round() / f64::from(1 << 24);
                 let is_whole = (whole - exact).abs().max_element() < 1e-14;
                 let rounded = if is_whole { whole.as_vec3() } else { exact.as_vec3() };
@@ -162,26 +165,26 @@ impl Lattice {
         (mesh(vertices, faces), moved)
     }
 
-    /// The t of the vertex that ray (i, j) goes through, if any.
+    /// The t of the vertex on ray (i, j). `None`: the ray goes through no vertex.
     pub fn t_at(&self, i: u32, j: u32) -> Option<f64> {
         let [u, v] = [i, j].map(|index| (index / 2 + self.rings) as usize);
         (i.is_multiple_of(2) && j.is_multiple_of(2)).then(|| self.t[v * self.size[0] + u])
     }
 
-    /// What ray (i, j) does, from the t of the vertices around it.
+    /// The outcome of ray (i, j), from the t of the vertices around it.
     pub fn fate(&self, i: u32, j: u32) -> Fate {
         let [u, v] = [i, j].map(|index| (index / 2 + self.rings) as usize);
         let t = |u: usize, v: usize| self.t[v * self.size[0] + u];
-        let of = |t: f64| if t >= 1.0 { Fate::Hit } else { Fate::Miss };
+        let at = |t: f64| if t >= 1.0 { Fate::Hit } else { Fate::Miss };
         let harmonic = |t: f64, other: f64| 2.0 / (1.0 / t + 1.0 / other);
         let falling = self.falling[v * self.size[0] + u];
         let diagonal = || if falling { (t(u, v), t(u + 1, v + 1)) } else { (t(u, v + 1), t(u + 1, v)) };
         match (i % 2, j % 2, &self.sensor) {
-            (0, 0, _) => of(t(u, v)),
-            (1, 0, _) => of(harmonic(t(u, v), t(u + 1, v))),
-            (0, 1, Sensor::Camera(_)) => of(harmonic(t(u, v), t(u, v + 1))),
-            (0, 1, Sensor::Beam(_)) => of(0.5 * (t(u, v) + t(u, v + 1))),
-            (_, _, Sensor::Camera(_)) => of(harmonic(diagonal().0, diagonal().1)),
+            (0, 0, _) => at(t(u, v)),
+            (1, 0, _) => at(harmonic(t(u, v), t(u + 1, v))),
+            (0, 1, Sensor::Camera(_)) => at(harmonic(t(u, v), t(u, v + 1))),
+            (0, 1, Sensor::Beam(_)) => at(0.5 * (t(u, v) + t(u, v + 1))),
+            (_, _, Sensor::Camera(_)) => at(harmonic(diagonal().0, diagonal().1)),
             (_, _, Sensor::Beam(_)) => {
                 let corners = [t(u, v), t(u + 1, v), t(u, v + 1), t(u + 1, v + 1)];
                 let beyond = corners.iter().filter(|t| **t >= 1.0).count();
@@ -201,7 +204,7 @@ impl Lattice {
             for i in 0..width {
                 let [origin, q] = self.sensor.ray(i64::from(i), i64::from(j));
                 let (origin, q) = (integers(origin), integers(q));
-                // The cells that touch the ray's place.
+                // The cells that touch the ray.
                 let cells = |index: u32, vertices: usize| {
                     let cell = (index / 2 + self.rings) as usize;
                     let first = if index.is_multiple_of(2) { cell.saturating_sub(1) } else { cell };
@@ -233,7 +236,7 @@ fn integers(v: DVec3) -> [i128; 3] {
     })
 }
 
-/// Whether the half line along `q` meets the segment from `a` to `b`, all seen from its origin.
+/// Whether the half line along `q` meets the segment from `a` to `b`. The origin is that of the half line.
 fn is_between(q: &[i128; 3], a: &[i128; 3], b: &[i128; 3]) -> bool {
     let dot = |a: &[i128; 3], b: &[i128; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cross = |a: &[i128; 3], b: &[i128; 3]| {
@@ -242,17 +245,4 @@ fn is_between(q: &[i128; 3], a: &[i128; 3], b: &[i128; 3]) -> bool {
     // q lies in the plane of a and b, not beyond either.
     let n = cross(a, b);
     dot(&n, q) == 0 && dot(&n, &cross(a, q)) >= 0 && dot(&n, &cross(q, b)) >= 0
-}
-
-/// A hash of two numbers. (S. Vigna, SplitMix64)
-pub fn hash(seed: u64, index: u64) -> u64 {
-    let mut z = seed.wrapping_add((index.wrapping_add(1)).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
-
-/// A hash of two numbers, as a number from -1 to 1.
-pub fn hash_unit(seed: u64, index: u64) -> f64 {
-    (hash(seed, index) >> 11) as f64 / f64::from(1u32 << 31) / f64::from(1 << 21) - 1.0
 }

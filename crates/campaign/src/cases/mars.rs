@@ -1,17 +1,16 @@
-//! Ground as Mars has it, for proptest: presets of any size, of which more or less is there.
+//! Mars-like grounds for proptest: the presets at any size, with more or less relief, rocks, craters and crevasses.
 
 use proptest::prelude::*;
 use proptest::sample::select;
-
 use raypencil_terrain::{Craters, Crevasses, MarsGround, PRESET_NAMES, Rocks};
 
-/// Ground of any preset, of 4 to `cells` cells a side. It shrinks towards a small plane: fewer cells, less relief, fewer
-/// rocks, craters and crevasses.
+/// Grounds of any preset, with 4 to `cells` cells a side. They shrink towards a small plane: fewer cells, less relief,
+/// fewer rocks, craters and crevasses.
 pub fn mars_grounds(cells: u32) -> impl Strategy<Value = MarsGround> {
     select(PRESET_NAMES).prop_flat_map(move |name| mars_grounds_of(name, cells))
 }
 
-/// Ground of one preset.
+/// Grounds of one preset, as [`mars_grounds`].
 ///
 /// # Panics
 /// If there is no such preset.
@@ -20,21 +19,24 @@ pub fn mars_grounds_of(name: &'static str, cells: u32) -> impl Strategy<Value = 
     (any::<u64>(), 4..=cells, 2.0..40.0, [share(), share(), share(), share()]).prop_map(
         move |(seed, cells, extent, [relief, coverage, density, cracks]): (u64, u32, f64, [f64; 4])| {
             let mut ground = MarsGround::preset(name, seed).expect("a preset");
-            // What is in proportion on 40 m is so on less; of posts there are fewer.
+            // Scale all lengths with the extent; use fewer posts.
             let scale = extent / ground.extent;
             ground.extent = extent;
             ground.post_spacing = extent / f64::from(cells);
             ground.roughness.rms_at_1_m *= relief;
-            let Rocks { coverage: most, largest, .. } = ground.rocks;
-            // No more rocks than a few for each cell.
+            let Rocks { coverage: max_coverage, largest, .. } = ground.rocks;
+            // Leave out small rocks, so that there are only a few for each cell.
             ground.rocks = Rocks {
-                coverage: most * coverage,
+                coverage: max_coverage * coverage,
                 smallest: f64::min(0.5 * largest, (0.7 * ground.post_spacing).max(0.05)),
                 largest,
             };
-            let Craters { density: most, smallest, largest } = ground.craters;
-            ground.craters =
-                Craters { density: most * density, smallest: smallest * scale, largest: largest * scale };
+            let Craters { density: max_density, smallest, largest } = ground.craters;
+            ground.craters = Craters {
+                density: max_density * density,
+                smallest: smallest * scale,
+                largest: largest * scale,
+            };
             let Crevasses { count, width, depth, overhang } = ground.crevasses;
             ground.crevasses = Crevasses {
                 count: (f64::from(count) * cracks).round() as u32,
@@ -55,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_draw_can_be_built() {
+    fn every_ground_can_be_built() {
         let mut runner = TestRunner::deterministic();
         for name in PRESET_NAMES {
             for _ in 0..20 {
@@ -68,7 +70,7 @@ mod tests {
 
     #[test]
     fn it_shrinks_to_a_plane() {
-        // As proptest does when the simpler ground still fails: always take it.
+        // Always take the simpler ground, as proptest does while the test still fails.
         let mut runner = TestRunner::deterministic();
         for _ in 0..20 {
             let mut tree = mars_grounds(30).new_tree(&mut runner).unwrap();

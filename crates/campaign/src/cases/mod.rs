@@ -1,44 +1,47 @@
-//! Scenes to be tried: random rigs on random grounds, rays aimed at what is hard, lattices whose vertices lie on rays.
-//! Property tests and campaigns draw from the same ones.
+//! Test scenes: random rigs on random grounds, beams aimed at hard targets, lattices whose vertices lie on rays.
+//!
+//! Property tests and campaigns use the same scenes. Random scenes are strategies of proptest, so that a failing test
+//! shrinks its scene.
 //!
 //! ```text
-//! random    any ground before any camera and beams, as strategies of proptest
-//! mars      ground as Mars has it: presets of any size, of which more or less is there
-//! aimed     many narrow sensors at vertices, edges, silhouettes and grazing faces of a ground
-//! lattice   meshes all of whose vertices lie exactly on rays
-//! rig       plain sensors, and the default rig
+//! split_mix   random numbers of a seed
+//! mars        Mars-like grounds of any preset and size
+//! random      any ground in front of any camera and beams
+//! aimed       narrow beams aimed at vertices, edges, silhouettes and grazing faces of a ground
+//! lattice     meshes all of whose vertices lie exactly on rays
 //! ```
 
 pub mod aimed;
 pub mod lattice;
 pub mod mars;
 pub mod random;
+pub(crate) mod split_mix;
 
-use glam::DVec3;
 use std::sync::Arc;
 
+use glam::DVec3;
 use raypencil_scene::{Atmosphere, Beam, Camera, FluxModel, Material, Mesh, Mounted, Pose, Scene};
 
 /// A mesh of one material in the scene frame, origin 0.
 ///
 /// # Panics
-/// If it is no mesh.
+/// If vertices and faces do not make a valid mesh.
 pub fn mesh(vertices: Vec<[f32; 3]>, faces: Vec<[u32; 3]>) -> Arc<Mesh> {
     let materials = vec![Material { name: "ground".into(), reflectivity: 0.25 }];
     let face_materials = vec![0; faces.len()];
     Arc::new(Mesh::new(DVec3::ZERO, vertices, faces, face_materials, materials).expect("a mesh"))
 }
 
-/// A scene in clear air.
+/// A scene in clear air, with radiometric flux.
 ///
 /// # Panics
-/// If it is no scene.
+/// If the parts do not make a valid scene.
 pub fn scene(mesh: Arc<Mesh>, camera: Mounted<Camera>, beams: Vec<Mounted<Beam>>) -> Scene {
     let clear = Atmosphere { attenuation: 0.0 };
     Scene::new(mesh, camera, beams, clear, FluxModel::Radiometric).expect("a scene")
 }
 
-/// A sensor at the scene's origin, its axes the scene's: z forward, x right, y down.
+/// A sensor at the scene's origin. Its axes are those of the scene: z forward, x right, y down.
 pub fn at_origin<S>(sensor: S) -> Mounted<S> {
     Mounted { scene_from_sensor: Pose::IDENTITY, sensor }
 }

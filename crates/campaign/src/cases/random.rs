@@ -1,39 +1,43 @@
-//! Random rigs on random grounds, for proptest. What a failing test prints of a case is enough to build it
+//! Random rigs on random grounds, for proptest. The text that a failing test prints of a case suffices to build it
 //! again.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use proptest::sample::Index;
-use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
-
-use crate::cases::mars::{mars_grounds, mars_grounds_of};
 use raypencil_scene::{
     Atmosphere, Beam, Camera, Filter, FluxModel, Lens, Mesh, Mounted, Pose, Profile, Scene, rig,
 };
 use raypencil_terrain::{MarsGround, PRESET_NAMES, RandomGround};
 
-/// A ground and the sensors that look at it.
+use crate::cases::mars::{mars_grounds, mars_grounds_of};
+
+/// Factor by which the sensors of a campaign have more columns and more rows than those of property tests.
+const CAMPAIGN_SIZE_FACTOR: u32 = 4;
+
+/// A ground and the sensors in front of it.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// The ground, with its seed.
     pub ground: AnyGround,
-    /// The camera and where it is.
-    pub camera: (Camera, Place),
-    /// The beams and where they are.
-    pub beams: Vec<(Beam, Place)>,
-    /// The air's attenuation, 1/m.
+    /// The camera and its placement.
+    pub camera: (Camera, SensorPlacement),
+    /// The beams and their placements.
+    pub beams: Vec<(Beam, SensorPlacement)>,
+    /// Attenuation of the air, 1/m.
     pub attenuation: f64,
-    /// The equation of flux.
+    /// Flux model.
     pub model: FluxModel,
 }
 
-/// A ground that is made from a seed.
+/// A ground made from a seed.
 #[derive(Debug, Clone)]
 pub enum AnyGround {
-    /// Hills, and everything that is hard to render.
+    /// Hills, with or without everything that is hard to render.
     Random(RandomGround),
-    /// As Mars has it.
+    /// A Mars-like ground.
     Mars(MarsGround),
 }
 
@@ -54,21 +58,21 @@ impl AnyGround {
     }
 }
 
-/// Where a sensor is, by a vertex of the ground.
+/// Pose of a sensor relative to a vertex of the ground.
 #[derive(Debug, Clone)]
-pub struct Place {
-    /// Which vertex.
+pub struct SensorPlacement {
+    /// The vertex.
     pub vertex: Index,
-    /// From there to the sensor, metres.
-    pub away: DVec3,
-    /// Its rotation in the scene.
+    /// Vector from the vertex to the sensor, metres.
+    pub offset: DVec3,
+    /// Rotation of the sensor in the scene.
     pub rotation: DQuat,
 }
 
-impl Place {
+impl SensorPlacement {
     fn pose(&self, mesh: &Mesh) -> Pose {
         let vertex = mesh.vertices()[self.vertex.index(mesh.vertices().len())];
-        let position = DVec3::from_array(vertex.map(f64::from)) + self.away;
+        let position = DVec3::from_array(vertex.map(f64::from)) + self.offset;
         Pose { position, rotation: self.rotation }
     }
 }
@@ -77,12 +81,13 @@ impl Case {
     /// The ground as a mesh.
     ///
     /// # Panics
-    /// If it is none; every strategy here gives one.
+    /// If the ground is no valid mesh. Every strategy of this module gives a valid one.
     pub fn mesh(&self) -> Arc<Mesh> {
         Arc::new(self.ground.mesh())
     }
 
-    /// The sensors before a mesh: that of [`Case::mesh`], or one with the same vertices first.
+    /// The scene of these sensors and `mesh`. Their poses are relative to vertices of `placed_on`: the mesh of
+    /// [`Case::mesh`], or one that begins with the same vertices.
     pub fn scene_of(&self, mesh: &Arc<Mesh>, placed_on: &Mesh) -> Scene {
         let (camera, place) = &self.camera;
         let camera = Mounted { scene_from_sensor: place.pose(placed_on), sensor: *camera };
@@ -94,18 +99,19 @@ impl Case {
         Scene::new(Arc::clone(mesh), camera, beams.collect(), air, self.model).expect("a scene")
     }
 
-    /// The whole scene.
+    /// The scene of the case's own ground.
     pub fn scene(&self) -> Scene {
         let mesh = self.mesh();
         self.scene_of(&mesh, &mesh)
     }
 }
 
-/// `10^x` for x from `low` to `high`.
-fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
+/// 10^x with x from `low` to `high`.
+fn powers_of_ten(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..high).prop_map(|exponent| libm::pow(10.0, exponent))
 }
 
+/// Unit vectors, uniform on the sphere.
 fn unit_vector() -> impl Strategy<Value = DVec3> {
     (-1.0..1.0, 0.0..TAU).prop_map(|(z, angle): (f64, f64)| {
         let (sin, cos) = libm::sincos(angle);
@@ -114,15 +120,15 @@ fn unit_vector() -> impl Strategy<Value = DVec3> {
     })
 }
 
-/// At the origin, 1 km or 1000 km away from it in any direction.
+/// Offsets of a ground: none, 1 km or 1000 km in any direction, metres.
 fn offsets() -> impl Strategy<Value = DVec3> {
     (prop_oneof![Just(0.0), Just(1e3), Just(1e6)], unit_vector())
         .prop_map(|(distance, direction): (f64, DVec3)| direction * distance)
 }
 
-/// Grounds of 50 to 5000 faces: half of them with everything that is nasty, anywhere.
+/// Grounds of 50 to 5000 faces at any offset. Half of them have everything that is hard to render.
 pub fn grounds() -> impl Strategy<Value = RandomGround> {
-    let ground = (any::<bool>(), any::<u64>(), decades(1.7, 3.7), 2.0..60.0);
+    let ground = (any::<bool>(), any::<u64>(), powers_of_ten(1.7, 3.7), 2.0..60.0);
     (ground, offsets()).prop_map(|((nasty, seed, faces, extent), offset)| {
         let faces = faces as usize;
         let ground =
@@ -131,10 +137,10 @@ pub fn grounds() -> impl Strategy<Value = RandomGround> {
     })
 }
 
-/// Near a vertex, from a millimetre to 16 m away, mostly above it; looking forward and down
-/// like a rover, or anywhere, rolled.
-fn places() -> impl Strategy<Value = Place> {
-    let away = (unit_vector(), decades(-3.0, 1.2), prop::bool::weighted(0.7)).prop_map(
+/// Placements 1 mm to 16 m away from a vertex, mostly above it. Three of five look forward and down as a rover does; the
+/// others look anywhere.
+fn placements() -> impl Strategy<Value = SensorPlacement> {
+    let offset = (unit_vector(), powers_of_ten(-3.0, 1.2), prop::bool::weighted(0.7)).prop_map(
         |(mut direction, distance, above)| {
             if above {
                 direction.z = direction.z.abs();
@@ -153,16 +159,20 @@ fn places() -> impl Strategy<Value = Place> {
         .prop_filter("too short a quaternion", |q| q.iter().map(|x| x * x).sum::<f64>() > 0.01)
         .prop_map(DQuat::from_array);
     let rotation = prop_oneof![3 => like_a_rover, 2 => anyhow];
-    (any::<Index>(), away, rotation).prop_map(|(vertex, away, rotation)| Place { vertex, away, rotation })
+    (any::<Index>(), offset, rotation).prop_map(|(vertex, offset, rotation)| SensorPlacement {
+        vertex,
+        offset,
+        rotation,
+    })
 }
 
-/// Small cameras of 2 to 150 degrees across, focal lengths from 1 mm to 1/2 m, the principal point anywhere
-/// around the middle, pixels not square, ranges from 30 cm to 1 km.
+/// Small cameras: fields of view of 2 to 150 degrees across, focal lengths of 1 mm to 0.5 m, pixels that are not square,
+/// maximum ranges of 0.3 m to 1 km, the principal point in the image or up to a fifth of it outside.
 fn cameras() -> impl Strategy<Value = Camera> {
     let size = prop_oneof![Just((96, 64)), Just((41, 97)), Just((7, 301)), Just((1, 1))];
     let principal_point = prop::array::uniform2(-0.2..1.2);
-    (size, decades(-3.0, -0.3), 2.0..150.0, 0.5..2.0, principal_point, decades(-0.5, 3.0)).prop_map(
-        |((width, height), focal_length, view_deg, aspect, centre, max_range)| {
+    (size, powers_of_ten(-3.0, -0.3), 2.0..150.0, 0.5..2.0, principal_point, powers_of_ten(-0.5, 3.0))
+        .prop_map(|((width, height), focal_length, view_deg, aspect, centre, max_range)| {
             let view = focal_length * libm::tan(0.5 * f64::to_radians(view_deg));
             let pitch = (2.0 * view / f64::from(width.max(20))).clamp(1e-8, 0.04);
             Camera {
@@ -171,14 +181,13 @@ fn cameras() -> impl Strategy<Value = Camera> {
                 max_range,
                 ..rig::camera(width, height, pitch, focal_length)
             }
-        },
-    )
+        })
 }
 
-/// Small beams with fans of 1 to 170 degrees, sheets 0.1 mm to 1 m thick, grids 1 mm to 1 m away.
+/// Small beams: fans of 1 to 170 degrees, sheets of 0.1 mm to 1 m, grid distances of 1 mm to 1 m.
 fn beams() -> impl Strategy<Value = Beam> {
     let size = prop_oneof![Just((128, 8)), Just((33, 29)), Just((257, 1)), Just((1, 3))];
-    (size, decades(-3.0, 0.0), 1.0..170.0, decades(-4.0, 0.0), decades(-0.5, 3.0)).prop_map(
+    (size, powers_of_ten(-3.0, 0.0), 1.0..170.0, powers_of_ten(-4.0, 0.0), powers_of_ten(-0.5, 3.0)).prop_map(
         |((columns, rows), grid_distance, fan_deg, thickness, max_range)| Beam {
             thickness,
             max_range,
@@ -188,10 +197,10 @@ fn beams() -> impl Strategy<Value = Beam> {
     )
 }
 
-/// Any ground before a camera and two beams.
+/// Any ground in front of a camera and two beams.
 pub fn cases() -> impl Strategy<Value = Case> {
-    let beams = prop::collection::vec((beams(), places()), 2);
-    (grounds(), (cameras(), places()), beams).prop_map(|(ground, camera, beams)| Case {
+    let beams = prop::collection::vec((beams(), placements()), 2);
+    (grounds(), (cameras(), placements()), beams).prop_map(|(ground, camera, beams)| Case {
         ground: AnyGround::Random(ground),
         camera,
         beams,
@@ -200,25 +209,27 @@ pub fn cases() -> impl Strategy<Value = Case> {
     })
 }
 
+/// Profiles of every kind.
 fn profiles() -> impl Strategy<Value = Profile> {
     prop_oneof![
         Just(Profile::Paper),
         Just(Profile::UniformAngle),
-        decades(-2.0, 0.5).prop_map(|half_width| Profile::Gaussian { half_width }),
+        powers_of_ten(-2.0, 0.5).prop_map(|half_width| Profile::Gaussian { half_width }),
     ]
 }
 
+/// Lenses with and without a filter.
 fn lenses() -> impl Strategy<Value = Lens> {
     let filter = prop_oneof![
         Just(Filter::None),
-        (790e-9..830e-9, decades(-8.5, -6.0), 1.0..3.0)
+        (790e-9..830e-9, powers_of_ten(-8.5, -6.0), 1.0..3.0)
             .prop_map(|(centre, width, index)| Filter::Interference { centre, width, index }),
     ];
     (0.0..=1.0, filter).prop_map(|(transmission, filter)| Lens { transmission, filter })
 }
 
-/// Beams that a camera beside them has a chance to see: a rig like a rover's, up to 3 m across, on any ground, in any
-/// air, with any profile, lens and model.
+/// Cases whose beams the camera beside them may see: a rig like a rover's, up to 3 m across, on any ground, in any air,
+/// with any profile, lens and flux model.
 pub fn lit_cases() -> impl Strategy<Value = Case> {
     let beside = || {
         let turn = prop::array::uniform3(-0.3..0.3).prop_map(|[x, y, z]| {
@@ -226,22 +237,23 @@ pub fn lit_cases() -> impl Strategy<Value = Case> {
                 * Pose::from_axis_angle(DVec3::Y, y)
                 * Pose::from_axis_angle(DVec3::Z, z)
         });
-        (beams(), profiles(), decades(-2.0, 1.0), unit_vector(), decades(-2.0, 0.5), turn)
+        (beams(), profiles(), powers_of_ten(-2.0, 1.0), unit_vector(), powers_of_ten(-2.0, 0.5), turn)
     };
-    let rig = (cameras(), lenses(), places(), prop::collection::vec(beside(), 2));
-    let air = prop_oneof![Just(0.0), decades(-3.0, 0.0)];
+    let rig = (cameras(), lenses(), placements(), prop::collection::vec(beside(), 2));
+    let air = prop_oneof![Just(0.0), powers_of_ten(-3.0, 0.0)];
     let model = prop_oneof![Just(FluxModel::Radiometric), Just(FluxModel::Eq1)];
     (grounds(), rig, air, model).prop_map(|(ground, (camera, lens, place, beams), attenuation, model)| {
-        let pose = Pose { position: place.away, rotation: place.rotation };
+        let pose = Pose { position: place.offset, rotation: place.rotation };
         let beams = beams.into_iter().map(|(beam, profile, power, direction, distance, turn)| {
             let beside = pose * Pose::from_position(direction * distance) * turn;
-            let place = Place { away: beside.position, rotation: beside.rotation, ..place.clone() };
+            let place =
+                SensorPlacement { offset: beside.position, rotation: beside.rotation, ..place.clone() };
             (Beam { profile, power, ..beam }, place)
         });
         Case {
             ground: AnyGround::Random(ground),
             beams: beams.collect(),
-            // Pinholes that see widely: a stripe is to land on the image now and then.
+            // The principal point in the middle, so that some stripes land on the image.
             camera: (Camera { lens, principal_point: centred(&camera), ..camera }, place),
             attenuation,
             model,
@@ -249,7 +261,7 @@ pub fn lit_cases() -> impl Strategy<Value = Case> {
     })
 }
 
-/// Ground as Mars has it, of up to some thousand faces, anywhere, before the sensors of a lit case.
+/// Mars-like grounds of up to some thousand faces, at any offset, in front of the sensors of a lit case.
 pub fn mars_cases() -> impl Strategy<Value = Case> {
     (lit_cases(), mars_grounds(24), offsets()).prop_map(|(case, ground, offset)| Case {
         ground: AnyGround::Mars(MarsGround { offset, ..ground }),
@@ -257,18 +269,18 @@ pub fn mars_cases() -> impl Strategy<Value = Case> {
     })
 }
 
-/// What a campaign tries: 2 to a million faces, and sensors of four times as many columns and rows as above, over the
-/// same fields of view. Every second terrain is ground as Mars has it, the presets by turns.
+/// Cases of a campaign's terrain: 2 to a million faces, and sensors of four times as many columns and rows as in property
+/// tests, over the same fields of view. Every second terrain is Mars-like; the presets take turns.
 pub fn campaign_cases(terrain: u64) -> BoxedStrategy<Case> {
     let cases = prop_oneof![2 => lit_cases(), 1 => cases()];
     if terrain.is_multiple_of(2) {
-        let faces = decades(0.301, 6.0).prop_map(|faces| faces as usize);
+        let faces = powers_of_ten(0.301, 6.0).prop_map(|faces| faces as usize);
         return (cases, faces, any::<bool>())
             .prop_map(|(case, faces, nasty)| {
                 let AnyGround::Random(RandomGround { seed, extent, offset, .. }) = case.ground else {
                     return finer(case);
                 };
-                // What makes a ground nasty has more than a few faces itself.
+                // The hard parts alone have some hundred faces, so a smaller ground is plain.
                 let ground = if nasty && faces >= 200 {
                     RandomGround::nasty(seed, faces)
                 } else {
@@ -280,8 +292,8 @@ pub fn campaign_cases(terrain: u64) -> BoxedStrategy<Case> {
     }
     let presets = PRESET_NAMES.len() as u64;
     let name = PRESET_NAMES[(terrain / 2 % presets) as usize];
-    // As many small grounds as large ones.
-    let cells = decades(0.602, 2.6).prop_map(|cells| cells as u32);
+    // Uniform in the logarithm: as many small grounds as large ones.
+    let cells = powers_of_ten(0.602, 2.6).prop_map(|cells| cells as u32);
     let grounds = cells.prop_flat_map(move |cells| mars_grounds_of(name, cells));
     (cases, grounds)
         .prop_map(|(case, ground)| {
@@ -291,22 +303,20 @@ pub fn campaign_cases(terrain: u64) -> BoxedStrategy<Case> {
         .boxed()
 }
 
-/// A case with finer sensors.
+/// A case with [`CAMPAIGN_SIZE_FACTOR`] times as many columns and rows.
 fn finer(mut case: Case) -> Case {
     let camera = &mut case.camera.0;
-    (camera.width, camera.height) = (MORE * camera.width, MORE * camera.height);
-    camera.pixel_pitch = camera.pixel_pitch.map(|pitch| (pitch / f64::from(MORE)).max(1e-8));
-    camera.principal_point = camera.principal_point.map(|centre| centre * f64::from(MORE));
+    (camera.width, camera.height) =
+        (CAMPAIGN_SIZE_FACTOR * camera.width, CAMPAIGN_SIZE_FACTOR * camera.height);
+    camera.pixel_pitch = camera.pixel_pitch.map(|pitch| (pitch / f64::from(CAMPAIGN_SIZE_FACTOR)).max(1e-8));
+    camera.principal_point = camera.principal_point.map(|centre| centre * f64::from(CAMPAIGN_SIZE_FACTOR));
     for (beam, _) in &mut case.beams {
-        (beam.columns, beam.rows) = (MORE * beam.columns, MORE * beam.rows);
+        (beam.columns, beam.rows) = (CAMPAIGN_SIZE_FACTOR * beam.columns, CAMPAIGN_SIZE_FACTOR * beam.rows);
     }
     case
 }
 
-/// How many times as many columns, and rows, a campaign's sensors have.
-const MORE: u32 = 4;
-
-/// The middle of a camera's image.
+/// The middle of a camera's image, pixels.
 fn centred(camera: &Camera) -> [f64; 2] {
     [0.5 * f64::from(camera.width), 0.5 * f64::from(camera.height)]
 }

@@ -1,22 +1,22 @@
-//! Manifests: what is written is read back; what was changed since, or leads elsewhere, is refused.
+//! Manifests: a written one is read back; a changed file and a path out of the folder are refused.
 
-pub(crate) mod schema;
+mod schema;
 
 use std::path::Path;
 
 use raypencil_files::write_npy;
 use raypencil_pack::{
-    ChannelType, FileRole, FileType, FluxWord, Manifest, ManifestChannel, ManifestFile, ManifestScene,
-    ManifestSensor, PackKind,
+    ChannelType, FileRole, FileType, Manifest, ManifestChannel, ManifestFile, ManifestScene, ManifestSensor,
+    PackKind,
 };
-use raypencil_scene::Image;
+use raypencil_scene::{FluxModel, Image};
 
 /// SHA-256 of nothing and of "abc" (FIPS 180-4, examples).
 const NOTHING: &str = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
 
 const ABC: &str = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
 
-/// A manifest of two files, the second with everything that a file can have.
+/// A manifest of two files. The second has every key that a file can have.
 fn manifest() -> Manifest {
     let sensor = |name: &str, columns, rows| ManifestSensor { name: name.into(), columns, rows };
     let bare = |path: &str, role| ManifestFile {
@@ -34,7 +34,7 @@ fn manifest() -> Manifest {
         kind: PackKind::Answers,
         raypencil_version: "0.1.0".into(),
         scene: ManifestScene { name: "pyramids".into(), sha256: NOTHING.into() },
-        flux_model: FluxWord::Radiometric,
+        flux_model: FluxModel::Radiometric,
         blind_seed: None,
         sensors: vec![sensor("camera", 3, 2), sensor("beam-0", 5, 1)],
         files: vec![
@@ -49,7 +49,7 @@ fn manifest() -> Manifest {
     }
 }
 
-/// The same without answers.
+/// [`manifest`] as that of a blind pack.
 fn blind() -> Manifest {
     let mut blind = manifest();
     (blind.kind, blind.blind_seed) = (PackKind::Blind, Some(7));
@@ -57,7 +57,7 @@ fn blind() -> Manifest {
     blind
 }
 
-/// A folder with a scene and a map, and its manifest.
+/// A folder with a scene, a map and their manifest.
 fn pack() -> (tempfile::TempDir, Manifest) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("scene.toml"), "abc").unwrap();
@@ -124,7 +124,7 @@ fn files_that_were_changed_are_named() {
 }
 
 #[test]
-fn what_is_no_pack_is_refused() {
+fn folders_without_a_valid_manifest_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let none = "PACK: pack: no manifest.json; expected a folder with manifest.json (is this a pack?)";
     assert_eq!(refusal(folder.path()), none);
@@ -147,7 +147,7 @@ fn what_is_no_pack_is_refused() {
     assert!(with(&"[".repeat(100_000)).contains("JSON: "));
 }
 
-/// The refusal of a manifest after a change of its JSON, which a writer of its own might make.
+/// The refusal of a manifest whose JSON was changed.
 fn changed(change: impl FnOnce(&mut serde_json::Value)) -> String {
     let (folder, written) = pack();
     let mut value = serde_json::to_value(written).unwrap();

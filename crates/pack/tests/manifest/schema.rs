@@ -1,4 +1,4 @@
-//! Holds `manifest.json` to `docs/formats/pack.schema.json`, with every key that can be written.
+//! Checks `manifest.json` against `docs/formats/pack.schema.json`, with every key that can be written.
 
 use raypencil_tests::schema::schema_faults;
 use serde_json::Value;
@@ -24,7 +24,7 @@ fn written_manifests_keep_to_the_schema() {
 }
 
 #[test]
-fn the_check_sees_what_is_wrong() {
+fn the_schema_refuses_faults() {
     let mut value = serde_json::to_value(manifest()).unwrap();
     value["format"] = 2.into();
     value["kind"] = "secret".into();

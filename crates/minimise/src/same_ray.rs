@@ -1,18 +1,18 @@
-//! When a smaller sensor has the very same ray: not nearly, but the same rational function of its stored numbers.
+//! Smaller sensors that have exactly the same ray: the same rational function of their stored numbers.
 
 use raypencil_scene::{Beam, Camera};
 
-/// The camera whose image is `width x height` pixels of this one's from `(left, top)` on; `None` if its principal
-/// point would not be exact, so that its rays would be others.
+/// The camera of the image's part of `width x height` pixels from `(left, top)` on. `None`: its principal point would
+/// be rounded, which would change its rays.
 ///
-/// A ray is that of (i + 1/2 - c_x) p_x, and the same for c_x - left and i - left.
+/// A ray depends on (i + 1/2 - c_x) p_x, which is the same for i - left and c_x - left.
 pub(crate) fn cropped(camera: &Camera, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> Option<Camera> {
     let [x, y] = camera.principal_point;
     let principal_point = [difference(x, f64::from(left))?, difference(y, f64::from(top))?];
     Some(Camera { width, height, principal_point, ..*camera })
 }
 
-/// `a - b` if it is a double. (D. Knuth's two-sum: the error of the difference is one)
+/// `a - b`, if it is exact. (D. Knuth's two-sum: its rounding error is a double)
 fn difference(a: f64, b: f64) -> Option<f64> {
     let difference = a - b;
     let b_virtual = a - difference;
@@ -21,18 +21,19 @@ fn difference(a: f64, b: f64) -> Option<f64> {
     (error == 0.0).then_some(difference)
 }
 
-/// Cells along one axis of a beam's grid: `extent` (w, or T) and how many there are.
+/// A cell on one axis of a beam's grid of `count` cells over `extent` (w across, T down).
 ///
-/// The middle of cell `index` is extent (2 index + 1 - count) / count, or half of that.
+/// The middle of cell `index` is at extent (2 index + 1 - count) / count across, and at half of that down.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Cells {
+struct AxisCell {
     extent: f64,
     count: u32,
     index: u32,
 }
 
-impl Cells {
-    /// One cell, or else the outer one of two, with the very same middle.
+impl AxisCell {
+    /// A cell with exactly the same middle: the only cell of its axis, or else the outer one of two. `None`: the extent
+    /// would be rounded.
     fn fewest(self) -> Option<Self> {
         let Self { extent, count, index } = self;
         let k = 2 * i64::from(index) + 1 - i64::from(count);
@@ -44,7 +45,8 @@ impl Cells {
         Some(Self { extent, count: 2, index: u32::from(k > 0) })
     }
 
-    /// As few cells as 2 index + 1 and the count have divisors in common: the extent stays.
+    /// A cell with exactly the same middle and extent. The count is divided by the greatest common divisor of
+    /// 2 index + 1 and the count.
     fn fewer(self) -> Self {
         let Self { extent, count, index } = self;
         let divisor = gcd(2 * index + 1, count);
@@ -52,11 +54,11 @@ impl Cells {
     }
 }
 
-/// Beams of fewer pencils, of which pencil `[i, j]` is the same ray as `[i, j]` of this: the fewest first. With the
-/// pencil's place in each.
+/// Beams of fewer pencils that have the ray of pencil `[i, j]` of this beam, with the pencil's cell in each. The beam
+/// of the fewest pencils comes first.
 pub(crate) fn narrowed(beam: &Beam, [i, j]: [u32; 2]) -> Vec<(Beam, [u32; 2])> {
-    let across = Cells { extent: beam.half_width, count: beam.columns, index: i };
-    let down = Cells { extent: beam.thickness, count: beam.rows, index: j };
+    let across = AxisCell { extent: beam.half_width, count: beam.columns, index: i };
+    let down = AxisCell { extent: beam.thickness, count: beam.rows, index: j };
     let [across, down] =
         [across, down].map(|cells| [cells.fewest(), Some(cells.fewer()), Some(cells)].into_iter().flatten());
     let mut found: Vec<(Beam, [u32; 2])> = Vec::new();
@@ -71,10 +73,10 @@ pub(crate) fn narrowed(beam: &Beam, [i, j]: [u32; 2]) -> Vec<(Beam, [u32; 2])> {
     found
 }
 
-/// `x p / q` if it is a double; p and q below 2^32, x finite and above 0.
+/// `x p / q`, if it is a double. p and q are below 2^32, x is finite and positive.
 fn ratio(x: f64, p: u64, q: u64) -> Option<f64> {
     let (mantissa, exponent) = libm::frexp(x);
-    // 53 bits and 32: room enough.
+    // 53 bits times 32 bits fit into 128 bits.
     let product = u128::from((mantissa * (1_u64 << 53) as f64) as u64) * u128::from(p);
     let twos = q.trailing_zeros();
     let odd = u128::from(q >> twos);
@@ -88,6 +90,7 @@ fn ratio(x: f64, p: u64, q: u64) -> Option<f64> {
     (digits < 1 << 53).then(|| libm::ldexp(digits as f64, exponent))
 }
 
+/// Greatest common divisor.
 fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
@@ -117,13 +120,13 @@ mod tests {
 
     #[test]
     fn a_smaller_grid_has_the_same_middle() {
-        let middle = |cells: Cells| {
+        let middle = |cells: AxisCell| {
             cells.extent * (2.0 * f64::from(cells.index) + 1.0 - f64::from(cells.count))
                 / f64::from(cells.count)
         };
         // Cell 5 of 16 over a half width of 1: -5/16; cell 4 of 9 is the middle one; cell 2 of 15: 5/15 across.
         for (count, index, fewest, fewer) in [(16, 5, Some(2), 16), (9, 4, Some(1), 1), (15, 2, None, 3)] {
-            let cells = Cells { extent: 1.0, count, index };
+            let cells = AxisCell { extent: 1.0, count, index };
             assert_eq!(cells.fewest().map(|cells| cells.count), fewest, "{count} {index}");
             assert_eq!(cells.fewer().count, fewer, "{count} {index}");
             for smaller in [cells.fewest(), Some(cells.fewer())].into_iter().flatten() {

@@ -1,23 +1,23 @@
-//! Searches with plain predicates, whose minimum is known.
+//! Searches with simple interestingness tests, whose minimum is known.
 
-use glam::DVec3;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::sync::{Arc, Mutex};
 
-use crate::draft::Draft;
-use crate::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
-use raypencil_scene::Place;
+use glam::DVec3;
 use raypencil_scene::{
-    Beam, Filter, FluxModel, Lens, Mesh, Mounted, Pose, Profile, Progress, Scene, SensorId, Silent,
+    Beam, Filter, FluxModel, Lens, Mesh, Mounted, Place, Pose, Profile, Progress, Scene, SensorId, Silent,
 };
 use raypencil_tests::fixtures::subject;
+
+use crate::reduction::Reduction;
+use crate::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
 
 fn search(
     scene: &Scene,
     place: Option<Place>,
-    shows: impl Fn(&Scene, Option<Place>) -> bool,
+    is_interesting: impl Fn(&Scene, Option<Place>) -> bool,
 ) -> Result<Minimised, NotShown> {
-    minimise(scene, place, &shows, MINIMISE_BUDGET, &Silent)
+    minimise(scene, place, &is_interesting, MINIMISE_BUDGET, &Silent)
 }
 
 /// The corners of a scene's faces.
@@ -45,7 +45,7 @@ fn wall() -> Scene {
 }
 
 #[test]
-fn what_is_not_shown_is_refused() {
+fn a_scene_that_is_not_interesting_is_refused() {
     assert_eq!(search(&subject().scene, None, |_, _| false).unwrap_err(), NotShown);
 }
 
@@ -54,14 +54,14 @@ fn the_faces_that_matter_are_found_wherever_they_are() {
     let scene = wall();
     for wanted in [vec![0], vec![4799], vec![17, 18], vec![3, 1900, 4711]] {
         let corners: Vec<_> = wanted.iter().map(|&face: &usize| triangles(&scene)[face]).collect();
-        let shows = |scene: &Scene, _: Option<Place>| {
+        let is_interesting = |scene: &Scene, _: Option<Place>| {
             let there = triangles(scene);
             corners.iter().all(|face| there.contains(face))
         };
         let Minimised { scene: found, faces_before, faces_after, is_finished, calls, .. } =
-            search(&scene, None, shows).unwrap();
+            search(&scene, None, is_interesting).unwrap();
         assert_eq!((faces_before, faces_after, is_finished), (4800, wanted.len(), true), "{wanted:?}");
-        // In the order of the ground, on no vertex more.
+        // In the order of the ground, without unused vertices.
         assert_eq!(triangles(&found), corners);
         assert!(found.mesh().vertices().len() <= 3 * wanted.len());
         // 2 log2(4800) = 25 for one face; each further one adds a few times that.
@@ -72,33 +72,33 @@ fn the_faces_that_matter_are_found_wherever_they_are() {
 #[test]
 fn where_the_ray_is_known_its_faces_come_first() {
     let scene = wall();
-    // A camera before (30.2, 20.1): the ray meets face 2 (20 * 60 + 30) + 1 there, for 0.2 > 0.1.
-    let mut draft = Draft::of(&scene, Some(Place { sensor: SensorId::Camera, i: 24, j: 20 }));
-    draft.camera.scene_from_sensor = Pose::from_position(DVec3::new(30.2, 20.1, 0.0));
-    draft.camera.sensor.principal_point = [24.5, 20.5];
-    let scene = draft.scene().unwrap();
+    // The camera's ray meets the wall at (30.2, 20.1): face 2 (20 * 60 + 30) + 1, since 0.2 > 0.1.
+    let mut reduction = Reduction::of(&scene, Some(Place { sensor: SensorId::Camera, i: 24, j: 20 }));
+    reduction.camera.scene_from_sensor = Pose::from_position(DVec3::new(30.2, 20.1, 0.0));
+    reduction.camera.sensor.principal_point = [24.5, 20.5];
+    let scene = reduction.scene().unwrap();
     let face = triangles(&scene)[2 * (20 * 60 + 30) + 1];
-    let sizes = std::cell::RefCell::new(Vec::new());
-    let shows = |scene: &Scene, _: Option<Place>| {
+    let sizes = RefCell::new(Vec::new());
+    let is_interesting = |scene: &Scene, _: Option<Place>| {
         sizes.borrow_mut().push(scene.mesh().faces().len());
         triangles(scene).contains(&face)
     };
-    let found = search(&scene, draft.place, shows).unwrap();
+    let found = search(&scene, reduction.place, is_interesting).unwrap();
     assert_eq!(triangles(&found.scene), [face]);
-    // Once the faces are cut, they are one; the whole ground was asked about only while the sensor was cut.
+    // One face is left once faces are removed. The whole ground was tested only while the sensor was cut.
     let sizes = sizes.into_inner();
     assert!(sizes.iter().all(|size| [1, 4800].contains(size)), "{sizes:?}");
 }
 
 #[test]
-fn a_predicate_that_always_holds_leaves_the_plainest_scene() {
+fn if_every_scene_is_interesting_the_simplest_one_is_left() {
     let subject = subject();
-    let mut draft = Draft::of(&subject.scene, None);
-    draft.atmosphere.attenuation = 0.1;
-    draft.flux_model = FluxModel::Eq1;
+    let mut reduction = Reduction::of(&subject.scene, None);
+    reduction.atmosphere.attenuation = 0.1;
+    reduction.flux_model = FluxModel::Eq1;
     let filter = Filter::Interference { centre: 8e-7, width: 1e-8, index: 2.0 };
-    draft.camera.sensor.lens = Lens { transmission: 0.5, filter };
-    let found = search(&draft.scene().unwrap(), None, |_, _| true).unwrap();
+    reduction.camera.sensor.lens = Lens { transmission: 0.5, filter };
+    let found = search(&reduction.scene().unwrap(), None, |_, _| true).unwrap();
     let (scene, camera) = (&found.scene, found.scene.camera());
     assert_eq!((scene.mesh().faces().len(), scene.mesh().vertices().len(), scene.beams().len()), (1, 3, 0));
     assert_eq!((camera.sensor.width, camera.sensor.height, camera.sensor.lens), (1, 1, Lens::CLEAR));
@@ -108,31 +108,31 @@ fn a_predicate_that_always_holds_leaves_the_plainest_scene() {
 }
 
 #[test]
-fn the_budget_is_kept_and_what_comes_out_shows_it() {
+fn the_budget_is_kept_and_the_result_is_interesting() {
     for budget in [0, 1, 7, 100] {
         let calls = Cell::new(0);
-        let shows = |scene: &Scene, _: Option<Place>| {
+        let is_interesting = |scene: &Scene, _: Option<Place>| {
             calls.set(calls.get() + 1);
             let faces = scene.mesh().faces().len();
             faces.is_multiple_of(2) && faces > 8
         };
-        let found = minimise(&wall(), None, &shows, budget, &Silent).unwrap();
+        let found = minimise(&wall(), None, &is_interesting, budget, &Silent).unwrap();
         assert_eq!((found.calls, found.is_finished), (calls.get(), false), "{budget}");
         assert!(found.calls <= budget.max(1), "{budget}: {}", found.calls);
-        assert!(shows(&found.scene, None));
+        assert!(is_interesting(&found.scene, None));
     }
 }
 
 #[test]
-fn a_pixel_keeps_its_very_ray_when_the_image_shrinks_to_it() {
+fn a_pixel_keeps_exactly_its_ray_when_the_image_shrinks_to_it() {
     let scene = subject().scene;
     let place = Place { sensor: SensorId::Camera, i: 17, j: 23 };
     let ray = scene.ray(place.sensor, place.i, place.j);
-    let shows = |scene: &Scene, place: Option<Place>| {
+    let is_interesting = |scene: &Scene, place: Option<Place>| {
         place.is_some_and(|Place { sensor, i, j }| scene.ray(sensor, i, j) == ray)
     };
-    let found = search(&scene, Some(place), shows).unwrap();
-    assert!(shows(&found.scene, found.place));
+    let found = search(&scene, Some(place), is_interesting).unwrap();
+    assert!(is_interesting(&found.scene, found.place));
     let camera = &found.scene.camera().sensor;
     // 24 - 17 and 20 - 23.
     assert_eq!((camera.width, camera.height, camera.principal_point), (1, 1, [7.0, -3.0]));
@@ -141,22 +141,22 @@ fn a_pixel_keeps_its_very_ray_when_the_image_shrinks_to_it() {
 }
 
 #[test]
-fn a_pencil_keeps_its_very_ray_and_its_beam() {
+fn a_pencil_keeps_exactly_its_ray_and_its_beam() {
     // The last of three beams; half widths of 1/16 m are exact over 64 columns, 0.0577 m are not.
     let base = subject().scene;
     let Mounted { scene_from_sensor, sensor } = base.beams()[0];
     for (half_width, columns) in [(0.0625, 2), (Beam::half_width_of(0.1, 1.0471975511965976), 64)] {
-        let mut draft = Draft::of(&base, Some(Place { sensor: SensorId::Beam(2), i: 41, j: 0 }));
+        let mut reduction = Reduction::of(&base, Some(Place { sensor: SensorId::Beam(2), i: 41, j: 0 }));
         let own = Beam { half_width, thickness: 0.0078125, profile: Profile::UniformAngle, ..sensor };
-        draft.beams = vec![draft.beams[0]; 2];
-        draft.beams.push(Mounted { scene_from_sensor, sensor: own });
-        let scene = draft.scene().unwrap();
+        reduction.beams = vec![reduction.beams[0]; 2];
+        reduction.beams.push(Mounted { scene_from_sensor, sensor: own });
+        let scene = reduction.scene().unwrap();
         let ray = scene.ray(SensorId::Beam(2), 41, 0);
-        let shows = |scene: &Scene, place: Option<Place>| {
+        let is_interesting = |scene: &Scene, place: Option<Place>| {
             place.is_some_and(|Place { sensor, i, j }| scene.ray(sensor, i, j) == ray)
         };
-        let found = search(&scene, draft.place, shows).unwrap();
-        assert!(shows(&found.scene, found.place), "{:?}", found.place);
+        let found = search(&scene, reduction.place, is_interesting).unwrap();
+        assert!(is_interesting(&found.scene, found.place), "{:?}", found.place);
         assert_eq!(found.place.map(|place| place.sensor), Some(SensorId::Beam(0)));
         let beam = &found.scene.beams()[0].sensor;
         assert_eq!((beam.columns, beam.rows, beam.profile), (columns, 2, Profile::Paper));
@@ -168,18 +168,18 @@ fn a_pencil_keeps_its_very_ray_and_its_beam() {
 fn the_same_search_gives_the_same_scene() {
     let scene = subject().scene;
     let place = Some(Place { sensor: SensorId::Beam(0), i: 30, j: 2 });
-    let shows = |scene: &Scene, place: Option<Place>| {
+    let is_interesting = |scene: &Scene, place: Option<Place>| {
         let Some(Place { sensor, i, j }) = place else { return false };
         let Some(ray) = scene.ray(sensor, i, j) else { return false };
         ray.direction.x > 0.05 && scene.mesh().faces().len() >= 5
     };
-    let [a, b] = [(); 2].map(|()| search(&scene, place, shows).unwrap());
+    let [a, b] = [(); 2].map(|()| search(&scene, place, is_interesting).unwrap());
     assert_eq!((a.scene, a.place, a.calls), (b.scene, b.place, b.calls));
     assert_eq!(a.faces_after, 5);
 }
 
 #[test]
-fn progress_hears_how_far_it_has_come() {
+fn progress_reports_faces_and_trials() {
     struct Heard(Mutex<Vec<String>>);
     impl Progress for Heard {
         fn stage(&self, what: &str) {
@@ -189,6 +189,6 @@ fn progress_hears_how_far_it_has_come() {
     let heard = Heard(Mutex::new(Vec::new()));
     minimise(&wall(), None, &|_, _| true, MINIMISE_BUDGET, &heard).unwrap();
     let heard = heard.0.into_inner().unwrap();
-    assert!(heard[0].starts_with("minimising, 4800 faces after 1 trials: "), "{heard:?}");
+    assert!(heard[0].starts_with("minimising, 4800 faces after 1 reducer: "), "{heard:?}");
     assert!(heard.iter().any(|what| what.contains(" 1 faces after ") && what.ends_with("shorter numbers")));
 }

@@ -1,15 +1,14 @@
-//! A scene taken apart, to be changed piece by piece and put together again.
+//! A scene being reduced: its parts, which can be changed one by one and put together again.
 
 use std::sync::Arc;
 
-use raypencil_scene::Place;
 use raypencil_scene::{
-    Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Scene, SceneError, SensorId,
+    Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Place, Pose, Scene, SceneError, SensorId,
 };
 
 /// The parts of a scene, and the ray in question.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Draft {
+pub(crate) struct Reduction {
     pub(super) mesh: Arc<Mesh>,
     pub(super) camera: Mounted<Camera>,
     pub(super) beams: Vec<Mounted<Beam>>,
@@ -18,7 +17,8 @@ pub struct Draft {
     pub(super) place: Option<Place>,
 }
 
-impl Draft {
+impl Reduction {
+    /// The parts of `scene`, with the ray in question.
     pub(super) fn of(scene: &Scene, place: Option<Place>) -> Self {
         Self {
             mesh: Arc::clone(scene.mesh()),
@@ -30,13 +30,16 @@ impl Draft {
         }
     }
 
-    /// The scene, if the parts make one.
+    /// The scene of these parts.
+    ///
+    /// # Errors
+    /// Parts that do not make a valid scene.
     pub(super) fn scene(&self) -> Result<Scene, SceneError> {
         let mesh = Arc::clone(&self.mesh);
         Scene::new(mesh, self.camera, self.beams.clone(), self.atmosphere, self.flux_model)
     }
 
-    /// This with only those faces of its mesh, in the order of `kept`, and only the vertices that they use.
+    /// A copy with the faces `kept` of the mesh, in this order, and with the vertices that they use.
     pub(super) fn with_faces(&self, kept: &[u32]) -> Self {
         let old = &self.mesh;
         let mut is_used = vec![false; old.vertices().len()];
@@ -53,10 +56,10 @@ impl Draft {
         let kinds = kept.iter().map(|&face| old.face_materials()[face as usize]);
         let mesh =
             Mesh::new(old.origin(), vertices, faces.collect(), kinds.collect(), old.materials().to_vec());
-        Self { mesh: Arc::new(mesh.expect("a part of a mesh is one")), ..self.clone() }
+        Self { mesh: Arc::new(mesh.expect("a part of a mesh is a mesh")), ..self.clone() }
     }
 
-    /// This with its vertices moved; `None` if they make no mesh any more.
+    /// A copy with moved vertices. `None`: the mesh becomes invalid.
     pub(super) fn with_vertices(&self, mut moved: impl FnMut(usize, [f32; 3]) -> [f32; 3]) -> Option<Self> {
         let old = &self.mesh;
         let vertices = old.vertices().iter().enumerate().map(|(index, &at)| moved(index, at)).collect();
@@ -65,7 +68,7 @@ impl Draft {
         Some(Self { mesh: Arc::new(mesh), ..self.clone() })
     }
 
-    /// Where the sensor of the ray in question stands, or the camera if no ray is.
+    /// Pose of the sensor of the ray in question; without such a ray, of the camera.
     pub(super) fn pose(&self) -> Pose {
         match self.place.map(|place| place.sensor) {
             Some(SensorId::Beam(index)) if index < self.beams.len() => self.beams[index].scene_from_sensor,
@@ -73,7 +76,7 @@ impl Draft {
         }
     }
 
-    /// All poses.
+    /// The poses of the camera and of each beam.
     pub(super) fn poses_mut(&mut self) -> impl Iterator<Item = &mut Pose> {
         let beams = self.beams.iter_mut().map(|beam| &mut beam.scene_from_sensor);
         std::iter::once(&mut self.camera.scene_from_sensor).chain(beams)

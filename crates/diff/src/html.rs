@@ -1,33 +1,39 @@
-//! `report.html` of a comparison: one file that links to nothing, with pictures of the channels that differ.
+//! `report.html` of a comparison: one file without links, with pictures of the channels that are not equal.
 
 use askama::Template;
-
-use crate::cells::{Differs, differs};
-use crate::difference::{ChannelDifference, Difference, Sides};
-use crate::screen::{allowed, exact, headline, rulings, unequal};
 use raypencil_files::{Storage, Values};
 use raypencil_report::{
-    ColourMap, Picture, Reduction, Scale, Tick, cells_axis, count, counted, number, quantity, shape, stretch,
+    ColourMap, Picture, Reduction, Scale, Tick, VERSION, cells_axis, count, counted, number, page_head,
+    quantity, reduced_to, shape, stretch,
 };
-use raypencil_report::{VERSION, page_head, reduced_to};
 use raypencil_scene::{Image, Maybe};
 
-/// What this page alone needs.
+use crate::cells::{Comparison, compare_numbers};
+use crate::difference::{ChannelDifference, Difference, Sides};
+use crate::words::{allowed, exact, headline, rulings, unequal};
+
+/// CSS rules of this page, beside those of every report.
 const STYLE: &str = "table.classes td { white-space: nowrap; }\n";
 
-/// Channels that have pictures; the table has all.
-const PICTURED: usize = 24;
+/// Maximum number of channels with pictures; the table has all channels.
+const MAX_PICTURED_CHANNELS: usize = 24;
 
-/// All pictures together have at most this many cells: a few megabytes of page.
-const MOST_CELLS: u64 = 3_300_000;
+/// Maximum number of cells of all pictures together. They make a page of a few megabytes.
+const MAX_PICTURE_CELLS: u64 = 3_300_000;
 
-/// No picture has more columns or rows; more than a page shows.
-const MOST_ACROSS: u32 = 1024;
+/// Maximum columns and rows of a picture: more than a page shows.
+const MAX_PICTURE_SIDE_CELLS: u32 = 1024;
+
+/// Side below which pictures are not reduced further to keep within [`MAX_PICTURE_CELLS`].
+const MIN_PICTURE_SIDE_CELLS: u32 = 32;
+
+/// Pictures of a channel: the difference, A and B.
+const PICTURES_PER_CHANNEL: u64 = 3;
 
 #[derive(Template)]
 #[template(path = "diff.html")]
 struct Page<'a> {
-    /// The start of the page.
+    /// Everything before the page's first line, with the styles.
     head: String,
     passes: bool,
     headline: String,
@@ -36,9 +42,10 @@ struct Page<'a> {
     version: &'static str,
     rows: Vec<Row>,
     only: Vec<(&'static str, &'a [String])>,
-    /// Lines of what the referee says, if it was asked.
+    /// Lines of the referee's rulings; empty without a scene.
     rulings: Vec<String>,
     channels: Vec<Section>,
+    /// How many more channels are not equal but have no pictures; else empty.
     more: String,
 }
 
@@ -73,17 +80,17 @@ struct Figure {
     gradient: String,
     ticks: Vec<Tick>,
     label: String,
-    /// What the colour of one side means, if it is there.
+    /// Legend of cells that cannot be compared; empty if there are none.
     one_sided: &'static str,
-    /// What a cell without a colour means, if there is one.
+    /// Legend of cells without a colour; empty if there are none.
     empty: &'static str,
 }
 
-/// The whole page.
-pub(super) fn html(difference: &Difference, sides: &Sides) -> Result<String, askama::Error> {
+/// The page.
+pub(crate) fn html(difference: &Difference, sides: &Sides) -> Result<String, askama::Error> {
     let unequal = unequal(difference);
-    let pictured = &unequal[..unequal.len().min(PICTURED)];
-    let most = most_across(pictured);
+    let pictured = &unequal[..unequal.len().min(MAX_PICTURED_CHANNELS)];
+    let max_side = max_picture_side(pictured);
     let equal = difference.channels.iter().filter(|channel| channel.unequal == 0);
     let more = unequal.len() - pictured.len();
     let headline = headline(difference);
@@ -102,28 +109,29 @@ pub(super) fn html(difference: &Difference, sides: &Sides) -> Result<String, ask
             .filter(|(_, keys)| !keys.is_empty())
             .collect(),
         rulings: rulings(difference).into_iter().filter(|line| !line.is_empty()).collect(),
-        channels: pictured.iter().map(|channel| section(channel, sides, most)).collect(),
+        channels: pictured.iter().map(|channel| section(channel, sides, max_side)).collect(),
         more: if more > 0 { counted(more as u64, "more channel", "more channels") } else { String::new() },
     };
     page.render()
 }
 
-/// The most columns and rows of a picture that keep all of them within [`MOST_CELLS`].
-fn most_across(channels: &[&ChannelDifference]) -> u32 {
-    let cells = |most: u32| -> u64 {
+/// The largest side of a picture that keeps all pictures within [`MAX_PICTURE_CELLS`].
+fn max_picture_side(channels: &[&ChannelDifference]) -> u32 {
+    let cells = |max_side: u32| -> u64 {
         let drawn = channels.iter().map(|channel| {
-            let Reduction { columns, rows } = Reduction::to_fit(channel.width, channel.height, most);
+            let Reduction { columns, rows } = Reduction::to_fit(channel.width, channel.height, max_side);
             u64::from(channel.width.div_ceil(columns)) * u64::from(channel.height.div_ceil(rows))
         });
-        3 * drawn.sum::<u64>()
+        PICTURES_PER_CHANNEL * drawn.sum::<u64>()
     };
-    let mut most = MOST_ACROSS;
-    while most > 32 && cells(most) > MOST_CELLS {
-        most /= 2;
+    let mut max_side = MAX_PICTURE_SIDE_CELLS;
+    while max_side > MIN_PICTURE_SIDE_CELLS && cells(max_side) > MAX_PICTURE_CELLS {
+        max_side /= 2;
     }
-    most
+    max_side
 }
 
+/// A channel's line of the table.
 fn row(channel: &ChannelDifference) -> Row {
     let optional = |value: Option<f64>| value.map_or("–".into(), number);
     Row {
@@ -144,9 +152,10 @@ fn row(channel: &ChannelDifference) -> Row {
     }
 }
 
-fn section(channel: &ChannelDifference, sides: &Sides, most: u32) -> Section {
+/// A channel's pictures.
+fn section(channel: &ChannelDifference, sides: &Sides, max_side: u32) -> Section {
     let (width, height) = (channel.width, channel.height);
-    let reduction = Reduction::to_fit(width, height, most);
+    let reduction = Reduction::to_fit(width, height, max_side);
     let (wide, drawn_height) = shape(width, height);
     let values = sides.channels.map(|channels| &channels.by_key[&channel.key].values);
     let mut notes = Vec::new();
@@ -160,8 +169,8 @@ fn section(channel: &ChannelDifference, sides: &Sides, most: u32) -> Section {
         counted(channel.cells(), "cell", "cells"),
         count(channel.unequal)
     );
-    let mut pictures = vec![errors(channel, values, reduction)];
-    pictures.extend(both(channel, sides, values, reduction));
+    let mut pictures = vec![difference_figure(channel, values, reduction)];
+    pictures.extend(side_figures(channel, sides, values, reduction));
     Section {
         key: channel.key.clone(),
         size: format!("{width} × {height}"),
@@ -175,26 +184,26 @@ fn section(channel: &ChannelDifference, sides: &Sides, most: u32) -> Section {
     }
 }
 
-/// The heat map of |difference|.
-fn errors(channel: &ChannelDifference, [a, b]: [&Values; 2], reduction: Reduction) -> Figure {
+/// The heat map of |B - A|.
+fn difference_figure(channel: &ChannelDifference, [a, b]: [&Values; 2], reduction: Reduction) -> Figure {
     let (width, height) = a.size();
     let cells = width as usize * height as usize;
-    let wholes = channel.storage == Storage::Whole;
-    let incomparable = |index: usize| match differs(a.real(index), b.real(index)) {
-        Differs::Incomparable => true,
-        Differs::By(_) => wholes,
-        Differs::Same => false,
+    let is_whole = channel.storage == Storage::Whole;
+    let incomparable = |index: usize| match compare_numbers(a.real(index), b.real(index)) {
+        Comparison::Incomparable => true,
+        Comparison::Apart(_) => is_whole,
+        Comparison::Equal => false,
     };
-    let error = |index: usize| match differs(a.real(index), b.real(index)) {
-        Differs::By(by) if by.is_finite() => Some(by),
-        Differs::Same if a.real(index).is_finite() => Some(0.0),
+    let difference = |index: usize| match compare_numbers(a.real(index), b.real(index)) {
+        Comparison::Apart(difference) if difference.is_finite() => Some(difference),
+        Comparison::Equal if a.real(index).is_finite() => Some(0.0),
         _ => None,
     };
-    let errors: Vec<Maybe<f64>> = (0..cells).map(|index| error(index).into()).collect();
-    // How far apart whole numbers are means nothing, and where all numbers are the same nothing has a size.
-    let scale = Scale::from_zero(errors.iter().filter_map(|cell| cell.get()));
-    let scale = scale.filter(|scale| !wholes && scale.high > 0.0);
-    let image = Image::from_cells(width, height, errors);
+    let differences: Vec<Maybe<f64>> = (0..cells).map(|index| difference(index).into()).collect();
+    // No scale for whole numbers, whose differences have no meaning, and none if all differences are 0.
+    let scale = Scale::from_zero(differences.iter().filter_map(|cell| cell.get()));
+    let scale = scale.filter(|scale| !is_whole && scale.high > 0.0);
+    let image = Image::from_cells(width, height, differences);
     let at = |i: u32, j: u32| incomparable(j as usize * width as usize + i as usize);
     let drawn = scale.unwrap_or(Scale::linear(0.0, f64::INFINITY));
     let picture = Picture::of_errors(&image, at, drawn, reduction);
@@ -208,7 +217,7 @@ fn errors(channel: &ChannelDifference, [a, b]: [&Values; 2], reduction: Reductio
         gradient: ColourMap::Sequential.css(),
         ticks: scale.map_or(Vec::new(), |scale| scale.ticks(5)),
         label: format!("difference{unit} (even steps of its root)"),
-        one_sided: match (wholes, channel.incomparable) {
+        one_sided: match (is_whole, channel.incomparable) {
             (true, _) => "not the same",
             (false, 0) => "",
             _ => "NaN or infinite on one side",
@@ -217,8 +226,8 @@ fn errors(channel: &ChannelDifference, [a, b]: [&Values; 2], reduction: Reductio
     }
 }
 
-/// A and B on one scale.
-fn both(
+/// A and B on the same scale.
+fn side_figures(
     channel: &ChannelDifference,
     sides: &Sides,
     values: [&Values; 2],
@@ -227,8 +236,8 @@ fn both(
     let images = values.map(|values| {
         let (width, height) = values.size();
         let cells = 0..width as usize * height as usize;
-        let wholes = matches!(values, Values::Wholes(_));
-        let shown = |value: f64| value.is_finite() && !(wholes && value == f64::from(u32::MAX));
+        let is_whole = matches!(values, Values::Wholes(_));
+        let shown = |value: f64| value.is_finite() && !(is_whole && value == f64::from(u32::MAX));
         let cells = cells.map(|index| Some(values.real(index)).filter(|&value| shown(value)).into());
         Image::from_cells(width, height, cells.collect())
     });
@@ -254,6 +263,7 @@ fn both(
     [figure(0), figure(1)]
 }
 
+/// Whether a cell has no value.
 fn any_empty(image: &Image<Maybe<f64>>) -> bool {
     image.cells().iter().any(|cell| cell.get().is_none())
 }

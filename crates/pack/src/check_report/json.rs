@@ -1,0 +1,74 @@
+//! `check.json`: a check for programs.
+
+use raypencil_judge::{
+    CHECK_CLASSES, Item, ItemTally, Largest, SensorResult, class_counts_json, key_of, unit_of,
+};
+use serde_json::{Value, json};
+
+use crate::check::Checked;
+use crate::check_report::verdict::{arithmetic, verdict};
+
+/// Number of the format. It grows when a key changes its meaning or goes away.
+const FORMAT: u32 = 1;
+
+/// The JSON document. Its schema is `docs/formats/check.schema.json`.
+pub fn check_json(checked: &Checked) -> String {
+    let Checked { subject, recorded, check, is_blind } = checked;
+    let model = subject.scene.flux_model();
+    let largest = |largest: &Option<Largest>| {
+        largest.as_ref().map(|Largest { value, place, ruling }| {
+            json!({
+                "value": value.is_finite().then_some(*value),
+                "sensor": place.sensor.to_string(), "i": place.i, "j": place.j,
+                "ruling": ruling,
+                "probe": checked.repro(*place),
+            })
+        })
+    };
+    let quantity_json = |(item, tally): (&Item, &ItemTally)| {
+        json!({
+            "quantity": key_of(model, *item),
+            "unit": unit_of(model, *item),
+            "compared": tally.compared(),
+            "classes": class_counts_json(&tally.by_class, &CHECK_CLASSES),
+            "not_compared": tally.not_compared,
+            "worst_ulp": largest(&tally.worst_ulps),
+            "worst_error": largest(&tally.worst_error),
+            "worst_ratio": largest(&tally.worst_ratio),
+        })
+    };
+    let sensor_json = |sensor: &SensorResult| {
+        let wrong = sensor.defects.iter().map(|one| {
+            json!({
+                "i": one.place.i, "j": one.place.j,
+                "quantity": key_of(model, one.item),
+                "what": one.what,
+                "probe": checked.repro(one.place),
+            })
+        });
+        json!({
+            "sensor": sensor.sensor.to_string(),
+            "compared": sensor.compared(),
+            "classes": class_counts_json(&sensor.by_class, &CHECK_CLASSES),
+            "not_compared": sensor.not_compared,
+            "ruled": sensor.judged,
+            "quantities": sensor.items.iter().map(quantity_json).collect::<Vec<_>>(),
+            "first_defects": wrong.collect::<Vec<_>>(),
+        })
+    };
+    let all: [u64; 6] = std::array::from_fn(|k| check.sensors.iter().map(|sensor| sensor.by_class[k]).sum());
+    let document = json!({
+        "format": FORMAT,
+        "version": env!("CARGO_PKG_VERSION"),
+        "verdict": verdict(check),
+        "candidate": recorded.name,
+        "arithmetic": arithmetic(recorded.precision),
+        "scene": { "name": subject.name, "sha256": subject.sha256 },
+        "blind": is_blind,
+        "compared": check.compared(),
+        "classes": class_counts_json(&all, &CHECK_CLASSES),
+        "unknown_channels": recorded.unknown,
+        "sensors": check.sensors.iter().map(sensor_json).collect::<Vec<_>>(),
+    });
+    format!("{document:#}\n")
+}

@@ -1,0 +1,120 @@
+//! A check on one terminal screen.
+
+use std::fmt::Write as _;
+
+use raypencil_judge::{Class, Defect, Largest, name_of, unit_of};
+use raypencil_report::{count, quantity};
+
+use crate::check::Checked;
+use crate::check_report::verdict::{MAX_SHOWN_DEFECTS, arithmetic, verdict};
+
+/// The screen: a table of all quantities, the first defects with their `probe` commands, and the verdict.
+pub fn check_screen(checked: &Checked) -> String {
+    let Checked { subject, recorded, check, is_blind } = checked;
+    let model = subject.scene.flux_model();
+    let blind = if *is_blind { " (blind)" } else { "" };
+    let mut text = format!(
+        "raypencil {}: {} against the answers to {}{blind}, arithmetic {}\n\n",
+        env!("CARGO_PKG_VERSION"),
+        recorded.name,
+        subject.name,
+        arithmetic(recorded.precision)
+    );
+    let heads = [
+        "",
+        "compared",
+        "agree",
+        "tie",
+        "rounding",
+        "defect",
+        "not compared",
+        "ulp",
+        "error",
+        "/bound",
+        "at",
+    ];
+    let mut lines = vec![heads.map(String::from).to_vec()];
+    for (item, tally) in check.totals() {
+        let largest = |largest: &Option<Largest>, unit: &str| {
+            largest.as_ref().map_or("-".into(), |largest| quantity(largest.value, unit))
+        };
+        lines.push(vec![
+            name_of(item),
+            count(tally.compared()),
+            count(tally.of(Class::Agree)),
+            count(tally.of(Class::Tie)),
+            count(tally.of(Class::Rounding)),
+            count(tally.of(Class::Defect)),
+            count(tally.not_compared),
+            largest(&tally.worst_ulps, ""),
+            largest(&tally.worst_error, unit_of(model, item)),
+            largest(&tally.worst_ratio, ""),
+            tally.worst_ratio.as_ref().map_or("-".into(), |largest| {
+                let place = largest.place;
+                format!("{} {},{}", place.sensor, place.i, place.j)
+            }),
+        ]);
+    }
+    text += &aligned(&lines);
+    text.push('\n');
+    for name in &recorded.unknown {
+        let _ = writeln!(text, "Unknown channel, not compared: {name}");
+    }
+    let is_partial = check.totals().values().any(|tally| tally.not_compared > 0);
+    let not_compared: Vec<String> = check
+        .totals()
+        .into_iter()
+        .filter(|(_, tally)| tally.compared() == 0 && tally.not_compared > 0)
+        .map(|(item, _)| name_of(item))
+        .collect();
+    if !not_compared.is_empty() {
+        let _ = writeln!(
+            text,
+            "Not compared, because absent or stored in a type that cannot hold it: {}",
+            not_compared.join(", ")
+        );
+    }
+    let wrong: Vec<&Defect> = check.sensors.iter().flat_map(|sensor| &sensor.defects).collect();
+    for one in wrong.iter().take(MAX_SHOWN_DEFECTS) {
+        let _ = writeln!(text, "{}, {}: {}", one.place, name_of(one.item), one.what);
+        let _ = writeln!(text, "    {}", checked.repro(one.place));
+    }
+    let rays = count(check.compared());
+    let _ = match verdict(check) {
+        "agrees" => writeln!(
+            text,
+            "✓ {rays} rays agree with the exact answers: {} exact, {} tie, {} rounding{}.",
+            count(check.of(Class::Agree)),
+            count(check.of(Class::Tie)),
+            count(check.of(Class::Rounding)),
+            if is_partial { "; nothing is known about what was not compared" } else { "" }
+        ),
+        "defects" => writeln!(
+            text,
+            "✗ {} of {rays} rays are wrong, {} undecided.",
+            count(check.of(Class::Defect)),
+            count(check.of(Class::Undecided))
+        ),
+        _ => writeln!(text, "? Nothing was compared."),
+    };
+    text
+}
+
+/// Lines as columns of text: the first and the last column flush left, the others flush right.
+fn aligned(lines: &[Vec<String>]) -> String {
+    let columns = lines.first().map_or(0, Vec::len);
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for line in lines {
+        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
+            if column == 0 || column + 1 == columns {
+                format!("{cell:<width$}")
+            } else {
+                format!("{cell:>width$}")
+            }
+        });
+        let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
+    }
+    text
+}

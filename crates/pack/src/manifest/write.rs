@@ -1,0 +1,61 @@
+//! Writes a manifest, and removes an earlier pack.
+
+use std::path::Path;
+
+use raypencil_files::{FileError, of_file, write_atomically};
+
+use crate::manifest::document::{FileRole, MANIFEST_NAME, Manifest, ManifestFile, pack_fault};
+use crate::manifest::path::resolve_inside;
+
+impl ManifestFile {
+    /// The entry of an existing file, `path` being relative to `folder`: size and digest, without type and channels.
+    ///
+    /// # Errors
+    /// A path that leads out of the folder; a file that cannot be read.
+    pub fn of(folder: &Path, path: impl Into<String>, role: FileRole) -> Result<Self, FileError> {
+        let path = path.into();
+        let file =
+            resolve_inside(folder, &path).map_err(|fault| pack_fault(&folder.join(MANIFEST_NAME), fault))?;
+        let (bytes, sha256) = of_file(&file).map_err(|error| FileError::io(&file, "read", error))?;
+        Ok(Self { path, role, bytes, sha256, kind: None, shape: None, channels: Vec::new() })
+    }
+}
+
+impl Manifest {
+    /// Writes `manifest.json` into `folder`. The same manifest gives the same bytes.
+    ///
+    /// # Errors
+    /// A manifest that contradicts itself, as [`Manifest::from_bytes`] refuses it; a file that cannot be written.
+    pub fn write(&self, folder: impl AsRef<Path>) -> Result<(), FileError> {
+        let path = folder.as_ref().join(MANIFEST_NAME);
+        self.check_consistency().map_err(|fault| pack_fault(&path, fault))?;
+        let mut text = serde_json::to_vec_pretty(self).expect("JSON of numbers and texts");
+        text.push(b'\n');
+        write_atomically(&path, |file| file.write_all(&text))
+    }
+
+    /// Removes an earlier pack from `folder`: first its manifest, then the files that a readable manifest lists. Files
+    /// out of the folder stay.
+    ///
+    /// # Errors
+    /// A file that cannot be removed.
+    pub fn remove_pack(folder: impl AsRef<Path>) -> Result<(), FileError> {
+        let folder = folder.as_ref();
+        let path = folder.join(MANIFEST_NAME);
+        let earlier = std::fs::read(&path).ok().and_then(|text| serde_json::from_slice::<Self>(&text).ok());
+        let remove = |path: &Path| match std::fs::remove_file(path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                Err(FileError::io(path, "remove", error))
+            }
+            _ => Ok(()),
+        };
+        remove(&path)?;
+        for file in earlier.iter().flat_map(|manifest| &manifest.files) {
+            // A file that no longer exists cannot be resolved, and needs no removal.
+            if let Ok(file) = resolve_inside(folder, &file.path) {
+                remove(&file)?;
+            }
+        }
+        Ok(())
+    }
+}

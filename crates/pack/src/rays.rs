@@ -1,0 +1,40 @@
+//! The rays of a sensor as an NPY array, for programs that read no scene.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use raypencil_files::{FileError, write_npy};
+use raypencil_referee::Referee;
+use raypencil_scene::{Image, Scene, SensorId};
+
+use crate::arrays::channel;
+use crate::manifest::{ChannelType, FileRole, FileType, ManifestFile};
+
+/// Writes origin and direction of each ray: shape (rows, columns, 6), metres in the scene frame, the nearest f64.
+pub(crate) fn write_rays(
+    referee: &Referee<'_>,
+    scene: &Scene,
+    sensor: SensorId,
+    folder: &Path,
+) -> Result<ManifestFile, FileError> {
+    let (width, height) = scene.size(sensor).expect("a sensor of this scene");
+    let ray = |i: u32, j: u32| -> [f64; 6] {
+        let [origin, direction] = referee.ray(sensor, i, j).expect("a cell of this sensor");
+        let part = |k: usize| if k < 3 { origin[k].double } else { direction[k - 3].double };
+        [0, 1, 2, 3, 4, 5].map(part)
+    };
+    let rows = (0..height).into_par_iter();
+    let rays: Vec<[f64; 6]> =
+        rows.flat_map_iter(|j| (0..width).map(move |i| (i, j))).map(|(i, j)| ray(i, j)).collect();
+    let planes: Vec<Image<f64>> =
+        (0..6).map(|k| Image::from_cells(width, height, rays.iter().map(|ray| ray[k]).collect())).collect();
+    let path = format!("rays-{sensor}.npy");
+    write_npy(folder.join(&path), &planes.iter().collect::<Vec<_>>())?;
+    let names = ["origin.X", "origin.Y", "origin.Z", "direction.X", "direction.Y", "direction.Z"];
+    Ok(ManifestFile {
+        kind: Some(FileType::Float64),
+        shape: Some(vec![height, width, 6]),
+        channels: names.map(|name| channel(name, "m", ChannelType::Float64)).to_vec(),
+        ..ManifestFile::of(folder, path, FileRole::Rays)?
+    })
+}

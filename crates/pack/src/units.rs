@@ -1,0 +1,25 @@
+//! Units of channels.
+
+use raypencil_scene::FluxModel;
+
+/// The unit of a flux.
+pub(crate) fn unit_of_flux(model: FluxModel) -> &'static str {
+    match model {
+        FluxModel::Radiometric => "W",
+        FluxModel::Eq1 => "W/m",
+    }
+}
+
+/// The unit of a channel of a scene whose flux model is `model`.
+pub(crate) fn unit_of_channel(channel: &str, model: FluxModel) -> &'static str {
+    let other = model.other();
+    match channel {
+        "range.T" | "depth.Z" | "view.Z" | "P.X" | "P.Y" | "P.Z" => "m",
+        "face.I" | "pixel.I" | "pixel.J" => "index",
+        "margin.landing" => "pixel",
+        name if name.starts_with("margin.") => "cell",
+        name if name.starts_with(&format!("flux.{}.", other.word())) => unit_of_flux(other),
+        name if name.starts_with("flux.") => unit_of_flux(model),
+        _ => "1",
+    }
+}
