@@ -1,4 +1,5 @@
-//! The record of a terrain: counts, worst errors, wrong rays. It has no times, so the same terrain gives the same bytes.
+//! The record of a terrain: counts, worst errors, wrong rays. It has no times, so the same terrain gives the same
+//! bytes.
 
 use raypencil_judge::{Class, ItemTally, Largest, Quantity, SensorResult};
 use serde::{Deserialize, Serialize};

@@ -1,23 +1,29 @@
-//! Thresholds by hand-derived numbers, and what becomes of sides that do not fit together.
+//! Thresholds by hand-derived numbers, sides that do not fit together, and the reports.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use raypencil_diff::*;
+use raypencil_diff::{
+    CellDifference, ChannelDifference, ChannelRuling, RuledCell, Rulings, Sides, Thresholds, diff,
+    diff_screen, write_diff,
+};
 use raypencil_files::{Channel, Channels, Storage, Values};
-use raypencil_scene::Image;
+use raypencil_judge::Class;
+use raypencil_scene::{Image, Place, SensorId, Silent};
 
-/// One row of reals as a file of that storage would hold them.
+/// A channel of one row of reals, as a file of this storage holds them.
 fn reals(storage: Storage, cells: &[f64]) -> Channel {
     let values = Values::Reals(Image::from_cells(cells.len() as u32, 1, cells.to_vec()));
     Channel { file: PathBuf::from("f.exr"), name: "range.T".into(), storage, values }
 }
 
+/// A channel of one row of whole numbers.
 fn wholes(cells: &[u32]) -> Channel {
     let values = Values::Wholes(Image::from_cells(cells.len() as u32, 1, cells.to_vec()));
     Channel { file: PathBuf::from("w.npy"), name: String::new(), storage: Storage::Whole, values }
 }
 
+/// A recording of channels by key.
 fn recording(channels: impl IntoIterator<Item = (&'static str, Channel)>) -> Channels {
     let by_key = channels.into_iter().map(|(key, channel)| (key.to_string(), channel)).collect();
     Channels { by_key, ..Channels::default() }
@@ -29,6 +35,7 @@ fn one(a: Channel, b: Channel, thresholds: &Thresholds) -> ChannelDifference {
     difference.channels.into_iter().next().unwrap()
 }
 
+/// The difference of one channel in single precision.
 fn singles(a: &[f64], b: &[f64], thresholds: &Thresholds) -> ChannelDifference {
     one(reals(Storage::F32, a), reals(Storage::F32, b), thresholds)
 }
@@ -79,7 +86,7 @@ fn ulps_are_those_of_the_coarser_file() {
     let ulps = |a, b| one(reals(a, &[1.0]), reals(b, &[step]), &NONE).largest_ulp.unwrap();
     assert_eq!(ulps(Storage::F32, Storage::F64), 1.0);
     assert_eq!(ulps(Storage::F64, Storage::F64), 536_870_912.0);
-    // Of half precision it is 2^-10 at 1.
+    // In half precision an ulp at 1 is 2^-10.
     assert_eq!(ulps(Storage::F16, Storage::F64), 1.0 / 8192.0);
     let allowed = |a, b| one(reals(a, &[1.0]), reals(b, &[step]), &Thresholds { fail_ulp: 1.0, ..NONE });
     assert!(!allowed(Storage::F32, Storage::F64).fails);
@@ -92,13 +99,13 @@ fn nan_is_nan_and_nothing_else() {
     let all = Thresholds { fail: inf, fail_relative: inf, fail_ulp: inf, ..NONE };
     let same = singles(&[nan, inf, -inf, 0.0], &[nan, inf, -inf, -0.0], &NONE);
     assert_eq!((same.unequal, same.fails, same.worst), (0, false, None));
-    // One number beside them that is finite: the means are over it alone.
+    // The statistics are those of the only finite number.
     assert_eq!((same.largest, same.mean), (Some(0.0), Some(0.0)));
     for (a, b) in [(nan, 1.0), (1.0, nan), (inf, 1.0), (inf, -inf), (nan, inf)] {
         let found = singles(&[1.0, a], &[1.5, b], &all);
         assert_eq!((found.unequal, found.differing, found.incomparable), (2, 1, 1), "{a} {b}");
         assert!(found.fails);
-        // It is looked at before any number.
+        // The incomparable cell is the worst one, before any finite difference.
         assert_eq!(found.worst.unwrap().i, 1);
         assert_eq!(found.largest, Some(0.5));
     }
@@ -116,7 +123,7 @@ fn a_share_of_cells_may_differ_but_none_beyond_the_hard_limit() {
     let hard = |most| Thresholds { fail_percent: 25.0, hard_fail: Some(most), ..NONE };
     assert!(!fails(hard(3.0)));
     assert!(fails(hard(2.9)));
-    // It holds for cells that another threshold allows, too.
+    // The hard limit holds for cells that another threshold allows, too.
     assert!(fails(Thresholds { fail: 5.0, hard_fail: Some(2.9), ..NONE }));
     let nan = singles(&[f64::NAN, 1.0], &[1.0; 2], &hard(1e300));
     assert_eq!((nan.beyond_hard, nan.fails), (1, true));
@@ -129,10 +136,10 @@ fn wholes_are_equal_or_not() {
     assert_eq!((found.differing, found.largest, found.largest_ulp, found.rms), (1, None, None, None));
     assert_eq!(found.worst, Some(CellDifference { i: 1, j: 0, a: 2.0, b: 3.0 }));
     assert!(found.fails);
-    // A share of them may differ: how far is no question.
+    // A share of the cells may differ, by any amount.
     let share = Thresholds { fail_percent: 34.0, ..thresholds };
     assert!(!one(wholes(&[1, 2, 7]), wholes(&[1, 3, 7]), &share).fails);
-    // Beside reals they are reals: truth values as bytes and as an EXR's floats.
+    // Compared with reals they are reals: truth values as bytes and as an EXR's floats.
     let found = one(wholes(&[0, 1]), reals(Storage::F32, &[0.0, 1.0]), &NONE);
     assert_eq!((found.unequal, found.storage), (0, Storage::F32));
 }
@@ -173,21 +180,69 @@ fn the_unit_is_what_either_file_says() {
     assert_eq!(diff(&a, &b, &NONE).unwrap().channels[0].unit, "m");
 }
 
+/// Two recordings: NaN against a number, whole numbers that differ, an equal channel, and a channel on either side
+/// only. The names need escapes in HTML and XML.
+fn two_recordings() -> [Channels; 2] {
+    let a = recording([
+        ("<b>", reals(Storage::F32, &[1.0, f64::NAN, 2.0])),
+        ("face.I", wholes(&[1, 2, u32::MAX])),
+        ("only-a", wholes(&[1])),
+        ("same", wholes(&[1, 1, 1])),
+    ]);
+    let b = recording([
+        ("<b>", reals(Storage::F32, &[1.0, 1.0, 2.5])),
+        ("face.I", wholes(&[1, 3, u32::MAX])),
+        ("only-b", wholes(&[1])),
+        ("same", wholes(&[1, 1, 1])),
+    ]);
+    [a, b]
+}
+
+/// The rulings that a referee might give on [`two_recordings`].
+fn rulings() -> Rulings {
+    let wrong = RuledCell {
+        place: Place { sensor: SensorId::Camera, i: 2, j: 0 },
+        who: "B",
+        what: "range 2.5 m; true 2 m".into(),
+    };
+    let by_class = BTreeMap::from([((Class::Agree, Class::Defect), 1), ((Class::Tie, Class::Agree), 3)]);
+    let ruling = ChannelRuling { by_class, not_judged: 1, wrong: vec![wrong] };
+    Rulings { channels: BTreeMap::from([("<b>".to_string(), ruling)]), not_ruled: vec!["face.I".into()] }
+}
+
+/// The text of an HTML page: without styles, pictures and tags, one line for each piece of text.
+fn text_of_page(html: &str) -> String {
+    let body = html.split_once("</style>").map_or(html, |(_, body)| body);
+    let pieces = body.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text.trim());
+    pieces.filter(|text| !text.is_empty()).collect::<Vec<_>>().join("\n")
+}
+
+/// Compares a report with its snapshot. The version is left out.
+fn assert_report(name: &str, text: &str) {
+    insta::with_settings!({ filters => vec![(r"raypencil \d+\.\d+\.\d+", "raypencil [version]")] }, {
+        insta::assert_snapshot!(name, text);
+    });
+}
+
+#[test]
+fn screens_are_as_the_snapshots_show() {
+    let [a, b] = two_recordings();
+    let sides = Sides { names: ["left", "right"], channels: [&a, &b] };
+    let difference = diff(&a, &b, &NONE).unwrap();
+    let folder = Path::new("out");
+    assert_report("screen_of_a_failure", &diff_screen(&difference, &sides, Some(folder)));
+    assert_report("screen_with_rulings", &diff_screen(&difference.ruled(rulings()), &sides, None));
+    let thresholds =
+        Thresholds { fail_ulp: 4.0, fail_percent: 70.0, hard_fail: None, shared_only: true, ..NONE };
+    let within = diff(&a, &b, &thresholds).unwrap();
+    assert_report("screen_within_thresholds", &diff_screen(&within, &sides, None));
+}
+
 #[test]
 fn a_screen_stays_one_screen() {
-    let many: Vec<(String, Channel)> = (0..60)
-        .map(|k| {
-            (format!("a-folder-with-a-name/channel-{k:02}.and-a-name"), reals(Storage::F64, &[f64::from(k)]))
-        })
-        .collect();
+    let key = |k: u32| format!("a-folder-with-a-name/channel-{k:02}.and-a-name");
     let recording = |shift: f64| Channels {
-        by_key: many
-            .iter()
-            .map(|(key, channel)| {
-                let cell = channel.values.real(0) + shift / 3.0;
-                (key.clone(), reals(Storage::F64, &[cell]))
-            })
-            .collect(),
+        by_key: (0..60).map(|k| (key(k), reals(Storage::F64, &[f64::from(k) + shift / 3.0]))).collect(),
         ..Channels::default()
     };
     let (a, b) = (recording(-1e200), recording(1e-3));
@@ -197,38 +252,35 @@ fn a_screen_stays_one_screen() {
     let screen = diff_screen(&difference, &sides, None);
     assert!(screen.lines().count() <= 40, "{screen}");
     assert!(screen.lines().all(|line| line.chars().count() <= 100), "{screen}");
+    // 60 channels differ, of which 12 are listed.
     assert!(screen.contains("and 48 channels that are not the same"), "{screen}");
     assert!(screen.contains("FAIL 60 of 60 channels differ."), "{screen}");
+    assert_report("screen_of_many_channels", &screen);
     let same = diff_screen(&diff(&a, &a, &NONE).unwrap(), &sides, None);
     assert!(same.contains("PASS 60 channels compared, the same in every cell."), "{same}");
     assert!(same.contains("Allowed: no difference."), "{same}");
+    assert_report("screen_of_equal_recordings", &same);
 }
 
 #[test]
-fn a_folder_is_complete_and_its_page_escapes_names() {
-    let a = recording([
-        ("<b>", reals(Storage::F32, &[1.0, f64::NAN, 2.0])),
-        ("face.I", wholes(&[1, 2, u32::MAX])),
-        ("same", wholes(&[1, 1, 1])),
-    ]);
-    let b = recording([
-        ("<b>", reals(Storage::F32, &[1.0, 1.0, 2.5])),
-        ("face.I", wholes(&[1, 3, u32::MAX])),
-        ("same", wholes(&[1, 1, 1])),
-    ]);
-    let difference = diff(&a, &b, &NONE).unwrap();
+fn a_folder_is_complete_and_its_files_escape_names() {
+    let [a, b] = two_recordings();
+    let difference = diff(&a, &b, &NONE).unwrap().ruled(rulings());
     let sides = Sides { names: ["left & <right>", "b"], channels: [&a, &b] };
     let folder = tempfile::tempdir().unwrap();
-    let written = write_diff(&difference, &sides, folder.path(), &raypencil_scene::Silent).unwrap();
+    let written = write_diff(&difference, &sides, folder.path(), &Silent).unwrap();
     let html = std::fs::read_to_string(&written.report).unwrap();
     assert!(html.contains("<h3>&#60;b&#62; "), "names are escaped");
-    assert!(html.contains("left &#38; &#60;right&#62;"), "{}", &html[..2000]);
+    assert!(html.contains("left &#38; &#60;right&#62;"), "names of sides are escaped");
     // Three pictures of each of two channels.
     assert_eq!(html.matches("data:image/png;base64,").count(), 6);
-    assert!(!html.contains("http://") && !html.contains("src=\"/"), "links to nothing");
+    assert!(!html.contains("http://") && !html.contains("src=\"/"), "the page has no links");
     assert!(html.contains("NaN or infinite on one side") && html.contains("not the same"));
+    assert_report("text_of_the_page", &text_of_page(&html));
     let junit = std::fs::read_to_string(&written.junit).unwrap();
-    assert!(junit.contains("failures=\"2\"") && junit.contains("tests=\"3\""), "{junit}");
+    // Three channels on both sides and one on each side only; the equal one does not fail.
+    assert!(junit.contains("failures=\"4\"") && junit.contains("tests=\"5\""), "{junit}");
+    assert_report("junit", &junit);
     let summary: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(&written.summary).unwrap()).unwrap();
     assert_eq!(summary["verdict"], "differs");

@@ -32,7 +32,8 @@ pub(super) fn keep_nearest(reducer: &mut Reducer<'_>, count: usize) {
     reducer.try_variant(reducer.best().with_faces(&kept));
 }
 
-/// ddmin over the faces: tries parts, then complements of parts. If none is interesting, it doubles the number of parts.
+/// ddmin over the faces: tries parts, then complements of parts. If none is interesting, it doubles the number of
+/// parts.
 pub(super) fn ddmin(reducer: &mut Reducer<'_>) {
     reducer.stage("fewer faces");
     let whole = reducer.best().clone();

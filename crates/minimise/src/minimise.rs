@@ -1,7 +1,7 @@
 //! The search for the simplest interesting scene: the fewest faces first, then the simplest rig, then short numbers.
 //!
-//! Changes that keep the ray in question come first, smaller sensors among them, since they make every later call of the
-//! test cheap. The search is deterministic if the interestingness test is.
+//! Changes that keep the ray in question come first, smaller sensors among them, since they make every later call of
+//! the test cheap. The search is deterministic if the interestingness test is.
 
 use raypencil_scene::{Place, Progress, Scene};
 

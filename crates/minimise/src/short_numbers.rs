@@ -88,8 +88,8 @@ type SetNumber = dyn Fn(&Reduction, f64) -> Option<Reduction>;
 struct Number {
     get: Box<dyn Fn(&Reduction) -> f64>,
     set: Box<SetNumber>,
-    /// The search shortens the number divided by `unit`. For the extent of a grid it is the number of cells, so that the
-    /// size of a cell becomes short. For other numbers it is 1.
+    /// The search shortens the number divided by `unit`. For the extent of a grid it is the number of cells, so that
+    /// the size of a cell becomes short. For other numbers it is 1.
     unit: f64,
 }
 

@@ -1,4 +1,5 @@
-//! Blind scenes: a scene with every hard case, made from a seed, so that no renderer can have been tuned for its answers.
+//! Blind scenes: a scene with every hard case, made from a seed, so that no renderer can have been tuned for its
+//! answers.
 
 use raypencil_scene::Scene;
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, load_text, scene_sha256};

@@ -20,11 +20,11 @@
 //! use raypencil_pack::{check_pack, check_screen};
 //! use raypencil_scene::Silent;
 //!
-//! // A pack is a perfect candidate: 96 x 72 pixels and 2 x 128 x 4 pencils agree exactly.
+//! // A pack is a perfect candidate: all 96 x 72 + 2 x 128 x 4 = 7936 rays agree exactly.
 //! let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids");
 //! let checked = check_pack(&pack, &pack, None, &Silent)?;
 //! assert_eq!(checked.check.compared(), 96 * 72 + 2 * 128 * 4);
-//! assert!(check_screen(&checked).ends_with("0 tie, 0 rounding.\n"));
+//! assert!(check_screen(&checked).contains("✓ 7,936 rays agree with the exact answers: 7,936 exact"));
 //! # Ok::<(), raypencil_pack::CheckError>(())
 //! ```
 

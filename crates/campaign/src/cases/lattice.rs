@@ -72,8 +72,8 @@ pub struct Lattice {
     falling: Vec<bool>,
 }
 
-/// A lattice in front of a camera of `size` x `size` pixels that is turned by the quaternion (1, 2, 3, 4) / sqrt 30. Each
-/// ray passes a vertex, an edge or a diagonal at a distance of about 1e-16 of its own length.
+/// A lattice in front of a camera of `size` x `size` pixels that is turned by the quaternion (1, 2, 3, 4) / sqrt 30.
+/// Each ray passes a vertex, an edge or a diagonal at a distance of about 1e-16 of its own length.
 ///
 /// # Panics
 /// If `size` is even.

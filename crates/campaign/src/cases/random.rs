@@ -137,8 +137,8 @@ pub fn grounds() -> impl Strategy<Value = RandomGround> {
     })
 }
 
-/// Placements 1 mm to 16 m away from a vertex, mostly above it. Three of five look forward and down as a rover does; the
-/// others look anywhere.
+/// Placements 1 mm to 16 m away from a vertex, mostly above it. Three of five look forward and down as a rover does;
+/// the others look anywhere.
 fn placements() -> impl Strategy<Value = SensorPlacement> {
     let offset = (unit_vector(), powers_of_ten(-3.0, 1.2), prop::bool::weighted(0.7)).prop_map(
         |(mut direction, distance, above)| {
@@ -166,8 +166,8 @@ fn placements() -> impl Strategy<Value = SensorPlacement> {
     })
 }
 
-/// Small cameras: fields of view of 2 to 150 degrees across, focal lengths of 1 mm to 0.5 m, pixels that are not square,
-/// maximum ranges of 0.3 m to 1 km, the principal point in the image or up to a fifth of it outside.
+/// Small cameras: fields of view of 2 to 150 degrees across, focal lengths of 1 mm to 0.5 m, pixels that are not
+/// square, maximum ranges of 0.3 m to 1 km, the principal point in the image or up to a fifth of it outside.
 fn cameras() -> impl Strategy<Value = Camera> {
     let size = prop_oneof![Just((96, 64)), Just((41, 97)), Just((7, 301)), Just((1, 1))];
     let principal_point = prop::array::uniform2(-0.2..1.2);
@@ -269,8 +269,8 @@ pub fn mars_cases() -> impl Strategy<Value = Case> {
     })
 }
 
-/// Cases of a campaign's terrain: 2 to a million faces, and sensors of four times as many columns and rows as in property
-/// tests, over the same fields of view. Every second terrain is Mars-like; the presets take turns.
+/// Cases of a campaign's terrain: 2 to a million faces, and sensors of four times as many columns and rows as in
+/// property tests, over the same fields of view. Every second terrain is Mars-like; the presets take turns.
 pub fn campaign_cases(terrain: u64) -> BoxedStrategy<Case> {
     let cases = prop_oneof![2 => lit_cases(), 1 => cases()];
     if terrain.is_multiple_of(2) {

@@ -1,0 +1,77 @@
+//! The reports of a campaign: the summary against its schema, and the screen.
+
+use raypencil_campaign::{
+    Campaign, Merged, PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay,
+    campaign_json, campaign_screen, terrain,
+};
+use raypencil_judge::Quantity;
+use raypencil_tests::schema::schema_faults;
+use serde_json::Value;
+
+/// A wrong ray.
+fn wrong_ray() -> WrongRay {
+    WrongRay { sensor: "beam-0".into(), i: 3, j: 1, quantity: Quantity::Range, what: "1 m and 2 m".into() }
+}
+
+/// A campaign of two terrains with made-up numbers.
+fn made_up(by_class: [u64; 6], wrong: Vec<WrongRay>) -> Merged {
+    let worst = |value: f64, i| Some(WorstRecord { value: Some(value), sensor: "camera".into(), i, j: 2 });
+    let part = |part: PartName, i| PartRecord {
+        part,
+        compared: by_class.iter().sum(),
+        by_class,
+        not_compared: 0,
+        judged: 12,
+        quantities: vec![QuantityRecord {
+            quantity: Quantity::Range,
+            by_class,
+            not_compared: 0,
+            worst_error: worst(f64::from(i) * 1e-9, i),
+            worst_ratio: worst(f64::from(i) / 16.0, i),
+        }],
+        wrong: wrong.clone(),
+    };
+    let record = |terrain: u64| TerrainRecord {
+        terrain,
+        faces: 1000 + terrain,
+        parts: PartName::ALL.into_iter().zip(1..).map(|(name, i)| part(name, i)).collect(),
+    };
+    let campaign = Campaign { version: "1.2.3".into(), ..Campaign::new(5, 2) };
+    Merged { campaign, terrains: vec![record(0), record(1)] }
+}
+
+#[test]
+fn screens_are_as_the_snapshots_show() {
+    insta::assert_snapshot!(
+        "screen_without_defects",
+        campaign_screen(&made_up([990, 6, 4, 0, 0, 0], Vec::new()))
+    );
+    let with_defects = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
+    insta::assert_snapshot!("screen_with_defects", campaign_screen(&with_defects));
+}
+
+#[test]
+fn counts_add_up_over_terrains_and_scenes() {
+    // Two terrains of four scenes of 1000 rays.
+    let merged = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
+    assert_eq!((merged.compared(), merged.passes()), (2 * 4 * 1000, false));
+    assert!(made_up([1000, 0, 0, 0, 0, 0], Vec::new()).passes());
+    assert!(!made_up([0; 6], Vec::new()).passes());
+}
+
+#[test]
+fn the_summary_keeps_to_its_schema() {
+    let campaign = Campaign::new(5, 1);
+    let mut record = terrain(&campaign, 0, None).unwrap();
+    record.parts[0].wrong.push(wrong_ray());
+    let merged = Merged { campaign, terrains: vec![record] };
+    let schema: Value =
+        serde_json::from_str(include_str!("../../../docs/formats/campaign.schema.json")).unwrap();
+    let mut summary: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
+    assert_eq!(schema_faults(&schema, &summary), [""; 0]);
+    // The schema finds a missing key and a surplus one.
+    let total = summary["parts"]["own"].as_object_mut().unwrap();
+    total.remove("judged");
+    total.insert("surplus".into(), Value::Null);
+    assert_eq!(schema_faults(&schema, &summary).len(), 2);
+}
