@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use crate::dem::blocks::Blocks;
 use crate::dem::georeference::Placement;
 use crate::dem::tags::Tags;
-use raypencil_files::{Fault, FileError, Sha, sha_of_file};
+use raypencil_files::{Fault, FileError, Sha256Digest, file_sha256};
 use raypencil_scene::{Material, Mesh};
 use raypencil_terrain::{Ground, HeightGrid, indices_within, simplify};
 
@@ -108,16 +108,16 @@ pub fn load(
     window: Option<[f64; 4]>,
     max_error: Option<f64>,
     reflectivity: f64,
-) -> Result<(Mesh, Sha), FileError> {
+) -> Result<(Mesh, Sha256Digest), FileError> {
     let mesh = read_dem(path, window)?.mesh(max_error, reflectivity)?;
-    let (_, sha) = sha_of_file(path).map_err(|error| FileError::io(path, "read", error))?;
+    let (_, sha) = file_sha256(path).map_err(|error| FileError::io(path, "read", error))?;
     Ok((mesh, sha))
 }
 
 /// All posts of an elevation model, and the digest of its file.
-pub fn posts(path: &Path) -> Result<(HeightGrid, Sha), FileError> {
+pub fn posts(path: &Path) -> Result<(HeightGrid, Sha256Digest), FileError> {
     let posts = read_dem(path, None)?.posts;
-    let (_, sha) = sha_of_file(path).map_err(|error| FileError::io(path, "read", error))?;
+    let (_, sha) = file_sha256(path).map_err(|error| FileError::io(path, "read", error))?;
     Ok((posts, sha))
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::gltf::LARGEST_FILE;
 use raypencil_files::bytes;
-use raypencil_files::{Fault, Sha, sha};
+use raypencil_files::{Fault, Sha256Digest, sha256};
 
 /// Buffers, loaded when they are first needed: textures and animations never are.
 pub(crate) struct Buffers<'a> {
@@ -17,7 +17,7 @@ pub(crate) struct Buffers<'a> {
     folder: &'a Path,
     bin: Option<&'a [u8]>,
     loaded: BTreeMap<usize, Cow<'a, [u8]>>,
-    external: BTreeMap<usize, Sha>,
+    external: BTreeMap<usize, Sha256Digest>,
     external_bytes: u64,
 }
 
@@ -28,7 +28,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// The digests of the files that were read, in the order of their buffers.
-    pub(super) fn digests(&self) -> impl Iterator<Item = Sha> + '_ {
+    pub(super) fn digests(&self) -> impl Iterator<Item = Sha256Digest> + '_ {
         self.external.values().copied()
     }
 
@@ -111,7 +111,7 @@ impl<'a> Buffers<'a> {
         let bytes = bytes::read_file(&path, LARGEST_FILE - self.external_bytes)
             .map_err(|error| refuse(&format!("cannot be read: {error}")))?;
         self.external_bytes += bytes.len() as u64;
-        self.external.insert(index, sha(&bytes));
+        self.external.insert(index, sha256(&bytes));
         Ok(bytes)
     }
 }

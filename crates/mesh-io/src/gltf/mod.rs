@@ -21,7 +21,7 @@ use std::path::Path;
 
 use crate::gltf::buffers::Buffers;
 use raypencil_files::bytes;
-use raypencil_files::{Fault, FileError, Sha, sha};
+use raypencil_files::{Fault, FileError, Sha256Digest, sha256};
 use raypencil_scene::{Material, Mesh};
 
 /// Reflectivity of ground that brings none of its own. CHOICE: bright Martian dust reflects about this much
@@ -75,10 +75,10 @@ pub enum Vertices {
 }
 
 /// The mesh of a file, and the digests of the file and of the buffers beside it.
-pub fn read(path: &Path, reflectivity: f64, kind: Vertices) -> Result<(Mesh, Vec<Sha>), FileError> {
+pub fn read(path: &Path, reflectivity: f64, kind: Vertices) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
     let bytes = bytes::read_file(path, LARGEST_FILE).map_err(|error| FileError::io(path, "read", error))?;
     let (mesh, external) = parse(&bytes, path, reflectivity, kind)?;
-    Ok((mesh, std::iter::once(sha(&bytes)).chain(external).collect()))
+    Ok((mesh, std::iter::once(sha256(&bytes)).chain(external).collect()))
 }
 
 fn parse(
@@ -86,7 +86,7 @@ fn parse(
     file: &Path,
     reflectivity: f64,
     kind: Vertices,
-) -> Result<(Mesh, Vec<Sha>), FileError> {
+) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let unfit = |fault: Fault| FileError::Gltf(fault.in_file(file));
     let container = container::split(bytes).map_err(unfit)?;

@@ -1,6 +1,6 @@
 //! OpenEXR: what is written is read back, by our names and conventions; what is malformed is refused.
 
-use exr::prelude::{
+use ::exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, IntegerBounds,
     Layer, LayerAttributes, LineOrder, SmallVec, Vec2, WritableImage, f16,
 };
@@ -301,7 +301,7 @@ fn sizes_windows_and_parts_that_do_not_fit_are_refused() {
 
     let layers: SmallVec<[_; 2]> =
         ["left", "right"].into_iter().map(|name| layer(LayerAttributes::named(name))).collect();
-    let attributes = exr::prelude::ImageAttributes::new(IntegerBounds::from_dimensions((37, 20)));
+    let attributes = ::exr::prelude::ImageAttributes::new(IntegerBounds::from_dimensions((37, 20)));
     ExrImage::from_layers(attributes, layers).write().to_file(&path).unwrap();
     let expected = "header: 2 parts; expected one part: split multi-part files first";
     assert_eq!(refusal(&path, &Limits::default()), expected);

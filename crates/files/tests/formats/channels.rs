@@ -1,6 +1,6 @@
 //! Recordings: which files are read, under which keys, and what contradicts itself.
 
-use exr::prelude::{
+use ::exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes, SmallVec,
     WritableImage, f16,
 };
