@@ -19,8 +19,8 @@ use crate::values::{Array, Storage, Values};
 /// together.
 ///
 /// # Errors
-/// Names the file and the place in it. Two files that contradict each other are both named, with the first cell in which
-/// they do.
+/// Names the file and the place in it. Two files that contradict each other are both named, with the first cell in
+/// which they do.
 ///
 /// ```
 /// use raypencil_files::{Limits, Storage, create_folder, read_channels, write_npy, write_pfm};

@@ -147,8 +147,8 @@ fn check_claims(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(),
 
 /// Upper bound of the bytes of cells that one byte of the file can hold; `None` for lossy compressions.
 ///
-/// CHOICE: lossy files are refused. Maps are compared to the last bit, which a lossy file no longer has. The decoders of
-/// B44 and DWA also allocate memory by unchecked numbers.
+/// CHOICE: lossy files are refused. Maps are compared to the last bit, which a lossy file no longer has. The decoders
+/// of B44 and DWA also allocate memory by unchecked numbers.
 fn max_expansion(compression: Compression) -> Option<u64> {
     match compression {
         Compression::Uncompressed => Some(1),

@@ -138,8 +138,8 @@ impl Blocks {
                 return Err(Fault::new(tag_name(tag), found, expected));
             }
         }
-        // A deflate code of two bits stands for at most 258 bytes: 1032. An LZW code of at least nine bits stands for at
-        // most as many bytes as there are codes: below 4096. PackBits makes 128 bytes of two: 64.
+        // A deflate code of two bits stands for at most 258 bytes: 1032. An LZW code of at least nine bits stands for
+        // at most as many bytes as there are codes: below 4096. PackBits makes 128 bytes of two: 64.
         let expansion = match compression {
             1 => 1,
             5 => 4096,
@@ -151,7 +151,8 @@ impl Blocks {
         Ok(Self { width, height, sample, kind, block, across, offsets, byte_counts, expansion })
     }
 
-    /// Whether each of `count` blocks, from block `first` of the file on, has samples. A block of 0 bytes was not written.
+    /// Whether each of `count` blocks, from block `first` of the file on, has samples. A block of 0 bytes was not
+    /// written.
     ///
     /// # Errors
     /// A block that does not lie within the file, or is too short for its samples.

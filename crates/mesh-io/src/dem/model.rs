@@ -48,8 +48,8 @@ impl Dem {
     /// Mesh of [`Dem::ground`].
     ///
     /// # Errors
-    /// A `max_error` outside 1e-6 to 1e6 m; no cell with four known posts; a reflectivity outside 0 to 1; posts that single
-    /// precision cannot hold apart, because they are too close together or too far from the scene origin.
+    /// A `max_error` outside 1e-6 to 1e6 m; no cell with four known posts; a reflectivity outside 0 to 1; posts that
+    /// single precision cannot hold apart, because they are too close together or too far from the scene origin.
     pub fn mesh(&self, max_error: Option<f64>, reflectivity: f64) -> Result<Mesh, FileError> {
         let unfit = |place: &str, found: String, expected: String| {
             FileError::Dem(Fault::new(place, found, expected).in_file(&self.file))

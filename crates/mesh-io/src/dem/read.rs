@@ -33,8 +33,8 @@ pub const WINDOW_SIDE_RANGE_M: RangeInclusive<f64> = 1e-3..=1e9;
 
 /// Reads the heights of a GeoTIFF: all of them, or those inside a window.
 ///
-/// `window` is x and y of its lower left corner, its width and its height, metres of the map. Posts on its border belong
-/// to it. Only the strips and tiles that it touches are read.
+/// `window` is x and y of its lower left corner, its width and its height, metres of the map. Posts on its border
+/// belong to it. Only the strips and tiles that it touches are read.
 ///
 /// # Errors
 /// Names the file and the tag, strip, tile or pixel that is wrong, what was found there and what was expected.

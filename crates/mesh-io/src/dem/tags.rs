@@ -1,7 +1,7 @@
 //! Tags of a TIFF, checked against the length of the file before memory is allocated. (TIFF 6.0, section 2; BigTIFF)
 //!
-//! The `tiff` crate decodes the samples. It would read these tags too, but it trusts their numbers in sums and products,
-//! and its errors name neither the tag nor the place of the fault.
+//! The `tiff` crate decodes the samples. It would read these tags too, but it trusts their numbers in sums and
+//! products, and its errors name neither the tag nor the place of the fault.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};

@@ -34,8 +34,8 @@ pub(super) fn assemble(
     reflectivity: f64,
     as_is: bool,
 ) -> Result<Parts, Fault> {
-    // The totals are known before anything is read, so that a small file cannot ask for much memory. The counts of a mesh
-    // are computed once, however often it is drawn.
+    // The totals are known before anything is read, so that a small file cannot ask for much memory. The counts of a
+    // mesh are computed once, however often it is drawn.
     let mut known = BTreeMap::new();
     let mut totals = [0_u64; 3];
     for node in &nodes {

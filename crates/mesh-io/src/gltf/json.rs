@@ -22,8 +22,8 @@ struct HeadAsset {
     min_version: Option<String>,
 }
 
-/// Maximum number of objects in the JSON. CHOICE: an object of two bytes takes half a kilobyte of memory, and a ground has
-/// a few dozen to a few thousand objects.
+/// Maximum number of objects in the JSON. CHOICE: an object of two bytes takes half a kilobyte of memory, and a ground
+/// has a few dozen to a few thousand objects.
 const MAX_OBJECTS: usize = 1 << 19;
 
 /// Parses the JSON. serde_json refuses nesting deeper than 128, and skips unknown keys without recursion.

@@ -8,8 +8,8 @@ use serde_json::Value;
 
 use crate::gltf::limits::MAX_MATERIALS;
 
-/// Materials of the file, in its order. `json` is the text of `root`; `default` is the reflectivity of materials that state
-/// none.
+/// Materials of the file, in its order. `json` is the text of `root`; `default` is the reflectivity of materials that
+/// state none.
 pub(super) fn read(root: &Root, json: &[u8], default: f64) -> Result<Vec<Material>, Fault> {
     if root.materials.len() > MAX_MATERIALS {
         let found = root.materials.len().to_string();
@@ -50,8 +50,8 @@ fn stated_reflectivity(material: &MaterialJson, place: impl Fn() -> String) -> R
     }
 }
 
-/// Colours of a file as its JSON has them. The `gltf` crate fills in white where a colour is absent, and rounds to single
-/// precision.
+/// Colours of a file as its JSON has them. The `gltf` crate fills in white where a colour is absent, and rounds to
+/// single precision.
 #[derive(Default, Deserialize)]
 struct Colours {
     #[serde(default)]
@@ -80,9 +80,9 @@ impl Colours {
 
     /// Luminance of a material's colour; `None` if it has no colour, or one that a texture multiplies.
     ///
-    /// CHOICE: the luminance of Rec. 709 (ITU-R BT.709), since glTF's colours have its primaries and are linear. Textures
-    /// are not read, so that a colour which a texture multiplies does not describe the ground. White, the default of glTF,
-    /// is not the default here.
+    /// CHOICE: the luminance of Rec. 709 (ITU-R BT.709), since glTF's colours have its primaries and are linear.
+    /// Textures are not read, so that a colour which a texture multiplies does not describe the ground. White, the
+    /// default of glTF, is not the default here.
     fn luminance(&self, index: usize, place: impl Fn() -> String) -> Result<Option<f64>, Fault> {
         let Some(surface) = self.materials.get(index).and_then(|material| material.surface.as_ref()) else {
             return Ok(None);

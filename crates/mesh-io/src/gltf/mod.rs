@@ -1,7 +1,7 @@
 //! Meshes from glTF 2.0 and GLB, and to GLB. Every reference, length and number is checked before it is used.
 //!
-//! The `gltf` crate gives the JSON its types. Its own validation is not used: it stops at the first unknown texture, and
-//! does not look at the numbers in the buffers.
+//! The `gltf` crate gives the JSON its types. Its own validation is not used: it stops at the first unknown texture,
+//! and does not look at the numbers in the buffers.
 
 mod accessors;
 mod assemble;

@@ -71,7 +71,8 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, Fault> {
             }
         }
     }
-    // Each node has at most one parent, so it is in or below a cycle exactly if it is not below a node without a parent.
+    // Each node has at most one parent, so it is in or below a cycle exactly if it is not below a node without a
+    // parent.
     let mut below = vec![false; parents.len()];
     let mut stack: Vec<usize> = (0..parents.len()).filter(|&index| parents[index].is_none()).collect();
     while let Some(index) = stack.pop() {

@@ -51,12 +51,12 @@ pub fn write_glb(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), FileError> {
 
 /// Writes `mesh` as a GLB file for other programs, in which the ground is at its place in the global frame.
 ///
-/// The file is that of [`write_glb`], but its node is translated to the scene origin. [`crate::load_mesh`] gives back the
-/// same mesh bit for bit. `extras`, any JSON object, becomes the node's `extras`; `asset.extras.units` is `metre`.
+/// The file is that of [`write_glb`], but its node is translated to the scene origin. [`crate::load_mesh`] gives back
+/// the same mesh bit for bit. `extras`, any JSON object, becomes the node's `extras`; `asset.extras.units` is `metre`.
 ///
 /// # Errors
-/// As [`write_glb`]; a scene origin that single precision, the precision of glTF, cannot hold. It holds all whole metres
-/// below 2^24.
+/// As [`write_glb`]; a scene origin that single precision, the precision of glTF, cannot hold. It holds all whole
+/// metres below 2^24.
 pub fn write_terrain_glb(path: impl AsRef<Path>, mesh: &Mesh, extras: &Value) -> Result<(), FileError> {
     let path = path.as_ref();
     let bytes = check(mesh)
@@ -113,8 +113,8 @@ fn check(mesh: &Mesh) -> Result<(), Fault> {
 /// [`crate::mesh_of_offsets`] is given the origin and returns the same mesh bit for bit; [`crate::load_mesh`] takes the
 /// vertices for global ones.
 ///
-/// All faces refer to one list of vertices. Each run of faces of one material is a primitive, so that the faces have the
-/// order of [`raypencil_scene::FaceId`]. `extras.reflectivity` of a material is its reflectivity.
+/// All faces refer to one list of vertices. Each run of faces of one material is a primitive, so that the faces have
+/// the order of [`raypencil_scene::FaceId`]. `extras.reflectivity` of a material is its reflectivity.
 ///
 /// # Panics
 /// If the mesh has more faces or vertices than a GLB of 4 GiB can hold; [`write_glb`] refuses such a mesh.
