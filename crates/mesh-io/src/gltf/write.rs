@@ -148,7 +148,7 @@ fn document(mesh: &Mesh) -> Value {
     });
     // glTF has no empty lists: a mesh without materials or faces has no key for them.
     if !mesh.materials().is_empty() {
-        let material = |material: &Material| json!({"name": material.name, "extras": {"reflectivity": material.reflectivity}});
+        let material = |Material { name, reflectivity }: &Material| json!({"name": name, "extras": {"reflectivity": reflectivity}});
         document["materials"] = mesh.materials().iter().map(material).collect();
     }
     if mesh.faces().is_empty() {
