@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::campaign::{Campaign, CampaignError, Shard};
 use crate::record::{TerrainRecord, read_sealed, write_sealed};
 use crate::terrain::terrain;
-use raypencil_files::create;
+use raypencil_files::create_folder;
 
 /// Who wants to hear how a campaign goes.
 pub trait CampaignProgress: Sync {
@@ -44,7 +44,7 @@ pub fn run_shard(
     folder: &Path,
     progress: &dyn CampaignProgress,
 ) -> Result<PathBuf, CampaignError> {
-    create(&folder.join("terrains"))?;
+    create_folder(&folder.join("terrains"))?;
     let result = result_file(folder, shard);
     let numbers: Vec<u64> = shard.terrains(campaign).collect();
     let mut records = Vec::with_capacity(numbers.len());

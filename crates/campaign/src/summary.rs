@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::merge::Merged;
 use crate::record::{PartName, PartRecord, TerrainRecord, WorstRecord, probe_words};
-use raypencil_files::{FolderError, begin};
+use raypencil_files::{FolderError, begin_output_folder};
 use raypencil_judge::{Class, Quantity};
 use raypencil_report::{count, number};
 
@@ -264,7 +264,7 @@ pub fn campaign_screen(merged: &Merged) -> String {
 /// # Errors
 /// Names the file or folder that could not be written, and why.
 pub fn write_campaign(merged: &Merged, folder: &Path) -> Result<PathBuf, FolderError> {
-    let path = begin(folder, "summary.json")?;
+    let path = begin_output_folder(folder, "summary.json")?;
     raypencil_files::write_atomically(&path, |file| file.write_all(campaign_json(merged).as_bytes()))?;
     Ok(path)
 }

@@ -10,7 +10,7 @@ use crate::cases::lattice::{Lattice, Sensor, hash};
 use crate::cases::random::{Case, campaign_cases};
 use crate::cases::{at_origin, scene};
 use crate::record::{PartName, PartRecord, TerrainRecord};
-use raypencil_files::create;
+use raypencil_files::create_folder;
 use raypencil_harness::attribute;
 use raypencil_harness::{
     Contender, Reproducer, contender, first_shown, shows_class, typed_contenders, write_reproducer,
@@ -102,7 +102,7 @@ pub(super) fn leave(
     scene: &Scene,
     contenders: [&Contender; 2],
 ) -> Result<(), CampaignError> {
-    create(folder)?;
+    create_folder(folder)?;
     write_resolved(folder.join(format!("{name}.toml")), scene, &format!("{name}.glb"))?;
     for (class, is) in [(Class::Defect, "differ beyond doubt"), (Class::Undecided, "differ, undecided")] {
         let Some(first) = first_shown(contenders, scene, class, JudgeShare::All) else { continue };

@@ -9,7 +9,7 @@ use raypencil::campaign::{
     Campaign, CampaignProgress, Merged, PartName, Shard, campaign_json, campaign_screen, merge, run_shard,
     scene_of, write_campaign,
 };
-use raypencil::io::{create, write_resolved};
+use raypencil::io::{create_folder, write_resolved};
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun, PartWord};
 use crate::console::{Spinner, say};
@@ -108,7 +108,7 @@ fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
     // How many terrains there are does not change one of them.
     let scene = scene_of(&Campaign::new(command.seed, command.terrain + 1), command.terrain, part);
     let folder = &command.output;
-    create(folder)?;
+    create_folder(folder)?;
     let file = folder.join("scene.toml");
     write_resolved(&file, &scene, "terrain.glb")?;
     drop(spinner);

@@ -7,7 +7,7 @@ use crate::difference::{Difference, Sides};
 use crate::junit;
 use crate::report;
 use crate::summary::diff_json;
-use raypencil_files::{FileError, FolderError, begin, write_atomically};
+use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
 use raypencil_scene::Progress;
 
 /// What [`write_diff`] wrote.
@@ -32,7 +32,7 @@ pub fn write_diff(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<WrittenDiff, FolderError> {
-    let summary = begin(folder, "summary.json")?;
+    let summary = begin_output_folder(folder, "summary.json")?;
     progress.stage("writing the report");
     let write = |name: &str, contents: Result<String, io::Error>| -> Result<PathBuf, FolderError> {
         let path = folder.join(name);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::blind::blind_scene;
 use crate::manifest::{FileRole, Manifest, PackKind};
 use crate::provenance::{ProvenanceError, note, precision_of};
-use raypencil_files::{FileError, Limits, Storage, read_listed};
+use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
 use raypencil_judge::{Check, Item, Quantity, Recorded, RecordingError, Truth, check};
 use raypencil_scene::Place;
 use raypencil_scene::{Precision, Progress, Scene};
@@ -126,7 +126,7 @@ pub fn check_pack(
 fn read_answers<'s>(pack: &Path, manifest: &Manifest, scene: &'s Scene) -> Result<Truth<'s>, CheckError> {
     // What is not listed is none of the pack's.
     let answers = manifest.files.iter().filter(|file| file.role == FileRole::Answers);
-    let channels = read_listed(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
+    let channels = read_listed_channels(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
     let name = manifest.scene.name.clone();
     let recorded = Recorded::of_channels(name, pack, scene, Precision::F64, &channels)?;
     for sensor in scene.sensors() {

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::check::Checked;
-use raypencil_files::{FileError, FolderError, begin, write_atomically};
+use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
 use raypencil_judge::{Check, Class, Item, ItemTally, Largest, SensorCheck, Wrong, key_of, name_of, unit_of};
 use raypencil_report::{count, number, quantity};
 use raypencil_scene::Precision;
@@ -273,7 +273,7 @@ fn status(checked: &Checked, sensor: &SensorCheck, item: Item, tally: &ItemTally
 /// # Errors
 /// Names the file or folder that could not be written, and why.
 pub fn write_check(checked: &Checked, folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
-    let last = begin(folder, "check.json")?;
+    let last = begin_output_folder(folder, "check.json")?;
     let path = folder.join("junit.xml");
     let document = junit(checked).map_err(|error| FileError::Io {
         path: path.clone(),

@@ -19,7 +19,9 @@ use crate::manifest::{
     ManifestSensor, PackKind,
 };
 use crate::margins::SensorMargins;
-use raypencil_files::{Attributes, ExrMap, FileError, FolderError, Raster, create, write_exr, write_npy};
+use raypencil_files::{
+    Attributes, ExrMap, FileError, FolderError, Raster, create_folder, write_exr, write_npy,
+};
 use raypencil_judge::{Answers, Certified, flux_channel, image_channel};
 use raypencil_referee::{Format, Referee};
 use raypencil_scene::{FluxModel, Image, Progress, Scene, SensorId};
@@ -67,7 +69,7 @@ pub fn write_pack(
         return Err(PackError::Undecided { name: subject.name.clone(), count });
     }
 
-    create(folder)?;
+    create_folder(folder)?;
     Manifest::remove_pack(folder)?;
     progress.stage("writing the scene");
     write_resolved(folder.join("scene.toml"), scene, "terrain.glb")?;
@@ -122,7 +124,7 @@ fn write_answers(
         progress.stage(&format!("{sensor}: margins"));
         let margins = SensorMargins::find(referee, scene, sensor);
         progress.stage(&format!("{sensor}: writing"));
-        create(&folder.join(sensor.to_string()))?;
+        create_folder(&folder.join(sensor.to_string()))?;
         let mut arrays = Arrays::new(folder, sensor);
         arrays.write(&doubles, &margins, model)?;
         files.append(&mut arrays.files);

@@ -2,17 +2,17 @@
 
 use sha2::{Digest, Sha256};
 
-use raypencil_files::{Sha, hex};
+use raypencil_files::{Sha256Digest, hex_digits};
 use raypencil_scene::{Filter, FluxModel, Mesh, Pose, Profile, Scene};
 
 /// The SHA-256 of a resolved scene: of every number that a renderer sees, as little-endian bytes, and of
 /// no name. Two files that resolve to the same numbers have the same digest.
 pub fn scene_sha256(scene: &Scene) -> String {
-    hex(&resolved(scene))
+    hex_digits(&resolved(scene))
 }
 
 /// See [`scene_sha256`].
-pub(crate) fn resolved(scene: &Scene) -> Sha {
+pub(crate) fn resolved(scene: &Scene) -> Sha256Digest {
     let mut hash = Numbers(Sha256::new());
     hash.mesh(scene.mesh());
     let camera = scene.camera();
@@ -56,7 +56,7 @@ pub(crate) fn resolved(scene: &Scene) -> Sha {
 }
 
 /// The SHA-256 of a mesh alone.
-pub(crate) fn mesh(mesh: &Mesh) -> Sha {
+pub(crate) fn mesh(mesh: &Mesh) -> Sha256Digest {
     let mut hash = Numbers(Sha256::new());
     hash.mesh(mesh);
     hash.0.finalize().into()

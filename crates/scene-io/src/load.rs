@@ -13,8 +13,8 @@ use crate::plan::{DemPart, Plan, Terrain};
 use crate::scene_error::SceneIoError;
 use crate::{digest, plan};
 use crate::{resolve, resolved};
-use raypencil_files::{Limits, Sha, npy_from_bytes};
-use raypencil_files::{bytes, combine, sha};
+use raypencil_files::{Limits, Sha256Digest, npy_from_bytes};
+use raypencil_files::{bytes, combined_sha256_hex, sha256};
 use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, Vertices, dem, gltf};
 use raypencil_scene::{Beam, FluxModel, Mesh, Pose, Scene, SceneError};
 use raypencil_sensor::Kernel;
@@ -138,11 +138,11 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish(&source, plan, Vec::new(), None, overrides)
         }
         SceneSource::Gltf(path) => {
-            let (mesh, parts) = gltf::read(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
+            let (mesh, parts) = gltf::read_mesh(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
             finish_alone(&source, Terrain::File(path.clone()), parts, mesh, overrides)
         }
         SceneSource::Dem(path) => {
-            let (mesh, sha) = dem::load(path, None, None, DEFAULT_REFLECTIVITY)?;
+            let (mesh, sha) = dem::read_mesh(path, None, None, DEFAULT_REFLECTIVITY)?;
             let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
             finish_alone(&source, terrain, vec![sha], mesh, overrides)
         }
@@ -175,7 +175,7 @@ fn load_toml(
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let places = Source { file: path, text };
-    let parts = vec![sha(text.as_bytes())];
+    let parts = vec![sha256(text.as_bytes())];
     match places.kind()? {
         Kind::Rig => load_rig(source, &places, parts, overrides),
         Kind::Resolved => load_resolved(source, &places, parts, overrides),
@@ -185,7 +185,7 @@ fn load_toml(
 fn load_rig(
     source: &SceneSource,
     places: &Source,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = parse::parse(places)?;
@@ -199,20 +199,20 @@ fn load_rig(
         Terrain::File(file) => {
             let terrain = terrain_file(places, "file", &["glb", "gltf"], file, &plan.terrain_span)?;
             let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
-            let (mesh, more) = gltf::read(&terrain, reflectivity, Vertices::Global)?;
+            let (mesh, more) = gltf::read_mesh(&terrain, reflectivity, Vertices::Global)?;
             parts.extend(more);
             Some(mesh)
         }
         Terrain::Dem(DemPart { file, window, max_error }) => {
             let terrain = terrain_file(places, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
             let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
-            let (mesh, sha) = dem::load(&terrain, *window, *max_error, reflectivity)?;
+            let (mesh, sha) = dem::read_mesh(&terrain, *window, *max_error, reflectivity)?;
             parts.push(sha);
             Some(mesh)
         }
         Terrain::Mars { ground, coarse: Some((file, span)) } => {
             let coarse = terrain_file(places, "generate.coarse", &["tif", "tiff"], file, span)?;
-            let (posts, sha) = dem::posts(&coarse)?;
+            let (posts, sha) = dem::read_posts(&coarse)?;
             parts.push(sha);
             let ground = MarsGround { coarse: Some(posts), ..(**ground).clone() };
             let unfit = |error: SceneError| {
@@ -264,7 +264,7 @@ fn terrain_file(
 }
 
 /// The kernel of a blur, from the file that a scene file names.
-fn kernel_file(places: &Source, part: &KernelPart) -> Result<(Kernel, Sha), SceneIoError> {
+fn kernel_file(places: &Source, part: &KernelPart) -> Result<(Kernel, Sha256Digest), SceneIoError> {
     let file = places.file.parent().unwrap_or(Path::new("")).join(&part.file);
     let name = format!("drive.optics.blurs[{}].kernel", part.blur);
     if !file.is_file() {
@@ -290,14 +290,14 @@ fn kernel_file(places: &Source, part: &KernelPart) -> Result<(Kernel, Sha), Scen
         let SceneError { field, value, expected } = error;
         places.error(part.span.clone(), format!("`{name}`: {field} is {value}; expected {expected}"))
     })?;
-    Ok((kernel, sha(&bytes)))
+    Ok((kernel, sha256(&bytes)))
 }
 
 /// A terrain without a scene file: the default rig stands in its middle.
 fn finish_alone(
     source: &SceneSource,
     terrain: Terrain,
-    parts: Vec<Sha>,
+    parts: Vec<Sha256Digest>,
     mesh: Mesh,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
@@ -312,7 +312,7 @@ fn finish_alone(
 fn load_resolved(
     source: &SceneSource,
     places: &Source,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let at = overrides.at.map(|[x, y]| ("at", format!("{x},{y}")));
@@ -330,7 +330,7 @@ fn load_resolved(
         &resolved.file.span(),
     )?;
     let vertices = Vertices::OffsetsFrom(resolved.origin);
-    let (mesh, more) = gltf::read(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
+    let (mesh, more) = gltf::read_mesh(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
     parts.extend(more);
     resolved.beams.iter_mut().for_each(|beam| apply_to_beam(overrides, &mut beam.sensor));
     let flux_model = overrides.flux_model.unwrap_or(resolved.flux_model);
@@ -346,7 +346,7 @@ fn load_resolved(
 fn finish(
     source: &SceneSource,
     mut plan: Plan,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     mesh: Option<Mesh>,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
@@ -382,16 +382,16 @@ fn loaded(
     source: &SceneSource,
     scene: Scene,
     vehicle: Pose,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
     drive: Option<DriveSettings>,
 ) -> LoadedScene {
     if *overrides != Overrides::default() && !matches!(source, SceneSource::Builtin(_)) {
-        parts.push(sha(format!("{overrides:?}").as_bytes()));
+        parts.push(sha256(format!("{overrides:?}").as_bytes()));
     }
     LoadedScene {
         name: folder_name(source),
-        source_sha256: combine(&parts),
+        source_sha256: combined_sha256_hex(&parts),
         scene_sha256: scene_sha256(&scene),
         scene,
         vehicle,

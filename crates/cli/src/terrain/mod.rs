@@ -6,8 +6,6 @@ mod inspect;
 
 use std::path::Path;
 
-use raypencil::io::create;
-
 use crate::args::TerrainCommand;
 use crate::{Outcome, Trouble};
 
@@ -22,7 +20,7 @@ pub(crate) fn terrain(command: &TerrainCommand, json: bool) -> Result<Outcome, T
 /// Makes the folder of an output, when there is something to write.
 fn create_folder(output: &Path) -> Result<(), Trouble> {
     match output.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => Ok(create(folder)?),
+        Some(folder) if !folder.as_os_str().is_empty() => Ok(raypencil::io::create_folder(folder)?),
         _ => Ok(()),
     }
 }

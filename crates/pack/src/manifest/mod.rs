@@ -6,7 +6,7 @@ pub(crate) mod verify;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-use raypencil_files::of_file;
+use raypencil_files::file_sha256_hex;
 use raypencil_files::{Fault, FileError, write_atomically};
 
 /// The format of the manifests that this version writes and reads.
@@ -169,7 +169,7 @@ impl ManifestFile {
     pub fn of(folder: &Path, path: impl Into<String>, role: FileRole) -> Result<Self, FileError> {
         let path = path.into();
         let file = verify::inside(folder, &path).map_err(|fault| unfit(&folder.join(FILE_NAME), fault))?;
-        let (bytes, sha256) = of_file(&file).map_err(|error| FileError::io(&file, "read", error))?;
+        let (bytes, sha256) = file_sha256_hex(&file).map_err(|error| FileError::io(&file, "read", error))?;
         Ok(Self { path, role, bytes, sha256, kind: None, shape: None, channels: Vec::new() })
     }
 }

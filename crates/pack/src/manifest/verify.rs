@@ -8,7 +8,7 @@ use crate::manifest::{
     FILE_NAME, FileType, MANIFEST_FORMAT, Manifest, ManifestFile, ManifestSensor, PackKind, unfit,
 };
 use raypencil_files::bytes;
-use raypencil_files::of_file;
+use raypencil_files::file_sha256_hex;
 use raypencil_files::{Fault, FileError};
 
 /// A manifest larger than this is none: 16 MiB.
@@ -192,7 +192,7 @@ pub(super) fn file(folder: &Path, entry: &ManifestFile) -> Result<(), FileError>
         let expected = format!("{} {changed}", entry.bytes);
         return Err(unfit(&path, Fault::new("bytes", metadata.len().to_string(), expected)));
     }
-    let (_, sha256) = of_file(&path).map_err(refused)?;
+    let (_, sha256) = file_sha256_hex(&path).map_err(refused)?;
     match sha256 == entry.sha256 {
         true => Ok(()),
         false => Err(unfit(&path, Fault::new("SHA-256", sha256, format!("{} {changed}", entry.sha256)))),

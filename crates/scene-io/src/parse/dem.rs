@@ -29,16 +29,22 @@ impl Source<'_> {
         }
         if let Some(window) = window {
             let name = "terrain.dem_window_m";
-            if let &[x, y, width, height] = self.list(&window, name, &[4], dem::MAP_M, "metres")? {
+            if let &[x, y, width, height] = self.list(&window, name, &[4], dem::MAP_RANGE_M, "metres")? {
                 for side in [width, height] {
-                    self.check(side, window.span(), name, dem::WINDOW_M, "metres, for a width and a height")?;
+                    self.check(
+                        side,
+                        window.span(),
+                        name,
+                        dem::WINDOW_SIDE_RANGE_M,
+                        "metres, for a width and a height",
+                    )?;
                 }
                 part.window = Some([x, y, width, height]);
             }
         }
         if let Some(max_error) = max_error {
             let value = *max_error.get_ref();
-            self.check(value, max_error.span(), "terrain.dem_max_error_m", dem::MAX_ERROR_M, "metres")?;
+            self.check(value, max_error.span(), "terrain.dem_max_error_m", dem::MAX_ERROR_RANGE_M, "metres")?;
             part.max_error = Some(value);
         }
         Ok(part)
