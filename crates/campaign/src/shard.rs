@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::create;
+use raypencil_files::create_folder;
 use serde::{Deserialize, Serialize};
 
 use crate::error::CampaignError;
@@ -48,7 +48,7 @@ pub fn run_shard(
     folder: &Path,
     progress: &dyn CampaignProgress,
 ) -> Result<PathBuf, CampaignError> {
-    create(&folder.join("terrains"))?;
+    create_folder(&folder.join("terrains"))?;
     let result = result_file(folder, shard);
     let numbers: Vec<u64> = shard.terrains(campaign).collect();
     let mut records = Vec::with_capacity(numbers.len());

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FolderError, begin, write_atomically};
+use raypencil_files::{FolderError, begin_output_folder, write_atomically};
 use raypencil_judge::{COMPARE_CLASSES, class_counts_json};
 use serde_json::{Value, json};
 
@@ -80,7 +80,7 @@ pub fn campaign_json(merged: &Merged) -> String {
 /// # Errors
 /// Names the file or folder that could not be written, and why.
 pub fn write_campaign(merged: &Merged, folder: &Path) -> Result<PathBuf, FolderError> {
-    let path = begin(folder, "summary.json")?;
+    let path = begin_output_folder(folder, "summary.json")?;
     write_atomically(&path, |file| file.write_all(campaign_json(merged).as_bytes()))?;
     Ok(path)
 }

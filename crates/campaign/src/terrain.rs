@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::create;
+use raypencil_files::create_folder;
 use raypencil_harness::{
     Contender, Reproducer, attribute, contender, first_shown, shows_class, typed_contenders, write_reproducer,
 };
@@ -62,7 +62,7 @@ fn write_wrong_scene(
     scene: &Scene,
     contenders: [&Contender; 2],
 ) -> Result<(), CampaignError> {
-    create(folder)?;
+    create_folder(folder)?;
     write_resolved(folder.join(format!("{name}.toml")), scene, &format!("{name}.glb"))?;
     for (class, verb) in [(Class::Defect, "differ beyond doubt"), (Class::Undecided, "differ, undecided")] {
         let Some(first) = first_shown(contenders, scene, class, JudgeShare::All) else { continue };

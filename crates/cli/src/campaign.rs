@@ -9,7 +9,7 @@ use raypencil::campaign::{
     Campaign, CampaignProgress, Merged, Shard, campaign_json, campaign_screen, merge, run_shard, scene_of,
     write_campaign,
 };
-use raypencil::io::{create, write_resolved};
+use raypencil::io::{create_folder, write_resolved};
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, say};
@@ -103,7 +103,7 @@ fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
     // A terrain does not depend on the number of terrains.
     let scene = scene_of(&Campaign::new(command.seed, command.terrain + 1), command.terrain, command.part);
     let folder = &command.output;
-    create(folder)?;
+    create_folder(folder)?;
     let file = folder.join("scene.toml");
     write_resolved(&file, &scene, "terrain.glb")?;
     drop(spinner);

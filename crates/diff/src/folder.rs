@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, FolderError, begin, write_atomically};
+use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
 use raypencil_scene::Progress;
 
 use crate::difference::{Difference, Sides};
@@ -33,7 +33,7 @@ pub fn write_diff(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<WrittenDiff, FolderError> {
-    let summary = begin(folder, "summary.json")?;
+    let summary = begin_output_folder(folder, "summary.json")?;
     progress.stage("writing the report");
     let write = |name: &str, contents: Result<String, io::Error>| -> Result<PathBuf, FolderError> {
         let path = folder.join(name);

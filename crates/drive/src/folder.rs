@@ -14,7 +14,7 @@ use crate::maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
 use crate::page;
 use crate::run::DriveRun;
 use crate::summary::drive_json;
-use raypencil_files::{FileError, FolderError, begin, write_atomically, write_npy};
+use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically, write_npy};
 use raypencil_mesh_io::write_geotiff;
 use raypencil_rover::{ElevationMap, ElevationSource, Label, ObstacleMap, RadialGrid, Vehicle};
 use raypencil_scene::{Image, Pose, Progress};
@@ -42,7 +42,7 @@ pub fn write_drive(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<WrittenDrive, FolderError> {
-    let summary = begin(folder, "summary.json")?;
+    let summary = begin_output_folder(folder, "summary.json")?;
     let mut files = Vec::new();
     let mut write = |name: &str, contents: &[u8]| -> Result<PathBuf, FolderError> {
         let path = folder.join(name);

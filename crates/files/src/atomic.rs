@@ -1,4 +1,4 @@
-//! Writing a file so that nobody ever sees a part of it.
+//! Writing a file so that no reader ever sees a part of it.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -7,11 +7,24 @@ use crate::error::FileError;
 
 /// Writes a file beside `path` and renames it to `path` when it is complete, replacing what was there.
 ///
-/// After an error the old file, if any, is untouched and the partial one is gone. The folder must exist.
-/// There is no `fsync`: the promise is about other readers and about failing writers, not about power cuts.
+/// After an error the old file, if any, is untouched and the partial file is gone. The folder must exist.
+/// There is no `fsync`: the promise holds for other readers and for failing writers, not for power cuts.
 ///
 /// # Errors
-/// What the file system or `write` itself says, with the path.
+/// The error of the file system or of `write`, with the path.
+///
+/// ```
+/// use raypencil_files::write_atomically;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("notes.txt");
+/// write_atomically(&path, |file| writeln!(file, "one line"))?;
+/// // A writer that fails leaves the file as it was.
+/// let failed = write_atomically(&path, |_| Err(std::io::Error::other("no more")));
+/// assert!(failed.is_err());
+/// assert_eq!(std::fs::read(&path)?, b"one line\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write_atomically(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
@@ -25,7 +38,7 @@ pub fn write_atomically(
         };
         let mut builder = tempfile::Builder::new();
         builder.prefix(".raypencil-").suffix(".part");
-        // A temporary file is private by default; the finished one is as readable as any other output.
+        // Temporary files are private by default; the finished file is to be as readable as any other output.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut temporary = builder.tempfile_in(folder)?;

@@ -1,4 +1,4 @@
-//! The error of files: which file, which place in it, what was found, what was expected.
+//! Errors of files: the file, the place in it, what was found and what was expected.
 
 use miette::Diagnostic;
 use std::fmt;
@@ -12,72 +12,77 @@ use raypencil_scene::SceneError;
 #[derive(Debug, Error, Diagnostic)]
 #[non_exhaustive]
 pub enum FileError {
-    /// A place in a glTF or GLB file.
+    /// Wrong contents of a glTF or GLB file.
     #[error("{0}")]
     #[diagnostic(code(raypencil::gltf))]
     Gltf(Box<Problem>),
 
-    /// A place in an elevation model.
+    /// Wrong contents of an elevation model.
     #[error("{0}")]
     #[diagnostic(code(raypencil::dem))]
     Dem(Box<Problem>),
 
-    /// A place in an OpenEXR file.
+    /// Wrong contents of an OpenEXR file.
     #[error("{0}")]
     #[diagnostic(code(raypencil::exr))]
     Exr(Box<Problem>),
 
-    /// A place in an NPY or PFM file.
+    /// Wrong contents of an NPY or PFM file.
     #[error("{0}")]
     #[diagnostic(code(raypencil::array))]
     Array(Box<Problem>),
 
-    /// A recording whose files do not go together, or that has none.
+    /// A recording without maps, or with files that contradict each other.
     #[error("{0}")]
     #[diagnostic(code(raypencil::recording))]
     Recording(Box<Problem>),
 
-    /// A pack that is none, or is not as it was written.
+    /// A folder that is no pack, or a pack whose files have changed.
     #[error("{0}")]
     #[diagnostic(code(raypencil::pack))]
     Pack(Box<Problem>),
 
-    /// The file system refused.
+    /// An error of the file system.
     #[error("{}: cannot {action}: {source}", path.display())]
     #[diagnostic(code(raypencil::io))]
     Io {
         /// The file.
         path: PathBuf,
-        /// What was tried: "read", "write".
+        /// The action that failed: "read", "write".
         action: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
 
-    /// The numbers of a file are fine one by one, but make no scene.
+    /// Numbers that are valid one by one but make no scene.
     #[error("{origin}: {source}")]
     #[diagnostic(code(raypencil::scene))]
     Scene {
         /// The scene's file or name.
         origin: String,
-        /// The field and what is wrong with it.
+        /// The field of the scene, and what is wrong with it.
         source: SceneError,
     },
 }
 
 impl FileError {
-    /// A file system error on `path` while trying to `action`.
+    /// The file system's error `source` when it was asked to `action` ("read", "write") `path`.
     pub fn io(path: &Path, action: &'static str, source: io::Error) -> Self {
         Self::Io { path: path.to_path_buf(), action, source }
     }
+
+    /// A fault of the recording at `path`.
+    pub(crate) fn recording(path: &Path, fault: Fault) -> Self {
+        Self::Recording(fault.in_file(path))
+    }
 }
 
-/// A place in a binary file and what is wrong there.
+/// A fault and the file that it is in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
     /// The file.
     pub file: String,
-    /// Where in the file: `accessor 3`, `node 2 "rock"`, `channel "range.T"`.
+    /// Place in the file: `accessor 3`, `node 2 "rock"`, `channel "range.T"`.
     pub place: String,
     /// What was found there.
     pub found: String,
@@ -91,7 +96,15 @@ impl fmt::Display for Problem {
     }
 }
 
-/// A [`Problem`] whose file is not known yet: what the inner readers return.
+/// A place in a file and what is wrong there; with its file it is a [`Problem`].
+///
+/// ```
+/// use raypencil_files::{Fault, FileError};
+///
+/// let fault = Fault::new("accessor 3", "a stride of 2 bytes", "12 to 252");
+/// let error = FileError::Gltf(fault.in_file("rocks.glb".as_ref()));
+/// assert_eq!(error.to_string(), "rocks.glb: accessor 3: a stride of 2 bytes; expected 12 to 252");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
     place: String,
@@ -100,28 +113,28 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// Names the `place`, what was `found` there and what was `expected`.
+    /// A fault at `place`, where this was `found` and that was `expected`.
     pub fn new(place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> Self {
         Self { place: place.into(), found: found.into(), expected: expected.into() }
     }
 
-    /// Adds the file. What the file itself says is shortened: it may be a name of a million letters.
+    /// Adds the file. Texts are shortened: a name that comes from the file may have a million characters.
     pub fn in_file(self, file: &Path) -> Box<Problem> {
         let [place, found, expected] = [self.place, self.found, self.expected].map(shortened);
         Box::new(Problem { file: file.display().to_string(), place, found, expected })
     }
 }
 
-/// The longest part of a message, letters.
-const LONGEST: usize = 400;
+/// Maximum length of each part of a message, characters.
+const MAX_MESSAGE_CHARS: usize = 400;
 
-/// The start and the end of a text that is too long to read.
+/// A text of at most 400 characters as it is; the start and the end of a longer one.
 pub fn shortened(text: String) -> String {
-    let letters = text.chars().count();
-    if letters <= LONGEST {
+    let count = text.chars().count();
+    if count <= MAX_MESSAGE_CHARS {
         return text;
     }
-    let start: String = text.chars().take(LONGEST / 2).collect();
-    let end: String = text.chars().skip(letters - LONGEST / 2).collect();
+    let start: String = text.chars().take(MAX_MESSAGE_CHARS / 2).collect();
+    let end: String = text.chars().skip(count - MAX_MESSAGE_CHARS / 2).collect();
     format!("{start} ... {end}")
 }

@@ -1,38 +1,57 @@
+//! Output folders: made when they are missing, and marked as complete by the file that is written last.
+
 use std::io;
-use std::path::Path;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::error::FileError;
 
-/// Why the folder of a run could not be made ready, or one of its files not be written.
+/// Why an output folder could not be prepared, or one of its files not be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FolderError {
-    /// The folder itself, or one in it, could not be made.
+    /// The folder, or a folder inside it, could not be created.
     #[error("{}: cannot create the folder: {source}", path.display())]
     Create {
         /// Path of the folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// The file of an earlier run that would mark the folder as complete could not be removed.
+    /// The file that marks an earlier run as complete could not be removed.
     #[error("{}: cannot remove what an earlier run left: {source}", path.display())]
     RemoveEarlier {
         /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// One of the files; the message names it.
+    /// One of the files could not be written; the message names it.
     #[error(transparent)]
     File(#[from] FileError),
 }
 
-/// Makes the folder of a run, and takes away the file of an earlier one that would mark the folder as complete. Its
-/// place is returned: it is to be written last.
-pub fn begin(folder: &Path, last: &str) -> Result<PathBuf, FolderError> {
-    create(folder)?;
+/// Creates the output folder of a run and removes `last`, the file by which an earlier run marked it as complete.
+///
+/// Returns the path of `last`. The caller writes that file after all others, so that a folder that has it is complete.
+///
+/// # Errors
+/// [`FolderError::Create`] or [`FolderError::RemoveEarlier`], with the path.
+///
+/// ```
+/// use raypencil_files::{begin_output_folder, write_atomically};
+///
+/// let parent = tempfile::tempdir()?;
+/// let folder = parent.path().join("out");
+/// let summary = begin_output_folder(&folder, "summary.json")?;
+/// write_atomically(&summary, |file| file.write_all(b"{}"))?;
+///
+/// // A second run begins without the mark of the first.
+/// assert_eq!(begin_output_folder(&folder, "summary.json")?, summary);
+/// assert!(!summary.exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn begin_output_folder(folder: &Path, last: &str) -> Result<PathBuf, FolderError> {
+    create_folder(folder)?;
     let last = folder.join(last);
     match std::fs::remove_file(&last) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
@@ -42,11 +61,11 @@ pub fn begin(folder: &Path, last: &str) -> Result<PathBuf, FolderError> {
     }
 }
 
-/// Makes a folder, and those that it lies in, unless it is there.
+/// Creates a folder and its parents where they are missing.
 ///
 /// # Errors
-/// What the file system says, with the folder.
-pub fn create(folder: &Path) -> Result<(), FolderError> {
+/// [`FolderError::Create`], with the folder.
+pub fn create_folder(folder: &Path) -> Result<(), FolderError> {
     std::fs::create_dir_all(folder)
         .map_err(|source| FolderError::Create { path: folder.to_path_buf(), source })
 }

@@ -1,6 +1,39 @@
-//! Files of numbers: NPY, PFM, OpenEXR, recordings of channels, digests, and folders that are written whole.
+//! Files of numbers, and how they are written: NPY, PFM and OpenEXR, recordings of channels, SHA-256, output folders.
+//!
+//! A file is either written whole or not at all, and the same values give the same bytes on every machine. A reader
+//! checks every size that a header claims against the length of the file and against [`Limits`] before it asks for
+//! memory. An error names the file, the place in it, what was found and what was expected.
+//!
+//! ```text
+//! error                          FileError: the file, the place in it, what was found and what was expected
+//! limits, bytes                  how much a file may ask for, and reading one up to a limit
+//! atomic, folder, sha256         writing a file whole, output folders, digests
+//! values -> shape                cells as a file stores them, and the size that a header claims
+//! npy, pfm                       arrays of NumPy and portable float maps
+//! exr: map -> read, write        named channels and text attributes of an OpenEXR file
+//!      -> sensor_map, returns    the maps of one sensor, and the light that comes back to the camera, as channels
+//! channels: channel -> find,     recordings of any program: the channels of a file or folder by their keys
+//!           merge -> read
+//! ```
+//!
+//! The formats are described in `docs/formats/files.md`. Sources: NumPy Enhancement Proposal 1 (NPY), the OpenEXR file
+//! layout (openexr.com), the PFM format of Paul Debevec's HDR Shop, FIPS 180-4 (SHA-256).
+//!
+//! ```
+//! use raypencil_files::{Limits, Values, read_npy, write_npy};
+//! use raypencil_scene::Image;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("range.npy");
+//! let ranges = Image::from_cells(2, 1, vec![2.5, 1.0 / 3.0]);
+//! write_npy(&path, &[&ranges])?;
+//!
+//! // NPY stores f64 as it is: every bit comes back.
+//! let array = read_npy(&path, &Limits::default())?;
+//! assert_eq!(array.planes, [Values::Reals(ranges)]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-mod array;
 mod atomic;
 pub mod bytes;
 mod channels;
@@ -10,19 +43,21 @@ mod folder;
 mod limits;
 mod npy;
 mod pfm;
-mod sha;
+mod sha256;
+mod shape;
+mod values;
 
-pub use array::{Array, ArrayNumber, Storage, Values};
 pub use atomic::write_atomically;
-pub use channels::{Channel, Channels, read_channels, read_listed};
+pub use channels::{Channel, Channels, read_channels, read_listed_channels};
 pub use error::{Fault, FileError, Problem, shortened};
-
-pub use exr::read::{exr_from_bytes, read_exr};
-pub use exr::write::write_exr;
-pub use exr::{Attributes, ExrMap, Raster, read_exr_map, write_exr_map};
-pub use folder::{FolderError, begin, create};
+pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map};
+pub use folder::{FolderError, begin_output_folder, create_folder};
 pub use limits::Limits;
-pub use npy::write::write_npy;
-pub use npy::{npy_from_bytes, read_npy};
+pub use npy::{ArrayNumber, npy_from_bytes, read_npy, write_npy};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
-pub use sha::{Sha, combine, hex, of_file, sha, sha_of_file};
+pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};
+pub use values::{Array, Storage, Values};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

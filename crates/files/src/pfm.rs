@@ -1,29 +1,35 @@
-//! PFM, the portable float map, to planes and back: `Pf` has one component, `PF` three.
+//! PFM, the portable float map: `Pf` has one component, `PF` three. (Debevec, HDR Shop)
 
 use std::path::Path;
 
-use crate::array::{Array, Shape, Storage, Values};
+use raypencil_scene::Image;
+
 use crate::atomic::write_atomically;
 use crate::bytes;
 use crate::error::{Fault, FileError};
 use crate::limits::Limits;
-use crate::npy::write::common_size;
-use raypencil_scene::Image;
+use crate::shape::{Shape, common_size};
+use crate::values::{Array, Storage, Values};
 
-/// Reads a PFM file. The format has the lowest row first; row 0 of the planes is the one on top, the last in
-/// the file. The sign of the scale tells the order of the bytes.
+/// Maximum length of the header: four words of at most 32 characters, white space between them.
+const MAX_HEADER_BYTES: u64 = 1 << 10;
+
+/// Reads a PFM file.
+///
+/// The lowest row comes first in the file; row 0 of the planes is the top one. The sign of the header's scale gives the
+/// order of the bytes.
 ///
 /// # Errors
-/// Names the file and what is wrong in its header. The size is held against the file's length before memory
-/// is asked for.
+/// Names the file and the fault of its header. The size is compared with the length of the file before memory is
+/// allocated.
 pub fn read_pfm(path: impl AsRef<Path>, limits: &Limits) -> Result<Array, FileError> {
     let path = path.as_ref();
-    let most = limits.bytes.saturating_add(1 << 10);
+    let most = limits.bytes.saturating_add(MAX_HEADER_BYTES);
     let bytes = bytes::read_file(path, most).map_err(|error| FileError::io(path, "read", error))?;
     pfm_from_bytes(&bytes, path, limits)
 }
 
-/// As [`read_pfm`] from the bytes of a file; `file` is for messages.
+/// Reads the bytes of a PFM file as [`read_pfm`] does; `file` is its name in messages.
 ///
 /// # Errors
 /// As [`read_pfm`].
@@ -50,8 +56,8 @@ fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {
     let (columns, rows) = (side(&mut words, "width")?, side(&mut words, "height")?);
     let word = words.next("scale")?;
     let big_endian = match word.parse::<f64>() {
-        // CHOICE: of a scale other than 1 some programs multiply by it, most ignore it. Numbers that mean two
-        // things are not compared.
+        // CHOICE: other scales than 1 are refused. Some programs multiply by the scale, most ignore it: the same
+        // numbers would mean two things.
         Ok(scale) if scale.abs() == 1.0 => scale > 0.0,
         _ => {
             let found = format!("\"{}\"", word.escape_debug());
@@ -61,7 +67,7 @@ fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {
     let numbers = &file[words.at..];
     let shape = Shape { rows, columns, components };
     shape.check(4, numbers.len() as u64, limits)?;
-    // The shape is that of the numbers, so it fits into memory.
+    // The shape has been checked to be that of `numbers`, which are in memory.
     let (columns, rows, components) = (columns as usize, rows as usize, components as usize);
     let plane = |component: usize| {
         let mut cells = Vec::with_capacity(columns * rows);
@@ -78,7 +84,7 @@ fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {
     Ok(Array { storage: Storage::F32, planes: (0..components).map(plane).collect() })
 }
 
-/// The header: words, each followed by white space; just one character of it after the last.
+/// Words of the header, each followed by white space: by a single character of it after the last word.
 struct Words<'a> {
     file: &'a [u8],
     at: usize,
@@ -86,15 +92,16 @@ struct Words<'a> {
 
 impl<'a> Words<'a> {
     fn next(&mut self, name: &'static str) -> Result<&'a str, Fault> {
-        const LONGEST: usize = 32;
+        const MAX_WORD_BYTES: usize = 32;
         let rest = &self.file[self.at..];
-        // Only between words may there be more than one character of white space.
-        let skip = rest.iter().take(LONGEST).take_while(|byte| byte.is_ascii_whitespace()).count();
+        // Before a word there may be more white space than the one character that ended the last.
+        let skip = rest.iter().take(MAX_WORD_BYTES).take_while(|byte| byte.is_ascii_whitespace()).count();
         let word = &rest[skip..];
-        let length = word.iter().take(LONGEST + 1).take_while(|byte| !byte.is_ascii_whitespace()).count();
+        let length =
+            word.iter().take(MAX_WORD_BYTES + 1).take_while(|byte| !byte.is_ascii_whitespace()).count();
         let text = std::str::from_utf8(&word[..length]).ok().filter(|text| !text.is_empty());
         match text {
-            Some(text) if length <= LONGEST && length < word.len() => {
+            Some(text) if length <= MAX_WORD_BYTES && length < word.len() => {
                 self.at += skip + length + 1;
                 Ok(text)
             }
@@ -109,7 +116,20 @@ impl<'a> Words<'a> {
 /// Writes one image as `Pf` or three as `PF`, little endian, scale -1. The same images give the same bytes.
 ///
 /// # Errors
-/// Another number of images, or images of several sizes; what the file system says.
+/// Another number of images, images of several sizes, or an error of the file system, with the path.
+///
+/// ```
+/// use raypencil_files::{Limits, read_pfm, write_pfm};
+/// use raypencil_scene::Image;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("range.pfm");
+/// write_pfm(&path, &[&Image::from_cells(1, 2, vec![7.5_f32, 2.0])])?;
+/// // The lowest row comes first: 2 = 0x40000000, least significant byte first.
+/// assert!(std::fs::read(&path)?.starts_with(b"Pf\n1 2\n-1.0\n\0\0\0\x40"));
+/// assert_eq!(read_pfm(&path, &Limits::default())?.planes[0].real(0), 7.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write_pfm(path: impl AsRef<Path>, planes: &[&Image<f32>]) -> Result<(), FileError> {
     let path = path.as_ref();
     let unfit = |fault: Fault| FileError::Array(fault.in_file(path));

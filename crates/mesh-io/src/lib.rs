@@ -1,9 +1,50 @@
 //! Terrain in files: glTF, GLB and GeoTIFF, in and out.
+//!
+//! A reader checks every reference, length and number of a file before it uses it, and every size against the length of
+//! the file before it asks for memory. An error names the file, the place in it, what was found and what was expected.
+//!
+//! ```text
+//! gltf  limits, container, json               the chunks of a GLB, and its JSON as far as it can be trusted
+//!       buffers -> accessors -> primitives    bytes, typed numbers, triangles
+//!       nodes, materials -> assemble          where each mesh stands, and one list of vertices and faces
+//!       stated_origin -> read                 a mesh with its scene origin
+//!       write                                 a mesh to GLB
+//! dem   tags -> blocks                        tags of a TIFF, and the samples in its strips or tiles
+//!       registration -> georeference          what a pixel is, and where pixels are on the map
+//!       lattice, model -> read                the posts inside a window, and the ground through them
+//!       write                                 a grid of heights to GeoTIFF
+//! ```
+//!
+//! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md`. Sources: glTF 2.0
+//! (Khronos), TIFF 6.0, BigTIFF, GeoTIFF 1.1 (OGC 19-008r4).
+//!
+//! ```
+//! use glam::DVec3;
+//! use raypencil_mesh_io::{load_mesh, write_terrain_glb};
+//! use raypencil_scene::{Material, Mesh};
+//!
+//! // One triangle around (100, 200): its scene origin is a whole metre, its vertices are offsets from there.
+//! let corners = [[100.5, 200.0, 1.0], [101.5, 200.0, 1.0], [100.5, 201.0, 1.0]].map(DVec3::from_array);
+//! let dust = Material { name: "dust".into(), reflectivity: 0.25 };
+//! let mesh = Mesh::from_global(&corners, vec![[0, 1, 2]], vec![0], vec![dust])?;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("terrain.glb");
+//! write_terrain_glb(&path, &mesh, &serde_json::json!({}))?;
+//! // The file states the origin, so that the same mesh comes back bit for bit.
+//! assert_eq!(load_mesh(&path)?, mesh);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod dem;
 pub mod gltf;
 
-pub use dem::write::write_geotiff;
-pub use dem::{Dem, Registration, dem_from_bytes, read_dem};
-pub use gltf::write::{glb_bytes, write_glb, write_terrain_glb};
-pub use gltf::{DEFAULT_REFLECTIVITY, Vertices, load_mesh, mesh_from_bytes, mesh_of_offsets};
+pub use dem::{Dem, Registration, dem_from_bytes, read_dem, write_geotiff};
+pub use gltf::{
+    DEFAULT_REFLECTIVITY, Vertices, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
+    write_terrain_glb,
+};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, Limits, Storage, read_listed};
+use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
 use raypencil_judge::{Check, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
 use raypencil_scene::{Place, Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
@@ -146,7 +146,7 @@ fn read_answers<'s>(
 ) -> Result<GroundTruth<'s>, CheckError> {
     // Only listed files belong to the pack.
     let answers = manifest.files.iter().filter(|file| file.role == FileRole::Answers);
-    let channels = read_listed(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
+    let channels = read_listed_channels(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
     let name = manifest.scene.name.clone();
     let recorded = Recorded::of_channels(name, pack, scene, Precision::F64, &channels)?;
     for sensor in scene.sensors() {

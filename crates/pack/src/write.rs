@@ -12,7 +12,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{Attributes, FileError, FolderError, create};
+use raypencil_files::{Attributes, FileError, FolderError, create_folder};
 use raypencil_judge::Certified;
 use raypencil_referee::{Format, Referee};
 use raypencil_scene::{Progress, Scene, SensorId};
@@ -83,7 +83,7 @@ pub fn write_pack(
         return Err(PackError::Undecided { name: subject.name.clone(), count });
     }
 
-    create(folder)?;
+    create_folder(folder)?;
     Manifest::remove_pack(folder)?;
     progress.stage("writing the scene");
     write_resolved(folder.join("scene.toml"), scene, "terrain.glb")?;
@@ -135,7 +135,7 @@ fn write_answers(
         progress.stage(&format!("{sensor}: margins"));
         let margins = SensorMargins::find(referee, scene, sensor);
         progress.stage(&format!("{sensor}: writing"));
-        create(&folder.join(sensor.to_string()))?;
+        create_folder(&folder.join(sensor.to_string()))?;
         files.extend(ArrayWriter::new(folder, sensor).write(&doubles, &margins, model)?);
         files.push(write_exr_map(&singles, &margins, model, &attributes, sensor, folder)?);
     }

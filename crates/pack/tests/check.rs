@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use raypencil_files::{Limits, Values, read_npy, write_npy};
 use raypencil_harness::contender;
-use raypencil_judge::{Class, Quantity, Recorded, GroundTruth, check};
+use raypencil_judge::{Class, GroundTruth, Quantity, Recorded, check};
 use raypencil_pack::{Checked, check_json, check_pack, check_screen, write_check};
 use raypencil_scene::{Precision, Request, Silent};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
@@ -68,8 +68,9 @@ fn the_json_keeps_to_its_schema() {
     // A report with a defect and an unknown channel.
     checked.check.sensors[0].by_class[Class::Defect as usize] = 1;
     checked.recorded.unknown.push("camera/mine".into());
-    let largest = checked.check.sensors[0].items[&Quantity::Range.into()].ulps.clone().expect("compared");
-    checked.check.sensors[0].defects.push(check::Defect {
+    let largest =
+        checked.check.sensors[0].items[&Quantity::Range.into()].worst_ulps.clone().expect("compared");
+    checked.check.sensors[0].defects.push(raypencil_judge::Defect {
         place: largest.place,
         item: Quantity::Range.into(),
         what: "off".into(),
@@ -88,7 +89,10 @@ fn classes_add_up_and_a_perfect_candidate_has_no_error() {
         for (item, tally) in &sensor.items {
             assert!(tally.compared() <= sensor.compared(), "{item:?}");
             assert!(tally.others.is_empty(), "{item:?}");
-            assert!(tally.error.as_ref().is_none_or(|largest| largest.value == 0.0), "{item:?}: {tally:?}");
+            assert!(
+                tally.worst_error.as_ref().is_none_or(|largest| largest.value == 0.0),
+                "{item:?}: {tally:?}"
+            );
         }
     }
 }
@@ -111,7 +115,7 @@ fn outputs_in_memory_are_judged_in_double_precision() {
         let ratio = |quantity: Quantity| {
             let items = totals.iter().filter(|(item, _)| item.quantity == quantity);
             items
-                .filter_map(|(_, tally)| tally.ratio.as_ref())
+                .filter_map(|(_, tally)| tally.worst_ratio.as_ref())
                 .fold(0.0, |largest: f64, one| largest.max(one.value))
         };
         for quantity in Quantity::ALL {
@@ -130,7 +134,7 @@ fn outputs_in_memory_are_judged_in_double_precision() {
             !matches!(item.quantity, Quantity::Face | Quantity::Pixel | Quantity::Visible)
         });
         let found = check(&truth, &recorded, &Silent);
-        assert!(found.passes(), "{renderer}: {:?}", found.sensors.iter().find_map(|s| s.wrong.first()));
+        assert!(found.passes(), "{renderer}: {:?}", found.sensors.iter().find_map(|s| s.defects.first()));
         // An image that lacks a quarter of one pixel's flux is wrong nevertheless.
         let image = recorded.answers.light[0].image.as_mut().unwrap();
         let at = image.cells().iter().position(|flux| *flux > 0.0).unwrap();

@@ -1,21 +1,57 @@
-//! What reports are made of: text, scales, pictures, plots, drawings.
+//! What reports are made of: numbers as text, tables, pictures, drawings, HTML pages and JUnit documents.
+//!
+//! The crate knows nothing of rays or judgements. The same input gives the same bytes on every machine: PNG pictures
+//! are drawn with a font that is compiled in.
+//!
+//! ```text
+//! text, table                     numbers, times and lists as text, and aligned columns for screens
+//! colour, png                     colours, and PNG in memory
+//! scale -> picture -> plot        ticks at round values, maps as pictures, pictures with axes and rings
+//! paint -> drawing                SVG and PNG of polygons, lines and text
+//! version -> page                 head and end of an HTML page
+//! junit                           test results for continuous integration
+//! ```
+//!
+//! Sources: the colour maps are viridis (van der Walt and Smith) and ColorBrewer's RdBu (Brewer), by `colorous`. SVG is
+//! drawn by `resvg`.
+//!
+//! ```
+//! use raypencil_report::{Align, Table, count, quantity};
+//!
+//! let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
+//! table.row(["", "rays", "error"]);
+//! table.row(["range".to_string(), count(1_081_344), quantity(6.394e-14, "m")]);
+//! // Thousands are separated, numbers have three digits.
+//! assert_eq!(table.lines()[1], "range  1,081,344  6.39e-14 m");
+//! ```
 
 mod colour;
 mod drawing;
-pub mod page;
+mod junit;
+mod page;
 mod paint;
 mod picture;
 mod plot;
+mod png;
 mod scale;
+mod table;
 mod text;
+mod version;
 
 pub use colour::Colour;
 pub use drawing::{Anchor, Drawing, INK, LETTERS, Mark, SOFT};
+pub use junit::{JunitCase, JunitReport, JunitSuite};
 pub use page::{PAGE_END, page_head};
 pub use picture::{ColourMap, Picture, Reduction};
-pub use plot::{Bar, Plot, Ring, cells_axis, reduced_to, shape, stretch};
+pub use plot::{
+    Bar, MAX_PICTURE_CELLS, MAX_PICTURE_SIDE, Plot, Ring, cells_axis, max_side_of_pictures, reduced_to,
+    shape, stretch,
+};
 pub use scale::{Scale, Spread, Tick};
+pub use table::{Align, Table};
 pub use text::{count, counted, list, number, quantity, time};
+pub use version::VERSION;
 
-/// Version of raypencil that a report names.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

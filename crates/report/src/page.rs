@@ -1,19 +1,19 @@
-//! The frame that every HTML report stands in: one file that links to nothing.
+//! Head and end of every HTML report: one file without links to others.
 
-use crate::VERSION;
 use crate::text::escaped;
+use crate::version::VERSION;
 
-/// The style of every report.
+/// CSS of every report.
 const STYLE: &str = include_str!("../templates/style.css");
 
-/// The start of a page, up to and including `<main>`: title, style and the version that wrote it.
+/// Start of a page up to and including `<main>`, with title, style and the version of raypencil.
 ///
-/// `title` is plain text; `more_style` is CSS that only this page needs. The page ends with [`PAGE_END`].
+/// `title` is plain text; `more_style` is CSS that only this page needs. [`PAGE_END`] ends the page.
 ///
 /// ```
 /// let page = raypencil_report::page_head("a < b", "") + raypencil_report::PAGE_END;
 /// assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"));
-/// // A title is text: what would be read as a tag is escaped.
+/// // The title is text: its `<` is escaped.
 /// assert!(page.contains("<title>a &lt; b</title>"));
 /// ```
 pub fn page_head(title: &str, more_style: &str) -> String {
@@ -36,5 +36,5 @@ pub fn page_head(title: &str, more_style: &str) -> String {
     )
 }
 
-/// The end of a page that [`page_head`] began.
+/// End of a page that [`page_head`] began.
 pub const PAGE_END: &str = "</main>\n</body>\n</html>\n";

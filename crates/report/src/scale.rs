@@ -1,43 +1,57 @@
-//! Scales of pictures: where a value lies between two ends, and round numbers to label them with.
+//! Scales: the place of a value between two ends, and round values as ticks.
 
-/// An interval of values, and how evenly colours are spread over it.
+/// An interval of values, and the function of the value that has even steps on it.
+///
+/// ```
+/// use raypencil_report::Scale;
+///
+/// let scale = Scale::of([2.0, 4.0, f64::INFINITY]).expect("two finite values");
+/// assert_eq!((scale.fraction(3.5), scale.fraction(9.0)), (0.75, 1.0));
+/// // A span of 2 in at most 5 steps: steps of 0.5.
+/// let labels: Vec<String> = scale.ticks(5).into_iter().map(|tick| tick.label).collect();
+/// assert_eq!(labels, ["2.0", "2.5", "3.0", "3.5", "4.0"]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
+    /// Value at the low end.
     pub low: f64,
+    /// Value at the high end.
     pub high: f64,
+    /// Function of the value that has even steps.
     pub spread: Spread,
 }
 
-/// What has even steps on a scale.
+/// Function of the value that has even steps on a scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spread {
-    /// The value.
+    /// The value itself.
     Linear,
-    /// One over the value, for ranges that begin near and end far: along a column of a camera's image of
-    /// flat ground 1/range is nearly even, so that every colour gets as much of the image.
+    /// One over the value, for ranges whose ends differ by a large factor. Along a column of a camera's image of flat
+    /// ground 1/range has nearly even steps, so that every colour gets about as much of the image.
     Reciprocal,
-    /// The square root of the size, with the sign, for differences of any size about zero: a hundredth of
-    /// the largest is a tenth of the scale and can still be seen.
+    /// The square root of the absolute value, with its sign, for differences about zero. A hundredth of the largest
+    /// difference is a tenth of the scale, so that it can still be seen.
     SignedRoot,
-    /// The square root, for sizes of differences from 0 on.
+    /// The square root, for absolute differences.
     Root,
 }
 
 /// A labelled place on a scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
+    /// The value as text.
     pub label: String,
-    /// 0 at the low end, 1 at the high end.
+    /// Place on the scale: 0 at the low end, 1 at the high end.
     pub at: f64,
 }
 
 impl Scale {
-    /// Even steps of the value.
+    /// A scale with even steps of the value.
     pub fn linear(low: f64, high: f64) -> Self {
         Self { low, high, spread: Spread::Linear }
     }
 
-    /// From the least to the greatest of the finite values, if there are any.
+    /// A linear scale from the smallest to the largest finite value; `None` without a finite value.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         values.into_iter().filter(|value| value.is_finite()).fold(None, |scale, value| {
             Some(match scale {
@@ -47,7 +61,8 @@ impl Scale {
         })
     }
 
-    /// As [`Scale::of`], for ranges.
+    /// A scale of ranges, from the smallest to the largest. It has even steps of one over the range if the largest is
+    /// at least three times the smallest; `None` without a finite value.
     pub fn of_ranges(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         Self::of(values).map(|scale| {
             let deep = scale.low > 0.0 && scale.high >= 3.0 * scale.low;
@@ -55,7 +70,8 @@ impl Scale {
         })
     }
 
-    /// Zero in the middle, and both ends as far from it as the farthest finite value.
+    /// A scale of signed differences: zero in the middle, both ends as far from it as the farthest finite value. `None`
+    /// without a finite value.
     pub fn symmetric(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         Self::of(values).map(|Self { low, high, .. }| {
             let limit = high.abs().max(low.abs());
@@ -63,13 +79,13 @@ impl Scale {
         })
     }
 
-    /// From zero to the largest finite value, for sizes of differences.
+    /// A scale of absolute differences, from zero to the largest finite value; `None` without a finite value.
     pub fn from_zero(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         Self::of(values).map(|Self { high, .. }| Self { low: 0.0, high, spread: Spread::Root })
     }
 
-    /// Where a value lies: 0 at the low end, 1 at the high end, and the nearer end outside of both. On a
-    /// scale of one value that is the middle.
+    /// Place of a value: 0 at the low end, 1 at the high end. A value outside is at the nearer end. On a scale of a
+    /// single value every value is in the middle, 0.5.
     pub fn fraction(&self, value: f64) -> f64 {
         let even = |value: f64| match self.spread {
             Spread::Linear => value,
@@ -80,7 +96,7 @@ impl Scale {
         if span > 0.0 { ((even(value) - even(self.low)) / span).clamp(0.0, 1.0) } else { 0.5 }
     }
 
-    /// Round values in ascending order, at most `most + 1` of them.
+    /// Ticks at round values in ascending order, at most `most + 1` of them.
     pub fn ticks(&self, most: u32) -> Vec<Tick> {
         let span = self.high - self.low;
         if !(span > 0.0 && span.is_finite()) {
@@ -111,31 +127,31 @@ impl Scale {
         }
     }
 
-    /// Multiples of the smallest of 1, 2, 5 times a power of ten that needs no more than `most` steps.
+    /// Ticks at multiples of a step: the smallest of 1, 2 or 5 times a power of ten that needs at most `most` steps.
     fn even_ticks(&self, most: u32) -> Vec<Tick> {
         let span = self.high - self.low;
         let exponent = exponent_of(span / f64::from(most));
         let (digit, exponent) = [(1, exponent), (2, exponent), (5, exponent), (1, exponent + 1)]
             .into_iter()
-            // A span that is a rounding longer needs no coarser steps.
+            // A span that is longer by a rounding error needs no coarser step.
             .find(|&(digit, exponent)| span <= f64::from(most) * read(digit, exponent) * (1.0 + 1e-9))
             .unwrap_or((2, exponent + 1));
         let step = read(digit, exponent);
         let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
         if !(first.abs().max(last.abs()) < 1e15) {
-            // The span is no more than a few roundings of its ends: no rounder number is in between.
+            // The span is only a few rounding errors of its ends: no rounder number lies between them.
             return [(self.low, 0.0), (self.high, 1.0)]
                 .map(|(end, at)| Tick { label: label(end), at })
                 .into();
         }
-        // The quotients are rounded; which multiples lie within is seen on the multiples themselves.
+        // The quotients are rounded, so the multiples themselves are compared with the ends.
         let steps = (first as i64 - 1..=last as i64 + 1)
             .filter(|k| (self.low..=self.high).contains(&read(k * digit, exponent)));
         let largest = step * first.abs().max(last.abs());
         steps
             .map(|k| {
                 let value = read(k * digit, exponent);
-                let label = if value != 0.0 && plain(largest) {
+                let label = if value != 0.0 && is_plain(largest) {
                     let decimals = usize::try_from(-exponent).unwrap_or(0);
                     format!("{value:.decimals$}").replace('-', MINUS)
                 } else {
@@ -146,7 +162,7 @@ impl Scale {
             .collect()
     }
 
-    /// Those of `values` that keep their distance from the last one kept.
+    /// Ticks at those of `values` that lie at least a `most`th of the scale from the last tick.
     fn apart(&self, most: u32, values: impl Iterator<Item = f64>) -> Vec<Tick> {
         let mut ticks: Vec<Tick> = Vec::new();
         for value in values {
@@ -159,7 +175,7 @@ impl Scale {
     }
 }
 
-/// These digits times powers of ten between two positive ends, ascending.
+/// Multiples of powers of ten by `digits` between two positive ends, ascending.
 fn round_numbers(digits: &[i64], low: f64, high: f64) -> impl DoubleEndedIterator<Item = f64> {
     (exponent_of(low)..=exponent_of(high))
         .flat_map(|exponent| digits.iter().map(move |&digit| read(digit, exponent)))
@@ -169,18 +185,18 @@ fn round_numbers(digits: &[i64], low: f64, high: f64) -> impl DoubleEndedIterato
 /// The typographic minus sign, as wide as a digit.
 const MINUS: &str = "\u{2212}";
 
-/// Whether numbers up to this size are written without an exponent.
-fn plain(size: f64) -> bool {
+/// Whether a number of this absolute value is written without an exponent.
+fn is_plain(size: f64) -> bool {
     (1e-3..1e6).contains(&size)
 }
 
-/// A value in as few digits as tell it from all others.
+/// The shortest text that reads back as the same value.
 fn label(value: f64) -> String {
-    let text = if value == 0.0 || plain(value.abs()) { format!("{value}") } else { format!("{value:e}") };
+    let text = if value == 0.0 || is_plain(value.abs()) { format!("{value}") } else { format!("{value:e}") };
     text.replace('-', MINUS)
 }
 
-/// The decimal exponent of a positive number, from its own decimal digits: no logarithm to round.
+/// Decimal exponent of a positive number, from its decimal digits: a logarithm would be rounded.
 fn exponent_of(value: f64) -> i32 {
     format!("{value:e}").split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
@@ -188,92 +204,4 @@ fn exponent_of(value: f64) -> i32 {
 /// `digits` times ten to the `exponent`, correctly rounded.
 fn read(digits: i64, exponent: i32) -> f64 {
     format!("{digits}e{exponent}").parse().expect("digits and an exponent are a number")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn labels(low: f64, high: f64, most: u32) -> Vec<String> {
-        Scale::linear(low, high).ticks(most).into_iter().map(|tick| tick.label).collect()
-    }
-
-    #[test]
-    fn ticks_are_round_numbers() {
-        assert_eq!(labels(2.1, 19.8, 5), ["5", "10", "15"]);
-        assert_eq!(labels(0.0, 1024.0, 6), ["0", "200", "400", "600", "800", "1000"]);
-        assert_eq!(labels(3.43, 3.47, 4), ["3.43", "3.44", "3.45", "3.46", "3.47"]);
-        assert_eq!(labels(-6.4e-14, 6.4e-14, 4), ["−5e−14", "0", "5e−14"]);
-        assert_eq!(labels(-1.0, 1.0, 4), ["−1.0", "−0.5", "0", "0.5", "1.0"]);
-    }
-
-    #[test]
-    fn ticks_lie_where_their_values_do() {
-        let ticks = Scale::linear(-2.0, 6.0).ticks(4);
-        let at: Vec<f64> = ticks.iter().map(|tick| tick.at).collect();
-        assert_eq!(at, [0.0, 0.25, 0.5, 0.75, 1.0]);
-    }
-
-    #[test]
-    fn deep_ranges_are_even_in_their_reciprocals() {
-        let scale = Scale::of_ranges([2.0, 20.0]).unwrap();
-        // 1/2 - 1/4 of 1/2 - 1/20: five ninths.
-        assert!((scale.fraction(4.0) - 5.0 / 9.0).abs() < 1e-15);
-        let labels: Vec<String> = scale.ticks(6).into_iter().map(|tick| tick.label).collect();
-        assert_eq!(labels, ["2", "3", "5", "10"]);
-        assert_eq!(Scale::of_ranges([2.0, 4.0]), Some(Scale::linear(2.0, 4.0)));
-    }
-
-    #[test]
-    fn differences_are_even_in_their_roots() {
-        let scale = Scale::symmetric([6.4e-14]).unwrap();
-        assert_eq!(scale.fraction(0.0), 0.5);
-        assert!((scale.fraction(-1.6e-14) - 0.25).abs() < 1e-15);
-        let ticks = scale.ticks(5);
-        let labels: Vec<&str> = ticks.iter().map(|tick| tick.label.as_str()).collect();
-        assert_eq!(labels, ["−5e−14", "−1e−14", "0", "1e−14", "5e−14"]);
-        assert!(ticks.is_sorted_by(|a, b| a.at < b.at));
-    }
-
-    #[test]
-    fn sizes_of_differences_begin_at_zero() {
-        let scale = Scale::from_zero([1e-3, 4e-3, f64::INFINITY]).unwrap();
-        assert_eq!((scale.low, scale.high), (0.0, 4e-3));
-        // A quarter of the largest is half way.
-        assert_eq!((scale.fraction(0.0), scale.fraction(1e-3), scale.fraction(4e-3)), (0.0, 0.5, 1.0));
-        let ticks = scale.ticks(5);
-        assert_eq!(ticks[0], Tick { label: "0".into(), at: 0.0 });
-        assert!(ticks.len() >= 3 && ticks.is_sorted_by(|a, b| a.at < b.at), "{ticks:?}");
-    }
-
-    #[test]
-    fn no_span_has_one_tick_in_the_middle() {
-        assert_eq!(Scale::linear(3.0, 3.0).ticks(5), [Tick { label: "3".into(), at: 0.5 }]);
-        assert_eq!(Scale::linear(3.0, 3.0).fraction(3.0), 0.5);
-    }
-
-    #[test]
-    fn a_span_of_one_rounding_is_labelled_by_its_ends() {
-        assert_eq!(labels(1.0, 1.0 + f64::EPSILON, 5), ["1", "1.0000000000000002"]);
-    }
-
-    #[test]
-    fn ticks_stay_few_for_any_span() {
-        for exponent in -300..300 {
-            let unit = read(1, exponent);
-            for digits in [1.0, 1.9, 2.0, 4.3, 9.99] {
-                let ticks = Scale::linear(-unit * digits, unit * digits).ticks(6);
-                assert!((3..=7).contains(&ticks.len()), "{ticks:?}");
-                assert!(ticks.iter().any(|tick| tick.label == "0" && tick.at == 0.5));
-            }
-        }
-    }
-
-    #[test]
-    fn what_is_not_finite_has_no_place() {
-        assert_eq!(Scale::of([f64::NAN, f64::INFINITY]), None);
-        assert_eq!(Scale::of([2.0, f64::INFINITY, 1.0]), Some(Scale::linear(1.0, 2.0)));
-        let symmetric = Scale { low: -3.0, high: 3.0, spread: Spread::SignedRoot };
-        assert_eq!(Scale::symmetric([1.0, -3.0]), Some(symmetric));
-    }
 }

@@ -1,8 +1,12 @@
-//! Numbers, places and times as people read them.
+//! Numbers, times and lists as people read them, and texts for XML.
 
 use std::time::Duration;
 
-/// A count with its thousands apart: 1,081,344.
+/// A count with commas between thousands.
+///
+/// ```
+/// assert_eq!(raypencil_report::count(1_081_344), "1,081,344");
+/// ```
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::new();
@@ -15,12 +19,25 @@ pub fn count(value: u64) -> String {
     text
 }
 
-/// A count and its noun.
+/// A count and its noun, in the singular or the plural.
+///
+/// ```
+/// use raypencil_report::counted;
+///
+/// assert_eq!(counted(1, "ray", "rays"), "1 ray");
+/// assert_eq!(counted(0, "ray", "rays"), "0 rays");
+/// ```
 pub fn counted(value: u64, one: &str, many: &str) -> String {
     format!("{} {}", count(value), if value == 1 { one } else { many })
 }
 
-/// A number in three digits: 0.0312, 17.2, 6.39e-14.
+/// A number in three significant digits.
+///
+/// ```
+/// use raypencil_report::number;
+///
+/// assert_eq!([0.031_24, 17.25, 6.394e-14].map(number), ["0.0312", "17.2", "6.39e-14"]);
+/// ```
 pub fn number(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 {
@@ -30,7 +47,7 @@ pub fn number(value: f64) -> String {
     } else if value.is_infinite() {
         "infinite".into()
     } else if (0.000_995..9995.0).contains(&size) {
-        // As many decimals as leave three digits.
+        // Number of decimals that leaves three digits after rounding.
         let decimals = match size {
             ..0.009_995 => 5,
             ..0.099_95 => 4,
@@ -45,13 +62,13 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// A number and its unit, if it has one.
+/// A number in three digits and its unit; `unit` may be empty.
 pub fn quantity(value: f64, unit: &str) -> String {
     let number = number(value);
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
-/// A wall-clock time in three digits.
+/// A duration in three digits, in µs, ms or s.
 pub fn time(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     match seconds {
@@ -70,7 +87,7 @@ pub fn list(names: &[&str]) -> String {
     }
 }
 
-/// A text for XML.
+/// A text for XML and HTML: reserved characters escaped, control characters replaced by blanks.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -84,49 +101,4 @@ pub fn escaped(text: &str) -> String {
         }
     }
     out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn counts_have_their_thousands_apart() {
-        let counts = [0, 7, 999, 1000, 1_081_344, 201_326_592].map(count);
-        assert_eq!(counts, ["0", "7", "999", "1,000", "1,081,344", "201,326,592"]);
-    }
-
-    #[test]
-    fn numbers_have_three_digits() {
-        let cases = [
-            (0.0, "0"),
-            (1.0, "1.00"),
-            (-0.25, "-0.250"),
-            (0.031_24, "0.0312"),
-            (0.001, "0.00100"),
-            (0.999_96, "1.00"),
-            (17.25, "17.2"),
-            (1234.0, "1234"),
-            (6.394e-14, "6.39e-14"),
-            (123_456.0, "1.23e5"),
-            (f64::NAN, "NaN"),
-            (f64::INFINITY, "infinite"),
-        ];
-        for (value, text) in cases {
-            assert_eq!(number(value), text);
-        }
-        assert_eq!(quantity(2.0, "m"), "2.00 m");
-    }
-
-    #[test]
-    fn times_have_a_fitting_unit() {
-        let times = [412, 41_200, 4_120_000].map(|micros| time(Duration::from_micros(micros)));
-        assert_eq!(times, ["412 µs", "41.2 ms", "4.12 s"]);
-    }
-
-    #[test]
-    fn lists_read_as_sentences() {
-        assert_eq!(list(&["a", "b", "c"]), "a, b and c");
-        assert_eq!(list(&["a"]), "a");
-    }
 }

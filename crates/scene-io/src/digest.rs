@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use raypencil_files::{Sha, hex};
+use raypencil_files::{Sha256Digest, hex_digits};
 use raypencil_scene::{Filter, FluxModel, Mesh, Pose, Profile, Scene};
 
 /// SHA-256 of a resolved scene, in hexadecimal digits. It covers every number that a renderer sees, as little-endian
@@ -21,11 +21,11 @@ use raypencil_scene::{Filter, FluxModel, Mesh, Pose, Profile, Scene};
 /// # Ok::<(), raypencil_scene_io::SceneIoError>(())
 /// ```
 pub fn scene_sha256(scene: &Scene) -> String {
-    hex(&resolved(scene))
+    hex_digits(&resolved(scene))
 }
 
 /// [`scene_sha256`] as bytes.
-pub(crate) fn resolved(scene: &Scene) -> Sha {
+pub(crate) fn resolved(scene: &Scene) -> Sha256Digest {
     let mut hash = Numbers(Sha256::new());
     hash.mesh(scene.mesh());
     let camera = scene.camera();
@@ -69,7 +69,7 @@ pub(crate) fn resolved(scene: &Scene) -> Sha {
 }
 
 /// SHA-256 of a mesh alone.
-pub(crate) fn mesh(mesh: &Mesh) -> Sha {
+pub(crate) fn mesh(mesh: &Mesh) -> Sha256Digest {
     let mut hash = Numbers(Sha256::new());
     hash.mesh(mesh);
     hash.0.finalize().into()

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::Sha;
+use raypencil_files::Sha256Digest;
 use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, Vertices, dem, gltf};
 use raypencil_scene::{Mesh, SceneError};
 use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
@@ -19,21 +19,21 @@ const PLAIN_EXTENT_M: f64 = 40.0;
 pub(crate) fn read_ground(
     source: &Source,
     plan: &ScenePlan,
-) -> Result<Option<(Mesh, Vec<Sha>)>, SceneIoError> {
+) -> Result<Option<(Mesh, Vec<Sha256Digest>)>, SceneIoError> {
     let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
     match &plan.terrain {
         Terrain::File(file) => {
             let terrain = terrain_file(source, "file", &["glb", "gltf"], file, &plan.terrain_span)?;
-            Ok(Some(gltf::read(&terrain, reflectivity, Vertices::Global)?))
+            Ok(Some(gltf::read_mesh(&terrain, reflectivity, Vertices::Global)?))
         }
         Terrain::Dem(DemPart { file, window, max_error }) => {
             let terrain = terrain_file(source, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
-            let (mesh, sha) = dem::load(&terrain, *window, *max_error, reflectivity)?;
+            let (mesh, sha) = dem::read_mesh(&terrain, *window, *max_error, reflectivity)?;
             Ok(Some((mesh, vec![sha])))
         }
         Terrain::Mars { ground, coarse: Some((file, span)) } => {
             let coarse = terrain_file(source, "generate.coarse", &["tif", "tiff"], file, span)?;
-            let (posts, sha) = dem::posts(&coarse)?;
+            let (posts, sha) = dem::read_posts(&coarse)?;
             let ground = MarsGround { coarse: Some(posts), ..(**ground).clone() };
             let mesh = mars_mesh(&ground, plan.reflectivity).map_err(|error| {
                 let SceneError { field, value, expected } = error;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use raypencil_files::{Sha, bytes, combine, sha};
+use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
 use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, Vertices, dem, gltf};
 use raypencil_rover::Rig;
 use raypencil_scene::{Mesh, Pose, Scene, SceneError};
@@ -83,11 +83,11 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish(&source, plan, Vec::new(), None, overrides)
         }
         SceneSource::Gltf(path) => {
-            let (mesh, parts) = gltf::read(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
+            let (mesh, parts) = gltf::read_mesh(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
             finish_alone(&source, Terrain::File(path.clone()), parts, mesh, overrides)
         }
         SceneSource::Dem(path) => {
-            let (mesh, sha) = dem::load(path, None, None, DEFAULT_REFLECTIVITY)?;
+            let (mesh, sha) = dem::read_mesh(path, None, None, DEFAULT_REFLECTIVITY)?;
             let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
             finish_alone(&source, terrain, vec![sha], mesh, overrides)
         }
@@ -133,7 +133,7 @@ fn load_toml(
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let file = Source { file: path, text };
-    let parts = vec![sha(text.as_bytes())];
+    let parts = vec![sha256(text.as_bytes())];
     match file.kind()? {
         Kind::Rig => load_rig(source, &file, parts, overrides),
         Kind::Resolved => load_resolved(source, &file, parts, overrides),
@@ -144,7 +144,7 @@ fn load_toml(
 fn load_rig(
     source: &SceneSource,
     file: &Source,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = parse(file)?;
@@ -171,7 +171,7 @@ fn load_rig(
 fn load_resolved(
     source: &SceneSource,
     file: &Source,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     overrides.check_resolved()?;
@@ -179,7 +179,7 @@ fn load_resolved(
     let (path, span) = (Path::new(resolved.file.get_ref()), resolved.file.span());
     let terrain = terrain_file(file, "file", &["glb", "gltf"], path, &span)?;
     let vertices = Vertices::OffsetsFrom(resolved.origin);
-    let (mesh, of_files) = gltf::read(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
+    let (mesh, of_files) = gltf::read_mesh(&terrain, DEFAULT_REFLECTIVITY, vertices)?;
     parts.extend(of_files);
     resolved.beams.iter_mut().for_each(|beam| overrides.apply_to_beam(&mut beam.sensor));
     let flux_model = overrides.flux_model.unwrap_or(resolved.flux_model);
@@ -195,7 +195,7 @@ fn load_resolved(
 fn finish_alone(
     source: &SceneSource,
     terrain: Terrain,
-    parts: Vec<Sha>,
+    parts: Vec<Sha256Digest>,
     mesh: Mesh,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
@@ -210,7 +210,7 @@ fn finish_alone(
 fn finish(
     source: &SceneSource,
     mut plan: ScenePlan,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     mesh: Option<Mesh>,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
@@ -243,16 +243,16 @@ fn loaded(
     source: &SceneSource,
     scene: Scene,
     vehicle: Pose,
-    mut parts: Vec<Sha>,
+    mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
     drive: Option<DriveSetup>,
 ) -> LoadedScene {
     if *overrides != Overrides::default() && !matches!(source, SceneSource::Builtin(_)) {
-        parts.push(sha(format!("{overrides:?}").as_bytes()));
+        parts.push(sha256(format!("{overrides:?}").as_bytes()));
     }
     LoadedScene {
         name: source.folder_name(),
-        source_sha256: combine(&parts),
+        source_sha256: combined_sha256_hex(&parts),
         scene_sha256: digest::scene_sha256(&scene),
         scene,
         vehicle,

@@ -4,7 +4,7 @@ use glam::DVec3;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use raypencil_files::Sha;
+use raypencil_files::Sha256Digest;
 use raypencil_scene::rig::{self, DEFAULT_BEAM_MOUNTS, DEFAULT_CAMERA_MOUNT, DefaultMount};
 use raypencil_scene::{Beam, Camera, FluxModel};
 use raypencil_terrain::MarsGround;
@@ -24,7 +24,7 @@ pub(crate) struct ScenePlan {
     pub flux_model: FluxModel,
     pub drive: Option<DriveSetup>,
     /// Digests of the files of the drive's kernels, in their order.
-    pub kernel_digests: Vec<Sha>,
+    pub kernel_digests: Vec<Sha256Digest>,
     /// Places of the vehicle's position and of the terrain in the file.
     pub position_span: Range<usize>,
     pub terrain_span: Range<usize>,

@@ -2,14 +2,12 @@
 
 use std::path::Path;
 
-use raypencil::io::create;
-
 use crate::Trouble;
 
 /// Creates the folder of an output file.
 pub(super) fn create_folder(output: &Path) -> Result<(), Trouble> {
     match output.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => Ok(create(folder)?),
+        Some(folder) if !folder.as_os_str().is_empty() => Ok(raypencil::io::create_folder(folder)?),
         _ => Ok(()),
     }
 }

@@ -1,4 +1,8 @@
-//! OpenEXR to named channels, from any program. What the header claims is checked before memory is asked for.
+//! OpenEXR of any program to named channels. The header's claims are checked before memory is allocated.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::Path;
 
 use exr::image::FlatSamples;
 use exr::image::read::image::ReadLayers;
@@ -7,29 +11,29 @@ use exr::math::Vec2;
 use exr::meta::attribute::AttributeValue;
 use exr::meta::header::Header;
 use exr::prelude::Compression;
-use std::collections::BTreeMap;
-use std::io::Cursor;
-use std::path::Path;
+use raypencil_scene::Image;
 
 use crate::bytes;
 use crate::error::{Fault, FileError};
-use crate::exr::{ExrMap, Raster, channel, header};
+use crate::exr::header;
+use crate::exr::map::{ExrMap, Raster, channel};
 use crate::limits::Limits;
-use raypencil_scene::Image;
 
-/// Reads all channels of an OpenEXR file with one part. Tiles are welcome, and of several resolutions the
-/// largest is read; several parts, deep data and subsampled channels are refused.
+/// Reads all channels of an OpenEXR file with one part.
+///
+/// Scan lines and tiles are read, and the largest of several resolutions. Several parts, deep data, subsampled channels
+/// and lossy compression are refused.
 ///
 /// # Errors
 /// Names the file, the channel or other place in it, what was found and what was expected.
 pub fn read_exr(path: impl AsRef<Path>, limits: &Limits) -> Result<ExrMap, FileError> {
     let path = path.as_ref();
-    // A file larger than the decompressed data that is allowed has something else in it.
+    // A file larger than the limit of its decompressed data holds something else.
     let bytes = bytes::read_file(path, limits.bytes).map_err(|error| FileError::io(path, "read", error))?;
     exr_from_bytes(&bytes, path, limits)
 }
 
-/// As [`read_exr`] from the bytes of a file; `file` is for messages.
+/// Reads the bytes of an OpenEXR file as [`read_exr`] does; `file` is its name in messages.
 ///
 /// # Errors
 /// As [`read_exr`].
@@ -43,15 +47,15 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
             Fault::new(place, error.to_string(), "an OpenEXR file that is complete")
         }
     };
-    header::check(file)?;
-    // Headers alone are read here; the offset tables and the pixels wait.
+    header::check_attributes(file)?;
+    // Only the headers are read here, not the offset tables and the pixels.
     let reader = exr::block::read(Cursor::new(file), false).map_err(invalid("header"))?;
     let [header] = reader.headers() else {
         let found = format!("{} parts", reader.headers().len());
         return Err(Fault::new("header", found, "one part: split multi-part files first"));
     };
-    check(header, file.len() as u64, limits)?;
-    header::blocks(file, header)?;
+    check_claims(header, file.len() as u64, limits)?;
+    header::check_blocks(file, header)?;
     let (width, height) = (header.layer_size.width() as u32, header.layer_size.height() as u32);
 
     let image = exr::image::read::read()
@@ -60,9 +64,9 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
         .all_channels()
         .all_layers()
         .all_attributes()
-        // On one thread: a damaged block then ends in an error and nowhere else.
+        // On one thread, where a damaged block is reported as an error.
         .non_parallel()
-        // Of the blocks, not of the header: an offset table with gaps would leave cells unset.
+        // Checks the blocks, not the header: an offset table with gaps would leave cells unset.
         .pedantic()
         .from_chunks(reader)
         .map_err(invalid("pixels"))?;
@@ -90,8 +94,8 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
     Ok(map)
 }
 
-/// Refuses a header whose claims are too large, or too large for the file that they stand in.
-fn check(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(), Fault> {
+/// Refuses a header that claims more than `limits` allow, or more than a file of this length can hold.
+fn check_claims(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(), Fault> {
     let Vec2(width, height) = header.layer_size;
     let (width, height) = (width as u64, height as u64);
     let refuse =
@@ -104,7 +108,7 @@ fn check(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(), Fault>
     {
         return refuse(format!("{columns} x {rows}"));
     }
-    // A crop would shift every cell against the sensor's.
+    // A cropped image would shift every cell against the sensor's cells.
     let (data, display) = (header.data_window(), header.shared_attributes.display_window);
     if data != display {
         let found = format!("{}", Window(data));
@@ -126,14 +130,14 @@ fn check(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(), Fault>
     if bytes > limits.bytes {
         return Err(Fault::new("channels", format!("{bytes} bytes"), format!("at most {}", limits.bytes)));
     }
-    // Every block has 8 bytes in the offset table and 8 of its own, so many blocks need a long file.
+    // Every block takes 8 bytes in the offset table and 8 of its own header.
     let blocks = header.chunk_count as u64;
-    let Some(shrinkage) = shrinkage(header.compression) else {
+    let Some(expansion) = max_expansion(header.compression) else {
         let expected = "none, RLE, ZIPS, ZIP or PIZ, which keep every bit";
         return Err(Fault::new("header", header.compression.to_string(), expected));
     };
-    let most = shrinkage.saturating_mul(file_bytes);
-    if blocks.saturating_mul(16) > file_bytes || bytes > most {
+    let max_bytes = expansion.saturating_mul(file_bytes);
+    if blocks.saturating_mul(16) > file_bytes || bytes > max_bytes {
         let found =
             format!("{width} x {height} cells of {bytes_per_cell} bytes in a file of {file_bytes} bytes");
         return Err(Fault::new("data window", found, "a size that the file can hold (is it cut off?)"));
@@ -141,26 +145,25 @@ fn check(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(), Fault>
     Ok(())
 }
 
-/// How many bytes of cells a byte of the file can hold at most, rounded up generously; `None` for the
-/// compressions that change values.
+/// Upper bound of the bytes of cells that one byte of the file can hold; `None` for lossy compressions.
 ///
-/// CHOICE: those are refused. Maps are compared to the last bit, which a lossy file no longer has; and the
-/// decoders of B44 and DWA ask for memory by numbers that nobody has checked.
-fn shrinkage(compression: Compression) -> Option<u64> {
+/// CHOICE: lossy files are refused. Maps are compared to the last bit, which a lossy file no longer has. The decoders
+/// of B44 and DWA also allocate memory by unchecked numbers.
+fn max_expansion(compression: Compression) -> Option<u64> {
     match compression {
         Compression::Uncompressed => Some(1),
         // Runs of at most 128 in two bytes.
         Compression::RLE => Some(64),
-        // Deflate codes 258 bytes in no less than two bits: 1032.
+        // Deflate codes at most 258 bytes in two bits: a factor of 1032.
         Compression::ZIP1 | Compression::ZIP16 => Some(1032),
-        // After a wavelet transform, Huffman codes for runs of at most 261 values of two bytes, of ten bits
-        // at the least.
+        // After a wavelet transform, Huffman codes of at least ten bits for runs of at most 261 values of two bytes:
+        // a factor of 418.
         Compression::PIZ => Some(1032),
         _ => None,
     }
 }
 
-/// A rectangle in words.
+/// A rectangle, formatted for messages.
 struct Window(exr::meta::attribute::IntegerBounds);
 
 impl std::fmt::Display for Window {
@@ -170,7 +173,7 @@ impl std::fmt::Display for Window {
     }
 }
 
-/// The attributes that are texts.
+/// Text attributes among `attributes`.
 fn texts<'a>(
     attributes: impl IntoIterator<Item = (&'a exr::meta::attribute::Text, &'a AttributeValue)>,
 ) -> BTreeMap<String, String> {

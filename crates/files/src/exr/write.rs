@@ -1,36 +1,37 @@
-//! Named channels to OpenEXR: one part, scan lines, ZIP, increasing lines.
+//! Named channels to OpenEXR: one part, scan lines in increasing order, ZIP.
+
+use std::io::{Cursor, Write};
+use std::path::Path;
 
 use exr::image::write::WritableImage;
 use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, LineOrder, Text};
 use exr::meta::header::LayerAttributes;
 use exr::prelude::{Compression, SmallVec};
-use std::io::{Cursor, Write};
-use std::path::Path;
 
 use crate::atomic::write_atomically;
 use crate::error::{Fault, FileError};
-use crate::exr::{ExrMap, Raster, channel};
+use crate::exr::map::{ExrMap, Raster, channel};
 
 /// Writes channels and text attributes as one OpenEXR file. The same map gives the same bytes.
 ///
 /// # Errors
-/// A channel name that OpenEXR cannot hold; what the file system says.
+/// A map without channels, a name or text that OpenEXR cannot hold, or an error of the file system, with the path.
 pub fn write_exr(path: impl AsRef<Path>, map: &ExrMap) -> Result<(), FileError> {
     let path = path.as_ref();
     let bytes = encode(map, true).map_err(|fault| FileError::Exr(fault.in_file(path)))?;
     write_atomically(path, |file| file.write_all(&bytes))
 }
 
-/// The bytes of the file. Blocks are compressed one by one and stored in order, so that `parallel` changes
-/// nothing but the time; a test holds it to that.
-pub(super) fn encode(map: &ExrMap, parallel: bool) -> Result<Vec<u8>, Fault> {
+/// Bytes of the file. Blocks are compressed one by one and stored in order, so that `parallel` changes only the time;
+/// a test checks it.
+fn encode(map: &ExrMap, parallel: bool) -> Result<Vec<u8>, Fault> {
     if map.channels.is_empty() {
         return Err(Fault::new("channels", "none", "at least one"));
     }
     let mut channels = Vec::with_capacity(map.channels.len());
     for (name, raster) in &map.channels {
-        let text = text(name).filter(|_| !name.is_empty() && name.len() < 256);
+        let text = latin1(name).filter(|_| !name.is_empty() && name.len() < 256);
         let text = text
             .ok_or_else(|| Fault::new(channel(name), "a name for no file", "1 to 255 Latin-1 characters"))?;
         let samples = match raster {
@@ -43,8 +44,8 @@ pub(super) fn encode(map: &ExrMap, parallel: bool) -> Result<Vec<u8>, Fault> {
     for (name, value) in &map.attributes {
         let wrong =
             || Fault::new(format!("attribute {name:?}"), "a name or text for no file", "Latin-1 characters");
-        let name = text(name).filter(|_| !name.is_empty() && name.len() < 256).ok_or_else(wrong)?;
-        attributes.other.insert(name, AttributeValue::Text(text(value).ok_or_else(wrong)?));
+        let name = latin1(name).filter(|_| !name.is_empty() && name.len() < 256).ok_or_else(wrong)?;
+        attributes.other.insert(name, AttributeValue::Text(latin1(value).ok_or_else(wrong)?));
     }
     let encoding = Encoding {
         compression: Compression::ZIP16,
@@ -65,20 +66,21 @@ pub(super) fn encode(map: &ExrMap, parallel: bool) -> Result<Vec<u8>, Fault> {
     Ok(file)
 }
 
-/// A text in the one encoding that the format's header has.
-fn text(string: &str) -> Option<Text> {
+/// A text in Latin-1, the encoding of an OpenEXR header; `None` if it cannot be encoded.
+fn latin1(string: &str) -> Option<Text> {
     Text::new_or_none(string).filter(|_| !string.contains('\0'))
 }
 
-/// Puts the attributes of a header in the order of their names.
+/// Sorts the attributes of a header by their names; `None` if the header has no end.
 ///
-/// The `exr` crate keeps custom attributes in a hash map and writes them in an order that differs from run
-/// to run; the format leaves the order open. Sorting moves no other byte of the file.
+/// The `exr` crate keeps custom attributes in a hash map, so that their order differs from run to run. The format
+/// leaves the order open. Sorting moves no other byte of the file.
 fn sort_attributes(file: &mut [u8]) -> Option<()> {
-    const FIRST: usize = 8; // after the magic number and the version
+    // After the magic number and the version.
+    const HEADER_START: usize = 8;
     let mut attributes = Vec::new();
-    let mut at = FIRST;
-    // Each is a name, a type (both end in 0), a size and as many bytes. The list ends in an empty name.
+    let mut at = HEADER_START;
+    // Each is a name, a type (both end in 0), a size and as many bytes. An empty name ends the list.
     while *file.get(at)? != 0 {
         let start = at;
         for _ in 0..2 {
@@ -89,7 +91,7 @@ fn sort_attributes(file: &mut [u8]) -> Option<()> {
         attributes.push(file.get(start..at)?.to_vec());
     }
     attributes.sort_unstable();
-    (&mut file[FIRST..at]).write_all(&attributes.concat()).ok()
+    (&mut file[HEADER_START..at]).write_all(&attributes.concat()).ok()
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-//! The header of an NPY file: a Python dictionary of three keys, and nothing else of that language.
+//! Header of an NPY file: a Python dictionary of three keys. No other Python is understood.
 //! (NumPy Enhancement Proposal 1; numpy.lib.format)
 
-use crate::array::Shape;
 use crate::error::Fault;
+use crate::shape::Shape;
 
-/// What the header says.
+/// Contents of a header.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Header {
     pub number: Number,
@@ -13,7 +13,7 @@ pub(crate) struct Header {
     pub shape: Shape,
 }
 
-/// The type of the numbers.
+/// Type of the numbers in an array.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Number {
     /// Real numbers of 2, 4 or 8 bytes.
@@ -27,7 +27,7 @@ pub(crate) enum Number {
 }
 
 impl Number {
-    /// Bytes of each.
+    /// Size of one number, bytes.
     pub(super) fn bytes(self) -> usize {
         match self {
             Self::Real(bytes) | Self::Unsigned(bytes) | Self::Signed(bytes) => bytes,
@@ -36,13 +36,14 @@ impl Number {
     }
 }
 
+/// First bytes of every NPY file.
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// The types that are read, for messages.
-const TYPES: &str = "f2, f4, f8, u1, u2, u4, u8, i1, i2, i4, i8 or b1";
+/// Types that are read, for messages.
+const KNOWN_TYPES: &str = "f2, f4, f8, u1, u2, u4, u8, i1, i2, i4, i8 or b1";
 
-/// NumPy's own are below 200 bytes; more than this is something else.
-const LONGEST: usize = 1 << 16;
+/// Maximum length of the dictionary. NumPy's own have less than 200 bytes.
+const MAX_HEADER_BYTES: usize = 1 << 16;
 
 /// Splits a file into its header and its numbers.
 pub(super) fn split(file: &[u8]) -> Result<(Header, &[u8]), Fault> {
@@ -65,11 +66,11 @@ pub(super) fn split(file: &[u8]) -> Result<(Header, &[u8]), Fault> {
     };
     let length = length.ok_or_else(cut)?;
     let start = if major == 1 { 10 } else { 12 };
-    if length > LONGEST {
+    if length > MAX_HEADER_BYTES {
         return Err(Fault::new(
             "header",
             format!("a length of {length}"),
-            format!("at most {LONGEST} bytes"),
+            format!("at most {MAX_HEADER_BYTES} bytes"),
         ));
     }
     let text = file.get(start..start + length).ok_or_else(cut)?;
@@ -83,7 +84,7 @@ enum Value {
     Numbers(Vec<u64>),
 }
 
-/// A reader of the little Python that a header may have: no nesting, so no recursion.
+/// Parser of the dictionary. Its values do not nest, so it needs no recursion.
 struct Parser<'a> {
     text: &'a [u8],
     at: usize,
@@ -97,7 +98,7 @@ impl Parser<'_> {
             let key = self.string()?;
             self.expect(b':')?;
             if key == "descr" && self.peek() == Some(b'[') {
-                return Err(Fault::new("descr", "a structured type", TYPES));
+                return Err(Fault::new("descr", "a structured type", KNOWN_TYPES));
             }
             let twice = match (key.as_str(), self.value()?) {
                 ("descr", Value::Text(text)) => descr.replace(text).is_some(),
@@ -134,7 +135,7 @@ impl Parser<'_> {
         Fault::new(format!("header, character {}", self.at), "something else", expected)
     }
 
-    /// The next character that is no white space, left where it is.
+    /// The next character that is no white space; it is not consumed.
     fn peek(&mut self) -> Option<u8> {
         while self.text.get(self.at)?.is_ascii_whitespace() {
             self.at += 1;
@@ -142,12 +143,14 @@ impl Parser<'_> {
         self.text.get(self.at).copied()
     }
 
+    /// Consumes the next character if it is the `wanted` one.
     fn take(&mut self, wanted: u8) -> bool {
         let there = self.peek() == Some(wanted);
         self.at += usize::from(there);
         there
     }
 
+    /// Consumes the next character, which must be the `wanted` one.
     fn expect(&mut self, wanted: u8) -> Result<(), Fault> {
         match self.take(wanted) {
             true => Ok(()),
@@ -155,7 +158,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A text in quotes of either kind. What has escapes is no text of a header.
+    /// A text in quotes of either kind. Texts with escapes are refused.
     fn string(&mut self) -> Result<String, Fault> {
         let quote = self.peek().filter(|quote| b"'\"".contains(quote)).ok_or_else(|| self.unfit("a text"))?;
         let rest = &self.text[self.at + 1..];
@@ -203,15 +206,15 @@ impl Parser<'_> {
         let text = std::str::from_utf8(&self.text[self.at..self.at + digits]).unwrap_or("");
         let number = text.parse().map_err(|_| self.unfit("a whole number below 2^64"))?;
         self.at += digits;
-        // Python 2 marked its long integers.
+        // Python 2 marked long integers by an L.
         self.take(b'L');
         Ok(number)
     }
 }
 
-/// The type of numbers that `descr` names, and whether their most significant byte comes first.
+/// Type of the numbers that `descr` names, and whether their most significant byte comes first.
 fn number(descr: &str) -> Result<(Number, bool), Fault> {
-    let refuse = |found: String| Err(Fault::new("descr", found, TYPES));
+    let refuse = |found: String| Err(Fault::new("descr", found, KNOWN_TYPES));
     let (order, kind) = descr.split_at(descr.chars().next().map_or(0, char::len_utf8));
     let number = match kind {
         "f2" => Number::Real(2),

@@ -2,19 +2,21 @@
 
 use std::path::Path;
 
-use crate::array::ArrayNumber;
-use crate::atomic::write_atomically;
-use crate::error::{Fault, FileError};
 use raypencil_scene::Image;
 
-/// The numbers start at a multiple of this, as NumPy's own do, so that they can be mapped into memory.
-const ALIGNMENT: usize = 64;
+use crate::atomic::write_atomically;
+use crate::error::FileError;
+use crate::shape::common_size;
 
-/// Writes images of `f64`, `f32`, `u32` or `u8` as an NPY file: one of them as (rows, columns), several as
-/// (rows, columns, components). The same images give the same bytes.
+/// Alignment of the numbers in the file, bytes. It is NumPy's, and lets a program map them into memory.
+const ALIGNMENT_BYTES: usize = 64;
+
+/// Writes images as an NPY file: one image as (rows, columns), several as (rows, columns, components).
+///
+/// The same images give the same bytes.
 ///
 /// # Errors
-/// No images at all, or images of several sizes; what the file system says.
+/// No image, images of several sizes, or an error of the file system, with the path.
 pub fn write_npy<T: ArrayNumber>(path: impl AsRef<Path>, planes: &[&Image<T>]) -> Result<(), FileError> {
     let path = path.as_ref();
     let (width, height) = common_size(planes).map_err(|fault| FileError::Array(fault.in_file(path)))?;
@@ -23,8 +25,8 @@ pub fn write_npy<T: ArrayNumber>(path: impl AsRef<Path>, planes: &[&Image<T>]) -
         "{{'descr': '{}', 'fortran_order': False, 'shape': ({height}, {width}{components}), }}",
         T::DESCRIPTION
     );
-    // Magic, version and length are 10 bytes; spaces and a line feed fill up.
-    let length = (10 + dictionary.len() + 1).next_multiple_of(ALIGNMENT) - 10;
+    // Magic, version and length take 10 bytes; spaces and a line feed fill the rest.
+    let length = (10 + dictionary.len() + 1).next_multiple_of(ALIGNMENT_BYTES) - 10;
     dictionary.extend(std::iter::repeat_n(' ', length - 1 - dictionary.len()));
     dictionary.push('\n');
     write_atomically(path, |file| {
@@ -41,21 +43,38 @@ pub fn write_npy<T: ArrayNumber>(path: impl AsRef<Path>, planes: &[&Image<T>]) -
     })
 }
 
-/// Columns and rows of all the images.
-pub(crate) fn common_size<T: Copy>(planes: &[&Image<T>]) -> Result<(u32, u32), Fault> {
-    let size = |image: &Image<T>| (image.width(), image.height());
-    let Some((first, rest)) = planes.split_first() else {
-        return Err(Fault::new("images", "none", "at least one"));
-    };
-    match rest.iter().find(|plane| size(plane) != size(first)) {
-        None => Ok(size(first)),
-        Some(other) => {
-            let ((width, height), (columns, rows)) = (size(first), size(other));
-            Err(Fault::new(
-                "images",
-                format!("{columns} x {rows}"),
-                format!("{width} x {height} as the first"),
-            ))
-        }
+/// Number type that [`write_npy`] writes: `f64`, `f32`, `u32` or `u8`.
+pub trait ArrayNumber: Copy + private::Bytes {}
+
+impl ArrayNumber for f64 {}
+
+impl ArrayNumber for f32 {}
+
+impl ArrayNumber for u32 {}
+
+impl ArrayNumber for u8 {}
+
+mod private {
+    use std::io::Write;
+
+    /// Writes a number as little-endian bytes.
+    pub trait Bytes {
+        /// Name of the type in NPY headers.
+        const DESCRIPTION: &'static str;
+
+        /// Writes the bytes of one number.
+        fn write(self, file: &mut dyn Write) -> std::io::Result<()>;
     }
+
+    macro_rules! bytes {
+        ($($number:ty: $name:literal),*) => {$(
+            impl Bytes for $number {
+                const DESCRIPTION: &'static str = $name;
+                fn write(self, file: &mut dyn Write) -> std::io::Result<()> {
+                    file.write_all(&self.to_le_bytes())
+                }
+            }
+        )*};
+    }
+    bytes!(f64: "<f8", f32: "<f4", u32: "<u4", u8: "|u1");
 }

@@ -16,7 +16,8 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use raypencil_files::{
-    Attributes, ExrMap, FileError, FolderError, begin, create, write_atomically, write_exr,
+    Attributes, ExrMap, FileError, FolderError, begin_output_folder, create_folder, write_atomically,
+    write_exr,
 };
 use raypencil_pack::PackError;
 use raypencil_scene::{Progress, RenderOutput, Sampling, SensorId, SensorMap};
@@ -87,7 +88,7 @@ pub fn write_validation(
 ) -> Result<Written, HarnessError> {
     let start = Instant::now();
     check_names(&validation.rendered)?;
-    begin(folder, "summary.json")?;
+    begin_output_folder(folder, "summary.json")?;
 
     let mut maps = Vec::new();
     for rendered in &validation.rendered {
@@ -160,7 +161,7 @@ pub fn write_maps(
     sampling: Sampling,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, HarnessError> {
-    create(folder)?;
+    create_folder(folder)?;
     let attributes = Attributes {
         renderer: renderer.to_string(),
         scene_sha256: subject.sha256.clone(),

@@ -1,28 +1,29 @@
-//! The samples of a TIFF: its strips or tiles, only those that are needed, each checked before it is decoded.
+//! Samples of a TIFF. Only the strips or tiles that are needed are read, and each is checked before it is decoded.
 
 use std::io::{Read, Seek};
 use std::ops::RangeInclusive;
+
+use raypencil_files::Fault;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
-use crate::dem::tags::{Tags, name};
-use raypencil_files::Fault;
+use crate::dem::tags::{Tags, tag_name};
 
-/// Pixels along a side: more than any model has that is one file.
-const MOST_SIDE: u64 = 1 << 24;
+/// Maximum number of pixels along a side.
+const MAX_SIDE_PX: u64 = 1 << 24;
 
-/// Strips or tiles of one file.
-const MOST_BLOCKS: u64 = 1 << 22;
+/// Maximum number of strips or tiles of a file.
+const MAX_BLOCKS: u64 = 1 << 22;
 
-/// Bytes of a decoded strip or tile: some writers put a whole picture into one.
-const LARGEST_BLOCK: u64 = 1 << 29;
+/// Maximum size of a decoded strip or tile. Some writers put a whole picture into one strip.
+const MAX_BLOCK_BYTES: u64 = 1 << 29;
 
-/// What a block is allowed to be longer than its compression can make it.
-const SLACK: u64 = 4096;
+/// Bytes by which the decoded size of a compressed block may exceed the bound of its expansion.
+const EXPANSION_SLACK_BYTES: u64 = 4096;
 
-/// Heights beyond this, metres, are none: the limit of a mesh.
-const HIGHEST: f64 = 1e7;
+/// Maximum absolute height, metres: the limit of a mesh.
+const MAX_HEIGHT_M: f64 = 1e7;
 
-/// What a sample is.
+/// Number type of a sample, with its bits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sample {
     Unsigned(u64),
@@ -37,7 +38,7 @@ impl Sample {
         }
     }
 
-    /// The sample that a file means by a nodata value, which is written in decimal and rounded to its type.
+    /// Sample that a nodata value stands for: the decimal number of the tag, rounded to the type of the samples.
     fn nodata(self, value: f64) -> f64 {
         match self {
             Self::Float(32) => f64::from(value as f32),
@@ -46,34 +47,36 @@ impl Sample {
     }
 }
 
-/// How the pixels lie in the file.
-pub(crate) struct Blocks {
+/// Layout of the pixels in strips or tiles.
+pub(super) struct Blocks {
     pub width: u32,
     pub height: u32,
     sample: Sample,
-    /// "strip" or "tile".
+    /// Name of a block in messages: "strip" or "tile".
     kind: &'static str,
-    /// Pixels along the sides of a block; the last ones may reach beyond the picture.
+    /// Pixels along the sides of a block. The last blocks may reach beyond the picture.
     block: [u64; 2],
-    /// Blocks along a row of them.
+    /// Number of blocks in a row of blocks.
     across: u64,
+    /// Tag of the blocks' places in the file.
     offsets: u16,
+    /// Tag of the blocks' sizes in the file.
     byte_counts: u16,
-    /// The most that a byte of the file can become.
+    /// Maximum number of bytes that one byte of the file can decode to.
     expansion: u64,
 }
 
 impl Blocks {
-    /// Reads and checks what the tags say; nothing is larger than it should be, and nothing is read yet.
+    /// Reads the layout from the tags and checks it. No sample is read yet.
     pub fn of(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<Self, Fault> {
         let mut required = |tag: u16, range: RangeInclusive<u64>| match tags.integer(file, tag)? {
             Some(value) if range.contains(&value) => Ok(value),
             found => {
                 let found = found.map_or("missing".to_string(), |value| value.to_string());
-                Err(Fault::new(name(tag), found, format!("{} to {}", range.start(), range.end())))
+                Err(Fault::new(tag_name(tag), found, format!("{} to {}", range.start(), range.end())))
             }
         };
-        let (width, height) = (required(256, 1..=MOST_SIDE)?, required(257, 1..=MOST_SIDE)?);
+        let (width, height) = (required(256, 1..=MAX_SIDE_PX)?, required(257, 1..=MAX_SIDE_PX)?);
         let is_tiled = tags.count(322) > 0 || tags.count(324) > 0;
         let tile = match is_tiled {
             true => Some([required(322, 1..=1 << 16)?, required(323, 1..=1 << 16)?]),
@@ -85,7 +88,7 @@ impl Blocks {
             let value = tags.integer(file, tag)?.unwrap_or(default);
             match known.contains(&value) {
                 true => Ok(value),
-                false => Err(Fault::new(name(tag), value.to_string(), meaning)),
+                false => Err(Fault::new(tag_name(tag), value.to_string(), meaning)),
             }
         };
         word(277, 1, &[1], "1: one band, of heights (gdal_translate -b takes one out of several)")?;
@@ -104,11 +107,15 @@ impl Blocks {
             (format, _) => {
                 let found = format!("samples of format {format} and {bits} bits");
                 let expected = "whole numbers of 8, 16 or 32 bits, or floating point of 32 or 64";
-                return Err(Fault::new(format!("{} and {}", name(258), name(339)), found, expected));
+                return Err(Fault::new(format!("{} and {}", tag_name(258), tag_name(339)), found, expected));
             }
         };
         if predictor == 3 && !matches!(sample, Sample::Float(_)) {
-            return Err(Fault::new(name(317), "3 (floating point)", "1 or 2: the samples are whole numbers"));
+            return Err(Fault::new(
+                tag_name(317),
+                "3 (floating point)",
+                "1 or 2: the samples are whole numbers",
+            ));
         }
 
         let (kind, block, offsets, byte_counts) = match tile {
@@ -116,7 +123,7 @@ impl Blocks {
             None => {
                 let rows = tags.integer(file, 278)?.unwrap_or(height).min(height);
                 if rows == 0 {
-                    return Err(Fault::new(name(278), "0", "one row or more"));
+                    return Err(Fault::new(tag_name(278), "0", "one row or more"));
                 }
                 ("strip", [width, rows], 273, 279)
             }
@@ -124,15 +131,15 @@ impl Blocks {
         let across = width.div_ceil(block[0]);
         let count = across * height.div_ceil(block[1]);
         for tag in [offsets, byte_counts] {
-            if tags.count(tag) != count || count > MOST_BLOCKS {
+            if tags.count(tag) != count || count > MAX_BLOCKS {
                 let found = format!("{} values", tags.count(tag));
                 let expected =
-                    format!("{count}, one for each {kind}, of which at most {MOST_BLOCKS} are read");
-                return Err(Fault::new(name(tag), found, expected));
+                    format!("{count}, one for each {kind}, of which at most {MAX_BLOCKS} are read");
+                return Err(Fault::new(tag_name(tag), found, expected));
             }
         }
-        // A deflate code of two bits stands for 258 bytes at most. An LZW code of nine or more stands for as many
-        // bytes as there are codes, 4096. PackBits makes 128 bytes of two.
+        // A deflate code of two bits stands for at most 258 bytes: 1032. An LZW code of at least nine bits stands for
+        // at most as many bytes as there are codes: below 4096. PackBits makes 128 bytes of two: 64.
         let expansion = match compression {
             1 => 1,
             5 => 4096,
@@ -144,9 +151,12 @@ impl Blocks {
         Ok(Self { width, height, sample, kind, block, across, offsets, byte_counts, expansion })
     }
 
-    /// Which of a row of blocks have samples, from block `first` of the file on. All of them lie within the file
-    /// and can be as long as they should be; a block of no bytes is one that nobody wrote.
-    fn row(
+    /// Whether each of `count` blocks, from block `first` of the file on, has samples. A block of 0 bytes was not
+    /// written.
+    ///
+    /// # Errors
+    /// A block that does not lie within the file, or is too short for its samples.
+    fn check_blocks(
         &self,
         tags: &Tags,
         file: &mut (impl Read + Seek),
@@ -170,10 +180,10 @@ impl Blocks {
             // Sides are at most 2^24 and 2^16, or 2^24 both: no product overflows.
             let rows = self.block[1].min(u64::from(self.height) - index / self.across * self.block[1]);
             let needed = self.block[0] * rows * (self.sample.bits() / 8);
-            if needed > LARGEST_BLOCK {
-                return fault(format!("{needed} bytes of samples"), format!("at most {LARGEST_BLOCK}"));
+            if needed > MAX_BLOCK_BYTES {
+                return fault(format!("{needed} bytes of samples"), format!("at most {MAX_BLOCK_BYTES}"));
             }
-            let slack = if self.expansion == 1 { 0 } else { SLACK };
+            let slack = if self.expansion == 1 { 0 } else { EXPANSION_SLACK_BYTES };
             if needed > bytes.saturating_mul(self.expansion) + slack {
                 return fault(format!("{bytes} bytes"), format!("enough for {needed} bytes of samples"));
             }
@@ -181,12 +191,14 @@ impl Blocks {
         Ok(has_samples)
     }
 
+    /// Place of a block in messages.
     fn place(&self, index: u64) -> String {
         format!("{} {index}", self.kind)
     }
 
-    /// The samples of the pixels in these columns and rows, row by row from the first; NaN where they are not
-    /// known. Reads the blocks that these pixels touch and no others.
+    /// Samples of the pixels in these columns and rows, row by row; NaN where the height is not known.
+    ///
+    /// Only the blocks that these pixels touch are read.
     pub fn read<R: Read + Seek>(
         &self,
         tags: &Tags,
@@ -200,10 +212,10 @@ impl Blocks {
         };
         let ((left, right), (top, bottom)) = (part(&columns, 0), part(&rows, 1));
         let count = right - left + 1;
-        // All blocks are checked before memory is taken for what they hold.
+        // All blocks are checked before memory is allocated for their samples.
         let mut has_any = false;
         for down in top..=bottom {
-            let has_samples = self.row(tags, &mut file, length, down * self.across + left, count)?;
+            let has_samples = self.check_blocks(tags, &mut file, length, down * self.across + left, count)?;
             if let Some(absent) = has_samples.iter().position(|has| !has).filter(|_| nodata.is_none()) {
                 let place = self.place(down * self.across + left + absent as u64);
                 let expected = "samples, or a value in tag 42113 GDAL_NODATA that stands for them";
@@ -213,7 +225,7 @@ impl Blocks {
         }
         if !has_any {
             let found = format!("no bytes in any {} that is asked for", self.kind);
-            return Err(Fault::new(name(self.byte_counts), found, "some heights"));
+            return Err(Fault::new(tag_name(self.byte_counts), found, "some heights"));
         }
 
         let unfit = |place: String| {
@@ -221,8 +233,8 @@ impl Blocks {
         };
         file.rewind().map_err(|error| Fault::new("first bytes", error.to_string(), "a readable file"))?;
         let mut limits = Limits::default();
-        limits.decoding_buffer_size = LARGEST_BLOCK as usize;
-        limits.intermediate_buffer_size = LARGEST_BLOCK as usize;
+        limits.decoding_buffer_size = MAX_BLOCK_BYTES as usize;
+        limits.intermediate_buffer_size = MAX_BLOCK_BYTES as usize;
         let mut decoder = Decoder::new(file).map_err(unfit("tags".to_string()))?.with_limits(limits);
         let mut target = Target {
             nodata: nodata.map(|value| self.sample.nodata(value)),
@@ -232,7 +244,7 @@ impl Blocks {
         };
         for down in top..=bottom {
             let first = down * self.across + left;
-            let has_samples = self.row(tags, decoder.inner(), length, first, count)?;
+            let has_samples = self.check_blocks(tags, decoder.inner(), length, first, count)?;
             for index in (first..).zip(has_samples).filter(|(_, has)| *has).map(|(index, _)| index) {
                 let samples = decoder.read_chunk(index as u32).map_err(unfit(self.place(index)))?;
                 let corner = [index % self.across * self.block[0], index / self.across * self.block[1]];
@@ -257,7 +269,7 @@ impl Blocks {
     }
 }
 
-/// The pixels that are asked for.
+/// The requested pixels.
 struct Target {
     columns: RangeInclusive<u32>,
     rows: RangeInclusive<u32>,
@@ -266,7 +278,7 @@ struct Target {
 }
 
 impl Target {
-    /// Takes from a block, whose first pixel is at `corner`, what is asked for.
+    /// Copies the requested pixels of a block, whose first pixel is at `corner`.
     fn take<T: Copy + Into<f64>>(
         &mut self,
         corner: [u64; 2],
@@ -293,7 +305,7 @@ impl Target {
                 };
                 let sample: f64 = sample.into();
                 let is_unknown = sample.is_nan() || self.nodata == Some(sample);
-                if !is_unknown && !(sample.abs() <= HIGHEST) {
+                if !is_unknown && !(sample.abs() <= MAX_HEIGHT_M) {
                     let expected = "a height within 1e7 m, NaN, or the value of tag 42113 GDAL_NODATA";
                     return Err(Fault::new(
                         format!("pixel ({column}, {row})"),
@@ -303,7 +315,7 @@ impl Target {
                 }
                 let place = (row - u64::from(*self.rows.start())) * u64::from(width)
                     + (column - u64::from(*self.columns.start()));
-                // Adding zero makes the minus of -0 go.
+                // Adding zero turns -0 into +0.
                 self.heights[place as usize] = if is_unknown { f64::NAN } else { sample + 0.0 };
             }
         }

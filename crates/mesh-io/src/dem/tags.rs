@@ -1,25 +1,24 @@
-//! The tags of a TIFF, checked against the length of the file before anything is allocated. (TIFF 6.0, section 2;
-//! BigTIFF)
+//! Tags of a TIFF, checked against the length of the file before memory is allocated. (TIFF 6.0, section 2; BigTIFF)
 //!
-//! The `tiff` crate decodes the samples. It would read these tags too, but trusts their numbers in sums and
-//! products, and names neither the tag nor the place of what is wrong.
+//! The `tiff` crate decodes the samples. It would read these tags too, but it trusts their numbers in sums and
+//! products, and its errors name neither the tag nor the place of the fault.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};
 
 use raypencil_files::Fault;
 
-/// More tags than this are no directory.
-const MOST_TAGS: u64 = 4096;
+/// Maximum number of tags in a directory.
+const MAX_TAGS: u64 = 4096;
 
-/// Numbers or letters of a tag that is read whole.
-const MOST_VALUES: u64 = 1 << 20;
+/// Maximum number of values, or characters, of a tag that is read as a whole.
+const MAX_VALUES: u64 = 1 << 20;
 
-/// Bytes of a value by its type; 0 for types that nobody defined. (TIFF 6.0, page 15; BigTIFF: 16 to 18)
-const SIZES: [u8; 19] = [0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8];
+/// Size of a value by its type, bytes; 0 for undefined types. (TIFF 6.0, page 15; BigTIFF: 16 to 18)
+const TYPE_BYTES: [u8; 19] = [0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8];
 
-/// The name of a tag for messages.
-pub(crate) fn name(tag: u16) -> String {
+/// Number and name of a tag, for messages.
+pub(super) fn tag_name(tag: u16) -> String {
     let name = match tag {
         254 => "NewSubfileType",
         256 => "ImageWidth",
@@ -50,28 +49,28 @@ pub(crate) fn name(tag: u16) -> String {
     format!("tag {tag} {name}")
 }
 
-/// Where the values of a tag are.
+/// Type, number and place of a tag's values.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     kind: u16,
     count: u64,
-    /// The first value's place in the file.
+    /// Byte of the file at which the first value begins.
     at: u64,
 }
 
 impl Entry {
     fn size(self) -> u64 {
-        u64::from(SIZES[usize::from(self.kind)])
+        u64::from(TYPE_BYTES[usize::from(self.kind)])
     }
 }
 
-/// One image's tags; all their values lie within the file.
-pub(crate) struct Tags {
+/// Tags of one image. All their values lie within the file.
+pub(super) struct Tags {
     is_big_endian: bool,
     is_big: bool,
     length: u64,
     entries: BTreeMap<u16, Entry>,
-    /// Where the next image's tags are, 0 if there are none.
+    /// Byte of the file at which the next image's tags begin; 0 if there is no other image.
     pub next: u64,
 }
 
@@ -114,8 +113,8 @@ impl Tags {
         };
         let (count_size, entry_size, word) = if self.is_big { (8, 20, 8) } else { (2, 12, 4) };
         let count = self.number(&bytes(file, at, count_size).map_err(cut)?);
-        if !(1..=MOST_TAGS).contains(&count) {
-            return Err(Fault::new(&place, format!("{count} tags"), format!("1 to {MOST_TAGS}")));
+        if !(1..=MAX_TAGS).contains(&count) {
+            return Err(Fault::new(&place, format!("{count} tags"), format!("1 to {MAX_TAGS}")));
         }
         let entries_at = at + count_size;
         let all = bytes(file, entries_at, count * entry_size + word).map_err(cut)?;
@@ -123,8 +122,10 @@ impl Tags {
         let mut entries = BTreeMap::new();
         for (index, entry) in all.chunks_exact(entry_size as usize).enumerate() {
             let [tag, kind] = [self.number(&entry[..2]) as u16, self.number(&entry[2..4]) as u16];
-            // Types that nobody defined are to be skipped. (TIFF 6.0, page 16)
-            let Some(size) = SIZES.get(usize::from(kind)).copied().filter(|size| *size > 0) else { continue };
+            // Undefined types are skipped. (TIFF 6.0, page 16)
+            let Some(size) = TYPE_BYTES.get(usize::from(kind)).copied().filter(|size| *size > 0) else {
+                continue;
+            };
             let (count, value) = entry[4..].split_at(word as usize);
             let count = self.number(count);
             let length = count.saturating_mul(u64::from(size));
@@ -135,7 +136,7 @@ impl Tags {
             if at.checked_add(length).is_none_or(|end| end > self.length) {
                 let found = format!("{count} values of {size} bytes from byte {at}");
                 return Err(Fault::new(
-                    name(tag),
+                    tag_name(tag),
                     found,
                     format!("values within the file of {} bytes", self.length),
                 ));
@@ -146,12 +147,15 @@ impl Tags {
         Ok(Self { is_big_endian, is_big, length, entries, next: self.number(next) })
     }
 
-    /// How many values a tag has; 0 without the tag.
+    /// Number of a tag's values; 0 without the tag.
     pub fn count(&self, tag: u16) -> u64 {
         self.entries.get(&tag).map_or(0, |entry| entry.count)
     }
 
-    /// `count` whole numbers of a tag from its value `first` on, which it must have.
+    /// `count` whole numbers of a tag, from its value `first` on.
+    ///
+    /// # Errors
+    /// The tag is missing, is of another type or has fewer values.
     pub fn run(
         &self,
         file: &mut (impl Read + Seek),
@@ -160,14 +164,14 @@ impl Tags {
         count: u64,
     ) -> Result<Vec<u64>, Fault> {
         let Some(entry) = self.entries.get(&tag) else {
-            return Err(Fault::new(name(tag), "missing", "it is there"));
+            return Err(Fault::new(tag_name(tag), "missing", "it is there"));
         };
         if !matches!(entry.kind, 1 | 3 | 4 | 13 | 16 | 18) {
-            return Err(Fault::new(name(tag), format!("values of type {}", entry.kind), "whole numbers"));
+            return Err(Fault::new(tag_name(tag), format!("values of type {}", entry.kind), "whole numbers"));
         }
         if first.checked_add(count).is_none_or(|end| end > entry.count) {
             return Err(Fault::new(
-                name(tag),
+                tag_name(tag),
                 format!("{} values", entry.count),
                 format!("{}", first + count),
             ));
@@ -176,65 +180,70 @@ impl Tags {
         Ok(bytes.chunks_exact(entry.size() as usize).map(|value| self.number(value)).collect())
     }
 
-    /// All whole numbers of a tag, if it is there.
+    /// All whole numbers of a tag; `None` without the tag.
     pub fn integers(&self, file: &mut (impl Read + Seek), tag: u16) -> Result<Option<Vec<u64>>, Fault> {
-        match self.count_of_small(tag)? {
+        match self.bounded_count(tag)? {
             Some(count) => self.run(file, tag, 0, count).map(Some),
             None => Ok(None),
         }
     }
 
-    /// The one whole number of a tag, if it is there.
+    /// The only whole number of a tag; `None` without the tag.
     pub fn integer(&self, file: &mut (impl Read + Seek), tag: u16) -> Result<Option<u64>, Fault> {
         match self.integers(file, tag)?.as_deref() {
             None => Ok(None),
             Some(&[value]) => Ok(Some(value)),
-            Some(values) => Err(Fault::new(name(tag), format!("{} values", values.len()), "one")),
+            Some(values) => Err(Fault::new(tag_name(tag), format!("{} values", values.len()), "one")),
         }
     }
 
-    /// All doubles of a tag, if it is there. They may be any.
+    /// All doubles of a tag, which may be infinite or NaN; `None` without the tag.
     pub fn reals(&self, file: &mut (impl Read + Seek), tag: u16) -> Result<Option<Vec<f64>>, Fault> {
-        let Some(count) = self.count_of_small(tag)? else { return Ok(None) };
+        let Some(count) = self.bounded_count(tag)? else { return Ok(None) };
         let entry = self.entries[&tag];
         if entry.kind != 12 {
-            return Err(Fault::new(name(tag), format!("values of type {}", entry.kind), "doubles, type 12"));
+            return Err(Fault::new(
+                tag_name(tag),
+                format!("values of type {}", entry.kind),
+                "doubles, type 12",
+            ));
         }
         let bytes = self.values(file, tag, entry.at, 8 * count)?;
         Ok(Some(bytes.chunks_exact(8).map(|value| f64::from_bits(self.number(value))).collect()))
     }
 
-    /// The text of a tag, if it is there, without what ends it. Bytes that are no UTF-8 are replaced.
+    /// Text of a tag up to its null byte; `None` without the tag. Bytes that are not UTF-8 are replaced.
     pub fn text(&self, file: &mut (impl Read + Seek), tag: u16) -> Result<Option<String>, Fault> {
-        let Some(count) = self.count_of_small(tag)? else { return Ok(None) };
+        let Some(count) = self.bounded_count(tag)? else { return Ok(None) };
         let entry = self.entries[&tag];
         if entry.kind != 2 {
-            return Err(Fault::new(name(tag), format!("values of type {}", entry.kind), "text, type 2"));
+            return Err(Fault::new(tag_name(tag), format!("values of type {}", entry.kind), "text, type 2"));
         }
         let bytes = self.values(file, tag, entry.at, count)?;
         let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
         Ok(Some(String::from_utf8_lossy(&bytes[..end]).into_owned()))
     }
 
-    fn count_of_small(&self, tag: u16) -> Result<Option<u64>, Fault> {
+    /// Number of the values of a tag that is read as a whole.
+    fn bounded_count(&self, tag: u16) -> Result<Option<u64>, Fault> {
         match self.entries.get(&tag) {
             None => Ok(None),
-            Some(entry) if entry.count <= MOST_VALUES => Ok(Some(entry.count)),
+            Some(entry) if entry.count <= MAX_VALUES => Ok(Some(entry.count)),
             Some(entry) => Err(Fault::new(
-                name(tag),
+                tag_name(tag),
                 format!("{} values", entry.count),
-                format!("at most {MOST_VALUES}"),
+                format!("at most {MAX_VALUES}"),
             )),
         }
     }
 
-    /// Bytes that are known to lie within the file, of which there are as many as a tag may have.
+    /// Bytes of values, which lie within the file.
     fn values(&self, file: &mut (impl Read + Seek), tag: u16, at: u64, count: u64) -> Result<Vec<u8>, Fault> {
         bytes(file, at, count)
-            .map_err(|error| Fault::new(name(tag), format!("unreadable: {error}"), "readable values"))
+            .map_err(|error| Fault::new(tag_name(tag), format!("unreadable: {error}"), "readable values"))
     }
 
-    /// A whole number of up to 8 bytes in the file's order.
+    /// A whole number of up to 8 bytes, in the byte order of the file.
     fn number(&self, bytes: &[u8]) -> u64 {
         let add = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
         match self.is_big_endian {
@@ -244,8 +253,8 @@ impl Tags {
     }
 }
 
-/// Bytes of the file; grows only with what is there.
-pub fn bytes(file: &mut (impl Read + Seek), at: u64, count: u64) -> std::io::Result<Vec<u8>> {
+/// `count` bytes of the file from byte `at` on. The memory grows only with bytes that exist.
+fn bytes(file: &mut (impl Read + Seek), at: u64, count: u64) -> std::io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(at))?;
     let mut bytes = Vec::new();
     file.take(count).read_to_end(&mut bytes)?;

@@ -1,15 +1,15 @@
-//! Heights on a regular grid as GeoTIFF: what [`crate::read_dem`] reads. (TIFF 6.0; OGC 19-008r4, GeoTIFF 1.1)
+//! Heights on a regular grid to GeoTIFF, as [`crate::read_dem`] reads it. (TIFF 6.0; OGC 19-008r4, GeoTIFF 1.1)
 
 use std::io::Cursor;
 use std::path::Path;
+
+use raypencil_files::{FileError, write_atomically};
+use raypencil_terrain::HeightGrid;
 use tiff::encoder::TiffEncoder;
 use tiff::encoder::colortype::Gray64Float;
 use tiff::tags::Tag;
 
-use raypencil_files::{FileError, write_atomically};
-use raypencil_terrain::HeightGrid;
-
-/// Geo keys: a projected model that is nobody's, pixels that are points, metres along all axes.
+/// Geo keys: a user-defined projection, pixels that are points, metres along all axes.
 const GEO_KEYS: [u16; 24] = [
     // Version 1.1.0, five keys.
     1, 1, 0, 5, //
@@ -20,11 +20,12 @@ const GEO_KEYS: [u16; 24] = [
     4099, 0, 1, 9001, // VerticalUnitsGeoKey: metre
 ];
 
-/// Writes posts as a GeoTIFF of one band of f64, in metres, the northernmost row first; NaN, named as no data, where a
-/// height is not known. The tie point is at a post, not at the corner of an area.
+/// Writes posts as a GeoTIFF with one band of f64, metres, the northernmost row first.
+///
+/// Pixels are points: the tie point is at a post. Unknown heights are NaN, which the file declares as no data.
 ///
 /// # Errors
-/// What the file system says, or the encoder, with the path.
+/// An error of the file system or of the encoder, with the path.
 pub fn write_geotiff(path: impl AsRef<Path>, posts: &HeightGrid) -> Result<(), FileError> {
     let path = path.as_ref();
     let bytes = encode(posts).map_err(|error| FileError::io(path, "write", std::io::Error::other(error)))?;
@@ -52,7 +53,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::dem::read_dem;
+    use crate::dem::{Registration, read_dem};
 
     #[test]
     fn what_is_written_is_read_back() {
@@ -67,7 +68,7 @@ mod tests {
         let path = folder.path().join("map.tif");
         write_geotiff(&path, &posts).unwrap();
         let dem = read_dem(&path, None).unwrap();
-        assert_eq!((dem.registration, dem.unknown), (crate::dem::Registration::Point, 1));
+        assert_eq!((dem.registration, dem.unknown), (Registration::Point, 1));
         assert!(dem.nodata.is_some_and(f64::is_nan));
         let read = dem.posts;
         assert_eq!((read.columns, read.rows, read.spacing), (4, 3, posts.spacing));

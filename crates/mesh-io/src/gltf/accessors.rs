@@ -1,29 +1,30 @@
-//! Typed numbers in buffer views: vertex positions and indices. (glTF 2.0, §3.6.2)
+//! Accessors, typed numbers in buffer views: vertex positions and indices. (glTF 2.0, §3.6.2)
 
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
-
-use crate::gltf::buffers::{Buffers, missing};
 use raypencil_files::Fault;
 
-/// The accessor of that index.
-pub(super) fn get(root: &Root, index: Index<Accessor>) -> Result<&Accessor, Fault> {
+use crate::gltf::buffers::{Buffers, missing_reference};
+
+/// The accessor at `index`.
+pub(super) fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, Fault> {
     let index = index.value();
-    root.accessors.get(index).ok_or_else(|| missing(place(index), root.accessors.len()))
+    root.accessors.get(index).ok_or_else(|| missing_reference(place(index), root.accessors.len()))
 }
 
+/// Place of an accessor in messages.
 fn place(index: usize) -> String {
     format!("accessor {index}")
 }
 
-/// Positions: VEC3 of F32, interleaved or not. Every number is finite.
+/// Vertex positions: VEC3 of F32, interleaved or not, all finite.
 pub(super) fn positions(
     root: &Root,
     buffers: &mut Buffers<'_>,
     index: Index<Accessor>,
 ) -> Result<Vec<[f32; 3]>, Fault> {
-    let accessor = get(root, index)?;
+    let accessor = accessor(root, index)?;
     let index = index.value();
     let (component, shape) = kind(accessor);
     if (component, shape) != (Some(ComponentType::F32), Some(Type::Vec3)) {
@@ -49,14 +50,14 @@ pub(super) fn positions(
     Ok(vertices)
 }
 
-/// Indices: SCALAR of U8, U16 or U32, each below `vertices`.
+/// Vertex indices: SCALAR of U8, U16 or U32, each below `vertices`.
 pub(super) fn indices(
     root: &Root,
     buffers: &mut Buffers<'_>,
     index: Index<Accessor>,
     vertices: usize,
 ) -> Result<Vec<u32>, Fault> {
-    let accessor = get(root, index)?;
+    let accessor = accessor(root, index)?;
     let index = index.value();
     let (component, shape) = kind(accessor);
     let size = match (component, shape) {
@@ -71,7 +72,7 @@ pub(super) fn indices(
     let elements = Elements::of(root, buffers, accessor, index, [size, size])?;
     let mut indices = Vec::with_capacity(elements.count);
     for number in 0..elements.count {
-        // Little-endian: the absent high bytes are zero.
+        // Little-endian; absent high bytes are zero.
         let mut word = [0; 4];
         word[..size].copy_from_slice(elements.bytes(number));
         let vertex = u32::from_le_bytes(word);
@@ -84,7 +85,7 @@ pub(super) fn indices(
     Ok(indices)
 }
 
-/// What an accessor holds, as far as it is known at all.
+/// Component type and shape of an accessor; `None` where they are unknown.
 fn kind(accessor: &Accessor) -> (Option<ComponentType>, Option<Type>) {
     let component = match accessor.component_type {
         Checked::Valid(component) => Some(component.0),
@@ -97,13 +98,14 @@ fn kind(accessor: &Accessor) -> (Option<ComponentType>, Option<Type>) {
     (component, shape)
 }
 
+/// Component type and shape for messages.
 fn kind_name(component: Option<ComponentType>, shape: Option<Type>) -> String {
     let shape = shape.map_or("an unknown type".to_string(), |shape| format!("{shape:?}").to_uppercase());
     let component = component.map_or("unknown components".to_string(), |component| format!("{component:?}"));
     format!("{shape} of {component}")
 }
 
-/// The elements of an accessor, known to lie within their buffer view.
+/// Elements of an accessor, checked to lie within their buffer view.
 struct Elements<'a> {
     view: &'a [u8],
     start: usize,
@@ -121,7 +123,7 @@ impl<'a> Elements<'a> {
         index: usize,
         [size, component]: [usize; 2],
     ) -> Result<Self, Fault> {
-        // CHOICE: sparse accessors serve morph targets, and a terrain has none.
+        // CHOICE: sparse accessors are refused. They serve morph targets, which a terrain does not have.
         if accessor.sparse.is_some() {
             return Err(Fault::new(place(index), "sparse storage", "plain storage: sparse is not supported"));
         }
@@ -147,7 +149,7 @@ impl<'a> Elements<'a> {
             let expected = format!("1 or more within buffer view {view_index} of {} bytes", view.len());
             return Err(Fault::new(place(index), found, expected));
         }
-        // A number at another place is a part of two others: the file was not written for what it says. (§3.6.2.4)
+        // An unaligned number would overlap two others, so the file cannot mean what it claims. (§3.6.2.4)
         let view_offset =
             root.buffer_views.get(view_index).and_then(|view| view.byte_offset).map_or(0, |at| at.0);
         let start = u128::from(view_offset) + u128::from(offset);
@@ -156,10 +158,11 @@ impl<'a> Elements<'a> {
                 format!("numbers of {component} bytes from byte {start} of their buffer, {stride} apart");
             return Err(Fault::new(place(index), found, format!("multiples of {component}")));
         }
-        // Both are below the view's length now.
+        // Both have been checked to be below the view's length.
         Ok(Self { view, start: offset as usize, stride, size, count: count as usize })
     }
 
+    /// Bytes of one element.
     fn bytes(&self, number: usize) -> &[u8] {
         let at = self.start + number * self.stride;
         &self.view[at..at + self.size]

@@ -1,23 +1,24 @@
-//! The bytes that a glTF file refers to: its binary chunk, data URIs, files beside it. (glTF 2.0, §3.6.1)
+//! Buffers of a glTF file: its binary chunk, data URIs and files beside it. (glTF 2.0, §3.6.1)
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use gltf::json::Root;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::gltf::LARGEST_FILE;
-use raypencil_files::bytes;
-use raypencil_files::{Fault, Sha, sha};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use gltf::json::Root;
+use raypencil_files::{Fault, Sha256Digest, bytes, sha256};
 
-/// Buffers, loaded when they are first needed: textures and animations never are.
-pub(crate) struct Buffers<'a> {
+use crate::gltf::limits::MAX_FILE_BYTES;
+
+/// Buffers, loaded when they are first needed; those of textures and animations never are.
+pub(super) struct Buffers<'a> {
     root: &'a Root,
     folder: &'a Path,
     bin: Option<&'a [u8]>,
     loaded: BTreeMap<usize, Cow<'a, [u8]>>,
-    external: BTreeMap<usize, Sha>,
+    /// Digests of the buffers in files of their own.
+    external: BTreeMap<usize, Sha256Digest>,
     external_bytes: u64,
 }
 
@@ -27,16 +28,19 @@ impl<'a> Buffers<'a> {
         Self { root, folder, bin, loaded, external, external_bytes: 0 }
     }
 
-    /// The digests of the files that were read, in the order of their buffers.
-    pub(super) fn digests(&self) -> impl Iterator<Item = Sha> + '_ {
+    /// Digests of the files that were read, in the order of their buffers.
+    pub(super) fn digests(&self) -> impl Iterator<Item = Sha256Digest> + '_ {
         self.external.values().copied()
     }
 
-    /// The bytes of a buffer view, which lie within its buffer, which lies within what is there.
+    /// Bytes of a buffer view.
+    ///
+    /// # Errors
+    /// The view does not lie within its buffer, or the buffer not within its bytes.
     pub(super) fn view(&mut self, index: usize) -> Result<&[u8], Fault> {
         let place = || format!("buffer view {index}");
         let count = self.root.buffer_views.len();
-        let view = self.root.buffer_views.get(index).ok_or_else(|| missing(place(), count))?;
+        let view = self.root.buffer_views.get(index).ok_or_else(|| missing_reference(place(), count))?;
         let (offset, length) = (view.byte_offset.map_or(0, |offset| offset.0), view.byte_length.0);
         let buffer = self.buffer(view.buffer.value())?;
         let range = offset
@@ -49,10 +53,11 @@ impl<'a> Buffers<'a> {
         })
     }
 
+    /// Bytes of a buffer.
     fn buffer(&mut self, index: usize) -> Result<&[u8], Fault> {
         let place = || format!("buffer {index}");
         let count = self.root.buffers.len();
-        let buffer = self.root.buffers.get(index).ok_or_else(|| missing(place(), count))?;
+        let buffer = self.root.buffers.get(index).ok_or_else(|| missing_reference(place(), count))?;
         if !self.loaded.contains_key(&index) {
             let bytes = match &buffer.uri {
                 Some(uri) => match uri.strip_prefix("data:") {
@@ -73,14 +78,14 @@ impl<'a> Buffers<'a> {
             self.loaded.insert(index, bytes);
         }
         let bytes: &[u8] = self.loaded.get(&index).map_or(&[], |bytes| bytes);
-        // A BIN chunk may be longer than its buffer by its padding.
+        // A BIN chunk may be longer than its buffer, by its padding.
         usize::try_from(buffer.byte_length.0).ok().and_then(|length| bytes.get(..length)).ok_or_else(|| {
             let found = format!("{} bytes", bytes.len());
             Fault::new(place(), found, format!("the {} bytes of its byteLength", buffer.byte_length.0))
         })
     }
 
-    /// A file in the folder of the glTF file, or below it.
+    /// Bytes of a file in the folder of the glTF file, or below it.
     fn external(&mut self, index: usize, uri: &str) -> Result<Vec<u8>, Fault> {
         let place = format!("buffer {index}");
         let quoted: String = uri.chars().take(80).collect();
@@ -92,7 +97,7 @@ impl<'a> Buffers<'a> {
             )
         };
         let relative = percent_decoded(uri).ok_or_else(|| refuse("has a broken % escape"))?;
-        // Backslashes and colons separate folders and drives on some systems, schemes and streams on others.
+        // Backslashes and colons have a meaning on some systems: folders, drives, schemes, streams.
         if relative.contains([':', '\\', '\0']) {
             return Err(refuse("has a scheme, a drive or a backslash"));
         }
@@ -108,20 +113,20 @@ impl<'a> Buffers<'a> {
             Some(false) => return Err(refuse("leads out of the folder by a link")),
             None => return Err(refuse("does not exist")),
         }
-        let bytes = bytes::read_file(&path, LARGEST_FILE - self.external_bytes)
+        let bytes = bytes::read_file(&path, MAX_FILE_BYTES - self.external_bytes)
             .map_err(|error| refuse(&format!("cannot be read: {error}")))?;
         self.external_bytes += bytes.len() as u64;
-        self.external.insert(index, sha(&bytes));
+        self.external.insert(index, sha256(&bytes));
         Ok(bytes)
     }
 }
 
-/// A reference to something that is not in the file.
-pub(crate) fn missing(place: String, count: usize) -> Fault {
+/// A fault of a reference to one of `count` things, which the file does not have.
+pub(super) fn missing_reference(place: String, count: usize) -> Fault {
     Fault::new(place, "does not exist", format!("an index below {count}"))
 }
 
-/// The bytes of `data:[<type>];base64,<digits>`, without its `data:`.
+/// Bytes of a data URI `data:[<type>];base64,<digits>`; `data` is its part after `data:`.
 fn data_uri(data: &str, place: &str) -> Result<Vec<u8>, Fault> {
     let digits = data
         .split_once(',')
@@ -135,7 +140,7 @@ fn data_uri(data: &str, place: &str) -> Result<Vec<u8>, Fault> {
         .map_err(|error| Fault::new(place, format!("a data URI: {error}"), "base64 with padding (RFC 4648)"))
 }
 
-/// `a%20b` as `a b`; `None` if an escape is broken or what comes out is not UTF-8.
+/// `a%20b` as `a b`; `None` if an escape is broken or the result is not UTF-8.
 fn percent_decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.bytes();

@@ -1,18 +1,17 @@
-//! The outermost layer of a glTF file: the chunks of a GLB, or plain JSON. (glTF 2.0, §4.4)
+//! Container of a glTF file: the chunks of a GLB, or plain JSON. (glTF 2.0, §4.4)
 
 use raypencil_files::Fault;
 
-/// The parts of a GLB or glTF file.
+/// Parts of a GLB or glTF file.
 pub(super) struct Container<'a> {
     pub json: &'a [u8],
     pub bin: Option<&'a [u8]>,
 }
 
-/// Splits a file into its JSON and, in a GLB, its binary chunk. Every length is checked against what is
-/// there; nothing is allocated.
+/// Splits a file into its JSON and, in a GLB, its binary chunk. Every length is checked; no memory is allocated.
 pub(super) fn split(file: &[u8]) -> Result<Container<'_>, Fault> {
     if !file.starts_with(b"glTF") {
-        // A text file starts with its JSON object. What starts otherwise is neither.
+        // A text file starts with its JSON object.
         return match file.iter().find(|byte| !byte.is_ascii_whitespace()) {
             Some(b'{') => Ok(Container { json: file, bin: None }),
             _ => Err(Fault::new(

@@ -1,12 +1,11 @@
-//! The JSON of a glTF file to the types of the crate `gltf`, as far as they can be trusted. (glTF 2.0, §5)
+//! JSON of a glTF file to the types of the crate `gltf`, after the checks that the crate lacks. (glTF 2.0, §5)
 
 use gltf::json::Root;
+use raypencil_files::Fault;
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use raypencil_files::Fault;
-
-/// The parts of the JSON that say whether the rest can be understood.
+/// Version and extensions, by which the rest can be understood or not.
 #[derive(Deserialize)]
 struct Head {
     asset: HeadAsset,
@@ -23,18 +22,17 @@ struct HeadAsset {
     min_version: Option<String>,
 }
 
-/// The most objects of the JSON. CHOICE: two bytes of text become half a kilobyte of memory each, and a ground has a few
-/// dozen to a few thousand.
-const MOST_OBJECTS: usize = 1 << 19;
+/// Maximum number of objects in the JSON. CHOICE: an object of two bytes takes half a kilobyte of memory, and a ground
+/// has a few dozen to a few thousand objects.
+const MAX_OBJECTS: usize = 1 << 19;
 
-/// Parses the JSON. Depth is limited by serde_json, which refuses what is nested deeper than 128 and skips
-/// unknown keys without recursion.
+/// Parses the JSON. serde_json refuses nesting deeper than 128, and skips unknown keys without recursion.
 pub(super) fn root(json: &[u8]) -> Result<Root, Fault> {
     let unfit = |error: serde_json::Error| Fault::new("JSON", error.to_string(), "a glTF 2.0 asset");
-    // Those within texts are counted as well: few, and it is the memory that counts.
+    // Braces inside texts are counted as well; they are few, and this is a limit of memory only.
     let objects = json.iter().filter(|&&byte| byte == b'{').count();
-    if objects > MOST_OBJECTS {
-        return Err(Fault::new("JSON", format!("{objects} objects"), format!("at most {MOST_OBJECTS}")));
+    if objects > MAX_OBJECTS {
+        return Err(Fault::new("JSON", format!("{objects} objects"), format!("at most {MAX_OBJECTS}")));
     }
     let head: Head = serde_json::from_slice(json).map_err(unfit)?;
     let HeadAsset { version, min_version } = &head.asset;
@@ -42,7 +40,7 @@ pub(super) fn root(json: &[u8]) -> Result<Root, Fault> {
         let found = format!("version {version:?}, minVersion {min_version:?}");
         return Err(Fault::new("asset", found, "glTF 2.0"));
     }
-    // Extensions of light and colour do not move a vertex.
+    // Extensions of light and colour move no vertex.
     let harmless = |name: &str| {
         ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"]
             .iter()
@@ -53,7 +51,7 @@ pub(super) fn root(json: &[u8]) -> Result<Root, Fault> {
             "plain buffers and nodes; extensions are known only for materials, textures and lights";
         return Err(Fault::new("extensionsRequired", format!("{name:?}"), expected));
     }
-    // Without it most of the ground would be missing, and nothing would say so.
+    // If it were ignored, most of the ground would be missing without any message.
     if head.used.iter().any(|name| name == "EXT_mesh_gpu_instancing") {
         return Err(Fault::new("extensionsUsed", "\"EXT_mesh_gpu_instancing\"", "a node for each instance"));
     }
@@ -61,8 +59,8 @@ pub(super) fn root(json: &[u8]) -> Result<Root, Fault> {
     serde_json::from_slice(json).map_err(unfit)
 }
 
-/// Every index that is followed, for what it is: the crate keeps the lowest 32 bits of each, so that 2^32 means 0.
-/// Nothing of it is kept but what reading it says.
+/// Every index that is followed. The crate keeps only the lowest 32 bits of an index, so that 2^32 would mean 0.
+/// Reading these types is the check; their contents are not used.
 #[derive(Deserialize)]
 #[allow(dead_code, reason = "checked by being read")]
 struct References {
@@ -128,13 +126,13 @@ struct ViewReferences {
     buffer: Option<Index>,
 }
 
-/// A number from 0 to 2^32 - 1, which takes no memory.
+/// An index from 0 to 2^32 - 1; it is checked, not stored.
 struct Index;
 
 impl<'de> Deserialize<'de> for Index {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Whole;
-        impl Visitor<'_> for Whole {
+        struct IndexVisitor;
+        impl Visitor<'_> for IndexVisitor {
             type Value = Index;
 
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
@@ -147,6 +145,6 @@ impl<'de> Deserialize<'de> for Index {
                     .map_err(|_| E::invalid_value(Unexpected::Unsigned(index), &self))
             }
         }
-        deserializer.deserialize_u64(Whole)
+        deserializer.deserialize_u64(IndexVisitor)
     }
 }

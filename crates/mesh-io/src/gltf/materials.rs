@@ -1,15 +1,17 @@
-//! Kinds of ground: the reflectivity of a material. (glTF 2.0, section 3.9.2)
+//! Materials: name and reflectivity. (glTF 2.0, section 3.9.2)
 
 use gltf::json::{Material as MaterialJson, Root};
+use raypencil_files::Fault;
+use raypencil_scene::Material;
 use serde::Deserialize;
 use serde_json::Value;
 
-use raypencil_files::Fault;
-use raypencil_scene::Material;
+use crate::gltf::limits::MAX_MATERIALS;
 
-/// One kind of ground for each material of the file, in its order; `json` is what `root` was made of.
+/// Materials of the file, in its order. `json` is the text of `root`; `default` is the reflectivity of materials that
+/// state none.
 pub(super) fn read(root: &Root, json: &[u8], default: f64) -> Result<Vec<Material>, Fault> {
-    if root.materials.len() >= usize::from(u16::MAX) {
+    if root.materials.len() > MAX_MATERIALS {
         let found = root.materials.len().to_string();
         return Err(Fault::new("materials", found, "fewer than 65535"));
     }
@@ -17,8 +19,8 @@ pub(super) fn read(root: &Root, json: &[u8], default: f64) -> Result<Vec<Materia
     let kind = |(index, material): (usize, &MaterialJson)| {
         let name = material.name.clone().unwrap_or_else(|| format!("material {index}"));
         let place = || format!("material {index} {:?}", material.name.as_deref().unwrap_or(""));
-        // What is said outright wins over what follows from a colour.
-        let reflectivity = match own(material, place)? {
+        // A stated reflectivity has precedence over the luminance of the colour.
+        let reflectivity = match stated_reflectivity(material, place)? {
             Some(reflectivity) => reflectivity,
             None => colours.luminance(index, place)?.unwrap_or(default),
         };
@@ -27,8 +29,8 @@ pub(super) fn read(root: &Root, json: &[u8], default: f64) -> Result<Vec<Materia
     root.materials.iter().enumerate().map(kind).collect()
 }
 
-/// `extras.reflectivity` of a material, if its extras are an object that has it.
-fn own(material: &MaterialJson, place: impl Fn() -> String) -> Result<Option<f64>, Fault> {
+/// `extras.reflectivity` of a material; `None` if its extras are no object or lack it.
+fn stated_reflectivity(material: &MaterialJson, place: impl Fn() -> String) -> Result<Option<f64>, Fault> {
     #[derive(Deserialize)]
     struct Extras {
         reflectivity: Option<Value>,
@@ -48,8 +50,8 @@ fn own(material: &MaterialJson, place: impl Fn() -> String) -> Result<Option<f64
     }
 }
 
-/// The colours of a file as they stand there: the `gltf` crate fills in white where there is none, and rounds
-/// to single precision.
+/// Colours of a file as its JSON has them. The `gltf` crate fills in white where a colour is absent, and rounds to
+/// single precision.
 #[derive(Default, Deserialize)]
 struct Colours {
     #[serde(default)]
@@ -76,10 +78,10 @@ impl Colours {
         serde_json::from_slice(json).map_err(unfit)
     }
 
-    /// The luminance of a material's colour, if it gives one.
+    /// Luminance of a material's colour; `None` if it has no colour, or one that a texture multiplies.
     ///
-    /// CHOICE: that of Rec. 709 (ITU-R BT.709), whose primaries glTF's colours have; factors are linear. A colour
-    /// that a texture multiplies is none of the ground, since textures are not read; and white, which is the
+    /// CHOICE: the luminance of Rec. 709 (ITU-R BT.709), since glTF's colours have its primaries and are linear.
+    /// Textures are not read, so that a colour which a texture multiplies does not describe the ground. White, the
     /// default of glTF, is not the default here.
     fn luminance(&self, index: usize, place: impl Fn() -> String) -> Result<Option<f64>, Fault> {
         let Some(surface) = self.materials.get(index).and_then(|material| material.surface.as_ref()) else {
@@ -92,7 +94,7 @@ impl Colours {
         if !factor.iter().all(|part| (0.0..=1.0).contains(part)) {
             return Err(unfit());
         }
-        // 0.2126 R + 0.7152 G + 0.0722 B, so written that a grey is exactly its own luminance.
+        // 0.2126 R + 0.7152 G + 0.0722 B, in a form that gives a grey exactly its own luminance.
         let luminance = green + 0.2126 * (red - green) + 0.0722 * (blue - green);
         Ok(surface.texture.is_none().then_some(luminance))
     }

@@ -1,34 +1,34 @@
-//! The node hierarchy: which nodes are drawn, in which order, and where each stands. (glTF 2.0, §3.5)
+//! Node hierarchy: the nodes that are drawn, in their order, each with its transform. (glTF 2.0, §3.5)
 
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::json::Root;
 use gltf::json::scene::Node;
-
-use crate::gltf::buffers::missing;
 use raypencil_files::Fault;
 use raypencil_scene::Pose;
 
-/// Deeper than any hierarchy that means something: at this depth even harmless scales overflow.
-const DEEPEST: usize = 1024;
+use crate::gltf::buffers::missing_reference;
 
-/// A node that is drawn.
-pub(crate) struct Placed {
+/// Maximum depth of the hierarchy, levels. At this depth even a scale of 2 in each level overflows.
+const MAX_DEPTH: usize = 1024;
+
+/// A node that is drawn, with its transform.
+pub(super) struct PlacedNode {
     /// Index of the node.
     pub node: usize,
-    /// From the node's own axes to the file's (y up).
+    /// Transform from the node's own axes to those of the file (y up).
     pub file_from_node: DAffine3,
 }
 
-/// The place of a node in messages.
-pub(super) fn place(root: &Root, index: usize) -> String {
+/// Place of a node in messages.
+pub(super) fn node_place(root: &Root, index: usize) -> String {
     match root.nodes.get(index).and_then(|node| node.name.as_ref()) {
         Some(name) => format!("node {index} {:?}", name.chars().take(80).collect::<String>()),
         None => format!("node {index}"),
     }
 }
 
-/// All nodes below the roots: a node before its children, children in their order.
-pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Fault> {
+/// All nodes below the roots: a node before its children, children in the order of the file.
+pub(super) fn placed_nodes(root: &Root) -> Result<Vec<PlacedNode>, Fault> {
     let parents = parents(root)?;
     let mut stack: Vec<(usize, DAffine3, usize)> = Vec::new();
     for &index in roots(root, &parents)?.iter().rev() {
@@ -36,18 +36,18 @@ pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Fault> {
     }
     let mut placed = Vec::new();
     while let Some((index, file_from_parent, depth)) = stack.pop() {
-        if depth > DEEPEST {
+        if depth > MAX_DEPTH {
             let found = format!("{depth} levels deep");
-            return Err(Fault::new(place(root, index), found, format!("at most {DEEPEST} levels")));
+            return Err(Fault::new(node_place(root, index), found, format!("at most {MAX_DEPTH} levels")));
         }
-        // Every index here is that of a node: the roots and children were checked.
+        // Every index is that of a node: roots and children have been checked.
         let node = &root.nodes[index];
-        let parent_from_node = local(node, &place(root, index))?;
+        let parent_from_node = local(node, &node_place(root, index))?;
         let file_from_node = match parent_from_node {
             Some(transform) => file_from_parent * transform,
             None => file_from_parent,
         };
-        placed.push(Placed { node: index, file_from_node });
+        placed.push(PlacedNode { node: index, file_from_node });
         for child in node.children.iter().flatten().rev() {
             stack.push((child.value(), file_from_node, depth + 1));
         }
@@ -55,7 +55,7 @@ pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Fault> {
     Ok(placed)
 }
 
-/// The one parent of each node. A node with two is refused, and so is a cycle.
+/// Parent of each node. A node with two parents is refused, and so is a cycle.
 fn parents(root: &Root) -> Result<Vec<Option<usize>>, Fault> {
     let mut parents = vec![None; root.nodes.len()];
     for (index, node) in root.nodes.iter().enumerate() {
@@ -63,15 +63,16 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, Fault> {
             let child = child.value();
             let slot = parents.get_mut(child).ok_or_else(|| {
                 let found = format!("child {child}");
-                Fault::new(place(root, index), found, format!("an index below {}", root.nodes.len()))
+                Fault::new(node_place(root, index), found, format!("an index below {}", root.nodes.len()))
             })?;
             if let Some(first) = slot.replace(index) {
                 let found = format!("a child of node {first} and of node {index}");
-                return Err(Fault::new(place(root, child), found, "at most one parent"));
+                return Err(Fault::new(node_place(root, child), found, "at most one parent"));
             }
         }
     }
-    // With one parent each, a node is in or below a cycle exactly when it is not below a node without one.
+    // Each node has at most one parent, so it is in or below a cycle exactly if it is not below a node without a
+    // parent.
     let mut below = vec![false; parents.len()];
     let mut stack: Vec<usize> = (0..parents.len()).filter(|&index| parents[index].is_none()).collect();
     while let Some(index) = stack.pop() {
@@ -80,18 +81,21 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, Fault> {
     }
     match below.iter().position(|below| !below) {
         None => Ok(parents),
-        Some(index) => Err(Fault::new(place(root, index), "in or below a cycle of nodes", "a tree")),
+        Some(index) => Err(Fault::new(node_place(root, index), "in or below a cycle of nodes", "a tree")),
     }
 }
 
-/// The roots of the default scene; without one those of all scenes, each once; without any scene all nodes
-/// that have no parent.
+/// Roots of the default scene; without it the roots of all scenes, each once; without any scene all nodes that have no
+/// parent.
 fn roots(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Fault> {
     let scenes = match root.scene {
         Some(index) => {
             let index = index.value();
             let count = root.scenes.len();
-            vec![(index, root.scenes.get(index).ok_or_else(|| missing(format!("scene {index}"), count))?)]
+            vec![(
+                index,
+                root.scenes.get(index).ok_or_else(|| missing_reference(format!("scene {index}"), count))?,
+            )]
         }
         None => root.scenes.iter().enumerate().collect(),
     };
@@ -109,7 +113,7 @@ fn roots(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Fault> {
                     let found = format!("root node {node}");
                     return Err(Fault::new(scene, found, format!("an index below {}", parents.len())));
                 }
-                // Drawn as a root it would stand elsewhere than its parent says.
+                // As a root it would be drawn without its parent's transform.
                 Some(Some(parent)) => {
                     let found = format!("root node {node}, a child of node {parent}");
                     return Err(Fault::new(scene, found, "roots without a parent"));
@@ -125,7 +129,7 @@ fn roots(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Fault> {
     Ok(roots)
 }
 
-/// A node's own transform, `None` if it has none: then vertices pass through untouched.
+/// Transform of a node to its parent's axes; `None` if it has none, so that its vertices are not changed.
 fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
     let wide = |v: [f32; 3]| DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
     let finite = |name: &str, numbers: &[f32]| match numbers.iter().all(|number| number.is_finite()) {
@@ -142,7 +146,7 @@ fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
             ));
         }
         finite("matrix", &matrix)?;
-        // Column by column; the last row is that of an affine map.
+        // Stored column by column; the last row must be that of an affine map.
         let [a, b, c, d]: [[f32; 4]; 4] =
             std::array::from_fn(|column| std::array::from_fn(|row| matrix[4 * column + row]));
         if [a[3], b[3], c[3], d[3]] != [0.0, 0.0, 0.0, 1.0] {
@@ -164,12 +168,12 @@ fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
     finite("rotation", &rotation)?;
     let [x, y, z, w] = rotation.map(f64::from);
     let norm_squared = x * x + y * y + z * z + w * w;
-    // In single precision a unit quaternion is one to about 1e-7; the rest is for sloppy writers.
+    // Single precision holds a unit quaternion to about 1e-7. The larger bound admits writers with fewer digits.
     if !(0.9..=1.1).contains(&norm_squared) {
         let found = format!("rotation {rotation:?}");
         return Err(Fault::new(place, found, "a unit quaternion"));
     }
-    // `rotate` divides by the square of the length, so that what is left of it does not scale the ground.
+    // `rotate` divides by the squared length, so that a length other than 1 does not scale the ground.
     let turn = Pose { rotation: glam::DQuat::from_xyzw(x, y, z, w), ..Pose::IDENTITY };
     let scale = wide(scale);
     let linear = DMat3::from_cols(

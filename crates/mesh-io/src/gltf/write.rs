@@ -1,30 +1,47 @@
 //! A mesh to GLB: one node, the mesh's own numbers, faces in the order of `FaceId`. (glTF 2.0)
 
-use serde_json::{Value, json};
 use std::path::Path;
 
-use crate::gltf::MOST;
 use raypencil_files::{Fault, FileError, write_atomically};
-use raypencil_scene::Mesh;
+use raypencil_scene::{Material, Mesh};
+use serde_json::{Value, json};
 
-/// The types of a buffer view's contents. (glTF 2.0, §5.11.5)
+use crate::gltf::limits::{MAX_FACES_OR_VERTICES, MAX_MATERIALS};
+
+/// Buffer view with vertex attributes. (glTF 2.0, §5.11.5)
 const ARRAY_BUFFER: u32 = 34_962;
 
+/// Buffer view with vertex indices. (§5.11.5)
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 
-/// The types of an accessor's components. (§5.1.3)
+/// Component type of f32. (§5.1.3)
 const FLOAT: u32 = 5_126;
 
+/// Component type of u32. (§5.1.3)
 const UNSIGNED_INT: u32 = 5_125;
 
-/// Most materials that a file may have: one index is left for faces of other files that have none.
-const MOST_MATERIALS: usize = u16::MAX as usize - 1;
-
-/// Writes `mesh` as a GLB file: what [`glb_bytes`] gives.
+/// Writes `mesh` as a GLB file with the contents of [`glb_bytes`].
 ///
 /// # Errors
-/// A mesh that no reader would take: without faces, with more than 2^25 faces or vertices, or with more
-/// than 65534 materials; what the file system says.
+/// A mesh that the reader would refuse: without faces, with more than 2^25 faces or vertices, or with more than 65534
+/// materials. An error of the file system, with the path.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_mesh_io::{mesh_of_offsets, write_glb};
+/// use raypencil_scene::{Material, Mesh};
+///
+/// // Vertices as offsets from the scene origin; the file holds just these numbers.
+/// let (origin, vertices) = (DVec3::new(7.0, -3.0, 0.0), vec![[0.0, 0.0, 0.1], [1.0, 0.0, 0.1], [0.0, 1.0, -0.0]]);
+/// let dust = Material { name: "dust".into(), reflectivity: 0.25 };
+/// let mesh = Mesh::new(origin, vertices, vec![[0, 1, 2]], vec![0], vec![dust])?;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("offsets.glb");
+/// write_glb(&path, &mesh)?;
+/// assert_eq!(mesh_of_offsets(&path, origin)?, mesh);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write_glb(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), FileError> {
     let path = path.as_ref();
     check(mesh).map_err(|fault| FileError::Gltf(fault.in_file(path)))?;
@@ -32,13 +49,14 @@ pub fn write_glb(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), FileError> {
     write_atomically(path, |file| file.write_all(&bytes))
 }
 
-/// Writes `mesh` as a GLB file for people and other programs: as [`write_glb`] does, but its node stands at the
-/// scene origin, so that the ground is where it belongs, and [`crate::gltf::load_mesh`] gives back the same mesh bit
-/// for bit. `extras`, a JSON object of anything, becomes the node's `extras`; `asset.extras.units` is `metre`.
+/// Writes `mesh` as a GLB file for other programs, in which the ground is at its place in the global frame.
+///
+/// The file is that of [`write_glb`], but its node is translated to the scene origin. [`crate::load_mesh`] gives back
+/// the same mesh bit for bit. `extras`, any JSON object, becomes the node's `extras`; `asset.extras.units` is `metre`.
 ///
 /// # Errors
-/// As [`write_glb`]; an origin that single precision cannot hold, in which glTF has its numbers: all whole metres
-/// below 2^24 can be held.
+/// As [`write_glb`]; a scene origin that single precision, the precision of glTF, cannot hold. It holds all whole
+/// metres below 2^24.
 pub fn write_terrain_glb(path: impl AsRef<Path>, mesh: &Mesh, extras: &Value) -> Result<(), FileError> {
     let path = path.as_ref();
     let bytes = check(mesh)
@@ -48,7 +66,7 @@ pub fn write_terrain_glb(path: impl AsRef<Path>, mesh: &Mesh, extras: &Value) ->
     write_atomically(path, |file| file.write_all(&bytes))
 }
 
-/// The document of a mesh whose node stands at the scene origin.
+/// JSON of a file whose node is translated to the scene origin.
 fn terrain_document(mesh: &Mesh, extras: &Value) -> Result<Value, Fault> {
     let origin = mesh.origin();
     if let Some(value) = origin.to_array().into_iter().find(|value| f64::from(*value as f32) != *value) {
@@ -60,46 +78,51 @@ fn terrain_document(mesh: &Mesh, extras: &Value) -> Result<Value, Fault> {
     let node = &mut document["nodes"][0];
     node["extras"] = extras.clone();
     if origin != glam::DVec3::ZERO {
-        // z up becomes y up; adding zero makes the minus of -0 go.
+        // z up becomes y up; adding zero turns -0 into +0.
         node["translation"] = json!([origin.x, origin.z, -origin.y + 0.0]);
     }
     Ok(document)
 }
 
-/// Refuses what a GLB cannot hold, or what [`crate::gltf::load_mesh`] would not read back.
+/// Refuses a mesh that a GLB cannot hold, or that [`crate::load_mesh`] would not read back.
 fn check(mesh: &Mesh) -> Result<(), Fault> {
     if mesh.faces().is_empty() {
         return Err(Fault::new("mesh", "no faces", "at least one: glTF has no empty meshes"));
     }
     for (name, count) in [("faces", mesh.faces().len()), ("vertices", mesh.vertices().len())] {
-        if count as u64 > MOST {
-            return Err(Fault::new("mesh", format!("{count} {name}"), format!("at most {MOST}")));
+        if count as u64 > MAX_FACES_OR_VERTICES {
+            return Err(Fault::new(
+                "mesh",
+                format!("{count} {name}"),
+                format!("at most {MAX_FACES_OR_VERTICES}"),
+            ));
         }
     }
     match mesh.materials().len() {
-        count if count > MOST_MATERIALS => {
-            Err(Fault::new("mesh", format!("{count} materials"), format!("at most {MOST_MATERIALS}")))
+        count if count > MAX_MATERIALS => {
+            Err(Fault::new("mesh", format!("{count} materials"), format!("at most {MAX_MATERIALS}")))
         }
         _ => Ok(()),
     }
 }
 
-/// The bytes of a GLB file with `mesh`: the same bytes for the same mesh, and valid glTF 2.0.
+/// Bytes of a GLB file with `mesh`, valid glTF 2.0. The same mesh gives the same bytes.
 ///
-/// The vertices are the mesh's very `f32` offsets from its origin, metres, in the axes of glTF (y up): scene
-/// (x, y, z) is (x, z, -y). No node has a transform. The origin, metres in the global frame, stands in
-/// `asset.extras.originM` for people; [`crate::gltf::mesh_of_offsets`] is told it and gives back the same mesh bit
-/// for bit, while [`crate::gltf::load_mesh`] takes the vertices for global ones. All faces refer to one
-/// list of vertices; each run of faces of one material is a primitive, so that their order is that of
-/// [`raypencil_scene::FaceId`]. A material's reflectivity is its `extras.reflectivity`.
+/// The vertices are the mesh's own `f32` offsets from its origin, metres, in the axes of glTF (y up): scene (x, y, z)
+/// becomes (x, z, -y). No node has a transform. `asset.extras.originM` has the origin, metres in the global frame.
+/// [`crate::mesh_of_offsets`] is given the origin and returns the same mesh bit for bit; [`crate::load_mesh`] takes the
+/// vertices for global ones.
+///
+/// All faces refer to one list of vertices. Each run of faces of one material is a primitive, so that the faces have
+/// the order of [`raypencil_scene::FaceId`]. `extras.reflectivity` of a material is its reflectivity.
 ///
 /// # Panics
-/// If the mesh has so many faces or vertices that a GLB cannot hold them (4 GiB); [`write_glb`] refuses it.
+/// If the mesh has more faces or vertices than a GLB of 4 GiB can hold; [`write_glb`] refuses such a mesh.
 pub fn glb_bytes(mesh: &Mesh) -> Vec<u8> {
     file(mesh, &document(mesh))
 }
 
-/// The file of a mesh and its document.
+/// Bytes of the file of a mesh, with `document` as its JSON.
 fn file(mesh: &Mesh, document: &Value) -> Vec<u8> {
     let positions = 12 * mesh.vertices().len();
     let indices = 12 * mesh.faces().len();
@@ -111,7 +134,7 @@ fn file(mesh: &Mesh, document: &Value) -> Vec<u8> {
     container(&serde_json::to_vec(document).expect("JSON of numbers and texts"), &bin)
 }
 
-/// The JSON of the file. Objects have their keys in alphabetical order, so that it is the same for the same mesh.
+/// JSON of the file. The keys of objects are in alphabetical order, so that the same mesh gives the same text.
 fn document(mesh: &Mesh) -> Value {
     let origin = mesh.origin().to_array();
     let mut document = json!({
@@ -123,9 +146,9 @@ fn document(mesh: &Mesh) -> Value {
         "scene": 0,
         "scenes": [{"nodes": []}],
     });
-    // Lists may not be empty in glTF, so what a mesh lacks has no key.
+    // glTF has no empty lists: a mesh without materials or faces has no key for them.
     if !mesh.materials().is_empty() {
-        let material = |material: &raypencil_scene::Material| json!({"name": material.name, "extras": {"reflectivity": material.reflectivity}});
+        let material = |Material { name, reflectivity }: &Material| json!({"name": name, "extras": {"reflectivity": reflectivity}});
         document["materials"] = mesh.materials().iter().map(material).collect();
     }
     if mesh.faces().is_empty() {
@@ -161,7 +184,7 @@ fn document(mesh: &Mesh) -> Value {
     document
 }
 
-/// The least and greatest coordinates as they stand in the file.
+/// Minimum and maximum coordinates, in the axes of the file.
 fn bounds(mesh: &Mesh) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for &[x, y, z] in mesh.vertices() {
@@ -173,7 +196,7 @@ fn bounds(mesh: &Mesh) -> [[f32; 3]; 2] {
     [low, high]
 }
 
-/// The two chunks of a GLB, each padded to 4 bytes: JSON with spaces, binary data with zeros. (§4.4)
+/// Bytes of a GLB with its two chunks, each padded to 4 bytes: JSON with spaces, binary data with zeros. (§4.4)
 fn container(json: &[u8], bin: &[u8]) -> Vec<u8> {
     let chunks = [(b"JSON", json, b' '), (b"BIN\0", bin, 0)];
     // A file without a buffer has no binary chunk.

@@ -1,6 +1,6 @@
-//! Elevation models: files written by hand and by an encoder, read back, and files that are none.
+//! Elevation models: files made by hand and by an encoder are read back, malformed ones are refused by name.
 
-pub(crate) mod hostile;
+pub(crate) mod malformed;
 pub(crate) mod placement;
 pub(crate) mod samples;
 pub(crate) mod scenes;
@@ -12,13 +12,13 @@ use write::Tiff;
 use raypencil_files::FileError;
 use raypencil_mesh_io::{Dem, read_dem};
 
-/// Reads a file that is written for it.
+/// Writes a file and reads it.
 fn read(tiff: &Tiff, window: Option<[f64; 4]>) -> Result<Dem, FileError> {
     let folder = tempfile::tempdir().unwrap();
     read_dem(tiff.write(folder.path()), window)
 }
 
-/// The message of a file that is refused.
+/// Message by which a file is refused.
 fn refusal(tiff: &Tiff, window: Option<[f64; 4]>) -> String {
     match read(tiff, window) {
         Ok(dem) => panic!("{dem:?}"),
@@ -32,9 +32,9 @@ fn assert_names(message: &str, words: &[&str]) {
     }
 }
 
-/// The real one is not part of the project: skipped where RAYPENCIL_EXTRA_DATA does not name its folder.
+/// The model of MarsYard 2021 is not part of the project: the test needs RAYPENCIL_EXTRA_DATA, the folder with it.
 #[test]
-fn the_yard_is_as_its_origin_says() {
+fn the_marsyard_has_the_size_and_place_of_its_source() {
     let path = std::env::var_os("RAYPENCIL_EXTRA_DATA")
         .map(|folder| Path::new(&folder).join("marsyard2021_dem.tif"))
         .filter(|path| path.exists());

@@ -1,4 +1,4 @@
-//! Where posts are: tie points and matrices, areas and points, windows, far coordinates, units.
+//! Places of posts: tie points and matrices, areas and points, windows, far coordinates, units.
 
 use crate::read;
 use crate::write::{Double, Short, Tiff, plain_sample};
@@ -29,7 +29,7 @@ fn areas_and_points() {
     assert_eq!(point.registration, Registration::Point);
     assert_eq!(point.posts.at(0, 2).to_array(), [10.0, 5.0, 0.5]);
 
-    // What is not said is an area, and is said to be so by default.
+    // A file that states nothing has areas, and is marked as such.
     for tiff in [Tiff::plain().without(34735), Tiff::plain().tag(34735, keys(&[[1024, 1]]))] {
         let silent = read(&tiff, None).unwrap();
         assert_eq!((silent.registration, silent.posts), (Registration::AreaByDefault, area.posts.clone()));
@@ -47,7 +47,7 @@ fn a_tie_point_may_be_any_pixel() {
     assert_eq!(moved, dem_with_file(&moved, read(&Tiff::plain(), None).unwrap()));
 }
 
-/// The same but for the name of the file.
+/// The same model, with the file name of another.
 fn dem_with_file(named: &raypencil_mesh_io::Dem, dem: raypencil_mesh_io::Dem) -> raypencil_mesh_io::Dem {
     raypencil_mesh_io::Dem { file: named.file.clone(), ..dem }
 }
@@ -78,7 +78,7 @@ fn matrices_that_scale_and_move() {
 }
 
 #[test]
-fn a_picture_is_no_map() {
+fn a_picture_without_a_place_is_refused() {
     let bare = Tiff::plain().without(33550).without(33922);
     assert_names(&refusal(&bare, None), &["tag 33550 ModelPixelScaleTag: missing", "34264", "-a_ullr"]);
     let half = Tiff::plain().without(33922);
@@ -98,7 +98,7 @@ fn a_picture_is_no_map() {
 }
 
 #[test]
-fn only_metres() {
+fn other_units_than_metres_are_refused() {
     for (key, value, words) in [
         (1024, 2, ["GTModelTypeGeoKey: 2", "not degrees"]),
         (1024, 3, ["GTModelTypeGeoKey: 3", "geocentric"]),
@@ -116,7 +116,7 @@ fn only_metres() {
 }
 
 #[test]
-fn windows_name_what_there_is() {
+fn messages_about_windows_name_the_posts() {
     let tiff = Tiff::plain();
     // Posts at x = 10.25 to 11.75, y = 0 to 4; the window's border is closed.
     let part = read(&tiff, Some([10.75, 0.0, 0.5, 2.0])).unwrap().posts;

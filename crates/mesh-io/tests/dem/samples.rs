@@ -9,7 +9,7 @@ use crate::write::{Codec, Double, Short, Text, Tiff, plain_sample};
 use crate::{assert_names, refusal};
 use raypencil_mesh_io::read_dem;
 
-/// Row 0 of the posts is the last one of the file: of 4 x 3 pixels, 200, 201, ...; then 100, ...; then 0, ...
+/// Samples in the order of posts, whose row 0 is the last of the file: for 4 x 3 pixels 200, 201, ...; 100, ...; 0, ...
 fn from_the_south(sample: impl Fn(usize, usize) -> f64, [width, height]: [usize; 2]) -> Vec<f64> {
     let rows = (0..height).rev();
     rows.flat_map(|row| (0..width).map(move |column| (column, row))).map(|(c, r)| sample(c, r)).collect()
@@ -33,8 +33,8 @@ fn every_type_of_sample_layout_and_order() {
             }
             for block in [vec![1], vec![2], vec![70], vec![16, 16], vec![32, 16]] {
                 for (is_big_endian, is_big) in [(false, false), (true, false), (false, true), (true, true)] {
-                    // Halves survive in floating point only, the signs in what has them; 21 columns and 35 rows are
-                    // several tiles, with padding on both sides.
+                    // Fractions need floating point, signs a signed type; 21 columns and 35 rows are several tiles,
+                    // with padding on both sides.
                     let sample = |column: usize, row: usize| {
                         let value = (column * 3 + row) as f64;
                         match format {
@@ -86,8 +86,8 @@ fn strips_of_an_encoder() {
 }
 
 #[test]
-fn what_is_not_known_is_not_a_number() {
-    // -9999 by the tag; in single precision the tag's decimals are those of the sample's type; NaN always.
+fn unknown_heights_are_nan() {
+    // -9999 by the tag, whose decimals are rounded to the sample's type; NaN without a tag too.
     let holes = |value: f64| {
         Tiff::plain().with(move |c, r| if (c, r) == (1, 1) { value } else { plain_sample(c, r) })
     };
@@ -105,7 +105,7 @@ fn what_is_not_known_is_not_a_number() {
         assert_eq!(dem.unknown, 1);
     }
     assert_eq!(read(&holes(f64::NAN), None).unwrap().unknown, 1);
-    // Without the tag it is a height, or too high to be one; infinities never are heights.
+    // Without the tag the sample is a height, or too high to be one; infinities are never heights.
     assert_eq!(read(&holes(-9999.0), None).unwrap().posts.heights[5], -9999.0);
     for value in [f64::from(f32::MIN), f64::INFINITY, 1.1e7] {
         assert_names(
@@ -118,8 +118,8 @@ fn what_is_not_known_is_not_a_number() {
 }
 
 #[test]
-fn blocks_that_nobody_wrote_are_not_known() {
-    // Strips of two rows: the second has the last row alone, the first one of the posts.
+fn blocks_of_no_bytes_have_unknown_heights() {
+    // Strips of two rows: the second strip has only the last row, which is row 0 of the posts.
     let mut tiff = Tiff::plain();
     tiff.absent = vec![1];
     let message = refusal(&tiff, None);
@@ -132,7 +132,7 @@ fn blocks_that_nobody_wrote_are_not_known() {
 }
 
 #[test]
-fn what_cannot_be_heights_is_refused() {
+fn samples_that_cannot_be_heights_are_refused() {
     let plain = Tiff::plain;
     for (tiff, words) in [
         (plain().tag(277, Short(vec![3])), ["tag 277 SamplesPerPixel: 3", "one band"]),
@@ -166,7 +166,7 @@ fn what_cannot_be_heights_is_refused() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
 
-    /// A window gives what it would be cut out of all, whatever the blocks.
+    /// A window gives the same heights as all posts cut to it, whatever the blocks.
     #[test]
     fn a_window_is_a_part(
         x in 5.0..25.0,

@@ -25,7 +25,7 @@ fn load_text(folder: &tempfile::TempDir, terrain: &str) -> Result<LoadedScene, S
 }
 
 #[test]
-fn alone_it_gets_the_default_rig_in_its_middle() {
+fn a_model_alone_gets_the_default_rig_in_its_middle() {
     let folder = folder();
     let path = folder.path().join("dem.tif");
     let loaded = load(path.to_str().unwrap(), &Overrides::default()).unwrap();
@@ -35,7 +35,7 @@ fn alone_it_gets_the_default_rig_in_its_middle() {
     assert_eq!(loaded.vehicle.position.to_array(), [120.5, 184.5, 1.0]);
     assert_eq!(loaded.scene.mesh().faces().len(), 2 * 40 * 30);
     assert_eq!(loaded.scene.mesh().materials()[0].reflectivity, 0.25);
-    // Imported as a terrain it is the same scene.
+    // Imported as a terrain it gives the same scene.
     let glb = folder.path().join("dem.glb");
     let mesh = read_dem(&path, None).unwrap().mesh(None, 0.25).unwrap();
     write_terrain_glb(&glb, &mesh, &serde_json::json!({})).unwrap();
@@ -64,7 +64,7 @@ fn a_scene_file_chooses_a_part_and_a_bound() {
     for (x, z) in [(129.5, 1.0), (130.5, 3.0)] {
         assert_eq!(raypencil_terrain::height_at(simple.scene.mesh(), x, 180.5), Some(z));
     }
-    // What is taken of it takes part in the digests, and so does the file itself.
+    // The digests cover the window and the bound, and the file itself.
     let mut digests = vec![all.source_sha256, part.source_sha256, simple.source_sha256.clone()];
     let path = folder.path().join("dem.tif");
     let mut bytes = std::fs::read(&path).unwrap();
@@ -128,7 +128,7 @@ fn keys_that_are_wrong_are_marked() {
             other => panic!("{terrain}: {other:?}"),
         }
     }
-    // What is wrong in the model itself names the model.
+    // A fault of the model names the model's file.
     let message =
         load_text(&folder, "dem = \"dem.tif\"\ndem_window_m = [0, 0, 1, 1]").unwrap_err().to_string();
     assert_names(&message, &["dem.tif: window: no post in x 0 to 1", "posts of x 100.5 to 140.5"]);

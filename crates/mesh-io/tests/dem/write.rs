@@ -13,7 +13,7 @@ pub enum Values {
     Text(&'static str),
 }
 
-/// How samples are stored.
+/// Compression of samples.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Codec {
     Plain,
@@ -31,12 +31,11 @@ pub struct Tiff {
     pub size: [usize; 2],
     /// Pixels along the sides of a tile; rows of a strip if there is only one number.
     pub block: Vec<usize>,
-    /// Bytes of each sample in the file's order, row by row from the north, and how they are called: SampleFormat
-    /// and bits.
+    /// Bytes of each sample in the file's byte order, row by row from the north, with their SampleFormat and bits.
     pub samples: Vec<Vec<u8>>,
     pub format: [u16; 2],
     pub tags: Vec<(u16, Values)>,
-    /// Blocks that are not written.
+    /// Blocks that get no bytes.
     pub absent: Vec<usize>,
     /// 2: differences along a row; 3: those of a row's bytes, highest bytes first.
     pub predictor: u16,
@@ -108,7 +107,7 @@ impl Tiff {
         self
     }
 
-    /// The decoded bytes of a row of a block, as they are before compression.
+    /// Bytes of a row of a block before compression.
     fn row(&self, cells: &[Vec<u8>]) -> Vec<u8> {
         let size = usize::from(self.format[1] / 8);
         let big = |bytes: &[u8]| {
@@ -181,7 +180,7 @@ impl Tiff {
             true => file.extend([word(43, 2), word(8, 2), word(0, 2)].concat()),
             false => file.extend(word(42, 2)),
         }
-        // The directory follows the samples; where it is, is known in the end.
+        // The directory follows the samples; its place is written last.
         let pointer = file.len();
         file.extend(word(0, wide));
         let (mut offsets, mut counts) = (Vec::new(), Vec::new());
@@ -256,11 +255,11 @@ impl Tiff {
 }
 
 impl Codec {
-    /// Valid streams, if not short ones.
+    /// A valid stream, not a short one.
     fn encode(self, bytes: &[u8]) -> Vec<u8> {
         match self {
             Self::Plain => bytes.to_vec(),
-            // Runs of literals: their length less one, then they themselves. (TIFF 6.0, section 9)
+            // Runs of literals: their length less one, then the bytes. (TIFF 6.0, section 9)
             Self::PackBits => bytes
                 .chunks(128)
                 .flat_map(|run| std::iter::once(run.len() as u8 - 1).chain(run.iter().copied()))

@@ -62,7 +62,7 @@ proptest! {
         survives(&bytes);
     }
 
-    // Most changed bytes break the JSON. Changed digits keep it whole and break what it says.
+    // Most changed bytes break the JSON. Changed digits leave the JSON valid and change its numbers.
     #[test]
     fn changed_digits_never_panic(
         changes in prop::collection::vec((any::<prop::sample::Index>(), b'0'..=b'9'), 1..6),
@@ -77,14 +77,14 @@ proptest! {
 }
 
 #[test]
-fn the_unchanged_file_is_fine() {
+fn the_unchanged_file_is_read() {
     let mesh = mesh_from_bytes(&rich(), Path::new("test.glb"), 0.25).unwrap();
     // Three instances of 2 + 2 + 2 faces, of 4 + 4 vertices.
     assert_eq!((mesh.faces().len(), mesh.vertices().len()), (18, 24));
 }
 
 #[test]
-fn cut_anywhere_it_is_refused() {
+fn a_file_cut_anywhere_is_refused() {
     let bytes = rich();
     for end in 0..bytes.len() {
         assert!(mesh_from_bytes(&bytes[..end], Path::new("test.glb"), 0.25).is_err(), "{end}");

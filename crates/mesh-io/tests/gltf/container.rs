@@ -1,4 +1,4 @@
-//! The container, the JSON and the extensions: what is refused.
+//! Containers, JSON and extensions that are refused.
 
 use base64::Engine;
 use serde_json::json;
@@ -14,7 +14,7 @@ fn extensions_that_move_vertices_are_refused_by_name() {
             "extensionsRequired: \"{name}\"; expected plain buffers and nodes; extensions are known only for materials, textures and lights"
         );
         refused(changed(|json| json["extensionsRequired"] = json!(["KHR_materials_unlit", name])), &message);
-        // Used but not required: there is plain data as well.
+        // Used but not required: the file has plain data as well.
         assert!(changed(|json| json["extensionsUsed"] = json!([name])).is_ok());
     }
     assert!(changed(|json| json["extensionsRequired"] = json!(["KHR_texture_transform"])).is_ok());
@@ -74,7 +74,7 @@ fn containers_that_are_broken_are_refused() {
     );
     bytes_refused(&with(8, 12)[..12], "GLB chunk 0: nothing; expected a JSON chunk");
     bytes_refused(&with(8, 16), "GLB chunk 0: 4 bytes left; expected 8 bytes of a chunk header");
-    // What follows the declared length, and chunks of unknown types, are skipped.
+    // Bytes after the declared length, and chunks of unknown types, are skipped.
     let mut longer = good.clone();
     longer.extend(b"\x04\0\0\0XTRAabcd");
     assert!(mesh_from_bytes(&longer, Path::new("x"), 0.25).is_ok());
@@ -88,7 +88,7 @@ fn containers_that_are_broken_are_refused() {
 }
 
 #[test]
-fn json_that_is_none_names_line_and_column() {
+fn malformed_json_names_line_and_column() {
     bytes_refused(b"{\n \"asset\": }", "JSON: expected value at line 2 column 11; expected a glTF 2.0 asset");
     bytes_refused(b"{}", "JSON: missing field `asset` at line 1 column 2; expected a glTF 2.0 asset");
     let error = changed(|json| json["nodes"][0]["mesh"] = json!("first")).unwrap_err();

@@ -7,7 +7,7 @@ use super::*;
 use raypencil_mesh_io::load_mesh;
 
 #[test]
-fn materials_bring_their_reflectivity() {
+fn materials_state_their_reflectivity() {
     let with = |materials: Value, material: Value| {
         changed(|json| {
             json["materials"] = materials;
@@ -35,7 +35,7 @@ fn materials_bring_their_reflectivity() {
 }
 
 #[test]
-fn colours_bring_a_reflectivity_too() {
+fn colours_give_a_reflectivity_too() {
     let with = |material: Value| {
         let mesh = changed(|json| {
             json["materials"] = json!([material]);
@@ -45,7 +45,7 @@ fn colours_bring_a_reflectivity_too() {
     };
     let coloured =
         |factor: Value| with(json!({"name": "dust", "pbrMetallicRoughness": {"baseColorFactor": factor}}));
-    // 0.2126 R + 0.7152 G + 0.0722 B = 0.12756 + 0.21456 + 0.00722 = 0.34934; alpha is not asked.
+    // 0.2126 R + 0.7152 G + 0.0722 B = 0.12756 + 0.21456 + 0.00722 = 0.34934; alpha does not count.
     let dust = coloured(json!([0.6, 0.3, 0.1, 0.5])).unwrap();
     assert!((dust - 0.34934).abs() < 1e-15, "{dust}");
     // A grey is its own luminance, white is 1, the primaries are their weights.
@@ -55,12 +55,12 @@ fn colours_bring_a_reflectivity_too() {
     for (factor, weight) in [([1, 0, 0, 1], 0.2126), ([0, 1, 0, 1], 0.7152), ([0, 0, 1, 1], 0.0722)] {
         assert!((coloured(json!(factor)).unwrap() - weight).abs() < 1e-15);
     }
-    // No colour, or one of a texture, is not white.
+    // A material without a colour, or with a textured one, is not white.
     assert_eq!(with(json!({"pbrMetallicRoughness": {"metallicFactor": 0}})), Ok(0.25));
     let textured =
         json!({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}});
     assert_eq!(with(textured), Ok(0.25));
-    // What is said outright wins.
+    // A stated reflectivity has precedence.
     let both =
         json!({"extras": {"reflectivity": 0.5}, "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1]}});
     assert_eq!(with(both), Ok(0.5));

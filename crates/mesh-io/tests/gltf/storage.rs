@@ -1,4 +1,4 @@
-//! Accessors, views and buffers: what is read from them, and what is refused before it is read.
+//! Accessors, views and buffers: numbers that are read from them, and faults that are refused before reading.
 
 use base64::Engine;
 use serde_json::{Value, json};
@@ -22,7 +22,7 @@ fn indices_of_every_width_and_none() {
         let bin = [reals(&SQUARE), bytes].concat();
         assert_eq!(parse(&json, &bin).unwrap().faces(), expected, "{component}");
     }
-    // Without indices vertices are corners, three by three.
+    // Without indices every three vertices are a triangle.
     let (mut json, _) = square();
     json["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": 0}});
     json["accessors"][0]["count"] = json!(3);
@@ -42,7 +42,7 @@ fn strips_and_fans_follow_the_specification() {
         json["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": 0}, "mode": 6});
     });
     assert_eq!(fan.unwrap().faces(), [[1, 2, 0], [2, 3, 0]]);
-    // A strip over a square in the usual zigzag looks up throughout.
+    // All triangles of a strip in the usual zigzag over a square look up.
     let zigzag = changed(|json| {
         json["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": 0}, "mode": 5});
     });
@@ -154,7 +154,7 @@ fn accessors_that_do_not_fit_are_refused_before_they_are_read() {
         changed(move |json| json["accessors"][index][key] = value)
     };
     let huge = 1_u64 << 40;
-    // Beyond what any file may hold, and beyond this buffer.
+    // Beyond the limit of all files, and beyond this buffer.
     refused(
         accessor(1, "count", json!(3 * huge)),
         &format!("nodes: {huge} faces in all instances; expected at most 33554432"),

@@ -6,7 +6,7 @@ use super::*;
 
 #[test]
 fn y_up_becomes_z_up_and_identity_changes_no_number() {
-    // (x, y, z) -> (x, -z, y), for numbers that no decimal fraction hits.
+    // (x, y, z) -> (x, -z, y), for numbers without a short decimal.
     let (mut json, _) = square();
     let numbers: Vec<f32> = (0..12).map(|i| f32::from_bits(0x3f12_3457 + 77_777 * i)).collect();
     let mut bin = reals(&numbers);
@@ -15,7 +15,7 @@ fn y_up_becomes_z_up_and_identity_changes_no_number() {
     let bits =
         |vertices: &[[f32; 3]]| vertices.as_flattened().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(parse(&json, &bin).unwrap().vertices()), bits(&expected));
-    // The same through transforms that are written out but do nothing.
+    // The same with explicit transforms that do nothing.
     json["nodes"] = json!([
         {"children": [1], "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
         {"children": [2], "translation": [0, 0, 0]},
@@ -36,7 +36,7 @@ fn faces_keep_their_order_and_look_up() {
 
 #[test]
 fn translation_rotation_and_scale_apply_from_the_right() {
-    // T R S: (1, 0, 0) is scaled by 2, turned by 90 degrees about y (x -> -z), moved by (10, 20, 30):
+    // T R S: (1, 0, 0) is scaled by 2, rotated by 90 degrees about y (x -> -z), moved by (10, 20, 30):
     // (10, 20, 28), which is (10, -28, 20) globally. Halves under the root: the quaternion in f32 is a unit
     // only to 1e-8, which the division by its square repairs.
     let half = std::f32::consts::FRAC_1_SQRT_2;
@@ -116,7 +116,7 @@ fn mirrors_keep_the_outside_out() {
 }
 
 #[test]
-fn transforms_that_are_none_are_refused() {
+fn invalid_transforms_are_refused() {
     let node = |key: &'static str, value: Value| changed(move |json| json["nodes"][0][key] = value);
     let perspective = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 1]);
     refused(

@@ -1,4 +1,4 @@
-//! What is written as GLB: valid, the same bytes, and read back to the last bit.
+//! GLB files that are written: valid, the same bytes for the same mesh, and read back to the last bit.
 
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -53,7 +53,7 @@ fn a_mesh_comes_back_to_the_last_bit() {
         write_glb(&path, &mesh).unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), glb_bytes(&mesh));
         same(&mesh_of_offsets(&path, origin).unwrap(), &mesh);
-        // Taken for a ground of its own it stands at the origin; a zero of y has lost its sign.
+        // Read as global vertices it is at the origin; a zero of y has lost its sign.
         let global = load_mesh(&path).unwrap();
         assert_eq!((global.origin(), global.vertices()), (DVec3::ZERO, mesh.vertices()));
         assert_eq!(global.vertices()[0][1].to_bits(), 0);
@@ -103,8 +103,8 @@ fn the_file_is_as_the_specification_asks() {
 }
 
 #[test]
-fn another_reader_takes_it_for_valid() {
-    // The `gltf` crate's own validation, which our reader does without.
+fn the_gltf_crate_validates_the_file() {
+    // The validation of the `gltf` crate, which our reader does not use.
     let file = gltf::Gltf::from_slice(&glb_bytes(&mesh(DVec3::ZERO))).unwrap();
     let mesh = file.default_scene().unwrap().nodes().next().unwrap().mesh().unwrap();
     let primitives: Vec<_> = mesh.primitives().collect();
@@ -114,7 +114,7 @@ fn another_reader_takes_it_for_valid() {
 }
 
 #[test]
-fn what_no_file_can_hold_is_refused() {
+fn meshes_that_no_file_can_hold_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("none.glb");
     let bare = Mesh::new(DVec3::ZERO, vec![[0.0; 3]], vec![], vec![], vec![]).unwrap();
@@ -131,12 +131,12 @@ fn what_no_file_can_hold_is_refused() {
 }
 
 #[test]
-fn for_people_a_far_ground_stands_where_it_belongs() {
+fn the_node_of_a_far_ground_is_at_its_origin() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("far.glb");
     let kinds = || vec![Material { name: "dust".into(), reflectivity: 0.3 }];
-    // The middle of x is 1000000.5 but for rounding: the single precision of the offsets may lead to the next
-    // whole metre. The file says which.
+    // The middle of x is 1000000.5 up to rounding: the single precision of the offsets may lead to the next
+    // whole metre. The file states which.
     for far in [0.0, 1e3, 1e6, -1e6, 8e6] {
         for width in [0.9, 1.3, 1.1] {
             let low = far + 0.5 - width / 2.0;
@@ -148,7 +148,7 @@ fn for_people_a_far_ground_stands_where_it_belongs() {
             let bits =
                 |mesh: &Mesh| mesh.vertices().as_flattened().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
             assert_eq!((&back, bits(&back)), (&mesh, bits(&mesh)), "{far} {width}");
-            // For a program that knows nothing of this the node is where the ground is.
+            // Programs that ignore the extras find the place of the ground in the node.
             let bytes = std::fs::read(&path).unwrap();
             let glb = gltf::Gltf::from_slice(&bytes).unwrap();
             let node = glb.nodes().next().unwrap();
@@ -159,7 +159,7 @@ fn for_people_a_far_ground_stands_where_it_belongs() {
             assert!(glb.as_json().asset.extras.as_ref().unwrap().get().contains("\"units\":\"metre\""));
         }
     }
-    // 2^24 + 1 is no single.
+    // f32 cannot hold 2^24 + 1.
     let far = DVec3::new(16_777_217.0, 0.0, 0.0);
     let vertices = [far, far + DVec3::X, far + DVec3::Y].map(|v| v - DVec3::new(0.5, 0.5, 0.0));
     let mesh = Mesh::from_global(&vertices, vec![[0, 1, 2]], vec![0], kinds()).unwrap();
@@ -172,8 +172,8 @@ fn for_people_a_far_ground_stands_where_it_belongs() {
 }
 
 #[test]
-fn a_stated_origin_is_not_believed_against_the_vertices() {
-    // Offsets around 5000 m from what the file calls its origin: the rule's own is taken.
+fn a_stated_origin_that_contradicts_the_vertices_is_ignored() {
+    // Offsets around 5000 m from the stated origin: the origin that follows from the vertices is used.
     let mut mesh = Mesh::new(
         DVec3::new(2e6, 0.0, 0.0),
         vec![[5000.0, 0.0, 0.0], [5001.0, 0.0, 0.0], [5000.0, 1.0, 0.0]],

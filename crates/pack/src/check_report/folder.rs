@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, FolderError, begin, write_atomically};
+use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
 
 use crate::check::Checked;
 use crate::check_report::json::check_json;
@@ -14,7 +14,7 @@ use crate::check_report::junit::junit;
 /// # Errors
 /// Names the file or folder that could not be written, and why.
 pub fn write_check(checked: &Checked, folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
-    let last = begin(folder, "check.json")?;
+    let last = begin_output_folder(folder, "check.json")?;
     let path = folder.join("junit.xml");
     let document = junit(checked).map_err(|error| FileError::Io {
         path: path.clone(),

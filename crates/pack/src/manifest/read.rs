@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{Fault, FileError, bytes, of_file};
+use raypencil_files::{Fault, FileError, bytes, file_sha256_hex};
 use serde::Deserialize;
 
 use crate::manifest::document::{MANIFEST_FORMAT, MANIFEST_NAME, Manifest, ManifestFile, pack_fault};
@@ -85,7 +85,7 @@ fn verify_file(folder: &Path, entry: &ManifestFile) -> Result<(), FileError> {
         let expected = format!("{} {changed}", entry.bytes);
         return Err(pack_fault(&path, Fault::new("bytes", metadata.len().to_string(), expected)));
     }
-    let (_, sha256) = of_file(&path).map_err(refused)?;
+    let (_, sha256) = file_sha256_hex(&path).map_err(refused)?;
     match sha256 == entry.sha256 {
         true => Ok(()),
         false => Err(pack_fault(&path, Fault::new("SHA-256", sha256, format!("{} {changed}", entry.sha256)))),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{FileError, of_file, write_atomically};
+use raypencil_files::{FileError, file_sha256_hex, write_atomically};
 
 use crate::manifest::document::{FileRole, MANIFEST_NAME, Manifest, ManifestFile, pack_fault};
 use crate::manifest::path::resolve_inside;
@@ -16,7 +16,7 @@ impl ManifestFile {
         let path = path.into();
         let file =
             resolve_inside(folder, &path).map_err(|fault| pack_fault(&folder.join(MANIFEST_NAME), fault))?;
-        let (bytes, sha256) = of_file(&file).map_err(|error| FileError::io(&file, "read", error))?;
+        let (bytes, sha256) = file_sha256_hex(&file).map_err(|error| FileError::io(&file, "read", error))?;
         Ok(Self { path, role, bytes, sha256, kind: None, shape: None, channels: Vec::new() })
     }
 }

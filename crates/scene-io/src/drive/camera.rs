@@ -4,7 +4,7 @@ use serde::Deserialize;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
-use raypencil_files::Sha;
+use raypencil_files::Sha256Digest;
 use raypencil_sensor::{Dust, ImageLength, ImageSensor, Psf};
 
 use crate::drive::setup::DriveSetup;
@@ -92,7 +92,11 @@ impl ElectronicsKeys {
 
 impl Source<'_> {
     /// Changes the optics of a drive. The result is the digests of the kernels' files, in their order.
-    pub(super) fn optics(&self, keys: &OpticsKeys, drive: &mut DriveSetup) -> Result<Vec<Sha>, SceneIoError> {
+    pub(super) fn optics(
+        &self,
+        keys: &OpticsKeys,
+        drive: &mut DriveSetup,
+    ) -> Result<Vec<Sha256Digest>, SceneIoError> {
         let mut kernel_digests = Vec::new();
         let name = "drive.optics.oversampling";
         self.integer(&keys.oversampling, name, &mut drive.optics.oversampling, 1..=64, "")?;
@@ -126,7 +130,7 @@ impl Source<'_> {
         keys: &Spanned<BlurKeys>,
         name: &str,
         drive: &DriveSetup,
-        kernel_digests: &mut Vec<Sha>,
+        kernel_digests: &mut Vec<Sha256Digest>,
     ) -> Result<Psf, SceneIoError> {
         let BlurKeys { airy_rings, gaussian_px, gaussian_um, kernel } = keys.get_ref();
         match (airy_rings, gaussian_px, gaussian_um, kernel) {

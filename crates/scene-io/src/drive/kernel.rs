@@ -3,7 +3,7 @@
 use std::path::Path;
 use toml::Spanned;
 
-use raypencil_files::{Limits, Sha, bytes, npy_from_bytes, sha};
+use raypencil_files::{Limits, Sha256Digest, bytes, npy_from_bytes, sha256};
 use raypencil_scene::SceneError;
 use raypencil_sensor::Kernel;
 
@@ -15,7 +15,11 @@ const MAX_KERNEL_BYTES: u64 = 1025 * 1025 * 8 + (1 << 16);
 
 impl Source<'_> {
     /// Kernel in the NPY file that the key `name` gives, and the digest of the file.
-    pub(super) fn kernel(&self, key: &Spanned<String>, name: &str) -> Result<(Kernel, Sha), SceneIoError> {
+    pub(super) fn kernel(
+        &self,
+        key: &Spanned<String>,
+        name: &str,
+    ) -> Result<(Kernel, Sha256Digest), SceneIoError> {
         let refuse = |message: String| self.error(key.span(), message);
         let file = self.file.parent().unwrap_or(Path::new("")).join(key.get_ref());
         if !file.is_file() {
@@ -41,6 +45,6 @@ impl Source<'_> {
             let SceneError { field, value, expected } = error;
             refuse(format!("`{name}`: {field} is {value}; expected {expected}"))
         })?;
-        Ok((kernel, sha(&bytes)))
+        Ok((kernel, sha256(&bytes)))
     }
 }

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
-use raypencil_files::Sha;
+use raypencil_files::Sha256Digest;
 use raypencil_rover::{
     Detection, DrivePlan, ExposureMode, PositionFixes, RadialGrid, Rig, ScanRule, StripeLocation,
     TraversabilityRules, VectorRules, Vehicle,
@@ -101,7 +101,11 @@ impl Source<'_> {
     ///
     /// The order matters where a default depends on other keys: the preset comes before seed, threshold, optics and
     /// electronics, and the vehicle before the rules of traversability, the radial grid and the navigator map.
-    pub(crate) fn drive(&self, keys: &DriveKeys, rig: Rig) -> Result<(DriveSetup, Vec<Sha>), SceneIoError> {
+    pub(crate) fn drive(
+        &self,
+        keys: &DriveKeys,
+        rig: Rig,
+    ) -> Result<(DriveSetup, Vec<Sha256Digest>), SceneIoError> {
         let mut drive = DriveSetup::new(rig, self.waypoints(&keys.waypoints_m)?);
         self.route(keys, &mut drive.plan)?;
         self.light(keys, &mut drive)?;

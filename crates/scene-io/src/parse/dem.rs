@@ -26,14 +26,21 @@ impl Source<'_> {
         let mut part = DemPart { file: PathBuf::new(), window: None, max_error: None };
         if let Some(window) = window {
             let name = "terrain.dem_window_m";
-            if let &[x, y, width, height] = self.list(window, name, &[4], dem::MAP_M, "metres")? {
+            if let &[x, y, width, height] = self.list(window, name, &[4], dem::MAP_RANGE_M, "metres")? {
                 for side in [width, height] {
-                    self.check(side, window.span(), name, dem::WINDOW_M, "metres, for a width and a height")?;
+                    self.check(
+                        side,
+                        window.span(),
+                        name,
+                        dem::WINDOW_SIDE_RANGE_M,
+                        "metres, for a width and a height",
+                    )?;
                 }
                 part.window = Some([x, y, width, height]);
             }
         }
-        part.max_error = self.optional(max_error, "terrain.dem_max_error_m", dem::MAX_ERROR_M, "metres")?;
+        part.max_error =
+            self.optional(max_error, "terrain.dem_max_error_m", dem::MAX_ERROR_RANGE_M, "metres")?;
         Ok(part)
     }
 }

@@ -1,4 +1,4 @@
-//! NPY: what is written is what NumPy writes; every type, order and endianness is read; the rest is refused.
+//! NPY: files are written as NumPy writes them; every type, order and endianness is read; other files are refused.
 
 use proptest::prelude::*;
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ impl Folder {
     }
 }
 
-/// A version 1.0 file of that dictionary, padded as NumPy does, and those bytes.
+/// A file of version 1.0: the dictionary, padded as NumPy does, then the bytes of the numbers.
 fn file(dictionary: &str, numbers: &[u8]) -> Vec<u8> {
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     let length = (10 + dictionary.len() + 1).next_multiple_of(64) - 10;
@@ -300,7 +300,7 @@ fn headers_that_are_broken_are_refused() {
 }
 
 #[test]
-fn a_file_that_is_none_is_named() {
+fn missing_and_irregular_files_are_named() {
     let folder = Folder::new();
     let message = read_npy(folder.path(), &Limits::default()).unwrap_err().to_string();
     assert!(message.contains("a.npy: cannot read: "), "{message}");

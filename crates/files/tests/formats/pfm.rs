@@ -1,4 +1,4 @@
-//! PFM: rows from below, either endianness, one or three components; the rest is refused.
+//! PFM: rows from below, either endianness, one or three components; other files are refused.
 
 use std::path::PathBuf;
 
@@ -71,7 +71,7 @@ fn colours_are_three_planes() {
 }
 
 #[test]
-fn what_is_no_float_map_is_refused() {
+fn files_that_are_no_float_map_are_refused() {
     let refused = |bytes: &[u8], message: &str| assert_eq!(read(bytes).unwrap_err(), message);
     let word = "expected a short word, then white space (is the file cut off?)";
     refused(b"", &format!("magic: []; {word}"));

@@ -1,15 +1,14 @@
-//! Which files belong to a recording, and what their keys start with.
+//! Files of a recording, and the start of their keys.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::channels::unfit;
 use crate::error::{Fault, FileError};
 
-/// What a file's name says that it is.
+/// Format of a file by the ending of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(super) enum FileFormat {
     Exr,
     Npy,
     Pfm,
@@ -17,24 +16,24 @@ pub(crate) enum Kind {
 
 /// A file that is to be read.
 #[derive(Debug)]
-pub(crate) struct Found {
+pub(super) struct RecordingFile {
     pub path: PathBuf,
-    pub kind: Kind,
-    /// What its keys start with: its path in the folder, with `/` and without the ending. `None` for a file
-    /// that is the whole recording.
+    pub format: FileFormat,
+    /// Start of its keys: its path in the folder, with `/` and without the ending. `None` for a file that is the
+    /// whole recording.
     pub stem: Option<String>,
 }
 
-/// The files of a recording, by their names.
-pub(super) fn find(path: &Path) -> Result<Vec<Found>, FileError> {
+/// Files of a recording, ordered by their keys. There is at least one.
+pub(super) fn recording_files(path: &Path) -> Result<Vec<RecordingFile>, FileError> {
     let refused = |error| FileError::io(path, "read", error);
     if !fs::metadata(path).map_err(refused)?.is_dir() {
-        let Some(kind) = kind(path) else {
+        let Some(format) = format_of(path) else {
             let found = "a file of an unknown kind";
             let expected = "a folder, or a file that ends in .exr, .npy or .pfm";
-            return Err(unfit(path, Fault::new("recording", found, expected)));
+            return Err(FileError::recording(path, Fault::new("recording", found, expected)));
         };
-        return Ok(vec![Found { path: path.to_path_buf(), kind, stem: None }]);
+        return Ok(vec![RecordingFile { path: path.to_path_buf(), format, stem: None }]);
     }
     let mut found = Vec::new();
     for entry in entries(path).map_err(refused)? {
@@ -49,38 +48,40 @@ pub(super) fn find(path: &Path) -> Result<Vec<Found>, FileError> {
     }
     if found.is_empty() {
         let expected = "at least one .exr, .npy or .pfm file, here or one folder below";
-        return Err(unfit(path, Fault::new("folder", "no maps", expected)));
+        return Err(FileError::recording(path, Fault::new("folder", "no maps", expected)));
     }
     found.sort_by(|a, b| (&a.stem, &a.path).cmp(&(&b.stem, &b.path)));
     Ok(found)
 }
 
+/// Paths of all entries of a folder.
 fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect()
 }
 
-fn candidate(path: PathBuf, folder: Option<&str>) -> Option<Found> {
-    let kind = kind(&path)?;
+/// A file of the recording's folder, or of `folder` just below it; `None` for other formats.
+fn candidate(path: PathBuf, folder: Option<&str>) -> Option<RecordingFile> {
+    let format = format_of(&path)?;
     let stem = match folder {
         Some(folder) => format!("{folder}/{}", stem(&path)),
         None => stem(&path),
     };
-    Some(Found { path, kind, stem: Some(stem) })
+    Some(RecordingFile { path, format, stem: Some(stem) })
 }
 
-/// A map or an array by its path from a folder; `None` if it is neither.
-pub(super) fn listed(folder: &Path, path: &str) -> Option<Found> {
-    let kind = kind(Path::new(path))?;
+/// A map or array by its path relative to `folder`; `None` for other formats.
+pub(super) fn listed_file(folder: &Path, path: &str) -> Option<RecordingFile> {
+    let format = format_of(Path::new(path))?;
     let stem = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
-    Some(Found { path: folder.join(path), kind, stem: Some(stem.to_string()) })
+    Some(RecordingFile { path: folder.join(path), format, stem: Some(stem.to_string()) })
 }
 
-fn kind(path: &Path) -> Option<Kind> {
+fn format_of(path: &Path) -> Option<FileFormat> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
     match ending.as_str() {
-        "exr" => Some(Kind::Exr),
-        "npy" => Some(Kind::Npy),
-        "pfm" => Some(Kind::Pfm),
+        "exr" => Some(FileFormat::Exr),
+        "npy" => Some(FileFormat::Npy),
+        "pfm" => Some(FileFormat::Pfm),
         _ => None,
     }
 }
@@ -89,7 +90,7 @@ fn name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// A file's name without its ending.
+/// Name of a file without its ending.
 pub(super) fn stem(path: &Path) -> String {
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }

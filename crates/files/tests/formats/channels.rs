@@ -1,6 +1,6 @@
-//! Recordings: which files are read, under which keys, and what contradicts itself.
+//! Recordings: the files that are read, their keys, and files that contradict each other.
 
-use exr::prelude::{
+use ::exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes, SmallVec,
     WritableImage, f16,
 };
@@ -18,7 +18,7 @@ impl Folder {
         Self(tempfile::tempdir().unwrap())
     }
 
-    /// The place of a file, whose folder is made.
+    /// Path of a file, whose folder is created.
     fn path(&self, name: &str) -> PathBuf {
         let path = self.0.path().join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -181,7 +181,7 @@ fn the_finest_of_several_stands_for_all() {
         coarser,
         [("beam-0/visible.V", single), ("camera/range.T", single), ("camera/range.T", single)]
     );
-    // Of equals the first file, by the parts of its path.
+    // Equal storages are ordered by the parts of their paths.
     assert_eq!(read.coarser[1].1.file, folder.path("camera/range.T.pfm"));
 }
 
@@ -233,7 +233,7 @@ fn files_that_contradict_each_other_are_both_named() {
 }
 
 #[test]
-fn what_is_no_recording_is_refused() {
+fn paths_without_a_recording_are_refused() {
     let folder = Folder::new();
     let message = folder.read().unwrap_err();
     assert!(
@@ -252,7 +252,7 @@ fn what_is_no_recording_is_refused() {
         message.contains("notes.txt: recording: a file of an unknown kind") && message.ends_with(expected)
     );
     assert!(refused(&folder.path("none.exr")).contains("none.exr: cannot read: "));
-    // A file that is broken is named, and so is a folder that is called like one.
+    // A broken file is named. A folder with the name of a map is no map.
     std::fs::write(folder.path("b.npy"), "nothing").unwrap();
     assert!(folder.read().unwrap_err().starts_with("b.npy: first bytes: "));
     std::fs::remove_file(folder.path("b.npy")).unwrap();

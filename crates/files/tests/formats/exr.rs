@@ -1,6 +1,6 @@
-//! OpenEXR: what is written is read back, by our names and conventions; what is malformed is refused.
+//! OpenEXR: written files are read back, with the documented names and conventions; malformed ones are refused.
 
-use exr::prelude::{
+use ::exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, IntegerBounds,
     Layer, LayerAttributes, LineOrder, SmallVec, Vec2, WritableImage, f16,
 };
@@ -14,7 +14,7 @@ const WIDTH: u32 = 37;
 
 const HEIGHT: u32 = 20;
 
-/// A map with a miss in every third cell and numbers that are no f32.
+/// A map with a miss in every third cell, and numbers that f32 cannot hold.
 fn map(sensor: SensorId, quantities: Quantities) -> SensorMap {
     let mut map = SensorMap::empty(sensor, WIDTH, HEIGHT, quantities);
     for mut row in map.rows_mut() {
@@ -125,7 +125,7 @@ fn names_types_and_no_hit_values_are_those_of_the_documentation() {
         read.attributes["pixelRule"].contains("pixel (i, j)") && read.attributes["unit"].contains("metre")
     );
 
-    // Only what is there is written.
+    // Only the quantities of the map are written.
     write_exr_map(&path, &map(SensorId::Camera, Quantities::RANGE_MAP), &Attributes::default()).unwrap();
     let read = read_exr(&path, &Limits::default()).unwrap();
     assert_eq!(read.channels.keys().collect::<Vec<_>>(), ["face.I", "range.T"]);
@@ -189,7 +189,7 @@ fn any_channels_come_back() {
 const COMPRESSIONS: &[Compression] =
     &[Compression::Uncompressed, Compression::RLE, Compression::ZIP1, Compression::ZIP16, Compression::PIZ];
 
-/// A file as another program might write it.
+/// A file such as another program might write.
 fn foreign(path: &Path, encoding: Encoding, attributes: LayerAttributes, names: &[&str]) {
     let count = (WIDTH * HEIGHT) as usize;
     let channels = names.iter().map(|&name| {
@@ -301,13 +301,13 @@ fn sizes_windows_and_parts_that_do_not_fit_are_refused() {
 
     let layers: SmallVec<[_; 2]> =
         ["left", "right"].into_iter().map(|name| layer(LayerAttributes::named(name))).collect();
-    let attributes = exr::prelude::ImageAttributes::new(IntegerBounds::from_dimensions((37, 20)));
+    let attributes = ::exr::prelude::ImageAttributes::new(IntegerBounds::from_dimensions((37, 20)));
     ExrImage::from_layers(attributes, layers).write().to_file(&path).unwrap();
     let expected = "header: 2 parts; expected one part: split multi-part files first";
     assert_eq!(refusal(&path, &Limits::default()), expected);
 }
 
-/// A small file written by us, and the position of some bytes in it.
+/// A small file, as its path and its bytes.
 fn small(folder: &Folder) -> (PathBuf, Vec<u8>) {
     let path = folder.path("small.exr");
     let mut map = ExrMap::new(8, 8);
@@ -400,7 +400,7 @@ mod any_bytes {
     use super::*;
     use proptest::prelude::*;
 
-    /// A file of each kind that is read.
+    /// A file of each compression and kind of block that is read.
     fn kinds() -> &'static [Vec<u8>] {
         static KINDS: std::sync::LazyLock<Vec<Vec<u8>>> = std::sync::LazyLock::new(|| {
             let folder = Folder::new();

@@ -1,10 +1,11 @@
-//! Returns and flux images as channels.
+//! Returns of a beam's pencils and flux images as channels, and back.
 
 use std::path::Path;
 
-use crate::error::{Fault, FileError};
-use crate::exr::{ExrMap, NO_VALUE, Raster, channel, convert};
 use raypencil_scene::{FluxModel, Image, Maybe, Pixel, Returns, Sample};
+
+use crate::error::{Fault, FileError};
+use crate::exr::map::{ExrMap, NO_VALUE, Raster, channel, convert};
 
 const VISIBLE: &str = "visible.V";
 
@@ -12,14 +13,16 @@ const PIXEL: [&str; 2] = ["pixel.I", "pixel.J"];
 
 const FLUX: &str = "flux.V";
 
-/// r, cos(phi) and cos(theta): what the flux is made of.
+/// Depth of the hit before the camera, r in the equations of the flux.
 const VIEW_DEPTH: &str = "view.Z";
 
+/// Cosine of the angle phi off the camera's axis.
 const OFF_AXIS: &str = "offAxis.V";
 
+/// Cosine of the angle theta between normal and view. The name is that of the published format.
 const EMISSION: &str = "emission.V";
 
-/// The unit of a flux.
+/// Unit of a flux.
 fn unit(model: FluxModel) -> &'static str {
     match model {
         FluxModel::Radiometric => "W",
@@ -28,11 +31,11 @@ fn unit(model: FluxModel) -> &'static str {
 }
 
 impl ExrMap {
-    /// Adds what comes back of a beam's pencils: `visible.V`, `pixel.I`, `pixel.J`, `view.Z`, `offAxis.V`, `cos_view.V`
-    /// and `flux.V`, those that there are.
+    /// Adds the returns of a beam's pencils: those of `visible.V`, `pixel.I`, `pixel.J`, `view.Z`, `offAxis.V`,
+    /// `emission.V` and `flux.V` that `returns` has.
     ///
     /// # Panics
-    /// If they are of another size.
+    /// If the returns have another size than the map.
     pub fn insert_returns(&mut self, returns: &Returns, model: FluxModel) {
         if let Some(visible) = &returns.visible {
             let cell = |visible| if visible { 1.0 } else { 0.0 };
@@ -48,9 +51,9 @@ impl ExrMap {
         if let Some(flux) = &returns.flux {
             self.insert(FLUX, Raster::F32(convert(flux, |flux| flux as f32)));
         }
-        self.scalar(VIEW_DEPTH, returns.depth.as_ref(), f32::INFINITY);
-        self.scalar(OFF_AXIS, returns.cos_off_axis.as_ref(), NO_VALUE);
-        self.scalar(EMISSION, returns.cos_view.as_ref(), NO_VALUE);
+        self.insert_scalar(VIEW_DEPTH, returns.depth.as_ref(), f32::INFINITY);
+        self.insert_scalar(OFF_AXIS, returns.cos_off_axis.as_ref(), NO_VALUE);
+        self.insert_scalar(EMISSION, returns.cos_view.as_ref(), NO_VALUE);
         let units = "visible: 0 or 1; pixel: index; view: metre; offAxis, emission: 1; flux: ";
         let attributes = [
             ("returnUnit", format!("{units}{}", unit(model))),
@@ -59,19 +62,19 @@ impl ExrMap {
         self.attributes.extend(attributes.map(|(name, value)| (name.to_string(), value)));
     }
 
-    /// Adds the flux of a beam on the camera's image: `flux.beamN`.
+    /// Adds the flux of beam N on the camera's image: `flux.beamN`.
     ///
     /// # Panics
-    /// If it is of another size.
+    /// If the image has another size than the map.
     pub fn insert_flux(&mut self, beam: usize, image: &Image<f64>, model: FluxModel) {
         self.insert(format!("flux.beam{beam}"), Raster::F32(convert(image, |flux| flux as f32)));
         self.attributes.insert("fluxUnit".into(), format!("{} per pixel", unit(model)));
     }
 
-    /// The returns of a beam: each of the channels that is there.
+    /// Returns of a beam, from the channels that are present.
     ///
     /// # Errors
-    /// Names the channel that is of the wrong type, or absent where its sibling is there.
+    /// Names `file` and the channel that has the wrong type, or is absent while its sibling is present.
     pub fn to_returns(&self, file: &Path) -> Result<Returns, FileError> {
         self.returns().map_err(|fault| FileError::Exr(fault.in_file(file)))
     }
@@ -80,9 +83,9 @@ impl ExrMap {
         let mut returns = Returns::unsupported(self.width, self.height);
         returns.visible = self.reals(VISIBLE)?.map(|image| convert(image, |cell| cell > 0.5));
         returns.flux = self.reals(FLUX)?.map(|image| convert(image, f64::from));
-        returns.depth = self.scalar_of(VIEW_DEPTH)?;
-        returns.cos_off_axis = self.scalar_of(OFF_AXIS)?;
-        returns.cos_view = self.scalar_of(EMISSION)?;
+        returns.depth = self.scalar(VIEW_DEPTH)?;
+        returns.cos_off_axis = self.scalar(OFF_AXIS)?;
+        returns.cos_view = self.scalar(EMISSION)?;
         returns.pixel = match [self.wholes(PIXEL[0])?, self.wholes(PIXEL[1])?] {
             [Some(i), Some(j)] => {
                 let cells = i.cells().iter().zip(j.cells());
@@ -100,22 +103,14 @@ impl ExrMap {
         Ok(returns)
     }
 
-    /// The flux of a beam on the camera's image, if the file has it.
+    /// Flux of a beam on the camera's image; `None` without the channel.
     ///
     /// # Errors
-    /// Names the channel if it is of the wrong type.
+    /// Names `file` and the channel if it has the wrong type.
     pub fn to_flux(&self, beam: usize, file: &Path) -> Result<Option<Image<f64>>, FileError> {
         let image = self.reals(&format!("flux.beam{beam}"));
         let image = image.map_err(|fault| FileError::Exr(fault.in_file(file)))?;
         Ok(image.map(|image| convert(image, f64::from)))
-    }
-
-    fn wholes(&self, name: &str) -> Result<Option<&Image<u32>>, Fault> {
-        match self.channels.get(name) {
-            None => Ok(None),
-            Some(Raster::U32(image)) => Ok(Some(image)),
-            Some(Raster::F32(_)) => Err(Fault::new(channel(name), "of type F32 or F16", "U32")),
-        }
     }
 }
 

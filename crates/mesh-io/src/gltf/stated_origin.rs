@@ -1,24 +1,24 @@
-//! A ground far away, written by us: its node moves it to its place, and the file says so.
+//! Scene origin that a file of this crate states: its node translates the ground by it.
 //!
-//! Without that the scene origin follows from the vertices, which were rounded to single precision before they
-//! were written: where the middle of the ground lies between two whole metres, it may follow otherwise than
-//! before, and the mesh would not be the one that was written.
+//! In other files the scene origin follows from the vertices. Those of a written file have been rounded to single
+//! precision. If the middle of the ground lies between two whole metres, another origin could follow from the rounded
+//! vertices, and the mesh would differ from the one that was written.
 
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::json::Root;
+use raypencil_scene::{Material, Mesh, SceneError};
 use serde::Deserialize;
 
-use crate::gltf::nodes::Placed;
-use raypencil_scene::{Material, Mesh, SceneError};
+use crate::gltf::nodes::PlacedNode;
 
-/// `asset.extras.originM`, if the one node that has a mesh does nothing but move it there from 0.
-pub(super) fn origin(root: &Root, placed: &[Placed]) -> Option<DVec3> {
+/// `asset.extras.originM`, if the only node with a mesh does nothing but translate it by that origin.
+pub(super) fn origin(root: &Root, placed: &[PlacedNode]) -> Option<DVec3> {
     #[derive(Deserialize)]
     struct Extras {
         #[serde(rename = "originM")]
         origin: [f64; 3],
     }
-    // What is not ours may be anything.
+    // The extras of other writers may be anything.
     let extras: Extras = serde_json::from_str(root.asset.extras.as_ref()?.get()).ok()?;
     let origin = DVec3::from_array(extras.origin);
     let mut drawn = placed.iter().filter(|placed| root.nodes[placed.node].mesh.is_some());
@@ -29,8 +29,10 @@ pub(super) fn origin(root: &Root, placed: &[Placed]) -> Option<DVec3> {
     (origin != DVec3::ZERO && only.file_from_node == moved).then_some(origin)
 }
 
-/// The mesh of vertices that are offsets from a stated `origin`, which is believed if it is the one that follows
-/// from them, or the next whole metre.
+/// Mesh of vertices that are offsets from a stated `origin`.
+///
+/// The origin is used if it is at most 1 m per axis from the one that follows from the vertices. Otherwise the vertices
+/// are taken for global ones.
 pub(super) fn mesh(
     origin: DVec3,
     mut offsets: Vec<DVec3>,

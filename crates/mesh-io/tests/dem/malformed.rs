@@ -1,4 +1,4 @@
-//! Files that are none: whatever the bytes, a message and no panic, and no memory but for what is there.
+//! Malformed files: whatever the bytes, a message, no panic, and no memory beyond the length of the file.
 
 use proptest::prelude::*;
 
@@ -8,30 +8,30 @@ use crate::{assert_names, refusal};
 use raypencil_mesh_io::read_dem;
 
 #[test]
-fn a_header_asks_for_nothing() {
-    // Two million pixels square in a few hundred bytes, as strips and as tiles, plain and compressed.
+fn a_header_alone_allocates_no_memory() {
+    // A square of two million pixels a side in a few hundred bytes, as strips and as tiles, plain and compressed.
     for codec in [Codec::Plain, Codec::Deflate, Codec::Lzw, Codec::PackBits] {
         let mut tiff = Tiff::plain();
         tiff.codec = codec;
         let sides = |tiff: Tiff, side: u32| tiff.tag(256, Long(vec![side])).tag(257, Long(vec![side]));
-        // One strip for all.
+        // One strip for all rows.
         let whole = sides(tiff.clone(), 2_000_000)
             .tag(278, Long(vec![u32::MAX]))
             .tag(273, Long(vec![8]))
             .tag(279, Long(vec![48]));
         assert_names(&refusal(&whole, None), &["at most 16777216 cells", "window"]);
-        // With a window that is small enough the strip is still too long.
+        // With a small window the strip is still too long.
         assert_names(
             &refusal(&whole, Some([10.0, 0.0, 4.0, 4.0])),
             &["strip 0: ", "bytes of samples", "at most 536870912"],
         );
-        // One that could be, but for the bytes that there are.
+        // A strip of an allowed size, for which the file has too few bytes.
         let large = sides(tiff.clone(), 4096)
             .tag(278, Long(vec![4096]))
             .tag(273, Long(vec![8]))
             .tag(279, Long(vec![48]));
         assert_names(&refusal(&large, None), &["strip 0: 48 bytes", "enough for 67108864 bytes"]);
-        // Fewer strips and tiles than there must be.
+        // Too few strips and tiles.
         assert_names(
             &refusal(&sides(tiff.clone(), 2_000_000), Some([10.0, 0.0, 4.0, 4.0])),
             &["StripOffsets", "1000000"],
@@ -62,7 +62,7 @@ fn a_header_asks_for_nothing() {
 }
 
 #[test]
-fn every_cut_is_noticed() {
+fn a_file_cut_anywhere_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("cut.tif");
     for mut tiff in
@@ -79,7 +79,7 @@ fn every_cut_is_noticed() {
 }
 
 #[test]
-fn what_is_no_file_or_no_tiff() {
+fn paths_without_a_tiff_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let message = read_dem(folder.path(), None).unwrap_err().to_string();
     assert_names(&message, &["cannot read", "not a regular file"]);
@@ -93,8 +93,8 @@ fn what_is_no_file_or_no_tiff() {
 }
 
 #[test]
-fn a_mask_is_not_overlooked() {
-    // A second directory that calls itself a mask, after the first one's end.
+fn a_mask_is_refused() {
+    // A second directory, marked as a mask, after the end of the first.
     for (kind, is_refused) in [(4_u16, true), (1, false)] {
         let mut bytes = Tiff::plain().bytes();
         let at = bytes.len() as u32;
@@ -117,7 +117,7 @@ proptest! {
 
     /// Bytes changed anywhere: a DEM or a message.
     #[test]
-    fn no_bytes_break_the_reader(
+    fn changed_bytes_never_panic(
         tiled: bool,
         is_big: bool,
         is_big_endian: bool,
@@ -127,7 +127,7 @@ proptest! {
     ) {
         let block = if tiled { vec![16, 16] } else { vec![2] };
         let tiff = Tiff { block, is_big, is_big_endian, codec, predictor, ..Tiff::plain() };
-        // The writer orders samples by the file's own order.
+        // The writer uses the byte order of the file for samples.
         let mut bytes = tiff.with(crate::write::plain_sample).bytes();
         // Tags are at the end; half of the changes go there.
         for (k, (index, byte)) in changes.into_iter().enumerate() {
@@ -146,6 +146,6 @@ proptest! {
 }
 
 #[test]
-fn the_plain_file_is_fine() {
+fn the_unchanged_file_is_read() {
     assert!(read(&Tiff::plain(), None).is_ok());
 }

@@ -1,0 +1,75 @@
+//! Sizes of arrays: the size that a header claims, checked before memory is asked for, and the size of planes to be
+//! written.
+
+use raypencil_scene::Image;
+
+use crate::error::Fault;
+use crate::limits::Limits;
+
+/// Shape of an array, as its header claims.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Shape {
+    pub rows: u64,
+    pub columns: u64,
+    pub components: u64,
+}
+
+/// Maximum components of a cell. An array with more has another meaning than channels.
+const MAX_COMPONENTS: u64 = 1024;
+
+impl Shape {
+    /// Refuses a shape without cells, a shape beyond `limits`, and a shape that does not need exactly the `bytes` that
+    /// follow the header. `number_bytes` is the size of one number.
+    ///
+    /// The planes of an accepted shape therefore take at most 4 times the memory of the file.
+    pub(crate) fn check(&self, number_bytes: u64, bytes: u64, limits: &Limits) -> Result<(), Fault> {
+        let &Self { rows, columns, components } = self;
+        let refuse = |expected: String| {
+            let found = format!("{rows} rows of {columns} columns, {components} components");
+            Err(Fault::new("shape", found, expected))
+        };
+        let sides = u64::from(u32::MAX);
+        if rows == 0 || columns == 0 || rows > sides || columns > sides || rows * columns > limits.cells {
+            return refuse(format!("1 to {} cells", limits.cells));
+        }
+        if components == 0 || components > MAX_COMPONENTS {
+            return refuse(format!("1 to {MAX_COMPONENTS} components"));
+        }
+        if let Some((width, height)) = limits.size
+            && (columns, rows) != (width.into(), height.into())
+        {
+            return refuse(format!("{height} rows of {width} columns"));
+        }
+        // At most 2^64 cells times 2^13 bytes.
+        let claimed = u128::from(rows * columns) * u128::from(components * number_bytes);
+        if claimed > u128::from(limits.bytes) {
+            return refuse(format!("at most {} bytes", limits.bytes));
+        }
+        // CHOICE: surplus bytes are refused as well. Header and numbers then do not belong together, and every
+        // number may be in a wrong place.
+        if claimed != u128::from(bytes) {
+            let expected = format!("the {claimed} bytes of its shape (is the file cut off?)");
+            return Err(Fault::new("numbers", format!("{bytes} bytes"), expected));
+        }
+        Ok(())
+    }
+}
+
+/// Columns and rows that all images have in common.
+pub(crate) fn common_size<T: Copy>(planes: &[&Image<T>]) -> Result<(u32, u32), Fault> {
+    let size = |image: &Image<T>| (image.width(), image.height());
+    let Some((first, rest)) = planes.split_first() else {
+        return Err(Fault::new("images", "none", "at least one"));
+    };
+    match rest.iter().find(|plane| size(plane) != size(first)) {
+        None => Ok(size(first)),
+        Some(other) => {
+            let ((width, height), (columns, rows)) = (size(first), size(other));
+            Err(Fault::new(
+                "images",
+                format!("{columns} x {rows}"),
+                format!("{width} x {height} as the first"),
+            ))
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! glTF and GLB to a mesh, with its scene origin.
+
+use std::path::Path;
+
+use glam::DVec3;
+use raypencil_files::{Fault, FileError, Sha256Digest, bytes, sha256};
+use raypencil_scene::Mesh;
+
+use crate::gltf::assemble::{Parts, assemble};
+use crate::gltf::buffers::Buffers;
+use crate::gltf::limits::MAX_FILE_BYTES;
+use crate::gltf::{container, json, materials, nodes, stated_origin};
+
+/// Reflectivity of materials that state none. CHOICE: bright Martian dust reflects about this much in the near
+/// infrared.
+pub const DEFAULT_REFLECTIVITY: f64 = 0.25;
+
+/// Loads a `.glb` or `.gltf` terrain. Materials that state no reflectivity get [`DEFAULT_REFLECTIVITY`].
+///
+/// # Errors
+/// Names the file and the accessor, node, buffer or line of JSON that is wrong.
+pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, FileError> {
+    Ok(read_mesh(path.as_ref(), DEFAULT_REFLECTIVITY, Vertices::Global)?.0)
+}
+
+/// Mesh from the bytes of a `.glb` or `.gltf` file. `file` is its name in messages; buffers in files of their own are
+/// looked up beside it. Materials that state no reflectivity get `reflectivity`.
+///
+/// # Errors
+/// As [`load_mesh`].
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_mesh_io::{glb_bytes, mesh_from_bytes};
+/// use raypencil_scene::{Material, Mesh};
+///
+/// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let dust = Material { name: "dust".into(), reflectivity: 0.3 };
+/// let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![dust])?;
+/// // The file states its reflectivity, so that the 0.9 given here is not used.
+/// let read = mesh_from_bytes(&glb_bytes(&mesh), "here.glb".as_ref(), 0.9)?;
+/// assert_eq!(read.materials()[0].reflectivity, 0.3);
+///
+/// let error = mesh_from_bytes(b"PK", "here.glb".as_ref(), 0.9).unwrap_err().to_string();
+/// assert!(error.starts_with("here.glb: first bytes: [50, 4b]; expected the magic"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn mesh_from_bytes(bytes: &[u8], file: &Path, reflectivity: f64) -> Result<Mesh, FileError> {
+    Ok(parse(bytes, file, reflectivity, Vertices::Global)?.0)
+}
+
+/// Loads a `.glb` or `.gltf` file whose vertices are offsets, metres, from `origin` in the global frame.
+///
+/// It inverts [`crate::write_glb`] bit for bit, including the signs of zeros.
+///
+/// # Errors
+/// As [`load_mesh`].
+pub fn mesh_of_offsets(path: impl AsRef<Path>, origin: DVec3) -> Result<Mesh, FileError> {
+    Ok(read_mesh(path.as_ref(), DEFAULT_REFLECTIVITY, Vertices::OffsetsFrom(origin))?.0)
+}
+
+/// Meaning of the vertices of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Vertices {
+    /// Positions in the global frame; the scene origin follows from them.
+    Global,
+    /// Offsets from this scene origin; they are not changed.
+    OffsetsFrom(DVec3),
+}
+
+/// Mesh of a file, and the digests of the file and of the buffers beside it, in the order of the buffers.
+///
+/// # Errors
+/// As [`load_mesh`].
+pub fn read_mesh(
+    path: &Path,
+    reflectivity: f64,
+    kind: Vertices,
+) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
+    let bytes = bytes::read_file(path, MAX_FILE_BYTES).map_err(|error| FileError::io(path, "read", error))?;
+    let (mesh, external) = parse(&bytes, path, reflectivity, kind)?;
+    Ok((mesh, std::iter::once(sha256(&bytes)).chain(external).collect()))
+}
+
+/// Mesh of a file from its bytes, and the digests of the buffers beside it.
+fn parse(
+    bytes: &[u8],
+    file: &Path,
+    reflectivity: f64,
+    kind: Vertices,
+) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let in_file = |fault: Fault| FileError::Gltf(fault.in_file(file));
+    let container = container::split(bytes).map_err(in_file)?;
+    let root = json::root(container.json).map_err(in_file)?;
+    let mut buffers = Buffers::new(&root, folder, container.bin);
+    let nodes = nodes::placed_nodes(&root).map_err(in_file)?;
+    let materials = materials::read(&root, container.json, reflectivity).map_err(in_file)?;
+    let stated = match kind {
+        Vertices::Global => stated_origin::origin(&root, &nodes),
+        Vertices::OffsetsFrom(_) => None,
+    };
+    let parts = Parts { materials, ..Parts::default() };
+    let parts =
+        assemble(&root, nodes, &mut buffers, parts, reflectivity, stated.is_some()).map_err(in_file)?;
+    let Parts { mut vertices, faces, face_materials, materials } = parts;
+    let mesh = match (kind, stated) {
+        (Vertices::Global, Some(origin)) => {
+            stated_origin::mesh(origin, vertices, faces, face_materials, materials)
+        }
+        (Vertices::Global, None) => {
+            // z = 0 of the file becomes y = +0, not -0: the sign means nothing in ordinary files.
+            vertices.iter_mut().for_each(|vertex| vertex.y += 0.0);
+            Mesh::from_global(&vertices, faces, face_materials, materials)
+        }
+        (Vertices::OffsetsFrom(origin), _) => {
+            let offsets = vertices.iter().map(|vertex| vertex.as_vec3().to_array()).collect();
+            Mesh::new(origin, offsets, faces, face_materials, materials)
+        }
+    };
+    let mesh = mesh.map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
+    Ok((mesh, buffers.digests().collect()))
+}

@@ -1,0 +1,9 @@
+//! Everything that reports are made of, by its public items.
+
+mod drawing;
+mod junit;
+mod picture;
+mod plot;
+mod scale;
+mod table;
+mod text;
