@@ -1,69 +1,25 @@
-//! What may spoil a drive, and what is done about it: beams too coarse for the camera, a threshold that knows nothing of
-//! the light, beams that cannot be told apart.
+//! Warnings about a drive's settings: beams that the camera cannot tell apart, a threshold that does not fit the light.
 
 use glam::DVec3;
-
-use raypencil_report::number;
 use raypencil_rover::{OnVehicle, Rig};
-use raypencil_scene::Camera;
 use raypencil_scene_io::{DetectionWord, DriveSettings, ElectronicsSettings};
 
-/// Pencils across each pixel of the camera, along the fan. CHOICE: with fewer than two some columns of the image see no
-/// pencil and the stripe has gaps; four leave it unbroken on slanted ground too.
-pub(crate) const PENCILS_PER_PIXEL: f64 = 4.0;
-
-/// Below this a stripe is broken, and the run says so.
-const FEWEST_PENCILS_PER_PIXEL: f64 = 2.0;
-
-/// A beam has no more columns. (`scene`)
-const MOST_COLUMNS: f64 = 1_048_576.0;
-
-/// How many pencils of a beam lie across a pixel of the camera where both look the same way: columns over the pixels that
-/// the fan would fill.
-fn pencils_per_pixel(camera: &Camera, columns: f64, half_width_over_distance: f64) -> f64 {
-    columns / (2.0 * half_width_over_distance * camera.focal_length / camera.pixel_pitch[0])
-}
-
-/// Raises the columns of beams that are too coarse for the camera; never lowers them.
-pub(crate) fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -> (Rig, Vec<String>) {
-    let camera = rig.camera.sensor;
-    let mut warnings = Vec::new();
-    for (index, OnVehicle { sensor: beam, .. }) in rig.beams.iter_mut().enumerate() {
-        let spread = beam.half_width / beam.grid_distance;
-        let needed = wanted / pencils_per_pixel(&camera, 1.0, spread);
-        // The cells of a sensor are limited too: 2^26.
-        let most = MOST_COLUMNS.min(67_108_864.0 / f64::from(beam.rows));
-        let columns = needed.ceil().min(most.floor()).max(1.0) as u32;
-        if columns > beam.columns {
-            notes.push(format!(
-                "beam {index}: {columns} columns in place of {}, {} pencils to a pixel",
-                beam.columns,
-                number(pencils_per_pixel(&camera, f64::from(columns), spread))
-            ));
-            beam.columns = columns;
-        }
-        let reached = pencils_per_pixel(&camera, f64::from(beam.columns), spread);
-        if reached < FEWEST_PENCILS_PER_PIXEL {
-            warnings.push(format!(
-                "beam {index} has {} pencils to a pixel of the camera: below {FEWEST_PENCILS_PER_PIXEL} its stripe \
-                 has gaps",
-                number(reached)
-            ));
-        }
-    }
-    (rig, warnings)
-}
-
-/// A warning where beams that are told apart by their order, the lowest in the image first, look down the other way round.
+/// Warns if beams are lit together and a beam is not steeper than the next one. Stripes of one image are told apart by
+/// their order: the lowest is taken for that of beam 0, the steepest.
 pub(crate) fn beams_out_of_order(settings: &DriveSettings, rig: &Rig) -> Option<String> {
     let down = |beam: &OnVehicle<_>| -beam.vehicle_from_sensor.rotate(DVec3::Z).z;
     let steeper = rig.beams.windows(2).position(|pair| down(&pair[0]) <= down(&pair[1]))?;
     (settings.lit_together == Some(true)).then(|| {
-        format!("beam {steeper} looks down no more than beam {}: together, the lowest stripe is taken for beam 0's", steeper + 1)
+        format!(
+            "beam {steeper} is not steeper than beam {}: with both in one image, the lowest stripe counts as beam 0's",
+            steeper + 1
+        )
     })
 }
 
-/// A warning where the usual threshold knows nothing of what the file changes. Where a sun is subtracted its noise is not.
+/// Warns if the default threshold is used although the file changes the light or the electronics.
+///
+/// With an unlit image subtracted, the sun's light is gone but its noise is not: the warning is given there, too.
 pub(crate) fn blind_threshold(settings: &DriveSettings) -> Option<String> {
     let changed = if settings.sun.is_some() {
         "a sun behind the stripes"
@@ -74,8 +30,6 @@ pub(crate) fn blind_threshold(settings: &DriveSettings) -> Option<String> {
     };
     let usual = settings.threshold.is_none() && settings.detection != Some(DetectionWord::Otsu);
     usual.then(|| {
-        format!(
-            "the usual threshold is for the preset alone and knows nothing of {changed}: give threshold_dn"
-        )
+        format!("the default threshold is for the preset alone, without {changed}: give threshold_dn")
     })
 }
