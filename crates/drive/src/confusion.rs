@@ -98,7 +98,7 @@ impl ConfusionMatrix {
         let of = |part, all: &Predicted| percent(part, all.points());
         [
             format!(
-                "of {} obstacle points {} found, {} unknown, {} missed; {} of {} sectors free past an obstacle",
+                "of {} obstacle points {} found, {} unknown, {} missed; {} of {} sectors free past one",
                 count(obstacle.points()),
                 of(obstacle.obstacle, obstacle),
                 of(obstacle.unknown, obstacle),
