@@ -1,11 +1,11 @@
-//! `raypencil drive`: a rover's way over a ground, with one renderer or two.
+//! Command `raypencil drive`: drives the rover over a ground, with one renderer or with two.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
-use raypencil::drive::{DriveJob, DriveProgress, drive as run, drive_json, drive_screen, write_drive};
+use raypencil::drive::{self, DriveJob, DriveProgress, drive_json, drive_screen, write_drive};
 use raypencil::io::{DriveSetup, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
@@ -13,10 +13,10 @@ use crate::console::{Spinner, say};
 use crate::subject::contenders;
 use crate::{Outcome, Registry, Trouble};
 
-/// Frames done, and the time that is left. Hidden where standard error is no terminal.
-struct Bar(ProgressBar);
+/// Progress bar: frames done and time left. Hidden if standard error is no terminal.
+struct FrameBar(ProgressBar);
 
-impl Bar {
+impl FrameBar {
     fn new() -> Self {
         let bar = ProgressBar::new(0);
         if let Ok(style) =
@@ -29,19 +29,23 @@ impl Bar {
     }
 }
 
-impl DriveProgress for Bar {
-    fn frames(&self, done: u64, of: u64) {
-        self.0.set_length(of);
+impl DriveProgress for FrameBar {
+    fn frames(&self, done: u64, planned: u64) {
+        self.0.set_length(planned);
         self.0.set_position(done);
     }
 }
 
-impl Drop for Bar {
+impl Drop for FrameBar {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }
 }
 
+/// Runs the command.
+///
+/// # Errors
+/// Renderers, scenes, drives and folders that are refused.
 pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
     let names: Vec<String> = match command.both {
         true => ["scanline", "tracer"].map(String::from).to_vec(),
@@ -51,24 +55,24 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.scene.scene));
     let mut loaded = load(&command.scene.scene, &command.scene.overrides())?;
-    let mut words = command.scene.typed();
+    let mut arguments = command.scene.typed();
     if !command.to.is_empty() {
         let rig = loaded.rig();
         let drive = loaded.drive.get_or_insert_with(|| DriveSetup::new(rig, Vec::new()));
         drive.plan.route.waypoints = command.to.iter().map(|&to| to.into()).collect();
     }
     for [x, y] in &command.to {
-        words.push_str(&format!(" --to {x},{y}"));
+        arguments.push_str(&format!(" --to {x},{y}"));
     }
     if command.both {
-        words.push_str(" --both");
+        arguments.push_str(" --both");
     }
-    // What says nothing of renderers: the default one, or both.
-    let unsaid = command.both || command.with == DRIVE_WITH;
-    let said = if unsaid { args::DEFAULT_WITH.map(String::from).to_vec() } else { names };
-    words.push_str(&typed_renderers(&said, &command.switches));
+    // The default renderer and `--both` need no `--with`.
+    let is_default = command.both || command.with == DRIVE_WITH;
+    let typed = if is_default { args::DEFAULT_WITH.map(String::from).to_vec() } else { names };
+    arguments.push_str(&typed_renderers(&typed, &command.switches));
     let trouble = |error| Trouble::Drive { scene: command.scene.scene.clone(), error };
-    let job = DriveJob::new(&loaded, command.scene.at, words).map_err(trouble)?;
+    let job = DriveJob::new(&loaded, command.scene.at, arguments).map_err(trouble)?;
     let folder: PathBuf = match &command.output {
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
@@ -76,10 +80,10 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     drop(spinner);
 
     let renderers: Vec<_> = contenders.iter().map(|contender| contender.renderer.as_ref()).collect();
-    let found = run(&job, &renderers, &Bar::new()).map_err(trouble)?;
+    let run = drive::drive(&job, &renderers, &FrameBar::new()).map_err(trouble)?;
     let spinner = Spinner::new();
-    write_drive(&job, &found, &folder, &spinner)?;
+    write_drive(&job, &run, &folder, &spinner)?;
     drop(spinner);
-    say(&if json { drive_json(&job, &found) } else { drive_screen(&job, &found, Some(&folder)) });
-    Ok(if found.passes() { Outcome::Fine } else { Outcome::Differs })
+    say(&if json { drive_json(&job, &run) } else { drive_screen(&job, &run, Some(&folder)) });
+    Ok(if run.passes() { Outcome::Fine } else { Outcome::Differs })
 }

@@ -1,106 +1,96 @@
-//! What is driven: a scene and its drive become a rover's plan and a camera that turns light into numbers.
+//! Job of a drive: a loaded scene and its route become a rover's plan and a camera that turns light into numbers.
 
-use glam::DVec2;
 use std::sync::Arc;
 
-use crate::warnings::{beams_out_of_order, blind_threshold, with_columns};
-use raypencil_files::FolderError;
+use glam::DVec2;
 use raypencil_rover::{DrivePlan, Rig};
-use raypencil_scene::{FluxModel, Image, Mesh, SceneError};
+use raypencil_scene::{FluxModel, Image, Mesh};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource};
 use raypencil_sensor::{ImageSensor, Optics, Sunlight};
 
-/// A drive has no more frames: an hour of them at ten a second. Each leaves some two thousand edge points in memory.
-pub(super) const MOST_FRAMES: u64 = 36_000;
+use crate::beam_columns::with_columns;
+use crate::error::{DriveError, MAX_FRAMES};
+use crate::warnings::{beams_out_of_order, blind_threshold};
 
-/// Why there is no drive.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum DriveError {
-    /// A scene that says nothing of where to go.
-    #[error(
-        "there is no drive; expected --to X,Y, a scene file with a [drive] table (docs/guide/drive.md), or a built-in ground: \
-         pyramids, facets"
-    )]
-    NoDrive,
-    /// Light in a unit that no camera can expose.
-    #[error("flux model eq1 is in W/m, which no camera can expose; expected radiometric")]
-    Unit,
-    /// A route without end.
-    #[error(
-        "the route has more than {MOST_FRAMES} frames; expected fewer: a shorter way, more speed or fewer frames per second"
-    )]
-    Frames,
-    /// A number that the rover does not take.
-    #[error(transparent)]
-    Plan(#[from] SceneError),
-    /// A file that could not be written.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-}
+/// Frame rate of the built-in drives, frames per second: one frame per 0.1 m at 0.3 m/s.
+const BUILTIN_FRAMES_PER_S: f64 = 3.0;
 
-/// A drive, ready to be driven.
+/// Drive, ready to start: ground, plan of the rover and camera.
+///
+/// ```
+/// use raypencil_drive::DriveJob;
+/// use raypencil_scene_io::{Overrides, load};
+///
+/// let job = DriveJob::new(&load("pyramids", &Overrides::default())?, None, "pyramids".into())?;
+/// // "The vehicle starts at 7.5 meters from where the view from the camera in Figure 11 was taken." (Paper, section 8)
+/// let route = &job.plan.route;
+/// assert_eq!((route.start.x, route.waypoints[0].x), (-7.5, 0.0));
+/// // One frame per 0.1 m, from the start to the end: 76 frames.
+/// assert!(route.frame(75).is_some() && route.frame(76).is_none());
+/// // 4 pencils per pixel, where the fan of 60 degrees fills 2 tan(30 deg) 8 mm / 9 um = 1026.4 pixels.
+/// assert_eq!(job.plan.rig.beams[0].sensor.columns, 4106);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct DriveJob {
-    /// A short name, fit for a folder.
+    /// Short name of the scene, usable as a folder name.
     pub name: String,
-    /// The words after `raypencil drive` that give it again.
+    /// Command-line arguments after `raypencil drive` that repeat this drive.
     pub arguments: String,
-    /// SHA-256 of what defines the scene.
+    /// SHA-256 of the files that define the scene.
     pub sha256: String,
-    /// The ground.
+    /// Ground.
     pub mesh: Arc<Mesh>,
-    /// The rover's plan.
+    /// Plan of the rover: route, rig, rules and errors.
     pub plan: DrivePlan,
-    /// Name of the sensor preset.
+    /// Name of the preset of the image sensor.
     pub preset: &'static str,
-    /// Step 6.
+    /// Optics, step 6 of section 3.
     pub optics: Optics,
-    /// Steps 7 and 8.
+    /// Image sensor, steps 7 and 8.
     pub sensor: ImageSensor,
-    /// The sun behind the stripes.
+    /// Sun and sky behind the stripes; `None`: darkness.
     pub sunlight: Option<Sunlight>,
-    /// Whether a second image without the laser is taken off each.
+    /// Whether an image without the laser is subtracted from each image.
     pub subtract_unlit: bool,
-    /// What people should know of how it was set up.
+    /// Notes on how the drive was set up.
     pub notes: Vec<String>,
-    /// What may spoil it.
+    /// Warnings about settings that may spoil the drive.
     pub warnings: Vec<String>,
 }
 
-/// Start of the drive of a built-in ground, global x and y, metres; all of them end at the origin.
+/// Start of the drive of a built-in ground, global x and y, metres. All of them end at the origin.
 fn builtin_start(name: &str) -> Option<DVec2> {
     match name {
         // "The vehicle starts at 7.5 meters from where the view from the camera in Figure 11 was taken." (§8)
         "pyramids" => Some(DVec2::new(-7.5, 0.0)),
-        // CHOICE: 6 m up to where the ground is calm and the scene's own view is from. The near stripe is 3.3 m ahead and the
-        // vehicle's wheels reach 0.95 m back: only after 4.2 m has it seen what it stands on.
+        // CHOICE: 6 m, which end at the scene's own viewpoint, on calm ground. The near stripe is 3.3 m ahead and the
+        // wheels reach 0.95 m back: only after 4.2 m has the vehicle seen the ground under it.
         "facets" => Some(DVec2::new(-6.0, 0.0)),
         _ => None,
     }
 }
 
 /// Drive of a rig on a built-in ground.
-fn builtin(rig: Rig) -> DriveSetup {
+fn builtin_drive(rig: Rig) -> DriveSetup {
     let mut drive = DriveSetup::new(rig, vec![DVec2::ZERO]);
-    // CHOICE: a frame each 0.1 m, a grid spacing, which its own extrapolation closes; ten frames a second would be one each
-    // 3 cm.
+    // CHOICE: one frame per 0.1 m, the spacing of the map: the map's own extrapolation closes the space between.
+    // Ten frames per second would be one per 3 cm.
     drive.plan.route.frame_rate = BUILTIN_FRAMES_PER_S;
-    // Twice each metre, and at the very end.
+    // Every 0.5 m, and at the very end.
     drive.plan.obstacles_every = 5;
-    // CHOICE: no scans: what figures 12 and 15 leave open, stripes alone could not see.
+    // CHOICE: no scans. Figures 12 and 15 show the cells that the stripes alone do not see.
     drive.plan.scans = None;
     drive
 }
 
-/// At 0.3 m/s a frame each 0.1 m.
-const BUILTIN_FRAMES_PER_S: f64 = 3.0;
-
 impl DriveJob {
-    /// The drive that a scene file describes, or that of a built-in ground, starting at `at` if that is given.
+    /// Job of the drive that a scene file describes, or of the route of a built-in ground. A built-in route starts at
+    /// `at` (global x and y, metres) if it is given. `arguments` are the words for [`DriveJob::arguments`].
     ///
     /// # Errors
-    /// A scene without a drive; numbers that make none, by their field.
+    /// [`DriveError::NoDrive`] for a scene without a route, [`DriveError::Unit`] for the flux model `eq1`,
+    /// [`DriveError::Plan`] with the field of a number out of range.
     pub fn new(loaded: &LoadedScene, at: Option<[f64; 2]>, arguments: String) -> Result<Self, DriveError> {
         let scene = &loaded.scene;
         if scene.flux_model() == FluxModel::Eq1 {
@@ -112,9 +102,10 @@ impl DriveJob {
             (None, SceneSource::Builtin(name)) => {
                 let start = builtin_start(name).ok_or(DriveError::NoDrive)?;
                 notes.push(
-                    "built-in drive: a frame each 0.1 m, not ten a second, and no vertical scans".to_string(),
+                    "built-in drive: one frame per 0.1 m, not ten per second, and no vertical scans"
+                        .to_string(),
                 );
-                (builtin(loaded.rig()), Some(at.map_or(start, DVec2::from_array)))
+                (builtin_drive(loaded.rig()), Some(at.map_or(start, DVec2::from_array)))
             }
             (None, _) => return Err(DriveError::NoDrive),
         };
@@ -145,31 +136,40 @@ impl DriveJob {
         })
     }
 
-    /// Steps 7 and 8: the digital numbers of one exposure, without those of the background if a second one is taken off.
-    pub(super) fn digital(
+    /// Digital numbers of one exposure, steps 7 and 8. `flux` is the laser's light and `background` that of sun and
+    /// sky, both in watts per pixel; `number` selects the noise. With `subtract_unlit`, the numbers of a second
+    /// exposure without the laser are subtracted.
+    pub(crate) fn expose(
         &self,
-        light: &Image<f64>,
+        flux: &Image<f64>,
         background: Option<&Image<f64>>,
         number: u64,
     ) -> Image<i32> {
         if self.subtract_unlit {
-            return self.sensor.lit_minus_unlit(light, background, number);
+            return self.sensor.lit_minus_unlit(flux, background, number);
         }
-        self.sensor.numbers(light, background, number)
+        self.sensor.numbers(flux, background, number)
     }
 
-    /// How many frames the route has.
-    pub(super) fn frames(&self) -> Result<u64, DriveError> {
-        let over = |index| self.plan.route.frame(index).is_none();
-        if !over(MOST_FRAMES) {
+    /// Number of frames of the route.
+    ///
+    /// # Errors
+    /// [`DriveError::Frames`] if there are more than [`MAX_FRAMES`].
+    pub(crate) fn frames(&self) -> Result<u64, DriveError> {
+        let is_over = |index| self.plan.route.frame(index).is_none();
+        if !is_over(MAX_FRAMES) {
             return Err(DriveError::Frames);
         }
-        // Once it is over it stays so: halving finds the first frame that is not.
-        let (mut driven, mut end) = (0, MOST_FRAMES);
+        // No frame follows the first one that is missing: bisection finds it.
+        let (mut driven, mut end) = (0, MAX_FRAMES);
         while driven < end {
             let middle = driven + (end - driven) / 2;
-            if over(middle) { end = middle } else { driven = middle + 1 }
+            if is_over(middle) { end = middle } else { driven = middle + 1 }
         }
         Ok(end)
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/job.rs"]
+mod tests;

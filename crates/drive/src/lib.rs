@@ -1,38 +1,96 @@
-//! A whole drive of the rover, on one renderer or on two in lockstep, and what it leaves behind.
+//! Drives of the rover: the whole vision system from the renderer to the maps, with one renderer or with two in
+//! lockstep, and the folder of results.
+//!
+//! Source: steps 1 to 9 of the paper (section 3), its maps (section 7) and its sample runs (section 8, figures 11 to
+//! 16). This crate joins the renderers, `sensor` and `rover`; it has no step of its own. With two renderers it compares
+//! everything that their light becomes: pixels, edge points, map cells and labels.
+//!
+//! From floor to top:
+//!
+//! 1. `error`: [`DriveError`]; `labels`: words of labels;
+//! 2. `beam_columns`, `warnings`, `job`: [`DriveJob`], everything that defines a drive;
+//! 3. `shadow_map`, `sun`: light of sun and sky behind the stripes; `through_optics`: a renderer behind the camera's
+//!    optics;
+//! 4. `recorded_exposure`, `differences`: [`Differences`] between two sides, stage by stage;
+//! 5. `confusion`: [`ConfusionMatrix`] of the obstacle maps; `noise_level`: [`NoiseLevel`]s for its table;
+//!    `sensitivity`, `pointing`: [`pointing_table`], blur against pointing errors;
+//! 6. `camera_view`, `animation_frame`: pictures of a frame;
+//! 7. `renderer_drive`, `run`: [`drive()`] itself and its [`DriveRun`];
+//! 8. `counts`, `facts`, `screen`, `summary`: [`drive_screen`] for people and [`drive_json`] for programs;
+//! 9. `figures`, `animation`, `maps`, `page`, `folder`: [`write_drive`], the folder with all files.
+//!
+//! `docs/guide/drive.md` describes routes, settings and files.
+//!
+//! ```
+//! use raypencil_drive::{DriveJob, drive, drive_screen};
+//! use raypencil_scanline::Scanline;
+//! use raypencil_scene::Silent;
+//! use raypencil_scene_io::load_text;
+//!
+//! // A small camera with beams to match, on the paper's pyramids, driven by 0.6 m.
+//! let scene = "version = 1
+//!     vehicle = { position_m = [-0.6, 0] }
+//!     camera = { width_px = 96, height_px = 96, pixel_pitch_um = 96 }
+//!     beam = [{ rows = 2 }, { rows = 2 }]
+//!     terrain = { builtin = 'pyramids' }
+//!     drive = { waypoints_m = [[0, 0]], frames_per_s = 3, scans = false }";
+//! let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
+//! let run = drive(&job, &[&Scanline::default()], &Silent)?;
+//! // 0.6 m at 0.3 m/s take 2 s: 7 frames at 3 per second, both ends included.
+//! assert!(drive_screen(&job, &run, None).ends_with("\n7 frames driven.\n"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod animation;
-mod eye;
+mod animation_frame;
+mod beam_columns;
+mod camera_view;
+mod confusion;
+mod counts;
+mod differences;
+mod error;
+mod facts;
 mod figures;
 mod folder;
 mod job;
+mod labels;
 mod maps;
+mod noise_level;
 mod page;
-mod picture;
 mod pointing;
+mod recorded_exposure;
+mod renderer_drive;
 mod run;
 mod screen;
+mod sensitivity;
+mod shadow_map;
 mod summary;
 mod sun;
-mod trace;
-mod truth;
-mod view;
+mod through_optics;
 mod warnings;
 
-pub use folder::{WrittenDrive, occupancy, posts, write_drive};
-pub use job::{DriveError, DriveJob};
+pub use confusion::{ConfusionMatrix, Predicted};
+pub use differences::{Differences, FluxDifferences, StageDifferences};
+pub use error::DriveError;
+pub use folder::{WrittenDrive, write_drive};
+pub use job::DriveJob;
 pub use maps::camera_info::camera_info;
+pub use maps::obstacle_grid::occupancy_grid;
 pub use maps::occupancy::{Occupancy, OccupancyGrid, occupancy_files, write_occupancy};
 pub use maps::ply::{MarkedPoint, write_ply};
 pub use maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
-pub use pointing::{Lever, Moved, pointing_table};
+pub use noise_level::NoiseLevel;
+pub use pointing::pointing_table;
 pub use run::{DriveProgress, DriveRun, drive};
 pub use screen::drive_screen;
+pub use sensitivity::StripeSensitivity;
 pub use summary::drive_json;
-pub use sun::Sun;
-pub use trace::{FluxTrace, StageTrace, Trace};
-pub use truth::{NoiseLevel, Said, TRUTH_HEAD, TruthMatrix};
-pub use view::View;
+
+/// The README's example, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 #[cfg(test)]
-#[path = "../tests/unit/drive.rs"]
-mod tests;
+#[path = "../tests/unit/common.rs"]
+mod common;

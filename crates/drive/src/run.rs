@@ -1,171 +1,114 @@
-//! A drive from its first frame to its last, on one side or on two in lockstep, as one readable pass.
+//! Drive from its first frame to its last, with one renderer or with two in lockstep.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::eye::Eye;
-use crate::job::{DriveError, DriveJob};
+use raypencil_rover::{Detection, DriveFrame, ElevationMap, LabelledVector, ObstacleMap};
+use raypencil_scene::{Pose, Renderer, Silent, Stage};
+
+use crate::animation_frame::{AnimationFrame, HALF_SIDE_PX, MapThumbnail};
+use crate::camera_view::{CameraView, camera_view};
+use crate::confusion::ConfusionMatrix;
+use crate::differences::Differences;
+use crate::error::DriveError;
+use crate::job::DriveJob;
 use crate::maps::ply::MarkedPoint;
-use crate::picture::{MapPicture, Picture};
+use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sun::Sun;
-use crate::trace::{Kept, MOST_LIT, Trace};
-use crate::truth::TruthMatrix;
-use crate::view::{View, view};
-use raypencil_rover::{
-    CameraImage, Detection, Drive, DriveFrame, ElevationMap, Exposure, LabelledVector, ObstacleMap, Route,
-};
-use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
 
-/// The animation has no more pictures: a few megabytes.
-const MOST_PICTURES: u64 = 60;
+/// Maximum number of animation frames: a few megabytes.
+const MAX_ANIMATION_FRAMES: u64 = 60;
 
-/// No more edge points are kept: half a gigabyte.
-pub(super) const MOST_POINTS: usize = 1 << 24;
+/// Maximum number of edge points that are kept: half a gigabyte.
+const MAX_EDGE_POINTS: usize = 1 << 24;
 
-/// Columns of the camera's view in the animation, and in the figure.
-const SMALL: u32 = 256;
+/// Longest side of the camera's view in the figure, pixels.
+const FIGURE_VIEW_SIDE_PX: u32 = 640;
 
-const LARGE: u32 = 640;
-
-/// Who wants to hear how far it is.
+/// Receiver of progress messages.
 pub trait DriveProgress: Sync {
-    /// So many frames of so many are done.
-    fn frames(&self, done: u64, of: u64);
+    /// `done` frames of `planned` are done.
+    fn frames(&self, done: u64, planned: u64);
 }
 
-impl DriveProgress for raypencil_scene::Silent {
-    fn frames(&self, _done: u64, _of: u64) {}
+/// Discards them.
+impl DriveProgress for Silent {
+    fn frames(&self, _done: u64, _planned: u64) {}
 }
 
-/// What a drive found.
+/// Result of a drive.
 #[derive(Debug)]
 pub struct DriveRun {
-    /// The renderers, the one whose maps these are first.
+    /// Camera's view at the end.
+    pub(crate) last_view: CameraView,
+    /// At most 60 frames of the animation.
+    pub(crate) animation: Vec<AnimationFrame>,
+    /// Names of the renderers. Maps, points and views are those of the first.
     pub renderers: Vec<String>,
-    /// Every frame, without its points and maps.
+    /// All frames, without their points and obstacle maps.
     pub frames: Vec<DriveFrame>,
-    /// How many frames the route has: more than were driven if it leads off the ground.
+    /// Number of frames of the route: more than were driven if it leads off the ground.
     pub planned: u64,
-    /// The map at the end.
+    /// Elevation map at the end.
     pub map: ElevationMap,
-    /// Where the vehicle believes to be at the end.
+    /// Estimated pose at the end, `global_from_vehicle`.
     pub believed: Pose,
-    /// The last obstacle map and navigator map, and their frame.
+    /// Frame of the last obstacle map, that map, and its navigator map.
     pub obstacles: Option<(u64, ObstacleMap, Vec<LabelledVector>)>,
     /// All obstacle maps against the true ground.
-    pub truth: TruthMatrix,
-    /// How many edge points there were in all frames.
+    pub confusion: ConfusionMatrix,
+    /// Number of edge points of all frames.
     pub edge_points: u64,
-    /// They themselves, global: the first 16,777,216.
+    /// Edge points, global: the first 16,777,216.
     pub points: Vec<MarkedPoint>,
-    /// Where two sides part, if there were two.
-    pub trace: Option<Trace>,
-    /// How long each part of the work took.
+    /// Differences between the two sides; `None` with one renderer.
+    pub differences: Option<Differences>,
+    /// Time of each part of the work.
     pub stages: Vec<Stage>,
-    /// The camera's view at the end.
-    pub(super) last_view: View,
-    pub(super) pictures: Vec<Picture>,
 }
 
 impl DriveRun {
-    /// The way driven, metres.
+    /// Distance driven, metres.
     pub fn driven(&self) -> f64 {
         self.frames.last().map_or(0.0, |frame| frame.place.driven)
     }
 
-    /// Whether two sides are the same, or there is one side alone.
+    /// Whether both sides are identical, or there is only one.
     pub fn passes(&self) -> bool {
-        self.trace.as_ref().is_none_or(Trace::is_identical)
+        self.differences.as_ref().is_none_or(Differences::is_identical)
     }
 }
 
-/// One renderer's drive.
-pub(crate) struct Side<'a> {
-    eye: Eye<'a>,
-    drive: Drive,
-    /// How many exposures there were.
-    exposures: u64,
-    exposing: Duration,
-    stepping: Duration,
-}
-
-/// What a side saw in a frame.
-struct Seen {
-    frame: DriveFrame,
-    kept: Vec<Kept>,
-    /// Digital numbers of each exposure, but in a scan.
-    images: Vec<(Option<usize>, Image<i32>)>,
-}
-
-impl<'a> Side<'a> {
-    fn new(job: &'a DriveJob, renderer: &'a dyn Renderer, sun: Option<&'a Sun>) -> Result<Self, SceneError> {
-        Ok(Self {
-            eye: Eye::new(renderer, job, sun),
-            drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
-            exposures: 0,
-            exposing: Duration::ZERO,
-            stepping: Duration::ZERO,
-        })
-    }
-
-    fn step(&mut self, job: &DriveJob, keep: bool) -> Result<Option<Seen>, SceneError> {
-        let (mut kept, mut images, mut room) = (Vec::new(), Vec::new(), MOST_LIT);
-        let (exposures, exposing) = (&mut self.exposures, &mut self.exposing);
-        let eye = &self.eye;
-        let mut develop = |exposure: Exposure, light: Image<f64>| {
-            let start = Instant::now();
-            // Steps 7 and 8.
-            let behind = eye.behind();
-            let numbers = job.digital(&light, behind.as_ref().map(|(_, light)| light), *exposures);
-            if keep {
-                let scene = behind.map(|(scene, _)| scene);
-                let of_frame = Kept::new(exposure, *exposures, scene, &light, &numbers, room);
-                room -= of_frame.lit();
-                kept.push(of_frame);
-            }
-            *exposures += 1;
-            if exposure.step.is_none() {
-                images.push((exposure.beam, numbers.clone()));
-            }
-            *exposing += start.elapsed();
-            CameraImage::Numbers(numbers)
-        };
-        let start = Instant::now();
-        let frame = self.drive.step(&self.eye, &mut develop)?;
-        self.stepping += start.elapsed();
-        Ok(frame.map(|frame| Seen { frame, kept, images }))
-    }
-
-    fn map(&self) -> &ElevationMap {
-        self.drive.mapper().expect("a frame was driven").map()
-    }
-
-    /// How long each part of its work took.
-    fn stages(&self) -> Vec<Stage> {
-        let times = self.eye.times();
-        let name = self.eye.name();
-        let rest = self.stepping.saturating_sub(times.rendering + times.optics + times.sun + self.exposing);
-        [
-            ("steps 1 to 5, rendering", times.rendering),
-            ("step 6, optics", times.optics),
-            ("the sun behind the stripes", times.sun),
-            ("steps 7 and 8, camera", self.exposing),
-            ("step 9, points and maps", rest),
-        ]
-        .into_iter()
-        .filter(|(_, time)| *time > Duration::ZERO)
-        .map(|(stage, time)| Stage { name: format!("{name}: {stage}"), time })
-        .collect()
-    }
-}
-
-/// Drives a job with one renderer, or with two in lockstep: on the same plan and the same seeds.
+/// Drives a job with one renderer, or with two in lockstep: on the same plan and with the same seeds.
 ///
 /// # Errors
-/// A route that is too long; a start off the ground.
+/// [`DriveError::Frames`] for a route that is too long; [`DriveError::Plan`] for a start off the ground and for scenes
+/// that `scene` refuses.
 ///
 /// # Panics
 /// If there are no renderers, or more than two.
+///
+/// ```
+/// use raypencil_drive::{DriveJob, drive};
+/// use raypencil_scanline::Scanline;
+/// use raypencil_scene::Silent;
+/// use raypencil_scene_io::load_text;
+/// use raypencil_tracer::Tracer;
+///
+/// let scene = "version = 1
+///     vehicle = { position_m = [-0.6, 0] }
+///     camera = { width_px = 96, height_px = 96, pixel_pitch_um = 96 }
+///     beam = [{ rows = 2 }, { rows = 2 }]
+///     terrain = { builtin = 'pyramids' }
+///     drive = { waypoints_m = [[0, 0]], frames_per_s = 3, scans = false }";
+/// let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
+/// let run = drive(&job, &[&Scanline::default(), &Tracer::new()], &Silent)?;
+/// // 0.6 m at 0.3 m/s take 2 s: 7 frames at 3 per second, both ends included.
+/// assert_eq!((run.frames.len(), run.planned), (7, 7));
+/// assert!((run.driven() - 0.6).abs() < 1e-12);
+/// // The two renderers round differently, but their stripes are the same to the last pixel.
+/// assert!(run.passes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn drive(
     job: &DriveJob,
     renderers: &[&dyn Renderer],
@@ -173,34 +116,35 @@ pub fn drive(
 ) -> Result<DriveRun, DriveError> {
     assert!((1..=2).contains(&renderers.len()), "{} renderers", renderers.len());
     let planned = job.frames()?;
-    let each = planned.div_ceil(MOST_PICTURES).max(1);
+    let animation_step = planned.div_ceil(MAX_ANIMATION_FRAMES).max(1);
     let sun = Sun::of(job)?;
-    let mut first = Side::new(job, renderers[0], sun.as_ref())?;
-    let mut second = renderers.get(1).map(|&renderer| Side::new(job, renderer, sun.as_ref())).transpose()?;
-    let mut trace = second.as_ref().map(|_| Trace::default());
-    let (mut frames, mut points, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+    let mut first = RendererDrive::new(job, renderers[0], sun.as_ref())?;
+    let mut second =
+        renderers.get(1).map(|&renderer| RendererDrive::new(job, renderer, sun.as_ref())).transpose()?;
+    let mut differences = second.as_ref().map(|_| Differences::default());
+    let (mut frames, mut points, mut animation) = (Vec::new(), Vec::new(), Vec::new());
     let (mut obstacles, mut edge_points) = (None, 0);
-    let (mut truth, mut judging) = (TruthMatrix::default(), Duration::ZERO);
-    let mut last: Option<(Seen, Pose)> = None;
+    let (mut confusion, mut judging) = (ConfusionMatrix::default(), Duration::ZERO);
+    let mut last: Option<(ExposedFrame, Pose)> = None;
     let (mut comparing, mut drawing) = (Duration::ZERO, Duration::ZERO);
 
     loop {
-        let seen = first.step(job, second.is_some())?;
-        if let (Some(second), Some(trace)) = (&mut second, &mut trace) {
-            let other = second.step(job, true)?;
+        let exposed = first.step(second.is_some())?;
+        if let (Some(second), Some(differences)) = (&mut second, &mut differences) {
+            let other = second.step(true)?;
             let start = Instant::now();
-            if let (Some(seen), Some(other)) = (&seen, &other) {
-                trace.exposures(job, sun.as_ref(), &seen.kept, &other.kept);
-                trace.frames(&seen.frame, &other.frame, [first.map(), second.map()]);
+            if let (Some(exposed), Some(other)) = (&exposed, &other) {
+                differences.add_exposures(job, sun.as_ref(), &exposed.recorded, &other.recorded);
+                differences.add_frame(&exposed.frame, &other.frame, [first.map(), second.map()]);
             }
             comparing += start.elapsed();
         }
-        let Some(mut seen) = seen else { break };
+        let Some(mut exposed) = exposed else { break };
 
-        let frame = &mut seen.frame;
+        let frame = &mut exposed.frame;
         let believed = frame.believed;
         edge_points += frame.measured.len() as u64;
-        let room = MOST_POINTS - points.len();
+        let room = MAX_EDGE_POINTS - points.len();
         points.extend(frame.measured.iter().take(room).map(|measured| MarkedPoint {
             point: believed * measured.point,
             frame: frame.index as u32,
@@ -209,59 +153,59 @@ pub fn drive(
         if let Some((map, vectors)) = &frame.obstacles {
             obstacles = Some((frame.index, map.clone(), vectors.clone()));
             let start = Instant::now();
-            truth.add(first.map(), first.drive.ground(), &job.plan, &believed);
+            confusion.add(first.map(), first.ground(), &job.plan, &believed);
             judging += start.elapsed();
         }
         let start = Instant::now();
-        if frame.index % each == 0 || frame.index + 1 == planned {
-            let view = view(job, renderers[0], &frame.stance.pose(), SMALL)?
+        if frame.index % animation_step == 0 || frame.index + 1 == planned {
+            let view = camera_view(job, renderers[0], &frame.stance.pose(), HALF_SIDE_PX)?
                 .with_edges(&job.plan.rig, &frame.measured);
-            pictures.push(Picture { view, map: MapPicture::of(first.map()) });
+            animation.push(AnimationFrame { view, map: MapThumbnail::of(first.map()) });
         }
         drawing += start.elapsed();
         let index = frame.index;
         frames.push(DriveFrame { measured: Vec::new(), obstacles: None, ..*frame });
         let pose = frame.stance.pose();
-        last = Some((seen, pose));
+        last = Some((exposed, pose));
         progress.frames(index + 1, planned);
     }
 
-    // The first frame is always driven: its stance was tried when the drive was made.
-    let (seen, pose) = last.ok_or(DriveError::Frames)?;
+    // There is always a first frame: its stance was found when the drive was made.
+    let (exposed, pose) = last.ok_or(DriveError::Frames)?;
     let start = Instant::now();
-    let last_view = view(job, renderers[0], &pose, LARGE)?;
+    let last_view = camera_view(job, renderers[0], &pose, FIGURE_VIEW_SIDE_PX)?;
     let last_view = match job.plan.extraction.detection {
-        Detection::Fixed(level) if !seen.images.is_empty() => last_view.with_light(&seen.images, level),
-        _ => last_view.with_edges(&job.plan.rig, &seen.frame.measured),
+        Detection::Fixed(threshold) if !exposed.images.is_empty() => {
+            last_view.with_lit_pixels(&exposed.images, threshold)
+        }
+        _ => last_view.with_edges(&job.plan.rig, &exposed.frame.measured),
     };
     drawing += start.elapsed();
 
     let mut stages = first.stages();
-    stages.extend(second.iter().flat_map(Side::stages));
+    stages.extend(second.iter().flat_map(RendererDrive::stages));
     if second.is_some() {
         stages.push(Stage { name: "comparing".into(), time: comparing });
     }
     stages.push(Stage { name: "obstacle maps of the true ground".into(), time: judging });
     stages.push(Stage { name: "views for figures".into(), time: drawing });
-    let mapper = first.drive.mapper().expect("a frame was driven");
     Ok(DriveRun {
+        last_view,
+        animation,
         renderers: renderers.iter().map(|renderer| renderer.name().to_string()).collect(),
         frames,
         planned,
-        map: mapper.map().clone(),
-        believed: mapper.pose(),
+        map: first.map().clone(),
+        believed: first.believed(),
         obstacles,
-        truth,
+        confusion,
         edge_points,
         points,
-        trace,
+        differences,
         stages,
-        last_view,
-        pictures,
     })
 }
 
-/// How far apart the frames of a route are on a straight leg, metres.
-pub(crate) fn frame_step(route: &Route) -> f64 {
-    route.speed / route.frame_rate
-}
+#[cfg(test)]
+#[path = "../tests/unit/run.rs"]
+mod tests;

@@ -1,57 +1,47 @@
-//! `summary.json`: what was driven and found, for programs. SI throughout, units in the names.
-//! `docs/formats/drive.schema.json` describes it.
+//! Summary of a drive for programs, `summary.json`, in SI units. Schema: `docs/formats/drive.schema.json`.
 
+use raypencil_report::VERSION;
 use serde_json::{Value, json};
 
-use crate::figures::word;
+use crate::confusion::{ConfusionMatrix, Predicted};
+use crate::counts::{CellCounts, scans, sector_counts};
+use crate::differences::{Differences, StageDifferences};
 use crate::job::DriveJob;
+use crate::labels::label_word;
 use crate::run::DriveRun;
-use crate::trace::{StageTrace, Trace};
-use crate::truth::{Said, TruthMatrix};
-use raypencil_report::VERSION;
-use raypencil_rover::{ElevationSource, Label};
 
-/// Grid points of a map by what is known of them.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Cells {
-    pub known: u64,
-    pub unknown: u64,
-    pub measured: u64,
-}
-
-pub(crate) fn cells(run: &DriveRun) -> Cells {
-    let mut cells = Cells::default();
-    for point in run.map.points() {
-        match run.map.source(point) {
-            ElevationSource::Unknown => cells.unknown += 1,
-            ElevationSource::Measured => {
-                (cells.known, cells.measured) = (cells.known + 1, cells.measured + 1)
-            }
-            _ => cells.known += 1,
-        }
-    }
-    cells
-}
-
-/// Sectors of the last obstacle map by their labels.
-pub(crate) fn sectors(run: &DriveRun) -> [(Label, u64); 3] {
-    [Label::Obstacle, Label::Unknown, Label::Visibility].map(|label| {
-        let sectors = run.obstacles.iter().flat_map(|(_, map, _)| &map.sectors);
-        (label, sectors.filter(|sector| sector.label == label).count() as u64)
-    })
-}
-
-/// A drive as JSON.
+/// Summary of a drive as JSON text. The keys tell the units.
+///
+/// ```
+/// use raypencil_drive::{DriveJob, drive, drive_json};
+/// use raypencil_scanline::Scanline;
+/// use raypencil_scene::Silent;
+/// use raypencil_scene_io::load_text;
+///
+/// let scene = "version = 1
+///     camera = { width_px = 96, height_px = 96, pixel_pitch_um = 96 }
+///     beam = [{ rows = 2 }]
+///     terrain = { builtin = 'pyramids' }
+///     drive = { waypoints_m = [[0.2, 0]], frames_per_s = 3, scans = false }";
+/// let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
+/// let run = drive(&job, &[&Scanline::default()], &Silent)?;
+/// let summary: serde_json::Value = serde_json::from_str(&drive_json(&job, &run))?;
+/// // 0.2 m at 0.3 m/s take 2/3 s: 3 frames at 3 per second. With one renderer there is nothing to differ from.
+/// assert_eq!(summary["frames"], 3);
+/// assert_eq!(summary["differences"], serde_json::Value::Null);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
-    let cells = cells(run);
-    let labels: serde_json::Map<String, Value> =
-        sectors(run).iter().map(|(label, count)| (word(*label).to_string(), json!(count))).collect();
+    let cells = CellCounts::of(run);
+    let labels: serde_json::Map<String, Value> = sector_counts(run)
+        .iter()
+        .map(|(label, count)| (label_word(*label).to_string(), json!(count)))
+        .collect();
     let seconds: Vec<Value> = run
         .stages
         .iter()
         .map(|stage| json!({ "name": stage.name, "seconds": stage.time.as_secs_f64() }))
         .collect();
-    let scans = run.frames.iter().filter(|frame| frame.scan.is_some()).count();
     let route = &job.plan.route;
     let all = json!({
         "format": "raypencil-drive",
@@ -74,7 +64,7 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "frames_per_s": route.frame_rate,
         "speed_m_per_s": route.speed,
         "driven_m": run.driven(),
-        "vertical_scans": scans,
+        "vertical_scans": scans(run),
         "edge_points": run.edge_points,
         "columns_left_out": run.frames.iter().map(|frame| frame.columns_left_out as u64).sum::<u64>(),
         "map": {
@@ -87,9 +77,9 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "obstacle_map_frame": run.obstacles.as_ref().map(|(frame, _, _)| frame),
         "sectors": labels,
         "largest_elevation_error_m": elevation_error(run),
-        "truth": truth(&run.truth),
+        "truth": confusion(&run.confusion),
         "passes": run.passes(),
-        "differences": run.trace.as_ref().map(differences),
+        "differences": run.differences.as_ref().map(differences),
         "notes": job.notes,
         "warnings": job.warnings,
         "stages": seconds,
@@ -97,35 +87,41 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
     format!("{all:#}\n")
 }
 
-/// By how much the vehicle was ever wrong of its own elevation, metres.
+/// Largest error of the vehicle's estimated elevation over all frames, metres.
 fn elevation_error(run: &DriveRun) -> f64 {
     let errors = run.frames.iter().map(|frame| (frame.believed.position.z - frame.stance.position.z).abs());
     errors.fold(0.0, f64::max)
 }
 
-fn truth(matrix: &TruthMatrix) -> Value {
-    let said = |said: Said| json!({ "found_obstacle": said.obstacle, "found_unknown": said.unknown, "found_clear": said.clear });
+fn confusion(matrix: &ConfusionMatrix) -> Value {
+    let predicted = |points: Predicted| {
+        json!({
+            "found_obstacle": points.obstacle,
+            "found_unknown": points.unknown,
+            "found_clear": points.clear,
+        })
+    };
     json!({
         "obstacle_maps": matrix.maps,
-        "obstacle_points": said(matrix.obstacle),
-        "clear_points": said(matrix.clear),
-        "points_off_the_ground": matrix.beyond,
+        "obstacle_points": predicted(matrix.obstacle),
+        "clear_points": predicted(matrix.clear),
+        "points_off_the_ground": matrix.off_ground,
         "sectors": matrix.sectors,
-        "sectors_free_past_an_obstacle": matrix.past,
+        "sectors_free_past_an_obstacle": matrix.free_past_obstacle,
     })
 }
 
-fn differences(trace: &Trace) -> Value {
-    let stage = |StageTrace { compared, differ, first }: &StageTrace| json!({ "compared": compared, "differ": differ, "first": first });
+fn differences(differences: &Differences) -> Value {
+    let stage = |stage: &StageDifferences| json!({ "compared": stage.compared, "differ": stage.differ, "first": stage.first });
     json!({
         "flux": {
-            "lit_pixels": trace.flux.lit,
-            "differ": trace.flux.differ,
-            "largest_relative": trace.flux.largest_relative,
+            "lit_pixels": differences.flux.lit,
+            "differ": differences.flux.differ,
+            "largest_relative": differences.flux.largest_relative,
         },
-        "pixels": stage(&trace.pixels),
-        "edges": stage(&trace.edges),
-        "cells": stage(&trace.cells),
-        "labels": stage(&trace.labels),
+        "pixels": stage(&differences.pixels),
+        "edges": stage(&differences.edges),
+        "cells": stage(&differences.cells),
+        "labels": stage(&differences.labels),
     })
 }

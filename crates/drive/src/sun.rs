@@ -1,140 +1,47 @@
-//! The sun behind the stripes: what it and the sky put on the camera's pixels, and where its shadows fall. (Paper, §5)
+//! Sun behind the stripes: the light that sun and sky put on the camera's pixels. (Paper, §5)
 //!
-//! Both sides of a drive get the same background. It is not what they are compared in: `tracer` sees the ground for both.
+//! Both sides of a drive get the same background, which is not compared: `tracer` computes the visible ground for both.
 
-use glam::DVec3;
 use std::sync::Arc;
 
-use crate::job::DriveJob;
-use raypencil_scene::{
-    Atmosphere, Camera, FluxModel, Image, Lens, Maybe, Mesh, Mounted, Pose, Quantities, Renderer, Request,
-    Scene, SceneError,
-};
-use raypencil_sensor::{PointSource, Sunlight, VisibleSurface};
+use glam::DVec3;
+use raypencil_scene::{Camera, Image, Mounted, Quantities, Renderer, Request, Scene, SceneError};
+use raypencil_sensor::{Sunlight, VisibleSurface};
 use raypencil_tracer::Tracer;
 
-/// Cells of the map of shadows, along either side. CHOICE: 2.4 cm on 50 m.
-const CELLS: u32 = 2048;
+use crate::job::DriveJob;
+use crate::shadow_map::ShadowMap;
 
-/// How far off the eye of that map stands, in radii of what it sees: its rays part from the sun's by a 400th, 2.5 mrad, less
-/// than half of the sun's own disc on Mars (6 mrad).
-const AWAY: f64 = 400.0;
+/// Range up to which the ground is visible in the background, metres. The camera's own maximum range limits its range
+/// map only.
+const BACKGROUND_MAX_RANGE_M: f64 = 1e4;
 
-/// A camera sees no farther, metres. (`scene`)
-const FARTHEST: f64 = 1e7;
-
-/// On more ground than this, metres about its middle, no shadow is looked for: a cell would be a kilometre.
-const LARGEST: f64 = 1e6;
-
-/// A point is in shadow if something is nearer to the sun by more than two cells' worth of its own slope, no more than this
-/// many cells...
-const STEEPEST: f64 = 20.0;
-
-/// ... and by more than this, metres: of rounding.
-const LEAST: f64 = 1e-3;
-
-/// The camera sees the ground up to here, metres, whatever the range of its range map.
-const SIGHT: f64 = 1e4;
-
-/// Where the sun shines: ranges from far off in its direction.
-struct Shadows {
-    scene_from_eye: Pose,
-    eye_from_scene: Pose,
-    camera: Camera,
-    ranges: Image<Maybe<f64>>,
-    /// Side of a cell, metres.
-    cell: f64,
-}
-
-impl Shadows {
-    /// Of everything in a ball of the scene frame.
-    fn new(mesh: &Arc<Mesh>, light: &Sunlight, centre: DVec3, radius: f64) -> Result<Self, SceneError> {
-        let distance = (AWAY * radius).min(FARTHEST - radius);
-        let towards = Pose::from_axis_angle(DVec3::Z, light.azimuth + std::f64::consts::PI)
-            * Pose::from_axis_angle(DVec3::Y, light.elevation)
-            * Pose::VEHICLE_FROM_FORWARD_SENSOR;
-        let scene_from_eye = Pose { position: centre + light.direction() * distance, ..towards };
-        let pitch = 1e-5;
-        let camera = Camera {
-            width: CELLS,
-            height: CELLS,
-            pixel_pitch: [pitch; 2],
-            // The ball fills the image.
-            focal_length: 0.5 * f64::from(CELLS) * pitch * (distance - radius) / radius,
-            principal_point: [0.5 * f64::from(CELLS); 2],
-            aperture: 1e-3,
-            lens: Lens::CLEAR,
-            max_range: distance + radius,
-        };
-        let frame = see(mesh, camera, scene_from_eye, Quantities::RANGE_MAP)?;
-        Ok(Self {
-            scene_from_eye,
-            eye_from_scene: scene_from_eye.inverse(),
-            camera,
-            ranges: frame.range.expect("what was asked for"),
-            cell: 2.0 * radius / f64::from(CELLS),
-        })
-    }
-
-    /// Whether nothing stands between a point of a face and the sun; beyond the ball nothing does.
-    fn is_sunlit(&self, point: DVec3, normal: DVec3) -> bool {
-        let seen = PointSource::project(&self.camera, self.eye_from_scene * point, 0.0);
-        let inside = |at: f64| (0.0..f64::from(CELLS)).contains(&at);
-        if !(inside(seen.x) && inside(seen.y)) {
-            return true;
-        }
-        let to_sun = self.scene_from_eye.position - point;
-        let range = to_sun.length();
-        let facing = normal.dot(to_sun) / range;
-        let slope = ((1.0 - facing * facing).max(0.0).sqrt() / facing.abs().max(1e-9)).min(STEEPEST);
-        let nearest = self.ranges.at(seen.x as u32, seen.y as u32).get();
-        nearest.is_none_or(|nearest| nearest >= range - (2.0 * self.cell * slope + LEAST))
-    }
-}
-
-/// One sensor's map of the ground.
-fn see(
-    mesh: &Arc<Mesh>,
-    camera: Camera,
-    scene_from_sensor: Pose,
-    quantities: Quantities,
-) -> Result<raypencil_scene::SensorMap, SceneError> {
-    let mounted = Mounted { scene_from_sensor, sensor: camera };
-    let scene = Scene::new(
-        Arc::clone(mesh),
-        mounted,
-        Vec::new(),
-        Atmosphere { attenuation: 0.0 },
-        FluxModel::Radiometric,
-    )?;
-    let request = Request { beams: false, returns: false, quantities, ..Request::EVERYTHING };
-    Ok(Tracer::new().render(&scene, &request).camera.expect("what was asked for"))
-}
-
-/// The sun of a drive.
-pub struct Sun {
+/// Sun of a drive.
+pub(crate) struct Sun {
     light: Sunlight,
     tracer: Tracer,
-    shadows: Option<Shadows>,
+    /// `None`: no ground is in shadow.
+    shadows: Option<ShadowMap>,
 }
 
 impl Sun {
-    /// That of a job, if it has one.
-    pub(super) fn of(job: &DriveJob) -> Result<Option<Self>, SceneError> {
+    /// Sun of a job, if it has one.
+    ///
+    /// # Errors
+    /// A shadow camera that `scene` refuses.
+    pub(crate) fn of(job: &DriveJob) -> Result<Option<Self>, SceneError> {
         let Some(light) = job.sunlight else { return Ok(None) };
         let shadows = match ball(job) {
-            Some((centre, radius)) if light.direct > 0.0 && radius <= LARGEST => {
-                Some(Shadows::new(&job.mesh, &light, centre, radius)?)
-            }
-            _ => None,
+            Some(ball) => ShadowMap::of_ball(&job.mesh, &light, ball)?,
+            None => None,
         };
         Ok(Some(Self { light, tracer: Tracer::new(), shadows }))
     }
 
-    /// What sun and sky put on each pixel of a scene's camera, watts, through the job's dust.
-    pub(super) fn background(&self, job: &DriveJob, scene: &Scene) -> Image<f64> {
+    /// Flux of sun and sky on each pixel of a scene's camera, watts, through the dust of the job's optics.
+    pub(crate) fn background(&self, job: &DriveJob, scene: &Scene) -> Image<f64> {
         let mounted = *scene.camera();
-        let camera = Camera { max_range: SIGHT, ..mounted.sensor };
+        let camera = Camera { max_range: BACKGROUND_MAX_RANGE_M, ..mounted.sensor };
         let far = Scene::new(
             Arc::clone(scene.mesh()),
             Mounted { sensor: camera, ..mounted },
@@ -142,19 +49,19 @@ impl Sun {
             scene.atmosphere(),
             scene.flux_model(),
         )
-        .expect("a scene that was one already");
+        .expect("the scene is valid with any maximum range");
         let quantities = Quantities { normal: true, point: true, ..Quantities::RANGE_MAP };
         let request = Request { beams: false, returns: false, quantities, ..Request::EVERYTHING };
-        let map = self.tracer.render(&far, &request).camera.expect("what was asked for");
-        let (range, face) = (map.range.expect("asked for"), map.face.expect("asked for"));
-        let (normal, point) = (map.normal.expect("asked for"), map.point.expect("asked for"));
+        let map = self.tracer.render(&far, &request).camera.expect("the camera's map was requested");
+        let (range, face) = (map.range.expect("was requested"), map.face.expect("was requested"));
+        let (normal, point) = (map.normal.expect("was requested"), map.point.expect("was requested"));
 
         let mesh = scene.mesh();
-        let materials = (mesh.face_materials(), mesh.materials());
+        let (face_materials, materials) = (mesh.face_materials(), mesh.materials());
         let reflectivity = face.cells().iter().map(|face| {
             face.get().map_or(0.0, |face| {
-                let of_face = materials.0.get(face.0 as usize).copied().unwrap_or(0);
-                materials.1[usize::from(of_face)].reflectivity
+                let material = face_materials.get(face.0 as usize).copied().unwrap_or(0);
+                materials[usize::from(material)].reflectivity
             })
         });
         let reflectivity = Image::from_cells(camera.width, camera.height, reflectivity.collect());
@@ -172,8 +79,8 @@ impl Sun {
     }
 }
 
-/// A ball of the scene frame about all that the camera's range reaches from the route, or about the whole ground if that is
-/// less.
+/// Centre and radius, metres, of a ball in the scene frame around everything that the camera's range reaches from the
+/// route, or around the whole ground if that ball is smaller. `None` if a vertex is not finite or there is none.
 fn ball(job: &DriveJob) -> Option<(DVec3, f64)> {
     let vertices = job.mesh.vertices().iter().map(|vertex| DVec3::from(vertex.map(f64::from)));
     let bounds = |(low, high): (DVec3, DVec3), place: DVec3| (low.min(place), high.max(place));
@@ -195,32 +102,31 @@ fn ball(job: &DriveJob) -> Option<(DVec3, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use raypencil_scene::Pose;
+
     use super::*;
+    use crate::common::{FLAT, SHORT, job, mesh};
 
     #[test]
-    fn a_wall_has_its_shadow_behind_it() {
-        // 100 m of flat ground, and a wall 1 m high on x = 0 from y = -5 to y = 5; it faces the sun.
-        let place = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-        let ground = [
-            place(-50.0, -50.0, 0.0),
-            place(50.0, -50.0, 0.0),
-            place(50.0, 50.0, 0.0),
-            place(-50.0, 50.0, 0.0),
-        ];
-        let wall = [place(0.0, -5.0, 0.0), place(0.0, 5.0, 0.0), place(0.0, 5.0, 1.0), place(0.0, -5.0, 1.0)];
-        let vertices = [ground, wall].concat();
-        let faces = vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]];
-        let mesh = super::super::tests::mesh(&vertices, faces);
-        // The sun is behind, 45 degrees high: the shadow is 1 m long.
-        let light = Sunlight::mars(45.0_f64.to_radians(), 180.0_f64.to_radians(), 0.5);
-        let centre = -mesh.origin();
-        let shadows = Shadows::new(&mesh, &light, centre, 30.0).unwrap();
-        let lit = |x: f64, y: f64, z: f64| shadows.is_sunlit(place(x, y, z) - mesh.origin(), DVec3::Z);
-        assert!(!lit(0.2, 0.0, 0.0) && !lit(0.9, 4.8, 0.0), "behind the wall");
-        assert!(lit(1.1, 0.0, 0.0) && lit(0.5, 5.2, 0.0) && lit(-0.3, 0.0, 0.0), "beside it");
-        // The wall's own face towards the sun.
-        assert!(shadows.is_sunlit(place(0.0, 0.0, 0.5) - mesh.origin(), -DVec3::X));
-        // Nothing is known beyond.
-        assert!(lit(45.0, 0.0, 0.0));
+    fn ground_in_shadow_is_darker() {
+        // The camera is at x = 0.3 m, 1.5 m up, and looks 20 degrees down. The sun is behind it, 10 degrees high. A
+        // wall of 0.5 m at x = 3 m casts a shadow up to 3 + 0.5 / tan 10 = 5.84 m.
+        let mut job = job(
+            FLAT,
+            &format!("{SHORT}\nsun = {{ elevation_deg = 10, azimuth_deg = 180, optical_depth = 0.1 }}"),
+        );
+        let p = DVec3::new;
+        let ground = [p(-30.0, -30.0, 0.0), p(30.0, -30.0, 0.0), p(30.0, 30.0, 0.0), p(-30.0, 30.0, 0.0)];
+        let wall = [p(3.0, -9.0, 0.0), p(3.0, 9.0, 0.0), p(3.0, 9.0, 0.5), p(3.0, -9.0, 0.5)];
+        job.mesh = mesh(&[ground, wall].concat(), vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]]);
+        let sun = Sun::of(&job).unwrap().unwrap();
+        let (rig, mesh) = (&job.plan.rig, Arc::clone(&job.mesh));
+        let scene = rig.scene(mesh, Pose::IDENTITY, job.plan.atmosphere, job.plan.flux_model).unwrap();
+        let background = sun.background(&job, &scene);
+        // x = 5 m is atan(1.5 / 4.7) = 17.7 degrees down, 4.5 rows of 72 um above the middle at 8 mm. x = 8 m is 11
+        // degrees down, 17.6 rows above the middle.
+        let (shadow, lit) = (background.at(64, 59), background.at(64, 46));
+        // The sky alone gives 0.35 of the light of sun and sky.
+        assert!(shadow > 0.0 && (0.25..0.45).contains(&(shadow / lit)), "{shadow} and {lit}");
     }
 }

@@ -1,12 +1,12 @@
-//! A rover's cycle, ten of which the paper plans for each second: a frame (both beams, steps 1 to 5), its two exposures
-//! (steps 7 and 8), the extraction of the stripes and the update of the local terrain map (step 9), on a generated ground
-//! of half a million triangles, with four pencils to a pixel.
+//! Cycle of the rover, of which the paper plans ten per second: a frame (both beams, steps 1 to 5), its two exposures
+//! (steps 7 and 8), the extraction of the stripes and the update of the elevation map (step 9), on a generated ground
+//! of half a million triangles, with four pencils per pixel.
 //!
-//! The vehicle drives on from frame to frame, so that the map moves. Every tenth cycle makes an obstacle map too.
+//! The vehicle moves from frame to frame, and so does the map. Every tenth cycle also makes an obstacle map.
 
-use divan::{Bencher, black_box};
 use std::sync::{Arc, LazyLock};
 
+use divan::{Bencher, black_box};
 use raypencil::drive::DriveJob;
 use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
@@ -18,7 +18,7 @@ fn main() {
     divan::main();
 }
 
-const HALF_A_MILLION: &str = r#"
+const SCENE: &str = r#"
 version = 1
 [vehicle]
 position_m = [-15, 0]
@@ -29,15 +29,21 @@ waypoints_m = [[15, 0]]
 scans = false
 "#;
 
+/// Drive over the scene.
 static JOB: LazyLock<DriveJob> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("plain.toml");
-    std::fs::write(&path, HALF_A_MILLION).expect("written");
+    std::fs::write(&path, SCENE).expect("written");
     let loaded = load(path.to_str().expect("a path in UTF-8"), &Overrides::default()).expect("a valid scene");
     DriveJob::new(&loaded, None, String::new()).expect("a drive")
 });
 
-/// One cycle after another on a drive of its own; the drive begins anew where it ends.
+/// Renderer of raypencil by its name.
+fn renderer(name: &str) -> Box<dyn Renderer> {
+    contender(name).expect("raypencil has this renderer").renderer
+}
+
+/// Drive that runs cycle by cycle.
 struct Cycles {
     renderer: Box<dyn Renderer>,
     drive: Drive,
@@ -47,24 +53,24 @@ struct Cycles {
 impl Cycles {
     fn new(name: &str) -> Self {
         let drive = Drive::new(JOB.plan.clone(), Arc::clone(&JOB.mesh)).expect("a drive");
-        Self { renderer: contender(name).expect("a renderer of this house").renderer, drive, exposures: 0 }
+        Self { renderer: renderer(name), drive, exposures: 0 }
     }
 
     fn cycle(&mut self) {
         let exposures = &mut self.exposures;
-        let mut develop = |_, light: Image<f64>| {
+        let mut camera_pipeline = |_, flux: Image<f64>| {
             *exposures += 1;
-            CameraImage::Numbers(JOB.sensor.numbers(&light, None, *exposures))
+            CameraImage::Numbers(JOB.sensor.numbers(&flux, None, *exposures))
         };
-        let frame = self.drive.step(self.renderer.as_ref(), &mut develop).expect("a frame");
+        let frame = self.drive.step(self.renderer.as_ref(), &mut camera_pipeline).expect("a frame");
         assert!(black_box(frame).is_some_and(|frame| frame.points > 500), "the route is long enough");
     }
 }
 
-/// The frame alone: the flux of both beams on the camera's pixels.
+/// Frame alone: the flux of both beams on the camera's pixels.
 #[divan::bench(args = ["scanline", "tracer"], sample_count = 51, sample_size = 1)]
 fn frame(bencher: Bencher<'_, '_>, name: &str) {
-    let renderer = contender(name).expect("a renderer of this house").renderer;
+    let renderer = renderer(name);
     let plan = &JOB.plan;
     let ground = HeightIndex::new(&JOB.mesh);
     let mut index = 0;
@@ -79,15 +85,16 @@ fn frame(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(render);
 }
 
+/// Whole cycle.
 #[divan::bench(args = ["scanline", "tracer"], sample_count = 51, sample_size = 1)]
 fn cycle(bencher: Bencher<'_, '_>, name: &str) {
     let mut cycles = Cycles::new(name);
-    // Tables and trees are made once.
+    // The first cycle makes tables and trees that later ones use again.
     cycles.cycle();
     bencher.bench_local(move || cycles.cycle());
 }
 
-/// The two exposures of a cycle, by what the sensor adds to them.
+/// Two exposures of a cycle, by the preset of the sensor.
 #[divan::bench(args = raypencil::sensor::PRESET_NAMES, sample_count = 11, sample_size = 1)]
 fn exposures(bencher: Bencher<'_, '_>, name: &str) {
     let plan = &JOB.plan;
@@ -96,17 +103,16 @@ fn exposures(bencher: Bencher<'_, '_>, name: &str) {
     let pose = stance.expect("on the ground").pose();
     let scene =
         plan.rig.scene(Arc::clone(&JOB.mesh), pose, plan.atmosphere, plan.flux_model).expect("a scene");
-    let light =
-        contender("tracer").expect("a renderer of this house").renderer.render(&scene, &Request::FLUX);
+    let output = renderer("tracer").render(&scene, &Request::FLUX);
     let (_, sensor) = raypencil::sensor::preset(name).expect("a preset");
     bencher.bench_local(|| {
-        for (image, exposure) in light.flux.iter().zip(0..) {
+        for (image, exposure) in output.flux.iter().zip(0..) {
             black_box::<Image<i32>>(sensor.numbers(black_box(image), None, exposure));
         }
     });
 }
 
-/// The table of one beam, which a panned beam needs anew.
+/// Triangulation table of one beam, which must be made anew after a pan.
 #[divan::bench(sample_count = 11, sample_size = 1)]
 fn triangulation_table(bencher: Bencher<'_, '_>) {
     let rig = &JOB.plan.rig;

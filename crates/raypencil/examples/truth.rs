@@ -1,19 +1,19 @@
-//! What the rover finds of the obstacles that are there, and which errors matter: the tables of `docs/evidence/results.md` below
-//! its mark, as Markdown on standard output.
+//! Confusion matrices of the rover's obstacle maps, by noise level and by setting, and the table of pointing errors:
+//! the tables of `docs/evidence/results.md` below its mark, as Markdown on standard output.
 //!
 //! ```sh
-//! cargo run --release -p raypencil-harness --example truth
+//! cargo run --release -p raypencil --example truth
 //! ```
 
 use glam::DVec2;
-
 use raypencil::Silent;
-use raypencil::drive::{DriveJob, NoiseLevel, TRUTH_HEAD, TruthMatrix, drive, pointing_table};
+use raypencil::drive::{ConfusionMatrix, DriveJob, NoiseLevel, drive, pointing_table};
 use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
 use raypencil::rover::{DrivePlan, MapSize, ScanRule};
 
-/// Drives by the name in the table, what is loaded, and where they go on to: `rocky-drive` ends before the first obstacle.
+/// Drives: name in the table, scene, and a further waypoint. (The route of `rocky-drive` ends before the first
+/// obstacle.)
 const DRIVES: [(&str, &str, Option<DVec2>); 3] = [
     ("pyramids", "pyramids", None),
     ("facets", "facets", None),
@@ -30,20 +30,20 @@ fn main() -> Result<(), Failure> {
         job.plan.route.waypoints.extend(on_to);
         jobs.push((name, job));
     }
-    println!("{TRUTH_HEAD}");
+    println!("{}", ConfusionMatrix::table_header());
     for (name, job) in &jobs {
         for level in NoiseLevel::ALL {
-            println!("{}", truth(&level.applied(job.clone()))?.row(name, level.word()));
+            println!("{}", confusion(&level.applied(job.clone()))?.table_row(name, level.word()));
         }
     }
-    println!("\n{TRUTH_HEAD}");
+    println!("\n{}", ConfusionMatrix::table_header());
     for (name, job) in &jobs {
         let printed = NoiseLevel::None.applied(job.clone());
         let coarse = NoiseLevel::Coarse.applied(job.clone()).plan.errors;
-        let row = |what: &str, change: &dyn Fn(&mut DrivePlan)| -> Result<(), Failure> {
+        let row = |settings: &str, change: &dyn Fn(&mut DrivePlan)| -> Result<(), Failure> {
             let mut job = printed.clone();
             change(&mut job.plan);
-            println!("{}", truth(&job)?.row(name, what));
+            println!("{}", confusion(&job)?.table_row(name, settings));
             Ok(())
         };
         row("as printed", &|_| {})?;
@@ -58,14 +58,14 @@ fn main() -> Result<(), Failure> {
         })?;
         row("all coarse errors, `ideal` sensor", &|plan| plan.errors = coarse)?;
     }
-    let renderer = contender("scanline").ok_or("a renderer of this house")?.renderer;
-    // The slopes of facets put edges anywhere within a pixel.
+    let renderer = contender("scanline").ok_or("there is no renderer scanline")?.renderer;
+    // On the slopes of `facets`, edges lie anywhere within a pixel.
     println!("\n{}", pointing_table(&jobs[1].1, renderer.as_ref())?.trim_end());
     Ok(())
 }
 
-/// Drives with `scanline`, which `tracer` equals to the last label (`docs/guide/drive.md`).
-fn truth(job: &DriveJob) -> Result<TruthMatrix, Failure> {
-    let renderer = contender("scanline").ok_or("a renderer of this house")?.renderer;
-    Ok(drive(job, &[renderer.as_ref()], &Silent)?.truth)
+/// Confusion matrix of a drive with `scanline`. `tracer` gives the same labels (`docs/guide/drive.md`).
+fn confusion(job: &DriveJob) -> Result<ConfusionMatrix, Failure> {
+    let renderer = contender("scanline").ok_or("there is no renderer scanline")?.renderer;
+    Ok(drive(job, &[renderer.as_ref()], &Silent)?.confusion)
 }

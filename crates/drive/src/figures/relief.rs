@@ -1,124 +1,133 @@
-//! Figures 12 and 15: the local map as a net, seen from behind and above.
+//! Figures 12 and 15: the relief of the local map as a wire frame, seen from behind and above.
 
 use glam::DVec3;
-
-use crate::figures::axes::elevations;
-use crate::figures::{known, stride};
 use raypencil_report::{Anchor, Colour, Drawing, INK, SOFT, Scale};
 use raypencil_rover::{ElevationMap, GridPoint};
 
-/// Lines of the net, along either side; more cannot be told apart.
-const MOST_ACROSS: i64 = 240;
+use crate::figures::axes::draw_elevation_key;
+use crate::figures::known_extent::{KnownExtent, stride};
 
-/// Where it is looked at from: so far to the right of behind, and so far above the horizon, radians.
-const ASIDE: f64 = 0.45;
+/// Maximum number of cells along either side; smaller cells could not be distinguished.
+const MAX_CELLS_ACROSS: i64 = 240;
 
-const ABOVE: f64 = 0.65;
+/// Azimuth of the viewpoint, from behind the map to its right, radians.
+const VIEW_AZIMUTH_RAD: f64 = 0.45;
 
-/// The page, and what of it the net may take: its middle and its size, pixels.
-const PAGE: [u32; 2] = [960, 640];
+/// Elevation of the viewpoint above the horizon, radians.
+const VIEW_ELEVATION_RAD: f64 = 0.65;
 
-const MIDDLE: [f64; 2] = [430.0, 300.0];
+/// Width and height of the page, pixels.
+const PAGE_SIZE_PX: [u32; 2] = [960, 640];
 
-const ROOM: [f64; 2] = [740.0, 530.0];
+/// Middle of the relief on the page, pixels.
+const RELIEF_CENTRE_PX: [f64; 2] = [430.0, 300.0];
 
-/// Of the net, and of the grid that lies below it.
-const NET: Colour = [126, 108, 92];
+/// Largest width and height of the relief, pixels.
+const RELIEF_MAX_SIZE_PX: [f64; 2] = [740.0, 530.0];
 
-const GRID: Colour = [220, 217, 210];
+/// Colour of the cells' borders.
+const CELL_BORDER_COLOUR: Colour = [126, 108, 92];
 
-/// Lowest and highest ground.
-const LOW: [f64; 3] = [214.0, 178.0, 146.0];
+/// Colour of the grid below the relief.
+const GRID_COLOUR: Colour = [220, 217, 210];
 
-const HIGH: [f64; 3] = [255.0, 250.0, 232.0];
+/// Colour of the lowest ground, in full light.
+const LOWEST_COLOUR: [f64; 3] = [214.0, 178.0, 146.0];
 
-/// Directions on the page: the view from `ASIDE` and `ABOVE`.
-struct Eye {
-    aside: (f64, f64),
-    above: (f64, f64),
+/// Colour of the highest ground, in full light.
+const HIGHEST_COLOUR: [f64; 3] = [255.0, 250.0, 232.0];
+
+/// Parallel projection from the viewpoint: sine and cosine of its azimuth and elevation.
+struct ParallelProjection {
+    azimuth: (f64, f64),
+    elevation: (f64, f64),
 }
 
-impl Eye {
+impl ParallelProjection {
     fn new() -> Self {
-        Self { aside: libm::sincos(ASIDE), above: libm::sincos(ABOVE) }
+        Self { azimuth: libm::sincos(VIEW_AZIMUTH_RAD), elevation: libm::sincos(VIEW_ELEVATION_RAD) }
     }
 
-    /// To the right, up, and away from the eye. x of the map goes away, its y to the left.
-    fn turned(&self, p: DVec3) -> DVec3 {
-        let ((sin_a, cos_a), (sin_e, cos_e)) = (self.aside, self.above);
+    /// Coordinates of a point to the right, up, and away from the viewpoint, metres. The map's x points away and its y
+    /// to the left.
+    fn project(&self, p: DVec3) -> DVec3 {
+        let ((sin_a, cos_a), (sin_e, cos_e)) = (self.azimuth, self.elevation);
         let (away, right) = (p.x * cos_a + p.y * sin_a, p.x * sin_a - p.y * cos_a);
         DVec3::new(right, away * sin_e + p.z * cos_e, away)
     }
 }
 
-/// The colour of a place between the lowest and the highest ground, in light from 0 to 1.
-fn tint(place: f64, light: f64) -> Colour {
-    [0, 1, 2].map(|part| (light * (LOW[part] + place * (HIGH[part] - LOW[part]))).clamp(0.0, 255.0) as u8)
+/// Colour at a fraction of the elevations' scale, in light from 0 to 1.
+fn tint(fraction: f64, light: f64) -> Colour {
+    let (low, high) = (LOWEST_COLOUR, HIGHEST_COLOUR);
+    [0, 1, 2].map(|part| (light * (low[part] + fraction * (high[part] - low[part]))).clamp(0.0, 255.0) as u8)
 }
 
-/// Cells between four known points, far ones first; all others are open.
+/// Drawing of all cells whose four corners are known, far ones first. All other cells are open.
 pub(super) fn relief(map: &ElevationMap) -> Drawing {
-    let mut drawing = Drawing::new(PAGE[0], PAGE[1], "Local terrain map");
-    let Some(([lowest, highest], [low, high])) = known(map) else {
-        drawing.text(MIDDLE, "nothing is known", Anchor::Middle, SOFT);
+    let mut drawing = Drawing::new(PAGE_SIZE_PX[0], PAGE_SIZE_PX[1], "Local terrain map");
+    let Some(KnownExtent { elevations: [lowest, highest], corners: [low, high] }) = KnownExtent::of(map)
+    else {
+        drawing.text(RELIEF_CENTRE_PX, "nothing is known", Anchor::Middle, SOFT);
         return drawing;
     };
-    let eye = Eye::new();
+    let projection = ParallelProjection::new();
     let corner = |i: i64, j: i64, z: f64| map.place(GridPoint { i, j }).extend(z);
     let base = [(low.i, low.j), (high.i, low.j), (high.i, high.j), (low.i, high.j)];
-    let ends = base.iter().flat_map(|&(i, j)| [lowest, highest].map(|z| eye.turned(corner(i, j, z))));
+    let ends = base.iter().flat_map(|&(i, j)| [lowest, highest].map(|z| projection.project(corner(i, j, z))));
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (least, most) = ends.fold(none, |(least, most), end| (least.min(end), most.max(end)));
     let span = (most - least).max(DVec3::splat(1e-9));
-    let share = (ROOM[0] / span.x).min(ROOM[1] / span.y);
+    let share = (RELIEF_MAX_SIZE_PX[0] / span.x).min(RELIEF_MAX_SIZE_PX[1] / span.y);
     let middle = 0.5 * (least + most);
     let page = |p: DVec3| {
-        let q = eye.turned(p) - middle;
-        [MIDDLE[0] + share * q.x, MIDDLE[1] - share * q.y]
+        let q = projection.project(p) - middle;
+        [RELIEF_CENTRE_PX[0] + share * q.x, RELIEF_CENTRE_PX[1] - share * q.y]
     };
 
     let (from, to) = (map.place(low), map.place(high));
-    rim(&mut drawing, from.extend(lowest), to.extend(lowest), page);
+    draw_base(&mut drawing, from.extend(lowest), to.extend(lowest), page);
 
     let mut cells = Vec::new();
-    let each = stride(low, high, MOST_ACROSS);
-    for j in (low.j..high.j).step_by(each as usize) {
-        for i in (low.i..high.i).step_by(each as usize) {
-            let four = [(i, j), (i + each, j), (i + each, j + each), (i, j + each)];
+    let step = stride(low, high, MAX_CELLS_ACROSS);
+    for j in (low.j..high.j).step_by(step as usize) {
+        for i in (low.i..high.i).step_by(step as usize) {
+            let four = [(i, j), (i + step, j), (i + step, j + step), (i, j + step)];
             let corners = four.map(|(i, j)| Some(corner(i, j, map.elevation(GridPoint { i, j })?)));
             if let [Some(a), Some(b), Some(c), Some(d)] = corners {
                 cells.push([a, b, c, d]);
             }
         }
     }
-    cells.sort_by(|p, q| eye.turned(q[0]).z.total_cmp(&eye.turned(p[0]).z));
+    cells.sort_by(|p, q| projection.project(q[0]).z.total_cmp(&projection.project(p[0]).z));
     let scale = Scale::linear(lowest, highest);
     let sun = DVec3::new(-0.5, 0.35, 0.8).normalize();
     for [a, b, c, d] in cells {
         let light = 0.55 + 0.45 * (c - a).cross(d - b).normalize_or_zero().dot(sun).max(0.0);
         let fill = tint(scale.fraction(0.25 * (a.z + b.z + c.z + d.z)), light);
-        drawing.polygon([a, b, c, d].map(page).to_vec(), fill, Some(NET));
+        drawing.polygon([a, b, c, d].map(page).to_vec(), fill, Some(CELL_BORDER_COLOUR));
     }
-    // As flat ground has them in that light.
-    elevations(&mut drawing, [850.0, 40.0], scale, |place| tint(place, 0.55 + 0.45 * sun.z));
+    // The key shows the colours of flat ground in that light.
+    draw_elevation_key(&mut drawing, [850.0, 40.0], scale, |fraction| tint(fraction, 0.55 + 0.45 * sun.z));
     drawing
 }
 
-/// The rectangle that holds what is known, on its lowest level: a grid, and metres along the two sides that are nearest.
-fn rim(drawing: &mut Drawing, from: DVec3, to: DVec3, page: impl Fn(DVec3) -> [f64; 2]) {
+/// Draws the rectangle around the known cells at the level of the lowest one: a grid, and metres along its two nearest
+/// sides.
+fn draw_base(drawing: &mut Drawing, from: DVec3, to: DVec3, page: impl Fn(DVec3) -> [f64; 2]) {
     let along_x = |share: f64, y: f64| page(DVec3::new(from.x + share * (to.x - from.x), y, from.z));
     let along_y = |share: f64, x: f64| page(DVec3::new(x, from.y + share * (to.y - from.y), from.z));
     let (columns, rows) = (Scale::linear(from.x, to.x).ticks(8), Scale::linear(from.y, to.y).ticks(8));
     for tick in &columns {
-        drawing.line(vec![along_x(tick.at, from.y), along_x(tick.at, to.y)], GRID, 0.6);
+        drawing.line(vec![along_x(tick.at, from.y), along_x(tick.at, to.y)], GRID_COLOUR, 0.6);
     }
     for tick in &rows {
-        drawing.line(vec![along_y(tick.at, from.x), along_y(tick.at, to.x)], GRID, 0.6);
+        drawing.line(vec![along_y(tick.at, from.x), along_y(tick.at, to.x)], GRID_COLOUR, 0.6);
     }
     let corners = [(0.0, from.y), (1.0, from.y), (1.0, to.y), (0.0, to.y), (0.0, from.y)];
     drawing.line(corners.map(|(share, y)| along_x(share, y)).to_vec(), SOFT, 0.8);
 
-    // A tick goes on along the grid's line, over the rim.
+    // A tick extends the grid's line beyond the rectangle.
     let beyond = |inner: [f64; 2], outer: [f64; 2], length: f64| {
         let (dx, dy) = (outer[0] - inner[0], outer[1] - inner[1]);
         let share = length / libm::hypot(dx, dy).max(1e-9);
@@ -136,7 +145,7 @@ fn rim(drawing: &mut Drawing, from: DVec3, to: DVec3, page: impl Fn(DVec3) -> [f
         let [x, y] = beyond(inner, outer, 12.0);
         drawing.text([x, y + 9.0], tick.label, Anchor::Middle, SOFT);
     }
-    // Each name along its side.
+    // The name of each axis runs along its side.
     let turn = |a: [f64; 2], b: [f64; 2]| libm::atan2(b[1] - a[1], b[0] - a[0]).to_degrees();
     let (near, far) = (along_x(0.0, from.y), along_x(1.0, from.y));
     let [x, y] = beyond(along_x(0.5, to.y), along_x(0.5, from.y), 56.0);

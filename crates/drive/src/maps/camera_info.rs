@@ -1,10 +1,13 @@
-//! A camera as ROS has it: the YAML of `camera_info`. (ROS REP-104; sensor_msgs/CameraInfo; camera_calibration_parsers)
+//! Calibration file of a camera for ROS, `camera_info` in YAML. (ROS REP-104; sensor_msgs/CameraInfo;
+//! camera_calibration_parsers)
 
-use crate::maps::yaml::{quoted, real};
 use raypencil_scene::Camera;
 
-/// The calibration file of a camera. ROS, as OpenCV, has the *middle* of pixel (0, 0) at (0, 0), where we have its outer
-/// corner: the principal point moves by half a pixel. Without distortion the model is `plumb_bob` with zeros.
+use crate::maps::yaml::{quoted, real};
+
+/// Calibration file of a camera. In ROS, as in OpenCV, the *middle* of pixel (0, 0) is at (0, 0); here, that is the
+/// pixel's outer corner. The principal point therefore moves by half a pixel. A camera without distortion has the model
+/// `plumb_bob` with zeros.
 pub fn camera_info(camera: &Camera, name: &str) -> String {
     let [fx, fy] = camera.pixel_pitch.map(|pitch| camera.focal_length / pitch);
     let [cx, cy] = camera.principal_point.map(|point| point - 0.5);
@@ -46,7 +49,7 @@ mod tests {
             max_range: 20.0,
         };
         let text = camera_info(&camera, "rover");
-        // 2^-7 over 2^-17 and 2^-16: 1024 and 512 pixels.
+        // The focal length of 2^-7 m is 1024 pixels of 2^-17 m and 512 pixels of 2^-16 m.
         for line in [
             "image_width: 1024",
             "image_height: 768",
@@ -61,7 +64,7 @@ mod tests {
 
     #[test]
     fn every_number_is_one_and_the_name_is_a_text() {
-        // 2^20 over 2^-40 is 2^60, 1152921504606846976; over 2^60 it is 2^-40.
+        // 2^20 / 2^-40 = 2^60 = 1152921504606846976, and 2^20 / 2^60 = 2^-40.
         let camera = Camera {
             width: 2,
             height: 1,

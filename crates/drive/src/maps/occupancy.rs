@@ -1,25 +1,26 @@
-//! A grid of free, occupied and unknown cells as Nav2's `map_server` loads it: a YAML file and the PGM image beside it.
-//! (Nav2 1.x, nav2_map_server; ROS map_server)
+//! Occupancy grid for Nav2's `map_server`: a YAML file and the PGM image beside it. (Nav2 1.x, nav2_map_server; ROS
+//! map_server)
 
 use std::path::Path;
 
-use crate::maps::yaml::real;
 use raypencil_files::{FileError, write_atomically};
 
-/// What a cell is.
+use crate::maps::yaml::real;
+
+/// Occupancy of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Occupancy {
     /// The vehicle may be there.
     Free,
-    /// It may not.
+    /// The vehicle may not be there.
     Occupied,
-    /// Nobody knows.
+    /// It is unknown whether the vehicle may be there.
     Unknown,
 }
 
 impl Occupancy {
-    /// The pixel. The image's 254 and 0 are 0.4 % and 100 % occupied. CHOICE: for what is unknown 128, 50 %, and not the
-    /// usual 205: that is 19.6 %, which is below the `free_thresh` of 0.25 that Nav2 takes by default, and so "free".
+    /// Pixel of the image: 254 is 0.4 % occupied and 0 is 100 %. CHOICE: unknown cells have 128, 50 %, and not the
+    /// usual 205, because that is 19.6 %, which is below Nav2's default `free_thresh` of 0.25 and so counts as free.
     fn pixel(self) -> u8 {
         match self {
             Self::Free => 254,
@@ -29,22 +30,33 @@ impl Occupancy {
     }
 }
 
-/// Cells row by row, the row of least y first.
+/// Occupancy grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OccupancyGrid {
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: u32,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: u32,
     /// Side of a cell, metres.
     pub resolution: f64,
     /// Global x and y of the outer corner of the first cell, metres.
     pub origin: [f64; 2],
-    /// The cells.
+    /// Cells row by row, the row of smallest y first.
     pub cells: Vec<Occupancy>,
 }
 
-/// The YAML that names `image` (a file beside it), and the image's bytes.
+/// YAML text that names the file `image` beside it, and the bytes of that image (PGM).
+///
+/// ```
+/// use raypencil_drive::{Occupancy, OccupancyGrid, occupancy_files};
+///
+/// let cells = vec![Occupancy::Free, Occupancy::Occupied];
+/// let grid = OccupancyGrid { columns: 1, rows: 2, resolution: 0.1, origin: [-1.0, 2.5], cells };
+/// let (yaml, pgm) = occupancy_files(&grid, "map.pgm");
+/// assert!(yaml.starts_with("image: map.pgm\nmode: trinary\nresolution: 0.1\norigin: [-1.0, 2.5, 0.0]\n"));
+/// // The image begins with the row of largest y: occupied is 0, free 254.
+/// assert_eq!(pgm, b"P5\n1 2\n255\n\x00\xfe");
+/// ```
 pub fn occupancy_files(grid: &OccupancyGrid, image: &str) -> (String, Vec<u8>) {
     let [x, y] = grid.origin.map(real);
     let yaml = format!(
@@ -53,16 +65,17 @@ pub fn occupancy_files(grid: &OccupancyGrid, image: &str) -> (String, Vec<u8>) {
         real(grid.resolution)
     );
     let mut pgm = format!("P5\n{} {}\n255\n", grid.columns, grid.rows).into_bytes();
-    // Images begin on top, with the greatest y.
+    // Images begin with the top row, that of largest y.
     let rows = grid.cells.chunks_exact(grid.columns as usize).rev();
     pgm.extend(rows.flatten().map(|cell| cell.pixel()));
     (yaml, pgm)
 }
 
-/// Writes `NAME.pgm` and `NAME.yaml` into a folder, the image first: the YAML names no image that is not there.
+/// Writes `NAME.pgm` and `NAME.yaml` into a folder. The image comes first, so that the YAML never names a missing
+/// image.
 ///
 /// # Errors
-/// What the file system says, with the path.
+/// A file that could not be written, with its path.
 pub fn write_occupancy(folder: &Path, name: &str, grid: &OccupancyGrid) -> Result<(), FileError> {
     let image = format!("{name}.pgm");
     let (yaml, pgm) = occupancy_files(grid, &image);
@@ -96,7 +109,7 @@ mod tests {
         ];
         assert_eq!(yaml.lines().collect::<Vec<_>>(), expected);
         assert_eq!(pgm, b"P5\n2 2\n255\n\x80\xfe\xfe\x00");
-        // As map_server reads it: occupied above 0.65, free below 0.25, of (255 - pixel) / 255.
+        // map_server computes (255 - pixel) / 255: occupied above 0.65, free below 0.25.
         for (cell, occupied, free) in [(Free, false, true), (Occupied, true, false), (Unknown, false, false)]
         {
             let share = f64::from(255 - cell.pixel()) / 255.0;
@@ -105,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_far_from_1_are_numbers() {
+    fn very_large_and_very_small_numbers_are_yaml_numbers() {
         let grid = OccupancyGrid {
             columns: 1,
             rows: 1,

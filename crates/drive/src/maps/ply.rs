@@ -1,25 +1,25 @@
-//! Points as PLY, binary, little endian. (G. Turk, "The PLY polygon file format", 1994)
+//! Measured points as PLY, binary, little endian. (G. Turk, "The PLY polygon file format", 1994)
 
-use glam::DVec3;
 use std::path::Path;
 
+use glam::DVec3;
 use raypencil_files::{FileError, write_atomically};
 
-/// A measured point.
+/// Measured point with its origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MarkedPoint {
-    /// Global, metres.
+    /// Global position, metres.
     pub point: DVec3,
-    /// The frame that measured it.
+    /// Index of the frame that measured it.
     pub frame: u32,
-    /// Whose stripe it is.
+    /// Index of the beam whose stripe it lies on.
     pub beam: u8,
 }
 
-/// Writes points as a PLY file: x, y, z as doubles, `frame` and `beam`.
+/// Writes points as a PLY file with the properties x, y, z (double), `frame` (uint) and `beam` (uchar).
 ///
 /// # Errors
-/// What the file system says, with the path.
+/// The file could not be written, with its path.
 pub fn write_ply(path: impl AsRef<Path>, points: &[MarkedPoint]) -> Result<(), FileError> {
     write_atomically(path, |file| {
         write!(
@@ -59,7 +59,7 @@ mod tests {
         let header = std::str::from_utf8(&bytes[..at]).unwrap();
         assert!(header.starts_with("ply\nformat binary_little_endian 1.0\n"), "{header}");
         assert!(header.contains("\nelement vertex 2\nproperty double x\n"), "{header}");
-        // Three doubles, four bytes and one for each.
+        // Each point has three doubles, four bytes and one byte: 29 bytes.
         assert_eq!(bytes.len() - at, 2 * 29);
         assert_eq!(bytes[at..at + 8], 1.5_f64.to_le_bytes());
         assert_eq!(bytes[at + 24..at + 29], [7, 0, 0, 0, 1]);

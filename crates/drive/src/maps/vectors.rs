@@ -1,20 +1,32 @@
-//! Labelled vectors of the navigator map as GeoJSON (RFC 7946, but for its degrees) and as CSV (RFC 4180).
+//! Labelled vectors of the navigator map as GeoJSON (RFC 7946, but in metres, not degrees) and as CSV (RFC 4180).
 
 use serde_json::json;
 
-/// A labelled vector, global x and y in metres.
+/// Labelled vector, in global x and y, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VectorOnMap {
-    /// Where it begins.
+    /// Start.
     pub from: [f64; 2],
-    /// Where it ends.
+    /// End.
     pub to: [f64; 2],
-    /// What lies behind it: "obstacle", "unknown", "visibility".
+    /// Label: "obstacle", "unknown" or "visibility".
     pub label: &'static str,
 }
 
-/// A `FeatureCollection` of one `LineString` for each vector. Coordinates are metres of the global frame, not degrees:
-/// this ground is on no globe, which the member `unit` says to whoever reads it.
+/// `FeatureCollection` with one `LineString` per vector; `frame` is the frame of the map. The coordinates are metres of
+/// the global frame, not degrees, because the ground has no place on a globe; the member `unit` says so.
+///
+/// ```
+/// use raypencil_drive::{VectorOnMap, vectors_geojson};
+///
+/// let vectors = [VectorOnMap { from: [1.0, -0.5], to: [1.25, 0.0], label: "obstacle" }];
+/// let json: serde_json::Value = serde_json::from_str(&vectors_geojson(&vectors, 30))?;
+/// let feature = &json["features"][0];
+/// // The vector as it is, in metres, and the frame that it is of.
+/// assert_eq!(feature["geometry"]["coordinates"], serde_json::json!([[1.0, -0.5], [1.25, 0.0]]));
+/// assert_eq!(feature["properties"]["frame"], 30);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
 pub fn vectors_geojson(vectors: &[VectorOnMap], frame: u64) -> String {
     let feature = |(index, vector): (usize, &VectorOnMap)| {
         json!({
@@ -32,7 +44,7 @@ pub fn vectors_geojson(vectors: &[VectorOnMap], frame: u64) -> String {
     format!("{all:#}\n")
 }
 
-/// A line for each vector, below their names.
+/// CSV text: a header with the units, then one line per vector.
 pub fn vectors_csv(vectors: &[VectorOnMap]) -> String {
     let mut text = String::from("index,from_x_m,from_y_m,to_x_m,to_y_m,label\r\n");
     for (index, VectorOnMap { from, to, label }) in vectors.iter().enumerate() {

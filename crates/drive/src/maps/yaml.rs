@@ -1,6 +1,6 @@
-//! Scalars that readers of YAML 1.1, such as PyYAML, and of 1.2 take for the same.
+//! YAML scalars that readers of YAML 1.1, such as PyYAML, and readers of YAML 1.2 understand alike.
 
-/// A real number. In YAML 1.1 it has a point and its exponent a sign: `1e16` and `1.5e16` are texts.
+/// Real number. YAML 1.1 requires a decimal point and a sign of the exponent: there, `1e16` and `1.5e16` are texts.
 pub(crate) fn real(value: f64) -> String {
     let text = format!("{value:?}");
     let Some((digits, exponent)) = text.split_once('e') else { return text };
@@ -9,13 +9,13 @@ pub(crate) fn real(value: f64) -> String {
     format!("{digits}{point}e{sign}{exponent}")
 }
 
-/// A text, whatever is in it: bare, `-` is a list, `1` a number and `no` a truth value.
+/// Text in quotes. Without them, `-` would be a list, `1` a number and `no` a truth value.
 pub(crate) fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
         match c {
             '"' | '\\' => quoted.extend(['\\', c]),
-            // YAML's line breaks, and what it does not print.
+            // Line breaks of YAML, and characters that YAML does not count as printable.
             '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}' => quoted += &escaped(c),
             c if c.is_control() => quoted += &escaped(c),
             c => quoted.push(c),
@@ -24,6 +24,7 @@ pub(crate) fn quoted(text: &str) -> String {
     quoted + "\""
 }
 
+/// Escape of a character by its code point.
 fn escaped(c: char) -> String {
     format!("\\U{:08X}", u32::from(c))
 }

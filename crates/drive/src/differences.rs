@@ -1,25 +1,25 @@
-//! Where two sides of a drive part: how far a difference of their light gets, stage by stage.
+//! Differences between the two sides of a drive, stage by stage: how far a difference of their light gets.
 
-use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 
-use crate::job::DriveJob;
-use crate::sun::Sun;
 use raypencil_rover::{DriveFrame, ElevationMap, Exposure, MeasuredPoint};
-use raypencil_scene::{Image, Scene};
 
-/// What was compared at one stage.
+use crate::job::DriveJob;
+use crate::recorded_exposure::RecordedExposure;
+use crate::sun::Sun;
+
+/// Differences at one stage.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct StageTrace {
-    /// How many things.
+pub struct StageDifferences {
+    /// Number of items that were compared.
     pub compared: u64,
-    /// How many of them are not the same.
+    /// Number of items that are not equal.
     pub differ: u64,
-    /// The first of these, in words.
+    /// Description of the first unequal item.
     pub first: Option<String>,
 }
 
-impl StageTrace {
+impl StageDifferences {
     fn add(&mut self, compared: u64, differ: u64, first: impl FnOnce() -> String) {
         self.compared += compared;
         self.differ += differ;
@@ -29,35 +29,36 @@ impl StageTrace {
     }
 }
 
-/// What was compared of the light itself. Two honest renderers differ in its last bits; it is told, and fails nothing.
+/// Differences of the flux on the camera's pixels. Two correct renderers differ in the last bits: these differences are
+/// reported, but they fail nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FluxTrace {
-    /// Pixels that are lit on either side.
+pub struct FluxDifferences {
+    /// Number of pixels that are lit on at least one side.
     pub lit: u64,
-    /// Those whose watts are not the very same number.
+    /// Number of those whose two fluxes, in watts, are not equal to the last bit.
     pub differ: u64,
-    /// The largest difference, of the larger of the two.
+    /// Largest difference, relative to the larger of the two fluxes.
     pub largest_relative: f64,
 }
 
-/// Every stage of a drive on two sides.
+/// Differences at all stages of a drive on two sides.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Trace {
-    /// Watts on the camera's pixels.
-    pub flux: FluxTrace,
+pub struct Differences {
+    /// Flux on the camera's pixels.
+    pub flux: FluxDifferences,
     /// Digital numbers of all exposures.
-    pub pixels: StageTrace,
+    pub pixels: StageDifferences,
     /// Edge points of the stripes.
-    pub edges: StageTrace,
-    /// Cells of the map after each frame.
-    pub cells: StageTrace,
+    pub edges: StageDifferences,
+    /// Cells of the elevation map after each frame.
+    pub cells: StageDifferences,
     /// Sectors of obstacle maps and vectors of navigator maps.
-    pub labels: StageTrace,
+    pub labels: StageDifferences,
 }
 
-impl Trace {
-    /// The stages at which a difference counts, by name.
-    pub fn stages(&self) -> [(&'static str, &StageTrace); 4] {
+impl Differences {
+    /// The stages at which a difference counts, with their names.
+    pub fn stages(&self) -> [(&'static str, &StageDifferences); 4] {
         [
             ("pixels of the digital images", &self.pixels),
             ("edge points", &self.edges),
@@ -66,87 +67,30 @@ impl Trace {
         ]
     }
 
-    /// Whether both sides saw, measured, mapped and labelled the same.
+    /// Whether both sides have equal pixels, edge points, map cells and labels.
     pub fn is_identical(&self) -> bool {
         self.stages().iter().all(|(_, stage)| stage.differ == 0)
     }
 }
 
-/// What is kept of one exposure of the first side until the second has its own: a digest of the numbers, from which the
-/// light gives them again.
-#[derive(Debug, Clone)]
-pub(crate) struct Kept {
-    exposure: Exposure,
-    /// Which exposure of the drive: of the camera's noise.
-    number: u64,
-    /// What was exposed, if the sun shone on it.
-    scene: Option<Scene>,
-    size: (u32, u32),
-    /// Pixels that are lit, and their watts; nothing where a frame has more of them than are kept.
-    lit: Option<Vec<(u32, f64)>>,
-    digest: [u8; 32],
-}
-
-/// How many lit pixels of one frame are kept on each side: 128 MiB. A vertical scan behind blurring optics has more.
-pub(crate) const MOST_LIT: usize = 1 << 23;
-
-impl Kept {
-    /// `room` is for so many lit pixels.
-    pub(super) fn new(
-        exposure: Exposure,
-        number: u64,
-        scene: Option<Scene>,
-        light: &Image<f64>,
-        numbers: &Image<i32>,
-        room: usize,
-    ) -> Self {
-        let mut hasher = Sha256::new();
-        let mut bytes = Vec::new();
-        for row in numbers.cells().chunks(numbers.width().max(1) as usize) {
-            bytes.clear();
-            bytes.extend(row.iter().flat_map(|number| number.to_le_bytes()));
-            hasher.update(&bytes);
-        }
-        let lit = || light.cells().iter().enumerate().filter(|(_, watts)| **watts != 0.0);
-        let fits = lit().nth(room).is_none();
-        Self {
-            exposure,
-            number,
-            scene,
-            size: (light.width(), light.height()),
-            lit: fits.then(|| lit().map(|(index, &watts)| (index as u32, watts)).collect()),
-            digest: hasher.finalize().into(),
-        }
-    }
-
-    /// How many lit pixels are kept.
-    pub(super) fn lit(&self) -> usize {
-        self.lit.as_ref().map_or(0, Vec::len)
-    }
-
-    /// The digital numbers once more.
-    fn numbers(&self, lit: &[(u32, f64)], job: &DriveJob, sun: Option<&Sun>) -> Image<i32> {
-        let mut light = Image::filled(self.size.0, self.size.1, 0.0);
-        for &(index, watts) in lit {
-            light.cells_mut()[index as usize] = watts;
-        }
-        let background = self.scene.as_ref().zip(sun).map(|(scene, sun)| sun.background(job, scene));
-        job.digital(&light, background.as_ref(), self.number)
-    }
-}
-
-/// "frame 3", "frame 3, position 17 of the scan".
+/// Words for a frame, or for a position of its scan: "frame 3", "frame 3, position 17 of the scan".
 fn moment(frame: u64, step: Option<u32>) -> String {
     step.map_or(format!("frame {frame}"), |step| format!("frame {frame}, position {step} of the scan"))
 }
 
-impl Trace {
-    /// One frame's exposures.
-    pub(super) fn exposures(&mut self, job: &DriveJob, sun: Option<&Sun>, a: &[Kept], b: &[Kept]) {
+impl Differences {
+    /// Compares the exposures of one frame: flux and digital numbers.
+    pub(crate) fn add_exposures(
+        &mut self,
+        job: &DriveJob,
+        sun: Option<&Sun>,
+        a: &[RecordedExposure],
+        b: &[RecordedExposure],
+    ) {
         for (a, b) in a.iter().zip(b) {
             let lit = a.lit.as_ref().zip(b.lit.as_ref());
-            if let Some((of_a, of_b)) = lit {
-                self.light(of_a, of_b);
+            if let Some((lit_a, lit_b)) = lit {
+                self.add_flux(lit_a, lit_b);
             }
             let cells = u64::from(a.size.0) * u64::from(a.size.1);
             let Exposure { frame, step, beam } = a.exposure;
@@ -156,11 +100,12 @@ impl Trace {
                 continue;
             }
             let Some((lit_a, lit_b)) = lit else {
-                self.pixels.add(cells, 1, || format!("{when}: somewhere, in one pixel or more"));
+                self.pixels.add(cells, 1, || format!("{when}: at least one pixel"));
                 continue;
             };
-            let (of_a, of_b) = (a.numbers(lit_a, job, sun), b.numbers(lit_b, job, sun));
-            let pairs = || of_a.cells().iter().zip(of_b.cells()).enumerate().filter(|(_, (x, y))| x != y);
+            let (numbers_a, numbers_b) = (a.numbers(lit_a, job, sun), b.numbers(lit_b, job, sun));
+            let pairs =
+                || numbers_a.cells().iter().zip(numbers_b.cells()).enumerate().filter(|(_, (x, y))| x != y);
             let differ = pairs().count() as u64;
             self.pixels.add(cells, differ, || {
                 let Some((index, (x, y))) = pairs().next() else { return when.clone() };
@@ -172,8 +117,8 @@ impl Trace {
         self.pixels.add(missing, missing, || format!("{} exposures against {}", a.len(), b.len()));
     }
 
-    /// Lit pixels of one exposure, both in the order of their indices.
-    fn light(&mut self, a: &[(u32, f64)], b: &[(u32, f64)]) {
+    /// Compares the lit pixels of one exposure, index and watts, both in the order of their indices.
+    fn add_flux(&mut self, a: &[(u32, f64)], b: &[(u32, f64)]) {
         let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
         loop {
             let (x, y) = match (a.peek(), b.peek()) {
@@ -198,14 +143,14 @@ impl Trace {
         }
     }
 
-    /// What one frame made of its exposures.
-    pub(super) fn frames(&mut self, a: &DriveFrame, b: &DriveFrame, maps: [&ElevationMap; 2]) {
-        self.edges(a, b);
-        self.cells(a.index, maps);
-        if let (Some((of_a, vectors_a)), Some((of_b, vectors_b))) = (&a.obstacles, &b.obstacles) {
-            let sectors = of_a.sectors.iter().zip(&of_b.sectors).enumerate();
+    /// Compares the results of one frame: edge points, map cells and labels.
+    pub(crate) fn add_frame(&mut self, a: &DriveFrame, b: &DriveFrame, maps: [&ElevationMap; 2]) {
+        self.add_edges(a, b);
+        self.add_cells(a.index, maps);
+        if let (Some((map_a, vectors_a)), Some((map_b, vectors_b))) = (&a.obstacles, &b.obstacles) {
+            let sectors = map_a.sectors.iter().zip(&map_b.sectors).enumerate();
             let differing: Vec<_> = sectors.filter(|(_, (x, y))| x != y).collect();
-            let (count, differ) = (of_a.sectors.len() as u64, differing.len() as u64);
+            let (count, differ) = (map_a.sectors.len() as u64, differing.len() as u64);
             self.labels.add(count, differ, || {
                 differing.first().map_or(String::new(), |(sector, (x, y))| {
                     format!(
@@ -230,26 +175,26 @@ impl Trace {
         }
     }
 
-    fn edges(&mut self, a: &DriveFrame, b: &DriveFrame) {
+    fn add_edges(&mut self, a: &DriveFrame, b: &DriveFrame) {
         let compared = a.measured.len().max(b.measured.len()) as u64;
         if a.measured == b.measured {
             self.edges.add(compared, 0, String::new);
             return;
         }
-        // Position of the scan, beam, column, row; where within the pixel it was measured counts as well.
+        // Position of the scan, beam, column, row, and the bits of the row with its fraction.
         let keys = |measured: &[MeasuredPoint]| -> BTreeSet<(Option<u32>, usize, u32, u32, u64)> {
             let key =
                 |one: &MeasuredPoint| (one.step, one.beam, one.edge.i, one.edge.j, one.edge.row.to_bits());
             measured.iter().map(key).collect()
         };
-        let (of_a, of_b) = (keys(&a.measured), keys(&b.measured));
-        // A point that moved is on one side here and on the other there: it counts once.
-        let (only_a, only_b) = (of_a.difference(&of_b).count(), of_b.difference(&of_a).count());
+        let (keys_a, keys_b) = (keys(&a.measured), keys(&b.measured));
+        // A point that moved is missing on either side once: it counts once.
+        let (only_a, only_b) = (keys_a.difference(&keys_b).count(), keys_b.difference(&keys_a).count());
         let differ = only_a.max(only_b).max(1) as u64;
         self.edges.add(compared, differ, || {
-            let first = of_a.symmetric_difference(&of_b).next();
+            let first = keys_a.symmetric_difference(&keys_b).next();
             first.map_or(moment(a.index, None), |&(step, beam, i, j, row)| {
-                let side = if of_a.contains(&(step, beam, i, j, row)) { "first" } else { "second" };
+                let side = if keys_a.contains(&(step, beam, i, j, row)) { "first" } else { "second" };
                 let row = f64::from_bits(row);
                 format!(
                     "{}, beam {beam}, column {i}: row {row} on the {side} side only",
@@ -259,7 +204,7 @@ impl Trace {
         });
     }
 
-    fn cells(&mut self, frame: u64, [a, b]: [&ElevationMap; 2]) {
+    fn add_cells(&mut self, frame: u64, [a, b]: [&ElevationMap; 2]) {
         let cell = |map: &ElevationMap, point| (map.source(point), map.elevation(point).map(f64::to_bits));
         let (mut compared, mut differ, mut first) = (0, 0, None);
         for point in a.points() {

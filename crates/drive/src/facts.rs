@@ -1,0 +1,105 @@
+//! Sentences about a drive, for the screen and for the HTML report.
+
+use raypencil_report::{count, counted, number};
+
+use crate::counts::{CellCounts, scans, sector_counts};
+use crate::job::DriveJob;
+use crate::labels::label_word;
+use crate::run::DriveRun;
+
+/// Verdict in one sentence.
+pub(crate) fn headline(run: &DriveRun) -> String {
+    let frames = counted(run.frames.len() as u64, "frame", "frames");
+    match &run.differences {
+        None => format!("{frames} driven."),
+        Some(differences) if differences.is_identical() => {
+            format!(
+                "Both sides are identical over {frames}: every digital pixel, edge point, map cell and label."
+            )
+        }
+        Some(differences) => {
+            let parts: Vec<String> = differences
+                .stages()
+                .iter()
+                .filter(|(_, stage)| stage.differ > 0)
+                .map(|(name, stage)| format!("{} {name}", count(stage.differ)))
+                .collect();
+            format!("The two sides differ in {}.", parts.join(", "))
+        }
+    }
+}
+
+/// Facts of a drive: each a name and its words.
+pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String)> {
+    let (cells, route) = (CellCounts::of(run), &job.plan.route);
+    let scans = match scans(run) {
+        0 => String::new(),
+        scans => format!(", {} of them", counted(scans, "vertical scan", "vertical scans")),
+    };
+    let short = if (run.frames.len() as u64) < run.planned {
+        format!(" of {} (the route leads off the ground)", run.planned)
+    } else {
+        String::new()
+    };
+    let sectors: Vec<String> = sector_counts(run)
+        .iter()
+        .map(|(label, sectors)| format!("{sectors} {}", label_word(*label)))
+        .collect();
+    let mut points = format!("{} on stripe edges", count(run.edge_points));
+    if run.edge_points > run.points.len() as u64 {
+        points
+            .push_str(&format!(", the first {} of them in edge-points.ply", count(run.points.len() as u64)));
+    }
+    // Distance between frames on a straight leg, metres.
+    let frame_step = route.speed / route.frame_rate;
+    let mut facts = vec![
+        (
+            "scene",
+            format!(
+                "{} ({} faces), {}",
+                job.name,
+                count(job.mesh.faces().len() as u64),
+                run.renderers.join(" and ")
+            ),
+        ),
+        ("camera", job.preset.to_string()),
+        ("frames", format!("{}{short}{scans}, one per {} m", run.frames.len(), number(frame_step))),
+        ("driven", format!("{:.2} m at {} m/s", run.driven(), number(route.speed))),
+        ("points", points),
+        (
+            "map",
+            format!(
+                "{} cells known ({} measured), {} unknown; {} m apart",
+                count(cells.known),
+                count(cells.measured),
+                count(cells.unknown),
+                job.plan.map.spacing
+            ),
+        ),
+    ];
+    if let Some((frame, _, _)) = &run.obstacles {
+        facts.push(("sectors", format!("{} (frame {frame})", sectors.join(", "))));
+    }
+    if run.confusion.maps > 0 {
+        facts.extend(run.confusion.sentences().map(|sentence| ("truth", sentence)));
+    }
+    facts.extend(job.notes.iter().map(|note| ("note", note.clone())));
+    facts
+}
+
+/// Lines about the differences, stage by stage; none with one renderer.
+pub(crate) fn difference_lines(run: &DriveRun) -> Vec<String> {
+    let Some(differences) = &run.differences else { return Vec::new() };
+    let flux = differences.flux;
+    let mut lines = vec![format!(
+        "flux: {} of {} lit pixels differ, relatively by {} at most",
+        count(flux.differ),
+        count(flux.lit),
+        number(flux.largest_relative)
+    )];
+    for (name, stage) in differences.stages() {
+        let first = stage.first.as_ref().map_or(String::new(), |first| format!("; first: {first}"));
+        lines.push(format!("{name}: {} of {} differ{first}", count(stage.differ), count(stage.compared)));
+    }
+    lines
+}

@@ -1,0 +1,123 @@
+//! Obstacle map as an occupancy grid: radial sectors become square cells.
+
+use glam::{DVec2, DVec3};
+use raypencil_rover::{ElevationMap, Label, ObstacleMap, RadialGrid, Vehicle};
+use raypencil_scene::Pose;
+
+use crate::maps::occupancy::{Occupancy, OccupancyGrid};
+
+/// Occupancy of the elevation map's cells, each around its grid point, by the middle of the vehicle's front axle.
+/// `global_from_vehicle` is the pose from which `obstacles` were extracted.
+///
+/// A cell belongs to the nearest sector. It is free before the sector's end, occupied at an end that is an obstacle,
+/// and unknown elsewhere. Cells under the vehicle are free.
+///
+/// ```
+/// use glam::DVec2;
+/// use raypencil_drive::{Occupancy, occupancy_grid};
+/// use raypencil_rover::{ElevationMap, MapSize, ObstacleMap, RadialGrid, TraversabilityRules, Vehicle};
+/// use raypencil_scene::Pose;
+///
+/// // Level ground with a step of 1 m at x = 3 m, 201 cells of 0.1 m around the vehicle.
+/// let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
+/// for point in map.points() {
+///     map.set_proximity(point, if map.place(point).x > 2.95 { 1.0 } else { 0.0 });
+/// }
+/// let vehicle = Vehicle::default();
+/// let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+/// let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
+/// let cells = occupancy_grid(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY).cells;
+/// // Row 100 lies straight ahead, and column 100 + 10 x is at x metres: before, at and behind the step.
+/// let ahead = |x: usize| cells[100 * 201 + 100 + 10 * x];
+/// assert_eq!([2, 3, 4].map(ahead), [Occupancy::Free, Occupancy::Occupied, Occupancy::Unknown]);
+/// ```
+pub fn occupancy_grid(
+    map: &ElevationMap,
+    obstacles: &ObstacleMap,
+    grid: &RadialGrid,
+    vehicle: &Vehicle,
+    global_from_vehicle: &Pose,
+) -> OccupancyGrid {
+    let spacing = map.size().spacing;
+    let first = map.points().next().map_or(DVec2::ZERO, |point| map.place(point));
+    let vehicle_from_global = global_from_vehicle.inverse();
+    let forward = global_from_vehicle.rotate(DVec3::X);
+    let heading = libm::atan2(forward.y, forward.x);
+    // CHOICE: three quarters of a step to either side of a sector's end, so that the occupied cells touch one another.
+    let reach = 0.75 * grid.step.max(spacing);
+    let cell = |place: DVec2| {
+        let offset = place - obstacles.centre;
+        if vehicle.covers(vehicle_from_global.rotate(offset.extend(0.0)).truncate()) {
+            return Occupancy::Free;
+        }
+        let Some(sector) = nearest_sector(grid, libm::atan2(offset.y, offset.x) - heading) else {
+            return Occupancy::Unknown;
+        };
+        let end = &obstacles.sectors[sector];
+        let radius = offset.length();
+        match end.label {
+            // Nothing was tested before the first radius of the grid.
+            _ if radius < grid.first - 0.5 * grid.step => Occupancy::Unknown,
+            Label::Obstacle if (radius - end.radius).abs() <= reach => Occupancy::Occupied,
+            Label::Visibility if radius <= end.radius + 0.5 * grid.step => Occupancy::Free,
+            _ if radius < end.radius - 0.5 * grid.step => Occupancy::Free,
+            _ => Occupancy::Unknown,
+        }
+    };
+    OccupancyGrid {
+        columns: map.size().points,
+        rows: map.size().points,
+        resolution: spacing,
+        origin: (first - DVec2::splat(0.5 * spacing)).to_array(),
+        cells: map.points().map(|point| cell(map.place(point))).collect(),
+    }
+}
+
+/// Index of the sector nearest to an angle from the heading, radians. `None` if the angle is outside the fan.
+fn nearest_sector(grid: &RadialGrid, angle: f64) -> Option<usize> {
+    use std::f64::consts::TAU;
+    let angle = angle - TAU * (angle / TAU).round();
+    let between = if grid.sectors < 2 { 0.1 } else { 2.0 * grid.half_angle / f64::from(grid.sectors - 1) };
+    let sector = if grid.sectors < 2 { angle / between } else { (angle + grid.half_angle) / between };
+    let sector = sector.round();
+    (sector >= 0.0 && sector < f64::from(grid.sectors)).then_some(sector as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use raypencil_rover::{MapSize, TraversabilityRules};
+
+    use super::*;
+
+    #[test]
+    fn cells_are_free_before_a_wall_occupied_at_it_and_unknown_behind_it() {
+        let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
+        for point in map.points() {
+            let z = if map.place(point).x > 2.95 { 1.0 } else { 0.0 };
+            map.set_proximity(point, z);
+        }
+        let vehicle = Vehicle::default();
+        let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+        let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
+        let cells = occupancy_grid(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY);
+        // 201 x 201 cells of 0.1 m around the origin.
+        assert_eq!((cells.columns, cells.resolution), (201, 0.1));
+        assert!((cells.origin[0] + 10.05).abs() < 1e-12 && (cells.origin[1] + 10.05).abs() < 1e-12);
+        let at =
+            |x: f64, y: f64| cells.cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize];
+        assert_eq!(at(0.0, 0.0), Occupancy::Free);
+        assert_eq!(at(2.0, 0.0), Occupancy::Free);
+        assert_eq!(at(3.0, 0.0), Occupancy::Occupied);
+        assert_eq!(at(4.0, 0.0), Occupancy::Unknown);
+        // Outside the fan of 30 degrees to either side, and behind the vehicle.
+        assert_eq!((at(2.0, 2.0), at(-3.0, 0.0)), (Occupancy::Unknown, Occupancy::Unknown));
+        // With a grid that begins at 2 m, nothing nearer was tested.
+        let far = RadialGrid { first: 2.0, ..grid };
+        let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &far, &Pose::IDENTITY);
+        let cells = occupancy_grid(&map, &obstacles, &far, &vehicle, &Pose::IDENTITY);
+        let at =
+            |x: f64, y: f64| cells.cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize];
+        assert_eq!((at(0.0, 0.0), at(1.5, 0.0)), (Occupancy::Free, Occupancy::Unknown));
+        assert_eq!((at(2.5, 0.0), at(3.0, 0.0)), (Occupancy::Free, Occupancy::Occupied));
+    }
+}

@@ -1,0 +1,111 @@
+//! Noise levels of the truth table: how well a rover sees, and how well it knows where it is.
+
+use glam::DVec2;
+use raypencil_rover::{Detection, LocalisationErrors, PositionFixes, TraversabilityRules};
+use raypencil_scene_io::default_threshold;
+use raypencil_sensor::{ImageSensor, preset};
+
+use crate::job::DriveJob;
+
+/// Noise level of a rover: its image sensor and the errors of its localisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoiseLevel {
+    /// Sensor `ideal`; position and attitude without errors.
+    None,
+    /// Sensor `cmos`, and good inertial sensors.
+    Modest,
+    /// Sensor `ccd_1989`, and bad inertial sensors.
+    Coarse,
+}
+
+impl NoiseLevel {
+    /// All levels, from the lowest.
+    pub const ALL: [Self; 3] = [Self::None, Self::Modest, Self::Coarse];
+
+    /// Name of the level in the table.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Modest => "modest",
+            Self::Coarse => "coarse",
+        }
+    }
+
+    /// Name of the sensor preset.
+    fn preset(self) -> &'static str {
+        match self {
+            Self::None => "ideal",
+            Self::Modest => "cmos",
+            Self::Coarse => "ccd_1989",
+        }
+    }
+
+    /// Errors of the localisation at `speed`, metres per second.
+    ///
+    /// CHOICE: all numbers; the paper gives none. The position drifts by 1 % or 4 % of the distance driven, along the
+    /// global x and y axes in the ratio 4 to 3. Position fixes from beacons come every 10 s (at the 3 frames per second
+    /// of the built-in drives), or never.
+    fn errors(self, speed: f64) -> LocalisationErrors {
+        let drift = |share: f64| DVec2::new(0.8, 0.6) * (share * speed);
+        match self {
+            Self::None => LocalisationErrors::default(),
+            Self::Modest => LocalisationErrors {
+                position_drift: drift(0.01),
+                position_walk: 0.005,
+                heading_drift: 0.002_f64.to_radians(),
+                attitude_noise: 0.1_f64.to_radians(),
+                proximity_noise: 0.01,
+                fixes: Some(PositionFixes { every_frames: 30, noise: 0.05 }),
+                ..LocalisationErrors::default()
+            },
+            Self::Coarse => LocalisationErrors {
+                position_drift: drift(0.04),
+                position_walk: 0.02,
+                heading_drift: 0.02_f64.to_radians(),
+                attitude_noise: 0.5_f64.to_radians(),
+                proximity_noise: 0.03,
+                fixes: None,
+                ..LocalisationErrors::default()
+            },
+        }
+    }
+
+    /// Job with this level's sensor and errors in place of its own, with seeds 0, and with the rules as the paper
+    /// prints them, where no gap is crossed.
+    #[must_use]
+    pub fn applied(self, mut job: DriveJob) -> DriveJob {
+        let wavelength = job.sensor.wavelength;
+        job.preset = self.preset();
+        let (optics, sensor) = preset(job.preset).expect("the name of a preset");
+        job.optics = optics;
+        job.sensor = ImageSensor { wavelength, seed: 0, ..sensor };
+        job.plan.extraction.detection = Detection::Fixed(default_threshold(job.preset));
+        job.plan.errors = self.errors(job.plan.route.speed);
+        job.plan.seed = 0;
+        job.plan.rules = TraversabilityRules::for_vehicle(&job.plan.vehicle);
+        job
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene_io::{Overrides, load};
+
+    use super::*;
+
+    #[test]
+    fn noise_levels_are_plans_that_can_be_driven() {
+        let loaded = load("pyramids", &Overrides::default()).unwrap();
+        let job = DriveJob::new(&loaded, None, "pyramids".into()).unwrap();
+        for level in NoiseLevel::ALL {
+            let noisy = level.applied(job.clone());
+            noisy.plan.validate("drive").unwrap();
+            assert_eq!(noisy.plan.rules.gaps, None);
+            // 1 % of the distance at 0.3 m/s is 3 mm per second.
+            let drift = noisy.plan.errors.position_drift.length();
+            let expected = [0.0, 0.003, 0.012][level as usize];
+            assert!((drift - expected).abs() < 1e-15, "{}", level.word());
+        }
+        assert_eq!(NoiseLevel::None.applied(job.clone()).plan, job.plan);
+    }
+}

@@ -1,0 +1,149 @@
+//! Step 6 around a renderer: the flux that the rover requests has passed the camera's optics. (Paper, §3)
+
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use raypencil_scene::{Image, Precision, Quantities, RenderOutput, Renderer, Request, Scene};
+use raypencil_sensor::{Optics, PointSource};
+
+use crate::job::DriveJob;
+use crate::sun::Sun;
+
+/// Renderer whose flux has passed the optics of a job. It also computes the sun's background of each scene.
+pub(crate) struct ThroughOptics<'a> {
+    inner: &'a dyn Renderer,
+    optics: &'a Optics,
+    /// Background of the scene that was rendered last, watts per pixel.
+    background: Mutex<Option<(Scene, Image<f64>)>>,
+    job: &'a DriveJob,
+    sun: Option<&'a Sun>,
+    times: Mutex<RenderTimes>,
+}
+
+/// Time spent in all renderings.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct RenderTimes {
+    /// Time of the renderer.
+    pub rendering: Duration,
+    /// Time of the optics.
+    pub optics: Duration,
+    /// Time of the sun behind the stripes.
+    pub sun: Duration,
+}
+
+impl<'a> ThroughOptics<'a> {
+    pub(crate) fn new(inner: &'a dyn Renderer, job: &'a DriveJob, sun: Option<&'a Sun>) -> Self {
+        Self { inner, optics: &job.optics, background: Mutex::default(), job, sun, times: Mutex::default() }
+    }
+
+    /// Scene that was rendered last, and its background in watts per pixel. `None` without a sun.
+    pub(crate) fn background(&self) -> Option<(Scene, Image<f64>)> {
+        self.background.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    }
+
+    pub(crate) fn times(&self) -> RenderTimes {
+        *self.times.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Whether the optics change nothing: all light of a point lands in its own pixel, as renderers compute it.
+    fn is_perfect(&self) -> bool {
+        let Optics { focus, blurs, dust, .. } = self.optics;
+        focus.is_none() && blurs.is_empty() && dust.is_none()
+    }
+
+    /// Replaces the flux of each beam by the image that the optics form of its lit points. Without points or returns of
+    /// some beam there is no flux at all.
+    fn form_images(&self, scene: &Scene, output: &mut RenderOutput) {
+        let camera = scene.camera();
+        let camera_from_scene = camera.scene_from_sensor.inverse();
+        let formed = output.beams.iter().zip(&output.returns).map(|(map, returns)| {
+            let (points, flux) = (map.point.as_ref()?, returns.flux.as_ref()?);
+            let lit = points.cells().iter().zip(flux.cells()).filter(|(_, watts)| **watts > 0.0);
+            let sources = lit.filter_map(|(point, &watts)| {
+                Some(PointSource::project(&camera.sensor, camera_from_scene * point.get()?, watts))
+            });
+            Some(self.optics.form_image(&camera.sensor, sources).optical)
+        });
+        output.flux = formed.collect::<Option<_>>().unwrap_or_default();
+    }
+}
+
+impl Renderer for ThroughOptics<'_> {
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn precision(&self) -> Precision {
+        self.inner.precision()
+    }
+
+    fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
+        let is_perfect = self.is_perfect();
+        let quantities = Quantities { point: !is_perfect || request.quantities.point, ..request.quantities };
+        let request = Request { beams: !is_perfect || request.beams, quantities, ..*request };
+        let start = Instant::now();
+        let mut output = self.inner.render(scene, &request);
+        let rendering = start.elapsed();
+        let (mut optics, mut sun) = (Duration::ZERO, Duration::ZERO);
+        if !is_perfect {
+            let start = Instant::now();
+            self.form_images(scene, &mut output);
+            optics = start.elapsed();
+        }
+        if let Some(sun_of_job) = self.sun {
+            let start = Instant::now();
+            let background = sun_of_job.background(self.job, scene);
+            let mut last = self.background.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            *last = Some((scene.clone(), background));
+            sun = start.elapsed();
+        }
+        let mut times = self.times.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        times.rendering += rendering;
+        times.optics += optics;
+        times.sun += sun;
+        output
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use raypencil_files::write_npy;
+    use raypencil_rover::{CameraImage, Drive};
+    use raypencil_scene_io::load;
+    use raypencil_tracer::Tracer;
+
+    use super::*;
+    use crate::common::{FLAT, SHORT, scene_text};
+
+    #[test]
+    fn a_kernel_from_a_file_moves_the_stripe() {
+        // The kernel moves all light two rows down, and pixels have one cell: so the edges move down by two rows, too.
+        let folder = tempfile::tempdir().unwrap();
+        let mut kernel = Image::filled(1, 5, 0.0);
+        kernel.set(0, 4, 3.0);
+        write_npy(folder.path().join("down.npy"), &[&kernel]).unwrap();
+        let path = folder.path().join("scene.toml");
+        let edges = |optics: &str| {
+            std::fs::write(&path, scene_text("", 1, FLAT, &format!("{SHORT}\n{optics}"))).unwrap();
+            let loaded = load(path.to_str().unwrap(), &Default::default()).unwrap();
+            let job = DriveJob::new(&loaded, None, String::new()).unwrap();
+            let renderer = Tracer::new();
+            let mut drive = Drive::new(job.plan.clone(), job.mesh.clone()).unwrap();
+            let through_optics = ThroughOptics::new(&renderer, &job, None);
+            let frame = drive.step(&through_optics, &mut |_, flux| {
+                CameraImage::Numbers(job.sensor.numbers(&flux, None, 0))
+            });
+            let measured = frame.unwrap().unwrap().measured;
+            (measured.iter().map(|one| (one.edge.i, one.edge.j)).collect::<Vec<_>>(), loaded.source_sha256)
+        };
+        let (plain, sha) = edges("");
+        let (moved, other) = edges("[drive.optics]\nblurs = [{ kernel = \"down.npy\" }]");
+        assert!(plain.len() > 100 && moved == plain.iter().map(|&(i, j)| (i, j + 2)).collect::<Vec<_>>());
+        // A file with other numbers makes another scene.
+        assert_ne!(sha, other);
+        kernel.set(0, 4, 4.0);
+        kernel.set(0, 0, 4.0);
+        write_npy(folder.path().join("down.npy"), &[&kernel]).unwrap();
+        assert_ne!(edges("[drive.optics]\nblurs = [{ kernel = \"down.npy\" }]").1, other);
+    }
+}

@@ -1,0 +1,200 @@
+use raypencil_rover::{Detection, ExposureMode, RadialGrid, StripeLocation, TraversabilityRules};
+use raypencil_scene::Scene;
+use raypencil_scene_io::{load, load_text};
+use raypencil_sensor::{DarkCurrent, Dust, ImageLength, Psf};
+
+use super::*;
+use crate::common::{FLAT, SHORT, job, scene};
+
+#[test]
+fn the_built_in_drives_are_the_papers() {
+    let of = |name: &str| {
+        let loaded = load(name, &Default::default()).unwrap();
+        DriveJob::new(&loaded, None, name.into()).unwrap()
+    };
+    let pyramids = of("pyramids");
+    assert_eq!((pyramids.plan.route.start, pyramids.plan.route.heading), (DVec2::new(-7.5, 0.0), 0.0));
+    assert_eq!(pyramids.plan.route.waypoints, [DVec2::ZERO]);
+    // 7.5 m with one frame per 0.1 m, both ends included.
+    assert_eq!(pyramids.frames().unwrap(), 76);
+    assert_eq!(pyramids.plan.rig.beams[0].sensor.columns, 4106);
+    assert!(pyramids.plan.scans.is_none());
+    assert_eq!(of("facets").frames().unwrap(), 61);
+}
+
+#[test]
+fn every_key_of_the_drive_is_read() {
+    let all = "waypoints_m = [[1, 0], [1, 2]]\nspeed_m_per_s = 0.5\nturn_deg_per_s = 90\nframes_per_s = 5\nseed = 9\n\
+        sensor = \"cmos\"\nsensor_seed = 4\nexposures = \"together\"\ndetection = \"gradient\"\nthreshold_dn = 30\n\
+        place = \"sub_pixel\"\nleast_rows = 2\nmap_spacing_m = 0.2\nmap_points = 101\nobstacles_every_frames = 4\n\
+        cross_gaps = true\nscans = true\nscan_every_m = 3\nscan_steps = 21\nwheelbase_m = 1.5\ntrack_m = 1.1\n\
+        wheel_radius_m = 0.4\nwheel_width_m = 0.3\nclearance_m = 0.45\nposition_drift_m_per_s = [0.01, 0]\n\
+        position_walk_m = 0.02\nheading_drift_deg_per_s = 1\nattitude_noise_deg = 2\nproximity_noise_m = 0.03\n\
+        fix_every_frames = 50\nfix_noise_m = 0.1\nslope_front = 0.3\nslope_length = 0.25\ngrid_first_m = 0.9\n\
+        grid_last_m = 4\ngrid_step_m = 0.2\ngrid_half_angle_deg = 45\ngrid_sectors = 19\nvector_large_m = 1\n\
+        vector_small_m = 0.4\nscan_from_deg = -5\nscan_to_deg = 30\nscan_inconsistency_m = 0.2\n\
+        scan_least_points = 40\nheading_bias_deg = 1\npitch_bias_deg = -2\nroll_bias_deg = 3";
+    let job = job(FLAT, all);
+    let plan = &job.plan;
+    let route = &plan.route;
+    assert_eq!((route.speed, route.frame_rate, route.waypoints.len()), (0.5, 5.0, 2));
+    assert_eq!(route.turn_rate, 90.0_f64.to_radians());
+    assert_eq!((job.preset, job.sensor.seed, job.sensor.bits), ("cmos", 4, 12));
+    assert_eq!((plan.seed, plan.map.points, plan.map.spacing, plan.obstacles_every), (9, 101, 0.2, 4));
+    assert_eq!(plan.exposures, ExposureMode::Together);
+    assert_eq!(plan.extraction.detection, Detection::Gradient(30.0));
+    assert_eq!((plan.extraction.place, plan.extraction.least_rows), (StripeLocation::SubPixel, 2));
+    assert_eq!((plan.sweep.steps, plan.scans.unwrap().every), (21, Some(3.0)));
+    assert_eq!((plan.vehicle.wheelbase, plan.vehicle.track, plan.vehicle.clearance), (1.5, 1.1, 0.45));
+    // Rules that follow from the vehicle's measures follow from the given ones.
+    let mut rules = TraversabilityRules::for_vehicle(&plan.vehicle).crossing_gaps(&plan.vehicle);
+    (rules.slopes.front, rules.slopes.length) = (0.3, 0.25);
+    assert_eq!(plan.rules, rules);
+    let half_angle = 45.0_f64.to_radians();
+    assert_eq!(plan.grid, RadialGrid { sectors: 19, half_angle, first: 0.9, step: 0.2, last: 4.0 });
+    assert_eq!((plan.vectors.large, plan.vectors.small), (1.0, 0.4));
+    assert_eq!((plan.sweep.from, plan.sweep.to), ((-5.0_f64).to_radians(), 30.0_f64.to_radians()));
+    let scans = plan.scans.unwrap();
+    assert_eq!((scans.inconsistency, scans.least_points), (Some(0.2), 40));
+    let bias = plan.errors.attitude_bias;
+    let degrees = [bias.heading, bias.pitch_down, bias.roll_right].map(f64::to_degrees);
+    assert_eq!(degrees.map(f64::round), [1.0, -2.0, 3.0]);
+    assert_eq!(plan.errors.attitude_noise, 2.0_f64.to_radians());
+    assert_eq!(plan.errors.fixes.map(|fixes| (fixes.every_frames, fixes.noise)), Some((50, 0.1)));
+}
+
+#[test]
+fn every_key_of_the_camera_is_read() {
+    // Without keys: the preset, with the diffraction of this camera. Its f-number is 8 mm / 2 mm by default.
+    let preset = |name| raypencil_sensor::preset(name).unwrap();
+    let plain = job(FLAT, &format!("{SHORT}\nsensor = \"cmos\""));
+    assert_eq!((&plain.optics, plain.sensor), (&preset("cmos").0, preset("cmos").1));
+    let mut loaded = scene(FLAT, &format!("{SHORT}\nsensor = \"cmos\""));
+    let mut camera = *loaded.scene.camera();
+    camera.sensor.aperture = 1e-3;
+    let mesh = loaded.scene.mesh().clone();
+    let (beams, air) = (loaded.scene.beams().to_vec(), loaded.scene.atmosphere());
+    loaded.scene = Scene::new(mesh, camera, beams, air, loaded.scene.flux_model()).unwrap();
+    let small = DriveJob::new(&loaded, None, String::new()).unwrap();
+    assert_eq!(small.optics.blurs[0], Psf::Airy { wavelength: 810e-9, f_number: 8.0, rings: 8 });
+
+    // All keys.
+    let all = format!(
+        "{SHORT}\nsensor = \"ccd_1989\"\nsensor_seed = 3\n[drive.optics]\noversampling = 2\nfocus_m = 5\n\
+         blurs = [{{ gaussian_um = 2 }}, {{ airy_rings = 3 }}, {{ gaussian_px = 0.5 }}]\n\
+         dust = {{ transmission = 0.8, halo_share = 0.1, halo_px = 7 }}\n[drive.electronics]\nexposure_ms = 3\n\
+         quantum_efficiency = 0.6\nshot_noise = false\ndark_e_per_s = 9\ndark_at_c = 20\ndark_doubling_k = 5\n\
+         temperature_c = -40\nread_noise_e = 4\nprnu = 0.01\ndsnu_e = 2\nfull_well_e = 5e4\ngain_dn_per_e = 0.02\n\
+         bias_dn = 8\nbits = 10"
+    );
+    let own = job(FLAT, &all);
+    let blurs = vec![
+        Psf::Gaussian { sigma: ImageLength::Metres(1e-6 * 2.0) },
+        Psf::Airy { wavelength: 810e-9, f_number: 4.0, rings: 3 },
+        Psf::Gaussian { sigma: ImageLength::Pixels(0.5) },
+    ];
+    let dust = Dust { transmission: 0.8, halo_share: 0.1, halo_sigma: ImageLength::Pixels(7.0) };
+    assert_eq!(own.optics, Optics { oversampling: 2, focus: Some(5.0), blurs, dust: Some(dust) });
+    let dark_current = DarkCurrent {
+        rate: 9.0,
+        reference_temperature: 293.15,
+        doubling_kelvins: 5.0,
+        temperature: -40.0 + 273.15,
+    };
+    let sensor = ImageSensor {
+        exposure: 1e-3 * 3.0,
+        wavelength: 810e-9,
+        quantum_efficiency: 0.6,
+        shot_noise: false,
+        dark_current,
+        read_noise: 4.0,
+        prnu: 0.01,
+        dsnu: 2.0,
+        full_well: 5e4,
+        gain: 0.02,
+        bias: 8.0,
+        bits: 10,
+        seed: 3,
+    };
+    assert_eq!(own.sensor, sensor);
+
+    // A bias above 2^8 - 1; a focus at the focal length; a fine image of 1024 x 1024 pixels with 64 x 64 cells each.
+    let text = format!("{SHORT}\n[drive.electronics]\nbias_dn = 300\nbits = 8");
+    let error = DriveJob::new(&scene(FLAT, &text), None, String::new()).unwrap_err().to_string();
+    assert!(error.contains("drive.electronics.bias") && error.contains("300"), "{error}");
+    let text = format!("{SHORT}\n[drive.optics]\nfocus_m = 0.008");
+    let error = DriveJob::new(&scene(FLAT, &text), None, String::new()).unwrap_err().to_string();
+    assert!(error.contains("drive.optics.focus") && error.contains("beyond the focal length"), "{error}");
+    let huge = format!("{SHORT}\n[drive.optics]\noversampling = 64\n");
+    let mut loaded = scene(FLAT, &huge);
+    let mut camera = *loaded.scene.camera();
+    (camera.sensor.width, camera.sensor.height) = (1024, 1024);
+    let mesh = loaded.scene.mesh().clone();
+    let (beams, air) = (loaded.scene.beams().to_vec(), loaded.scene.atmosphere());
+    loaded.scene = Scene::new(mesh, camera, beams, air, loaded.scene.flux_model()).unwrap();
+    let error = DriveJob::new(&loaded, None, String::new()).unwrap_err();
+    assert!(error.to_string().contains("65536 x 65536 cells"), "{error}");
+}
+
+#[test]
+fn too_few_pencils_and_a_blind_threshold_give_warnings() {
+    let few = job(FLAT, &format!("{SHORT}\npencils_per_pixel = 1"));
+    assert_eq!(few.warnings.len(), 2);
+    assert!(few.warnings[0].contains("beam 0 has 1.01 pencils per pixel"), "{:?}", few.warnings);
+    // The default threshold does not take the sun or other electronics into account.
+    let warned = |more: &str| job(FLAT, &format!("{SHORT}\n{more}")).warnings;
+    let sun = "sun = { elevation_deg = 45 }";
+    assert!(warned(sun)[0].contains("is for the preset alone, without a sun"));
+    assert!(warned("electronics = { bias_dn = 9 }")[0].contains("other electronics"));
+    assert_eq!(warned(&format!("{sun}\nsubtract_unlit = true")).len(), 1);
+    for fine in ["threshold_dn = 3000", "detection = \"otsu\""] {
+        assert!(warned(&format!("{sun}\n{fine}")).is_empty(), "{fine}");
+    }
+    // A beam with enough columns keeps them.
+    let own = job(FLAT, &format!("{SHORT}\npencils_per_pixel = 0.3"));
+    assert!(own.notes.is_empty() && own.plan.rig.beams[0].sensor.columns == 64);
+}
+
+#[test]
+fn beams_out_of_order_give_a_warning() {
+    let beams = |first: f64, second: f64| {
+        let text = format!(
+            "version = 1\n[[beam]]\npitch_down_deg = {first}\n[[beam]]\npitch_down_deg = {second}\n{FLAT}\n\
+             [drive]\n{SHORT}\nexposures = \"together\"\n"
+        );
+        DriveJob::new(&load_text(&text, "beams").unwrap(), None, String::new()).unwrap().warnings
+    };
+    assert!(beams(31.0, 22.0).is_empty());
+    assert!(beams(22.0, 31.0)[0].starts_with("beam 0 is not steeper than beam 1"));
+}
+
+#[test]
+fn subtracting_an_unlit_image_removes_the_bias() {
+    let job = job(FLAT, &format!("{SHORT}\nsensor = \"cmos\"\nsubtract_unlit = true"));
+    // The threshold of 100 DN minus the bias of 60 DN.
+    assert_eq!(job.plan.extraction.detection, Detection::Fixed(40.0));
+    let mut flux = Image::filled(9, 7, 0.0);
+    flux.set(4, 4, 2e-11);
+    let background = Image::filled(9, 7, 1e-12);
+    let pair = job.sensor.expose_pair(&flux, Some(&background), 5);
+    assert_eq!(job.expose(&flux, Some(&background), 5), pair.difference);
+}
+
+#[test]
+fn scenes_without_a_drive_are_refused() {
+    let still = load_text(&format!("version = 1\n{FLAT}\n"), "still").unwrap();
+    let error = DriveJob::new(&still, None, String::new()).unwrap_err();
+    assert!(matches!(error, DriveError::NoDrive), "{error}");
+    let mut unit = scene(FLAT, SHORT);
+    unit.scene = Scene::new(
+        unit.scene.mesh().clone(),
+        *unit.scene.camera(),
+        unit.scene.beams().to_vec(),
+        unit.scene.atmosphere(),
+        FluxModel::Eq1,
+    )
+    .unwrap();
+    assert!(matches!(DriveJob::new(&unit, None, String::new()), Err(DriveError::Unit)));
+    let endless = job(FLAT, "waypoints_m = [[1e9, 0]]\nscans = false");
+    assert!(matches!(endless.frames(), Err(DriveError::Frames)));
+}
