@@ -4,10 +4,6 @@ use raypencil_report::number;
 use raypencil_rover::{OnVehicle, Rig};
 use raypencil_scene::Camera;
 
-/// Default number of pencils per pixel of the camera, along the fan. CHOICE: with fewer than two, some columns of the
-/// image see no pencil and the stripe has gaps; with four, it is unbroken on slanted ground, too.
-pub(crate) const PENCILS_PER_PIXEL: f64 = 4.0;
-
 /// Pencils per pixel below which a warning is given: the stripe has gaps.
 const MIN_PENCILS_PER_PIXEL: f64 = 2.0;
 

@@ -296,7 +296,7 @@ fn one_screen_is_one_screen() {
     let first = crowded.pairs[0].sensors[1].defects[0].clone();
     crowded.pairs[0].sensors[1].defects = vec![first; 100];
     for sensor in &mut crowded.pairs[0].sensors {
-        for (_, tally) in &mut sensor.items {
+        for tally in sensor.items.values_mut() {
             tally.by_class = [67_108_864, 1_000_000, 55_555, 0, 0, 99_999];
         }
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use raypencil_files::{FileError, write_npy};
 use raypencil_judge::{Answers, BeamLight, flux_channel, image_channel};
-use raypencil_scene::{FaceId, FluxModel, Image, Maybe, Pixel, Sample, SensorId};
+use raypencil_scene::{FaceId, FluxModel, HitQuantity, HitRaster, Image, Maybe, Pixel, Sample, SensorId};
 
 use crate::canonical_nan::CANONICAL_NAN;
 use crate::manifest::{ChannelType, FileRole, FileType, ManifestChannel, ManifestFile};
@@ -32,12 +32,18 @@ impl<'a> ArrayWriter<'a> {
         model: FluxModel,
     ) -> Result<Vec<ManifestFile>, FileError> {
         let map = answers.map(self.sensor);
-        for (name, image) in [("range.T", &map.range), ("depth.Z", &map.depth)] {
-            self.lengths(name, image.as_ref())?;
+        for quantity in HitQuantity::ALL {
+            let [name, ..] = quantity.channels() else { continue };
+            match map.raster(quantity) {
+                Some(HitRaster::Scalar(image)) if quantity.is_length() => self.lengths(name, Some(image))?,
+                Some(HitRaster::Scalar(image)) => self.cosines(name, Some(image))?,
+                // `P.X`, `P.Y` and `P.Z` are one array, `P`.
+                Some(HitRaster::Vector(image)) => {
+                    self.vectors(name.trim_end_matches(".X"), quantity.unit(), image)?;
+                }
+                None => {}
+            }
         }
-        self.vectors("P", "m", map.point.as_ref())?;
-        self.vectors("N", "1", map.normal.as_ref())?;
-        self.cosines("incidence.V", map.cos_incidence.as_ref())?;
         if let Some(faces) = &map.face {
             let index = |face: Maybe<FaceId>| face.get().map_or(u32::MAX, |FaceId(index)| index);
             self.integers("face.I", &convert(faces, index))?;
@@ -104,13 +110,7 @@ impl<'a> ArrayWriter<'a> {
     }
 
     /// Vectors as arrays of shape (rows, columns, 3); NaN where nothing is hit.
-    fn vectors(
-        &mut self,
-        name: &str,
-        unit: &str,
-        image: Option<&Image<Maybe<DVec3>>>,
-    ) -> Result<(), FileError> {
-        let Some(image) = image else { return Ok(()) };
+    fn vectors(&mut self, name: &str, unit: &str, image: &Image<Maybe<DVec3>>) -> Result<(), FileError> {
         let [x, y, z] = [0, 1, 2].map(|axis: usize| {
             convert(image, |cell: Maybe<DVec3>| cell.get().map_or(CANONICAL_NAN, |vector| vector[axis]))
         });

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_files::{Limits, Values, read_npy, write_npy};
-use raypencil_harness::contender;
 use raypencil_judge::{Class, GroundTruth, Quantity, Recorded, check};
 use raypencil_pack::{Checked, check_json, check_pack, check_screen, write_check};
-use raypencil_scene::{Precision, Request, Silent};
+use raypencil_scanline::Scanline;
+use raypencil_scene::{Precision, Renderer, Request, Silent};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
+use raypencil_tracer::Tracer;
 use serde_json::Value;
 
 const SCHEMA: &str = include_str!("../../../docs/formats/check.schema.json");
@@ -106,9 +107,10 @@ fn outputs_in_memory_are_judged_in_double_precision() {
     .expect("the pack's scene")
     .scene;
     let truth = GroundTruth::certified(&scene, &Silent);
-    for renderer in ["scanline", "tracer"] {
-        let output = contender(renderer).unwrap().renderer.render(&scene, &Request::EVERYTHING);
-        let mut recorded = Recorded::of_output(renderer, &scene, &output, Precision::F64);
+    let renderers: [&dyn Renderer; 2] = [&Scanline::default(), &Tracer::new()];
+    for renderer in renderers {
+        let output = renderer.render(&scene, &Request::EVERYTHING);
+        let mut recorded = Recorded::of_output(renderer.name(), &scene, &output, Precision::F64);
         let found = check(&truth, &recorded, &Silent);
         assert!(found.passes());
         let totals = found.totals();
@@ -120,7 +122,7 @@ fn outputs_in_memory_are_judged_in_double_precision() {
         };
         for quantity in Quantity::ALL {
             // The derived bounds leave room.
-            assert!(ratio(quantity) < 0.5, "{renderer}: {quantity} {}", ratio(quantity));
+            assert!(ratio(quantity) < 0.5, "{}: {quantity} {}", renderer.name(), ratio(quantity));
         }
         // Without faces the values are judged, and without the pencils' pixels the images.
         for map in &mut recorded.answers.maps {
@@ -134,7 +136,12 @@ fn outputs_in_memory_are_judged_in_double_precision() {
             !matches!(item.quantity, Quantity::Face | Quantity::Pixel | Quantity::Visible)
         });
         let found = check(&truth, &recorded, &Silent);
-        assert!(found.passes(), "{renderer}: {:?}", found.sensors.iter().find_map(|s| s.defects.first()));
+        assert!(
+            found.passes(),
+            "{}: {:?}",
+            renderer.name(),
+            found.sensors.iter().find_map(|s| s.defects.first())
+        );
         // An image that lacks a quarter of one pixel's flux is wrong nevertheless.
         let image = recorded.answers.light[0].image.as_mut().unwrap();
         let at = image.cells().iter().position(|flux| *flux > 0.0).unwrap();

@@ -1,5 +1,43 @@
-//! raypencil simulates a Mars rover's structured-light vision system twice, by two unlike algorithms, and proves what
-//! the right answer is wherever they differ. This crate is the one door to all of it.
+//! raypencil simulates a Mars rover's structured-light vision system twice, by two unlike algorithms, and proves in exact
+//! arithmetic which answer is right wherever the two differ. This crate is the one door to all of it.
+//!
+//! The words of the simulation ([`Scene`], [`Renderer`], [`RenderOutput`], [`Place`] ...) stand at the top, with the
+//! functions that a user calls first. Everything else is in modules:
+//!
+//! ```text
+//! load, validate, check              a scene from a file; two renderers compared; a recording against the truth
+//! Scanline, Tracer, ExactRenderer    the renderers; Referee, the exact judge
+//! io                                 files: scenes, meshes, NPY, PFM, EXR
+//! harness  judge  report             a validation: run, judged, reported; candidates; probe
+//! pack  diff  minimise  campaign     reference packs; any two recordings; the simplest scene; random terrains
+//! drive  rover  sensor  terrain      the rover: drives, maps, its image sensor, its ground
+//! ```
+//!
+//! ```
+//! use raypencil::harness::contender;
+//! use raypencil::io::{Subject, load_text};
+//! use raypencil::judge::JudgeShare;
+//! use raypencil::{Silent, validate};
+//!
+//! // The pyramids through a small camera and two small beams.
+//! let loaded = load_text(
+//!     "version = 1\n[terrain]\nbuiltin = \"pyramids\"\n[camera]\nwidth_px = 32\nheight_px = 24\npixel_pitch_um = 300\n\
+//!      [[beam]]\ncolumns = 64\nrows = 4\n[[beam]]\ncolumns = 64\nrows = 4\n",
+//!     "small",
+//! )?;
+//! let subject = Subject {
+//!     scene: loaded.scene,
+//!     name: loaded.name,
+//!     arguments: "small.toml".into(),
+//!     sha256: loaded.scene_sha256,
+//! };
+//! let renderers = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
+//! let validation = validate(subject, &renderers, JudgeShare::Sample, &Silent);
+//! // Every pixel and every pencil was compared, and nothing is wrong.
+//! assert_eq!(validation.counts().compared, 32 * 24 + 2 * 64 * 4);
+//! assert!(validation.passes());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub use raypencil_scene::*;
 
@@ -19,13 +57,27 @@ pub use {
 };
 
 /// Every file format, in and out: numbers (NPY, PFM, EXR), meshes (glTF, GeoTIFF), scenes (TOML).
+///
+/// ```
+/// use raypencil::io::{Overrides, load};
+///
+/// // The default rig on the built-in pyramids: 1024 x 1024 pixels, two beams of 1024 x 16 pencils.
+/// let scene = load("pyramids", &Overrides::default())?.scene;
+/// assert_eq!(scene.camera().sensor.width, 1024);
+/// assert_eq!(scene.beams().len(), 2);
+/// # Ok::<(), raypencil::io::SceneIoError>(())
+/// ```
 pub mod io {
     pub use raypencil_files::*;
     pub use raypencil_mesh_io::*;
     pub use raypencil_scene_io::*;
 }
 
-/// The README's example, compiled and run with the documentation tests.
+/// The example of the project's README and of this crate's, compiled and run with the documentation tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+mod readme {
+    #[doc = include_str!("../../../README.md")]
+    struct OfTheProject;
+    #[doc = include_str!("../README.md")]
+    struct OfTheCrate;
+}

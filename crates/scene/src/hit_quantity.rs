@@ -36,7 +36,7 @@ pub enum HitRaster<'a> {
     Vector(&'a Image<Maybe<DVec3>>),
 }
 
-/// The raster of one quantity, to be replaced.
+/// The raster of one quantity, for replacing it.
 #[derive(Debug)]
 pub enum HitRasterMut<'a> {
     /// One number for each cell.
@@ -50,7 +50,7 @@ impl HitQuantity {
     pub const ALL: [Self; 5] = [Self::Range, Self::Depth, Self::Point, Self::Normal, Self::CosIncidence];
 
     /// Names of the channels in files: one of a number, three of a vector.
-    pub fn channels(self) -> &'static [&'static str] {
+    pub const fn channels(self) -> &'static [&'static str] {
         match self {
             Self::Range => &["range.T"],
             Self::Depth => &["depth.Z"],

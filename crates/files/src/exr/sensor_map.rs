@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use glam::DVec3;
-use raypencil_scene::{FaceId, Image, Maybe, Sample, SensorId, SensorMap};
+use raypencil_scene::{
+    FaceId, HitQuantity, HitRaster, HitRasterMut, Image, Maybe, Quantities, Sample, SensorId, SensorMap,
+};
 
 use crate::error::{Fault, FileError};
 use crate::exr::map::{ExrMap, NO_VALUE, Raster, channel, convert};
@@ -14,18 +16,7 @@ use crate::limits::Limits;
 /// Face index of a cell without a hit.
 const NO_FACE: u32 = u32::MAX;
 
-const RANGE: &str = "range.T";
-
-const DEPTH: &str = "depth.Z";
-
 const FACE: &str = "face.I";
-
-const POINT: [&str; 3] = ["P.X", "P.Y", "P.Z"];
-
-const NORMAL: [&str; 3] = ["N.X", "N.Y", "N.Z"];
-
-/// Cosine of the incidence angle.
-const INCIDENCE: &str = "incidence.V";
 
 /// Text attributes of a file of sensor maps, beside the standard ones that follow from its channels.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -42,11 +33,16 @@ impl ExrMap {
     /// Channels of the quantities that `map` has, rounded to `f32`.
     pub fn from_sensor_map(map: &SensorMap, attributes: &Attributes) -> Self {
         let mut exr = Self::new(map.width, map.height);
-        exr.insert_scalar(RANGE, map.range.as_ref(), f32::INFINITY);
-        exr.insert_scalar(DEPTH, map.depth.as_ref(), f32::INFINITY);
-        exr.insert_vector(POINT, map.point.as_ref());
-        exr.insert_vector(NORMAL, map.normal.as_ref());
-        exr.insert_scalar(INCIDENCE, map.cos_incidence.as_ref(), NO_VALUE);
+        for quantity in HitQuantity::ALL {
+            let no_hit = if quantity.is_length() { f32::INFINITY } else { NO_VALUE };
+            match map.raster(quantity) {
+                Some(HitRaster::Scalar(image)) => {
+                    exr.insert_scalar(quantity.channels()[0], Some(image), no_hit);
+                }
+                Some(HitRaster::Vector(image)) => exr.insert_vector(quantity.channels(), image),
+                None => {}
+            }
+        }
         if let Some(faces) = &map.face {
             exr.insert(FACE, Raster::U32(convert(faces, |face| face.get().map_or(NO_FACE, |face| face.0))));
         }
@@ -82,30 +78,29 @@ impl ExrMap {
     /// Names `file` and the channel that has the wrong type, or is absent while one of its two siblings is present.
     pub fn to_sensor_map(&self, sensor: SensorId, file: &Path) -> Result<SensorMap, FileError> {
         let in_file = |fault: Fault| FileError::Exr(fault.in_file(file));
-        Ok(SensorMap {
-            sensor,
-            width: self.width,
-            height: self.height,
-            range: self.scalar(RANGE).map_err(in_file)?,
-            depth: self.scalar(DEPTH).map_err(in_file)?,
-            face: faces(self).map_err(in_file)?,
-            point: self.vector(POINT).map_err(in_file)?,
-            normal: self.vector(NORMAL).map_err(in_file)?,
-            cos_incidence: self.scalar(INCIDENCE).map_err(in_file)?,
-        })
+        let mut map = SensorMap::empty(sensor, self.width, self.height, Quantities::NONE);
+        for quantity in HitQuantity::ALL {
+            match map.raster_mut(quantity) {
+                HitRasterMut::Scalar(image) => {
+                    *image = self.scalar(quantity.channels()[0]).map_err(in_file)?;
+                }
+                HitRasterMut::Vector(image) => *image = self.vector(quantity.channels()).map_err(in_file)?,
+            }
+        }
+        map.face = faces(self).map_err(in_file)?;
+        Ok(map)
     }
 
-    /// Adds the three channels of a vector if there is one; cells without a value get NaN.
-    fn insert_vector(&mut self, names: [&str; 3], image: Option<&Image<Maybe<DVec3>>>) {
-        let Some(image) = image else { return };
-        for (axis, name) in names.into_iter().enumerate() {
+    /// Adds the three channels of a vector; cells without a value get NaN.
+    fn insert_vector(&mut self, names: &[&str], image: &Image<Maybe<DVec3>>) {
+        for (axis, name) in names.iter().enumerate() {
             let cells = convert(image, |cell| cell.get().map_or(NO_VALUE, |vector| vector[axis] as f32));
-            self.insert(name, Raster::F32(cells));
+            self.insert(*name, Raster::F32(cells));
         }
     }
 
     /// A vector from its three channels; cells that are not finite have no value. `None` without any of them.
-    fn vector(&self, names: [&str; 3]) -> Result<Option<Image<Maybe<DVec3>>>, Fault> {
+    fn vector(&self, names: &[&str]) -> Result<Option<Image<Maybe<DVec3>>>, Fault> {
         let parts = [self.reals(names[0])?, self.reals(names[1])?, self.reals(names[2])?];
         let [Some(x), Some(y), Some(z)] = parts else {
             return match (parts.iter().position(Option::is_some), parts.iter().position(Option::is_none)) {

@@ -1,10 +1,9 @@
 //! Elevation models: files made by hand and by an encoder are read back, malformed ones are refused by name.
 
-pub(crate) mod malformed;
-pub(crate) mod placement;
-pub(crate) mod samples;
-pub(crate) mod scenes;
-pub(crate) mod write;
+mod malformed;
+mod placement;
+mod samples;
+mod write;
 
 use std::path::Path;
 use write::Tiff;

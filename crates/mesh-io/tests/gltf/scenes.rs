@@ -158,13 +158,10 @@ fn a_real_yard() {
     assert_eq!(mesh.faces().len(), 504_512);
     let [low, high] = mesh.bounds().unwrap();
     assert!((low.z + 0.984).abs() < 5e-4 && (high.z - 5.591).abs() < 5e-4, "{low} {high}");
-    let loaded = raypencil_scene_io::load(path.to_str().unwrap(), &Default::default()).unwrap();
-    assert_eq!(loaded.name, "marsyard2021");
     eprintln!(
         "{} vertices, {} zero-area faces, {:?}",
         mesh.vertices().len(),
         mesh.zero_area_faces(),
         mesh.materials()
     );
-    eprintln!("vehicle at {}", loaded.vehicle.position);
 }

@@ -189,6 +189,6 @@ fn progress_reports_faces_and_trials() {
     let heard = Heard(Mutex::new(Vec::new()));
     minimise(&wall(), None, &|_, _| true, MINIMISE_BUDGET, &heard).unwrap();
     let heard = heard.0.into_inner().unwrap();
-    assert!(heard[0].starts_with("minimising, 4800 faces after 1 reducer: "), "{heard:?}");
+    assert!(heard[0].starts_with("minimising, 4800 faces after 1 trials: "), "{heard:?}");
     assert!(heard.iter().any(|what| what.contains(" 1 faces after ") && what.ends_with("shorter numbers")));
 }

@@ -3,7 +3,7 @@
 use raypencil_judge::{
     CHECK_CLASSES, Item, ItemTally, Largest, SensorResult, class_counts_json, key_of, unit_of,
 };
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::check::Checked;
 use crate::check_report::verdict::{arithmetic, verdict};

@@ -36,13 +36,13 @@ fn the_schema_refuses_faults() {
     let mut found = faults_of(&value);
     found.sort();
     let expected = [
-        "/files/0/sha256: \"00\" is no digest",
-        "/files/1/shape: too short",
-        "/format: 2 is not 1",
-        "/kind: \"secret\" is not one of [\"answers\",\"blind\"]",
-        "/scene: no \"name\"",
-        "/sensors/0/rows: 0 is below 1",
-        ": host is not in the schema",
+        "/files/0/sha256: \"00\" does not match \"^[0-9a-f]{64}$\"",
+        "/files/1/shape: [72] has less than 2 items",
+        "/format: 1 was expected",
+        "/kind: \"secret\" is not one of \"answers\" or \"blind\"",
+        "/scene: \"name\" is a required property",
+        "/sensors/0/rows: 0 is less than the minimum of 1",
+        ": Additional properties are not allowed ('host' was unexpected)",
     ];
     assert_eq!(found, expected);
 }

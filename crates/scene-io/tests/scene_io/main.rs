@@ -1,9 +1,14 @@
 //! Tests of the public functions: scenes from files and names, drives, resolved scenes, and files that are wrong.
 
 mod bad_scenes;
+mod dem;
 mod drives;
 mod resolved;
 mod scenes;
+/// The writer of elevation models that the tests of their reader use.
+#[allow(dead_code, reason = "these tests need a part of it")]
+#[path = "../../../mesh-io/tests/dem/write.rs"]
+mod tiff;
 
 use std::path::Path;
 

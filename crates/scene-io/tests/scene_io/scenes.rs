@@ -276,3 +276,16 @@ fn every_limit_of_every_key_is_within_the_limits_of_the_scene() {
     let scene = load_text(most).unwrap().scene;
     assert_eq!(scene.size(SensorId::Beam(0)), Some((64, 1_048_576)));
 }
+
+/// The mesh of MarsYard 2021 is not part of the project: the test needs RAYPENCIL_EXTRA_DATA, the folder with it.
+#[test]
+fn a_mesh_of_a_real_yard_is_a_scene_of_its_name() {
+    let path = std::env::var_os("RAYPENCIL_EXTRA_DATA")
+        .map(|folder| Path::new(&folder).join("marsyard2021.glb"))
+        .filter(|path| path.exists());
+    let Some(path) = path else {
+        eprintln!("skipped: RAYPENCIL_EXTRA_DATA names no folder with marsyard2021.glb");
+        return;
+    };
+    assert_eq!(load(path.to_str().unwrap(), &Overrides::default()).unwrap().name, "marsyard2021");
+}

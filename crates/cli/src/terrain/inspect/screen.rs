@@ -170,9 +170,7 @@ fn verdict(report: &Report) -> String {
         0 => format!("PASS {checks} checks found nothing{place}."),
         some => {
             let would = match &report.repaired {
-                None if is_repairable(last) => {
-                    " `--repair -o OUT.glb` repairs the faults with only one possible repair."
-                }
+                None if is_repairable(last) => " `--repair -o OUT.glb` repairs faults with only one repair.",
                 _ => "",
             };
             format!("FAIL {some} of {checks} checks found something{place}.{would}")

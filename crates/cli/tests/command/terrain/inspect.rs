@@ -56,7 +56,7 @@ fn faults_are_reported_on_one_screen() {
         "components: 1, 1 of them closed, which enclose 0.167 m3",
         "vertex 4 (5.000, 6.000, 7.000)",
         "face 3 (0.333, 0.333, 0.333)",
-        "FAIL 5 of 9 checks found something. `--repair -o OUT.glb` repairs the faults with only one possible repair.",
+        "FAIL 5 of 9 checks found something. `--repair -o OUT.glb` repairs faults with only one repair.",
     ] {
         assert!(shown.contains(words), "`{words}` is not in:\n{shown}");
     }

@@ -1,7 +1,7 @@
 //! Scenes on elevation models: alone, and named in a scene file.
 
-use crate::assert_names;
-use crate::write::{Double, Tiff};
+use crate::tiff::Tiff;
+use crate::tiff::Values::Double;
 use raypencil_mesh_io::{read_dem, write_terrain_glb};
 use raypencil_scene_io::{LoadedScene, Overrides, SceneIoError, SceneSource, load};
 
@@ -132,4 +132,10 @@ fn keys_that_are_wrong_are_marked() {
     let message =
         load_text(&folder, "dem = \"dem.tif\"\ndem_window_m = [0, 0, 1, 1]").unwrap_err().to_string();
     assert_names(&message, &["dem.tif: window: no post in x 0 to 1", "posts of x 100.5 to 140.5"]);
+}
+
+fn assert_names(message: &str, words: &[&str]) {
+    for word in words {
+        assert!(message.contains(word), "{message}\nhas no {word:?}");
+    }
 }
