@@ -70,7 +70,7 @@ impl Referee<'_> {
     /// use raypencil_referee::Referee;
     ///
     /// let scene = wall_scene();
-    /// let margins = Referee::new(&scene).sight_margins(0, 0, 0).unwrap();
+    /// let margins = Referee::new(&scene).visibility_margins(0, 0, 0).unwrap();
     /// // The point lands at (0.5, 4.5), half a pixel from each border.
     /// assert_eq!(margins.landing.map(|range| range.map(|pixels| pixels as f32)), Some([0.5; 2]));
     /// // The image ends half a pixel, 1/8 m on the wall, to the left. The pencil's cell is 1 m wide.

@@ -6,13 +6,13 @@ use crate::Switches;
 /// makes.
 ///
 /// ```
-/// use raypencil_scanline::{Fidelity, Options, Switches};
+/// use raypencil_scanline::{Fidelity, ScanlineOptions, Switches};
 ///
 /// // The default makes no approximation.
-/// assert_eq!(Options::default(), Options::EXACT);
+/// assert_eq!(ScanlineOptions::default(), ScanlineOptions::EXACT);
 /// // One approximation of the paper, all else exact.
 /// let switches = Switches { skip_rules: Fidelity::Paper, ..Switches::EXACT };
-/// let options = Options { switches, ..Options::EXACT };
+/// let options = ScanlineOptions { switches, ..ScanlineOptions::EXACT };
 /// assert_eq!(options.switches.count(), 1);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -65,11 +65,11 @@ impl Scanline {
     /// Otherwise the names of those that are the paper's follow: `scanline-paper-beam-edges`.
     ///
     /// ```
-    /// use raypencil_scanline::{Fidelity, Options, Scanline, Switches};
+    /// use raypencil_scanline::{Fidelity, ScanlineOptions, Scanline, Switches};
     /// use raypencil_scene::Renderer;
     ///
     /// let switches = Switches { beam_edges: Fidelity::Paper, ..Switches::EXACT };
-    /// let renderer = Scanline::new(Options { switches, ..Options::EXACT });
+    /// let renderer = Scanline::new(ScanlineOptions { switches, ..ScanlineOptions::EXACT });
     /// assert_eq!(renderer.name(), "scanline-paper-beam-edges");
     /// assert_eq!(Scanline::exact().name(), "scanline");
     /// ```

@@ -26,7 +26,7 @@ pub struct ConvolvedImage {
 /// use raypencil_sensor::{Kernel, convolve};
 ///
 /// // A quarter moves left, a quarter right; from the first cell the left quarter of 8 is lost.
-/// let kernel = Kernel::from_numbers(3, 1, &[1.0, 2.0, 1.0])?;
+/// let kernel = Kernel::from_weights(3, 1, &[1.0, 2.0, 1.0])?;
 /// let out = convolve(&Image::from_cells(3, 1, vec![8.0, 0.0, 4.0]), &kernel);
 /// assert_eq!(out.image.cells(), &[4.0, 3.0, 2.0]);
 /// assert_eq!(out.lost, 2.0 + 1.0);

@@ -32,9 +32,9 @@ impl Dust {
     ///
     /// ```
     /// use raypencil_scene::Image;
-    /// use raypencil_sensor::{Dust, Extent};
+    /// use raypencil_sensor::{Dust, ImageLength};
     ///
-    /// let dust = Dust { transmission: 0.9, halo_share: 0.25, halo_sigma: Extent::Pixels(2.0) };
+    /// let dust = Dust { transmission: 0.9, halo_share: 0.25, halo_sigma: ImageLength::Pixels(2.0) };
     /// let mut point = Image::filled(101, 101, 0.0);
     /// point.set(50, 50, 1.0);
     /// let dusted = dust.apply(&point, [9e-6, 9e-6]);

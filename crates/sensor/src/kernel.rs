@@ -12,7 +12,7 @@ use crate::airy::airy_pattern;
 /// use raypencil_sensor::Kernel;
 ///
 /// // Weights are normalised: 1 + 2 + 5 = 8.
-/// let kernel = Kernel::from_numbers(3, 1, &[1.0, 2.0, 5.0])?;
+/// let kernel = Kernel::from_weights(3, 1, &[1.0, 2.0, 5.0])?;
 /// assert_eq!([-1, 0, 1].map(|right| kernel.weight(right, 0)), [0.125, 0.25, 0.625]);
 /// // A Gaussian ends at 6 sigma.
 /// assert_eq!(Kernel::gaussian([2.0, 1.0]).half_widths(), [12, 6]);

@@ -12,12 +12,12 @@ use crate::Ground;
 /// ```
 /// use glam::{DVec2, DVec3};
 /// use raypencil_scene::Material;
-/// use raypencil_terrain::{Posts, height_at, simplify};
+/// use raypencil_terrain::{HeightGrid, height_at, simplify};
 ///
 /// // 9 x 9 posts, 0.5 m apart, on the plane z = x / 4.
 /// let heights = (0..81).map(|post| 0.125 * f64::from(post % 9)).collect();
 /// let posts =
-///     Posts { columns: 9, rows: 9, corner: DVec2::ZERO, spacing: DVec2::splat(0.5), heights };
+///     HeightGrid { columns: 9, rows: 9, corner: DVec2::ZERO, spacing: DVec2::splat(0.5), heights };
 /// // Column 4, row 2: x = 4 * 0.5 = 2, y = 2 * 0.5 = 1, z = 2 / 4.
 /// assert_eq!(posts.at(4, 2), DVec3::new(2.0, 1.0, 0.5));
 ///
