@@ -141,12 +141,10 @@ pub fn defective() -> Validation {
     let sensor = validation.pairs[0].sensors.last_mut().unwrap();
     sensor.by_class[Class::Agree as usize] -= 2;
     sensor.by_class[Class::Defect as usize] += 2;
-    for (item, tally) in &mut sensor.items {
-        let quantity = item.quantity;
-        if matches!(quantity, Quantity::Hit | Quantity::Range) {
-            tally.by_class[Class::Agree as usize] -= 1;
-            tally.by_class[Class::Defect as usize] += 1;
-        }
+    for quantity in [Quantity::Hit, Quantity::Range] {
+        let tally = sensor.items.entry(quantity.into());
+        tally.by_class[Class::Agree as usize] -= 1;
+        tally.by_class[Class::Defect as usize] += 1;
         if quantity == Quantity::Range {
             tally.worst_error = Some(Largest { value: f64::INFINITY, place: DEFECTS[1], ruling: None });
             tally.worst_ratio = Some(Largest { value: f64::NAN, place: DEFECTS[1], ruling: None });

@@ -1,10 +1,10 @@
 //! Both renderers and their outputs: hits, bits, differences.
 
-use glam::DVec3;
 use raypencil::scanline::Scanline;
 use raypencil::tracer::Tracer;
 use raypencil::{
-    FaceId, Hit, Image, Maybe, Pixel, RenderOutput, Renderer, Request, Sample, Scene, SensorId, SensorMap,
+    Hit, HitQuantity, HitRaster, HitValue, Image, Maybe, Pixel, RenderOutput, Renderer, Request, Scene,
+    SensorId, SensorMap,
 };
 
 /// New instances of both renderers.
@@ -22,24 +22,18 @@ pub fn render_both(scene: &Scene) -> [(String, RenderOutput); 2] {
 /// # Panics
 /// If only some quantities of the cell have a value, or if one was not rendered.
 pub fn hit(map: &SensorMap, i: u32, j: u32) -> Option<Hit> {
-    fn at<T: Sample>(raster: &Option<Image<Maybe<T>>>, i: u32, j: u32) -> Option<T> {
-        raster.as_ref().expect("every quantity was asked for").at(i, j).get()
-    }
-    let parts = (
-        at(&map.face, i, j),
-        at(&map.range, i, j),
-        at(&map.point, i, j),
-        at(&map.normal, i, j),
-        at(&map.depth, i, j),
-        at(&map.cos_incidence, i, j),
+    let face = map.face.as_ref().expect("every quantity was asked for").at(i, j).get();
+    let values = HitQuantity::ALL.map(|quantity| {
+        let raster = map.raster(quantity).expect("every quantity was asked for");
+        (quantity, raster.at(i, j))
+    });
+    let is_like_face = |(_, value): &(HitQuantity, Option<HitValue>)| value.is_some() == face.is_some();
+    assert!(
+        values.iter().all(is_like_face),
+        "{} {i},{j}: some quantities have a value, others have none: {face:?}, {values:?}",
+        map.sensor
     );
-    match parts {
-        (Some(face), Some(range), Some(point), Some(normal), Some(depth), Some(cos_incidence)) => {
-            Some(Hit { face, range, point, normal, depth, cos_incidence })
-        }
-        (None, None, None, None, None, None) => None,
-        _ => panic!("{} {i},{j}: some quantities have a value, others have none: {parts:?}", map.sensor),
-    }
+    map.hit(i, j)
 }
 
 /// The cells of a map with a hit, in reading order.
@@ -58,25 +52,24 @@ pub fn cells_missed(map: &SensorMap) -> Vec<(u32, u32)> {
 /// The bits of all maps of an output, in a fixed order. A miss is all ones.
 pub fn bits(output: &RenderOutput) -> Vec<u64> {
     const NOTHING: u64 = u64::MAX;
-    fn vector(value: Maybe<DVec3>) -> [u64; 3] {
-        value.get().map_or([NOTHING; 3], |v| v.to_array().map(f64::to_bits))
-    }
-    fn number(value: Maybe<f64>) -> u64 {
-        value.get().map_or(NOTHING, f64::to_bits)
-    }
-    fn cells<T: Copy>(raster: &Option<Image<T>>) -> &[T] {
-        raster.as_ref().expect("every quantity was asked for").cells()
-    }
     let mut bits = Vec::new();
     for map in output.maps() {
         bits.extend([u64::from(map.width), u64::from(map.height)]);
-        bits.extend(cells(&map.range).iter().map(|&value| number(value)));
-        bits.extend(cells(&map.depth).iter().map(|&value| number(value)));
-        let face = |value: Maybe<FaceId>| value.get().map_or(NOTHING, |face| u64::from(face.0));
-        bits.extend(cells(&map.face).iter().map(|&value| face(value)));
-        bits.extend(cells(&map.point).iter().flat_map(|&value| vector(value)));
-        bits.extend(cells(&map.normal).iter().flat_map(|&value| vector(value)));
-        bits.extend(cells(&map.cos_incidence).iter().map(|&value| number(value)));
+        for quantity in HitQuantity::ALL {
+            match map.raster(quantity).expect("every quantity was asked for") {
+                HitRaster::Scalar(image) => {
+                    bits.extend(image.cells().iter().map(|cell| cell.get().map_or(NOTHING, f64::to_bits)));
+                }
+                HitRaster::Vector(image) => bits.extend(image.cells().iter().flat_map(|cell| {
+                    cell.get().map_or([NOTHING; 3], |vector| vector.to_array().map(f64::to_bits))
+                })),
+            }
+            // Faces come after the two lengths, as in the committed digests.
+            if quantity == HitQuantity::Depth {
+                let faces = map.face.as_ref().expect("every quantity was asked for").cells();
+                bits.extend(faces.iter().map(|face| face.get().map_or(NOTHING, |face| u64::from(face.0))));
+            }
+        }
     }
     bits
 }

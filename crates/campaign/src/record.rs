@@ -134,7 +134,7 @@ impl PartRecord {
             for (mine, theirs) in record.by_class.iter_mut().zip(sensor.by_class) {
                 *mine += theirs;
             }
-            for (item, tally) in &sensor.items {
+            for (item, tally) in sensor.items.iter() {
                 totals[item.quantity as usize].1.add(tally);
             }
             let room = MAX_DESCRIBED_RAYS.saturating_sub(record.wrong.len());

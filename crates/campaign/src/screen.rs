@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use raypencil_judge::Class;
-use raypencil_report::{count, number};
+use raypencil_report::{Align, Table, count, number};
 
 use crate::merge::Merged;
 use crate::record::{PartName, probe_arguments};
@@ -25,49 +25,40 @@ pub fn campaign_screen(merged: &Merged) -> String {
         merged.campaign.seed,
         count(faces)
     );
-    let in_class = |by_class: &[u64; 6], class: Class| count(by_class[class as usize]);
-    let _ = writeln!(
-        text,
-        "{:<14}{:>15}{:>15}{:>10}{:>10}{:>10}{:>10}{:>8}",
-        "", "compared", "agree", "tie", "rounding", "approx.", "undecided", "defect"
-    );
+    let mut table = Table::new([Align::Left].into_iter().chain([Align::Right; 7]))
+        .with_gap(0)
+        .with_min_widths([14, 15, 15, 10, 10, 10, 10, 8]);
+    table.row(["", "compared", "agree", "tie", "rounding", "approx.", "undecided", "defect"]);
     let mut line = |name: &str, compared: u64, by_class: &[u64; 6]| {
-        let _ = writeln!(
-            text,
-            "{name:<14}{:>15}{:>15}{:>10}{:>10}{:>10}{:>10}{:>8}",
-            count(compared),
-            in_class(by_class, Class::Agree),
-            in_class(by_class, Class::Tie),
-            in_class(by_class, Class::Rounding),
-            in_class(by_class, Class::Approximation),
-            in_class(by_class, Class::Undecided),
-            in_class(by_class, Class::Defect)
-        );
+        let classes = [
+            Class::Agree,
+            Class::Tie,
+            Class::Rounding,
+            Class::Approximation,
+            Class::Undecided,
+            Class::Defect,
+        ];
+        let counts = classes.map(|class| count(by_class[class as usize]));
+        table.row([name.to_string(), count(compared)].into_iter().chain(counts));
     };
     for part in PartName::ALL {
         let total = CampaignTotal::of(merged, Some(part));
         line(part.word(), total.compared, &total.by_class);
     }
     line("all", all.compared, &all.by_class);
-    let _ = writeln!(text, "\n{} rays were judged exactly.\n", count(all.judged));
-    let _ = writeln!(text, "{:<14}{:>12}{:>10}  where", "", "error", "/bound");
+    let _ = writeln!(text, "{table}\n{} rays were judged exactly.\n", count(all.judged));
+    let columns = [Align::Left, Align::Right, Align::Right, Align::Left];
+    let mut table = Table::new(columns).with_gap(0).with_min_widths([14, 12, 10, 0]);
+    table.row(["", "error", "/bound", "  where"]);
     for (quantity, total) in &all.quantities {
         let (Some(error), Some(ratio)) = (total.worst_error, total.worst_ratio) else { continue };
         let value = |worst: WorstRay<'_>| worst.record.value.map_or("NaN".into(), number);
-        let _ = writeln!(
-            text,
-            "{:<14}{:>12}{:>10}  terrain {} {} {} {},{}",
-            quantity.to_string(),
-            value(error),
-            value(ratio),
-            ratio.terrain,
-            ratio.part.word(),
-            ratio.record.sensor,
-            ratio.record.i,
-            ratio.record.j
-        );
+        let WorstRay { terrain, part, record } = ratio;
+        let place = format!("{} {},{}", record.sensor, record.i, record.j);
+        let place = format!("  terrain {terrain} {} {place}", part.word());
+        table.row([quantity.to_string(), value(error), value(ratio), place]);
     }
-    text.push('\n');
+    let _ = writeln!(text, "{table}");
     for (terrain, part, ray) in wrong_rays(merged).take(MAX_LISTED_RAYS) {
         let _ = writeln!(
             text,

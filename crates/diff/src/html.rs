@@ -3,8 +3,8 @@
 use askama::Template;
 use raypencil_files::{Storage, Values};
 use raypencil_report::{
-    ColourMap, Picture, Reduction, Scale, Tick, VERSION, cells_axis, count, counted, number, page_head,
-    quantity, reduced_to, shape, stretch,
+    ColourMap, Picture, Reduction, Scale, Tick, VERSION, cells_axis, count, counted, max_side_of_pictures,
+    number, page_head, quantity, reduced_to, shape, stretch,
 };
 use raypencil_scene::{Image, Maybe};
 
@@ -17,15 +17,6 @@ const STYLE: &str = "table.classes td { white-space: nowrap; }\n";
 
 /// Maximum number of channels with pictures; the table has all channels.
 const MAX_PICTURED_CHANNELS: usize = 24;
-
-/// Maximum number of cells of all pictures together. They make a page of a few megabytes.
-const MAX_PICTURE_CELLS: u64 = 3_300_000;
-
-/// Maximum columns and rows of a picture: more than a page shows.
-const MAX_PICTURE_SIDE_CELLS: u32 = 1024;
-
-/// Side below which pictures are not reduced further to keep within [`MAX_PICTURE_CELLS`].
-const MIN_PICTURE_SIDE_CELLS: u32 = 32;
 
 /// Pictures of a channel: the difference, A and B.
 const PICTURES_PER_CHANNEL: u64 = 3;
@@ -90,7 +81,8 @@ struct Figure {
 pub(crate) fn html(difference: &Difference, sides: &Sides) -> Result<String, askama::Error> {
     let unequal = unequal(difference);
     let pictured = &unequal[..unequal.len().min(MAX_PICTURED_CHANNELS)];
-    let max_side = max_picture_side(pictured);
+    let sizes: Vec<(u32, u32)> = pictured.iter().map(|channel| (channel.width, channel.height)).collect();
+    let max_side = max_side_of_pictures(&sizes, PICTURES_PER_CHANNEL);
     let equal = difference.channels.iter().filter(|channel| channel.unequal == 0);
     let more = unequal.len() - pictured.len();
     let headline = headline(difference);
@@ -113,22 +105,6 @@ pub(crate) fn html(difference: &Difference, sides: &Sides) -> Result<String, ask
         more: if more > 0 { counted(more as u64, "more channel", "more channels") } else { String::new() },
     };
     page.render()
-}
-
-/// The largest side of a picture that keeps all pictures within [`MAX_PICTURE_CELLS`].
-fn max_picture_side(channels: &[&ChannelDifference]) -> u32 {
-    let cells = |max_side: u32| -> u64 {
-        let drawn = channels.iter().map(|channel| {
-            let Reduction { columns, rows } = Reduction::to_fit(channel.width, channel.height, max_side);
-            u64::from(channel.width.div_ceil(columns)) * u64::from(channel.height.div_ceil(rows))
-        });
-        PICTURES_PER_CHANNEL * drawn.sum::<u64>()
-    };
-    let mut max_side = MAX_PICTURE_SIDE_CELLS;
-    while max_side > MIN_PICTURE_SIDE_CELLS && cells(max_side) > MAX_PICTURE_CELLS {
-        max_side /= 2;
-    }
-    max_side
 }
 
 /// A channel's line of the table.

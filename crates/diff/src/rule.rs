@@ -77,12 +77,12 @@ struct ClassLookup<'a> {
 
 impl<'a> ClassLookup<'a> {
     fn new(check: &'a Check) -> Self {
-        let items = check.sensors.iter().flat_map(|sensor| &sensor.items);
+        let items = check.sensors.iter().flat_map(|sensor| sensor.items.iter());
         let others = items.flat_map(|(item, tally)| {
-            tally.others.iter().map(move |(place, class)| ((*item, *place), *class))
+            tally.others.iter().map(move |(place, class)| ((item, *place), *class))
         });
-        let items = check.sensors.iter().flat_map(|sensor| &sensor.items);
-        let unjudged = items.flat_map(|(item, tally)| tally.unjudged.iter().map(|place| (*item, *place)));
+        let items = check.sensors.iter().flat_map(|sensor| sensor.items.iter());
+        let unjudged = items.flat_map(|(item, tally)| tally.unjudged.iter().map(move |place| (item, *place)));
         let wrong = check.sensors.iter().flat_map(|sensor| &sensor.defects).map(|one| (one.place, one));
         Self { others: others.collect(), unjudged: unjudged.collect(), wrong: wrong.collect() }
     }

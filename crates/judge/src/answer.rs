@@ -1,8 +1,6 @@
 //! What a side states of one ray's hit and of one pencil's return. A side is a renderer or a recording.
 
-use glam::DVec3;
-
-use raypencil_scene::{FaceId, Image, Maybe, Pixel, Returns, Sample, SensorMap};
+use raypencil_scene::{FaceId, HitQuantity, HitValue, Image, Maybe, Pixel, Returns, Sample, SensorMap};
 
 fn at<T: Sample>(image: &Option<Image<Maybe<T>>>, i: u32, j: u32) -> Option<T> {
     image.as_ref().and_then(|image| image.at(i, j).get())
@@ -16,46 +14,41 @@ pub(crate) struct StatedHit {
     /// Whether the map has a channel of faces.
     pub(crate) names_faces: bool,
     pub(crate) face: Option<FaceId>,
-    pub(crate) range: Option<f64>,
-    pub(crate) depth: Option<f64>,
-    pub(crate) point: Option<DVec3>,
-    pub(crate) normal: Option<DVec3>,
-    pub(crate) cos_incidence: Option<f64>,
+    /// In the order of [`HitQuantity::ALL`].
+    values: [Option<HitValue>; HitQuantity::COUNT],
 }
 
 impl StatedHit {
     /// The answer to ray (i, j) of a map.
     pub(crate) fn of(map: &SensorMap, i: u32, j: u32) -> Self {
-        Self {
-            has_channels: map.face.is_some()
-                || map.range.is_some()
-                || map.depth.is_some()
-                || map.point.is_some()
-                || map.normal.is_some()
-                || map.cos_incidence.is_some(),
-            names_faces: map.face.is_some(),
-            face: at(&map.face, i, j),
-            range: at(&map.range, i, j),
-            depth: at(&map.depth, i, j),
-            point: at(&map.point, i, j),
-            normal: at(&map.normal, i, j),
-            cos_incidence: at(&map.cos_incidence, i, j),
-        }
+        let names_faces = map.face.is_some();
+        let mut has_channels = names_faces;
+        let values = HitQuantity::ALL.map(|quantity| {
+            let raster = map.raster(quantity);
+            has_channels |= raster.is_some();
+            raster.and_then(|raster| raster.at(i, j))
+        });
+        Self { has_channels, names_faces, face: at(&map.face, i, j), values }
+    }
+
+    /// The value of a quantity.
+    pub(crate) fn value(&self, quantity: HitQuantity) -> Option<HitValue> {
+        self.values[quantity as usize]
+    }
+
+    /// The range, metres.
+    pub(crate) fn range(&self) -> Option<f64> {
+        self.value(HitQuantity::Range)?.scalar()
     }
 
     /// Whether a renderer's ray hits: by its range or its face.
     pub(crate) fn hits(&self) -> bool {
-        self.range.is_some() || self.face.is_some()
+        self.range().is_some() || self.face.is_some()
     }
 
     /// Whether a recording's ray hits, by any of its values; `None` if the recording has no channel.
     pub(crate) fn hits_by_any_value(&self) -> Option<bool> {
-        let hits = self.hits()
-            || self.depth.is_some()
-            || self.point.is_some()
-            || self.normal.is_some()
-            || self.cos_incidence.is_some();
-        self.has_channels.then_some(hits)
+        self.has_channels.then_some(self.face.is_some() || self.values.iter().any(Option::is_some))
     }
 }
 

@@ -25,7 +25,9 @@
 use glam::DVec3;
 
 use crate::answer::{StatedHit, StatedReturn};
-use raypencil_scene::{Beam, FaceId, Filter, FluxModel, Hit, Mesh, Precision, Profile, Ray, Return, Scene};
+use raypencil_scene::{
+    Beam, FaceId, Filter, FluxModel, Hit, HitQuantity, HitValue, Mesh, Precision, Profile, Ray, Return, Scene,
+};
 
 /// Roundings of the range: |dR| <= RANGE_ROUNDINGS kappa u S / c.
 const RANGE_ROUNDINGS: f64 = 36.0;
@@ -79,6 +81,16 @@ impl HitBounds {
     /// The bounds for an exact hit along `ray`.
     pub(crate) fn of_exact(scene: &Scene, ray: &Ray, hit: &Hit, precision: Precision) -> Self {
         Self::of(scene.mesh(), hit.face, ray, hit.range, precision)
+    }
+
+    /// The bound of one quantity, in its unit.
+    pub(crate) fn of_quantity(&self, quantity: HitQuantity) -> f64 {
+        match quantity {
+            HitQuantity::Range | HitQuantity::Depth => self.range,
+            HitQuantity::Point => self.point,
+            HitQuantity::Normal => self.normal,
+            HitQuantity::CosIncidence => self.cos_incidence,
+        }
     }
 
     /// How far two renderers with these bounds may differ.
@@ -154,12 +166,12 @@ impl ReturnValues {
     pub(crate) fn of_stated(scene: &Scene, hit: &StatedHit, stated: &StatedReturn) -> Option<Self> {
         let (depth, cos_off_axis) = (stated.depth?, stated.cos_off_axis?);
         Some(Self {
-            range: hit.range?,
-            cos_incidence: hit.cos_incidence?,
+            range: hit.range()?,
+            cos_incidence: hit.value(HitQuantity::CosIncidence)?.scalar()?,
             depth,
             cos_off_axis,
             cos_view: stated.cos_view?,
-            distance: match hit.point {
+            distance: match hit.value(HitQuantity::Point).and_then(HitValue::vector) {
                 Some(point) => point.distance(scene.camera().scene_from_sensor.position),
                 None => (depth / cos_off_axis).abs(),
             },

@@ -1,11 +1,9 @@
 //! How far a stated value is from another one, and how far it may be.
 
-use glam::DVec3;
-
 use crate::answer::{StatedHit, StatedReturn};
 use crate::bounds::{HitBounds, ReturnBounds};
 use crate::quantity::{Item, Quantity};
-use raypencil_scene::{Hit, Return};
+use raypencil_scene::{Hit, HitQuantity, HitValue, Return};
 
 /// Error of one value of one ray.
 #[derive(Debug, Clone, Copy)]
@@ -39,28 +37,12 @@ impl Difference {
     }
 }
 
-/// A number, or a vector of three.
-#[derive(Debug, Clone, Copy)]
-enum Components {
-    Scalar([f64; 1]),
-    Vector([f64; 3]),
-}
-
-impl Components {
-    fn as_slice(&self) -> &[f64] {
-        match self {
-            Self::Scalar(components) => components,
-            Self::Vector(components) => components,
-        }
-    }
-}
-
 /// A stated value beside the exact one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StatedValue {
     pub(crate) item: Item,
-    stated: Components,
-    exact: Components,
+    stated: HitValue,
+    exact: HitValue,
     /// Error that the arithmetic explains.
     pub(crate) bound: f64,
 }
@@ -68,38 +50,28 @@ pub(crate) struct StatedValue {
 impl StatedValue {
     /// A number; `None` if it is not stated.
     pub(crate) fn scalar(item: impl Into<Item>, stated: Option<f64>, exact: f64, bound: f64) -> Option<Self> {
-        let stated = Components::Scalar([stated?]);
-        Some(Self { item: item.into(), stated, exact: Components::Scalar([exact]), bound })
-    }
-
-    fn vector(quantity: Quantity, stated: Option<DVec3>, exact: DVec3, bound: f64) -> Option<Self> {
-        let [stated, exact] = [stated?, exact].map(|vector| Components::Vector(vector.to_array()));
-        Some(Self { item: quantity.into(), stated, exact, bound })
+        let [stated, exact] = [stated?, exact].map(HitValue::Scalar);
+        Some(Self { item: item.into(), stated, exact, bound })
     }
 
     /// Whether it is a number.
     pub(crate) fn is_scalar(&self) -> bool {
-        matches!(self.stated, Components::Scalar(_))
+        matches!(self.stated, HitValue::Scalar(_))
     }
 
     /// Each component, stated and exact.
-    pub(crate) fn components(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.stated.as_slice().iter().copied().zip(self.exact.as_slice().iter().copied())
+    pub(crate) fn components(&self) -> impl ExactSizeIterator<Item = (f64, f64)> {
+        components_of(&self.stated, &self.exact)
     }
 
-    /// Length of a vector of the components' errors, or of what else belongs to each of them. A single one is its own
-    /// length: its square may vanish or overflow.
+    /// Length of a vector of what belongs to each component.
     pub(crate) fn length(&self, of_component: impl Fn(f64, f64) -> f64) -> f64 {
-        let mut lengths = self.components().map(|(stated, exact)| of_component(stated, exact));
-        match self.stated {
-            Components::Scalar(_) => lengths.next().unwrap_or(0.0),
-            Components::Vector(_) => lengths.fold(0.0, |sum, length| sum + length * length).sqrt(),
-        }
+        length(self.components().map(|(stated, exact)| of_component(stated, exact)))
     }
 
     /// Absolute error.
     pub(crate) fn error(&self) -> f64 {
-        self.length(|stated, exact| (stated - exact).abs())
+        distance(&self.stated, &self.exact)
     }
 
     /// The difference, the value not having been stored.
@@ -108,21 +80,35 @@ impl StatedValue {
     }
 }
 
+fn components_of<'v>(a: &'v HitValue, b: &'v HitValue) -> impl ExactSizeIterator<Item = (f64, f64)> + 'v {
+    a.components().iter().copied().zip(b.components().iter().copied())
+}
+
+/// Length of a vector. A single component is its own length: its square may vanish or overflow.
+fn length(mut components: impl ExactSizeIterator<Item = f64>) -> f64 {
+    match components.len() {
+        1 => components.next().unwrap_or(0.0),
+        _ => components.fold(0.0, |sum, component| sum + component * component).sqrt(),
+    }
+}
+
+/// Distance of two values of one quantity, in its unit.
+pub(crate) fn distance(a: &HitValue, b: &HitValue) -> f64 {
+    length(components_of(a, b).map(|(a, b)| (a - b).abs()))
+}
+
 /// The stated values of a hit beside those of an exact hit.
 pub(crate) fn hit_values(stated: &StatedHit, exact: &Hit, bounds: &HitBounds) -> Vec<StatedValue> {
-    let values = [
-        StatedValue::scalar(Quantity::Range, stated.range, exact.range, bounds.range),
-        StatedValue::scalar(Quantity::Depth, stated.depth, exact.depth, bounds.range),
-        StatedValue::vector(Quantity::Point, stated.point, exact.point, bounds.point),
-        StatedValue::vector(Quantity::Normal, stated.normal, exact.normal, bounds.normal),
-        StatedValue::scalar(
-            Quantity::CosIncidence,
-            stated.cos_incidence,
-            exact.cos_incidence,
-            bounds.cos_incidence,
-        ),
-    ];
-    values.into_iter().flatten().collect()
+    let value = |quantity: HitQuantity| {
+        let (stated, exact) = (stated.value(quantity)?, exact.value(quantity));
+        Some(StatedValue {
+            item: Quantity::from(quantity).into(),
+            stated,
+            exact,
+            bound: bounds.of_quantity(quantity),
+        })
+    };
+    HitQuantity::ALL.into_iter().filter_map(value).collect()
 }
 
 /// The stated values of a return, but for its flux, beside those of an exact return.

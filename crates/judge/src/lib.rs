@@ -111,4 +111,6 @@ pub use recorded::Recorded;
 pub use recorded::error::RecordingError;
 pub use recorded::names::{flux_channel, image_channel, item_of_channel};
 pub use scene_answers::{Answers, BeamLight, Certified};
-pub use tally::{ApproximationTallies, ApproximationTally, Defect, ItemTally, Largest, SensorResult};
+pub use tally::{
+    ApproximationTallies, ApproximationTally, Defect, ItemTallies, ItemTally, Largest, SensorResult,
+};

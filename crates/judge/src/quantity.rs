@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-use raypencil_scene::{FluxModel, SensorId};
+use raypencil_scene::{FluxModel, HitQuantity, SensorId};
 
 /// What is judged of each ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -97,6 +97,18 @@ impl Quantity {
             | Self::CosView
             | Self::PencilFlux => sensor != SensorId::Camera,
             Self::PixelFlux => sensor == SensorId::Camera,
+        }
+    }
+}
+
+impl From<HitQuantity> for Quantity {
+    fn from(quantity: HitQuantity) -> Self {
+        match quantity {
+            HitQuantity::Range => Self::Range,
+            HitQuantity::Depth => Self::Depth,
+            HitQuantity::Point => Self::Point,
+            HitQuantity::Normal => Self::Normal,
+            HitQuantity::CosIncidence => Self::CosIncidence,
         }
     }
 }

@@ -33,17 +33,9 @@ pub struct BeamLight {
 impl Answers {
     /// Answers without any channel.
     pub(crate) fn none(scene: &Scene) -> Self {
-        let nothing = Quantities {
-            range: false,
-            depth: false,
-            face: false,
-            point: false,
-            normal: false,
-            cos_incidence: false,
-        };
         let maps = scene.sensors().map(|sensor| {
             let (width, height) = scene.size(sensor).expect("a sensor of this scene");
-            SensorMap::empty(sensor, width, height, nothing)
+            SensorMap::empty(sensor, width, height, Quantities::NONE)
         });
         let light = scene.beams().iter().map(|beam| BeamLight {
             returns: Returns::unsupported(beam.sensor.columns, beam.sensor.rows),

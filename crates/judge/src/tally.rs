@@ -98,6 +98,53 @@ fn add_counts(counts: &mut ClassCounts, later: &ClassCounts) {
     }
 }
 
+/// The tally of each item that was asked about, in the order of items.
+///
+/// A quantity without a beam and by the scene's model is found by its index, since each ray enters a dozen of them; the
+/// rest, the fluxes of single beams and of the other model, are few.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ItemTallies {
+    /// In the order of [`Quantity::ALL`].
+    of_quantities: [Option<Box<ItemTally>>; Quantity::ALL.len()],
+    of_fluxes: BTreeMap<Item, ItemTally>,
+}
+
+impl ItemTallies {
+    /// The tally of an item, if it was asked about.
+    pub fn get(&self, item: Item) -> Option<&ItemTally> {
+        if item == Item::from(item.quantity) {
+            self.of_quantities[item.quantity as usize].as_deref()
+        } else {
+            self.of_fluxes.get(&item)
+        }
+    }
+
+    /// The tally of an item, which is asked about from now on.
+    pub fn entry(&mut self, item: Item) -> &mut ItemTally {
+        if item == Item::from(item.quantity) {
+            self.of_quantities[item.quantity as usize].get_or_insert_default()
+        } else {
+            self.of_fluxes.entry(item).or_default()
+        }
+    }
+
+    /// Each item and its tally.
+    pub fn iter(&self) -> impl Iterator<Item = (Item, &ItemTally)> {
+        Quantity::ALL.into_iter().flat_map(|quantity| {
+            let plain = self.of_quantities[quantity as usize].as_deref();
+            let of_quantity = move |item: &Item| item.quantity == quantity;
+            let fluxes = self.of_fluxes.iter().filter(move |(item, _)| of_quantity(item));
+            let plain = plain.map(|tally| (Item::from(quantity), tally));
+            plain.into_iter().chain(fluxes.map(|(item, tally)| (*item, tally)))
+        })
+    }
+
+    /// Each tally, to be changed; not in the order of items.
+    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut ItemTally> {
+        self.of_quantities.iter_mut().flatten().map(|tally| &mut **tally).chain(self.of_fluxes.values_mut())
+    }
+}
+
 /// Effect of one set of the paper's approximations on a sensor's rays.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ApproximationTally {
@@ -154,7 +201,7 @@ pub struct SensorResult {
     /// those that agree.
     pub judged: u64,
     /// Each quantity. `compare` has all of [`Quantity::ALL`], `check` those that were asked about.
-    pub items: BTreeMap<Item, ItemTally>,
+    pub items: ItemTallies,
     /// The first defects, in reading order.
     pub defects: Vec<Defect>,
     /// `compare`: rays of [`Class::Approximation`] by cause. They add up to that class.
@@ -171,7 +218,7 @@ impl SensorResult {
             by_class: [0; Class::COUNT],
             not_compared: 0,
             judged: 0,
-            items: BTreeMap::new(),
+            items: ItemTallies::default(),
             defects: Vec::new(),
             approximations: BTreeMap::new(),
             range_difference: None,
@@ -180,8 +227,11 @@ impl SensorResult {
 
     /// The same with a tally of every quantity: reports of `compare` list also those that a sensor does not have.
     pub(crate) fn with_all_quantities(sensor: SensorId) -> Self {
-        let items = Quantity::ALL.map(|quantity| (quantity.into(), ItemTally::default())).into();
-        Self { items, ..Self::new(sensor) }
+        let mut result = Self::new(sensor);
+        for quantity in Quantity::ALL {
+            result.tally(quantity.into());
+        }
+        result
     }
 
     /// Rays of which anything was compared: the sum of the classes.
@@ -196,7 +246,7 @@ impl SensorResult {
 
     /// The tally of an item.
     pub(crate) fn tally(&mut self, item: Item) -> &mut ItemTally {
-        self.items.entry(item).or_default()
+        self.items.entry(item)
     }
 
     /// Describes a defect, if there are not too many yet.
@@ -211,8 +261,8 @@ impl SensorResult {
         add_counts(&mut self.by_class, &later.by_class);
         self.not_compared += later.not_compared;
         self.judged += later.judged;
-        for (item, tally) in later.items {
-            self.tally(item).add(&tally);
+        for (item, tally) in later.items.iter() {
+            self.tally(item).add(tally);
         }
         let room = MAX_DEFECTS_DESCRIBED.saturating_sub(self.defects.len());
         self.defects.extend(later.defects.into_iter().take(room));

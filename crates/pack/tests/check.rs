@@ -69,8 +69,13 @@ fn the_json_keeps_to_its_schema() {
     // A report with a defect and an unknown channel.
     checked.check.sensors[0].by_class[Class::Defect as usize] = 1;
     checked.recorded.unknown.push("camera/mine".into());
-    let largest =
-        checked.check.sensors[0].items[&Quantity::Range.into()].worst_ulps.clone().expect("compared");
+    let largest = checked.check.sensors[0]
+        .items
+        .get(Quantity::Range.into())
+        .unwrap()
+        .worst_ulps
+        .clone()
+        .expect("compared");
     checked.check.sensors[0].defects.push(raypencil_judge::Defect {
         place: largest.place,
         item: Quantity::Range.into(),
@@ -87,7 +92,7 @@ fn classes_add_up_and_a_perfect_candidate_has_no_error() {
     assert!(check.passes());
     for sensor in &check.sensors {
         assert_eq!(sensor.compared(), sensor.by_class[Class::Agree as usize]);
-        for (item, tally) in &sensor.items {
+        for (item, tally) in sensor.items.iter() {
             assert!(tally.compared() <= sensor.compared(), "{item:?}");
             assert!(tally.others.is_empty(), "{item:?}");
             assert!(

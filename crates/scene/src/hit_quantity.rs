@@ -1,8 +1,9 @@
-//! The values of a hit and their channels in files: one table, which files, packs and recordings follow.
+//! The values of a hit and their channels in files: one table, which files, packs, recordings, comparisons and probes
+//! follow.
 
 use glam::DVec3;
 
-use crate::{Image, Maybe, SensorMap};
+use crate::{FaceId, Hit, Image, Maybe, SensorMap};
 
 /// A value of a hit that is a number or a vector. (The face is an index and has channels of its own kind.)
 ///
@@ -27,6 +28,49 @@ pub enum HitQuantity {
     CosIncidence,
 }
 
+/// The value of one quantity of one hit.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::HitValue;
+///
+/// assert_eq!(HitValue::Scalar(2.5).components(), [2.5]);
+/// assert_eq!(HitValue::Vector(DVec3::X).components(), [1.0, 0.0, 0.0]);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HitValue {
+    /// A number.
+    Scalar(f64),
+    /// A vector.
+    Vector(DVec3),
+}
+
+impl HitValue {
+    /// The number, or the three components of the vector.
+    pub fn components(&self) -> &[f64] {
+        match self {
+            Self::Scalar(number) => std::slice::from_ref(number),
+            Self::Vector(vector) => AsRef::<[f64; 3]>::as_ref(vector),
+        }
+    }
+
+    /// The number; `None` if it is a vector.
+    pub fn scalar(self) -> Option<f64> {
+        match self {
+            Self::Scalar(number) => Some(number),
+            Self::Vector(_) => None,
+        }
+    }
+
+    /// The vector; `None` if it is a number.
+    pub fn vector(self) -> Option<DVec3> {
+        match self {
+            Self::Scalar(_) => None,
+            Self::Vector(vector) => Some(vector),
+        }
+    }
+}
+
 /// The raster of one quantity of a sensor's maps.
 #[derive(Debug, Clone, Copy)]
 pub enum HitRaster<'a> {
@@ -34,6 +78,16 @@ pub enum HitRaster<'a> {
     Scalar(&'a Image<Maybe<f64>>),
     /// One vector for each cell.
     Vector(&'a Image<Maybe<DVec3>>),
+}
+
+impl HitRaster<'_> {
+    /// The value of cell (i, j); `None` where nothing is hit.
+    pub fn at(&self, i: u32, j: u32) -> Option<HitValue> {
+        match self {
+            Self::Scalar(image) => image.at(i, j).get().map(HitValue::Scalar),
+            Self::Vector(image) => image.at(i, j).get().map(HitValue::Vector),
+        }
+    }
 }
 
 /// The raster of one quantity, for replacing it.
@@ -48,6 +102,9 @@ pub enum HitRasterMut<'a> {
 impl HitQuantity {
     /// All of them, in the order of files.
     pub const ALL: [Self; 5] = [Self::Range, Self::Depth, Self::Point, Self::Normal, Self::CosIncidence];
+
+    /// How many there are.
+    pub const COUNT: usize = Self::ALL.len();
 
     /// Names of the channels in files: one of a number, three of a vector.
     pub const fn channels(self) -> &'static [&'static str] {
@@ -72,9 +129,52 @@ impl HitQuantity {
     pub fn is_length(self) -> bool {
         matches!(self, Self::Range | Self::Depth)
     }
+
+    /// Whether it is a vector.
+    pub fn is_vector(self) -> bool {
+        self.channels().len() == 3
+    }
+
+    /// Whether it belongs to the point that is hit. Two faces that meet there share it; what belongs to the face, as
+    /// its normal, they do not.
+    pub fn is_of_point(self) -> bool {
+        match self {
+            Self::Range | Self::Depth | Self::Point => true,
+            Self::Normal | Self::CosIncidence => false,
+        }
+    }
+}
+
+impl Hit {
+    /// The value of a quantity.
+    pub fn value(&self, quantity: HitQuantity) -> HitValue {
+        match quantity {
+            HitQuantity::Range => HitValue::Scalar(self.range),
+            HitQuantity::Depth => HitValue::Scalar(self.depth),
+            HitQuantity::Point => HitValue::Vector(self.point),
+            HitQuantity::Normal => HitValue::Vector(self.normal),
+            HitQuantity::CosIncidence => HitValue::Scalar(self.cos_incidence),
+        }
+    }
 }
 
 impl SensorMap {
+    /// The hit of cell (i, j); `None` where nothing is hit, or where the maps lack a quantity.
+    pub fn hit(&self, i: u32, j: u32) -> Option<Hit> {
+        fn at<T: crate::Sample>(image: &Option<Image<Maybe<T>>>, i: u32, j: u32) -> Option<T> {
+            image.as_ref()?.at(i, j).get()
+        }
+        let face: FaceId = at(&self.face, i, j)?;
+        Some(Hit {
+            face,
+            range: at(&self.range, i, j)?,
+            point: at(&self.point, i, j)?,
+            normal: at(&self.normal, i, j)?,
+            depth: at(&self.depth, i, j)?,
+            cos_incidence: at(&self.cos_incidence, i, j)?,
+        })
+    }
+
     /// The raster of a quantity, if the maps have it.
     pub fn raster(&self, quantity: HitQuantity) -> Option<HitRaster<'_>> {
         match quantity {

@@ -62,7 +62,7 @@ pub use approximations::{Fidelity, Switches, UnknownSwitch};
 pub use beam::{Beam, Profile};
 pub use camera::{Camera, Filter, Lens};
 pub use error::{SceneError, check_count, check_range};
-pub use hit_quantity::{HitQuantity, HitRaster, HitRasterMut};
+pub use hit_quantity::{HitQuantity, HitRaster, HitRasterMut, HitValue};
 pub use image::{Image, Maybe, Sample};
 pub use mesh::{Material, Mesh};
 pub use output::{Quantities, RenderOutput, Request, SensorMap, SensorRow, Stage};

@@ -1,62 +1,56 @@
 //! `junit.xml`: one test case per pair, sensor and quantity, for CI that reads JUnit.
 
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use std::io;
 
 use crate::output::verdict::{Verdict, explanation, headline};
 use crate::validation::Validation;
 use raypencil_judge::{Class, Defect, ItemTally, Quantity, SensorResult};
-use raypencil_report::{count, counted};
+use raypencil_report::{JunitCase, JunitReport, JunitSuite, count, counted};
 use raypencil_scene_io::{Subject, probe_command};
 
 /// How many defects a failure lists.
 const LISTED: usize = 5;
 
 /// The whole document.
-pub fn junit(validation: &Validation) -> Result<String, quick_junit::SerializeError> {
+pub fn junit(validation: &Validation) -> io::Result<String> {
     let subject = &validation.subject;
-    let mut report = Report::new(format!("raypencil validate {}", subject.arguments));
+    let mut report = JunitReport::new(format!("raypencil validate {}", subject.arguments));
     for pair in &validation.pairs {
         let (a, b) = (&validation.rendered[pair.a].name, &validation.rendered[pair.b].name);
-        let mut suite = TestSuite::new(format!("{}: {a} against {b}", subject.name));
+        let mut suite = JunitSuite::new(format!("{}: {a} against {b}", subject.name));
         for sensor in &pair.sensors {
-            let items = sensor.items.iter().map(|(item, tally)| (&item.quantity, tally));
+            let items = sensor.items.iter().map(|(item, tally)| (item.quantity, tally));
             for (quantity, tally) in items.filter(|(one, _)| one.is_of(sensor.sensor)) {
-                let mut case = TestCase::new(quantity.to_string(), status(subject, sensor, *quantity, tally));
-                case.set_classname(format!("{}.{a}-{b}.{}", subject.name, sensor.sensor));
-                suite.add_test_case(case);
+                let class = format!("{}.{a}-{b}.{}", subject.name, sensor.sensor);
+                suite.push(case(subject, sensor, quantity, tally).with_class(class));
             }
         }
-        report.add_test_suite(suite);
+        report.push(suite);
     }
     // Skipped cases alone would look like a pass.
     if Verdict::of(validation) == Verdict::NothingCompared {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-        status.set_message(headline(validation)).set_type("nothing_compared");
-        status.set_description(explanation(validation));
-        let mut suite = TestSuite::new(subject.name.as_str());
-        suite.add_test_case(TestCase::new("something is compared", status));
-        report.add_test_suite(suite);
+        let case = JunitCase::failed("something is compared", "nothing_compared", headline(validation));
+        let mut suite = JunitSuite::new(subject.name.as_str());
+        suite.push(case.with_text(explanation(validation)));
+        report.push(suite);
     }
-    report.to_string()
+    report.to_xml()
 }
 
 /// What became of one quantity of one sensor.
-fn status(subject: &Subject, sensor: &SensorResult, quantity: Quantity, tally: &ItemTally) -> TestCaseStatus {
+fn case(subject: &Subject, sensor: &SensorResult, quantity: Quantity, tally: &ItemTally) -> JunitCase {
+    let name = quantity.to_string();
     let defects = tally.of(Class::Defect);
     if defects == 0 {
         return if tally.compared() == 0 && tally.not_compared > 0 {
-            let mut status = TestCaseStatus::skipped();
-            status.set_message("not compared: one side does not provide it");
-            status
+            JunitCase::skipped(name, "not compared: one side does not provide it")
         } else {
-            TestCaseStatus::success()
+            JunitCase::passed(name)
         };
     }
 
-    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     let compared = counted(sensor.compared(), "ray", "rays");
-    status.set_message(format!("{}: {quantity} differs on {} of {compared}", sensor.sensor, count(defects)));
-    status.set_type("defect");
+    let message = format!("{}: {quantity} differs on {} of {compared}", sensor.sensor, count(defects));
     let mut lines = Vec::new();
     // A ray is described under the worst of its quantities, which may be another one than this.
     let (own, other): (Vec<&Defect>, Vec<&Defect>) =
@@ -71,6 +65,5 @@ fn status(subject: &Subject, sensor: &SensorResult, quantity: Quantity, tally: &
         lines.push(format!("Worst error: {value} at {}", worst.place));
         lines.push(format!("    {}", probe_command(subject, worst.place)));
     }
-    status.set_description(lines.join("\n"));
-    status
+    JunitCase::failed(name, "defect", message).with_text(lines.join("\n"))
 }

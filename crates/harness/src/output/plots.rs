@@ -1,20 +1,13 @@
 //! Plots of a sensor's maps for the page: pictures with axes, colour bars and marks.
 
 use raypencil_report::{
-    Bar, ColourMap, Picture, Plot, Reduction, Ring, Scale, Spread, Tick, cells_axis, count, number,
-    reduced_to, shape, stretch,
+    Bar, ColourMap, Picture, Plot, Reduction, Ring, Scale, Spread, Tick, cells_axis, count,
+    max_side_of_pictures, number, reduced_to, shape, stretch,
 };
 use raypencil_scene::{Image, Maybe, Place, SensorId};
 
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
-
-/// Maximum cells of all pictures together. An indexed picture takes at most one byte per cell, and base64 a third more:
-/// at most 4.4 MB, in practice less than half of that.
-const MAX_CELLS: u64 = 3_300_000;
-
-/// Maximum columns and rows of a picture; a page shows no more.
-const MAX_COLUMNS: u32 = 1024;
 
 /// Maximum marked defects in a picture.
 const MAX_MARKS: usize = 100;
@@ -34,23 +27,12 @@ pub(crate) struct Plots {
     pub(crate) plots: Vec<Plot>,
 }
 
-/// Maximum columns and rows of a picture that keep all pictures of the page within [`MAX_CELLS`].
+/// Maximum columns and rows of a picture that keep the page to a few megabytes.
 pub(crate) fn max_columns(validation: &Validation) -> u32 {
     let pictures = (validation.rendered.len() + validation.pairs.len()) as u64;
     let scene = &validation.subject.scene;
-    let mut most = MAX_COLUMNS;
-    let cells = |most: u32| -> u64 {
-        let sizes = scene.sensors().filter_map(|sensor| scene.size(sensor));
-        let drawn = sizes.map(|(width, height)| {
-            let Reduction { columns, rows } = Reduction::to_fit(width, height, most);
-            u64::from(width.div_ceil(columns)) * u64::from(height.div_ceil(rows))
-        });
-        pictures * drawn.sum::<u64>()
-    };
-    while most > 32 && cells(most) > MAX_CELLS {
-        most /= 2;
-    }
-    most
+    let sizes: Vec<(u32, u32)> = scene.sensors().filter_map(|sensor| scene.size(sensor)).collect();
+    max_side_of_pictures(&sizes, pictures)
 }
 
 /// The plots of one sensor, each picture with at most `max_columns` columns and rows.

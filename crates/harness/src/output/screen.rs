@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use raypencil_judge::{Class, SensorResult};
-use raypencil_report::{VERSION, count, counted, list, time};
+use raypencil_report::{Align, Table, VERSION, count, counted, list, time};
 use raypencil_scene::{Place, SensorId, Stage};
 use raypencil_scene_io::probe_command;
 
@@ -30,6 +30,9 @@ const MAX_CANDIDATES: usize = 4;
 
 /// Index of the column of the paper's approximations in the table of quantities.
 const APPROXIMATION_COLUMN: usize = 4;
+
+/// Index of the column of places there.
+const PLACE_COLUMN: usize = 7;
 
 /// Maximum described defects.
 const MAX_DEFECTS: usize = 5;
@@ -85,11 +88,13 @@ fn quantities(validation: &Validation) -> String {
     // The paper's approximations have a column only if there are any.
     let has_approximations = validation.counts().approximation > 0;
     let heads = ["", "agree", "tie", "rounding", "approx.", "defect", "error", "at", "/bound"];
-    let mut lines = vec![heads.map(String::from)];
+    let is_text = |head: &str| head.is_empty() || head == "at";
+    let mut table = Table::new(heads.map(|head| if is_text(head) { Align::Left } else { Align::Right }));
+    table.row(heads);
     for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
         // A missing value is a dash, so that no cell is empty.
         let or_dash = |text: String| if text.is_empty() { "-".into() } else { text };
-        lines.push([
+        table.row([
             quantity.to_string(),
             count(tally.of(Class::Agree)),
             count(tally.of(Class::Tie)),
@@ -101,49 +106,16 @@ fn quantities(validation: &Validation) -> String {
             or_dash(worst(&tally.worst_ratio, "")),
         ]);
     }
-    let without = |lines: Vec<Vec<String>>, out: usize| -> Vec<Vec<String>> {
-        let shown = |line: Vec<String>| {
-            line.into_iter().enumerate().filter(|(column, _)| *column != out).map(|(_, cell)| cell).collect()
-        };
-        lines.into_iter().map(shown).collect()
-    };
-    let mut lines: Vec<Vec<String>> = lines.into_iter().map(Vec::from).collect();
     if !has_approximations {
-        lines = without(lines, APPROXIMATION_COLUMN);
+        table.remove_column(APPROXIMATION_COLUMN);
     }
-    let widths_of = |lines: &[Vec<String>]| -> Vec<usize> {
-        (0..lines[0].len())
-            .map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0))
-            .collect()
-    };
-    let is_too_wide = |widths: &[usize], blanks: usize| {
-        widths.iter().sum::<usize>() + blanks * (widths.len() - 1) > MAX_COLUMNS
-    };
-    // Text is aligned to the left, numbers to the right.
-    let mut place = lines[0].iter().position(|head| head == "at");
-    let mut widths = widths_of(&lines);
-    if let Some(column) = place
-        && is_too_wide(&widths, 1)
-    {
+    if table.clone().with_gap(1).width() > MAX_COLUMNS {
         // With huge counts there is no room for the places; the report has them.
-        lines = without(lines, column);
-        (place, widths) = (None, widths_of(&lines));
+        table.remove_column(PLACE_COLUMN - usize::from(!has_approximations));
     }
     // Two blanks between columns, one where there is no room.
-    let blanks = if is_too_wide(&widths, 2) { " " } else { "  " };
-    let mut text = String::new();
-    for line in lines {
-        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
-            if column == 0 || Some(column) == place {
-                format!("{cell:<width$}")
-            } else {
-                format!("{cell:>width$}")
-            }
-        });
-        let line = cells.collect::<Vec<_>>().join(blanks);
-        let _ = writeln!(text, "{}", line.trim_end());
-    }
-    text
+    let gap = if table.width() > MAX_COLUMNS { 1 } else { 2 };
+    table.with_gap(gap).to_string()
 }
 
 /// A place in few letters.

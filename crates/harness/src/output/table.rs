@@ -83,7 +83,7 @@ fn extreme(subject: &Subject, worst: &Option<Largest>, unit: &str) -> Option<Ext
 /// The tally of each quantity, summed over `sensors`.
 pub(crate) fn totals<'a>(sensors: impl IntoIterator<Item = &'a SensorResult>) -> Vec<(Quantity, ItemTally)> {
     let mut totals = Quantity::ALL.map(|quantity| (quantity, ItemTally::default()));
-    for (item, tally) in sensors.into_iter().flat_map(|sensor| &sensor.items) {
+    for (item, tally) in sensors.into_iter().flat_map(|sensor| sensor.items.iter()) {
         totals[item.quantity as usize].1.add(tally);
     }
     // A quantity that no sensor has, or that was not requested, has no row.

@@ -130,7 +130,8 @@ pub(crate) fn defects(validation: &Validation) -> impl Iterator<Item = &Defect> 
 
 /// The largest ratio of an error to its bound, and its quantity; `None` if no error is above 0.
 fn worst_ratio(validation: &Validation) -> Option<(Quantity, &Largest)> {
-    let tallies = validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.items);
+    let tallies =
+        validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| sensor.items.iter());
     tallies
         .filter(|(_, tally)| tally.of(Class::Agree) > 0)
         .filter_map(|(item, tally)| tally.worst_ratio.as_ref().map(|worst| (item.quantity, worst)))

@@ -194,16 +194,7 @@ fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
     };
     let renderer = &contender.renderer;
     let output = renderer.render(judge.scene(), &request);
-    let hit = output.map(sensor).and_then(|map| {
-        Some(Hit {
-            face: map.face.as_ref()?.at(i, j).get()?,
-            range: map.range.as_ref()?.at(i, j).get()?,
-            point: map.point.as_ref()?.at(i, j).get()?,
-            normal: map.normal.as_ref()?.at(i, j).get()?,
-            depth: map.depth.as_ref()?.at(i, j).get()?,
-            cos_incidence: map.cos_incidence.as_ref()?.at(i, j).get()?,
-        })
-    });
+    let hit = output.map(sensor).and_then(|map| map.hit(i, j));
     let (face, range) = (hit.map(|hit| hit.face), hit.map(|hit| hit.range));
     let ruling = judge.rule(place, face, range, renderer.precision());
     let mut back = returned(judge, place, contender, &output, hit);

@@ -19,13 +19,13 @@ struct WrongHit {
 
 impl AttributionContext<'_> {
     fn is_wrong(&self, place: Place, answer: StatedHit) -> bool {
-        self.judge.rule(place, answer.face, answer.range, self.precision) == Ruling::Wrong
+        self.judge.rule(place, answer.face, answer.range(), self.precision) == Ruling::Wrong
     }
 
     /// Explains an answer that was made with the renderer's switches but for `exact`.
     fn explain(&self, place: Place, answer: StatedHit, exact: Switches) -> Option<Vec<Explained>> {
         let with = approximations(self.switches.without(exact));
-        self.judge.explain(place, answer.face, answer.range, with, self.precision)
+        self.judge.explain(place, answer.face, answer.range(), with, self.precision)
     }
 }
 
@@ -105,7 +105,7 @@ impl WrongHit {
             }
         }
         if open == Switches::EXACT {
-            let restored_range = restored.range;
+            let restored_range = restored.range();
             self.cause = Some(Cause { switches: cause, explained, explained_without, restored_range });
         }
     }

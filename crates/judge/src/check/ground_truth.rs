@@ -1,10 +1,10 @@
 //! The exact answers to all rays of a scene, and the judge of other answers.
 
-use crate::answer::{StatedHit, StatedReturn};
+use crate::answer::StatedReturn;
 use crate::judge::{Judge, JudgeShare};
 use crate::scene_answers::{Answers, Certified};
 use raypencil_referee::Format;
-use raypencil_scene::{Hit, Pixel, Place, Progress, Return, Returns, Sampling, Scene, SensorId, SensorMap};
+use raypencil_scene::{Hit, Pixel, Place, Progress, Return, Returns, Sampling, Scene, SensorId};
 
 /// The exact answers to all rays of a scene, correctly rounded to f64, and the judge of other answers.
 #[derive(Debug)]
@@ -56,7 +56,7 @@ impl<'s> GroundTruth<'s> {
 
     /// The hit of a ray.
     pub fn hit(&self, place: Place) -> Option<Hit> {
-        hit_of(self.answers.map(place.sensor), place)
+        self.answers.map(place.sensor).hit(place.i, place.j)
     }
 
     /// Whether the camera sees a pencil's hit, and the pixel in which the hit lands.
@@ -148,18 +148,5 @@ fn return_of(returns: &Returns, i: u32, j: u32) -> Option<Return> {
         cos_off_axis: stated.cos_off_axis?,
         cos_view: stated.cos_view?,
         flux: stated.flux[0]?,
-    })
-}
-
-/// The hit of a ray, of a map that holds every quantity.
-fn hit_of(map: &SensorMap, Place { i, j, .. }: Place) -> Option<Hit> {
-    let stated = StatedHit::of(map, i, j);
-    Some(Hit {
-        face: stated.face?,
-        range: stated.range?,
-        point: stated.point?,
-        normal: stated.normal?,
-        depth: stated.depth?,
-        cos_incidence: stated.cos_incidence?,
     })
 }

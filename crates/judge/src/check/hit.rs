@@ -9,7 +9,7 @@ use crate::entry::RayEntry;
 use crate::quantity::Quantity;
 use crate::recorded::Recorded;
 use raypencil_referee::Ruling;
-use raypencil_scene::{FaceId, Hit, Ray};
+use raypencil_scene::{FaceId, Hit, HitQuantity, Ray};
 
 /// The exact hit that a ray's values, and its pencil's return, are held to.
 #[derive(Debug, Clone, Copy)]
@@ -128,7 +128,7 @@ fn ruled_otherwise(
             of_truth(Class::Defect)
         });
     }
-    let ruling = truth.judge().rule(place, stated.face, stated.range, recorded.precision);
+    let ruling = truth.judge().rule(place, stated.face, stated.range(), recorded.precision);
     entry.ruled(&words(ruling));
     let class = Class::of(ruling, false);
     if class == Class::Defect {
@@ -156,14 +156,14 @@ fn unnamed_face(
 ) -> Option<AssumedHit> {
     let place = entry.place;
     let judge = truth.judge();
-    for face in judge.candidate_faces(place, stated.range, recorded.precision) {
+    for face in judge.candidate_faces(place, stated.range(), recorded.precision) {
         let Some(hit) = judge.plane_hit(place, face) else { continue };
         let bounds = bounds(truth, ray, &hit, recorded);
         let differences = recorded.differences(place.sensor, hit_values(stated, &hit, &bounds));
         if !differences.iter().all(Difference::is_within) {
             continue;
         }
-        let ruling = judge.rule(place, Some(face), stated.range, recorded.precision);
+        let ruling = judge.rule(place, Some(face), stated.range(), recorded.precision);
         if matches!(ruling, Ruling::Tie | Ruling::Rounding(_)) {
             entry.ruled(&format!("{}, if {} is meant", words(ruling), face_name(face)));
             let class = Class::of(ruling, false);
@@ -181,9 +181,7 @@ fn unnamed_face(
 
 /// Enters the values of which the recording has no channel.
 fn missing_values(entry: &mut RayEntry<'_>, recorded: &Recorded) {
-    for quantity in
-        [Quantity::Range, Quantity::Depth, Quantity::Point, Quantity::Normal, Quantity::CosIncidence]
-    {
+    for quantity in HitQuantity::ALL.map(Quantity::from) {
         if !recorded.storage.contains_key(&(entry.place.sensor, quantity.into())) {
             entry.missing(quantity);
         }

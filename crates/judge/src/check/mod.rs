@@ -47,8 +47,8 @@ impl Check {
     /// Each quantity over all sensors.
     pub fn totals(&self) -> BTreeMap<Item, ItemTally> {
         let mut totals: BTreeMap<Item, ItemTally> = BTreeMap::new();
-        for (item, tally) in self.sensors.iter().flat_map(|sensor| &sensor.items) {
-            totals.entry(*item).or_default().add(tally);
+        for (item, tally) in self.sensors.iter().flat_map(|sensor| sensor.items.iter()) {
+            totals.entry(item).or_default().add(tally);
         }
         totals
     }

@@ -4,11 +4,11 @@ use crate::answer::StatedHit;
 use crate::bounds::HitBounds;
 use crate::class::Class;
 use crate::compare::side::Side;
-use crate::difference::{Difference, hit_values};
+use crate::difference::{Difference, distance, hit_values};
 use crate::entry::RayEntry;
 use crate::judge::Judge;
 use crate::quantity::{Item, Quantity};
-use raypencil_scene::{Place, Precision};
+use raypencil_scene::{HitQuantity, Place, Precision};
 
 /// One ray's hit on two sides, compared.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +48,7 @@ pub(super) fn compare_hit(
     let ruled = (is_named(&of_a) && is_named(&of_b) && (differ || judge.samples(place))).then(|| {
         entry.judged();
         let class_of = |answer: &StatedHit, side: Side<'_>| {
-            let ruling = judge.rule(place, answer.face, answer.range, side.precision);
+            let ruling = judge.rule(place, answer.face, answer.range(), side.precision);
             Class::of(ruling, side.attributions.is_some_and(|causes| causes.cause(place).is_some()))
         };
         class_of(&of_a, a).max(class_of(&of_b, b))
@@ -68,7 +68,7 @@ pub(super) fn compare_hit(
     let known = |answer: &StatedHit| answer.face.filter(|face| (face.0 as usize) < mesh.faces().len());
     let bounds_of = |answer: &StatedHit, other: &StatedHit, precision| {
         let face = known(answer).or(known(other));
-        let range = answer.range.or(other.range);
+        let range = answer.range().or(other.range());
         face.zip(range).map(|(face, range)| HitBounds::of(mesh, face, &ray, range, precision))
     };
     compared.bounds = bounds_of(&of_a, &of_b, a.precision)
@@ -88,23 +88,16 @@ pub(super) fn compare_hit(
     // points have nothing to do with each other.
     let is_one_point = same_face != Some(false) || class == Class::Tie;
     let is_one_face = same_face != Some(false);
-    let number = |x: Option<f64>, y: Option<f64>| x.zip(y).map(|(x, y)| (x - y).abs());
-    let vector = |x: Option<glam::DVec3>, y: Option<glam::DVec3>| x.zip(y).map(|(x, y)| (x - y).length());
-    let errors = [
-        (Quantity::Range, number(of_a.range, of_b.range), bounds.map(|bounds| bounds.range), is_one_point),
-        (Quantity::Depth, number(of_a.depth, of_b.depth), bounds.map(|bounds| bounds.range), is_one_point),
-        (
-            Quantity::CosIncidence,
-            number(of_a.cos_incidence, of_b.cos_incidence),
-            bounds.map(|bounds| bounds.cos_incidence),
-            is_one_face,
-        ),
-        (Quantity::Point, vector(of_a.point, of_b.point), bounds.map(|bounds| bounds.point), is_one_point),
-        (Quantity::Normal, vector(of_a.normal, of_b.normal), bounds.map(|bounds| bounds.normal), is_one_face),
-    ];
-    for (quantity, error, bound, is_comparable) in errors {
-        if let (Some(error), true) = (error, is_comparable) {
-            entry.difference(&Difference::computed(quantity, error, bound), Class::Agree);
+    // Numbers come before vectors, as in `item_off_its_face`.
+    let in_order =
+        |are_vectors: bool| HitQuantity::ALL.into_iter().filter(move |one| one.is_vector() == are_vectors);
+    for quantity in in_order(false).chain(in_order(true)) {
+        let is_comparable = if quantity.is_of_point() { is_one_point } else { is_one_face };
+        let values = of_a.value(quantity).zip(of_b.value(quantity)).filter(|_| is_comparable);
+        if let Some((of_a, of_b)) = values {
+            let bound = bounds.map(|bounds| bounds.of_quantity(quantity));
+            let item = Quantity::from(quantity);
+            entry.difference(&Difference::computed(item, distance(&of_a, &of_b), bound), Class::Agree);
         }
     }
     compared

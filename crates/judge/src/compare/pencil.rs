@@ -49,7 +49,7 @@ pub(super) fn compare_return(
         entry.judged();
         for ((stated, answer), side) in [of_a, of_b].iter().zip(hit.answers).zip(sides) {
             let Some(face) = answer.face.filter(|_| answer.hits()) else { continue };
-            match rule(judge, entry, side, face, answer.range, stated) {
+            match rule(judge, entry, side, face, answer.range(), stated) {
                 Some([visible, pixel]) => {
                     (of_visible, of_pixel) = (of_visible.max(visible), of_pixel.max(pixel));
                 }

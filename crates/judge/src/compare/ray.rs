@@ -12,7 +12,7 @@ use crate::entry::RayEntry;
 use crate::judge::Judge;
 use crate::quantity::Quantity;
 use crate::tally::{ApproximationTally, Largest, SensorResult};
-use raypencil_scene::{Maybe, Place, SensorId, SensorMap, Switches};
+use raypencil_scene::{HitQuantity, Maybe, Place, SensorId, SensorMap, Switches};
 
 /// Results of some rays of a sensor, in reading order.
 pub(super) struct ComparedRays {
@@ -43,19 +43,16 @@ pub(super) fn compare_ray(
     let Place { sensor, i, j } = place;
     let answers = [StatedHit::of(map_a, i, j), StatedHit::of(map_b, i, j)];
     let [of_a, of_b] = answers;
-    rays.range_differences.push(of_a.range.zip(of_b.range).map(|(a, b)| b - a).into());
+    rays.range_differences.push(of_a.range().zip(of_b.range()).map(|(a, b)| b - a).into());
     let mut entry = RayEntry::compared(place, &mut rays.result);
     let hit = compare_hit(judge, &mut entry, answers, [a, b]);
-    let is_missing = [
-        (Quantity::Face, map_a.face.is_none() || map_b.face.is_none()),
-        (Quantity::Range, map_a.range.is_none() || map_b.range.is_none()),
-        (Quantity::Depth, map_a.depth.is_none() || map_b.depth.is_none()),
-        (Quantity::Point, map_a.point.is_none() || map_b.point.is_none()),
-        (Quantity::Normal, map_a.normal.is_none() || map_b.normal.is_none()),
-        (Quantity::CosIncidence, map_a.cos_incidence.is_none() || map_b.cos_incidence.is_none()),
-    ];
-    for (quantity, _) in is_missing.into_iter().filter(|(_, is_missing)| *is_missing) {
-        entry.missing(quantity);
+    if map_a.face.is_none() || map_b.face.is_none() {
+        entry.missing(Quantity::Face);
+    }
+    for quantity in HitQuantity::ALL {
+        if map_a.raster(quantity).is_none() || map_b.raster(quantity).is_none() {
+            entry.missing(Quantity::from(quantity));
+        }
     }
     let mut flux_difference = 0.0;
     match sensor {
@@ -99,7 +96,7 @@ fn enter_error(tally: &mut ApproximationTally, answer: &StatedHit, cause: &Cause
         (true, None) => tally.added = 1,
         _ => {}
     }
-    if let (Some(range), Some(restored)) = (answer.range, cause.restored_range) {
+    if let (Some(range), Some(restored)) = (answer.range(), cause.restored_range) {
         Largest::update(&mut tally.worst_range, (range - restored).abs(), place, None);
     }
 }
@@ -110,6 +107,6 @@ fn words(answer: &StatedHit) -> String {
         return "no hit".into();
     }
     let face = answer.face.map_or("a face".into(), |face| format!("face {}", face.0));
-    let range = answer.range.map_or("unknown range".into(), |range| format!("range {range} m"));
+    let range = answer.range().map_or("unknown range".into(), |range| format!("range {range} m"));
     format!("{face} at {range}")
 }

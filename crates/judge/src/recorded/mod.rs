@@ -12,7 +12,7 @@ use crate::recorded::names::is_path_tracer_channel;
 use crate::recorded::reader::{Reader, limits, recordings_in};
 use crate::scene_answers::Answers;
 use raypencil_files::{Channels, Storage, read_channels};
-use raypencil_scene::{Precision, RenderOutput, Renderer, Request, Scene, SensorId};
+use raypencil_scene::{HitQuantity, Precision, RenderOutput, Renderer, Request, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -127,11 +127,9 @@ impl Recorded {
                 }
             };
             store(Quantity::Face, map.face.is_some(), Storage::Whole);
-            store(Quantity::Range, map.range.is_some(), Storage::F64);
-            store(Quantity::Depth, map.depth.is_some(), Storage::F64);
-            store(Quantity::Point, map.point.is_some(), Storage::F64);
-            store(Quantity::Normal, map.normal.is_some(), Storage::F64);
-            store(Quantity::CosIncidence, map.cos_incidence.is_some(), Storage::F64);
+            for quantity in HitQuantity::ALL {
+                store(quantity.into(), map.raster(quantity).is_some(), Storage::F64);
+            }
             if let SensorId::Beam(beam) = sensor {
                 let light = &answers.light[beam];
                 let returns = &light.returns;

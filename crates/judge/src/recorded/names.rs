@@ -3,24 +3,13 @@
 use crate::quantity::{Item, Quantity};
 use raypencil_scene::{FluxModel, HitQuantity, Scene, SensorId};
 
-pub(super) const RANGE: &str = HitQuantity::Range.channels()[0];
-pub(super) const DEPTH: &str = HitQuantity::Depth.channels()[0];
 pub(super) const FACE: &str = "face.I";
-pub(super) const POINT: [&str; 3] = three(HitQuantity::Point);
-pub(super) const NORMAL: [&str; 3] = three(HitQuantity::Normal);
-pub(super) const INCIDENCE: &str = HitQuantity::CosIncidence.channels()[0];
 pub(super) const VISIBLE: &str = "visible.V";
 pub(super) const PIXEL: [&str; 2] = ["pixel.I", "pixel.J"];
 pub(super) const VIEW: &str = "view.Z";
 pub(super) const OFF_AXIS: &str = "offAxis.V";
 pub(super) const EMISSION: &str = "emission.V";
 pub(super) const FLUX: &str = "flux.V";
-
-/// The three channels of a vector.
-const fn three(quantity: HitQuantity) -> [&'static str; 3] {
-    let channels = quantity.channels();
-    [channels[0], channels[1], channels[2]]
-}
 
 /// Whether a channel holds radiance or a Monte Carlo estimate, which only a path tracer has.
 pub(super) fn is_path_tracer_channel(key: &str) -> bool {
@@ -70,13 +59,11 @@ pub fn item_of_channel(scene: &Scene, sensor: SensorId, name: &str) -> Option<It
     {
         return flux;
     }
+    if let Some(quantity) = HitQuantity::ALL.into_iter().find(|one| one.channels().contains(&name)) {
+        return Some(Quantity::from(quantity).into());
+    }
     let quantity = match name {
-        RANGE => Quantity::Range,
-        DEPTH => Quantity::Depth,
         FACE => Quantity::Face,
-        name if POINT.contains(&name) => Quantity::Point,
-        name if NORMAL.contains(&name) => Quantity::Normal,
-        INCIDENCE => Quantity::CosIncidence,
         VISIBLE => Quantity::Visible,
         name if PIXEL.contains(&name) => Quantity::Pixel,
         VIEW => Quantity::CameraDepth,

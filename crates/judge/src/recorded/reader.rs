@@ -6,7 +6,7 @@ use crate::recorded::names::{self, flux_channel, image_channel};
 use crate::scene_answers::Answers;
 use glam::DVec3;
 use raypencil_files::{Channel, Channels, Limits, Storage, Values};
-use raypencil_scene::{FaceId, Image, Maybe, Pixel, Sample, Scene, SensorId};
+use raypencil_scene::{FaceId, HitQuantity, HitRasterMut, Image, Maybe, Pixel, Sample, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -154,17 +154,19 @@ impl<'a> Reader<'a> {
     /// Reads the hits of a sensor.
     pub(super) fn geometry(&mut self, index: usize, sensor: SensorId) -> Result<(), RecordingError> {
         let faces = self.wholes(sensor, names::FACE)?;
-        let (range, depth) = (self.reals(sensor, names::RANGE)?, self.reals(sensor, names::DEPTH)?);
-        let cos_incidence = self.reals(sensor, names::INCIDENCE)?;
-        let (point, normal) = (self.vector(sensor, names::POINT)?, self.vector(sensor, names::NORMAL)?);
+        let mut values = Vec::new();
+        for quantity in HitQuantity::ALL {
+            if let Some(parts) = self.components(sensor, quantity.channels())? {
+                values.push((quantity, parts));
+            }
+        }
 
         // The first channel that is there tells which rays hit; the others must agree with it.
         let hits: Option<(String, Vec<bool>)> = if let Some(faces) = &faces {
             Some((names::FACE.into(), faces.cells().iter().map(|face| *face != u32::MAX).collect()))
         } else {
-            let speaker = range.or(depth).or(point.map(|p| p[0])).or(normal.map(|n| n[0])).or(cos_incidence);
-            speaker.map(|reals| {
-                (reals.name.to_string(), reals.image.cells().iter().map(|x| x.is_finite()).collect())
+            values.first().map(|(_, parts)| {
+                (parts[0].name.to_string(), parts[0].image.cells().iter().map(|x| x.is_finite()).collect())
             })
         };
         let Some((speaker, hits)) = hits else { return Ok(()) };
@@ -176,51 +178,34 @@ impl<'a> Reader<'a> {
             self.answers.maps[index].face = Some(Image::from_cells(width, height, cells));
             self.store(sensor, Quantity::Face, Storage::Whole);
         }
-        let scalars = [
-            (range, Quantity::Range, true),
-            (depth, Quantity::Depth, true),
-            (cos_incidence, Quantity::CosIncidence, false),
-        ];
-        for (reals, quantity, is_length) in scalars {
-            let Some(reals) = reals else { continue };
-            let image = maybe(reals, &hits, &speaker, is_length)?;
-            self.store(sensor, quantity, reals.channel.storage);
-            let map = &mut self.answers.maps[index];
-            match quantity {
-                Quantity::Range => map.range = Some(image),
-                Quantity::Depth => map.depth = Some(image),
-                _ => map.cos_incidence = Some(image),
-            }
-        }
-        for (parts, quantity) in [(point, Quantity::Point), (normal, Quantity::Normal)] {
-            let Some(parts) = parts else { continue };
+        for (quantity, parts) in values {
             let mut images = Vec::new();
-            for part in parts {
-                images.push(maybe(part, &hits, &speaker, false)?);
+            for part in &parts {
+                images.push(maybe(*part, &hits, &speaker, quantity.is_length())?);
             }
-            let cells = (0..hits.len()).map(|at| {
-                let part = |k: usize| images[k].cells()[at].get();
-                let vector = part(0).zip(part(1)).zip(part(2)).map(|((x, y), z)| DVec3::new(x, y, z));
-                Maybe::from(vector)
-            });
-            let image = Image::from_cells(width, height, cells.collect());
-            self.store(
-                sensor,
-                quantity,
-                parts.map(|part| part.channel.storage).into_iter().min().unwrap_or(Storage::F64),
-            );
-            let map = &mut self.answers.maps[index];
-            if quantity == Quantity::Point { map.point = Some(image) } else { map.normal = Some(image) }
+            let storage = parts.iter().map(|part| part.channel.storage).min().unwrap_or(Storage::F64);
+            self.store(sensor, Quantity::from(quantity), storage);
+            match self.answers.maps[index].raster_mut(quantity) {
+                HitRasterMut::Scalar(raster) => *raster = images.pop(),
+                HitRasterMut::Vector(raster) => {
+                    let cells = (0..hits.len()).map(|at| {
+                        let part = |k: usize| images[k].cells()[at].get();
+                        let vector = part(0).zip(part(1)).zip(part(2)).map(|((x, y), z)| DVec3::new(x, y, z));
+                        Maybe::from(vector)
+                    });
+                    *raster = Some(Image::from_cells(width, height, cells.collect()));
+                }
+            }
         }
         Ok(())
     }
 
-    /// The components of a vector, if they are there; a part of them is an error.
-    fn vector(
+    /// The channels of a quantity, if they are there; a part of them is an error.
+    fn components(
         &mut self,
         sensor: SensorId,
-        names: [&str; 3],
-    ) -> Result<Option<[Reals<'a>; 3]>, RecordingError> {
+        names: &[&str],
+    ) -> Result<Option<Vec<Reals<'a>>>, RecordingError> {
         let mut parts = Vec::new();
         let mut absent = None;
         for name in names {
@@ -229,14 +214,14 @@ impl<'a> Reader<'a> {
                 None => absent = Some(name),
             }
         }
-        match (<[Reals<'a>; 3]>::try_from(parts), absent) {
-            (Ok(parts), _) => Ok(Some(parts)),
-            (Err(parts), Some(absent)) if !parts.is_empty() => Err(RecordingError::Part {
+        match absent {
+            None => Ok(Some(parts)),
+            Some(_) if parts.is_empty() => Ok(None),
+            Some(absent) => Err(RecordingError::Part {
                 folder: self.folder.to_path_buf(),
                 channel: format!("{sensor}/{absent}"),
                 all: names.join(", "),
             }),
-            _ => Ok(None),
         }
     }
 

@@ -25,10 +25,10 @@ pub fn check_json(checked: &Checked) -> String {
             })
         })
     };
-    let quantity_json = |(item, tally): (&Item, &ItemTally)| {
+    let quantity_json = |(item, tally): (Item, &ItemTally)| {
         json!({
-            "quantity": key_of(model, *item),
-            "unit": unit_of(model, *item),
+            "quantity": key_of(model, item),
+            "unit": unit_of(model, item),
             "compared": tally.compared(),
             "classes": class_counts_json(&tally.by_class, &CHECK_CLASSES),
             "not_compared": tally.not_compared,

@@ -1,55 +1,45 @@
 //! `junit.xml`: a check for CI.
 
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use std::io;
+
 use raypencil_judge::{Class, Item, ItemTally, SensorResult, name_of};
-use raypencil_report::{count, number};
+use raypencil_report::{JunitCase, JunitReport, JunitSuite, count, number};
 
 use crate::check::Checked;
 use crate::check_report::verdict::MAX_SHOWN_DEFECTS;
 
 /// One test case per sensor and quantity.
-pub(crate) fn junit(checked: &Checked) -> Result<String, quick_junit::SerializeError> {
+pub(crate) fn junit(checked: &Checked) -> io::Result<String> {
     let Checked { subject, recorded, check, .. } = checked;
-    let mut report = Report::new(format!("raypencil check {} {}", subject.name, recorded.name));
-    let mut suite = TestSuite::new(format!("{}: {}", subject.name, recorded.name));
+    let mut report = JunitReport::new(format!("raypencil check {} {}", subject.name, recorded.name));
+    let mut suite = JunitSuite::new(format!("{}: {}", subject.name, recorded.name));
     for sensor in &check.sensors {
-        for (item, tally) in &sensor.items {
-            let mut case = TestCase::new(name_of(*item), status(checked, sensor, *item, tally));
-            case.set_classname(format!("{}.{}.{}", subject.name, recorded.name, sensor.sensor));
-            suite.add_test_case(case);
+        for (item, tally) in sensor.items.iter() {
+            let class = format!("{}.{}.{}", subject.name, recorded.name, sensor.sensor);
+            suite.push(case(checked, sensor, item, tally).with_class(class));
         }
     }
     // Without this, a report of skipped cases alone would look like a pass.
     if check.compared() == 0 {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-        status.set_message("nothing was compared").set_type("nothing_compared");
-        suite.add_test_case(TestCase::new("something is compared", status));
+        suite.push(JunitCase::failed("something is compared", "nothing_compared", "nothing was compared"));
     }
-    report.add_test_suite(suite);
-    report.to_string()
+    report.push(suite);
+    report.to_xml()
 }
 
 /// The outcome of one quantity of one sensor.
-fn status(checked: &Checked, sensor: &SensorResult, item: Item, tally: &ItemTally) -> TestCaseStatus {
+fn case(checked: &Checked, sensor: &SensorResult, item: Item, tally: &ItemTally) -> JunitCase {
+    let name = name_of(item);
     let bad = tally.of(Class::Defect) + tally.of(Class::Undecided);
     if bad == 0 {
         return if tally.compared() == 0 {
-            let mut status = TestCaseStatus::skipped();
-            status.set_message("not compared: absent, or stored in a type that cannot hold it");
-            status
+            JunitCase::skipped(name, "not compared: absent, or stored in a type that cannot hold it")
         } else {
-            TestCaseStatus::success()
+            JunitCase::passed(name)
         };
     }
-    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-    status.set_type("defect");
-    status.set_message(format!(
-        "{}: {} is wrong on {} of {} rays",
-        sensor.sensor,
-        name_of(item),
-        count(bad),
-        count(tally.compared())
-    ));
+    let [wrong, rays] = [bad, tally.compared()].map(count);
+    let message = format!("{}: {name} is wrong on {wrong} of {rays} rays", sensor.sensor);
     let defects = || sensor.defects.iter().filter(|one| one.item == item);
     let mut lines: Vec<String> = defects()
         .take(MAX_SHOWN_DEFECTS)
@@ -64,6 +54,5 @@ fn status(checked: &Checked, sensor: &SensorResult, item: Item, tally: &ItemTall
         ));
         lines.push(format!("    {}", checked.repro(largest.place)));
     }
-    status.set_description(lines.join("\n"));
-    status
+    JunitCase::failed(name, "defect", message).with_text(lines.join("\n"))
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use raypencil_judge::{Class, Defect, Largest, name_of, unit_of};
-use raypencil_report::{count, quantity};
+use raypencil_report::{Align, Table, count, quantity};
 
 use crate::check::Checked;
 use crate::check_report::verdict::{MAX_SHOWN_DEFECTS, arithmetic, verdict};
@@ -33,12 +33,15 @@ pub fn check_screen(checked: &Checked) -> String {
         "/bound",
         "at",
     ];
-    let mut lines = vec![heads.map(String::from).to_vec()];
+    // Names and places are texts, the rest numbers.
+    let is_text = |head: &str| head.is_empty() || head == "at";
+    let mut table = Table::new(heads.map(|head| if is_text(head) { Align::Left } else { Align::Right }));
+    table.row(heads);
     for (item, tally) in check.totals() {
         let largest = |largest: &Option<Largest>, unit: &str| {
             largest.as_ref().map_or("-".into(), |largest| quantity(largest.value, unit))
         };
-        lines.push(vec![
+        table.row([
             name_of(item),
             count(tally.compared()),
             count(tally.of(Class::Agree)),
@@ -55,8 +58,7 @@ pub fn check_screen(checked: &Checked) -> String {
             }),
         ]);
     }
-    text += &aligned(&lines);
-    text.push('\n');
+    let _ = writeln!(text, "{table}");
     for name in &recorded.unknown {
         let _ = writeln!(text, "Unknown channel, not compared: {name}");
     }
@@ -97,24 +99,5 @@ pub fn check_screen(checked: &Checked) -> String {
         ),
         _ => writeln!(text, "? Nothing was compared."),
     };
-    text
-}
-
-/// Lines as columns of text: the first and the last column flush left, the others flush right.
-fn aligned(lines: &[Vec<String>]) -> String {
-    let columns = lines.first().map_or(0, Vec::len);
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for line in lines {
-        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
-            if column == 0 || column + 1 == columns {
-                format!("{cell:<width$}")
-            } else {
-                format!("{cell:>width$}")
-            }
-        });
-        let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
-    }
     text
 }
