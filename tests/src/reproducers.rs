@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use raypencil::harness::{
-    Contender, Reproducer, first_shown, shows_class, typed_contenders, write_reproducer,
+    Contender, Reproducer, first_interesting_ray, is_interesting_in_class, typed_contenders, write_reproducer,
 };
 use raypencil::io::scene_sha256;
 use raypencil::judge::{Class, JudgeShare};
@@ -34,8 +34,8 @@ pub fn commit() -> String {
 /// Minimises the first defect between two renderers on a scene, and writes the smallest scene to `folder`. Returns one
 /// line: the path of the reproducer, or the reason why there is none.
 pub fn reproduce(folder: &Path, property: &str, contenders: [&Contender; 2], scene: &Scene) -> String {
-    let shows = shows_class(contenders, Class::Defect);
-    let minimised = first_shown(contenders, scene, Class::Defect, JudgeShare::Sample)
+    let shows = is_interesting_in_class(contenders, Class::Defect);
+    let minimised = first_interesting_ray(contenders, scene, Class::Defect, JudgeShare::Sample)
         .and_then(|first| minimise(scene, Some(first.place), &shows, MINIMISE_BUDGET, &Silent).ok());
     let Some(minimised) = minimised else {
         return "no reproducer: the two renderers show no defect on this scene".into();

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil::harness::{
-    Contender, Reproducer, contender, first_shown, shows_class, typed_contenders, write_reproducer,
+    Contender, Reproducer, contender, first_interesting_ray, is_interesting_in_class, typed_contenders,
+    write_reproducer,
 };
 use raypencil::io::{Overrides, load};
 use raypencil::judge::{Class, JudgeShare};
-use raypencil::minimise::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
+use raypencil::minimise::{MINIMISE_BUDGET, Minimised, NotInteresting, minimise};
 use raypencil::terrain::RandomGround;
 use raypencil::{FaceId, Mesh, Place, Precision, RenderOutput, Renderer, Request, Scene, SensorId, Silent};
 use raypencil_tests::injected_faults::detection::shows_fault;
@@ -25,7 +26,7 @@ fn rough() -> Scene {
 
 /// The first ray of a class between two renderers.
 fn first_place(contenders: [&Contender; 2], scene: &Scene, class: Class) -> Option<Place> {
-    first_shown(contenders, scene, class, JudgeShare::All).map(|first| first.place)
+    first_interesting_ray(contenders, scene, class, JudgeShare::All).map(|first| first.place)
 }
 
 fn tracer() -> Contender {
@@ -58,7 +59,7 @@ fn a_fault_on_two_thousand_faces_shrinks_to_those_that_matter() {
 fn without_a_place_any_ray_will_do() {
     let scene = lattice();
     let [a, b] = [tracer(), faulty(Fault::EdgesExcluded)];
-    let shows = shows_class([&a, &b], Class::Defect);
+    let shows = is_interesting_in_class([&a, &b], Class::Defect);
     let found = minimise(&scene, None, &shows, MINIMISE_BUDGET, &Silent).expect("it shows");
     // An inner edge has two faces. A miss at the border is rounding.
     assert_eq!((found.faces_before, found.faces_after), (32, 2));
@@ -74,7 +75,7 @@ fn a_tie_needs_two_faces() {
     let scene = ridge();
     let [a, b] = [tracer(), Contender::from(LastOfTies)];
     let place = first_place([&a, &b], &scene, Class::Tie);
-    let shows = shows_class([&a, &b], Class::Tie);
+    let shows = is_interesting_in_class([&a, &b], Class::Tie);
     let found = minimise(&scene, place, &shows, MINIMISE_BUDGET, &Silent).expect("it shows");
     assert_eq!((found.faces_before, found.faces_after), (4, 2));
 }
@@ -118,8 +119,8 @@ fn renderers_that_agree_show_nothing() {
     let scene = rough();
     let [a, b] = [tracer(), contender("scanline").expect("a renderer of this house")];
     let place = Some(Place { sensor: SensorId::Beam(0), i: 40, j: 1 });
-    let refused = minimise(&scene, place, &shows_class([&a, &b], Class::Defect), 100, &Silent);
-    assert_eq!(refused.unwrap_err(), NotShown);
+    let refused = minimise(&scene, place, &is_interesting_in_class([&a, &b], Class::Defect), 100, &Silent);
+    assert_eq!(refused.unwrap_err(), NotInteresting);
 }
 
 #[test]
@@ -128,7 +129,7 @@ fn the_papers_errors_are_minimised_by_their_cause() {
     let [a, b] = [contender("scanline-paper").expect("a renderer of this house"), tracer()];
     let place = first_place([&a, &b], &scene, Class::Approximation);
     assert!(place.is_some(), "the paper errs somewhere");
-    let shows = shows_class([&a, &b], Class::Approximation);
+    let shows = is_interesting_in_class([&a, &b], Class::Approximation);
     let found = minimise(&scene, place, &shows, MINIMISE_BUDGET, &Silent).expect("it shows");
     assert!(found.faces_after <= 3, "{} faces", found.faces_after);
 }

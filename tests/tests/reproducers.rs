@@ -1,6 +1,6 @@
 //! The reproducer of a failing property: an injected fault must come out as a scene of one face.
 
-use raypencil::harness::{Contender, contender, shows_class};
+use raypencil::harness::{Contender, contender, is_interesting_in_class};
 use raypencil::io::{Overrides, load};
 use raypencil::judge::Class;
 use raypencil_tests::injected_faults::geometry::pyramids;
@@ -17,7 +17,7 @@ fn a_failure_leaves_the_smallest_scene_that_shows_it() {
     let loaded =
         load(file.unwrap_or_else(|| panic!("{line}")), &Overrides::default()).expect("a scene").scene;
     assert_eq!(loaded.mesh().faces().len(), 1);
-    assert!(shows_class([&tracer, &naive], Class::Defect)(&loaded, None));
+    assert!(is_interesting_in_class([&tracer, &naive], Class::Defect)(&loaded, None));
     let words = std::fs::read_to_string(file.unwrap().replace(".toml", ".md")).expect("its description");
     assert!(words.contains(&commit()) && words.contains("--with tracer,naive"), "{words}");
 }

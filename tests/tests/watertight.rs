@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use raypencil::{Beam, Camera, Mesh, Mounted, Pose, Quantities, Renderer, Request, SensorId, SensorMap};
-use raypencil_tests::lattice::{Fate, Lattice, Sensor, hash, hash_unit};
+use raypencil_tests::lattice::{ExpectedHit, Lattice, Sensor, hash, hash_unit};
 use raypencil_tests::{at_origin, cells_missed, mesh, renderers, rig, scene, unindexed};
 
 /// Parameter t of the vertices: a single one, so that the mesh is flat.
@@ -74,7 +74,7 @@ fn assert_watertight(
             for i in 0..map.width {
                 let range = range.at(i, j).get();
                 let fate = lattice.fate(i, j);
-                if fate != Fate::Unknown && (fate == Fate::Hit) != range.is_some() {
+                if fate != ExpectedHit::Unknown && (fate == ExpectedHit::Hit) != range.is_some() {
                     wrong.push((i, j, range));
                 }
                 if let (Some(t), Some(range)) = (lattice.t_at(i, j), range) {

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use raypencil_files::create_folder;
 use raypencil_harness::{
-    Contender, Reproducer, attribute, contender, first_shown, shows_class, typed_contenders, write_reproducer,
+    Contender, Reproducer, attribute, contender, first_interesting_ray, is_interesting_in_class,
+    typed_contenders, write_reproducer,
 };
 use raypencil_judge::{Class, Judge, JudgeShare, Side, compare_judged};
 use raypencil_minimise::{MINIMISE_BUDGET, minimise};
@@ -65,8 +66,8 @@ fn write_wrong_scene(
     create_folder(folder)?;
     write_resolved(folder.join(format!("{name}.toml")), scene, &format!("{name}.glb"))?;
     for (class, verb) in [(Class::Defect, "differ beyond doubt"), (Class::Undecided, "differ, undecided")] {
-        let Some(first) = first_shown(contenders, scene, class, JudgeShare::All) else { continue };
-        let is_interesting = shows_class(contenders, class);
+        let Some(first) = first_interesting_ray(contenders, scene, class, JudgeShare::All) else { continue };
+        let is_interesting = is_interesting_in_class(contenders, class);
         let Ok(minimised) = minimise(scene, Some(first.place), &is_interesting, MINIMISE_BUDGET, &Silent)
         else {
             continue;

@@ -52,7 +52,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         let truth = GroundTruth::certified(&scene, &spinner);
         let [of_a, of_b] = [of_a, of_b].map(|recorded| judge(&truth, &recorded, &spinner));
         let rulings = rule(&difference, &sides, &truth, [&of_a, &of_b]);
-        difference = difference.ruled(rulings);
+        difference = difference.with_rulings(rulings);
     }
     if let Some(folder) = &command.output {
         write_diff(&difference, &sides, folder, &spinner)?;

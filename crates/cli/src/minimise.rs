@@ -1,7 +1,9 @@
 //! `raypencil minimise`: reduces a scene to the smallest one on which two renderers still differ.
 
 use raypencil::Progress as _;
-use raypencil::harness::{Reproducer, first_shown, shows_class, typed_contenders, write_reproducer};
+use raypencil::harness::{
+    Reproducer, first_interesting_ray, is_interesting_in_class, typed_contenders, write_reproducer,
+};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::minimise::{MINIMISE_BUDGET, minimise as search};
 use serde_json::json;
@@ -37,8 +39,8 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
     let what = format!("{of_a} and {of_b} {}", difference(class));
 
     spinner.stage("searching for the first such ray");
-    let found = first_shown([a, b], &subject.scene, class, JudgeShare::All).and_then(|first| {
-        let is_interesting = shows_class([a, b], class);
+    let found = first_interesting_ray([a, b], &subject.scene, class, JudgeShare::All).and_then(|first| {
+        let is_interesting = is_interesting_in_class([a, b], class);
         search(&subject.scene, Some(first.place), &is_interesting, MINIMISE_BUDGET, &spinner).ok()
     });
     let Some(minimised) = found else {

@@ -94,7 +94,7 @@ impl Difference {
     ///
     /// A channel the referee ruled on fails if either side is wrong, if a cell exceeds the hard limit, or if a cell
     /// could not be judged and the channel already failed its thresholds.
-    pub fn ruled(mut self, rulings: Rulings) -> Self {
+    pub fn with_rulings(mut self, rulings: Rulings) -> Self {
         for channel in &mut self.channels {
             if let Some(ruling) = rulings.channels.get(&channel.key) {
                 let all_judged = ruling.not_judged == 0;

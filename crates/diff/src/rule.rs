@@ -17,7 +17,7 @@ const MAX_DESCRIBED_CELLS: usize = 5;
 
 /// Rules on each cell that differs by more than is allowed. `checks` are the checks of A and B against `truth`.
 ///
-/// Add the result to the difference with [`Difference::ruled`].
+/// Add the result to the difference with [`Difference::with_rulings`].
 pub fn rule(difference: &Difference, sides: &Sides, truth: &GroundTruth<'_>, checks: [&Check; 2]) -> Rulings {
     let lookup = checks.map(ClassLookup::new);
     let mut rulings = Rulings { channels: BTreeMap::new(), not_ruled: Vec::new() };

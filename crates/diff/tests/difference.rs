@@ -231,7 +231,7 @@ fn screens_are_as_the_snapshots_show() {
     let difference = diff(&a, &b, &NONE).unwrap();
     let folder = Path::new("out");
     assert_report("screen_of_a_failure", &diff_screen(&difference, &sides, Some(folder)));
-    assert_report("screen_with_rulings", &diff_screen(&difference.ruled(rulings()), &sides, None));
+    assert_report("screen_with_rulings", &diff_screen(&difference.with_rulings(rulings()), &sides, None));
     let thresholds =
         Thresholds { fail_ulp: 4.0, fail_percent: 70.0, hard_fail: None, shared_only: true, ..NONE };
     let within = diff(&a, &b, &thresholds).unwrap();
@@ -265,7 +265,7 @@ fn a_screen_stays_one_screen() {
 #[test]
 fn a_folder_is_complete_and_its_files_escape_names() {
     let [a, b] = two_recordings();
-    let difference = diff(&a, &b, &NONE).unwrap().ruled(rulings());
+    let difference = diff(&a, &b, &NONE).unwrap().with_rulings(rulings());
     let sides = Sides { names: ["left & <right>", "b"], channels: [&a, &b] };
     let folder = tempfile::tempdir().unwrap();
     let written = write_diff(&difference, &sides, folder.path(), &Silent).unwrap();

@@ -120,7 +120,7 @@ impl ExtraChannels<'_> {
                 .into());
             };
             let totals = note.iter().flat_map(|note| &note.totals);
-            let total = totals.clone().find(|total| total.way == integrator && total.beam == beam);
+            let total = totals.clone().find(|total| total.integrator == integrator && total.beam == beam);
             let estimate = match total {
                 Some(total) => Estimate { mean, error, total: total.mean, total_error: total.error },
                 None => Estimate::of_independent_pixels(mean, error),

@@ -15,7 +15,7 @@ use crate::renderers::{Contender, attribute};
 /// ```
 /// # use std::sync::Arc;
 /// # use glam::DVec3;
-/// use raypencil_harness::{contender, first_shown, shows_class};
+/// use raypencil_harness::{contender, first_interesting_ray, is_interesting_in_class};
 /// use raypencil_judge::{Class, JudgeShare};
 /// # use raypencil_scene::{Atmosphere, FluxModel, Scene, rig};
 ///
@@ -26,11 +26,11 @@ use crate::renderers::{Contender, attribute};
 /// let pair = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
 /// let pair = [&pair[0], &pair[1]];
 /// // Both renderers are right on the pyramids: no ray is a defect, so there is nothing to reduce.
-/// assert!(!shows_class(pair, Class::Defect)(&scene, None));
-/// assert!(first_shown(pair, &scene, Class::Defect, JudgeShare::Sample).is_none());
+/// assert!(!is_interesting_in_class(pair, Class::Defect)(&scene, None));
+/// assert!(first_interesting_ray(pair, &scene, Class::Defect, JudgeShare::Sample).is_none());
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
-pub fn shows_class<'a>(
+pub fn is_interesting_in_class<'a>(
     contenders: [&'a Contender; 2],
     class: Class,
 ) -> impl Fn(&Scene, Option<Place>) -> bool + 'a {
@@ -46,7 +46,7 @@ pub fn shows_class<'a>(
 
 /// The first ray on which two renderers differ by `class`: where a reduction begins. The referee rules on `share` of
 /// the rays that agree.
-pub fn first_shown(
+pub fn first_interesting_ray(
     contenders: [&Contender; 2],
     scene: &Scene,
     class: Class,

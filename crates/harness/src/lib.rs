@@ -76,7 +76,7 @@ mod validation;
 
 pub use candidate::{Candidate, CandidateError, RadianceMap};
 pub use estimate::{Estimate, MonteCarloImage};
-pub use interestingness::{first_shown, shows_class};
+pub use interestingness::{first_interesting_ray, is_interesting_in_class};
 pub use monte_carlo::{ImageComparison, Z_TEST_LIMITS, ZTestLimits, compare_images, expected_images};
 pub use output::folder::{HarnessError, Written, write_maps, write_validation};
 pub use output::junit::junit as junit_xml;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use raypencil_files::write_atomically;
 use raypencil_judge::{Defect, Quantity, name_of};
-use raypencil_minimise::single_ray;
+use raypencil_minimise::reduce_to_ray;
 use raypencil_pack::{PackError, write_pack};
 use raypencil_referee::{Displacement, Format, Referee};
 use raypencil_scene::{Place, Progress, Sampling, Scene, SensorId};
@@ -35,7 +35,7 @@ impl TrueAnswer {
         let referee = Referee::new(scene);
         let range = referee.values(sensor, i, j).map(|hit| hit.in_format(Format::Double).range.to_bits());
         let SensorId::Beam(beam) = sensor else { return Self { range, sight: None, flux: None } };
-        let sight = referee.sight(beam, i, j, Displacement::ZERO);
+        let sight = referee.visibility(beam, i, j, Displacement::ZERO);
         let light = referee.light(beam, Sampling::Centres);
         let back = light.and_then(|light| light.returned(i, j));
         let flux = back.map(|back| back.in_format(Format::Double, scene.flux_model()).flux.to_bits());
@@ -74,7 +74,7 @@ pub(crate) fn write_misses(
         let is_interesting = |scene: &Scene, place: Option<Place>| {
             !is_sum && place.is_some_and(|place| of_ray(scene, place) == true_answer)
         };
-        let (scene, place) = single_ray(&subject.scene, wrong.place, MAX_FACES, &is_interesting, progress);
+        let (scene, place) = reduce_to_ray(&subject.scene, wrong.place, MAX_FACES, &is_interesting, progress);
         let small = Subject { arguments: quoted("scene.toml"), name, sha256: scene_sha256(&scene), scene };
         write_pack(&small, None, &folder, progress)?;
         let text = readme(subject, report, wrong, &small, place);

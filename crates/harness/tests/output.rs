@@ -355,7 +355,7 @@ fn a_candidates_misses_are_reported_and_written_as_packs() {
     // A miss is a pack of that ray, with the same exact answer for the same reason.
     let of_whole = |i: u32, j: u32| {
         Referee::new(&validation.subject.scene)
-            .sight(0, i, j, Displacement::ZERO)
+            .visibility(0, i, j, Displacement::ZERO)
             .unwrap()
             .hidden_by
             .is_some()
@@ -377,7 +377,7 @@ fn a_candidates_misses_are_reported_and_written_as_packs() {
         let place = words.split_once(" here").unwrap().0;
         let (at_i, at_j) = place.split_once(',').unwrap();
         let sight = Referee::new(scene)
-            .sight(0, at_i.parse().unwrap(), at_j.parse().unwrap(), Displacement::ZERO)
+            .visibility(0, at_i.parse().unwrap(), at_j.parse().unwrap(), Displacement::ZERO)
             .unwrap();
         assert!(sight.pixel.is_some(), "it still lands on the image");
         assert_eq!(sight.hidden_by.is_some(), of_whole(i, j));

@@ -43,8 +43,8 @@ mod sensors;
 mod short_numbers;
 mod simplest_values;
 
-pub use minimise::{MINIMISE_BUDGET, Minimised, minimise, single_ray};
-pub use reducer::{InterestingnessTest, NotShown};
+pub use minimise::{MINIMISE_BUDGET, Minimised, minimise, reduce_to_ray};
+pub use reducer::{InterestingnessTest, NotInteresting};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -6,7 +6,7 @@
 use raypencil_scene::{Place, Progress, Scene};
 
 use crate::faces::{ddmin, keep_near_ray, keep_nearest, remove_single_faces};
-use crate::reducer::{InterestingnessTest, NotShown, Reducer};
+use crate::reducer::{InterestingnessTest, NotInteresting, Reducer};
 use crate::reduction::Reduction;
 use crate::sensors::{cut_others, cut_to_ray};
 use crate::short_numbers::shorten_numbers;
@@ -47,7 +47,7 @@ pub struct Minimised {
 /// ```
 /// use std::sync::Arc;
 ///
-/// use raypencil_minimise::single_ray;
+/// use raypencil_minimise::reduce_to_ray;
 /// use raypencil_scene::{Atmosphere, FluxModel, Mounted, Place, Pose, Scene, SensorId, Silent, rig};
 /// use raypencil_terrain::RandomGround;
 ///
@@ -56,13 +56,13 @@ pub struct Minimised {
 /// let air = Atmosphere { attenuation: 0.0 };
 /// let scene = Scene::new(mesh, camera, Vec::new(), air, FluxModel::Radiometric)?;
 /// let place = Place { sensor: SensorId::Camera, i: 5, j: 40 };
-/// let (reduced, moved) = single_ray(&scene, place, 8, &|_, _| true, &Silent);
+/// let (reduced, moved) = reduce_to_ray(&scene, place, 8, &|_, _| true, &Silent);
 /// // The only pixel of the reduced camera has exactly the ray of pixel (5, 40).
 /// assert_eq!((reduced.mesh().faces().len(), moved.i, moved.j), (8, 0, 0));
 /// assert_eq!(reduced.ray(SensorId::Camera, 0, 0), scene.ray(SensorId::Camera, 5, 40));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn single_ray(
+pub fn reduce_to_ray(
     scene: &Scene,
     place: Place,
     faces: usize,
@@ -113,7 +113,7 @@ pub fn minimise(
     is_interesting: &InterestingnessTest<'_>,
     budget: u64,
     progress: &dyn Progress,
-) -> Result<Minimised, NotShown> {
+) -> Result<Minimised, NotInteresting> {
     let faces_before = scene.mesh().faces().len();
     let mut reducer = Reducer::begin(Reduction::of(scene, place), is_interesting, budget, progress)?;
     for round in 0..MAX_ROUNDS {

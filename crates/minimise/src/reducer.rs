@@ -11,7 +11,7 @@ pub type InterestingnessTest<'a> = dyn Fn(&Scene, Option<Place>) -> bool + 'a;
 /// The scene to be minimised does not pass the interestingness test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the scene does not pass the interestingness test as it is; expected a scene that does")]
-pub struct NotShown;
+pub struct NotInteresting;
 
 /// State of a search.
 pub(crate) struct Reducer<'a> {
@@ -36,10 +36,10 @@ impl<'a> Reducer<'a> {
         is_interesting: &'a InterestingnessTest<'a>,
         budget: u64,
         progress: &'a dyn Progress,
-    ) -> Result<Self, NotShown> {
+    ) -> Result<Self, NotInteresting> {
         let scene = first.scene().expect("the parts of a scene make it again");
         if !is_interesting(&scene, first.place) {
-            return Err(NotShown);
+            return Err(NotInteresting);
         }
         Ok(Self { best: first, scene, is_interesting, calls: 1, budget, is_spent: false, progress })
     }

@@ -54,7 +54,7 @@ pub enum Arithmetic {
 pub struct MonteCarloTotal {
     /// The integrator, which is the first word of the image's name: `direct` for `direct.mean.beam0`.
     #[serde(rename = "way")]
-    pub way: String,
+    pub integrator: String,
     /// Index of the beam whose light the image shows.
     pub beam: usize,
     /// Mean, watts.

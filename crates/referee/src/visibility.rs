@@ -31,12 +31,12 @@ impl Referee<'_> {
     ///
     /// let scene = wall_scene();
     /// // The pencil hits the wall at (-1, 0, 2). No face is between it and the camera at the origin.
-    /// let view = Referee::new(&scene).sight(0, 0, 0, Displacement::ZERO).unwrap();
+    /// let view = Referee::new(&scene).visibility(0, 0, 0, Displacement::ZERO).unwrap();
     /// assert!(view.visible && view.hidden_by.is_none());
     /// // f x / z / p = -4 pixels from the principal point (4.5, 4.5): (0.5, 4.5).
     /// assert_eq!(view.pixel, Some(Pixel { i: 0, j: 4 }));
     /// ```
-    pub fn sight(&self, beam: usize, i: u32, j: u32, by: Displacement) -> Option<Visibility> {
+    pub fn visibility(&self, beam: usize, i: u32, j: u32, by: Displacement) -> Option<Visibility> {
         let sensor = MountedSensor::of(self.scene, SensorId::Beam(beam))?;
         let (columns, rows) = sensor.size();
         if i >= columns || j >= rows || !by.dx.is_finite() || !by.dy.is_finite() {

@@ -181,7 +181,7 @@ fn record_pencil(transcript: &mut Transcript, scene: &Scene, referee: &Referee<'
     };
     for reach in [0.0, 0.5, 2.0] {
         let by = Displacement { dx: reach * random.part(), dy: reach * random.part() };
-        let sight = referee.sight(0, i, j, by);
+        let sight = referee.visibility(0, i, j, by);
         transcript.record("sights", &sight);
         let pixel = sight.and_then(|sight| sight.pixel);
         for (visible, tolerance) in [true, false].into_iter().flat_map(|v| TOLERANCES.map(|t| (v, t))) {

@@ -139,7 +139,7 @@ fn what_meets_the_segment_hides_the_point() {
         let setting = Setting { faces: [&[WALL], faces].concat(), ..Setting::of(FluxModel::Radiometric) };
         let scene = setting.scene();
         let referee = Referee::new(&scene);
-        let sight = referee.sight(0, 0, 0, Displacement::ZERO).expect("the wall is hit");
+        let sight = referee.visibility(0, 0, 0, Displacement::ZERO).expect("the wall is hit");
         assert_eq!(sight.visible, sight.hidden_by.is_none());
         sight.visible
     };
@@ -235,12 +235,12 @@ fn there_is_no_view_of_what_is_no_pencil() {
     let scene = Setting::of(FluxModel::Radiometric).scene();
     let referee = Referee::new(&scene);
     let by = |dx: f64, dy: f64| Displacement { dx, dy };
-    assert!(referee.sight(0, 0, 0, by(0.25, -0.5)).is_some());
-    assert_eq!(referee.sight(1, 0, 0, Displacement::ZERO), None);
-    assert_eq!(referee.sight(0, 1, 0, Displacement::ZERO), None);
-    assert_eq!(referee.sight(0, 0, 1, Displacement::ZERO), None);
+    assert!(referee.visibility(0, 0, 0, by(0.25, -0.5)).is_some());
+    assert_eq!(referee.visibility(1, 0, 0, Displacement::ZERO), None);
+    assert_eq!(referee.visibility(0, 1, 0, Displacement::ZERO), None);
+    assert_eq!(referee.visibility(0, 0, 1, Displacement::ZERO), None);
     for wild in [by(f64::NAN, 0.0), by(0.0, f64::NAN), by(f64::INFINITY, 0.0), by(0.0, f64::NEG_INFINITY)] {
-        assert_eq!(referee.sight(0, 0, 0, wild), None);
+        assert_eq!(referee.visibility(0, 0, 0, wild), None);
     }
 }
 
@@ -298,7 +298,7 @@ fn a_landing_on_a_border_is_in_the_pixel_that_begins_there() {
         scene = Scene::new(mesh, camera, vec![beam], air, model).expect("a scene");
         let referee = Referee::new(&scene);
         for i in 0..n {
-            let Some(sight) = referee.sight(0, i, 0, Displacement::ZERO) else { continue };
+            let Some(sight) = referee.visibility(0, i, 0, Displacement::ZERO) else { continue };
             assert_eq!(sight.pixel, Some(Pixel { i: 2 * i + 1, j: 32 }), "pencil {i} of {n}");
         }
     }

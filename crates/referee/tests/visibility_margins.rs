@@ -78,7 +78,7 @@ fn margins_hold_are_witnessed_and_are_tight() {
         for _ in 0..160 {
             let (i, j) = (random.below(columns), random.below(rows));
             let margins = referee.visibility_margins(0, i, j);
-            let own = referee.sight(0, i, j, Displacement::ZERO);
+            let own = referee.visibility(0, i, j, Displacement::ZERO);
             assert_eq!(margins.map(|margins| margins.sight), own);
             let Some(VisibilityMargins { sight, visibility, landing }) = margins else { continue };
             assert_eq!(landing.is_some(), sight.pixel.is_some());
@@ -86,7 +86,7 @@ fn margins_hold_are_witnessed_and_are_tight() {
             let Margin { lo, hi, witness } = visibility;
             assert!(0.0 <= lo && lo <= hi && hi <= 1.0);
             let visible = |dx: f64, dy: f64| {
-                referee.sight(0, i, j, Displacement { dx, dy }).is_some_and(|sight| sight.visible)
+                referee.visibility(0, i, j, Displacement { dx, dy }).is_some_and(|sight| sight.visible)
             };
             match witness {
                 Some(by) => {

@@ -1,7 +1,7 @@
 //! The search for an injected fault: the first scene that reveals it, then the smallest.
 
 use raypencil::Scene;
-use raypencil::harness::{Contender, first_shown, shows_class};
+use raypencil::harness::{Contender, first_interesting_ray, is_interesting_in_class};
 use raypencil::judge::{Class, JudgeShare, Quantity};
 use raypencil::minimise::{MINIMISE_BUDGET, Minimised, minimise};
 use raypencil::tracer::Tracer;
@@ -32,7 +32,9 @@ pub fn detect(fault: Fault) -> Option<Detection> {
     let mut before = 0;
     let (honest, faulty) = (Contender::from(Tracer::new()), Contender::from(Naive { fault: Some(fault) }));
     for (name, scene) in scenes_of(fault.kind()) {
-        let Some(first) = first_shown([&honest, &faulty], &scene, Class::Defect, JudgeShare::Sample) else {
+        let Some(first) =
+            first_interesting_ray([&honest, &faulty], &scene, Class::Defect, JudgeShare::Sample)
+        else {
             before += rays(&scene);
             continue;
         };
@@ -50,8 +52,8 @@ pub fn shows_fault(fault: Fault) -> impl Fn(&Scene, Option<Place>) -> bool {
     let honest = Contender::from(Tracer::new());
     let [faulty, sound] = [Some(fault), None].map(|fault| Contender::from(Naive { fault }));
     move |scene, place| {
-        shows_class([&honest, &faulty], Class::Defect)(scene, place)
-            && !shows_class([&honest, &sound], Class::Defect)(scene, place)
+        is_interesting_in_class([&honest, &faulty], Class::Defect)(scene, place)
+            && !is_interesting_in_class([&honest, &sound], Class::Defect)(scene, place)
     }
 }
 

@@ -101,7 +101,7 @@ pub fn turned(size: u32) -> Scene {
 
 /// The known outcome of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fate {
+pub enum ExpectedHit {
     /// The ray hits the mesh.
     Hit,
     /// The ray misses: it meets the mesh only in front of the sensor projection plane (SPP).
@@ -172,10 +172,10 @@ impl Lattice {
     }
 
     /// The outcome of ray (i, j), from the t of the vertices around it.
-    pub fn fate(&self, i: u32, j: u32) -> Fate {
+    pub fn fate(&self, i: u32, j: u32) -> ExpectedHit {
         let [u, v] = [i, j].map(|index| (index / 2 + self.rings) as usize);
         let t = |u: usize, v: usize| self.t[v * self.size[0] + u];
-        let at = |t: f64| if t >= 1.0 { Fate::Hit } else { Fate::Miss };
+        let at = |t: f64| if t >= 1.0 { ExpectedHit::Hit } else { ExpectedHit::Miss };
         let harmonic = |t: f64, other: f64| 2.0 / (1.0 / t + 1.0 / other);
         let falling = self.falling[v * self.size[0] + u];
         let diagonal = || if falling { (t(u, v), t(u + 1, v + 1)) } else { (t(u, v + 1), t(u + 1, v)) };
@@ -188,7 +188,13 @@ impl Lattice {
             (_, _, Sensor::Beam(_)) => {
                 let corners = [t(u, v), t(u + 1, v), t(u, v + 1), t(u + 1, v + 1)];
                 let beyond = corners.iter().filter(|t| **t >= 1.0).count();
-                [Fate::Miss, Fate::Unknown, Fate::Unknown, Fate::Unknown, Fate::Hit][beyond]
+                [
+                    ExpectedHit::Miss,
+                    ExpectedHit::Unknown,
+                    ExpectedHit::Unknown,
+                    ExpectedHit::Unknown,
+                    ExpectedHit::Hit,
+                ][beyond]
             }
         }
     }

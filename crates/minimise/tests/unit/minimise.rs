@@ -10,13 +10,13 @@ use raypencil_scene::{
 use raypencil_tests::fixtures::subject;
 
 use crate::reduction::Reduction;
-use crate::{MINIMISE_BUDGET, Minimised, NotShown, minimise};
+use crate::{MINIMISE_BUDGET, Minimised, NotInteresting, minimise};
 
 fn search(
     scene: &Scene,
     place: Option<Place>,
     is_interesting: impl Fn(&Scene, Option<Place>) -> bool,
-) -> Result<Minimised, NotShown> {
+) -> Result<Minimised, NotInteresting> {
     minimise(scene, place, &is_interesting, MINIMISE_BUDGET, &Silent)
 }
 
@@ -46,7 +46,7 @@ fn wall() -> Scene {
 
 #[test]
 fn a_scene_that_is_not_interesting_is_refused() {
-    assert_eq!(search(&subject().scene, None, |_, _| false).unwrap_err(), NotShown);
+    assert_eq!(search(&subject().scene, None, |_, _| false).unwrap_err(), NotInteresting);
 }
 
 #[test]

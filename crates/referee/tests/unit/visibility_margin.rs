@@ -203,7 +203,7 @@ fn a_ray_beside_excuses_what_is_true_of_it() {
             [[to_x - 0.025, to_y - 0.025, 1.0], [to_x, to_y + 0.05, 1.0], [to_x + 0.025, to_y - 0.025, 1.0]];
         let scene = level_with(4.0, 0.03125, 0.25, &[lid]);
         let referee = Referee::new(&scene);
-        let pixel = referee.sight(0, 1, 1, Displacement::ZERO).expect("a pencil").pixel;
+        let pixel = referee.visibility(0, 1, 1, Displacement::ZERO).expect("a pencil").pixel;
         let rule = |lateral: f64| {
             let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
             let ruled =
