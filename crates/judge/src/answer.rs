@@ -8,47 +8,43 @@ fn at<T: Sample>(image: &Option<Image<Maybe<T>>>, i: u32, j: u32) -> Option<T> {
 
 /// One ray's hit as a side states it. A value is `None` if its channel is absent or the ray misses.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct StatedHit {
-    /// Whether the map has any channel.
-    has_channels: bool,
-    /// Whether the map has a channel of faces.
-    pub(crate) names_faces: bool,
+pub(crate) struct StatedHit<'m> {
+    map: &'m SensorMap,
+    i: u32,
+    j: u32,
     pub(crate) face: Option<FaceId>,
-    /// In the order of [`HitQuantity::ALL`].
-    values: [Option<HitValue>; HitQuantity::COUNT],
+    /// Distance along the ray, metres.
+    pub(crate) range: Option<f64>,
 }
 
-impl StatedHit {
+impl<'m> StatedHit<'m> {
     /// The answer to ray (i, j) of a map.
-    pub(crate) fn of(map: &SensorMap, i: u32, j: u32) -> Self {
-        let names_faces = map.face.is_some();
-        let mut has_channels = names_faces;
-        let values = HitQuantity::ALL.map(|quantity| {
-            let raster = map.raster(quantity);
-            has_channels |= raster.is_some();
-            raster.and_then(|raster| raster.at(i, j))
-        });
-        Self { has_channels, names_faces, face: at(&map.face, i, j), values }
+    pub(crate) fn of(map: &'m SensorMap, i: u32, j: u32) -> Self {
+        Self { map, i, j, face: at(&map.face, i, j), range: at(&map.range, i, j) }
     }
 
     /// The value of a quantity.
     pub(crate) fn value(&self, quantity: HitQuantity) -> Option<HitValue> {
-        self.values[quantity as usize]
+        self.map.raster(quantity)?.at(self.i, self.j)
     }
 
-    /// The range, metres.
-    pub(crate) fn range(&self) -> Option<f64> {
-        self.value(HitQuantity::Range)?.scalar()
+    /// Whether the map has a channel of faces.
+    pub(crate) fn names_faces(&self) -> bool {
+        self.map.face.is_some()
     }
 
     /// Whether a renderer's ray hits: by its range or its face.
     pub(crate) fn hits(&self) -> bool {
-        self.range().is_some() || self.face.is_some()
+        self.range.is_some() || self.face.is_some()
     }
 
     /// Whether a recording's ray hits, by any of its values; `None` if the recording has no channel.
     pub(crate) fn hits_by_any_value(&self) -> Option<bool> {
-        self.has_channels.then_some(self.face.is_some() || self.values.iter().any(Option::is_some))
+        let has_channels =
+            self.names_faces() || HitQuantity::ALL.into_iter().any(|one| self.map.raster(one).is_some());
+        let hits =
+            || self.face.is_some() || HitQuantity::ALL.into_iter().any(|one| self.value(one).is_some());
+        has_channels.then(hits)
     }
 }
 

@@ -163,10 +163,10 @@ impl ReturnValues {
     }
 
     /// The values that a side states; `None` if it leaves one out.
-    pub(crate) fn of_stated(scene: &Scene, hit: &StatedHit, stated: &StatedReturn) -> Option<Self> {
+    pub(crate) fn of_stated(scene: &Scene, hit: &StatedHit<'_>, stated: &StatedReturn) -> Option<Self> {
         let (depth, cos_off_axis) = (stated.depth?, stated.cos_off_axis?);
         Some(Self {
-            range: hit.range()?,
+            range: hit.range?,
             cos_incidence: hit.value(HitQuantity::CosIncidence)?.scalar()?,
             depth,
             cos_off_axis,

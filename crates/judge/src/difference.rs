@@ -98,7 +98,7 @@ pub(crate) fn distance(a: &HitValue, b: &HitValue) -> f64 {
 }
 
 /// The stated values of a hit beside those of an exact hit.
-pub(crate) fn hit_values(stated: &StatedHit, exact: &Hit, bounds: &HitBounds) -> Vec<StatedValue> {
+pub(crate) fn hit_values(stated: &StatedHit<'_>, exact: &Hit, bounds: &HitBounds) -> Vec<StatedValue> {
     let value = |quantity: HitQuantity| {
         let (stated, exact) = (stated.value(quantity)?, exact.value(quantity));
         Some(StatedValue {

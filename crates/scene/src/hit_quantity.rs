@@ -47,6 +47,7 @@ pub enum HitValue {
 
 impl HitValue {
     /// The number, or the three components of the vector.
+    #[inline]
     pub fn components(&self) -> &[f64] {
         match self {
             Self::Scalar(number) => std::slice::from_ref(number),
@@ -82,6 +83,7 @@ pub enum HitRaster<'a> {
 
 impl HitRaster<'_> {
     /// The value of cell (i, j); `None` where nothing is hit.
+    #[inline]
     pub fn at(&self, i: u32, j: u32) -> Option<HitValue> {
         match self {
             Self::Scalar(image) => image.at(i, j).get().map(HitValue::Scalar),
@@ -176,6 +178,7 @@ impl SensorMap {
     }
 
     /// The raster of a quantity, if the maps have it.
+    #[inline]
     pub fn raster(&self, quantity: HitQuantity) -> Option<HitRaster<'_>> {
         match quantity {
             HitQuantity::Range => self.range.as_ref().map(HitRaster::Scalar),

@@ -6,26 +6,40 @@ use crate::answer::StatedHit;
 use crate::attribution::cause::Cause;
 use crate::attribution::context::{AttributionContext, sets_of};
 use raypencil_referee::{Approximations, Explained, Ruling};
-use raypencil_scene::{Fidelity, Place, Quantities, RenderOutput, Request, SensorMap, Switches};
+use raypencil_scene::{FaceId, Fidelity, Place, Quantities, RenderOutput, Request, SensorMap, Switches};
+
+/// The face and the range that a map states for a ray.
+#[derive(Clone, Copy)]
+struct Answer {
+    face: Option<FaceId>,
+    range: Option<f64>,
+}
+
+impl Answer {
+    fn of(map: &SensorMap, i: u32, j: u32) -> Self {
+        let StatedHit { face, range, .. } = StatedHit::of(map, i, j);
+        Self { face, range }
+    }
+}
 
 /// A ray whose hit is not the contract's.
 struct WrongHit {
     place: Place,
-    answer: StatedHit,
+    answer: Answer,
     /// The answers that are still wrong with other switches on `exact`, and those switches.
-    without: Vec<(Switches, StatedHit)>,
+    without: Vec<(Switches, Answer)>,
     cause: Option<Cause>,
 }
 
 impl AttributionContext<'_> {
-    fn is_wrong(&self, place: Place, answer: StatedHit) -> bool {
-        self.judge.rule(place, answer.face, answer.range(), self.precision) == Ruling::Wrong
+    fn is_wrong(&self, place: Place, answer: Answer) -> bool {
+        self.judge.rule(place, answer.face, answer.range, self.precision) == Ruling::Wrong
     }
 
     /// Explains an answer that was made with the renderer's switches but for `exact`.
-    fn explain(&self, place: Place, answer: StatedHit, exact: Switches) -> Option<Vec<Explained>> {
+    fn explain(&self, place: Place, answer: Answer, exact: Switches) -> Option<Vec<Explained>> {
         let with = approximations(self.switches.without(exact));
-        self.judge.explain(place, answer.face, answer.range(), with, self.precision)
+        self.judge.explain(place, answer.face, answer.range, with, self.precision)
     }
 }
 
@@ -69,8 +83,8 @@ pub(super) fn causes(context: AttributionContext<'_>, output: &RenderOutput) -> 
 fn wrong_hits(context: AttributionContext<'_>, map: &SensorMap, of_exact: &SensorMap) -> Vec<WrongHit> {
     let rows = (0..map.height).into_par_iter().flat_map_iter(|j| {
         (0..map.width).filter_map(move |i| {
-            let (answer, place) = (StatedHit::of(map, i, j), Place { sensor: map.sensor, i, j });
-            let differs = answer.face != StatedHit::of(of_exact, i, j).face;
+            let (answer, place) = (Answer::of(map, i, j), Place { sensor: map.sensor, i, j });
+            let differs = answer.face != Answer::of(of_exact, i, j).face;
             (differs && context.is_wrong(place, answer)).then(|| WrongHit {
                 place,
                 answer,
@@ -87,7 +101,7 @@ impl WrongHit {
     fn attribute_to(&mut self, cause: Switches, without: &RenderOutput, context: AttributionContext<'_>) {
         let Place { sensor, i, j } = self.place;
         let Some(map) = without.map(sensor) else { return };
-        let restored = StatedHit::of(map, i, j);
+        let restored = Answer::of(map, i, j);
         if context.is_wrong(self.place, restored) {
             self.without.push((cause, restored));
             return;
@@ -105,7 +119,7 @@ impl WrongHit {
             }
         }
         if open == Switches::EXACT {
-            let restored_range = restored.range();
+            let restored_range = restored.range;
             self.cause = Some(Cause { switches: cause, explained, explained_without, restored_range });
         }
     }

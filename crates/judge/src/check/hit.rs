@@ -51,7 +51,7 @@ pub(super) fn judge_hit(
     let of_truth = |class| AssumedHit {
         hit: true_hit,
         is_true: true,
-        is_named: stated.names_faces,
+        is_named: stated.names_faces(),
         class,
         bounds: true_hit.map(|hit| bounds(truth, &ray, &hit, recorded)),
     };
@@ -61,14 +61,14 @@ pub(super) fn judge_hit(
         return of_truth(Class::Agree);
     };
 
-    let is_exact = match stated.names_faces {
+    let is_exact = match stated.names_faces() {
         true => stated.face == true_hit.map(|hit| hit.face),
         false => states_hit == true_hit.is_some(),
     };
     let mut assumed = of_truth(Class::Agree);
     if !is_exact {
         assumed = ruled_otherwise(truth, recorded, entry, &stated, of_truth);
-    } else if let (false, Some(hit), Some(own)) = (stated.names_faces, &true_hit, &assumed.bounds) {
+    } else if let (false, Some(hit), Some(own)) = (stated.names_faces(), &true_hit, &assumed.bounds) {
         // Values that are not those of the true face may be those of another one, which is not named.
         let differences = recorded.differences(place.sensor, hit_values(&stated, hit, own));
         let off = differences.iter().any(|one| !one.is_within());
@@ -87,7 +87,7 @@ pub(super) fn judge_hit(
             true_hit.map_or("no hit".into(), |hit| format!("{} at {} m", face_name(hit.face), hit.range));
         entry.note(&format!("it says {said_words}, true is {true_words}"));
     }
-    match (stated.names_faces, states_hit || true_hit.is_some()) {
+    match (stated.names_faces(), states_hit || true_hit.is_some()) {
         (false, _) => entry.missing(Quantity::Face),
         // Neither hits: there is no face to compare.
         (true, false) => entry.class(Quantity::Face, Class::Agree),
@@ -116,7 +116,7 @@ fn ruled_otherwise(
     truth: &GroundTruth<'_>,
     recorded: &Recorded,
     entry: &mut RayEntry<'_>,
-    stated: &StatedHit,
+    stated: &StatedHit<'_>,
     of_truth: impl Fn(Class) -> AssumedHit,
 ) -> AssumedHit {
     let place = entry.place;
@@ -128,7 +128,7 @@ fn ruled_otherwise(
             of_truth(Class::Defect)
         });
     }
-    let ruling = truth.judge().rule(place, stated.face, stated.range(), recorded.precision);
+    let ruling = truth.judge().rule(place, stated.face, stated.range, recorded.precision);
     entry.ruled(&words(ruling));
     let class = Class::of(ruling, false);
     if class == Class::Defect {
@@ -140,7 +140,7 @@ fn ruled_otherwise(
         bounds: hit.as_ref().map(|hit| bounds(truth, &ray, hit, recorded)),
         hit,
         is_true: ruling == Ruling::Exact,
-        is_named: stated.names_faces,
+        is_named: stated.names_faces(),
         class,
     }
 }
@@ -151,19 +151,19 @@ fn unnamed_face(
     truth: &GroundTruth<'_>,
     recorded: &Recorded,
     entry: &mut RayEntry<'_>,
-    stated: &StatedHit,
+    stated: &StatedHit<'_>,
     ray: &Ray,
 ) -> Option<AssumedHit> {
     let place = entry.place;
     let judge = truth.judge();
-    for face in judge.candidate_faces(place, stated.range(), recorded.precision) {
+    for face in judge.candidate_faces(place, stated.range, recorded.precision) {
         let Some(hit) = judge.plane_hit(place, face) else { continue };
         let bounds = bounds(truth, ray, &hit, recorded);
         let differences = recorded.differences(place.sensor, hit_values(stated, &hit, &bounds));
         if !differences.iter().all(Difference::is_within) {
             continue;
         }
-        let ruling = judge.rule(place, Some(face), stated.range(), recorded.precision);
+        let ruling = judge.rule(place, Some(face), stated.range, recorded.precision);
         if matches!(ruling, Ruling::Tie | Ruling::Rounding(_)) {
             entry.ruled(&format!("{}, if {} is meant", words(ruling), face_name(face)));
             let class = Class::of(ruling, false);

@@ -12,9 +12,9 @@ use raypencil_scene::{HitQuantity, Place, Precision};
 
 /// One ray's hit on two sides, compared.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct HitComparison {
+pub(crate) struct HitComparison<'m> {
     /// The hit that each side states.
-    pub(super) answers: [StatedHit; 2],
+    pub(super) answers: [StatedHit<'m>; 2],
     /// The class of hit and face.
     pub(super) class: Class,
     /// Whether both sides name the same face.
@@ -23,7 +23,7 @@ pub(crate) struct HitComparison {
     pub(super) bounds: Option<[HitBounds; 2]>,
 }
 
-impl HitComparison {
+impl HitComparison<'_> {
     /// Whether both sides hit.
     pub(super) fn both_hit(&self) -> bool {
         self.answers.iter().all(StatedHit::hits)
@@ -31,12 +31,12 @@ impl HitComparison {
 }
 
 /// Compares one ray's hit on two sides, and enters each of its quantities that both state.
-pub(super) fn compare_hit(
+pub(super) fn compare_hit<'m>(
     judge: &Judge<'_>,
     entry: &mut RayEntry<'_>,
-    answers: [StatedHit; 2],
+    answers: [StatedHit<'m>; 2],
     [a, b]: [Side<'_>; 2],
-) -> HitComparison {
+) -> HitComparison<'m> {
     let place = entry.place;
     let [of_a, of_b] = answers;
     let same_face = of_a.face.zip(of_b.face).map(|(x, y)| x == y);
@@ -44,11 +44,11 @@ pub(super) fn compare_hit(
 
     // The referee rules on answers that differ and on a sample of the others. An answer that hits a face without
     // naming it cannot be ruled on.
-    let is_named = |answer: &StatedHit| !answer.hits() || answer.face.is_some();
+    let is_named = |answer: &StatedHit<'_>| !answer.hits() || answer.face.is_some();
     let ruled = (is_named(&of_a) && is_named(&of_b) && (differ || judge.samples(place))).then(|| {
         entry.judged();
-        let class_of = |answer: &StatedHit, side: Side<'_>| {
-            let ruling = judge.rule(place, answer.face, answer.range(), side.precision);
+        let class_of = |answer: &StatedHit<'_>, side: Side<'_>| {
+            let ruling = judge.rule(place, answer.face, answer.range, side.precision);
             Class::of(ruling, side.attributions.is_some_and(|causes| causes.cause(place).is_some()))
         };
         class_of(&of_a, a).max(class_of(&of_b, b))
@@ -65,10 +65,10 @@ pub(super) fn compare_hit(
     let ray = scene.ray(place.sensor, place.i, place.j).expect("a cell of this sensor");
     // Without a face or a range there is nothing to derive a bound from: only equal values agree.
     let mesh = scene.mesh();
-    let known = |answer: &StatedHit| answer.face.filter(|face| (face.0 as usize) < mesh.faces().len());
-    let bounds_of = |answer: &StatedHit, other: &StatedHit, precision| {
+    let known = |answer: &StatedHit<'_>| answer.face.filter(|face| (face.0 as usize) < mesh.faces().len());
+    let bounds_of = |answer: &StatedHit<'_>, other: &StatedHit<'_>, precision| {
         let face = known(answer).or(known(other));
-        let range = answer.range().or(other.range());
+        let range = answer.range.or(other.range);
         face.zip(range).map(|(face, range)| HitBounds::of(mesh, face, &ray, range, precision))
     };
     compared.bounds = bounds_of(&of_a, &of_b, a.precision)
@@ -105,7 +105,12 @@ pub(super) fn compare_hit(
 
 /// The item of an answer, if any, that is not within its bound of the values of the face that it names. Numbers come
 /// before vectors.
-fn item_off_its_face(judge: &Judge<'_>, place: Place, answer: &StatedHit, side: Side<'_>) -> Option<Item> {
+fn item_off_its_face(
+    judge: &Judge<'_>,
+    place: Place,
+    answer: &StatedHit<'_>,
+    side: Side<'_>,
+) -> Option<Item> {
     let scene = judge.scene();
     let exact = judge.plane_hit(place, answer.face?)?;
     let ray = scene.ray(place.sensor, place.i, place.j)?;

@@ -26,7 +26,7 @@ const RETURN_QUANTITIES: [Quantity; 6] = [
 pub(super) fn compare_return(
     judge: &Judge<'_>,
     entry: &mut RayEntry<'_>,
-    hit: HitComparison,
+    hit: HitComparison<'_>,
     returns: [Option<&Returns>; 2],
     sides: [Side<'_>; 2],
 ) -> FluxPair {
@@ -49,7 +49,7 @@ pub(super) fn compare_return(
         entry.judged();
         for ((stated, answer), side) in [of_a, of_b].iter().zip(hit.answers).zip(sides) {
             let Some(face) = answer.face.filter(|_| answer.hits()) else { continue };
-            match rule(judge, entry, side, face, answer.range(), stated) {
+            match rule(judge, entry, side, face, answer.range, stated) {
                 Some([visible, pixel]) => {
                     (of_visible, of_pixel) = (of_visible.max(visible), of_pixel.max(pixel));
                 }
@@ -195,7 +195,7 @@ fn item_off_its_face(
 /// How far the values of two returns from one point may differ; `None` if a side leaves out what that depends on.
 fn bounds_of_both(
     judge: &Judge<'_>,
-    hit: &HitComparison,
+    hit: &HitComparison<'_>,
     stated: [&StatedReturn; 2],
     place: Place,
     sides: [Side<'_>; 2],

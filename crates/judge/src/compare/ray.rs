@@ -43,7 +43,7 @@ pub(super) fn compare_ray(
     let Place { sensor, i, j } = place;
     let answers = [StatedHit::of(map_a, i, j), StatedHit::of(map_b, i, j)];
     let [of_a, of_b] = answers;
-    rays.range_differences.push(of_a.range().zip(of_b.range()).map(|(a, b)| b - a).into());
+    rays.range_differences.push(of_a.range.zip(of_b.range).map(|(a, b)| b - a).into());
     let mut entry = RayEntry::compared(place, &mut rays.result);
     let hit = compare_hit(judge, &mut entry, answers, [a, b]);
     if map_a.face.is_none() || map_b.face.is_none() {
@@ -90,23 +90,23 @@ pub(super) fn compare_ray(
 }
 
 /// Enters one side's error of a hit.
-fn enter_error(tally: &mut ApproximationTally, answer: &StatedHit, cause: &Cause, place: Place) {
+fn enter_error(tally: &mut ApproximationTally, answer: &StatedHit<'_>, cause: &Cause, place: Place) {
     match (answer.hits(), cause.restored_range) {
         (false, Some(_)) => tally.lost = 1,
         (true, None) => tally.added = 1,
         _ => {}
     }
-    if let (Some(range), Some(restored)) = (answer.range(), cause.restored_range) {
+    if let (Some(range), Some(restored)) = (answer.range, cause.restored_range) {
         Largest::update(&mut tally.worst_range, (range - restored).abs(), place, None);
     }
 }
 
 /// One side's answer in words.
-fn words(answer: &StatedHit) -> String {
+fn words(answer: &StatedHit<'_>) -> String {
     if !answer.hits() {
         return "no hit".into();
     }
     let face = answer.face.map_or("a face".into(), |face| format!("face {}", face.0));
-    let range = answer.range().map_or("unknown range".into(), |range| format!("range {range} m"));
+    let range = answer.range.map_or("unknown range".into(), |range| format!("range {range} m"));
     format!("{face} at {range}")
 }
