@@ -45,6 +45,7 @@ impl<'r> RayEntry<'r> {
     }
 
     /// Enters the class of one item.
+    #[inline]
     pub(crate) fn class(&mut self, item: impl Into<Item>, class: Class) {
         let item = item.into();
         let class = if self.forced_defect == Some(item) { Class::Defect } else { class };
@@ -59,6 +60,7 @@ impl<'r> RayEntry<'r> {
     }
 
     /// Enters a difference: of `class_within` if rounding explains it, else a defect.
+    #[inline]
     pub(crate) fn difference(&mut self, difference: &Difference, class_within: Class) {
         if difference.is_unrepresentable && difference.is_within() {
             // A value that the file cannot hold cannot be compared.
@@ -77,6 +79,7 @@ impl<'r> RayEntry<'r> {
     }
 
     /// Enters a difference into the largest ones only: its class is entered apart.
+    #[inline]
     pub(crate) fn extremes(&mut self, difference: &Difference) {
         self.result.tally(difference.item).enter(difference, self.place, self.ruling.as_deref());
     }

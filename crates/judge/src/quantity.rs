@@ -146,6 +146,12 @@ pub struct Item {
 }
 
 impl Item {
+    /// Whether it is a quantity alone, without a beam and by the scene's model.
+    #[inline]
+    pub(crate) fn is_plain(self) -> bool {
+        self.beam.is_none() && !self.is_other_model
+    }
+
     /// The flux of one beam on the image, by the scene's model.
     pub fn of_image(beam: usize) -> Self {
         Self { beam: Some(beam as u32), ..Quantity::PixelFlux.into() }

@@ -23,6 +23,7 @@ impl Largest {
     ///
     /// NaN counts as the largest: a bound that is not a number bounds nothing. Rules on a second NaN: see "Two rules"
     /// on the first page of this crate.
+    #[inline]
     pub(crate) fn update(slot: &mut Option<Self>, value: f64, place: Place, ruling: Option<&str>) {
         let is_larger = |largest: &Self| {
             value > largest.value || value.is_nan() && (ruling.is_some() || !largest.value.is_nan())
@@ -70,6 +71,7 @@ impl ItemTally {
     }
 
     /// Enters the error of one ray into the largest ones.
+    #[inline]
     pub(crate) fn enter(&mut self, difference: &Difference, place: Place, ruling: Option<&str>) {
         Largest::update(&mut self.worst_error, difference.error, place, ruling);
         if let Some(ratio) = difference.ratio() {
@@ -112,7 +114,7 @@ pub struct ItemTallies {
 impl ItemTallies {
     /// The tally of an item, if it was asked about.
     pub fn get(&self, item: Item) -> Option<&ItemTally> {
-        if item == Item::from(item.quantity) {
+        if item.is_plain() {
             self.of_quantities[item.quantity as usize].as_deref()
         } else {
             self.of_fluxes.get(&item)
@@ -120,8 +122,9 @@ impl ItemTallies {
     }
 
     /// The tally of an item, which is asked about from now on.
+    #[inline]
     pub fn entry(&mut self, item: Item) -> &mut ItemTally {
-        if item == Item::from(item.quantity) {
+        if item.is_plain() {
             self.of_quantities[item.quantity as usize].get_or_insert_default()
         } else {
             self.of_fluxes.entry(item).or_default()
@@ -245,6 +248,7 @@ impl SensorResult {
     }
 
     /// The tally of an item.
+    #[inline]
     pub(crate) fn tally(&mut self, item: Item) -> &mut ItemTally {
         self.items.entry(item)
     }

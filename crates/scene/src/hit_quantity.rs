@@ -109,6 +109,7 @@ impl HitQuantity {
     pub const COUNT: usize = Self::ALL.len();
 
     /// Names of the channels in files: one of a number, three of a vector.
+    #[inline]
     pub const fn channels(self) -> &'static [&'static str] {
         match self {
             Self::Range => &["range.T"],
@@ -133,12 +134,14 @@ impl HitQuantity {
     }
 
     /// Whether it is a vector.
+    #[inline]
     pub fn is_vector(self) -> bool {
         self.channels().len() == 3
     }
 
     /// Whether it belongs to the point that is hit. Two faces that meet there share it; what belongs to the face, as
     /// its normal, they do not.
+    #[inline]
     pub fn is_of_point(self) -> bool {
         match self {
             Self::Range | Self::Depth | Self::Point => true,
