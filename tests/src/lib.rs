@@ -36,7 +36,7 @@ pub mod injected_faults;
 pub mod light;
 pub mod malformed;
 mod meshes;
-pub mod naive;
+pub use raypencil::naive;
 mod outputs;
 pub mod quadrature;
 pub mod reproducers;

@@ -51,9 +51,9 @@ pub use raypencil_tracer::Tracer;
 pub use {
     raypencil_campaign as campaign, raypencil_diff as diff, raypencil_drive as drive,
     raypencil_harness as harness, raypencil_judge as judge, raypencil_minimise as minimise,
-    raypencil_pack as pack, raypencil_referee as referee, raypencil_report as report,
-    raypencil_rover as rover, raypencil_scanline as scanline, raypencil_sensor as sensor,
-    raypencil_terrain as terrain, raypencil_tracer as tracer,
+    raypencil_naive as naive, raypencil_pack as pack, raypencil_referee as referee,
+    raypencil_report as report, raypencil_rover as rover, raypencil_scanline as scanline,
+    raypencil_sensor as sensor, raypencil_terrain as terrain, raypencil_tracer as tracer,
 };
 
 /// Every file format, in and out: numbers (NPY, PFM, EXR), meshes (glTF, GeoTIFF), scenes (TOML).

@@ -12,6 +12,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("scene", 1),
     ("scanline", 2),
     ("tracer", 2),
+    ("naive", 2),
     ("referee", 2),
     ("sensor", 2),
     ("terrain", 2),
@@ -36,6 +37,7 @@ const NARROWER: &[(&str, &[&str])] = &[
     // The three evaluations share definitions and no kernels.
     ("scanline", &["scene"]),
     ("tracer", &["scene"]),
+    ("naive", &["scene"]),
     ("referee", &["scene"]),
     // The judge knows no renderer.
     ("judge", &["scene", "referee", "files"]),

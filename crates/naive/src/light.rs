@@ -3,12 +3,12 @@
 use std::f64::consts::{LN_2, PI};
 
 use glam::DVec3;
-use raypencil::{
+use raypencil_scene::{
     Beam, Filter, FluxModel, Hit, Image, Mounted, Pixel, Profile, Return, Returns, Scene, SensorMap,
 };
 
-use super::fault::Fault;
-use super::quaternion::{conjugate, rotate};
+use crate::fault::Fault;
+use crate::quaternion::{conjugate, rotate};
 
 /// The light that a scene's camera receives, computed with a fault or without.
 struct Light<'a> {
@@ -18,7 +18,7 @@ struct Light<'a> {
 }
 
 /// The returns of a beam's pencils, and their flux on the camera's image, W.
-pub(super) fn returns(
+pub(crate) fn returns(
     fault: Option<Fault>,
     scene: &Scene,
     faces: &[[DVec3; 3]],
@@ -44,7 +44,7 @@ impl Light<'_> {
         let mut image = Image::filled(camera.width, camera.height, 0.0);
         for j in 0..beam.rows {
             for i in 0..beam.columns {
-                let Some(hit) = crate::hit(map, i, j) else { continue };
+                let Some(hit) = map.hit(i, j) else { continue };
                 let power = beam.power * shares[i as usize % shares.len()];
                 let of_hit = self.return_of(&hit, &beam, power);
                 returns.put(i, j, &of_hit);
@@ -66,6 +66,7 @@ impl Light<'_> {
             libm::atan2(x, beam.grid_distance)
         };
         let weight = |i: u32| match beam.profile {
+            _ if self.has(Fault::ProfileFlat) => 1.0 / (columns * rows),
             Profile::Paper => libm::cos(angle(i)) / (columns * rows),
             Profile::UniformAngle => libm::cos(angle(i)) * libm::cos(angle(i)),
             Profile::Gaussian { half_width } => {
@@ -74,6 +75,7 @@ impl Light<'_> {
         };
         let weight_sum: f64 = match beam.profile {
             Profile::Paper => 1.0,
+            _ if self.has(Fault::ProfileFlat) => 1.0,
             _ if self.has(Fault::ProfileNotNormalised) => columns * rows,
             _ => rows * (0..beam.columns).map(weight).sum::<f64>(),
         };
@@ -95,9 +97,12 @@ impl Light<'_> {
         let place = [0, 1].map(|axis: usize| {
             let at = camera.focal_length * seen[axis] / depth / camera.pixel_pitch[axis]
                 + camera.principal_point[axis];
-            if self.has(Fault::PixelRounded) { (at - 0.5).floor() + 1.0 } else { at.floor() }
+            let at = if self.has(Fault::PixelRounded) { (at - 0.5).floor() + 1.0 } else { at.floor() };
+            let last = f64::from([camera.width, camera.height][axis] - 1);
+            if self.has(Fault::OffImageClamped) { at.clamp(0.0, last) } else { at }
         });
-        let on_image = depth > camera.focal_length
+        let is_before = depth > camera.focal_length || self.has(Fault::BehindCameraLands) && depth < 0.0;
+        let on_image = is_before
             && (0.0..f64::from(camera.width)).contains(&place[0])
             && (0.0..f64::from(camera.height)).contains(&place[1]);
         let mut pixel = on_image.then_some(Pixel { i: place[0] as u32, j: place[1] as u32 });
@@ -107,10 +112,13 @@ impl Light<'_> {
             pixel = Some(Pixel { i: j.min(camera.width - 1), j: i.min(camera.height - 1) });
         }
         let too_far = self.has(Fault::CameraRangeLimits) && distance > camera.max_range;
-        let visible = cos_view > 0.0
+        let visible = (cos_view > 0.0 || self.has(Fault::SeenFromBehind))
             && pixel.is_some()
             && !too_far
-            && !self.is_hidden(hit, centre, to_point, camera.focal_length / depth);
+            && !self.is_hidden(hit, centre, to_point, (camera.focal_length / depth).max(0.0));
+        if self.has(Fault::PixelOfVisibleOnly) && !visible {
+            pixel = None;
+        }
 
         let flux = match pixel {
             Some(pixel) if visible || self.has(Fault::HiddenLit) => {
@@ -124,6 +132,7 @@ impl Light<'_> {
     /// Whether a face, front or back, meets the segment c + u (P - c), f_c / r <= u < 1. A face through P does not
     /// hide P: neither the hit face, nor faces that tie with it, nor backs at the same place.
     fn is_hidden(&self, hit: &Hit, centre: DVec3, to_point: DVec3, nearest: f64) -> bool {
+        let nearest = if self.has(Fault::OccludersBeforePlane) { 0.0 } else { nearest };
         let distance = to_point.length();
         let at_point = 1e-12 * (1.0 + (distance + centre.length()) / distance);
         let faces_at_point_hide = self.has(Fault::FacesAtPointHide);
@@ -171,18 +180,31 @@ impl Light<'_> {
         let reflectivity = scene.mesh().materials()[material].reflectivity;
         let sigma = scene.atmosphere().attenuation;
         let d = if self.has(Fault::ApertureAsRadius) { 2.0 * camera.aperture } else { camera.aperture };
-        let depth = if self.has(Fault::RangeForCameraDepth) { hit.range } else { depth };
+        let sigma = if self.has(Fault::AttenuationOmitted) { 0.0 } else { sigma };
+        let camera_depth = depth;
+        let depth = if self.has(Fault::RangeForCameraDepth) {
+            hit.range
+        } else if self.has(Fault::DistanceForDepth) {
+            distance
+        } else {
+            depth
+        };
         let cos_theta = if self.has(Fault::IncidenceForViewCosine) {
             hit.cos_incidence
         } else if self.has(Fault::ViewCosineOmitted) {
             1.0
+        } else if self.has(Fault::SeenFromBehind) {
+            cos_view.abs()
         } else {
             cos_view
         };
         let q = camera.direction(pixel.i, pixel.j);
         let of_centre = q.z / q.length();
-        let common = power * reflectivity * camera.lens.transmission * cos_theta / (depth * depth);
-        match scene.flux_model() {
+        let transmission =
+            if self.has(Fault::LensTransmissionOmitted) { 1.0 } else { camera.lens.transmission };
+        let common = power * reflectivity * transmission * cos_theta / (depth * depth);
+        let model = scene.flux_model();
+        match if self.has(Fault::FluxOfOtherModel) { model.other() } else { model } {
             FluxModel::Radiometric => {
                 let cos_phi = if self.has(Fault::PhiOfPixelCentre) { of_centre } else { cos_off_axis };
                 let power_of_cosine = if self.has(Fault::FourthPower) {
@@ -198,16 +220,24 @@ impl Light<'_> {
                     * libm::exp(-sigma * path)
             }
             FluxModel::Eq1 => {
-                let area = camera.pixel_pitch[0] * camera.pixel_pitch[1];
-                let path = if self.has(Fault::AttenuationOnce) { hit.range } else { hit.range + depth };
+                let area = if self.has(Fault::PixelAreaOmitted) {
+                    1.0
+                } else {
+                    camera.pixel_pitch[0] * camera.pixel_pitch[1]
+                };
+                let path =
+                    if self.has(Fault::AttenuationOnce) { hit.range } else { hit.range + camera_depth };
+                let of_centre = if self.has(Fault::PhiOfPoint) { cos_off_axis } else { of_centre };
+                let cos_psi = if self.has(Fault::IncidenceOmitted) { 1.0 } else { hit.cos_incidence };
+                let range = if self.has(Fault::RangeOmitted) { 1.0 } else { hit.range };
                 common
                     * (PI / 4.0)
                     * square(d / camera.focal_length)
                     * self.filter(beam, of_centre)
                     * area
                     * square(square(of_centre))
-                    * hit.cos_incidence
-                    / hit.range
+                    * cos_psi
+                    / range
                     * libm::exp(-sigma * path)
             }
         }

@@ -2,6 +2,18 @@
 
 use std::fmt;
 
+/// The fault that is injected, if any.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Injected(pub(crate) Option<Fault>);
+
+impl Injected {
+    /// Whether it is this fault.
+    #[inline]
+    pub(crate) fn has(self, fault: Fault) -> bool {
+        self.0 == Some(fault)
+    }
+}
+
 /// The part of a result that a fault changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FaultKind {
@@ -82,6 +94,10 @@ faults! {
     ColumnOffByOne: Geometry, "columns counted from 1, as in MATLAB and Fortran";
     /// Row 0 is at the bottom.
     RowsBottomUp: Geometry, "OpenGL's image order, or a y axis that points up";
+    /// Column 0 is at the right.
+    ColumnsReversed: Geometry, "a mirrored image, or an x axis that points to the left";
+    /// The outermost pencils run along the edges of the sheet.
+    GridToTheEdges: Geometry, "`linspace` with both ends in place of cell centres";
     /// Pixel pitches exchanged, p_y across and p_x down.
     PitchesSwapped: Geometry, "width in place of height: invisible while pixels are square";
     /// The principal point is rounded to whole pixels.
@@ -122,6 +138,18 @@ faults! {
     TiesCancel: Ties, "the parity rule of point-in-solid tests";
     /// Faces with |n.q| below 1e-6 count as parallel to the ray, so that small faces and short directions are lost.
     SmallDeterminantsDropped: Geometry, "the `EPSILON` of the published test of Moeller and Trumbore, which has a unit";
+    /// A ray through two edges of a face at once, that is through a vertex, misses the face.
+    VerticesExcluded: Ties, "a crossing count that skips vertices";
+    /// Of the edges of a face only the one from its first corner to its second belongs to it.
+    EdgesOpenOnOneSide: Ties, "`u >= 0` beside `v > 0` and `u + v < 1`";
+    /// Faces without area are met as lines.
+    ZeroAreaHit: Ties, "a determinant of zero that no test excludes";
+    /// Hits at t = 1, on the SPP, do not count.
+    PlaneExcluded: Clipping, "`t > t_min` where it should be `t >= t_min`";
+    /// A hit exactly at the maximum range does not count.
+    MaxRangeExcluded: Clipping, "`t < t_max` where it should be `t <= t_max`";
+    /// Hits beyond the maximum range count.
+    MaxRangeIgnored: Clipping, "a limit that is read from the file and never used";
     /// Hits from t = 0 on count, before the SPP.
     HitsBeforePlane: Clipping, "a near plane that is not applied";
     /// The maximum range limits the depth, not the range.
@@ -134,12 +162,38 @@ faults! {
     DepthForRange: Geometry, "a z buffer read as distances";
     /// Ranges are measured from the SPP: t - 1 in place of t.
     RangeFromPlane: Geometry, "rays that start on the near plane";
+    /// t is reported as the range.
+    TForRange: Geometry, "the parameter of a ray whose direction is not a unit";
+    /// The range is reported as the depth.
+    RangeForDepth: Geometry, "distances written into a z buffer";
+    /// Points are in the sensor frame, not in the scene frame.
+    PointInSensorFrame: Geometry, "points in view space, as a depth camera gives them";
+    /// Normals point into the ground.
+    NormalReversed: Geometry, "clockwise corners taken for the front";
     /// Normals are as long as twice the face's area.
     NormalNotNormalised: Geometry, "a cross product used as a normal";
     /// Normals are in the sensor frame, not in the scene frame.
     NormalInSensorFrame: Geometry, "normals in view space, as shaders have them";
     /// The incidence is measured against the sensor's axis, not against the ray.
     IncidenceAgainstAxis: Geometry, "one direction of light for all rays, as for a distant sun";
+    /// The flux is that of the other model.
+    FluxOfOtherModel: Flux, "equation (1) in place of the radiometric model, or the reverse";
+    /// The lens takes no light away.
+    LensTransmissionOmitted: Flux, "a loss that is left out";
+    /// The air takes no light away.
+    AttenuationOmitted: Flux, "air that is left out";
+    /// cos(alpha) is left out of the paper's share; the angular profiles are constant.
+    ProfileFlat: Flux, "the same power in every pencil";
+    /// 1 / d^2 in place of 1 / r^2.
+    DistanceForDepth: Flux, "the length of a line in place of its part along the axis";
+    /// Equation (1) without cos(psi).
+    IncidenceOmitted: Flux, "a factor of the irradiance that is left out";
+    /// Equation (1) without 1 / R.
+    RangeOmitted: Flux, "a sheet of light that does not fan out";
+    /// Equation (1) with phi of the point in place of the pixel's centre.
+    PhiOfPoint: Flux, "the angle of the point in place of the pixel's";
+    /// Equation (1) without the area of a pixel.
+    PixelAreaOmitted: Flux, "an irradiance in place of a flux";
     /// cos(psi) in place of cos(theta).
     IncidenceForViewCosine: Flux, "the angle of incidence in place of the viewing angle";
     /// cos(theta) is left out.
@@ -162,6 +216,16 @@ faults! {
     ProfileNotNormalised: Flux, "weights used as shares";
     /// All ground has the reflectivity of the first material.
     ReflectivityOfFirst: Flux, "one material for the whole mesh";
+    /// The backs of faces are seen too: cos(theta) may be negative.
+    SeenFromBehind: Visibility, "the absolute value of a cosine";
+    /// Points behind the camera are projected like those before it.
+    BehindCameraLands: Visibility, "a division by a depth whose sign is not tested";
+    /// Faces between the projection centre and the SPP hide points.
+    OccludersBeforePlane: Visibility, "a shadow ray that goes on to the pinhole";
+    /// Only visible points have a pixel.
+    PixelOfVisibleOnly: Visibility, "the projection skipped for hidden points";
+    /// Points beside the image land in the pixels of its border.
+    OffImageClamped: Visibility, "coordinates clamped to the image";
     /// Faces within a millimetre of the point do not hide it.
     ShadowEpsilon: Visibility, "the epsilon of a shadow ray";
     /// Only front faces cast shadows.

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 
 /// The vector `p` rotated: (q p q*) / (q . q). With the fault `is_taken_as_unit` the division is left out.
-pub(super) fn rotate(q: DQuat, p: DVec3, is_taken_as_unit: bool) -> DVec3 {
+pub(crate) fn rotate(q: DQuat, p: DVec3, is_taken_as_unit: bool) -> DVec3 {
     let rotated = product(product(q, DQuat::from_xyzw(p.x, p.y, p.z, 0.0)), conjugate(q));
     let rotated = DVec3::new(rotated.x, rotated.y, rotated.z);
     if is_taken_as_unit {
@@ -23,6 +23,6 @@ fn product(p: DQuat, q: DQuat) -> DQuat {
 }
 
 /// The conjugate q*.
-pub(super) fn conjugate(q: DQuat) -> DQuat {
+pub(crate) fn conjugate(q: DQuat) -> DQuat {
     DQuat::from_xyzw(-q.x, -q.y, -q.z, q.w)
 }
