@@ -8,7 +8,7 @@
 //! * `outputs`: both renderers ([`renderers`], [`render_both`]), the hits of a map ([`hit`], [`cells_hit`]), all bits
 //!   of an output ([`bits`], [`light_bits`]). `agreement`: a comparison without defects ([`agreement()`]).
 //! * [`light`]: every renderer that computes light, and short access to its results.
-//! * [`naive`]: a third renderer, into which one [`Fault`](naive::Fault) at a time is injected.
+//! * [`naive`]: a third renderer, into which one [`Fault`](naive::Fault) at a time is injected (a crate of its own).
 //! * [`injected_faults`]: small scenes that reveal such faults, faults of files, and the search that writes
 //!   `docs/evidence/injected-faults.md`.
 //! * [`malformed`]: malformed files for every reader, listed in `docs/evidence/malformed-inputs.md`.

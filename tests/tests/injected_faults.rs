@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use proptest::prelude::*;
 use raypencil::judge::{Class, SensorResult, Side, compare};
+use raypencil::pack::with_bench;
 use raypencil::scanline::Scanline;
 use raypencil::terrain::RandomGround;
 use raypencil::tracer::Tracer;
@@ -30,6 +31,8 @@ enum Sensors {
     Camera,
     Beams,
     All,
+    /// The beams of these indices.
+    Of(&'static [usize]),
 }
 
 impl Sensors {
@@ -38,17 +41,29 @@ impl Sensors {
             Self::Camera => sensor == SensorId::Camera,
             Self::Beams => sensor != SensorId::Camera,
             Self::All => true,
+            Self::Of(beams) => matches!(sensor, SensorId::Beam(index) if beams.contains(&index)),
         }
     }
 }
 
 /// A small scene that reveals a fault. The comments say why it does.
 fn injection(fault: Fault) -> Injection {
-    use Sensors::{All, Beams, Camera};
+    use Sensors::{All, Beams, Camera, Of};
+    // The pyramids have two beams. Behind them come a backward one, the level bench, the one turned by a right angle,
+    // and the turned one.
+    let bench = || with_bench(&pyramids()).expect("a scene");
     let (name, scene, defects_on) = match fault {
         // Rays move by half a cell or more, and all rays are oblique to the ground: the sensors look down, the fans
         // spread, and the beams' rows start at different heights. So all ranges change.
-        Fault::HalfCellShift | Fault::ColumnOffByOne | Fault::RowsBottomUp => ("pyramids", pyramids(), All),
+        Fault::HalfCellShift | Fault::ColumnOffByOne | Fault::ColumnsReversed | Fault::RowsBottomUp => {
+            ("pyramids", pyramids(), All)
+        }
+        // Its 96 columns are 1/96 of the grid apart: 1/95 instead.
+        Fault::GridToTheEdges => ("pyramids", pyramids(), Beams),
+        // Three rays of the level bench meet a plate on the SPP, three end at the maximum range, and five run through lines.
+        Fault::PlaneExcluded | Fault::MaxRangeExcluded | Fault::ZeroAreaHit => ("a bench", bench(), Of(&[3])),
+        // The benches have rows of rays through vertices, and through edges of all kinds.
+        Fault::VerticesExcluded | Fault::EdgesOpenOnOneSide => ("a bench", bench(), Of(&[3, 4, 5])),
         // Its pixels are 144 um x 180 um.
         Fault::PitchesSwapped => ("pyramids", pyramids(), Camera),
         // Its principal point is (31.3, 24.8): rays move by a third and a fifth of a pixel.
@@ -94,13 +109,19 @@ fn injection(fault: Fault) -> Injection {
         // The screen is a plate at half the distance of the SPP.
         Fault::HitsBeforePlane => ("a plate before the SPP", screen_before_spp(), All),
         // The wall is 2 m deep everywhere, but its range 2 / cos exceeds 2.1 m beyond 18 degrees.
-        Fault::MaxRangeLimitsDepth => ("a wall beyond the maximum range in part", range_cut_wall(), All),
+        Fault::MaxRangeLimitsDepth | Fault::MaxRangeIgnored => {
+            ("a wall beyond the maximum range in part", range_cut_wall(), All)
+        }
         // A ray on a pyramid goes on to the plane, whose faces come first in the file and lie farther away.
         Fault::FirstInOrderWins | Fault::FarthestWins => ("pyramids", pyramids(), All),
         // No ray of these sensors runs along the axis (R = depth only there), no face has the area 1/2 m^2, no
         // sensor's axes are the scene's.
         Fault::DepthForRange
         | Fault::RangeFromPlane
+        | Fault::TForRange
+        | Fault::RangeForDepth
+        | Fault::PointInSensorFrame
+        | Fault::NormalReversed
         | Fault::NormalNotNormalised
         | Fault::NormalInSensorFrame
         | Fault::IncidenceAgainstAxis => ("pyramids", pyramids(), All),

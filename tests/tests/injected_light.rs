@@ -2,6 +2,7 @@
 //! Without a fault it must report none.
 
 use raypencil::judge::{Class, SensorResult, Side, compare};
+use raypencil::pack::with_bench;
 use raypencil::scanline::Scanline;
 use raypencil::tracer::Tracer;
 use raypencil::{FluxModel, RenderOutput, Renderer, Request, Scene, SensorId};
@@ -14,6 +15,18 @@ fn scenes(fault: Fault) -> Vec<(&'static str, Scene)> {
     match fault {
         // These faults concern one model only.
         Fault::PhiOfPixelCentre | Fault::FourthPower => vec![("lit pyramids", lit(FluxModel::Radiometric))],
+        Fault::IncidenceOmitted | Fault::RangeOmitted | Fault::PhiOfPoint | Fault::PixelAreaOmitted => {
+            vec![("lit pyramids", lit(FluxModel::Eq1))]
+        }
+        // A bench has plates before the SPP, plates that the camera sees from behind, and a beam that looks backwards.
+        Fault::SeenFromBehind
+        | Fault::BehindCameraLands
+        | Fault::OccludersBeforePlane
+        | Fault::PixelOfVisibleOnly
+        | Fault::OffImageClamped => {
+            let benched = |model| with_bench(&lit(model)).expect("a scene");
+            [FluxModel::Radiometric, FluxModel::Eq1].map(|model| ("a bench", benched(model))).to_vec()
+        }
         Fault::ShadowEpsilon => vec![("a plate 0.5 mm before a wall", screened(1.0 / 2048.0, false))],
         Fault::FacesAtPointHide => vec![("a wall of doubled faces", doubled())],
         Fault::ShadowsOfFronts => vec![("a plate that shows its back to the camera", screened(0.25, true))],
@@ -60,10 +73,12 @@ fn every_fault_of_light_is_found() {
                     format!("{fault:?}")
                 );
             }
-            // A wrong flux of a pencil shows on the image too. A wrong sum shows on the image alone.
+            // A wrong flux of a pencil shows on the image too. A wrong sum shows on the image alone, a wrong pixel of a
+            // pencil that delivers nothing not at all.
             let only_image = fault == Fault::LastPencilWins;
+            let only_beams = fault == Fault::PixelOfVisibleOnly;
             for [on_camera, on_beams] in found {
-                if on_camera == 0 || (on_beams == 0) != only_image {
+                if (on_camera == 0) != only_beams || (on_beams == 0) != only_image {
                     wrong.push(format!("{fault:?} on {name}: {found:?}"));
                 }
             }

@@ -27,6 +27,27 @@ pub(crate) fn clipped(faults: Injected, faces: &[[DVec3; 3]], sensor: &PosedSens
     faces.iter().map(|face| if one_behind(face) { [face[0]; 3] } else { *face }).collect()
 }
 
+/// A sphere around a face. A ray that passes well beside it cannot meet the face, so that most faces need no test. It
+/// decides nothing: its radius is enlarged by more than what rounding, or a fault, moves a face by.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sphere {
+    centre: DVec3,
+    squared_radius: f64,
+}
+
+impl Sphere {
+    pub(crate) fn around([a, b, c]: &[DVec3; 3]) -> Self {
+        let centre = (a + b + c) / 3.0;
+        let farthest =
+            [a, b, c].map(|corner| corner.distance_squared(centre)).into_iter().fold(0.0, f64::max);
+        Self { centre, squared_radius: 1.01 * farthest }
+    }
+
+    fn may_meet(&self, ray: &SceneRay, squared_length: f64) -> bool {
+        (self.centre - ray.origin).cross(ray.q).length_squared() <= self.squared_radius * squared_length
+    }
+}
+
 /// Whether t counts: at or beyond the SPP, and R = t |q| within the maximum range.
 fn is_within(faults: Injected, sensor: &PosedSensor<'_>, ray: &SceneRay, t: f64) -> bool {
     let from_plane = if faults.has(Fault::HitsBeforePlane) {
@@ -51,11 +72,16 @@ fn is_within(faults: Injected, sensor: &PosedSensor<'_>, ray: &SceneRay, t: f64)
 pub(crate) fn first_hit(
     faults: Injected,
     faces: &[[DVec3; 3]],
+    spheres: &[Sphere],
     sensor: &PosedSensor<'_>,
     ray: &SceneRay,
 ) -> Option<(usize, f64)> {
     let mut best: Option<(usize, f64)> = None;
-    for (index, face) in faces.iter().enumerate() {
+    let squared_length = ray.q.length_squared();
+    for (index, (face, sphere)) in faces.iter().zip(spheres).enumerate() {
+        if !sphere.may_meet(ray, squared_length) {
+            continue;
+        }
         let Some(t) = meets(faults, face, ray) else { continue };
         if !is_within(faults, sensor, ray, t) {
             continue;

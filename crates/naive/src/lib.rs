@@ -25,3 +25,7 @@ mod rays;
 pub use clause::{Clause, ClauseKind};
 pub use fault::{Fault, FaultKind};
 pub use naive::Naive;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -10,7 +10,7 @@ use raypencil_scene::{
 };
 
 use crate::fault::{Fault, Injected};
-use crate::hits::{clipped, describe, first_hit, meets};
+use crate::hits::{Sphere, clipped, describe, first_hit, meets};
 use crate::light;
 use crate::rays::{PosedSensor, camera_pose, pencil_ray, pixel_ray};
 
@@ -120,11 +120,12 @@ fn map(
     let (width, height) = sensor.size;
     let mut map = SensorMap::empty(sensor.id, width, height, quantities);
     let faces = clipped(faults, faces, sensor);
+    let spheres: Vec<Sphere> = faces.iter().map(Sphere::around).collect();
     // Rows do not know of one another: the result does not depend on threads.
     map.rows_mut().into_par_iter().for_each(|mut row| {
         for i in 0..width {
             let ray = sensor.scene_ray(faults, i, row.j);
-            if let Some((index, t)) = first_hit(faults, &faces, sensor, &ray) {
+            if let Some((index, t)) = first_hit(faults, &faces, &spheres, sensor, &ray) {
                 let mut hit = describe(faults, &faces, sensor, &ray, index, t);
                 if faults.has(Fault::TieOfTwoRecords) {
                     let ties = |face: &[DVec3; 3]| meets(faults, face, &ray) == Some(t);

@@ -1,16 +1,17 @@
 //! Blind scenes: a scene with every hard case, made from a seed, so that no renderer can have been tuned for its
-//! answers.
+//! answers. A [bench](crate::bench) stands in each, so that every clause of the contract decides some of its rays.
 
 use raypencil_scene::Scene;
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, load_text, scene_sha256};
 
+use crate::bench::with_bench;
 use crate::split_mix::SplitMix64;
 
 /// The scene file of a seed.
 ///
-/// The ground is rough, with rocks, overhangs, walls and slivers. The rig is the default one, turned and moved. The
-/// seed also chooses the profiles and the flux model, and whether there is air, a filter, or an offset of up to
-/// 1000 km.
+/// The ground is rough, with rocks, overhangs, walls and slivers. The rig is the default one with a third beam, turned and
+/// moved; each beam has another profile. The lens has a filter, and there is air. The camera's maximum range is shorter
+/// than the beams'. The seed also chooses the flux model, and whether the scene is offset by up to 1000 km.
 fn scene_toml(seed: u64) -> String {
     let mut random = SplitMix64::new(seed);
     let faces = random.between(500.0, 4000.0, 1.0);
@@ -29,17 +30,21 @@ fn scene_toml(seed: u64) -> String {
     let roll = random.between(-10.0, 10.0, 0.25);
     let pitch = random.between(10.0, 35.0, 0.25);
     text += &format!(
-        "[camera]\nwidth_px = 96\nheight_px = 72\npixel_pitch_um = [96, 98]\npitch_down_deg = {pitch}\nroll_right_deg = {roll}\n"
+        "[camera]\nwidth_px = 96\nheight_px = 72\npixel_pitch_um = [96, 108]\npitch_down_deg = {pitch}\nroll_right_deg = {roll}\n"
     );
-    if random.next_u64().is_multiple_of(2) {
-        let (centre, width) = (random.between(805.0, 820.0, 0.5), random.between(5.0, 30.0, 0.5));
-        text += &format!("filter = {{ centre_nm = {centre}, width_nm = {width} }}\n");
-    }
-    for _ in 0..2 {
+    let point = [random.between(44.0, 51.0, 0.1) + 0.03, random.between(33.0, 38.0, 0.1) + 0.03];
+    let range = random.between(2.0, 3.0, 0.1);
+    let transmission = random.between(0.5, 0.95, 0.01);
+    text +=
+        &format!("principal_point_px = {point:?}\nmax_range_m = {range}\ntransmission = {transmission}\n");
+    let (centre, width) = (random.between(805.0, 820.0, 0.5), random.between(5.0, 30.0, 0.5));
+    text += &format!("filter = {{ centre_nm = {centre}, width_nm = {width} }}\n");
+    let first = random.next_u64() as usize % 3;
+    for beam in 0..3 {
         let pitch = random.between(15.0, 45.0, 0.25);
         let (yaw, roll) = (random.between(-10.0, 10.0, 0.25), random.between(-10.0, 10.0, 0.25));
         let (fan, thickness) = (random.between(20.0, 150.0, 1.0), random.between(1.0, 100.0, 0.5));
-        let profile = random.one_of(&["paper", "uniform_angle", "gaussian"]);
+        let profile = ["paper", "uniform_angle", "gaussian"][(first + beam) % 3];
         text += &format!(
             "[[beam]]\ncolumns = 128\nrows = 4\npitch_down_deg = {pitch}\nyaw_left_deg = {yaw}\nroll_right_deg = {roll}\nfan_deg = {fan}\nthickness_mm = {thickness}\nprofile = \"{profile}\"\n"
         );
@@ -48,7 +53,7 @@ fn scene_toml(seed: u64) -> String {
             text += &format!("gaussian_half_width_deg = {width}\n");
         }
     }
-    let sigma = random.one_of(&["0", "0", "0.01", "0.1"]);
+    let sigma = random.one_of(&["0.02", "0.05", "0.1"]);
     let model = random.one_of(&["radiometric", "eq1"]);
     text + &format!("[atmosphere]\nattenuation_per_m = {sigma}\n[flux]\nmodel = \"{model}\"\n")
 }
@@ -60,8 +65,8 @@ fn scene_toml(seed: u64) -> String {
 /// use raypencil_scene::SensorId;
 ///
 /// let scene = blind_scene(7).expect("every seed makes a scene");
-/// // Every blind scene has a camera of 96 x 72 pixels and two beams of 128 x 4 pencils.
-/// assert_eq!(scene.beams().len(), 2);
+/// // Every blind scene has a camera of 96 x 72 pixels, three beams of 128 x 4 pencils, and those of the bench.
+/// assert_eq!(scene.beams().len(), 3 + raypencil_pack::BENCH_BEAMS);
 /// assert_eq!(scene.size(SensorId::Camera), Some((96, 72)));
 /// assert_eq!(scene.size(SensorId::Beam(1)), Some((128, 4)));
 /// ```
@@ -69,7 +74,8 @@ fn scene_toml(seed: u64) -> String {
 /// # Errors
 /// A scene file that the loader refuses. No seed is known that makes one.
 pub fn blind_scene(seed: u64) -> Result<Scene, SceneIoError> {
-    load(seed).map(|loaded| loaded.scene)
+    let scene = load(seed)?.scene;
+    Ok(with_bench(&scene).expect("seven beams, and faces within 200 m"))
 }
 
 /// The scene of a blind seed, with its name `blind-SEED` and its digest.
@@ -77,9 +83,8 @@ pub fn blind_scene(seed: u64) -> Result<Scene, SceneIoError> {
 /// # Errors
 /// As [`blind_scene`].
 pub fn blind_subject(seed: u64) -> Result<Subject, SceneIoError> {
-    let loaded = load(seed)?;
-    let sha256 = scene_sha256(&loaded.scene);
-    Ok(Subject { arguments: loaded.name.clone(), name: loaded.name, scene: loaded.scene, sha256 })
+    let (scene, name) = (blind_scene(seed)?, format!("blind-{seed}"));
+    Ok(Subject { sha256: scene_sha256(&scene), arguments: name.clone(), name, scene })
 }
 
 fn load(seed: u64) -> Result<LoadedScene, SceneIoError> {
@@ -89,13 +94,14 @@ fn load(seed: u64) -> Result<LoadedScene, SceneIoError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::BENCH_BEAMS;
 
     #[test]
     fn every_seed_makes_a_scene_of_its_own() {
         let mut digests = std::collections::BTreeSet::new();
         for seed in (0..40).chain([u64::MAX, 1 << 63]) {
             let scene = blind_scene(seed).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-            assert_eq!(scene.beams().len(), 2);
+            assert_eq!(scene.beams().len(), 3 + BENCH_BEAMS);
             assert!(digests.insert(scene_sha256(&scene)), "seed {seed}");
             assert_eq!(scene_sha256(&blind_scene(seed).unwrap()), scene_sha256(&scene));
         }

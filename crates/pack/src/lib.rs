@@ -29,10 +29,12 @@
 //! ```
 
 mod arrays;
+mod bench;
 mod blind;
 mod canonical_nan;
 mod check;
 mod check_report;
+mod clauses;
 mod exr_map;
 mod manifest;
 mod margins;
@@ -42,12 +44,14 @@ mod split_mix;
 mod units;
 mod write;
 
+pub use bench::{BENCH_BEAMS, with_bench};
 pub use blind::{blind_scene, blind_subject};
 pub use check::{CheckError, Checked, check_pack};
 pub use check_report::{check_json, check_screen, write_check};
+pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, clause_rays};
 pub use manifest::{
-    ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile, ManifestScene,
-    ManifestSensor, PackKind,
+    ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
+    ManifestFile, ManifestScene, ManifestSensor, PackKind,
 };
 pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, note, precision_of};
 pub use write::{PackError, write_pack};

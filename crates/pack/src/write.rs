@@ -19,9 +19,11 @@ use raypencil_scene::{Progress, Scene, SensorId};
 use raypencil_scene_io::{Subject, scene_sha256, write_resolved};
 
 use crate::arrays::ArrayWriter;
+use crate::clauses::{MIN_RAYS_PER_CLAUSE, clause_rays};
 use crate::exr_map::write_exr_map;
 use crate::manifest::{
-    FileRole, MANIFEST_FORMAT, Manifest, ManifestFile, ManifestScene, ManifestSensor, PackKind,
+    FileRole, MANIFEST_FORMAT, Manifest, ManifestClause, ManifestFile, ManifestScene, ManifestSensor,
+    PackKind,
 };
 use crate::margins::SensorMargins;
 use crate::rays::write_rays;
@@ -36,6 +38,17 @@ pub enum PackError {
     /// A file; the message names it.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A blind pack that leaves clauses of the contract untested.
+    #[error(
+        "{name}: fewer than {MIN_RAYS_PER_CLAUSE} rays decide {}; expected each clause of the contract to decide as many. Choose another seed",
+        untested.join(", ")
+    )]
+    Untested {
+        /// Name of the scene.
+        name: String,
+        /// Keys of the clauses.
+        untested: Vec<String>,
+    },
     /// Values that the referee could not round within its limit of 2048 bits.
     #[error(
         "{name}: {count} values could not be rounded, since 2048 bits do not tell on which side of a midpoint they lie; expected only values that are certain"
@@ -50,6 +63,9 @@ pub enum PackError {
 
 /// Writes the pack of a scene into `folder`: with all answers, or without any if `blind_seed` is given.
 ///
+/// The manifest of a blind pack says how many rays decide each clause of the contract, and a seed that leaves one untested
+/// is refused.
+///
 /// An earlier pack is removed first, beginning with its manifest. So a manifest always marks a complete pack, even if
 /// writing was interrupted, and no answer stays beside a scene that it does not belong to.
 ///
@@ -62,14 +78,17 @@ pub enum PackError {
 /// let subject = blind_subject(7)?;
 /// write_pack(&subject, Some(7), folder, &Silent)?;
 /// let manifest = Manifest::read_verified(folder)?;
-/// // Scene, terrain, and the rays of the camera and two beams: five files, none with answers.
-/// assert_eq!((manifest.kind, manifest.files.len()), (PackKind::Blind, 5));
+/// // Scene, terrain, and the rays of the camera and seven beams: ten files, none with answers.
+/// assert_eq!((manifest.kind, manifest.files.len()), (PackKind::Blind, 10));
+/// // Each clause of the contract is tested.
+/// assert!(manifest.clauses.iter().all(|clause| clause.rays >= raypencil_pack::MIN_RAYS_PER_CLAUSE));
 /// assert!(manifest.files.iter().all(|file| file.role != FileRole::Answers));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// A file or folder that could not be written; values that could not be rounded.
+/// A file or folder that could not be written; values that could not be rounded; a blind pack that leaves a clause
+/// untested.
 pub fn write_pack(
     subject: &Subject,
     blind_seed: Option<u64>,
@@ -81,6 +100,13 @@ pub fn write_pack(
     let certified = blind_seed.is_none().then(|| Certified::new(scene, progress));
     if let Some(count) = certified.as_ref().map(Certified::undecided).filter(|count| *count > 0) {
         return Err(PackError::Undecided { name: subject.name.clone(), count });
+    }
+
+    let clauses = if blind_seed.is_some() { clause_rays(scene, progress) } else { Vec::new() };
+    let untested = clauses.iter().filter(|one| one.rays < MIN_RAYS_PER_CLAUSE);
+    let untested: Vec<String> = untested.map(|one| one.clause.key().to_string()).collect();
+    if !untested.is_empty() {
+        return Err(PackError::Untested { name: subject.name.clone(), untested });
     }
 
     create_folder(folder)?;
@@ -112,6 +138,10 @@ pub fn write_pack(
         flux_model: scene.flux_model(),
         blind_seed,
         sensors: scene.sensors().map(sensor).collect(),
+        clauses: clauses
+            .iter()
+            .map(|one| ManifestClause { clause: one.clause.key().into(), rays: one.rays })
+            .collect(),
         files,
     };
     Ok(manifest.write(folder)?)

@@ -1,5 +1,6 @@
 //! The scenes on which injected faults are looked for.
 
+use raypencil::pack::with_bench;
 use raypencil::{FluxModel, Scene};
 
 use super::{geometry, light};
@@ -22,6 +23,7 @@ pub fn scenes_of(kind: FaultKind) -> Vec<(&'static str, Scene)> {
             ("a ridge with rays through it", geometry::ridge()),
             ("a wall of fine faces", geometry::fine_wall()),
             ("a wall beyond the maximum range in part", geometry::range_cut_wall()),
+            ("pyramids with a bench", benched(&geometry::pyramids())),
         ],
         FaultKind::Visibility | FaultKind::Flux => vec![
             ("lit pyramids", light::lit(FluxModel::Radiometric)),
@@ -29,7 +31,13 @@ pub fn scenes_of(kind: FaultKind) -> Vec<(&'static str, Scene)> {
             ("a plate 0.5 mm before a wall", light::screened(1.0 / 2048.0, false)),
             ("a wall of doubled faces", light::doubled()),
             ("a plate that shows its back to the camera", light::screened(0.25, true)),
+            ("lit pyramids with a bench", benched(&light::lit(FluxModel::Radiometric))),
         ],
         FaultKind::Files => vec![("pyramids", geometry::pyramids())],
     }
+}
+
+/// A scene with the bench of a pack, whose rays run through edges and end at limits.
+fn benched(scene: &Scene) -> Scene {
+    with_bench(scene).expect("few beams")
 }

@@ -67,9 +67,21 @@ const TURNED: &[Row] = &[
 const BENCHES: [BenchBeam; 3] = [
     BenchBeam { quaternion: [0.0, 0.0, 0.0, 1.0], height: 128.0, scale: 1.0, max_range: 4.0, rows: LEVEL },
     // A right angle about x: the quaternion (1, 0, 0, 1) has the length sqrt(2).
-    BenchBeam { quaternion: [1.0, 0.0, 0.0, 1.0], height: 160.0, scale: 1.0, max_range: 4.0, rows: QUARTER_TURN },
+    BenchBeam {
+        quaternion: [1.0, 0.0, 0.0, 1.0],
+        height: 160.0,
+        scale: 1.0,
+        max_range: 4.0,
+        rows: QUARTER_TURN,
+    },
     // 1 + 4 + 4 + 16 = 25.
-    BenchBeam { quaternion: [1.0, 2.0, 2.0, 4.0], height: 192.0, scale: 25.0 / 32.0, max_range: 4.0, rows: TURNED },
+    BenchBeam {
+        quaternion: [1.0, 2.0, 2.0, 4.0],
+        height: 192.0,
+        scale: 25.0 / 32.0,
+        max_range: 4.0,
+        rows: TURNED,
+    },
 ];
 
 /// The bench beams, each mounted; their faces are added to `faces`.

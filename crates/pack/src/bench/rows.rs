@@ -125,16 +125,14 @@ pub(super) fn faces_of(row: Row, y: f64, s: f64) -> Vec<Triangle> {
 /// meets each edge of a neighbour.
 fn squares(y: f64, s: f64, shift: f64, lines: &[f64]) -> Vec<Triangle> {
     let z = 2.0 * s;
-    let at = |k: i32, line: f64| {
-        DVec3::new(z * (f64::from(k) + shift) / 16.0, y + s / 16.0 * line, z)
-    };
+    let at = |k: i32, line: f64| DVec3::new(z * (f64::from(k) + shift) / 16.0, y + s / 16.0 * line, z);
     let mut faces = Vec::new();
     for k in -13..13_i32 {
         for pair in lines.windows(2) {
-            let [a, b, c, d] =
-                [at(k, pair[0]), at(k, pair[1]), at(k + 1, pair[1]), at(k + 1, pair[0])];
+            let [a, b, c, d] = [at(k, pair[0]), at(k, pair[1]), at(k + 1, pair[1]), at(k + 1, pair[0])];
             let number = faces.len();
-            let cut = if (number / 2).is_multiple_of(2) { halves([a, b, c, d]) } else { halves([b, c, d, a]) };
+            let cut =
+                if (number / 2).is_multiple_of(2) { halves([a, b, c, d]) } else { halves([b, c, d, a]) };
             for (of_square, one) in cut.into_iter().enumerate() {
                 let face = showing(Side::Front, one, DVec3::new(0.0, y, 0.0));
                 faces.push(turned(face, (number / 3 + 2 * of_square) % 3));

@@ -32,6 +32,9 @@ pub struct Manifest {
     pub blind_seed: Option<u64>,
     /// The camera, then the beams by their index.
     pub sensors: Vec<ManifestSensor>,
+    /// How many rays decide each clause of the contract; empty if they were not counted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clauses: Vec<ManifestClause>,
     /// Every file except the manifest.
     pub files: Vec<ManifestFile>,
 }
@@ -74,6 +77,16 @@ pub struct ManifestSensor {
     pub columns: u32,
     /// Number of rows.
     pub rows: u32,
+}
+
+/// A clause of the contract, and the rays that test it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ManifestClause {
+    /// The clause's key, such as `fronts-only`.
+    pub clause: String,
+    /// On how many rays a renderer that breaks the clause is wrong.
+    pub rays: u64,
 }
 
 /// Purpose of a file.

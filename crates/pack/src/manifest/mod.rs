@@ -18,6 +18,6 @@ mod scene;
 mod write;
 
 pub use document::{
-    ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile, ManifestScene,
-    ManifestSensor, PackKind,
+    ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
+    ManifestFile, ManifestScene, ManifestSensor, PackKind,
 };

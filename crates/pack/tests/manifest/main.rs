@@ -37,6 +37,7 @@ fn manifest() -> Manifest {
         flux_model: FluxModel::Radiometric,
         blind_seed: None,
         sensors: vec![sensor("camera", 3, 2), sensor("beam-0", 5, 1)],
+        clauses: Vec::new(),
         files: vec![
             bare("scene.toml", FileRole::Scene),
             ManifestFile {

@@ -1,0 +1,91 @@
+//! The clauses of the contract: a renderer that breaks one fails a pack, and the right ones pass.
+
+use std::path::Path;
+
+use raypencil::judge::{Check, Class, GroundTruth, Recorded, check};
+use raypencil::naive::{Clause, ClauseKind, Fault, Naive};
+use raypencil::pack::{MIN_RAYS_PER_CLAUSE, blind_scene, clause_rays};
+use raypencil::{FluxModel, Renderer, Request, Scene, Silent};
+use raypencil_tests::renderers;
+
+/// Seeds of two blind scenes: one of each flux model.
+const SEEDS: [u64; 2] = [1, 2];
+
+fn checked(truth: &GroundTruth<'_>, renderer: &dyn Renderer) -> Check {
+    let scene = truth.scene();
+    let output = renderer.render(scene, &Request::EVERYTHING);
+    let recorded = Recorded::of_output(renderer.name(), scene, &output, renderer.precision());
+    check(truth, &recorded, &Silent)
+}
+
+/// The faults of all clauses that a pack of the scene has to test.
+fn faults_for(scene: &Scene) -> Vec<(Clause, Fault)> {
+    let needed = Clause::ALL.iter().filter(|clause| clause.kind().is_in_packs_of(scene.flux_model()));
+    needed.flat_map(|clause| clause.faults().iter().map(|fault| (*clause, *fault))).collect()
+}
+
+#[test]
+fn each_blind_pack_passes_the_right_renderers_and_fails_each_wrong_one() {
+    let mut models = Vec::new();
+    for seed in SEEDS {
+        let scene = blind_scene(seed).expect("a scene");
+        models.push(scene.flux_model());
+        let truth = GroundTruth::certified(&scene, &Silent);
+        for renderer in renderers().into_iter().chain([Box::new(Naive { fault: None }) as Box<dyn Renderer>])
+        {
+            let check = checked(&truth, &*renderer);
+            let first = check.sensors.iter().find_map(|sensor| sensor.defects.first());
+            assert!(check.passes(), "seed {seed}, {}: {first:?}", renderer.name());
+            assert!(check.sensors.iter().all(|sensor| sensor.not_compared == 0), "seed {seed}");
+        }
+        let mut passed = Vec::new();
+        for (clause, fault) in faults_for(&scene) {
+            if checked(&truth, &Naive { fault: Some(fault) }).of(Class::Defect) == 0 {
+                passed.push((clause, fault));
+            }
+        }
+        assert!(passed.is_empty(), "seed {seed} passes these wrong renderers: {passed:?}");
+    }
+    assert!(models.contains(&FluxModel::Radiometric) && models.contains(&FluxModel::Eq1), "{models:?}");
+}
+
+#[test]
+fn the_rays_that_decide_a_clause_are_counted() {
+    // The level bench has three rays that end exactly at the maximum range, three that meet a plate on the SPP, and
+    // five that meet small plates: no ray elsewhere depends on these clauses.
+    let counts = clause_rays(&blind_scene(SEEDS[0]).expect("a scene"), &Silent);
+    let rays =
+        |clause: Clause| counts.iter().find(|one| one.clause == clause).expect("a clause of hits").rays;
+    assert_eq!(rays(Clause::MaximumRangeIncluded), 3);
+    assert_eq!(rays(Clause::OnThePlane), 3);
+    assert_eq!(rays(Clause::NothingBesideTheFace), 3);
+    for one in &counts {
+        assert!(one.rays >= MIN_RAYS_PER_CLAUSE, "{one:?}");
+    }
+}
+
+#[test]
+fn the_page_of_the_contract_has_every_clause() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/theory/contract.md");
+    let page = std::fs::read_to_string(page).expect("the page");
+    for clause in Clause::ALL {
+        let row = format!("| `{}` | {} |", clause.key(), clause.sentence().replace('|', "\\|"));
+        assert!(page.contains(&row), "docs/theory/contract.md lacks the row\n{row}");
+    }
+    let rows = page.lines().filter(|line| line.starts_with("| `")).count();
+    assert_eq!(rows, Clause::ALL.len(), "rows of docs/theory/contract.md");
+}
+
+#[test]
+fn each_clause_has_a_key_of_its_own_and_faults_that_no_other_clause_has() {
+    let mut keys: Vec<&str> = Clause::ALL.iter().map(|clause| clause.key()).collect();
+    let mut faults: Vec<Fault> = Clause::ALL.iter().flat_map(|clause| clause.faults()).copied().collect();
+    let counts = (keys.len(), faults.len());
+    keys.sort_unstable();
+    keys.dedup();
+    faults.sort_unstable();
+    faults.dedup();
+    assert_eq!((keys.len(), faults.len()), counts);
+    let of = |kind: ClauseKind| Clause::ALL.iter().filter(|clause| clause.kind() == kind).count();
+    assert!(of(ClauseKind::Rays) >= 10 && of(ClauseKind::Hits) >= 18 && of(ClauseKind::Visibility) >= 10);
+}
