@@ -43,7 +43,7 @@ mod units;
 mod write;
 
 pub use blind::{blind_scene, blind_subject};
-pub use check::{CheckError, Checked, check_pack};
+pub use check::{CheckError, Checked, check_pack, check_pack_by};
 pub use check_report::{check_json, check_screen, write_check};
 pub use manifest::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestFile, ManifestScene,
