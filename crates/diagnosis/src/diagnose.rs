@@ -74,8 +74,9 @@ struct Search<'t> {
     asked: Asked,
     /// Wrong rays among those that the judge is asked about.
     wrong_asked: u64,
-    places: Vec<Place>,
-    /// The part of them from which axes and factors are found.
+    /// Rays of all, wrong or not.
+    spread: Vec<Place>,
+    /// The part of the tried rays from which axes and factors are found.
     fitted: Vec<Place>,
     trial: Trial<'t>,
 }
@@ -87,11 +88,12 @@ impl<'t> Search<'t> {
         let wrong_asked = wrong.all.iter().filter(|ray| asked.is_asked(**ray)).count() as u64;
         let mut places = some_of(&wrong.all, SAMPLED_RAYS as usize);
         let is_new = |place: &Place| !wrong.all.contains(&key(*place));
-        places.extend(spread_over(scene, SAMPLED_RAYS).into_iter().filter(is_new));
+        let spread = spread_over(scene, SAMPLED_RAYS);
+        places.extend(spread.iter().copied().filter(is_new));
         let step = places.len().div_ceil(FITTED_RAYS).max(1);
         let fitted = places.iter().copied().step_by(step).collect();
         let trial = Trial::new(case, &places);
-        Self { case, wrong, asked, wrong_asked, places, fitted, trial }
+        Self { case, wrong, asked, wrong_asked, spread, fitted, trial }
     }
 
     fn find(&self) -> Option<Diagnosis> {
@@ -185,7 +187,7 @@ impl<'t> Search<'t> {
             let all = plan.corrections.iter().enumerate();
             let own: Vec<&Correction> =
                 all.filter(|(index, _)| subset >> index & 1 == 1).map(|(_, one)| one).collect();
-            for place in self.places.iter().filter(|place| place.sensor == channel.sensor) {
+            for place in self.spread.iter().filter(|place| place.sensor == channel.sensor) {
                 let exact = channel.at(self.case.truth.answers(), *place);
                 if let (Some(Value::Number(stated)), Value::Number(exact)) =
                     (corrected(self.case, *channel, *place, &own), exact)

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use raypencil_files::Storage;
-use raypencil_judge::{GroundTruth, Quantity, Recorded, check};
+use raypencil_judge::{GroundTruth, Item, Quantity, Recorded, check};
 use raypencil_referee::ExactRenderer;
 use raypencil_scene::{
     Atmosphere, Camera, FaceId, FluxModel, Image, Lens, Material, Maybe, Mesh, Mounted, Pose, Precision,
@@ -27,6 +27,12 @@ impl Bench {
         let truth = GroundTruth::certified(scene, &Silent);
         // A renderer's output has no flux by the other model; a recording may.
         exact.answers = truth.answers().clone();
+        for beam in 0..scene.beams().len() {
+            let image = Item { is_other_model: true, ..Item::of_image(beam) };
+            let pencils = Item { is_other_model: true, ..Quantity::PencilFlux.into() };
+            exact.storage.insert((SensorId::Camera, image), Storage::F64);
+            exact.storage.insert((SensorId::Beam(beam), pencils), Storage::F64);
+        }
         Self { scene, truth, exact }
     }
 
@@ -54,7 +60,7 @@ pub fn pyramids() -> &'static Bench {
 }
 
 /// Walls before one camera at the origin, which looks along z from behind an image plane at 2 m: a slanted one from 20
-/// to 60 m, a maximum range of 40 m, the back of a wall at 8 m on the left, and a panel at 1.5 m on the right.
+/// to 60 m, a maximum range of 40 m, the back of a wall at 7 to 9 m on the left, and a panel at 1.4 to 1.7 m on the right.
 pub fn walls() -> &'static Bench {
     static BENCH: OnceLock<Bench> = OnceLock::new();
     BENCH.get_or_init(|| {
@@ -64,14 +70,14 @@ pub fn walls() -> &'static Bench {
             [90.0, -90.0, 30.0],
             [90.0, 90.0, 60.0],
             [-90.0, 90.0, 50.0],
-            [-8.0, -9.0, 8.0],
-            [-2.0, -9.0, 8.0],
-            [-2.0, 9.0, 8.0],
-            [-8.0, 9.0, 8.0],
-            [0.6, -2.0, 1.5],
-            [1.4, -2.0, 1.5],
-            [1.4, 2.0, 1.5],
-            [0.6, 2.0, 1.5],
+            [-8.0, -9.0, 7.0],
+            [-2.0, -9.0, 7.0],
+            [-2.0, 9.0, 9.0],
+            [-8.0, 9.0, 9.0],
+            [0.6, -2.0, 1.4],
+            [1.4, -2.0, 1.4],
+            [1.4, 2.0, 1.7],
+            [0.6, 2.0, 1.7],
         ];
         let front = |a: u32| [[a, a + 2, a + 1], [a, a + 3, a + 2]];
         let back = |a: u32| [[a, a + 1, a + 2], [a, a + 2, a + 3]];
