@@ -358,6 +358,15 @@ pub(crate) struct Check {
     #[arg(long, value_name = "ARITHMETIC", value_parser = precision())]
     pub(crate) arithmetic: Option<Precision>,
 
+    /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan. Lengths of +Inf, other numbers of
+    /// NaN, and faces of -1 or 4294967295 always do.
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    pub(crate) miss: Option<f64>,
+
+    /// Leave out the channel of faces, face.I.
+    #[arg(long)]
+    pub(crate) no_faces: bool,
+
     /// Folder for junit.xml and check.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,

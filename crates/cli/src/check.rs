@@ -1,6 +1,7 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
-use raypencil::pack::{check_json, check_pack, check_screen, write_check};
+use raypencil::judge::Conventions;
+use raypencil::pack::{check_json, check_pack_by, check_screen, write_check};
 
 use crate::args::Check;
 use crate::console::{Spinner, say};
@@ -8,7 +9,9 @@ use crate::{Outcome, Trouble};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
-    let checked = check_pack(&command.pack, &command.candidate, command.arithmetic, &spinner)?;
+    let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
+    let checked =
+        check_pack_by(&command.pack, &command.candidate, command.arithmetic, conventions, &spinner)?;
     if let Some(folder) = &command.output {
         write_check(&checked, folder)?;
     }

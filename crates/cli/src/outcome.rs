@@ -51,8 +51,14 @@ pub(crate) enum Trouble {
     Pack(#[from] PackError),
 
     /// A pack or a candidate cannot be checked.
-    #[error(transparent)]
-    Check(#[from] CheckError),
+    #[error("{error}")]
+    Check {
+        /// The error.
+        error: CheckError,
+        /// What to declare, if that may help.
+        #[help]
+        help: Option<String>,
+    },
 
     /// A candidate cannot be read.
     #[error(transparent)]
@@ -78,4 +84,11 @@ pub(crate) enum Trouble {
     /// Arguments that clap accepts and that make no sense together.
     #[error("{0}")]
     Usage(String),
+}
+
+impl From<CheckError> for Trouble {
+    fn from(error: CheckError) -> Self {
+        let help = error.help();
+        Self::Check { error, help }
+    }
 }

@@ -155,6 +155,7 @@ impl ExtraChannels<'_> {
                 cell: None,
                 found,
                 expected,
+                help: None,
             }
             .into()
         };

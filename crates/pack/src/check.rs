@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use raypencil_diagnosis::{Diagnosis, diagnose};
 use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
-use raypencil_judge::{Check, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
+use raypencil_judge::{Check, Conventions, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
 use raypencil_scene::{Place, Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
@@ -39,6 +40,16 @@ pub enum CheckError {
     },
 }
 
+impl CheckError {
+    /// What to declare so that the candidate is understood, if that may help.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Candidate(error) => error.help(),
+            _ => None,
+        }
+    }
+}
+
 /// A candidate and its check against a pack.
 #[derive(Debug)]
 pub struct Checked {
@@ -48,11 +59,18 @@ pub struct Checked {
     pub recorded: Recorded,
     /// Classes and errors of the candidate's rays.
     pub check: Check,
+    /// The mistake that explains why the candidate is wrong nearly everywhere, or the two. It changes no verdict.
+    pub diagnosis: Option<Diagnosis>,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
 }
 
 impl Checked {
+    /// The diagnosis as one sentence, if there is one.
+    pub fn why(&self) -> Option<String> {
+        self.diagnosis.as_ref().map(Diagnosis::sentence)
+    }
+
     /// The `raypencil probe` command that shows everything about a ray.
     pub fn repro(&self, place: Place) -> String {
         probe_command(&self.subject, place)
@@ -87,6 +105,39 @@ pub fn check_pack(
     precision: Option<Precision>,
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
+    check_pack_by(pack, candidate, precision, Conventions::STANDARD, progress)
+}
+
+/// The same for a candidate whose conventions are declared and may differ from those of `docs/formats/files.md`.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use raypencil_files::write_npy;
+/// use raypencil_judge::Conventions;
+/// use raypencil_pack::check_pack_by;
+/// use raypencil_scene::{Image, Precision, Silent};
+///
+/// // Ranges of -1 everywhere. As a declared "no hit" they are read, and wrong where something is hit.
+/// let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids");
+/// let folder = tempfile::tempdir()?;
+/// std::fs::create_dir(folder.path().join("camera"))?;
+/// write_npy(folder.path().join("camera/range.T.npy"), &[&Image::filled(96, 72, -1.0)])?;
+/// let conventions = Conventions { miss: Some(-1.0), ..Conventions::STANDARD };
+/// let checked = check_pack_by(&pack, folder.path(), Some(Precision::F64), conventions, &Silent)?;
+/// assert!(!checked.check.passes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`check_pack`].
+pub fn check_pack_by(
+    pack: &Path,
+    candidate: &Path,
+    precision: Option<Precision>,
+    conventions: Conventions,
+    progress: &dyn Progress,
+) -> Result<Checked, CheckError> {
     progress.stage("reading the pack");
     let manifest = Manifest::read_verified(pack)?;
     let scene_file = pack.join("scene.toml");
@@ -106,7 +157,7 @@ pub fn check_pack(
     let note = note(candidate, &scene)?;
     let noted = note.map(|note| precision_of(note.arithmetic));
     let precision = precision.or(noted).unwrap_or(Precision::F64);
-    let recorded = Recorded::read(candidate, &scene, precision)?;
+    let recorded = Recorded::read_by(candidate, &scene, precision, conventions)?;
 
     let truth = match (manifest.kind, manifest.blind_seed) {
         (PackKind::Blind, Some(seed)) => {
@@ -128,6 +179,12 @@ pub fn check_pack(
         return Err(answers(found, "correctly rounded answers, as this version computes them"));
     }
     let check = check(&truth, &recorded, progress);
+    let diagnosis = if check.passes() {
+        None
+    } else {
+        progress.stage("looking for a mistake that explains the wrong rays");
+        diagnose(&truth, &recorded, &check)
+    };
     drop(truth);
     let subject = Subject {
         name: manifest.scene.name,
@@ -135,7 +192,7 @@ pub fn check_pack(
         sha256,
         scene,
     };
-    Ok(Checked { subject, recorded, check, is_blind: manifest.kind == PackKind::Blind })
+    Ok(Checked { subject, recorded, check, diagnosis, is_blind: manifest.kind == PackKind::Blind })
 }
 
 /// Reads the answers of a pack that holds them, in f64.

@@ -46,7 +46,7 @@ mod write;
 
 pub use bench::{BENCH_BEAMS, with_bench};
 pub use blind::{blind_scene, blind_subject};
-pub use check::{CheckError, Checked, check_pack};
+pub use check::{CheckError, Checked, check_pack, check_pack_by};
 pub use check_report::{check_json, check_screen, write_check};
 pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, clause_rays};
 pub use manifest::{

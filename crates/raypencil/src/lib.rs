@@ -10,6 +10,7 @@
 //! io                                 files: scenes, meshes, NPY, PFM, EXR
 //! harness  judge  report             a validation: run, judged, reported; candidates; probe
 //! pack  diff  minimise  campaign     reference packs; any two recordings; the simplest scene; random terrains
+//! diagnosis                          the mistake that explains why a recording is wrong
 //! drive  rover  sensor  terrain      the rover: drives, maps, its image sensor, its ground
 //! ```
 //!
@@ -49,11 +50,12 @@ pub use raypencil_scene_io::{LoadedScene, Overrides, load};
 pub use raypencil_tracer::Tracer;
 
 pub use {
-    raypencil_campaign as campaign, raypencil_diff as diff, raypencil_drive as drive,
-    raypencil_harness as harness, raypencil_judge as judge, raypencil_minimise as minimise,
-    raypencil_naive as naive, raypencil_pack as pack, raypencil_referee as referee,
-    raypencil_report as report, raypencil_rover as rover, raypencil_scanline as scanline,
-    raypencil_sensor as sensor, raypencil_terrain as terrain, raypencil_tracer as tracer,
+    raypencil_campaign as campaign, raypencil_diagnosis as diagnosis, raypencil_diff as diff,
+    raypencil_drive as drive, raypencil_harness as harness, raypencil_judge as judge,
+    raypencil_minimise as minimise, raypencil_naive as naive, raypencil_pack as pack,
+    raypencil_referee as referee, raypencil_report as report, raypencil_rover as rover,
+    raypencil_scanline as scanline, raypencil_sensor as sensor, raypencil_terrain as terrain,
+    raypencil_tracer as tracer,
 };
 
 /// Every file format, in and out: numbers (NPY, PFM, EXR), meshes (glTF, GeoTIFF), scenes (TOML).

@@ -23,6 +23,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("judge", 3),
     ("mesh-io", 3),
     ("diff", 4),
+    ("diagnosis", 4),
     ("scene-io", 4),
     ("drive", 5),
     ("pack", 5),
@@ -41,6 +42,8 @@ const NARROWER: &[(&str, &[&str])] = &[
     ("referee", &["scene"]),
     // The judge knows no renderer.
     ("judge", &["scene", "referee", "files"]),
+    // An explanation is tried on the candidate's own numbers: it asks the judge, and renders nothing of the house.
+    ("diagnosis", &["scene", "files", "judge"]),
     // The command sees what every user of the library sees.
     ("cli", &["raypencil"]),
 ];

@@ -13,12 +13,12 @@ use tempfile::TempDir;
 use crate::{assert_trouble, raypencil, screen, text};
 
 /// A pack of this repository.
-fn pack(name: &str) -> PathBuf {
+pub(crate) fn pack(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs").join(name)
 }
 
 /// A folder with `mine`: the tracer's maps of a pack's scene.
-fn folder(name: &str) -> TempDir {
+pub(crate) fn folder(name: &str) -> TempDir {
     let folder = TempDir::new().expect("a temporary folder");
     let scene = pack(name).join("scene.toml");
     let output =
@@ -27,7 +27,7 @@ fn folder(name: &str) -> TempDir {
     folder
 }
 
-fn check(folder: &Path, name: &str, more: &[&str]) -> Output {
+pub(crate) fn check(folder: &Path, name: &str, more: &[&str]) -> Output {
     let pack = pack(name);
     let mut arguments = vec!["check".to_string(), pack.to_string_lossy().into_owned(), "mine".into()];
     arguments.extend(more.iter().map(ToString::to_string));
@@ -35,14 +35,14 @@ fn check(folder: &Path, name: &str, more: &[&str]) -> Output {
 }
 
 /// Changes one EXR of the candidate.
-fn edit(folder: &TempDir, file: &str, change: impl FnOnce(&mut ExrMap)) {
+pub(crate) fn edit(folder: &TempDir, file: &str, change: impl FnOnce(&mut ExrMap)) {
     let path = folder.path().join("mine").join(file);
     let mut map = read_exr(&path, &Limits::default()).expect("what was rendered");
     change(&mut map);
     write_exr(&path, &map).expect("written");
 }
 
-fn reals<'a>(map: &'a mut ExrMap, channel: &str) -> &'a mut Image<f32> {
+pub(crate) fn reals<'a>(map: &'a mut ExrMap, channel: &str) -> &'a mut Image<f32> {
     match map.channels.get_mut(channel) {
         Some(Raster::F32(image)) => image,
         _ => panic!("no reals in {channel}"),
@@ -50,12 +50,12 @@ fn reals<'a>(map: &'a mut ExrMap, channel: &str) -> &'a mut Image<f32> {
 }
 
 #[track_caller]
-fn assert_passes(output: &Output) {
+pub(crate) fn assert_passes(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
 }
 
 #[track_caller]
-fn assert_fails(output: &Output, words: &[&str]) {
+pub(crate) fn assert_fails(output: &Output, words: &[&str]) {
     let screen = text(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{screen}{}", text(&output.stderr));
     for word in words {

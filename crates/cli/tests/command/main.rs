@@ -3,6 +3,7 @@
 mod basics;
 mod campaign;
 mod check;
+mod diagnosis;
 mod diff;
 mod drive;
 mod help;

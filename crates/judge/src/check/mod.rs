@@ -93,6 +93,44 @@ impl Check {
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
 pub fn check(truth: &GroundTruth<'_>, recorded: &Recorded, progress: &dyn Progress) -> Check {
+    check_rays(truth, recorded, &|_| true, progress)
+}
+
+/// Judges some rays of a recording: those that are asked for.
+///
+/// The flux of a pixel is the sum over pencils. It is judged rightly only if all pencils are asked for.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// # use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene};
+/// # let corners = vec![[0.125, -40.0, 2.0], [-90.0, 0.0, 2.0], [0.125, 40.0, 2.0]];
+/// # let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+/// # let wall = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], vec![plaster])?;
+/// # let camera = Camera {
+/// #     width: 9, height: 9, pixel_pitch: [0.0625; 2], focal_length: 0.5, principal_point: [4.5; 2],
+/// #     aperture: 0.01, lens: Lens::CLEAR, max_range: 20.0,
+/// # };
+/// # let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(wall), camera, vec![], air, FluxModel::Radiometric)?;
+/// // Rows 0, 3 and 6 of nine: 27 of 81 pixels.
+/// use raypencil_judge::{GroundTruth, Recorded, check_rays};
+/// use raypencil_referee::ExactRenderer;
+/// use raypencil_scene::{Precision, Renderer, Request, Silent};
+///
+/// let output = ExactRenderer.render(&scene, &Request::MAPS);
+/// let recorded = Recorded::of_output("exact", &scene, &output, Precision::F64);
+/// let truth = GroundTruth::certified(&scene, &Silent);
+/// assert_eq!(check_rays(&truth, &recorded, &|place| place.j % 3 == 0, &Silent).compared(), 27);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+pub fn check_rays(
+    truth: &GroundTruth<'_>,
+    recorded: &Recorded,
+    is_asked: &(dyn Fn(Place) -> bool + Sync),
+    progress: &dyn Progress,
+) -> Check {
     let scene = truth.scene();
     // The beams first: a pixel is judged by the pencils that land there.
     let mut images = Vec::new();
@@ -100,7 +138,7 @@ pub fn check(truth: &GroundTruth<'_>, recorded: &Recorded, progress: &dyn Progre
     for beam in 0..scene.beams().len() {
         let sensor = SensorId::Beam(beam);
         progress.stage(&format!("{sensor}: judging"));
-        let (checked, delivered) = check_beam(truth, recorded, beam);
+        let (checked, delivered) = check_beam(truth, recorded, beam, is_asked);
         let mut image = BeamImage::empty(truth, beam);
         delivered.iter().for_each(|contribution| image.add(contribution));
         let light = &recorded.answers.light[beam];
@@ -118,6 +156,9 @@ pub fn check(truth: &GroundTruth<'_>, recorded: &Recorded, progress: &dyn Progre
     }
     progress.stage("camera: judging");
     let camera = by_rows(truth, SensorId::Camera, |place, row| {
+        if !is_asked(place) {
+            return;
+        }
         let mut entry = RayEntry::checked(place, row);
         judge_hit(truth, recorded, &mut entry);
         images.iter().for_each(|image| image.judge(truth, recorded, &mut entry));
@@ -132,6 +173,7 @@ fn check_beam(
     truth: &GroundTruth<'_>,
     recorded: &Recorded,
     beam: usize,
+    is_asked: &(dyn Fn(Place) -> bool + Sync),
 ) -> (SensorResult, Vec<PencilContribution>) {
     let sensor = SensorId::Beam(beam);
     let (width, height) = truth.scene().size(sensor).expect("a sensor of this scene");
@@ -140,7 +182,11 @@ fn check_beam(
         .map(|j| {
             let mut row = SensorResult::new(sensor);
             let delivered = (0..width).map(|i| {
-                let mut entry = RayEntry::checked(Place { sensor, i, j }, &mut row);
+                let place = Place { sensor, i, j };
+                if !is_asked(place) {
+                    return PencilContribution::default();
+                }
+                let mut entry = RayEntry::checked(place, &mut row);
                 let assumed = judge_hit(truth, recorded, &mut entry);
                 let contribution = judge_return(truth, recorded, &mut entry, &assumed);
                 entry.finish(String::new);

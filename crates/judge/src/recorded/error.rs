@@ -24,6 +24,8 @@ pub enum RecordingError {
         found: String,
         /// What was expected.
         expected: String,
+        /// What to declare or change, if a common convention explains the cell.
+        help: Option<String>,
     },
     /// A vector of which only some components are there.
     #[error("{}: `{channel}` is absent; expected all of {all}", folder.display())]
@@ -51,6 +53,16 @@ pub enum RecordingError {
         /// The names that it does hold.
         unknown: Vec<String>,
     },
+}
+
+impl RecordingError {
+    /// What to declare or change so that the recording is understood, if that may help.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Channel { help, .. } => help.clone(),
+            _ => None,
+        }
+    }
 }
 
 fn at(cell: &Option<(u32, u32)>) -> String {

@@ -2,11 +2,13 @@
 //!
 //! Names, sizes and conventions are checked, and nothing is guessed.
 
+pub(crate) mod conventions;
 pub(crate) mod error;
 pub(crate) mod names;
 mod reader;
 
 use crate::quantity::{Item, Quantity};
+use crate::recorded::conventions::Conventions;
 use crate::recorded::error::RecordingError;
 use crate::recorded::names::is_path_tracer_channel;
 use crate::recorded::reader::{Reader, limits, recordings_in};
@@ -83,7 +85,21 @@ impl Recorded {
     /// # Errors
     /// Names the file, the channel and the cell that breaks the conventions.
     pub fn read(folder: &Path, scene: &Scene, precision: Precision) -> Result<Self, RecordingError> {
-        Self::of_folder(folder, scene, precision, &Self::channels(folder, scene)?)
+        Self::read_by(folder, scene, precision, Conventions::STANDARD)
+    }
+
+    /// The same for a recording whose conventions are declared.
+    ///
+    /// # Errors
+    /// Names the file, the channel and the cell that breaks the conventions.
+    pub fn read_by(
+        folder: &Path,
+        scene: &Scene,
+        precision: Precision,
+        conventions: Conventions,
+    ) -> Result<Self, RecordingError> {
+        let channels = Self::channels(folder, scene)?;
+        Self::of_channels_by(name_of_folder(folder), folder, scene, precision, &channels, conventions)
     }
 
     /// Reads the channels of a folder that holds one recording of a scene.
@@ -112,8 +128,7 @@ impl Recorded {
         precision: Precision,
         channels: &Channels,
     ) -> Result<Self, RecordingError> {
-        let name = folder.file_name().map_or("candidate".into(), |name| name.to_string_lossy().into_owned());
-        Self::of_channels(name, folder, scene, precision, channels)
+        Self::of_channels(name_of_folder(folder), folder, scene, precision, channels)
     }
 
     /// The output of a renderer of this project, as computed, as a recording in f64.
@@ -158,7 +173,19 @@ impl Recorded {
         precision: Precision,
         channels: &Channels,
     ) -> Result<Self, RecordingError> {
+        Self::of_channels_by(name, folder, scene, precision, channels, Conventions::STANDARD)
+    }
+
+    fn of_channels_by(
+        name: String,
+        folder: &Path,
+        scene: &Scene,
+        precision: Precision,
+        channels: &Channels,
+        conventions: Conventions,
+    ) -> Result<Self, RecordingError> {
         let mut reader = Reader {
+            conventions,
             scene,
             folder,
             channels,
@@ -187,4 +214,9 @@ impl Recorded {
         }
         Ok(Self { name, answers, storage, unknown, precision })
     }
+}
+
+/// A recording has the name of its folder.
+fn name_of_folder(folder: &Path) -> String {
+    folder.file_name().map_or("candidate".into(), |name| name.to_string_lossy().into_owned())
 }

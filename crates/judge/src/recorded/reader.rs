@@ -1,6 +1,7 @@
 //! Reader of a recording's channels: checks their names, sizes and conventions, and fills in answers.
 
 use crate::quantity::{Item, Quantity};
+use crate::recorded::conventions::Conventions;
 use crate::recorded::error::RecordingError;
 use crate::recorded::names::{self, flux_channel, image_channel};
 use crate::scene_answers::Answers;
@@ -50,6 +51,7 @@ pub(super) fn recordings_in(folder: &Path) -> Vec<String> {
 
 /// A recording while it is read.
 pub(super) struct Reader<'a> {
+    pub(super) conventions: Conventions,
     pub(super) scene: &'a Scene,
     pub(super) folder: &'a Path,
     pub(super) channels: &'a Channels,
@@ -59,6 +61,14 @@ pub(super) struct Reader<'a> {
     pub(super) used: Vec<String>,
     /// For each sensor, the channel that tells which rays hit, and whether each does.
     pub(super) hits: Vec<Option<(String, Vec<bool>)>>,
+}
+
+/// Which rays of a sensor hit, and the channel that says so.
+#[derive(Clone, Copy)]
+struct Hits<'a> {
+    hits: &'a [bool],
+    speaker: &'a str,
+    conventions: Conventions,
 }
 
 /// The real numbers of a channel.
@@ -83,6 +93,17 @@ impl<'a> Reader<'a> {
             cell,
             found,
             expected: expected.into(),
+            help: None,
+        }
+    }
+
+    /// The same error with a line of help.
+    fn with_help(error: RecordingError, words: Option<String>) -> RecordingError {
+        match error {
+            RecordingError::Channel { file, channel, cell, found, expected, .. } => {
+                RecordingError::Channel { file, channel, cell, found, expected, help: words }
+            }
+            other => other,
         }
     }
 
@@ -103,7 +124,9 @@ impl<'a> Reader<'a> {
         if size != (width, height) {
             let found = format!("{} x {} cells", size.0, size.1);
             let expected = format!("{width} x {height}, as the scene's {sensor} has");
-            return Err(Self::fault((name, channel), None, found, &expected));
+            let is_turned = size == (height, width);
+            let help = is_turned.then(|| "an array is (rows, columns): transpose it".to_string());
+            return Err(Self::with_help(Self::fault((name, channel), None, found, &expected), help));
         }
         self.used.push(key);
         Ok(Some((name, channel)))
@@ -153,7 +176,13 @@ impl<'a> Reader<'a> {
 
     /// Reads the hits of a sensor.
     pub(super) fn geometry(&mut self, index: usize, sensor: SensorId) -> Result<(), RecordingError> {
-        let faces = self.wholes(sensor, names::FACE)?;
+        let faces = if self.conventions.ignores_faces {
+            // The channel is known, and left out.
+            self.used.push(format!("{sensor}/{}", names::FACE));
+            None
+        } else {
+            self.wholes(sensor, names::FACE)?
+        };
         let mut values = Vec::new();
         for quantity in HitQuantity::ALL {
             if let Some(parts) = self.components(sensor, quantity.channels())? {
@@ -166,7 +195,11 @@ impl<'a> Reader<'a> {
             Some((names::FACE.into(), faces.cells().iter().map(|face| *face != u32::MAX).collect()))
         } else {
             values.first().map(|(_, parts)| {
-                (parts[0].name.to_string(), parts[0].image.cells().iter().map(|x| x.is_finite()).collect())
+                let means_miss =
+                    |at: usize| parts.iter().all(|part| self.conventions.means_miss(part.image.cells()[at]));
+                let cells = parts[0].image.cells().iter().enumerate();
+                let hits = cells.map(|(at, x)| x.is_finite() && !means_miss(at)).collect();
+                (parts[0].name.to_string(), hits)
             })
         };
         let Some((speaker, hits)) = hits else { return Ok(()) };
@@ -181,7 +214,8 @@ impl<'a> Reader<'a> {
         for (quantity, parts) in values {
             let mut images = Vec::new();
             for part in &parts {
-                images.push(maybe(*part, &hits, &speaker, quantity.is_length())?);
+                let hits = Hits { hits: &hits, speaker: &speaker, conventions: self.conventions };
+                images.push(maybe(*part, hits, quantity.is_length())?);
             }
             let storage = parts.iter().map(|part| part.channel.storage).min().unwrap_or(Storage::F64);
             self.store(sensor, Quantity::from(quantity), storage);
@@ -297,11 +331,16 @@ impl<'a> Reader<'a> {
         for (name, quantity, is_length) in scalars {
             let Some(reals) = self.reals(sensor, name)? else { continue };
             let image = match &hits {
-                Some((speaker, hits)) => maybe_signed(reals, hits, speaker, is_length)?,
+                Some((speaker, hits)) => {
+                    let hits = Hits { hits, speaker, conventions: self.conventions };
+                    maybe_signed(reals, hits, is_length)?
+                }
                 None => {
                     // No other channel tells which pencils hit; `check` takes that from the truth.
-                    let own: Vec<bool> = reals.image.cells().iter().map(|x| x.is_finite()).collect();
-                    maybe_signed(reals, &own, name, is_length)?
+                    let conventions = self.conventions;
+                    let says_hit = |x: &f64| x.is_finite() && !conventions.means_miss(*x);
+                    let own: Vec<bool> = reals.image.cells().iter().map(says_hit).collect();
+                    maybe_signed(reals, Hits { hits: &own, speaker: name, conventions }, is_length)?
                 }
             };
             self.store(sensor, quantity, reals.channel.storage);
@@ -344,48 +383,54 @@ fn cell<T: Copy>(image: &Image<T>, index: usize) -> (u32, u32) {
 }
 
 /// A map with numbers where rays hit and none elsewhere. Lengths are not negative, and +Inf where nothing is hit.
-fn maybe(
-    reals: Reals<'_>,
-    hits: &[bool],
-    speaker: &str,
-    is_length: bool,
-) -> Result<Image<Maybe<f64>>, RecordingError> {
-    let image = maybe_signed(reals, hits, speaker, is_length)?;
+fn maybe(reals: Reals<'_>, hits: Hits<'_>, is_length: bool) -> Result<Image<Maybe<f64>>, RecordingError> {
+    let image = maybe_signed(reals, hits, is_length)?;
     if is_length && let Some(index) = image.cells().iter().position(|x| x.get().is_some_and(|x| x < 0.0)) {
         let found = reals.image.cells()[index].to_string();
-        return Err(Reader::fault(
-            (reals.name, reals.channel),
-            Some(cell(reals.image, index)),
-            found,
-            "no negative length",
-        ));
+        let help = declare_miss(reals.image.cells()[index]);
+        let place = (reals.name, reals.channel);
+        let fault = Reader::fault(place, Some(cell(reals.image, index)), found, "no negative length");
+        return Err(Reader::with_help(fault, Some(help)));
     }
     Ok(image)
+}
+
+/// A line of help for a number that may mean "no hit".
+fn declare_miss(value: f64) -> String {
+    // As people write it.
+    let word = if value.is_nan() { "nan".to_string() } else { value.to_string() };
+    format!("if {word} means \"no hit\" in this recording, declare --miss {word}")
 }
 
 /// The same, with numbers of any sign: a point may lie behind the camera.
 fn maybe_signed(
     Reals { name, channel, image }: Reals<'_>,
-    hits: &[bool],
-    speaker: &str,
+    Hits { hits, speaker, conventions }: Hits<'_>,
     is_length: bool,
 ) -> Result<Image<Maybe<f64>>, RecordingError> {
     let mut cells = Vec::with_capacity(hits.len());
     for (index, (&value, &hit)) in image.cells().iter().zip(hits).enumerate() {
-        let wrong = |expected: String| {
-            Err(Reader::fault((name, channel), Some(cell(image, index)), value.to_string(), &expected))
+        let wrong = |expected: String, help: Option<String>| {
+            let fault =
+                Reader::fault((name, channel), Some(cell(image, index)), value.to_string(), &expected);
+            Err(Reader::with_help(fault, help))
         };
         let nothing = if is_length { "+Inf" } else { "NaN" };
         if hit && !value.is_finite() {
-            return wrong(format!("a number, as {speaker} says that something is hit"));
+            let help = (speaker == names::FACE).then(|| {
+                format!("if {speaker} does not say which rays hit, declare --no-faces: it is then left out")
+            });
+            return wrong(format!("a number, as {speaker} says that something is hit"), help);
         }
-        let is_nothing = if is_length { value == f64::INFINITY } else { value.is_nan() };
+        let is_canonical = if is_length { value == f64::INFINITY } else { value.is_nan() };
+        let is_nothing = is_canonical || conventions.means_miss(value);
         if !hit && !is_nothing {
-            return wrong(if name == speaker {
+            let expected = if name == speaker {
                 format!("a number, or {nothing} where nothing is hit")
             } else {
                 format!("{nothing}, as {speaker} says that nothing is hit")
-            });
+            };
+            return wrong(expected, Some(declare_miss(value)));
         }
         cells.push(Maybe::from(hit.then_some(value)));
     }

@@ -13,7 +13,7 @@ const FORMAT: u32 = 1;
 
 /// The JSON document. Its schema is `docs/formats/check.schema.json`.
 pub fn check_json(checked: &Checked) -> String {
-    let Checked { subject, recorded, check, is_blind } = checked;
+    let Checked { subject, recorded, check, diagnosis, is_blind } = checked;
     let model = subject.scene.flux_model();
     let largest = |largest: &Option<Largest>| {
         largest.as_ref().map(|Largest { value, place, ruling }| {
@@ -56,6 +56,18 @@ pub fn check_json(checked: &Checked) -> String {
             "first_defects": wrong.collect::<Vec<_>>(),
         })
     };
+    let diagnosis_json = diagnosis.as_ref().map(|found| {
+        let mistakes = found.mistakes.iter().map(|mistake| {
+            let (file, place) = mistake.docs();
+            json!({ "name": mistake.key(), "what": mistake.to_string(), "docs": format!("{file}, {place}") })
+        });
+        json!({
+            "sentence": found.sentence(),
+            "agree": found.agree,
+            "tried": found.tried,
+            "mistakes": mistakes.collect::<Vec<_>>(),
+        })
+    });
     let all: [u64; 6] = std::array::from_fn(|k| check.sensors.iter().map(|sensor| sensor.by_class[k]).sum());
     let document = json!({
         "format": FORMAT,
@@ -67,6 +79,7 @@ pub fn check_json(checked: &Checked) -> String {
         "blind": is_blind,
         "compared": check.compared(),
         "classes": class_counts_json(&all, &CHECK_CLASSES),
+        "diagnosis": diagnosis_json,
         "unknown_channels": recorded.unknown,
         "sensors": check.sensors.iter().map(sensor_json).collect::<Vec<_>>(),
     });

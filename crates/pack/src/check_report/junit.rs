@@ -54,5 +54,8 @@ fn case(checked: &Checked, sensor: &SensorResult, item: Item, tally: &ItemTally)
         ));
         lines.push(format!("    {}", checked.repro(largest.place)));
     }
+    if let Some(why) = checked.why() {
+        lines.push(format!("Why: {why}."));
+    }
     JunitCase::failed(name, "defect", message).with_text(lines.join("\n"))
 }

@@ -8,9 +8,10 @@ use raypencil_report::{Align, Table, count, quantity};
 use crate::check::Checked;
 use crate::check_report::verdict::{MAX_SHOWN_DEFECTS, arithmetic, verdict};
 
-/// The screen: a table of all quantities, the first defects with their `probe` commands, and the verdict.
+/// The screen: a table of all quantities, the first defects with their `probe` commands, the verdict, and the mistake that
+/// explains it, if one does.
 pub fn check_screen(checked: &Checked) -> String {
-    let Checked { subject, recorded, check, is_blind } = checked;
+    let Checked { subject, recorded, check, is_blind, .. } = checked;
     let model = subject.scene.flux_model();
     let blind = if *is_blind { " (blind)" } else { "" };
     let mut text = format!(
@@ -99,5 +100,8 @@ pub fn check_screen(checked: &Checked) -> String {
         ),
         _ => writeln!(text, "? Nothing was compared."),
     };
+    if let Some(why) = checked.why() {
+        let _ = writeln!(text, "  Why: {why}.");
+    }
     text
 }

@@ -1,0 +1,72 @@
+//! Whether two values are near enough to be tried further. The judge has the last word.
+
+use glam::DVec3;
+use raypencil_files::Storage;
+use raypencil_judge::Quantity;
+use raypencil_scene::{HitQuantity, Place};
+
+use crate::channel::{Channel, Value};
+use crate::correction::Case;
+
+/// Relative difference of values that count as equal while corrections are tried. Tuned: single precision leaves less
+/// on nearly all rays, and neighbouring rays differ by more.
+pub(crate) const TRIAL_TOLERANCE: f64 = 1e-5;
+
+/// The relative tolerance for a channel's storage: half precision rounds by up to 2^-11.
+pub(crate) fn tolerance(case: Case<'_>, channel: Channel) -> f64 {
+    let storage = case.recorded.storage.get(&(channel.sensor, channel.item));
+    if storage == Some(&Storage::F16) { 1.0 / 1024.0 } else { TRIAL_TOLERANCE }
+}
+
+/// Whether a stated value is near an exact one.
+pub(crate) fn is_near(case: Case<'_>, channel: Channel, place: Place, stated: Value, exact: Value) -> bool {
+    let tolerance = tolerance(case, channel);
+    match (stated, exact) {
+        (Value::Number(stated), Value::Number(exact)) => {
+            let is_cosine = matches!(
+                channel.item.quantity,
+                Quantity::CosIncidence | Quantity::CosOffAxis | Quantity::CosView
+            );
+            let scale = if is_cosine { 1.0 } else { exact.abs() };
+            (stated - exact).abs() <= tolerance * scale
+        }
+        (Value::Vector(stated), Value::Vector(exact)) => {
+            let scale = if channel.item.quantity == Quantity::Point {
+                exact.length() + range(case, place)
+            } else {
+                1.0
+            };
+            (stated - exact).length() <= tolerance * scale
+        }
+        (stated, exact) => stated == exact,
+    }
+}
+
+/// The exact range of a ray, metres; 0 without a hit.
+fn range(case: Case<'_>, place: Place) -> f64 {
+    let map = case.truth.answers().map(place.sensor);
+    let value = map.raster(HitQuantity::Range).and_then(|raster| raster.at(place.i, place.j));
+    value.and_then(|value| value.scalar()).unwrap_or(0.0)
+}
+
+/// The exact value, if the storage of the stated one explains what is left after a correction; else the corrected one.
+///
+/// A number that was stored in another unit was rounded in that unit. Eight roundings of doubles are allowed to the
+/// correction itself.
+pub(crate) fn absorbed(storage: Storage, stated: Value, corrected: Value, exact: Value) -> Value {
+    let ulp = |number: f64| 0.5 * storage.ulp(number);
+    let near = match (stated, corrected, exact) {
+        (Value::Number(stated), Value::Number(corrected), Value::Number(exact)) if stated != corrected => {
+            let scale = if stated == 0.0 { 1.0 } else { (corrected / stated).abs() };
+            (corrected - exact).abs() <= ulp(stated) * scale + 8.0 * f64::EPSILON * exact.abs()
+        }
+        (Value::Vector(stated), Value::Vector(corrected), Value::Vector(exact)) if stated != corrected => {
+            let rounding = DVec3::from_array(stated.to_array().map(ulp)).length();
+            let scale = (corrected.length() / stated.length()).min(1e3);
+            let size = stated.length() * scale + exact.length();
+            (corrected - exact).length() <= rounding * scale + 8.0 * f64::EPSILON * size
+        }
+        _ => false,
+    };
+    if near { exact } else { corrected }
+}

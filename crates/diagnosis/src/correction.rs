@@ -1,0 +1,288 @@
+//! Corrections: what undoes a mistake on the numbers of a recording.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::channel::{Channel, Value, hit_quantity};
+use crate::mistake::{Cosine, Mistake};
+use glam::DVec3;
+use raypencil_judge::{GroundTruth, Item, Quantity, Recorded};
+use raypencil_scene::{FaceId, HitQuantity, Image, Pixel, Place, SensorId};
+
+/// Factors that correct the flux: of each beam's pencils and of its image, by the scene's model and by the other.
+pub(crate) type FluxFactors = Vec<[[Image<f64>; 2]; 2]>;
+
+/// Numbers that a correction needs beside its mistake.
+#[derive(Debug, Clone)]
+pub(crate) enum Table {
+    Empty,
+    /// The true face of each index that is stated.
+    Faces(Arc<BTreeMap<u32, u32>>),
+    Flux(Arc<FluxFactors>),
+}
+
+/// A mistake and what undoes it.
+#[derive(Debug, Clone)]
+pub(crate) struct Correction {
+    pub(crate) mistake: Mistake,
+    pub(crate) table: Table,
+}
+
+impl From<Mistake> for Correction {
+    fn from(mistake: Mistake) -> Self {
+        Self { mistake, table: Table::Empty }
+    }
+}
+
+/// The truth and the recording that it is held to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Case<'t> {
+    pub(crate) truth: &'t GroundTruth<'t>,
+    pub(crate) recorded: &'t Recorded,
+}
+
+impl Correction {
+    /// Whether it changes the numbers of a channel.
+    pub(crate) fn touches(&self, channel: Channel) -> bool {
+        use HitQuantity as H;
+        let quantity = channel.item.quantity;
+        let hit = hit_quantity(quantity);
+        let is_cosine = matches!(quantity, Quantity::CosIncidence | Quantity::CosOffAxis | Quantity::CosView);
+        let is_flux = matches!(quantity, Quantity::PencilFlux | Quantity::PixelFlux);
+        match self.mistake {
+            Mistake::RowsReversed
+            | Mistake::ColumnsReversed
+            | Mistake::Transposed
+            | Mistake::Shifted { .. } => true,
+            Mistake::MissWritten(_) | Mistake::MissAtMaximumRange => {
+                !is_flux && quantity != Quantity::Visible
+            }
+            Mistake::FacesShifted(_) | Mistake::FacesReordered => quantity == Quantity::Face,
+            Mistake::DepthForRange | Mistake::ParameterForRange => hit == Some(H::Range),
+            Mistake::RangeForDepth | Mistake::ParameterForDepth => hit == Some(H::Depth),
+            Mistake::Unit(_) => {
+                matches!(hit, Some(H::Range | H::Depth | H::Point)) || quantity == Quantity::CameraDepth
+            }
+            Mistake::AxesYUp | Mistake::AxesYUpInverse | Mistake::Axes { .. } | Mistake::SensorFrame => {
+                matches!(hit, Some(H::Point | H::Normal))
+            }
+            Mistake::GlobalFrame => hit == Some(H::Point),
+            Mistake::NormalsReversed | Mistake::NormalsNotUnit => hit == Some(H::Normal),
+            Mistake::CosinesNegated => is_cosine,
+            Mistake::CosinesExchanged(_) => is_cosine && channel.sensor != SensorId::Camera,
+            Mistake::PixelRowsFromBottom | Mistake::PixelsExchanged => quantity == Quantity::Pixel,
+            Mistake::OtherFluxModel | Mistake::AttenuationOn(_) | Mistake::FluxFactor(_) => is_flux,
+            _ => false,
+        }
+    }
+
+    /// Whether only one of the two can be made: they change the same convention.
+    pub(crate) fn excludes(&self, other: &Self) -> bool {
+        let kind = |mistake: &Mistake| match mistake {
+            Mistake::MissWritten(_) | Mistake::MissAtMaximumRange => 1,
+            Mistake::FacesShifted(_) | Mistake::FacesReordered => 2,
+            Mistake::DepthForRange | Mistake::ParameterForRange => 3,
+            Mistake::RangeForDepth | Mistake::ParameterForDepth => 4,
+            Mistake::Unit(_) => 5,
+            Mistake::AxesYUp
+            | Mistake::AxesYUpInverse
+            | Mistake::Axes { .. }
+            | Mistake::SensorFrame
+            | Mistake::GlobalFrame => 6,
+            Mistake::CosinesExchanged(_) => 7,
+            Mistake::OtherFluxModel | Mistake::AttenuationOn(_) => 8,
+            _ => 0,
+        };
+        kind(&self.mistake) != 0 && kind(&self.mistake) == kind(&other.mistake)
+    }
+
+    /// The cell in which the ray of `place` stands; `None` if no cell has it.
+    pub(crate) fn source(&self, case: Case<'_>, place: Place) -> Option<Place> {
+        let Place { sensor, i, j } = place;
+        let (width, height) = case.truth.scene().size(sensor)?;
+        Some(match self.mistake {
+            Mistake::RowsReversed => Place { j: height - 1 - j, ..place },
+            Mistake::ColumnsReversed => Place { i: width - 1 - i, ..place },
+            Mistake::Transposed => {
+                let index = u64::from(i) * u64::from(height) + u64::from(j);
+                let (i, j) = (index % u64::from(width), index / u64::from(width));
+                Place { sensor, i: i as u32, j: j as u32 }
+            }
+            Mistake::Shifted { columns, rows } => Place {
+                sensor,
+                i: i.checked_add_signed(columns).filter(|i| *i < width)?,
+                j: j.checked_add_signed(rows).filter(|j| *j < height)?,
+            },
+            _ => place,
+        })
+    }
+
+    /// The value of a channel for the ray of `place`, which stands in the cell `source`.
+    pub(crate) fn correct(
+        &self,
+        case: Case<'_>,
+        channel: Channel,
+        place: Place,
+        source: Place,
+        value: Value,
+    ) -> Value {
+        if let Mistake::MissWritten(_) | Mistake::MissAtMaximumRange = self.mistake {
+            return if self.is_miss(case, source) { Value::Nothing } else { value };
+        }
+        match value {
+            Value::Nothing | Value::Flag(_) => value,
+            Value::Number(number) => Value::Number(self.number(case, channel, place, number)),
+            Value::Vector(vector) => Value::Vector(self.vector(case, channel, vector)),
+            Value::Face(face) => self.face(face),
+            Value::Pixel(pixel) => self.pixel(case, pixel),
+        }
+    }
+
+    /// Whether the first number of a cell is the one that means "no hit".
+    fn is_miss(&self, case: Case<'_>, source: Place) -> bool {
+        let constant = match self.mistake {
+            Mistake::MissWritten(constant) => constant,
+            _ => case.truth.scene().max_range(source.sensor).unwrap_or(f64::INFINITY),
+        };
+        let map = case.recorded.answers.map(source.sensor);
+        let speaker = HitQuantity::ALL.into_iter().find(|one| map.raster(*one).is_some());
+        let value = speaker.and_then(|speaker| map.raster(speaker)?.at(source.i, source.j));
+        // A file of single precision holds the constant rounded.
+        value.is_some_and(|value| {
+            value.components().iter().all(|one| *one == constant || *one == f64::from(constant as f32))
+        })
+    }
+
+    fn number(&self, case: Case<'_>, channel: Channel, place: Place, number: f64) -> f64 {
+        let scene = case.truth.scene();
+        let length = || {
+            let ray = scene.ray(place.sensor, place.i, place.j);
+            ray.map_or(f64::NAN, |ray| ray.direction.length())
+        };
+        let axis = match place.sensor {
+            SensorId::Camera => scene.camera().sensor.focal_length,
+            SensorId::Beam(beam) => scene.beams()[beam].sensor.grid_distance,
+        };
+        match self.mistake {
+            Mistake::DepthForRange => number * length() / axis,
+            Mistake::ParameterForRange => number * length(),
+            Mistake::RangeForDepth => number * axis / length(),
+            Mistake::ParameterForDepth => number * axis,
+            Mistake::Unit(unit) => unit.to_metres(number),
+            Mistake::CosinesNegated => -number,
+            Mistake::CosinesExchanged(held) => {
+                let quantities = [Quantity::CosIncidence, Quantity::CosOffAxis, Quantity::CosView];
+                let Some(own) = quantities.iter().position(|one| *one == channel.item.quantity) else {
+                    return number;
+                };
+                let held = Cosine::ALL.into_iter().position(|one| one == held[own]).unwrap_or(own);
+                let exact = |which: usize| {
+                    let item = Item::from(quantities[which]);
+                    match (Channel { item, ..channel }).at(case.truth.answers(), place) {
+                        Value::Number(exact) => exact,
+                        _ => f64::NAN,
+                    }
+                };
+                scaled(number, exact(own), exact(held))
+            }
+            Mistake::OtherFluxModel => {
+                let of = |is_other_model: bool| {
+                    let item = Item { is_other_model, ..channel.item };
+                    match (Channel { item, ..channel }).at(case.truth.answers(), place) {
+                        Value::Number(exact) => exact,
+                        _ => f64::NAN,
+                    }
+                };
+                let own = channel.item.is_other_model;
+                scaled(number, of(own), of(!own))
+            }
+            Mistake::FluxFactor(factor) => number / factor,
+            Mistake::AttenuationOn(_) => {
+                let (Table::Flux(factors), Some(beam)) = (&self.table, channel.beam()) else { return number };
+                let is_image = usize::from(channel.item.quantity == Quantity::PixelFlux);
+                number
+                    * factors[beam][is_image][usize::from(channel.item.is_other_model)].at(place.i, place.j)
+            }
+            _ => number,
+        }
+    }
+
+    fn vector(&self, case: Case<'_>, channel: Channel, vector: DVec3) -> DVec3 {
+        let scene = case.truth.scene();
+        let is_point = channel.item.quantity == Quantity::Point;
+        let stated = vector.to_array();
+        let turned = |from: [usize; 3], sign: [i8; 3]| {
+            DVec3::from_array(std::array::from_fn(|k| f64::from(sign[k]) * stated[from[k]]))
+        };
+        match self.mistake {
+            Mistake::Unit(unit) => DVec3::from_array(stated.map(|one| unit.to_metres(one))),
+            Mistake::AxesYUp => turned([0, 2, 1], [1, -1, 1]),
+            Mistake::AxesYUpInverse => turned([0, 2, 1], [1, 1, -1]),
+            Mistake::Axes { from, sign } => turned(from, sign),
+            Mistake::SensorFrame => {
+                let pose = match channel.sensor {
+                    SensorId::Camera => scene.camera().scene_from_sensor,
+                    SensorId::Beam(beam) => scene.beams()[beam].scene_from_sensor,
+                };
+                if is_point { pose * vector } else { pose.rotate(vector) }
+            }
+            Mistake::GlobalFrame => vector - scene.mesh().origin(),
+            Mistake::NormalsReversed => -vector,
+            Mistake::NormalsNotUnit => vector / vector.length(),
+            _ => vector,
+        }
+    }
+
+    fn face(&self, face: FaceId) -> Value {
+        match (&self.mistake, &self.table) {
+            // One too large, 0 is no face.
+            (Mistake::FacesShifted(by), _) => match i64::from(face.0) - i64::from(*by) {
+                index @ 0..0xffff_ffff => Value::Face(FaceId(index as u32)),
+                _ => Value::Nothing,
+            },
+            (Mistake::FacesReordered, Table::Faces(faces)) => {
+                Value::Face(faces.get(&face.0).map_or(face, |own| FaceId(*own)))
+            }
+            _ => Value::Face(face),
+        }
+    }
+
+    fn pixel(&self, case: Case<'_>, pixel: Pixel) -> Value {
+        let height = case.truth.scene().camera().sensor.height;
+        Value::Pixel(match self.mistake {
+            Mistake::PixelRowsFromBottom => {
+                Pixel { j: (height - 1).checked_sub(pixel.j).unwrap_or(pixel.j), ..pixel }
+            }
+            Mistake::PixelsExchanged => Pixel { i: pixel.j, j: pixel.i },
+            _ => pixel,
+        })
+    }
+}
+
+/// A number times own/held; without a ratio the number itself.
+fn scaled(number: f64, own: f64, held: f64) -> f64 {
+    if held == 0.0 || !held.is_finite() || !own.is_finite() { number } else { number * (own / held) }
+}
+
+/// The value of a channel for the ray of `place`, after some corrections. `None`: no cell holds that ray.
+pub(crate) fn corrected(
+    case: Case<'_>,
+    channel: Channel,
+    place: Place,
+    corrections: &[&Correction],
+) -> Option<Value> {
+    let mut source = place;
+    for one in corrections {
+        source = one.source(case, source)?;
+    }
+    let mut value = channel.at(&case.recorded.answers, source);
+    // A constant for "no hit" is one of the file's own numbers: it goes before any of them changes.
+    let is_miss =
+        |one: &Correction| matches!(one.mistake, Mistake::MissWritten(_) | Mistake::MissAtMaximumRange);
+    for wanted in [true, false] {
+        for one in corrections.iter().filter(|one| is_miss(one) == wanted && one.touches(channel)) {
+            value = one.correct(case, channel, place, source, value);
+        }
+    }
+    Some(value)
+}

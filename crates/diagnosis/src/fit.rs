@@ -1,0 +1,291 @@
+//! The corrections to try: those with fixed numbers, and those whose numbers are found from the recording.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::agree::is_near;
+use crate::channel::{Channel, Value, channels_of};
+use crate::correction::{Case, Correction, FluxFactors, Table, corrected};
+use crate::mistake::{Cosine, Leg, LengthUnit, Mistake};
+use raypencil_judge::Quantity;
+use raypencil_scene::{FluxModel, HitQuantity, Image, Place, SensorId};
+
+/// Share of the rays whose stated index must stand for its one true face. Tuned: a tie or an edge may say otherwise.
+const MIN_CONSISTENT_SHARE: f64 = 0.98;
+
+/// Rays for each stated index, on average. Tuned: with fewer, an order of faces fits anything.
+const MIN_RAYS_PER_INDEX: usize = 3;
+
+/// Rays from which an order of faces or a constant is found, at most.
+const MAX_FITTED_RAYS: u64 = 1 << 17;
+
+/// Cells with one and the same length, from which it may stand for "no hit". Tuned.
+const MIN_CELLS_OF_CONSTANT: usize = 8;
+
+/// Values from which a factor is found, at least; and the relative width of their middle half, at most. Tuned: the
+/// values of single precision differ by less.
+const MIN_VALUES_OF_FACTOR: usize = 8;
+const MAX_SPREAD_OF_FACTOR: f64 = 1e-4;
+
+/// Corrections with fixed numbers, the plainest first.
+pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
+    let scene = case.truth.scene();
+    let mut mistakes = vec![Mistake::RowsReversed, Mistake::ColumnsReversed, Mistake::Transposed];
+    let shifts = [(1, 0), (-1, 0), (0, 1), (0, -1)];
+    mistakes.extend(shifts.map(|(columns, rows)| Mistake::Shifted { columns, rows }));
+    mistakes.extend(constants(case));
+    mistakes.extend([
+        Mistake::FacesShifted(1),
+        Mistake::FacesShifted(-1),
+        Mistake::DepthForRange,
+        Mistake::ParameterForRange,
+        Mistake::RangeForDepth,
+        Mistake::ParameterForDepth,
+        Mistake::Unit(LengthUnit::Millimetres),
+        Mistake::Unit(LengthUnit::Centimetres),
+        Mistake::Unit(LengthUnit::Kilometres),
+        Mistake::SensorFrame,
+        Mistake::NormalsReversed,
+        Mistake::NormalsNotUnit,
+        Mistake::CosinesNegated,
+        Mistake::PixelRowsFromBottom,
+        Mistake::PixelsExchanged,
+        Mistake::OtherFluxModel,
+    ]);
+    if scene.mesh().origin() != glam::DVec3::ZERO {
+        mistakes.push(Mistake::GlobalFrame);
+    }
+    let [incidence, off_axis, emission] = Cosine::ALL;
+    for held in [
+        [emission, off_axis, incidence],
+        [off_axis, incidence, emission],
+        [incidence, emission, off_axis],
+        [off_axis, emission, incidence],
+        [emission, incidence, off_axis],
+    ] {
+        mistakes.push(Mistake::CosinesExchanged(held));
+    }
+    let mut corrections: Vec<Correction> = mistakes.into_iter().map(Correction::from).collect();
+    if scene.atmosphere().attenuation > 0.0 {
+        for leg in [Leg::Out, Leg::Back, Leg::Neither] {
+            let table = Table::Flux(Arc::new(attenuation(case, leg)));
+            corrections.push(Correction { mistake: Mistake::AttenuationOn(leg), table });
+        }
+    }
+    let channels = channels_of(case.recorded);
+    corrections.retain(|one| channels.iter().any(|channel| one.touches(*channel)));
+    corrections
+}
+
+/// Corrections whose numbers are found from the recording, after `base`.
+pub(crate) fn fitted(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Vec<Correction> {
+    [axes(case, places, base), faces(case, base), factor(case, places, base)].into_iter().flatten().collect()
+}
+
+/// All rays of a sensor, or every so many of them.
+fn rays(case: Case<'_>, sensor: SensorId) -> impl Iterator<Item = Place> + use<> {
+    let (width, height) = case.truth.scene().size(sensor).unwrap_or((1, 1));
+    let cells = u64::from(width) * u64::from(height);
+    // An odd step visits all columns of an image whose width is a power of two.
+    let step = cells.div_ceil(MAX_FITTED_RAYS) | 1;
+    (0..cells).step_by(step as usize).map(move |index| Place {
+        sensor,
+        i: (index % u64::from(width)) as u32,
+        j: (index / u64::from(width)) as u32,
+    })
+}
+
+/// The length of many cells that truly hold different ones, for each sensor: it may mean "no hit".
+fn constants(case: Case<'_>) -> Vec<Mistake> {
+    let mut found: Vec<Mistake> = Vec::new();
+    for map in &case.recorded.answers.maps {
+        let Some(raster) = HitQuantity::ALL.into_iter().find_map(|one| map.raster(one)) else { continue };
+        let mut cells: BTreeMap<u64, usize> = BTreeMap::new();
+        for place in rays(case, map.sensor) {
+            let value = raster.at(place.i, place.j);
+            if let Some(value) = value
+                && value.components().iter().all(|one| *one == value.components()[0])
+            {
+                *cells.entry(value.components()[0].to_bits()).or_default() += 1;
+            }
+        }
+        let most = cells.into_iter().max_by_key(|(bits, count)| (*count, std::cmp::Reverse(*bits)));
+        let Some((bits, _)) = most.filter(|(_, count)| *count >= MIN_CELLS_OF_CONSTANT) else { continue };
+        let constant = f64::from_bits(bits);
+        let max_range = case.truth.scene().max_range(map.sensor).unwrap_or(f64::INFINITY);
+        let mistake = match constant {
+            // As a file of single precision holds it.
+            constant if constant == max_range || constant == f64::from(max_range as f32) => {
+                Mistake::MissAtMaximumRange
+            }
+            constant => Mistake::MissWritten(constant),
+        };
+        if !found.contains(&mistake) {
+            found.push(mistake);
+        }
+    }
+    found
+}
+
+/// A change of axes for points and normals.
+fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option<Correction> {
+    let channels: Vec<Channel> = channels_of(case.recorded)
+        .into_iter()
+        .filter(|channel| matches!(channel.item.quantity, Quantity::Point | Quantity::Normal))
+        .collect();
+    let corrections: Vec<&Correction> = base.into_iter().collect();
+    let off = |turn: Option<&Correction>| -> usize {
+        let chain: Vec<&Correction> = corrections.iter().copied().chain(turn).collect();
+        let of_channel = |channel: &Channel| {
+            let own = places.iter().filter(|place| place.sensor == channel.sensor);
+            own.filter(|place| {
+                let exact = channel.at(case.truth.answers(), **place);
+                let value = corrected(case, *channel, **place, &chain);
+                value.is_some_and(|value| !is_near(case, *channel, **place, value, exact))
+            })
+            .count()
+        };
+        channels.iter().map(of_channel).sum()
+    };
+    let mut turns = vec![Mistake::AxesYUp, Mistake::AxesYUpInverse];
+    for from in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {
+        for signs in 0..8_u8 {
+            let sign = [0, 1, 2].map(|k| if signs >> k & 1 == 1 { -1 } else { 1 });
+            turns.push(Mistake::Axes { from, sign });
+        }
+    }
+    // That of all is no change, and that of reversed normals has a name of its own.
+    turns.retain(|turn| {
+        let plain = [0, 1, 2];
+        !matches!(turn, Mistake::Axes { from, sign } if *from == plain && sign[0] == sign[1] && sign[1] == sign[2])
+    });
+    let own = off(None);
+    let best = turns.into_iter().map(Correction::from).map(|turn| (off(Some(&turn)), turn));
+    let (left, turn) = best.min_by_key(|(left, _)| *left)?;
+    (left < own).then_some(turn)
+}
+
+/// The true face of each stated index, if each stands for one.
+fn faces(case: Case<'_>, base: Option<&Correction>) -> Option<Correction> {
+    let corrections: Vec<&Correction> = base.into_iter().collect();
+    let mut counts: BTreeMap<u32, BTreeMap<u32, usize>> = BTreeMap::new();
+    for channel in channels_of(case.recorded) {
+        if channel.item.quantity != Quantity::Face {
+            continue;
+        }
+        for place in rays(case, channel.sensor) {
+            let exact = channel.at(case.truth.answers(), place);
+            let value = corrected(case, channel, place, &corrections);
+            if let (Some(Value::Face(stated)), Value::Face(exact)) = (value, exact) {
+                *counts.entry(stated.0).or_default().entry(exact.0).or_default() += 1;
+            }
+        }
+    }
+    let (mut rays, mut consistent) = (0, 0);
+    let mut own = BTreeMap::new();
+    let mut taken = BTreeMap::new();
+    for (stated, of) in &counts {
+        let (face, count) = of.iter().max_by_key(|(face, count)| (**count, std::cmp::Reverse(**face)))?;
+        rays += of.values().sum::<usize>();
+        consistent += count;
+        own.insert(*stated, *face);
+        taken.insert(*face, *stated);
+    }
+    let is_one_to_one = taken.len() == own.len();
+    let is_one_order = consistent as f64 >= MIN_CONSISTENT_SHARE * rays as f64;
+    let is_enough = own.len() > 1 && rays >= MIN_RAYS_PER_INDEX * own.len();
+    let is_new = own.iter().any(|(stated, face)| stated != face);
+    (is_one_to_one && is_one_order && is_enough && is_new)
+        .then(|| Correction { mistake: Mistake::FacesReordered, table: Table::Faces(Arc::new(own)) })
+}
+
+/// The constant factor of all flux.
+fn factor(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option<Correction> {
+    let corrections: Vec<&Correction> = base.into_iter().collect();
+    for quantity in [Quantity::PencilFlux, Quantity::PixelFlux] {
+        let mut ratios = Vec::new();
+        for channel in channels_of(case.recorded) {
+            if channel.item.quantity != quantity || channel.item.is_other_model {
+                continue;
+            }
+            for place in places.iter().filter(|place| place.sensor == channel.sensor) {
+                let exact = channel.at(case.truth.answers(), *place);
+                let value = corrected(case, channel, *place, &corrections);
+                if let (Some(Value::Number(stated)), Value::Number(exact)) = (value, exact)
+                    && stated > 0.0
+                    && exact > 0.0
+                {
+                    ratios.push(stated / exact);
+                }
+            }
+        }
+        if ratios.len() < MIN_VALUES_OF_FACTOR {
+            continue;
+        }
+        ratios.sort_by(f64::total_cmp);
+        let at = |quarter: usize| ratios[(ratios.len() - 1) * quarter / 4];
+        let median = at(2);
+        let is_one = (at(3) - at(1)).abs() <= MAX_SPREAD_OF_FACTOR * median;
+        return (is_one && median != 1.0).then(|| Mistake::FluxFactor(median).into());
+    }
+    None
+}
+
+/// What is left out of the flux if the air attenuates light on one part of its way alone, as factors.
+fn attenuation(case: Case<'_>, leg: Leg) -> FluxFactors {
+    let scene = case.truth.scene();
+    let sigma = scene.atmosphere().attenuation;
+    let (width, height) = scene.size(SensorId::Camera).unwrap_or((1, 1));
+    let one_beam = |beam: usize| {
+        let sensor = SensorId::Beam(beam);
+        let (columns, rows) = scene.size(sensor).unwrap_or((1, 1));
+        let light = &case.truth.answers().light[beam];
+        [false, true].map(|is_other_model| {
+            let model = if is_other_model { scene.flux_model().other() } else { scene.flux_model() };
+            let flux = if is_other_model { &light.other_flux } else { &light.returns.flux };
+            let image = if is_other_model { &light.other_image } else { &light.image };
+            let mut of_pencils = Image::filled(columns, rows, 1.0);
+            let mut without = Image::filled(width, height, 0.0);
+            for j in 0..rows {
+                for i in 0..columns {
+                    let place = Place { sensor, i, j };
+                    let at = |image: &Option<Image<raypencil_scene::Maybe<f64>>>| {
+                        image.as_ref().and_then(|image| image.at(i, j).get())
+                    };
+                    let range = at(&case.truth.answers().map(sensor).range);
+                    let (depth, cosine) = (at(&light.returns.depth), at(&light.returns.cos_off_axis));
+                    let (Some(range), Some(depth), Some(cosine)) = (range, depth, cosine) else { continue };
+                    let back = if model == FluxModel::Eq1 { depth } else { depth / cosine };
+                    let left_out = match leg {
+                        Leg::Out => back,
+                        Leg::Back => range,
+                        Leg::Neither => range + back,
+                    };
+                    let factor = libm::exp(-sigma * left_out);
+                    of_pencils.set(i, j, factor);
+                    let (is_visible, pixel) = case.truth.visibility(place);
+                    if let (true, Some(pixel), Some(flux)) = (is_visible, pixel, flux) {
+                        let sum = without.at(pixel.i, pixel.j) + flux.at(i, j) / factor;
+                        without.set(pixel.i, pixel.j, sum);
+                    }
+                }
+            }
+            let exact = image.as_ref().map_or(&[][..], Image::cells);
+            let ratio = |(sum, exact): (&f64, &f64)| if *sum > 0.0 { exact / sum } else { 1.0 };
+            let ratios: Vec<f64> = without.cells().iter().zip(exact).map(ratio).collect();
+            let of_image = if ratios.len() == without.cells().len() {
+                Image::from_cells(width, height, ratios)
+            } else {
+                Image::filled(width, height, 1.0)
+            };
+            [of_pencils, of_image]
+        })
+    };
+    // By pencils or image first, then by model.
+    (0..scene.beams().len())
+        .map(|beam| {
+            let [[a, b], [c, d]] = one_beam(beam);
+            [[a, c], [b, d]]
+        })
+        .collect()
+}

@@ -1,0 +1,79 @@
+//! Why a recording is wrong nearly everywhere: the mistake that explains it, or the two.
+//!
+//! A renderer that breaks one convention (rows reversed, depth for range, millimetres) is wrong on all rays, and its
+//! list of wrong rays does not say why. This crate undoes each known mistake on the recording's own numbers, singly and
+//! then in pairs, and asks the judge again. Mistakes of the rays themselves (hits on backs) cannot be undone; there the
+//! rays are cast by the wrong rules, and the answers must be those of the recording.
+//!
+//! ```
+//! # use std::sync::Arc;
+//! # use glam::DVec3;
+//! # use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene};
+//! # let corners = vec![[0.125, -40.0, 2.0], [-90.0, 0.0, 2.0], [0.125, 40.0, 2.0]];
+//! # let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+//! # let wall = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], vec![plaster])?;
+//! # let camera = Camera {
+//! #     width: 9, height: 9, pixel_pitch: [0.0625; 2], focal_length: 0.5, principal_point: [4.5; 2],
+//! #     aperture: 0.01, lens: Lens::CLEAR, max_range: 20.0,
+//! # };
+//! # let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+//! # let air = Atmosphere { attenuation: 0.0 };
+//! # let scene = Scene::new(Arc::new(wall), camera, vec![], air, FluxModel::Radiometric)?;
+//! // A wall at z = 2 m that ends at x = 1/8 m, before a camera of 9 x 9 pixels at the origin that looks along z.
+//! use raypencil_diagnosis::{Mistake, diagnose};
+//! use raypencil_judge::{GroundTruth, Recorded, check};
+//! use raypencil_referee::ExactRenderer;
+//! use raypencil_scene::{Maybe, Precision, Renderer, Request, Silent};
+//!
+//! // A program that writes the depth, which is 2 m everywhere, as the range.
+//! let mut output = ExactRenderer.render(&scene, &Request::MAPS);
+//! let camera = output.camera.as_mut().unwrap();
+//! camera.range = camera.depth.clone();
+//! let recorded = Recorded::of_output("mine", &scene, &output, Precision::F64);
+//! let truth = GroundTruth::certified(&scene, &Silent);
+//! let found = check(&truth, &recorded, &Silent);
+//!
+//! // 45 rays hit the wall, and the one along the axis is right: its range is its depth.
+//! let diagnosis = diagnose(&truth, &recorded, &found).unwrap();
+//! assert_eq!(diagnosis.mistakes, [Mistake::DepthForRange]);
+//! assert_eq!((diagnosis.agree, diagnosis.tried), (81, 81));
+//! # Ok::<(), raypencil_scene::SceneError>(())
+//! ```
+//!
+//! The files, from the parts up:
+//!
+//! ```text
+//! mistake        the mistakes: name, words, page of the documentation
+//! channel        channels of a recording, cell by cell
+//! correction     what undoes a mistake
+//! agree          values that are near enough to be tried further
+//! sample         the rays on which mistakes are tried
+//! trial          what a correction leaves off, and which channels it helps
+//! fit            the corrections to try, and numbers found from the recording
+//! judged         a corrected recording before the judge
+//! cast, rays     rays cast by wrong rules
+//! diagnosis      the result
+//! diagnose       the search
+//! ```
+
+mod agree;
+mod cast;
+mod channel;
+mod correction;
+mod diagnose;
+mod diagnosis;
+mod fit;
+mod judged;
+mod mistake;
+mod rays;
+mod sample;
+mod trial;
+
+/// The example of README.md, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+pub use diagnose::diagnose;
+pub use diagnosis::Diagnosis;
+pub use mistake::{Cosine, Leg, LengthUnit, Mistake};

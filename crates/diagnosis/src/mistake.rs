@@ -1,0 +1,353 @@
+//! The mistakes that are looked for: name, words, and the page of the documentation that states the convention.
+
+use std::fmt;
+
+/// A unit of length that is not the metre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// Millimetres.
+    Millimetres,
+    /// Centimetres.
+    Centimetres,
+    /// Kilometres.
+    Kilometres,
+}
+
+impl LengthUnit {
+    /// Metres of one unit, as a quotient: it is the nearest number to the exact one after a multiplication.
+    pub(crate) fn to_metres(self, value: f64) -> f64 {
+        match self {
+            Self::Millimetres => value / 1e3,
+            Self::Centimetres => value / 1e2,
+            Self::Kilometres => value * 1e3,
+        }
+    }
+}
+
+/// The three cosines of a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cosine {
+    /// cos(psi), of incidence: `incidence.V`.
+    Incidence,
+    /// cos(phi), off the camera's axis: `offAxis.V`.
+    OffAxis,
+    /// cos(theta), of emission to the camera: `emission.V`.
+    Emission,
+}
+
+impl Cosine {
+    /// All of them.
+    pub(crate) const ALL: [Self; 3] = [Self::Incidence, Self::OffAxis, Self::Emission];
+
+    fn channel(self) -> &'static str {
+        match self {
+            Self::Incidence => "incidence.V",
+            Self::OffAxis => "offAxis.V",
+            Self::Emission => "emission.V",
+        }
+    }
+
+    fn angle(self) -> &'static str {
+        match self {
+            Self::Incidence => "cos(psi)",
+            Self::OffAxis => "cos(phi)",
+            Self::Emission => "cos(theta)",
+        }
+    }
+}
+
+/// The part of the light's way on which the air attenuates it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leg {
+    /// From the beam to the ground.
+    Out,
+    /// From the ground to the camera.
+    Back,
+    /// No part.
+    Neither,
+}
+
+/// A convention that a recording may have broken everywhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Mistake {
+    /// The bottom row is stored first.
+    RowsReversed,
+    /// The right column is stored first.
+    ColumnsReversed,
+    /// The cells are stored column by column.
+    Transposed,
+    /// Each cell holds the ray of a neighbour.
+    Shifted {
+        /// The cell (i, j) holds the ray of column `i - columns`.
+        columns: i32,
+        /// The cell (i, j) holds the ray of row `j - rows`.
+        rows: i32,
+    },
+    /// A constant stands where nothing is hit.
+    MissWritten(f64),
+    /// The maximum range stands where nothing is hit.
+    MissAtMaximumRange,
+    /// Face indices are larger than `FaceId` by this number.
+    FacesShifted(i32),
+    /// Faces are numbered in an order of their own.
+    FacesReordered,
+    /// `range.T` holds the depth.
+    DepthForRange,
+    /// `range.T` holds t, the parameter of the ray.
+    ParameterForRange,
+    /// `depth.Z` holds the range.
+    RangeForDepth,
+    /// `depth.Z` holds t, the parameter of the ray.
+    ParameterForDepth,
+    /// Lengths are in another unit.
+    Unit(LengthUnit),
+    /// Points and normals are in glTF's axes: (x, z, -y) of the scene's (x, y, z).
+    AxesYUp,
+    /// Points and normals had the change of glTF's axes once too often or in the wrong direction: (x, -z, y).
+    AxesYUpInverse,
+    /// Points and normals are in other axes. Component k of the scene is `sign` times component `from` of the
+    /// recording.
+    Axes {
+        /// Component of the recording, for x, y and z.
+        from: [usize; 3],
+        /// 1 or -1, for x, y and z.
+        sign: [i8; 3],
+    },
+    /// Points and normals are in the sensor's frame.
+    SensorFrame,
+    /// Points are in the global frame: the scene origin is added.
+    GlobalFrame,
+    /// Normals point inward.
+    NormalsReversed,
+    /// Normals are not unit vectors.
+    NormalsNotUnit,
+    /// Cosines are negative where they should be positive.
+    CosinesNegated,
+    /// The cosine of the first holds that of the second, and so on: `incidence.V`, `offAxis.V`, `emission.V`.
+    CosinesExchanged([Cosine; 3]),
+    /// `pixel.J` counts rows from the bottom.
+    PixelRowsFromBottom,
+    /// `pixel.I` holds the row and `pixel.J` the column.
+    PixelsExchanged,
+    /// The flux is that of the other model.
+    OtherFluxModel,
+    /// The air attenuates light on this part of its way alone.
+    AttenuationOn(Leg),
+    /// The flux is this number times the true one.
+    FluxFactor(f64),
+    /// The arithmetic is of single precision and was not declared.
+    SinglePrecision,
+    /// Rays hit the backs of faces.
+    BacksHit,
+    /// Rays hit faces before the sensor projection plane (t < 1).
+    NearPlaneIgnored,
+    /// Rays hit faces beyond the maximum range.
+    MaximumRangeIgnored,
+    /// Rays go through a corner of their cell. In cells from the middle: -1/2 is left or above.
+    CornerRays {
+        /// Columns from the middle of the cell.
+        columns: f64,
+        /// Rows from the middle of the cell.
+        rows: f64,
+    },
+}
+
+const FILES: &str = "docs/formats/files.md";
+const GUIDE: &str = "docs/guide/for-implementers.md";
+const LIGHT: &str = "docs/theory/radiometry.md";
+
+impl Mistake {
+    /// A name for programs.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::RowsReversed => "rows_reversed",
+            Self::ColumnsReversed => "columns_reversed",
+            Self::Transposed => "transposed",
+            Self::Shifted { .. } => "shifted",
+            Self::MissWritten(_) => "miss_written",
+            Self::MissAtMaximumRange => "miss_at_maximum_range",
+            Self::FacesShifted(_) => "faces_shifted",
+            Self::FacesReordered => "faces_reordered",
+            Self::DepthForRange => "depth_for_range",
+            Self::ParameterForRange => "parameter_for_range",
+            Self::RangeForDepth => "range_for_depth",
+            Self::ParameterForDepth => "parameter_for_depth",
+            Self::Unit(LengthUnit::Millimetres) => "millimetres",
+            Self::Unit(LengthUnit::Centimetres) => "centimetres",
+            Self::Unit(LengthUnit::Kilometres) => "kilometres",
+            Self::AxesYUp => "axes_y_up",
+            Self::AxesYUpInverse => "axes_y_up_inverse",
+            Self::Axes { .. } => "axes",
+            Self::SensorFrame => "sensor_frame",
+            Self::GlobalFrame => "global_frame",
+            Self::NormalsReversed => "normals_reversed",
+            Self::NormalsNotUnit => "normals_not_unit",
+            Self::CosinesNegated => "cosines_negated",
+            Self::CosinesExchanged(_) => "cosines_exchanged",
+            Self::PixelRowsFromBottom => "pixel_rows_from_bottom",
+            Self::PixelsExchanged => "pixels_exchanged",
+            Self::OtherFluxModel => "other_flux_model",
+            Self::AttenuationOn(_) => "attenuation",
+            Self::FluxFactor(_) => "flux_factor",
+            Self::SinglePrecision => "single_precision",
+            Self::BacksHit => "backs_hit",
+            Self::NearPlaneIgnored => "near_plane_ignored",
+            Self::MaximumRangeIgnored => "maximum_range_ignored",
+            Self::CornerRays { .. } => "corner_rays",
+        }
+    }
+
+    /// The place of the documentation that states the convention: a file, and a word that its text or heading has.
+    pub fn docs(&self) -> (&'static str, &'static str) {
+        match self {
+            Self::RowsReversed | Self::ColumnsReversed | Self::Transposed | Self::Shifted { .. } => {
+                (FILES, "Orientation")
+            }
+            Self::MissWritten(_) | Self::MissAtMaximumRange => (FILES, "No hit"),
+            Self::FacesShifted(_) | Self::FacesReordered => (FILES, "FaceId"),
+            Self::AxesYUp | Self::AxesYUpInverse | Self::Axes { .. } => (FILES, "Axes"),
+            Self::DepthForRange
+            | Self::ParameterForRange
+            | Self::RangeForDepth
+            | Self::ParameterForDepth
+            | Self::Unit(_)
+            | Self::SensorFrame
+            | Self::GlobalFrame
+            | Self::NormalsReversed
+            | Self::NormalsNotUnit
+            | Self::CosinesNegated
+            | Self::CosinesExchanged(_)
+            | Self::PixelRowsFromBottom
+            | Self::PixelsExchanged => (FILES, "Maps: OpenEXR"),
+            Self::OtherFluxModel | Self::AttenuationOn(_) | Self::FluxFactor(_) => (LIGHT, "radiometric"),
+            Self::SinglePrecision => (GUIDE, "raypencil check"),
+            Self::BacksHit | Self::NearPlaneIgnored | Self::MaximumRangeIgnored => {
+                (GUIDE, "The contract for rays")
+            }
+            Self::CornerRays { .. } => (FILES, "Cells"),
+        }
+    }
+}
+
+/// The mistake as a clause that follows "if", and the rule that it breaks.
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::RowsReversed => f.write_str("rows are reversed: row 0 is the top row"),
+            Self::ColumnsReversed => f.write_str("columns are reversed: column 0 is the left column"),
+            Self::Transposed => f.write_str("cells are stored column by column: arrays are (rows, columns)"),
+            Self::Shifted { columns, rows } => write!(
+                f,
+                "cells are shifted by {columns} columns and {rows} rows: cell (i, j) holds the ray of column i, row j"
+            ),
+            Self::MissWritten(value) => write!(
+                f,
+                "{value} means \"no hit\": a length is +Inf there, other numbers are NaN (or declare --miss {value})"
+            ),
+            Self::MissAtMaximumRange => {
+                f.write_str("the maximum range means \"no hit\": a length is +Inf there, other numbers are NaN")
+            }
+            Self::FacesShifted(by) => {
+                write!(f, "face indices are {} too {}: the first face is 0", by.abs(), match by {
+                    1.. => "large",
+                    _ => "small",
+                })
+            }
+            Self::FacesReordered => f.write_str(
+                "faces are numbered in an order of their own: face.I counts the faces of terrain.glb in their order",
+            ),
+            Self::DepthForRange => {
+                f.write_str("range.T holds the depth: range is the distance along the ray")
+            }
+            Self::ParameterForRange => {
+                f.write_str("range.T holds t: the range is t |q|, since the direction q is no unit vector")
+            }
+            Self::RangeForDepth => {
+                f.write_str("depth.Z holds the range: depth is the distance along the sensor's normal axis")
+            }
+            Self::ParameterForDepth => {
+                f.write_str("depth.Z holds t: the depth is t f_c (camera) or t g (beam)")
+            }
+            Self::Unit(unit) => {
+                let name = match unit {
+                    LengthUnit::Millimetres => "millimetres",
+                    LengthUnit::Centimetres => "centimetres",
+                    LengthUnit::Kilometres => "kilometres",
+                };
+                write!(f, "lengths are in {name}: the unit is the metre")
+            }
+            Self::AxesYUp => f.write_str(
+                "points and normals are in glTF's axes (y up): the scene is z up, (x, y, z) = (gx, -gz, gy)",
+            ),
+            Self::AxesYUpInverse => f.write_str(
+                "points and normals are in the axes (x, -z, y): the change from glTF's y up was made twice",
+            ),
+            Self::Axes { from, sign } => {
+                f.write_str("points and normals are in other axes: the scene's (x, y, z) is their (")?;
+                for k in 0..3 {
+                    let comma = if k == 0 { "" } else { ", " };
+                    let minus = if sign[k] < 0 { "-" } else { "" };
+                    write!(f, "{comma}{minus}{}", ["x", "y", "z"][from[k].min(2)])?;
+                }
+                f.write_str(")")
+            }
+            Self::SensorFrame => {
+                f.write_str("points and normals are in the sensor's frame: they belong in the scene frame")
+            }
+            Self::GlobalFrame => {
+                f.write_str("points are in the global frame: the scene frame starts at the scene origin")
+            }
+            Self::NormalsReversed => f.write_str("normals point inward: a normal points to the outside"),
+            Self::NormalsNotUnit => f.write_str("normals are not unit vectors: a normal has the length 1"),
+            Self::CosinesNegated => f.write_str(
+                "cosines have the wrong sign: the ray is reversed before its angle with the normal is taken",
+            ),
+            Self::CosinesExchanged(held) => {
+                let mut parts = Vec::new();
+                for (own, held) in Cosine::ALL.into_iter().zip(held) {
+                    if own != *held {
+                        parts.push(format!("{} holds {}", own.channel(), held.angle()));
+                    }
+                }
+                write!(f, "{}: the angles are exchanged", parts.join(", "))
+            }
+            Self::PixelRowsFromBottom => {
+                f.write_str("pixel.J counts rows from the bottom: row 0 is the top row")
+            }
+            Self::PixelsExchanged => {
+                f.write_str("pixel.I and pixel.J are exchanged: pixel.I is the column")
+            }
+            Self::OtherFluxModel => {
+                f.write_str("the flux is that of the other model: flux.V and flux.beamN follow the scene's model")
+            }
+            Self::AttenuationOn(Leg::Out) => f.write_str(
+                "the air attenuates the light on its way out alone: it also attenuates on the way to the camera",
+            ),
+            Self::AttenuationOn(Leg::Back) => f.write_str(
+                "the air attenuates the light on its way to the camera alone: it also attenuates on the way out",
+            ),
+            Self::AttenuationOn(Leg::Neither) => {
+                f.write_str("the air does not attenuate the light: the scene has an attenuation")
+            }
+            Self::FluxFactor(factor) => {
+                write!(f, "the flux is {factor:.6} times the true one: a constant factor is wrong")
+            }
+            Self::SinglePrecision => {
+                f.write_str("the arithmetic is of single precision: declare --arithmetic f32")
+            }
+            Self::BacksHit => f.write_str("rays hit the backs of faces: a hit has n.q < 0"),
+            Self::NearPlaneIgnored => {
+                f.write_str("rays hit faces before the sensor's plane: a hit has t >= 1")
+            }
+            Self::MaximumRangeIgnored => {
+                f.write_str("rays hit faces beyond the maximum range: such a ray hits nothing")
+            }
+            Self::CornerRays { columns, rows } => {
+                let side = if *columns < 0.0 { "left" } else { "right" };
+                let end = if *rows < 0.0 { "top" } else { "bottom" };
+                write!(f, "rays go through the {end} {side} corner of their cell: a ray goes through the middle")
+            }
+        }
+    }
+}

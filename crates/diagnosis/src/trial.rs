@@ -1,0 +1,106 @@
+//! Trials: how many sampled values a set of corrections leaves off, and which channels each correction helps.
+
+use raypencil_scene::Place;
+
+use crate::agree::is_near;
+use crate::channel::{Channel, Value, channels_of};
+use crate::correction::{Case, Correction, corrected};
+
+/// Sampled rays and their exact values, channel by channel.
+#[derive(Debug)]
+pub(crate) struct Trial<'t> {
+    pub(crate) case: Case<'t>,
+    pub(crate) channels: Vec<Channel>,
+    /// The sampled rays of each channel, with the exact value.
+    samples: Vec<Vec<(Place, Value)>>,
+    /// Values that are off without any correction, by channel.
+    uncorrected: Vec<u32>,
+}
+
+/// Corrections, and the channels to which each belongs.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan {
+    pub(crate) corrections: Vec<Correction>,
+    /// For each channel, bit k: correction k is applied.
+    pub(crate) applied: Vec<(Channel, usize)>,
+    /// Sampled values that are off after it.
+    pub(crate) off: u32,
+}
+
+/// Values off under one correction, by channel; `None`: the correction does not touch the channel.
+pub(crate) type Single = Vec<Option<u32>>;
+
+impl<'t> Trial<'t> {
+    pub(crate) fn new(case: Case<'t>, places: &[Place]) -> Self {
+        let channels = channels_of(case.recorded);
+        let exact = |channel: &Channel| {
+            let own = places.iter().filter(|place| place.sensor == channel.sensor);
+            own.map(|place| (*place, channel.at(case.truth.answers(), *place))).collect()
+        };
+        let samples = channels.iter().map(exact).collect();
+        let mut trial = Self { case, channels, samples, uncorrected: Vec::new() };
+        trial.uncorrected = (0..trial.channels.len()).map(|index| trial.off(index, &[])).collect();
+        trial
+    }
+
+    /// Sampled values that are off without any correction.
+    pub(crate) fn off_uncorrected(&self) -> u32 {
+        self.uncorrected.iter().sum()
+    }
+
+    /// Number of sampled values.
+    pub(crate) fn sampled(&self) -> usize {
+        self.samples.iter().map(Vec::len).sum()
+    }
+
+    /// Values of one channel that are off after some corrections.
+    fn off(&self, index: usize, corrections: &[&Correction]) -> u32 {
+        let (case, channel) = (self.case, self.channels[index]);
+        let is_off = |(place, exact): &&(Place, Value)| {
+            // A ray that no cell holds is not counted against the correction.
+            let value = corrected(case, channel, *place, corrections);
+            value.is_some_and(|value| !is_near(case, channel, *place, value, *exact))
+        };
+        self.samples[index].iter().filter(is_off).count() as u32
+    }
+
+    /// What one correction leaves off.
+    pub(crate) fn single(&self, correction: &Correction) -> Single {
+        let one = |(index, channel): (usize, &Channel)| {
+            correction.touches(*channel).then(|| self.off(index, &[correction]))
+        };
+        self.channels.iter().enumerate().map(one).collect()
+    }
+
+    /// The best use of one correction, or `None` if it helps no channel.
+    pub(crate) fn plan_of_one(&self, one: &Correction, single: &Single) -> Option<Plan> {
+        self.plan(vec![one.clone()], |index| {
+            let own = self.uncorrected[index];
+            [own, single[index].unwrap_or(own), u32::MAX, u32::MAX]
+        })
+    }
+
+    /// The best use of two corrections, or `None` if one of them helps no channel.
+    pub(crate) fn plan_of_two(&self, [a, b]: [&Correction; 2], singles: [&Single; 2]) -> Option<Plan> {
+        self.plan(vec![a.clone(), b.clone()], |index| {
+            let own = self.uncorrected[index];
+            let [of_a, of_b] = [singles[0][index], singles[1][index]];
+            let both = if of_a.is_some() && of_b.is_some() { self.off(index, &[a, b]) } else { u32::MAX };
+            [own, of_a.unwrap_or(u32::MAX), of_b.unwrap_or(u32::MAX), both]
+        })
+    }
+
+    /// Chooses for each channel the corrections that leave the fewest values off; among equals the fewest.
+    fn plan(&self, corrections: Vec<Correction>, off: impl Fn(usize) -> [u32; 4]) -> Option<Plan> {
+        let mut plan = Plan { corrections, applied: Vec::new(), off: 0 };
+        let mut used = 0;
+        for (index, channel) in self.channels.iter().enumerate() {
+            let off = off(index);
+            let best = (0..4).min_by_key(|subset| off[*subset]).expect("four subsets");
+            plan.applied.push((*channel, best));
+            plan.off += off[best];
+            used |= best;
+        }
+        (used == (1 << plan.corrections.len()) - 1).then_some(plan)
+    }
+}
