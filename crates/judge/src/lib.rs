@@ -45,6 +45,7 @@
 //! tally                  results: counts, largest errors with their places, defects
 //! entry                  one ray being judged, entered into its sensor's result
 //! scene_answers          all answers about a scene
+//! item_value, listed*    the defects that reports list: said, true, difference, margin
 //! recorded/              answers read from files
 //! judge                  when the referee is asked, and with what tolerance
 //! attribution/           which of the paper's approximations causes an error
@@ -86,7 +87,10 @@ mod class;
 mod compare;
 mod difference;
 mod entry;
+mod item_value;
 mod judge;
+mod listed;
+mod listed_defect;
 mod quantity;
 mod recorded;
 mod scene_answers;
@@ -106,11 +110,13 @@ pub use compare::side::Side;
 pub use compare::single::{FirstOfClass, class_of_ray, first_of_class};
 pub use compare::{compare, compare_judged};
 pub use judge::{Judge, JudgeShare};
+pub use listed::listed_defects;
+pub use listed_defect::{DefectMargin, ListedDefect};
 pub use quantity::{Item, Quantity, key_of, name_of, unit_of};
 pub use recorded::Recorded;
 pub use recorded::error::RecordingError;
 pub use recorded::names::{flux_channel, image_channel, item_of_channel};
 pub use scene_answers::{Answers, BeamLight, Certified};
 pub use tally::{
-    ApproximationTallies, ApproximationTally, Defect, ItemTallies, ItemTally, Largest, SensorResult,
+    ApproximationTallies, ApproximationTally, Defect, ItemTallies, ItemTally, Largest, SensorResult, WrongRay,
 };
