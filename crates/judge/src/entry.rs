@@ -118,6 +118,11 @@ impl<'r> RayEntry<'r> {
         self.judged();
     }
 
+    /// The referee's rulings in words; empty if they are not kept.
+    pub(crate) fn ruling(&self) -> &str {
+        self.ruling.as_deref().unwrap_or_default()
+    }
+
     /// Adds words about what is wrong.
     pub(crate) fn note(&mut self, words: &str) {
         let separator = if self.notes.is_empty() { "" } else { "; " };

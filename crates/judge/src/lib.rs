@@ -50,7 +50,7 @@
 //! judge                  when the referee is asked, and with what tolerance
 //! attribution/           which of the paper's approximations causes an error
 //! compare/               two renderers: hit, pencil, pixel, ray, sensor, single rays
-//! check/                 a recording: the truth, hit, pencil, pixel, storage, uncertain light
+//! check/                 a recording: the truth, hit, pencil, pixel, storage, uncertain light, single rays
 //! ```
 //!
 //! # Two rules
@@ -104,6 +104,7 @@ struct Readme;
 pub use attribution::cause::{Attributions, Cause, VisibilityCause};
 pub use attribution::context::Rerender;
 pub use check::ground_truth::{GroundTruth, UncertifiedAnswer};
+pub use check::single::{CheckedItem, CheckedRay, check_ray};
 pub use check::{Check, check};
 pub use class::{CHECK_CLASSES, COMPARE_CLASSES, Class, ClassCounts, class_counts_json};
 pub use compare::side::Side;

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::quantity::Item;
-use raypencil_scene::Place;
+use crate::quantity::{Item, key_of};
+use raypencil_scene::{FluxModel, Place};
+use serde_json::{Value, json};
 
 /// How far a ray is from another answer: an interval that the referee proves.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +44,29 @@ pub struct ListedDefect {
 }
 
 impl ListedDefect {
+    /// The defect as a JSON object; `probe` is the command that shows its ray.
+    pub fn to_json(&self, model: FluxModel, probe: &str) -> Value {
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        let said: Vec<Value> =
+            self.said.iter().map(|(who, value)| json!({ "who": who, "value": value })).collect();
+        let margin = self
+            .margin
+            .as_ref()
+            .map(|DefectMargin { of, unit, lo, hi }| json!({ "of": of, "unit": unit, "interval": [lo, hi] }));
+        json!({
+            "sensor": self.place.sensor.to_string(), "i": self.place.i, "j": self.place.j,
+            "quantity": key_of(model, self.item),
+            "said": said,
+            "true": (!self.truth.is_empty()).then_some(&self.truth),
+            "difference": finite(self.difference),
+            "difference_unit": self.difference_unit,
+            "ratio": finite(self.ratio),
+            "margin": margin,
+            "what": self.what,
+            "probe": probe,
+        })
+    }
+
     /// The defect in one sentence: said, true, difference, margin.
     ///
     /// ```
@@ -63,7 +87,7 @@ impl ListedDefect {
     /// assert_eq!(
     ///     defect.words(),
     ///     "mine says 4.5 m; true is 4 m; off by 5.000e-1 m, 1.00e12 times its bound; \
-    ///      another face is 0.250 to 0.375 cells away"
+    ///      face margin 0.250 to 0.375 cells"
     /// );
     /// ```
     pub fn words(&self) -> String {
@@ -84,14 +108,10 @@ impl ListedDefect {
             };
         }
         if let Some(DefectMargin { of, unit, lo, hi }) = &self.margin {
-            let another = match *of {
-                "landing" => "the border of its pixel".into(),
-                of => format!("another {of}"),
-            };
             let number = |x: f64| if x >= 1e-3 { format!("{x:.3}") } else { format!("{x:.2e}") };
             let _ = match *lo >= 1.0 {
-                true => write!(text, "; {another} is at least 1 {} away", unit.trim_end_matches('s')),
-                false => write!(text, "; {another} is {} to {} {unit} away", number(*lo), number(*hi)),
+                true => write!(text, "; {of} margin at least 1 {}", unit.trim_end_matches('s')),
+                false => write!(text, "; {of} margin {} to {} {unit}", number(*lo), number(*hi)),
             };
         }
         text

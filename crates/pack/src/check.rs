@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
 use raypencil_judge::{Check, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
-use raypencil_scene::{Place, Precision, Progress, Scene};
+use raypencil_scene::{Image, Maybe, Place, Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
@@ -48,6 +48,8 @@ pub struct Checked {
     pub recorded: Recorded,
     /// Classes and errors of the candidate's rays.
     pub check: Check,
+    /// The exact range map of each sensor, the camera first, metres.
+    pub exact_ranges: Vec<Image<Maybe<f64>>>,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
 }
@@ -128,6 +130,7 @@ pub fn check_pack(
         return Err(answers(found, "correctly rounded answers, as this version computes them"));
     }
     let check = check(&truth, &recorded, progress);
+    let exact_ranges = truth.answers().maps.iter().filter_map(|map| map.range.clone()).collect();
     drop(truth);
     let subject = Subject {
         name: manifest.scene.name,
@@ -135,7 +138,7 @@ pub fn check_pack(
         sha256,
         scene,
     };
-    Ok(Checked { subject, recorded, check, is_blind: manifest.kind == PackKind::Blind })
+    Ok(Checked { subject, recorded, check, exact_ranges, is_blind: manifest.kind == PackKind::Blind })
 }
 
 /// Reads the answers of a pack that holds them, in f64.

@@ -8,6 +8,7 @@ pub(crate) mod ground_truth;
 mod hit;
 mod pencil;
 mod pixel;
+pub(crate) mod single;
 mod stored;
 mod uncertain;
 
