@@ -50,6 +50,7 @@
 //! output/table         the table of quantities and classes
 //! output/verdict       the verdict in words
 //! output/candidates    the scoreboard, ready to be printed
+//! output/panel         the scoreboard for programs
 //! output/plots, light  range maps, differences and flux as pictures
 //! output/screen        one terminal screen
 //! output/summary       summary.json

@@ -9,7 +9,7 @@ use raypencil_scene_io::{Subject, probe_command};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::output::candidates::{ScoreboardSummary, scoreboard_summary};
+use crate::output::panel::{ScoreboardSummary, scoreboard_summary};
 use crate::output::table::hits;
 use crate::output::verdict::Verdict;
 use crate::rendered::Rendered;
