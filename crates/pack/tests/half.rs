@@ -9,7 +9,7 @@ use exr::prelude::{
 use raypencil_files::{Limits, Storage, Values, read_npy};
 use raypencil_judge::{Class, Quantity};
 use raypencil_pack::{Checked, check_json, check_pack, check_screen};
-use raypencil_scene::{Image, Silent};
+use raypencil_scene::{Image, Precision, Silent};
 
 fn pack() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids")
@@ -43,7 +43,34 @@ fn checked(folder: &tempfile::TempDir) -> Checked {
 
 /// The exact ranges, each rounded once to half precision.
 fn rounded() -> Vec<f16> {
-    exact_ranges().cells().iter().map(|range| f16::from_f64(*range)).collect()
+    exact_ranges().cells().iter().map(|range| nearest(*range)).collect()
+}
+
+/// The nearest number of half precision. `f16::from_f64` may round twice, to single precision on the way.
+fn nearest(number: f64) -> f16 {
+    let near = f16::from_f64(number);
+    if !number.is_finite() {
+        return near;
+    }
+    let around = [-1, 0, 1].map(|step| f16::from_bits(near.to_bits().wrapping_add_signed(step)));
+    let off = |half: &f16| (half.to_f64() - number).abs();
+    around.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("three numbers")
+}
+
+#[test]
+fn a_number_rounded_twice_is_off_for_double_precision_only() {
+    // The range of pixel (17, 53) lies 6e-8 m below the middle of two numbers of half precision. Rounded to single
+    // precision first, it is the middle, and is then rounded up.
+    let exact = exact_ranges();
+    let twice: Vec<f16> = exact.cells().iter().map(|range| f16::from_f32(*range as f32)).collect();
+    let index = 17 + 53 * exact.width() as usize;
+    assert_ne!(twice[index], nearest(exact.cells()[index]));
+    let folder = candidate(&[("range.T", &twice)]);
+    let as_double = checked(&folder);
+    let defects = &as_double.check.sensors[0].defects;
+    assert!(defects.iter().any(|defect| (defect.place.i, defect.place.j) == (17, 53)), "{defects:?}");
+    let as_single = check_pack(&pack(), &folder.path().join("mine"), Some(Precision::F32), &Silent);
+    assert!(as_single.expect("a candidate that can be judged").check.passes());
 }
 
 #[test]

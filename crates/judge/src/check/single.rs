@@ -99,16 +99,22 @@ pub fn check_ray(scene: &Scene, recorded: &Recorded, place: Place) -> Option<Che
     let model = scene.flux_model();
     let item = |item: Item| {
         let tally = result.items.get(item).cloned().unwrap_or_default();
-        let said = ItemValue::of_answers(&recorded.answers, model, place, item);
+        // Without a channel nothing is said, whatever other channels tell of the ray.
+        let is_given = item.quantity == Quantity::Hit || recorded.storage.contains_key(&(sensor, item));
+        let said = ItemValue::of_answers(&recorded.answers, model, place, item).filter(|_| is_given);
         let exact = ItemValue::of_answers(truth.answers(), model, place, item)?;
+        let class = class_of(&tally);
+        // The ranges of one face are no difference of the face.
+        let is_range_of_face =
+            matches!(item.quantity, Quantity::Hit | Quantity::Face) && class == Some(Class::Agree);
         Some(CheckedItem {
             item,
-            difference: said.as_ref().and_then(|said| said.distance(&exact)),
+            difference: said.as_ref().filter(|_| !is_range_of_face).and_then(|said| said.distance(&exact)),
             difference_unit: difference_unit(model, item),
             said: said.map(|said| said.words),
             truth: exact.words,
             ratio: tally.worst_ratio.as_ref().map(|largest| largest.value),
-            class: class_of(&tally),
+            class,
         })
     };
     let plain = Quantity::ALL.into_iter().filter(|one| one.is_of(sensor) && *one != Quantity::PixelFlux);

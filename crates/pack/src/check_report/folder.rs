@@ -10,8 +10,8 @@ use crate::check_report::json::check_json;
 use crate::check_report::junit::junit;
 use crate::check_report::page::check_page;
 
-/// Writes `report.html`, `junit.xml` and then `check.json` into a folder, and returns their paths. A `check.json` marks a complete
-/// folder.
+/// Writes `report.html`, `junit.xml` and then `check.json` into a folder, and returns their paths. A `check.json`
+/// marks a complete folder.
 ///
 /// # Errors
 /// Names the file or folder that could not be written, and why.
