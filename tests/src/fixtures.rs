@@ -8,7 +8,7 @@ use raypencil::harness::{
     Candidate, Estimate, MonteCarloImage, RadianceMap, Validation, contender, validate,
 };
 use raypencil::io::Subject;
-use raypencil::judge::{Class, Defect, JudgeShare, Largest, Quantity, Recorded};
+use raypencil::judge::{Class, Defect, DefectMargin, JudgeShare, Largest, ListedDefect, Quantity, Recorded};
 use raypencil::{
     Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Place, Pose, Precision, Profile, Scene,
     SensorId, Silent,
@@ -154,6 +154,17 @@ pub fn defective() -> Validation {
     for ((place, quantity), what) in DEFECTS.into_iter().zip([Quantity::Hit, Quantity::Range]).zip(described)
     {
         sensor.defects.push(Defect { place, item: quantity.into(), what: what.into() });
+        sensor.listed.push(ListedDefect {
+            place,
+            item: quantity.into(),
+            said: vec![("scanline".into(), "<no> & \"hit\"".into())],
+            truth: "face 3 at 4 m".into(),
+            difference: None,
+            difference_unit: "m",
+            ratio: None,
+            margin: Some(DefectMargin { of: "face", unit: "cells", lo: 0.25, hi: 0.375 }),
+            what: what.into(),
+        });
     }
     let map = validation.rendered[1].output.beams[0].range.as_mut().unwrap();
     let image: &mut Image<Maybe<f64>> = map;

@@ -167,6 +167,18 @@ pub(crate) struct Validate {
     #[arg(long = "candidate", value_name = "DIR")]
     pub(crate) candidates: Vec<PathBuf>,
 
+    /// Whether a wrong candidate makes the exit code 1. With `=false` the reports still call it wrong.
+    #[arg(
+        long,
+        value_name = "BOOL",
+        default_value_t = true,
+        default_missing_value = "true",
+        num_args = 0..=1,
+        require_equals = true,
+        action = clap::ArgAction::Set
+    )]
+    pub(crate) candidates_must_pass: bool,
+
     /// Output folder; default: out/<scene's name>.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
@@ -188,6 +200,7 @@ impl Validate {
             switches: SwitchArguments::default(),
             judge: JudgeShare::Sample,
             candidates: Vec::new(),
+            candidates_must_pass: true,
             output: None,
         }
     }
@@ -367,7 +380,7 @@ pub(crate) struct Check {
     #[arg(long)]
     pub(crate) no_faces: bool,
 
-    /// Folder for junit.xml and check.json; without it none are written.
+    /// Folder for report.html, junit.xml and check.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }
@@ -392,6 +405,10 @@ pub(crate) struct Probe {
     /// Renderers to ask: scanline, scanline-paper, tracer, referee.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values = DEFAULT_WITH)]
     pub(crate) with: Vec<String>,
+
+    /// Folder with another program's answers to this scene, to be asked beside the renderers. May be repeated.
+    #[arg(long = "candidate", value_name = "DIR")]
+    pub(crate) candidates: Vec<PathBuf>,
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,

@@ -1,6 +1,7 @@
 //! `raypencil probe`: prints every renderer's answer to one ray.
 
-use raypencil::harness::probe as ask;
+use raypencil::Progress as _;
+use raypencil::harness::{Candidate, probe as ask};
 use raypencil::{Place, SensorId};
 
 use crate::args::{Probe, typed_renderers};
@@ -18,7 +19,14 @@ pub(crate) fn probe(command: &Probe, json: bool, registry: &Registry) -> Result<
     let contenders = contenders(&command.with, &command.switches, 1, registry)?;
     let words = typed_renderers(&command.with, &command.switches);
     let subject = subject(&command.scene, &words, &spinner)?;
-    let probe = ask(&subject, place, &contenders, &spinner)?;
+    // Candidates first, so that an error in their files is reported before the rendering.
+    spinner.stage("reading candidates");
+    let candidates: Result<Vec<Candidate>, _> =
+        command.candidates.iter().map(|folder| Candidate::read(folder, &subject.scene)).collect();
+    let candidates = candidates?;
+    let mut probe = ask(&subject, place, &contenders, &spinner)?;
+    spinner.stage("judging candidates");
+    probe.ask(&subject, &candidates);
     drop(spinner);
     say(&if json { format!("{:#}\n", probe.to_json()) } else { probe.to_string() });
     Ok(Outcome::Fine)

@@ -27,6 +27,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
     let mut validation = run(subject, &contenders, command.judge, &spinner);
     if !candidates.is_empty() {
         validation.evaluate(candidates, &spinner);
+        validation.candidates_may_fail = !command.candidates_must_pass;
     }
     write_validation(&validation, &folder, &spinner)?;
     drop(spinner);

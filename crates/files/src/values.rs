@@ -16,6 +16,42 @@ pub enum Storage {
 }
 
 impl Storage {
+    /// The largest finite number; infinity for whole numbers, which are not rounded to a largest one.
+    ///
+    /// ```
+    /// use raypencil_files::Storage;
+    ///
+    /// // Half precision: (2 - 2^-10) 2^15. A range beyond it is stored as infinity, which means "no hit".
+    /// assert_eq!(Storage::F16.max(), 65504.0);
+    /// assert_eq!(Storage::F32.max(), f64::from(f32::MAX));
+    /// ```
+    pub fn max(self) -> f64 {
+        match self {
+            Self::F16 => 65504.0,
+            Self::F32 => f64::from(f32::MAX),
+            Self::F64 => f64::MAX,
+            Self::Whole => f64::INFINITY,
+        }
+    }
+
+    /// The first of the whole numbers that another one may be rounded to: 2^(d + 1) for d digits after the leading
+    /// one. `None` if each whole number up to 2^32 is stored as itself.
+    ///
+    /// ```
+    /// use raypencil_files::Storage;
+    ///
+    /// // In half precision 2049 is rounded to 2048; in single precision 2^24 + 1 to 2^24.
+    /// assert_eq!(Storage::F16.first_ambiguous_whole(), Some(2048));
+    /// assert_eq!(Storage::F32.first_ambiguous_whole(), Some(16_777_216));
+    /// ```
+    pub fn first_ambiguous_whole(self) -> Option<u32> {
+        match self {
+            Self::F16 => Some(1 << 11),
+            Self::F32 => Some(1 << 24),
+            Self::F64 | Self::Whole => None,
+        }
+    }
+
     /// Distance from `value`, a number of this storage, to the next one away from 0, in the unit of `value`.
     ///
     /// The largest finite number has the distance to its neighbour nearer to 0. The distance of whole numbers is 1.

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{Channels, Values};
+use raypencil_files::{Channels, Storage, Values};
 use raypencil_judge::{Recorded, RecordingError};
 use raypencil_pack::{Provenance, ProvenanceError, note, precision_of};
 use raypencil_scene::{Image, Precision, Scene, SensorId};
@@ -81,6 +81,8 @@ impl Candidate {
         let channels = Recorded::channels(folder, scene)?;
         let recorded = Recorded::of_folder(folder, scene, precision, &channels)?;
         let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
+        // Reports name the program, not its folder.
+        let recorded = Recorded { name: name.clone(), ..recorded };
         let reader = ExtraChannels { folder, scene, channels: &channels };
         let images = reader.images(note.as_ref())?;
         let radiance = reader.radiance()?;
@@ -162,6 +164,11 @@ impl ExtraChannels<'_> {
         let Values::Reals(image) = &channel.values else {
             return Err(fault("whole numbers".into(), "floating-point numbers".into()));
         };
+        if channel.storage == Storage::F16 {
+            // Watts per pixel vanish in half precision, and its digits are fewer than the limits of both tests ask for.
+            let expected = "single or double precision: half precision cannot hold these numbers";
+            return Err(fault("half precision".into(), expected.into()));
+        }
         let (width, height) = self.scene.size(sensor).expect("a sensor of this scene");
         if (image.width(), image.height()) != (width, height) {
             let found = format!("{} x {} cells", image.width(), image.height());

@@ -50,6 +50,7 @@
 //! output/table         the table of quantities and classes
 //! output/verdict       the verdict in words
 //! output/candidates    the scoreboard, ready to be printed
+//! output/panel         the scoreboard for programs
 //! output/plots, light  range maps, differences and flux as pictures
 //! output/screen        one terminal screen
 //! output/summary       summary.json
@@ -84,7 +85,7 @@ pub use output::markdown::markdown as summary_markdown;
 pub use output::report::html as report_html;
 pub use output::screen::one_screen;
 pub use output::summary::summary_json;
-pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedReturn, probe};
+pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedCandidate, ProbedReturn, probe};
 pub use radiance::{RadianceComparison, compare_radiance};
 pub use rendered::Rendered;
 pub use renderers::{Contender, RENDERER_NAMES, attribute, contender, typed_contenders};

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use raypencil_files::write_atomically;
-use raypencil_judge::{Defect, Quantity, name_of};
+use raypencil_judge::{ListedDefect, Quantity, name_of};
 use raypencil_minimise::reduce_to_ray;
 use raypencil_pack::{PackError, write_pack};
 use raypencil_referee::{Displacement, Format, Referee};
@@ -44,7 +44,7 @@ impl TrueAnswer {
     }
 }
 
-/// Writes each of a candidate's first ten misses as a pack of that ray, in `folder/NAME-1`, `folder/NAME-2`, ... A
+/// Writes each of a candidate's ten worst misses as a pack of that ray, in `folder/NAME-1`, `folder/NAME-2`, ... A
 /// README.md in it states the candidate's answer and the exact one.
 ///
 /// # Errors
@@ -88,7 +88,7 @@ pub(crate) fn write_misses(
 fn readme(
     subject: &Subject,
     report: &CandidateReport,
-    wrong: &Defect,
+    wrong: &ListedDefect,
     small: &Subject,
     place: Place,
 ) -> String {
@@ -96,7 +96,7 @@ fn readme(
     let faces = small.scene.mesh().faces().len();
     let of = subject.scene.mesh().faces().len();
     format!(
-        "# {program}, {at}\n\n{quantity}: {what}\n\n\
+        "# {program}, {at}\n\n{quantity}: {words}. {what}\n\n\
          This folder is a reference pack of that ray ({place} here) over {faces} of the {of} faces; the exact\n\
          answer to the ray is that of the whole scene. To see the exact answer, and to ask a program again:\n\n\
          ```sh\n{probe}\n\
@@ -104,6 +104,7 @@ fn readme(
          In the scene {name}, {sha256}: `{again}`\n",
         at = wrong.place,
         quantity = name_of(wrong.item),
+        words = wrong.words(),
         what = wrong.what,
         probe = probe_command(small, place),
         name = subject.name,

@@ -98,5 +98,5 @@ pub fn validate(
         }
     }
     drop(judge);
-    Validation { subject, rendered, pairs, scoreboard: None, stages }
+    Validation { subject, rendered, pairs, scoreboard: None, candidates_may_fail: false, stages }
 }

@@ -3,12 +3,12 @@
 //! Maps are judged as by `check`. The images of a Monte Carlo renderer are not sums over pencils: they have the same
 //! expectation, and are compared by their own standard errors.
 
-use raypencil_judge::{Check, Defect, GroundTruth, Recorded, check};
-use raypencil_scene::Progress;
+use raypencil_judge::{Check, Class, GroundTruth, ListedDefect, Recorded, check, listed_defects};
+use raypencil_scene::{Image, Maybe, Progress};
 use raypencil_scene_io::Subject;
 
 use crate::candidate::Candidate;
-use crate::monte_carlo::{ImageComparison, REALISATIONS, compare_images, expected_images};
+use crate::monte_carlo::{ImageComparison, REALISATIONS, Z_TEST_LIMITS, compare_images, expected_images};
 use crate::radiance::{RadianceComparison, compare_radiance};
 use crate::rendered::Rendered;
 
@@ -40,9 +40,29 @@ impl CandidateReport {
         format!("{}-{}", folder_name(&self.candidate.name), index + 1)
     }
 
-    /// The first rays that it answers wrongly, sensor by sensor in reading order.
-    pub fn misses(&self) -> impl Iterator<Item = &Defect> {
-        self.check.sensors.iter().flat_map(|sensor| &sensor.defects)
+    /// The worst and most telling rays that it answers wrongly, as [`listed_defects`] orders them.
+    pub fn misses(&self) -> impl Iterator<Item = &ListedDefect> {
+        listed_defects(&self.check.sensors).into_iter()
+    }
+
+    /// Rays that it answers wrongly, or that the referee could not decide.
+    pub fn wrong_rays(&self) -> u64 {
+        self.check.of(Class::Defect) + self.check.of(Class::Undecided)
+    }
+
+    /// Its Monte Carlo images that the limits refuse.
+    pub fn wrong_images(&self) -> usize {
+        self.images.iter().filter(|image| !image.is_within(&Z_TEST_LIMITS)).count()
+    }
+
+    /// Its radiance maps of which a ray is wrong.
+    pub fn wrong_radiance(&self) -> usize {
+        self.radiance.iter().filter(|map| map.wrong > 0).count()
+    }
+
+    /// Whether something of it was compared, and no ray, image or radiance map is wrong.
+    pub fn passes(&self) -> bool {
+        self.check.passes() && self.wrong_images() == 0 && self.wrong_radiance() == 0
     }
 }
 
@@ -53,6 +73,8 @@ pub struct Scoreboard {
     pub ours: Vec<RendererReport>,
     /// The candidates.
     pub candidates: Vec<CandidateReport>,
+    /// The exact range map of each sensor, the camera first, metres.
+    pub exact_ranges: Vec<Image<Maybe<f64>>>,
 }
 
 /// Checks `rendered` and `candidates` against the exact answer to every ray of the scene.
@@ -77,7 +99,9 @@ pub(crate) fn evaluate(
         let radiance = candidate.radiance.iter().map(|map| compare_radiance(&truth, map));
         CandidateReport { check, images: images.collect(), radiance: radiance.collect(), candidate }
     };
-    Scoreboard { ours, candidates: candidates.into_iter().map(report).collect() }
+    let candidates = candidates.into_iter().map(report).collect();
+    let exact_ranges = truth.answers().maps.iter().filter_map(|map| map.range.clone()).collect();
+    Scoreboard { ours, candidates, exact_ranges }
 }
 
 /// A program's name reduced to what a folder's name may have: lower-case letters, digits and `-`.

@@ -8,7 +8,7 @@ use raypencil_scene_io::Subject;
 
 use crate::candidate::Candidate;
 use crate::rendered::Rendered;
-use crate::scoreboard::{Scoreboard, evaluate};
+use crate::scoreboard::{CandidateReport, Scoreboard, evaluate};
 
 /// The comparison of two renderers.
 #[derive(Debug)]
@@ -32,6 +32,9 @@ pub struct Validation {
     pub pairs: Vec<Pair>,
     /// Renderers and candidates checked against the exact answers; `None` until [`Validation::evaluate`].
     pub scoreboard: Option<Scoreboard>,
+    /// Whether the validation passes although a candidate is wrong: `--candidates-must-pass=false`. Reports call the
+    /// candidate wrong all the same.
+    pub candidates_may_fail: bool,
     /// Wall-clock time of each step, in order.
     pub stages: Vec<Stage>,
 }
@@ -95,9 +98,20 @@ impl Validation {
         self.stages.push(Stage { name: "evaluating candidates".into(), time: start.elapsed() });
     }
 
-    /// Whether at least one ray was compared, and none is a defect or undecided.
-    pub fn passes(&self) -> bool {
+    /// The candidates; empty until [`Validation::evaluate`].
+    pub fn candidates(&self) -> &[CandidateReport] {
+        self.scoreboard.as_ref().map_or(&[], |scoreboard| &scoreboard.candidates)
+    }
+
+    /// Whether at least one ray of the renderers was compared, and none is a defect or undecided.
+    pub fn renderers_pass(&self) -> bool {
         let counts = self.counts();
         counts.defects == 0 && counts.undecided == 0 && counts.compared > 0
+    }
+
+    /// Whether the renderers pass, and every candidate, unless [`Validation::candidates_may_fail`].
+    pub fn passes(&self) -> bool {
+        let candidates_pass = self.candidates().iter().all(CandidateReport::passes);
+        self.renderers_pass() && (self.candidates_may_fail || candidates_pass)
     }
 }

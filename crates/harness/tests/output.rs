@@ -6,11 +6,12 @@ use std::time::Duration;
 
 use raypencil_files::FolderError;
 use raypencil_harness::{
-    HarnessError, Validation, junit_xml, one_screen, report_html, summary_json, summary_markdown,
+    Candidate, HarnessError, Validation, junit_xml, one_screen, report_html, summary_json, summary_markdown,
     write_validation,
 };
+use raypencil_judge::Recorded;
 use raypencil_referee::{Displacement, Referee};
-use raypencil_scene::{Place, SensorId, Silent};
+use raypencil_scene::{Image, Place, Precision, Quantities, SensorId, SensorMap, Silent};
 use raypencil_scene_io::probe_command;
 use raypencil_tests::fixtures;
 use serde_json::Value;
@@ -333,6 +334,126 @@ fn assert_well_formed(xml: &str) {
     assert!(open.is_empty() && rest.trim().is_empty());
 }
 
+/// Every report of a validation that people or CI read, by name.
+fn every_report(validation: &Validation) -> [(&'static str, String); 4] {
+    [
+        ("screen", one_screen(validation, None)),
+        ("page", report_html(validation).unwrap()),
+        ("markdown", summary_markdown(validation).unwrap()),
+        ("junit", junit_xml(validation).unwrap()),
+    ]
+}
+
+/// [`fixtures::agreeing`] with a candidate that gives nothing but the camera's ranges, all of them 1 m too long.
+fn with_wrong_ranges() -> Validation {
+    let mut validation = fixtures::agreeing();
+    let scene = &validation.subject.scene;
+    let mut output = validation.rendered[1].output.clone();
+    let camera = output.camera.as_mut().unwrap();
+    let (range, size) = (camera.range.clone().unwrap(), (camera.width, camera.height));
+    let longer = range.cells().iter().map(|cell| cell.get().map(|range| range + 1.0).into()).collect();
+    *camera = SensorMap {
+        range: Some(Image::from_cells(size.0, size.1, longer)),
+        ..SensorMap::empty(SensorId::Camera, size.0, size.1, Quantities::NONE)
+    };
+    output.beams.clear();
+    output.returns.clear();
+    output.flux.clear();
+    let recorded = Recorded::of_output("mine", scene, &output, Precision::F64);
+    let (images, radiance) = (Vec::new(), Vec::new());
+    let candidate = Candidate { name: "mine".into(), folder: "mine".into(), recorded, images, radiance };
+    validation.evaluate(vec![candidate], &Silent);
+    validation
+}
+
+#[test]
+fn a_wrong_candidate_is_in_every_headline_and_fails() {
+    let mut validation = with_wrong_ranges();
+    assert!(validation.renderers_pass() && !validation.passes());
+    for (name, text) in every_report(&validation) {
+        // All 1,495 pixels that hit are wrong; the others have no range.
+        assert!(text.contains("1,495"), "{name}: {text}");
+    }
+    let [(_, screen), (_, page), (_, markdown), (_, junit)] = every_report(&validation);
+    let last: Vec<&str> = screen.lines().filter(|line| line.starts_with("Candidate mine is wrong")).collect();
+    assert_eq!(last, ["Candidate mine is wrong on 1,495 of 1,920 rays."]);
+    assert!(page.split_once("<h1>").unwrap().1.split_once("</h1>").unwrap().0.contains("mine is wrong"));
+    assert!(!page.contains("<p>None.</p>"), "the defects of candidates are defects");
+    assert!(markdown.starts_with("### ❌ Candidate mine is wrong on 1,495 of 1,920 rays"), "{markdown}");
+    assert!(junit.contains("camera: range is wrong on 1,495 of 1,495 rays"), "{junit}");
+    let summary: Value = serde_json::from_str(&summary_json(&validation)).unwrap();
+    assert_eq!(summary["verdict"], "candidates_wrong");
+
+    // Where candidates may fail, the verdict stays, and neither the exit code nor CI fails.
+    validation.candidates_may_fail = true;
+    assert!(validation.passes());
+    let [(_, screen), (_, page), (_, markdown), (_, junit)] = every_report(&validation);
+    for text in [screen, page, markdown] {
+        assert!(text.contains("Candidate mine is wrong on 1,495 of 1,920 rays, and may be"), "{text}");
+        assert!(!text.contains("✅") && !text.contains("✓"), "{text}");
+    }
+    assert!(
+        junit.contains("wrong, which --candidates-must-pass=false allows") && !junit.contains("<failure")
+    );
+    let summary: Value = serde_json::from_str(&summary_json(&validation)).unwrap();
+    assert_eq!((&summary["verdict"], &summary["passes"]), (&"candidates_wrong".into(), &true.into()));
+    assert_eq!(summary["candidates"]["must_pass"], false);
+}
+
+#[test]
+fn what_a_candidate_does_not_give_is_not_given_everywhere() {
+    let validation = with_wrong_ranges();
+    let [(_, screen), (_, page), (_, markdown), (_, junit)] = every_report(&validation);
+    let not_given = screen.lines().find(|line| line.contains("not given: ")).expect("a line");
+    assert!(not_given.contains("face, depth, point"), "{screen}");
+    // The last cell of a row is the candidate's.
+    for quantity in ["face", "depth", "visible", "pixel flux, beam 0"] {
+        let row = page.lines().find(|line| {
+            line.starts_with(&format!("<tr><th scope=\"row\">{quantity}</th>")) && line.contains("<b>0 wrong")
+        });
+        assert!(row.expect("a row").ends_with("<td class=\"none\">not given</td></tr>"), "{quantity}");
+        let row = markdown.lines().find(|line| line.starts_with(&format!("| {quantity} | 0 wrong")));
+        assert!(row.expect("a row").ends_with("| not given |"), "{quantity}");
+        let case = junit.split_once(&format!("name=\"{quantity}\" classname=\"pyramids.mine.")).unwrap().1;
+        assert!(
+            case.split_once("</testcase>").unwrap().0.contains("skipped message=\"not given\""),
+            "{case}"
+        );
+    }
+    assert!(page.contains("range: not given"), "the beam has no range map");
+    let summary: Value = serde_json::from_str(&summary_json(&validation)).unwrap();
+    let mine = &summary["panel"]["renderers"][2];
+    let of = |name: &str| {
+        let all = mine["quantities"].as_array().unwrap();
+        all.iter().find(|one| one["quantity"] == name).unwrap_or_else(|| panic!("{name}"))
+    };
+    for name in ["face", "depth", "visible", "pencil_flux", "pixel_flux.beam0"] {
+        assert_eq!(of(name)["absent"], "not given", "{name}");
+        for key in ["agree", "tie", "rounding", "wrong"] {
+            assert_eq!(of(name)[key], Value::Null, "{name} {key}");
+        }
+    }
+    // A range of each pixel is given, and none of the 256 pencils.
+    assert_eq!((&of("range")["wrong"], &of("range")["not_given"]), (&1495.into(), &256.into()));
+    assert_eq!((&of("range")["absent"], &of("range")["storage"]), (&Value::Null, &"double".into()));
+}
+
+#[test]
+fn the_page_shows_a_candidates_ranges_beside_the_exact_ones() {
+    let page = report_html(&with_wrong_ranges()).unwrap();
+    let section = page.split_once("mine beside the exact ranges").expect("the section").1;
+    let section = section.split_once("<h2>").expect("its end").0;
+    for text in
+        ["<figcaption>exact</figcaption>", "<figcaption>mine</figcaption>", "<figcaption>mine minus exact"]
+    {
+        assert!(section.contains(text), "{text}");
+    }
+    // Every range is 1 m too long: the scale of the difference says so, with its unit.
+    assert!(section.contains("Colours span ±1.00 m, the largest difference."), "{section}");
+    assert!(section.contains("difference, m"), "{section}");
+    assert!(section.contains("class=\"ring\""), "its defects are marked");
+}
+
 #[test]
 fn a_candidates_misses_are_reported_and_written_as_packs() {
     let folder = tempfile::tempdir().unwrap();
@@ -349,8 +470,10 @@ fn a_candidates_misses_are_reported_and_written_as_packs() {
     let misses = reports[2]["misses"].as_array().unwrap();
     assert_eq!(misses.len(), 2);
     assert!(misses.iter().all(|miss| miss["quantity"] == "visible"));
-    // The verdict is on raypencil's own renderers.
-    assert_eq!(summary["verdict"], "agree");
+    // The renderers agree, and the candidate fails the validation all the same.
+    assert_eq!((&summary["verdict"], &summary["passes"]), (&"candidates_wrong".into(), &false.into()));
+    assert_eq!(summary["candidates"], serde_json::json!({ "count": 1, "wrong": 1, "must_pass": true }));
+    assert!(validation.renderers_pass() && !validation.passes());
 
     // A miss is a pack of that ray, with the same exact answer for the same reason.
     let of_whole = |i: u32, j: u32| {
@@ -366,7 +489,7 @@ fn a_candidates_misses_are_reported_and_written_as_packs() {
         let pack = folder.path().join(miss["reproducer"].as_str().unwrap());
         let readme = fs::read_to_string(pack.join("README.md")).unwrap();
         assert!(
-            readme.contains("visible: it says ") && readme.contains("raypencil probe scene.toml --beam 0"),
+            readme.contains("visible: odd says ") && readme.contains("raypencil probe scene.toml --beam 0"),
             "{readme}"
         );
         let found = raypencil_pack::check_pack(&pack, &pack, None, &Silent).unwrap();

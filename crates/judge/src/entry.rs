@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::class::Class;
 use crate::difference::Difference;
 use crate::quantity::{Item, Quantity, name_of};
-use crate::tally::{Defect, SensorResult};
+use crate::tally::{Defect, SensorResult, WrongRay};
 use raypencil_scene::Place;
 
 /// One ray while it is judged.
@@ -23,6 +23,8 @@ pub(crate) struct RayEntry<'r> {
     ruling: Option<Cow<'static, str>>,
     /// What is wrong, in words.
     notes: String,
+    /// The last error beyond its bound, as a ratio.
+    excess: Option<(Item, f64)>,
 }
 
 impl<'r> RayEntry<'r> {
@@ -36,12 +38,13 @@ impl<'r> RayEntry<'r> {
             forced_defect: None,
             ruling: None,
             notes: String::new(),
+            excess: None,
         }
     }
 
     /// A ray of a recording that is checked: its rulings are kept in words.
     pub(crate) fn checked(place: Place, result: &'r mut SensorResult) -> Self {
-        Self { ruling: Some("exact".into()), ..Self::compared(place, result) }
+        Self { ruling: Some("the true hit".into()), ..Self::compared(place, result) }
     }
 
     /// Enters the class of one item.
@@ -53,6 +56,10 @@ impl<'r> RayEntry<'r> {
         tally.by_class[class as usize] += 1;
         if self.ruling.is_some() && class != Class::Agree {
             tally.others.push((self.place, class));
+        }
+        if class >= Class::Undecided {
+            let ratio = self.excess.filter(|(of, _)| *of == item).map(|(_, ratio)| ratio);
+            tally.offer(WrongRay { place: self.place, ratio });
         }
         if self.worst.is_none_or(|(worst, _)| class > worst) {
             self.worst = Some((class, item));
@@ -82,6 +89,9 @@ impl<'r> RayEntry<'r> {
     #[inline]
     pub(crate) fn extremes(&mut self, difference: &Difference) {
         self.result.tally(difference.item).enter(difference, self.place, self.ruling.as_deref());
+        if !difference.is_within() {
+            self.excess = difference.ratio().map(|ratio| (difference.item, ratio));
+        }
     }
 
     /// Enters an item that a side does not state.
@@ -106,6 +116,11 @@ impl<'r> RayEntry<'r> {
         let ruling = earlier.map_or(words.to_string(), |earlier| format!("{earlier}; {words}"));
         self.ruling = Some(ruling.into());
         self.judged();
+    }
+
+    /// The referee's rulings in words; empty if they are not kept.
+    pub(crate) fn ruling(&self) -> &str {
+        self.ruling.as_deref().unwrap_or_default()
     }
 
     /// Adds words about what is wrong.

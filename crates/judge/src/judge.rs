@@ -231,7 +231,7 @@ fn longest_edge(scene: &Scene, face: FaceId) -> f64 {
 }
 
 /// A fixed hash of a cell (the finaliser of splitmix64), so that the sample is the same in every run.
-fn hash(Place { sensor, i, j }: Place) -> u64 {
+pub(crate) fn hash(Place { sensor, i, j }: Place) -> u64 {
     let sensor = match sensor {
         SensorId::Camera => 0,
         SensorId::Beam(index) => index as u64 + 1,

@@ -45,11 +45,12 @@
 //! tally                  results: counts, largest errors with their places, defects
 //! entry                  one ray being judged, entered into its sensor's result
 //! scene_answers          all answers about a scene
+//! item_value, listed*    the defects that reports list: said, true, difference, margin
 //! recorded/              answers read from files
 //! judge                  when the referee is asked, and with what tolerance
 //! attribution/           which of the paper's approximations causes an error
 //! compare/               two renderers: hit, pencil, pixel, ray, sensor, single rays
-//! check/                 a recording: the truth, hit, pencil, pixel, storage, uncertain light
+//! check/                 a recording: the truth, hit, pencil, pixel, storage, uncertain light, single rays
 //! ```
 //!
 //! # Two rules
@@ -86,7 +87,10 @@ mod class;
 mod compare;
 mod difference;
 mod entry;
+mod item_value;
 mod judge;
+mod listed;
+mod listed_defect;
 mod quantity;
 mod recorded;
 mod scene_answers;
@@ -100,12 +104,15 @@ struct Readme;
 pub use attribution::cause::{Attributions, Cause, VisibilityCause};
 pub use attribution::context::Rerender;
 pub use check::ground_truth::{GroundTruth, UncertifiedAnswer};
+pub use check::single::{CheckedItem, CheckedRay, check_ray};
 pub use check::{Check, check, check_rays};
 pub use class::{CHECK_CLASSES, COMPARE_CLASSES, Class, ClassCounts, class_counts_json};
 pub use compare::side::Side;
 pub use compare::single::{FirstOfClass, class_of_ray, first_of_class};
 pub use compare::{compare, compare_judged};
 pub use judge::{Judge, JudgeShare};
+pub use listed::listed_defects;
+pub use listed_defect::{DefectMargin, ListedDefect};
 pub use quantity::{Item, Quantity, key_of, name_of, unit_of};
 pub use recorded::Recorded;
 pub use recorded::conventions::Conventions;
@@ -113,5 +120,5 @@ pub use recorded::error::RecordingError;
 pub use recorded::names::{flux_channel, image_channel, item_of_channel};
 pub use scene_answers::{Answers, BeamLight, Certified};
 pub use tally::{
-    ApproximationTallies, ApproximationTally, Defect, ItemTallies, ItemTally, Largest, SensorResult,
+    ApproximationTallies, ApproximationTally, Defect, ItemTallies, ItemTally, Largest, SensorResult, WrongRay,
 };

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::class::{Class, ClassCounts};
 use crate::difference::Difference;
+use crate::judge::hash;
+use crate::listed_defect::ListedDefect;
 use crate::quantity::{Item, Quantity};
 use raypencil_scene::{Image, Maybe, Place, SensorId, Switches};
 
@@ -40,6 +42,30 @@ impl Largest {
     }
 }
 
+/// A ray on which an item is wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WrongRay {
+    /// The ray.
+    pub place: Place,
+    /// Ratio of the error to its bound; `None` for what is right or wrong and has no size, such as a face.
+    pub ratio: Option<f64>,
+}
+
+impl WrongRay {
+    /// The higher, the sooner the ray is kept: the ratio, NaN above all. Rays without one rank by a fixed hash, which
+    /// spreads those that are kept over the sensor, and below all ratios, which are above 1.
+    fn rank(&self) -> f64 {
+        match self.ratio {
+            Some(ratio) if ratio.is_nan() => f64::INFINITY,
+            Some(ratio) => ratio,
+            None => hash(self.place) as f64 / u64::MAX as f64,
+        }
+    }
+}
+
+/// Maximum number of wrong rays that are kept for each item of a sensor, to choose the listed defects from.
+const MAX_WRONG_RAYS_KEPT: usize = 8;
+
 /// One quantity over many rays.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ItemTally {
@@ -57,6 +83,8 @@ pub struct ItemTally {
     pub worst_error: Option<Largest>,
     /// The largest ratio of an error to its bound.
     pub worst_ratio: Option<Largest>,
+    /// The worst of the rays on which it is wrong, at most 8: those with the largest ratio first.
+    pub worst_rays: Vec<WrongRay>,
 }
 
 impl ItemTally {
@@ -82,6 +110,15 @@ impl ItemTally {
         }
     }
 
+    /// Keeps a wrong ray, if it is among the worst so far. Of equals the first stays.
+    pub(crate) fn offer(&mut self, ray: WrongRay) {
+        let at = self.worst_rays.partition_point(|kept| kept.rank() >= ray.rank());
+        if at < MAX_WRONG_RAYS_KEPT {
+            self.worst_rays.insert(at, ray);
+            self.worst_rays.truncate(MAX_WRONG_RAYS_KEPT);
+        }
+    }
+
     /// Adds the tally of later rays.
     pub fn add(&mut self, later: &Self) {
         add_counts(&mut self.by_class, &later.by_class);
@@ -91,6 +128,7 @@ impl ItemTally {
         Largest::add(&mut self.worst_ulps, &later.worst_ulps);
         Largest::add(&mut self.worst_error, &later.worst_error);
         Largest::add(&mut self.worst_ratio, &later.worst_ratio);
+        later.worst_rays.iter().for_each(|ray| self.offer(*ray));
     }
 }
 
@@ -207,6 +245,8 @@ pub struct SensorResult {
     pub items: ItemTallies,
     /// The first defects, in reading order.
     pub defects: Vec<Defect>,
+    /// The worst and most telling defects, for reports: `listed` has the rule by which they are chosen.
+    pub listed: Vec<ListedDefect>,
     /// `compare`: rays of [`Class::Approximation`] by cause. They add up to that class.
     pub approximations: ApproximationTallies,
     /// `compare`: difference of the ranges, metres: `b - a`, where both sides hit.
@@ -223,6 +263,7 @@ impl SensorResult {
             judged: 0,
             items: ItemTallies::default(),
             defects: Vec::new(),
+            listed: Vec::new(),
             approximations: BTreeMap::new(),
             range_difference: None,
         }
@@ -316,6 +357,25 @@ mod tests {
             parts.add(&later);
             assert_eq!(parts.worst_error.unwrap().place, place(expected), "{ruling:?}");
         }
+    }
+
+    #[test]
+    fn the_largest_ratios_are_kept_whatever_the_order() {
+        // Ratios 1.01 to 1.20 and NaN, which is kept first; of the twenty others the largest seven.
+        let rays: Vec<WrongRay> = (1..=20)
+            .map(|k| WrongRay { place: place(k), ratio: Some(1.0 + f64::from(k) / 100.0) })
+            .chain([WrongRay { place: place(99), ratio: Some(f64::NAN) }])
+            .collect();
+        let kept = |rays: &mut dyn Iterator<Item = &WrongRay>| -> Vec<u32> {
+            let mut tally = ItemTally::default();
+            rays.for_each(|ray| tally.offer(*ray));
+            tally.worst_rays.iter().map(|ray| ray.place.i).collect()
+        };
+        assert_eq!(kept(&mut rays.iter()), [99, 20, 19, 18, 17, 16, 15, 14]);
+        assert_eq!(kept(&mut rays.iter().rev()), [99, 20, 19, 18, 17, 16, 15, 14]);
+        // Without ratios the kept rays are spread: they are not the first eight of a thousand.
+        let wrong: Vec<WrongRay> = (0..1000).map(|i| WrongRay { place: place(i), ratio: None }).collect();
+        assert!(kept(&mut wrong.iter()).iter().any(|i| *i >= 500));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use raypencil_diagnosis::{Diagnosis, diagnose};
 use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
 use raypencil_judge::{Check, Conventions, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
-use raypencil_scene::{Place, Precision, Progress, Scene};
+use raypencil_scene::{Image, Maybe, Place, Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
@@ -61,6 +61,8 @@ pub struct Checked {
     pub check: Check,
     /// The mistake that explains why the candidate is wrong nearly everywhere, or the two. It changes no verdict.
     pub diagnosis: Option<Diagnosis>,
+    /// The exact range map of each sensor, the camera first, metres.
+    pub exact_ranges: Vec<Image<Maybe<f64>>>,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
 }
@@ -185,6 +187,7 @@ pub fn check_pack_by(
         progress.stage("looking for a mistake that explains the wrong rays");
         diagnose(&truth, &recorded, &check)
     };
+    let exact_ranges = truth.answers().maps.iter().filter_map(|map| map.range.clone()).collect();
     drop(truth);
     let subject = Subject {
         name: manifest.scene.name,
@@ -192,7 +195,8 @@ pub fn check_pack_by(
         sha256,
         scene,
     };
-    Ok(Checked { subject, recorded, check, diagnosis, is_blind: manifest.kind == PackKind::Blind })
+    let is_blind = manifest.kind == PackKind::Blind;
+    Ok(Checked { subject, recorded, check, diagnosis, exact_ranges, is_blind })
 }
 
 /// Reads the answers of a pack that holds them, in f64.

@@ -11,7 +11,7 @@
 //! margins                            how far each ray is from another answer
 //! arrays, exr_map, rays -> write     the files of a pack
 //! provenance -> check                the candidate's note, and the check of a candidate
-//! check_report/                      a check as screen, JSON and JUnit
+//! check_report/                      a check as screen, page, JSON and JUnit
 //! ```
 //!
 //! ```
@@ -47,7 +47,10 @@ mod write;
 pub use bench::{BENCH_BEAMS, with_bench};
 pub use blind::{blind_scene, blind_subject};
 pub use check::{CheckError, Checked, check_pack, check_pack_by};
-pub use check_report::{check_json, check_screen, write_check};
+pub use check_report::{
+    check_json, check_page, check_screen, check_suite, items_not_given, not_given, rays_not_given,
+    write_check,
+};
 pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, clause_rays};
 pub use manifest::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_files::{Limits, Values, read_npy, write_npy};
-use raypencil_judge::{Class, GroundTruth, Quantity, Recorded, check};
-use raypencil_pack::{Checked, check_json, check_pack, check_screen, write_check};
+use raypencil_judge::{Class, GroundTruth, ListedDefect, Quantity, Recorded, check};
+use raypencil_pack::{Checked, check_json, check_pack, check_page, check_screen, write_check};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{Precision, Renderer, Request, Silent};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
@@ -54,8 +54,79 @@ fn screens_are_as_the_snapshots_show() {
 #[test]
 fn junit_is_as_the_snapshot_shows() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let [junit, _] = write_check(&partial(), folder.path()).expect("a writable folder").try_into().unwrap();
+    let [_, junit, _] =
+        write_check(&partial(), folder.path()).expect("a writable folder").try_into().unwrap();
     assert_report("junit_of_a_partial_candidate", &std::fs::read_to_string(junit).unwrap());
+}
+
+/// A candidate with three faults in the camera: an early range 1 um too long, a late one 2 m too long, and a pixel of
+/// the middle that misses.
+fn three_faults() -> Checked {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let candidate = folder.path().join("mine");
+    std::fs::create_dir_all(candidate.join("camera")).expect("a folder");
+    let reals = |name: &str| {
+        let array =
+            read_npy(pack().join(format!("camera/{name}.npy")), &Limits::default()).expect("an array");
+        let [Values::Reals(image)] = array.planes.as_slice() else { panic!("one plane of reals") };
+        image.clone()
+    };
+    let mut ranges = reals("range.T");
+    let hits: Vec<usize> = (0..ranges.cells().len()).filter(|&at| ranges.cells()[at].is_finite()).collect();
+    ranges.cells_mut()[hits[0]] += 1e-6;
+    ranges.cells_mut()[hits[hits.len() / 2]] = f64::INFINITY;
+    ranges.cells_mut()[hits[hits.len() - 1]] += 2.0;
+    write_npy(candidate.join("camera/range.T.npy"), &[&ranges]).expect("a file");
+    check_pack(&pack(), &candidate, None, &Silent).expect("a candidate that keeps to the conventions")
+}
+
+#[test]
+fn the_worst_defects_are_listed_hits_before_values() {
+    let checked = three_faults();
+    let listed = &checked.check.sensors[0].listed;
+    let found: Vec<Quantity> = listed.iter().map(|one| one.item.quantity).collect();
+    // In reading order the smallest fault would be the first.
+    assert_eq!(found, [Quantity::Hit, Quantity::Range, Quantity::Range]);
+    assert_eq!(checked.check.sensors[0].defects[0].place, listed[2].place);
+    assert_eq!((listed[0].said[0].1.as_str(), listed[0].difference), ("no hit", None));
+    assert!(listed[0].truth.starts_with("face "), "{}", listed[0].truth);
+    let off = |k: usize| listed[k].difference.expect("two numbers");
+    assert!((off(1) - 2.0).abs() < 1e-9 && (off(2) - 1e-6).abs() < 1e-12, "{listed:?}");
+    assert!(listed[1].ratio > listed[2].ratio && listed[2].ratio > Some(1.0));
+    // The margin is that of the pack, which was computed apart, rounded down to single precision.
+    let array = read_npy(pack().join("camera/margin.face.npy"), &Limits::default()).expect("an array");
+    for one in &listed[1..] {
+        let index = one.place.i as usize + one.place.j as usize * 96;
+        let margin = one.margin.as_ref().expect("a ray has one");
+        assert_eq!((margin.of, margin.unit), ("face", "cells"));
+        let of_pack = array.planes[0].real(index);
+        assert!(margin.lo >= of_pack && margin.lo <= of_pack * (1.0 + 1e-6), "{margin:?} {of_pack}");
+    }
+    let screen = check_screen(&checked);
+    assert!(screen.contains("hit/miss: mine says no hit; true is face"), "{screen}");
+}
+
+#[test]
+fn the_page_has_verdict_quantities_defects_and_pictures() {
+    let page = check_page(&three_faults()).expect("a page");
+    assert!(page.contains("<span aria-hidden=\"true\">✗</span> 3 of 6,912 rays are wrong"), "{page}");
+    assert!(page.contains("mine says no hit; true is face"), "the worst defect is told");
+    assert_eq!(page.matches("<li>").count(), 3);
+    // The camera has three pictures; the beams, which are not given, the exact one.
+    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 5);
+    assert!(
+        page.contains("mine minus exact") && page.contains("Colours span ±2.00 m, the largest difference")
+    );
+    assert!(page.contains("hit on one side only"));
+    assert_eq!(page.matches("range: not given").count(), 2);
+    let row = page.lines().find(|line| line.contains("<th scope=\"row\">depth</th>")).expect("a row");
+    assert!(row.contains("not given") && !row.contains("<td>0</td>"), "{row}");
+    for outside in ["http:", "https:", "<script", "<link", "url("] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    let perfect = check_page(&perfect()).expect("a page");
+    assert!(perfect.contains("✓") && perfect.contains("<p>None.</p>"));
+    assert!(perfect.contains("ranges are equal to the last bit"));
 }
 
 #[test]
@@ -76,14 +147,24 @@ fn the_json_keeps_to_its_schema() {
         .worst_ulps
         .clone()
         .expect("compared");
-    checked.check.sensors[0].defects.push(raypencil_judge::Defect {
+    checked.check.sensors[0].listed.push(ListedDefect {
         place: largest.place,
         item: Quantity::Range.into(),
+        said: vec![("mine".into(), "4 m".into())],
+        truth: String::new(),
+        difference: Some(f64::INFINITY),
+        difference_unit: "m",
+        ratio: None,
+        margin: None,
         what: "off".into(),
     });
     let wrong: Value = serde_json::from_str(&check_json(&checked)).unwrap();
     assert_eq!(schema_faults(&schema, &wrong), Vec::<String>::new());
     assert_eq!(wrong["verdict"], "defects");
+    let faulty: Value = serde_json::from_str(&check_json(&three_faults())).unwrap();
+    assert_eq!(schema_faults(&schema, &faulty), Vec::<String>::new());
+    let depth = &faulty["sensors"][0]["quantities"][3];
+    assert_eq!((&depth["quantity"], &depth["not_given"]), (&"depth".into(), &"not given".into()));
 }
 
 #[test]

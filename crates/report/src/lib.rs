@@ -7,6 +7,7 @@
 //! text, table                     numbers, times and lists as text, and aligned columns for screens
 //! colour, png                     colours, and PNG in memory
 //! scale -> picture -> plot        ticks at round values, maps as pictures, pictures with axes and rings
+//! maps                            range maps of a sensor beside their differences, as HTML
 //! paint -> drawing                SVG and PNG of polygons, lines and text
 //! version -> page                 head and end of an HTML page
 //! junit                           test results for continuous integration
@@ -28,6 +29,7 @@
 mod colour;
 mod drawing;
 mod junit;
+mod maps;
 mod page;
 mod paint;
 mod picture;
@@ -41,6 +43,7 @@ mod version;
 pub use colour::Colour;
 pub use drawing::{Anchor, Drawing, INK, LETTERS, Mark, SOFT};
 pub use junit::{JunitCase, JunitReport, JunitSuite};
+pub use maps::{MapPair, SensorPlots};
 pub use page::{PAGE_END, page_head};
 pub use picture::{ColourMap, Picture, Reduction};
 pub use plot::{

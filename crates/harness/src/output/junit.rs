@@ -2,9 +2,13 @@
 
 use std::io;
 
-use crate::output::verdict::{Verdict, explanation, headline};
+use crate::monte_carlo::Z_TEST_LIMITS;
+use crate::output::candidates::line;
+use crate::output::verdict::{Verdict, explanation, headline, told};
+use crate::scoreboard::CandidateReport;
 use crate::validation::Validation;
-use raypencil_judge::{Class, Defect, ItemTally, Quantity, SensorResult};
+use raypencil_judge::{Class, ItemTally, ListedDefect, Quantity, SensorResult};
+use raypencil_pack::check_suite;
 use raypencil_report::{JunitCase, JunitReport, JunitSuite, count, counted};
 use raypencil_scene_io::{Subject, probe_command};
 
@@ -27,6 +31,9 @@ pub fn junit(validation: &Validation) -> io::Result<String> {
         }
         report.push(suite);
     }
+    for candidate in validation.candidates() {
+        report.push(candidate_suite(validation, candidate));
+    }
     // Skipped cases alone would look like a pass.
     if Verdict::of(validation) == Verdict::NothingCompared {
         let case = JunitCase::failed("something is compared", "nothing_compared", headline(validation));
@@ -35,6 +42,32 @@ pub fn junit(validation: &Validation) -> io::Result<String> {
         report.push(suite);
     }
     report.to_xml()
+}
+
+/// A candidate: a case for each sensor and quantity, for each image and for each radiance map. If candidates may fail,
+/// one case says so in place of all, and is skipped if the candidate is wrong.
+fn candidate_suite(validation: &Validation, report: &CandidateReport) -> JunitSuite {
+    let (subject, name) = (&validation.subject, &report.candidate.name);
+    if validation.candidates_may_fail && !report.passes() {
+        let mut suite = JunitSuite::new(format!("{}: {name}", subject.name));
+        let message = format!("wrong, which --candidates-must-pass=false allows: {}", line(report));
+        suite.push(JunitCase::skipped("candidate", message));
+        return suite;
+    }
+    let mut suite = check_suite(subject, name, &report.check, None);
+    let images = report.images.iter().map(|image| {
+        let name = format!("image {}, beam {}", image.integrator, image.beam);
+        (name, image.is_within(&Z_TEST_LIMITS), "random errors do not explain the difference")
+    });
+    let radiance = report.radiance.iter().map(|map| {
+        (format!("radiance of {} rays, beam {}", map.sensor, map.beam), map.wrong == 0, "radiance is wrong")
+    });
+    for (case, fits, message) in images.chain(radiance) {
+        let class = format!("{}.{name}", subject.name);
+        let case = if fits { JunitCase::passed(case) } else { JunitCase::failed(case, "defect", message) };
+        suite.push(case.with_class(class));
+    }
+    suite
 }
 
 /// What became of one quantity of one sensor.
@@ -53,11 +86,12 @@ fn case(subject: &Subject, sensor: &SensorResult, quantity: Quantity, tally: &It
     let message = format!("{}: {quantity} differs on {} of {compared}", sensor.sensor, count(defects));
     let mut lines = Vec::new();
     // A ray is described under the worst of its quantities, which may be another one than this.
-    let (own, other): (Vec<&Defect>, Vec<&Defect>) =
-        sensor.defects.iter().partition(|defect| defect.item.quantity == quantity);
+    let (own, other): (Vec<&ListedDefect>, Vec<&ListedDefect>) =
+        sensor.listed.iter().partition(|defect| defect.item.quantity == quantity);
     let listed = if own.is_empty() { other } else { own };
     for defect in listed.into_iter().take(LISTED) {
-        lines.push(format!("{}, {}: {}", defect.place, defect.item.quantity, defect.what));
+        lines.push(told(defect));
+        lines.push(format!("    {}", defect.what));
         lines.push(format!("    {}", probe_command(subject, defect.place)));
     }
     if let Some(worst) = &tally.worst_error {

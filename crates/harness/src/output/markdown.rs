@@ -1,13 +1,13 @@
 //! `summary.md`: the validation as a comment on a pull request.
 
 use askama::Template;
-use raypencil_judge::Class;
+use raypencil_judge::{Class, ListedDefect};
 use raypencil_report::{VERSION, count, counted, time};
 use raypencil_scene_io::probe_command;
 
-use crate::output::candidates;
+use crate::output::candidates::{self, Cell, candidates_section};
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
-use crate::output::verdict::{CAVEAT, Verdict, defects, explanation, headline};
+use crate::output::verdict::{CAVEAT, Verdict, defects, explanation, headline, told};
 use crate::rendered::Rendered;
 use crate::validation::Validation;
 
@@ -29,7 +29,10 @@ struct Page {
     sensors: Vec<Sensor>,
     causes: Vec<CauseRow>,
     candidates: Vec<String>,
+    panel_names: Vec<String>,
+    panel: Vec<PanelRow>,
     defects: Vec<Listed>,
+    misses: Vec<Listed>,
     more_defects: String,
     stages: Vec<String>,
 }
@@ -44,6 +47,12 @@ struct Sensor {
     rounding: String,
     approximation: String,
     defects: String,
+}
+
+/// One quantity: a cell for each renderer and candidate.
+struct PanelRow {
+    quantity: String,
+    cells: Vec<String>,
 }
 
 struct Listed {
@@ -76,22 +85,33 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
         }
     }
     let total = validation.counts().defects;
+    let listed_as = |who: String, defect: &ListedDefect| Listed {
+        text: escaped(&format!("{who}{}", told(defect))),
+        command: code(&probe_command(subject, defect.place)),
+    };
     let listed: Vec<Listed> = defects(validation)
+        .into_iter()
         .take(MAX_LISTED)
-        .map(|defect| Listed {
-            text: format!("{}, {}: {}", defect.place, defect.item.quantity, defect.what),
-            command: code(&probe_command(subject, defect.place)),
-        })
+        .map(|defect| listed_as(String::new(), defect))
         .collect();
+    let misses = validation.candidates().iter().flat_map(|report| {
+        let name = format!("{}: ", report.candidate.name);
+        report.misses().take(MAX_LISTED).map(move |miss| listed_as(name.clone(), miss))
+    });
+    let section = candidates_section(validation);
+    let panel = section.rows.iter().map(|row| PanelRow {
+        quantity: row.quantity.clone(),
+        cells: row.cells.iter().map(Cell::words).collect(),
+    });
     let more = total - total.min(listed.len() as u64);
     let page = Page {
         sign: match verdict {
             Verdict::Agree => "✅",
-            Verdict::Defects => "❌",
+            Verdict::Defects | Verdict::CandidatesWrong => "❌",
             Verdict::NothingCompared => "❔",
         },
-        headline: headline(validation),
-        explanation: explanation(validation),
+        headline: escaped(&headline(validation)),
+        explanation: escaped(&explanation(validation)),
         caveat: if verdict == Verdict::Agree { CAVEAT } else { "" },
         scene: code(&subject.name),
         sha256: code(&subject.sha256),
@@ -100,13 +120,11 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
         rows: rows(subject, validation.pairs.iter().flat_map(|pair| &pair.sensors)),
         sensors,
         causes: causes(subject, &validation.approximations()),
-        candidates: validation
-            .scoreboard
-            .iter()
-            .flat_map(candidates::lines)
-            .map(|line| escaped(&line))
-            .collect(),
+        candidates: validation.candidates().iter().map(|report| escaped(&candidates::line(report))).collect(),
+        panel_names: section.names.iter().map(|name| escaped(name)).collect(),
+        panel: panel.collect(),
         defects: listed,
+        misses: misses.collect(),
         more_defects: if more > 0 { counted(more, "more is", "more are") } else { String::new() },
         stages: validation
             .stages
@@ -123,7 +141,7 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
 fn escaped(text: &str) -> String {
     text.chars()
         .flat_map(|c| {
-            let is_markup = c.is_ascii_punctuation() && !",.:;-".contains(c);
+            let is_markup = "\\`*_[]<>|&~".contains(c);
             is_markup.then_some('\\').into_iter().chain([if c.is_control() { ' ' } else { c }])
         })
         .collect()

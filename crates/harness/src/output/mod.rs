@@ -6,6 +6,7 @@ pub(crate) mod folder;
 pub(crate) mod junit;
 pub(crate) mod light;
 pub(crate) mod markdown;
+pub(crate) mod panel;
 pub(crate) mod plots;
 pub(crate) mod report;
 pub(crate) mod screen;

@@ -1,16 +1,17 @@
 //! `report.html`: the validation for people, as one file that links to nothing.
 
 use askama::Template;
-use raypencil_judge::{Class, SensorResult};
-use raypencil_report::{VERSION, count, counted, list, page_head, time};
+use raypencil_judge::{Class, SensorResult, name_of};
+use raypencil_report::{MapPair, SensorPlots, VERSION, count, counted, list, page_head, time};
 use raypencil_scene::SensorId;
 use raypencil_scene_io::probe_command;
 
-use crate::output::candidates::{CandidatesSection, candidates_section, typed};
+use crate::output::candidates::{CandidatesSection, Misses, all_misses, candidates_section, typed};
 use crate::output::light::{Light, light};
-use crate::output::plots::{Plots, max_columns, plots};
+use crate::output::plots::{max_columns, plots};
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
 use crate::output::verdict::{CAVEAT, Verdict, explanation, headline};
+use crate::scoreboard::{CandidateReport, Scoreboard};
 use crate::validation::{Pair, Validation};
 
 /// Maximum listed defects per sensor.
@@ -37,7 +38,9 @@ struct Page<'a> {
     sensors: Vec<Sensor>,
     light: Light,
     candidates: CandidatesSection,
+    candidate_plots: Vec<CandidatePlots>,
     defects: Vec<Defects>,
+    misses: Vec<Misses>,
     stages: Vec<Timed>,
 }
 
@@ -66,7 +69,15 @@ struct Sensor {
     name: String,
     size: String,
     numbers: Vec<String>,
-    plots: Plots,
+    note: String,
+    /// The pictures as HTML.
+    pictures: String,
+}
+
+/// The pictures of a candidate, sensor by sensor.
+struct CandidatePlots {
+    name: String,
+    sensors: Vec<Sensor>,
 }
 
 /// The defects of a sensor and a pair.
@@ -79,6 +90,7 @@ struct Defects {
 struct Listed {
     place: String,
     quantity: String,
+    words: String,
     what: String,
     command: String,
 }
@@ -92,7 +104,7 @@ struct Timed {
 
 /// The contents of `report.html`.
 pub fn html(validation: &Validation) -> Result<String, askama::Error> {
-    let Validation { subject, rendered, pairs, scoreboard: _, stages } = validation;
+    let Validation { subject, rendered, pairs, scoreboard, candidates_may_fail: _, stages } = validation;
     let verdict = Verdict::of(validation);
     let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let longest = stages.iter().map(|stage| stage.time).max().unwrap_or_default().as_secs_f64();
@@ -103,7 +115,7 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
         head,
         verdict: match verdict {
             Verdict::Agree => "agree",
-            Verdict::Defects => "defects",
+            Verdict::Defects | Verdict::CandidatesWrong => "defects",
             Verdict::NothingCompared => "nothing",
         },
         sign: verdict.sign(),
@@ -121,19 +133,17 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
         sensors: subject
             .scene
             .sensors()
-            .map(|id| {
-                let (width, height) = subject.scene.size(id).expect("a sensor of this scene");
-                Sensor {
-                    name: id.to_string(),
-                    size: format!("{width} × {height}"),
-                    numbers: numbers(validation, id),
-                    plots: plots(validation, id, max_columns),
-                }
-            })
-            .collect(),
+            .map(|id| sensor(validation, id, numbers(validation, id), &plots(validation, id, max_columns)))
+            .collect::<Result<_, _>>()?,
         light: light(validation, max_columns),
         candidates: candidates_section(validation),
+        candidate_plots: scoreboard
+            .iter()
+            .flat_map(|scoreboard| scoreboard.candidates.iter().map(move |report| (scoreboard, report)))
+            .map(|(scoreboard, report)| candidate_plots(validation, scoreboard, report, max_columns))
+            .collect::<Result<_, _>>()?,
         defects: pairs.iter().flat_map(|pair| defects(validation, pair)).collect(),
+        misses: all_misses(validation),
         stages: stages
             .iter()
             .map(|stage| Timed {
@@ -144,6 +154,54 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
             .collect(),
     };
     page.render()
+}
+
+fn sensor(
+    validation: &Validation,
+    id: SensorId,
+    numbers: Vec<String>,
+    plots: &SensorPlots,
+) -> Result<Sensor, askama::Error> {
+    let (width, height) = validation.subject.scene.size(id).expect("a sensor of this scene");
+    let size = format!("{width} × {height}");
+    Ok(Sensor { name: id.to_string(), size, numbers, note: plots.note.clone(), pictures: plots.html()? })
+}
+
+/// A candidate's range map of each sensor beside the exact one, and their difference.
+fn candidate_plots(
+    validation: &Validation,
+    scoreboard: &Scoreboard,
+    report: &CandidateReport,
+    max_columns: u32,
+) -> Result<CandidatePlots, askama::Error> {
+    let name = report.candidate.name.as_str();
+    let scene = &validation.subject.scene;
+    let mut sensors = Vec::new();
+    for (id, exact) in scene.sensors().zip(&scoreboard.exact_ranges) {
+        let mut plots = SensorPlots::new(id, scene.size(id).expect("a sensor of this scene"), max_columns);
+        let checked = report.check.sensors.iter().find(|checked| checked.sensor == id);
+        let mut numbers: Vec<String> = checked
+            .iter()
+            .map(|checked| match checked.compared() {
+                0 => "not given".into(),
+                rays => format!(
+                    "{} wrong of {}",
+                    count(checked.of(Class::Defect) + checked.of(Class::Undecided)),
+                    counted(rays, "ray", "rays")
+                ),
+            })
+            .collect();
+        if let Some(range) = &report.candidate.recorded.answers.map(id).range {
+            let defects = checked.iter().flat_map(|checked| &checked.defects).map(|defect| defect.place);
+            plots.add_ranges(&[("exact", exact), (name, range)]);
+            plots.add_difference(MapPair { a: ("exact", exact), b: (name, range) }, None, defects);
+        } else {
+            numbers.push("range: not given".into());
+            plots.add_ranges(&[("exact", exact)]);
+        }
+        sensors.push(sensor(validation, id, numbers, &plots)?);
+    }
+    Ok(CandidatePlots { name: name.into(), sensors })
 }
 
 fn tiles(validation: &Validation) -> Vec<Tile> {
@@ -158,6 +216,11 @@ fn tiles(validation: &Validation) -> Vec<Tile> {
         tile(counts.defects, "defects", "anything else", counts.defects > 0),
         tile(counts.judged, "judged", "ruled on in exact arithmetic", false),
     ];
+    let candidates = validation.candidates();
+    if !candidates.is_empty() {
+        let wrong = candidates.iter().filter(|report| !report.passes()).count() as u64;
+        tiles.push(tile(wrong, "wrong candidates", "of those compared with the exact answers", wrong > 0));
+    }
     if counts.not_compared > 0 {
         tiles.push(tile(counts.not_compared, "not compared", "one side has no maps", false));
     }
@@ -214,12 +277,13 @@ fn defects(validation: &Validation, pair: &Pair) -> Vec<Defects> {
     let of_sensor = |sensor: &SensorResult| {
         let total = sensor.of(Class::Defect);
         let listed: Vec<Listed> = sensor
-            .defects
+            .listed
             .iter()
             .take(MAX_LISTED)
             .map(|defect| Listed {
                 place: defect.place.to_string(),
-                quantity: defect.item.quantity.to_string(),
+                quantity: name_of(defect.item),
+                words: defect.words(),
                 what: defect.what.clone(),
                 command: probe_command(&validation.subject, defect.place),
             })

@@ -3,14 +3,14 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use raypencil_judge::{Class, SensorResult};
+use raypencil_judge::{Class, SensorResult, name_of};
 use raypencil_report::{Align, Table, VERSION, count, counted, list, time};
 use raypencil_scene::{Place, SensorId, Stage};
 use raypencil_scene_io::probe_command;
 
 use crate::output::candidates;
 use crate::output::table::{hits, totals, worst};
-use crate::output::verdict::{Verdict, defects, explanation, headline, rays};
+use crate::output::verdict::{Verdict, defects, explanation, headlines, rays};
 use crate::validation::Validation;
 
 /// Maximum columns of a line. Only paths and commands, which are for copying, may be longer.
@@ -35,7 +35,13 @@ const APPROXIMATION_COLUMN: usize = 4;
 const PLACE_COLUMN: usize = 7;
 
 /// Maximum described defects.
-const MAX_DEFECTS: usize = 5;
+const MAX_DEFECTS: usize = 3;
+
+/// Maximum described defects of candidates: the worst of each.
+const MAX_CANDIDATE_DEFECTS: usize = 2;
+
+/// Maximum lines of a described defect.
+const MAX_DEFECT_LINES: usize = 2;
 
 /// The validation on one terminal screen. `folder` is the folder that [`crate::write_validation`] wrote.
 ///
@@ -193,10 +199,17 @@ fn approximations(validation: &Validation) -> String {
     text
 }
 
-/// A line for each candidate.
+/// A line for each candidate, and one for what it does not give.
 fn candidates(validation: &Validation) -> String {
-    let lines = validation.scoreboard.iter().flat_map(candidates::lines).take(MAX_CANDIDATES);
-    lines.map(|line| format!("{}\n", cut(&line))).collect()
+    let mut text = String::new();
+    for report in validation.candidates().iter().take(MAX_CANDIDATES) {
+        let _ = writeln!(text, "{}", cut(&candidates::line(report)));
+        let names = candidates::names_not_given(report);
+        if !names.is_empty() {
+            text.push_str(&wrap("  not given: ", names, 1));
+        }
+    }
+    text
 }
 
 /// Stage times: a line for each renderer, then the other stages.
@@ -234,7 +247,8 @@ fn files(validation: &Validation, folder: Option<&Path>) -> String {
 /// The verdict, and the commands that show the first defects.
 fn verdict(validation: &Validation) -> String {
     let verdict = Verdict::of(validation);
-    let mut text = format!("{}\n", cut(&format!("{}.", headline(validation))));
+    let mut text: String =
+        headlines(validation).iter().map(|line| format!("{}\n", cut(&format!("{line}.")))).collect();
     let counts = validation.counts();
     match verdict {
         Verdict::Agree if counts.not_compared > 0 => {
@@ -249,9 +263,12 @@ fn verdict(validation: &Validation) -> String {
         }
         _ => {}
     }
-    for defect in defects(validation).take(MAX_DEFECTS) {
+    let of_renderers = defects(validation).into_iter().take(MAX_DEFECTS);
+    let of_candidates = validation.candidates().iter().flat_map(|report| report.misses().take(1));
+    for defect in of_renderers.chain(of_candidates.take(MAX_CANDIDATE_DEFECTS)) {
         let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
-        let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.item.quantity, defect.what)));
+        let words = format!("{}: {}", name_of(defect.item), defect.words());
+        text.push_str(&folded(&words, MAX_DEFECT_LINES));
     }
     text
 }
@@ -279,6 +296,22 @@ fn wrap(head: &str, parts: impl IntoIterator<Item = String>, max_lines: usize) -
         }
     }
     lines.push(line);
+    lines.into_iter().map(|line| cut(&line) + "\n").collect()
+}
+
+/// Words on indented lines, at most `max_lines` of them.
+fn folded(words: &str, max_lines: usize) -> String {
+    let mut lines: Vec<String> = vec!["     ".into()];
+    for word in words.split(' ') {
+        let is_last = lines.len() == max_lines;
+        let line = lines.last_mut().expect("a line");
+        if line.chars().count() + 1 + word.chars().count() > MAX_COLUMNS && !is_last {
+            lines.push(format!("      {word}"));
+        } else {
+            line.push(' ');
+            line.push_str(word);
+        }
+    }
     lines.into_iter().map(|line| cut(&line) + "\n").collect()
 }
 

@@ -7,21 +7,25 @@ use raypencil_report::VERSION;
 use raypencil_scene::Switches;
 use raypencil_scene_io::{Subject, probe_command};
 use serde::Serialize;
+use serde_json::Value;
 
-use crate::output::candidates::{ScoreboardSummary, scoreboard_summary};
+use crate::output::panel::{ScoreboardSummary, scoreboard_summary};
 use crate::output::table::hits;
 use crate::output::verdict::Verdict;
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
 
 /// Version of the schema; it grows when a key changes its meaning or is removed.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 #[derive(Serialize)]
 struct Summary<'a> {
     format: u32,
     version: &'a str,
     verdict: Verdict,
+    /// Whether the exit code is 0.
+    passes: bool,
+    candidates: CandidateCounts,
     #[serde(flatten)]
     classes: Classes,
     /// Rays that each set of the paper's approximations changed, by the names of its switches.
@@ -34,6 +38,14 @@ struct Summary<'a> {
     #[serde(rename = "panel")]
     scoreboard: Option<ScoreboardSummary>,
     stages: Vec<StageSummary<'a>>,
+}
+
+/// Candidates, and what is asked of them.
+#[derive(Serialize)]
+struct CandidateCounts {
+    count: usize,
+    wrong: usize,
+    must_pass: bool,
 }
 
 /// Rays by class. Together with all approximations they add up to `compared`.
@@ -80,7 +92,7 @@ struct MapSummary {
 struct PairSummary<'a> {
     a: &'a str,
     b: &'a str,
-    sensors: Vec<SensorSummary<'a>>,
+    sensors: Vec<SensorSummary>,
 }
 
 #[derive(Serialize)]
@@ -94,14 +106,14 @@ struct CauseSummary {
 }
 
 #[derive(Serialize)]
-struct SensorSummary<'a> {
+struct SensorSummary {
     sensor: String,
     #[serde(flatten)]
     classes: Classes,
     approximations: BTreeMap<String, u64>,
     causes: Vec<CauseSummary>,
     quantities: Vec<QuantitySummary>,
-    first_defects: Vec<DefectSummary<'a>>,
+    worst_defects: Vec<Value>,
 }
 
 #[derive(Serialize)]
@@ -130,15 +142,6 @@ struct WorstSummary {
 }
 
 #[derive(Serialize)]
-struct DefectSummary<'a> {
-    i: u32,
-    j: u32,
-    quantity: Quantity,
-    what: &'a str,
-    probe: String,
-}
-
-#[derive(Serialize)]
 struct StageSummary<'a> {
     name: &'a str,
     seconds: f64,
@@ -146,13 +149,19 @@ struct StageSummary<'a> {
 
 /// The contents of `summary.json`.
 pub fn summary_json(validation: &Validation) -> String {
-    let Validation { subject, rendered, pairs, scoreboard: _, stages } = validation;
+    let Validation { subject, rendered, pairs, scoreboard: _, candidates_may_fail, stages } = validation;
     let counts = validation.counts();
     let approximations = validation.approximations();
     let summary = Summary {
         format: FORMAT,
         version: VERSION,
         verdict: Verdict::of(validation),
+        passes: validation.passes(),
+        candidates: CandidateCounts {
+            count: validation.candidates().len(),
+            wrong: validation.candidates().iter().filter(|report| !report.passes()).count(),
+            must_pass: !candidates_may_fail,
+        },
         classes: Classes {
             compared: counts.compared,
             agree: counts.agree,
@@ -202,7 +211,7 @@ fn pair_summary<'a>(validation: &'a Validation, pair: &'a Pair) -> PairSummary<'
     PairSummary { a: name(pair.a), b: name(pair.b), sensors }
 }
 
-fn sensor_summary<'a>(subject: &Subject, comparison: &'a SensorResult) -> SensorSummary<'a> {
+fn sensor_summary(subject: &Subject, comparison: &SensorResult) -> SensorSummary {
     let quantities = comparison.items.iter().map(|(item, tally)| QuantitySummary {
         quantity: item.quantity,
         unit: item.quantity.unit(subject.scene.flux_model()),
@@ -216,13 +225,9 @@ fn sensor_summary<'a>(subject: &Subject, comparison: &'a SensorResult) -> Sensor
         worst_error: worst(subject, &tally.worst_error),
         worst_ratio: worst(subject, &tally.worst_ratio),
     });
-    let defects = comparison.defects.iter().map(|defect| DefectSummary {
-        i: defect.place.i,
-        j: defect.place.j,
-        quantity: defect.item.quantity,
-        what: &defect.what,
-        probe: probe_command(subject, defect.place),
-    });
+    let model = subject.scene.flux_model();
+    let defects = comparison.listed.iter();
+    let defects = defects.map(|defect| defect.to_json(model, &probe_command(subject, defect.place)));
     SensorSummary {
         sensor: comparison.sensor.to_string(),
         classes: Classes {
@@ -238,7 +243,7 @@ fn sensor_summary<'a>(subject: &Subject, comparison: &'a SensorResult) -> Sensor
         approximations: rays_by_cause(&comparison.approximations),
         causes: cause_summaries(subject, &comparison.approximations),
         quantities: quantities.collect(),
-        first_defects: defects.collect(),
+        worst_defects: defects.collect(),
     }
 }
 

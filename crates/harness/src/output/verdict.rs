@@ -1,9 +1,10 @@
 //! The verdict on a validation in words, which claim no more than was shown.
 
-use raypencil_judge::{Class, Defect, Largest, Quantity};
+use raypencil_judge::{Class, Largest, ListedDefect, Quantity, listed_defects, name_of};
 use raypencil_report::{count, counted, list, number};
 use serde::Serialize;
 
+use crate::scoreboard::CandidateReport;
 use crate::validation::Validation;
 
 /// The verdict on a validation.
@@ -14,6 +15,8 @@ pub(crate) enum Verdict {
     Agree,
     /// At least one ray is a defect.
     Defects,
+    /// The renderers agree, and a candidate is wrong.
+    CandidatesWrong,
     /// No ray was compared.
     NothingCompared,
 }
@@ -28,6 +31,8 @@ impl Verdict {
         let counts = validation.counts();
         if counts.defects > 0 {
             Self::Defects
+        } else if validation.candidates().iter().any(|report| !report.passes()) {
+            Self::CandidatesWrong
         } else if counts.compared > 0 {
             Self::Agree
         } else {
@@ -39,7 +44,7 @@ impl Verdict {
     pub(crate) fn sign(self) -> &'static str {
         match self {
             Self::Agree => "✓",
-            Self::Defects => "✗",
+            Self::Defects | Self::CandidatesWrong => "✗",
             Self::NothingCompared => "?",
         }
     }
@@ -53,21 +58,87 @@ pub(crate) fn rays(validation: &Validation, how_many: u64) -> String {
     }
 }
 
-/// The verdict as a headline.
+/// The verdict as a headline: that on the candidates first if one is wrong.
 pub(crate) fn headline(validation: &Validation) -> String {
+    headlines(validation).join("; ")
+}
+
+/// The headline in its parts, one on the candidates if there are any, and one on the renderers.
+pub(crate) fn headlines(validation: &Validation) -> Vec<String> {
+    let own = renderers_headline(validation);
+    let Some(theirs) = candidates_headline(validation.candidates()) else { return vec![own] };
+    if validation.candidates().iter().all(CandidateReport::passes) {
+        return vec![own, theirs];
+    }
+    let may = if validation.candidates_may_fail { ", and may be" } else { "" };
+    let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
+    vec![format!("{theirs}{may}"), format!("{}: {}", list(&names), lower_first(&own))]
+}
+
+fn lower_first(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// The headline on our own renderers.
+fn renderers_headline(validation: &Validation) -> String {
     let counts = validation.counts();
     let compared = rays(validation, counts.compared);
-    match Verdict::of(validation) {
-        Verdict::NothingCompared => "Nothing was compared".into(),
-        Verdict::Defects if counts.defects == 1 => format!("1 of {compared} differs"),
-        Verdict::Defects => format!("{} of {compared} differ", count(counts.defects)),
-        Verdict::Agree if counts.compared == 1 => format!("The only {} agrees", &compared[2..]),
-        Verdict::Agree if counts.approximation > 0 => format!(
+    match (counts.compared, counts.defects) {
+        (0, _) => "Nothing was compared".into(),
+        (_, 1) => format!("1 of {compared} differs"),
+        (_, 2..) => format!("{} of {compared} differ", count(counts.defects)),
+        (1, 0) => format!("The only {} agrees", &compared[2..]),
+        (_, 0) if counts.approximation > 0 => format!(
             "All {compared} agree, except {} with an error of the paper's approximations",
             count(counts.approximation)
         ),
-        Verdict::Agree => format!("All {compared} agree"),
+        (_, 0) => format!("All {compared} agree"),
     }
+}
+
+/// The headline on the candidates; `None` if there are none.
+fn candidates_headline(candidates: &[CandidateReport]) -> Option<String> {
+    let wrong: Vec<&CandidateReport> = candidates.iter().filter(|report| !report.passes()).collect();
+    let name = |report: &CandidateReport| report.candidate.name.clone();
+    Some(match (candidates, wrong.as_slice()) {
+        ([], _) => return None,
+        ([one], []) => {
+            let half =
+                if one.candidate.recorded.items_in_half().is_empty() { "" } else { " at half precision" };
+            let rays = counted(one.check.compared(), "ray", "rays");
+            format!("candidate {} agrees on {rays}{half}", name(one))
+        }
+        (all, []) => format!("{} candidates agree", all.len()),
+        ([_], [one]) => format!("Candidate {} is wrong on {}", name(one), wrong_parts(one)),
+        (all, wrong) => {
+            let each: Vec<String> =
+                wrong.iter().map(|one| format!("{} on {}", name(one), wrong_parts(one))).collect();
+            let verb = if wrong.len() == 1 { "is" } else { "are" };
+            format!("{} of {} candidates {verb} wrong: {}", wrong.len(), all.len(), each.join("; "))
+        }
+    })
+}
+
+/// What a candidate is wrong on, in words.
+fn wrong_parts(report: &CandidateReport) -> String {
+    if report.check.compared() == 0 {
+        return "everything: nothing of it could be compared".into();
+    }
+    let mut parts = Vec::new();
+    if report.wrong_rays() > 0 {
+        let compared = counted(report.check.compared(), "ray", "rays");
+        parts.push(format!("{} of {compared}", count(report.wrong_rays())));
+    }
+    for (wrong, all, one, many) in [
+        (report.wrong_images(), report.images.len(), "image", "images"),
+        (report.wrong_radiance(), report.radiance.len(), "radiance map", "radiance maps"),
+    ] {
+        if wrong > 0 {
+            parts.push(format!("{wrong} of {}", counted(all as u64, one, many)));
+        }
+    }
+    parts.join(", ")
 }
 
 /// The reasons for the verdict, in one or two sentences.
@@ -75,7 +146,13 @@ pub(crate) fn explanation(validation: &Validation) -> String {
     let counts = validation.counts();
     let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let who = list(&names);
-    let mut text = match Verdict::of(validation) {
+    let verdict = match (Verdict::of(validation), counts.compared) {
+        // What the renderers show is told first.
+        (Verdict::CandidatesWrong, 0) => Verdict::NothingCompared,
+        (Verdict::CandidatesWrong, _) => Verdict::Agree,
+        (verdict, _) => verdict,
+    };
+    let mut text = match verdict {
         Verdict::NothingCompared => match names.len() {
             0 | 1 => "A comparison needs two renderers.".into(),
             _ => format!("No sensor has maps of {who} that both state which rays hit."),
@@ -84,14 +161,12 @@ pub(crate) fn explanation(validation: &Validation) -> String {
             let mut text = format!(
                 "{who} differ in the face that is hit, or by more than their rounding errors explain."
             );
-            if let Some(defect) = defects(validation).next() {
-                let Defect { place, item, what } = defect;
-                let quantity = item.quantity;
-                text.push_str(&format!(" The first: {place}, {quantity}. {what}."));
+            if let Some(defect) = defects(validation).first() {
+                text.push_str(&format!(" The worst: {}.", told(defect)));
             }
             text
         }
-        Verdict::Agree => {
+        Verdict::Agree | Verdict::CandidatesWrong => {
             let faces = match (counts.tie, counts.rounding) {
                 (0, 0) => "the same faces",
                 (_, 0) => "the same faces, or faces at the same point",
@@ -120,12 +195,24 @@ pub(crate) fn explanation(validation: &Validation) -> String {
             rays(validation, counts.not_compared)
         ));
     }
+    for report in validation.candidates().iter().filter(|report| !report.passes()) {
+        text.push_str(&format!(" Candidate {} is wrong on {}", report.candidate.name, wrong_parts(report)));
+        match report.misses().next() {
+            Some(worst) => text.push_str(&format!("; the worst: {}.", told(worst))),
+            None => text.push('.'),
+        }
+    }
     text
 }
 
-/// The described defects, pair by pair and sensor by sensor.
-pub(crate) fn defects(validation: &Validation) -> impl Iterator<Item = &Defect> {
-    validation.pairs.iter().flat_map(|pair| &pair.sensors).flat_map(|sensor| &sensor.defects)
+/// A defect in one sentence.
+pub(crate) fn told(defect: &ListedDefect) -> String {
+    format!("{}, {}: {}", defect.place, name_of(defect.item), defect.words())
+}
+
+/// The listed defects of the renderers, pair by pair.
+pub(crate) fn defects(validation: &Validation) -> Vec<&ListedDefect> {
+    validation.pairs.iter().flat_map(|pair| listed_defects(&pair.sensors)).collect()
 }
 
 /// The largest ratio of an error to its bound, and its quantity; `None` if no error is above 0.

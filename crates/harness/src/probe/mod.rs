@@ -2,11 +2,12 @@
 
 mod text;
 
-use raypencil_judge::{Cause, Class, Judge, JudgeShare, Quantity, VisibilityCause};
+use raypencil_judge::{Cause, CheckedRay, Class, Judge, JudgeShare, Quantity, VisibilityCause, check_ray};
 use raypencil_referee::{Format, Margin, Margins, Ruling, Verdict, VisibilityMargins, VisibilityRuling};
 use raypencil_scene::{Hit, Place, Progress, Ray, RenderOutput, Request, Return, Sampling, SensorId};
-use raypencil_scene_io::{Subject, probe_command};
+use raypencil_scene_io::{Subject, probe_command, quoted};
 
+use crate::candidate::Candidate;
 use crate::renderers::{Contender, attribute};
 
 /// One ray with every renderer's answer and the exact one.
@@ -22,6 +23,8 @@ pub struct Probe {
     pub max_range: f64,
     /// Each renderer's answer.
     pub answers: Vec<ProbedAnswer>,
+    /// The answer of each candidate, after [`Probe::ask`].
+    pub candidates: Vec<ProbedCandidate>,
     /// The exact verdict.
     pub verdict: Verdict,
     /// The exact hit with its values rounded to f64; on a tie, that of the face with the lowest index.
@@ -36,6 +39,28 @@ pub struct Probe {
     pub surface_margin: Margin,
     /// Smallest displacements that change a pencil's visibility; `None` for a camera or a pencil that hits nothing.
     pub visibility_margins: Option<VisibilityMargins>,
+}
+
+/// A candidate's answer to a ray, judged as by `check`.
+#[derive(Debug, Clone)]
+pub struct ProbedCandidate {
+    /// The candidate's name.
+    pub name: String,
+    /// What it says of each quantity, what is true, and the class.
+    pub ray: CheckedRay,
+}
+
+impl Probe {
+    /// Adds the answers of candidates, recordings of the same scene, to those of the renderers.
+    pub fn ask(&mut self, subject: &Subject, candidates: &[Candidate]) {
+        self.candidates.extend(candidates.iter().filter_map(|candidate| {
+            let ray = check_ray(&subject.scene, &candidate.recorded, self.place)?;
+            Some(ProbedCandidate { name: candidate.name.clone(), ray })
+        }));
+        let folders = candidates.iter().map(|candidate| quoted(&candidate.folder.to_string_lossy()));
+        let words = folders.map(|folder| format!(" --candidate {folder}"));
+        self.command.extend(words);
+    }
 }
 
 /// One renderer's answer to a ray, with the referee's ruling.
@@ -172,6 +197,7 @@ pub fn probe(
         ray,
         max_range,
         answers,
+        candidates: Vec::new(),
         verdict,
         exact,
         exact_return,

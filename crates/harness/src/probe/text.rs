@@ -3,11 +3,12 @@
 use std::fmt;
 
 use glam::DVec3;
+use raypencil_judge::{Class, name_of};
 use raypencil_referee::{Explained, Margin, Ruling};
 use raypencil_scene::{Hit, Ray, Return};
 use serde::Serialize;
 
-use crate::probe::{Probe, ProbedReturn};
+use crate::probe::{Probe, ProbedCandidate, ProbedReturn};
 
 impl Probe {
     /// The probe as JSON, for `--json`.
@@ -102,7 +103,74 @@ impl Probe {
                 "landing_margin_pixels": self.visibility_margins.as_ref().and_then(|margins| margins.landing),
             },
             "answers": answers,
+            "candidates": self.candidates.iter().map(candidate_json).collect::<Vec<_>>(),
         })
+    }
+}
+
+/// A candidate's answer as JSON.
+fn candidate_json(ProbedCandidate { name, ray }: &ProbedCandidate) -> serde_json::Value {
+    let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+    let items = ray.items.iter().map(|of| {
+        serde_json::json!({
+            "quantity": name_of(of.item),
+            "said": of.said,
+            "true": of.truth,
+            "difference": finite(of.difference),
+            "difference_unit": of.difference_unit,
+            "ratio": finite(of.ratio),
+            "class": of.class,
+        })
+    });
+    serde_json::json!({
+        "name": name,
+        "class": ray.class,
+        "ruling": ray.ruling,
+        "what": ray.what,
+        "quantities": items.collect::<Vec<_>>(),
+    })
+}
+
+/// A candidate's answer: said, true and class of each quantity.
+fn write_candidate(
+    f: &mut fmt::Formatter<'_>,
+    ProbedCandidate { name, ray }: &ProbedCandidate,
+) -> fmt::Result {
+    match ray.class {
+        None => return writeln!(f, "  {name} (candidate): not given"),
+        Some(class) => writeln!(f, "  {name} (candidate): {} ({})", class_words(class), ray.ruling)?,
+    }
+    for of in &ray.items {
+        let quantity = name_of(of.item);
+        let Some(said) = &of.said else {
+            writeln!(f, "    {quantity}: not given, true is {}", of.truth)?;
+            continue;
+        };
+        write!(f, "    {quantity}: says {said}, true is {}", of.truth)?;
+        if let Some(difference) = of.difference.filter(|difference| *difference != 0.0) {
+            let unit = of.difference_unit;
+            write!(f, ", off by {difference:.3e}{}{unit}", if unit.is_empty() { "" } else { " " })?;
+        }
+        if let Some(ratio) = of.ratio.filter(|ratio| *ratio != 0.0) {
+            write!(f, ", {ratio:.2e} times its bound")?;
+        }
+        writeln!(f, ": {}", of.class.map_or("not compared", class_words))?;
+    }
+    if !ray.what.is_empty() {
+        writeln!(f, "    {}", ray.what)?;
+    }
+    Ok(())
+}
+
+/// A class in one word.
+fn class_words(class: Class) -> &'static str {
+    match class {
+        Class::Agree => "agrees",
+        Class::Tie => "tie",
+        Class::Rounding => "rounding",
+        Class::Approximation => "approximation",
+        Class::Undecided => "undecided",
+        Class::Defect => "defect",
     }
 }
 
@@ -182,6 +250,9 @@ impl fmt::Display for Probe {
             if let Some(back) = &answer.back {
                 write_ruled_return(f, back, self.flux_unit)?;
             }
+        }
+        for candidate in &self.candidates {
+            write_candidate(f, candidate)?;
         }
         writeln!(f, "  again: {}", self.command)
     }

@@ -58,6 +58,7 @@ pub(super) fn judge_hit(
     let Some(states_hit) = stated.hits_by_any_value() else {
         missing_values(entry, recorded);
         entry.missing(Quantity::Hit);
+        entry.missing(Quantity::Face);
         return of_truth(Class::Agree);
     };
 

@@ -8,6 +8,7 @@ pub(crate) mod ground_truth;
 mod hit;
 mod pencil;
 mod pixel;
+pub(crate) mod single;
 mod stored;
 mod uncertain;
 
@@ -21,6 +22,8 @@ use crate::check::pixel::BeamImage;
 use crate::check::uncertain::uncertain_fluxes;
 use crate::class::Class;
 use crate::entry::RayEntry;
+use crate::item_value::{ItemValue, difference_unit};
+use crate::listed::{Described, list_defects};
 use crate::quantity::Item;
 use crate::recorded::Recorded;
 use crate::tally::{ItemTally, SensorResult};
@@ -164,7 +167,34 @@ pub fn check_rays(
         images.iter().for_each(|image| image.judge(truth, recorded, &mut entry));
         entry.finish(String::new);
     });
-    Check { sensors: std::iter::once(camera).chain(beams).collect() }
+    let mut sensors: Vec<SensorResult> = std::iter::once(camera).chain(beams).collect();
+    progress.stage("listing the worst defects");
+    let model = scene.flux_model();
+    list_defects(truth.judge(), &mut sensors, |place, item| Described {
+        said: ItemValue::of_answers(&recorded.answers, model, place, item)
+            .map(|value| (recorded.name.clone(), value))
+            .into_iter()
+            .collect(),
+        truth: ItemValue::of_answers(truth.answers(), model, place, item),
+        difference_unit: difference_unit(model, item),
+        what: what_is_wrong(truth, recorded, &images, place),
+    });
+    Check { sensors }
+}
+
+/// All that is wrong with one ray, in words: the ray is judged once more by itself.
+fn what_is_wrong(truth: &GroundTruth<'_>, recorded: &Recorded, images: &[BeamImage], place: Place) -> String {
+    let mut alone = SensorResult::new(place.sensor);
+    let mut entry = RayEntry::checked(place, &mut alone);
+    let assumed = judge_hit(truth, recorded, &mut entry);
+    match place.sensor {
+        SensorId::Camera => images.iter().for_each(|image| image.judge(truth, recorded, &mut entry)),
+        SensorId::Beam(_) => {
+            judge_return(truth, recorded, &mut entry, &assumed);
+        }
+    }
+    entry.finish(String::new);
+    alone.defects.pop().map_or(String::new(), |defect| defect.what)
 }
 
 /// Judges a beam's pencils, and gives what each contributes to the image, in row-major order: the true light where the

@@ -14,14 +14,18 @@ pub(crate) mod single;
 
 use rayon::prelude::*;
 
+use crate::answer::{StatedHit, StatedReturn};
 use crate::compare::flux_pair::FluxPair;
 use crate::compare::pixel::BeamImages;
 use crate::compare::ray::{ComparedRays, compare_ray};
 use crate::compare::side::Side;
+use crate::item_value::{ItemValue, difference_unit};
 use crate::judge::{Judge, JudgeShare};
+use crate::listed::{Described, list_defects};
 use crate::quantity::{Item, Quantity};
 use crate::tally::SensorResult;
-use raypencil_scene::{Image, Place, Scene, SensorId, SensorMap};
+use raypencil_referee::Format;
+use raypencil_scene::{Image, Place, Sampling, Scene, SensorId, SensorMap};
 
 /// Compares two outputs of `scene`, sensor by sensor, with a judge of its own.
 ///
@@ -64,7 +68,53 @@ pub fn compare(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Vec<SensorResult> {
 pub fn compare_judged(judge: &Judge<'_>, a: Side<'_>, b: Side<'_>) -> Vec<SensorResult> {
     let (beams, light) = compare_beams(judge, a, b);
     let (camera, _) = compare_sensor(judge, SensorId::Camera, a, b, &light);
-    std::iter::once(camera).chain(beams).collect()
+    let mut sensors: Vec<SensorResult> = std::iter::once(camera).chain(beams).collect();
+    list_defects(judge, &mut sensors, |place, item| describe(judge, [a, b], &light, place, item));
+    sensors
+}
+
+/// What both sides say of a ray, and what is true.
+fn describe(
+    judge: &Judge<'_>,
+    [a, b]: [Side<'_>; 2],
+    light: &[BeamImages<'_>],
+    place: Place,
+    item: Item,
+) -> Described {
+    let Place { sensor, i, j } = place;
+    let model = judge.scene().flux_model();
+    let said = [a, b].into_iter().filter_map(|side| {
+        let hit = StatedHit::of(side.output.map(sensor)?, i, j);
+        let back = match sensor {
+            SensorId::Camera => None,
+            SensorId::Beam(beam) => side.output.returns.get(beam),
+        };
+        let back = back.map(|returns| StatedReturn::of(returns, None, i, j));
+        Some((side.name.to_string(), ItemValue::stated(&hit, back.as_ref(), model, item)?))
+    });
+    let exact = judge.referee().values(sensor, i, j).map(|hit| hit.in_format(Format::Double));
+    let back = match sensor {
+        SensorId::Camera => None,
+        SensorId::Beam(beam) => {
+            let light = judge.referee().light(beam, Sampling::Centres);
+            let back = light.and_then(|light| light.returned(i, j));
+            back.map(|back| back.in_format(Format::Double, model))
+        }
+    };
+    let what = match (a.output.map(sensor), b.output.map(sensor)) {
+        (Some(of_a), Some(of_b)) => {
+            let mut alone = ComparedRays::none(sensor);
+            compare_ray(judge, place, (of_a, a), (of_b, b), light, &mut alone);
+            alone.result.defects.pop().map_or(String::new(), |defect| defect.what)
+        }
+        _ => String::new(),
+    };
+    Described {
+        said: said.collect(),
+        truth: ItemValue::exact(exact.as_ref(), back.as_ref(), model, item),
+        difference_unit: difference_unit(model, item),
+        what,
+    }
 }
 
 /// Compares the beams, which come first: a pixel's flux is judged by the pencils that contribute to it.

@@ -162,6 +162,25 @@ impl Recorded {
         Self { name: name.into(), answers, storage, unknown: Vec::new(), precision }
     }
 
+    /// How an item is stored: the coarsest type of all sensors that have it; `None` if none has.
+    pub fn storage_of_item(&self, item: Item) -> Option<Storage> {
+        let stored = self.storage.iter().filter(|((_, of), _)| *of == item);
+        stored.map(|(_, storage)| *storage).min()
+    }
+
+    /// Items that are stored in half precision for at least one sensor: they agree to 11 binary digits at most.
+    pub fn items_in_half(&self) -> Vec<Item> {
+        let mut items: Vec<Item> = self
+            .storage
+            .iter()
+            .filter(|(_, how)| **how == Storage::F16)
+            .map(|((_, item), _)| *item)
+            .collect();
+        items.sort();
+        items.dedup();
+        items
+    }
+
     /// Takes channels as a recording of this name; `folder` is for messages.
     ///
     /// # Errors

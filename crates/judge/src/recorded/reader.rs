@@ -165,6 +165,15 @@ impl<'a> Reader<'a> {
                     "a whole number, or 4294967295 for none",
                 ));
             }
+            // An index that another one may be rounded to is no index: 2049 is 2048 in half precision.
+            if let Some(first) =
+                channel.storage.first_ambiguous_whole().filter(|first| value >= f64::from(*first))
+                && !none
+            {
+                let found = format!("{value} in {} precision", channel.storage);
+                let expected = format!("whole numbers below {first}, or a type that holds each of them");
+                return Err(Self::fault((name, channel), Some(cell(image, index)), found, &expected));
+            }
             cells.push(if none { u32::MAX } else { value as u32 });
         }
         Ok(Some(Image::from_cells(image.width(), image.height(), cells)))
@@ -214,6 +223,13 @@ impl<'a> Reader<'a> {
         for (quantity, parts) in values {
             let mut images = Vec::new();
             for part in &parts {
+                // A range beyond the largest number is stored as infinity, which would mean "no hit".
+                let (most, storage) = (self.scene.max_range(sensor).unwrap_or(0.0), part.channel.storage);
+                if quantity.is_length() && most > storage.max() {
+                    let found = format!("{storage} precision, which ends at {}", storage.max());
+                    let expected = format!("a type that holds ranges up to the sensor's {most} m");
+                    return Err(Self::fault((part.name, part.channel), None, found, &expected));
+                }
                 let hits = Hits { hits: &hits, speaker: &speaker, conventions: self.conventions };
                 images.push(maybe(*part, hits, quantity.is_length())?);
             }

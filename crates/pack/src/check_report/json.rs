@@ -3,17 +3,18 @@
 use raypencil_judge::{
     CHECK_CLASSES, Item, ItemTally, Largest, SensorResult, class_counts_json, key_of, unit_of,
 };
+use raypencil_scene::SensorId;
 use serde_json::json;
 
 use crate::check::Checked;
-use crate::check_report::verdict::{arithmetic, verdict};
+use crate::check_report::verdict::{arithmetic, not_given, verdict};
 
 /// Number of the format. It grows when a key changes its meaning or goes away.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// The JSON document. Its schema is `docs/formats/check.schema.json`.
 pub fn check_json(checked: &Checked) -> String {
-    let Checked { subject, recorded, check, diagnosis, is_blind } = checked;
+    let Checked { subject, recorded, check, diagnosis, is_blind, .. } = checked;
     let model = subject.scene.flux_model();
     let largest = |largest: &Option<Largest>| {
         largest.as_ref().map(|Largest { value, place, ruling }| {
@@ -25,10 +26,13 @@ pub fn check_json(checked: &Checked) -> String {
             })
         })
     };
-    let quantity_json = |(item, tally): (Item, &ItemTally)| {
+    let quantity_json = |sensor: SensorId, (item, tally): (Item, &ItemTally)| {
+        let storage = recorded.storage.get(&(sensor, item)).map(ToString::to_string);
         json!({
             "quantity": key_of(model, item),
             "unit": unit_of(model, item),
+            "storage": storage,
+            "not_given": not_given(tally),
             "compared": tally.compared(),
             "classes": class_counts_json(&tally.by_class, &CHECK_CLASSES),
             "not_compared": tally.not_compared,
@@ -38,22 +42,15 @@ pub fn check_json(checked: &Checked) -> String {
         })
     };
     let sensor_json = |sensor: &SensorResult| {
-        let wrong = sensor.defects.iter().map(|one| {
-            json!({
-                "i": one.place.i, "j": one.place.j,
-                "quantity": key_of(model, one.item),
-                "what": one.what,
-                "probe": checked.repro(one.place),
-            })
-        });
+        let wrong = sensor.listed.iter().map(|one| one.to_json(model, &checked.repro(one.place)));
         json!({
             "sensor": sensor.sensor.to_string(),
             "compared": sensor.compared(),
             "classes": class_counts_json(&sensor.by_class, &CHECK_CLASSES),
             "not_compared": sensor.not_compared,
             "ruled": sensor.judged,
-            "quantities": sensor.items.iter().map(quantity_json).collect::<Vec<_>>(),
-            "first_defects": wrong.collect::<Vec<_>>(),
+            "quantities": sensor.items.iter().map(|of| quantity_json(sensor.sensor, of)).collect::<Vec<_>>(),
+            "worst_defects": wrong.collect::<Vec<_>>(),
         })
     };
     let diagnosis_json = diagnosis.as_ref().map(|found| {

@@ -5,15 +5,20 @@
 //! screen     one terminal screen
 //! json       check.json
 //! junit      junit.xml
-//! folder     both files in a folder
+//! page       report.html
+//! folder     all files in a folder
 //! ```
 
 mod folder;
 mod json;
 mod junit;
+mod page;
 mod screen;
 mod verdict;
 
 pub use folder::write_check;
 pub use json::check_json;
+pub use junit::check_suite;
+pub use page::check_page;
 pub use screen::check_screen;
+pub use verdict::{items_not_given, not_given, rays_not_given};

@@ -2,13 +2,15 @@
 
 use std::fmt::Write as _;
 
-use raypencil_judge::{Class, Defect, Largest, name_of, unit_of};
+use raypencil_judge::{Class, Largest, listed_defects, name_of, unit_of};
 use raypencil_report::{Align, Table, count, quantity};
 
 use crate::check::Checked;
-use crate::check_report::verdict::{MAX_SHOWN_DEFECTS, arithmetic, verdict};
+use crate::check_report::verdict::{
+    MAX_SHOWN_DEFECTS, arithmetic, half_precision, headline, items_not_given, not_given, sign,
+};
 
-/// The screen: a table of all quantities, the first defects with their `probe` commands, the verdict, and the mistake that
+/// The screen: a table of all quantities, the worst defects with their `probe` commands, the verdict, and the mistake that
 /// explains it, if one does.
 pub fn check_screen(checked: &Checked) -> String {
     let Checked { subject, recorded, check, is_blind, .. } = checked;
@@ -42,13 +44,19 @@ pub fn check_screen(checked: &Checked) -> String {
         let largest = |largest: &Option<Largest>, unit: &str| {
             largest.as_ref().map_or("-".into(), |largest| quantity(largest.value, unit))
         };
-        table.row([
-            name_of(item),
-            count(tally.compared()),
-            count(tally.of(Class::Agree)),
-            count(tally.of(Class::Tie)),
-            count(tally.of(Class::Rounding)),
-            count(tally.of(Class::Defect)),
+        let of = |class| count(tally.of(class));
+        let counts = match not_given(&tally) {
+            // Never 0: a quantity that is not given is not one without errors.
+            Some(_) => ["not given".to_string(), "-".into(), "-".into(), "-".into(), "-".into()],
+            None => [
+                count(tally.compared()),
+                of(Class::Agree),
+                of(Class::Tie),
+                of(Class::Rounding),
+                of(Class::Defect),
+            ],
+        };
+        let rest = [
             count(tally.not_compared),
             largest(&tally.worst_ulps, ""),
             largest(&tally.worst_error, unit_of(model, item)),
@@ -57,49 +65,33 @@ pub fn check_screen(checked: &Checked) -> String {
                 let place = largest.place;
                 format!("{} {},{}", place.sensor, place.i, place.j)
             }),
-        ]);
+        ];
+        table.row([name_of(item)].into_iter().chain(counts).chain(rest));
     }
     let _ = writeln!(text, "{table}");
     for name in &recorded.unknown {
         let _ = writeln!(text, "Unknown channel, not compared: {name}");
     }
-    let is_partial = check.totals().values().any(|tally| tally.not_compared > 0);
-    let not_compared: Vec<String> = check
-        .totals()
-        .into_iter()
-        .filter(|(_, tally)| tally.compared() == 0 && tally.not_compared > 0)
-        .map(|(item, _)| name_of(item))
-        .collect();
-    if !not_compared.is_empty() {
-        let _ = writeln!(
-            text,
-            "Not compared, because absent or stored in a type that cannot hold it: {}",
-            not_compared.join(", ")
-        );
+    let half = half_precision(recorded);
+    if !half.is_empty() {
+        let _ = writeln!(text, "{half}");
     }
-    let wrong: Vec<&Defect> = check.sensors.iter().flat_map(|sensor| &sensor.defects).collect();
-    for one in wrong.iter().take(MAX_SHOWN_DEFECTS) {
-        let _ = writeln!(text, "{}, {}: {}", one.place, name_of(one.item), one.what);
+    for why in ["not given", "stored in a type that cannot hold it"] {
+        let names: Vec<String> = items_not_given(check)
+            .into_iter()
+            .filter(|(_, reason)| *reason == why)
+            .map(|(item, _)| name_of(item))
+            .collect();
+        if !names.is_empty() {
+            let _ = writeln!(text, "Not compared, because {why}: {}", names.join(", "));
+        }
+    }
+    for one in listed_defects(&check.sensors).into_iter().take(MAX_SHOWN_DEFECTS) {
+        let _ = writeln!(text, "{}, {}: {}", one.place, name_of(one.item), one.words());
+        let _ = writeln!(text, "    {}", one.what);
         let _ = writeln!(text, "    {}", checked.repro(one.place));
     }
-    let rays = count(check.compared());
-    let _ = match verdict(check) {
-        "agrees" => writeln!(
-            text,
-            "✓ {rays} rays agree with the exact answers: {} exact, {} tie, {} rounding{}.",
-            count(check.of(Class::Agree)),
-            count(check.of(Class::Tie)),
-            count(check.of(Class::Rounding)),
-            if is_partial { "; nothing is known about what was not compared" } else { "" }
-        ),
-        "defects" => writeln!(
-            text,
-            "✗ {} of {rays} rays are wrong, {} undecided.",
-            count(check.of(Class::Defect)),
-            count(check.of(Class::Undecided))
-        ),
-        _ => writeln!(text, "? Nothing was compared."),
-    };
+    let _ = writeln!(text, "{} {}", sign(check), headline(check, recorded));
     if let Some(why) = checked.why() {
         let _ = writeln!(text, "  Why: {why}.");
     }

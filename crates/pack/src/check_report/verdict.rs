@@ -1,6 +1,8 @@
 //! Words that the reports of a check share.
 
-use raypencil_judge::Check;
+use raypencil_files::Storage;
+use raypencil_judge::{Check, Class, Item, ItemTally, Recorded, name_of};
+use raypencil_report::count;
 use raypencil_scene::Precision;
 
 /// Maximum number of defects that a screen or a test case describes; all are counted.
@@ -18,4 +20,69 @@ pub(crate) fn verdict(check: &Check) -> &'static str {
         (_, true) => "agrees",
         (_, false) => "defects",
     }
+}
+
+/// A sign that does not depend on colour.
+pub(crate) fn sign(check: &Check) -> &'static str {
+    match verdict(check) {
+        "agrees" => "✓",
+        "defects" => "✗",
+        _ => "?",
+    }
+}
+
+/// The outcome in one sentence. A recording in half precision is never said to be exact.
+pub(crate) fn headline(check: &Check, recorded: &Recorded) -> String {
+    let rays = count(check.compared());
+    let of = |class| count(check.of(class));
+    let is_partial = check.totals().values().any(|tally| tally.not_compared > 0);
+    let partial = if is_partial { "; nothing is known about what was not compared" } else { "" };
+    let (tie, rounding) = (of(Class::Tie), of(Class::Rounding));
+    match verdict(check) {
+        "agrees" if recorded.items_in_half().is_empty() => format!(
+            "{rays} rays agree with the exact answers: {} exact, {tie} tie, {rounding} rounding{partial}.",
+            of(Class::Agree)
+        ),
+        "agrees" => format!(
+            "{rays} rays agree to half precision: {} agree, {tie} tie, {rounding} rounding{partial}.",
+            of(Class::Agree)
+        ),
+        "defects" => {
+            format!("{} of {rays} rays are wrong, {} undecided.", of(Class::Defect), of(Class::Undecided))
+        }
+        _ => "Nothing was compared.".into(),
+    }
+}
+
+/// A remark on what is stored in half precision; empty if nothing is.
+pub(crate) fn half_precision(recorded: &Recorded) -> String {
+    let names: Vec<String> = recorded.items_in_half().into_iter().map(name_of).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "Stored in half precision (11 binary digits, up to {}) and judged as such: {}",
+        Storage::F16.max(),
+        names.join(", ")
+    )
+}
+
+/// Why nothing of an item was compared: it was not given, or its type cannot hold it. `None` if it was compared, or if
+/// no ray has it, such as a range where nothing is hit.
+pub fn not_given(tally: &ItemTally) -> Option<&'static str> {
+    match (tally.compared(), tally.not_compared, tally.unjudged.is_empty()) {
+        (1.., _, _) | (0, 0, _) => None,
+        (0, _, true) => Some("not given"),
+        (0, _, false) => Some("stored in a type that cannot hold it"),
+    }
+}
+
+/// Rays of which an item was not given. Rays whose storage cannot hold it are not among them.
+pub fn rays_not_given(tally: &ItemTally) -> u64 {
+    tally.not_compared - tally.unjudged.len() as u64
+}
+
+/// Names of the items of a check that were not given, or that their type cannot hold.
+pub fn items_not_given(check: &Check) -> Vec<(Item, &'static str)> {
+    check.totals().into_iter().filter_map(|(item, tally)| Some((item, not_given(&tally)?))).collect()
 }
