@@ -226,12 +226,12 @@ pub fn numbers(candidate: &mut Recorded, mut change: impl FnMut(Number, f64) -> 
 
 /// Changes all points.
 pub fn points(candidate: &mut Recorded, mut change: impl FnMut(usize, DVec3) -> DVec3) {
-    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.point, |index, p| change(index, p)));
+    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.point, &mut change));
 }
 
 /// Changes all normals.
 pub fn normals(candidate: &mut Recorded, mut change: impl FnMut(usize, DVec3) -> DVec3) {
-    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.normal, |index, n| change(index, n)));
+    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.normal, &mut change));
 }
 
 /// Changes all faces.
@@ -241,7 +241,7 @@ pub fn faces(candidate: &mut Recorded, mut change: impl FnMut(u32) -> u32) {
 
 /// Changes the ranges, each by the index of its cell.
 pub fn ranges(candidate: &mut Recorded, mut change: impl FnMut(usize, f64) -> f64) {
-    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.range, |index, x| change(index, x)));
+    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.range, &mut change));
 }
 
 /// Changes all flux by the scene's model.
