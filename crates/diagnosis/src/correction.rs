@@ -248,14 +248,16 @@ impl Correction {
     }
 
     fn pixel(&self, case: Case<'_>, pixel: Pixel) -> Value {
-        let height = case.truth.scene().camera().sensor.height;
-        Value::Pixel(match self.mistake {
+        let (width, height) = case.truth.scene().size(SensorId::Camera).unwrap_or((1, 1));
+        let pixel = match self.mistake {
             Mistake::PixelRowsFromBottom => {
                 Pixel { j: (height - 1).checked_sub(pixel.j).unwrap_or(pixel.j), ..pixel }
             }
             Mistake::PixelsExchanged => Pixel { i: pixel.j, j: pixel.i },
             _ => pixel,
-        })
+        };
+        // The judge sums light by pixels of the image alone.
+        if pixel.i < width && pixel.j < height { Value::Pixel(pixel) } else { Value::Nothing }
     }
 }
 

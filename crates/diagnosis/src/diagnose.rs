@@ -195,7 +195,7 @@ impl<'t> Search<'t> {
                 {
                     let error = ((stated - exact) / exact).abs();
                     numbers += 1;
-                    off += usize::from(error >= LEAST_SINGLE_ERROR && error <= TRIAL_TOLERANCE);
+                    off += usize::from((LEAST_SINGLE_ERROR..=TRIAL_TOLERANCE).contains(&error));
                 }
             }
         }

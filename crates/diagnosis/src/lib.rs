@@ -43,7 +43,8 @@
 //! The files, from the parts up:
 //!
 //! ```text
-//! mistake        the mistakes: name, words, page of the documentation
+//! mistake        the mistakes: name, page of the documentation
+//! words          the mistakes in words
 //! channel        channels of a recording, cell by cell
 //! correction     what undoes a mistake
 //! agree          values that are near enough to be tried further
@@ -68,6 +69,7 @@ mod mistake;
 mod rays;
 mod sample;
 mod trial;
+mod words;
 
 /// The example of README.md, compiled.
 #[cfg(doctest)]

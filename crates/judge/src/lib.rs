@@ -116,7 +116,7 @@ pub use listed_defect::{DefectMargin, ListedDefect};
 pub use quantity::{Item, Quantity, key_of, name_of, unit_of};
 pub use recorded::Recorded;
 pub use recorded::conventions::Conventions;
-pub use recorded::error::RecordingError;
+pub use recorded::error::{Help, RecordingError};
 pub use recorded::names::{flux_channel, image_channel, item_of_channel};
 pub use scene_answers::{Answers, BeamLight, Certified};
 pub use tally::{

@@ -48,57 +48,68 @@ impl Bench {
 /// The pyramids through a small camera and two small beams, in air that attenuates: 72 x 56 pixels, 2 x 64 x 4 pencils.
 pub fn pyramids() -> &'static Bench {
     static BENCH: OnceLock<Bench> = OnceLock::new();
-    BENCH.get_or_init(|| {
-        let mesh = builtin("pyramids", 0.25).unwrap().into_mesh().unwrap();
-        let (mut camera, mut beams) = rig::default_rig(16, DVec3::ZERO, 0.0);
-        let (width, height) = (72, 56);
-        camera.sensor = Camera { width, height, principal_point: [36.0, 28.0], ..camera.sensor };
-        beams.iter_mut().for_each(|beam| beam.sensor.rows = 4);
-        let air = Atmosphere { attenuation: 0.05 };
-        Bench::of(Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric).unwrap())
-    })
+    BENCH.get_or_init(|| pyramids_of(72, 56))
+}
+
+/// The pyramids through a camera of another size.
+pub fn pyramids_of(width: u32, height: u32) -> Bench {
+    let mesh = builtin("pyramids", 0.25).unwrap().into_mesh().unwrap();
+    let (mut camera, mut beams) = rig::default_rig(16, DVec3::ZERO, 0.0);
+    camera.sensor = Camera {
+        width,
+        height,
+        principal_point: [0.5 * f64::from(width), 0.5 * f64::from(height)],
+        ..camera.sensor
+    };
+    beams.iter_mut().for_each(|beam| beam.sensor.rows = 4);
+    let air = Atmosphere { attenuation: 0.05 };
+    Bench::of(Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric).unwrap())
 }
 
 /// Walls before one camera at the origin, which looks along z from behind an image plane at 2 m: a slanted one from 20
-/// to 60 m, a maximum range of 40 m, the back of a wall at 7 to 9 m on the left, and a panel at 1.4 to 1.7 m on the right.
+/// to 60 m, a maximum range of 40 m, the back of a wall at 7 to 9 m on the left, and a panel at 1.4 to 1.7 m on
+/// the right.
 pub fn walls() -> &'static Bench {
     static BENCH: OnceLock<Bench> = OnceLock::new();
-    BENCH.get_or_init(|| {
-        // Corners in the order that turns the front to the camera: the normal is (0, 0, -1) or nearly so.
-        let corners = [
-            [-90.0, -90.0, 20.0],
-            [90.0, -90.0, 30.0],
-            [90.0, 90.0, 60.0],
-            [-90.0, 90.0, 50.0],
-            [-8.0, -9.0, 7.0],
-            [-2.0, -9.0, 7.0],
-            [-2.0, 9.0, 9.0],
-            [-8.0, 9.0, 9.0],
-            [0.6, -2.0, 1.4],
-            [1.4, -2.0, 1.4],
-            [1.4, 2.0, 1.7],
-            [0.6, 2.0, 1.7],
-        ];
-        let front = |a: u32| [[a, a + 2, a + 1], [a, a + 3, a + 2]];
-        let back = |a: u32| [[a, a + 1, a + 2], [a, a + 2, a + 3]];
-        let faces = [front(0), back(4), front(8)].concat();
-        let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
-        let materials = vec![0; faces.len()];
-        let mesh = Mesh::new(DVec3::ZERO, corners.to_vec(), faces, materials, vec![plaster]).unwrap();
-        let camera = Camera {
-            width: 64,
-            height: 48,
-            pixel_pitch: [0.0625; 2],
-            focal_length: 2.0,
-            principal_point: [32.0, 24.0],
-            aperture: 0.01,
-            lens: Lens::CLEAR,
-            max_range: 40.0,
-        };
-        let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
-        let air = Atmosphere { attenuation: 0.0 };
-        Bench::of(Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).unwrap())
-    })
+    BENCH.get_or_init(|| walls_at(DVec3::ZERO))
+}
+
+/// The walls in a scene frame that starts at `origin`.
+pub fn walls_at(origin: DVec3) -> Bench {
+    // Corners in the order that turns the front to the camera: the normal is (0, 0, -1) or nearly so.
+    let corners = [
+        [-90.0, -90.0, 20.0],
+        [90.0, -90.0, 30.0],
+        [90.0, 90.0, 60.0],
+        [-90.0, 90.0, 50.0],
+        [-8.0, -9.0, 7.0],
+        [-2.0, -9.0, 7.0],
+        [-2.0, 9.0, 9.0],
+        [-8.0, 9.0, 9.0],
+        [0.6, -2.0, 1.4],
+        [1.4, -2.0, 1.4],
+        [1.4, 2.0, 1.7],
+        [0.6, 2.0, 1.7],
+    ];
+    let front = |a: u32| [[a, a + 2, a + 1], [a, a + 3, a + 2]];
+    let back = |a: u32| [[a, a + 1, a + 2], [a, a + 2, a + 3]];
+    let faces = [front(0), back(4), front(8)].concat();
+    let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+    let materials = vec![0; faces.len()];
+    let mesh = Mesh::new(origin, corners.to_vec(), faces, materials, vec![plaster]).unwrap();
+    let camera = Camera {
+        width: 64,
+        height: 48,
+        pixel_pitch: [0.0625; 2],
+        focal_length: 2.0,
+        principal_point: [32.0, 24.0],
+        aperture: 0.01,
+        lens: Lens::CLEAR,
+        max_range: 40.0,
+    };
+    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+    let air = Atmosphere { attenuation: 0.0 };
+    Bench::of(Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).unwrap())
 }
 
 /// The camera's answers of some quantities alone.
@@ -215,12 +226,12 @@ pub fn numbers(candidate: &mut Recorded, mut change: impl FnMut(Number, f64) -> 
 
 /// Changes all points.
 pub fn points(candidate: &mut Recorded, mut change: impl FnMut(usize, DVec3) -> DVec3) {
-    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.point, |index, p| change(index, p)));
+    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.point, &mut change));
 }
 
 /// Changes all normals.
 pub fn normals(candidate: &mut Recorded, mut change: impl FnMut(usize, DVec3) -> DVec3) {
-    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.normal, |index, n| change(index, n)));
+    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.normal, &mut change));
 }
 
 /// Changes all faces.
@@ -230,7 +241,7 @@ pub fn faces(candidate: &mut Recorded, mut change: impl FnMut(u32) -> u32) {
 
 /// Changes the ranges, each by the index of its cell.
 pub fn ranges(candidate: &mut Recorded, mut change: impl FnMut(usize, f64) -> f64) {
-    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.range, |index, x| change(index, x)));
+    candidate.answers.maps.iter_mut().for_each(|map| each(&mut map.range, &mut change));
 }
 
 /// Changes all flux by the scene's model.

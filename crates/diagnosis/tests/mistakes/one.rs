@@ -96,6 +96,14 @@ fn other_lengths_are_named() {
     let back = |c: &mut Recorded| c.answers.maps.iter_mut().for_each(|map| map.depth = map.range.clone());
     assert_explained(pyramids(), &pyramids_with(back), &["range_for_depth"]);
     assert_explained(pyramids(), &pyramids_with(parameter_for_range), &["parameter_for_range"]);
+    let parameter_for_depth = pyramids_with(|c| {
+        let ranges: Vec<_> = c.answers.maps.iter().map(|map| map.range.clone()).collect();
+        parameter_for_range(c);
+        for (map, range) in c.answers.maps.iter_mut().zip(ranges) {
+            map.depth = std::mem::replace(&mut map.range, range);
+        }
+    });
+    assert_explained(pyramids(), &parameter_for_depth, &["parameter_for_depth"]);
     for (key, factor) in [("millimetres", 1e3), ("centimetres", 1e2), ("kilometres", 1e-3)] {
         let scaled = pyramids_with(|c| in_units(c, factor));
         assert_explained(pyramids(), &scaled, &[key]);
@@ -166,6 +174,11 @@ fn other_axes_and_frames_are_named() {
     });
     assert_explained(pyramids(), &of_sensor, &["sensor_frame"]);
     assert_explained(pyramids(), &pyramids_with(|c| normals(c, |_, n| -n)), &["normals_reversed"]);
+    let origin = DVec3::new(1024.0, -2048.0, 512.0);
+    let far_walls = walls_at(origin);
+    let mut global = only(&far_walls.exact, &[Quantity::Range, Quantity::Point]);
+    points(&mut global, |_, p| p + origin);
+    assert_explained(&far_walls, &global, &["global_frame"]);
     let long = pyramids_with(|c| normals(c, |index, n| n * (1.0 + (index % 7) as f64)));
     assert_explained(pyramids(), &long, &["normals_not_unit"]);
 }
@@ -236,6 +249,29 @@ fn other_light_is_named() {
         }
     });
     assert_explained(pyramids(), &exchanged, &["cosines_exchanged"]);
+    // Any other order of the three, and one channel alone.
+    for turn in 1..=4 {
+        let turned = pyramids_with(|c| {
+            for (map, light) in c.answers.maps[1..].iter_mut().zip(&mut c.answers.light) {
+                let own = [&map.cos_incidence, &light.returns.cos_off_axis, &light.returns.cos_view];
+                let [psi, phi, theta] = own.map(Clone::clone);
+                let [a, b, d] = match turn {
+                    1 => [phi, psi, theta],
+                    2 => [psi, theta, phi],
+                    3 => [phi, theta, psi],
+                    _ => [theta, psi, phi],
+                };
+                (map.cos_incidence, light.returns.cos_off_axis, light.returns.cos_view) = (a, b, d);
+            }
+        });
+        assert_explained(pyramids(), &turned, &["cosines_exchanged"]);
+    }
+    let one_alone = pyramids_with(|c| {
+        for (map, light) in c.answers.maps[1..].iter_mut().zip(&mut c.answers.light) {
+            map.cos_incidence = light.returns.cos_view.clone();
+        }
+    });
+    assert_explained(pyramids(), &one_alone, &["cosines_exchanged"]);
     let negated = pyramids_with(|c| {
         numbers(c, |number, x| if number == Number::Incidence { -x } else { x });
     });
@@ -254,6 +290,14 @@ fn other_light_is_named() {
         }
     });
     assert_explained(pyramids(), &from_bottom, &["pixel_rows_from_bottom"]);
+    let square = pyramids_of(56, 56);
+    let mut exchanged = square.exact.clone();
+    for light in &mut exchanged.answers.light {
+        for cell in light.returns.pixel.as_mut().unwrap().cells_mut() {
+            *cell = cell.get().map(|p| raypencil_scene::Pixel { i: p.j, j: p.i }).into();
+        }
+    }
+    assert_explained(&square, &exchanged, &["pixels_exchanged"]);
 }
 
 /// The flux of the other model in place of the scene's.

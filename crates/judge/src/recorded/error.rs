@@ -25,7 +25,7 @@ pub enum RecordingError {
         /// What was expected.
         expected: String,
         /// What to declare or change, if a common convention explains the cell.
-        help: Option<String>,
+        help: Option<Box<Help>>,
     },
     /// A vector of which only some components are there.
     #[error("{}: `{channel}` is absent; expected all of {all}", folder.display())]
@@ -55,11 +55,18 @@ pub enum RecordingError {
     },
 }
 
+/// A line of help. Errors hold it in a box, since they are passed along by value.
+#[derive(Debug)]
+pub struct Help {
+    /// The words.
+    pub words: String,
+}
+
 impl RecordingError {
     /// What to declare or change so that the recording is understood, if that may help.
     pub fn help(&self) -> Option<String> {
         match self {
-            Self::Channel { help, .. } => help.clone(),
+            Self::Channel { help, .. } => help.as_ref().map(|help| help.words.clone()),
             _ => None,
         }
     }

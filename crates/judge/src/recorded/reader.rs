@@ -2,7 +2,7 @@
 
 use crate::quantity::{Item, Quantity};
 use crate::recorded::conventions::Conventions;
-use crate::recorded::error::RecordingError;
+use crate::recorded::error::{Help, RecordingError};
 use crate::recorded::names::{self, flux_channel, image_channel};
 use crate::scene_answers::Answers;
 use glam::DVec3;
@@ -99,9 +99,10 @@ impl<'a> Reader<'a> {
 
     /// The same error with a line of help.
     fn with_help(error: RecordingError, words: Option<String>) -> RecordingError {
+        let help = words.map(|words| Box::new(Help { words }));
         match error {
             RecordingError::Channel { file, channel, cell, found, expected, .. } => {
-                RecordingError::Channel { file, channel, cell, found, expected, help: words }
+                RecordingError::Channel { file, channel, cell, found, expected, help }
             }
             other => other,
         }
