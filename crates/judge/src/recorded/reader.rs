@@ -343,7 +343,7 @@ fn cell<T: Copy>(image: &Image<T>, index: usize) -> (u32, u32) {
     (index as u32 % image.width(), index as u32 / image.width())
 }
 
-/// A map with numbers where rays hit and none elsewhere. Lengths are not negative, and +Inf where nothing is hit.
+/// A map with numbers where rays hit and none elsewhere. Lengths are not negative.
 fn maybe(
     reals: Reals<'_>,
     hits: &[bool],
@@ -375,17 +375,13 @@ fn maybe_signed(
         let wrong = |expected: String| {
             Err(Reader::fault((name, channel), Some(cell(image, index)), value.to_string(), &expected))
         };
-        let nothing = if is_length { "+Inf" } else { "NaN" };
         if hit && !value.is_finite() {
             return wrong(format!("a number, as {speaker} says that something is hit"));
         }
-        let is_nothing = if is_length { value == f64::INFINITY } else { value.is_nan() };
-        if !hit && !is_nothing {
-            return wrong(if name == speaker {
-                format!("a number, or {nothing} where nothing is hit")
-            } else {
-                format!("{nothing}, as {speaker} says that nothing is hit")
-            });
+        // On reading, any value that is not finite means no hit. (docs/formats/files.md)
+        if !hit && value.is_finite() {
+            let nothing = if is_length { "+Inf" } else { "NaN" };
+            return wrong(format!("{nothing}, as {speaker} says that nothing is hit"));
         }
         cells.push(Maybe::from(hit.then_some(value)));
     }
