@@ -167,6 +167,10 @@ pub(crate) struct Validate {
     #[arg(long = "candidate", value_name = "DIR")]
     pub(crate) candidates: Vec<PathBuf>,
 
+    /// Exit with code 0 also if no ray of any sensor hits the terrain. Without it that is exit code 1.
+    #[arg(long)]
+    pub(crate) allow_empty: bool,
+
     /// Output folder; default: out/<scene's name>.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
@@ -188,6 +192,7 @@ impl Validate {
             switches: SwitchArguments::default(),
             judge: JudgeShare::Sample,
             candidates: Vec::new(),
+            allow_empty: false,
             output: None,
         }
     }

@@ -79,7 +79,8 @@ pub fn blind_scene(seed: u64) -> Result<Scene, SceneIoError> {
 pub fn blind_subject(seed: u64) -> Result<Subject, SceneIoError> {
     let loaded = load(seed)?;
     let sha256 = scene_sha256(&loaded.scene);
-    Ok(Subject { arguments: loaded.name.clone(), name: loaded.name, scene: loaded.scene, sha256 })
+    let vehicle = loaded.standing_vehicle();
+    Ok(Subject { arguments: loaded.name.clone(), name: loaded.name, scene: loaded.scene, sha256, vehicle })
 }
 
 fn load(seed: u64) -> Result<LoadedScene, SceneIoError> {

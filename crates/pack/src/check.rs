@@ -134,6 +134,7 @@ pub fn check_pack(
         arguments: quoted(&scene_file.to_string_lossy()),
         sha256,
         scene,
+        vehicle: None,
     };
     Ok(Checked { subject, recorded, check, is_blind: manifest.kind == PackKind::Blind })
 }

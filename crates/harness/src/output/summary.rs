@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Largest, Quantity, SensorResult};
 use raypencil_report::VERSION;
 use raypencil_scene::Switches;
-use raypencil_scene_io::{Subject, probe_command};
+use raypencil_scene_io::{Subject, probe_command, scene_sha256};
+use raypencil_survey::{Warning, Whereabouts};
 use serde::Serialize;
 
 use crate::output::candidates::{ScoreboardSummary, scoreboard_summary};
@@ -14,8 +15,9 @@ use crate::output::verdict::Verdict;
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
 
-/// Version of the schema; it grows when a key changes its meaning or is removed.
-const FORMAT: u32 = 1;
+/// Version of the schema; it grows when a key changes its meaning or is removed. Since 2 `scene.sha256` is the digest of
+/// the resolved scene.
+const FORMAT: u32 = 2;
 
 #[derive(Serialize)]
 struct Summary<'a> {
@@ -27,7 +29,9 @@ struct Summary<'a> {
     /// Rays that each set of the paper's approximations changed, by the names of its switches.
     approximations: BTreeMap<String, u64>,
     causes: Vec<CauseSummary>,
+    warnings: &'a [Warning],
     scene: SceneName<'a>,
+    whereabouts: Whereabouts,
     renderers: Vec<RendererSummary<'a>>,
     pairs: Vec<PairSummary<'a>>,
     /// Renderers and candidates checked against the exact answers; null without candidates.
@@ -53,7 +57,10 @@ struct Classes {
 #[derive(Serialize)]
 struct SceneName<'a> {
     name: &'a str,
-    sha256: &'a str,
+    /// Digest of the resolved scene, which candidates and packs have.
+    sha256: String,
+    /// Digest of the files or the input that define the scene.
+    source_sha256: &'a str,
     arguments: &'a str,
 }
 
@@ -146,7 +153,7 @@ struct StageSummary<'a> {
 
 /// The contents of `summary.json`.
 pub fn summary_json(validation: &Validation) -> String {
-    let Validation { subject, rendered, pairs, scoreboard: _, stages } = validation;
+    let Validation { subject, rendered, pairs, stages, .. } = validation;
     let counts = validation.counts();
     let approximations = validation.approximations();
     let summary = Summary {
@@ -165,7 +172,14 @@ pub fn summary_json(validation: &Validation) -> String {
         },
         approximations: rays_by_cause(&approximations),
         causes: cause_summaries(subject, &approximations),
-        scene: SceneName { name: &subject.name, sha256: &subject.sha256, arguments: &subject.arguments },
+        warnings: &validation.warnings,
+        scene: SceneName {
+            name: &subject.name,
+            sha256: scene_sha256(&subject.scene),
+            source_sha256: &subject.sha256,
+            arguments: &subject.arguments,
+        },
+        whereabouts: Whereabouts::of(&subject.scene, subject.vehicle.as_ref()),
         renderers: rendered.iter().map(renderer_summary).collect(),
         pairs: pairs.iter().map(|pair| pair_summary(validation, pair)).collect(),
         scoreboard: scoreboard_summary(validation),

@@ -14,6 +14,8 @@ pub(crate) enum Verdict {
     Agree,
     /// At least one ray is a defect.
     Defects,
+    /// Rays were compared and agree that no ray hits: that proves nothing.
+    NothingHit,
     /// No ray was compared.
     NothingCompared,
 }
@@ -28,10 +30,12 @@ impl Verdict {
         let counts = validation.counts();
         if counts.defects > 0 {
             Self::Defects
-        } else if counts.compared > 0 {
+        } else if counts.compared == 0 {
+            Self::NothingCompared
+        } else if validation.hits_something() {
             Self::Agree
         } else {
-            Self::NothingCompared
+            Self::NothingHit
         }
     }
 
@@ -40,7 +44,7 @@ impl Verdict {
         match self {
             Self::Agree => "✓",
             Self::Defects => "✗",
-            Self::NothingCompared => "?",
+            Self::NothingHit | Self::NothingCompared => "?",
         }
     }
 }
@@ -59,6 +63,7 @@ pub(crate) fn headline(validation: &Validation) -> String {
     let compared = rays(validation, counts.compared);
     match Verdict::of(validation) {
         Verdict::NothingCompared => "Nothing was compared".into(),
+        Verdict::NothingHit => format!("Nothing is hit: all {compared} miss the terrain"),
         Verdict::Defects if counts.defects == 1 => format!("1 of {compared} differs"),
         Verdict::Defects => format!("{} of {compared} differ", count(counts.defects)),
         Verdict::Agree if counts.compared == 1 => format!("The only {} agrees", &compared[2..]),
@@ -80,6 +85,10 @@ pub(crate) fn explanation(validation: &Validation) -> String {
             0 | 1 => "A comparison needs two renderers.".into(),
             _ => format!("No sensor has maps of {who} that both state which rays hit."),
         },
+        Verdict::NothingHit => format!(
+            "{who} agree that no ray of any sensor hits the terrain. Such an agreement proves nothing: is the \
+             terrain where the sensors look?"
+        ),
         Verdict::Defects => {
             let mut text = format!(
                 "{who} differ in the face that is hit, or by more than their rounding errors explain."
