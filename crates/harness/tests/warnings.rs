@@ -98,7 +98,7 @@ fn many_warnings_stay_on_one_screen() {
     validation.warnings = vec![warning; 9];
     let screen = one_screen(&validation, Some("out/pyramids".as_ref()));
     assert!(screen.lines().count() <= 40, "{screen}");
-    assert!(screen.contains("... and 6 more warnings in the summary\n"), "{screen}");
+    assert!(screen.contains("... and 7 more warnings in the summary\n"), "{screen}");
     assert_eq!(whole_screen(&validation, None).matches("warning: ").count(), 9);
 }
 

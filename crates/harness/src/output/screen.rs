@@ -36,7 +36,7 @@ const APPROXIMATION_COLUMN: usize = 4;
 const PLACE_COLUMN: usize = 7;
 
 /// Maximum warnings.
-const MAX_WARNINGS: usize = 3;
+const MAX_WARNINGS: usize = 2;
 
 /// Maximum described defects.
 const MAX_DEFECTS: usize = 4;
@@ -309,7 +309,12 @@ fn verdict(validation: &Validation, lines_of_warnings: usize, room: Room) -> Str
         _ => {}
     }
     // Warnings take the room of the last defects, which have two lines each.
-    let most = MAX_DEFECTS.saturating_sub(lines_of_warnings.div_ceil(2)).max(1);
+    let taken = match (room, lines_of_warnings) {
+        (Room::Unlimited, _) | (_, 0) => 0,
+        // With the blank line between the blocks.
+        (Room::Terminal, lines) => (lines + 1).div_ceil(2),
+    };
+    let most = MAX_DEFECTS.saturating_sub(taken);
     for defect in defects(validation).take(most) {
         let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
         let _ = writeln!(text, "{}", cut(&format!("      {}: {}", defect.item.quantity, defect.what), room));
