@@ -1,5 +1,5 @@
-//! Small validations: one that agrees, one with defects, one with approximations, one with a candidate, and one with a
-//! single renderer.
+//! Small validations: one that agrees, one with defects, one with approximations, one with a candidate, one in which
+//! nothing is hit, and one with a single renderer.
 
 use std::sync::Arc;
 
@@ -55,12 +55,27 @@ pub fn subject() -> Subject {
         name: "pyramids".into(),
         arguments: "pyramids --fan 60".into(),
         sha256: "0123456789abcdef".repeat(4),
+        vehicle: Some(Pose::IDENTITY),
     }
 }
 
 /// Both renderers, which agree.
 pub fn agreeing() -> Validation {
     of(subject(), ["scanline", "tracer"])
+}
+
+/// Both renderers, which agree that nothing is hit: camera and beam are 500 m beside the ground of 40 m.
+pub fn empty() -> Validation {
+    let mut subject = subject();
+    let scene = &subject.scene;
+    let (mut camera, mut beam) = (*scene.camera(), scene.beams()[0]);
+    for pose in [&mut camera.scene_from_sensor, &mut beam.scene_from_sensor] {
+        pose.position.x += 500.0;
+    }
+    let mesh = Arc::clone(scene.mesh());
+    subject.scene = Scene::new(mesh, camera, vec![beam], scene.atmosphere(), scene.flux_model()).unwrap();
+    subject.vehicle = None;
+    of(subject, ["scanline", "tracer"])
 }
 
 /// One renderer, so that nothing is compared.

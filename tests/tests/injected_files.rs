@@ -66,6 +66,7 @@ fn a_pack_finds_faults_of_files_too() {
         scene,
         name: "wall".into(),
         arguments: "wall.toml".into(),
+        vehicle: None,
     };
     write_pack(&subject, None, &pack, &Silent).unwrap();
     for fault in std::iter::once(None).chain(FileFault::ALL.map(Some)) {

@@ -25,6 +25,7 @@ fn marsyard(test: &str) -> Option<PathBuf> {
 fn validated(path: &Path, overrides: Overrides, names: &[&str]) -> Validation {
     let loaded = load(path.to_str().expect("a path in UTF-8"), &overrides).expect("the marsyard loads");
     let subject = Subject {
+        vehicle: loaded.standing_vehicle(),
         scene: loaded.scene,
         name: loaded.name,
         arguments: "marsyard2021.glb".into(),

@@ -21,8 +21,13 @@ fn data(path: &str) -> PathBuf {
 fn subject(pack: &str) -> Subject {
     let file = data(&format!("scenes/{pack}-small.toml"));
     let loaded = load(&file.to_string_lossy(), &Overrides::default()).expect("a scene of this repository");
-    let name = loaded.name;
-    Subject { scene: loaded.scene, arguments: name.clone(), name, sha256: loaded.source_sha256 }
+    Subject {
+        vehicle: loaded.standing_vehicle(),
+        scene: loaded.scene,
+        arguments: loaded.name.clone(),
+        name: loaded.name,
+        sha256: loaded.source_sha256,
+    }
 }
 
 /// Every file below a folder, by its relative path.
@@ -72,6 +77,7 @@ fn judged(pack: &str, renderer: &str) -> Checked {
     let scene_file = pack.join("scene.toml");
     let loaded = load(&scene_file.to_string_lossy(), &Overrides::default()).expect("the pack's scene");
     let subject = Subject {
+        vehicle: loaded.standing_vehicle(),
         scene: loaded.scene,
         name: loaded.name,
         arguments: String::new(),

@@ -56,6 +56,8 @@ pub struct PartRecord {
     pub part: PartName,
     /// Number of rays compared.
     pub compared: u64,
+    /// Number of rays that hit the terrain, by the tracer.
+    pub hits: u64,
     /// Number of rays by class, in the order of [`Class`].
     pub by_class: [u64; 6],
     /// Number of rays that one side lacks.
@@ -115,11 +117,12 @@ pub struct WrongRay {
 }
 
 impl PartRecord {
-    /// The record of a comparison of all sensors.
-    pub(crate) fn of(part: PartName, sensors: &[SensorResult]) -> Self {
+    /// The record of a comparison of all sensors; `hits` of their rays hit the terrain.
+    pub(crate) fn of(part: PartName, hits: u64, sensors: &[SensorResult]) -> Self {
         let mut record = Self {
             part,
             compared: 0,
+            hits,
             by_class: [0; 6],
             not_compared: 0,
             judged: 0,

@@ -76,9 +76,14 @@ pub fn campaign_screen(merged: &Merged) -> String {
             merged.replay_commands(terrain, part, &probe_arguments(&ray.sensor, ray.i, ray.j))
         );
     }
+    for (part, warning) in merged.warnings() {
+        let _ = writeln!(text, "warning: scenes `{}`: {warning}", part.word());
+    }
     let defects = all.by_class[Class::Defect as usize] + all.by_class[Class::Undecided as usize];
     let verdict = if merged.passes() {
         format!("✓ {} rays, no defect, none undecided.", count(all.compared))
+    } else if defects == 0 && all.compared > 0 {
+        format!("? Nothing is hit: all {} rays miss the terrain.", count(all.compared))
     } else {
         format!("✗ {} of {} rays are wrong or undecided.", count(defects), count(all.compared))
     };

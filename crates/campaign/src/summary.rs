@@ -42,6 +42,7 @@ pub fn campaign_json(merged: &Merged) -> String {
         });
         json!({
             "compared": total.compared,
+            "hits": total.hits,
             "classes": class_counts_json(&total.by_class, &COMPARE_CLASSES),
             "not_compared": total.not_compared,
             "judged": total.judged,
@@ -56,19 +57,30 @@ pub fn campaign_json(merged: &Merged) -> String {
             "replay": merged.replay_commands(terrain, part, &probe_arguments(&ray.sensor, ray.i, ray.j)),
         })
     });
+    let all = CampaignTotal::of(merged, None);
     let faces: Vec<u64> = merged.terrains.iter().map(|terrain| terrain.faces).collect();
     let parts: BTreeMap<&str, Value> = PartName::ALL
         .into_iter()
         .map(|part| (part.word(), total(&CampaignTotal::of(merged, Some(part)))))
         .collect();
+    let found = merged.warnings();
+    let warnings = found
+        .iter()
+        .map(|(part, warning)| json!({ "code": warning.code, "part": part, "sentence": warning.sentence }));
+    let verdict = match (merged.passes(), all.compared > 0 && all.hits == 0) {
+        (true, _) => "agree",
+        (false, true) => "nothing_hit",
+        (false, false) => "defects",
+    };
     let document = json!({
         "format": FORMAT,
         "version": merged.campaign.version,
         "seed": merged.campaign.seed,
         "terrains": merged.campaign.terrains,
         "faces": { "least": faces.iter().min(), "most": faces.iter().max(), "total": faces.iter().sum::<u64>() },
-        "verdict": if merged.passes() { "agree" } else { "defects" },
-        "all": total(&CampaignTotal::of(merged, None)),
+        "verdict": verdict,
+        "warnings": warnings.collect::<Vec<_>>(),
+        "all": total(&all),
         "parts": parts,
         "first_wrong": wrong.take(MAX_LISTED_RAYS).collect::<Vec<_>>(),
     });

@@ -7,10 +7,11 @@ use raypencil_harness::{
     Contender, Reproducer, attribute, contender, first_interesting_ray, is_interesting_in_class,
     typed_contenders, write_reproducer,
 };
-use raypencil_judge::{Class, Judge, JudgeShare, Side, compare_judged};
+use raypencil_judge::{Class, Judge, JudgeShare, SensorResult, Side, compare_judged};
 use raypencil_minimise::{MINIMISE_BUDGET, minimise};
 use raypencil_scene::{Precision, Request, Scene, SensorId, Silent, Switches};
 use raypencil_scene_io::write_resolved;
+use raypencil_survey::SensorHits;
 
 use crate::error::CampaignError;
 use crate::plan::Campaign;
@@ -116,7 +117,9 @@ fn compare_renderers(part: PartName, scene: &Scene, share: JudgeShare, tracer: &
         // Every scene has a camera; that of an aimed scene is of no interest.
         sensors.retain(|sensor| sensor.sensor != SensorId::Camera);
     }
-    PartRecord::of(part, &sensors)
+    let hits_of = |sensor: &SensorResult| of_tracer.map(sensor.sensor).and_then(SensorHits::of_map);
+    let hits = sensors.iter().filter_map(hits_of).map(|of| of.hits).sum();
+    PartRecord::of(part, hits, &sensors)
 }
 
 #[cfg(test)]

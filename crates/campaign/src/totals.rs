@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use raypencil_judge::{Class, Quantity};
+use raypencil_scene::SensorId;
+use raypencil_survey::{SensorHits, Warning, few_hits, no_hits};
 
 use crate::merge::Merged;
 use crate::record::{PartName, PartRecord, TerrainRecord, WorstRecord, WrongRay};
@@ -11,6 +13,7 @@ use crate::record::{PartName, PartRecord, TerrainRecord, WorstRecord, WrongRay};
 #[derive(Debug, Default)]
 pub(crate) struct CampaignTotal<'a> {
     pub(crate) compared: u64,
+    pub(crate) hits: u64,
     pub(crate) by_class: [u64; 6],
     pub(crate) not_compared: u64,
     pub(crate) judged: u64,
@@ -49,6 +52,7 @@ impl<'a> CampaignTotal<'a> {
     /// Adds the record of a scene.
     fn add(&mut self, terrain: u64, record: &'a PartRecord) {
         self.compared += record.compared;
+        self.hits += record.hits;
         self.not_compared += record.not_compared;
         self.judged += record.judged;
         for (mine, theirs) in self.by_class.iter_mut().zip(record.by_class) {
@@ -76,12 +80,26 @@ impl<'a> CampaignTotal<'a> {
 }
 
 impl Merged {
-    /// Whether no ray is a defect or undecided, and at least one ray was compared.
+    /// Whether no ray is a defect or undecided, at least one ray was compared, and at least one hits the terrain.
     pub fn passes(&self) -> bool {
         let total = CampaignTotal::of(self, None);
         total.compared > 0
+            && total.hits > 0
             && total.by_class[Class::Defect as usize] == 0
             && total.by_class[Class::Undecided as usize] == 0
+    }
+
+    /// Warnings about scenes whose rays, over all terrains, hit nothing or nearly nothing: such an agreement proves
+    /// little.
+    pub fn warnings(&self) -> Vec<(PartName, Warning)> {
+        let of_part = |part: PartName| {
+            let CampaignTotal { compared, hits, .. } = CampaignTotal::of(self, Some(part));
+            // Random rigs look anywhere: sensor by sensor a miss is no surprise, over a whole part it is.
+            let of = SensorHits { sensor: SensorId::Camera, rays: compared, hits };
+            let warning = no_hits(of).or_else(|| few_hits(of)).filter(|_| compared > 0)?;
+            Some((part, Warning { sensor: None, ..warning }))
+        };
+        PartName::ALL.into_iter().filter_map(of_part).collect()
     }
 
     /// Number of rays compared.

@@ -15,10 +15,16 @@ fn wrong_ray() -> WrongRay {
 
 /// A campaign of two terrains with made-up numbers.
 fn made_up(by_class: [u64; 6], wrong: Vec<WrongRay>) -> Merged {
+    with_hits(500, by_class, wrong)
+}
+
+/// The same, with this many hits in each scene.
+fn with_hits(hits: u64, by_class: [u64; 6], wrong: Vec<WrongRay>) -> Merged {
     let worst = |value: f64, i| Some(WorstRecord { value: Some(value), sensor: "camera".into(), i, j: 2 });
     let part = |part: PartName, i| PartRecord {
         part,
         compared: by_class.iter().sum(),
+        hits,
         by_class,
         not_compared: 0,
         judged: 12,
@@ -60,9 +66,39 @@ fn counts_add_up_over_terrains_and_scenes() {
 }
 
 #[test]
+fn a_campaign_in_which_nothing_is_hit_is_no_pass() {
+    let classes = [1000, 0, 0, 0, 0, 0];
+    let of = |hits| with_hits(hits, classes, Vec::new());
+    let codes =
+        |merged: &Merged| merged.warnings().iter().map(|(_, found)| found.code.word()).collect::<Vec<_>>();
+    // Four scenes, each of two terrains of 1000 rays: 20 hits are one per cent.
+    assert!(of(10).passes() && codes(&of(10)).is_empty());
+    assert!(of(9).passes());
+    assert_eq!(codes(&of(9)), ["few_hits"; 4]);
+    let nothing = of(0);
+    assert!(!nothing.passes());
+    assert_eq!(codes(&nothing), ["no_hits"; 4]);
+    let screen = campaign_screen(&nothing);
+    assert!(screen.ends_with("? Nothing is hit: all 8,000 rays miss the terrain.\n"), "{screen}");
+    assert!(
+        screen.contains("warning: scenes `own`: none of its 2,000 rays hits") && !screen.contains('✓'),
+        "{screen}"
+    );
+    let summary: Value = serde_json::from_str(&campaign_json(&nothing)).unwrap();
+    assert_eq!(
+        (&summary["verdict"], &summary["warnings"][3]["part"]),
+        (&"nothing_hit".into(), &"lattice".into())
+    );
+    let schema = include_str!("../../../docs/formats/campaign.schema.json");
+    assert_eq!(schema_faults(&serde_json::from_str(schema).unwrap(), &summary), [""; 0]);
+}
+
+#[test]
 fn the_summary_keeps_to_its_schema() {
     let campaign = Campaign::new(5, 1);
     let mut record = terrain(&campaign, 0, None).unwrap();
+    // The scenes of a campaign do hit their terrain.
+    assert!(record.parts.iter().all(|part| 0 < part.hits && part.hits <= part.compared), "{record:?}");
     record.parts[0].wrong.push(wrong_ray());
     let merged = Merged { campaign, terrains: vec![record] };
     let schema: Value =

@@ -179,6 +179,10 @@ pub(crate) struct Validate {
     )]
     pub(crate) candidates_must_pass: bool,
 
+    /// Exit with code 0 also if no ray of any sensor hits the terrain. Without it that is exit code 1.
+    #[arg(long)]
+    pub(crate) allow_empty: bool,
+
     /// Output folder; default: out/<scene's name>.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
@@ -201,6 +205,7 @@ impl Validate {
             judge: JudgeShare::Sample,
             candidates: Vec::new(),
             candidates_must_pass: true,
+            allow_empty: false,
             output: None,
         }
     }

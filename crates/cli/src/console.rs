@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
+use raypencil::survey::Warning;
 
 /// Prints to standard output. A closed pipe (`| head`) is not an error.
 pub(crate) fn say(text: &str) {
@@ -13,9 +14,21 @@ pub(crate) fn say(text: &str) {
     let _ = out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush());
 }
 
+/// Whether standard output is a terminal, which has an edge.
+pub(crate) fn is_terminal() -> bool {
+    std::io::stdout().is_terminal()
+}
+
 /// Prints to standard error.
 pub(crate) fn complain(text: &str) {
     let _ = std::io::stderr().lock().write_all(harmless(text).as_bytes());
+}
+
+/// Prints warnings to standard error, so that standard output holds nothing but the result.
+pub(crate) fn warn(warnings: &[Warning]) {
+    for warning in warnings {
+        complain(&format!("warning: {warning}\n"));
+    }
 }
 
 /// Replaces control codes of terminals and changes of the writing direction, since names come from untrusted files.

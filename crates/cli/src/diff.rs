@@ -3,13 +3,15 @@
 use std::path::Path;
 
 use raypencil::Progress;
-use raypencil::diff::{Sides, Thresholds, diff as compare, diff_json, diff_screen, rule, write_diff};
+use raypencil::diff::{
+    Sides, Thresholds, diff as compare, diff_json, diff_screen, diff_text, rule, write_diff,
+};
 use raypencil::io::{Channels, Limits, Overrides, load, read_channels};
 use raypencil::judge::{GroundTruth, Recorded, check as judge};
 use raypencil::pack::CheckError;
 
 use crate::args::Diff;
-use crate::console::{Spinner, say};
+use crate::console::{Spinner, is_terminal, say};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
@@ -61,7 +63,8 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     if json {
         say(&diff_json(&difference, &sides));
     } else {
-        say(&diff_screen(&difference, &sides, command.output.as_deref()));
+        let screen = if is_terminal() { diff_screen } else { diff_text };
+        say(&screen(&difference, &sides, command.output.as_deref()));
     }
     Ok(if difference.passes() { Outcome::Fine } else { Outcome::Differs })
 }

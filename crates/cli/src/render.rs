@@ -1,10 +1,11 @@
 //! `raypencil render`: writes the maps of one renderer.
 
 use raypencil::harness::write_maps;
+use raypencil::survey::{SensorHits, warnings};
 use raypencil::{Progress, Request, Sampling};
 
 use crate::args::Render;
-use crate::console::{Spinner, say};
+use crate::console::{Spinner, say, warn};
 use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble};
 
@@ -27,11 +28,20 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     }
     spinner.stage(&format!("{}: writing", command.output.display()));
     let files = write_maps(&output, renderer.name(), &subject, sampling, &command.output)?;
+    spinner.stage("looking at the scene");
+    let hits: Vec<SensorHits> = output.maps().filter_map(SensorHits::of_map).collect();
+    let warnings = warnings(&subject.scene, subject.vehicle.as_ref(), Some(&hits));
     drop(spinner);
     let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     if json {
-        say(&format!("{:#}\n", serde_json::json!({ "renderer": renderer.name(), "files": files })));
+        let document = serde_json::json!({
+            "renderer": renderer.name(),
+            "files": files,
+            "warnings": warnings,
+        });
+        say(&format!("{document:#}\n"));
     } else {
+        warn(&warnings);
         say(&format!("{}\n", files.join("\n")));
     }
     Ok(Outcome::Fine)

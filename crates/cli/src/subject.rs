@@ -16,6 +16,7 @@ pub(crate) fn subject(
     progress.stage(&format!("{}: loading", arguments.scene));
     let loaded = load(&arguments.scene, &arguments.overrides())?;
     Ok(Subject {
+        vehicle: loaded.standing_vehicle(),
         scene: loaded.scene,
         name: loaded.name,
         arguments: arguments.typed() + renderers,

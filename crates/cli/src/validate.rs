@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use raypencil::Progress as _;
-use raypencil::harness::{Candidate, one_screen, summary_json, validate as run, write_validation};
+use raypencil::harness::{
+    Candidate, one_screen, summary_json, validate as run, whole_screen, write_validation,
+};
 
 use crate::args::{Validate, typed_renderers};
-use crate::console::{Spinner, say};
+use crate::console::{Spinner, is_terminal, say};
 use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble};
 
@@ -25,6 +27,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         command.candidates.iter().map(|folder| Candidate::read(folder, &subject.scene)).collect();
     let candidates = candidates?;
     let mut validation = run(subject, &contenders, command.judge, &spinner);
+    validation.allow_empty = command.allow_empty;
     if !candidates.is_empty() {
         validation.evaluate(candidates, &spinner);
         validation.candidates_may_fail = !command.candidates_must_pass;
@@ -34,7 +37,8 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
     if json {
         say(&summary_json(&validation));
     } else {
-        say(&one_screen(&validation, Some(&folder)));
+        let screen = if is_terminal() { one_screen } else { whole_screen };
+        say(&screen(&validation, Some(&folder)));
     }
     Ok(if validation.passes() { Outcome::Fine } else { Outcome::Differs })
 }

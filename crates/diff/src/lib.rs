@@ -52,7 +52,7 @@ pub use difference::{ChannelDifference, Difference, Sides};
 pub use folder::{WrittenDiff, write_diff};
 pub use rule::rule;
 pub use rulings::{ChannelRuling, RuledCell, Rulings};
-pub use screen::diff_screen;
+pub use screen::{diff_screen, diff_text};
 pub use summary::diff_json;
 
 #[cfg(doctest)]

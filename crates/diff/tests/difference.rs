@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use raypencil_diff::{
     CellDifference, ChannelDifference, ChannelRuling, RuledCell, Rulings, Sides, Thresholds, diff,
-    diff_screen, write_diff,
+    diff_screen, diff_text, write_diff,
 };
 use raypencil_files::{Channel, Channels, Storage, Values};
 use raypencil_judge::Class;
@@ -260,6 +260,47 @@ fn a_screen_stays_one_screen() {
     assert!(same.contains("PASS 60 channels compared, the same in every cell."), "{same}");
     assert!(same.contains("Allowed: no difference."), "{same}");
     assert_report("screen_of_equal_recordings", &same);
+}
+
+#[test]
+fn channels_on_one_side_are_named_in_full() {
+    // Six keys of 60 characters need several lines of 100.
+    let key = |k: u32| format!("only-here/{}{k}", "channel-".repeat(6));
+    let cell = || reals(Storage::F32, &[1.0]);
+    let shared = || ("x".to_string(), cell());
+    let a = Channels {
+        by_key: (0..6).map(|k| (key(k), cell())).chain([shared()]).collect(),
+        ..Channels::default()
+    };
+    let b = Channels { by_key: [shared()].into(), ..Channels::default() };
+    let sides = Sides { names: ["a", "b"], channels: [&a, &b] };
+    for shared_only in [false, true] {
+        let difference = diff(&a, &b, &Thresholds { shared_only, ..NONE }).unwrap();
+        for screen in [diff_screen(&difference, &sides, None), diff_text(&difference, &sides, None)] {
+            for k in 0..6 {
+                assert!(screen.contains(&key(k)), "{screen}");
+            }
+            assert!(screen.contains(&format!("only in A: {}", key(0))) && !screen.contains('…'), "{screen}");
+            assert_eq!(screen.contains("not counted: --shared-only)"), shared_only, "{screen}");
+            assert!(screen.lines().all(|line| line.chars().count() <= 100), "{screen}");
+        }
+    }
+}
+
+#[test]
+fn a_text_that_is_not_for_a_terminal_is_not_cut() {
+    let key = format!("a-folder/{}", "channel-".repeat(6));
+    let recording = |value: f64| Channels {
+        by_key: [(key.clone(), reals(Storage::F64, &[value]))].into(),
+        ..Channels::default()
+    };
+    let (a, b) = (recording(1.0), recording(2.0));
+    let long = "x/".repeat(200);
+    let (difference, sides) =
+        (diff(&a, &b, &NONE).unwrap(), Sides { names: [&long, "b"], channels: [&a, &b] });
+    let whole = |text: &str| text.contains(&key) && text.contains(&long) && !text.contains('…');
+    assert!(whole(&diff_text(&difference, &sides, None)));
+    assert!(!whole(&diff_screen(&difference, &sides, None)));
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use raypencil_report::number;
 use raypencil_rover::{OnVehicle, Rig};
-use raypencil_scene::Camera;
+use raypencil_scene::{Camera, SensorId};
+use raypencil_survey::{Warning, WarningCode};
 
 /// Pencils per pixel below which a warning is given: the stripe has gaps.
 const MIN_PENCILS_PER_PIXEL: f64 = 2.0;
@@ -21,7 +22,7 @@ fn pencils_per_pixel(camera: &Camera, columns: f64, half_width_over_distance: f6
 
 /// Raises the columns of each beam to `wanted` pencils per pixel; never lowers them. A note tells each change. Returns
 /// the rig and the warnings about beams that stay too coarse.
-pub(crate) fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -> (Rig, Vec<String>) {
+pub(crate) fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -> (Rig, Vec<Warning>) {
     let camera = rig.camera.sensor;
     let mut warnings = Vec::new();
     for (index, OnVehicle { sensor: beam, .. }) in rig.beams.iter_mut().enumerate() {
@@ -39,11 +40,11 @@ pub(crate) fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -
         }
         let reached = pencils_per_pixel(&camera, f64::from(beam.columns), spread);
         if reached < MIN_PENCILS_PER_PIXEL {
-            warnings.push(format!(
-                "beam {index} has {} pencils per pixel of the camera: below {MIN_PENCILS_PER_PIXEL} its stripe \
-                 has gaps",
+            let sentence = format!(
+                "{} pencils per pixel of the camera: below {MIN_PENCILS_PER_PIXEL} its stripe has gaps.",
                 number(reached)
-            ));
+            );
+            warnings.push(Warning::of_sensor(WarningCode::StripeHasGaps, SensorId::Beam(index), sentence));
         }
     }
     (rig, warnings)

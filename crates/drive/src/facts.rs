@@ -62,6 +62,8 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
                 run.renderers.join(" and ")
             ),
         ),
+        ("start", run.whereabouts.vehicle_line().replacen("vehicle at ", "", 1)),
+        ("terrain", run.whereabouts.terrain_line().replacen("terrain ", "", 1)),
         ("camera", job.preset.to_string()),
         ("frames", format!("{}{short}{scans}, one per {} m", run.frames.len(), number(frame_step))),
         ("driven", format!("{:.2} m at {} m/s", run.driven(), number(route.speed))),

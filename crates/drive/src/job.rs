@@ -7,6 +7,7 @@ use raypencil_rover::{DrivePlan, Rig};
 use raypencil_scene::{FluxModel, Image, Mesh};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource};
 use raypencil_sensor::{ImageSensor, Optics, Sunlight};
+use raypencil_survey::Warning;
 
 use crate::beam_columns::with_columns;
 use crate::error::{DriveError, MAX_FRAMES};
@@ -56,7 +57,7 @@ pub struct DriveJob {
     /// Notes on how the drive was set up.
     pub notes: Vec<String>,
     /// Warnings about settings that may spoil the drive.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Start of the drive of a built-in ground, global x and y, metres. All of them end at the origin.

@@ -31,6 +31,10 @@ struct Page {
     facts: Vec<(&'static str, String)>,
     warnings: Vec<String>,
     differences: Vec<String>,
+    /// A line for each sensor at the start.
+    stands: Vec<String>,
+    /// The plan from above at the start, as SVG.
+    plan: String,
     /// Captions and SVG texts.
     figures: Vec<(String, String)>,
     /// Data URL of the animation.
@@ -58,8 +62,10 @@ pub(crate) fn html(
         title,
         headline: headline(run),
         facts: facts(job, run),
-        warnings: job.warnings.clone(),
+        warnings: job.warnings.iter().chain(&run.warnings).map(ToString::to_string).collect(),
         differences: difference_lines(run),
+        stands: run.whereabouts.lines(),
+        plan: run.plan.svg(),
         figures: figures.iter().map(|figure| (figure.caption.clone(), figure.drawing.svg())).collect(),
         animation: format!("data:image/png;base64,{}", STANDARD.encode(animation)),
         stages: run.stages.iter().map(|stage| (stage.name.clone(), time(stage.time))).collect(),

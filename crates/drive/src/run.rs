@@ -1,9 +1,12 @@
 //! Drive from its first frame to its last, with one renderer or with two in lockstep.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use raypencil_report::Drawing;
 use raypencil_rover::{Detection, DriveFrame, ElevationMap, LabelledVector, ObstacleMap};
 use raypencil_scene::{Pose, Renderer, Silent, Stage};
+use raypencil_survey::{Warning, Whereabouts, plan as survey_plan};
 
 use crate::animation_frame::{AnimationFrame, HALF_SIDE_PX, MapThumbnail};
 use crate::camera_view::{CameraView, camera_view};
@@ -14,6 +17,7 @@ use crate::job::DriveJob;
 use crate::maps::ply::MarkedPoint;
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sun::Sun;
+use crate::warnings::{at_the_start, nothing_measured};
 
 /// Maximum number of animation frames: a few megabytes.
 const MAX_ANIMATION_FRAMES: u64 = 60;
@@ -60,6 +64,12 @@ pub struct DriveRun {
     pub edge_points: u64,
     /// Edge points, global: the first 16,777,216.
     pub points: Vec<MarkedPoint>,
+    /// Warnings about the scene at the start, and about a drive that measured nothing.
+    pub warnings: Vec<Warning>,
+    /// Where vehicle, sensors and terrain are at the start.
+    pub whereabouts: Whereabouts,
+    /// The same from above.
+    pub(crate) plan: Drawing,
     /// Differences between the two sides; `None` with one renderer.
     pub differences: Option<Differences>,
     /// Time of each part of the work.
@@ -182,6 +192,17 @@ pub fn drive(
     };
     drawing += start.elapsed();
 
+    // Every drive has a first frame, and its vehicle stands on the ground.
+    let start = Instant::now();
+    let at_start = frames[0].stance.pose();
+    let (air, model) = (job.plan.atmosphere, job.plan.flux_model);
+    let scene = job.plan.rig.scene(Arc::clone(&job.mesh), at_start, air, model)?;
+    let mut warnings = at_the_start(&scene);
+    let whereabouts = Whereabouts::of(&scene, Some(&at_start));
+    let plan = survey_plan(&scene, Some(&at_start));
+    warnings.extend(nothing_measured(edge_points));
+    let looking = start.elapsed();
+
     let mut stages = first.stages();
     stages.extend(second.iter().flat_map(RendererDrive::stages));
     if second.is_some() {
@@ -189,6 +210,7 @@ pub fn drive(
     }
     stages.push(Stage { name: "obstacle maps of the true ground".into(), time: judging });
     stages.push(Stage { name: "views for figures".into(), time: drawing });
+    stages.push(Stage { name: "looking at the scene".into(), time: looking });
     Ok(DriveRun {
         last_view,
         animation,
@@ -201,6 +223,9 @@ pub fn drive(
         confusion,
         edge_points,
         points,
+        warnings,
+        whereabouts,
+        plan,
         differences,
         stages,
     })

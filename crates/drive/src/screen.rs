@@ -13,7 +13,7 @@ use crate::run::DriveRun;
 pub fn drive_screen(job: &DriveJob, run: &DriveRun, folder: Option<&Path>) -> String {
     let mut out =
         facts(job, run).iter().map(|(name, words)| format!("{name:10}{words}\n")).collect::<String>();
-    for warning in &job.warnings {
+    for warning in job.warnings.iter().chain(&run.warnings) {
         out += &format!("\nwarning: {warning}\n");
     }
     out += "\ntime\n";

@@ -45,7 +45,7 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
     let route = &job.plan.route;
     let all = json!({
         "format": "raypencil-drive",
-        "format_version": 1,
+        "format_version": 2,
         "version": VERSION,
         "scene": job.name,
         "arguments": job.arguments,
@@ -80,8 +80,9 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "truth": confusion(&run.confusion),
         "passes": run.passes(),
         "differences": run.differences.as_ref().map(differences),
+        "whereabouts": run.whereabouts,
         "notes": job.notes,
-        "warnings": job.warnings,
+        "warnings": job.warnings.iter().chain(&run.warnings).collect::<Vec<_>>(),
         "stages": seconds,
     });
     format!("{all:#}\n")

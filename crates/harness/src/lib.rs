@@ -19,8 +19,13 @@
 //! let (camera, beams) = rig::default_rig(32, DVec3::ZERO, 0.0);
 //! let air = Atmosphere { attenuation: 0.0 };
 //! let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
-//! let subject =
-//!     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+//! let subject = Subject {
+//!     scene,
+//!     name: "small".into(),
+//!     arguments: "small.toml".into(),
+//!     sha256: "0".repeat(64),
+//!     vehicle: None,
+//! };
 //!
 //! let contenders = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
 //! let validation = validate(subject, &contenders, JudgeShare::Sample, &Silent);
@@ -83,7 +88,7 @@ pub use output::folder::{HarnessError, Written, write_maps, write_validation};
 pub use output::junit::junit as junit_xml;
 pub use output::markdown::markdown as summary_markdown;
 pub use output::report::html as report_html;
-pub use output::screen::one_screen;
+pub use output::screen::{one_screen, whole_screen};
 pub use output::summary::summary_json;
 pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedCandidate, ProbedReturn, probe};
 pub use radiance::{RadianceComparison, compare_radiance};

@@ -75,7 +75,8 @@ pub(crate) fn write_misses(
             !is_sum && place.is_some_and(|place| of_ray(scene, place) == true_answer)
         };
         let (scene, place) = reduce_to_ray(&subject.scene, wrong.place, MAX_FACES, &is_interesting, progress);
-        let small = Subject { arguments: quoted("scene.toml"), name, sha256: scene_sha256(&scene), scene };
+        let sha256 = scene_sha256(&scene);
+        let small = Subject { arguments: quoted("scene.toml"), name, sha256, scene, vehicle: None };
         write_pack(&small, None, &folder, progress)?;
         let text = readme(subject, report, wrong, &small, place);
         let path = folder.join("README.md");

@@ -47,7 +47,8 @@ fn description_of(minimised: &Minimised, Reproducer { name, what, with }: Reprod
     let arguments = format!("{} {with}", quoted(&format!("{name}.toml")));
     let arguments = arguments.trim_end().to_string();
     let mut commands = vec![format!("raypencil validate {arguments}")];
-    let subject = Subject { scene: scene.clone(), name: name.into(), arguments, sha256: scene_sha256(scene) };
+    let sha256 = scene_sha256(scene);
+    let subject = Subject { scene: scene.clone(), name: name.into(), arguments, sha256, vehicle: None };
     commands.extend(place.map(|place| probe_command(&subject, place)));
     let commands = commands.join("\n");
     let left = match (*faces_after, is_finished) {

@@ -5,10 +5,11 @@ use std::time::Instant;
 use raypencil_judge::{Attributions, Judge, JudgeShare, compare_judged};
 use raypencil_scene::{Progress, Request, Stage, Switches};
 use raypencil_scene_io::Subject;
+use raypencil_survey::warnings;
 
 use crate::rendered::Rendered;
 use crate::renderers::{Contender, attribute};
-use crate::validation::{Pair, Validation};
+use crate::validation::{Pair, Validation, most_hits};
 
 /// Renders `subject` with each of `contenders` and compares every pair of them. The referee rules on every ray whose
 /// answers differ, and on `share` of the rays that agree.
@@ -26,8 +27,13 @@ use crate::validation::{Pair, Validation};
 /// # let air = Atmosphere { attenuation: 0.0 };
 /// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
 /// // `scene`: the facets under the default rig, 64 times coarser: 16 x 16 pixels, two beams of 16 x 2 pencils.
-/// let subject =
-///     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+/// let subject = Subject {
+///     scene,
+///     name: "small".into(),
+///     arguments: "small.toml".into(),
+///     sha256: "0".repeat(64),
+///     vehicle: None,
+/// };
 /// let contenders = ["scanline", "tracer", "referee"].map(|name| contender(name).expect("a renderer's name"));
 /// let validation = validate(subject, &contenders, JudgeShare::All, &Silent);
 /// // Three renderers are three pairs, and each compares 16 x 16 + 2 (16 x 2) = 320 rays.
@@ -70,6 +76,12 @@ pub fn validate(
         });
     }
 
+    // What looks wrong in the scene itself.
+    progress.stage("looking at the scene");
+    let start = Instant::now();
+    let warnings = warnings(&subject.scene, subject.vehicle.as_ref(), Some(&most_hits(&rendered)));
+    stages.push(Stage { name: "looking at the scene".into(), time: start.elapsed() });
+
     // The referee prepares the scene independently of the renderers.
     progress.stage("referee: preparing");
     let start = Instant::now();
@@ -98,5 +110,15 @@ pub fn validate(
         }
     }
     drop(judge);
-    Validation { subject, rendered, pairs, scoreboard: None, candidates_may_fail: false, stages }
+    let scoreboard = None;
+    Validation {
+        subject,
+        rendered,
+        pairs,
+        scoreboard,
+        candidates_may_fail: false,
+        warnings,
+        allow_empty: false,
+        stages,
+    }
 }

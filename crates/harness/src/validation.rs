@@ -5,6 +5,7 @@ use std::time::Instant;
 use raypencil_judge::{ApproximationTallies, Class, SensorResult};
 use raypencil_scene::{Progress, Stage};
 use raypencil_scene_io::Subject;
+use raypencil_survey::{SensorHits, Warning};
 
 use crate::candidate::Candidate;
 use crate::rendered::Rendered;
@@ -35,8 +36,24 @@ pub struct Validation {
     /// Whether the validation passes although a candidate is wrong: `--candidates-must-pass=false`. Reports call the
     /// candidate wrong all the same.
     pub candidates_may_fail: bool,
+    /// Warnings about the scene. They change no class and no verdict but that of a scene in which nothing is hit.
+    pub warnings: Vec<Warning>,
+    /// Whether a validation in which nothing is hit may pass.
+    pub allow_empty: bool,
     /// Wall-clock time of each step, in order.
     pub stages: Vec<Stage>,
+}
+
+/// Rays that hit, for each sensor: the most of any renderer. A sensor without a map is left out.
+pub(crate) fn most_hits(rendered: &[Rendered]) -> Vec<SensorHits> {
+    let mut most: Vec<SensorHits> = Vec::new();
+    for of in rendered.iter().flat_map(|side| side.output.maps()).filter_map(SensorHits::of_map) {
+        match most.iter_mut().find(|earlier| earlier.sensor == of.sensor) {
+            Some(earlier) => earlier.hits = earlier.hits.max(of.hits),
+            None => most.push(of),
+        }
+    }
+    most
 }
 
 /// Numbers of rays by class, summed over all sensors and pairs.
@@ -103,10 +120,17 @@ impl Validation {
         self.scoreboard.as_ref().map_or(&[], |scoreboard| &scoreboard.candidates)
     }
 
-    /// Whether at least one ray of the renderers was compared, and none is a defect or undecided.
+    /// Whether a ray of any sensor hits the terrain, by any renderer.
+    pub fn hits_something(&self) -> bool {
+        most_hits(&self.rendered).iter().any(|of| of.hits > 0)
+    }
+
+    /// Whether at least one ray of the renderers was compared, none is a defect or undecided, and a ray hits, unless
+    /// [`Validation::allow_empty`].
     pub fn renderers_pass(&self) -> bool {
         let counts = self.counts();
-        counts.defects == 0 && counts.undecided == 0 && counts.compared > 0
+        let is_fine = counts.defects == 0 && counts.undecided == 0 && counts.compared > 0;
+        is_fine && (self.allow_empty || self.hits_something())
     }
 
     /// Whether the renderers pass, and every candidate, unless [`Validation::candidates_may_fail`].

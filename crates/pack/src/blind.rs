@@ -74,8 +74,11 @@ fn scene_toml(seed: u64) -> String {
 /// # Errors
 /// A scene file that the loader refuses. No seed is known that makes one.
 pub fn blind_scene(seed: u64) -> Result<Scene, SceneIoError> {
-    let scene = load(seed)?.scene;
-    Ok(with_bench(&scene).expect("seven beams, and faces within 200 m"))
+    Ok(on_bench(&load(seed)?.scene))
+}
+
+fn on_bench(scene: &Scene) -> Scene {
+    with_bench(scene).expect("seven beams, and faces within 200 m")
 }
 
 /// The scene of a blind seed, with its name `blind-SEED` and its digest.
@@ -83,8 +86,10 @@ pub fn blind_scene(seed: u64) -> Result<Scene, SceneIoError> {
 /// # Errors
 /// As [`blind_scene`].
 pub fn blind_subject(seed: u64) -> Result<Subject, SceneIoError> {
-    let (scene, name) = (blind_scene(seed)?, format!("blind-{seed}"));
-    Ok(Subject { sha256: scene_sha256(&scene), arguments: name.clone(), name, scene })
+    let loaded = load(seed)?;
+    let scene = on_bench(&loaded.scene);
+    let (sha256, vehicle) = (scene_sha256(&scene), loaded.standing_vehicle());
+    Ok(Subject { arguments: loaded.name.clone(), name: loaded.name, scene, sha256, vehicle })
 }
 
 fn load(seed: u64) -> Result<LoadedScene, SceneIoError> {

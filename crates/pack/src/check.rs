@@ -194,6 +194,7 @@ pub fn check_pack_by(
         arguments: quoted(&scene_file.to_string_lossy()),
         sha256,
         scene,
+        vehicle: None,
     };
     let is_blind = manifest.kind == PackKind::Blind;
     Ok(Checked { subject, recorded, check, diagnosis, exact_ranges, is_blind })

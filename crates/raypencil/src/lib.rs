@@ -8,6 +8,7 @@
 //! load, validate, check              a scene from a file; two renderers compared; a recording against the truth
 //! Scanline, Tracer, ExactRenderer    the renderers; Referee, the exact judge
 //! io                                 files: scenes, meshes, NPY, PFM, EXR
+//! survey                             warnings about a scene; where everything stands
 //! harness  judge  report             a validation: run, judged, reported; candidates; probe
 //! pack  diff  minimise  campaign     reference packs; any two recordings; the simplest scene; random terrains
 //! diagnosis                          the mistake that explains why a recording is wrong
@@ -27,10 +28,11 @@
 //!     "small",
 //! )?;
 //! let subject = Subject {
+//!     vehicle: loaded.standing_vehicle(),
 //!     scene: loaded.scene,
 //!     name: loaded.name,
 //!     arguments: "small.toml".into(),
-//!     sha256: loaded.scene_sha256,
+//!     sha256: loaded.source_sha256,
 //! };
 //! let renderers = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
 //! let validation = validate(subject, &renderers, JudgeShare::Sample, &Silent);
@@ -54,8 +56,8 @@ pub use {
     raypencil_drive as drive, raypencil_harness as harness, raypencil_judge as judge,
     raypencil_minimise as minimise, raypencil_naive as naive, raypencil_pack as pack,
     raypencil_referee as referee, raypencil_report as report, raypencil_rover as rover,
-    raypencil_scanline as scanline, raypencil_sensor as sensor, raypencil_terrain as terrain,
-    raypencil_tracer as tracer,
+    raypencil_scanline as scanline, raypencil_sensor as sensor, raypencil_survey as survey,
+    raypencil_terrain as terrain, raypencil_tracer as tracer,
 };
 
 /// Every file format, in and out: numbers (NPY, PFM, EXR), meshes (glTF, GeoTIFF), scenes (TOML).

@@ -39,6 +39,8 @@ pub struct LoadedScene {
     pub scene_sha256: String,
     /// Pose of the vehicle, `global_from_vehicle`. A resolved scene has no vehicle: then this is the scene frame.
     pub vehicle: Pose,
+    /// Whether there is a vehicle: not in a resolved scene.
+    pub has_vehicle: bool,
     /// Source of the scene.
     pub source: SceneSource,
     /// Drive of the scene file, placed in the scene; `None`: the file has no `[drive]`.
@@ -46,6 +48,11 @@ pub struct LoadedScene {
 }
 
 impl LoadedScene {
+    /// Pose of the vehicle in the global frame, if there is one.
+    pub fn standing_vehicle(&self) -> Option<Pose> {
+        self.has_vehicle.then_some(self.vehicle)
+    }
+
     /// Camera and beams in the frame of the vehicle.
     pub fn rig(&self) -> Rig {
         rig_of(&self.scene, &self.vehicle)
@@ -188,7 +195,7 @@ fn load_resolved(
     let scene = Scene::new(Arc::new(mesh), resolved.camera, beams, resolved.atmosphere, flux_model)
         .map_err(|error| resolved.point_to(file, error))?;
     let vehicle = Pose::from_position(scene.mesh().origin());
-    Ok(loaded(source, scene, vehicle, parts, overrides, None))
+    Ok(LoadedScene { has_vehicle: false, ..loaded(source, scene, vehicle, parts, overrides, None) })
 }
 
 /// Loads a terrain without a scene file: the default rig stands in its middle.
@@ -256,6 +263,7 @@ fn loaded(
         scene_sha256: digest::scene_sha256(&scene),
         scene,
         vehicle,
+        has_vehicle: true,
         source: source.clone(),
         drive,
     }

@@ -1,6 +1,6 @@
 //! A scene under test, and the commands that people type to see it.
 
-use raypencil_scene::{Place, Scene, SensorId};
+use raypencil_scene::{Place, Pose, Scene, SensorId};
 
 /// Scene under test, with the names that people give it.
 #[derive(Debug, Clone)]
@@ -11,8 +11,11 @@ pub struct Subject {
     pub name: String,
     /// Words after `raypencil validate` or `raypencil probe` that give this scene and its renderers again.
     pub arguments: String,
-    /// SHA-256 of what defines the scene, in hexadecimal digits.
+    /// SHA-256 of the source: of the files or the input that define the scene, in hexadecimal digits. That of the
+    /// resolved scene, which candidates and packs have, is [`scene_sha256`](crate::scene_sha256).
     pub sha256: String,
+    /// Pose of the vehicle in the global frame; `None`: the scene has sensors alone.
+    pub vehicle: Option<Pose>,
 }
 
 /// Command that shows everything about one ray.
@@ -28,6 +31,7 @@ pub struct Subject {
 ///     // A shell splits words at spaces, so this path needs quotes.
 ///     arguments: quoted("my scenes/pyramids.toml"),
 ///     sha256: loaded.source_sha256,
+///     vehicle: Some(loaded.vehicle),
 /// };
 /// let place = Place { sensor: SensorId::Beam(1), i: 412, j: 3 };
 /// let command = "raypencil probe 'my scenes/pyramids.toml' --beam 1 --pencil 412,3";

@@ -144,6 +144,7 @@ pub fn write(scene: &Scene, fault: Option<FileFault>, folder: &Path) -> Result<(
         scene: scene.clone(),
         name: "injected".into(),
         arguments: "injected".into(),
+        vehicle: None,
         sha256: scene_sha256(scene),
     };
     let files =

@@ -20,6 +20,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("report", 2),
     ("minimise", 2),
     ("rover", 3),
+    ("survey", 3),
     ("judge", 3),
     ("mesh-io", 3),
     ("diff", 4),

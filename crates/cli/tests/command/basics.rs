@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use raypencil::{Precision, RenderOutput, Renderer, Request, Scene};
 use tempfile::TempDir;
 
-use crate::{assert_trouble, raypencil, text};
+use crate::{assert_trouble, raypencil, screen, text};
 
 /// A folder with `small.toml`: the pyramids with small sensors, so that a run is short.
 fn folder() -> TempDir {
@@ -35,6 +35,68 @@ fn without_a_command_it_validates_the_pyramids() {
     }
     // Standard error is not a terminal, so there is no spinner.
     assert_eq!(text(&output.stderr), "");
+}
+
+/// A scene whose sensors look past the ground: the vehicle is 500 m beside it.
+const ASIDE: &str = "version = 1\n[vehicle]\nposition_m = [500, 0, 0]\n\
+    [camera]\nwidth_px = 64\nheight_px = 48\npixel_pitch_um = 144\n[[beam]]\ncolumns = 64\nrows = 4\n";
+
+#[test]
+fn a_scene_in_which_nothing_is_hit_fails_unless_it_is_allowed() {
+    let folder = folder();
+    std::fs::write(folder.path().join("aside.toml"), ASIDE).unwrap();
+    for (options, code) in [(&[][..], 1), (&["--allow-empty"][..], 0)] {
+        let shown = screen(folder.path(), &[&["validate", "aside.toml"], options].concat(), code);
+        assert!(shown.contains("Nothing is hit: all 3,328 rays miss the terrain."), "{shown}");
+        let words = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains("warning: beam-0: none of its 256 rays hits the front"), "{shown}");
+        assert!(!shown.contains("All ") && shown.contains("vehicle at (500.00, 0.00, 0.00) m"), "{shown}");
+    }
+    // Where something is hit, all is as before.
+    screen(folder.path(), &["validate", "small.toml"], 0);
+}
+
+#[test]
+fn render_and_pack_warn_on_standard_error_and_in_json() {
+    let folder = folder();
+    std::fs::write(folder.path().join("aside.toml"), ASIDE).unwrap();
+    let sentence = "camera: none of its 3,072 rays hits the front of the terrain within the maximum range.";
+    for command in [&["render", "aside.toml", "--with", "tracer"][..], &["pack", "aside.toml"][..]] {
+        let output = raypencil(folder.path(), &[command, &["-o", "out"]].concat());
+        assert_eq!(output.status.code(), Some(0));
+        assert!(text(&output.stderr).contains(&format!("warning: {sentence}\n")), "{}", text(&output.stderr));
+        assert!(!text(&output.stdout).contains("warning"));
+        let json = screen(folder.path(), &[command, &["-o", "out", "--json"]].concat(), 0);
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        assert_eq!(json["warnings"][0]["code"], "no_hits");
+        assert_eq!(json["warnings"].as_array().map(Vec::len), Some(2), "{json}");
+    }
+    let output = raypencil(folder.path(), &["render", "small.toml", "--with", "tracer", "-o", "out"]);
+    assert_eq!(text(&output.stderr), "");
+}
+
+#[test]
+fn a_principal_point_left_from_the_default_image_is_told() {
+    let folder = folder();
+    let scene = "version = 1\n[camera]\nwidth_px = 1280\nheight_px = 960\nprincipal_point_px = [512, 512]\n";
+    std::fs::write(folder.path().join("left.toml"), scene).unwrap();
+    let output =
+        raypencil(folder.path(), &["render", "left.toml", "--with", "tracer", "-o", "out", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(json["warnings"][0]["code"], "principal_point_off_centre");
+    assert_eq!(json["warnings"].as_array().map(Vec::len), Some(1), "{json}");
+}
+
+#[test]
+fn a_text_for_a_pipe_is_not_cut() {
+    // Of the paper's approximations on a thick sheet a line gets longer than a terminal is wide.
+    let folder = folder();
+    let paper = ["validate", "pyramids", "--thickness", "80", "--with", "scanline-paper,tracer"];
+    let shown = screen(folder.path(), &paper, 0);
+    let line =
+        shown.lines().find(|line| line.starts_with("camera  1,048,576 rays: ")).expect("the camera's line");
+    assert!(line.contains(" approximation; ") && line.ends_with(" hit"), "{shown}");
+    assert!(!shown.contains("..."), "{shown}");
 }
 
 #[test]

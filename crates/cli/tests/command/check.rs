@@ -191,6 +191,42 @@ fn absent_channels_are_not_compared_and_unknown_ones_are_named() {
 }
 
 #[test]
+fn any_value_that_is_not_finite_means_no_hit() {
+    let folder = folder("pyramids");
+    // The sky of the pack's camera: +Inf in ranges and depths, NaN in the others.
+    let others = [f32::NAN, f32::NEG_INFINITY, f32::INFINITY];
+    let mut changed = 0;
+    edit(&folder, "camera.exr", |map| {
+        for channel in ["range.T", "depth.Z", "P.X", "P.Y", "P.Z", "incidence.V"] {
+            for (index, cell) in reals(map, channel).cells_mut().iter_mut().enumerate() {
+                if !cell.is_finite() {
+                    (*cell, changed) = (others[index % 3], changed + 1);
+                }
+            }
+        }
+    });
+    assert!(changed > 6 * 100, "{changed} cells of the sky");
+    let exact = "✓ 7,936 rays agree with the exact answers";
+    let output = check(folder.path(), "pyramids", &[]);
+    assert_passes(&output);
+    assert!(text(&output.stdout).contains(exact), "{}", text(&output.stdout));
+    // Without faces the ranges themselves tell which rays hit.
+    edit(&folder, "camera.exr", |map| {
+        map.channels.remove("face.I");
+    });
+    let output = check(folder.path(), "pyramids", &[]);
+    assert_passes(&output);
+    assert!(text(&output.stdout).contains(exact), "{}", text(&output.stdout));
+    // A hit that is declared a miss this way is still found.
+    edit(&folder, "camera.exr", |map| {
+        for channel in ["range.T", "depth.Z", "P.X", "P.Y", "P.Z", "incidence.V", "N.X", "N.Y", "N.Z"] {
+            reals(map, channel).set(40, 50, f32::NAN);
+        }
+    });
+    assert_fails(&check(folder.path(), "pyramids", &[]), &["camera pixel 40,50"]);
+}
+
+#[test]
 fn broken_conventions_are_named_with_their_cell() {
     let cases: [(Change, &[&str]); 6] = [
         (

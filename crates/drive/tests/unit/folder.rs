@@ -48,7 +48,8 @@ fn the_folder_holds_everything_and_the_summary_comes_last() {
     // There are no other files, such as partly written ones.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), names.len());
     let page = std::fs::read_to_string(&written.report).unwrap();
-    assert_eq!(page.matches("<svg").count(), 4);
+    // Four figures, and the plan of the start.
+    assert_eq!(page.matches("<svg").count(), 5);
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"));
     // The map can be read as an elevation model with the same posts.
     let dem = read_dem(folder.path().join("local-map.tif"), None).unwrap();

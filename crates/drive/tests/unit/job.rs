@@ -140,12 +140,12 @@ fn every_key_of_the_camera_is_read() {
 fn too_few_pencils_and_a_blind_threshold_give_warnings() {
     let few = job(FLAT, &format!("{SHORT}\npencils_per_pixel = 1"));
     assert_eq!(few.warnings.len(), 2);
-    assert!(few.warnings[0].contains("beam 0 has 1.01 pencils per pixel"), "{:?}", few.warnings);
+    assert!(few.warnings[0].to_string().starts_with("beam-0: 1.01 pencils per pixel"), "{:?}", few.warnings);
     // The default threshold does not take the sun or other electronics into account.
     let warned = |more: &str| job(FLAT, &format!("{SHORT}\n{more}")).warnings;
     let sun = "sun = { elevation_deg = 45 }";
-    assert!(warned(sun)[0].contains("is for the preset alone, without a sun"));
-    assert!(warned("electronics = { bias_dn = 9 }")[0].contains("other electronics"));
+    assert!(warned(sun)[0].sentence.contains("is for the preset alone, without a sun"));
+    assert!(warned("electronics = { bias_dn = 9 }")[0].sentence.contains("other electronics"));
     assert_eq!(warned(&format!("{sun}\nsubtract_unlit = true")).len(), 1);
     for fine in ["threshold_dn = 3000", "detection = \"otsu\""] {
         assert!(warned(&format!("{sun}\n{fine}")).is_empty(), "{fine}");
@@ -165,7 +165,7 @@ fn beams_out_of_order_give_a_warning() {
         DriveJob::new(&load_text(&text, "beams").unwrap(), None, String::new()).unwrap().warnings
     };
     assert!(beams(31.0, 22.0).is_empty());
-    assert!(beams(22.0, 31.0)[0].starts_with("beam 0 is not steeper than beam 1"));
+    assert!(beams(22.0, 31.0)[0].sentence.starts_with("beam 0 is not steeper than beam 1"));
 }
 
 #[test]

@@ -21,7 +21,7 @@ use raypencil_files::{
 };
 use raypencil_pack::PackError;
 use raypencil_scene::{Progress, RenderOutput, Sampling, SensorId, SensorMap};
-use raypencil_scene_io::Subject;
+use raypencil_scene_io::{Subject, scene_sha256};
 
 use crate::misses::write_misses;
 use crate::output::junit::junit;
@@ -143,8 +143,13 @@ pub fn write_validation(
 /// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
 /// # let air = Atmosphere { attenuation: 0.0 };
 /// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
-/// # let subject =
-/// #     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+/// # let subject = Subject {
+/// #     scene,
+/// #     name: "small".into(),
+/// #     arguments: "small.toml".into(),
+/// #     sha256: "0".repeat(64),
+/// #     vehicle: None,
+/// # };
 /// # let folder = tempfile::tempdir()?;
 /// let tracer = contender("tracer").expect("a renderer's name").renderer;
 /// let output = tracer.render(&subject.scene, &Request::EVERYTHING);
@@ -164,7 +169,7 @@ pub fn write_maps(
     create_folder(folder)?;
     let attributes = Attributes {
         renderer: renderer.to_string(),
-        scene_sha256: subject.sha256.clone(),
+        scene_sha256: scene_sha256(&subject.scene),
         extra: Vec::new(),
     };
     let model = subject.scene.flux_model();

@@ -41,6 +41,17 @@ pub fn junit(validation: &Validation) -> io::Result<String> {
         suite.push(case.with_text(explanation(validation)));
         report.push(suite);
     }
+    // So would cases that pass because all renderers see nothing.
+    if Verdict::of(validation) == Verdict::NothingHit {
+        let case = match validation.allow_empty {
+            true => JunitCase::skipped("something is hit", headline(validation)),
+            false => JunitCase::failed("something is hit", "nothing_hit", headline(validation))
+                .with_text(explanation(validation)),
+        };
+        let mut suite = JunitSuite::new(subject.name.as_str());
+        suite.push(case);
+        report.push(suite);
+    }
     report.to_xml()
 }
 

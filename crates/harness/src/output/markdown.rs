@@ -3,7 +3,7 @@
 use askama::Template;
 use raypencil_judge::{Class, ListedDefect};
 use raypencil_report::{VERSION, count, counted, time};
-use raypencil_scene_io::probe_command;
+use raypencil_scene_io::{probe_command, scene_sha256};
 
 use crate::output::candidates::{self, Cell, candidates_section};
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
@@ -21,6 +21,7 @@ struct Page {
     headline: String,
     explanation: String,
     caveat: &'static str,
+    warnings: Vec<String>,
     scene: String,
     sha256: String,
     version: &'static str,
@@ -108,13 +109,14 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
         sign: match verdict {
             Verdict::Agree => "✅",
             Verdict::Defects | Verdict::CandidatesWrong => "❌",
-            Verdict::NothingCompared => "❔",
+            Verdict::NothingHit | Verdict::NothingCompared => "❔",
         },
         headline: escaped(&headline(validation)),
         explanation: escaped(&explanation(validation)),
         caveat: if verdict == Verdict::Agree { CAVEAT } else { "" },
+        warnings: validation.warnings.iter().map(|warning| escaped(&warning.to_string())).collect(),
         scene: code(&subject.name),
-        sha256: code(&subject.sha256),
+        sha256: code(&scene_sha256(&subject.scene)),
         version: VERSION,
         command: code(&format!("raypencil validate {}{}", subject.arguments, candidates::typed(validation))),
         rows: rows(subject, validation.pairs.iter().flat_map(|pair| &pair.sensors)),

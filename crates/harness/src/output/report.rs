@@ -4,7 +4,8 @@ use askama::Template;
 use raypencil_judge::{Class, SensorResult, name_of};
 use raypencil_report::{MapPair, SensorPlots, VERSION, count, counted, list, page_head, time};
 use raypencil_scene::SensorId;
-use raypencil_scene_io::probe_command;
+use raypencil_scene_io::{Subject, probe_command, scene_sha256};
+use raypencil_survey::{Whereabouts, plan};
 
 use crate::output::candidates::{CandidatesSection, Misses, all_misses, candidates_section, typed};
 use crate::output::light::{Light, light};
@@ -27,11 +28,17 @@ struct Page<'a> {
     headline: String,
     explanation: String,
     caveat: &'static str,
+    warnings: Vec<String>,
     scene: &'a str,
-    sha256: &'a str,
+    sha256: String,
+    source_sha256: &'a str,
     version: &'static str,
     command: String,
     renderers: String,
+    /// Lines on the vehicle, the sensors and the terrain.
+    stands: Vec<String>,
+    /// The plan from above, as SVG.
+    plan: String,
     tiles: Vec<Tile>,
     comparisons: Vec<Comparison>,
     causes: Vec<CauseRow>,
@@ -104,7 +111,7 @@ struct Timed {
 
 /// The contents of `report.html`.
 pub fn html(validation: &Validation) -> Result<String, askama::Error> {
-    let Validation { subject, rendered, pairs, scoreboard, candidates_may_fail: _, stages } = validation;
+    let Validation { subject, rendered, pairs, scoreboard, stages, .. } = validation;
     let verdict = Verdict::of(validation);
     let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let longest = stages.iter().map(|stage| stage.time).max().unwrap_or_default().as_secs_f64();
@@ -116,17 +123,24 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
         verdict: match verdict {
             Verdict::Agree => "agree",
             Verdict::Defects | Verdict::CandidatesWrong => "defects",
-            Verdict::NothingCompared => "nothing",
+            Verdict::NothingHit | Verdict::NothingCompared => "nothing",
         },
         sign: verdict.sign(),
         headline,
         explanation: explanation(validation),
         caveat: if verdict == Verdict::Agree { CAVEAT } else { "" },
+        warnings: validation.warnings.iter().map(ToString::to_string).collect(),
         scene: &subject.name,
-        sha256: &subject.sha256,
+        sha256: scene_sha256(&subject.scene),
+        source_sha256: &subject.sha256,
         version: VERSION,
         command: format!("raypencil validate {}{}", subject.arguments, typed(validation)),
         renderers: list(&names),
+        stands: stands(subject),
+        // Within a page SVG needs no name of its namespace, and a page holds no address.
+        plan: plan(&subject.scene, subject.vehicle.as_ref())
+            .svg()
+            .replace(" xmlns=\"http://www.w3.org/2000/svg\"", ""),
         tiles: tiles(validation),
         comparisons: pairs.iter().map(|pair| comparison(validation, pair)).collect(),
         causes: causes(subject, &validation.approximations()),
@@ -202,6 +216,12 @@ fn candidate_plots(
         sensors.push(sensor(validation, id, numbers, &plots)?);
     }
     Ok(CandidatePlots { name: name.into(), sensors })
+}
+
+/// Where everything stands, a line each.
+fn stands(subject: &Subject) -> Vec<String> {
+    let found = Whereabouts::of(&subject.scene, subject.vehicle.as_ref());
+    [found.vehicle_line()].into_iter().chain(found.lines()).chain([found.terrain_line()]).collect()
 }
 
 fn tiles(validation: &Validation) -> Vec<Tile> {

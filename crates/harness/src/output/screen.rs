@@ -6,7 +6,8 @@ use std::path::Path;
 use raypencil_judge::{Class, SensorResult, name_of};
 use raypencil_report::{Align, Table, VERSION, count, counted, list, time};
 use raypencil_scene::{Place, SensorId, Stage};
-use raypencil_scene_io::probe_command;
+use raypencil_scene_io::{probe_command, scene_sha256};
+use raypencil_survey::Whereabouts;
 
 use crate::output::candidates;
 use crate::output::table::{hits, totals, worst};
@@ -34,6 +35,9 @@ const APPROXIMATION_COLUMN: usize = 4;
 /// Index of the column of places there.
 const PLACE_COLUMN: usize = 7;
 
+/// Maximum warnings.
+const MAX_WARNINGS: usize = 2;
+
 /// Maximum described defects.
 const MAX_DEFECTS: usize = 3;
 
@@ -57,8 +61,13 @@ const MAX_DEFECT_LINES: usize = 2;
 /// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
 /// # let air = Atmosphere { attenuation: 0.0 };
 /// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
-/// # let subject =
-/// #     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+/// # let subject = Subject {
+/// #     scene,
+/// #     name: "small".into(),
+/// #     arguments: "small.toml".into(),
+/// #     sha256: "0".repeat(64),
+/// #     vehicle: None,
+/// # };
 /// // One renderer alone is no comparison: the screen says so, and it is no pass.
 /// let alone = validate(subject, &[contender("tracer").expect("a name")], JudgeShare::Sample, &Silent);
 /// let screen = one_screen(&alone, None);
@@ -68,29 +77,52 @@ const MAX_DEFECT_LINES: usize = 2;
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
 pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
+    screen(validation, folder, Room::Terminal)
+}
+
+/// The same text for a file or another program: no line and no list is cut, whatever its length.
+pub fn whole_screen(validation: &Validation, folder: Option<&Path>) -> String {
+    screen(validation, folder, Room::Unlimited)
+}
+
+/// The room for the text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Room {
+    /// One screen of a terminal: what does not fit is cut.
+    Terminal,
+    /// As much as the text needs.
+    Unlimited,
+}
+
+fn screen(validation: &Validation, folder: Option<&Path>, room: Room) -> String {
+    let warnings = warnings(validation, room);
+    let verdict = verdict(validation, warnings.lines().count(), room);
     let blocks = [
-        head(validation),
-        quantities(validation),
-        sensors(validation),
-        approximations(validation),
-        candidates(validation),
-        times(validation),
-        files(validation, folder),
-        verdict(validation),
+        head(validation, room),
+        quantities(validation, room),
+        sensors(validation, room),
+        approximations(validation, room),
+        candidates(validation, room),
+        times(validation, room),
+        files(validation, folder, room),
+        warnings,
+        verdict,
     ];
     blocks.into_iter().filter(|block| !block.is_empty()).collect::<Vec<_>>().join("\n")
 }
 
-/// The scene and its renderers.
-fn head(validation: &Validation) -> String {
+/// The scene, its renderers, and where vehicle and terrain are.
+fn head(validation: &Validation, room: Room) -> String {
     let subject = &validation.subject;
     let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
-    let who = cut(&format!("raypencil {VERSION}: {} by {}", subject.name, list(&names)));
-    format!("{who}\nSHA-256 {}\n", subject.sha256)
+    let who = cut(&format!("raypencil {VERSION}: {} by {}", subject.name, list(&names)), room);
+    let stands = Whereabouts::of(&subject.scene, subject.vehicle.as_ref());
+    let [vehicle, terrain] = [stands.vehicle_line(), stands.terrain_line()].map(|line| cut(&line, room));
+    format!("{who}\nScene SHA-256 {}\n{vehicle}\n{terrain}\n", scene_sha256(&subject.scene))
 }
 
 /// The table of quantities and classes over all sensors.
-fn quantities(validation: &Validation) -> String {
+fn quantities(validation: &Validation, room: Room) -> String {
     // The paper's approximations have a column only if there are any.
     let has_approximations = validation.counts().approximation > 0;
     let heads = ["", "agree", "tie", "rounding", "approx.", "defect", "error", "at", "/bound"];
@@ -115,7 +147,7 @@ fn quantities(validation: &Validation) -> String {
     if !has_approximations {
         table.remove_column(APPROXIMATION_COLUMN);
     }
-    if table.clone().with_gap(1).width() > MAX_COLUMNS {
+    if room == Room::Terminal && table.clone().with_gap(1).width() > MAX_COLUMNS {
         // With huge counts there is no room for the places; the report has them.
         table.remove_column(PLACE_COLUMN - usize::from(!has_approximations));
     }
@@ -130,7 +162,7 @@ fn short(Place { sensor, i, j }: Place) -> String {
 }
 
 /// A line for each sensor, over all pairs.
-fn sensors(validation: &Validation) -> String {
+fn sensors(validation: &Validation, room: Room) -> String {
     let mut text = String::new();
     let sensors: Vec<SensorId> = validation.subject.scene.sensors().collect();
     for &sensor in sensors.iter().take(MAX_SENSORS) {
@@ -168,7 +200,7 @@ fn sensors(validation: &Validation) -> String {
             let _ = write!(line, ", {} not compared", count(missing));
         }
         let _ = write!(line, "; {hit} hit");
-        let _ = writeln!(text, "{}", cut(&line));
+        let _ = writeln!(text, "{}", cut(&line, room));
     }
     if sensors.len() > MAX_SENSORS {
         let _ = writeln!(text, "... and {} more sensors in the summary", sensors.len() - MAX_SENSORS);
@@ -177,7 +209,7 @@ fn sensors(validation: &Validation) -> String {
 }
 
 /// A line for each set of the paper's approximations that changed a ray.
-fn approximations(validation: &Validation) -> String {
+fn approximations(validation: &Validation, room: Room) -> String {
     let mut text = String::new();
     let all = validation.approximations();
     for (cause, tally) in all.iter().take(MAX_CAUSES) {
@@ -191,7 +223,7 @@ fn approximations(validation: &Validation) -> String {
             let _ =
                 write!(line, "; range off by {} at {}", worst(&tally.worst_range, "m"), short(found.place));
         }
-        let _ = writeln!(text, "{}", cut(&line));
+        let _ = writeln!(text, "{}", cut(&line, room));
     }
     if all.len() > MAX_CAUSES {
         let _ = writeln!(text, "... and {} more causes in the summary", all.len() - MAX_CAUSES);
@@ -200,25 +232,25 @@ fn approximations(validation: &Validation) -> String {
 }
 
 /// A line for each candidate, and one for what it does not give.
-fn candidates(validation: &Validation) -> String {
+fn candidates(validation: &Validation, room: Room) -> String {
     let mut text = String::new();
     for report in validation.candidates().iter().take(MAX_CANDIDATES) {
-        let _ = writeln!(text, "{}", cut(&candidates::line(report)));
+        let _ = writeln!(text, "{}", cut(&candidates::line(report), room));
         let names = candidates::names_not_given(report);
         if !names.is_empty() {
-            text.push_str(&wrap("  not given: ", names, 1));
+            text.push_str(&wrap("  not given: ", names, 1, room));
         }
     }
     text
 }
 
 /// Stage times: a line for each renderer, then the other stages.
-fn times(validation: &Validation) -> String {
+fn times(validation: &Validation, room: Room) -> String {
     let mut text = String::new();
     for rendered in &validation.rendered {
         let stages =
             rendered.output.stages.iter().map(|stage| format!("{} {}", stage.name, time(stage.time)));
-        text.push_str(&wrap(&format!("{} {}: ", rendered.name, time(rendered.time)), stages, 1));
+        text.push_str(&wrap(&format!("{} {}: ", rendered.name, time(rendered.time)), stages, 1, room));
     }
     // Stages of a renderer are named `renderer: stage`; the others are not.
     let of_renderer = |stage: &&Stage| {
@@ -228,27 +260,54 @@ fn times(validation: &Validation) -> String {
     let others = validation.stages.iter().filter(|stage| !of_renderer(stage));
     let others: Vec<String> = others.map(|stage| format!("{} {}", stage.name, time(stage.time))).collect();
     if !others.is_empty() {
-        text.push_str(&wrap("", others, 1));
+        text.push_str(&wrap("", others, 1, room));
     }
-    text.lines().take(MAX_TIME_LINES).map(|line| format!("{line}\n")).collect()
+    let most = if room == Room::Terminal { MAX_TIME_LINES } else { usize::MAX };
+    text.lines().take(most).map(|line| format!("{line}\n")).collect()
 }
 
 /// The files that were written.
-fn files(validation: &Validation, folder: Option<&Path>) -> String {
+fn files(validation: &Validation, folder: Option<&Path>, room: Room) -> String {
     let Some(folder) = folder else { return String::new() };
     let mut text = format!("{}\n", folder.join("report.html").display());
     let maps: Vec<String> =
         validation.rendered.iter().map(|rendered| format!("{}/*.exr", rendered.name)).collect();
     let beside = ["summary.json", "summary.md", "junit.xml"].map(String::from);
-    text.push_str(&wrap("  beside it: ", beside.into_iter().chain(maps), 2));
+    text.push_str(&wrap("  beside it: ", beside.into_iter().chain(maps), 2, room));
+    text
+}
+
+/// The warnings, wrapped at the edge of the screen.
+fn warnings(validation: &Validation, room: Room) -> String {
+    let most = if room == Room::Terminal { MAX_WARNINGS } else { usize::MAX };
+    let mut text = String::new();
+    for warning in validation.warnings.iter().take(most) {
+        let mut line = "warning:".to_string();
+        for word in warning.to_string().split_whitespace() {
+            if line.chars().count() + 1 + word.chars().count() > MAX_COLUMNS {
+                let _ = writeln!(text, "{}", cut(&line, room));
+                line = " ".repeat("warning:".len());
+            }
+            line.push(' ');
+            line.push_str(word);
+        }
+        let _ = writeln!(text, "{}", cut(&line, room));
+    }
+    if let Some(more) = validation.warnings.len().checked_sub(most).filter(|more| *more > 0) {
+        let _ = writeln!(
+            text,
+            "... and {} in the summary",
+            counted(more as u64, "more warning", "more warnings")
+        );
+    }
     text
 }
 
 /// The verdict, and the commands that show the first defects.
-fn verdict(validation: &Validation) -> String {
+fn verdict(validation: &Validation, lines_of_warnings: usize, room: Room) -> String {
     let verdict = Verdict::of(validation);
     let mut text: String =
-        headlines(validation).iter().map(|line| format!("{}\n", cut(&format!("{line}.")))).collect();
+        headlines(validation).iter().map(|line| format!("{}\n", cut(&format!("{line}."), room))).collect();
     let counts = validation.counts();
     match verdict {
         Verdict::Agree if counts.not_compared > 0 => {
@@ -258,34 +317,41 @@ fn verdict(validation: &Validation) -> String {
                 rays(validation, counts.not_compared)
             );
         }
-        Verdict::NothingCompared => {
-            let _ = writeln!(text, "{}", cut(&explanation(validation)));
+        Verdict::NothingCompared | Verdict::NothingHit => {
+            let _ = writeln!(text, "{}", cut(&explanation(validation), room));
         }
         _ => {}
     }
-    let of_renderers = defects(validation).into_iter().take(MAX_DEFECTS);
+    // Warnings take the room of the last defects, which have up to three lines each.
+    let taken = match (room, lines_of_warnings) {
+        (Room::Unlimited, _) | (_, 0) => 0,
+        // With the blank line between the blocks.
+        (Room::Terminal, lines) => (lines + 1).div_ceil(3),
+    };
+    let of_renderers = defects(validation).into_iter().take(MAX_DEFECTS.saturating_sub(taken));
     let of_candidates = validation.candidates().iter().flat_map(|report| report.misses().take(1));
     for defect in of_renderers.chain(of_candidates.take(MAX_CANDIDATE_DEFECTS)) {
         let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
         let words = format!("{}: {}", name_of(defect.item), defect.words());
-        text.push_str(&folded(&words, MAX_DEFECT_LINES));
+        text.push_str(&folded(&words, MAX_DEFECT_LINES, room));
     }
     text
 }
 
 /// Joins `parts` with commas on lines that begin with `head` or as many blanks. Parts beyond `max_lines` lines are
-/// counted.
-fn wrap(head: &str, parts: impl IntoIterator<Item = String>, max_lines: usize) -> String {
+/// counted, if there is no more room.
+fn wrap(head: &str, parts: impl IntoIterator<Item = String>, max_lines: usize, room: Room) -> String {
+    let max_lines = if room == Room::Terminal { max_lines } else { usize::MAX };
     let parts: Vec<String> = parts.into_iter().collect();
     let (mut lines, mut line) = (Vec::new(), head.to_string());
     for (index, part) in parts.iter().enumerate() {
         let part = if index + 1 < parts.len() { format!("{part},") } else { part.clone() };
         // All parts but the last leave room for the count of the parts that do not fit.
-        let room = if index + 1 == parts.len() { MAX_COLUMNS } else { MAX_COLUMNS - 12 };
+        let most = if index + 1 == parts.len() { MAX_COLUMNS } else { MAX_COLUMNS - 12 };
         let needed = line.chars().count() + 1 + part.chars().count();
         if index == 0 {
             line.push_str(&part);
-        } else if needed <= room {
+        } else if needed <= most {
             line.push(' ');
             line.push_str(&part);
         } else if lines.len() + 1 < max_lines {
@@ -296,14 +362,14 @@ fn wrap(head: &str, parts: impl IntoIterator<Item = String>, max_lines: usize) -
         }
     }
     lines.push(line);
-    lines.into_iter().map(|line| cut(&line) + "\n").collect()
+    lines.into_iter().map(|line| cut(&line, room) + "\n").collect()
 }
 
 /// Words on indented lines, at most `max_lines` of them.
-fn folded(words: &str, max_lines: usize) -> String {
+fn folded(words: &str, max_lines: usize, room: Room) -> String {
     let mut lines: Vec<String> = vec!["     ".into()];
     for word in words.split(' ') {
-        let is_last = lines.len() == max_lines;
+        let is_last = lines.len() == max_lines && room == Room::Terminal;
         let line = lines.last_mut().expect("a line");
         if line.chars().count() + 1 + word.chars().count() > MAX_COLUMNS && !is_last {
             lines.push(format!("      {word}"));
@@ -312,12 +378,12 @@ fn folded(words: &str, max_lines: usize) -> String {
             line.push_str(word);
         }
     }
-    lines.into_iter().map(|line| cut(&line) + "\n").collect()
+    lines.into_iter().map(|line| cut(&line, room) + "\n").collect()
 }
 
 /// A line cut at the edge of the screen.
-fn cut(line: &str) -> String {
-    if line.chars().count() <= MAX_COLUMNS {
+fn cut(line: &str, room: Room) -> String {
+    if room == Room::Unlimited || line.chars().count() <= MAX_COLUMNS {
         return line.into();
     }
     let mut short: String = line.chars().take(MAX_COLUMNS - 3).collect();
@@ -332,7 +398,7 @@ mod tests {
     #[test]
     fn long_lists_are_wrapped_and_counted() {
         let parts = (0..40).map(|index| format!("stage number {index} 12.3 ms"));
-        let text = wrap("times: ", parts, 3);
+        let text = wrap("times: ", parts, 3, Room::Terminal);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 3);
         assert!(lines.iter().all(|line| line.chars().count() <= MAX_COLUMNS), "{text}");
@@ -343,6 +409,9 @@ mod tests {
 
     #[test]
     fn short_lists_stay_on_one_line() {
-        assert_eq!(wrap("times: ", ["a 1 s".into(), "b 2 s".into()], 3), "times: a 1 s, b 2 s\n");
+        assert_eq!(
+            wrap("times: ", ["a 1 s".into(), "b 2 s".into()], 3, Room::Terminal),
+            "times: a 1 s, b 2 s\n"
+        );
     }
 }

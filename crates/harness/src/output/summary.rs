@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Largest, Quantity, SensorResult};
 use raypencil_report::VERSION;
 use raypencil_scene::Switches;
-use raypencil_scene_io::{Subject, probe_command};
+use raypencil_scene_io::{Subject, probe_command, scene_sha256};
+use raypencil_survey::{Warning, Whereabouts};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -15,7 +16,8 @@ use crate::output::verdict::Verdict;
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
 
-/// Version of the schema; it grows when a key changes its meaning or is removed.
+/// Version of the schema; it grows when a key changes its meaning or is removed. Since 2 `scene.sha256` is the digest of
+/// the resolved scene.
 const FORMAT: u32 = 2;
 
 #[derive(Serialize)]
@@ -31,7 +33,9 @@ struct Summary<'a> {
     /// Rays that each set of the paper's approximations changed, by the names of its switches.
     approximations: BTreeMap<String, u64>,
     causes: Vec<CauseSummary>,
+    warnings: &'a [Warning],
     scene: SceneName<'a>,
+    whereabouts: Whereabouts,
     renderers: Vec<RendererSummary<'a>>,
     pairs: Vec<PairSummary<'a>>,
     /// Renderers and candidates checked against the exact answers; null without candidates.
@@ -65,7 +69,10 @@ struct Classes {
 #[derive(Serialize)]
 struct SceneName<'a> {
     name: &'a str,
-    sha256: &'a str,
+    /// Digest of the resolved scene, which candidates and packs have.
+    sha256: String,
+    /// Digest of the files or the input that define the scene.
+    source_sha256: &'a str,
     arguments: &'a str,
 }
 
@@ -149,7 +156,7 @@ struct StageSummary<'a> {
 
 /// The contents of `summary.json`.
 pub fn summary_json(validation: &Validation) -> String {
-    let Validation { subject, rendered, pairs, scoreboard: _, candidates_may_fail, stages } = validation;
+    let Validation { subject, rendered, pairs, candidates_may_fail, stages, .. } = validation;
     let counts = validation.counts();
     let approximations = validation.approximations();
     let summary = Summary {
@@ -174,7 +181,14 @@ pub fn summary_json(validation: &Validation) -> String {
         },
         approximations: rays_by_cause(&approximations),
         causes: cause_summaries(subject, &approximations),
-        scene: SceneName { name: &subject.name, sha256: &subject.sha256, arguments: &subject.arguments },
+        warnings: &validation.warnings,
+        scene: SceneName {
+            name: &subject.name,
+            sha256: scene_sha256(&subject.scene),
+            source_sha256: &subject.sha256,
+            arguments: &subject.arguments,
+        },
+        whereabouts: Whereabouts::of(&subject.scene, subject.vehicle.as_ref()),
         renderers: rendered.iter().map(renderer_summary).collect(),
         pairs: pairs.iter().map(|pair| pair_summary(validation, pair)).collect(),
         scoreboard: scoreboard_summary(validation),

@@ -17,6 +17,8 @@ pub(crate) enum Verdict {
     Defects,
     /// The renderers agree, and a candidate is wrong.
     CandidatesWrong,
+    /// Rays were compared and agree that no ray hits: that proves nothing.
+    NothingHit,
     /// No ray was compared.
     NothingCompared,
 }
@@ -33,10 +35,12 @@ impl Verdict {
             Self::Defects
         } else if validation.candidates().iter().any(|report| !report.passes()) {
             Self::CandidatesWrong
-        } else if counts.compared > 0 {
+        } else if counts.compared == 0 {
+            Self::NothingCompared
+        } else if validation.hits_something() {
             Self::Agree
         } else {
-            Self::NothingCompared
+            Self::NothingHit
         }
     }
 
@@ -45,7 +49,7 @@ impl Verdict {
         match self {
             Self::Agree => "✓",
             Self::Defects | Self::CandidatesWrong => "✗",
-            Self::NothingCompared => "?",
+            Self::NothingHit | Self::NothingCompared => "?",
         }
     }
 }
@@ -88,6 +92,7 @@ fn renderers_headline(validation: &Validation) -> String {
         (0, _) => "Nothing was compared".into(),
         (_, 1) => format!("1 of {compared} differs"),
         (_, 2..) => format!("{} of {compared} differ", count(counts.defects)),
+        _ if !validation.hits_something() => format!("Nothing is hit: all {compared} miss the terrain"),
         (1, 0) => format!("The only {} agrees", &compared[2..]),
         (_, 0) if counts.approximation > 0 => format!(
             "All {compared} agree, except {} with an error of the paper's approximations",
@@ -157,6 +162,10 @@ pub(crate) fn explanation(validation: &Validation) -> String {
             0 | 1 => "A comparison needs two renderers.".into(),
             _ => format!("No sensor has maps of {who} that both state which rays hit."),
         },
+        Verdict::NothingHit => format!(
+            "{who} agree that no ray of any sensor hits the terrain. Such an agreement proves nothing: is the \
+             terrain where the sensors look?"
+        ),
         Verdict::Defects => {
             let mut text = format!(
                 "{who} differ in the face that is hit, or by more than their rounding errors explain."

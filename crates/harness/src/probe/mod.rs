@@ -136,8 +136,13 @@ pub enum NoSuchRay {
 /// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
 /// # let air = Atmosphere { attenuation: 0.0 };
 /// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
-/// # let subject =
-/// #     Subject { scene, name: "small".into(), arguments: "small.toml".into(), sha256: "0".repeat(64) };
+/// # let subject = Subject {
+/// #     scene,
+/// #     name: "small".into(),
+/// #     arguments: "small.toml".into(),
+/// #     sha256: "0".repeat(64),
+/// #     vehicle: None,
+/// # };
 /// // The lowest row of the camera's 16 x 16 pixels looks at the ground.
 /// let place = Place { sensor: SensorId::Camera, i: 8, j: 15 };
 /// let found = probe(&subject, place, &[contender("tracer").expect("a name")], &Silent)?;

@@ -399,7 +399,7 @@ fn cell<T: Copy>(image: &Image<T>, index: usize) -> (u32, u32) {
     (index as u32 % image.width(), index as u32 / image.width())
 }
 
-/// A map with numbers where rays hit and none elsewhere. Lengths are not negative, and +Inf where nothing is hit.
+/// A map with numbers where rays hit and none elsewhere. Lengths are not negative.
 fn maybe(reals: Reals<'_>, hits: Hits<'_>, is_length: bool) -> Result<Image<Maybe<f64>>, RecordingError> {
     let image = maybe_signed(reals, hits, is_length)?;
     if is_length && let Some(index) = image.cells().iter().position(|x| x.get().is_some_and(|x| x < 0.0)) {
@@ -432,21 +432,17 @@ fn maybe_signed(
                 Reader::fault((name, channel), Some(cell(image, index)), value.to_string(), &expected);
             Err(Reader::with_help(fault, help))
         };
-        let nothing = if is_length { "+Inf" } else { "NaN" };
         if hit && !value.is_finite() {
             let help = (speaker == names::FACE).then(|| {
                 format!("if {speaker} does not say which rays hit, declare --no-faces: it is then left out")
             });
             return wrong(format!("a number, as {speaker} says that something is hit"), help);
         }
-        let is_canonical = if is_length { value == f64::INFINITY } else { value.is_nan() };
-        let is_nothing = is_canonical || conventions.means_miss(value);
+        // On reading, any value that is not finite means no hit. (docs/formats/files.md)
+        let is_nothing = !value.is_finite() || conventions.means_miss(value);
         if !hit && !is_nothing {
-            let expected = if name == speaker {
-                format!("a number, or {nothing} where nothing is hit")
-            } else {
-                format!("{nothing}, as {speaker} says that nothing is hit")
-            };
+            let nothing = if is_length { "+Inf" } else { "NaN" };
+            let expected = format!("{nothing}, as {speaker} says that nothing is hit");
             return wrong(expected, Some(declare_miss(value)));
         }
         cells.push(Maybe::from(hit.then_some(value)));
