@@ -54,7 +54,7 @@ pub(crate) enum Trouble {
     #[error("{error}")]
     Check {
         /// The error.
-        error: CheckError,
+        error: Box<CheckError>,
         /// What to declare, if that may help.
         #[help]
         help: Option<String>,
@@ -89,6 +89,6 @@ pub(crate) enum Trouble {
 impl From<CheckError> for Trouble {
     fn from(error: CheckError) -> Self {
         let help = error.help();
-        Self::Check { error, help }
+        Self::Check { error: Box::new(error), help }
     }
 }
