@@ -294,7 +294,8 @@ fn tied(truth: &GroundTruth<'_>) -> Option<(Place, FaceId)> {
     let model: FluxModel = truth.scene().flux_model();
     for beam in 0..truth.scene().beams().len() {
         let sensor = SensorId::Beam(beam);
-        for place in (0..4).flat_map(|j| (0..128).map(move |i| Place { sensor, i, j })) {
+        let (columns, rows) = truth.scene().size(sensor)?;
+        for place in (0..rows).flat_map(|j| (0..columns).map(move |i| Place { sensor, i, j })) {
             let (true, Some(pixel)) = truth.visibility(place) else { continue };
             let verdict = truth.judge().referee().verdict(sensor, place.i, place.j)?;
             for face in verdict.faces.into_iter().skip(1) {

@@ -39,7 +39,10 @@ fn each_blind_pack_passes_the_right_renderers_and_fails_each_wrong_one() {
             assert!(check.sensors.iter().all(|sensor| sensor.not_compared == 0), "seed {seed}");
         }
         let mut passed = Vec::new();
-        for (clause, fault) in faults_for(&scene) {
+        // The first scene has to fail every wrong renderer. Of the second, whose flux follows the other model, those of its
+        // flux are tried.
+        let is_tried = |clause: Clause| seed == SEEDS[0] || matches!(clause.kind(), ClauseKind::Flux(_));
+        for (clause, fault) in faults_for(&scene).into_iter().filter(|(clause, _)| is_tried(*clause)) {
             if checked(&truth, &Naive { fault: Some(fault) }).of(Class::Defect) == 0 {
                 passed.push((clause, fault));
             }

@@ -195,6 +195,8 @@ pub(crate) fn describe(
 ) -> Hit {
     let [a, b, c] = faces[index];
     let n = (b - a).cross(c - a);
+    // Only a fault meets a face without area, which has no normal: it may show any.
+    let n = if n == DVec3::ZERO { -ray.q } else { n };
     let rotation = sensor.pose.rotation;
 
     let true_range = t * ray.q.length();

@@ -137,7 +137,7 @@ impl Light<'_> {
         let at_point = 1e-12 * (1.0 + (distance + centre.length()) / distance);
         let faces_at_point_hide = self.has(Fault::FacesAtPointHide);
         let farthest = if self.has(Fault::ShadowsFromBehind) {
-            2.0
+            f64::INFINITY
         } else if faces_at_point_hide {
             1.0 + at_point
         } else if self.has(Fault::ShadowEpsilon) {

@@ -25,12 +25,12 @@ use crate::rays::{PosedSensor, camera_pose, pencil_ray, pixel_ray};
 /// # let corners = vec![[-40.0, -40.0, 2.0], [-40.0, 40.0, 2.0], [80.0, 0.0, 2.0]];
 /// # let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
 /// # let wall = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], vec![plaster])?;
-/// # let camera = rig::camera(3, 3, 0.375, 0.5);
+/// # let camera = rig::camera(3, 3, 0.09375, 0.125);
 /// # let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
 /// # let air = Atmosphere { attenuation: 0.0 };
 /// # let scene = Scene::new(Arc::new(wall), camera, vec![], air, FluxModel::Radiometric)?;
 ///
-/// // A wall at z = 2 m. The ray of pixel (0, 1) runs along (-3/8, 0, 1/2): at z = 2 m its range is 2.5 m.
+/// // A wall at z = 2 m. The ray of pixel (0, 1) runs along (-3/32, 0, 1/8): at z = 2 m its range is 2.5 m.
 /// for (fault, range) in [(None, 2.5), (Some(Fault::DepthForRange), 2.0)] {
 ///     let camera = Naive { fault }.render(&scene, &Request::MAPS).camera.unwrap();
 ///     assert_eq!(camera.hit(0, 1).unwrap().range, range);

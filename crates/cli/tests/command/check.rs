@@ -344,6 +344,12 @@ fn a_blind_pack_has_no_answers_and_can_be_checked() {
         "manifest.json",
         "rays-beam-0.npy",
         "rays-beam-1.npy",
+        "rays-beam-2.npy",
+        // The beams of the bench.
+        "rays-beam-3.npy",
+        "rays-beam-4.npy",
+        "rays-beam-5.npy",
+        "rays-beam-6.npy",
         "rays-camera.npy",
         "scene.toml",
         "terrain.glb",

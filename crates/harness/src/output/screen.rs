@@ -328,12 +328,13 @@ fn verdict(validation: &Validation, lines_of_warnings: usize, room: Room) -> Str
         // With the blank line between the blocks.
         (Room::Terminal, lines) => (lines + 1).div_ceil(3),
     };
+    let max_lines = if taken > 0 { 1 } else { MAX_DEFECT_LINES };
     let of_renderers = defects(validation).into_iter().take(MAX_DEFECTS.saturating_sub(taken));
     let of_candidates = validation.candidates().iter().flat_map(|report| report.misses().take(1));
     for defect in of_renderers.chain(of_candidates.take(MAX_CANDIDATE_DEFECTS)) {
         let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
         let words = format!("{}: {}", name_of(defect.item), defect.words());
-        text.push_str(&folded(&words, MAX_DEFECT_LINES, room));
+        text.push_str(&folded(&words, max_lines, room));
     }
     text
 }

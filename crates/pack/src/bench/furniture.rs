@@ -43,10 +43,10 @@ pub(super) fn before_beam(beam: &Mounted<Beam>, camera: &Mounted<Camera>, faces:
     let plane = sensor.grid_distance / 2.0;
     faces.extend(pose, before.at_depth([0.05, 0.15], plane, Side::Front));
     faces.extend(pose, before.at_depth([0.2, 0.3], PLATE_RANGE_M, Side::Back));
-    let doubled = before.facing([0.4, 0.5], [1.0, 1.0], 1.0);
-    faces.extend(pose, doubled);
-    faces.extend(pose, doubled);
-    faces.extend(pose, before.facing([0.55, 0.65], [1.0, -1.0], 1.0));
+    let doubled = before.facing([0.4, 0.5], [1.0, 1.0]);
+    for plate in [doubled, doubled, before.facing([0.55, 0.65], [1.0, -1.0])].into_iter().flatten() {
+        faces.extend(pose, plate);
+    }
 }
 
 /// A point of the scene in a sensor's frame.
@@ -75,21 +75,26 @@ impl Plates<'_> {
             .map(|one| showing(side, one, DVec3::ZERO))
     }
 
-    /// A plate whose normal is `towards[0]` times the direction to the beam and `towards[1]` times that to the camera. It shows
-    /// its front to the beam.
-    fn facing(&self, [left, right]: [f64; 2], towards: [f64; 2], range: f64) -> [Triangle; 2] {
+    /// A plate whose normal is `towards[0]` times the direction to the beam and `towards[1]` times that to the camera. It
+    /// shows its front to the beam. `None`: the two directions are so alike, or so opposite, that this is no direction.
+    fn facing(&self, [left, right]: [f64; 2], towards: [f64; 2]) -> Option<[Triangle; 2]> {
         let slope = self.slope(0.5 * (left + right));
-        let centre = DVec3::new(slope, 0.0, 1.0) * (range * PLATE_RANGE_M / (1.0 + slope * slope).sqrt());
+        let centre = DVec3::new(slope, 0.0, 1.0) * (PLATE_RANGE_M / (1.0 + slope * slope).sqrt());
         let [to_beam, to_camera] = [-centre, self.camera - centre].map(|way| way / way.length());
         let normal = towards[0] * to_beam + towards[1] * to_camera;
+        // Tuned: at a hundredth of a radian the plate is seen edge-on.
+        let is_clear = normal.length() > 0.01;
+        if !is_clear {
+            return None;
+        }
         // Where the ray (0, y, 0) + u (slope, 0, 1) meets the plate's plane.
         let half = 0.6 * self.beam.thickness;
         let at = |part: f64, y: f64| {
             let (origin, way) = (DVec3::new(0.0, y, 0.0), DVec3::new(self.slope(part), 0.0, 1.0));
             origin + way * (normal.dot(centre - origin) / normal.dot(way))
         };
-        halves([at(left, -half), at(left, half), at(right, half), at(right, -half)])
-            .map(|one| showing(Side::Front, one, DVec3::ZERO))
+        let plate = halves([at(left, -half), at(left, half), at(right, half), at(right, -half)]);
+        Some(plate.map(|one| showing(Side::Front, one, DVec3::ZERO)))
     }
 }
 

@@ -33,9 +33,10 @@ pub const BENCH_BEAMS: usize = 4;
 /// bench.
 ///
 /// ```
-/// use raypencil_pack::{BENCH_BEAMS, blind_scene, with_bench};
+/// use raypencil_pack::{BENCH_BEAMS, with_bench};
+/// use raypencil_scene_io::{Overrides, load};
 ///
-/// let scene = blind_scene(7)?;
+/// let scene = load("pyramids", &Overrides::default())?.scene;
 /// let benched = with_bench(&scene)?;
 /// assert_eq!(benched.beams().len(), scene.beams().len() + BENCH_BEAMS);
 /// assert_eq!(benched.mesh().faces()[..9], scene.mesh().faces()[..9]);

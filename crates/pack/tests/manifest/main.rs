@@ -6,8 +6,8 @@ use std::path::Path;
 
 use raypencil_files::write_npy;
 use raypencil_pack::{
-    ChannelType, FileRole, FileType, Manifest, ManifestChannel, ManifestFile, ManifestScene, ManifestSensor,
-    PackKind,
+    ChannelType, FileRole, FileType, Manifest, ManifestChannel, ManifestClause, ManifestFile, ManifestScene,
+    ManifestSensor, PackKind,
 };
 use raypencil_scene::{FluxModel, Image};
 
@@ -55,6 +55,7 @@ fn blind() -> Manifest {
     let mut blind = manifest();
     (blind.kind, blind.blind_seed) = (PackKind::Blind, Some(7));
     blind.files.truncate(1);
+    blind.clauses = vec![ManifestClause { clause: "fronts-only".into(), rays: 9 }];
     blind
 }
 
