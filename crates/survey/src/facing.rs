@@ -1,12 +1,17 @@
 //! Fronts and backs: which side of the terrain the rays of a sensor meet first.
 //!
-//! A renderer sees fronts only. Here each face is there twice, once as it is and once turned over. The first face that
-//! a ray meets on this mesh is a face as it is (a front), or a face turned over (a back).
+//! A renderer sees fronts only. So the terrain is rendered twice: as it is, and with every face turned over. Along a ray
+//! the nearer of the two hits is a front in the first case, a back in the second.
+//!
+//! The scanline renderer is used, since it looks at each face once. A hierarchy over half a million faces takes longer to
+//! build than all other checks together.
 
 use std::sync::Arc;
 
-use raypencil_scene::{Camera, Mesh, Mounted, Quantities, Renderer, Request, Scene, SensorId, SensorMap};
-use raypencil_tracer::Tracer;
+use raypencil_scanline::Scanline;
+use raypencil_scene::{
+    Camera, Mesh, Mounted, Quantities, RenderOutput, Renderer, Request, Scene, SensorId, SensorMap,
+};
 
 /// Most columns and rows of the camera in a sample: shares of the image are then good to one in 16,384.
 const SAMPLE_PIXELS: u32 = 128;
@@ -30,9 +35,7 @@ pub struct Facing {
     pub backs: u64,
 }
 
-/// Traces a sample of the rays of all sensors against both sides of the terrain: a coarser raster over the same field
-/// of view. The list is empty for a terrain with more than two
-/// thousand million faces, which cannot be there twice.
+/// Looks along a sample of the rays of each sensor: a coarser raster over the same field of view.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -52,35 +55,50 @@ pub struct Facing {
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
 pub fn facings(scene: &Scene) -> Vec<Facing> {
-    let Some(two_sided) = two_sided(scene) else { return Vec::new() };
-    let own_faces = scene.mesh().faces().len() as u32;
-    let face_alone = Quantities { face: true, ..Quantities::NONE };
-    let request = Request { quantities: face_alone, ..Request::MAPS };
-    let output = Tracer::new().render(&two_sided, &request);
-    let of_map = |map: &SensorMap| {
-        let faces = map.face.iter().flat_map(|faces| faces.cells()).filter_map(|face| face.get());
-        let (mut fronts, mut backs) = (0, 0);
-        for face in faces {
-            *(if face.0 < own_faces { &mut fronts } else { &mut backs }) += 1;
-        }
-        Facing { sensor: map.sensor, rays: map.cell_count() as u64, fronts, backs }
-    };
-    output.maps().map(of_map).collect()
-}
-
-/// The scene with each face twice: as it is, then all of them turned over.
-fn two_sided(scene: &Scene) -> Option<Scene> {
-    let mesh = scene.mesh();
-    let over = mesh.faces().iter().map(|&[a, b, c]| [a, c, b]);
-    let faces = mesh.faces().iter().copied().chain(over).collect();
-    let kinds = mesh.face_materials().repeat(2);
-    let mesh = Mesh::new(mesh.origin(), mesh.vertices().to_vec(), faces, kinds, mesh.materials().to_vec());
-    let (mut camera, mut beams) = (*scene.camera(), scene.beams().to_vec());
-    camera.sensor = coarse_camera(camera.sensor);
+    let mut beams = scene.beams().to_vec();
     for Mounted { sensor: beam, .. } in &mut beams {
         (beam.columns, beam.rows) = (beam.columns.min(SAMPLE_COLUMNS), beam.rows.min(SAMPLE_ROWS));
     }
-    Scene::new(Arc::new(mesh.ok()?), camera, beams, scene.atmosphere(), scene.flux_model()).ok()
+    let with = |mesh: Arc<Mesh>, sensor: Camera| {
+        let camera = Mounted { sensor, ..*scene.camera() };
+        Scene::new(mesh, camera, beams.clone(), scene.atmosphere(), scene.flux_model())
+    };
+    let ranges = Request { quantities: Quantities { range: true, ..Quantities::NONE }, ..Request::MAPS };
+    let seen = |mesh: Arc<Mesh>| -> RenderOutput {
+        let own = scene.camera().sensor;
+        // Pixels that are large already cannot be larger: then all of them are looked at.
+        let sample = with(Arc::clone(&mesh), coarse_camera(own)).or_else(|_| with(mesh, own));
+        Scanline::exact().render(&sample.expect("the sensors of a scene"), &ranges)
+    };
+    let (fronts, backs) = (seen(Arc::clone(scene.mesh())), seen(Arc::new(turned_over(scene.mesh()))));
+    fronts.maps().zip(backs.maps()).map(|(fronts, backs)| facing(fronts, backs)).collect()
+}
+
+/// What the rays of a sensor meet first, by the ranges of the terrain and of the same terrain turned over.
+fn facing(fronts: &SensorMap, backs: &SensorMap) -> Facing {
+    let mut found = Facing { sensor: fronts.sensor, rays: fronts.cell_count() as u64, fronts: 0, backs: 0 };
+    for pair in ranges(fronts).zip(ranges(backs)) {
+        match pair {
+            (None, None) => {}
+            (Some(front), Some(back)) if back < front => found.backs += 1,
+            (None, Some(_)) => found.backs += 1,
+            (Some(_), _) => found.fronts += 1,
+        }
+    }
+    found
+}
+
+/// The ranges of a map, cell by cell.
+fn ranges(map: &SensorMap) -> impl Iterator<Item = Option<f64>> {
+    map.range.iter().flat_map(|ranges| ranges.cells()).map(|range| range.get())
+}
+
+/// The same terrain with the corners of each face in the opposite order.
+fn turned_over(mesh: &Mesh) -> Mesh {
+    let faces = mesh.faces().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let (vertices, kinds) = (mesh.vertices().to_vec(), mesh.face_materials().to_vec());
+    Mesh::new(mesh.origin(), vertices, faces, kinds, mesh.materials().to_vec())
+        .expect("the corners of a mesh, in another order")
 }
 
 /// A camera with fewer, larger pixels over the same image.

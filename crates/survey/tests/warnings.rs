@@ -102,6 +102,18 @@ fn hits_of_a_render_take_the_place_of_traced_ones() {
 }
 
 #[test]
+fn pixels_of_the_largest_size_are_all_looked_at() {
+    // 512 columns in a sample of 128 would be four times as large, beyond the limit of 0.1 m.
+    let scene = scene_at(pyramids(), DVec3::ZERO);
+    let mut camera = *scene.camera();
+    (camera.sensor.width, camera.sensor.height) = (512, 16);
+    (camera.sensor.pixel_pitch, camera.sensor.principal_point) = ([0.1; 2], [256.0, 8.0]);
+    let air = Atmosphere { attenuation: 0.0 };
+    let scene = Scene::new(scene.mesh().clone(), camera, Vec::new(), air, FluxModel::Radiometric).unwrap();
+    assert_eq!(facings(&scene)[0].rays, 512 * 16);
+}
+
+#[test]
 fn reversed_faces_are_met_from_behind() {
     let reversed = changed(&pyramids(), |v| v, |[a, b, c]| [a, c, b]);
     let scene = scene_at(reversed, DVec3::ZERO);

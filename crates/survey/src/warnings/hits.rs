@@ -1,8 +1,8 @@
 //! Rules on what the rays of a sensor meet.
 
 use raypencil_report::{count, counted, number};
+use raypencil_scanline::Scanline;
 use raypencil_scene::{Quantities, Renderer, Request, Scene, SensorId, SensorMap};
-use raypencil_tracer::Tracer;
 
 use crate::facing::Facing;
 use crate::warning::{Warning, WarningCode};
@@ -37,10 +37,10 @@ impl SensorHits {
         Some(Self { sensor: map.sensor, rays: map.cell_count() as u64, hits: hits as u64 })
     }
 
-    /// Hits of every sensor of a scene, by the tracer.
+    /// Hits of every sensor of a scene, by the scanline renderer, which needs no hierarchy.
     pub fn of_scene(scene: &Scene) -> Vec<Self> {
         let face_alone = Quantities { face: true, ..Quantities::NONE };
-        let output = Tracer::new().render(scene, &Request { quantities: face_alone, ..Request::MAPS });
+        let output = Scanline::exact().render(scene, &Request { quantities: face_alone, ..Request::MAPS });
         output.maps().filter_map(Self::of_map).collect()
     }
 }
