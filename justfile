@@ -28,8 +28,10 @@ digest:
 
 # Writes the packs of data/packs again, and runs the programs of reference/ on them
 packs:
-    cargo run --release --bin raypencil -- pack data/scenes/pyramids-small.toml -o data/packs/pyramids
-    cargo run --release --bin raypencil -- pack data/scenes/facets-small.toml -o data/packs/facets
+    cargo run --release --bin raypencil -- pack data/scenes/packs/pyramids.toml -o data/packs/pyramids
+    cargo run --release --bin raypencil -- pack data/scenes/packs/facets.toml -o data/packs/facets
+    cargo run --release --bin raypencil -- pack data/scenes/packs/hard.toml -o data/packs/hard
+    cargo run --release --bin raypencil -- pack --input -o data/packs/input
     reference/run.sh target/release/raypencil
 
 # The largest errors in ulp, as in the first half of docs/evidence/results.md; MESH is a mesh of your own
@@ -52,10 +54,18 @@ portraits:
 properties CASES:
     PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test properties
 
-# Mutants of a kernel crate (scanline, tracer, referee) against its fast tests, in a clone: docs/evidence/mutants.md
-mutants CRATE:
-    rm -rf out/mutants/clone && git clone --quiet . out/mutants/clone
-    out/mutants/clone/tests/mutants.sh {{ CRATE }} "$PWD/out/mutants/{{ CRATE }}"
+# Random mutants of a crate against its fast tests; goes on where it was interrupted. PASS: first, or again (those that were
+# missed so far, after new tests were written): docs/evidence/mutants.md
+mutants CRATE PASS="first" SHARD="0/1":
+    tests/mutants.sh {{ CRATE }} {{ PASS }} {{ SHARD }}
+
+# The first pass of the named crates, or of all nine, and the table of their scores; goes on where it was interrupted
+mutation-scores *CRATES:
+    tests/mutation_scores.sh --run {{ CRATES }}
+
+# The faults of tests/planted, planted one at a time in a clone, and the tests that catch them: docs/evidence/shared-faults.md
+planted-faults *AGAIN:
+    cargo run -p raypencil-tests --example planted_faults -- {{ AGAIN }}
 
 # The malformed inputs and their refusals: docs/evidence/malformed-inputs.md
 malformed-inputs:

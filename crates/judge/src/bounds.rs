@@ -307,30 +307,5 @@ fn filter_bound(scene: &Scene, beam: &Beam, cos_off_axis: f64, off_axis_error: f
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use raypencil_scene::Material;
-
-    #[test]
-    fn the_bound_of_a_right_triangle_seen_head_on() {
-        // Legs of 1 m: kappa = 1, L = sqrt 2. From 3 m above its corner at the origin, straight down:
-        // R = 3, |o| = 3, c = 1, so |dR| <= 36 u (6 + sqrt 2), u = 2^-53.
-        let mesh = Mesh::new(
-            DVec3::ZERO,
-            vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            vec![[0, 1, 2]],
-            vec![0],
-            vec![Material { name: "ground".into(), reflectivity: 0.25 }],
-        )
-        .unwrap();
-        let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: DVec3::new(0.0, 0.0, -0.5) };
-        let bounds = HitBounds::of(&mesh, FaceId(0), &ray, 3.0, Precision::F64);
-        let u = 2.0_f64.recip() * f64::EPSILON;
-        let scale = 6.0 + 2.0_f64.sqrt();
-        // To a few roundings of the bound itself.
-        let close = |bound: f64, derived: f64| (bound / derived - 1.0).abs() < 1e-15;
-        assert!(close(bounds.range, 36.0 * u * scale));
-        assert!(close(bounds.point, 54.0 * u * scale));
-        assert!(close(bounds.normal, 13.0 * u));
-    }
-}
+#[path = "../tests/unit/bounds.rs"]
+mod tests;

@@ -174,4 +174,17 @@ mod tests {
         assert_eq!(vector(1.0).distance(&vector(3.0)), Some(2.0));
         assert_eq!(vector(1.0).distance(&range(1.0)), None);
     }
+
+    #[test]
+    fn the_exact_flux_is_that_of_the_scenes_model() {
+        let back =
+            Return { visible: true, pixel: None, depth: 1.0, cos_off_axis: 1.0, cos_view: 1.0, flux: 0.25 };
+        let flux = |is_other_model| {
+            let item = Item::pencil_flux(is_other_model);
+            ItemValue::exact(None, Some(&back), FluxModel::Radiometric, item).map(|value| value.words)
+        };
+        assert_eq!(flux(false).as_deref(), Some("0.25 W"));
+        // A return has the flux of one model only.
+        assert_eq!(flux(true), None);
+    }
 }

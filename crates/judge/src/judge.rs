@@ -241,3 +241,7 @@ pub(crate) fn hash(Place { sensor, i, j }: Place) -> u64 {
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/judge.rs"]
+mod tests;

@@ -135,3 +135,42 @@ fn a_transposed_array_is_refused_with_help() {
     let folder = folder(&Image::from_cells(8, 9, turned.collect()), None);
     assert!(help(folder.path()).contains("(rows, columns): transpose it"));
 }
+
+#[test]
+fn faces_may_be_stored_as_floating_point_numbers() {
+    // Any number that is not finite, -1 and 4294967295 mean "none".
+    let read_faces = |face: f64, miss: f64| {
+        let folder = folder(&ranges(f64::INFINITY), None);
+        let cells = faces(1).cells().iter().map(|&index| if index == 1 { miss } else { face }).collect();
+        write_npy(folder.path().join("camera/face.I.npy"), &[&Image::<f64>::from_cells(9, 8, cells)])
+            .unwrap();
+        read(folder.path(), Conventions::STANDARD)
+    };
+    for miss in [-1.0, 4_294_967_295.0, f64::NAN, f64::INFINITY] {
+        assert!(passes(&read_faces(0.0, miss).unwrap()), "{miss}");
+    }
+    // The first cell is a hit, and the first miss is in column 5.
+    for (face, miss, wrong, place) in [(0.5, -1.0, "0.5", (0, 0)), (0.0, -2.0, "-2", (5, 0))] {
+        let RecordingError::Channel { cell, found, .. } = read_faces(face, miss).unwrap_err() else {
+            panic!("a channel is at fault")
+        };
+        assert_eq!((found.as_str(), cell), (wrong, Some(place)));
+    }
+}
+
+#[test]
+fn a_folder_of_recordings_is_refused_by_their_names() {
+    let parent = tempfile::tempdir().unwrap();
+    let refusal = || read(parent.path(), Conventions::STANDARD).unwrap_err().to_string();
+    // A folder of maps in one recording, and a file of them in another.
+    let folder = parent.path().join("mine/beam-0");
+    std::fs::create_dir_all(&folder).unwrap();
+    assert!(refusal().contains("another folder, mine, and no maps itself"), "{}", refusal());
+    std::fs::create_dir(parent.path().join("theirs")).unwrap();
+    std::fs::create_dir(parent.path().join("notes")).unwrap();
+    std::fs::write(parent.path().join("theirs/camera.exr"), []).unwrap();
+    assert!(refusal().contains("2 recordings, mine, theirs"), "{}", refusal());
+    // A text beside them is no recording.
+    std::fs::write(parent.path().join("notes/camera.txt"), []).unwrap();
+    assert!(refusal().contains("2 recordings, mine, theirs"), "{}", refusal());
+}

@@ -151,4 +151,11 @@ mod tests {
         let slow = Route { speed: 0.0, ..route };
         assert!(slow.validate("route").unwrap_err().to_string().contains("route.speed"));
     }
+
+    #[test]
+    fn a_turn_may_go_to_the_right() {
+        // From 0 to -90 degrees: a quarter to the right, at 0.3 rad/s 0.03 rad in a tenth of a second.
+        let route = Route { heading: 0.0, ..Route::through(DVec2::ZERO, vec![DVec2::new(0.0, -5.0)]) };
+        assert!((route.frame(1).unwrap().heading + 0.03).abs() < 1e-12);
+    }
 }

@@ -151,10 +151,16 @@ mod tests {
         assert_eq!(rule.due(6.0, Some(5.0), &found), Some(ScanReason::Inconsistency));
         let few = Inconsistency { count: 19, ..found };
         assert_eq!(rule.due(6.0, Some(5.0), &few), None);
-        let small = Inconsistency { mean: 0.09, ..found };
-        assert_eq!(rule.due(6.0, Some(5.0), &small), None);
+        // A larger mean than 0.1 m is needed.
+        for mean in [0.09, 0.1] {
+            assert_eq!(rule.due(6.0, Some(5.0), &Inconsistency { mean, ..found }), None);
+        }
         let never = ScanRule { at_start: false, every: None, inconsistency: None, ..rule };
         assert_eq!(never.due(1e6, None, &found), None);
         assert!(rule.validate("scan").is_ok() && Sweep::default().validate("sweep").is_ok());
+        // Angles of up to 3.2 rad either way.
+        let reaches = |angle: f64| Sweep { from: angle, to: -angle, ..Sweep::default() }.validate("sweep");
+        assert!([-3.2, 3.2].into_iter().all(|angle| reaches(angle).is_ok()));
+        assert!([-3.21, 3.21].into_iter().all(|angle| reaches(angle).is_err()));
     }
 }

@@ -106,7 +106,23 @@ pub(crate) fn extent(mesh: &Mesh) -> String {
         None => "a ground that has faces (this one has none)".to_string(),
         Some([low, high]) => {
             let (low, high) = (low + mesh.origin(), high + mesh.origin());
-            format!("x {:.3} to {:.3}, y {:.3} to {:.3} m", low.x, high.x, low.y, high.y)
+            let place = format!("x {:.3} to {:.3}, y {:.3} to {:.3} m", low.x, high.x, low.y, high.y);
+            match has_face_that_looks_up(mesh) {
+                true => place,
+                false => {
+                    place
+                        + ", and faces whose fronts are up (here none is: are corners clockwise seen from above?)"
+                }
+            }
         }
     }
+}
+
+/// Whether the front of any face points up, by the sign of the triangle's area seen from above.
+fn has_face_that_looks_up(mesh: &Mesh) -> bool {
+    let vertices = mesh.vertices();
+    mesh.faces().iter().any(|face| {
+        let [a, b, c] = face.map(|corner| vertices[corner as usize].map(f64::from));
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0
+    })
 }

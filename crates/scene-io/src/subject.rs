@@ -65,3 +65,18 @@ pub fn quoted(word: &str) -> String {
         format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_with_other_signs_are_quoted() {
+        for plain in ["data/scenes/a-b_c.toml", "x=1,y@z:2+3%", "3"] {
+            assert_eq!(quoted(plain), plain);
+        }
+        for (word, expected) in [("", "''"), ("a b", "'a b'"), ("$(x)", "'$(x)'"), ("it's", r"'it'\''s'")] {
+            assert_eq!(quoted(word), expected);
+        }
+    }
+}

@@ -75,3 +75,18 @@ fn cut(line: &str) -> Cow<'_, str> {
 fn floor(text: &str, at: usize) -> usize {
     (0..=at).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_200_bytes_and_their_end_are_whole() {
+        let whole = "x".repeat(200);
+        for end in ["", "\n", "\r\n"] {
+            assert_eq!(cut(&format!("{whole}{end}")), format!("{whole}{end}"));
+        }
+        assert_eq!(cut(&format!("{whole}xyz")), format!("{whole}..."));
+        assert_eq!(cut(&format!("{whole}xy\n")), format!("{whole}...\n"));
+    }
+}

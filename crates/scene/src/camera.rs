@@ -101,3 +101,27 @@ impl Camera {
         check_range(|| name("max_range"), self.max_range, 1e-3, 1e7, "m")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_pass_through_the_middles_of_pixels_row_0_on_top() {
+        // Pixels 1/8 m wide and 1/4 m high; the axis meets the image at (1, 1.5), which is not its middle. The middle of
+        // pixel (3, 0) is 2.5 pixels to the right of the axis and one pixel above it: up is negative, since y is down.
+        let camera = Camera {
+            width: 4,
+            height: 2,
+            pixel_pitch: [0.125, 0.25],
+            focal_length: 0.5,
+            principal_point: [1.0, 1.5],
+            aperture: 1e-3,
+            lens: Lens::CLEAR,
+            max_range: 10.0,
+        };
+        assert_eq!(camera.direction(3, 0), DVec3::new(0.3125, -0.25, 0.5));
+        // The middle of pixel (0, 1) is half a pixel to the left of the axis, at its height.
+        assert_eq!(camera.direction(0, 1), DVec3::new(-0.0625, 0.0, 0.5));
+    }
+}

@@ -171,3 +171,17 @@ pub(crate) fn check_cells(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_follow_each_other_row_by_row() {
+        // 3 columns and 2 rows: column 2 of row 1 is the last of six cells, column 0 of row 1 the fourth.
+        let mut image = Image::from_cells(3, 2, vec![10, 11, 12, 20, 21, 22]);
+        assert_eq!((image.at(0, 1), image.at(2, 0), image.at(2, 1)), (20, 12, 22));
+        image.set(1, 1, 9);
+        assert_eq!(image.cells(), [10, 11, 12, 20, 9, 22]);
+    }
+}

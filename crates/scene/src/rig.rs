@@ -110,3 +110,23 @@ pub fn default_rig(scale: u32, position: DVec3, heading: f64) -> (Mounted<Camera
     let beams = DEFAULT_BEAM_MOUNTS.map(|mount| Mounted { scene_from_sensor: mounted(mount), sensor: beam });
     (Mounted { scene_from_sensor: mounted(DEFAULT_CAMERA_MOUNT), sensor: camera }, beams.to_vec())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_rig_looks_down_ahead_of_a_turned_vehicle() {
+        // At (1, 2, 3), turned to the left by 90 degrees: the vehicle's x axis is the global y axis. All sensors are
+        // 0.3 m ahead of its origin; their heights and pitches are those of the mounts.
+        let (camera, beams) = default_rig(64, DVec3::new(1.0, 2.0, 3.0), std::f64::consts::FRAC_PI_2);
+        let poses = [camera.scene_from_sensor, beams[0].scene_from_sensor, beams[1].scene_from_sensor];
+        for (pose, (height, down_deg)) in poses.into_iter().zip([(1.5, 20.0_f64), (1.8, 31.0), (2.0, 22.0)]) {
+            assert!((pose.position - DVec3::new(1.0, 2.3, 3.0 + height)).length() < 1e-15, "{pose:?}");
+            let (sin, cos) = libm::sincos(down_deg.to_radians());
+            assert!((pose.rotate(DVec3::Z) - DVec3::new(0.0, cos, -sin)).length() < 1e-15, "{pose:?}");
+            // The sensor's x axis points to the right, along the global x axis.
+            assert!((pose.rotate(DVec3::X) - DVec3::X).length() < 1e-15, "{pose:?}");
+        }
+    }
+}

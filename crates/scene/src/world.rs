@@ -180,3 +180,31 @@ impl Scene {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::rig;
+
+    #[test]
+    fn rays_of_a_beam_start_on_its_focal_axis() {
+        // Two rows 4 mm apart on a level beam at (1, 2, 3) that looks along the global x axis. Its y axis points down,
+        // so that row 0 starts 2 mm above its origin. Column 3 of 4, each 1/16 m wide on the grid, runs 1.5 cells to
+        // the right of the axis: right is the negative global y.
+        let beam = rig::beam(4, 2, [0.0625, 0.004], 0.125);
+        let pose = Pose { position: DVec3::new(1.0, 2.0, 3.0), ..Pose::VEHICLE_FROM_FORWARD_SENSOR };
+        let mesh = Mesh::new(DVec3::ZERO, vec![], vec![], vec![], vec![]).unwrap();
+        let camera = Mounted { scene_from_sensor: pose, sensor: rig::camera(2, 2, 0.0625, 0.5) };
+        let beams = vec![Mounted { scene_from_sensor: pose, sensor: beam }];
+        let air = Atmosphere { attenuation: 0.0 };
+        let scene = Scene::new(mesh.into(), camera, beams, air, FluxModel::Radiometric).unwrap();
+        let ray = scene.ray(SensorId::Beam(0), 3, 0).unwrap();
+        assert_eq!(ray.direction, DVec3::new(0.125, -0.09375, 0.0));
+        assert!((ray.origin - DVec3::new(1.0, 2.0, 3.002)).length() < 1e-15);
+        // A ray of the camera starts in the projection centre.
+        let ray = scene.ray(SensorId::Camera, 1, 0).unwrap();
+        assert_eq!((ray.origin, ray.direction), (pose.position, DVec3::new(0.5, -0.03125, 0.03125)));
+    }
+}

@@ -163,6 +163,13 @@ fn kernels_of_numbers_are_checked() {
     assert!(Kernel::from_weights(3, 1, &[1.0, -1.0, 1.0]).is_err());
     assert!(Kernel::from_weights(1, 1, &[f64::NAN]).is_err());
     assert!(Kernel::from_weights(1, 1, &[0.0]).is_err());
+    // At most 512 cells from the middle to an end: sides of 2 * 512 + 1.
+    for (columns, rows) in [(1025, 1), (1, 1025)] {
+        assert!(Kernel::from_weights(columns, rows, &[1.0; 1025]).is_ok());
+    }
+    for (columns, rows) in [(1027, 1), (1, 1027)] {
+        assert!(Kernel::from_weights(columns, rows, &[1.0; 1027]).is_err());
+    }
     let kernel = Kernel::from_weights(3, 1, &[1.0, 2.0, 5.0]).expect("a kernel");
     // Weights right of the middle move light to the right.
     let mut point = Image::filled(5, 1, 0.0);
@@ -226,6 +233,21 @@ fn discs_share_their_light_by_area() {
 }
 
 #[test]
+fn a_point_of_space_is_projected_by_the_camera_s_own_numbers() {
+    // Pixels 1/64 m wide and 1/32 m high, 1/2 m behind the pinhole; the axis meets the image at (10, 20). The point is
+    // 1 m to the right of the axis and 1 m above it (y is down) at 4 m: 1/2 * 1 / (4 / 64) = 8 pixels to the right,
+    // and 1/2 * 1 / (4 / 32) = 4 pixels up.
+    let camera = Camera {
+        pixel_pitch: [1.0 / 64.0, 1.0 / 32.0],
+        focal_length: 0.5,
+        principal_point: [10.0, 20.0],
+        ..camera(32, 32)
+    };
+    let source = PointSource::project(&camera, DVec3::new(1.0, -1.0, 4.0), 0.25);
+    assert_eq!(source, PointSource { x: 18.0, y: 16.0, watts: 0.25, depth: 4.0 });
+}
+
+#[test]
 fn splats_land_in_their_cells() {
     let at = |x, y, watts| PointSource { x, y, watts, depth: 1.0 };
     // Column 4 x 1.5 = 6, row 4 x 0.26 = 1.04.
@@ -240,6 +262,13 @@ fn splats_land_in_their_cells() {
     let source = PointSource::project(&camera(1024, 1024), DVec3::new(1.0, -2.0, 10.0), 5.0);
     assert!((source.x - 600.888_888).abs() < 1e-5 && (source.y - 334.222_222).abs() < 1e-5);
     assert_eq!((source.watts, source.depth), (5.0, 10.0));
+}
+
+#[test]
+fn a_point_lands_in_the_cell_that_holds_it() {
+    // Four cells along the side of a pixel: column 4 x 1.7 = 6.8 lies in cell 6, row 4 x 0.45 = 1.8 in cell 1.
+    let out = splat(2, 1, 4, [PointSource { x: 1.7, y: 0.45, watts: 1.0, depth: 1.0 }]);
+    assert_eq!(out.image.at(6, 1), 1.0);
 }
 
 fn sources() -> Vec<PointSource> {

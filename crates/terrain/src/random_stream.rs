@@ -112,6 +112,14 @@ mod tests {
     }
 
     #[test]
+    fn a_coin_is_fair() {
+        // 5000 of 10,000, with a standard deviation of 50.
+        let mut random = RandomStream::new(4, StreamPurpose::Grid);
+        let heads = (0..10_000).filter(|_| random.coin()).count();
+        assert!(heads.abs_diff(5000) < 200, "{heads}");
+    }
+
+    #[test]
     fn waits_and_gaussians_have_their_moments() {
         // The mean of n = 1e5 draws of a quantity of variance v has the standard error sqrt(v / n). The variances
         // are 1 and 20 for the exponential x and x^2 (moments n!), and 1, 2 and 96 for the Gaussian x, x^2 and

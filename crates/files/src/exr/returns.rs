@@ -144,6 +144,29 @@ mod tests {
     }
 
     #[test]
+    fn each_quantity_of_a_return_has_the_channel_of_the_documentation() {
+        // docs/formats/files.md: `pixel.I` is the column, `pixel.J` the row, `offAxis.V` cos(phi), `emission.V` cos(theta).
+        // No two numbers are alike, so that two channels that are exchanged show.
+        let back = raypencil_scene::Return {
+            visible: true,
+            pixel: Some(Pixel { i: 7, j: 1023 }),
+            depth: 2.0,
+            cos_off_axis: 0.75,
+            cos_view: 0.5,
+            flux: 0.25,
+        };
+        let mut returns = Returns::empty(1, 1);
+        returns.put(0, 0, &back);
+        let mut map = ExrMap::new(1, 1);
+        map.insert_returns(&returns, FluxModel::Radiometric);
+        let whole = |name: &str| map.channels[name].as_u32().map(|image| image.at(0, 0));
+        assert_eq!((whole("pixel.I"), whole("pixel.J")), (Some(7), Some(1023)));
+        let real = |name: &str| map.channels[name].as_f32().map(|image| image.at(0, 0));
+        assert_eq!((real("offAxis.V"), real("emission.V")), (Some(0.75), Some(0.5)));
+        assert_eq!((real("visible.V"), real("view.Z"), real("flux.V")), (Some(1.0), Some(2.0), Some(0.25)));
+    }
+
+    #[test]
     fn flux_images_come_back_as_they_were_written() {
         let mut map = ExrMap::new(2, 1);
         let image = Image::from_cells(2, 1, vec![0.0, 0.25]);

@@ -133,7 +133,8 @@ fn compare_beams<'f>(
     (beams, light)
 }
 
-/// The images of a beam, if both sides have one and the pencils to judge it by.
+/// The images of a beam, if both sides have one and the pencils to judge it by. Pencils are compared only where both
+/// sides tell their hits.
 fn images_of<'f>(
     judge: &Judge<'_>,
     beam: usize,
@@ -142,7 +143,8 @@ fn images_of<'f>(
 ) -> Option<BeamImages<'f>> {
     let tells_pencils = sides.iter().all(|side| {
         let returns = side.output.returns.get(beam);
-        returns.is_some_and(|returns| returns.pixel.is_some() && returns.flux.is_some())
+        side.output.map(SensorId::Beam(beam)).is_some_and(tells_hits)
+            && returns.is_some_and(|returns| returns.pixel.is_some() && returns.flux.is_some())
     });
     let [of_a, of_b] = sides.map(|side| side.output.flux.get(beam));
     let images = [of_a?, of_b?];

@@ -132,3 +132,41 @@ pub(super) fn compare_pixel(entry: &mut RayEntry<'_>, light: &[BeamImages<'_>], 
     }
     entry.class(Quantity::PixelFlux, class);
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use raypencil_scene::{Atmosphere, FluxModel, Mesh, Pixel, rig};
+
+    #[test]
+    fn two_sums_may_differ_by_their_pencils_and_their_roundings() {
+        let mesh = Arc::new(Mesh::new(glam::DVec3::ZERO, vec![], vec![], vec![], vec![]).unwrap());
+        let camera = rig::pitched(glam::DVec3::ZERO, 0.0, rig::camera(2, 1, 0.0625, 0.5));
+        let scene =
+            Scene::new(mesh, camera, vec![], Atmosphere { attenuation: 0.0 }, FluxModel::Eq1).unwrap();
+        let at = |i, flux| Some((Pixel { i, j: 0 }, flux));
+        // Two pencils of 8 W that are alike, each to 1/2 W, and one of 4 W that rounds to the other pixel.
+        let alike = FluxPair { delivered: [at(0, 8.0), at(0, 8.0)], bound: 0.5, ..FluxPair::NOTHING };
+        let unlike =
+            FluxPair { delivered: [at(0, 4.0), at(1, 4.0)], class: Class::Rounding, ..FluxPair::NOTHING };
+        let compared = |pencils: &[FluxPair], [a, b]: [f64; 2]| {
+            let [a, b] = [a, b].map(|sum| Image::from_cells(2, 1, vec![sum, 0.0]));
+            let (difference, class) =
+                BeamImages::new(&scene, [&a, &b], pencils.to_vec(), 1.0 / 1024.0).compare(0, 0);
+            (difference.error, difference.bound.unwrap(), class)
+        };
+        // n = 4 and Sigma = 32 W over both sides: 2 n u Sigma = 1/4 W.
+        let two = [alike, alike];
+        assert_eq!(compared(&two, [16.0, 16.25]), (0.25, 1.25, Class::Agree));
+        assert_eq!(compared(&two, [15.75, 16.25]), (0.5, 1.25, Class::Agree));
+        // A sum that is not that of its own pencils.
+        assert_eq!(compared(&two, [16.0, 16.251]).2, Class::Defect);
+        assert_eq!(compared(&two, [15.749, 16.0]).2, Class::Defect);
+        // n = 5 and Sigma = 36 W. The sums may differ by the pencil that is not alike.
+        let three = [alike, alike, unlike];
+        assert_eq!(compared(&three, [20.0, 16.0]), (4.0, 1.0 + 360.0 / 1024.0, Class::Rounding));
+        assert_eq!(compared(&three, [16.0, 20.0]).2, Class::Defect);
+    }
+}

@@ -12,8 +12,12 @@ use std::path::Path;
 
 use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, mesh_from_bytes};
 use raypencil_scene::Mesh;
-use raypencil_tests::glb::{SQUARE, glb, reals, square};
 use serde_json::Value;
+
+// The file alone: as a dependency, `raypencil-tests` would build the whole workspace first.
+#[path = "../../../../tests/src/glb.rs"]
+mod glb;
+use glb::{SQUARE, glb, reals, square};
 
 /// Reads a GLB. The error is its message.
 fn parse(json: &Value, bin: &[u8]) -> Result<Mesh, String> {

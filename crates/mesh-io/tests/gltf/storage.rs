@@ -34,6 +34,26 @@ fn indices_of_every_width_and_none() {
 }
 
 #[test]
+fn indices_of_16_bits_are_unsigned() {
+    // Component type 5123 is UNSIGNED_SHORT (glTF 2.0, §5.1.3): the indices of the square after 39996 other vertices have
+    // their highest bit set.
+    const BEFORE: usize = 39_996;
+    let vertices = [reals(&vec![0.0; 3 * BEFORE]), reals(&SQUARE)].concat();
+    let first = BEFORE as u16;
+    let indices: Vec<u8> =
+        [0, 1, 2, 0, 2, 3].iter().flat_map(|corner| (first + corner).to_le_bytes()).collect();
+    let (mut json, _) = square();
+    json["accessors"][0]["count"] = json!(BEFORE + 4);
+    json["bufferViews"] = json!([
+        {"buffer": 0, "byteOffset": 0, "byteLength": vertices.len()},
+        {"buffer": 0, "byteOffset": vertices.len(), "byteLength": 12},
+    ]);
+    json["buffers"][0]["byteLength"] = json!(vertices.len() + 12);
+    let mesh = parse(&json, &[vertices, indices].concat()).unwrap();
+    assert_eq!(mesh.faces(), [[39_996, 39_997, 39_998], [39_996, 39_998, 39_999]]);
+}
+
+#[test]
 fn strips_and_fans_follow_the_specification() {
     // Strip (§3.7.2.1): i, i + (1 + i % 2), i + (2 - i % 2). Fan: i + 1, i + 2, 0.
     let strip = changed(|json| json["meshes"][0]["primitives"][0]["mode"] = json!(5)).unwrap();

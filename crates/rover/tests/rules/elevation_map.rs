@@ -17,6 +17,9 @@ fn at(i: i64, j: i64) -> GridPoint {
 fn a_new_map_knows_nothing_and_is_the_papers() {
     let map = map();
     assert_eq!(map.points().count(), 201 * 201);
+    // Row by row from the lowest x and y.
+    let first: Vec<GridPoint> = map.points().take(2).collect();
+    assert_eq!((&first[..], map.points().last()), (&[at(-100, -100), at(-99, -100)][..], Some(at(100, 100))));
     assert!(map.points().all(|point| map.source(point).key() == 's'));
     assert_eq!(map.place(at(0, 0)), DVec2::new(100.03, -50.02));
     // The side is 20 m.

@@ -47,18 +47,56 @@ fn drift_grows_until_a_fix_takes_it_away() {
 
 #[test]
 fn a_walk_has_the_spread_of_its_time() {
-    // A walk of 0.01 m in 1 s has a standard deviation of 0.1 m after 100 s. Over 400 seeds the mean square is 0.01,
-    // within four relative standard errors of sqrt(2 / 400).
+    // A walk of 0.01 m in 1 s has a standard deviation of 0.01 sqrt(25) = 0.05 m after 25 s. Over 400 seeds the mean
+    // square is 0.0025, within four relative standard errors of sqrt(2 / 400). There are four frames in a second: with
+    // one, the time of a frame and its root would be alike.
     let errors = LocalisationErrors { position_walk: 0.01, ..LocalisationErrors::default() };
     let mut mean_square = 0.0;
     let ground = ground();
     for seed in 0..400 {
-        let mut localisation = Localisation::new(errors, seed, 1.0);
+        let mut localisation = Localisation::new(errors, seed, 4.0);
         let last = (0..=100).map(|_| localisation.read(&stance(), &ground)).last().unwrap();
         let error = last.position.x + 9.3;
         mean_square += error * error / 400.0;
     }
-    assert!((mean_square / 0.01 - 1.0).abs() < 0.283, "{mean_square}");
+    assert!((mean_square / 0.0025 - 1.0).abs() < 0.283, "{mean_square}");
+}
+
+#[test]
+fn each_error_is_added_to_the_truth_in_proportion() {
+    // A vehicle that turns and leans, and biases of its angles: all sums are exact in binary.
+    let attitude = |heading, pitch_down, roll_right| Attitude { heading, pitch_down, roll_right };
+    let truth = Stance { attitude: attitude(0.5, 0.25, -0.125), ..stance() };
+    let (bias, ground) = (attitude(0.0625, 0.03125, 0.015_625), ground());
+    // The errors of frame 1 of a seed, with noise of this size. The same seed draws the same numbers.
+    let errors_of = |noise: f64, frame_rate: f64| {
+        let errors = LocalisationErrors {
+            position_walk: noise,
+            attitude_bias: bias,
+            attitude_noise: noise,
+            proximity_noise: noise,
+            ..LocalisationErrors::default()
+        };
+        let mut localisation = Localisation::new(errors, 3, frame_rate);
+        let sensed = [0, 1].map(|_| localisation.read(&truth, &ground))[1];
+        let Attitude { heading, pitch_down, roll_right } = sensed.attitude;
+        let angles = [heading - 0.5625, pitch_down - 0.281_25, roll_right + 0.109_375];
+        let walk = sensed.position - truth.position.truncate();
+        (angles, walk, sensed.proximity.unwrap() - 0.04)
+    };
+    let (angles, walk, proximity) = errors_of(0.0, 1.0);
+    assert_eq!((angles, walk), ([0.0; 3], DVec2::ZERO));
+    assert!(proximity.abs() < 1e-15);
+
+    let (once, twice) = (errors_of(0.01, 1.0), errors_of(0.02, 1.0));
+    let is_double = |twice: f64, once: f64| once != 0.0 && (twice - 2.0 * once).abs() < 1e-12;
+    assert!(once.0.iter().zip(twice.0).all(|(once, twice)| is_double(twice, *once)), "{once:?} {twice:?}");
+    assert!(is_double(twice.1.x, once.1.x) && is_double(twice.1.y, once.1.y));
+    assert!(is_double(twice.2, once.2));
+    // A frame of a quarter of a second walks half as far as one of a second; the other errors do not know of time.
+    let quarter = errors_of(0.01, 4.0);
+    assert!(is_double(once.1.x, quarter.1.x) && is_double(once.1.y, quarter.1.y));
+    assert_eq!((quarter.0, quarter.2), (once.0, once.2));
 }
 
 #[test]

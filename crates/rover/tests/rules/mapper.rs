@@ -1,7 +1,7 @@
 //! The estimated elevation of the vehicle, and the order of a map update.
 
 use glam::{DVec2, DVec3};
-use raypencil_rover::{Attitude, LocalisationReading, MapSize, Mapper, Vehicle};
+use raypencil_rover::{Attitude, ElevationSource, LocalisationReading, MapSize, Mapper, Vehicle};
 
 fn sensed(x: f64, proximity: Option<f64>) -> LocalisationReading {
     LocalisationReading { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity }
@@ -45,6 +45,27 @@ fn elevation_comes_from_the_old_map_before_new_points() {
     assert!(update.elevation_read && update.moved == (4, 0));
     assert_eq!(mapper.pose().position, DVec3::new(0.4, 0.0, 5.2));
     assert_eq!(mapper.map().elevation(mapper.map().centre()), Some(9.0));
+}
+
+#[test]
+fn points_turn_with_the_vehicle() {
+    // Turned to the left by 90 degrees, the vehicle looks along global y and has global -x on its left: a point 3 m
+    // ahead, 1 m to the left and 0.5 m up is at (-1, 3), 0.5 m above the vehicle's 5 m.
+    let attitude = Attitude { heading: std::f64::consts::FRAC_PI_2, ..Attitude::default() };
+    let turned = LocalisationReading { attitude, ..sensed(0.0, Some(0.0)) };
+    let point = [DVec3::new(3.0, 1.0, 0.5)];
+    let by: [fn(&mut Mapper, &LocalisationReading, [DVec3; 1]); 2] = [
+        |mapper, sensed, point| _ = mapper.update(sensed, point),
+        |mapper, sensed, point| _ = mapper.update_from_scan(sensed, point, true),
+    ];
+    for update in by {
+        let mut mapper = mapper();
+        update(&mut mapper, &turned, point);
+        let map = mapper.map();
+        let at = map.nearest(DVec2::new(-1.0, 3.0));
+        assert_eq!(map.source(at), ElevationSource::Measured);
+        assert!((map.elevation(at).unwrap() - 5.5).abs() < 1e-12);
+    }
 }
 
 #[test]

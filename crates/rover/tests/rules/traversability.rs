@@ -171,3 +171,11 @@ fn thresholds_out_of_range_are_named() {
     let wrong = TraversabilityRules { closer_share: 0.0, ..rules() };
     assert!(wrong.validate("rules").unwrap_err().to_string().starts_with("rules.closer_share is 0"));
 }
+
+#[test]
+fn the_maximum_slope_is_a_step_of_one_wheel_radius() {
+    // 0.35 m over the track of 1 m, the wheelbase of 1.2 m, and half of it.
+    let slopes = TraversabilityRules::for_vehicle(&Vehicle::default()).slopes;
+    assert_eq!((slopes.front, slopes.rear), (0.35, 0.35));
+    assert!((slopes.length - 0.35 / 1.2).abs() < 1e-15 && (slopes.closer - 0.35 / 0.6).abs() < 1e-15);
+}

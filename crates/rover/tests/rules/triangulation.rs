@@ -99,6 +99,21 @@ fn a_stripe_on_level_ground_is_where_the_plane_meets_it() {
 }
 
 #[test]
+fn the_range_of_a_beam_is_measured_along_its_rays() {
+    // Two points of the plane at z = 4.5 m in the beam frame: straight ahead at a range of 4.5 m, and 2.4 m to the right
+    // (28 degrees, inside the fan) at sqrt(4.5^2 + 2.4^2) = 5.1 m. A beam that ends at 5 m lights the first alone.
+    let mut rig = default_rig();
+    rig.beams[0].sensor.max_range = 5.0;
+    let triangulation = Triangulation::new(&rig, 0, SheetPlane::LowerEdge);
+    let OnVehicle { vehicle_from_sensor, sensor } = rig.beams[0];
+    let seen = |x: f64| {
+        let (u, v) = project(&rig, vehicle_from_sensor * DVec3::new(x, 0.5 * sensor.thickness, 4.5));
+        triangulation.at(u, v).is_some()
+    };
+    assert!(seen(0.0) && !seen(2.4));
+}
+
+#[test]
 fn pixels_that_see_no_lit_point_give_none() {
     let rig = default_rig();
     let triangulation = Triangulation::new(&rig, 0, SheetPlane::LowerEdge);

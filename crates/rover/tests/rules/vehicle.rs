@@ -31,6 +31,12 @@ fn on_level_ground_it_stands_level() {
 }
 
 #[test]
+fn it_stands_on_deep_ground_too() {
+    let stance = settled(plane(|_, _| -10.0), 0.0).unwrap();
+    assert!((stance.position - DVec3::new(1.0, 2.0, -10.0)).length() < 1e-9, "{stance:?}");
+}
+
+#[test]
 fn on_a_slope_it_is_parallel_to_the_slope() {
     // z = 0.25 x. Driving up: pitch of atan 0.25, no roll. Driving across (heading +y): the right side is uphill and
     // up. The rim's 17 points miss the true contact by at most half their spacing, in height by (r / 17)^2 / (2 r) = r
@@ -45,20 +51,56 @@ fn on_a_slope_it_is_parallel_to_the_slope() {
     assert!(across.attitude.pitch_down.abs() < 1e-9);
 }
 
+/// Level ground at 0, and a block 0.2 m high whose middle is at (x, y).
+fn block_at(x: f64, y: f64) -> Ground {
+    let mut ground = plane(|_, _| 0.0);
+    let block = plane(|_, _| 0.2);
+    let first = ground.vertices.len() as u32;
+    ground.vertices.extend(block.vertices.iter().map(|v| *v + DVec3::new(x, y, 0.0)));
+    ground.faces.extend(block.faces.iter().map(|face| face.map(|v| v + first)));
+    ground.face_materials.extend([0, 0]);
+    ground
+}
+
+#[test]
+fn a_narrow_vehicle_stands_beside_a_block() {
+    // The block begins at y = 2.5. The vehicle's middle is at y = 2; its left wheels reach from y = 2.375 to 2.425.
+    let index = HeightIndex::new(&block_at(0.0, 22.5).into_mesh().unwrap());
+    let narrow = Vehicle { track: 0.8, wheel_width: 0.05, ..Vehicle::default() };
+    let stance = narrow.settle(&index, DVec2::new(1.0, 2.0), 0.0).unwrap();
+    assert!(stance.position.z.abs() < 1e-9 && stance.attitude.roll_right.abs() < 1e-9, "{stance:?}");
+    // Those of a track of 1.2 m are on the block. The vehicle leans by asin(0.2 / 1.2).
+    let wide = Vehicle { track: 1.2, ..narrow };
+    let stance = wide.settle(&index, DVec2::new(1.0, 2.0), 0.0).unwrap();
+    assert!((stance.attitude.roll_right - libm::asin(0.2 / 1.2)).abs() < 1e-3, "{stance:?}");
+}
+
 #[test]
 fn front_wheels_on_a_step_lift_the_nose() {
     // A block 0.2 m high begins at x = 1.3. The vehicle's centre is at x = 1.0; its hubs are at 1.6 and 0.4 while
     // level. It pitches up by asin(0.2 / 1.2), and the centre of the hubs rises by 0.1 m.
-    let mut ground = plane(|_, _| 0.0);
-    let block = plane(|_, _| 0.2);
-    let first = ground.vertices.len() as u32;
-    ground.vertices.extend(block.vertices.iter().map(|v| *v + DVec3::new(21.3, 0.0, 0.0)));
-    ground.faces.extend(block.faces.iter().map(|face| face.map(|v| v + first)));
-    ground.face_materials.extend([0, 0]);
-    let stance = settled(ground, 0.0).unwrap();
+    let stance = settled(block_at(21.3, 0.0), 0.0).unwrap();
     assert!((stance.attitude.pitch_down + libm::asin(0.2 / 1.2)).abs() < 1e-3, "{stance:?}");
     // The origin is in the wheels' plane, r cos(pitch) below the centre of the hubs: a little less than r.
     assert!((stance.position.z - 0.1 - 0.35 * (1.0 - 35.0_f64.sqrt() / 6.0)).abs() < 1e-3);
+}
+
+#[test]
+fn a_kerb_lifts_the_wheels_that_stand_on_it_alone() {
+    // The vehicle's centre is at y = 2.0 and its track is 1.0 m: the left wheels are at y = 2.5, and end at 2.625 m. A
+    // kerb 0.2 m high from y = 2.7 on is beside them. One from y = 2.3 on carries them: the right side is lower by
+    // asin(0.2 / 1.0).
+    let roll = |begin: f64| {
+        let mut ground = plane(|_, _| 0.0);
+        let kerb = plane(|_, _| 0.2);
+        let first = ground.vertices.len() as u32;
+        ground.vertices.extend(kerb.vertices.iter().map(|v| *v + DVec3::new(0.0, 20.0 + begin, 0.0)));
+        ground.faces.extend(kerb.faces.iter().map(|face| face.map(|v| v + first)));
+        ground.face_materials.extend([0, 0]);
+        settled(ground, 0.0).unwrap().attitude.roll_right
+    };
+    assert!(roll(2.7).abs() < 1e-9, "{}", roll(2.7));
+    assert!((roll(2.3) - libm::asin(0.2)).abs() < 1e-3, "{}", roll(2.3));
 }
 
 #[test]
@@ -72,4 +114,7 @@ fn the_default_vehicle_is_valid_and_fields_out_of_range_are_named() {
     assert!(Vehicle::default().validate("vehicle").is_ok());
     let wide = Vehicle { wheel_width: 1.5, ..Vehicle::default() };
     assert!(wide.validate("vehicle").unwrap_err().to_string().starts_with("vehicle.wheel_width is 1.5"));
+    // Wheels of more than half the wheelbase, 0.6 m, would touch.
+    assert!(Vehicle { wheel_radius: 0.59, ..Vehicle::default() }.validate("vehicle").is_ok());
+    assert!(Vehicle { wheel_radius: 0.61, ..Vehicle::default() }.validate("vehicle").is_err());
 }

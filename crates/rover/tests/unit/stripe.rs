@@ -33,6 +33,14 @@ fn whole_pixels_by_threshold() {
 }
 
 #[test]
+fn a_pixel_at_the_threshold_is_lit() {
+    // Rows 3 and 4 have the value of the threshold, row 5 is just below it: row 4 is the last lit one.
+    let image = Image::from_cells(1, 8, vec![0.0, 0.0, 0.0, 50.0, 50.0, 49.0, 0.0, 0.0]);
+    let edges = Extraction::thresholding(50.0).edges(&image);
+    assert_eq!(edges, [EdgePoint { i: 0, j: 4, row: 4.5 }]);
+}
+
+#[test]
 fn edges_are_in_row_major_order_and_runs_are_separate() {
     // Two runs in column 1, and one in column 0 at rows between them.
     let image = stripes(|i| match i {
@@ -104,6 +112,18 @@ fn edges_by_gradient_do_not_need_a_level() {
     // The differences are symmetric around the border 13: the vertex is there.
     let fine = Extraction { place: StripeLocation::SubPixel, ..extraction }.edges(&image);
     assert!(fine.iter().all(|edge| (edge.row - 13.0).abs() < 1e-12));
+}
+
+#[test]
+fn an_edge_by_gradient_is_the_vertex_of_a_parabola() {
+    // Differences 100, 0, -20, -70, -10: the steepest is between rows 3 and 4. The parabola 55 x^2 + 5 x - 70 goes through
+    // the last three at x = -1, 0 and 1; its vertex is at -5 / 110.
+    let image = Image::from_cells(1, 6, vec![0.0, 100.0, 100.0, 80.0, 10.0, 0.0]);
+    let extraction =
+        Extraction { detection: Detection::Gradient(8.0), place: StripeLocation::SubPixel, least_rows: 1 };
+    let edges = extraction.edges(&image);
+    assert_eq!((edges.len(), edges[0].j), (1, 3));
+    assert!((edges[0].row - (4.0 - 1.0 / 22.0)).abs() < 1e-15, "{}", edges[0].row);
 }
 
 #[test]

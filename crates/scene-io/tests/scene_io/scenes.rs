@@ -3,7 +3,7 @@
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-use raypencil_scene::{FluxModel, Profile, SensorId};
+use raypencil_scene::{Filter, FluxModel, Lens, Profile, SensorId};
 use raypencil_scene_io::{LoadedScene, Overrides, SceneIoError, SceneSource, load};
 
 use crate::load_path;
@@ -77,6 +77,38 @@ fn sensors_look_where_their_angles_say() {
     near(rolled.rotate(DVec3::Z), DVec3::Y, 1e-15);
     near(rolled.rotate(DVec3::X), -DVec3::Z, 1e-15);
     near(rolled.rotate(DVec3::Y), -DVec3::X, 1e-15);
+}
+
+#[test]
+fn every_number_of_a_camera_has_its_field_and_its_unit() {
+    // Numbers of which no two are alike: two that are exchanged show. 9 um are 9e-6 m, 8 mm are 8e-3 m, 810 nm are
+    // 810e-9 m.
+    let text = "version = 1\n[vehicle]\nposition_m = [0, 0, 5]\n\
+        [camera]\nwidth_px = 640\nheight_px = 480\npixel_pitch_um = [9, 7]\nprincipal_point_px = [300, 250]\n\
+        focal_length_mm = 8\naperture_mm = 4\ntransmission = 0.75\nmax_range_m = 30\n\
+        filter = { centre_nm = 810, width_nm = 10, index = 1.5 }\n";
+    let camera = load_text(text).unwrap().scene.camera().sensor;
+    assert_eq!((camera.width, camera.height), (640, 480));
+    assert_eq!((camera.pixel_pitch, camera.principal_point), ([9e-6, 7e-6], [300.0, 250.0]));
+    assert_eq!((camera.focal_length, camera.aperture, camera.max_range), (8e-3, 4e-3, 30.0));
+    let filter = Filter::Interference { centre: 810e-9, width: 10e-9, index: 1.5 };
+    assert_eq!(camera.lens, Lens { transmission: 0.75, filter });
+}
+
+#[test]
+fn every_number_of_a_beam_has_its_field_and_its_unit() {
+    // A fan of 90 degrees is as wide to either side as its grid is far: w = 0.25 m tan(45 degrees).
+    let text = "version = 1\n[vehicle]\nposition_m = [0, 0, 5]\n\
+        [[beam]]\nfan_deg = 90\nthickness_mm = 4\ngrid_distance_mm = 250\ncolumns = 64\nrows = 8\npower_w = 0.5\n\
+        wavelength_nm = 780\nprofile = \"gaussian\"\ngaussian_half_width_deg = 18\nmax_range_m = 15\n";
+    let beam = load_text(text).unwrap().scene.beams()[0].sensor;
+    assert!((beam.half_width - 0.25).abs() < 1e-15, "{}", beam.half_width);
+    assert_eq!((beam.thickness, beam.grid_distance), (4e-3, 0.25));
+    assert_eq!((beam.columns, beam.rows), (64, 8));
+    assert_eq!((beam.power, beam.wavelength, beam.max_range), (0.5, 780e-9, 15.0));
+    // 18 degrees are a tenth of pi.
+    let Profile::Gaussian { half_width } = beam.profile else { panic!("{:?}", beam.profile) };
+    assert!((half_width - 0.1 * std::f64::consts::PI).abs() < 1e-15, "{half_width}");
 }
 
 #[test]
@@ -165,6 +197,22 @@ fn a_terrain_alone_gets_the_default_rig_at_its_centre() {
 }
 
 #[test]
+fn a_far_terrain_alone_gets_the_default_rig_at_its_own_centre() {
+    // The ramp z = x / 4 around (0, 0), moved by (2000, 0, -3000) m in the axes of the file. There y is up, so that the
+    // global frame has it at (2000, 3000, 0), and the scene has an origin of its own.
+    let text = std::fs::read_to_string(scenes().join("ramp.gltf")).unwrap();
+    let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    json["nodes"] = serde_json::json!([{"mesh": 0, "translation": [2000, 0, -3000]}]);
+    json["scenes"][0]["nodes"] = serde_json::json!([0]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.gltf");
+    std::fs::write(&path, json.to_string()).unwrap();
+    let loaded = load_path(&path, &Overrides::default()).unwrap();
+    assert_eq!(loaded.scene.mesh().origin(), DVec3::new(2000.0, 3000.0, 0.0));
+    near(loaded.vehicle.position, DVec3::new(2000.0, 3000.0, 0.0), 1e-9);
+}
+
+#[test]
 fn around_a_hole_the_vehicle_stands_on_the_nearest_face_that_looks_up() {
     // Two ramps, 40 m to either side of the centre, which has no ground. The nearest middles of faces are
     // ((-56 - 24 - 24) / 3, -16 / 3) = (-104 / 3, -16 / 3) of face 0 and its mirror image of face 3. They are equally
@@ -179,6 +227,35 @@ fn around_a_hole_the_vehicle_stands_on_the_nearest_face_that_looks_up() {
     std::fs::write(&path, json.to_string()).unwrap();
     let loaded = load_path(&path, &Overrides::default()).unwrap();
     near(loaded.vehicle.position, DVec3::new(-104.0 / 3.0, -16.0 / 3.0, 4.0 / 3.0), 1e-5);
+    // Away from the origin, and beside a ramp of twice the size: its face 3 is the nearest then. The ground reaches from
+    // x - 56 to x + 112, so that the centre is at x + 28. glTF has y up: the global y is its -z.
+    for (x, y) in [(140.0, 200.0), (1e6, -2e6)] {
+        let mut moved = json.clone();
+        moved["nodes"] = serde_json::json!([
+            {"mesh": 0, "translation": [x - 40.0, 0, -y]},
+            {"mesh": 0, "translation": [x + 80.0, 0, -y], "scale": [2, 1, 2]}
+        ]);
+        std::fs::write(&path, moved.to_string()).unwrap();
+        let loaded = load_path(&path, &Overrides::default()).unwrap();
+        let expected = DVec3::new(x + 80.0 - 32.0 / 3.0, y + 32.0 / 3.0, -4.0 / 3.0);
+        near(loaded.vehicle.position, expected, 1e-5);
+    }
+    // Both coordinates count: half a ramp at x = -58 m, and two ramps at x = 30 m, 200 m to either side. The centre is at
+    // (-10, 0). Where the near one is so steep that no vehicle can stand on it, a face of a far one is the nearest.
+    for (height, expected) in [
+        (1.0, DVec3::new(-58.0 + 8.0 / 3.0, -8.0 / 3.0, 4.0 / 3.0)),
+        (5.0, DVec3::new(30.0 - 16.0 / 3.0, -200.0 + 16.0 / 3.0, -4.0 / 3.0)),
+    ] {
+        let mut three = json.clone();
+        three["nodes"] = serde_json::json!([
+            {"mesh": 0, "translation": [-58, 0, 0], "scale": [0.5, height, 0.5]},
+            {"mesh": 0, "translation": [30, 0, -200]},
+            {"mesh": 0, "translation": [30, 0, 200]}
+        ]);
+        three["scenes"][0]["nodes"] = serde_json::json!([0, 1, 2]);
+        std::fs::write(&path, three.to_string()).unwrap();
+        near(load_path(&path, &Overrides::default()).unwrap().vehicle.position, expected, 1e-5);
+    }
     // Turned over, it has no face on which a vehicle can stand.
     json["nodes"][0]["scale"] = serde_json::json!([1, -1, -1]);
     json["scenes"][0]["nodes"] = serde_json::json!([0]);
@@ -186,9 +263,27 @@ fn around_a_hole_the_vehicle_stands_on_the_nearest_face_that_looks_up() {
     let message = load_path(&path, &Overrides::default()).unwrap_err().to_string();
     assert!(message.contains("two.gltf: no ground under the vehicle"), "{message}");
     assert!(
-        message.ends_with("expected a place within x -56.000 to -24.000, y -16.000 to 16.000 m"),
+        message.ends_with(
+            "expected a place within x -56.000 to -24.000, y -16.000 to 16.000 m, and faces whose fronts are up (here \
+             none is: are corners clockwise seen from above?)"
+        ),
         "{message}"
     );
+    json["nodes"][0]["translation"] = serde_json::json!([1e6, 0, -2e6]);
+    std::fs::write(&path, json.to_string()).unwrap();
+    let message = load_path(&path, &Overrides::default()).unwrap_err().to_string();
+    let expected = "x 999984.000 to 1000016.000, y 1999984.000 to 2000016.000 m";
+    assert!(message.contains(expected), "{message}");
+}
+
+#[test]
+fn a_scene_has_a_standing_vehicle_and_a_digest_of_its_numbers() {
+    let plain = load("pyramids", &Overrides::default()).unwrap();
+    assert_eq!(plain.standing_vehicle(), Some(plain.vehicle));
+    // What defines a built-in scene is its numbers: other numbers are another source.
+    let wide = load("pyramids", &Overrides { fan_deg: Some(90.0), ..Overrides::default() }).unwrap();
+    assert_ne!(wide.source_sha256, plain.source_sha256);
+    assert_eq!(load("pyramids", &Overrides::default()).unwrap().source_sha256, plain.source_sha256);
 }
 
 #[test]

@@ -55,6 +55,15 @@ fn a_pyramid_is_closed_and_its_flanks_lean_up() {
 }
 
 #[test]
+fn a_pyramid_turns_to_the_left() {
+    // A right-handed turn about z by the angle of cosine 4/5 and sine 3/5 takes the corner (1, 1) of the base to
+    // (4/5 - 3/5, 3/5 + 4/5).
+    let mut ground = Ground::default();
+    ground.add_pyramid(DVec3::new(10.0, 20.0, 0.0), 1.0, 2.0, libm::atan(0.75), 0);
+    assert!((ground.vertices[2] - DVec3::new(10.2, 21.4, 0.0)).length() < 1e-14, "{}", ground.vertices[2]);
+}
+
+#[test]
 fn a_height_field_looks_up_on_either_diagonal() {
     for falling in [false, true] {
         let mut ground = Ground::default();

@@ -20,6 +20,26 @@ fn the_same_as_going_through_all_faces() {
 }
 
 #[test]
+fn a_long_strip_has_its_heights_everywhere() {
+    // A ramp z = x / 4, 40 m long and 4 m wide: the index has far more columns than rows.
+    let posts = crate::HeightGrid {
+        columns: 41,
+        rows: 5,
+        corner: DVec2::ZERO,
+        spacing: DVec2::ONE,
+        heights: (0..205).map(|post| 0.25 * f64::from(post % 41)).collect(),
+    };
+    let material = raypencil_scene::Material { name: "ground".into(), reflectivity: 0.25 };
+    let index = HeightIndex::new(&posts.ground(material).into_mesh().unwrap());
+    for row in 0..8 {
+        for column in 0..80 {
+            let (x, y) = (0.25 + 0.5 * f64::from(column), 0.25 + 0.5 * f64::from(row));
+            assert_eq!(index.height_at(x, y), Some(0.25 * x), "at {x}, {y}");
+        }
+    }
+}
+
+#[test]
 fn faces_over_one_another_take_larger_cells() {
     // 3000 squares of 10 m, one over the other, 1 mm apart.
     let mut posts = Vec::new();

@@ -281,3 +281,17 @@ fn our_own_grounds_are_sound() {
     assert_eq!((found.open_edges.count, found.open_edges.loops, found.components), (400, 1, 1));
     assert!(found.open_edges.length > 160.0 && found.open_edges.length < 170.0);
 }
+
+#[test]
+fn areas_places_and_volumes_of_faces_that_are_not_unit_ones() {
+    // A right triangle of 6 m by 3 m, 10 m up, from above and from below. The centroid is at (2, 1).
+    let corners = [[0.0, 0.0, 10.0], [6.0, 0.0, 10.0], [0.0, 3.0, 10.0]];
+    let up = inspect(&mesh(&corners, &[[0, 1, 2]]));
+    assert_eq!((up.area, up.downward_area, up.down.count), (9.0, 0.0, 0));
+    let down = inspect(&mesh(&corners, &[[0, 2, 1]]));
+    assert_eq!((down.area, down.downward_area), (9.0, 9.0));
+    assert_eq!(faces(&down.down), [0]);
+    assert!((down.down.examples[0].place - DVec3::new(2.0, 1.0, 10.0)).length() < 1e-14);
+    // A tetrahedron without a face is open: it has no volume.
+    assert_eq!(inspect(&mesh(&TETRAHEDRON, &ITS_FACES[1..])).volume, 0.0);
+}

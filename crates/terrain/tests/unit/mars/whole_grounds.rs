@@ -16,6 +16,22 @@ fn small(name: &str, seed: u64) -> MarsGround {
     MarsGround { extent: 12.0, post_spacing: 0.2, crevasses, ..mars }
 }
 
+#[test]
+fn heights_between_posts_are_bilinear() {
+    // Posts 2 m apart along x and 4 m along y, with the heights 0 and 1 in the near row, 10 and 21 in the far one. A
+    // quarter of the way along x the rows are at 1/4 and 10 + 11/4; half way between these it is 13/2.
+    let posts = HeightGrid {
+        columns: 2,
+        rows: 2,
+        corner: DVec2::new(10.0, 20.0),
+        spacing: DVec2::new(2.0, 4.0),
+        heights: vec![0.0, 1.0, 10.0, 21.0],
+    };
+    assert_eq!(sheet::height(&posts, DVec2::new(10.5, 22.0)), 6.5);
+    // Outside, the height at the nearest border: 1 at the near right post.
+    assert_eq!(sheet::height(&posts, DVec2::new(99.0, -99.0)), 1.0);
+}
+
 /// First face that is not of the sheet: rocks come last.
 fn first_rock_face(ground: &Ground) -> usize {
     ground.face_materials.iter().position(|&kind| kind == ROCK_MATERIAL).unwrap_or(ground.faces.len())
@@ -223,6 +239,29 @@ fn the_bytes_are_these() {
         }
     }
     assert_eq!(format!("{digest:016x}"), "c21aadf62f8f191a");
+}
+
+#[test]
+fn a_finer_coarse_model_has_a_limit_of_faces() {
+    // Eleven halvings, from 4 m to 1/512 m: each cell of the model has 2^22 cells and 2^23 faces. The limit is 2^25.
+    let size = |columns: u32, rows: u32| {
+        let coarse = HeightGrid {
+            columns,
+            rows,
+            corner: DVec2::ZERO,
+            spacing: DVec2::splat(4.0),
+            heights: vec![0.0; columns as usize * rows as usize],
+        };
+        let mars = small("smooth", 6);
+        let rocks = Rocks { coverage: 0.0, ..mars.rocks };
+        MarsGround { coarse: Some(coarse), post_spacing: 4.0 / 2048.0, rocks, ..mars }.check_size()
+    };
+    for [columns, rows] in [[2, 4], [4, 2], [2, 5], [5, 2], [3, 3]] {
+        assert!(size(columns, rows).is_ok(), "{columns} x {rows}");
+    }
+    for [columns, rows] in [[2, 6], [6, 2], [4, 3], [3, 4]] {
+        assert_eq!(size(columns, rows).unwrap_err().field, "post_spacing_m", "{columns} x {rows}");
+    }
 }
 
 #[test]
