@@ -68,6 +68,16 @@ pub struct Checked {
 }
 
 impl Checked {
+    /// Whether the candidate agrees on a pack in which something is hit.
+    pub fn passes(&self) -> bool {
+        self.check.passes() && self.hits_anything()
+    }
+
+    /// Whether any ray of the pack hits. On a pack without hits a program that answers nothing is right.
+    pub fn hits_anything(&self) -> bool {
+        self.exact_ranges.iter().flat_map(|map| map.cells()).any(|range| range.get().is_some())
+    }
+
     /// The diagnosis as one sentence, if there is one.
     pub fn why(&self) -> Option<String> {
         self.diagnosis.as_ref().map(Diagnosis::sentence)
@@ -93,7 +103,7 @@ impl Checked {
 /// // A pack is a perfect candidate: each ray has exactly the value of the answer.
 /// let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids");
 /// let checked = check_pack(&pack, &pack, None, &Silent)?;
-/// assert!(checked.check.passes());
+/// assert!(checked.passes());
 /// assert_eq!(checked.check.of(Class::Agree), checked.check.compared());
 /// # Ok::<(), raypencil_pack::CheckError>(())
 /// ```
@@ -127,7 +137,7 @@ pub fn check_pack(
 /// write_npy(folder.path().join("camera/range.T.npy"), &[&Image::filled(96, 72, -1.0)])?;
 /// let conventions = Conventions { miss: Some(-1.0), ..Conventions::STANDARD };
 /// let checked = check_pack_by(&pack, folder.path(), Some(Precision::F64), conventions, &Silent)?;
-/// assert!(!checked.check.passes());
+/// assert!(!checked.passes());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -28,6 +28,31 @@ pub struct ClauseRays {
     pub rays: u64,
 }
 
+/// Most tests of a ray against a face for which clauses are counted unasked. Tuned: some 20 s on two cores.
+const MAX_TESTS: f64 = 1e10;
+
+/// Whether counting the rays of each clause takes less than a minute or so: the naive renderer tests each ray against
+/// each face, once for each fault.
+///
+/// ```
+/// use raypencil_pack::{blind_scene, can_count_clauses};
+/// use raypencil_scene_io::{Overrides, load};
+///
+/// assert!(can_count_clauses(&blind_scene(7)?));
+/// // A million rays.
+/// assert!(!can_count_clauses(&load("pyramids", &Overrides::default())?.scene));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn can_count_clauses(scene: &Scene) -> bool {
+    let rays: f64 = scene
+        .sensors()
+        .filter_map(|sensor| scene.size(sensor))
+        .map(|(columns, rows)| f64::from(columns) * f64::from(rows))
+        .sum();
+    let faults = Clause::ALL.iter().map(|clause| clause.faults().len()).sum::<usize>();
+    rays * scene.mesh().faces().len() as f64 * faults as f64 <= MAX_TESTS
+}
+
 /// Counts the rays that decide each clause which a pack of this scene has to test.
 ///
 /// It takes time in proportion to rays times faces times faults: about 10 s for 10,000 rays of 4,000 faces on two cores.

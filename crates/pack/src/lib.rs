@@ -5,12 +5,15 @@
 //! the exact referee (`raypencil-referee`) by way of `raypencil-judge`.
 //!
 //! ```text
+//! bench/                             rays at the limits of the contract, added to a scene
 //! split_mix -> blind                 scenes from a seed
+//! clauses                            how many rays decide each clause of the contract
 //! canonical_nan, units               values and units of channels
 //! manifest/                          manifest.json: structure, paths, consistency, reading, writing
 //! margins                            how far each ray is from another answer
 //! arrays, exr_map, rays -> write     the files of a pack
 //! provenance -> check                the candidate's note, and the check of a candidate
+//! input/                             a glTF file, the triangles that it must become, and the check of a loader
 //! check_report/                      a check as screen, page, JSON and JUnit
 //! ```
 //!
@@ -20,11 +23,11 @@
 //! use raypencil_pack::{check_pack, check_screen};
 //! use raypencil_scene::Silent;
 //!
-//! // A pack is a perfect candidate: all 96 x 72 + 2 x 128 x 4 = 7936 rays agree exactly.
+//! // A pack is a perfect candidate: all rays agree exactly. 7,936 are those of the scene, and 2,242 of the bench.
 //! let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids");
 //! let checked = check_pack(&pack, &pack, None, &Silent)?;
-//! assert_eq!(checked.check.compared(), 96 * 72 + 2 * 128 * 4);
-//! assert!(check_screen(&checked).contains("✓ 7,936 rays agree with the exact answers: 7,936 exact"));
+//! assert_eq!(checked.check.compared(), 96 * 72 + 2 * 128 * 4 + 2242);
+//! assert!(check_screen(&checked).contains("✓ 10,178 rays agree with the exact answers: 10,178 exact"));
 //! # Ok::<(), raypencil_pack::CheckError>(())
 //! ```
 
@@ -36,6 +39,7 @@ mod check;
 mod check_report;
 mod clauses;
 mod exr_map;
+mod input;
 mod manifest;
 mod margins;
 mod provenance;
@@ -44,14 +48,18 @@ mod split_mix;
 mod units;
 mod write;
 
-pub use bench::{BENCH_BEAMS, with_bench};
+pub use bench::{BENCH_BEAMS, benched, with_bench};
 pub use blind::{blind_scene, blind_subject};
 pub use check::{CheckError, Checked, check_pack, check_pack_by};
 pub use check_report::{
     check_json, check_page, check_screen, check_suite, items_not_given, not_given, rays_not_given,
     write_check,
 };
-pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, clause_rays};
+pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
+pub use input::{
+    InputChecked, InputFace, LoadingClause, WrongFace, check_input, input_faces, input_glb, input_json,
+    input_screen, is_input_pack, write_input, write_input_check,
+};
 pub use manifest::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
     ManifestFile, ManifestScene, ManifestSensor, PackKind,

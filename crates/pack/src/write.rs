@@ -15,11 +15,11 @@ use std::path::Path;
 use raypencil_files::{Attributes, FileError, FolderError, create_folder};
 use raypencil_judge::Certified;
 use raypencil_referee::{Format, Referee};
-use raypencil_scene::{Progress, Scene, SensorId};
+use raypencil_scene::{Progress, Scene, SceneError, SensorId};
 use raypencil_scene_io::{Subject, scene_sha256, write_resolved};
 
 use crate::arrays::ArrayWriter;
-use crate::clauses::{MIN_RAYS_PER_CLAUSE, clause_rays};
+use crate::clauses::{MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
 use crate::exr_map::write_exr_map;
 use crate::manifest::{
     FileRole, MANIFEST_FORMAT, Manifest, ManifestClause, ManifestFile, ManifestScene, ManifestSensor,
@@ -38,6 +38,14 @@ pub enum PackError {
     /// A file; the message names it.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A scene with no room for a bench.
+    #[error("{name}: no bench can be added ({source}); expected room for its beams, or --no-bench")]
+    NoBench {
+        /// Name of the scene.
+        name: String,
+        /// What does not fit.
+        source: SceneError,
+    },
     /// A blind pack that leaves clauses of the contract untested.
     #[error(
         "{name}: fewer than {MIN_RAYS_PER_CLAUSE} rays decide {}; expected each clause of the contract to decide as many. Choose another seed",
@@ -61,10 +69,13 @@ pub enum PackError {
     },
 }
 
-/// Writes the pack of a scene into `folder`: with all answers, or without any if `blind_seed` is given.
+/// Writes the pack of a scene into `folder`: with all answers, or without any if `blind_seed` is given. Returns its
+/// manifest.
 ///
-/// The manifest of a blind pack says how many rays decide each clause of the contract, and a seed that leaves one untested
-/// is refused.
+/// The manifest says how many rays decide each clause of the contract. A blind seed that leaves one untested is refused.
+/// For a scene with answers they are counted where that takes less than a minute
+/// ([`can_count_clauses`](crate::can_count_clauses)); few clauses decide any ray of a scene without a
+/// [bench](crate::with_bench).
 ///
 /// An earlier pack is removed first, beginning with its manifest. So a manifest always marks a complete pack, even if
 /// writing was interrupted, and no answer stays beside a scene that it does not belong to.
@@ -94,7 +105,7 @@ pub fn write_pack(
     blind_seed: Option<u64>,
     folder: &Path,
     progress: &dyn Progress,
-) -> Result<(), PackError> {
+) -> Result<Manifest, PackError> {
     let scene = &subject.scene;
     // Find the answers first: nothing is written unless all are certain.
     let certified = blind_seed.is_none().then(|| Certified::new(scene, progress));
@@ -102,10 +113,12 @@ pub fn write_pack(
         return Err(PackError::Undecided { name: subject.name.clone(), count });
     }
 
-    let clauses = if blind_seed.is_some() { clause_rays(scene, progress) } else { Vec::new() };
+    let is_blind = blind_seed.is_some();
+    let is_counted = is_blind || can_count_clauses(scene);
+    let clauses = if is_counted { clause_rays(scene, progress) } else { Vec::new() };
     let untested = clauses.iter().filter(|one| one.rays < MIN_RAYS_PER_CLAUSE);
     let untested: Vec<String> = untested.map(|one| one.clause.key().to_string()).collect();
-    if !untested.is_empty() {
+    if is_blind && !untested.is_empty() {
         return Err(PackError::Untested { name: subject.name.clone(), untested });
     }
 
@@ -132,7 +145,7 @@ pub fn write_pack(
     };
     let manifest = Manifest {
         format: MANIFEST_FORMAT,
-        kind: if blind_seed.is_some() { PackKind::Blind } else { PackKind::Answers },
+        kind: if is_blind { PackKind::Blind } else { PackKind::Answers },
         raypencil_version: env!("CARGO_PKG_VERSION").into(),
         scene: ManifestScene { name: subject.name.clone(), sha256: scene_sha256(scene) },
         flux_model: scene.flux_model(),
@@ -144,7 +157,8 @@ pub fn write_pack(
             .collect(),
         files,
     };
-    Ok(manifest.write(folder)?)
+    manifest.write(folder)?;
+    Ok(manifest)
 }
 
 /// Writes every quantity and every margin of every sensor, in f64 and in f32.

@@ -59,17 +59,20 @@ fn nearest(number: f64) -> f16 {
 
 #[test]
 fn a_number_rounded_twice_is_off_for_double_precision_only() {
-    // The range of pixel (17, 53) lies 6e-8 m below the middle of two numbers of half precision. Rounded to single
-    // precision first, it is the middle, and is then rounded up.
-    let exact = exact_ranges();
-    let twice: Vec<f16> = exact.cells().iter().map(|range| f16::from_f32(*range as f32)).collect();
-    let index = 17 + 53 * exact.width() as usize;
+    // In `facets` the depth of pixel (60, 57), 2.6689454125 m, lies 1e-7 m above the middle of two numbers of half
+    // precision. Rounded to single precision first, it is the middle, and is then rounded down, to the even one.
+    let pack = pack().with_file_name("facets");
+    let array = read_npy(pack.join("camera/depth.Z.npy"), &Limits::default()).expect("an array");
+    let [Values::Reals(exact)] = array.planes.as_slice() else { panic!("one plane of reals") };
+    let twice: Vec<f16> = exact.cells().iter().map(|depth| f16::from_f32(*depth as f32)).collect();
+    let index = 60 + 57 * exact.width() as usize;
     assert_ne!(twice[index], nearest(exact.cells()[index]));
-    let folder = candidate(&[("range.T", &twice)]);
-    let as_double = checked(&folder);
+    let folder = candidate(&[("depth.Z", &twice)]);
+    let mine = folder.path().join("mine");
+    let as_double = check_pack(&pack, &mine, None, &Silent).expect("a candidate that can be judged");
     let defects = &as_double.check.sensors[0].defects;
-    assert!(defects.iter().any(|defect| (defect.place.i, defect.place.j) == (17, 53)), "{defects:?}");
-    let as_single = check_pack(&pack(), &folder.path().join("mine"), Some(Precision::F32), &Silent);
+    assert!(defects.iter().any(|defect| (defect.place.i, defect.place.j) == (60, 57)), "{defects:?}");
+    let as_single = check_pack(&pack, &mine, Some(Precision::F32), &Silent);
     assert!(as_single.expect("a candidate that can be judged").check.passes());
 }
 

@@ -27,6 +27,7 @@
 //! ```
 
 mod colour;
+mod defect_list;
 mod drawing;
 mod junit;
 mod maps;
@@ -41,6 +42,7 @@ mod text;
 mod version;
 
 pub use colour::Colour;
+pub use defect_list::{DefectGroup, DefectLine, defect_list};
 pub use drawing::{Anchor, Drawing, INK, LETTERS, Mark, SOFT};
 pub use junit::{JunitCase, JunitReport, JunitSuite};
 pub use maps::{MapPair, SensorPlots};

@@ -69,7 +69,7 @@ pub fn check_json(checked: &Checked) -> String {
     let document = json!({
         "format": FORMAT,
         "version": env!("CARGO_PKG_VERSION"),
-        "verdict": verdict(check),
+        "verdict": verdict(checked),
         "candidate": recorded.name,
         "arithmetic": arithmetic(recorded.precision),
         "scene": { "name": subject.name, "sha256": subject.sha256 },

@@ -13,7 +13,11 @@ use crate::check_report::verdict::{MAX_SHOWN_DEFECTS, not_given};
 pub(crate) fn junit(checked: &Checked) -> io::Result<String> {
     let Checked { subject, recorded, check, .. } = checked;
     let mut report = JunitReport::new(format!("raypencil check {} {}", subject.name, recorded.name));
-    report.push(check_suite(subject, &recorded.name, check, checked.why().as_deref()));
+    let mut suite = check_suite(subject, &recorded.name, check, checked.why().as_deref());
+    if !checked.hits_anything() {
+        suite.push(JunitCase::failed("something is hit", "nothing_hit", "no ray of this pack hits anything"));
+    }
+    report.push(suite);
     report.to_xml()
 }
 

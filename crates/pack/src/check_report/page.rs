@@ -3,13 +3,14 @@
 use askama::Template;
 use raypencil_judge::{Class, Item, ItemTally, Largest, SensorResult, listed_defects, name_of, unit_of};
 use raypencil_report::{
-    MapPair, SensorPlots, VERSION, count, counted, max_side_of_pictures, page_head, quantity,
+    DefectGroup, DefectLine, MapPair, SensorPlots, VERSION, count, counted, defect_list,
+    max_side_of_pictures, page_head, quantity,
 };
 use raypencil_scene::{Image, Maybe};
 
 use crate::check::Checked;
 use crate::check_report::verdict::{
-    arithmetic, half_precision, headline, items_not_given, not_given, sign, verdict,
+    arithmetic, half_precision, headline, items_not_given, listed_totals, not_given, sign, verdict,
 };
 
 /// Pictures of every sensor: the exact ranges, the candidate's, and their difference.
@@ -22,9 +23,9 @@ struct Page<'a> {
     verdict: &'static str,
     sign: &'static str,
     headline: String,
-    /// The worst defect in one sentence; empty if there is none.
     /// The mistake that explains why the candidate is wrong nearly everywhere; empty if none is known.
     why: String,
+    /// The worst defect in one sentence; empty if there is none.
     worst: String,
     half: String,
     /// What was not compared, and why; empty if everything was.
@@ -35,24 +36,10 @@ struct Page<'a> {
     blind: bool,
     sha256: &'a str,
     version: &'static str,
-    defects: Vec<Defects>,
+    /// The lists of defects as HTML.
+    defects: String,
     rows: Vec<Row>,
     sensors: Vec<Sensor>,
-}
-
-/// The listed defects of a sensor.
-struct Defects {
-    title: String,
-    listed: Vec<Listed>,
-    more: String,
-}
-
-struct Listed {
-    place: String,
-    quantity: String,
-    words: String,
-    what: String,
-    command: String,
 }
 
 /// One quantity over all sensors.
@@ -87,22 +74,24 @@ struct Sensor {
 /// An error of the template.
 pub fn check_page(checked: &Checked) -> Result<String, askama::Error> {
     let Checked { subject, recorded, check, exact_ranges, is_blind, .. } = checked;
-    let headline = headline(check, recorded);
-    let head = page_head(&format!("{} {}: {headline}", sign(check), recorded.name), "");
+    let headline = headline(checked);
+    let head = page_head(&format!("{} {}: {headline}", sign(checked), recorded.name), "");
     let worst = listed_defects(&check.sensors);
     let worst = worst.first().map(|one| format!("{}, {}: {}", one.place, name_of(one.item), one.words()));
     let absent: Vec<String> =
         items_not_given(check).into_iter().map(|(item, why)| format!("{} ({why})", name_of(item))).collect();
     let sizes: Vec<(u32, u32)> = exact_ranges.iter().map(|map| (map.width(), map.height())).collect();
     let max_side = max_side_of_pictures(&sizes, PICTURES_OF_SENSOR);
+    let groups: Vec<DefectGroup> =
+        check.sensors.iter().filter_map(|sensor| defects(checked, sensor)).collect();
     let page = Page {
         head,
-        verdict: match verdict(check) {
+        verdict: match verdict(checked) {
             "agrees" => "agree",
             "defects" => "defects",
             _ => "nothing",
         },
-        sign: sign(check),
+        sign: sign(checked),
         headline,
         worst: worst.unwrap_or_default(),
         why: checked.why().unwrap_or_default(),
@@ -114,8 +103,8 @@ pub fn check_page(checked: &Checked) -> Result<String, askama::Error> {
         blind: *is_blind,
         sha256: &subject.sha256,
         version: VERSION,
-        defects: check.sensors.iter().filter_map(|sensor| defects(checked, sensor)).collect(),
-        rows: check.totals().into_iter().map(|(item, tally)| row(checked, item, &tally)).collect(),
+        defects: defect_list(&groups)?,
+        rows: listed_totals(check).into_iter().map(|(item, tally)| row(checked, item, &tally)).collect(),
         sensors: check
             .sensors
             .iter()
@@ -126,25 +115,29 @@ pub fn check_page(checked: &Checked) -> Result<String, askama::Error> {
     page.render()
 }
 
-fn defects(checked: &Checked, sensor: &SensorResult) -> Option<Defects> {
+fn defects(checked: &Checked, sensor: &SensorResult) -> Option<DefectGroup> {
     let total = sensor.of(Class::Defect) + sensor.of(Class::Undecided);
-    let listed: Vec<Listed> = sensor
+    let lines: Vec<DefectLine> = sensor
         .listed
         .iter()
-        .map(|one| Listed {
+        .map(|one| DefectLine {
             place: one.place.to_string(),
             quantity: name_of(one.item),
             words: one.words(),
             what: one.what.clone(),
+            folder: String::new(),
             command: checked.repro(one.place),
         })
         .collect();
-    let more = total - total.min(listed.len() as u64);
-    (total > 0).then(|| Defects {
-        title: format!("{}: {} wrong", sensor.sensor, counted(total, "ray", "rays")),
-        listed,
-        more: if more > 0 { counted(more, "more ray", "more rays") } else { String::new() },
-    })
+    let more = match total - total.min(lines.len() as u64) {
+        0 => String::new(),
+        more => format!(
+            "{} of this sensor not listed here. The list has the worst rays of each quantity.",
+            counted(more, "more ray", "more rays")
+        ),
+    };
+    let title = format!("{}: {} wrong", sensor.sensor, counted(total, "ray", "rays"));
+    (total > 0).then_some(DefectGroup { title, lines, more })
 }
 
 fn row(checked: &Checked, item: Item, tally: &ItemTally) -> Row {

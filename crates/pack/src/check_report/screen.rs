@@ -7,7 +7,7 @@ use raypencil_report::{Align, Table, count, quantity};
 
 use crate::check::Checked;
 use crate::check_report::verdict::{
-    MAX_SHOWN_DEFECTS, arithmetic, half_precision, headline, items_not_given, not_given, sign,
+    MAX_SHOWN_DEFECTS, arithmetic, half_precision, headline, items_not_given, listed_totals, not_given, sign,
 };
 
 /// The screen: a table of all quantities, the worst defects with their `probe` commands, the verdict, and the mistake that
@@ -40,7 +40,7 @@ pub fn check_screen(checked: &Checked) -> String {
     let is_text = |head: &str| head.is_empty() || head == "at";
     let mut table = Table::new(heads.map(|head| if is_text(head) { Align::Left } else { Align::Right }));
     table.row(heads);
-    for (item, tally) in check.totals() {
+    for (item, tally) in listed_totals(check) {
         let largest = |largest: &Option<Largest>, unit: &str| {
             largest.as_ref().map_or("-".into(), |largest| quantity(largest.value, unit))
         };
@@ -91,7 +91,7 @@ pub fn check_screen(checked: &Checked) -> String {
         let _ = writeln!(text, "    {}", one.what);
         let _ = writeln!(text, "    {}", checked.repro(one.place));
     }
-    let _ = writeln!(text, "{} {}", sign(check), headline(check, recorded));
+    let _ = writeln!(text, "{} {}", sign(checked), headline(checked));
     if let Some(why) = checked.why() {
         let _ = writeln!(text, "  Why: {why}.");
     }

@@ -5,6 +5,8 @@ use raypencil_judge::{Check, Class, Item, ItemTally, Recorded, name_of};
 use raypencil_report::count;
 use raypencil_scene::Precision;
 
+use crate::check::Checked;
+
 /// Maximum number of defects that a screen or a test case describes; all are counted.
 pub(crate) const MAX_SHOWN_DEFECTS: usize = 5;
 
@@ -14,17 +16,18 @@ pub(crate) fn arithmetic(precision: Precision) -> &'static str {
 }
 
 /// The outcome of a check.
-pub(crate) fn verdict(check: &Check) -> &'static str {
-    match (check.compared(), check.passes()) {
-        (0, _) => "nothing_compared",
-        (_, true) => "agrees",
-        (_, false) => "defects",
+pub(crate) fn verdict(checked: &Checked) -> &'static str {
+    match (checked.check.compared(), checked.check.passes(), checked.hits_anything()) {
+        (0, ..) => "nothing_compared",
+        (_, false, _) => "defects",
+        (_, true, true) => "agrees",
+        (_, true, false) => "nothing_hit",
     }
 }
 
 /// A sign that does not depend on colour.
-pub(crate) fn sign(check: &Check) -> &'static str {
-    match verdict(check) {
+pub(crate) fn sign(checked: &Checked) -> &'static str {
+    match verdict(checked) {
         "agrees" => "✓",
         "defects" => "✗",
         _ => "?",
@@ -32,13 +35,14 @@ pub(crate) fn sign(check: &Check) -> &'static str {
 }
 
 /// The outcome in one sentence. A recording in half precision is never said to be exact.
-pub(crate) fn headline(check: &Check, recorded: &Recorded) -> String {
+pub(crate) fn headline(checked: &Checked) -> String {
+    let Checked { check, recorded, .. } = checked;
     let rays = count(check.compared());
     let of = |class| count(check.of(class));
     let is_partial = check.totals().values().any(|tally| tally.not_compared > 0);
     let partial = if is_partial { "; nothing is known about what was not compared" } else { "" };
     let (tie, rounding) = (of(Class::Tie), of(Class::Rounding));
-    match verdict(check) {
+    match verdict(checked) {
         "agrees" if recorded.items_in_half().is_empty() => format!(
             "{rays} rays agree with the exact answers: {} exact, {tie} tie, {rounding} rounding{partial}.",
             of(Class::Agree)
@@ -49,6 +53,11 @@ pub(crate) fn headline(check: &Check, recorded: &Recorded) -> String {
         ),
         "defects" => {
             format!("{} of {rays} rays are wrong, {} undecided.", of(Class::Defect), of(Class::Undecided))
+        }
+        "nothing_hit" => {
+            format!(
+                "No ray of this pack hits anything: that the candidate says so on {rays} rays proves little."
+            )
         }
         _ => "Nothing was compared.".into(),
     }
@@ -82,7 +91,26 @@ pub fn rays_not_given(tally: &ItemTally) -> u64 {
     tally.not_compared - tally.unjudged.len() as u64
 }
 
+/// The tallies of a check as reports list them. A flux on the image that is given for no beam is one item, and not one for
+/// each beam.
+pub(crate) fn listed_totals(check: &Check) -> Vec<(Item, ItemTally)> {
+    let totals = check.totals();
+    let is_absent_of_all = |item: &Item| {
+        let alike =
+            |other: &&Item| other.quantity == item.quantity && other.is_other_model == item.is_other_model;
+        totals.keys().filter(alike).all(|other| not_given(&totals[other]).is_some())
+    };
+    let mut listed: Vec<(Item, ItemTally)> = Vec::new();
+    for (item, tally) in &totals {
+        let item = if is_absent_of_all(item) { Item { beam: None, ..*item } } else { *item };
+        if listed.iter().all(|(other, _)| *other != item) {
+            listed.push((item, tally.clone()));
+        }
+    }
+    listed
+}
+
 /// Names of the items of a check that were not given, or that their type cannot hold.
 pub fn items_not_given(check: &Check) -> Vec<(Item, &'static str)> {
-    check.totals().into_iter().filter_map(|(item, tally)| Some((item, not_given(&tally)?))).collect()
+    listed_totals(check).into_iter().filter_map(|(item, tally)| Some((item, not_given(&tally)?))).collect()
 }

@@ -17,6 +17,7 @@ mod read;
 mod scene;
 mod write;
 
+pub(crate) use document::pack_fault;
 pub use document::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
     ManifestFile, ManifestScene, ManifestSensor, PackKind,
