@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 raypencil=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-packs=(pyramids facets)
+packs=(pyramids facets hard)
 
 # expect CODE COMMAND...: the command must end with that exit code.
 expect() {
@@ -42,6 +42,8 @@ if [[ -n $python ]]; then
         expect 0 "$raypencil" check "data/packs/$pack" "$work/f32/$pack" --arithmetic f32
         expect 1 "$raypencil" check "data/packs/$pack" "$work/f32/$pack" --arithmetic f64
     done
+    expect 0 "$python" reference/load_ground.py data/packs/input "$work/input"
+    expect 0 "$raypencil" check data/packs/input "$work/input"
     # Nobody has seen these answers before.
     for seed in 3 17; do
         expect 0 "$raypencil" pack --blind "$seed" -o "$work/blind-$seed"
@@ -58,16 +60,20 @@ if [[ -n $python ]]; then
         expect 0 "$python" reference/agree.py "$work/embree/$pack" "$candidates/embree/$pack" --maps single
         expect 0 "$raypencil" check "data/packs/$pack" "$work/embree/$pack"
     done
-    # Seeds that the committed images have not: independent of them.
+    # Light on plain ground. Seeds that the committed images have not: independent of them.
+    plain=pyramids-small
+    expect 0 "$raypencil" pack "data/scenes/$plain.toml" --no-bench -o "$work/$plain"
+    expect 0 "$python" "${make[@]}" "$work/$plain" --with embree -o "$work/embree/$plain"
+    expect 0 "$python" reference/agree.py "$work/embree/$plain" "$candidates/embree/$plain" --maps single
     if PYTHONPATH=reference "$python" -c 'from renderers import llvm; llvm.locate()' 2>"$work/output"; then
-        expect 0 "$python" "${make[@]}" data/packs/pyramids --with mitsuba -o "$work/mitsuba/pyramids" \
+        expect 0 "$python" "${make[@]}" "$work/$plain" --with mitsuba -o "$work/mitsuba/$plain" \
             --images 12 --samples 1024 --seed 1001
-        expect 0 "$python" reference/agree.py "$work/mitsuba/pyramids" "$candidates/mitsuba/pyramids" --maps single
+        expect 0 "$python" reference/agree.py "$work/mitsuba/$plain" "$candidates/mitsuba/$plain" --maps single
         cat "$work/output"
-        expect 0 "$raypencil" check data/packs/pyramids "$work/mitsuba/pyramids"
+        expect 0 "$raypencil" check "$work/$plain" "$work/mitsuba/$plain"
         # Of Monte Carlo images one may be off by chance or by bias: the report says so, and the run goes on.
-        expect 0 "$raypencil" validate data/packs/pyramids/scene.toml --candidate "$work/mitsuba/pyramids" \
-            --candidate "$work/embree/pyramids" --candidates-must-pass=false -o "$work/panel"
+        expect 0 "$raypencil" validate "$work/$plain/scene.toml" --candidate "$work/mitsuba/$plain" \
+            --candidate "$work/embree/$plain" --candidates-must-pass=false -o "$work/panel"
         grep -E '^(Embree|Mitsuba)' "$work/output"
     else
         echo "SKIPPED Mitsuba: $(tail -n 1 "$work/output")"

@@ -11,6 +11,7 @@
 //! * [`naive`]: a third renderer, into which one [`Fault`](naive::Fault) at a time is injected (a crate of its own).
 //! * [`injected_faults`]: small scenes that reveal such faults, faults of files, and the search that writes
 //!   `docs/evidence/injected-faults.md`.
+//! * [`planted`]: faults planted in the sources of products, listed in `docs/evidence/shared-faults.md`.
 //! * [`malformed`]: malformed files for every reader, listed in `docs/evidence/malformed-inputs.md`.
 //! * [`reproducers`]: what a failing property leaves behind. [`fixtures`]: small validations for reports.
 //!   [`schema`]: JSON documents against their schemas.
@@ -36,8 +37,10 @@ pub mod injected_faults;
 pub mod light;
 pub mod malformed;
 mod meshes;
+pub mod naive_loader;
 pub use raypencil::naive;
 mod outputs;
+pub mod planted;
 pub mod quadrature;
 pub mod reproducers;
 pub mod schema;

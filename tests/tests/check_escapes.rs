@@ -89,7 +89,7 @@ fn cells(image: &Image<f64>) -> impl Iterator<Item = (u32, u32)> + use<> {
 
 #[test]
 fn a_missing_pencil_near_a_border_is_a_defect() {
-    let scene = scene_of("pyramids");
+    let scene = scene_of("../scenes/pyramids-small");
     let truth = GroundTruth::certified(&scene, &Silent);
     let referee = truth.judge().referee();
     let mut image_only = recorded(&scene, Precision::F64);
@@ -98,7 +98,8 @@ fn a_missing_pencil_near_a_border_is_a_defect() {
     assert_passes(&check(&truth, &image_only, &Silent));
     // Near the border, but thousands of times farther than any rounding error.
     let near = cells(&flux).find(|&(i, j)| {
-        let sight = referee.visibility_margins(0, i, j);
+        // The filter lets nothing through of some pencils.
+        let sight = referee.visibility_margins(0, i, j).filter(|_| flux.at(i, j) > 0.0);
         sight.is_some_and(|sight| {
             sight.sight.visible && sight.landing.is_some_and(|[lo, _]| lo > 1e-3 && lo < 1e-2)
         })

@@ -2,14 +2,19 @@
 
 use std::path::Path;
 
+use raypencil::io::{Overrides, load};
 use raypencil::judge::{Check, Class, GroundTruth, Recorded, check};
 use raypencil::naive::{Clause, ClauseKind, Fault, Naive};
-use raypencil::pack::{MIN_RAYS_PER_CLAUSE, blind_scene, clause_rays};
+use raypencil::pack::{LoadingClause, MIN_RAYS_PER_CLAUSE, Manifest, blind_scene, clause_rays, with_bench};
 use raypencil::{FluxModel, Renderer, Request, Scene, Silent};
 use raypencil_tests::renderers;
 
 /// Seeds of two blind scenes: one of each flux model.
 const SEEDS: [u64; 2] = [1, 2];
+
+/// Number of blind seeds to try with every wrong renderer in place of [`SEEDS`]: `RAYPENCIL_BLIND_SEEDS=50 cargo test
+/// --release -p raypencil-tests --test clauses blind` takes half an hour.
+const SEEDS_VARIABLE: &str = "RAYPENCIL_BLIND_SEEDS";
 
 fn checked(truth: &GroundTruth<'_>, renderer: &dyn Renderer) -> Check {
     let scene = truth.scene();
@@ -27,7 +32,9 @@ fn faults_for(scene: &Scene) -> Vec<(Clause, Fault)> {
 #[test]
 fn each_blind_pack_passes_the_right_renderers_and_fails_each_wrong_one() {
     let mut models = Vec::new();
-    for seed in SEEDS {
+    let many: Option<u64> =
+        std::env::var(SEEDS_VARIABLE).ok().map(|text| text.parse().expect("a number of seeds"));
+    for seed in many.map_or(SEEDS.to_vec(), |count| (0..count).collect()) {
         let scene = blind_scene(seed).expect("a scene");
         models.push(scene.flux_model());
         let truth = GroundTruth::certified(&scene, &Silent);
@@ -41,15 +48,67 @@ fn each_blind_pack_passes_the_right_renderers_and_fails_each_wrong_one() {
         let mut passed = Vec::new();
         // The first scene has to fail every wrong renderer. Of the second, whose flux follows the other model, those of its
         // flux are tried.
-        let is_tried = |clause: Clause| seed == SEEDS[0] || matches!(clause.kind(), ClauseKind::Flux(_));
+        let is_tried = |clause: Clause| {
+            many.is_some() || seed == SEEDS[0] || matches!(clause.kind(), ClauseKind::Flux(_))
+        };
+        let mut tried = 0;
         for (clause, fault) in faults_for(&scene).into_iter().filter(|(clause, _)| is_tried(*clause)) {
+            tried += 1;
             if checked(&truth, &Naive { fault: Some(fault) }).of(Class::Defect) == 0 {
                 passed.push((clause, fault));
             }
         }
         assert!(passed.is_empty(), "seed {seed} passes these wrong renderers: {passed:?}");
+        println!("seed {seed}, {:?}: {} wrong renderers fail", scene.flux_model(), tried);
     }
     assert!(models.contains(&FluxModel::Radiometric) && models.contains(&FluxModel::Eq1), "{models:?}");
+}
+
+#[test]
+fn each_shipped_pack_fails_each_wrong_renderer() {
+    let mut models = Vec::new();
+    for pack in ["pyramids", "facets", "hard"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/packs").join(pack);
+        let manifest = Manifest::read_verified(&folder).expect("a pack");
+        let scene = folder.join("scene.toml");
+        let scene = load(&scene.to_string_lossy(), &Overrides::default()).expect("the pack's scene").scene;
+        models.push(scene.flux_model());
+        let truth = GroundTruth::certified(&scene, &Silent);
+        for (clause, fault) in faults_for(&scene) {
+            let wrong = checked(&truth, &Naive { fault: Some(fault) }).of(Class::Defect);
+            assert!(wrong > 0, "{pack} passes a renderer that breaks {clause:?} by {fault:?}");
+        }
+        // `packs.rs` counts them again.
+        assert!(!manifest.clauses.is_empty(), "{pack}");
+        for one in &manifest.clauses {
+            assert!(one.rays >= MIN_RAYS_PER_CLAUSE, "{pack}: {one:?}");
+        }
+    }
+    assert!(models.contains(&FluxModel::Radiometric) && models.contains(&FluxModel::Eq1), "{models:?}");
+}
+
+#[test]
+fn without_a_bench_wrong_renderers_pass_unseen() {
+    // This is why packs have a bench: nothing here is met from behind, or lies before the grid plane.
+    let scene = load("pyramids", &Overrides::default()).expect("a built-in scene").scene;
+    let mut camera = *scene.camera();
+    (camera.sensor.width, camera.sensor.height) = (32, 24);
+    camera.sensor.pixel_pitch = camera.sensor.pixel_pitch.map(|pitch| 32.0 * pitch);
+    camera.sensor.principal_point = [15.7, 12.4];
+    let plain = Scene::new(scene.mesh().clone(), camera, Vec::new(), scene.atmosphere(), scene.flux_model());
+    let plain = plain.expect("a camera alone");
+    let rays = |scene: &Scene, clause: Clause| {
+        clause_rays(scene, &Silent)
+            .into_iter()
+            .find(|one| one.clause == clause)
+            .expect("a clause of hits")
+            .rays
+    };
+    let benched = with_bench(&plain).expect("room for a bench");
+    for clause in [Clause::FrontsOnly, Clause::NotBeforeThePlane, Clause::Edges] {
+        assert_eq!(rays(&plain, clause), 0, "{clause:?}");
+        assert!(rays(&benched, clause) >= MIN_RAYS_PER_CLAUSE, "{clause:?}");
+    }
 }
 
 #[test]
@@ -76,7 +135,8 @@ fn the_page_of_the_contract_has_every_clause() {
         assert!(page.contains(&row), "docs/theory/contract.md lacks the row\n{row}");
     }
     let rows = page.lines().filter(|line| line.starts_with("| `")).count();
-    assert_eq!(rows, Clause::ALL.len(), "rows of docs/theory/contract.md");
+    // The clauses of loading are held by `loading.rs`.
+    assert_eq!(rows, Clause::ALL.len() + LoadingClause::ALL.len(), "rows of docs/theory/contract.md");
 }
 
 #[test]

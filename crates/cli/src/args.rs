@@ -268,6 +268,15 @@ pub(crate) struct Pack {
     #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading"])]
     pub(crate) blind: Option<u64>,
 
+    /// Leave the scene as it is. Without this, plates and beams are added whose rays meet every limit of the contract
+    /// exactly: edges, backs, the maximum range, ties.
+    #[arg(long, conflicts_with = "blind")]
+    pub(crate) no_bench: bool,
+
+    /// Write an input pack: a glTF file with all that a loader can get wrong, and the triangles that it must become.
+    #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading"])]
+    pub(crate) input: bool,
+
     /// Output folder.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
@@ -363,11 +372,12 @@ pub(crate) struct Minimise {
 
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// Folder of the reference pack, with its manifest.json.
+    /// Folder of the reference pack, with its manifest.json, or of an input pack.
     #[arg(value_name = "PACK")]
     pub(crate) pack: PathBuf,
 
-    /// Folder of the answers to check: EXR, NPY or PFM files, named as docs/formats/files.md says.
+    /// Folder of the answers to check: EXR, NPY or PFM files, named as docs/formats/files.md says. For an input pack:
+    /// triangles.npy, and reflectivity.npy if there is one.
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
 
@@ -376,8 +386,8 @@ pub(crate) struct Check {
     #[arg(long, value_name = "ARITHMETIC", value_parser = precision())]
     pub(crate) arithmetic: Option<Precision>,
 
-    /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan. Lengths of +Inf, other numbers of
-    /// NaN, and faces of -1 or 4294967295 always do.
+    /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan. Numbers that are not finite, and
+    /// faces of -1 or 4294967295, always do.
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub(crate) miss: Option<f64>,
 

@@ -1,13 +1,19 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
 use raypencil::judge::Conventions;
-use raypencil::pack::{check_json, check_pack_by, check_screen, write_check};
+use raypencil::pack::{
+    check_input, check_json, check_pack_by, check_screen, input_json, input_screen, is_input_pack,
+    write_check, write_input_check,
+};
 
 use crate::args::Check;
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
+    if is_input_pack(&command.pack) {
+        return check_loader(command, json);
+    }
     let spinner = Spinner::new();
     let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
     let checked =
@@ -17,5 +23,21 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     }
     drop(spinner);
     say(&if json { check_json(&checked) } else { check_screen(&checked) });
-    Ok(if checked.check.passes() { Outcome::Fine } else { Outcome::Differs })
+    Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
+}
+
+/// The same for an input pack, which asks for triangles.
+fn check_loader(command: &Check, json: bool) -> Result<Outcome, Trouble> {
+    let is_of_rays = command.arithmetic.is_some() || command.miss.is_some() || command.no_faces;
+    if is_of_rays {
+        let pack = command.pack.display();
+        let text = "--arithmetic, --miss and --no-faces declare how rays are answered; expected none of them";
+        return Err(Trouble::Usage(format!("{pack} is an input pack: {text}")));
+    }
+    let checked = check_input(&command.pack, &command.candidate)?;
+    if let Some(folder) = &command.output {
+        write_input_check(&checked, folder)?;
+    }
+    say(&if json { input_json(&checked) } else { input_screen(&checked) });
+    Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
 }

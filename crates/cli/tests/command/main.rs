@@ -7,6 +7,7 @@ mod diagnosis;
 mod diff;
 mod drive;
 mod help;
+mod packs;
 mod terrain;
 
 use std::path::Path;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use raypencil_files::Storage;
 use raypencil_judge::{Check, Class, Item, ItemTally, Largest, Recorded, name_of, unit_of};
 use raypencil_pack::{items_not_given, not_given, rays_not_given};
-use raypencil_report::{count, counted, number, quantity};
+use raypencil_report::{DefectGroup, DefectLine, count, counted, number, quantity};
 use raypencil_scene_io::{Subject, probe_command, quoted};
 
 use crate::monte_carlo::{ImageComparison, Z_TEST_LIMITS};
@@ -83,27 +83,6 @@ pub(crate) struct RadianceRow {
     pub(crate) others: String,
     pub(crate) worst: String,
     pub(crate) wrong: String,
-}
-
-/// The misses of a candidate.
-#[derive(Debug)]
-pub(crate) struct Misses {
-    pub(crate) title: String,
-    pub(crate) listed: Vec<Miss>,
-    pub(crate) more: String,
-}
-
-/// One miss.
-#[derive(Debug)]
-pub(crate) struct Miss {
-    pub(crate) place: String,
-    pub(crate) quantity: String,
-    /// Said, true, difference and margin.
-    pub(crate) words: String,
-    /// All that is wrong with the ray, with the ruling.
-    pub(crate) what: String,
-    pub(crate) command: String,
-    pub(crate) folder: String,
 }
 
 /// Rays that are wrong or could not be decided.
@@ -244,32 +223,32 @@ fn radiance_row(report: &CandidateReport, map: &RadianceComparison) -> RadianceR
 }
 
 /// The listed misses of each candidate that has any.
-pub(crate) fn all_misses(validation: &Validation) -> Vec<Misses> {
+pub(crate) fn all_misses(validation: &Validation) -> Vec<DefectGroup> {
     let wrong = validation.candidates().iter().filter(|report| report.wrong_rays() > 0);
     wrong.map(|report| misses(&validation.subject, report)).collect()
 }
 
-fn misses(subject: &Subject, report: &CandidateReport) -> Misses {
+fn misses(subject: &Subject, report: &CandidateReport) -> DefectGroup {
     let total = report.wrong_rays();
-    let listed: Vec<Miss> = report
+    let lines: Vec<DefectLine> = report
         .misses()
         .take(MAX_LISTED)
         .enumerate()
-        .map(|(index, wrong)| Miss {
+        .map(|(index, wrong)| DefectLine {
             place: wrong.place.to_string(),
             quantity: name_of(wrong.item),
             words: wrong.words(),
             what: wrong.what.clone(),
-            command: probe_command(subject, wrong.place),
             folder: miss_folder(report, index),
+            command: probe_command(subject, wrong.place),
         })
         .collect();
-    let more = total - total.min(listed.len() as u64);
-    Misses {
-        title: format!("Candidate {}: {} wrong", report.candidate.name, counted(total, "ray", "rays")),
-        listed,
-        more: if more > 0 { counted(more, "more ray", "more rays") } else { String::new() },
-    }
+    let more = match total - total.min(lines.len() as u64) {
+        0 => String::new(),
+        more => format!("{} not listed here.", counted(more, "more ray", "more rays")),
+    };
+    let title = format!("Candidate {}: {} wrong", report.candidate.name, counted(total, "ray", "rays"));
+    DefectGroup { title, lines, more }
 }
 
 /// Command-line arguments that name the candidates: ` --candidate DIR` for each.

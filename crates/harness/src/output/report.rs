@@ -2,12 +2,15 @@
 
 use askama::Template;
 use raypencil_judge::{Class, SensorResult, name_of};
-use raypencil_report::{MapPair, SensorPlots, VERSION, count, counted, list, page_head, time};
+use raypencil_report::{
+    DefectGroup, DefectLine, MapPair, SensorPlots, VERSION, count, counted, defect_list, list, page_head,
+    time,
+};
 use raypencil_scene::SensorId;
 use raypencil_scene_io::{Subject, probe_command, scene_sha256};
 use raypencil_survey::{Whereabouts, plan};
 
-use crate::output::candidates::{CandidatesSection, Misses, all_misses, candidates_section, typed};
+use crate::output::candidates::{CandidatesSection, all_misses, candidates_section, typed};
 use crate::output::light::{Light, light};
 use crate::output::plots::{max_columns, plots};
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
@@ -46,8 +49,8 @@ struct Page<'a> {
     light: Light,
     candidates: CandidatesSection,
     candidate_plots: Vec<CandidatePlots>,
-    defects: Vec<Defects>,
-    misses: Vec<Misses>,
+    /// The lists of defects as HTML.
+    defects: String,
     stages: Vec<Timed>,
 }
 
@@ -87,21 +90,6 @@ struct CandidatePlots {
     sensors: Vec<Sensor>,
 }
 
-/// The defects of a sensor and a pair.
-struct Defects {
-    title: String,
-    listed: Vec<Listed>,
-    more: String,
-}
-
-struct Listed {
-    place: String,
-    quantity: String,
-    words: String,
-    what: String,
-    command: String,
-}
-
 /// A stage and its time, also as a percentage of the longest.
 struct Timed {
     name: String,
@@ -118,6 +106,8 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
     let max_columns = max_columns(validation);
     let headline = headline(validation);
     let head = page_head(&format!("{} {headline}: {}", verdict.sign(), subject.name), "");
+    let mut groups: Vec<DefectGroup> = pairs.iter().flat_map(|pair| defects(validation, pair)).collect();
+    groups.extend(all_misses(validation));
     let page = Page {
         head,
         verdict: match verdict {
@@ -156,8 +146,7 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
             .flat_map(|scoreboard| scoreboard.candidates.iter().map(move |report| (scoreboard, report)))
             .map(|(scoreboard, report)| candidate_plots(validation, scoreboard, report, max_columns))
             .collect::<Result<_, _>>()?,
-        defects: pairs.iter().flat_map(|pair| defects(validation, pair)).collect(),
-        misses: all_misses(validation),
+        defects: defect_list(&groups)?,
         stages: stages
             .iter()
             .map(|stage| Timed {
@@ -293,32 +282,30 @@ fn numbers(validation: &Validation, sensor: SensorId) -> Vec<String> {
     numbers
 }
 
-fn defects(validation: &Validation, pair: &Pair) -> Vec<Defects> {
+/// The listed defects of a pair of renderers.
+fn defects(validation: &Validation, pair: &Pair) -> Vec<DefectGroup> {
     let of_sensor = |sensor: &SensorResult| {
         let total = sensor.of(Class::Defect);
-        let listed: Vec<Listed> = sensor
+        let lines: Vec<DefectLine> = sensor
             .listed
             .iter()
             .take(MAX_LISTED)
-            .map(|defect| Listed {
+            .map(|defect| DefectLine {
                 place: defect.place.to_string(),
                 quantity: name_of(defect.item),
                 words: defect.words(),
                 what: defect.what.clone(),
+                folder: String::new(),
                 command: probe_command(&validation.subject, defect.place),
             })
             .collect();
-        let more = total - total.min(listed.len() as u64);
-        (total > 0).then(|| Defects {
-            title: format!(
-                "{}, {}: {}",
-                sensor.sensor,
-                title(validation, pair),
-                counted(total, "defect", "defects")
-            ),
-            listed,
-            more: if more > 0 { counted(more, "more ray", "more rays") } else { String::new() },
-        })
+        let more = match total - total.min(lines.len() as u64) {
+            0 => String::new(),
+            more => format!("{} of this sensor not listed here.", counted(more, "more ray", "more rays")),
+        };
+        let defects = counted(total, "defect", "defects");
+        let title = format!("{}, {}: {defects}", sensor.sensor, title(validation, pair));
+        (total > 0).then_some(DefectGroup { title, lines, more })
     };
     pair.sensors.iter().filter_map(of_sensor).collect()
 }
