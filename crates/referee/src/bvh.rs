@@ -4,9 +4,7 @@
 //! test is widened by far more than its rounding, and by the displacement that is asked about.
 
 use glam::DVec3;
-use raypencil_scene::{FaceId, Mesh};
-
-use crate::face::Face;
+use raypencil_scene::FaceId;
 
 /// Maximum faces in a leaf.
 const MAX_LEAF_FACES: usize = 4;
@@ -14,11 +12,19 @@ const MAX_LEAF_FACES: usize = 4;
 /// Relative slack of the slab test: 2^-40, where its rounding is a few 2^-53.
 const RELATIVE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// The terrain's faces in a hierarchy of boxes.
+/// A face that boxes can be drawn around.
+pub(crate) trait InBox: Copy {
+    /// The face's index in its mesh.
+    fn id(&self) -> FaceId;
+    /// The corners, unrounded.
+    fn corners(&self) -> [DVec3; 3];
+}
+
+/// Faces in a hierarchy of boxes.
 #[derive(Debug)]
-pub(crate) struct Bvh {
+pub(crate) struct Bvh<F> {
     nodes: Vec<Node>,
-    faces: Vec<Face>,
+    faces: Vec<F>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -46,12 +52,9 @@ pub(crate) struct RayBundle {
     pub(crate) spread: f64,
 }
 
-impl Bvh {
-    pub(crate) fn build(mesh: &Mesh) -> Self {
-        let mut faces: Vec<Face> = (0..mesh.faces().len())
-            .map(|index| Face::of(mesh, FaceId(index as u32)))
-            .filter(Face::has_area)
-            .collect();
+impl<F: InBox> Bvh<F> {
+    pub(crate) fn build(faces: impl Iterator<Item = F>) -> Self {
+        let mut faces: Vec<F> = faces.collect();
         let mut nodes = Vec::with_capacity(faces.len());
         if !faces.is_empty() {
             let (low, high) = bounds(&faces);
@@ -66,9 +69,9 @@ impl Bvh {
                 let axis = (high - low).max_position();
                 let range = &mut faces[first as usize..(first + count) as usize];
                 let middle = range.len() / 2;
-                let centre = |face: &Face| face.corners.iter().map(|c| f64::from(c[axis])).sum::<f64>();
+                let centre = |face: &F| face.corners().iter().map(|c| c[axis]).sum::<f64>();
                 range.select_nth_unstable_by(middle, |a, b| {
-                    centre(a).total_cmp(&centre(b)).then(a.id.cmp(&b.id))
+                    centre(a).total_cmp(&centre(b)).then(a.id().cmp(&b.id()))
                 });
                 let children = nodes.len();
                 for (start, end) in [(0, middle), (middle, range.len())] {
@@ -85,7 +88,7 @@ impl Bvh {
 
     /// Calls `visit` with every face that a ray of the bundle may meet within its range, and possibly with others.
     /// `visit` returns the range to search from then on. Nearer leaves come first.
-    pub(crate) fn visit<'t>(&'t self, bundle: &RayBundle, mut visit: impl FnMut(&'t Face) -> f64) {
+    pub(crate) fn visit<'t>(&'t self, bundle: &RayBundle, mut visit: impl FnMut(&'t F) -> f64) {
         let mut walk = Traversal::new(self, bundle);
         let mut max_range = bundle.max_range;
         while let Some(leaf) = walk.next_leaf(max_range) {
@@ -99,8 +102,8 @@ impl Bvh {
 /// A traversal of the hierarchy along a bundle, leaf by leaf, roughly from near to far. Nodes beyond the range are
 /// kept, in case the range grows again.
 #[derive(Debug)]
-pub(crate) struct Traversal<'t> {
-    bvh: &'t Bvh,
+pub(crate) struct Traversal<'t, F> {
+    bvh: &'t Bvh<F>,
     bundle: RayBundle,
     inverse: DVec3,
     /// Widening of every box, metres, wherever it lies.
@@ -111,8 +114,8 @@ pub(crate) struct Traversal<'t> {
     beyond: Vec<(f64, u32)>,
 }
 
-impl<'t> Traversal<'t> {
-    pub(crate) fn new(bvh: &'t Bvh, bundle: &RayBundle) -> Self {
+impl<'t, F> Traversal<'t, F> {
+    pub(crate) fn new(bvh: &'t Bvh<F>, bundle: &RayBundle) -> Self {
         let mut walk = Self {
             bvh,
             bundle: *bundle,
@@ -128,7 +131,7 @@ impl<'t> Traversal<'t> {
     }
 
     /// The faces of the next leaf that the bundle enters within `max_range`; `None` if there is none.
-    pub(crate) fn next_leaf(&mut self, max_range: f64) -> Option<&'t [Face]> {
+    pub(crate) fn next_leaf(&mut self, max_range: f64) -> Option<&'t [F]> {
         while let Some((entry, index)) = self.waiting.pop() {
             if entry > max_range {
                 self.beyond.push((entry, index));
@@ -185,12 +188,9 @@ impl<'t> Traversal<'t> {
 }
 
 /// The bounding box of some faces.
-fn bounds(faces: &[Face]) -> (DVec3, DVec3) {
-    let widen = |[x, y, z]: [f32; 3]| DVec3::new(f64::from(x), f64::from(y), f64::from(z));
-    faces
-        .iter()
-        .flat_map(|face| face.corners)
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
-            (low.min(widen(corner)), high.max(widen(corner)))
-        })
+fn bounds(faces: &[impl InBox]) -> (DVec3, DVec3) {
+    let corners = faces.iter().flat_map(InBox::corners);
+    corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
+        (low.min(corner), high.max(corner))
+    })
 }

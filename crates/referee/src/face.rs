@@ -13,8 +13,10 @@
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
+use glam::DVec3;
 use raypencil_scene::{FaceId, Mesh};
 
+use crate::bvh::InBox;
 use crate::number::{Dyadic, Interval, Number};
 use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::vector::Vector;
@@ -67,6 +69,16 @@ impl<'a> ExactRay<'a> {
 pub(crate) struct Face {
     pub(crate) id: FaceId,
     pub(crate) corners: [[f32; 3]; 3],
+}
+
+impl InBox for Face {
+    fn id(&self) -> FaceId {
+        self.id
+    }
+
+    fn corners(&self) -> [DVec3; 3] {
+        self.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)))
+    }
 }
 
 impl Face {

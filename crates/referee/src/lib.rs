@@ -72,6 +72,7 @@
 //! shares, flux          a pencil's share of the power, and its flux
 //! beam_returns          values of a pencil's return, correctly rounded
 //! certified, render     the answers of a whole sensor, and as a renderer
+//! cast                  any rays on any triangles: a kernel of its own
 //! ```
 //!
 //! The crate depends on `raypencil-scene` alone, and no renderer may call it.
@@ -80,6 +81,7 @@ mod approximations;
 mod arithmetic;
 mod beam_returns;
 mod bvh;
+mod cast;
 mod certified;
 mod displacement;
 mod double_double;
@@ -129,6 +131,7 @@ struct Readme;
 pub use approximations::{Approximations, Explained, Reason};
 pub use arithmetic::Undecided;
 pub use beam_returns::{BeamReturns, Contribution, RoundedReturn};
+pub use cast::{CastHit, ExactCast, HitGroup, SidedFace};
 pub use certified::{CertifiedMap, CertifiedReturns, PixelSum};
 pub use displacement::Displacement;
 pub use flux::Flux;

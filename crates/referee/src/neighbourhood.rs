@@ -22,7 +22,7 @@ pub(crate) struct Neighbourhood<'a> {
     sensor: &'a MountedSensor,
     aim: Aim,
     pub(crate) ray: MovingRay,
-    walk: Traversal<'a>,
+    walk: Traversal<'a, Face>,
     /// All faces that may be met within this range, metres, are in `faces`.
     known_range: f64,
     pub(crate) faces: Vec<FaceForms<'a>>,

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use crate::bvh::InBox;
 use crate::face::Face;
 use crate::form::Form;
 use crate::line_of_sight::LineOfSight;
@@ -27,7 +28,7 @@ impl<'a> Occluder<'a> {
     /// To be met between point and camera, the plane must have the camera on the side that the line comes from. That
     /// side does not depend on the point.
     pub(crate) fn of(face: &'a Face, parts: &[LineOfSight<Interval>; 4], centre: DVec3) -> Option<Self> {
-        let [a, b, c] = corners(face);
+        let [a, b, c] = face.corners();
         // The sign of n.V where it is met: that of n.(a - c).
         let is_behind = match volume_sign(a, b, c, centre) {
             Ordering::Equal => return None,
@@ -59,11 +60,6 @@ impl<'a> Occluder<'a> {
     }
 }
 
-/// A face's corners in f64, unrounded.
-pub(crate) fn corners(face: &Face) -> [DVec3; 3] {
-    face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)))
-}
-
 /// The exact sign of (b - a) x (c - a) . (d - a).
 pub(crate) fn volume_sign(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
     fn volume<T: Number>([a, b, c, d]: [DVec3; 4]) -> T {
@@ -80,7 +76,7 @@ pub(crate) fn volume_sign(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
 /// Whether a face certainly hides no point of `ground`, by reasons 1 to 3 of `visibility_margin` and by exact signs.
 /// The camera lies before the plane of `ground` and not in the plane of `face`.
 pub(crate) fn never_occludes(face: &Face, ground: &Face, camera: DVec3) -> bool {
-    let (other, own) = (corners(face), corners(ground));
+    let (other, own) = (face.corners(), ground.corners());
     let side = |[a, b, c]: [DVec3; 3], point: DVec3| volume_sign(a, b, c, point);
     if other.iter().all(|&corner| side(own, corner) != Ordering::Greater) {
         return true;

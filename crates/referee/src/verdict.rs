@@ -47,7 +47,7 @@ impl Verdict {
 #[derive(Debug)]
 pub struct Referee<'s> {
     pub(crate) scene: &'s Scene,
-    pub(crate) bvh: Bvh,
+    pub(crate) bvh: Bvh<Face>,
     /// The sum of the weights of each beam's central pencils.
     pub(crate) weight_sums: Vec<Arc<WeightSum>>,
 }
@@ -56,7 +56,9 @@ impl<'s> Referee<'s> {
     /// A referee for `scene`; it builds a bounding volume hierarchy.
     pub fn new(scene: &'s Scene) -> Self {
         let weight_sums = scene.beams().iter().map(|_| Arc::default()).collect();
-        Self { scene, bvh: Bvh::build(scene.mesh()), weight_sums }
+        let mesh = scene.mesh();
+        let faces = (0..mesh.faces().len() as u32).map(|index| Face::of(mesh, FaceId(index)));
+        Self { scene, bvh: Bvh::build(faces.filter(Face::has_area)), weight_sums }
     }
 
     /// The exact verdict on the ray of cell (i, j), or `None` if there is no such cell.

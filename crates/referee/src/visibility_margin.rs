@@ -33,7 +33,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use raypencil_scene::SensorId;
 
-use crate::bvh::RayBundle;
+use crate::bvh::{InBox, RayBundle};
 use crate::displacement::max_norm;
 use crate::face::{ExactRay, Face};
 use crate::form::{Form, certainly_fails, line_leaves};
@@ -41,7 +41,7 @@ use crate::line_of_sight::{ExactLineOfSight, LineOfSight};
 use crate::margin::Margin;
 use crate::neighbourhood::Neighbourhood;
 use crate::number::{Interval, Number};
-use crate::occluder::{Occluder, corners, never_occludes, volume_sign};
+use crate::occluder::{Occluder, never_occludes, volume_sign};
 use crate::ray::{Aim, MountedSensor};
 use crate::subdivision::{Square, subdivide};
 use crate::vector::Vector;
@@ -197,9 +197,9 @@ impl<'a> VisibilitySearch<'a> {
         square: &Square,
     ) -> bool {
         let camera = referee.scene.camera().scene_from_sensor.position;
-        let hidden = corners(occluder.face);
+        let hidden = occluder.face.corners();
         let is_beyond = |face: &Face| {
-            let [a, b, c] = corners(face);
+            let [a, b, c] = face.corners();
             let at_or_behind = |&corner: &DVec3| volume_sign(a, b, c, corner) != Ordering::Greater;
             volume_sign(a, b, c, camera) == Ordering::Greater
                 && (face.id == occluder.face.id || hidden.iter().all(at_or_behind))
@@ -223,7 +223,7 @@ impl<'a> VisibilitySearch<'a> {
         let centre = camera.scene_from_sensor.position;
         let parts = LineOfSight::parts(self.sensor, self.aim, face, camera);
         let lands = LineOfSight::lands(&parts, &camera.sensor).map(Form::of);
-        let [a, b, c] = corners(face);
+        let [a, b, c] = face.corners();
         let is_front_seen = volume_sign(a, b, c, centre) == Ordering::Greater;
         let mut occluders = Vec::new();
         let cannot_land = lands.iter().any(|form| form.fails_within() >= 1.0);
@@ -251,7 +251,7 @@ impl<'a> VisibilitySearch<'a> {
     /// middle's own point, or else the face's own radius around its centroid: whichever is smaller.
     fn lines_to(&self, face: &Face, parts: &[LineOfSight<Interval>; 4]) -> RayBundle {
         let origin = self.referee.scene.camera().scene_from_sensor.position;
-        let [a, b, c] = corners(face);
+        let [a, b, c] = face.corners();
         let centroid = (a + b + c) / 3.0;
         let mut to = centroid - origin;
         let mut radius = [a, b, c].into_iter().map(|corner| corner.distance(centroid)).fold(0.0, f64::max);

@@ -8,7 +8,7 @@
 use glam::DVec3;
 use raypencil_scene::{FaceId, Pixel, SensorId};
 
-use crate::bvh::RayBundle;
+use crate::bvh::{InBox, RayBundle};
 use crate::displacement::Displacement;
 use crate::face::{ExactRay, Face};
 use crate::line_of_sight::ExactLineOfSight;
@@ -171,7 +171,7 @@ impl Referee<'_> {
 
 /// The signed distance of a point from a face's plane, metres, positive in front, to f64 rounding.
 fn distance_from_plane(face: &Face, point: DVec3) -> f64 {
-    let [a, b, c] = face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
+    let [a, b, c] = face.corners();
     let n = (b - a).cross(c - a);
     n.dot(point - a) / n.length()
 }
@@ -179,7 +179,7 @@ fn distance_from_plane(face: &Face, point: DVec3) -> f64 {
 /// Whether a point near a face's plane is within `off` metres of the face, except near its corners: inside of every
 /// side, or beyond it by at most `off`.
 fn is_beside(face: &Face, point: DVec3, off: f64) -> bool {
-    let corners = face.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
+    let corners = face.corners();
     let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     (0..3).all(|k| {
         let along = corners[(k + 1) % 3] - corners[k];

@@ -16,6 +16,7 @@
 //! rig           the default rig
 //! approximations  the paper's approximations, by name
 //! place progress  names of rays; who is told what is being done
+//! triangles ray_set  meshes and rays of no sensor, as their files give them
 //! ```
 //!
 //! ```
@@ -52,10 +53,12 @@ mod place;
 mod pose;
 mod progress;
 mod ray;
+mod ray_set;
 mod renderer;
 mod returns;
 pub mod rig;
 mod sampling;
+mod triangles;
 mod world;
 
 pub use approximations::{Fidelity, Switches, UnknownSwitch};
@@ -70,9 +73,11 @@ pub use place::Place;
 pub use pose::Pose;
 pub use progress::{Progress, Silent};
 pub use ray::{FaceId, Hit, Ray, SensorId};
+pub use ray_set::{CastRay, RaySet, Side, Sides};
 pub use renderer::{Precision, Renderer};
 pub use returns::{Pixel, Return, Returns};
 pub use sampling::{Sampling, philox};
+pub use triangles::Triangles;
 pub use world::{Atmosphere, FluxModel, Mounted, Scene};
 
 #[cfg(doctest)]

@@ -1,0 +1,100 @@
+//! Any rays on any triangles, answered exactly.
+//!
+//! The contract of a ray that belongs to no sensor: it is the set of the points o + t d with t_min <= t <= t_max. It
+//! meets a face in the one point that it shares with the closed triangle; a face whose plane is parallel to the ray is
+//! never met. With n = (b - a) x (c - a), a' = a - o and so on, all questions are signs of polynomials of stored
+//! numbers:
+//!
+//! * E_ab = d.(a' x (b - a)), for each edge: the ray passes inside the triangle, or on its border, if none of the three
+//!   has the sign of n.d
+//! * the front is met if n.d < 0, the back if n.d > 0
+//! * t = n.a' / n.d, so t >= t_min if n.a' - t_min n.d is 0 or has the sign of n.d
+//! * t < t' if (n.a' n'.d - n'.a'' n.d) has the opposite sign of n.d n'.d
+//!
+//! The files:
+//!
+//! ```text
+//! query_ray   one ray in both numbers: intervals, and exactly where these are in doubt
+//! triangle    one face, and the conditions above
+//! first       the nearest hit with its ties, and whether anything is hit
+//! all         all hits in exact order, and how often the surface is crossed
+//! values      the values of a hit, correctly rounded
+//! ```
+//!
+//! The kernels of the sensors' rays (`face`, `intersection`) are apart from these: there a vertex is an `f32` number and
+//! a ray a polynomial of its cell; here both are stored `f64` numbers.
+
+mod all;
+mod first;
+mod query_ray;
+mod triangle;
+mod values;
+
+use raypencil_scene::{CastRay, FaceId, Triangles};
+
+use crate::bvh::{Bvh, RayBundle};
+use query_ray::QueryRay;
+use triangle::Triangle;
+
+pub use all::{HitGroup, SidedFace};
+pub use values::CastHit;
+
+/// The exact answers to any rays on a mesh.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_referee::ExactCast;
+/// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+///
+/// // A square of two triangles at z = 1, its front up. A ray from above meets both on their common edge.
+/// let corners = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]];
+/// let square = Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]])?;
+/// let cast = ExactCast::new(&square);
+/// let ray = CastRay::new(DVec3::new(0.5, 0.5, 3.0), DVec3::new(0.0, 0.0, -1.0));
+/// assert_eq!(cast.first(&ray, Sides::Both), [FaceId(0), FaceId(1)]);
+/// let hit = cast.values(&ray, FaceId(0)).unwrap();
+/// assert_eq!((hit.t.double, hit.barycentric.map(|weight| weight.double)), (2.0, [0.5, 0.0, 0.5]));
+/// // Together they are one crossing of the surface, to its inside.
+/// assert_eq!(cast.all(&ray, Sides::Both)[0].crossing, 1);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+///
+/// All methods take rays that [`CastRay::validate`] accepts; others have no meaning.
+#[derive(Debug)]
+pub struct ExactCast<'t> {
+    mesh: &'t Triangles,
+    bvh: Bvh<Triangle>,
+}
+
+impl<'t> ExactCast<'t> {
+    /// Builds the hierarchy of a mesh's faces.
+    pub fn new(mesh: &'t Triangles) -> Self {
+        let faces = (0..mesh.faces().len() as u32).map(|index| Triangle::of(mesh, FaceId(index)));
+        Self { mesh, bvh: Bvh::build(faces.filter(Triangle::has_area)) }
+    }
+
+    /// A face of the mesh, if the mesh has it.
+    fn triangle(&self, face: FaceId) -> Option<Triangle> {
+        ((face.0 as usize) < self.mesh.faces().len()).then(|| Triangle::of(self.mesh, face))
+    }
+}
+
+/// The ray for the hierarchy.
+fn bundle(ray: &CastRay) -> RayBundle {
+    // By the largest part first: the square of a small one may be 0. Parts that are nothing beside it are left out, so
+    // that no reciprocal is infinite; the hierarchy's slack is far wider.
+    let scaled = ray.direction / ray.direction.abs().max_element();
+    let part = |x: f64| if x.abs() < 1e-100 { 0.0 } else { x };
+    let direction = glam::DVec3::from_array(scaled.to_array().map(part)).normalize();
+    let length = QueryRay::length(ray);
+    RayBundle {
+        origin: ray.origin,
+        direction,
+        max_range: if ray.t_max == f64::INFINITY { f64::INFINITY } else { ray.t_max * length * RANGE_SLACK },
+        start_radius: 0.0,
+        spread: 0.0,
+    }
+}
+
+/// Far more than the roundings of a range.
+const RANGE_SLACK: f64 = 1.0 + 64.0 * f64::EPSILON;

@@ -1,0 +1,83 @@
+//! One ray in both numbers: intervals of f64, and exactly where these are in doubt.
+
+use std::cell::OnceCell;
+use std::cmp::Ordering;
+
+use glam::DVec3;
+use raypencil_scene::CastRay;
+
+use crate::number::{Dyadic, Interval, Number};
+use crate::vector::Vector;
+
+/// Origin o and direction d of a ray.
+#[derive(Debug, Clone)]
+pub(super) struct RayNumbers<T> {
+    pub(super) origin: Vector<T>,
+    pub(super) direction: Vector<T>,
+}
+
+impl<T: Number> RayNumbers<T> {
+    pub(super) fn of(ray: &CastRay) -> Self {
+        Self { origin: Vector::of(ray.origin), direction: Vector::of(ray.direction) }
+    }
+}
+
+/// A polynomial of a ray, of which only the sign matters.
+pub(super) trait Polynomial {
+    fn value<T: Number>(&self, ray: &RayNumbers<T>) -> T;
+}
+
+/// One ray; its exact numbers are formed when they are first needed.
+pub(super) struct QueryRay<'r> {
+    ray: &'r CastRay,
+    fast: RayNumbers<Interval>,
+    exact: OnceCell<RayNumbers<Dyadic>>,
+}
+
+impl<'r> QueryRay<'r> {
+    pub(super) fn new(ray: &'r CastRay) -> Self {
+        Self { ray, fast: RayNumbers::of(ray), exact: OnceCell::new() }
+    }
+
+    /// |d|, to a few roundings.
+    pub(super) fn length(ray: &CastRay) -> f64 {
+        let largest = ray.direction.abs().max_element();
+        (ray.direction / largest).length() * largest
+    }
+
+    pub(super) fn direction(&self) -> DVec3 {
+        self.ray.direction
+    }
+
+    pub(super) fn t_min(&self) -> f64 {
+        self.ray.t_min
+    }
+
+    pub(super) fn t_max(&self) -> f64 {
+        self.ray.t_max
+    }
+
+    /// The ray in intervals.
+    pub(super) fn fast(&self) -> &RayNumbers<Interval> {
+        &self.fast
+    }
+
+    /// The ray without rounding.
+    pub(super) fn exact(&self) -> &RayNumbers<Dyadic> {
+        self.exact.get_or_init(|| RayNumbers::of(self.ray))
+    }
+
+    /// The exact sign: by the interval if that is certain, else by exact arithmetic.
+    #[inline]
+    pub(super) fn sign(&self, polynomial: &impl Polynomial) -> Ordering {
+        match polynomial.value(&self.fast).sign() {
+            Some(sign) => sign,
+            None => self.exact_sign(polynomial),
+        }
+    }
+
+    #[cold]
+    fn exact_sign(&self, polynomial: &impl Polynomial) -> Ordering {
+        polynomial.value(self.exact()).sign().unwrap_or(Ordering::Equal)
+    }
+}

@@ -1,0 +1,164 @@
+//! One face of a mesh, and the conditions under which a ray meets it, as signs of polynomials.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Side, Sides, Triangles};
+
+use super::query_ray::{Polynomial, QueryRay, RayNumbers};
+use crate::bvh::InBox;
+use crate::number::{Dyadic, Interval, Number};
+use crate::vector::Vector;
+
+/// A face's corners, as stored.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Triangle {
+    pub(super) id: FaceId,
+    pub(super) corners: [DVec3; 3],
+}
+
+impl InBox for Triangle {
+    fn id(&self) -> FaceId {
+        self.id
+    }
+
+    fn corners(&self) -> [DVec3; 3] {
+        self.corners
+    }
+}
+
+impl Triangle {
+    pub(super) fn of(mesh: &Triangles, id: FaceId) -> Self {
+        Self { id, corners: mesh.corners(id) }
+    }
+
+    /// Whether the face has an area, exactly. A face without one is never met.
+    pub(super) fn has_area(&self) -> bool {
+        let certainly = self.normal::<Interval>().0.iter().any(|part| part.low > 0.0 || part.high < 0.0);
+        certainly || self.normal::<Dyadic>().0.iter().any(|part| part.sign() != Some(Ordering::Equal))
+    }
+
+    pub(super) fn corner<T: Number>(&self, k: usize) -> Vector<T> {
+        Vector::of(self.corners[k % 3])
+    }
+
+    /// The normal n, not a unit vector.
+    pub(super) fn normal<T: Number>(&self) -> Vector<T> {
+        let a = self.corner::<T>(0);
+        self.corner(1).sub(&a).cross(&self.corner(2).sub(&a))
+    }
+
+    /// n.a'.
+    pub(super) fn height<T: Number>(&self, ray: &RayNumbers<T>) -> T {
+        self.normal().dot(&self.corner(0).sub(&ray.origin))
+    }
+
+    /// n.d.
+    pub(super) fn approach<T: Number>(&self, ray: &RayNumbers<T>) -> T {
+        self.normal().dot(&ray.direction)
+    }
+
+    /// d.(a' x (b - a)) for the edge from corner k.
+    pub(super) fn edge<T: Number>(&self, k: usize, ray: &RayNumbers<T>) -> T {
+        let (a, b) = (self.corner::<T>(k), self.corner::<T>(k + 1));
+        ray.direction.dot(&a.sub(&ray.origin).cross(&b.sub(&a)))
+    }
+
+    /// The side that the ray meets, edges and corners included, within both ends of the ray; `None` if it does not
+    /// meet the face, or on no side that counts.
+    pub(super) fn met_side(&self, ray: &QueryRay<'_>, sides: Sides) -> Option<Side> {
+        // The cheapest conditions, and those most likely to fail, come first: edges of both signs are no hit.
+        let (mut front, mut back) = (true, sides.include(Side::Back));
+        for k in 0..3 {
+            match ray.sign(&Edge { face: self, k }) {
+                Ordering::Greater => front = false,
+                Ordering::Less => back = false,
+                Ordering::Equal => {}
+            }
+            if !front && !back {
+                return None;
+            }
+        }
+        let side = match ray.sign(&Approach(self)) {
+            Ordering::Less if front => Side::Front,
+            Ordering::Greater if back => Side::Back,
+            // All three edges have the sign of their sum, n.d, or are 0: what is left is a parallel face.
+            _ => return None,
+        };
+        let towards = if side == Side::Front { Ordering::Less } else { Ordering::Greater };
+        let from = ray.sign(&Beyond { face: self, t: ray.t_min() });
+        if from != towards && from != Ordering::Equal {
+            return None;
+        }
+        if ray.t_max() < f64::INFINITY && ray.sign(&Beyond { face: self, t: ray.t_max() }) == towards {
+            return None;
+        }
+        Some(side)
+    }
+
+    /// The order in which the ray meets two faces; it must meet both.
+    pub(super) fn compare(&self, other: &Self, ray: &QueryRay<'_>) -> Ordering {
+        let product = ray.sign(&Approach(self)) == ray.sign(&Approach(other));
+        let nearness = ray.sign(&Nearness { face: self, other });
+        if product { nearness } else { nearness.reverse() }
+    }
+
+    /// An upper bound of the range at which the ray meets the face, if it does.
+    pub(super) fn farthest_range(&self, ray: &QueryRay<'_>, max_range: f64) -> f64 {
+        let (height, approach) = (self.height(ray.fast()), self.approach(ray.fast()));
+        let least = approach.low.max(-approach.high);
+        if !(least > 0.0) {
+            return max_range;
+        }
+        let length = ray.fast().direction.length_squared().high.sqrt();
+        // Four roundings, each below 2^-52. Infinity times 0 is NaN, of which `min` takes the other.
+        (height.magnitude() * length / least * (1.0 + 8.0 * f64::EPSILON)).min(max_range)
+    }
+}
+
+/// d.(a' x (b - a)) for the edge from corner k.
+pub(super) struct Edge<'a> {
+    pub(super) face: &'a Triangle,
+    pub(super) k: usize,
+}
+
+impl Polynomial for Edge<'_> {
+    #[inline]
+    fn value<T: Number>(&self, ray: &RayNumbers<T>) -> T {
+        self.face.edge(self.k, ray)
+    }
+}
+
+/// n.d: negative where the front is met.
+struct Approach<'a>(&'a Triangle);
+
+impl Polynomial for Approach<'_> {
+    fn value<T: Number>(&self, ray: &RayNumbers<T>) -> T {
+        self.0.approach(ray)
+    }
+}
+
+/// n.a' - t n.d = (t_hit - t) n.d: has the sign of n.d where the face is met beyond t.
+struct Beyond<'a> {
+    face: &'a Triangle,
+    t: f64,
+}
+
+impl Polynomial for Beyond<'_> {
+    fn value<T: Number>(&self, ray: &RayNumbers<T>) -> T {
+        self.face.height(ray).sub(&self.face.approach(ray).mul(&T::of(self.t)))
+    }
+}
+
+/// n.a' n'.d - n'.a'' n.d = (t - t') n.d n'.d.
+struct Nearness<'a> {
+    face: &'a Triangle,
+    other: &'a Triangle,
+}
+
+impl Polynomial for Nearness<'_> {
+    fn value<T: Number>(&self, ray: &RayNumbers<T>) -> T {
+        let first = self.face.height(ray).mul(&self.other.approach(ray));
+        first.sub(&self.other.height(ray).mul(&self.face.approach(ray)))
+    }
+}
