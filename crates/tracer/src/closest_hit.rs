@@ -64,19 +64,19 @@ pub(crate) struct ClosestHitTraverser<'a> {
 
 impl<'a> ClosestHitTraverser<'a> {
     pub(crate) fn new(hierarchy: &'a Hierarchy) -> Self {
-        Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.stack_size()) }
+        Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.boxes().stack_size()) }
     }
 
     /// The nearest front that `ray` meets between the SPP and `max_range` metres.
     #[inline]
     pub(crate) fn closest_hit(&mut self, ray: &TracedRay, max_range: f64) -> Option<Intersection> {
         let mut closest = None;
-        self.hierarchy.tree().ray_traverse_dynamic(
+        self.hierarchy.boxes().tree().ray_traverse_dynamic(
             &mut self.stack,
             ray.box_ray(round_up(max_range)),
             &mut RayHit::none(),
             |node, box_ray, _| {
-                for triangle in self.hierarchy.leaf_triangles(node.first_index, node.prim_count) {
+                for triangle in self.hierarchy.boxes().leaf_faces(node.first_index, node.prim_count) {
                     if update_closest(&mut closest, triangle, ray, max_range) {
                         // obvhs enters a box only if it begins strictly before tmax. A face at the same t may
                         // still have the lower index, so the bound is rounded up: the padding makes the box of

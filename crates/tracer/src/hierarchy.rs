@@ -32,14 +32,11 @@
 //! the exact ray by rounding.) Its length does count: the boxes are wide enough if |P - c| <= D, and
 //! [`max_trace_distance`] makes it so.
 
-use std::collections::HashMap;
-
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
 use raypencil_scene::{Beam, FaceId, Mesh, Mounted, Scene};
 
-use crate::grouped_build;
+use crate::box_tree::BoxTree;
 use crate::triangle::Triangle;
 
 /// Padding of a box, relative to (largest |coordinate| + maximum trace distance): 9 x 2^-24, derived above.
@@ -61,23 +58,16 @@ pub(crate) fn max_trace_distance(scene: &Scene) -> f64 {
 
 /// The terrain's faces in a tree of padded boxes.
 pub(crate) struct Hierarchy {
-    tree: Bvh2,
-    /// Faces in the order of the tree's leaves.
-    triangles: Vec<Triangle>,
-    /// `first_triangle[k]..first_triangle[k + 1]` are the faces of the k-th box in the tree's order.
-    first_triangle: Vec<u32>,
+    boxes: BoxTree<Triangle>,
     max_trace_distance: f64,
-    stack_size: usize,
 }
 
 impl std::fmt::Debug for Hierarchy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { tree, triangles, max_trace_distance, stack_size, .. } = self;
+        let Self { boxes, max_trace_distance } = self;
         f.debug_struct("Hierarchy")
-            .field("nodes", &tree.nodes.len())
-            .field("triangles", &triangles.len())
+            .field("boxes", boxes)
             .field("max_trace_distance", max_trace_distance)
-            .field("stack_size", stack_size)
             .finish()
     }
 }
@@ -85,71 +75,24 @@ impl std::fmt::Debug for Hierarchy {
 impl Hierarchy {
     /// Builds the tree for rays whose hits lie within `max_trace_distance` metres of their origin.
     pub(crate) fn build(mesh: &Mesh, max_trace_distance: f64) -> Self {
-        // Faces without area are never hit and get no box. Faces with identical boxes share one leaf entry: many
-        // identical boxes would make the build quadratic.
-        let mut boxes: Vec<Aabb> = Vec::with_capacity(mesh.faces().len());
-        let mut box_by_bounds: HashMap<[u32; 6], u32> = HashMap::with_capacity(mesh.faces().len());
-        let mut triangles_with_box: Vec<(u32, Triangle)> = Vec::with_capacity(mesh.faces().len());
-        for (index, face) in mesh.faces().iter().enumerate() {
+        // Faces without area are never hit and get no box.
+        let faces = mesh.faces().iter().enumerate().filter_map(|(index, face)| {
             let vertices = face.map(|v| mesh.vertices()[v as usize]);
             let triangle = Triangle::new(vertices, FaceId(index as u32));
-            if triangle.normal() == glam::DVec3::ZERO {
-                continue;
-            }
-            let bounds = padded_box(&vertices, max_trace_distance);
-            let bits = [bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z]
-                .map(f32::to_bits);
-            let box_index = *box_by_bounds.entry(bits).or_insert_with(|| {
-                boxes.push(bounds);
-                boxes.len() as u32 - 1
-            });
-            triangles_with_box.push((box_index, triangle));
-        }
-        drop(box_by_bounds);
-
-        let tree = grouped_build::build(&boxes);
-        // The fixed stacks of obvhs overflow silently, so the traversals bring one that fits the tree's depth.
-        let stack_size = max_depth(&tree) + 1;
-
-        // Lay the faces out in the order of the leaves.
-        let mut rank_of_box = vec![0u32; boxes.len()];
-        for (rank, &box_index) in tree.primitive_indices.iter().enumerate() {
-            rank_of_box[box_index as usize] = rank as u32;
-        }
-        // The sort is stable: faces of one box stay in ascending order.
-        triangles_with_box.sort_by_key(|&(box_index, _)| rank_of_box[box_index as usize]);
-        let mut first_triangle = vec![0u32; boxes.len() + 1];
-        for (box_index, _) in &triangles_with_box {
-            first_triangle[rank_of_box[*box_index as usize] as usize + 1] += 1;
-        }
-        for rank in 0..boxes.len() {
-            first_triangle[rank + 1] += first_triangle[rank];
-        }
-        let triangles = triangles_with_box.into_iter().map(|(_, triangle)| triangle).collect();
-        Self { tree, triangles, first_triangle, max_trace_distance, stack_size }
+            let has_area = triangle.normal() != glam::DVec3::ZERO;
+            has_area.then(|| (padded_box(&vertices, max_trace_distance), triangle))
+        });
+        Self { boxes: BoxTree::build(faces), max_trace_distance }
     }
 
-    /// The tree of boxes.
-    pub(crate) fn tree(&self) -> &Bvh2 {
-        &self.tree
-    }
-
-    /// The faces of `count` boxes in the tree's order, from box `first` on.
-    #[inline]
-    pub(crate) fn leaf_triangles(&self, first: u32, count: u32) -> &[Triangle] {
-        let start = self.first_triangle[first as usize] as usize;
-        let end = self.first_triangle[(first + count) as usize] as usize;
-        &self.triangles[start..end]
+    /// The boxes with their faces.
+    pub(crate) fn boxes(&self) -> &BoxTree<Triangle> {
+        &self.boxes
     }
 
     /// The distance from a ray's origin up to which no hit is lost to the boxes, metres.
     pub(crate) fn max_trace_distance(&self) -> f64 {
         self.max_trace_distance
-    }
-
-    /// The number of entries that a traversal stack must hold.
-    pub(crate) fn stack_size(&self) -> usize {
-        self.stack_size
     }
 }
 
@@ -173,23 +116,8 @@ pub(crate) fn round_up(x: f64) -> f32 {
 }
 
 /// An f32 below `x`, at most two steps away.
-fn round_down(x: f64) -> f32 {
+pub(crate) fn round_down(x: f64) -> f32 {
     (x as f32).next_down()
-}
-
-/// The largest number of inner nodes between the root and a leaf. As many entries can wait on the stack.
-fn max_depth(tree: &Bvh2) -> usize {
-    let mut max_depth = 0;
-    let mut stack: Vec<(u32, usize)> = tree.nodes.first().map(|_| (0, 0)).into_iter().collect();
-    while let Some((index, depth)) = stack.pop() {
-        let node = &tree.nodes[index as usize];
-        max_depth = max_depth.max(depth);
-        if !node.is_leaf() {
-            stack.push((node.first_index, depth + 1));
-            stack.push((node.first_index + 1, depth + 1));
-        }
-    }
-    max_depth
 }
 
 #[cfg(test)]

@@ -11,7 +11,8 @@
 //! rays           the contract's rays, formed in the scene frame
 //! triangle       the watertight test: does a ray meet a face, and at which t
 //! grouped_build  the obvhs tree, built in bounded time for any input
-//! hierarchy      padded boxes -> obvhs Bvh2
+//! box_tree       faces in the order of the tree's leaves
+//! hierarchy      the terrain's faces in padded boxes
 //! closest_hit    the hit of a ray: smallest t, lowest face index on ties
 //! occlusion      does any face stand between a hit point and the camera
 //! camera         a point in the camera frame and on the image
@@ -19,6 +20,7 @@
 //! flux           the flux that arrives in the pixel
 //! returns        all pencils of a beam: occlusion, camera, shares and flux
 //! renderer       [`Tracer`]: maps of all sensors, then returns
+//! cast           [`TracerCast`]: any rays on any triangles
 //! ```
 //!
 //! # Example
@@ -43,7 +45,9 @@
 //! assert_eq!([0, 1, 2].map(|i| range.at(i, 0).get()), [Some(12.5), Some(10.0), Some(12.5)]);
 //! ```
 
+mod box_tree;
 mod camera;
+mod cast;
 mod closest_hit;
 mod flux;
 mod grouped_build;
@@ -55,6 +59,7 @@ mod returns;
 mod shares;
 mod triangle;
 
+pub use cast::{CastTraverser, TracedHit, TracerCast};
 pub use renderer::Tracer;
 
 /// Compiles the README's example.

@@ -98,7 +98,7 @@ pub(crate) struct OcclusionTraverser<'a> {
 
 impl<'a> OcclusionTraverser<'a> {
     pub(crate) fn new(hierarchy: &'a Hierarchy) -> Self {
-        Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.stack_size()) }
+        Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.boxes().stack_size()) }
     }
 
     /// Whether any face hides the point at the end of `line_of_sight`.
@@ -115,12 +115,12 @@ impl<'a> OcclusionTraverser<'a> {
         // A traversal that ended early leaves entries of its own ray on the stack.
         self.stack.clear();
         let mut occluded = false;
-        self.hierarchy.tree().ray_traverse_dynamic(
+        self.hierarchy.boxes().tree().ray_traverse_dynamic(
             &mut self.stack,
             box_ray,
             &mut RayHit::none(),
             |node, _, _| {
-                let triangles = self.hierarchy.leaf_triangles(node.first_index, node.prim_count);
+                let triangles = self.hierarchy.boxes().leaf_faces(node.first_index, node.prim_count);
                 occluded = triangles.iter().any(|triangle| line_of_sight.is_blocked_by(triangle));
                 !occluded
             },

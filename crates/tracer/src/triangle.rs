@@ -67,34 +67,39 @@ impl Triangle {
         self.intersect::<true>(ray).filter(|crossing| crossing.n_dot_q != 0.0)
     }
 
-    /// The crossing of the face's plane if the ray passes inside all three edges, or on them. Without `BACKS`
-    /// only the edge signs of the front count; with it those of the back count too.
     #[inline(always)]
     fn intersect<const BACKS: bool>(&self, ray: &TracedRay) -> Option<PlaneCrossing> {
-        let [a, b, c] = self.vertices.map(widen);
-        let [a0, b0, c0] = [a - ray.origin, b - ray.origin, c - ray.origin];
-
-        // Project along the ray. Both coordinates come out multiplied by the longest component of the direction.
-        let [kx, ky, kz] = ray.axes;
-        let (qx, qy, qz) = (ray.direction[kx], ray.direction[ky], ray.direction[kz]);
-        let project = |v: DVec3| (v[kx] * qz - v[kz] * qx, v[ky] * qz - v[kz] * qy);
-        let ((ax, ay), (bx, by), (cx, cy)) = (project(a0), project(b0), project(c0));
-
-        // The edge functions. All >= 0: inside, seen from the front. All <= 0: inside, seen from the back.
-        // All 0: the face is seen edge-on.
-        let ab = ax * by - ay * bx;
-        let bc = bx * cy - by * cx;
-        let ca = cx * ay - cy * ax;
-        let as_front = ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
-        let as_back = BACKS && ab <= 0.0 && bc <= 0.0 && ca <= 0.0;
-        if !(as_front || as_back) || (ab == 0.0 && bc == 0.0 && ca == 0.0) {
-            return None;
-        }
-
-        // t = n.(a - o) / n.q.
-        let normal = (b - a).cross(c - a);
-        Some(PlaneCrossing { normal, n_dot_offset: normal.dot(a0), n_dot_q: normal.dot(ray.direction) })
+        intersect::<BACKS>(self.vertices.map(widen), ray)
     }
+}
+
+/// The crossing of a face's plane if the ray passes inside all three edges, or on them. Without `BACKS` only the edge
+/// signs of the front count; with it those of the back count too.
+#[inline(always)]
+pub(crate) fn intersect<const BACKS: bool>([a, b, c]: [DVec3; 3], ray: &TracedRay) -> Option<PlaneCrossing> {
+    let [a0, b0, c0] = [a - ray.origin, b - ray.origin, c - ray.origin];
+
+    // Project along the ray. Both coordinates come out multiplied by the longest component of the direction.
+    let [kx, ky, kz] = ray.axes;
+    let (qx, qy, qz) = (ray.direction[kx], ray.direction[ky], ray.direction[kz]);
+    let project = |v: DVec3| (v[kx] * qz - v[kz] * qx, v[ky] * qz - v[kz] * qy);
+    let ((ax, ay), (bx, by), (cx, cy)) = (project(a0), project(b0), project(c0));
+
+    // The edge functions. All >= 0: inside, seen from the front. All <= 0: inside, seen from the back.
+    // All 0: the face is seen edge-on.
+    let ab = ax * by - ay * bx;
+    let bc = bx * cy - by * cx;
+    let ca = cx * ay - cy * ax;
+    let as_front = ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
+    let as_back = BACKS && ab <= 0.0 && bc <= 0.0 && ca <= 0.0;
+    if !(as_front || as_back) || (ab == 0.0 && bc == 0.0 && ca == 0.0) {
+        return None;
+    }
+
+    // t = n.(a - o) / n.q.
+    let normal = (b - a).cross(c - a);
+    let edges = [ab, bc, ca];
+    Some(PlaneCrossing { normal, n_dot_offset: normal.dot(a0), n_dot_q: normal.dot(ray.direction), edges })
 }
 
 /// The crossing of a ray o + t q with the plane of a face, at t = `n_dot_offset` / `n_dot_q`.
@@ -106,6 +111,8 @@ pub(crate) struct PlaneCrossing {
     pub(crate) n_dot_offset: f64,
     /// n.q; negative if the ray meets the front.
     pub(crate) n_dot_q: f64,
+    /// The edge functions of a b, b c and c a: each is a share of the face's projected area, which is their sum.
+    pub(crate) edges: [f64; 3],
 }
 
 /// A vertex in f64, exactly.

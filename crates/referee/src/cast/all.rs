@@ -88,7 +88,7 @@ impl ExactCast<'_> {
 
 /// +1, -1 or 0: how the displaced ray passes a face that the ray itself meets on `side`.
 fn crossing(face: &Triangle, side: Side, ray: &QueryRay<'_>) -> i32 {
-    let largest = ray.direction().abs().max_position();
+    let largest = ray.largest_part();
     let (inside, count) = match side {
         Side::Front => (Ordering::Less, 1),
         Side::Back => (Ordering::Greater, -1),

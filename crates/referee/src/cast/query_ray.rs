@@ -3,7 +3,6 @@
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
-use glam::DVec3;
 use raypencil_scene::CastRay;
 
 use crate::number::{Dyadic, Interval, Number};
@@ -45,8 +44,9 @@ impl<'r> QueryRay<'r> {
         (ray.direction / largest).length() * largest
     }
 
-    pub(super) fn direction(&self) -> DVec3 {
-        self.ray.direction
+    /// The coordinate in which the direction is largest.
+    pub(super) fn largest_part(&self) -> usize {
+        self.ray.direction.abs().max_position()
     }
 
     pub(super) fn t_min(&self) -> f64 {

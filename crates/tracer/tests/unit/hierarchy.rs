@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Pose, Profile};
 
 use super::*;
+use crate::box_tree::max_depth;
 
 #[test]
 fn the_trace_distance_is_the_length_of_the_longest_ray() {

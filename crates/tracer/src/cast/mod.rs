@@ -1,0 +1,19 @@
+//! Any rays on any triangles, traced in `f64`: obvhs proposes, the watertight test of `triangle` decides.
+//!
+//! Vertices are `f64` numbers, and a mesh may be a micrometre or a million kilometres wide. So everything is traced in a
+//! *scaled* frame: coordinates times a power of two, which is exact, so that the mesh's box is about 1 wide on either
+//! side; and directions times a power of two, so that their largest component is from 1 to 2. Only the `f32` boxes are
+//! also moved to the middle of the mesh.
+//!
+//! ```text
+//! frame     the scaled frame, its boxes, and how wide these must be
+//! tracer    [`TracerCast`]: the tree; first, any and all hits
+//! traced    a hit with its values
+//! ```
+
+mod frame;
+mod traced;
+mod tracer;
+
+pub use traced::TracedHit;
+pub use tracer::{CastTraverser, TracerCast};

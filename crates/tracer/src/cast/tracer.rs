@@ -1,0 +1,152 @@
+//! The tree of a mesh for any rays, and its traversals.
+
+use obvhs::faststack::{FastStack, HeapStack};
+use obvhs::ray::RayHit;
+use rayon::prelude::*;
+use raypencil_scene::{CastRay, FaceId, RaySet, Sides, Triangles};
+
+use super::frame::{Frame, ScaledRay, Walk, way_to};
+use super::traced::{CastFace, Crossing, TracedHit};
+use crate::box_tree::BoxTree;
+
+/// Any rays on a mesh, traced in `f64`.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+/// use raypencil_tracer::TracerCast;
+///
+/// // A triangle at z = 1, its front up.
+/// let corners = vec![[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]];
+/// let mesh = Triangles::new(corners, vec![[0, 1, 2]])?;
+/// let cast = TracerCast::new(&mesh);
+/// let down = CastRay::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, 0.0, -1.0));
+/// let hit = cast.traverser().first(&down, Sides::Fronts).unwrap();
+/// assert_eq!((hit.face, hit.t, hit.barycentric), (FaceId(0), 2.0, [0.25, 0.25, 0.5]));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+#[derive(Debug)]
+pub struct TracerCast {
+    frame: Frame,
+    boxes: BoxTree<CastFace>,
+}
+
+impl TracerCast {
+    /// Builds the tree.
+    pub fn new(mesh: &Triangles) -> Self {
+        let frame = Frame::of(mesh);
+        let faces =
+            (0..mesh.faces().len() as u32).map(|index| CastFace::of(mesh, FaceId(index), frame.scale));
+        let faces = faces.filter(CastFace::has_area);
+        Self { boxes: BoxTree::build(faces.map(|face| (frame.padded_box(face.corners), face))), frame }
+    }
+
+    /// A traversal with its own stack, for many rays on one thread.
+    pub fn traverser(&self) -> CastTraverser<'_> {
+        CastTraverser { cast: self, stack: HeapStack::new_with_capacity(self.boxes.stack_size()) }
+    }
+
+    /// The first hit of each ray of a set, on all threads.
+    pub fn first_of(&self, set: &RaySet) -> Vec<Option<TracedHit>> {
+        let first = |traverser: &mut CastTraverser<'_>, ray| traverser.first(ray, set.sides());
+        set.rays().par_iter().map_init(|| self.traverser(), first).collect()
+    }
+}
+
+/// A traversal with its own stack.
+pub struct CastTraverser<'t> {
+    cast: &'t TracerCast,
+    stack: HeapStack<u32>,
+}
+
+impl std::fmt::Debug for CastTraverser<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CastTraverser").field("cast", self.cast).finish_non_exhaustive()
+    }
+}
+
+/// What a face makes of a walk.
+enum Next {
+    /// Go on as before.
+    On,
+    /// Go no farther than to this scaled t.
+    UpTo(f64),
+    /// It is enough.
+    Stop,
+}
+
+impl CastTraverser<'_> {
+    /// The nearest hit; of several at the same t, that of the lowest face.
+    pub fn first(&mut self, ray: &CastRay, sides: Sides) -> Option<TracedHit> {
+        let scaled = self.cast.frame.ray(ray);
+        let mut nearest: Option<Crossing> = None;
+        self.walk(&scaled, |face| {
+            let Some(crossing) = face.crossing(ray, &scaled, sides) else { return Next::On };
+            if nearest.as_ref().is_some_and(|nearest| !crossing.is_before(nearest)) {
+                return Next::On;
+            }
+            nearest = Some(crossing);
+            Next::UpTo(crossing.scaled_t)
+        });
+        nearest.map(|crossing| crossing.hit(ray, &scaled))
+    }
+
+    /// Whether the ray meets anything.
+    pub fn any(&mut self, ray: &CastRay, sides: Sides) -> bool {
+        let scaled = self.cast.frame.ray(ray);
+        let mut is_met = false;
+        self.walk(&scaled, |face| {
+            is_met = face.crossing(ray, &scaled, sides).is_some();
+            if is_met { Next::Stop } else { Next::On }
+        });
+        is_met
+    }
+
+    /// All hits in the order of t, and at the same t in that of the faces.
+    pub fn all(&mut self, ray: &CastRay, sides: Sides) -> Vec<TracedHit> {
+        let scaled = self.cast.frame.ray(ray);
+        let mut met = Vec::new();
+        self.walk(&scaled, |face| {
+            met.extend(face.crossing(ray, &scaled, sides));
+            Next::On
+        });
+        met.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.face.id.cmp(&b.face.id)));
+        met.iter().map(|crossing| crossing.hit(ray, &scaled)).collect()
+    }
+
+    /// Shows the faces that the ray may meet, until one says that it is enough.
+    #[inline]
+    fn walk(&mut self, scaled: &ScaledRay, mut visit: impl FnMut(&CastFace) -> Next) {
+        let boxes = &self.cast.boxes;
+        // A walk that ended early leaves entries of its own ray on the stack.
+        self.stack.clear();
+        match scaled.walk {
+            Walk::Nothing => {}
+            Walk::AllFaces => {
+                for face in boxes.faces() {
+                    if matches!(visit(face), Next::Stop) {
+                        return;
+                    }
+                }
+            }
+            Walk::Tree { box_ray, entry } => {
+                let leaf =
+                    |node: &obvhs::bvh2::node::Bvh2Node, box_ray: &mut obvhs::ray::Ray, _: &mut RayHit| {
+                        for face in boxes.leaf_faces(node.first_index, node.prim_count) {
+                            match visit(face) {
+                                Next::On => {}
+                                Next::UpTo(t) => box_ray.tmax = way_to(t * scaled.ray.metres_per_t, entry),
+                                Next::Stop => return false,
+                            }
+                        }
+                        true
+                    };
+                boxes.tree().ray_traverse_dynamic(&mut self.stack, box_ray, &mut RayHit::none(), leaf);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/cast.rs"]
+mod tests;

@@ -1,0 +1,259 @@
+//! Any rays on any triangles: the tracer against the exact answer.
+
+use glam::DVec3;
+use proptest::prelude::*;
+use raypencil::referee::{ExactCast, HitGroup};
+use raypencil::tracer::{CastTraverser, TracerCast};
+use raypencil::{CastRay, FaceId, Sides, Triangles};
+
+/// 2^-53.
+const U: f64 = f64::EPSILON / 2.0;
+
+/// What became of the rays of a test.
+#[derive(Debug, Default)]
+struct Tally {
+    same: u64,
+    ties: u64,
+    rounding: u64,
+    hits: u64,
+}
+
+/// How the tracer's first hit may be explained.
+enum Explained {
+    Same,
+    Rounding,
+    Wrong,
+}
+
+/// A vector at right angles to `d`, and one at right angles to both, of length 1.
+fn sideways(d: DVec3) -> [DVec3; 2] {
+    let across = d.normalize().any_orthonormal_vector();
+    [across, d.normalize().cross(across)]
+}
+
+/// How far a ray's line passes from the border of a face, at right angles to the ray, metres; `f64` is good to far less
+/// than what is asked here.
+fn from_border(corners: [DVec3; 3], ray: &CastRay) -> f64 {
+    let d = ray.direction.normalize();
+    let apart = |v: DVec3| v - d * v.dot(d);
+    let [a, b, c] = corners.map(|corner| apart(corner - ray.origin));
+    let from_segment = |p: DVec3, q: DVec3| {
+        let along = q - p;
+        let share = (-p.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        (p + along * share).length()
+    };
+    from_segment(a, b).min(from_segment(b, c)).min(from_segment(c, a))
+}
+
+/// The tracer's answer against the exact one. It decides face by face: it may take a face, or leave it out, if the ray
+/// passes its border within the rounding of a vertex seen from the ray's start (three subtractions and products: 8 u S,
+/// charged twice); and it may take the farther of two faces if these are as near as the rounding of n.a' / n.d (36 kappa u
+/// S / c, twice, as for a sensor's ray). But it may miss everything only if a ray moved so far does: no ray slips through an
+/// edge that two faces share.
+fn explain(
+    exact: &ExactCast<'_>,
+    mesh: &Triangles,
+    traced: Option<FaceId>,
+    ray: &CastRay,
+    sides: Sides,
+    size: f64,
+) -> Explained {
+    let first = exact.first(ray, sides);
+    let shift = 16.0 * U * size;
+    let Some(traced) = traced else {
+        let [across, up] = sideways(ray.direction);
+        let mut around = (0..32).flat_map(|k| {
+            let angle = f64::from(k) * std::f64::consts::PI / 16.0;
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+            [0.25, 1.0].map(|share| ray.origin + (across * cos + up * sin) * (share * shift))
+        });
+        return if first.is_empty() {
+            Explained::Same
+        } else if around.any(|origin| exact.first(&CastRay { origin, ..*ray }, sides).is_empty()) {
+            Explained::Rounding
+        } else {
+            Explained::Wrong
+        };
+    };
+    if first.contains(&traced) {
+        return Explained::Same;
+    }
+    let plane = |face: FaceId| {
+        let [a, b, c] = mesh.corners(face);
+        let n = (b - a).cross(c - a);
+        let range = n.dot(a - ray.origin) / n.dot(ray.direction) * ray.direction.length();
+        let aspect = (b - a).length() * (c - a).length() / n.length();
+        let cosine = (n.dot(ray.direction) / (n.length() * ray.direction.length())).abs();
+        (range, 72.0 * aspect * U * size / cosine)
+    };
+    let is_on_border = |face: FaceId| from_border(mesh.corners(face), ray) <= shift;
+    let (range, slack) = plane(traced);
+    let may_be_met = is_on_border(traced) || exact.values(ray, traced).is_some();
+    let may_be_passed = |group: &HitGroup| {
+        group.faces.iter().all(|met| {
+            let (before, slack_before) = plane(met.face);
+            before > range - slack - slack_before || is_on_border(met.face)
+        })
+    };
+    if may_be_met && exact.all(ray, sides).iter().all(may_be_passed) {
+        Explained::Rounding
+    } else {
+        Explained::Wrong
+    }
+}
+
+/// Compares at a place, and explains near 0, where `f64` has room for displaced rays: moving the mesh and the ray there is
+/// exact.
+fn compare(
+    exact: &ExactCast<'_>,
+    mesh: &Triangles,
+    tracer: &mut CastTraverser<'_>,
+    ray: &CastRay,
+    place: DVec3,
+    tally: &mut Tally,
+) -> Result<(), TestCaseError> {
+    let given = ray;
+    let ray = &CastRay { origin: given.origin - place, ..*given };
+    prop_assert_eq!(ray.origin + place, given.origin);
+    // S of the tracer's vertices, at the place.
+    let size = 8.0 + given.origin.length();
+    for sides in [Sides::Both, Sides::Fronts] {
+        let traced = tracer.first(given, sides).map(|hit| hit.face);
+        match explain(exact, mesh, traced, ray, sides, size) {
+            Explained::Same => tally.same += 1,
+            Explained::Rounding => tally.rounding += 1,
+            Explained::Wrong => {
+                let first = exact.first(ray, sides);
+                return Err(TestCaseError::fail(format!(
+                    "{ray:?}, {sides:?}: traced {traced:?}, true {first:?}"
+                )));
+            }
+        }
+        let first = exact.first(ray, sides);
+        tally.hits += u64::from(!first.is_empty());
+        tally.ties += u64::from(first.len() > 1);
+        // Any hit: a boolean that follows from the first.
+        prop_assert_eq!(tracer.any(given, sides), traced.is_some());
+    }
+    Ok(())
+}
+
+/// A ground of 2 (n - 1)^2 faces whose heights are no f32 numbers.
+fn ground(n: u32, place: DVec3, heights: &[f64]) -> Triangles {
+    let vertices = (0..n * n)
+        .map(|k| {
+            let height = heights[k as usize % heights.len()];
+            (place + DVec3::new(f64::from(k % n) * 0.1, f64::from(k / n) * 0.1, height)).to_array()
+        })
+        .collect();
+    let cells = (0..n - 1).flat_map(|j| (0..n - 1).map(move |i| j * n + i));
+    let faces = cells.flat_map(|k| [[k, k + 1, k + n], [k + 1, k + n + 1, k + n]]).collect();
+    Triangles::new(vertices, faces).unwrap()
+}
+
+/// Rays on a ground, aimed at its vertices, its edges and anywhere.
+fn aimed(mesh: &Triangles, place: DVec3, draws: &[([f64; 3], [f64; 2], usize)]) -> Vec<CastRay> {
+    draws
+        .iter()
+        .enumerate()
+        .map(|(k, &(from, [u, v], face))| {
+            let [a, b, c] = mesh.corners(FaceId((face % mesh.faces().len()) as u32));
+            let at = match k % 3 {
+                0 => a,
+                1 => a + (b - a) * u,
+                _ => a + (b - a) * (0.5 * u) + (c - a) * (0.5 * v),
+            };
+            let origin = place + DVec3::from_array(from);
+            CastRay::new(origin, at - origin)
+        })
+        .collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// Near the origin and a thousand kilometres away, for vertices of f64 and of f32.
+    #[test]
+    fn the_tracer_is_right_or_within_rounding(
+        heights in prop::collection::vec(-0.1_f64..0.1, 30..60),
+        far in prop_oneof![Just(0.0), Just(1e6)],
+        is_single in any::<bool>(),
+        draws in prop::collection::vec(
+            ([-2.0_f64..3.0, -2.0_f64..3.0, 0.2_f64..3.0], [0.0_f64..1.0, 0.0_f64..1.0], 0_usize..1000),
+            120,
+        ),
+    ) {
+        let place = DVec3::new(far, -0.5 * far, 0.0);
+        let heights: Vec<f64> =
+            if is_single { heights.iter().map(|&h| f64::from(h as f32)).collect() } else { heights };
+        let mesh = ground(8, place, &heights);
+        let at_origin = |v: &[f64; 3]| (DVec3::from_array(*v) - place).to_array();
+        let near = Triangles::new(mesh.vertices().iter().map(at_origin).collect(), mesh.faces().to_vec()).unwrap();
+        let back = near.vertices().iter().map(|&v| (DVec3::from_array(v) + place).to_array());
+        prop_assert!(back.eq(mesh.vertices().iter().copied()));
+        let (exact, tracer) = (ExactCast::new(&near), TracerCast::new(&mesh));
+        let mut traverser = tracer.traverser();
+        let mut tally = Tally::default();
+        for ray in aimed(&mesh, place, &draws) {
+            compare(&exact, &near, &mut traverser, &ray, place, &mut tally)?;
+        }
+        // Most rays hit; what is aimed at exactly is met within rounding only.
+        prop_assert!(tally.hits > 120 && tally.same > tally.rounding, "{tally:?}");
+    }
+
+    /// On a lattice all of the tracer's arithmetic is exact: its hits are all hits, at the very same t.
+    #[test]
+    fn on_a_lattice_the_tracer_is_exact(
+        vertices in prop::collection::vec([-3_i32..=3, -3_i32..=3, -3_i32..=3], 3..9),
+        corners in prop::collection::vec([0_usize..9, 0_usize..9, 0_usize..9], 1..14),
+        rays in prop::collection::vec(([-4_i32..=4, -4_i32..=4, -4_i32..=4], [-3_i32..=3, -3_i32..=3, -3_i32..=3]), 40),
+        exponent in -200_i32..60,
+    ) {
+        let scale = libm::scalbn(1.0, exponent);
+        let place = |v: [i32; 3]| v.map(|x| f64::from(x) * scale);
+        let faces = corners.iter().map(|corners| corners.map(|k| (k % vertices.len()) as u32)).collect();
+        let mesh = Triangles::new(vertices.iter().map(|&v| place(v)).collect(), faces).unwrap();
+        let (exact, tracer) = (ExactCast::new(&mesh), TracerCast::new(&mesh));
+        let mut traverser = tracer.traverser();
+        for (origin, direction) in rays.into_iter().filter(|(_, direction)| *direction != [0; 3]) {
+            let ray = CastRay::new(DVec3::from_array(place(origin)), DVec3::from_array(direction.map(f64::from)));
+            for sides in [Sides::Both, Sides::Fronts] {
+                let groups = exact.all(&ray, sides);
+                let expected: Vec<(FaceId, f64)> = groups
+                    .iter()
+                    .flat_map(|group| &group.faces)
+                    .map(|met| (met.face, exact.values(&ray, met.face).unwrap().t.double))
+                    .collect();
+                let all = traverser.all(&ray, sides);
+                let found: Vec<(FaceId, f64)> = all.iter().map(|hit| (hit.face, hit.t)).collect();
+                prop_assert_eq!(&found, &expected);
+                let first = traverser.first(&ray, sides);
+                prop_assert_eq!(first.map(|hit| (hit.face, hit.t)), expected.first().copied());
+                for hit in all {
+                    let truth = exact.values(&ray, hit.face).unwrap();
+                    prop_assert_eq!(hit.side, truth.side);
+                    prop_assert_eq!(hit.barycentric, truth.barycentric.map(|weight| weight.double));
+                    prop_assert!((hit.range - truth.range.double).abs() <= 4.0 * U * truth.range.double);
+                    prop_assert!((hit.cos_incidence - truth.cos_incidence.double).abs() <= 16.0 * U);
+                    let apart = hit.point - DVec3::from_array(truth.point.map(|part| part.double));
+                    prop_assert!(apart.length() <= 16.0 * U * 16.0 * scale);
+                    let apart = hit.normal - DVec3::from_array(truth.normal.map(|part| part.double));
+                    prop_assert!(apart.length() <= 8.0 * U);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_of_a_set_are_answered_in_their_order() {
+    let mesh = ground(8, DVec3::ZERO, &[0.0]);
+    let down = |x: f64| CastRay::new(DVec3::new(x, 0.05, 1.0), DVec3::new(0.0, 0.0, -1.0));
+    let rays: Vec<CastRay> = (0..1000).map(|k| down(0.7 * f64::from(k) / 500.0 - 0.1)).collect();
+    let set = raypencil::RaySet::new(rays.clone(), Sides::Both).unwrap();
+    let tracer = TracerCast::new(&mesh);
+    let found = tracer.first_of(&set);
+    let one_by_one: Vec<_> = rays.iter().map(|ray| tracer.traverser().first(ray, Sides::Both)).collect();
+    assert_eq!(found, one_by_one);
+    assert!(found.iter().flatten().count() > 400 && found.iter().any(Option::is_none));
+}
