@@ -5,12 +5,27 @@ use crate::error::Fault;
 use crate::shape::Shape;
 
 /// Contents of a header.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Header {
     pub number: Number,
     pub big_endian: bool,
     pub fortran_order: bool,
-    pub shape: Shape,
+    /// Any number of dimensions, the slowest first.
+    pub shape: Vec<u64>,
+}
+
+impl Header {
+    /// The shape as that of a raster.
+    pub(super) fn raster(&self) -> Result<Shape, Fault> {
+        match *self.shape.as_slice() {
+            [rows, columns] => Ok(Shape { rows, columns, components: 1 }),
+            [rows, columns, components] => Ok(Shape { rows, columns, components }),
+            ref other => {
+                let expected = "2 (rows, columns) or 3 (rows, columns, components)";
+                Err(Fault::new("shape", format!("{} dimensions", other.len()), expected))
+            }
+        }
+    }
 }
 
 /// Type of the numbers in an array.
@@ -120,14 +135,7 @@ impl Parser<'_> {
         let lacks = |key: &str| Fault::new("header", format!("no `{key}`"), "descr, fortran_order and shape");
         let (number, big_endian) = number(&descr.ok_or_else(|| lacks("descr"))?)?;
         let fortran_order = fortran_order.ok_or_else(|| lacks("fortran_order"))?;
-        let shape = match *shape.ok_or_else(|| lacks("shape"))?.as_slice() {
-            [rows, columns] => Shape { rows, columns, components: 1 },
-            [rows, columns, components] => Shape { rows, columns, components },
-            ref other => {
-                let expected = "2 (rows, columns) or 3 (rows, columns, components)";
-                return Err(Fault::new("shape", format!("{} dimensions", other.len()), expected));
-            }
-        };
+        let shape = shape.ok_or_else(|| lacks("shape"))?;
         Ok(Header { number, big_endian, fortran_order, shape })
     }
 

@@ -6,8 +6,10 @@
 //! value of the format.
 
 mod header;
+mod numbers;
 mod read;
 mod write;
 
+pub use numbers::{Numbers, npy_numbers_from_bytes, read_npy_numbers};
 pub use read::{npy_from_bytes, read_npy};
-pub use write::{ArrayNumber, write_npy};
+pub use write::{ArrayNumber, write_npy, write_npy_numbers};

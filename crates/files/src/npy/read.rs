@@ -9,6 +9,7 @@ use crate::bytes;
 use crate::error::{Fault, FileError};
 use crate::limits::Limits;
 use crate::npy::header::{self, Header, Number};
+use crate::shape::Shape;
 use crate::values::{Array, Storage, Values};
 
 /// Reads an NPY file of shape (rows, columns) or (rows, columns, components).
@@ -51,20 +52,20 @@ pub fn npy_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<Arra
 
 fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {
     let (header, numbers) = header::split(file)?;
-    header.shape.check(header.number.bytes() as u64, numbers.len() as u64, limits)?;
+    let shape = header.raster()?;
+    shape.check(header.number.bytes() as u64, numbers.len() as u64, limits)?;
     let storage = match header.number {
         Number::Real(2) => Storage::F16,
         Number::Real(4) => Storage::F32,
         Number::Real(_) => Storage::F64,
         _ => Storage::Whole,
     };
-    let planes = (0..header.shape.components as usize).map(|component| plane(&header, numbers, component));
+    let planes = (0..shape.components as usize).map(|component| plane(&header, shape, numbers, component));
     Ok(Array { storage, planes: planes.collect::<Result<_, _>>()? })
 }
 
 /// One component of all cells. The shape has been checked to be that of `numbers`.
-fn plane(header: &Header, numbers: &[u8], component: usize) -> Result<Values, Fault> {
-    let shape = header.shape;
+fn plane(header: &Header, shape: Shape, numbers: &[u8], component: usize) -> Result<Values, Fault> {
     let (rows, columns, components) =
         (shape.rows as usize, shape.columns as usize, shape.components as usize);
     let size = header.number.bytes();

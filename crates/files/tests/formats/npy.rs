@@ -3,7 +3,10 @@
 use proptest::prelude::*;
 use std::path::PathBuf;
 
-use raypencil_files::{Array, Limits, Storage, Values, read_npy, write_npy};
+use raypencil_files::{
+    Array, Limits, Numbers, Storage, Values, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,
+    write_npy_numbers,
+};
 use raypencil_scene::Image;
 
 struct Folder(tempfile::TempDir);
@@ -328,4 +331,80 @@ proptest! {
         }
         let _ = read(&bytes);
     }
+}
+
+// ---- Numbers of any shape ----
+
+fn numbers(bytes: &[u8]) -> Result<Numbers, String> {
+    npy_numbers_from_bytes(bytes, "a.npy".as_ref()).map_err(|error| error.to_string().replace("a.npy: ", ""))
+}
+
+#[test]
+fn numbers_of_any_shape_type_and_order_are_read() {
+    let of = |shape: &[u64], storage, values: &[f64]| Numbers {
+        shape: shape.to_vec(),
+        storage,
+        values: values.to_vec(),
+    };
+    // Shape (2, 3, 2) in Fortran order: the first index runs fastest. Number (a, b, c) is 100 a + 10 b + c.
+    let place = |k: usize| (k % 2) as u8 * 100 + (k / 2 % 3) as u8 * 10 + (k / 6) as u8;
+    let bytes: Vec<u8> = (0..12).map(place).collect();
+    let found = numbers(&file(&dictionary("|u1", "True", "(2, 3, 2)"), &bytes)).unwrap();
+    let expected = [0, 1, 10, 11, 20, 21, 100, 101, 110, 111, 120, 121].map(f64::from);
+    assert_eq!(found, of(&[2, 3, 2], Storage::Whole, &expected));
+    // One dimension, none, and an empty one.
+    let halves = [0x00, 0x3e, 0x00, 0xc0];
+    assert_eq!(
+        numbers(&file(&dictionary("<f2", "False", "(2,)"), &halves)),
+        Ok(of(&[2], Storage::F16, &[1.5, -2.0]))
+    );
+    let big = 0.1_f64.to_be_bytes();
+    assert_eq!(numbers(&file(&dictionary(">f8", "False", "()"), &big)), Ok(of(&[], Storage::F64, &[0.1])));
+    assert_eq!(
+        numbers(&file(&dictionary("<f4", "False", "(0, 6)"), &[])),
+        Ok(of(&[0, 6], Storage::F32, &[]))
+    );
+    let signed = (-2_i64).to_le_bytes();
+    assert_eq!(numbers(&file(&dictionary("<i8", "False", "(1, 1, 1, 1)"), &signed)).unwrap().values, [-2.0]);
+}
+
+#[test]
+fn numbers_that_do_not_fit_their_shape_are_refused() {
+    let refused = |dictionary: String, bytes: &[u8]| numbers(&file(&dictionary, bytes)).unwrap_err();
+    assert_eq!(
+        refused(dictionary("<f4", "False", "(3, 6)"), &[0; 70]),
+        "numbers: 70 bytes; expected the 72 bytes of shape [3, 6] (is the file cut off?)"
+    );
+    // 2^32 times 2^32 rays: no memory is asked for.
+    assert_eq!(
+        refused(dictionary("<f8", "False", "(4294967296, 4294967296)"), &[0; 8]),
+        "numbers: 8 bytes; expected more bytes than any file has, of shape [4294967296, 4294967296]"
+    );
+    let many = vec!["1"; 65].join(", ");
+    assert!(
+        refused(dictionary("|u1", "False", &format!("({many})")), &[0]).starts_with("shape: 65 dimensions")
+    );
+    assert_eq!(
+        refused(dictionary("<u8", "False", "(1,)"), &u64::MAX.to_le_bytes()),
+        "number 0: 18446744073709551615; expected a whole number up to 2^53"
+    );
+}
+
+#[test]
+fn written_numbers_come_back_with_their_shape() {
+    let folder = Folder::new();
+    for shape in [vec![6_u64], vec![2, 3], vec![3, 1, 2], vec![0, 4]] {
+        let count = shape.iter().product::<u64>();
+        let values: Vec<f64> = (0..count).map(|k| k as f64 / 3.0).collect();
+        write_npy_numbers(folder.path(), &shape, &values).unwrap();
+        let found = read_npy_numbers(folder.path(), &Limits::default()).unwrap();
+        assert_eq!((found.shape, found.storage, found.values), (shape, Storage::F64, values));
+    }
+    // The header is padded to a multiple of 64 bytes, and a tuple of one has its comma.
+    write_npy_numbers(folder.path(), &[2], &[-1_i8, 1]).unwrap();
+    let bytes = std::fs::read(folder.path()).unwrap();
+    assert_eq!((bytes.len(), &bytes[128..]), (130, &[255, 1][..]));
+    assert!(bytes[10..].starts_with(b"{'descr': '|i1', 'fortran_order': False, 'shape': (2,), }"));
+    let error = write_npy_numbers(folder.path(), &[2, 2], &[1.0]).unwrap_err().to_string();
+    assert!(error.contains("numbers: 1; expected 4, as shape [2, 2] has"), "{error}");
 }
