@@ -40,6 +40,30 @@ impl Rules {
     }
 }
 
+impl Rules {
+    /// The rules of a renderer with both mistakes.
+    fn and(self, other: Self) -> Self {
+        Self {
+            hits_backs: self.hits_backs || other.hits_backs,
+            has_near_plane: self.has_near_plane && other.has_near_plane,
+            has_maximum_range: self.has_maximum_range && other.has_maximum_range,
+            offset: [0, 1].map(|k| self.offset[k] + other.offset[k]),
+        }
+    }
+}
+
+/// The mistakes of rays, two at a time, and their rules; a ray goes through one corner.
+pub(crate) fn pairs_of_wrong_rules() -> Vec<([Mistake; 2], Rules)> {
+    let all = wrong_rules();
+    let is_corner = |mistake: &Mistake| matches!(mistake, Mistake::CornerRays { .. });
+    let later = |k: usize| all[k + 1..].iter().map(move |other| (k, other));
+    (0..all.len())
+        .flat_map(later)
+        .filter(|(k, (other, _))| !(is_corner(&all[*k].0) && is_corner(other)))
+        .map(|(k, (other, rules))| ([all[k].0, *other], all[k].1.and(*rules)))
+        .collect()
+}
+
 /// The mistakes of rays and their rules, the plainest first.
 pub(crate) fn wrong_rules() -> Vec<(Mistake, Rules)> {
     let corner = |(columns, rows)| Mistake::CornerRays { columns, rows };

@@ -68,7 +68,7 @@ impl Correction {
             }
             Mistake::GlobalFrame => hit == Some(H::Point),
             Mistake::NormalsReversed | Mistake::NormalsNotUnit => hit == Some(H::Normal),
-            Mistake::CosinesNegated => is_cosine,
+            Mistake::CosinesNegated | Mistake::AngleForCosine(_) => is_cosine,
             Mistake::CosinesExchanged(_) => is_cosine && channel.sensor != SensorId::Camera,
             Mistake::PixelRowsFromBottom | Mistake::PixelsExchanged => quantity == Quantity::Pixel,
             Mistake::OtherFluxModel | Mistake::AttenuationOn(_) | Mistake::FluxFactor(_) => is_flux,
@@ -91,6 +91,7 @@ impl Correction {
             | Mistake::GlobalFrame => 6,
             Mistake::CosinesExchanged(_) => 7,
             Mistake::OtherFluxModel | Mistake::AttenuationOn(_) => 8,
+            Mistake::CosinesNegated | Mistake::AngleForCosine(_) => 9,
             _ => 0,
         };
         kind(&self.mistake) != 0 && kind(&self.mistake) == kind(&other.mistake)
@@ -170,6 +171,7 @@ impl Correction {
             Mistake::ParameterForDepth => number * axis,
             Mistake::Unit(unit) => unit.to_metres(number),
             Mistake::CosinesNegated => -number,
+            Mistake::AngleForCosine(unit) => unit.cosine(number),
             Mistake::CosinesExchanged(held) => {
                 let quantities = [Quantity::CosIncidence, Quantity::CosOffAxis, Quantity::CosView];
                 let Some(own) = quantities.iter().position(|one| *one == channel.item.quantity) else {

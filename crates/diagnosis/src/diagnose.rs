@@ -119,6 +119,7 @@ impl<'t> Search<'t> {
         let pairs = self.promising(self.pairs(&corrections, &singles), MAX_JUDGED_PAIRS);
         found.extend(pairs.iter().filter_map(|plan| self.judge(plan, self.case.recorded.precision)));
         found.extend(corrections.iter().filter_map(|one| cast.explain(Some(one))));
+        found.extend(cast.explain_by_two());
         best(found)
     }
 

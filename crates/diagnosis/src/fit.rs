@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::agree::is_near;
 use crate::channel::{Channel, Value, channels_of};
 use crate::correction::{Case, Correction, FluxFactors, Table, corrected};
-use crate::mistake::{Cosine, Leg, LengthUnit, Mistake};
+use crate::mistake::{AngleUnit, Cosine, Leg, LengthUnit, Mistake};
 use raypencil_judge::Quantity;
 use raypencil_scene::{FluxModel, HitQuantity, Image, Place, SensorId};
 
@@ -44,10 +44,13 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         Mistake::Unit(LengthUnit::Millimetres),
         Mistake::Unit(LengthUnit::Centimetres),
         Mistake::Unit(LengthUnit::Kilometres),
+        Mistake::Unit(LengthUnit::Feet),
         Mistake::SensorFrame,
         Mistake::NormalsReversed,
         Mistake::NormalsNotUnit,
         Mistake::CosinesNegated,
+        Mistake::AngleForCosine(AngleUnit::Radians),
+        Mistake::AngleForCosine(AngleUnit::Degrees),
         Mistake::PixelRowsFromBottom,
         Mistake::PixelsExchanged,
         Mistake::OtherFluxModel,

@@ -78,4 +78,4 @@ struct Readme;
 
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
-pub use mistake::{Cosine, Leg, LengthUnit, Mistake};
+pub use mistake::{AngleUnit, Cosine, Leg, LengthUnit, Mistake};

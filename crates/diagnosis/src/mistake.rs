@@ -9,6 +9,8 @@ pub enum LengthUnit {
     Centimetres,
     /// Kilometres.
     Kilometres,
+    /// International feet: 0.3048 m.
+    Feet,
 }
 
 impl LengthUnit {
@@ -18,6 +20,26 @@ impl LengthUnit {
             Self::Millimetres => value / 1e3,
             Self::Centimetres => value / 1e2,
             Self::Kilometres => value * 1e3,
+            Self::Feet => value * 0.3048,
+        }
+    }
+}
+
+/// A unit of angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AngleUnit {
+    /// Radians.
+    Radians,
+    /// Degrees.
+    Degrees,
+}
+
+impl AngleUnit {
+    /// The cosine of an angle in this unit.
+    pub(crate) fn cosine(self, angle: f64) -> f64 {
+        match self {
+            Self::Radians => libm::cos(angle),
+            Self::Degrees => libm::cos(angle.to_radians()),
         }
     }
 }
@@ -122,6 +144,8 @@ pub enum Mistake {
     NormalsNotUnit,
     /// Cosines are negative where they should be positive.
     CosinesNegated,
+    /// Angles stand in place of their cosines.
+    AngleForCosine(AngleUnit),
     /// The cosine of the first holds that of the second, and so on: `incidence.V`, `offAxis.V`, `emission.V`.
     CosinesExchanged([Cosine; 3]),
     /// `pixel.J` counts rows from the bottom.
@@ -174,6 +198,7 @@ impl Mistake {
             Self::Unit(LengthUnit::Millimetres) => "millimetres",
             Self::Unit(LengthUnit::Centimetres) => "centimetres",
             Self::Unit(LengthUnit::Kilometres) => "kilometres",
+            Self::Unit(LengthUnit::Feet) => "feet",
             Self::AxesYUp => "axes_y_up",
             Self::AxesYUpInverse => "axes_y_up_inverse",
             Self::Axes { .. } => "axes",
@@ -182,6 +207,8 @@ impl Mistake {
             Self::NormalsReversed => "normals_reversed",
             Self::NormalsNotUnit => "normals_not_unit",
             Self::CosinesNegated => "cosines_negated",
+            Self::AngleForCosine(AngleUnit::Radians) => "radians_for_cosine",
+            Self::AngleForCosine(AngleUnit::Degrees) => "degrees_for_cosine",
             Self::CosinesExchanged(_) => "cosines_exchanged",
             Self::PixelRowsFromBottom => "pixel_rows_from_bottom",
             Self::PixelsExchanged => "pixels_exchanged",
@@ -215,6 +242,7 @@ impl Mistake {
             | Self::NormalsReversed
             | Self::NormalsNotUnit
             | Self::CosinesNegated
+            | Self::AngleForCosine(_)
             | Self::CosinesExchanged(_)
             | Self::PixelRowsFromBottom
             | Self::PixelsExchanged => (FILES, "Maps: OpenEXR"),

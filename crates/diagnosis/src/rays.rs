@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::agree::{is_near, tolerance};
-use crate::cast::{CastHit, Rules, cast, wrong_rules};
+use crate::cast::{CastHit, Rules, cast, pairs_of_wrong_rules, wrong_rules};
 use crate::channel::{Channel, Value, channels_of};
 use crate::correction::{Case, Correction, corrected};
 use crate::diagnosis::Diagnosis;
@@ -66,11 +66,28 @@ impl<'t> CastTrial<'t> {
         places.retain(of_channels);
         let wrong = places.len();
         places.extend(spread_over(scene, rays / 2).into_iter().filter(of_channels));
-        let renders = if wrong == 0 { Vec::new() } else { wrong_rules() };
-        let render =
-            |rules: Rules| places.par_iter().map(|place| cast(scene, *place, rules)).collect::<Vec<_>>();
-        let renders = renders.into_iter().map(|(mistake, rules)| (mistake, render(rules))).collect();
-        Self { case, channels, places, wrong, renders }
+        let mut trial = Self { case, channels, places, wrong, renders: Vec::new() };
+        if wrong > 0 {
+            let renders = wrong_rules().into_iter().map(|(mistake, rules)| (mistake, trial.render(rules)));
+            trial.renders = renders.collect();
+        }
+        trial
+    }
+
+    /// The rays by some rules.
+    fn render(&self, rules: Rules) -> Vec<Option<CastHit>> {
+        self.places.par_iter().map(|place| cast(self.case.truth.scene(), *place, rules)).collect()
+    }
+
+    /// The best explanation by rays of two mistakes.
+    pub(crate) fn explain_by_two(&self) -> Option<Diagnosis> {
+        let rules = if self.wrong == 0 { Vec::new() } else { pairs_of_wrong_rules() };
+        let found = rules.into_iter().filter_map(|(mistakes, rules)| {
+            let agree = self.agreeing(&self.render(rules), None)?;
+            Some(Diagnosis { mistakes: mistakes.to_vec(), agree, tried: self.places.len() as u64 })
+        });
+        // Among equals the first.
+        found.reduce(|best, other| if other.agree > best.agree { other } else { best })
     }
 
     /// The best explanation by rays of one mistake, after at most one correction.

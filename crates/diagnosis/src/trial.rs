@@ -75,8 +75,7 @@ impl<'t> Trial<'t> {
     /// The best use of one correction, or `None` if it helps no channel.
     pub(crate) fn plan_of_one(&self, one: &Correction, single: &Single) -> Option<Plan> {
         self.plan(vec![one.clone()], |index| {
-            let own = self.uncorrected[index];
-            [own, single[index].unwrap_or(own), u32::MAX, u32::MAX]
+            [self.uncorrected[index], single[index].unwrap_or(u32::MAX), u32::MAX, u32::MAX]
         })
     }
 
@@ -90,16 +89,21 @@ impl<'t> Trial<'t> {
         })
     }
 
-    /// Chooses for each channel the corrections that leave the fewest values off; among equals the fewest.
+    /// Chooses for each channel the corrections that leave the fewest values off; among equals the most of them: a
+    /// mistake is made everywhere, also where no sampled ray tells. Each must help some channel.
     fn plan(&self, corrections: Vec<Correction>, off: impl Fn(usize) -> [u32; 4]) -> Option<Plan> {
         let mut plan = Plan { corrections, applied: Vec::new(), off: 0 };
         let mut used = 0;
         for (index, channel) in self.channels.iter().enumerate() {
             let off = off(index);
-            let best = (0..4).min_by_key(|subset| off[*subset]).expect("four subsets");
+            let best = (0..4_usize)
+                .min_by_key(|subset| (off[*subset], std::cmp::Reverse(subset.count_ones())))
+                .expect("four subsets");
             plan.applied.push((*channel, best));
             plan.off += off[best];
-            used |= best;
+            // A correction helps where more values are off without it.
+            let helps = |bit: &usize| best & bit != 0 && off[best & !bit] > off[best];
+            used |= [1, 2].into_iter().filter(helps).sum::<usize>();
         }
         (used == (1 << plan.corrections.len()) - 1).then_some(plan)
     }

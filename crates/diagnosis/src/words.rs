@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::mistake::{Cosine, Leg, LengthUnit, Mistake};
+use crate::mistake::{AngleUnit, Cosine, Leg, LengthUnit, Mistake};
 
 /// The mistake as a clause that follows "if", and the rule that it breaks.
 impl fmt::Display for Mistake {
@@ -11,10 +11,19 @@ impl fmt::Display for Mistake {
             Self::RowsReversed => f.write_str("rows are reversed: row 0 is the top row"),
             Self::ColumnsReversed => f.write_str("columns are reversed: column 0 is the left column"),
             Self::Transposed => f.write_str("cells are stored column by column: arrays are (rows, columns)"),
-            Self::Shifted { columns, rows } => write!(
-                f,
-                "cells are shifted by {columns} columns and {rows} rows: cell (i, j) holds the ray of column i, row j"
-            ),
+            Self::Shifted { columns, rows } => {
+                let by = |count: i32, way: [&str; 2], one: &str| {
+                    let plural = if count.abs() == 1 { "" } else { "s" };
+                    format!("{} {one}{plural} {}", count.abs(), way[usize::from(count > 0)])
+                };
+                let (across, down) = (by(*columns, ["left", "right"], "column"), by(*rows, ["up", "down"], "row"));
+                let moved = match (columns, rows) {
+                    (_, 0) => across,
+                    (0, _) => down,
+                    _ => format!("{across} and {down}"),
+                };
+                write!(f, "cells are shifted by {moved}: cell (i, j) holds the ray of column i, row j")
+            }
             Self::MissWritten(value) => write!(
                 f,
                 "{value} means \"no hit\": a length is +Inf there, other numbers are NaN (or declare --miss {value})"
@@ -48,6 +57,7 @@ impl fmt::Display for Mistake {
                     LengthUnit::Millimetres => "millimetres",
                     LengthUnit::Centimetres => "centimetres",
                     LengthUnit::Kilometres => "kilometres",
+                    LengthUnit::Feet => "feet",
                 };
                 write!(f, "lengths are in {name}: the unit is the metre")
             }
@@ -77,6 +87,13 @@ impl fmt::Display for Mistake {
             Self::CosinesNegated => f.write_str(
                 "cosines have the wrong sign: the ray is reversed before its angle with the normal is taken",
             ),
+            Self::AngleForCosine(unit) => {
+                let name = match unit {
+                    AngleUnit::Radians => "radians",
+                    AngleUnit::Degrees => "degrees",
+                };
+                write!(f, "angles in {name} stand in place of their cosines: incidence.V and its like are cosines")
+            }
             Self::CosinesExchanged(held) => {
                 let mut parts = Vec::new();
                 for (own, held) in Cosine::ALL.into_iter().zip(held) {

@@ -104,7 +104,9 @@ fn other_lengths_are_named() {
         }
     });
     assert_explained(pyramids(), &parameter_for_depth, &["parameter_for_depth"]);
-    for (key, factor) in [("millimetres", 1e3), ("centimetres", 1e2), ("kilometres", 1e-3)] {
+    for (key, factor) in
+        [("millimetres", 1e3), ("centimetres", 1e2), ("kilometres", 1e-3), ("feet", 1.0 / 0.3048)]
+    {
         let scaled = pyramids_with(|c| in_units(c, factor));
         assert_explained(pyramids(), &scaled, &[key]);
         assert_explained(pyramids(), &stored_single(&scaled), &[key]);
@@ -276,6 +278,13 @@ fn other_light_is_named() {
         numbers(c, |number, x| if number == Number::Incidence { -x } else { x });
     });
     assert_explained(pyramids(), &negated, &["cosines_negated"]);
+    let is_cosine = |number| matches!(number, Number::Incidence | Number::OffAxis | Number::Emission);
+    for (key, unit) in [("radians_for_cosine", 1.0), ("degrees_for_cosine", 180.0 / std::f64::consts::PI)] {
+        let angles = pyramids_with(|c| {
+            numbers(c, |number, x| if is_cosine(number) { libm::acos(x.min(1.0)) * unit } else { x });
+        });
+        assert_explained(pyramids(), &angles, &[key]);
+    }
     assert_explained(pyramids(), &pyramids_with(other_model), &["other_flux_model"]);
     assert_explained(pyramids(), &pyramids_with(|c| flux(c, |x| x * 3.0)), &["flux_factor"]);
     for (out, back) in [(true, false), (false, true), (false, false)] {

@@ -95,6 +95,15 @@ fn a_wrong_rule_and_another_mistake_are_named_together() {
     let mut far = traced(Tracer { max_range: 1e9, ..RIGHT });
     crate::one::in_units(&mut far, 1e3);
     assert_explained(walls(), &far, &["millimetres", "maximum_range_ignored"]);
+    // Two rules of rays.
+    for (tracer, keys) in [
+        (Tracer { backs: true, t_min: 0.0, ..RIGHT }, ["backs_hit", "near_plane_ignored"]),
+        (Tracer { backs: true, max_range: 1e9, ..RIGHT }, ["backs_hit", "maximum_range_ignored"]),
+        (Tracer { t_min: 0.0, max_range: 1e9, ..RIGHT }, ["near_plane_ignored", "maximum_range_ignored"]),
+        (Tracer { backs: true, offset: [-0.5, -0.5], ..RIGHT }, ["backs_hit", "corner_rays"]),
+    ] {
+        assert_explained(walls(), &traced(tracer), &keys);
+    }
     let mut near = traced(Tracer { t_min: 0.0, ..RIGHT });
     near.answers.maps[0].range = near.answers.maps[0].depth.clone();
     assert_explained(walls(), &near, &["depth_for_range", "near_plane_ignored"]);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_diagnosis::{Cosine, Diagnosis, Leg, LengthUnit, Mistake};
+use raypencil_diagnosis::{AngleUnit, Cosine, Diagnosis, Leg, LengthUnit, Mistake};
 
 fn all() -> Vec<Mistake> {
     let [a, b, c] = [Cosine::Incidence, Cosine::OffAxis, Cosine::Emission];
@@ -11,6 +11,8 @@ fn all() -> Vec<Mistake> {
         Mistake::ColumnsReversed,
         Mistake::Transposed,
         Mistake::Shifted { columns: 1, rows: 0 },
+        Mistake::Shifted { columns: -1, rows: 0 },
+        Mistake::Shifted { columns: 2, rows: -1 },
         Mistake::MissWritten(-1.0),
         Mistake::MissAtMaximumRange,
         Mistake::FacesShifted(1),
@@ -22,6 +24,7 @@ fn all() -> Vec<Mistake> {
         Mistake::Unit(LengthUnit::Millimetres),
         Mistake::Unit(LengthUnit::Centimetres),
         Mistake::Unit(LengthUnit::Kilometres),
+        Mistake::Unit(LengthUnit::Feet),
         Mistake::AxesYUp,
         Mistake::AxesYUpInverse,
         Mistake::Axes { from: [1, 0, 2], sign: [1, -1, 1] },
@@ -30,6 +33,8 @@ fn all() -> Vec<Mistake> {
         Mistake::NormalsReversed,
         Mistake::NormalsNotUnit,
         Mistake::CosinesNegated,
+        Mistake::AngleForCosine(AngleUnit::Radians),
+        Mistake::AngleForCosine(AngleUnit::Degrees),
         Mistake::CosinesExchanged([c, b, a]),
         Mistake::PixelRowsFromBottom,
         Mistake::PixelsExchanged,
