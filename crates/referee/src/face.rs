@@ -72,12 +72,19 @@ pub(crate) struct Face {
 }
 
 impl InBox for Face {
+    #[inline]
     fn id(&self) -> FaceId {
         self.id
     }
 
+    #[inline]
     fn corners(&self) -> [DVec3; 3] {
         self.corners.map(|[x, y, z]| DVec3::new(f64::from(x), f64::from(y), f64::from(z)))
+    }
+
+    #[inline]
+    fn middle(&self, axis: usize) -> f64 {
+        self.corners.iter().map(|corner| f64::from(corner[axis])).sum()
     }
 }
 

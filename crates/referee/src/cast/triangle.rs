@@ -18,12 +18,19 @@ pub(super) struct Triangle {
 }
 
 impl InBox for Triangle {
+    #[inline]
     fn id(&self) -> FaceId {
         self.id
     }
 
+    #[inline]
     fn corners(&self) -> [DVec3; 3] {
         self.corners
+    }
+
+    #[inline]
+    fn middle(&self, axis: usize) -> f64 {
+        self.corners.iter().map(|corner| corner[axis]).sum()
     }
 }
 

@@ -1,0 +1,117 @@
+//! What is asked of each ray, and the referee's answers.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use raypencil_referee::{CastHit, ExactCast, SidedFace};
+use raypencil_scene::{CastRay, FaceId, Progress, Side, Sides, Triangles};
+
+/// What is asked beside the first hit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Questions {
+    /// Whether anything is hit.
+    pub any: bool,
+    /// All hits, in exact order.
+    pub all: bool,
+}
+
+/// The first hit of a ray. Numbers are correctly rounded to `f64`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstHit {
+    /// The face; of several at the same t, the lowest index.
+    pub face: FaceId,
+    /// The side that is met.
+    pub side: Side,
+    /// Number of faces that are met at exactly this t: 1 if there is no tie.
+    pub ties: u32,
+    /// The ray's parameter.
+    pub t: f64,
+    /// Distance from the ray's origin, in the mesh's unit.
+    pub range: f64,
+    /// The point.
+    pub point: DVec3,
+    /// The unit normal to the face's front.
+    pub normal: DVec3,
+    /// The weights of the face's corners.
+    pub barycentric: [f64; 3],
+    /// Cosine of the angle between the normal and the reversed ray: negative where the back is met.
+    pub cos_incidence: f64,
+}
+
+/// All faces that a ray meets at exactly the same t.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupAtT {
+    /// The ray's parameter, correctly rounded. Groups are apart even where their rounded t are the same.
+    pub t: f64,
+    /// The faces, in ascending order.
+    pub faces: Vec<SidedFace>,
+    /// How often the surface is crossed here to its inside, less how often to its outside.
+    pub crossing: i32,
+}
+
+/// The answers to some rays, in their order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answers {
+    /// The first hit of each ray; `None` where nothing is hit.
+    pub first: Vec<Option<FirstHit>>,
+    /// Whether each ray hits anything, if that was asked.
+    pub any: Option<Vec<bool>>,
+    /// All hits of each ray, if they were asked for.
+    pub all: Option<Vec<Vec<GroupAtT>>>,
+}
+
+impl Answers {
+    /// Number of rays that hit something, and of these the number whose first hit is a tie.
+    pub fn counts(&self) -> (usize, usize) {
+        let hits = self.first.iter().flatten();
+        (hits.clone().count(), hits.filter(|hit| hit.ties > 1).count())
+    }
+}
+
+/// Answers rays on a mesh exactly, on all threads.
+///
+/// All rays must be valid, as those of [`rays_from_bytes`](crate::rays_from_bytes) are.
+pub fn cast(
+    mesh: &Triangles,
+    rays: &[CastRay],
+    sides: Sides,
+    questions: Questions,
+    progress: &dyn Progress,
+) -> Answers {
+    progress.stage(&format!("building a tree of {} faces", mesh.faces().len()));
+    let exact = ExactCast::new(mesh);
+    progress.stage(&format!("casting {} rays", rays.len()));
+    let first = rays.par_iter().map(|ray| first(&exact, ray, sides)).collect();
+    let any = questions.any.then(|| rays.par_iter().map(|ray| exact.any(ray, sides)).collect());
+    let all = questions.all.then(|| {
+        progress.stage(&format!("all hits of {} rays", rays.len()));
+        rays.par_iter().map(|ray| all(&exact, ray, sides)).collect()
+    });
+    Answers { first, any, all }
+}
+
+fn first(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Option<FirstHit> {
+    let faces = exact.first(ray, sides);
+    let CastHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
+        exact.values(ray, *faces.first()?)?;
+    Some(FirstHit {
+        face,
+        side,
+        ties: faces.len() as u32,
+        t: t.double,
+        range: range.double,
+        point: DVec3::from_array(point.map(|part| part.double)),
+        normal: DVec3::from_array(normal.map(|part| part.double)),
+        barycentric: barycentric.map(|weight| weight.double),
+        cos_incidence: cos_incidence.double,
+    })
+}
+
+fn all(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Vec<GroupAtT> {
+    let groups = exact.all(ray, sides).into_iter();
+    groups
+        .filter_map(|group| {
+            let t = exact.values(ray, group.faces.first()?.face)?.t.double;
+            Some(GroupAtT { t, faces: group.faces, crossing: group.crossing })
+        })
+        .collect()
+}

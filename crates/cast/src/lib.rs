@@ -1,0 +1,42 @@
+//! Any rays on any mesh, answered exactly.
+//!
+//! ```text
+//! rays_file      rays from NPY and CSV
+//! answers        what is asked, and the answers of the referee
+//! write          answers as NPY arrays, and their summary
+//! text           the answers to one ray, and counts of many, as text and as JSON
+//! ```
+//!
+//! The contract of such a ray, and why its answers can be exact, is on the first page of `raypencil-referee`'s module
+//! `cast`; the files are described in `docs/guide/cast.md`.
+//!
+//! ```
+//! use raypencil_cast::{Questions, cast, rays_from_bytes};
+//! use raypencil_scene::{Sides, Silent, Triangles};
+//!
+//! // Two squares of two faces each, at z = 0 and z = 1. A ray through both diagonals meets two faces at a time.
+//! let square = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]];
+//! let vertices = [square(0.0), square(1.0)].concat();
+//! let mesh = Triangles::new(vertices, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])?;
+//! let rays = rays_from_bytes(b"0.5,0.5,4,0,0,-1", "here".as_ref())?;
+//! let questions = Questions { all: true, ..Questions::default() };
+//! let answers = cast(&mesh, &rays.rays, Sides::Both, questions, &Silent);
+//! let first = answers.first[0].as_ref().unwrap();
+//! assert_eq!((first.face.0, first.t, first.ties), (2, 3.0, 2));
+//! assert_eq!(answers.all.unwrap()[0].iter().map(|group| group.t).collect::<Vec<_>>(), [3.0, 4.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod answers;
+mod rays_file;
+mod text;
+mod write;
+
+pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast};
+pub use rays_file::{RayArray, rays_from_bytes, read_rays};
+pub use text::{counts_text, ray_json, ray_text};
+pub use write::{CastSource, write_answers};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,123 @@
+//! Rays from NPY arrays and from CSV.
+
+use std::path::Path;
+
+use glam::DVec3;
+use raypencil_files::{Fault, FileError, Limits, bytes, npy_numbers_from_bytes};
+use raypencil_scene::CastRay;
+
+/// Rays with the shape of the array that they come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RayArray {
+    /// The leading dimensions: that of an array (480, 640, 6) is (480, 640); that of a CSV file is its number of rows.
+    pub shape: Vec<u64>,
+    /// The rays, the last dimension running fastest.
+    pub rays: Vec<CastRay>,
+}
+
+/// First bytes of every NPY file.
+const NPY_MAGIC: &[u8] = b"\x93NUMPY";
+
+/// What a row of numbers must be.
+const ROW: &str = "6 numbers (origin, direction) or 8 (origin, direction, t_min, t_max)";
+
+/// Reads rays from a file: NPY of shape (..., 6) or (..., 8), or CSV with 6 or 8 numbers in a row.
+///
+/// # Errors
+/// Names the file, and the number, row or ray that is wrong.
+pub fn read_rays(path: &Path) -> Result<RayArray, FileError> {
+    // The header of an NPY file comes on top of its numbers, at most 2^16 bytes.
+    let most = Limits::default().bytes + (1 << 16);
+    let bytes = bytes::read_file(path, most).map_err(|error| FileError::io(path, "read", error))?;
+    rays_from_bytes(&bytes, path)
+}
+
+/// Reads the bytes of a file as [`read_rays`] does; `file` is its name in messages.
+///
+/// # Errors
+/// As [`read_rays`].
+pub fn rays_from_bytes(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
+    let (shape, width, numbers) = match bytes.starts_with(NPY_MAGIC) {
+        true => of_npy(bytes, file)?,
+        false => of_csv(bytes).map_err(|fault| FileError::Array(fault.in_file(file)))?,
+    };
+    let rays = numbers.chunks_exact(width).enumerate().map(|(index, row)| {
+        let ray = ray(row);
+        let checked = ray.validate("").or_else(|_| ray.validate(&format!("ray {index}")));
+        checked.map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
+        Ok(ray)
+    });
+    Ok(RayArray { shape, rays: rays.collect::<Result<_, FileError>>()? })
+}
+
+/// A ray from its 6 or 8 numbers.
+fn ray(row: &[f64]) -> CastRay {
+    let ray = CastRay::new(DVec3::from_slice(row), DVec3::from_slice(&row[3..]));
+    match *row {
+        [.., t_min, t_max] if row.len() == 8 => CastRay { t_min, t_max, ..ray },
+        _ => ray,
+    }
+}
+
+type Table = (Vec<u64>, usize, Vec<f64>);
+
+fn of_npy(bytes: &[u8], file: &Path) -> Result<Table, FileError> {
+    let array = npy_numbers_from_bytes(bytes, file)?;
+    match array.shape.split_last() {
+        Some((&width @ (6 | 8), leading)) => Ok((leading.to_vec(), width as usize, array.values)),
+        _ => {
+            let fault =
+                Fault::new("shape", format!("{:?}", array.shape), format!("(..., 6) or (..., 8): {ROW}"));
+            Err(FileError::Array(fault.in_file(file)))
+        }
+    }
+}
+
+fn of_csv(bytes: &[u8]) -> Result<Table, Fault> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(bytes);
+    let (mut width, mut rows, mut numbers) = (None, 0_u64, Vec::new());
+    for record in reader.records() {
+        let record = record.map_err(|error| {
+            let line = error.position().map_or(0, csv::Position::line);
+            Fault::new(
+                format!("line {line}"),
+                "bytes that are no text",
+                "rows of numbers with commas between them",
+            )
+        })?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let is_heading = rows == 0 && record.iter().all(|field| field.parse::<f64>().is_err());
+        if is_heading && record.iter().any(|field| !field.is_empty()) && width.is_none() {
+            width = Some((record.len(), line));
+            // The heading must fit what follows.
+            continue;
+        }
+        let refuse =
+            |found: String, expected: String| Err(Fault::new(format!("line {line}"), found, expected));
+        if !matches!(record.len(), 6 | 8) {
+            return refuse(format!("{} fields", record.len()), ROW.into());
+        }
+        if let Some((first, of_line)) = width
+            && first != record.len()
+        {
+            return refuse(format!("{} fields", record.len()), format!("{first}, as line {of_line} has"));
+        }
+        width.get_or_insert((record.len(), line));
+        for (column, field) in record.iter().enumerate() {
+            match field.parse::<f64>() {
+                Ok(number) => numbers.push(number),
+                Err(_) => return refuse(format!("field {}: {field:?}", column + 1), "a number".into()),
+            }
+        }
+        rows += 1;
+    }
+    let Some((width, _)) = width.filter(|_| rows > 0) else {
+        return Err(Fault::new("file", "no ray", format!("rows of {ROW}")));
+    };
+    Ok((vec![rows], width, numbers))
+}

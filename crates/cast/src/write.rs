@@ -1,0 +1,151 @@
+//! Answers as NPY arrays, and their summary.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically, write_npy_numbers};
+use raypencil_report::VERSION;
+use raypencil_scene::{Side, Sides, Triangles};
+use serde_json::json;
+
+use crate::answers::{Answers, FirstHit, GroupAtT};
+
+/// Where mesh and rays come from, for the summary.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CastSource {
+    /// The mesh as it was given.
+    pub mesh: String,
+    /// SHA-256 of the mesh's file, if it is one file.
+    pub mesh_sha256: Option<String>,
+    /// The rays as they were given.
+    pub rays: String,
+    /// SHA-256 of the bytes of the rays.
+    pub rays_sha256: String,
+}
+
+/// What stands for no face.
+const NO_FACE: u32 = u32::MAX;
+
+fn side_number(side: Side) -> i8 {
+    match side {
+        Side::Front => 1,
+        Side::Back => -1,
+    }
+}
+
+/// Writes a folder: an array for each value, of the rays' own shape, and last `summary.json`. Returns its path.
+///
+/// | array | type and shape | where nothing is hit |
+/// | --- | --- | --- |
+/// | `face` | u4 | 4294967295 |
+/// | `side` | i1: 1 front, -1 back | 0 |
+/// | `ties` | u4: number of faces at this t | 0 |
+/// | `t`, `range` | f8 | +Inf |
+/// | `cos_incidence` | f8 | NaN |
+/// | `point`, `normal`, `barycentric` | f8, (..., 3) | NaN |
+/// | `any`, if it was asked | u1: 0 or 1 | 0 |
+/// | `all.start`, if all hits were asked for | u8, (rays + 1): the hits of ray k are `start[k]..start[k + 1]` | |
+/// | `all.face`, `all.side`, `all.t`, `all.group`, `all.crossing` | one entry per hit; hits at one t are one group | |
+///
+/// # Errors
+/// The folder or a file cannot be written; the message names it.
+pub fn write_answers(
+    folder: &Path,
+    answers: &Answers,
+    (mesh, shape, sides): (&Triangles, &[u64], Sides),
+    source: &CastSource,
+) -> Result<PathBuf, FolderError> {
+    let summary = begin_output_folder(folder, "summary.json")?;
+    let mut arrays = Vec::new();
+    let mut folder = ArrayFolder { folder, arrays: &mut arrays };
+    let of = |value: fn(&FirstHit) -> f64, miss: f64| -> Vec<f64> {
+        answers.first.iter().map(|hit| hit.as_ref().map_or(miss, value)).collect()
+    };
+    let vectors = |value: fn(&FirstHit) -> [f64; 3]| -> Vec<f64> {
+        answers.first.iter().flat_map(|hit| hit.as_ref().map_or([f64::NAN; 3], value)).collect()
+    };
+    let with_three: Vec<u64> = shape.iter().copied().chain([3]).collect();
+    let faces: Vec<u32> = answers.first.iter().map(|hit| hit.map_or(NO_FACE, |hit| hit.face.0)).collect();
+    let of_sides: Vec<i8> =
+        answers.first.iter().map(|hit| hit.map_or(0, |hit| side_number(hit.side))).collect();
+    let ties: Vec<u32> = answers.first.iter().map(|hit| hit.map_or(0, |hit| hit.ties)).collect();
+    folder.write("face", shape, &faces)?;
+    folder.write("side", shape, &of_sides)?;
+    folder.write("ties", shape, &ties)?;
+    folder.write("t", shape, &of(|hit| hit.t, f64::INFINITY))?;
+    folder.write("range", shape, &of(|hit| hit.range, f64::INFINITY))?;
+    folder.write("cos_incidence", shape, &of(|hit| hit.cos_incidence, f64::NAN))?;
+    folder.write("point", &with_three, &vectors(|hit| hit.point.to_array()))?;
+    folder.write("normal", &with_three, &vectors(|hit| hit.normal.to_array()))?;
+    folder.write("barycentric", &with_three, &vectors(|hit| hit.barycentric))?;
+    if let Some(any) = &answers.any {
+        folder.write("any", shape, &any.iter().map(|&is_hit| u8::from(is_hit)).collect::<Vec<_>>())?;
+    }
+    if let Some(all) = &answers.all {
+        write_all(&mut folder, all)?;
+    }
+    let (hits, ties) = answers.counts();
+    let document = json!({
+        "format": 1,
+        "kind": "cast",
+        "raypencilVersion": VERSION,
+        "mesh": {
+            "file": source.mesh,
+            "sha256": source.mesh_sha256,
+            "vertices": mesh.vertices().len(),
+            "faces": mesh.faces().len(),
+            "zeroAreaFaces": mesh.zero_area_faces(),
+        },
+        "rays": { "file": source.rays, "sha256": source.rays_sha256, "shape": shape, "count": answers.first.len() },
+        "sides": if sides == Sides::Both { "both" } else { "fronts" },
+        "counts": { "hits": hits, "misses": answers.first.len() - hits, "ties": ties },
+        "arrays": arrays,
+    });
+    write_atomically(&summary, |file| file.write_all(format!("{document:#}\n").as_bytes()))?;
+    Ok(summary)
+}
+
+/// All hits of all rays, one after the other.
+fn write_all(folder: &mut ArrayFolder<'_>, all: &[Vec<GroupAtT>]) -> Result<(), FileError> {
+    let mut start = vec![0_u64];
+    let (mut faces, mut sides, mut t) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut of_groups, mut crossings) = (Vec::new(), Vec::new());
+    for groups in all {
+        for (index, group) in groups.iter().enumerate() {
+            for met in &group.faces {
+                faces.push(met.face.0);
+                sides.push(side_number(met.side));
+                t.push(group.t);
+                of_groups.push(index as u32);
+                crossings.push(group.crossing);
+            }
+        }
+        start.push(faces.len() as u64);
+    }
+    let count = [faces.len() as u64];
+    folder.write("all.start", &[start.len() as u64], &start)?;
+    folder.write("all.face", &count, &faces)?;
+    folder.write("all.side", &count, &sides)?;
+    folder.write("all.t", &count, &t)?;
+    folder.write("all.group", &count, &of_groups)?;
+    folder.write("all.crossing", &count, &crossings)
+}
+
+/// The folder and the names of the arrays written to it.
+struct ArrayFolder<'a> {
+    folder: &'a Path,
+    arrays: &'a mut Vec<String>,
+}
+
+impl ArrayFolder<'_> {
+    fn write<T: raypencil_files::ArrayNumber>(
+        &mut self,
+        name: &str,
+        shape: &[u64],
+        numbers: &[T],
+    ) -> Result<(), FileError> {
+        let file = format!("{name}.npy");
+        write_npy_numbers(self.folder.join(&file), shape, numbers)?;
+        self.arrays.push(file);
+        Ok(())
+    }
+}
