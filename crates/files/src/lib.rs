@@ -53,7 +53,7 @@ pub use error::{Fault, FileError, Problem, shortened};
 pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map};
 pub use folder::{FolderError, begin_output_folder, create_folder};
 pub use limits::Limits;
-pub use npy::{ArrayNumber, npy_from_bytes, read_npy, write_npy};
+pub use npy::{ArrayNumber, Triples, npy_from_bytes, npy_triples_from_bytes, read_npy, write_npy};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};
 pub use values::{Array, Storage, Values};

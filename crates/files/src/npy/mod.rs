@@ -7,7 +7,9 @@
 
 mod header;
 mod read;
+mod triples;
 mod write;
 
 pub use read::{npy_from_bytes, read_npy};
+pub use triples::{Triples, npy_triples_from_bytes};
 pub use write::{ArrayNumber, write_npy};
