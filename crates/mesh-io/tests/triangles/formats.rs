@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use raypencil_files::{Limits, Triples, npy_from_bytes, npy_triples_from_bytes};
 use raypencil_mesh_io::{load_triangles, read_triangles};
 
 use super::samples::{self, FACES, VERTICES, all, npy, npy_faces, npy_vertices};
@@ -114,6 +115,50 @@ fn obj_statements_may_go_on_over_lines_and_stand_in_any_order() {
     let mesh = parse("a.obj", file.as_bytes()).unwrap();
     assert_eq!(mesh.faces(), [[0, 1, 2], [2, 0, 1]]);
     assert_eq!(mesh.vertices().len(), 3);
+}
+
+#[test]
+fn rows_of_arrays_are_those_of_their_planes() {
+    // Every type and byte order, in C and in Fortran order; two rows of bytes that differ.
+    for kind in ["f2", "f4", "f8", "u1", "u2", "u4", "i1", "i2", "i4", "i8"] {
+        let size: usize = kind[1..].parse().unwrap();
+        for (order, fortran) in [("<", false), (">", false), ("<", true), (">", true)] {
+            if size == 1 && order == ">" {
+                continue;
+            }
+            // Small numbers: those of 8 bytes have to fit into planes of 4.
+            let number = |index: usize| {
+                let mut bytes = vec![0; size];
+                (bytes[0], bytes[size.min(2) - 1]) = (17 * index as u8, 3 + 17 * index as u8);
+                if order == ">" {
+                    bytes.reverse();
+                }
+                bytes
+            };
+            let numbers: Vec<u8> = (0..6).flat_map(number).collect();
+            let descr = format!("{}{kind}", if size == 1 { "|" } else { order });
+            let mut file = String::from_utf8_lossy(&npy(&descr, 2, &[])[10..]).into_owned();
+            if fortran {
+                file = file.replace("False", "True");
+            }
+            let length = (file.len() as u16).to_le_bytes();
+            let bytes = [b"\x93NUMPY\x01\x00", &length[..], file.as_bytes(), &numbers].concat();
+            let array = npy_from_bytes(&bytes, Path::new("a"), &Limits::default()).unwrap();
+            let cells: Vec<f64> = (0..6).map(|cell| array.planes[0].real(cell)).collect();
+            let rows = match npy_triples_from_bytes(&bytes, Path::new("a")).unwrap() {
+                Triples::Reals(rows) => rows.concat(),
+                Triples::Wholes(rows) => rows.concat().into_iter().map(|whole| whole as f64).collect(),
+            };
+            assert_eq!(rows, cells, "{descr}, {fortran}");
+        }
+    }
+    // Big-endian 0x0102 is 258, and the second number of a column in Fortran order is that of the second row.
+    let file = npy(">i2", 2, &[1, 2, 0xff, 0xfe, 0, 3, 0, 4, 0, 5, 0, 6]);
+    let rows = |file: &[u8]| npy_triples_from_bytes(file, Path::new("a")).unwrap();
+    assert_eq!(rows(&file), Triples::Wholes(vec![[258, -2, 3], [4, 5, 6]]));
+    let at = file.windows(5).position(|word| word == b"False").unwrap();
+    let columns = [&file[..at], b"True ", &file[at + 5..]].concat();
+    assert_eq!(rows(&columns), Triples::Wholes(vec![[258, 3, 5], [-2, 4, 6]]));
 }
 
 #[test]

@@ -57,6 +57,20 @@ fn transforms_are_not_rounded_to_single_precision() {
 }
 
 #[test]
+fn buffers_beside_the_file_have_digests() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut json, bin) = square();
+    json["buffers"][0]["uri"] = json!("square.bin");
+    std::fs::write(folder.path().join("square.bin"), &bin).unwrap();
+    let path = folder.path().join("square.gltf");
+    std::fs::write(&path, json.to_string()).unwrap();
+    let file = raypencil_mesh_io::read_triangles(&path).unwrap();
+    let sha256 = raypencil_files::sha256;
+    assert_eq!(file.digests, [sha256(json.to_string().as_bytes()), sha256(&bin)]);
+    assert_eq!((file.triangles.faces().len(), file.polygons), (2, None));
+}
+
+#[test]
 fn messages_are_those_of_terrain() {
     let (mut json, bin) = square();
     json["accessors"][0]["count"] = json!(400);
