@@ -17,6 +17,11 @@ pub enum FileError {
     #[diagnostic(code(raypencil::gltf))]
     Gltf(Box<Problem>),
 
+    /// Wrong contents of an STL, OBJ or PLY file, or a file that is no mesh.
+    #[error("{0}")]
+    #[diagnostic(code(raypencil::mesh))]
+    Mesh(Box<Problem>),
+
     /// Wrong contents of an elevation model.
     #[error("{0}")]
     #[diagnostic(code(raypencil::dem))]

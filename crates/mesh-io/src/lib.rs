@@ -1,4 +1,4 @@
-//! Terrain in files: glTF, GLB and GeoTIFF, in and out.
+//! Terrain in files: glTF, GLB and GeoTIFF, in and out. Triangles of any mesh in glTF, STL, OBJ, PLY and NPY, in.
 //!
 //! A reader checks every reference, length and number of a file before it uses it, and every size against the length of
 //! the file before it asks for memory. An error names the file, the place in it, what was found and what was expected.
@@ -8,15 +8,21 @@
 //!       buffers -> accessors -> primitives    bytes, typed numbers, triangles
 //!       nodes, materials -> assemble          where each mesh stands, and one list of vertices and faces
 //!       stated_origin -> read                 a mesh with its scene origin
+//!       placement -> exact                    triangles in the axes of the file, in double precision
 //!       write                                 a mesh to GLB
 //! dem   tags -> blocks                        tags of a TIFF, and the samples in its strips or tiles
 //!       registration -> georeference          what a pixel is, and where pixels are on the map
 //!       lattice, model -> read                the posts inside a window, and the ground through them
 //!       write                                 a grid of heights to GeoTIFF
+//! triangles  text, parts                      lines and decimal numbers of a text, polygons to faces
+//!       stl, obj, npy_pair                    a format each
+//!       ply: header -> numbers                elements and types, and the numbers of either kind
+//!       read                                  which format a file has, and triangles as `f64`
 //! ```
 //!
 //! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md`. Sources: glTF 2.0
-//! (Khronos), TIFF 6.0, BigTIFF, GeoTIFF 1.1 (OGC 19-008r4).
+//! (Khronos), TIFF 6.0, BigTIFF, GeoTIFF 1.1 (OGC 19-008r4), STL (3D Systems), OBJ (Wavefront), PLY (Greg Turk), NPY
+//! (NumPy Enhancement Proposal 1).
 //!
 //! ```
 //! use glam::DVec3;
@@ -38,12 +44,14 @@
 
 pub mod dem;
 pub mod gltf;
+pub mod triangles;
 
 pub use dem::{Dem, Registration, dem_from_bytes, read_dem, write_geotiff};
 pub use gltf::{
     DEFAULT_REFLECTIVITY, Vertices, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
     write_terrain_glb,
 };
+pub use triangles::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use exr::prelude::f16;
-
 use crate::bytes;
 use crate::error::{Fault, FileError};
 use crate::limits::Limits;
 use crate::npy::header::{self, Header, Number};
+use crate::npy::read::{bits, real, signed};
 use crate::values::Storage;
 
 /// An array of any shape.
@@ -64,8 +63,7 @@ fn decode(file: &[u8]) -> Result<Numbers, Fault> {
         return Err(Fault::new("numbers", format!("{} bytes", numbers.len()), expected));
     }
     let count = numbers.len() / size;
-    let values =
-        (0..count).map(|index| value(&header, &numbers[size * place(&header, index)..][..size], index));
+    let values = (0..count).map(|index| value(&header, numbers, index));
     let storage = match header.number {
         Number::Real(2) => Storage::F16,
         Number::Real(4) => Storage::F32,
@@ -91,13 +89,8 @@ fn place(header: &Header, index: usize) -> usize {
     place
 }
 
-fn value(header: &Header, bytes: &[u8], index: usize) -> Result<f64, Fault> {
-    let mut word = [0; 8];
-    word[..bytes.len()].copy_from_slice(bytes);
-    if header.big_endian {
-        word[..bytes.len()].reverse();
-    }
-    let bits = u64::from_le_bytes(word);
+fn value(header: &Header, numbers: &[u8], index: usize) -> Result<f64, Fault> {
+    let bits = bits(header, numbers, place(header, index));
     let whole = |value: i128| {
         if value.unsigned_abs() > 1 << 53 {
             return Err(Fault::new(
@@ -109,14 +102,8 @@ fn value(header: &Header, bytes: &[u8], index: usize) -> Result<f64, Fault> {
         Ok(value as f64)
     };
     match header.number {
-        Number::Real(2) => Ok(f16::from_bits(bits as u16).to_f64()),
-        Number::Real(4) => Ok(f64::from(f32::from_bits(bits as u32))),
-        Number::Real(_) => Ok(f64::from_bits(bits)),
-        Number::Signed(size) => {
-            // Sign extension: the sign bit is moved to the top and back.
-            let shift = 64 - 8 * size;
-            whole(i128::from((bits << shift) as i64 >> shift))
-        }
+        Number::Real(_) => Ok(real(header.number, bits)),
+        Number::Signed(size) => whole(i128::from(signed(size, bits))),
         Number::Unsigned(_) | Number::Bool => whole(i128::from(bits)),
     }
 }

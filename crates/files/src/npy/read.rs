@@ -68,31 +68,17 @@ fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {
 fn plane(header: &Header, shape: Shape, numbers: &[u8], component: usize) -> Result<Values, Fault> {
     let (rows, columns, components) =
         (shape.rows as usize, shape.columns as usize, shape.components as usize);
-    let size = header.number.bytes();
-    // Bits of the number in a cell; absent high bytes are zero.
     let word = |row: usize, column: usize| {
         let index = match header.fortran_order {
             false => (row * columns + column) * components + component,
             true => row + rows * (column + columns * component),
         };
-        let mut word = [0; 8];
-        word[..size].copy_from_slice(&numbers[size * index..size * (index + 1)]);
-        if header.big_endian {
-            word[..size].reverse();
-        }
-        u64::from_le_bytes(word)
+        bits(header, numbers, index)
     };
     let cells = || (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
     let (width, height) = (columns as u32, rows as u32);
     if let Number::Real(_) = header.number {
-        let real = |(row, column)| {
-            let bits = word(row, column);
-            match size {
-                2 => f16::from_bits(bits as u16).to_f64(),
-                4 => f64::from(f32::from_bits(bits as u32)),
-                _ => f64::from_bits(bits),
-            }
-        };
+        let real = |(row, column)| real(header.number, word(row, column));
         return Ok(Values::Reals(Image::from_cells(width, height, cells().map(real).collect())));
     }
     let whole = |(row, column)| {
@@ -106,14 +92,38 @@ fn plane(header: &Header, shape: Shape, numbers: &[u8], component: usize) -> Res
     Ok(Values::Wholes(Image::from_cells(width, height, wholes)))
 }
 
+/// Bits of the number at `index` among all numbers of a file; absent high bytes are zero.
+pub(super) fn bits(header: &Header, numbers: &[u8], index: usize) -> u64 {
+    let size = header.number.bytes();
+    let mut word = [0; 8];
+    word[..size].copy_from_slice(&numbers[size * index..size * (index + 1)]);
+    if header.big_endian {
+        word[..size].reverse();
+    }
+    u64::from_le_bytes(word)
+}
+
+/// A real number from its bits, widened exactly.
+pub(super) fn real(number: Number, bits: u64) -> f64 {
+    match number.bytes() {
+        2 => f16::from_bits(bits as u16).to_f64(),
+        4 => f64::from(f32::from_bits(bits as u32)),
+        _ => f64::from_bits(bits),
+    }
+}
+
+/// Sign extension of a number of `size` bytes: the sign bit is moved to the top and back.
+pub(super) fn signed(size: usize, bits: u64) -> i64 {
+    let shift = 64 - 8 * size;
+    (bits << shift) as i64 >> shift
+}
+
 /// A whole number from its bits, or the texts of what was found and what was expected.
 fn whole(number: Number, bits: u64) -> Result<u32, (String, &'static str)> {
     match number {
         Number::Bool if bits > 1 => Err((format!("a truth value of {bits}"), "0 or 1")),
         Number::Signed(size) => {
-            // Sign extension: the sign bit is moved to the top and back.
-            let shift = 64 - 8 * size;
-            let value = (bits << shift) as i64 >> shift;
+            let value = signed(size, bits);
             match value {
                 -1 => Ok(u32::MAX),
                 _ => u32::try_from(value).map_err(|_| (value.to_string(), "0 to 4294967295, or -1 for none")),

@@ -25,7 +25,7 @@ pub(super) struct Parts {
 /// Adds the vertices and faces of all nodes to `parts`.
 ///
 /// Faces are ordered by node, then by primitive, then as in the primitive: this is their `FaceId`. With `as_is` the
-/// transforms of nodes are not applied.
+/// transforms of nodes are not applied. Vertices beyond `max_coordinate`, metres, are refused.
 pub(super) fn assemble(
     root: &Root,
     nodes: Vec<PlacedNode>,
@@ -33,6 +33,7 @@ pub(super) fn assemble(
     mut parts: Parts,
     reflectivity: f64,
     as_is: bool,
+    max_coordinate: f64,
 ) -> Result<Parts, Fault> {
     // The totals are known before anything is read, so that a small file cannot ask for much memory. The counts of a
     // mesh are computed once, however often it is drawn.
@@ -78,9 +79,10 @@ pub(super) fn assemble(
                     for (number, &[x, y, z]) in positions.iter().enumerate() {
                         let local = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
                         let file = if untouched { local } else { file_from_node.transform_point3(local) };
-                        if !(file.abs().max_element() <= 1e12) {
+                        if !(file.abs().max_element() <= max_coordinate) {
                             let found = format!("vertex {number} of accessor {accessor} lands at {file}");
-                            return Err(Fault::new(node_place(root, node), found, "a place within 1e12 m"));
+                            let expected = format!("a place within {max_coordinate:e} m");
+                            return Err(Fault::new(node_place(root, node), found, expected));
                         }
                         // y up becomes z up.
                         parts.vertices.push(DVec3::new(file.x, -file.z, file.y));
@@ -114,9 +116,6 @@ pub(super) fn assemble(
             // There are at most 65534 materials and the additional one.
             parts.face_materials.extend(std::iter::repeat_n(material as u16, parts.faces.len() - before));
         }
-    }
-    if parts.faces.is_empty() {
-        return Err(Fault::new("scene", "no triangles", "at least one"));
     }
     Ok(parts)
 }

@@ -7,14 +7,17 @@ mod accessors;
 mod assemble;
 mod buffers;
 mod container;
+mod exact;
 mod json;
 mod limits;
 mod materials;
 mod nodes;
+mod placement;
 mod primitives;
 mod read;
 mod stated_origin;
 mod write;
 
+pub(crate) use exact::exact_triangles;
 pub use read::{DEFAULT_REFLECTIVITY, Vertices, load_mesh, mesh_from_bytes, mesh_of_offsets, read_mesh};
 pub use write::{glb_bytes, write_glb, write_terrain_glb};

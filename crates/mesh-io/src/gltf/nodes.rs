@@ -7,6 +7,7 @@ use raypencil_files::Fault;
 use raypencil_scene::Pose;
 
 use crate::gltf::buffers::missing_reference;
+use crate::gltf::placement::Placement;
 
 /// Maximum depth of the hierarchy, levels. At this depth even a scale of 2 in each level overflows.
 const MAX_DEPTH: usize = 1024;
@@ -28,7 +29,12 @@ pub(super) fn node_place(root: &Root, index: usize) -> String {
 }
 
 /// All nodes below the roots: a node before its children, children in the order of the file.
-pub(super) fn placed_nodes(root: &Root) -> Result<Vec<PlacedNode>, Fault> {
+///
+/// `placement` gives the transform of a node below its parent.
+pub(super) fn placed_nodes(
+    root: &Root,
+    placement: impl Fn(usize, &Node) -> Placement,
+) -> Result<Vec<PlacedNode>, Fault> {
     let parents = parents(root)?;
     let mut stack: Vec<(usize, DAffine3, usize)> = Vec::new();
     for &index in roots(root, &parents)?.iter().rev() {
@@ -42,7 +48,7 @@ pub(super) fn placed_nodes(root: &Root) -> Result<Vec<PlacedNode>, Fault> {
         }
         // Every index is that of a node: roots and children have been checked.
         let node = &root.nodes[index];
-        let parent_from_node = local(node, &node_place(root, index))?;
+        let parent_from_node = local(&placement(index, node), &node_place(root, index))?;
         let file_from_node = match parent_from_node {
             Some(transform) => file_from_parent * transform,
             None => file_from_parent,
@@ -130,14 +136,13 @@ fn roots(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Fault> {
 }
 
 /// Transform of a node to its parent's axes; `None` if it has none, so that its vertices are not changed.
-fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
-    let wide = |v: [f32; 3]| DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
-    let finite = |name: &str, numbers: &[f32]| match numbers.iter().all(|number| number.is_finite()) {
+fn local(node: &Placement, place: &str) -> Result<Option<DAffine3>, Fault> {
+    let finite = |name: &str, numbers: &[f64]| match numbers.iter().all(|number| number.is_finite()) {
         true => Ok(()),
         false => Err(Fault::new(place, format!("{name} {numbers:?}"), "finite numbers")),
     };
     let has_parts = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
-    if let Some(matrix) = node.matrix {
+    if let Some(matrix) = node.matrix.as_deref() {
         if has_parts {
             return Err(Fault::new(
                 place,
@@ -145,15 +150,15 @@ fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
                 "one or the other",
             ));
         }
-        finite("matrix", &matrix)?;
+        finite("matrix", matrix)?;
         // Stored column by column; the last row must be that of an affine map.
-        let [a, b, c, d]: [[f32; 4]; 4] =
+        let [a, b, c, d]: [[f64; 4]; 4] =
             std::array::from_fn(|column| std::array::from_fn(|row| matrix[4 * column + row]));
         if [a[3], b[3], c[3], d[3]] != [0.0, 0.0, 0.0, 1.0] {
             let found = format!("a matrix with the last row {:?}", [a[3], b[3], c[3], d[3]]);
             return Err(Fault::new(place, found, "[0, 0, 0, 1]"));
         }
-        let column = |c: [f32; 4]| wide([c[0], c[1], c[2]]);
+        let column = |c: [f64; 4]| DVec3::new(c[0], c[1], c[2]);
         let linear = DMat3::from_cols(column(a), column(b), column(c));
         return Ok(Some(DAffine3 { matrix3: linear, translation: column(d) }));
     }
@@ -162,11 +167,11 @@ fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
     }
     let translation = node.translation.unwrap_or_default();
     let scale = node.scale.unwrap_or([1.0; 3]);
-    let rotation = node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |rotation| rotation.0);
+    let rotation = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
     finite("translation", &translation)?;
     finite("scale", &scale)?;
     finite("rotation", &rotation)?;
-    let [x, y, z, w] = rotation.map(f64::from);
+    let [x, y, z, w] = rotation;
     let norm_squared = x * x + y * y + z * z + w * w;
     // Single precision holds a unit quaternion to about 1e-7. The larger bound admits writers with fewer digits.
     if !(0.9..=1.1).contains(&norm_squared) {
@@ -175,11 +180,11 @@ fn local(node: &Node, place: &str) -> Result<Option<DAffine3>, Fault> {
     }
     // `rotate` divides by the squared length, so that a length other than 1 does not scale the ground.
     let turn = Pose { rotation: glam::DQuat::from_xyzw(x, y, z, w), ..Pose::IDENTITY };
-    let scale = wide(scale);
+    let scale = DVec3::from_array(scale);
     let linear = DMat3::from_cols(
         turn.rotate(DVec3::X) * scale.x,
         turn.rotate(DVec3::Y) * scale.y,
         turn.rotate(DVec3::Z) * scale.z,
     );
-    Ok(Some(DAffine3 { matrix3: linear, translation: wide(translation) }))
+    Ok(Some(DAffine3 { matrix3: linear, translation: DVec3::from_array(translation) }))
 }

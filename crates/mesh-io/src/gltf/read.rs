@@ -9,11 +9,15 @@ use raypencil_scene::Mesh;
 use crate::gltf::assemble::{Parts, assemble};
 use crate::gltf::buffers::Buffers;
 use crate::gltf::limits::MAX_FILE_BYTES;
+use crate::gltf::placement::Placement;
 use crate::gltf::{container, json, materials, nodes, stated_origin};
 
 /// Reflectivity of materials that state none. CHOICE: bright Martian dust reflects about this much in the near
 /// infrared.
 pub const DEFAULT_REFLECTIVITY: f64 = 0.25;
+
+/// Maximum coordinate of terrain, metres.
+const MAX_COORDINATE: f64 = 1e12;
 
 /// Loads a `.glb` or `.gltf` terrain. Materials that state no reflectivity get [`DEFAULT_REFLECTIVITY`].
 ///
@@ -94,16 +98,19 @@ fn parse(
     let container = container::split(bytes).map_err(in_file)?;
     let root = json::root(container.json).map_err(in_file)?;
     let mut buffers = Buffers::new(&root, folder, container.bin);
-    let nodes = nodes::placed_nodes(&root).map_err(in_file)?;
+    let nodes = nodes::placed_nodes(&root, |_, node| Placement::rounded(node)).map_err(in_file)?;
     let materials = materials::read(&root, container.json, reflectivity).map_err(in_file)?;
     let stated = match kind {
         Vertices::Global => stated_origin::origin(&root, &nodes),
         Vertices::OffsetsFrom(_) => None,
     };
     let parts = Parts { materials, ..Parts::default() };
-    let parts =
-        assemble(&root, nodes, &mut buffers, parts, reflectivity, stated.is_some()).map_err(in_file)?;
+    let parts = assemble(&root, nodes, &mut buffers, parts, reflectivity, stated.is_some(), MAX_COORDINATE)
+        .map_err(in_file)?;
     let Parts { mut vertices, faces, face_materials, materials } = parts;
+    if faces.is_empty() {
+        return Err(in_file(Fault::new("scene", "no triangles", "at least one")));
+    }
     let mesh = match (kind, stated) {
         (Vertices::Global, Some(origin)) => {
             stated_origin::mesh(origin, vertices, faces, face_materials, materials)

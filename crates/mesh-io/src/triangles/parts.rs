@@ -1,0 +1,70 @@
+//! Vertices and faces while a file is read, and the limits of both.
+
+use raypencil_files::Fault;
+
+/// Maximum magnitude of a coordinate: that of [`raypencil_scene::Triangles`].
+pub(crate) const MAX_COORDINATE: f64 = 1e30;
+
+/// Vertices, and faces from polygons.
+#[derive(Default)]
+pub(super) struct Parts {
+    pub(super) vertices: Vec<[f64; 3]>,
+    pub(super) faces: Vec<[u32; 3]>,
+    /// Polygon of each face; `None` as long as every polygon is one triangle.
+    pub(super) polygons: Option<Vec<u32>>,
+    /// Number of polygons.
+    count: u32,
+}
+
+impl Parts {
+    /// Vertices and faces of a file that has triangles only.
+    pub(super) fn of_triangles(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Self {
+        let count = faces.len() as u32;
+        Self { vertices, faces, polygons: None, count }
+    }
+
+    /// Adds a polygon of three or more corners as a fan around its first.
+    pub(super) fn add_polygon(&mut self, corners: &[u32]) {
+        let &[first, ref others @ ..] = corners else { return };
+        if corners.len() > 3 && self.polygons.is_none() {
+            self.polygons = Some((0..self.count).collect());
+        }
+        for side in others.windows(2) {
+            self.faces.push([first, side[0], side[1]]);
+            if let Some(polygons) = &mut self.polygons {
+                polygons.push(self.count);
+            }
+        }
+        self.count += 1;
+    }
+
+    /// Number of polygons so far.
+    pub(super) fn polygon_count(&self) -> u32 {
+        self.count
+    }
+}
+
+/// A coordinate as it is, if [`raypencil_scene::Triangles`] takes it.
+pub(super) fn coordinate(number: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
+    match number.abs() <= MAX_COORDINATE {
+        true => Ok(number),
+        false => Err(Fault::new(place(), number.to_string(), "a finite number within 1e30")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_know_their_polygons_once_there_is_a_larger_one() {
+        let mut parts = Parts::default();
+        parts.add_polygon(&[4, 5, 6]);
+        assert_eq!(parts.polygons, None);
+        parts.add_polygon(&[0, 1, 2, 3]);
+        parts.add_polygon(&[7, 8, 9]);
+        assert_eq!(parts.faces, [[4, 5, 6], [0, 1, 2], [0, 2, 3], [7, 8, 9]]);
+        assert_eq!(parts.polygons, Some(vec![0, 1, 1, 2]));
+        assert_eq!(parts.polygon_count(), 3);
+    }
+}

@@ -1,0 +1,167 @@
+//! Files of any mesh format to triangles: which format it is, and one door to all readers.
+
+use std::path::Path;
+
+use raypencil_files::{Fault, FileError, Sha256Digest, bytes, sha256};
+use raypencil_scene::Triangles;
+
+use crate::gltf::exact_triangles;
+use crate::triangles::parts::Parts;
+use crate::triangles::{npy_pair, obj, ply, stl};
+
+/// Maximum size of a file: 1 GiB, as of a glTF file.
+const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// Triangles of a file, and what ties them to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TriangleFile {
+    /// The triangles.
+    pub triangles: Triangles,
+    /// For each face the polygon of the file that it is a part of, from 0; `None` if each polygon is one triangle, so
+    /// that face i is polygon i.
+    pub polygons: Option<Vec<u32>>,
+    /// Digests of the files that were read: the file itself, then the buffers beside it; of a pair of NPY files the
+    /// vertices, then the faces.
+    pub digests: Vec<Sha256Digest>,
+}
+
+/// Loads the triangles of a file: GLB, glTF, STL, OBJ, PLY, or a pair of NPY files.
+///
+/// Vertices are in the frame and the unit of the file. No axis is turned: the y axis of a glTF file stays y, unlike in
+/// [`crate::load_mesh`]. Each number is taken as it is: of a decimal the nearest `f64`; single precision is widened.
+/// Only the nodes of a glTF file move vertices, in double precision.
+///
+/// Faces count from 0 in the order of the file. A polygon of n corners becomes n - 2 faces, a fan around its first
+/// corner; [`read_triangles`] tells which polygon a face belongs to. The corners of STL become one vertex if they have
+/// the same three numbers. A file may have no faces.
+///
+/// `path` is a file; or a folder with `vertices.npy` and `faces.npy`; or one of two files whose names end with these;
+/// or `rock` for `rock.vertices.npy` and `rock.faces.npy`, also with `_` or `-` for the dot.
+///
+/// # Errors
+/// Names the file and the place in it (the line of a text, the byte of a binary file), what was found there and what
+/// was expected. Sizes are compared with the length of the file before memory is allocated.
+///
+/// ```
+/// use raypencil_mesh_io::load_triangles;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("square.obj");
+/// std::fs::write(&path, "v 0.1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")?;
+/// let mesh = load_triangles(&path)?;
+/// // 0.1 is the double, not the single nearest to it; the square became a fan of two triangles.
+/// assert_eq!(mesh.vertices()[0], [0.1, 0.0, 0.0]);
+/// assert_eq!(mesh.faces(), [[0, 1, 2], [0, 2, 3]]);
+///
+/// std::fs::write(&path, "v 0 0 0\nf 1 1 5\n")?;
+/// let error = load_triangles(&path).unwrap_err().to_string();
+/// assert!(error.ends_with("square.obj: line 2: vertex 5; expected 1 to 1, the vertices of the file"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn load_triangles(path: &Path) -> Result<Triangles, FileError> {
+    Ok(read_triangles(path)?.triangles)
+}
+
+/// Loads triangles as [`load_triangles`] does, with the polygon of each face and the digests of the files.
+///
+/// # Errors
+/// As [`load_triangles`].
+///
+/// ```
+/// use raypencil_mesh_io::read_triangles;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("house.obj");
+/// std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\n")?;
+/// let file = read_triangles(&path)?;
+/// // Faces 0 and 1 are the square, polygon 0; face 2 is polygon 1.
+/// assert_eq!(file.polygons, Some(vec![0, 0, 1]));
+/// assert_eq!(file.digests.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_triangles(path: &Path) -> Result<TriangleFile, FileError> {
+    let read = |path: &Path| {
+        bytes::read_file(path, MAX_FILE_BYTES).map_err(|error| FileError::io(path, "read", error))
+    };
+    if let Some(files) = npy_pair::files(path) {
+        let (vertices, faces) = (read(&files[0])?, read(&files[1])?);
+        let parts = npy_pair::read(&files, [&vertices, &faces])?;
+        return finished(parts, path, vec![sha256(&vertices), sha256(&faces)]);
+    }
+    parse(&read(path)?, path)
+}
+
+/// Triangles from the bytes of a GLB, glTF, STL, OBJ or PLY file. `file` is its name in messages, and its ending tells
+/// the format where the bytes do not; buffers in files of their own are looked up beside it.
+///
+/// # Errors
+/// As [`load_triangles`].
+///
+/// ```
+/// use raypencil_mesh_io::triangles_from_bytes;
+///
+/// let file = b"solid a facet\nendsolid";
+/// assert_eq!(triangles_from_bytes(file, "empty.stl".as_ref())?.faces().len(), 0);
+/// # Ok::<(), raypencil_files::FileError>(())
+/// ```
+pub fn triangles_from_bytes(bytes: &[u8], file: &Path) -> Result<Triangles, FileError> {
+    Ok(parse(bytes, file)?.triangles)
+}
+
+/// Mesh format of a single file.
+enum Format {
+    Gltf,
+    Stl,
+    Obj,
+    Ply,
+}
+
+fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError> {
+    let in_file = |fault: Fault| FileError::Mesh(fault.in_file(file));
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        let found = format!("{} bytes", bytes.len());
+        return Err(in_file(Fault::new("length", found, format!("at most {MAX_FILE_BYTES} bytes"))));
+    }
+    let mut digests = vec![sha256(bytes)];
+    let parts = match format(bytes, file).map_err(in_file)? {
+        Format::Gltf => {
+            let read = exact_triangles(bytes, file)?;
+            digests.extend(read.buffers);
+            Parts::of_triangles(read.vertices, read.faces)
+        }
+        Format::Stl => stl::read(bytes).map_err(in_file)?,
+        Format::Obj => obj::read(bytes).map_err(in_file)?,
+        Format::Ply => ply::read(bytes).map_err(in_file)?,
+    };
+    finished(parts, file, digests)
+}
+
+/// Format of a file: by its first bytes, then by its ending, then by the rest of its bytes. OBJ has no mark of its own.
+fn format(bytes: &[u8], file: &Path) -> Result<Format, Fault> {
+    let ending = file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    match (bytes, ending.as_deref()) {
+        ([b'g', b'l', b'T', b'F', ..], _) => Ok(Format::Gltf),
+        ([b'p', b'l', b'y', b'\n' | b'\r', ..], _) => Ok(Format::Ply),
+        (_, Some("glb" | "gltf")) => Ok(Format::Gltf),
+        (_, Some("stl")) => Ok(Format::Stl),
+        (_, Some("obj")) => Ok(Format::Obj),
+        (_, Some("ply")) => Ok(Format::Ply),
+        _ if stl::is_binary(bytes) || bytes.starts_with(b"solid") => Ok(Format::Stl),
+        _ if bytes.trim_ascii_start().starts_with(b"{") => Ok(Format::Gltf),
+        ([0x93, b'N', b'U', b'M', b'P', b'Y', ..], _) => {
+            let expected = "two files whose names end with vertices.npy and faces.npy";
+            Err(Fault::new("first bytes", "a single NPY file", expected))
+        }
+        _ => {
+            let found = format!("{:02x?}", &bytes[..bytes.len().min(4)]);
+            Err(Fault::new("first bytes", found, "GLB, glTF, STL or PLY, or the ending .obj"))
+        }
+    }
+}
+
+fn finished(parts: Parts, file: &Path, digests: Vec<Sha256Digest>) -> Result<TriangleFile, FileError> {
+    let Parts { vertices, faces, polygons, .. } = parts;
+    let triangles = Triangles::new(vertices, faces)
+        .map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
+    Ok(TriangleFile { triangles, polygons, digests })
+}

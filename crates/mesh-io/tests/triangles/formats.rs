@@ -1,0 +1,208 @@
+//! The same mesh in every format, and numbers as files give them.
+
+use std::fs;
+
+use raypencil_files::{Limits, npy_from_bytes, npy_numbers_from_bytes};
+use raypencil_mesh_io::{load_triangles, read_triangles};
+
+use super::samples::{self, FACES, VERTICES, all, npy, npy_faces, npy_vertices};
+use super::*;
+
+#[test]
+fn every_format_gives_the_same_triangles() {
+    let expected = Triangles::new(VERTICES.to_vec(), FACES.to_vec()).unwrap();
+    for (name, bytes) in all() {
+        let mesh = parse(name, &bytes).unwrap();
+        assert_eq!(mesh, expected, "{name}");
+        assert_eq!(bits(&mesh), bits(&expected), "{name}");
+    }
+}
+
+#[test]
+fn a_pair_of_arrays_gives_them_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let expected = Triangles::new(VERTICES.to_vec(), FACES.to_vec()).unwrap();
+    for prefix in ["", "rock.", "rock_", "rock-", "any"] {
+        fs::write(folder.path().join(format!("{prefix}vertices.npy")), npy_vertices()).unwrap();
+        fs::write(folder.path().join(format!("{prefix}faces.npy")), npy_faces()).unwrap();
+    }
+    for path in ["", "rock", "rock_vertices.npy", "anyfaces.npy", "vertices.npy"] {
+        let file = read_triangles(&folder.path().join(path)).unwrap();
+        assert_eq!(bits(&file.triangles), bits(&expected), "{path}");
+        assert_eq!((file.triangles, file.polygons, file.digests.len()), (expected.clone(), None, 2));
+    }
+    // Single precision is widened; faces may be bytes.
+    let numbers: Vec<u8> = [0.1_f32; 9].iter().flat_map(|number| number.to_be_bytes()).collect();
+    fs::write(folder.path().join("vertices.npy"), npy(">f4", 3, &numbers)).unwrap();
+    fs::write(folder.path().join("faces.npy"), npy("|u1", 1, &[2, 1, 0])).unwrap();
+    let mesh = load_triangles(folder.path()).unwrap();
+    assert_eq!((mesh.vertices()[0], mesh.faces()), ([f64::from(0.1_f32); 3], &[[2, 1, 0]][..]));
+}
+
+#[test]
+fn decimals_become_the_nearest_double() {
+    let numbers = ["0.1", "1e-300", "-123456789.123456789", "+5.", ".5", "9007199254740993"];
+    for text in numbers {
+        let expected: f64 = text.parse().unwrap();
+        let stl = format!(
+            "solid\nfacet normal nan nan nan\nouter loop\nvertex {text} 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
+             endfacet\nendsolid"
+        );
+        let obj = format!("v {text} 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        let ply = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             element face 1\nproperty list uchar int vertex_index\nend_header\n{text} 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+        );
+        for (name, file) in [("a.stl", stl), ("a.obj", obj), ("a.ply", ply)] {
+            assert_eq!(parse(name, file.as_bytes()).unwrap().vertices()[0][0].to_bits(), expected.to_bits());
+        }
+    }
+    // 0.1 = 0x3fb999999999999a as a double.
+    let mesh = parse("a.obj", b"v 0.1 0.1 0.1\n").unwrap();
+    assert_eq!(mesh.vertices()[0][0].to_bits(), 0x3fb9_9999_9999_999a);
+}
+
+#[test]
+fn all_types_of_ply_are_widened_exactly() {
+    let types: [(&str, &[u8], f64); 8] = [
+        ("char", &[0x80], -128.0),
+        ("uint8", &[0xff], 255.0),
+        ("short", &[0x00, 0x80], -32768.0),
+        ("uint16", &[0xfe, 0xff], 65534.0),
+        ("int32", &[0, 0, 0, 0x80], -2147483648.0),
+        ("uint", &[0xff; 4], 4294967295.0),
+        ("float", &0.1_f32.to_le_bytes(), 0.1_f32 as f64),
+        ("float64", &0.1_f64.to_le_bytes(), 0.1),
+    ];
+    for (name, bytes, number) in types {
+        let mut file = format!(
+            "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\nproperty {name} z\r\nproperty {name} x\r\n\
+             property {name} y\r\nend_header\r\n"
+        )
+        .into_bytes();
+        file.extend(bytes.repeat(3));
+        assert_eq!(parse("a.ply", &file).unwrap().vertices(), [[number; 3]], "{name}");
+    }
+}
+
+#[test]
+fn the_ending_of_header_lines_is_that_of_the_first() {
+    // The first byte after a header with "\r" is "\n", 10.
+    let header = "ply\rformat binary_big_endian 1.0\relement vertex 1\rproperty uchar x\rproperty uchar y\r\
+                  property uchar z\rend_header\r";
+    let file = [header.as_bytes(), &[10, 13, 10]].concat();
+    assert_eq!(parse("a.ply", &file).unwrap().vertices(), [[10.0, 13.0, 10.0]]);
+}
+
+#[test]
+fn stl_corners_of_the_same_numbers_are_one_vertex() {
+    let facet = |x: &str, y: &str| {
+        format!(
+            "FACET normal 0 0 0 outer loop vertex {x} 0 0\rvertex 1 {y} 0\nvertex 0 1 0 endloop endfacet\r\n"
+        )
+    };
+    // Two solids; +0 and -0 are the same number, and the first of them stays.
+    let file =
+        format!("solid a\n{}endsolid a\nSOLID\n{}endsolid", facet("-0", "2"), facet("0", "2.0000000001"));
+    let mesh = parse("a.stl", file.as_bytes()).unwrap();
+    assert_eq!(mesh.faces(), [[0, 1, 2], [0, 3, 2]]);
+    assert_eq!(mesh.vertices()[0][0].to_bits(), (-0.0_f64).to_bits());
+}
+
+#[test]
+fn obj_statements_may_go_on_over_lines_and_stand_in_any_order() {
+    let file = "f 1 2 \\\n 3 # a square\\\nv 0 0 0 1.0\rv 1 0 0 0.5 0.5 0.5\r\n\tv 1 1 0\n# C:\\rocks\\\nfo -1 -3 -2\n";
+    let mesh = parse("a.obj", file.as_bytes()).unwrap();
+    assert_eq!(mesh.faces(), [[0, 1, 2], [2, 0, 1]]);
+    assert_eq!(mesh.vertices().len(), 3);
+}
+
+#[test]
+fn rows_of_arrays_are_those_of_their_planes() {
+    // Every type and byte order, in C and in Fortran order; two rows of bytes that differ.
+    for kind in ["f2", "f4", "f8", "u1", "u2", "u4", "i1", "i2", "i4", "i8"] {
+        let size: usize = kind[1..].parse().unwrap();
+        for (order, fortran) in [("<", false), (">", false), ("<", true), (">", true)] {
+            if size == 1 && order == ">" {
+                continue;
+            }
+            // Small numbers: those of 8 bytes have to fit into planes of 4.
+            let number = |index: usize| {
+                let mut bytes = vec![0; size];
+                (bytes[0], bytes[size.min(2) - 1]) = (17 * index as u8, 3 + 17 * index as u8);
+                if order == ">" {
+                    bytes.reverse();
+                }
+                bytes
+            };
+            let numbers: Vec<u8> = (0..6).flat_map(number).collect();
+            let descr = format!("{}{kind}", if size == 1 { "|" } else { order });
+            let mut file = String::from_utf8_lossy(&npy(&descr, 2, &[])[10..]).into_owned();
+            if fortran {
+                file = file.replace("False", "True");
+            }
+            let length = (file.len() as u16).to_le_bytes();
+            let bytes = [b"\x93NUMPY\x01\x00", &length[..], file.as_bytes(), &numbers].concat();
+            let array = npy_from_bytes(&bytes, Path::new("a"), &Limits::default()).unwrap();
+            let cells: Vec<f64> = (0..6).map(|cell| array.planes[0].real(cell)).collect();
+            let rows = npy_numbers_from_bytes(&bytes, Path::new("a")).unwrap().values;
+            assert_eq!(rows, cells, "{descr}, {fortran}");
+        }
+    }
+    // Big-endian 0x0102 is 258, and the second number of a column in Fortran order is that of the second row.
+    let file = npy(">i2", 2, &[1, 2, 0xff, 0xfe, 0, 3, 0, 4, 0, 5, 0, 6]);
+    let rows = |file: &[u8]| npy_numbers_from_bytes(file, Path::new("a")).unwrap().values;
+    assert_eq!(rows(&file), [258.0, -2.0, 3.0, 4.0, 5.0, 6.0]);
+    let at = file.windows(5).position(|word| word == b"False").unwrap();
+    let columns = [&file[..at], b"True ", &file[at + 5..]].concat();
+    assert_eq!(rows(&columns), [258.0, 3.0, 5.0, -2.0, 4.0, 6.0]);
+}
+
+#[test]
+fn polygons_are_counted_as_the_file_has_them() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in [("a.obj", samples::obj()), ("a.ply", samples::text_ply())] {
+        let path = folder.path().join(name);
+        fs::write(&path, &bytes).unwrap();
+        let file = read_triangles(&path).unwrap();
+        assert_eq!(file.polygons, Some(vec![0, 0, 1]), "{name}");
+        assert_eq!(file.digests, [raypencil_files::sha256(&bytes)]);
+    }
+}
+
+#[test]
+fn a_mesh_may_have_no_faces() {
+    let mut stl = vec![0; 84];
+    stl[0] = b'x';
+    let ply = "ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\nproperty int y\nproperty int z\n\
+               element face 0\nproperty list uchar int vertex_index\nend_header\n";
+    let gltf = br#"{"asset": {"version": "2.0"}}"#;
+    let files: [(&str, &[u8]); 5] = [
+        ("a.stl", &stl),
+        ("b.stl", b"solid\nendsolid\n"),
+        ("a.obj", b""),
+        ("a.ply", ply.as_bytes()),
+        ("a.gltf", gltf),
+    ];
+    for (name, bytes) in files {
+        let mesh = parse(name, bytes).unwrap();
+        assert_eq!((mesh.faces().len(), mesh.vertices().len()), (0, 0), "{name}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("vertices.npy"), npy("<f4", 0, &[])).unwrap();
+    fs::write(folder.path().join("faces.npy"), npy("<u2", 0, &[])).unwrap();
+    assert_eq!(load_triangles(folder.path()).unwrap().faces().len(), 0);
+}
+
+#[test]
+fn contents_decide_before_the_ending() {
+    for name in ["a", "a.bin", "a.obj", "a.stl"] {
+        assert_eq!(parse(name, &samples::binary_gltf()).unwrap().faces(), FACES, "{name}");
+        assert_eq!(parse(name, &samples::binary_ply(true, false)).unwrap().faces(), FACES, "{name}");
+    }
+    for bytes in [samples::binary_stl(), samples::text_stl()] {
+        assert_eq!(parse("a.3d", &bytes).unwrap().faces(), FACES);
+    }
+    assert_eq!(parse("a.OBJ", &samples::obj()).unwrap().faces(), FACES);
+    refused("a.3d", b"v 0", "first bytes: [76, 20, 30]; expected GLB, glTF, STL or PLY, or the ending .obj");
+}
