@@ -19,8 +19,8 @@ const FACE_BYTES: usize = 50;
 
 /// Reads the faces of a file.
 pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
-    // A binary file may start with "solid" as well. It has bytes 0, which no text has: the first of them is in its number
-    // of faces, which would otherwise need more bytes than any file has.
+    // A binary file may start with "solid" as well. It has bytes 0, which no text has: at least one is in its number of
+    // faces, which would otherwise need more bytes than any file has.
     let starts_as_text =
         file.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     match starts_as_text && !file.contains(&0) {
