@@ -14,12 +14,12 @@ use crate::answers::{Answers, FirstHit, GroupAtT};
 pub struct CastSource {
     /// The mesh as it was given.
     pub mesh: String,
-    /// SHA-256 of the mesh's file, if it is one file.
-    pub mesh_sha256: Option<String>,
+    /// SHA-256 of the files of the mesh, in hexadecimal: the file itself, then those that it names.
+    pub mesh_sha256: Vec<String>,
     /// The rays as they were given.
     pub rays: String,
-    /// SHA-256 of the bytes of the rays.
-    pub rays_sha256: String,
+    /// SHA-256 of the bytes of the rays, in hexadecimal; `None` if they were given one by one.
+    pub rays_sha256: Option<String>,
 }
 
 /// What stands for no face.

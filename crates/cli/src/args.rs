@@ -6,10 +6,11 @@ use clap::{Args, Parser, Subcommand};
 use raypencil::campaign::{PartName, Shard};
 use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, quoted};
 use raypencil::judge::{Class, JudgeShare};
-use raypencil::{Fidelity, FluxModel, Precision};
+use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 use crate::parsers::{
-    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, shard, switch, threshold,
+    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, shard, switch,
+    threshold,
 };
 
 /// Simulates a Mars rover's structured-light vision system with two independent renderers and compares every ray.
@@ -52,6 +53,8 @@ pub(crate) enum Command {
     Drive(Drive),
     /// Compare two recordings channel by channel: files or folders of EXR, NPY and PFM.
     Diff(Diff),
+    /// Cast any rays on any mesh and answer them exactly: first hits with their ties, or all hits in order.
+    Cast(Cast),
     /// Generate, import or inspect terrains.
     #[command(subcommand)]
     Terrain(TerrainCommand),
@@ -427,6 +430,39 @@ pub(crate) struct Probe {
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Cast {
+    /// A mesh: .glb, .gltf, .stl, .obj or .ply, or a folder with vertices.npy and faces.npy.
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
+
+    /// Rays: NPY of shape (..., 6) or (..., 8), or CSV: origin, direction, and if wanted t_min and t_max. `-` is standard
+    /// input.
+    #[arg(value_name = "RAYS", required_unless_present = "ray", conflicts_with = "ray")]
+    pub(crate) rays: Option<PathBuf>,
+
+    /// A ray by its numbers, separated by commas: ox,oy,oz,dx,dy,dz and if wanted t_min,t_max. Its answers are printed.
+    /// May be repeated.
+    #[arg(long, value_name = "NUMBERS", value_parser = ray, allow_hyphen_values = true)]
+    pub(crate) ray: Vec<CastRay>,
+
+    /// Let rays pass through the backs of faces. Without it both sides are hit.
+    #[arg(long)]
+    pub(crate) fronts_only: bool,
+
+    /// Ask for all hits of each ray, in exact order.
+    #[arg(long)]
+    pub(crate) all: bool,
+
+    /// Ask whether each ray hits anything.
+    #[arg(long)]
+    pub(crate) any: bool,
+
+    /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

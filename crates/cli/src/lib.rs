@@ -29,6 +29,7 @@
 
 mod args;
 mod campaign;
+mod cast;
 mod check;
 mod console;
 mod diff;
@@ -99,6 +100,7 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
         Some(Command::Check(command)) => check::check(command, arguments.json),
         Some(Command::Drive(command)) => drive::drive(command, arguments.json, registry),
         Some(Command::Diff(command)) => diff::diff(command, arguments.json),
+        Some(Command::Cast(command)) => cast::cast(command, arguments.json),
         Some(Command::Terrain(command)) => terrain::terrain(command, arguments.json),
         Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),
     }

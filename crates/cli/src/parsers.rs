@@ -4,8 +4,9 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use raypencil::campaign::{PartName, Shard};
+use raypencil::cast::rays_from_bytes;
 use raypencil::judge::{Class, JudgeShare};
-use raypencil::{Fidelity, FluxModel, Precision};
+use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 /// A value that an option accepts: its name, its line of help, and what it stands for.
 type Named<T> = (&'static str, &'static str, T);
@@ -123,4 +124,16 @@ pub(crate) fn pair<T: FromStr>(text: &str) -> Result<[T; 2], String> {
     let (a, b) = text.split_once(',').ok_or_else(wrong)?;
     let one = |text: &str| text.trim().parse().map_err(|_| wrong());
     Ok([one(a)?, one(b)?])
+}
+
+/// `--ray`: 6 or 8 numbers, as a row of a CSV file.
+pub(crate) fn ray(text: &str) -> Result<CastRay, String> {
+    let rays = rays_from_bytes(text.as_bytes(), "--ray".as_ref()).map_err(|error| {
+        // One row: its line says nothing.
+        error.to_string().replace("--ray: ", "").replace("line 1: ", "").replace("ray 0.", "")
+    })?;
+    match rays.rays.as_slice() {
+        [ray] => Ok(*ray),
+        rays => Err(format!("{} rays; expected one", rays.len())),
+    }
 }

@@ -1,4 +1,4 @@
-//! Reading a whole file, up to a size that is sane for its kind.
+//! Reading a whole file or stream, up to a size that is sane for its kind.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -20,9 +20,24 @@ pub fn read_file(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
         return Err(too_large());
     }
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).map_err(|_| too_large())?);
-    File::open(path)?.take(max_bytes + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > max_bytes {
-        return Err(too_large());
-    }
+    read_to_end(File::open(path)?, &mut bytes, max_bytes)?;
     Ok(bytes)
+}
+
+/// All bytes of a stream, such as standard input, if there are at most `max_bytes`.
+///
+/// # Errors
+/// The stream's error, or that it is longer.
+pub fn read_stream(stream: impl Read, max_bytes: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    read_to_end(stream, &mut bytes, max_bytes)?;
+    Ok(bytes)
+}
+
+fn read_to_end(stream: impl Read, bytes: &mut Vec<u8>, max_bytes: u64) -> io::Result<()> {
+    stream.take(max_bytes + 1).read_to_end(bytes)?;
+    if bytes.len() as u64 > max_bytes {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, format!("longer than {max_bytes} bytes")));
+    }
+    Ok(())
 }

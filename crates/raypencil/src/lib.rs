@@ -10,6 +10,7 @@
 //! io                                 files: scenes, meshes, NPY, PFM, EXR
 //! survey                             warnings about a scene; where everything stands
 //! harness  judge  report             a validation: run, judged, reported; candidates; probe
+//! cast                               any rays on any mesh, answered exactly
 //! pack  diff  minimise  campaign     reference packs; any two recordings; the simplest scene; random terrains
 //! diagnosis                          the mistake that explains why a recording is wrong
 //! drive  rover  sensor  terrain      the rover: drives, maps, its image sensor, its ground
@@ -44,6 +45,7 @@
 
 pub use raypencil_scene::*;
 
+pub use raypencil_cast::cast;
 pub use raypencil_harness::validate;
 pub use raypencil_judge::check;
 pub use raypencil_referee::{ExactRenderer, Referee};
@@ -52,8 +54,8 @@ pub use raypencil_scene_io::{LoadedScene, Overrides, load};
 pub use raypencil_tracer::Tracer;
 
 pub use {
-    raypencil_campaign as campaign, raypencil_diagnosis as diagnosis, raypencil_diff as diff,
-    raypencil_drive as drive, raypencil_harness as harness, raypencil_judge as judge,
+    raypencil_campaign as campaign, raypencil_cast as cast, raypencil_diagnosis as diagnosis,
+    raypencil_diff as diff, raypencil_drive as drive, raypencil_harness as harness, raypencil_judge as judge,
     raypencil_minimise as minimise, raypencil_naive as naive, raypencil_pack as pack,
     raypencil_referee as referee, raypencil_report as report, raypencil_rover as rover,
     raypencil_scanline as scanline, raypencil_sensor as sensor, raypencil_survey as survey,
@@ -77,11 +79,13 @@ pub mod io {
     pub use raypencil_scene_io::*;
 }
 
-/// The example of the project's README and of this crate's, compiled and run with the documentation tests.
+/// The examples of the project's README, of this crate's and of a guide, compiled and run with the documentation tests.
 #[cfg(doctest)]
 mod readme {
     #[doc = include_str!("../../../README.md")]
     struct OfTheProject;
     #[doc = include_str!("../README.md")]
     struct OfTheCrate;
+    #[doc = include_str!("../../../docs/guide/cast.md")]
+    struct OfTheGuideToCast;
 }

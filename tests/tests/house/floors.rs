@@ -29,6 +29,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("drive", 5),
     ("pack", 5),
     ("harness", 6),
+    ("cast", 6),
     ("campaign", 7),
     ("raypencil", 8),
     ("cli", 9),

@@ -16,9 +16,10 @@ fn assert_help(command: &[&str]) {
 #[test]
 fn help_of_every_command() {
     assert_help(&[]);
-    for command in
-        ["validate", "render", "probe", "pack", "check", "campaign", "minimise", "drive", "diff", "terrain"]
-    {
+    for command in [
+        "validate", "render", "probe", "pack", "check", "campaign", "minimise", "drive", "diff", "cast",
+        "terrain",
+    ] {
         assert_help(&[command]);
     }
     for command in ["merge", "replay"] {

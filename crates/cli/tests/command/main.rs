@@ -2,6 +2,7 @@
 
 mod basics;
 mod campaign;
+mod cast;
 mod check;
 mod diagnosis;
 mod diff;

@@ -1,0 +1,94 @@
+//! Rays from files: NPY and CSV, and what is refused.
+
+use proptest::prelude::*;
+use raypencil_cast::{RayArray, rays_from_bytes};
+
+fn read(bytes: &[u8]) -> Result<RayArray, String> {
+    rays_from_bytes(bytes, "rays".as_ref()).map_err(|error| error.to_string())
+}
+
+/// An NPY file of version 1.0.
+fn npy(descr: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
+    let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend((header.len() as u16).to_le_bytes());
+    file.extend(header.as_bytes());
+    file.extend(numbers);
+    file
+}
+
+fn singles(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+#[test]
+fn arrays_of_any_leading_shape_are_rays() {
+    let numbers: Vec<f32> = (0..12).map(|k| k as f32 + 0.5).collect();
+    let found = read(&npy("<f4", "(1, 2, 1, 6)", &singles(&numbers))).unwrap();
+    assert_eq!((found.shape, found.rays.len()), (vec![1, 2, 1], 2));
+    assert_eq!(found.rays[1].origin.to_array(), [6.5, 7.5, 8.5]);
+    assert_eq!(found.rays[1].direction.to_array(), [9.5, 10.5, 11.5]);
+    assert_eq!((found.rays[1].t_min, found.rays[1].t_max), (0.0, f64::INFINITY));
+    // With both ends, and without a leading dimension: one ray.
+    let numbers = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.25, f32::INFINITY];
+    let found = read(&npy("<f4", "(8,)", &singles(&numbers))).unwrap();
+    assert_eq!((found.shape, found.rays.len()), (vec![], 1));
+    assert_eq!((found.rays[0].t_min, found.rays[0].t_max), (0.25, f64::INFINITY));
+    // No rays are rays.
+    assert_eq!(read(&npy("<f8", "(0, 6)", &[])), Ok(RayArray { shape: vec![0], rays: vec![] }));
+}
+
+#[test]
+fn rows_of_numbers_are_rays() {
+    let text = "# made by hand\nox,oy,oz,dx,dy,dz\n\n 0.1, -2,3e2 ,0,0,-1\n1,2,3,4,5,6\n";
+    let found = read(text.as_bytes()).unwrap();
+    assert_eq!(found.shape, [2]);
+    // The double nearest to the decimal.
+    assert_eq!(found.rays[0].origin.to_array(), [0.1, -2.0, 300.0]);
+    let found = read(b"0,0,0,1,0,0,0.5,inf\r\n0,0,0,1,0,0,0.5,2\r\n").unwrap();
+    assert_eq!(found.rays[0].t_max, f64::INFINITY);
+    assert_eq!((found.rays[1].t_min, found.rays[1].t_max), (0.5, 2.0));
+}
+
+#[test]
+fn each_wrong_file_is_told_where_it_is_wrong() {
+    for (bytes, message) in [
+        (
+            npy("<f8", "(1, 5)", &[0; 40]),
+            "rays: shape: [1, 5]; expected (..., 6) or (..., 8): 6 numbers (origin, \
+            direction) or 8 (origin, direction, t_min, t_max)",
+        ),
+        (npy("<f8", "()", &[0; 8]), "rays: shape: []; expected (..., 6)"),
+        (npy("<f4", "(2, 6)", &[0; 47]), "rays: numbers: 47 bytes; expected the 48 bytes of shape [2, 6]"),
+        (
+            npy("<f4", "(1, 6)", &singles(&[0.0; 6])),
+            "rays: ray 0.direction is [0, 0, 0]: expected three finite numbers",
+        ),
+        (b"0,0,0,0,0,1\n0,0,0,0,0".to_vec(), "rays: line 2: 5 fields; expected 6 numbers"),
+        (b"0,0,0,0,0,1\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
+        (b"a,b,c,d,e,f\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
+        (b"0,0,0,0,0,1\n0,0,x,0,0,1".to_vec(), "rays: line 2: field 3: \"x\"; expected a number"),
+        (b"0,0,0,0,0,1\na,b,c,d,e,f".to_vec(), "rays: line 2: field 1: \"a\"; expected a number"),
+        (b"0,0,0,0,0,1\n0,0,0,nan,0,1".to_vec(), "rays: ray 1.direction is [NaN, 0, 1]: expected"),
+        (b"0,0,0,0,0,1,2,1".to_vec(), "rays: ray 0.t_max is 1: expected 2 (t_min) to 1e30, or infinity"),
+        (b"0,0,0,0,0,1,-1,1".to_vec(), "rays: ray 0.t_min is -1: expected 0 to 1e30"),
+        (b"".to_vec(), "rays: file: no ray; expected rows of 6 numbers"),
+        (b"# nothing\nox,oy,oz,dx,dy,dz\n".to_vec(), "rays: file: no ray; expected rows"),
+        (b"\xff\xfe\n".to_vec(), "rays: line 1: bytes that are no text; expected rows of numbers"),
+    ] {
+        let error = read(&bytes).unwrap_err();
+        assert!(error.starts_with(message), "{error}\n{message}");
+    }
+}
+
+proptest! {
+    /// Whatever the bytes are, there are rays or one error; a file cut off anywhere is one or the other.
+    #[test]
+    fn any_bytes_are_rays_or_an_error(bytes in prop::collection::vec(any::<u8>(), 0..200), cut in 0_usize..80) {
+        let _ = read(&bytes);
+        let whole = npy("<f8", "(2, 6)", &[0x3f; 96]);
+        prop_assert!(read(&whole[..whole.len() - 1 - cut]).is_err());
+        let text = String::from_utf8_lossy(&bytes).replace(|letter: char| !letter.is_ascii(), ",");
+        let _ = read(format!("0,0,0,0,0,1\n{text}").as_bytes());
+    }
+}

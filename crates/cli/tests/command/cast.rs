@@ -1,0 +1,115 @@
+//! `cast`: any rays on any mesh.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+
+use raypencil::io::{Limits, read_npy_numbers};
+use raypencil_tests::schema::schema_faults;
+use tempfile::TempDir;
+
+use crate::{assert_trouble, command, raypencil, screen, text};
+
+/// The project's own mesh and rays.
+fn data(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/rays").join(name).display().to_string()
+}
+
+#[test]
+fn arrays_have_the_shape_of_the_rays() {
+    let folder = TempDir::new().unwrap();
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    let shown = screen(folder.path(), &["cast", &cube, &rays, "-o", "out", "--all", "--any"], 0);
+    assert!(shown.contains("8 vertices, 12 faces; 2 x 2 x 2 wide"), "{shown}");
+    assert!(shown.contains("25 rays: 9 hit, 3 of them at a tie; 16 miss"), "{shown}");
+    let read =
+        |name: &str| read_npy_numbers(folder.path().join("out").join(name), &Limits::default()).unwrap();
+    // From z = 3 down to the top at z = 1, at x, y = -1.5, -1, 0, 1, 1.5: the middle 3 x 3 rays hit. The diagonal of the top
+    // belongs to both of its faces, and runs through three of them.
+    let t = read("t.npy");
+    assert_eq!(t.shape, [5, 5]);
+    for (k, &t) in t.values.iter().enumerate() {
+        let is_hit = (1..4).contains(&(k % 5)) && (1..4).contains(&(k / 5));
+        assert_eq!(t, if is_hit { 2.0 } else { f64::INFINITY });
+    }
+    assert_eq!(read("ties.npy").values.iter().filter(|&&ties| ties == 2.0).count(), 3);
+    assert_eq!(read("any.npy").values.iter().sum::<f64>(), 9.0);
+    let point = read("point.npy");
+    assert_eq!((point.shape, &point.values[3 * 6..3 * 7]), (vec![5, 5, 3], &[-1.0, -1.0, 1.0][..]));
+    // Each of the nine rays enters by the top and leaves by the bottom: at t = 2 and t = 4.
+    let (start, all, crossing) = (read("all.start.npy"), read("all.t.npy"), read("all.crossing.npy"));
+    assert_eq!((start.shape, start.values.last()), (vec![26], Some(&(all.values.len() as f64))));
+    assert!(all.values.iter().all(|&t| t == 2.0 || t == 4.0));
+    // The middle ray: two faces at the top, two at the bottom.
+    let [from, to] = [12, 13].map(|k: usize| start.values[k] as usize);
+    assert_eq!(all.values[from..to], [2.0, 2.0, 4.0, 4.0]);
+    assert_eq!(crossing.values[from..to], [1.0, 1.0, -1.0, -1.0]);
+    assert_eq!(read("all.group.npy").values[from..to], [0.0, 0.0, 1.0, 1.0]);
+    let summary = std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+    let schema = include_str!("../../../../docs/formats/cast.schema.json");
+    let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
+    assert_eq!(schema_faults(&schema, &serde_json::from_str(&summary).unwrap()), Vec::<String>::new());
+}
+
+#[test]
+fn one_ray_is_answered_on_the_screen_and_as_json() {
+    let folder = TempDir::new().unwrap();
+    let cube = data("cube.obj");
+    let ray = "--ray=-3,0.25,0.5,2,0,0";
+    let shown = screen(folder.path(), &["cast", &cube, ray, "--all"], 0);
+    for line in [
+        "face 0, front",
+        "t            1\n",
+        "range        2\n",
+        "point        (-1, 0.25, 0.5)",
+        "t 2: face 3 (back)",
+    ] {
+        assert!(shown.contains(line), "{line} is not in\n{shown}");
+    }
+    let json = screen(folder.path(), &["cast", &cube, ray, "--json", "--any"], 0);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let first = &json["rays"][0]["first"];
+    assert_eq!(
+        (&first["face"], &first["t"], &json["rays"][0]["any"]),
+        (&0.into(), &1.0.into(), &true.into())
+    );
+    // From inside only backs are met.
+    let inside = ["cast", &cube, "--ray", "0,0.25,0.5,1,0,0"];
+    assert!(screen(folder.path(), &inside, 0).contains("face 3, back"));
+    assert!(screen(folder.path(), &[&inside[..], &["--fronts-only"]].concat(), 0).contains("nothing is hit"));
+}
+
+#[test]
+fn rays_come_from_standard_input() {
+    let folder = TempDir::new().unwrap();
+    let mut child = command(folder.path(), &["cast", &data("cube.obj"), "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(b"0,0,3,0,0,-1\n9,9,9,0,0,1\n").unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(
+        text(&output.stdout).contains("2 rays: 1 hit, 1 of them at a tie; 1 miss"),
+        "{}",
+        text(&output.stdout)
+    );
+}
+
+#[test]
+fn rubbish_is_refused_with_its_place() {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("bad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
+    std::fs::write(folder.path().join("bad.csv"), "0,0,0,0,0,1\n0,0,0,0,0,0\n").unwrap();
+    let refused = |arguments: &[&str], words: &[&str]| {
+        assert_trouble(&raypencil(folder.path(), &[&["cast"], arguments].concat()), words);
+    };
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    refused(&["bad.obj", &rays, "-o", "out"], &["bad.obj: line 2: vertex 3", "expected 1 to 1"]);
+    refused(&[&cube, "bad.csv", "-o", "out"], &["bad.csv: ray 1.direction is [0, 0, 0]"]);
+    refused(&[&cube, "none.npy"], &["none.npy: cannot read"]);
+    refused(&[&cube, "--ray", "1,2,3"], &["--ray", "3 fields; expected 6 numbers"]);
+    refused(&[&cube], &["required"]);
+    // Nothing was written.
+    assert!(!folder.path().join("out").exists());
+}
