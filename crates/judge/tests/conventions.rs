@@ -96,6 +96,12 @@ fn a_number_for_no_hit_without_faces_can_be_declared() {
     let negative = folder(&ranges(-1.0), None);
     assert!(help(negative.path()).ends_with("declare --miss -1"));
     assert!(passes(&read(negative.path(), miss(-1.0)).unwrap()));
+    // 0 is a length; but another channel holds no number there.
+    let zero = folder(&ranges(0.0), None);
+    let depths = Image::from_cells(9, 8, (0..72).map(|k| if k % 9 < 5 { 2.0 } else { f64::NAN }).collect());
+    write_npy(zero.path().join("camera/depth.Z.npy"), &[&depths]).unwrap();
+    assert!(help(zero.path()).ends_with("declare --miss 0"), "{}", help(zero.path()));
+    assert!(passes(&read(zero.path(), miss(0.0)).unwrap()));
     // NaN, like +Inf, needs no declaration.
     let not_a_number = folder(&ranges(f64::NAN), None);
     for conventions in [Conventions::STANDARD, miss(f64::NAN)] {

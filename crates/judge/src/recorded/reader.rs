@@ -68,6 +68,8 @@ pub(super) struct Reader<'a> {
 struct Hits<'a> {
     hits: &'a [bool],
     speaker: &'a str,
+    /// Its numbers, if it has one in a cell.
+    said: Option<&'a Image<f64>>,
     conventions: Conventions,
 }
 
@@ -221,6 +223,8 @@ impl<'a> Reader<'a> {
             self.answers.maps[index].face = Some(Image::from_cells(width, height, cells));
             self.store(sensor, Quantity::Face, Storage::Whole);
         }
+        let said = values.first().filter(|(_, parts)| parts.len() == 1 && parts[0].name == speaker);
+        let said = said.map(|(_, parts)| parts[0].image);
         for (quantity, parts) in values {
             let mut images = Vec::new();
             for part in &parts {
@@ -231,7 +235,7 @@ impl<'a> Reader<'a> {
                     let expected = format!("a type that holds ranges up to the sensor's {most} m");
                     return Err(Self::fault((part.name, part.channel), None, found, &expected));
                 }
-                let hits = Hits { hits: &hits, speaker: &speaker, conventions: self.conventions };
+                let hits = Hits { hits: &hits, speaker: &speaker, said, conventions: self.conventions };
                 images.push(maybe(*part, hits, quantity.is_length())?);
             }
             let storage = parts.iter().map(|part| part.channel.storage).min().unwrap_or(Storage::F64);
@@ -349,7 +353,7 @@ impl<'a> Reader<'a> {
             let Some(reals) = self.reals(sensor, name)? else { continue };
             let image = match &hits {
                 Some((speaker, hits)) => {
-                    let hits = Hits { hits, speaker, conventions: self.conventions };
+                    let hits = Hits { hits, speaker, said: None, conventions: self.conventions };
                     maybe_signed(reals, hits, is_length)?
                 }
                 None => {
@@ -357,7 +361,11 @@ impl<'a> Reader<'a> {
                     let conventions = self.conventions;
                     let says_hit = |x: &f64| x.is_finite() && !conventions.means_miss(*x);
                     let own: Vec<bool> = reals.image.cells().iter().map(says_hit).collect();
-                    maybe_signed(reals, Hits { hits: &own, speaker: name, conventions }, is_length)?
+                    maybe_signed(
+                        reals,
+                        Hits { hits: &own, speaker: name, said: None, conventions },
+                        is_length,
+                    )?
                 }
             };
             self.store(sensor, quantity, reals.channel.storage);
@@ -422,7 +430,7 @@ fn declare_miss(value: f64) -> String {
 /// The same, with numbers of any sign: a point may lie behind the camera.
 fn maybe_signed(
     Reals { name, channel, image }: Reals<'_>,
-    Hits { hits, speaker, conventions }: Hits<'_>,
+    Hits { hits, speaker, said, conventions }: Hits<'_>,
     is_length: bool,
 ) -> Result<Image<Maybe<f64>>, RecordingError> {
     let mut cells = Vec::with_capacity(hits.len());
@@ -433,9 +441,14 @@ fn maybe_signed(
             Err(Reader::with_help(fault, help))
         };
         if hit && !value.is_finite() {
-            let help = (speaker == names::FACE).then(|| {
-                format!("if {speaker} does not say which rays hit, declare --no-faces: it is then left out")
-            });
+            let help = match said {
+                _ if speaker == names::FACE => Some(format!(
+                    "if {speaker} does not say which rays hit, declare --no-faces: it is then left out"
+                )),
+                // A map that says "hit" by a number that others write for "no hit".
+                Some(said) => Some(declare_miss(said.cells()[index])),
+                None => None,
+            };
             return wrong(format!("a number, as {speaker} says that something is hit"), help);
         }
         // On reading, any value that is not finite means no hit. (docs/formats/files.md)
