@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! warning              Warning and its code, which stays the same from version to version
-//! facing               fronts and backs that the rays of a sensor meet, by the tracer on a mesh with both sides
+//! facing               fronts and backs that the rays of a sensor meet, by the scanline renderer
 //! warnings/hits        rules: no hits, few hits, backs first
 //! warnings/terrain     rules: terrain on its side, terrain too large
 //! warnings/vehicle     rules: vehicle above or below the ground
