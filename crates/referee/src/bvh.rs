@@ -39,6 +39,13 @@ struct Node {
     count: u32,
 }
 
+/// What is in a node.
+pub(crate) enum NodeContent<'b, F> {
+    /// The indices of two nodes.
+    Children([u32; 2]),
+    Faces(&'b [F]),
+}
+
 /// A ray in f64 and all rays near it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RayBundle {
@@ -85,6 +92,42 @@ impl<F: InBox> Bvh<F> {
             }
         }
         Self { nodes, faces }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Number of nodes; the root, if there is one, is node 0.
+    pub(crate) fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The corners of a node's box.
+    pub(crate) fn bounds(&self, node: u32) -> [DVec3; 2] {
+        let Node { low, high, .. } = self.nodes[node as usize];
+        [low, high]
+    }
+
+    /// What is in a node. Children have greater indices than their node.
+    pub(crate) fn content(&self, node: u32) -> NodeContent<'_, F> {
+        let Node { first, count, .. } = self.nodes[node as usize];
+        match count {
+            0 => NodeContent::Children([first, first + 1]),
+            _ => NodeContent::Faces(&self.faces[first as usize..(first + count) as usize]),
+        }
+    }
+
+    /// All faces in a node and the nodes below it.
+    pub(crate) fn faces_below(&self, node: u32) -> &[F] {
+        let end = |last: bool| {
+            let mut node = self.nodes[node as usize];
+            while node.count == 0 {
+                node = self.nodes[node.first as usize + usize::from(last)];
+            }
+            (node.first + if last { node.count } else { 0 }) as usize
+        };
+        &self.faces[end(false)..end(true)]
     }
 
     /// Calls `visit` with every face that a ray of the bundle may meet within its range, and possibly with others.

@@ -34,6 +34,27 @@ impl CastRay {
         Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY }
     }
 
+    /// Two vectors across the ray, along which it is moved sideways: u, v and the direction d are at right angles and
+    /// right-handed, and u and v are 1 long, up to the rounding of `f64`. What is measured along them, margins for one,
+    /// refers to these stored numbers.
+    ///
+    /// With m = d / max |d_k| and e the unit vector of the smallest |m_k| (the first of several): u = e x m / |e x m|,
+    /// v = m x u / |m x u|.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_scene::CastRay;
+    ///
+    /// let ray = CastRay::new(DVec3::ZERO, DVec3::new(0.0, 0.0, 4.0));
+    /// assert_eq!(ray.across(), [DVec3::NEG_Y, DVec3::X]);
+    /// ```
+    pub fn across(&self) -> [DVec3; 2] {
+        let along = self.direction / self.direction.abs().max_element();
+        let smallest = DVec3::AXES[along.abs().min_position()];
+        let u = smallest.cross(along).normalize();
+        [u, along.cross(u).normalize()]
+    }
+
     /// Refuses what is no ray. `field` names it.
     ///
     /// # Errors

@@ -6,14 +6,36 @@ use raypencil_scene::{CastRay, FaceId, Sides};
 
 use super::query_ray::QueryRay;
 use super::triangle::Triangle;
-use super::{ExactCast, bundle};
-use crate::bvh::Traversal;
+use super::{ExactCast, bundle, moved_bundle};
+use crate::bvh::{RayBundle, Traversal};
 
 impl ExactCast<'_> {
     /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same t, none if the
     /// ray meets nothing.
     pub fn first(&self, ray: &CastRay, sides: Sides) -> Vec<FaceId> {
         self.nearest(ray, sides).iter().map(|face| face.id).collect()
+    }
+
+    /// The faces that [`first`](Self::first) would give for the ray moved sideways, parallel to itself: its origin is
+    /// exactly o + a u + b v, with `by` = \[a, b\] and u, v of [`CastRay::across`].
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
+    /// let ray = CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z);
+    /// // Across this ray, u is y and v is x. On the border the triangle is met, one step of f64 farther it is not.
+    /// let cast = ExactCast::new(&triangle);
+    /// assert_eq!(cast.first_moved(&ray, Sides::Both, [0.5, 0.0]), [FaceId(0)]);
+    /// assert!(cast.first_moved(&ray, Sides::Both, [0.5_f64.next_up(), 0.0]).is_empty());
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn first_moved(&self, ray: &CastRay, sides: Sides, by: [f64; 2]) -> Vec<FaceId> {
+        let query = QueryRay::moved(ray, by);
+        self.nearest_of(&query, &moved_bundle(ray, by), sides).iter().map(|face| face.id).collect()
     }
 
     /// Whether the ray meets anything.
@@ -30,18 +52,21 @@ impl ExactCast<'_> {
 
     /// The nearest faces, in ascending order.
     pub(super) fn nearest(&self, ray: &CastRay, sides: Sides) -> Vec<&Triangle> {
-        let (query, bundle) = (QueryRay::new(ray), bundle(ray));
+        self.nearest_of(&QueryRay::new(ray), &bundle(ray), sides)
+    }
+
+    fn nearest_of(&self, query: &QueryRay<'_>, bundle: &RayBundle, sides: Sides) -> Vec<&Triangle> {
         let mut nearest: Vec<&Triangle> = Vec::new();
-        self.bvh.visit(&bundle, |face| {
-            if face.met_side(&query, sides).is_some() {
-                match nearest.first().map(|kept| face.compare(kept, &query)) {
+        self.bvh.visit(bundle, |face| {
+            if face.met_side(query, sides).is_some() {
+                match nearest.first().map(|kept| face.compare(kept, query)) {
                     None | Some(Ordering::Less) => nearest = vec![face],
                     Some(Ordering::Equal) => nearest.push(face),
                     Some(Ordering::Greater) => {}
                 }
             }
             // From here on only faces up to the nearest matter.
-            nearest.first().map_or(bundle.max_range, |kept| kept.farthest_range(&query, bundle.max_range))
+            nearest.first().map_or(bundle.max_range, |kept| kept.farthest_range(query, bundle.max_range))
         });
         nearest.sort_by_key(|face| face.id);
         nearest

@@ -19,6 +19,7 @@
 //! first       the nearest hit with its ties, and whether anything is hit
 //! all         all hits in exact order, and how often the surface is crossed
 //! values      the values of a hit, correctly rounded
+//! margin      how far the ray may be moved sideways before its answer changes
 //! ```
 //!
 //! The kernels of the sensors' rays (`face`, `intersection`) are apart from these: there a vertex is an `f32` number and
@@ -26,17 +27,22 @@
 
 mod all;
 mod first;
+mod margin;
 mod query_ray;
 mod triangle;
 mod values;
 
+use std::sync::OnceLock;
+
 use raypencil_scene::{CastRay, FaceId, Triangles};
 
 use crate::bvh::{Bvh, RayBundle};
+use margin::Seams;
 use query_ray::QueryRay;
 use triangle::Triangle;
 
 pub use all::{HitGroup, SidedFace};
+pub use margin::{CastMargin, CastMargins};
 pub use values::CastHit;
 
 /// The exact answers to any rays on a mesh.
@@ -64,13 +70,19 @@ pub use values::CastHit;
 pub struct ExactCast<'t> {
     mesh: &'t Triangles,
     bvh: Bvh<Triangle>,
+    /// Made when a margin is first asked for.
+    seams: OnceLock<Seams>,
 }
 
 impl<'t> ExactCast<'t> {
     /// Builds the hierarchy of a mesh's faces.
     pub fn new(mesh: &'t Triangles) -> Self {
         let faces = (0..mesh.faces().len() as u32).map(|index| Triangle::of(mesh, FaceId(index)));
-        Self { mesh, bvh: Bvh::build(faces.filter(Triangle::has_area)) }
+        Self { mesh, bvh: Bvh::build(faces.filter(Triangle::has_area)), seams: OnceLock::new() }
+    }
+
+    fn seams(&self) -> &Seams {
+        self.seams.get_or_init(|| Seams::of(self.mesh, &self.bvh))
     }
 
     /// A face of the mesh, if the mesh has it.
@@ -93,6 +105,19 @@ fn bundle(ray: &CastRay) -> RayBundle {
         max_range: if ray.t_max == f64::INFINITY { f64::INFINITY } else { ray.t_max * length * RANGE_SLACK },
         start_radius: 0.0,
         spread: 0.0,
+    }
+}
+
+/// The ray moved sideways, for the hierarchy: its origin is rounded, which `start_radius` makes good.
+fn moved_bundle(ray: &CastRay, by: [f64; 2]) -> RayBundle {
+    let [u, v] = ray.across();
+    let (moved, bundle) = (u * by[0] + v * by[1], bundle(ray));
+    let rounding = 8.0 * f64::EPSILON * (moved.length() + ray.origin.length());
+    RayBundle {
+        origin: ray.origin + moved,
+        max_range: bundle.max_range + rounding,
+        start_radius: rounding,
+        ..bundle
     }
 }
 

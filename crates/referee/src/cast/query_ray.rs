@@ -19,6 +19,14 @@ impl<T: Number> RayNumbers<T> {
     pub(super) fn of(ray: &CastRay) -> Self {
         Self { origin: Vector::of(ray.origin), direction: Vector::of(ray.direction) }
     }
+
+    /// The ray moved sideways by `by`, along the two vectors of [`CastRay::across`].
+    fn moved(ray: &CastRay, by: [f64; 2]) -> Self {
+        let [u, v] = ray.across().map(Vector::of);
+        let by = by.map(T::of);
+        let origin = Vector::of(ray.origin).add(&u.scaled(&by[0])).add(&v.scaled(&by[1]));
+        Self { origin, direction: Vector::of(ray.direction) }
+    }
 }
 
 /// A polynomial of a ray, of which only the sign matters.
@@ -29,13 +37,20 @@ pub(super) trait Polynomial {
 /// One ray; its exact numbers are formed when they are first needed.
 pub(super) struct QueryRay<'r> {
     ray: &'r CastRay,
+    /// By how much the ray is moved sideways, if it is.
+    moved: Option<[f64; 2]>,
     fast: RayNumbers<Interval>,
     exact: OnceCell<RayNumbers<Dyadic>>,
 }
 
 impl<'r> QueryRay<'r> {
     pub(super) fn new(ray: &'r CastRay) -> Self {
-        Self { ray, fast: RayNumbers::of(ray), exact: OnceCell::new() }
+        Self { ray, moved: None, fast: RayNumbers::of(ray), exact: OnceCell::new() }
+    }
+
+    /// The ray moved sideways by `by`, along the two vectors of [`CastRay::across`].
+    pub(super) fn moved(ray: &'r CastRay, by: [f64; 2]) -> Self {
+        Self { ray, moved: Some(by), fast: RayNumbers::moved(ray, by), exact: OnceCell::new() }
     }
 
     /// |d|, to a few roundings.
@@ -64,7 +79,10 @@ impl<'r> QueryRay<'r> {
 
     /// The ray without rounding.
     pub(super) fn exact(&self) -> &RayNumbers<Dyadic> {
-        self.exact.get_or_init(|| RayNumbers::of(self.ray))
+        self.exact.get_or_init(|| match self.moved {
+            Some(by) => RayNumbers::moved(self.ray, by),
+            None => RayNumbers::of(self.ray),
+        })
     }
 
     /// The exact sign: by the interval if that is certain, else by exact arithmetic.

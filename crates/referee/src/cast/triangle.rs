@@ -103,6 +103,15 @@ impl Triangle {
         Some(side)
     }
 
+    /// The side that rays of this direction see; `None` if the face is parallel to them.
+    pub(super) fn seen_side(&self, ray: &QueryRay<'_>) -> Option<Side> {
+        match ray.sign(&Approach(self)) {
+            Ordering::Less => Some(Side::Front),
+            Ordering::Greater => Some(Side::Back),
+            Ordering::Equal => None,
+        }
+    }
+
     /// The order in which the ray meets two faces; it must meet both.
     pub(super) fn compare(&self, other: &Self, ray: &QueryRay<'_>) -> Ordering {
         let product = ray.sign(&Approach(self)) == ray.sign(&Approach(other));

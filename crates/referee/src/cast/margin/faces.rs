@@ -1,0 +1,246 @@
+//! The margin of the set of nearest faces.
+//!
+//! It changes when one of the nearest faces stops to be met, or when another is met at or before them. Within the radius
+//! up to which the nearest faces meet their own conditions (the least of g / (|x| + |y|) over these), another face G
+//! enters where its own conditions hold and its plane is met at or before that of a nearest face F. These are linear
+//! conditions: `region` finds the least displacement at which all hold. Several nearest faces stay together only if
+//! they lie in one plane; otherwise the least displacement is 0.
+
+use raypencil_scene::{Side, Sides};
+
+use super::super::query_ray::QueryRay;
+use super::super::triangle::Triangle;
+use super::flat::{FlatFace, Linear};
+use super::frame::{Frame, FrameNumbers};
+use super::nearby::Nearby;
+use super::region::{Bounded, least_size};
+use super::{CastMargin, ExactCast};
+use crate::number::{Dyadic, Interval, Number};
+
+/// A face that the direction of the ray sees from one side.
+#[derive(Clone, Copy)]
+struct SeenFace<'t> {
+    face: &'t Triangle,
+    side: Side,
+}
+
+/// What may change the set first, with bounds of the size at which it does.
+struct Event {
+    size: [f64; 2],
+    kind: EventKind,
+}
+
+enum EventKind {
+    /// A condition of a nearest face begins to fail.
+    Fails(Linear<f64>),
+    /// All conditions of another face begin to hold.
+    Enters(Vec<Linear<f64>>),
+}
+
+impl ExactCast<'_> {
+    pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[&Triangle], sides: Sides) -> CastMargin {
+        let cap = self.margin_cap();
+        let query = QueryRay::new(frame.ray);
+        let seen = |face: &'_ Triangle| face.seen_side(&query);
+        let nearest: Vec<SeenFace<'_>> =
+            nearest.iter().filter_map(|&face| Some(SeenFace { face, side: seen(face)? })).collect();
+        let mut events = Vec::new();
+        let mut lo = cap;
+        for one in &nearest {
+            for condition in OwnConditions::of(frame, one) {
+                lo = lo.min(condition.size[0]);
+                events.push(condition);
+            }
+        }
+        if let [first, others @ ..] = &nearest[..]
+            && others.iter().any(|other| !first.is_coplanar_with(other, frame.exact()))
+        {
+            lo = 0.0;
+        }
+        // No part of the nearest face within its own margin lies beyond its farthest corner.
+        let farthest = nearest.first().map_or(frame.ranges()[1], |first| {
+            let [a, b, c] = first.face.corners;
+            frame.span(a.min(b).min(c), a.max(b).max(c))[2][1]
+        });
+        let first_range = frame.ranges()[0];
+        let is_between = |range: &[f64; 2]| range[0] <= farthest && range[1] >= first_range;
+        let mut nearby = Nearby::new(&self.bvh);
+        while nearby.size() < lo {
+            let faces =
+                nearby.open(frame, |_, span| super::frame::least_size(span) < lo && is_between(&span[2]));
+            for face in faces {
+                if nearest.iter().any(|one| one.face.id == face.id) {
+                    continue;
+                }
+                let Some(side) = seen(face).filter(|side| sides.include(*side)) else { continue };
+                let entering = SeenFace { face, side };
+                // An edge shared with a nearest face gives the same size but for rounding: no new event.
+                let enough = lo * (1.0 - 1.0 / (1u64 << 30) as f64);
+                if let Some(event) = entering.event(frame, nearest.first(), enough) {
+                    lo = lo.min(event.size[0]);
+                    events.push(event);
+                }
+            }
+        }
+        if lo >= cap {
+            return CastMargin::of([cap; 2], None, cap);
+        }
+        events.retain(|event| event.size[0] <= 2.0 * lo.max(self.smallest_size(frame)));
+        events.sort_by(|a, b| a.size[0].total_cmp(&b.size[0]));
+        let hi = events.iter().map(|event| event.size[1]).fold(cap, f64::min);
+        let hi = if lo == 0.0 { 0.0 } else { hi };
+        let ids: Vec<_> = nearest.iter().map(|one| one.face.id).collect();
+        let differs = |by: [f64; 2]| self.first_moved(frame.ray, sides, by) != ids;
+        CastMargin::of([lo, hi], self.face_witness(frame, &events, lo, cap, differs), cap)
+    }
+
+    /// A size of displacement below which f64 numbers can hardly tell one ray from another: 2^-52 of the largest
+    /// coordinate.
+    pub(super) fn smallest_size(&self, frame: &Frame<'_>) -> f64 {
+        let bounds = self
+            .mesh
+            .bounds()
+            .map_or(0.0, |bounds| bounds.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max));
+        f64::EPSILON * bounds.max(frame.ray.origin.abs().max_element())
+    }
+
+    /// A displaced ray with another answer, as near to `lo` as it can be found.
+    fn face_witness(
+        &self,
+        frame: &Frame<'_>,
+        events: &[Event],
+        lo: f64,
+        cap: f64,
+        differs: impl Fn([f64; 2]) -> bool,
+    ) -> Option<[f64; 2]> {
+        let least = lo.max(self.smallest_size(frame));
+        for further in [1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.5, 0.9] {
+            let size = (least * (1.0 + further)).min(cap);
+            for event in events.iter().take(8) {
+                let by = match &event.kind {
+                    // The corner of the square at which the condition fails first.
+                    EventKind::Fails(condition) => {
+                        let away = |slope: f64| if slope > 0.0 { -size } else { size };
+                        Some([away(condition.x), away(condition.y)])
+                    }
+                    EventKind::Enters(conditions) => middle_within(conditions, size),
+                };
+                if let Some(by) = by.filter(|by| differs(*by)) {
+                    return Some(by);
+                }
+            }
+        }
+        // Faces at one point but in several planes: any side may tell them apart.
+        let round = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 1.0], [-1.0, -1.0]];
+        round.into_iter().map(|by| by.map(|part| part * 1.5 * least)).find(|by| differs(*by))
+    }
+}
+
+/// The middle of the region in which all conditions hold, in a square about 0: it only says where to look.
+fn middle_within(conditions: &[Linear<f64>], size: f64) -> Option<[f64; 2]> {
+    let mut corners = vec![[-size, -size], [size, -size], [size, size], [-size, size]];
+    for condition in conditions {
+        let at = |p: [f64; 2]| condition.c + condition.x * p[0] + condition.y * p[1];
+        let mut kept = Vec::with_capacity(corners.len() + 1);
+        for (k, &here) in corners.iter().enumerate() {
+            let next = corners[(k + 1) % corners.len()];
+            let (a, b) = (at(here), at(next));
+            if a >= 0.0 {
+                kept.push(here);
+            }
+            if (a >= 0.0) != (b >= 0.0) {
+                let s = a / (a - b);
+                kept.push([here[0] + s * (next[0] - here[0]), here[1] + s * (next[1] - here[1])]);
+            }
+        }
+        corners = kept;
+    }
+    let count = corners.len() as f64;
+    (!corners.is_empty())
+        .then(|| [0, 1].map(|k: usize| corners.iter().map(|corner| corner[k]).sum::<f64>() / count))
+}
+
+/// The conditions under which a face stays met, as events.
+struct OwnConditions;
+
+impl OwnConditions {
+    fn of(frame: &Frame<'_>, one: &SeenFace<'_>) -> Vec<Event> {
+        let fast = one.flat(&frame.fast).conditions(&frame.fast);
+        let sized =
+            |own: &Linear<Interval>| Interval::quotient_between(&own.c, &own.x.abs().add(&own.y.abs()));
+        let is_known = |[low, high]: [f64; 2]| low > 0.0 && high <= low * (1.0 + 1.0 / (1u64 << 30) as f64);
+        if fast.iter().map(sized).all(is_known) {
+            let fails = |own: &Linear<Interval>| Event {
+                size: in_units(sized(own), frame),
+                kind: EventKind::Fails(rounded(own, frame)),
+            };
+            return fast.iter().map(fails).collect();
+        }
+        let exact = one.flat(frame.exact()).conditions(frame.exact());
+        let fails = |own: &Linear<Dyadic>| {
+            let slope = own.x.abs().add(&own.y.abs());
+            // A face at right angles to the ray keeps its t everywhere.
+            let size = match slope.sign() {
+                Some(std::cmp::Ordering::Equal) => [f64::INFINITY; 2],
+                _ => Dyadic::quotient_between(&own.c, &slope),
+            };
+            Event { size: in_units(size, frame), kind: EventKind::Fails(rounded_exact(own, frame)) }
+        };
+        exact.iter().map(fails).collect()
+    }
+}
+
+/// A size in D times the mesh's unit, in the mesh's unit.
+pub(super) fn in_units([low, high]: [f64; 2], frame: &Frame<'_>) -> [f64; 2] {
+    let Interval { low: least, high: most } = frame.fast.scale;
+    [(low / most * (1.0 - 2.0 * f64::EPSILON)).max(0.0), high / least * (1.0 + 2.0 * f64::EPSILON)]
+}
+
+/// A condition in f64, as a function of a and b themselves. It only says where to look.
+fn rounded(linear: &Linear<Interval>, frame: &Frame<'_>) -> Linear<f64> {
+    let scale = frame.fast.scale.middle();
+    Linear { c: linear.c.middle(), x: linear.x.middle() * scale, y: linear.y.middle() * scale }
+}
+
+fn rounded_exact(linear: &Linear<Dyadic>, frame: &Frame<'_>) -> Linear<f64> {
+    let one = Dyadic::of(1.0);
+    // The largest is made 1 long, for polynomials of high degree leave f64.
+    let largest = [&linear.c, &linear.x, &linear.y].map(Bounded::abs);
+    let largest = largest.iter().fold(&one, |kept, part| {
+        if part.sub(kept).sign() == Some(std::cmp::Ordering::Greater) { part } else { kept }
+    });
+    let part = |x: &Dyadic| crate::rounding::quotient(x, largest).double;
+    let scale = frame.fast.scale.middle();
+    Linear { c: part(&linear.c), x: part(&linear.x) * scale, y: part(&linear.y) * scale }
+}
+
+impl SeenFace<'_> {
+    fn flat<T: Number>(&self, frame: &FrameNumbers<T>) -> FlatFace<T> {
+        FlatFace::new(frame, &self.face.corners, self.side)
+    }
+
+    fn is_coplanar_with(&self, other: &Self, exact: &FrameNumbers<Dyadic>) -> bool {
+        let order = self.flat(exact).at_or_before(&other.flat(exact));
+        [&order.c, &order.x, &order.y].iter().all(|part| part.sign() == Some(std::cmp::Ordering::Equal))
+    }
+
+    /// The conditions under which this face is met at or before the nearest.
+    fn conditions<T: Number>(&self, frame: &FrameNumbers<T>, nearest: Option<&Self>) -> Vec<Linear<T>> {
+        let flat = self.flat(frame);
+        let mut conditions = flat.conditions(frame);
+        conditions.extend(nearest.map(|nearest| flat.at_or_before(&nearest.flat(frame))));
+        conditions
+    }
+
+    /// The entry of this face among the nearest, if it happens within `enough`.
+    fn event(&self, frame: &Frame<'_>, nearest: Option<&Self>, enough: f64) -> Option<Event> {
+        let fast = self.conditions(&frame.fast, nearest);
+        if in_units(least_size(&fast)?, frame)[0] >= enough {
+            return None;
+        }
+        let exact = self.conditions(frame.exact(), nearest);
+        let size = in_units(least_size(&exact)?, frame);
+        let conditions = exact.iter().map(|condition| rounded_exact(condition, frame)).collect();
+        (size[0] < enough).then_some(Event { size, kind: EventKind::Enters(conditions) })
+    }
+}

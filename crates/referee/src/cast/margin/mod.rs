@@ -1,0 +1,104 @@
+//! How far a ray may be moved sideways, parallel to itself, before its answer changes.
+//!
+//! A displacement is a pair (a, b): the ray from o + a u + b v with the same direction and ends, where u and v are the two
+//! stored vectors across the ray (`CastRay::across`). Its size is the larger of |a| and |b|, in the mesh's unit.
+//!
+//! ```text
+//! frame      the ray's own frame, in which faces are triangles in a plane, and t is linear on each
+//! flat       a face in it, and its conditions as linear functions of the displacement
+//! region     the least displacement at which some linear conditions hold
+//! seams      which edges two faces continue, and in which parts of the mesh there are only such
+//! nearby     faces in the order of the displacement that they need
+//! faces      the margin of the set of nearest faces
+//! segment    a piece of a face's border, and what of it is hidden
+//! surface    the margin of the surface: the nearest t jumps
+//! ```
+//!
+//! Everything is decided by signs of polynomials of stored numbers, in intervals first and exactly where these are in
+//! doubt. So a margin is the exact least size but for its rounding to f64, and no search can fail to find it.
+
+mod faces;
+mod flat;
+mod frame;
+mod nearby;
+mod region;
+mod seams;
+mod segment;
+mod surface;
+
+use raypencil_scene::{CastRay, Sides};
+
+use super::ExactCast;
+use frame::Frame;
+
+pub(super) use seams::Seams;
+
+/// The least size of a displacement that changes an answer lies in `lo..=hi`, in the mesh's unit.
+///
+/// It is capped at the diagonal of the mesh's bounding box. Where both are equal to the cap, no displacement up to it
+/// changes the answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CastMargin {
+    /// Proven: no smaller displacement changes the answer.
+    pub lo: f64,
+    /// Some displacements of this size, or larger by as little as is wanted, change it.
+    pub hi: f64,
+    /// A displacement along [`CastRay::across`] after which the answer is another; `None` if the margin is capped, or if
+    /// the places where it differs are too narrow for two `f64` numbers.
+    pub witness: Option<[f64; 2]>,
+}
+
+/// The margins of a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CastMargins {
+    /// Of the set of nearest faces: any change of it counts, also from one face to the next of a plane.
+    pub face: CastMargin,
+    /// Of the surface: the nearest t jumps, or a hit becomes a miss, or a miss a hit.
+    pub surface: CastMargin,
+}
+
+impl CastMargin {
+    /// From a proven interval of the least size.
+    fn of([lo, hi]: [f64; 2], witness: Option<[f64; 2]>, cap: f64) -> Self {
+        if lo >= cap {
+            return Self { lo: cap, hi: cap, witness: None };
+        }
+        let size = |by: [f64; 2]| by[0].abs().max(by[1].abs());
+        Self { lo, hi: witness.map_or(hi, size).max(hi).min(cap), witness }
+    }
+}
+
+impl ExactCast<'_> {
+    /// How far the ray may be moved sideways before the nearest faces, or the surface, change.
+    ///
+    /// The first call of any ray looks at all edges of the mesh once.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, Sides, Triangles};
+    ///
+    /// // A square from 0 to 1 of two faces, met from above a quarter beside its diagonal.
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let square = Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]])?;
+    /// let ray = CastRay::new(DVec3::new(0.5, 0.25, 3.0), DVec3::NEG_Z);
+    /// let margins = ExactCast::new(&square).margins(&ray, Sides::Both);
+    /// // The diagonal is reached by 1/8 in x and in y, the square's border by 1/4 in y.
+    /// assert!(margins.face.lo <= 0.125 && 0.125 <= margins.face.hi && margins.face.hi < 0.126);
+    /// assert!(margins.surface.lo <= 0.25 && 0.25 <= margins.surface.hi && margins.surface.hi < 0.251);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn margins(&self, ray: &CastRay, sides: Sides) -> CastMargins {
+        let frame = Frame::new(ray);
+        let nearest = self.nearest(ray, sides);
+        let face = self.face_margin(&frame, &nearest, sides);
+        // Where nothing is hit, what changes the faces changes the surface.
+        let surface = if nearest.is_empty() { face } else { self.surface_margin(&frame, face.lo, sides) };
+        CastMargins { face, surface }
+    }
+
+    /// The diagonal of the mesh's bounding box, to which margins are capped.
+    fn margin_cap(&self) -> f64 {
+        self.mesh.bounds().map_or(0.0, |[low, high]| (high - low).length())
+    }
+}

@@ -1,0 +1,288 @@
+//! The margin of the surface: the least displacement at which the nearest t jumps.
+//!
+//! The nearest t is the least of the t of all faces that the displaced ray meets. Each face's t is continuous where the
+//! face is met, and least values of continuous functions are continuous. So a jump can only be where a face begins or
+//! ends: on an edge of its flat triangle, or where an end of the ray cuts it off. There it is a jump unless
+//!
+//! * another face is met there before it, or
+//! * faces that are met there at the same t cover all directions around the place.
+//!
+//! # Why it is enough to walk along the borders
+//!
+//! Let the faces that are met at a place at the nearest t leave a wedge of directions uncovered. A side of this wedge is
+//! covered by such faces up to it, not beyond; close to the place, along this side, the nearest of these faces ends
+//! there too, and nothing nearer is met, since near the place only faces are met that are met at the place. So no place
+//! of a jump stands alone: it is the end of a part of a border with jumps all along. Hence what holds *just behind* a
+//! place on a border is all that must be known, and there the directions to both sides of the border decide: the left
+//! is covered by the face itself.
+//!
+//! # The search
+//!
+//! Borders are taken in the order of their least displacement, by a heap. Each is cut at the place nearest to the ray into
+//! two pieces, and each piece is walked from there: where a face covers it just behind the near end, the piece begins
+//! anew where that face ends, which is a root of a linear function and thus an exact quotient. The first piece that no
+//! face covers is a jump, and no other can be nearer.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Side, Sides};
+
+use super::super::query_ray::QueryRay;
+use super::super::triangle::Triangle;
+use super::faces::in_units;
+use super::flat::{FlatFace, corner_of};
+use super::frame::{Frame, FrameNumbers, least_size};
+use super::nearby::Nearby;
+use super::segment::{Border, Cover, Piece, Segment, cover, covered_up_to};
+use super::{CastMargin, ExactCast};
+use crate::bvh::RayBundle;
+use crate::number::{Dyadic, Number};
+
+/// What waits to be looked at, nearest first.
+enum Task {
+    /// A border, not yet cut into pieces.
+    Border(FaceId, Side, Border),
+    Piece(Box<Piece>),
+}
+
+/// Tasks by the bits of the size that each needs at least, then in the order in which they were found.
+#[derive(Default)]
+struct Tasks {
+    order: BinaryHeap<Reverse<(u64, usize)>>,
+    tasks: Vec<Option<Task>>,
+}
+
+impl Tasks {
+    fn push(&mut self, size: f64, task: Task) {
+        self.order.push(Reverse((size.to_bits(), self.tasks.len())));
+        self.tasks.push(Some(task));
+    }
+
+    fn size(&self) -> f64 {
+        self.order.peek().map_or(f64::INFINITY, |Reverse((bits, _))| f64::from_bits(*bits))
+    }
+
+    fn pop(&mut self) -> Option<Task> {
+        let Reverse((_, index)) = self.order.pop()?;
+        self.tasks[index].take()
+    }
+}
+
+/// A relative distance within which other faces are looked up around a place: far above the rounding of the place.
+const PLACE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
+
+impl ExactCast<'_> {
+    /// The margin of the surface of a ray that hits. No jump is nearer than `from`, the margin of the faces.
+    pub(super) fn surface_margin(&self, frame: &Frame<'_>, from: f64, sides: Sides) -> CastMargin {
+        let cap = self.margin_cap();
+        let query = QueryRay::new(frame.ray);
+        let seams = self.seams();
+        let direction = super::super::bundle(frame.ray).direction;
+        let [first, last] = frame.ranges();
+        let mut nearby = Nearby::new(&self.bvh);
+        let mut tasks = Tasks::default();
+        loop {
+            let size = nearby.size().min(tasks.size());
+            if size >= cap {
+                return CastMargin::of([cap; 2], None, cap);
+            }
+            if nearby.size() <= tasks.size() {
+                let faces = nearby.open(frame, |node, span| {
+                    let [near, far] = span[2];
+                    if least_size(span) >= cap || near > last || far < first {
+                        return false;
+                    }
+                    let is_cut = near <= first || far >= last;
+                    let shown = seams.side_shown(node, direction);
+                    // Where all show one side there is no border; where all show backs that are not hit, nothing.
+                    shown == 0 || (is_cut && (shown < 0 || sides == Sides::Both))
+                });
+                for face in faces {
+                    self.add_borders(frame, face, sides, &query, &mut tasks);
+                }
+                continue;
+            }
+            match tasks.pop() {
+                None => {}
+                Some(Task::Border(face, side, border)) => {
+                    let (_, segment) = self.exact_segment(frame, face, side, border);
+                    let pieces = segment.pieces(frame.exact()).into_iter().flatten();
+                    for [near, far] in pieces {
+                        let piece = Piece { face, side, border, near, far };
+                        if !piece.is_empty() {
+                            let size = in_units(segment.size(&piece.near), frame)[0].max(from);
+                            tasks.push(size, Task::Piece(Box::new(piece)));
+                        }
+                    }
+                }
+                Some(Task::Piece(mut piece)) => {
+                    let (_, segment) = self.exact_segment(frame, piece.face, piece.side, piece.border);
+                    match self.next_uncovered(frame, &piece, &segment, sides, &query) {
+                        None => return self.jump(frame, &piece, &segment, cap),
+                        Some(near) => {
+                            piece.near = near;
+                            if !piece.is_empty() {
+                                let size = in_units(segment.size(&piece.near), frame)[0].max(from);
+                                tasks.push(size, Task::Piece(piece));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn flat<T: Number>(&self, numbers: &FrameNumbers<T>, face: FaceId, side: Side) -> FlatFace<T> {
+        FlatFace::new(numbers, &self.mesh.corners(face), side)
+    }
+
+    fn exact_segment(
+        &self,
+        frame: &Frame<'_>,
+        face: FaceId,
+        side: Side,
+        border: Border,
+    ) -> (FlatFace<Dyadic>, Segment<Dyadic>) {
+        let flat = self.flat(frame.exact(), face, side);
+        let segment = Segment::of(&flat, border, frame.exact());
+        (flat, segment)
+    }
+
+    /// Adds the borders of a face at which the surface may end.
+    fn add_borders(
+        &self,
+        frame: &Frame<'_>,
+        face: &Triangle,
+        sides: Sides,
+        query: &QueryRay<'_>,
+        tasks: &mut Tasks,
+    ) {
+        let Some(side) = face.seen_side(query).filter(|side| sides.include(*side)) else { return };
+        let [first, last] = frame.ranges();
+        let corner = |k: usize| face.corners[corner_of(side, k)];
+        let span_of = |a: DVec3, b: DVec3| frame.span(a.min(b), a.max(b));
+        let [a, b, c] = face.corners;
+        let [near, far] = frame.span(a.min(b).min(c), a.max(b).max(c))[2];
+        let is_cut = near <= first || far >= last;
+        for k in 0..3 {
+            // Both faces show the same side: they continue one another, unless the edge is where an end cuts them.
+            if !is_cut && self.is_continued(face, side, k, query) {
+                continue;
+            }
+            let span = span_of(corner(k), corner(k + 1));
+            if span[2][0] <= last && span[2][1] >= first {
+                tasks.push(least_size(&span), Task::Border(face.id, side, Border::Edge(k)));
+            }
+        }
+        if !is_cut {
+            return;
+        }
+        let whole = frame.span(a.min(b).min(c), a.max(b).max(c));
+        let numbers = frame.exact();
+        let flat = self.flat(numbers, face.id, side);
+        let ends = [Some((&numbers.from, true)), numbers.to.as_ref().map(|to| (to, false))];
+        for (at, is_start) in ends.into_iter().flatten() {
+            if let Some(edges) = cut_edges(&flat, at, is_start) {
+                let border = if is_start { Border::Start(edges) } else { Border::End(edges) };
+                tasks.push(least_size(&whole), Task::Border(face.id, side, border));
+            }
+        }
+    }
+
+    /// Whether one other face has this edge, and shows the ray the same side.
+    fn is_continued(&self, face: &Triangle, side: Side, k: usize, query: &QueryRay<'_>) -> bool {
+        // Corner k of the flat face and the next are an edge of the mesh's face; from the second if it is turned round.
+        let edge = match side {
+            Side::Back => k,
+            Side::Front => corner_of(side, k + 1),
+        };
+        self.seams()
+            .mate(face.id, edge)
+            .is_some_and(|mate| Triangle::of(self.mesh, mate).seen_side(query) == Some(side))
+    }
+
+    /// Where the piece begins that no face of those at its near end covers; `None` if none covers it there.
+    fn next_uncovered(
+        &self,
+        frame: &Frame<'_>,
+        piece: &Piece,
+        segment: &Segment<Dyadic>,
+        sides: Sides,
+        query: &QueryRay<'_>,
+    ) -> Option<super::segment::Place> {
+        let fast = Segment::of(&self.flat(&frame.fast, piece.face, piece.side), piece.border, &frame.fast);
+        let bundle = self.bundle_at(frame, segment.point(&piece.near));
+        let mut until: Option<super::segment::Place> = None;
+        self.bvh.visit(&bundle, |face| {
+            let covers = face.seen_side(query).filter(|side| sides.include(*side)).map(|side| {
+                let quick = cover(piece, &fast, &self.flat(&frame.fast, face.id, side), &frame.fast);
+                if quick == Some(Cover::None) {
+                    return (Cover::None, None);
+                }
+                let exact = self.flat(frame.exact(), face.id, side);
+                let decided = quick.or_else(|| cover(piece, segment, &exact, frame.exact()));
+                (decided.unwrap_or(Cover::None), Some(exact))
+            });
+            if let Some((covers @ (Cover::Before | Cover::GoesOn), Some(exact))) = covers {
+                let end = covered_up_to(piece, segment, &exact, frame.exact(), covers);
+                // The farther from the near end the better: nearer to the far end.
+                let is_farther = |kept: &super::segment::Place| {
+                    let order = end.compare(kept);
+                    order == piece.far.compare(&piece.near)
+                };
+                if until.as_ref().is_none_or(is_farther) {
+                    until = Some(end);
+                }
+            }
+            bundle.max_range
+        });
+        until
+    }
+
+    /// The displaced ray at a place of the frame, up to the place itself, for the hierarchy.
+    fn bundle_at(&self, frame: &Frame<'_>, [a, b, t]: [f64; 3]) -> RayBundle {
+        let [u, v] = frame.ray.across();
+        let scale = frame.fast.scale.middle();
+        let origin = frame.ray.origin + u * (a / scale) + v * (b / scale);
+        let range = t / scale * frame.length();
+        let size = origin.abs().max_element() + frame.ray.origin.abs().max_element() + range.abs();
+        RayBundle {
+            origin,
+            max_range: range + PLACE_SLACK * size,
+            start_radius: PLACE_SLACK * size,
+            ..super::super::bundle(frame.ray)
+        }
+    }
+
+    fn jump(&self, frame: &Frame<'_>, piece: &Piece, segment: &Segment<Dyadic>, cap: f64) -> CastMargin {
+        let bounds = in_units(segment.size(&piece.near), frame);
+        let scale = frame.fast.scale.middle();
+        let [a, b, _] = segment.point(&piece.near).map(|part| part / scale);
+        // A little along the piece and to the right, where the ray has passed the border.
+        let [to_a, to_b, _] = segment.point(&piece.far).map(|part| part / scale);
+        let length = (to_a - a).abs().max((to_b - b).abs());
+        let step = (bounds[1].max(self.smallest_size(frame)) * PLACE_SLACK).min(length);
+        let along = if length > 0.0 { [(to_a - a) / length, (to_b - b) / length] } else { [0.0; 2] };
+        let right = segment.right();
+        let witness = [0, 1].map(|k: usize| [a, b][k] + along[k] * step + right[k] * step / 16.0);
+        CastMargin::of(bounds, Some(witness), cap)
+    }
+}
+
+/// The edges, by their first corners, through which the part of a face on the right side of `at` is left and entered
+/// again; `None` if the face is not cut.
+fn cut_edges(face: &FlatFace<Dyadic>, at: &Dyadic, keeps_later: bool) -> Option<[usize; 2]> {
+    let signs = face.corners.each_ref().map(|corner| {
+        let sign = corner.0[2].sub(at).sign().unwrap_or(Ordering::Equal);
+        if keeps_later { sign } else { sign.reverse() }
+    });
+    if !signs.contains(&Ordering::Greater) || !signs.contains(&Ordering::Less) {
+        return None;
+    }
+    let is_kept = |k: usize| signs[k % 3] != Ordering::Less;
+    let exit = (0..3).find(|&k| is_kept(k) && !is_kept(k + 1))?;
+    let enter = (0..3).find(|&k| !is_kept(k) && is_kept(k + 1))?;
+    Some([exit, enter])
+}
