@@ -83,7 +83,7 @@ impl ExactCast<'_> {
             }
         }
         if lo >= cap {
-            return CastMargin::of([cap; 2], None, cap);
+            return CastMargin::of([cap; 2], None, 0.0, cap);
         }
         events.retain(|event| event.size[0] <= 2.0 * lo.max(self.smallest_size(frame)));
         events.sort_by(|a, b| a.size[0].total_cmp(&b.size[0]));
@@ -91,7 +91,8 @@ impl ExactCast<'_> {
         let hi = if lo == 0.0 { 0.0 } else { hi };
         let ids: Vec<_> = nearest.iter().map(|one| one.face.id).collect();
         let differs = |by: [f64; 2]| self.first_moved(frame.ray, sides, by) != ids;
-        CastMargin::of([lo, hi], self.face_witness(frame, &events, lo, cap, differs), cap)
+        let least = 2.0 * self.smallest_size(frame);
+        CastMargin::of([lo, hi], self.face_witness(frame, &events, lo, cap, differs), least, cap)
     }
 
     /// A size of displacement below which f64 numbers can hardly tell one ray from another: 2^-52 of the largest
@@ -114,7 +115,7 @@ impl ExactCast<'_> {
         differs: impl Fn([f64; 2]) -> bool,
     ) -> Option<[f64; 2]> {
         let least = lo.max(self.smallest_size(frame));
-        for further in [1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.5, 0.9] {
+        for further in [1e-12, 1e-9, 1e-6, 1e-4, 5e-3, 0.5, 0.9] {
             let size = (least * (1.0 + further)).min(cap);
             for event in events.iter().take(8) {
                 let by = match &event.kind {

@@ -58,13 +58,15 @@ pub struct CastMargins {
 }
 
 impl CastMargin {
-    /// From a proven interval of the least size.
-    fn of([lo, hi]: [f64; 2], witness: Option<[f64; 2]>, cap: f64) -> Self {
+    /// From a proven interval of the least size. A witness counts if it is as small but for a hundredth, or for `least`,
+    /// a size below which `f64` numbers hardly tell rays apart.
+    fn of([lo, hi]: [f64; 2], witness: Option<[f64; 2]>, least: f64, cap: f64) -> Self {
         if lo >= cap {
             return Self { lo: cap, hi: cap, witness: None };
         }
-        let size = |by: [f64; 2]| by[0].abs().max(by[1].abs());
-        Self { lo, hi: witness.map_or(hi, size).max(hi).min(cap), witness }
+        let size = |by: &[f64; 2]| by[0].abs().max(by[1].abs());
+        let witness = witness.filter(|by| size(by) <= (hi * 1.01).max(hi + least));
+        Self { lo, hi: witness.as_ref().map_or(hi, size).max(hi).min(cap), witness }
     }
 }
 

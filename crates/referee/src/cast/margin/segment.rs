@@ -233,6 +233,23 @@ pub(super) fn cover<T: AtPlace>(
     }
 }
 
+/// A corner of a flat face as a segment without length.
+pub(super) fn corner_segment<T: Number>(face: &FlatFace<T>, k: usize) -> Segment<T> {
+    let corner = face.corners[k % 3].0.clone();
+    Segment { ends: [corner.clone(), corner], divisor: T::of(1.0) }
+}
+
+/// When a face is met at a corner of another, against that corner's t: `None` if it is not met there.
+pub(super) fn met_at(
+    corner: &Segment<Dyadic>,
+    face: &FlatFace<Dyadic>,
+    frame: &FrameNumbers<Dyadic>,
+) -> Option<Ordering> {
+    let is_met = |condition: &Linear<Dyadic>| corner.values(condition)[0].sign() != Some(Ordering::Less);
+    let is_met = face.conditions(frame).iter().all(is_met);
+    is_met.then(|| corner.behind(face)[0].sign().unwrap_or(Ordering::Equal))
+}
+
 /// The place up to which a face that covers a piece just behind its near end covers it.
 pub(super) fn covered_up_to(
     piece: &Piece,

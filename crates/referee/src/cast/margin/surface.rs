@@ -35,7 +35,7 @@ use super::faces::in_units;
 use super::flat::{FlatFace, corner_of};
 use super::frame::{Frame, FrameNumbers, least_size};
 use super::nearby::Nearby;
-use super::segment::{Border, Cover, Piece, Segment, cover, covered_up_to};
+use super::segment::{Border, Cover, Piece, Place, Segment, corner_segment, cover, covered_up_to, met_at};
 use super::{CastMargin, ExactCast};
 use crate::bvh::RayBundle;
 use crate::number::{Dyadic, Number};
@@ -44,6 +44,8 @@ use crate::number::{Dyadic, Number};
 enum Task {
     /// A border, not yet cut into pieces.
     Border(FaceId, Side, Border),
+    /// A corner of the flat face: all that an end of the ray leaves of it.
+    Corner(FaceId, Side, usize),
     Piece(Box<Piece>),
 }
 
@@ -86,7 +88,7 @@ impl ExactCast<'_> {
         loop {
             let size = nearby.size().min(tasks.size());
             if size >= cap {
-                return CastMargin::of([cap; 2], None, cap);
+                return CastMargin::of([cap; 2], None, 0.0, cap);
             }
             if nearby.size() <= tasks.size() {
                 let faces = nearby.open(frame, |node, span| {
@@ -115,6 +117,15 @@ impl ExactCast<'_> {
                             let size = in_units(segment.size(&piece.near), frame)[0].max(from);
                             tasks.push(size, Task::Piece(Box::new(piece)));
                         }
+                    }
+                }
+                Some(Task::Corner(face, side, k)) => {
+                    let point = corner_segment(&self.flat(frame.exact(), face, side), k);
+                    if self.stands_alone(frame, &point, sides, &query) {
+                        let near = Place::start();
+                        let far = Place::end();
+                        let piece = Piece { face, side, border: Border::Edge(k), near, far };
+                        return self.jump(frame, &piece, &point, cap);
                     }
                 }
                 Some(Task::Piece(mut piece)) => {
@@ -184,6 +195,10 @@ impl ExactCast<'_> {
         let flat = self.flat(numbers, face.id, side);
         let ends = [Some((&numbers.from, true)), numbers.to.as_ref().map(|to| (to, false))];
         for (at, is_start) in ends.into_iter().flatten() {
+            if let Some(k) = lone_corner(&flat, at, is_start) {
+                let size = in_units(corner_segment(&flat, k).size(&Place::start()), frame)[0];
+                tasks.push(size, Task::Corner(face.id, side, k));
+            }
             if let Some(edges) = cut_edges(&flat, at, is_start) {
                 let border = if is_start { Border::Start(edges) } else { Border::End(edges) };
                 tasks.push(least_size(&whole), Task::Border(face.id, side, border));
@@ -211,10 +226,10 @@ impl ExactCast<'_> {
         segment: &Segment<Dyadic>,
         sides: Sides,
         query: &QueryRay<'_>,
-    ) -> Option<super::segment::Place> {
+    ) -> Option<Place> {
         let fast = Segment::of(&self.flat(&frame.fast, piece.face, piece.side), piece.border, &frame.fast);
         let bundle = self.bundle_at(frame, segment.point(&piece.near));
-        let mut until: Option<super::segment::Place> = None;
+        let mut until: Option<Place> = None;
         self.bvh.visit(&bundle, |face| {
             let covers = face.seen_side(query).filter(|side| sides.include(*side)).map(|side| {
                 let quick = cover(piece, &fast, &self.flat(&frame.fast, face.id, side), &frame.fast);
@@ -228,7 +243,7 @@ impl ExactCast<'_> {
             if let Some((covers @ (Cover::Before | Cover::GoesOn), Some(exact))) = covers {
                 let end = covered_up_to(piece, segment, &exact, frame.exact(), covers);
                 // The farther from the near end the better: nearer to the far end.
-                let is_farther = |kept: &super::segment::Place| {
+                let is_farther = |kept: &Place| {
                     let order = end.compare(kept);
                     order == piece.far.compare(&piece.near)
                 };
@@ -239,6 +254,31 @@ impl ExactCast<'_> {
             bundle.max_range
         });
         until
+    }
+
+    /// Whether a corner, which is all that is left of its face, is a jump.
+    fn stands_alone(
+        &self,
+        frame: &Frame<'_>,
+        point: &Segment<Dyadic>,
+        sides: Sides,
+        query: &QueryRay<'_>,
+    ) -> bool {
+        let numbers = frame.exact();
+        let bundle = self.bundle_at(frame, point.point(&Place::start()));
+        let mut stands_alone = true;
+        self.bvh.visit(&bundle, |face| {
+            if let Some(side) = face.seen_side(query).filter(|side| sides.include(*side)) {
+                let flat = self.flat(numbers, face.id, side);
+                stands_alone &= match met_at(point, &flat, numbers) {
+                    None | Some(Ordering::Greater) => true,
+                    Some(Ordering::Less) => false,
+                    Some(Ordering::Equal) => !is_more_than_a_corner(&flat, numbers),
+                };
+            }
+            bundle.max_range
+        });
+        stands_alone
     }
 
     /// The displaced ray at a place of the frame, up to the place itself, for the hierarchy.
@@ -267,8 +307,21 @@ impl ExactCast<'_> {
         let along = if length > 0.0 { [(to_a - a) / length, (to_b - b) / length] } else { [0.0; 2] };
         let right = segment.right();
         let witness = [0, 1].map(|k: usize| [a, b][k] + along[k] * step + right[k] * step / 16.0);
-        CastMargin::of(bounds, Some(witness), cap)
+        CastMargin::of(bounds, Some(witness), 2.0 * self.smallest_size(frame), cap)
     }
+}
+
+/// The only corner of a face on the right side of `at`, if it is exactly there and the two others are beyond.
+fn lone_corner(face: &FlatFace<Dyadic>, at: &Dyadic, keeps_later: bool) -> Option<usize> {
+    let sign = |k: usize| face.corners[k % 3].0[2].sub(at).sign();
+    let beyond = Some(if keeps_later { Ordering::Less } else { Ordering::Greater });
+    (0..3).find(|&k| sign(k) == Some(Ordering::Equal) && sign(k + 1) == beyond && sign(k + 2) == beyond)
+}
+
+/// Whether the ends of the ray leave more of a face that is met than one corner.
+fn is_more_than_a_corner(face: &FlatFace<Dyadic>, frame: &FrameNumbers<Dyadic>) -> bool {
+    let at_start = lone_corner(face, &frame.from, true).is_some();
+    !at_start && frame.to.as_ref().is_none_or(|to| lone_corner(face, to, false).is_none())
 }
 
 /// The edges, by their first corners, through which the part of a face on the right side of `at` is left and entered

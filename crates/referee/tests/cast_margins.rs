@@ -1,0 +1,345 @@
+//! How far any ray may be moved sideways: closed forms by hand, and rays that look for a change within the margin.
+
+use glam::DVec3;
+use proptest::prelude::*;
+use raypencil_referee::{CastMargin, ExactCast};
+use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+
+/// A ray straight down. Across it, u is y and v is x.
+fn down(x: f64, y: f64, z: f64) -> CastRay {
+    CastRay::new(DVec3::new(x, y, z), DVec3::NEG_Z)
+}
+
+fn mesh(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Triangles {
+    Triangles::new(vertices.to_vec(), faces.to_vec()).unwrap()
+}
+
+/// The margin is this number, but for a few units in the last place of both ends.
+#[track_caller]
+fn assert_is(margin: CastMargin, expected: f64) {
+    let close = 1e-11 * expected;
+    assert!(margin.lo <= expected && margin.lo >= expected - close, "{margin:?} is not {expected}");
+    assert!(margin.hi >= expected && margin.hi <= expected * 1.001 + 1e-300, "{margin:?} is not {expected}");
+}
+
+const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+
+#[test]
+fn a_step_ends_the_surface_and_an_edge_between_two_faces_does_not() {
+    // A square at 0 and beside it, from x = 1 to 3, one at -1: seen from above, a step at x = 1.
+    let lower = [[1.0, -1.0, -1.0], [3.0, -1.0, -1.0], [3.0, 2.0, -1.0], [1.0, 2.0, -1.0]];
+    let vertices: Vec<_> = SQUARE.into_iter().chain(lower).collect();
+    let mesh = mesh(&vertices, &[[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]);
+    let cast = ExactCast::new(&mesh);
+    let margins = cast.margins(&down(0.875, 0.5, 4.0), Sides::Both);
+    // The step is 1/8 away. The diagonal, x = y, is 3/16 away: 3/8 over two.
+    assert_is(margins.face, 0.125);
+    assert_is(margins.surface, 0.125);
+    let margins = cast.margins(&down(0.625, 0.5, 4.0), Sides::Both);
+    assert_is(margins.face, 0.0625);
+    assert_is(margins.surface, 0.375);
+    // From the lower square the step is an edge of the upper face that hides it.
+    let margins = cast.margins(&down(1.5, 0.5, 4.0), Sides::Both);
+    assert_is(margins.surface, 0.5);
+    // A miss: 1/4 from the lower square's border. Both margins are the same.
+    let margins = cast.margins(&down(3.25, 0.5, 4.0), Sides::Both);
+    assert_is(margins.face, 0.25);
+    assert_eq!(margins.face, margins.surface);
+    // Through the diagonal: any displacement changes the faces.
+    let margins = cast.margins(&down(0.5, 0.5, 4.0), Sides::Both);
+    assert!(margins.face.lo == 0.0 && margins.face.hi < 1e-15, "{margins:?}");
+    assert_is(margins.surface, 0.5);
+    // On the border: any displacement makes a miss, or not; the surface ends here.
+    let margins = cast.margins(&down(0.25, 0.0, 4.0), Sides::Both);
+    assert!(margins.surface.lo == 0.0 && margins.surface.hi < 1e-15, "{margins:?}");
+}
+
+#[test]
+fn margins_are_capped_at_the_diagonal_of_the_box() {
+    // A square of side 2^20 met in its middle, and one far away.
+    let square = SQUARE.map(|v| v.map(|x| x * 1_048_576.0));
+    let large = mesh(&square, &[[0, 1, 2], [0, 2, 3]]);
+    let diagonal = 1_048_576.0 * 2.0_f64.sqrt();
+    let far = ExactCast::new(&large).margins(&down(1e8, 0.0, 1.0), Sides::Both);
+    assert_eq!((far.face.lo, far.face.hi, far.face.witness), (diagonal, diagonal, None));
+    assert_eq!(far.surface, far.face);
+    let empty = mesh(&[], &[]);
+    let nothing = ExactCast::new(&empty).margins(&down(0.0, 0.0, 1.0), Sides::Both);
+    assert_eq!((nothing.face.lo, nothing.surface.hi), (0.0, 0.0));
+}
+
+#[test]
+fn the_ends_of_the_ray_cut_faces_off() {
+    // A ramp z = x from 0 to 8. From above at z = 10, t = 10 - x.
+    let ramp =
+        mesh(&[[0.0, 0.0, 0.0], [8.0, 0.0, 8.0], [8.0, 8.0, 8.0], [0.0, 8.0, 0.0]], &[[0, 1, 2], [0, 2, 3]]);
+    let cast = ExactCast::new(&ramp);
+    let ray = down(4.0, 3.0, 10.0);
+    assert_is(cast.margins(&ray, Sides::Both).surface, 3.0);
+    // It ends at t = 6.25: at x = 3.75 the ramp is beyond its end.
+    let ended = CastRay { t_max: 6.25, ..ray };
+    assert_is(cast.margins(&ended, Sides::Both).surface, 0.25);
+    assert_is(cast.margins(&ended, Sides::Both).face, 0.25);
+    // It starts at t = 5.875: at x = 4.125 the ramp is before its start.
+    let started = CastRay { t_min: 5.875, ..ray };
+    assert_is(cast.margins(&started, Sides::Both).surface, 0.125);
+    // Exactly at its end: the least displacement makes a miss.
+    let touched = cast.margins(&CastRay { t_max: 6.0, ..ray }, Sides::Both);
+    assert!(touched.surface.lo == 0.0 && touched.surface.hi < 1e-14, "{touched:?}");
+    // A corner that only touches the start is a hit of one ray; a fan around it in both directions is a surface.
+    let corner = mesh(&[[0.0, 0.0, 0.0], [2.0, -1.0, 2.0], [2.0, 1.0, 2.0]], &[[0, 1, 2]]);
+    let touched = CastRay { t_min: 4.0, ..down(0.0, 0.0, 4.0) };
+    let margins = ExactCast::new(&corner).margins(&touched, Sides::Both);
+    assert!(margins.face.lo == 0.0 && margins.face.hi < 1e-14, "{margins:?}");
+    assert!(margins.surface.lo == 0.0 && margins.surface.hi < 1e-14, "{margins:?}");
+    let beside = CastRay { t_min: 4.0, ..down(-0.25, 0.125, 4.0) };
+    assert_is(ExactCast::new(&corner).margins(&beside, Sides::Both).surface, 0.25);
+    // Hidden below a square, it is not seen.
+    let hidden = mesh(
+        &[
+            [0.0, 0.0, 0.0],
+            [2.0, -1.0, -2.0],
+            [2.0, 1.0, -2.0],
+            [-4.0, -4.0, 1.0],
+            [4.0, -4.0, 1.0],
+            [0.0, 4.0, 1.0],
+        ],
+        &[[0, 1, 2], [3, 4, 5]],
+    );
+    let ended = CastRay { t_max: 4.0, ..down(0.25, 0.125, 4.0) };
+    assert_is(ExactCast::new(&hidden).margins(&ended, Sides::Both).surface, 1.125);
+    // A direction of another length: t is another, the margin is the same.
+    let power = libm::scalbn(1.0, 60);
+    let long = CastRay { direction: ray.direction / power, t_max: 6.25 * power, ..ray };
+    assert_is(cast.margins(&long, Sides::Both).surface, 0.25);
+}
+
+#[test]
+fn a_hidden_border_is_no_jump_and_a_crossing_is_none_either() {
+    // Below a large square, seen from above, lies a small one: its border is hidden. Two slopes cross in a valley
+    // without a common edge: there t does not jump.
+    let large = [[-8.0, -8.0, 1.0], [8.0, -8.0, 1.0], [8.0, 8.0, 1.0], [-8.0, 8.0, 1.0]];
+    let vertices: Vec<_> = SQUARE.into_iter().chain(large).collect();
+    let hidden = mesh(&vertices, &[[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]);
+    assert_is(ExactCast::new(&hidden).margins(&down(0.5, 0.25, 4.0), Sides::Both).surface, 7.5);
+    // From below the small one hides the large: its border is 1/4 away.
+    let up = CastRay { direction: DVec3::Z, ..down(0.5, 0.25, -4.0) };
+    assert_is(ExactCast::new(&hidden).margins(&up, Sides::Both).surface, 0.25);
+    // Both are seen from behind then: fronts only, and there is nothing within the box.
+    assert!(!ExactCast::new(&hidden).any(&up, Sides::Fronts));
+    // z = x and z = -x, each from x = -4 to 4 and y = -4 to 4: seen from above, the nearer is |x|, a valley.
+    let crossing = mesh(
+        &[
+            [-4.0, -4.0, -4.0],
+            [4.0, -4.0, 4.0],
+            [4.0, 4.0, 4.0],
+            [-4.0, 4.0, -4.0],
+            [-4.0, -4.0, 4.0],
+            [4.0, -4.0, -4.0],
+            [4.0, 4.0, -4.0],
+            [-4.0, 4.0, 4.0],
+        ],
+        &[[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+    );
+    let margins = ExactCast::new(&crossing).margins(&down(0.25, 1.0, 8.0), Sides::Both);
+    assert_is(margins.face, 0.25);
+    assert_is(margins.surface, 3.0);
+}
+
+#[test]
+fn a_surface_without_shared_vertices_is_still_one() {
+    // One long edge on the left side, two short ones on the right: the three meet without a gap at x = 0.
+    let vertices = [
+        [-2.0, 0.0, 0.0],
+        [0.0, -2.0, 0.0],
+        [0.0, 2.0, 0.0],
+        [0.0, -2.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 2.0, 0.0],
+    ];
+    let kite = mesh(&vertices, &[[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+    let margins = ExactCast::new(&kite).margins(&down(-0.25, 0.5, 4.0), Sides::Both);
+    assert_is(margins.face, 0.25);
+    // To |x| + |y| = 2: 5/4 over two.
+    assert_is(margins.surface, 0.625);
+    // With the lower right triangle moved away, the part of the border below y = 0 is a jump, at (0, 0).
+    let mut apart = vertices;
+    for vertex in &mut apart[3..6] {
+        vertex[2] = -1.0;
+    }
+    let apart = mesh(&apart, &[[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+    assert_is(ExactCast::new(&apart).margins(&down(-0.25, 0.5, 4.0), Sides::Both).surface, 0.5);
+}
+
+#[test]
+fn margins_have_no_scale() {
+    // The step of the first test, from micrometres to kilometres, and 2^-45 from it.
+    for exponent in [-60, -20, 0, 10, 40] {
+        let scale = libm::scalbn(1.0, exponent);
+        for offset in [0.125, libm::scalbn(1.0, -45)] {
+            let square = mesh(&SQUARE.map(|v| v.map(|x| x * scale)), &[[0, 1, 2], [0, 2, 3]]);
+            let ray = down((1.0 - offset) * scale, 0.5 * scale, scale);
+            let margins = ExactCast::new(&square).margins(&ray, Sides::Fronts);
+            assert_is(margins.surface, offset * scale);
+            assert_is(margins.face, offset * scale);
+        }
+    }
+    // Far from 0, too: the numbers are exact all the same.
+    let moved = mesh(&SQUARE.map(|[x, y, z]| [x + 1e6, y - 3e6, z + 1e6]), &[[0, 1, 2], [0, 2, 3]]);
+    let ray = down(1e6 + 0.75, 0.5 - 3e6, 1e6 + 1.0);
+    assert_is(ExactCast::new(&moved).margins(&ray, Sides::Fronts).surface, 0.25);
+}
+
+/// The nearest t of the ray moved sideways; infinite for a miss.
+fn moved_t(cast: &ExactCast<'_>, ray: &CastRay, by: [f64; 2]) -> f64 {
+    let [u, v] = ray.across();
+    let moved = CastRay { origin: ray.origin + u * by[0] + v * by[1], ..*ray };
+    cast.first_values(&moved, Sides::Both).map_or(f64::INFINITY, |hit| hit.t.double)
+}
+
+fn size(by: [f64; 2]) -> f64 {
+    by[0].abs().max(by[1].abs())
+}
+
+/// The places to which the ray must be moved to go through these points.
+fn flat(ray: &CastRay, point: DVec3) -> [f64; 2] {
+    let [u, v] = ray.across();
+    let (from, d) = (point - ray.origin, ray.direction);
+    let scale = u.dot(v.cross(d));
+    [from.dot(v.cross(d)) / scale, from.dot(d.cross(u)) / scale]
+}
+
+/// Whether t jumps at an edge within a hundredth of a place, as a place where an edge comes out of a face.
+fn jumps_near(cast: &ExactCast<'_>, ray: &CastRay, mesh: &Triangles, near: [f64; 2]) -> bool {
+    (0..mesh.faces().len() as u32).any(|face| {
+        let corners = mesh.corners(FaceId(face)).map(|corner| flat(ray, corner));
+        (0..3).any(|k| {
+            let (p, q) = (corners[k], corners[(k + 1) % 3]);
+            let across = [q[1] - p[1], p[0] - q[0]].map(|part| part * 1e-10);
+            (0..1024).any(|step| {
+                let s = f64::from(step) / 1024.0;
+                let at = [p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1])];
+                let is_near = size([at[0] - near[0], at[1] - near[1]]) < 0.01;
+                is_near && {
+                    let beside = [1.0, -1.0].map(|side| [at[0] + side * across[0], at[1] + side * across[1]]);
+                    let [one, other] = beside.map(|by| moved_t(cast, ray, by));
+                    one != other && !((one - other).abs() < 1e-7)
+                }
+            })
+        })
+    })
+}
+
+fn whole(size: i32) -> impl Strategy<Value = [i32; 3]> {
+    [-size..=size, -size..=size, -size..=size]
+}
+
+/// Number of displaced rays that look for a change within each margin: `RAYPENCIL_CAST_CASES=20000` draws a million
+/// and more.
+fn cases() -> u32 {
+    std::env::var("RAYPENCIL_CAST_CASES").map_or(400, |text| text.parse().expect("a number of cases"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// On a lattice of few points, seen along whole numbers, all is as degenerate as can be. Displaced rays aim at
+    /// places on the edges, where changes are.
+    #[test]
+    fn no_displaced_ray_within_the_margin_finds_a_change(
+        vertices in prop::collection::vec(whole(3), 3..9),
+        corners in prop::collection::vec([0_usize..9, 0_usize..9, 0_usize..9], 1..14),
+        rays in prop::collection::vec((whole(8), whole(3), 0_u32..4), 6),
+        fractions in prop::collection::vec((0.0_f64..1.0, -1.0_f64..1.0, -1.0_f64..1.0), 16),
+    ) {
+        let faces: Vec<[u32; 3]> =
+            corners.iter().map(|corners| corners.map(|k| (k % vertices.len()) as u32)).collect();
+        let vertices: Vec<[f64; 3]> = vertices.iter().map(|v| v.map(f64::from)).collect();
+        let mesh = mesh(&vertices, &faces);
+        let cast = ExactCast::new(&mesh);
+        for (origin, direction, ends) in rays {
+            if direction == [0; 3] {
+                continue;
+            }
+            let origin = DVec3::from(origin.map(|x| f64::from(x) / 2.0));
+            let ray = CastRay::new(origin, DVec3::from(direction.map(f64::from)));
+            let ray = match ends {
+                0 => CastRay { t_max: 1.0, ..ray },
+                1 => CastRay { t_min: 0.5, t_max: 2.0, ..ray },
+                _ => ray,
+            };
+            let margins = cast.margins(&ray, Sides::Both);
+            let (face, surface) = (margins.face, margins.surface);
+            prop_assert!(face.lo <= face.hi && surface.lo <= surface.hi, "{margins:?}");
+            prop_assert!(face.lo <= surface.hi, "{margins:?}");
+            for margin in [face, surface] {
+                prop_assert!(margin.hi <= 1.02 * margin.lo + 1e-14, "{margins:?}");
+            }
+            let own = cast.first(&ray, Sides::Both);
+            let first_t = moved_t(&cast, &ray, [0.0; 2]);
+            if let Some(witness) = face.witness {
+                prop_assert!(cast.first_moved(&ray, Sides::Both, witness) != own, "{margins:?}");
+            }
+            // A witness of the surface is just beyond a jump: nearby t differs, however near.
+            // An end of the ray that touches a corner leaves a single place, which no rounded ray finds.
+            let t_of = |v: &[f64; 3]| (DVec3::from(*v) - ray.origin).dot(ray.direction) / ray.direction.length_squared();
+            let is_touched = vertices.iter().any(|v| (t_of(v) - ray.t_min).abs().min((t_of(v) - ray.t_max).abs()) < 1e-9);
+            if let Some(at) = surface.witness.filter(|_| !own.is_empty() && !is_touched) {
+                let step = 1e-7 * (1.0 + size(at));
+                // Places all round, for the jump may be in a narrow wedge.
+                let round = (0..128).map(|k| {
+                    let along = f64::from(k % 32) / 16.0 - 1.0;
+                    [[along, 1.0], [along, -1.0], [1.0, along], [-1.0, along]][k as usize / 32]
+                });
+                let t: Vec<f64> = round.map(|s| moved_t(&cast, &ray, [at[0] + s[0] * step, at[1] + s[1] * step])).collect();
+                let (least, most) = t.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(*t), b.max(*t)));
+                // Where an edge comes out of another face, its jumps begin with 0: they are farther along the edge.
+                let sees_a_jump = most - least > 1e-6 || most == f64::INFINITY && least < most;
+                prop_assert!(sees_a_jump || jumps_near(&cast, &ray, &mesh, at), "{ray:?} {margins:?} {t:?}");
+            }
+            for &(s, x, y) in &fractions {
+                for triangle in &faces {
+                    for k in 0..3 {
+                        let corner = |k: usize| DVec3::from(vertices[triangle[k % 3] as usize]);
+                        let (p, q) = (flat(&ray, corner(k)), flat(&ray, corner(k + 1)));
+                        // Now and then a corner itself.
+                        let s = if s < 0.1 { 0.0 } else { s };
+                        let at = [p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1])];
+                        if size(at) < face.lo * (1.0 - 1e-9) {
+                            prop_assert_eq!(cast.first_moved(&ray, Sides::Both, at), own.clone(), "{:?} {:?}", ray, at);
+                        }
+                        // Two rays on both sides of the edge.
+                        let step = 1e-9;
+                        let beside = [[at[0] + x * step, at[1] + y * step], [at[0] - x * step, at[1] - y * step]];
+                        if size(at) < surface.lo - 1e-8 && !is_touched {
+                            let [one, other] = beside.map(|by| moved_t(&cast, &ray, by));
+                            // The steepest slope of the lattice: at most 6^2 * 2 in a face whose n.d is 1 at least.
+                            prop_assert!(one == other || (one - other).abs() < 1e-5, "{ray:?} {at:?} {one} {other} {margins:?}");
+                            prop_assert_eq!(one.is_finite(), first_t.is_finite());
+                        }
+                    }
+                }
+                let at = [x * face.lo, y * face.lo];
+                if size(at) < face.lo * (1.0 - 1e-9) {
+                    prop_assert_eq!(cast.first_moved(&ray, Sides::Both, at), own.clone());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_witness_of_a_needle_is_inside_it() {
+    // A needle 2^-40 wide and 1 long, a quarter beside the ray.
+    let width = libm::scalbn(1.0, -40);
+    let needle = mesh(&[[0.25, 0.0, 0.0], [1.25, 0.0, 0.0], [1.25, width, 0.0]], &[[0, 1, 2]]);
+    let cast = ExactCast::new(&needle);
+    let ray = down(0.0, 0.0, 1.0);
+    let margins = cast.margins(&ray, Sides::Both);
+    let witness = margins.face.witness.expect("a witness");
+    assert_eq!(cast.first_moved(&ray, Sides::Both, witness), [FaceId(0)]);
+    assert!(margins.face.lo <= 0.25 && margins.face.hi < 0.5, "{margins:?}");
+}
