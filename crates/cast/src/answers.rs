@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_referee::{CastHit, ExactCast, SidedFace};
+use raypencil_referee::{CastHit, CastMargins, ExactCast, SidedFace};
 use raypencil_scene::{CastRay, FaceId, Progress, Side, Sides, Triangles};
 
 /// What is asked beside the first hit.
@@ -12,6 +12,8 @@ pub struct Questions {
     pub any: bool,
     /// All hits, in exact order.
     pub all: bool,
+    /// How far each ray may be moved sideways before its answer changes.
+    pub margins: bool,
 }
 
 /// The first hit of a ray. Numbers are correctly rounded to `f64`.
@@ -57,6 +59,8 @@ pub struct Answers {
     pub any: Option<Vec<bool>>,
     /// All hits of each ray, if they were asked for.
     pub all: Option<Vec<Vec<GroupAtT>>>,
+    /// The margins of each ray, if they were asked for.
+    pub margins: Option<Vec<CastMargins>>,
 }
 
 impl Answers {
@@ -86,7 +90,11 @@ pub fn cast(
         progress.stage(&format!("all hits of {} rays", rays.len()));
         rays.par_iter().map(|ray| all(&exact, ray, sides)).collect()
     });
-    Answers { first, any, all }
+    let margins = questions.margins.then(|| {
+        progress.stage(&format!("margins of {} rays", rays.len()));
+        rays.par_iter().map(|ray| exact.margins(ray, sides)).collect()
+    });
+    Answers { first, any, all, margins }
 }
 
 fn first(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Option<FirstHit> {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use raypencil_referee::{CastMargin, CastMargins};
 use raypencil_report::{count, counted};
 use raypencil_scene::{CastRay, Side};
 use serde_json::{Value, json};
@@ -57,6 +58,12 @@ pub fn ray_text(ray: &CastRay, answers: &Answers, index: usize) -> String {
     if let Some(all) = &answers.all {
         for group in &all[index] {
             let _ = writeln!(text, "  all          t {}: {}", group.t, group_text(group));
+        }
+    }
+    if let Some(margins) = &answers.margins {
+        let CastMargins { face, surface } = &margins[index];
+        for (name, CastMargin { lo, hi, .. }) in [("face", face), ("surface", surface)] {
+            let _ = writeln!(text, "  margin       {name}: {lo} to {hi}");
         }
     }
     text
@@ -115,6 +122,12 @@ pub fn ray_json(ray: &CastRay, answers: &Answers, index: usize) -> Value {
     }
     if let Some(all) = &answers.all {
         answer["all"] = all[index].iter().map(group).collect();
+    }
+    if let Some(margins) = &answers.margins {
+        let of = |margin: &CastMargin| json!({ "lo": margin.lo, "hi": margin.hi, "witness": margin.witness });
+        let CastMargins { face, surface } = &margins[index];
+        let across = ray.across().map(|vector| vector.to_array());
+        answer["margins"] = json!({ "face": of(face), "surface": of(surface), "across": across });
     }
     answer
 }

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically, write_npy_numbers};
+use raypencil_referee::CastMargin;
 use raypencil_report::VERSION;
-use raypencil_scene::{Side, Sides, Triangles};
+use raypencil_scene::{CastRay, Side, Sides, Triangles};
 use serde_json::json;
 
 use crate::answers::{Answers, FirstHit, GroupAtT};
+use crate::rays_file::RayArray;
 
 /// Where mesh and rays come from, for the summary.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,6 +46,8 @@ fn side_number(side: Side) -> i8 {
 /// | `point`, `normal`, `barycentric` | f8, (..., 3) | NaN |
 /// | `any`, if it was asked | u1: 0 or 1 | 0 |
 /// | `all.start`, if all hits were asked for | u8, (rays + 1): the hits of ray k are `start[k]..start[k + 1]` | |
+/// | `margin.face`, `margin.surface`, if they were asked for | f8, (..., 2): lo and hi, in the mesh's unit | as for hits |
+/// | `across`, with the margins | f8, (..., 2, 3): the vectors along which a ray is moved | as for hits |
 /// | `all.face`, `all.side`, `all.t`, `all.group`, `all.crossing` | one entry per hit; hits at one t are one group | |
 ///
 /// # Errors
@@ -51,10 +55,11 @@ fn side_number(side: Side) -> i8 {
 pub fn write_answers(
     folder: &Path,
     answers: &Answers,
-    (mesh, shape, sides): (&Triangles, &[u64], Sides),
+    (mesh, rays, sides): (&Triangles, &RayArray, Sides),
     source: &CastSource,
 ) -> Result<PathBuf, FolderError> {
     let summary = begin_output_folder(folder, "summary.json")?;
+    let RayArray { shape, rays } = rays;
     let mut arrays = Vec::new();
     let mut folder = ArrayFolder { folder, arrays: &mut arrays };
     let of = |value: fn(&FirstHit) -> f64, miss: f64| -> Vec<f64> {
@@ -82,6 +87,17 @@ pub fn write_answers(
     }
     if let Some(all) = &answers.all {
         write_all(&mut folder, all)?;
+    }
+    if let Some(margins) = &answers.margins {
+        let with = |last: &[u64]| -> Vec<u64> { shape.iter().chain(last).copied().collect() };
+        let both = |margin: &CastMargin| [margin.lo, margin.hi];
+        let faces: Vec<f64> = margins.iter().flat_map(|margins| both(&margins.face)).collect();
+        let surfaces: Vec<f64> = margins.iter().flat_map(|margins| both(&margins.surface)).collect();
+        let across: Vec<f64> =
+            rays.iter().flat_map(CastRay::across).flat_map(|vector| vector.to_array()).collect();
+        folder.write("margin.face", &with(&[2]), &faces)?;
+        folder.write("margin.surface", &with(&[2]), &surfaces)?;
+        folder.write("across", &with(&[2, 3]), &across)?;
     }
     let (hits, ties) = answers.counts();
     let document = json!({

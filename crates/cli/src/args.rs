@@ -460,6 +460,10 @@ pub(crate) struct Cast {
     #[arg(long)]
     pub(crate) any: bool,
 
+    /// Ask how far each ray may be moved sideways, parallel to itself, before its answer changes.
+    #[arg(long)]
+    pub(crate) margins: bool,
+
     /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,

@@ -33,7 +33,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         }
     };
     let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
-    let questions = Questions { any: command.any, all: command.all };
+    let questions = Questions { any: command.any, all: command.all, margins: command.margins };
     let answers = answer(&mesh.triangles, &rays.rays, sides, questions, &spinner);
     let mut written = None;
     if let Some(folder) = &command.output {
@@ -44,7 +44,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             rays: given,
             rays_sha256: digest,
         };
-        written = Some(write_answers(folder, &answers, (&mesh.triangles, &rays.shape, sides), &source)?);
+        written = Some(write_answers(folder, &answers, (&mesh.triangles, &rays, sides), &source)?);
     }
     drop(spinner);
     let printed = if command.rays.is_none() { rays.rays.len() } else { MAX_PRINTED_RAYS };
