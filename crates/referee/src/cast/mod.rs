@@ -70,6 +70,10 @@ pub use values::CastHit;
 pub struct ExactCast<'t> {
     mesh: &'t Triangles,
     bvh: Bvh<Triangle>,
+    /// The diagonal of the mesh's bounding box, to which margins are capped.
+    diagonal: f64,
+    /// The largest coordinate of a vertex.
+    largest_coordinate: f64,
     /// Made when a margin is first asked for.
     seams: OnceLock<Seams>,
 }
@@ -78,7 +82,14 @@ impl<'t> ExactCast<'t> {
     /// Builds the hierarchy of a mesh's faces.
     pub fn new(mesh: &'t Triangles) -> Self {
         let faces = (0..mesh.faces().len() as u32).map(|index| Triangle::of(mesh, FaceId(index)));
-        Self { mesh, bvh: Bvh::build(faces.filter(Triangle::has_area)), seams: OnceLock::new() }
+        let [low, high] = mesh.bounds().unwrap_or_default();
+        Self {
+            mesh,
+            bvh: Bvh::build(faces.filter(Triangle::has_area)),
+            diagonal: (high - low).length(),
+            largest_coordinate: low.abs().max(high.abs()).max_element(),
+            seams: OnceLock::new(),
+        }
     }
 
     fn seams(&self) -> &Seams {

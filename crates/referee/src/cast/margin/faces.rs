@@ -39,7 +39,7 @@ enum EventKind {
 
 impl ExactCast<'_> {
     pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[&Triangle], sides: Sides) -> CastMargin {
-        let cap = self.margin_cap();
+        let cap = self.diagonal;
         let query = QueryRay::new(frame.ray);
         let seen = |face: &'_ Triangle| face.seen_side(&query);
         let nearest: Vec<SeenFace<'_>> =
@@ -98,11 +98,7 @@ impl ExactCast<'_> {
     /// A size of displacement below which f64 numbers can hardly tell one ray from another: 2^-52 of the largest
     /// coordinate.
     pub(super) fn smallest_size(&self, frame: &Frame<'_>) -> f64 {
-        let bounds = self
-            .mesh
-            .bounds()
-            .map_or(0.0, |bounds| bounds.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max));
-        f64::EPSILON * bounds.max(frame.ray.origin.abs().max_element())
+        f64::EPSILON * self.largest_coordinate.max(frame.ray.origin.abs().max_element())
     }
 
     /// A displaced ray with another answer, as near to `lo` as it can be found.

@@ -38,6 +38,8 @@ pub(super) struct FlatFace<T> {
     pub(super) corners: [Point<T>; 3],
     /// Twice the area of the triangle in the plane: positive.
     pub(super) area: T,
+    /// The vertices of the mesh at the corners.
+    pub(super) vertices: [DVec3; 3],
 }
 
 /// The corner of the mesh's face that is corner k here: fronts are turned round, since their normal points against the
@@ -52,11 +54,12 @@ pub(super) fn corner_of(side: Side, k: usize) -> usize {
 impl<T: Number> FlatFace<T> {
     /// The face with these corners, whose `side` the ray sees. It must not be parallel to the ray.
     pub(super) fn new(frame: &FrameNumbers<T>, corners: &[DVec3; 3], side: Side) -> Self {
-        let corners = [0, 1, 2].map(|k| frame.point(corners[corner_of(side, k)]));
+        let vertices = [0, 1, 2].map(|k| corners[corner_of(side, k)]);
+        let corners = vertices.map(|vertex| frame.point(vertex));
         let edges = [0, 1, 2].map(|k| edge(&corners, k));
         // The sum of the three edges' functions is the same everywhere: twice the area.
         let area = edges[0].c.add(&edges[1].c).add(&edges[2].c);
-        Self { corners, area }
+        Self { corners, area, vertices }
     }
 
     /// Not negative inside the edge from corner k, and 0 on its line: the cross product of the corners as seen from the

@@ -98,9 +98,4 @@ impl ExactCast<'_> {
         let surface = if nearest.is_empty() { face } else { self.surface_margin(&frame, face.lo, sides) };
         CastMargins { face, surface }
     }
-
-    /// The diagonal of the mesh's bounding box, to which margins are capped.
-    fn margin_cap(&self) -> f64 {
-        self.mesh.bounds().map_or(0.0, |[low, high]| (high - low).length())
-    }
 }

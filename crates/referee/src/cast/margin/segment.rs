@@ -9,6 +9,7 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
 use raypencil_scene::{FaceId, Side};
 
 use super::flat::{FlatFace, Linear};
@@ -33,6 +34,8 @@ pub(super) enum Border {
 pub(super) struct Segment<T> {
     ends: [[T; 3]; 2],
     divisor: T,
+    /// The vertices of the mesh at both ends, if it is an edge.
+    vertices: Option<[DVec3; 2]>,
 }
 
 impl<T: Number> Segment<T> {
@@ -40,14 +43,16 @@ impl<T: Number> Segment<T> {
         let cut_at = |[exit, enter]: [usize; 2], at: &T| {
             let (from, to) = (crossing(face, exit, at), crossing(face, enter, at));
             let divisor = from.1.mul(&to.1);
-            Self { ends: [from.0.map(|part| part.mul(&to.1)), to.0.map(|part| part.mul(&from.1))], divisor }
+            let ends = [from.0.map(|part| part.mul(&to.1)), to.0.map(|part| part.mul(&from.1))];
+            Self { ends, divisor, vertices: None }
         };
         match (border, &frame.to) {
             (Border::Start(edges), _) => cut_at(edges, &frame.from),
             (Border::End(edges), Some(to)) => cut_at(edges, to),
             (Border::End([k, _]) | Border::Edge(k), _) => {
                 let corner = |k: usize| face.corners[k % 3].0.clone();
-                Self { ends: [corner(k), corner(k + 1)], divisor: T::of(1.0) }
+                let vertices = Some([face.vertices[k % 3], face.vertices[(k + 1) % 3]]);
+                Self { ends: [corner(k), corner(k + 1)], divisor: T::of(1.0), vertices }
             }
         }
     }
@@ -59,10 +64,28 @@ impl<T: Number> Segment<T> {
             .map(|[a, b, _]| linear.c.mul(&self.divisor).add(&linear.x.mul(a)).add(&linear.y.mul(b)))
     }
 
-    /// t of a face's plane less t of the segment, times positive numbers.
+    /// The values of a face's edge from corner k. At a vertex that both have it is 0, which no interval could tell.
+    fn edge_values(&self, face: &FlatFace<T>, k: usize) -> [T; 2] {
+        let mut values = self.values(&face.edge(k));
+        for (end, vertex) in self.vertices.iter().flatten().enumerate() {
+            if face.vertices[k] == *vertex || face.vertices[(k + 1) % 3] == *vertex {
+                values[end] = T::of(0.0);
+            }
+        }
+        values
+    }
+
+    /// t of a face's plane less t of the segment, times positive numbers. At a common vertex it is 0.
     fn behind(&self, face: &FlatFace<T>) -> [T; 2] {
         let [from, to] = self.values(&face.height());
-        [from.sub(&self.ends[0][2].mul(&face.area)), to.sub(&self.ends[1][2].mul(&face.area))]
+        let mut values =
+            [from.sub(&self.ends[0][2].mul(&face.area)), to.sub(&self.ends[1][2].mul(&face.area))];
+        for (end, vertex) in self.vertices.iter().flatten().enumerate() {
+            if face.vertices.contains(vertex) {
+                values[end] = T::of(0.0);
+            }
+        }
+        values
     }
 
     /// How a linear function changes to the right of the segment, away from its face.
@@ -96,11 +119,13 @@ pub(super) struct Place {
 
 impl Place {
     pub(super) fn start() -> Self {
-        Self::of(Dyadic::of(0.0), Dyadic::of(1.0))
+        let rounded = Interval::of(0.0);
+        Self { numerator: Dyadic::of(0.0), divisor: Dyadic::of(1.0), rounded }
     }
 
     pub(super) fn end() -> Self {
-        Self::of(Dyadic::of(1.0), Dyadic::of(1.0))
+        let rounded = Interval::of(1.0);
+        Self { numerator: Dyadic::of(1.0), divisor: Dyadic::of(1.0), rounded }
     }
 
     fn of(numerator: Dyadic, divisor: Dyadic) -> Self {
@@ -139,7 +164,12 @@ pub(super) trait AtPlace: Number {
 
 impl AtPlace for Interval {
     fn at(place: &Place, [from, to]: &[Self; 2]) -> Self {
-        from.add(&to.sub(from).mul(&place.rounded))
+        // Exactly at an end, where a value may be exactly 0.
+        match (place.rounded.low, place.rounded.high) {
+            (0.0, 0.0) => *from,
+            (1.0, 1.0) => *to,
+            _ => from.add(&to.sub(from).mul(&place.rounded)),
+        }
     }
 }
 
@@ -202,11 +232,17 @@ pub(super) fn cover<T: AtPlace>(
             sign => sign,
         }
     };
-    let mut ends_here = Vec::new();
-    let conditions = (0..3).map(|k| face.edge(k));
-    let conditions = conditions.chain(std::iter::once_with(|| face.not_before(&frame.from)));
-    let conditions = conditions.chain(frame.to.iter().map(|to| face.not_after(to)));
-    for condition in conditions {
+    let mut ends_here: Vec<Linear<T>> = Vec::new();
+    for k in 0..3 {
+        match sign(&segment.edge_values(face, k)) {
+            Some(Ordering::Less) => return Some(Cover::None),
+            Some(Ordering::Greater) => {}
+            Some(Ordering::Equal) => ends_here.push(face.edge(k)),
+            None => is_certain = false,
+        }
+    }
+    let ends = std::iter::once_with(|| face.not_before(&frame.from));
+    for condition in ends.chain(frame.to.iter().map(|to| face.not_after(to))) {
         match sign(&segment.values(&condition)) {
             Some(Ordering::Less) => return Some(Cover::None),
             Some(Ordering::Greater) => {}
@@ -236,7 +272,7 @@ pub(super) fn cover<T: AtPlace>(
 /// A corner of a flat face as a segment without length.
 pub(super) fn corner_segment<T: Number>(face: &FlatFace<T>, k: usize) -> Segment<T> {
     let corner = face.corners[k % 3].0.clone();
-    Segment { ends: [corner.clone(), corner], divisor: T::of(1.0) }
+    Segment { ends: [corner.clone(), corner], divisor: T::of(1.0), vertices: None }
 }
 
 /// When a face is met at a corner of another, against that corner's t: `None` if it is not met there.
@@ -273,8 +309,11 @@ pub(super) fn covered_up_to(
             }
         }
     };
-    for condition in face.conditions(frame) {
-        limit(segment.values(&condition));
+    for k in 0..3 {
+        limit(segment.edge_values(face, k));
+    }
+    for condition in face.conditions(frame).iter().skip(3) {
+        limit(segment.values(condition));
     }
     if cover == Cover::Before {
         limit(segment.behind(face).map(|value| Dyadic::of(0.0).sub(&value)));

@@ -78,7 +78,7 @@ const PLACE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 impl ExactCast<'_> {
     /// The margin of the surface of a ray that hits. No jump is nearer than `from`, the margin of the faces.
     pub(super) fn surface_margin(&self, frame: &Frame<'_>, from: f64, sides: Sides) -> CastMargin {
-        let cap = self.margin_cap();
+        let cap = self.diagonal;
         let query = QueryRay::new(frame.ray);
         let seams = self.seams();
         let direction = super::super::bundle(frame.ray).direction;
