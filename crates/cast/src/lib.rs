@@ -3,6 +3,7 @@
 //! ```text
 //! rays_file      rays from NPY and CSV
 //! answers        what is asked, and the answers of the referee
+//! comparison/    another program's first hits against the exact ones
 //! write          answers as NPY arrays, and their summary
 //! text           the answers to one ray, and counts of many, as text and as JSON
 //! ```
@@ -28,11 +29,16 @@
 //! ```
 
 mod answers;
+mod comparison;
 mod rays_file;
 mod text;
 mod write;
 
 pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast};
+pub use comparison::{
+    CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, comparison_headline,
+    comparison_json, comparison_text, write_comparison,
+};
 pub use rays_file::{RayArray, rays_from_bytes, read_rays};
 pub use text::{counts_text, ray_json, ray_text};
 pub use write::{CastSource, write_answers};

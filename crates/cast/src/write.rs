@@ -27,7 +27,7 @@ pub struct CastSource {
 /// What stands for no face.
 const NO_FACE: u32 = u32::MAX;
 
-fn side_number(side: Side) -> i8 {
+pub(crate) fn side_number(side: Side) -> i8 {
     match side {
         Side::Front => 1,
         Side::Back => -1,

@@ -464,6 +464,10 @@ pub(crate) struct Cast {
     #[arg(long)]
     pub(crate) margins: bool,
 
+    /// Compare a renderer's first hits with the exact ones, ray by ray. Exit code 1: a ray is wrong, or nothing is hit.
+    #[arg(long, value_name = "RENDERER", value_parser = ["tracer"])]
+    pub(crate) with: Option<String>,
+
     /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use raypencil::cast::{
-    CastSource, Questions, RayArray, cast as answer, counts_text, ray_json, ray_text, rays_from_bytes,
-    write_answers,
+    CastSource, Comparison, Questions, RayArray, Stated, cast as answer, compare, comparison_json,
+    comparison_text, counts_text, ray_json, ray_text, rays_from_bytes, write_answers, write_comparison,
 };
-use raypencil::io::{FileError, Limits, bytes, hex_digits, read_triangles, sha256};
-use raypencil::{Progress, Sides, Triangles};
+use raypencil::io::{FileError, Limits, bytes, create_folder, hex_digits, quoted, read_triangles, sha256};
+use raypencil::{CastRay, Precision, Progress, Sides, Triangles};
 use serde_json::json;
 
 use crate::args::Cast;
@@ -35,6 +35,8 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
     let questions = Questions { any: command.any, all: command.all, margins: command.margins };
     let answers = answer(&mesh.triangles, &rays.rays, sides, questions, &spinner);
+    let with = command.with.as_deref();
+    let compared = with.map(|name| with_tracer(name, &mesh.triangles, &rays.rays, sides, &spinner));
     let mut written = None;
     if let Some(folder) = &command.output {
         spinner.stage("writing");
@@ -44,6 +46,10 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             rays: given,
             rays_sha256: digest,
         };
+        if let Some(Compared { name, stated, comparison }) = &compared {
+            create_folder(folder)?;
+            write_comparison(folder, name, &rays.shape, stated, comparison)?;
+        }
         written = Some(write_answers(folder, &answers, (&mesh.triangles, &rays, sides), &source)?);
     }
     drop(spinner);
@@ -57,9 +63,12 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         let counts =
             json!({ "rays": rays.rays.len(), "hits": hits, "misses": rays.rays.len() - hits, "ties": ties });
         let summary = written.map(|path| path.display().to_string());
-        let document = json!({ "counts": counts, "rays": each, "summary": summary });
+        let mut document = json!({ "counts": counts, "rays": each, "summary": summary });
+        if let Some(compared) = &compared {
+            document["compared"] = comparison_json(compared.name, &compared.comparison);
+        }
         say(&format!("{document:#}\n"));
-        return Ok(Outcome::Fine);
+        return Ok(outcome(compared.as_ref()));
     }
     let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(&mesh.triangles));
     if is_each_printed {
@@ -68,6 +77,10 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         }
     }
     text += &format!("{}\n", counts_text(&answers));
+    if let Some(Compared { name, comparison, .. }) = &compared {
+        let command = |index: usize| ray_command(command, &rays.rays[index]);
+        text += &format!("\n{}", comparison_text(name, comparison, command));
+    }
     if let Some(summary) = written {
         text += &format!(
             "\n{}\n  beside it: an array for each value, of shape {:?}\n",
@@ -76,7 +89,49 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         );
     }
     say(&text);
-    Ok(Outcome::Fine)
+    Ok(outcome(compared.as_ref()))
+}
+
+/// A renderer's first hits, and what became of them.
+struct Compared<'a> {
+    name: &'a str,
+    stated: Stated,
+    comparison: Comparison,
+}
+
+fn with_tracer<'a>(
+    name: &'a str,
+    mesh: &Triangles,
+    rays: &[CastRay],
+    sides: Sides,
+    progress: &dyn Progress,
+) -> Compared<'a> {
+    progress.stage(&format!("{name}: tracing {} rays", rays.len()));
+    let stated = Stated::by_tracer(mesh, rays, sides);
+    let comparison = compare(mesh, rays, sides, &stated, Precision::F64, progress);
+    Compared { name, stated, comparison }
+}
+
+fn outcome(compared: Option<&Compared<'_>>) -> Outcome {
+    match compared {
+        Some(compared) if !compared.comparison.passes() => Outcome::Differs,
+        _ => Outcome::Fine,
+    }
+}
+
+/// The command that shows everything about a ray.
+fn ray_command(command: &Cast, ray: &CastRay) -> String {
+    let [ox, oy, oz] = ray.origin.to_array();
+    let [dx, dy, dz] = ray.direction.to_array();
+    let mut numbers = format!("{ox},{oy},{oz},{dx},{dy},{dz}");
+    if ray.t_min > 0.0 || ray.t_max < f64::INFINITY {
+        numbers += &format!(",{},{}", ray.t_min, ray.t_max);
+    }
+    let fronts = if command.fronts_only { " --fronts-only" } else { "" };
+    format!(
+        "raypencil cast {} --ray={numbers}{fronts} --all --margins",
+        quoted(&command.mesh.display().to_string())
+    )
 }
 
 /// The bytes of a file, or of standard input.

@@ -131,7 +131,7 @@ struct Readme;
 pub use approximations::{Approximations, Explained, Reason};
 pub use arithmetic::Undecided;
 pub use beam_returns::{BeamReturns, Contribution, RoundedReturn};
-pub use cast::{CastHit, CastMargin, CastMargins, ExactCast, HitGroup, SidedFace};
+pub use cast::{CastHit, CastMargin, CastMargins, CastRuling, ExactCast, HitGroup, SidedFace};
 pub use certified::{CertifiedMap, CertifiedReturns, PixelSum};
 pub use displacement::Displacement;
 pub use flux::Flux;

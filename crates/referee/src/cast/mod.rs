@@ -20,6 +20,7 @@
 //! all         all hits in exact order, and how often the surface is crossed
 //! values      the values of a hit, correctly rounded
 //! margin      how far the ray may be moved sideways before its answer changes
+//! ruling      whether the rounding of another program excuses its answer
 //! ```
 //!
 //! The kernels of the sensors' rays (`face`, `intersection`) are apart from these: there a vertex is an `f32` number and
@@ -29,6 +30,7 @@ mod all;
 mod first;
 mod margin;
 mod query_ray;
+mod ruling;
 mod triangle;
 mod values;
 
@@ -43,6 +45,7 @@ use triangle::Triangle;
 
 pub use all::{HitGroup, SidedFace};
 pub use margin::{CastMargin, CastMargins};
+pub use ruling::CastRuling;
 pub use values::CastHit;
 
 /// The exact answers to any rays on a mesh.

@@ -157,6 +157,19 @@ fn middle_within(conditions: &[Linear<f64>], size: f64) -> Option<[f64; 2]> {
         .then(|| [0, 1].map(|k: usize| corners.iter().map(|corner| corner[k]).sum::<f64>() / count))
 }
 
+/// A displacement in the middle of those up to `size` at which the ray's line meets a face whose `side` it sees; `None` if
+/// none is found. It only says where to look.
+pub(in super::super) fn onto_face(
+    frame: &Frame<'_>,
+    face: &Triangle,
+    side: Side,
+    size: f64,
+) -> Option<[f64; 2]> {
+    let flat = SeenFace { face, side }.flat(frame.exact());
+    let edges: Vec<Linear<f64>> = (0..3).map(|k| rounded_exact(&flat.edge(k), frame)).collect();
+    middle_within(&edges, size)
+}
+
 /// The conditions under which a face stays met, as events.
 struct OwnConditions;
 

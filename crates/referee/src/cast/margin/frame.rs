@@ -16,11 +16,12 @@
 
 use std::cell::OnceCell;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use raypencil_scene::CastRay;
 
 use super::super::query_ray::QueryRay;
 use crate::number::{Dyadic, Interval, Number};
+use crate::rounding::quotient;
 use crate::vector::Vector;
 
 /// A point in the frame: D a, D b, D t.
@@ -66,7 +67,7 @@ impl<T: Number> FrameNumbers<T> {
 }
 
 /// The frame of a ray in both numbers, and rounded.
-pub(super) struct Frame<'r> {
+pub(in super::super) struct Frame<'r> {
     pub(super) ray: &'r CastRay,
     pub(super) fast: FrameNumbers<Interval>,
     exact: OnceCell<FrameNumbers<Dyadic>>,
@@ -85,7 +86,7 @@ struct RoundedFrame {
 const ROUNDED_SLACK: f64 = 1.0 / (1u64 << 44) as f64;
 
 impl<'r> Frame<'r> {
-    pub(super) fn new(ray: &'r CastRay) -> Self {
+    pub(in super::super) fn new(ray: &'r CastRay) -> Self {
         let fast = FrameNumbers::<Interval>::of(ray);
         let scale = fast.scale.middle();
         let row = |k: usize| DVec3::from_array(fast.rows[k].0.each_ref().map(Interval::middle)) / scale;
@@ -105,6 +106,13 @@ impl<'r> Frame<'r> {
 
     pub(super) fn exact(&self) -> &FrameNumbers<Dyadic> {
         self.exact.get_or_init(|| FrameNumbers::of(self.ray))
+    }
+
+    /// The displacement that brings the ray to a vertex, each part correctly rounded.
+    pub(in super::super) fn displacement_to(&self, vertex: DVec3) -> DVec2 {
+        let numbers = self.exact();
+        let Point([a, b, _]) = numbers.point(vertex);
+        DVec2::new(quotient(&a, &numbers.scale).double, quotient(&b, &numbers.scale).double)
     }
 
     /// The intervals of a, b and the range that contain all points of a box.

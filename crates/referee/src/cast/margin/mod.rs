@@ -29,8 +29,8 @@ mod surface;
 use raypencil_scene::{CastRay, Sides};
 
 use super::ExactCast;
-use frame::Frame;
-
+pub(super) use faces::onto_face;
+pub(super) use frame::Frame;
 pub(super) use seams::Seams;
 
 /// The least size of a displacement that changes an answer lies in `lo..=hi`, in the mesh's unit.

@@ -1,0 +1,241 @@
+//! Stated first hits against the exact ones.
+//!
+//! A stated hit is *the same* if its face is one of the nearest. It is *rounding* if the referee finds a ray, moved sideways
+//! by no more than the program's arithmetic may, of which it is the answer; else it is *wrong*. Values are compared where
+//! the face is the same, with bounds that follow from the same errors (u: the unit roundoff, S: the largest coordinate
+//! seen from the ray, d: the ray's direction, kappa and c as in the referee's ruling):
+//!
+//! | value | bound | because |
+//! | --- | --- | --- |
+//! | range | R = 72 kappa u S / c | n.a' / n.d |
+//! | t | R / abs(d) | range = t abs(d) |
+//! | point | R + 16 u S | o + t d |
+//! | barycentric | 16 u S / (c h) | moved sideways by 16 u S, it moves in the plane by 1 / c as much; a weight changes by 1 / h for one, with h the least height of the triangle |
+//! | normal | 16 kappa u (1 + S / e) | two edges, each within 2 u S if vertices are rounded; e: the shortest edge |
+//! | cosine | that of the normal + 8 u | |
+//!
+//! A value that is not a number is wrong.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use raypencil_referee::{CastHit, CastRuling, ExactCast, Rounded};
+use raypencil_scene::{CastRay, FaceId, Precision, Progress, Sides, Triangles};
+
+use super::stated::Stated;
+use super::verdict::{CastValue, Comparison, RayVerdict, ValueTally, Wrong};
+use crate::write::side_number;
+
+/// Compares stated first hits with the exact ones, on all threads. `precision` is that of the arithmetic that they come from.
+///
+/// ```
+/// use raypencil_cast::{Stated, compare};
+/// use raypencil_scene::{FaceId, Precision, Sides, Silent, Triangles};
+///
+/// let square = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = Triangles::new(square, vec![[0, 1, 2], [0, 2, 3]])?;
+/// // On the diagonal both faces are right; beside it one is.
+/// let rays = raypencil_cast::rays_from_bytes(b"0.5,0.5,1,0,0,-1\n0.75,0.5,1,0,0,-1", "here".as_ref())?.rays;
+/// let second = Stated { face: Some(vec![Some(FaceId(1)); 2]), ..Stated::default() };
+/// let counts = compare(&mesh, &rays, Sides::Both, &second, Precision::F64, &Silent).counts();
+/// assert_eq!((counts.same, counts.ties, counts.rounding, counts.wrong), (1, 1, 0, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Panics
+/// If `stated` says of no ray whether it hits, or has not one value for each ray.
+pub fn compare(
+    mesh: &Triangles,
+    rays: &[CastRay],
+    sides: Sides,
+    stated: &Stated,
+    precision: Precision,
+    progress: &dyn Progress,
+) -> Comparison {
+    progress.stage(&format!("comparing {} rays", rays.len()));
+    let exact = ExactCast::new(mesh);
+    let judge = Judge { exact: &exact, mesh, sides, stated, precision };
+    let judged: Vec<Judged> = rays.par_iter().enumerate().map(|(index, ray)| judge.ray(index, ray)).collect();
+    let given = |value: &CastValue| stated.part(*value, 0).is_some() || rays.is_empty();
+    let tally = |value: CastValue| {
+        let mut tally = ValueTally { value, compared: 0, worst: None };
+        for (index, judged) in judged.iter().enumerate() {
+            let Some(ratio) = judged.ratios[value as usize] else { continue };
+            tally.compared += 1;
+            if tally.worst.is_none_or(|(worst, _)| ratio > worst) {
+                tally.worst = Some((ratio, index));
+            }
+        }
+        tally
+    };
+    Comparison {
+        values: CastValue::ALL.into_iter().filter(given).map(tally).collect(),
+        hits: judged.iter().filter(|judged| judged.is_hit).count() as u64,
+        verdicts: judged.into_iter().map(|judged| judged.verdict).collect(),
+        precision,
+    }
+}
+
+impl Stated {
+    /// The parts of a value of a ray, if it is given: one or three numbers; a side is 1 or -1, and 0 if it is not said.
+    fn part(&self, value: CastValue, index: usize) -> Option<[f64; 3]> {
+        let number = |array: &Option<Vec<f64>>| Some([*array.as_ref()?.get(index)?, 0.0, 0.0]);
+        let vector = |array: &Option<Vec<DVec3>>| Some(array.as_ref()?.get(index)?.to_array());
+        match value {
+            CastValue::T => number(&self.t),
+            CastValue::Range => number(&self.range),
+            CastValue::Side => {
+                let side = self.side.as_ref()?.get(index)?;
+                Some([side.map_or(0.0, |side| f64::from(side_number(side))), 0.0, 0.0])
+            }
+            CastValue::Point => vector(&self.point),
+            CastValue::Normal => vector(&self.normal),
+            CastValue::Barycentric => vector(&self.barycentric),
+            CastValue::CosIncidence => number(&self.cos_incidence),
+        }
+    }
+}
+
+/// One ray, judged.
+struct Judged {
+    verdict: RayVerdict,
+    is_hit: bool,
+    /// The error of each value as a part of its bound, where it was compared.
+    ratios: [Option<f64>; 7],
+}
+
+struct Judge<'a> {
+    exact: &'a ExactCast<'a>,
+    mesh: &'a Triangles,
+    sides: Sides,
+    stated: &'a Stated,
+    precision: Precision,
+}
+
+impl Judge<'_> {
+    fn ray(&self, index: usize, ray: &CastRay) -> Judged {
+        let first = self.exact.first(ray, self.sides);
+        let judged = |verdict| Judged { verdict, is_hit: !first.is_empty(), ratios: [None; 7] };
+        let stated = match self.stated_face(index, ray, &first) {
+            Ok(face) => face,
+            Err(wrong) => return judged(RayVerdict::Wrong(wrong)),
+        };
+        match self.exact.rule(ray, self.sides, stated, self.precision) {
+            CastRuling::Rounding { moved } => judged(RayVerdict::Rounding { moved }),
+            CastRuling::Wrong => {
+                judged(RayVerdict::Wrong(Wrong::Hit { stated, exact: first.first().copied() }))
+            }
+            CastRuling::Same => {
+                let (wrong, ratios) = match stated.and_then(|face| self.exact.values(ray, face)) {
+                    None => (None, [None; 7]),
+                    Some(hit) => self.values(index, ray, &hit),
+                };
+                let same = RayVerdict::Same { is_tie: first.len() > 1 };
+                Judged { ratios, ..judged(wrong.map_or(same, RayVerdict::Wrong)) }
+            }
+        }
+    }
+
+    /// The face that is stated. Where faces are not given it is a face that is met at the distance that is.
+    fn stated_face(&self, index: usize, ray: &CastRay, first: &[FaceId]) -> Result<Option<FaceId>, Wrong> {
+        if let Some(face) = &self.stated.face {
+            return Ok(face[index]);
+        }
+        let is_t = self.stated.t.is_some();
+        let value = if is_t { CastValue::T } else { CastValue::Range };
+        let distance = self.stated.part(value, index).expect("a distance for each ray, or faces")[0];
+        if !distance.is_finite() {
+            return Ok(None);
+        }
+        let of = |hit: &CastHit| if is_t { hit.t.double } else { hit.range.double };
+        let is_there = |face: &FaceId| {
+            self.exact
+                .values(ray, *face)
+                .is_some_and(|hit| (of(&hit) - distance).abs() <= self.bound(value, ray, &hit))
+        };
+        let all = || self.exact.all(ray, self.sides).into_iter().flat_map(|group| group.faces);
+        let found = first.iter().copied().find(is_there);
+        let found = found.or_else(|| all().map(|met| met.face).find(is_there));
+        let exact = first.first().and_then(|face| self.exact.values(ray, *face)).map(|hit| of(&hit));
+        // A face that only a ray beside this one meets: its distance there is that of its plane, up to the bound.
+        let beside = || {
+            let most = self.exact.lateral_error(ray, self.precision);
+            let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+            around.into_iter().find_map(|by: [f64; 2]| {
+                let faces = self.exact.first_moved(ray, self.sides, by.map(|part| part * most));
+                faces.into_iter().find(|face| self.is_plane_at(ray, *face, distance, is_t))
+            })
+        };
+        found.or_else(beside).map(Some).ok_or(Wrong::Distance { stated: distance, exact })
+    }
+
+    /// Whether the ray passes the plane of a face at this distance.
+    fn is_plane_at(&self, ray: &CastRay, face: FaceId, distance: f64, is_t: bool) -> bool {
+        let [a, b, c] = self.mesh.corners(face);
+        let normal = (b - a).cross(c - a);
+        let per_t = ray.direction.length();
+        let t = normal.dot(a - ray.origin) / normal.dot(ray.direction);
+        let range = if is_t { distance * per_t } else { distance };
+        (t * per_t - range).abs() <= self.exact.range_error(ray, face, self.precision)
+    }
+
+    /// How far a value may be off by rounding.
+    fn bound(&self, value: CastValue, ray: &CastRay, hit: &CastHit) -> f64 {
+        let range = self.exact.range_error(ray, hit.face, self.precision);
+        let lateral = self.exact.lateral_error(ray, self.precision);
+        let length = ray.direction.length();
+        let u = self.precision.unit_roundoff;
+        let [a, b, c] = self.mesh.corners(hit.face);
+        let edges = [b - a, c - b, a - c].map(DVec3::length);
+        let doubled_area = (b - a).cross(c - a).length();
+        let longest = edges[0].max(edges[1]).max(edges[2]);
+        let shortest = edges[0].min(edges[1]).min(edges[2]);
+        let kappa = (b - a).length() * (c - a).length() / doubled_area;
+        let normal = kappa * (16.0 * u + lateral / shortest);
+        match value {
+            CastValue::T => range / length,
+            CastValue::Range => range,
+            CastValue::Side => 0.0,
+            CastValue::Point => range + lateral,
+            CastValue::Barycentric => {
+                lateral / (hit.cos_incidence.double.abs() * (doubled_area / longest)) + 16.0 * u
+            }
+            CastValue::Normal => normal,
+            CastValue::CosIncidence => normal + 8.0 * u,
+        }
+    }
+
+    /// The first value that is wrong, and all errors as parts of their bounds.
+    fn values(&self, index: usize, ray: &CastRay, hit: &CastHit) -> (Option<Wrong>, [Option<f64>; 7]) {
+        let mut wrong = None;
+        let mut ratios = [None; 7];
+        for value in CastValue::ALL {
+            let Some(stated) = self.stated.part(value, index) else { continue };
+            let three = |parts: [Rounded; 3]| parts.map(|part| part.double);
+            let exact = match value {
+                CastValue::T => [hit.t.double, 0.0, 0.0],
+                CastValue::Range => [hit.range.double, 0.0, 0.0],
+                CastValue::Side => [f64::from(side_number(hit.side)), 0.0, 0.0],
+                CastValue::Point => three(hit.point),
+                CastValue::Normal => three(hit.normal),
+                CastValue::Barycentric => three(hit.barycentric),
+                CastValue::CosIncidence => [hit.cos_incidence.double, 0.0, 0.0],
+            };
+            let differences = [0, 1, 2].map(|k: usize| (stated[k] - exact[k]).abs());
+            // NaN counts as the worst.
+            let worst = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+            let error = worst(worst(differences[0], differences[1]), differences[2]);
+            let bound = self.bound(value, ray, hit);
+            if bound.is_infinite() && error.is_finite() {
+                // Nothing can be said of it.
+                continue;
+            }
+            let ratio = if error == 0.0 { 0.0 } else { error / bound };
+            let ratio = if ratio.is_nan() { f64::INFINITY } else { ratio };
+            ratios[value as usize] = Some(ratio);
+            if ratio > 1.0 && wrong.is_none() {
+                wrong = Some(Wrong::Value { value, error, bound });
+            }
+        }
+        (wrong, ratios)
+    }
+}

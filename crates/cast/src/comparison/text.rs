@@ -1,0 +1,102 @@
+//! A comparison on a screen and for programs.
+
+use std::fmt::Write as _;
+
+use raypencil_report::{Align, Table, count, counted};
+use raypencil_scene::FaceId;
+use serde_json::{Value, json};
+
+use super::verdict::{Comparison, Wrong};
+
+/// Wrong rays that are listed, at most.
+const MAX_LISTED: usize = 5;
+
+/// The result in one sentence.
+pub fn comparison_headline(comparison: &Comparison) -> String {
+    let counts = comparison.counts();
+    let all = counted(comparison.verdicts.len() as u64, "ray", "rays");
+    if comparison.hits == 0 {
+        return format!("Nothing is hit: all {all} miss the mesh.");
+    }
+    match counts.wrong {
+        0 => format!("All {all} agree."),
+        wrong => format!("{} of {all} are wrong.", count(wrong)),
+    }
+}
+
+/// The result in lines: counts, values with their worst errors, the first wrong rays. `ray_command` gives the command that
+/// shows everything about the ray with an index.
+pub fn comparison_text(name: &str, comparison: &Comparison, ray_command: impl Fn(usize) -> String) -> String {
+    let counts = comparison.counts();
+    let mut text = format!(
+        "{name}: {} the same ({} at ties), {} rounding, {} wrong\n",
+        count(counts.same),
+        count(counts.ties),
+        count(counts.rounding),
+        count(counts.wrong)
+    );
+    if !comparison.values.is_empty() {
+        let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right]);
+        table.row(["", "compared", "worst error / bound", "at ray"]);
+        for tally in &comparison.values {
+            let (worst, at) = tally.worst.map_or(("-".to_string(), "-".to_string()), |(worst, at)| {
+                (format!("{worst:.3}"), at.to_string())
+            });
+            table.row([tally.value.name().to_string(), count(tally.compared), worst, at]);
+        }
+        let _ = write!(text, "{table}");
+    }
+    for (index, wrong) in comparison.wrong().take(MAX_LISTED) {
+        let _ = writeln!(text, "ray {index}: {}\n    {}", wrong_text(&wrong), ray_command(index));
+    }
+    let _ = writeln!(text, "{}", comparison_headline(comparison));
+    text
+}
+
+fn face_text(face: Option<FaceId>) -> String {
+    face.map_or("no hit".into(), |face| format!("face {}", face.0))
+}
+
+/// What is wrong with a ray, in words.
+fn wrong_text(wrong: &Wrong) -> String {
+    match wrong {
+        Wrong::Hit { stated, exact } => {
+            format!("{}; exactly it is {}", face_text(*stated), face_text(*exact))
+        }
+        Wrong::Distance { stated, exact: Some(exact) } => format!("a hit at {stated}; exactly it is {exact}"),
+        Wrong::Distance { stated, exact: None } => format!("a hit at {stated}; exactly nothing is hit"),
+        Wrong::Value { value, error, bound } => {
+            format!("{} is off by {error:.3e}; rounding explains {bound:.3e}", value.name())
+        }
+    }
+}
+
+/// The result for programs.
+pub fn comparison_json(name: &str, comparison: &Comparison) -> Value {
+    let counts = comparison.counts();
+    let values: Vec<Value> = comparison
+        .values
+        .iter()
+        .map(|tally| {
+            // JSON has no infinity: a value that is not a number is beyond all bounds.
+            let worst =
+                tally.worst.map(|(worst, ray)| json!({ "errorPerBound": worst.min(f64::MAX), "ray": ray }));
+            json!({ "value": tally.value.name(), "compared": tally.compared, "worst": worst })
+        })
+        .collect();
+    let wrong: Vec<Value> = comparison
+        .wrong()
+        .take(MAX_LISTED)
+        .map(|(ray, wrong)| json!({ "ray": ray, "what": wrong_text(&wrong) }))
+        .collect();
+    json!({
+        "name": name,
+        "passes": comparison.passes(),
+        "unitRoundoff": comparison.precision.unit_roundoff,
+        "counts": {
+            "same": counts.same, "ties": counts.ties, "rounding": counts.rounding, "wrong": counts.wrong,
+        },
+        "values": values,
+        "wrong": wrong,
+    })
+}

@@ -1,0 +1,154 @@
+//! What became of stated first hits.
+
+use raypencil_scene::{FaceId, Precision};
+
+/// A value of a first hit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CastValue {
+    /// The ray's parameter.
+    T,
+    /// Distance from the origin.
+    Range,
+    /// The side that is met.
+    Side,
+    /// The point.
+    Point,
+    /// The unit normal.
+    Normal,
+    /// The weights of the corners.
+    Barycentric,
+    /// Cosine of incidence.
+    CosIncidence,
+}
+
+impl CastValue {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 7] =
+        [Self::T, Self::Range, Self::Side, Self::Point, Self::Normal, Self::Barycentric, Self::CosIncidence];
+
+    /// The name, which is that of the value's array.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::T => "t",
+            Self::Range => "range",
+            Self::Side => "side",
+            Self::Point => "point",
+            Self::Normal => "normal",
+            Self::Barycentric => "barycentric",
+            Self::CosIncidence => "cos_incidence",
+        }
+    }
+}
+
+/// What is wrong with one ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Wrong {
+    /// The stated first hit is not that of the ray, nor of one nearby. `None`: no hit.
+    Hit {
+        /// The face that is stated.
+        stated: Option<FaceId>,
+        /// The exact one; of several the lowest.
+        exact: Option<FaceId>,
+    },
+    /// A hit is stated where no face is met at that distance.
+    Distance {
+        /// The t that is stated, or the range if only that is given.
+        stated: f64,
+        /// The exact one; `None` where nothing is hit.
+        exact: Option<f64>,
+    },
+    /// The face is right and a value is not.
+    Value {
+        /// Which value.
+        value: CastValue,
+        /// The largest difference of its parts.
+        error: f64,
+        /// What rounding may do.
+        bound: f64,
+    },
+}
+
+/// What became of one ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RayVerdict {
+    /// The same; of a tie one of its faces.
+    Same {
+        /// Whether several faces are met at exactly this t.
+        is_tie: bool,
+    },
+    /// The answer of a ray that is moved sideways by `moved` along the two vectors of [`CastRay::across`].
+    Rounding {
+        /// The displacement, in the mesh's unit.
+        moved: [f64; 2],
+    },
+    /// Wrong.
+    Wrong(Wrong),
+}
+
+/// How often a value was compared, and the worst of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ValueTally {
+    /// The value.
+    pub value: CastValue,
+    /// Number of rays with the same face on which it was compared.
+    pub compared: u64,
+    /// The largest error as a part of its bound, and the index of its ray; `None` if nothing was compared.
+    pub worst: Option<(f64, usize)>,
+}
+
+/// Stated first hits, ray by ray.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// One for each ray.
+    pub verdicts: Vec<RayVerdict>,
+    /// One for each value that is given.
+    pub values: Vec<ValueTally>,
+    /// Number of rays that hit something, by the exact answer.
+    pub hits: u64,
+    /// Precision of the program's arithmetic.
+    pub precision: Precision,
+}
+
+impl Comparison {
+    /// Numbers of rays: the same, of these ties, rounding, wrong.
+    pub fn counts(&self) -> CastCounts {
+        let mut counts = CastCounts::default();
+        for verdict in &self.verdicts {
+            match verdict {
+                RayVerdict::Same { is_tie } => {
+                    counts.same += 1;
+                    counts.ties += u64::from(*is_tie);
+                }
+                RayVerdict::Rounding { .. } => counts.rounding += 1,
+                RayVerdict::Wrong(_) => counts.wrong += 1,
+            }
+        }
+        counts
+    }
+
+    /// Whether no ray is wrong, and some ray hits.
+    pub fn passes(&self) -> bool {
+        self.hits > 0 && self.counts().wrong == 0
+    }
+
+    /// The wrong rays, by index.
+    pub fn wrong(&self) -> impl Iterator<Item = (usize, Wrong)> + '_ {
+        self.verdicts.iter().enumerate().filter_map(|(index, verdict)| match verdict {
+            RayVerdict::Wrong(wrong) => Some((index, *wrong)),
+            _ => None,
+        })
+    }
+}
+
+/// Numbers of rays by what became of them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct CastCounts {
+    /// The same, ties among them.
+    pub same: u64,
+    /// Of the same, those on which several faces are met at exactly the same t.
+    pub ties: u64,
+    /// Excused by rounding, with a witness.
+    pub rounding: u64,
+    /// Wrong.
+    pub wrong: u64,
+}

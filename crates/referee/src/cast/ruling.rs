@@ -1,0 +1,243 @@
+//! Whether the first hit that a program in rounded arithmetic states can be excused by its rounding.
+//!
+//! # The rule
+//!
+//! A program whose numbers have the unit roundoff u, and whose coordinates are at most S from the ray's origin, sees a
+//! vertex within 8 u S of where it is (three subtractions and a product for each coordinate, and the rounding of vertices
+//! and ray when they are stored), so it decides an edge as for a ray that is moved sideways by as much. It is charged
+//! twice that, delta = 16 u S. It finds the t of a face from n.a' / n.d: the range is then wrong by at most 36 kappa u S / c,
+//! with kappa = |b - a| |c - a| / |n| and c the cosine between ray and normal. It is charged twice that too.
+//!
+//! So a stated face F is excused if there is *one* displacement of at most delta at which the moved ray meets F exactly,
+//! within the ray's ends, and every face that it meets before F is as near to F as the errors of both ranges. A stated miss
+//! is excused if there is one displacement at which nothing is met. Ends of the ray are moved by the error of a range.
+//! The displacement is the witness: it can be put into [`ExactCast::first_moved`].
+//!
+//! A ray cannot slip through an edge that two faces share in this rule, as it can in one that excuses face by face: the
+//! moved ray meets one of the two.
+//!
+//! # The search
+//!
+//! Displacements are tried, exactly: none; onto the stated face, into the middle of what is near; off the faces that are in the way,
+//! over their nearest edge; and around, in 16 directions and three sizes. Only what is found is excused: a missed witness
+//! makes the ruling stricter, never milder.
+
+use glam::DVec2;
+use raypencil_scene::{CastRay, FaceId, Precision, Sides};
+
+use super::margin::{Frame, onto_face};
+use super::query_ray::QueryRay;
+use super::triangle::Triangle;
+use super::{ExactCast, moved_bundle};
+use crate::number::Interval;
+
+/// What the exact answer says of a stated first hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CastRuling {
+    /// It is the exact answer: one of the nearest faces, or no hit where there is none.
+    Same,
+    /// It is the answer for a ray moved sideways by `moved`, along the two vectors of [`CastRay::across`], up to the
+    /// errors of ranges.
+    Rounding {
+        /// The displacement, each part at most [`ExactCast::lateral_error`].
+        moved: [f64; 2],
+    },
+    /// Neither.
+    Wrong,
+}
+
+/// How often the errors of the rule are charged, sideways: 8 u S twice.
+const LATERAL: f64 = 16.0;
+/// The same along the ray: 36 kappa u S / c twice.
+const ALONG: f64 = 72.0;
+
+impl ExactCast<'_> {
+    /// Rules on the first hit that a program of this precision states. `None` states that nothing is hit.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::{CastRuling, ExactCast};
+    /// use raypencil_scene::{CastRay, FaceId, Precision, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
+    /// let cast = ExactCast::new(&triangle);
+    /// let rule = |x: f64, stated: Option<FaceId>| {
+    ///     let ray = CastRay::new(DVec3::new(x, 0.25, 1.0), DVec3::NEG_Z);
+    ///     cast.rule(&ray, Sides::Both, stated, Precision::F64)
+    /// };
+    /// assert_eq!(rule(0.0, Some(FaceId(0))), CastRuling::Same);
+    /// // It may be missed on its border, and not a micrometre inside.
+    /// assert!(matches!(rule(0.0, None), CastRuling::Rounding { .. }));
+    /// assert_eq!(rule(1e-6, None), CastRuling::Wrong);
+    /// assert_eq!(rule(-1e-6, Some(FaceId(0))), CastRuling::Wrong);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn rule(
+        &self,
+        ray: &CastRay,
+        sides: Sides,
+        stated: Option<FaceId>,
+        precision: Precision,
+    ) -> CastRuling {
+        let first = self.nearest(ray, sides);
+        let is_same = match stated {
+            None => first.is_empty(),
+            Some(face) => first.iter().any(|met| met.id == face),
+        };
+        if is_same {
+            return CastRuling::Same;
+        }
+        let stated = match stated.map(|face| self.triangle(face).filter(Triangle::has_area)) {
+            Some(None) => return CastRuling::Wrong,
+            Some(face) => face,
+            None => None,
+        };
+        let trial = Trial { cast: self, ray, sides, precision, frame: Frame::new(ray), stated };
+        let witness = trial.displacements(&first).into_iter().find(|&by| trial.excuses(by));
+        witness.map_or(CastRuling::Wrong, |moved| CastRuling::Rounding { moved })
+    }
+
+    /// How far sideways the edges of faces may seem to be moved for a program of this precision: 16 u S, in the
+    /// mesh's unit.
+    pub fn lateral_error(&self, ray: &CastRay, precision: Precision) -> f64 {
+        LATERAL * precision.unit_roundoff * self.size(ray)
+    }
+
+    /// How far the range of a face may be wrong for a program of this precision: 72 kappa u S / c, in the mesh's
+    /// unit. Infinite for a face that is parallel to the ray or has no area, and where there is no such face.
+    pub fn range_error(&self, ray: &CastRay, face: FaceId, precision: Precision) -> f64 {
+        self.triangle(face).map_or(f64::INFINITY, |face| {
+            let [a, b, c] = face.corners;
+            let normal = (b - a).cross(c - a);
+            let cosine_length = normal.dot(ray.direction).abs() / QueryRay::length(ray);
+            let error =
+                ALONG * precision.unit_roundoff * self.size(ray) * (b - a).length() * (c - a).length()
+                    / cosine_length;
+            if error.is_nan() { f64::INFINITY } else { error }
+        })
+    }
+
+    /// S: no coordinate seen from the ray's origin is larger.
+    fn size(&self, ray: &CastRay) -> f64 {
+        self.largest_coordinate + ray.origin.abs().max_element()
+    }
+}
+
+/// One stated answer.
+struct Trial<'a> {
+    cast: &'a ExactCast<'a>,
+    ray: &'a CastRay,
+    sides: Sides,
+    precision: Precision,
+    frame: Frame<'a>,
+    /// `None`: that nothing is hit.
+    stated: Option<Triangle>,
+}
+
+impl Trial<'_> {
+    /// Displacements that may excuse the answer, none larger than is charged.
+    fn displacements(&self, first: &[&Triangle]) -> Vec<[f64; 2]> {
+        let most = self.cast.lateral_error(self.ray, self.precision);
+        let mut tried = vec![DVec2::ZERO];
+        let query = QueryRay::new(self.ray);
+        if let Some((stated, side)) = self.stated.and_then(|face| Some((face, face.seen_side(&query)?))) {
+            let onto = |share: f64| onto_face(&self.frame, &stated, side, share * most);
+            tried.extend([0.0625, 0.25, 1.0].into_iter().filter_map(onto).map(DVec2::from_array));
+        }
+        for face in first {
+            let corners = self.flat(face);
+            for k in 0..3 {
+                let (from, to) = (corners[k], corners[(k + 1) % 3]);
+                let nearest = nearest_on_segment(from, to);
+                let along = (to - from).normalize_or_zero();
+                let sideways = [along.perp(), -along.perp()];
+                for outward in sideways {
+                    tried.extend([0.0625, 0.25, 0.5].map(|share| nearest + outward * (share * most)));
+                }
+            }
+        }
+        for direction in AROUND {
+            tried.extend([0.25, 0.5, 1.0].map(|share| DVec2::from_array(direction) * (share * most)));
+        }
+        let is_small = |by: &DVec2| by.abs().max_element() <= most;
+        tried.into_iter().filter(is_small).map(|by| by.to_array()).collect()
+    }
+
+    /// The corners as displacements that bring the ray to them.
+    fn flat(&self, face: &Triangle) -> [DVec2; 3] {
+        face.corners.map(|corner| self.frame.displacement_to(corner))
+    }
+
+    /// The t of a face, rounded, and the error that its range is charged with, as a part of t.
+    fn t_and_error(&self, face: &Triangle, query: &QueryRay<'_>) -> (f64, f64) {
+        let length = QueryRay::length(self.ray);
+        let t: [f64; 2] = {
+            let t = face.height::<Interval>(query.fast()).over(face.approach(query.fast()));
+            [t.low, t.high]
+        };
+        (0.5 * t[0] + 0.5 * t[1], self.cast.range_error(self.ray, face.id, self.precision) / length)
+    }
+
+    /// Whether the answer is right for the ray moved by this.
+    fn excuses(&self, by: [f64; 2]) -> bool {
+        // No face is farther behind the origin than this; faces a little before t_min are asked too.
+        let behind = -4.0 * self.cast.size(self.ray) / QueryRay::length(self.ray);
+        let without_ends = CastRay { t_min: behind, t_max: f64::INFINITY, ..*self.ray };
+        let query = QueryRay::moved(&without_ends, by);
+        let (t_min, t_max) = (self.ray.t_min, self.ray.t_max);
+        let stated = match &self.stated {
+            None => None,
+            Some(face) => {
+                let (t, error) = self.t_and_error(face, &query);
+                if face.met_side(&query, self.sides).is_none() || t + error < t_min || t - error > t_max {
+                    return false;
+                }
+                Some((t, error))
+            }
+        };
+        let bundle = moved_bundle(self.ray, by);
+        let mut is_excused = true;
+        self.cast.bvh.visit(&bundle, |face| {
+            if is_excused && face.met_side(&query, self.sides).is_some() {
+                let (t, error) = self.t_and_error(face, &query);
+                // Clearly within the ray's ends, and clearly before the stated face.
+                let is_met = t - error >= t_min && t + error <= t_max;
+                let is_before = stated.is_none_or(|(stated, of_stated)| t + error + of_stated < stated);
+                let is_stated = self.stated.is_some_and(|stated| stated.id == face.id);
+                if is_met && is_before && !is_stated {
+                    is_excused = false;
+                }
+            }
+            bundle.max_range
+        });
+        is_excused
+    }
+}
+
+/// The place of a segment that is nearest to 0.
+fn nearest_on_segment(from: DVec2, to: DVec2) -> DVec2 {
+    let along = to - from;
+    let share = -from.dot(along) / along.length_squared();
+    if share.is_nan() { from } else { from + along * share.clamp(0.0, 1.0) }
+}
+
+/// Sixteen directions on the square around 0.
+const AROUND: [[f64; 2]; 16] = [
+    [1.0, 0.0],
+    [1.0, 0.5],
+    [1.0, 1.0],
+    [0.5, 1.0],
+    [0.0, 1.0],
+    [-0.5, 1.0],
+    [-1.0, 1.0],
+    [-1.0, 0.5],
+    [-1.0, 0.0],
+    [-1.0, -0.5],
+    [-1.0, -1.0],
+    [-0.5, -1.0],
+    [0.0, -1.0],
+    [0.5, -1.0],
+    [1.0, -1.0],
+    [1.0, -0.5],
+];
