@@ -1,7 +1,6 @@
 //! Any rays on any mesh, answered exactly.
 //!
 //! ```text
-//! rays_file      rays from NPY and CSV
 //! answers        what is asked, and the answers of the referee
 //! write          answers as NPY arrays, and their summary
 //! text           the answers to one ray, and counts of many, as text and as JSON
@@ -28,12 +27,11 @@
 //! ```
 
 mod answers;
-mod rays_file;
 mod text;
 mod write;
 
 pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast};
-pub use rays_file::{RayArray, rays_from_bytes, read_rays};
+pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
 pub use text::{counts_text, ray_json, ray_text};
 pub use write::{CastSource, write_answers};
 

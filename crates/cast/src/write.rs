@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically, write_npy_numbers};
+use raypencil_files::{
+    FileError, FolderError, RayArray, begin_output_folder, write_atomically, write_npy_numbers,
+};
 use raypencil_referee::CastMargin;
 use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, Side, Sides, Triangles};
 use serde_json::json;
 
 use crate::answers::{Answers, FirstHit, GroupAtT};
-use crate::rays_file::RayArray;
 
 /// Where mesh and rays come from, for the summary.
 #[derive(Debug, Clone, PartialEq, Eq)]

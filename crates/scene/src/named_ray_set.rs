@@ -41,13 +41,22 @@ impl NamedRaySet {
     /// # Errors
     /// Names the first ray that is wrong, or the name if it is none.
     pub fn new(name: &str, pattern: PatternRays, sides: Sides) -> Result<Self, SceneError> {
-        let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-        if name.is_empty() || name.len() > MAX_NAME_CHARS || !name.chars().all(fits) {
-            let expected = "1 to 64 of the characters a to z, 0 to 9 and -";
-            return Err(SceneError::new("name", format!("{name:?}"), expected));
-        }
+        Self::check_name(name)?;
         let PatternRays { shape, rays, times, weights, elevations_deg } = pattern;
         let set = RaySet::new(rays, sides)?;
         Ok(Self { name: name.to_string(), shape, set, times, weights, elevations_deg })
+    }
+
+    /// Refuses what is no name of a set.
+    ///
+    /// # Errors
+    /// Tells the name and what is expected.
+    pub fn check_name(name: &str) -> Result<(), SceneError> {
+        let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        if !name.is_empty() && name.len() <= MAX_NAME_CHARS && name.chars().all(fits) {
+            return Ok(());
+        }
+        let expected = "1 to 64 of the characters a to z, 0 to 9 and -";
+        Err(SceneError::new("name", format!("{name:?}"), expected))
     }
 }

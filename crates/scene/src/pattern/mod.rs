@@ -22,11 +22,14 @@ pub use poses::{Mounting, TimedPose, TimedPoses};
 pub use presets::{GRID_PRESETS, SPINNING_PRESETS};
 pub use spinning::{Channel, Spinning};
 
-use crate::error::check_count;
+use crate::error::{check_count, check_range};
 use crate::{CastRay, SceneError};
 
 /// Greatest number of rays of all sets of a file together.
 pub const MAX_RAYS: u64 = 100_000_000;
+
+/// Longest range that is not infinite, metres.
+const MAX_RANGE_M: f64 = 1e9;
 
 /// Rays of a pattern.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,11 +84,11 @@ pub(crate) fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     DVec3::new(level * cos, level * sin, up)
 }
 
-/// Refuses ranges that no ray can have.
+/// Refuses ranges that no ray can have. The longest may be infinite.
 pub(crate) fn check_ranges(field: &str, min_m: f64, max_m: f64) -> Result<(), SceneError> {
-    use crate::error::check_range;
-    check_range(|| format!("{field}.min_range"), min_m, 0.0, 1e9, "m")?;
-    check_range(|| format!("{field}.max_range"), max_m, min_m, 1e9, "m")
+    check_range(|| format!("{field}.min_range"), min_m, 0.0, MAX_RANGE_M, "m")?;
+    let end = if max_m == f64::INFINITY { MAX_RANGE_M } else { max_m };
+    check_range(|| format!("{field}.max_range"), end, min_m, MAX_RANGE_M, "m")
 }
 
 #[cfg(test)]

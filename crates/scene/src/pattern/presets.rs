@@ -47,10 +47,24 @@ impl Spinning {
     /// assert!(Spinning::preset("vlp-17").is_none());
     /// ```
     pub fn preset(name: &str) -> Option<Self> {
+        Self::preset_at(name, 10.0)
+    }
+
+    /// As [`Spinning::preset`], at another rate, turns a second. The heads of Velodyne fire at their own pace: they have
+    /// fewer steps in a faster turn. That of Ouster has the same columns in any turn.
+    ///
+    /// ```
+    /// use raypencil_scene::pattern::Spinning;
+    ///
+    /// // 1 / (20 Hz * 55.296 us) = 904.2 firing sequences.
+    /// assert_eq!(Spinning::preset_at("vlp-16", 20.0).map(|head| head.steps), Some(904));
+    /// assert_eq!(Spinning::preset_at("os1-64", 20.0).map(|head| head.steps), Some(1024));
+    /// ```
+    pub fn preset_at(name: &str, rate_hz: f64) -> Option<Self> {
         match name {
-            "vlp-16" => Some(vlp_16()),
-            "hdl-64e" => Some(hdl_64e()),
-            "os1-64" => Some(os1_64()),
+            "vlp-16" => Some(vlp_16(rate_hz)),
+            "hdl-64e" => Some(hdl_64e(rate_hz)),
+            "os1-64" => Some(os1_64(rate_hz)),
             _ => None,
         }
     }
@@ -79,7 +93,12 @@ impl Grid {
     }
 }
 
-fn vlp_16() -> Spinning {
+/// Number of whole periods in a turn. The turn ends within the next one.
+fn whole_periods(rate_hz: f64, period_s: f64) -> u64 {
+    (1.0 / (rate_hz * period_s)).floor() as u64
+}
+
+fn vlp_16(rate_hz: f64) -> Spinning {
     // The manual, section 9.4, <https://manualshive.com/ru/manual/velodyne/vlp-16/863557?page=62>: a firing every 2.304 us in
     // the order of laser IDs, a sequence of 16 firings every 55.296 us.
     const FIRING_US: f64 = 2.304;
@@ -92,9 +111,9 @@ fn vlp_16() -> Spinning {
     Spinning {
         channels: channels.collect(),
         azimuth_start_deg: 0.0,
-        // 10 turns a second, clockwise seen from above. One turn takes 1808.45 sequences: it ends within the next one.
-        azimuth_step_deg: -360.0 * 10.0 * SEQUENCE_US / 1e6,
-        steps: 1808,
+        // Clockwise seen from above.
+        azimuth_step_deg: -360.0 * rate_hz * SEQUENCE_US / 1e6,
+        steps: whole_periods(rate_hz, SEQUENCE_US / 1e6),
         period_s: SEQUENCE_US / 1e6,
         min_range_m: 0.0,
         // Nominal, not verified against the manual.
@@ -104,15 +123,17 @@ fn vlp_16() -> Spinning {
 
 /// Nominal, not verified against the manual: 32 upper lasers from 2 degrees down in steps of 1/3 degree, 32 lower ones on
 /// from -8 5/6 degrees in steps of 1/2 degree. The measured angles and offsets of a device are in its own calibration.
-fn hdl_64e() -> Spinning {
+fn hdl_64e(rate_hz: f64) -> Spinning {
+    // 0.1728 degrees at 10 turns a second.
+    const PERIOD_S: f64 = 48e-6;
     let upper = (0..32).map(|k| 2.0 - f64::from(k) / 3.0);
     let lower = (0..32).map(|k| -53.0 / 6.0 - f64::from(k) / 2.0);
     Spinning {
         channels: upper.chain(lower).map(Channel::at_elevation).collect(),
         azimuth_start_deg: 0.0,
-        azimuth_step_deg: -0.1728,
-        steps: 2083,
-        period_s: 48e-6,
+        azimuth_step_deg: -360.0 * rate_hz * PERIOD_S,
+        steps: whole_periods(rate_hz, PERIOD_S),
+        period_s: PERIOD_S,
         min_range_m: 0.0,
         max_range_m: 120.0,
     }
@@ -121,7 +142,7 @@ fn hdl_64e() -> Spinning {
 /// Ouster, OS1 datasheet of the first generation, <https://www.scribd.com/document/672435817/Ouster-OS1-Datasheet>: 64
 /// channels over +16.6 to -16.6 degrees, 512, 1024 or 2048 columns at 10 to 20 Hz, 0.8 to 120 m. Even steps of elevation and
 /// no azimuth offsets are nominal: each device has its own beam angles.
-fn os1_64() -> Spinning {
+fn os1_64(rate_hz: f64) -> Spinning {
     const COLUMNS: u64 = 1024;
     Spinning {
         channels: (0..64).map(|k| Channel::at_elevation(16.6 * (63.0 - 2.0 * f64::from(k)) / 63.0)).collect(),
@@ -129,7 +150,7 @@ fn os1_64() -> Spinning {
         azimuth_start_deg: 180.0,
         azimuth_step_deg: -360.0 / COLUMNS as f64,
         steps: COLUMNS,
-        period_s: 0.1 / COLUMNS as f64,
+        period_s: 1.0 / (rate_hz * COLUMNS as f64),
         min_range_m: 0.8,
         max_range_m: 120.0,
     }
