@@ -2,6 +2,8 @@
 //!
 //! ```text
 //! answers        what is asked, and the answers of the referee
+//! cloud          the points that are hit, as PLY and PCD
+//! range_picture  ranges as a picture, and the points from above
 //! write          answers as NPY arrays, and their summary
 //! text           the answers to one ray, and counts of many, as text and as JSON
 //! ```
@@ -27,13 +29,17 @@
 //! ```
 
 mod answers;
+mod cloud;
+mod range_picture;
 mod text;
 mod write;
 
 pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast};
+pub use cloud::{write_pcd, write_ply};
+pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
 pub use text::{counts_text, ray_json, ray_text};
-pub use write::{CastSource, write_answers};
+pub use write::{CastSource, write_answers, write_set};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -203,7 +203,7 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         ),
         (
             "poses = [{ time_s = 0 }, { time_s = 0.05 }]",
-            "r.toml:1:1: `rays 0: time of ray 14470` is 0.050001408 s; expected 0 to 0.05 s, the times of its poses",
+            "r.toml:1:1: `rays 0: time of ray 14470` is 0.050001408000000004 s; expected 0 to 0.05 s, the times of its poses",
         ),
     ] {
         assert_eq!(refused(&format!("{spin}{text}")), message, "{text}");
