@@ -1,7 +1,7 @@
 //! Answers as pictures: the ranges in the pattern's own raster, and the points seen from above.
 
 use glam::DVec3;
-use raypencil_report::{Anchor, Colour, ColourMap, Drawing, INK, SOFT, Scale};
+use raypencil_report::{Anchor, Colour, ColourMap, Drawing, INK, Mark, SOFT, Scale};
 use raypencil_scene::NamedRaySet;
 
 use crate::answers::Answers;
@@ -66,12 +66,7 @@ pub fn range_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
         Drawing::new(PAGE_PX, (TOP_PX + height + BOTTOM_PX) as u32, &format!("Ranges of {}", set.name));
     let at = [LEFT_PX, TOP_PX];
     page.text([LEFT_PX, 22.0], format!("{}: range of each ray", set.name), Anchor::Start, INK);
-    page.marks.push(raypencil_report::Mark::Cells {
-        at,
-        size: [width, height],
-        columns: shown_columns as usize,
-        cells,
-    });
+    page.marks.push(Mark::Cells { at, size: [width, height], columns: shown_columns as usize, cells });
     let (words, of_rows) = match (&order, &set.elevations_deg) {
         (Some(order), Some(elevations)) => {
             let degrees = |row: usize| format!("{:.1}°", elevations[order[row]]);
@@ -92,17 +87,50 @@ pub fn range_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     Some(page)
 }
 
-/// The points from above, x to the right and y upwards, coloured by their height; `None` if nothing is hit.
+/// A view from above: two axes of the page and the height, as signed axes of the mesh's frame.
+struct View {
+    right: DVec3,
+    page_up: DVec3,
+    up: DVec3,
+}
+
+impl View {
+    /// The view along the axis of the mesh's frame that is nearest to `up`. Page and height are right-handed.
+    fn along(up: DVec3) -> Self {
+        let axis = up.abs().max_position();
+        let sign = if up[axis] < 0.0 { -1.0 } else { 1.0 };
+        // x is to the right unless it is the height.
+        let right = if axis == 0 { DVec3::Y } else { DVec3::X };
+        let up = DVec3::AXES[axis] * sign;
+        Self { right, page_up: up.cross(right), up }
+    }
+
+    /// An axis of the view by its name: `x`, `-z`.
+    fn name(axis: DVec3) -> String {
+        let index = axis.abs().max_position();
+        let sign = if axis[index] < 0.0 { "-" } else { "" };
+        format!("{sign}{}", ["x", "y", "z"][index])
+    }
+
+    /// A point as numbers to the right, up the page, and of height.
+    fn of(&self, point: DVec3) -> DVec3 {
+        DVec3::new(self.right.dot(point), self.page_up.dot(point), self.up.dot(point))
+    }
+}
+
+/// The points from above, coloured by their height; `None` if nothing is hit. Above is the axis of the mesh's frame that is
+/// nearest to the set's up direction.
 pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
-    let points = || answers.first.iter().flatten().map(|hit| hit.point);
+    const SIDE: usize = 900;
+    const SIDE_PX: f64 = SIDE as f64;
+    let view = View::along(set.up);
+    let points = || answers.first.iter().flatten().map(|hit| view.of(hit.point));
     let scale = Scale::of(points().map(|point| point.z))?;
-    let origin = set.set.rays().first()?.origin;
+    let origin = view.of(set.set.rays().first()?.origin);
     let (low, high) = points().fold((origin, origin), |(low, high), point| (low.min(point), high.max(point)));
     let centre = 0.5 * low + 0.5 * high;
     let span = (high - low).truncate().max_element() * 1.04;
     let span = if span > 0.0 && span.is_finite() { span } else { 1.0 };
-    const SIDE_PX: f64 = 900.0;
-    const SIDE: usize = 900;
     let place = |point: DVec3| {
         let along = |offset: f64| ((0.5 + offset / span) * SIDE_PX).clamp(0.0, SIDE_PX - 1.0);
         [along(point.x - centre.x), along(centre.y - point.y)]
@@ -124,7 +152,7 @@ pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     let at = [LEFT_PX, TOP_PX];
     let frame = [[0.0, 0.0], [SIDE_PX, 0.0], [SIDE_PX, SIDE_PX], [0.0, SIDE_PX], [0.0, 0.0]];
     page.line(frame.map(|[x, y]| [x + at[0], y + at[1]]).to_vec(), SOFT, 1.0);
-    page.marks.push(raypencil_report::Mark::Cells { at, size: [SIDE_PX, SIDE_PX], columns: SIDE, cells });
+    page.marks.push(Mark::Cells { at, size: [SIDE_PX, SIDE_PX], columns: SIDE, cells });
     // The sensor: a cross at the origin of the first ray.
     let [x, y] = place(origin);
     let (x, y) = (x + at[0], y + at[1]);
@@ -145,8 +173,13 @@ pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
             }
         }
     }
-    page.text([LEFT_PX + SIDE_PX, 22.0], "x to the right, y upwards, m", Anchor::End, SOFT);
-    bar(&mut page, scale, "height z, m", TOP_PX + SIDE_PX + 42.0);
+    page.text(
+        [LEFT_PX + SIDE_PX, 22.0],
+        format!("{} to the right, {} upwards, m", View::name(view.right), View::name(view.page_up)),
+        Anchor::End,
+        SOFT,
+    );
+    bar(&mut page, scale, &format!("height {}, m", View::name(view.up)), TOP_PX + SIDE_PX + 42.0);
     Some(page)
 }
 
@@ -155,7 +188,7 @@ fn bar(page: &mut Drawing, scale: Scale, label: &str, y: f64) {
     const STEPS: usize = 256;
     const BAR_PX: f64 = 480.0;
     let colours = (0..STEPS).map(|k| Some(ColourMap::Sequential.at(k as f64 / (STEPS - 1) as f64)));
-    page.marks.push(raypencil_report::Mark::Cells {
+    page.marks.push(Mark::Cells {
         at: [LEFT_PX, y],
         size: [BAR_PX, 14.0],
         columns: STEPS,

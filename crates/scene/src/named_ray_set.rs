@@ -1,5 +1,7 @@
 //! Ray sets with names.
 
+use glam::DVec3;
+
 use crate::pattern::PatternRays;
 use crate::{RaySet, SceneError, Sides};
 
@@ -33,6 +35,8 @@ pub struct NamedRaySet {
     pub weights: Option<Vec<f64>>,
     /// Elevations of the channels of a spinning head along the second dimension, degrees.
     pub elevations_deg: Option<Vec<f64>>,
+    /// Up direction of the pattern at its first pose, in the mesh's frame.
+    pub up: DVec3,
 }
 
 impl NamedRaySet {
@@ -42,9 +46,9 @@ impl NamedRaySet {
     /// Names the first ray that is wrong, or the name if it is none.
     pub fn new(name: &str, pattern: PatternRays, sides: Sides) -> Result<Self, SceneError> {
         Self::check_name(name)?;
-        let PatternRays { shape, rays, times, weights, elevations_deg } = pattern;
+        let PatternRays { shape, rays, times, weights, elevations_deg, up } = pattern;
         let set = RaySet::new(rays, sides)?;
-        Ok(Self { name: name.to_string(), shape, set, times, weights, elevations_deg })
+        Ok(Self { name: name.to_string(), shape, set, times, weights, elevations_deg, up })
     }
 
     /// Refuses what is no name of a set.

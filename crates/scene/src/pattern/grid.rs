@@ -103,6 +103,6 @@ impl Grid {
             }
         }
         let shape = vec![self.rows, self.columns];
-        Ok(PatternRays { shape, rays, times: None, weights: None, elevations_deg: None })
+        Ok(PatternRays { shape, rays, times: None, weights: None, elevations_deg: None, up: DVec3::Z })
     }
 }

@@ -135,6 +135,11 @@ impl Mounting {
             Self::Moving(_) if pattern.times.is_none() => pattern.starting_at(0.0),
             Self::Moving(_) => pattern,
         };
+        let first = match self {
+            Self::Fixed(pose) => *pose,
+            Self::Moving(poses) => poses.poses[0].pose,
+        };
+        pattern.up = first.rotate(pattern.up);
         match (self, &pattern.times) {
             (Self::Fixed(pose), _) => pattern.rays.iter_mut().for_each(|ray| *ray = placed(pose, ray)),
             (Self::Moving(poses), times) => {

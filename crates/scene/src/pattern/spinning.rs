@@ -121,6 +121,7 @@ impl Spinning {
             times: Some(times),
             weights: None,
             elevations_deg: Some(self.channels.iter().map(|channel| channel.elevation_deg).collect()),
+            up: DVec3::Z,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! What a set is made of: `file`, `spinning`, `grid`, or a `cone` of one of these.
 
+use glam::DVec3;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -44,9 +45,14 @@ impl Pattern {
     /// The rays in the pattern's frame.
     pub(super) fn rays(self, name: &str) -> Result<PatternRays, SceneError> {
         match self {
-            Self::File(RayArray { shape, rays }) => {
-                Ok(PatternRays { shape, rays, times: None, weights: None, elevations_deg: None })
-            }
+            Self::File(RayArray { shape, rays }) => Ok(PatternRays {
+                shape,
+                rays,
+                times: None,
+                weights: None,
+                elevations_deg: None,
+                up: DVec3::Z,
+            }),
             Self::Spinning(head) => head.rays(&format!("{name}.spinning")),
             Self::Grid(grid) => grid.rays(&format!("{name}.grid")),
             Self::Cone(cone, inner) => cone.spread(&inner.rays(name)?, &format!("{name}.cone")),
