@@ -26,8 +26,8 @@ pub(super) fn cases() -> Vec<Case> {
             "rays.toml:5:8",
             &"[[rays]]\nname = \"a\"\nfile = \"a.csv\"\n".repeat(2),
         ),
-        case("many", "fifty thousand sets", "rays.toml", &"[[rays]]\n".repeat(50_000)),
-        set("none", "a set without a pattern", "`rays 0` has no pattern", ""),
+        case("many", "fifty thousand sets", "rays.toml:", &"[[rays]]\n".repeat(50_000)),
+        set("none", "a set without a pattern", "has no pattern", ""),
         set("number", "a number in place of a pattern", "rays.toml:3:8", "grid = 3"),
         set("unknown", "an unknown key", "rays.toml:3:1", "lidar = 3"),
         set("preset", "an unknown preset", "rays.toml:3:23", "spinning = { preset = \"vlp-17\" }"),
@@ -46,7 +46,7 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         set(
             "cone",
-            "a cone of half a thousand million rays",
+            "cones of more than a thousand million rays",
             "rays.toml:1:1",
             "cone = { of = { spinning = { preset = \"hdl-64e\" } }, divergence_mrad = 1, rings = 60 }",
         ),
@@ -71,7 +71,7 @@ pub(super) fn cases() -> Vec<Case> {
         set(
             "times",
             "poses whose times do not ascend",
-            "`rays 0.poses[1].time_s`",
+            "rays 0.poses[1].time_s",
             "grid = { preset = \"l515\" }\nposes = [{ time_s = 1 }, { time_s = 1 }]",
         ),
         set(
@@ -83,7 +83,7 @@ pub(super) fn cases() -> Vec<Case> {
         set(
             "poses",
             "twenty thousand poses beside a position",
-            "`rays 0.position_m` beside `poses`",
+            "rays 0.position_m",
             &format!("grid = {{ preset = \"l515\" }}\nposition_m = [0, 0, 0]\nposes = [{poses}]"),
         ),
     ]
