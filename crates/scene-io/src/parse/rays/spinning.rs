@@ -23,6 +23,11 @@ const AZIMUTH_DEG: RangeInclusive<f64> = -360.0..=360.0;
 /// Maximum number of channels.
 const MAX_CHANNELS: usize = 1024;
 
+/// A list with one number for each channel: its key, its value, the range and the unit of its numbers, and where a number
+/// belongs.
+type ChannelList<'k> =
+    (&'static str, &'k Key<Vec<f64>>, RangeInclusive<f64>, &'static str, fn(&mut Channel, f64));
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpinningKeys {
@@ -107,7 +112,7 @@ impl Source<'_> {
             *channels = elevations.iter().map(|&elevation| Channel::at_elevation(elevation)).collect();
         }
         let count = channels.len();
-        let lists: [(&str, &Key<Vec<f64>>, _, &str, fn(&mut Channel, f64)); 4] = [
+        let lists: [ChannelList<'_>; 4] = [
             ("azimuth_offsets_deg", &keys.azimuth_offsets_deg, AZIMUTH_DEG, "degrees", |channel, value| {
                 channel.azimuth_offset_deg = value
             }),
