@@ -72,7 +72,18 @@ fn directions_are_units_and_presets_have_their_counts() {
     };
     let (first, last) = ends("hdl-64e");
     assert!((first - 2.0).abs() < 1e-14 && (last + 73.0 / 3.0).abs() < 1e-14);
-    assert_eq!(ends("os1-64"), (16.6, -16.6));
+    assert_eq!(ends("os1-64"), (16.611, -16.611));
+    let of_os1 = Spinning::preset("os1-64").unwrap().channels;
+    let elevations: Vec<f64> = of_os1.iter().map(|channel| channel.elevation_deg).collect();
+    assert_eq!(elevations[..4], [16.611, 16.084, 15.557, 15.029]);
+    assert_eq!(elevations[28..36], [1.846, 1.318, 0.791, 0.264, -0.264, -0.791, -1.318, -1.846]);
+    // The first column of an OS1 looks back, its first channel 3.164 degrees clockwise from there: back and to the left.
+    let first = Spinning::preset("os1-64").unwrap().rays("a").unwrap().rays[0].direction;
+    let (sin, cos) = libm::sincos(3.164_f64.to_radians());
+    let level = libm::cos(16.611_f64.to_radians());
+    assert!(
+        (first - DVec3::new(-level * cos, level * sin, libm::sin(16.611_f64.to_radians()))).length() < 1e-15
+    );
 }
 
 #[test]

@@ -11,9 +11,9 @@ pub const GRID_PRESETS: [&str; 1] = ["l515"];
 
 /// Elevation, degrees, and vertical correction, millimetres, of each laser of a VLP-16, by laser ID.
 ///
-/// Velodyne, VLP-16 User Manual, 63-9243 Rev. D (2018), table 9-1, <https://www.easymanua.ls/velodyne/vlp-16/manual?p=54>. The
-/// lasers 7 to 15 were read there. The lasers 0 to 6 follow by the symmetry of the table: -15 to 15 degrees in steps of 2, and
-/// opposite corrections at opposite elevations.
+/// Velodyne, VLP-16 User Manual, 63-9243 Rev. D (2018), table 9-1, <https://www.easymanua.ls/velodyne/vlp-16/manual?p=54>: the
+/// lasers 7 to 15 were read there. All 16 stand in `velodyne_pointcloud/params/VLP16db.yaml` of the ROS driver,
+/// <https://github.com/ros-drivers/velodyne>.
 const VLP_16: [(f64, f64); 16] = [
     (-15.0, 11.2),
     (1.0, -0.7),
@@ -140,12 +140,21 @@ fn hdl_64e(rate_hz: f64) -> Spinning {
 }
 
 /// Ouster, OS1 datasheet of the first generation, <https://www.scribd.com/document/672435817/Ouster-OS1-Datasheet>: 64
-/// channels over +16.6 to -16.6 degrees, 512, 1024 or 2048 columns at 10 to 20 Hz, 0.8 to 120 m. Even steps of elevation and
-/// no azimuth offsets are nominal: each device has its own beam angles.
+/// channels over 33.2 degrees, 512, 1024 or 2048 columns at 10 to 20 Hz, 0.8 to 120 m.
+///
+/// Beam angles are the design values of Ouster's SDK (`gen1_altitude_angles` and `gen1_azimuth_angles` of `ouster_client`):
+/// even steps from 16.6113 to -16.6113 degrees, rounded to three decimals, and four azimuths by turns. The OS1 User Guide, page 12,
+/// <https://www.easymanua.ls/ouster/os1/manual?p=12>, counts the encoder and these azimuths clockwise.
 fn os1_64(rate_hz: f64) -> Spinning {
     const COLUMNS: u64 = 1024;
+    /// By turns, counted to the left.
+    const AZIMUTHS_DEG: [f64; 4] = [-3.164, -1.055, 1.055, 3.164];
+    let channels = (0..64_u8).map(|k| Channel {
+        azimuth_offset_deg: AZIMUTHS_DEG[usize::from(k % 4)],
+        ..Channel::at_elevation((16611.3 * (63.0 - 2.0 * f64::from(k)) / 63.0).round() / 1e3)
+    });
     Spinning {
-        channels: (0..64).map(|k| Channel::at_elevation(16.6 * (63.0 - 2.0 * f64::from(k)) / 63.0)).collect(),
+        channels: channels.collect(),
         // Frames start at the back of the sensor. (Ouster sensor documentation, "Lidar Coordinate Frame")
         azimuth_start_deg: 180.0,
         azimuth_step_deg: -360.0 / COLUMNS as f64,
