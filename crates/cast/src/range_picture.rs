@@ -153,12 +153,12 @@ pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     let frame = [[0.0, 0.0], [SIDE_PX, 0.0], [SIDE_PX, SIDE_PX], [0.0, SIDE_PX], [0.0, 0.0]];
     page.line(frame.map(|[x, y]| [x + at[0], y + at[1]]).to_vec(), SOFT, 1.0);
     page.marks.push(Mark::Cells { at, size: [SIDE_PX, SIDE_PX], columns: SIDE, cells });
-    // The sensor: a cross at the origin of the first ray.
+    // The sensor, at its first pose.
     let [x, y] = place(origin);
     let (x, y) = (x + at[0], y + at[1]);
     page.line(vec![[x - 8.0, y], [x + 8.0, y]], INK, 2.0);
     page.line(vec![[x, y - 8.0], [x, y + 8.0]], INK, 2.0);
-    page.text([x + 11.0, y + 5.0], "first ray", Anchor::Start, INK);
+    page.text([x + 11.0, y + 5.0], "origin of the first ray", Anchor::Start, INK);
     for (axis, middle) in [(0, centre.x), (1, centre.y)] {
         for tick in Scale::linear(middle - 0.5 * span, middle + 0.5 * span).ticks(8) {
             let along = tick.at * SIDE_PX;

@@ -167,6 +167,14 @@ fn a_cone_has_its_edge_at_half_its_divergence_and_weights_of_1() {
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
         assert!(weights.iter().all(|&weight| weight > 0.0));
     }
+    // Very short and very long directions keep their lengths too.
+    for size in [1e-200, 1e20] {
+        let rays = vec![CastRay::new(DVec3::ZERO, DVec3::X * size)];
+        let cone = Cone { divergence_rad: 0.2, rings: 1 };
+        let spread = cone.spread(&PatternRays { rays, ..pattern.clone() }, "cone").unwrap();
+        assert!((spread.rays[1].direction.x / size - libm::cos(0.1)).abs() < 1e-15, "{size}");
+        assert!((spread.rays[1].direction / size - DVec3::X).length() > 0.09, "{size}");
+    }
     // One ring: the middle has the disc up to half the half angle, (1 - exp(-1/2)) / (1 - exp(-2)).
     let weights = Cone { divergence_rad: 0.2, rings: 1 }.weights();
     assert!((weights[0] - 0.455_054_233_9).abs() < 1e-9, "{}", weights[0]);

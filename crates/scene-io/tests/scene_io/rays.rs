@@ -1,6 +1,9 @@
 //! Tables `[[rays]]`: sets from patterns and from files, and what is refused.
 
+use std::path::Path;
+
 use glam::DVec3;
+use proptest::prelude::*;
 use raypencil_scene::Sides;
 use raypencil_scene_io::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
 
@@ -244,4 +247,51 @@ fn the_sets_of_a_file_have_a_limit_together() {
         read(&text).unwrap_err(),
         "r.toml:4:1: `rays 1` has 99999001 rays, 100000001 with those before it; expected at most 100000000 in all sets"
     );
+}
+
+#[test]
+fn the_projects_own_sets_are_read() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/rays/vlp16.toml");
+    let loaded = read_ray_sets(&path).unwrap();
+    assert_eq!((loaded.sets.len(), &loaded.sets[0].shape[..]), (1, &[1808, 16][..]));
+}
+
+/// Sets of all kinds, with few rays.
+const ALL_KINDS: &str = r#"version = 1
+[[rays]]
+name = "a"
+spinning = { elevations_deg = [1, -2], firing_times_us = [0, 3], steps = 4, azimuth_end_deg = -90, rate_hz = 9 }
+poses = [{ time_s = 0, position_m = [1, 2, 3] }, { time_s = 1, yaw_left_deg = 4 }]
+[[rays]]
+name = "b"
+sides = "fronts"
+start_s = 2
+cone = { of = { grid = { columns = 3, rows = 2, width_deg = 6, height_deg = 3 } }, divergence_mrad = 3, rings = 1 }
+"#;
+
+#[test]
+fn sets_of_all_kinds_are_read() {
+    let shapes: Vec<_> = read(ALL_KINDS).unwrap().sets.into_iter().map(|set| set.shape).collect();
+    assert_eq!(shapes, [vec![4, 2], vec![2, 3, 7]]);
+}
+
+proptest! {
+    /// A changed file is read or refused, with its name; nothing else happens.
+    #[test]
+    fn changed_sets_are_read_or_refused(
+        changes in prop::collection::vec((0..ALL_KINDS.len(), prop::sample::select(b"0.-[]{}\"= \nan,e_".to_vec())), 1..4)
+    ) {
+        let mut bytes = ALL_KINDS.as_bytes().to_vec();
+        for (at, byte) in changes {
+            bytes[at] = byte;
+        }
+        match read(std::str::from_utf8(&bytes).unwrap()) {
+            Ok(loaded) => {
+                for set in loaded.sets {
+                    prop_assert_eq!(set.shape.iter().product::<u64>(), set.set.rays().len() as u64);
+                }
+            }
+            Err(message) => prop_assert!(message.starts_with("r.toml:"), "{}", message),
+        }
+    }
 }

@@ -87,7 +87,10 @@ impl Cone {
             .collect();
         let mut rays = Vec::with_capacity(pattern.rays.len() * count);
         for ray in &pattern.rays {
-            let ([u, v], length) = (ray.across(), ray.direction.length());
+            let [u, v] = ray.across();
+            // The squares of very short directions would be 0.
+            let largest = ray.direction.abs().max_element();
+            let length = largest * (ray.direction / largest).length();
             for &[sin, cos, around_sin, around_cos] in &places {
                 // The middle is the ray itself, bit for bit.
                 let direction = match sin {
