@@ -155,10 +155,7 @@ pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     page.marks.push(Mark::Cells { at, size: [SIDE_PX, SIDE_PX], columns: SIDE, cells });
     // The sensor, at its first pose.
     let [x, y] = place(origin);
-    let (x, y) = (x + at[0], y + at[1]);
-    page.line(vec![[x - 8.0, y], [x + 8.0, y]], INK, 2.0);
-    page.line(vec![[x, y - 8.0], [x, y + 8.0]], INK, 2.0);
-    page.text([x + 11.0, y + 5.0], "origin of the first ray", Anchor::Start, INK);
+    cross(&mut page, [x + at[0], y + at[1]]);
     for (axis, middle) in [(0, centre.x), (1, centre.y)] {
         for tick in Scale::linear(middle - 0.5 * span, middle + 0.5 * span).ticks(8) {
             let along = tick.at * SIDE_PX;
@@ -175,12 +172,21 @@ pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     }
     page.text(
         [LEFT_PX + SIDE_PX, 22.0],
-        format!("{} to the right, {} upwards, m", View::name(view.right), View::name(view.page_up)),
+        format!("{} to the right, {} up the page, m", View::name(view.right), View::name(view.page_up)),
         Anchor::End,
         SOFT,
     );
     bar(&mut page, scale, &format!("height {}, m", View::name(view.up)), TOP_PX + SIDE_PX + 42.0);
+    let (x, y) = (LEFT_PX + 700.0, TOP_PX + SIDE_PX + 49.0);
+    cross(&mut page, [x, y]);
+    page.text([x + 14.0, y + 5.0], "origin of the first ray", Anchor::Start, SOFT);
     Some(page)
+}
+
+/// A cross that marks the sensor.
+fn cross(page: &mut Drawing, [x, y]: [f64; 2]) {
+    page.line(vec![[x - 8.0, y], [x + 8.0, y]], INK, 2.0);
+    page.line(vec![[x, y - 8.0], [x, y + 8.0]], INK, 2.0);
 }
 
 /// A scale of colours with its ticks and its label, and the colour of rays that hit nothing.
