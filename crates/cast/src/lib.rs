@@ -1,9 +1,10 @@
 //! Any rays on any mesh, answered exactly.
 //!
 //! ```text
-//! rays_file      rays from NPY and CSV
 //! answers        what is asked, and the answers of the referee
+//! cloud          the points that are hit, as PLY and PCD
 //! comparison/    another program's first hits against the exact ones
+//! range_picture  ranges as a picture, and the points from above
 //! write          answers as NPY arrays, and their summary
 //! text           the answers to one ray, and counts of many, as text and as JSON
 //! ```
@@ -29,19 +30,22 @@
 //! ```
 
 mod answers;
+mod cloud;
 mod comparison;
-mod rays_file;
+mod range_picture;
 mod text;
 mod write;
 
 pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast};
+pub use cloud::{write_pcd, write_ply};
 pub use comparison::{
     CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, comparison_headline,
     comparison_json, comparison_text, write_comparison,
 };
-pub use rays_file::{RayArray, rays_from_bytes, read_rays};
+pub use range_picture::{range_picture, top_picture};
+pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
 pub use text::{counts_text, ray_json, ray_text};
-pub use write::{CastSource, write_answers};
+pub use write::{CastSource, write_answers, write_set};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

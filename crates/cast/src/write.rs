@@ -2,14 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically, write_npy_numbers};
+use raypencil_files::{
+    FileError, FolderError, RayArray, begin_output_folder, write_atomically, write_npy_numbers,
+};
 use raypencil_referee::CastMargin;
 use raypencil_report::VERSION;
-use raypencil_scene::{CastRay, Side, Sides, Triangles};
-use serde_json::json;
+use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
+use serde_json::{Value, json};
 
 use crate::answers::{Answers, FirstHit, GroupAtT};
-use crate::rays_file::RayArray;
+use crate::cloud::{write_pcd, write_ply};
+use crate::range_picture::{range_picture, top_picture};
 
 /// Where mesh and rays come from, for the summary.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,7 +62,66 @@ pub fn write_answers(
     source: &CastSource,
 ) -> Result<PathBuf, FolderError> {
     let summary = begin_output_folder(folder, "summary.json")?;
-    let RayArray { shape, rays } = rays;
+    let (arrays, document) = write_arrays(folder, answers, (mesh, &rays.shape, &rays.rays, sides), source)?;
+    finish(summary, arrays, document)
+}
+
+/// As [`write_answers`], for a named set: its name is in `summary.json`, and there are more files.
+///
+/// | file | content |
+/// | --- | --- |
+/// | `time.npy`, if the set has times | f8: time at which each ray is fired, seconds |
+/// | `weight.npy`, if rays are parts of beams | f8, (k): shares of a beam's power along the last dimension |
+/// | `cloud.ply`, `cloud.pcd` | the points: [`write_ply`], [`write_pcd`] |
+/// | `range.png`, for two dimensions, and `top.png` | pictures, if anything is hit: [`range_picture`], [`top_picture`] |
+///
+/// # Errors
+/// As [`write_answers`].
+pub fn write_set(
+    folder: &Path,
+    answers: &Answers,
+    (mesh, set, sides): (&Triangles, &NamedRaySet, Sides),
+    source: &CastSource,
+) -> Result<PathBuf, FolderError> {
+    let summary = begin_output_folder(folder, "summary.json")?;
+    let rays = set.set.rays();
+    let (mut arrays, mut document) = write_arrays(folder, answers, (mesh, &set.shape, rays, sides), source)?;
+    let mut more = ArrayFolder { folder, arrays: &mut arrays };
+    if let Some(times) = &set.times {
+        more.write("time", &set.shape, times)?;
+    }
+    if let Some(weights) = &set.weights {
+        more.write("weight", &[weights.len() as u64], weights)?;
+    }
+    write_ply(folder.join("cloud.ply"), answers)?;
+    write_pcd(folder.join("cloud.pcd"), answers, set)?;
+    let mut pictures = Vec::new();
+    let drawings = [("range.png", range_picture(answers, set)), ("top.png", top_picture(answers, set))];
+    for (name, drawing) in drawings {
+        let Some(drawing) = drawing else { continue };
+        write_atomically(folder.join(name), |file| file.write_all(&drawing.png()))?;
+        pictures.push(name);
+    }
+    document["rays"]["name"] = json!(set.name);
+    document["clouds"] = json!(["cloud.ply", "cloud.pcd"]);
+    document["pictures"] = json!(pictures);
+    finish(summary, arrays, document)
+}
+
+/// Writes `summary.json`, which lists the arrays.
+fn finish(summary: PathBuf, arrays: Vec<String>, mut document: Value) -> Result<PathBuf, FolderError> {
+    document["arrays"] = json!(arrays);
+    write_atomically(&summary, |file| file.write_all(format!("{document:#}\n").as_bytes()))?;
+    Ok(summary)
+}
+
+/// Writes the arrays. Returns their names, and the summary without them.
+fn write_arrays(
+    folder: &Path,
+    answers: &Answers,
+    (mesh, shape, rays, sides): (&Triangles, &[u64], &[CastRay], Sides),
+    source: &CastSource,
+) -> Result<(Vec<String>, Value), FileError> {
     let mut arrays = Vec::new();
     let mut folder = ArrayFolder { folder, arrays: &mut arrays };
     let of = |value: fn(&FirstHit) -> f64, miss: f64| -> Vec<f64> {
@@ -114,10 +176,8 @@ pub fn write_answers(
         "rays": { "file": source.rays, "sha256": source.rays_sha256, "shape": shape, "count": answers.first.len() },
         "sides": if sides == Sides::Both { "both" } else { "fronts" },
         "counts": { "hits": hits, "misses": answers.first.len() - hits, "ties": ties },
-        "arrays": arrays,
     });
-    write_atomically(&summary, |file| file.write_all(format!("{document:#}\n").as_bytes()))?;
-    Ok(summary)
+    Ok((arrays, document))
 }
 
 /// All hits of all rays, one after the other.

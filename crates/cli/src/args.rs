@@ -439,7 +439,7 @@ pub(crate) struct Cast {
     pub(crate) mesh: PathBuf,
 
     /// Rays: NPY of shape (..., 6) or (..., 8), or CSV: origin, direction, and if wanted t_min and t_max. `-` is standard
-    /// input.
+    /// input. Or sets of rays, such as patterns of LiDAR: TOML with tables [[rays]].
     #[arg(value_name = "RAYS", required_unless_present = "ray", conflicts_with = "ray")]
     pub(crate) rays: Option<PathBuf>,
 
@@ -468,7 +468,8 @@ pub(crate) struct Cast {
     #[arg(long, value_name = "RENDERER", value_parser = ["tracer"])]
     pub(crate) with: Option<String>,
 
-    /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json.
+    /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json. For sets of rays also point clouds and
+    /// pictures; several sets have a folder each.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }

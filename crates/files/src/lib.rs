@@ -10,6 +10,7 @@
 //! atomic, folder, sha256         writing a file whole, output folders, digests
 //! values -> shape                cells as a file stores them, and the size that a header claims
 //! npy, pfm                       arrays of NumPy and portable float maps
+//! rays                           rays of no sensor, from NPY and CSV
 //! exr: map -> read, write        named channels and text attributes of an OpenEXR file
 //!      -> sensor_map, returns    the maps of one sensor, and the light that comes back to the camera, as channels
 //! channels: channel -> find,     recordings of any program: the channels of a file or folder by their keys
@@ -43,6 +44,7 @@ mod folder;
 mod limits;
 mod npy;
 mod pfm;
+mod rays;
 mod sha256;
 mod shape;
 mod values;
@@ -58,6 +60,7 @@ pub use npy::{
     write_npy_numbers,
 };
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
+pub use rays::{RayArray, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};
 pub use values::{Array, Storage, Values};
 

@@ -88,4 +88,6 @@ mod readme {
     struct OfTheCrate;
     #[doc = include_str!("../../../docs/guide/cast.md")]
     struct OfTheGuideToCast;
+    #[doc = include_str!("../../../docs/guide/lidar.md")]
+    struct OfTheGuideToLidar;
 }

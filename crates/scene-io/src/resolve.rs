@@ -13,7 +13,7 @@ const MIN_COS_SLOPE: f64 = 0.5;
 
 /// Turns about z, then y, then x, each about the axis as the turns before left it: yaw (or heading) to the left, pitch
 /// down, roll to the right. In a frame with x forward, y left and z up all three are right-handed.
-fn turned(yaw_left_deg: f64, pitch_down_deg: f64, roll_right_deg: f64) -> Pose {
+pub(crate) fn turned(yaw_left_deg: f64, pitch_down_deg: f64, roll_right_deg: f64) -> Pose {
     let turn = |axis, degrees: f64| Pose::from_axis_angle(axis, degrees.to_radians());
     turn(DVec3::Z, yaw_left_deg) * turn(DVec3::Y, pitch_down_deg) * turn(DVec3::X, roll_right_deg)
 }

@@ -17,6 +17,7 @@
 //! approximations  the paper's approximations, by name
 //! place progress  names of rays; who is told what is being done
 //! triangles ray_set  meshes and rays of no sensor, as their files give them
+//! pattern named_ray_set  patterns of range sensors (LiDAR) as rays, and ray sets with names
 //! ```
 //!
 //! ```
@@ -48,7 +49,9 @@ mod error;
 mod hit_quantity;
 mod image;
 mod mesh;
+mod named_ray_set;
 mod output;
+pub mod pattern;
 mod place;
 mod pose;
 mod progress;
@@ -68,6 +71,7 @@ pub use error::{SceneError, check_count, check_range};
 pub use hit_quantity::{HitQuantity, HitRaster, HitRasterMut, HitValue};
 pub use image::{Image, Maybe, Sample};
 pub use mesh::{Material, Mesh};
+pub use named_ray_set::NamedRaySet;
 pub use output::{Quantities, RenderOutput, Request, SensorMap, SensorRow, Stage};
 pub use place::Place;
 pub use pose::Pose;

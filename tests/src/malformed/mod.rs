@@ -6,7 +6,7 @@
 //! output, no file written, little memory and time.
 //!
 //! * [`Case`]: one input. `bytes`: truncation, deflate streams.
-//! * `glb`, `gltf`, `tiff`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `manifest`, `candidate`:
+//! * `glb`, `gltf`, `tiff`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `rays`: sets of rays. `manifest`, `candidate`:
 //!   packs and recordings.
 //! * [`all`], [`tiffs`]: every case. [`good`]: well-formed files of the same formats. [`table`]: the page.
 //!
@@ -28,6 +28,7 @@ mod gltf;
 mod manifest;
 mod npy;
 mod pfm;
+mod rays;
 mod scene;
 mod tiff;
 
@@ -43,6 +44,7 @@ pub fn all() -> Vec<Case> {
         npy::cases(),
         pfm::cases(),
         scene::cases(),
+        rays::cases(),
         drive::cases(),
         manifest::cases(),
         candidate::cases(),

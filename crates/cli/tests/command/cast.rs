@@ -113,3 +113,46 @@ fn rubbish_is_refused_with_its_place() {
     // Nothing was written.
     assert!(!folder.path().join("out").exists());
 }
+
+#[test]
+fn sets_of_rays_have_a_folder_each_with_clouds_and_pictures() {
+    let folder = TempDir::new().unwrap();
+    let cube = data("cube.obj");
+    let grid = "grid = { columns = 8, rows = 6, width_deg = 30, height_deg = 20 }\nposition_m = [-4, 0, 0]\n";
+    let set = |name: &str| format!("[[rays]]\nname = \"{name}\"\n{grid}");
+    std::fs::write(folder.path().join("one.toml"), set("front")).unwrap();
+    std::fs::write(folder.path().join("two.toml"), set("front") + &set("again")).unwrap();
+    let shown = screen(folder.path(), &["cast", &cube, "one.toml", "-o", "one"], 0);
+    assert!(shown.contains("front: 48 rays: 48 hit"), "{shown}");
+    let shown = screen(folder.path(), &["cast", &cube, "two.toml", "-o", "two"], 0);
+    assert!(shown.contains("again: 48 rays: 48 hit"), "{shown}");
+    let schema = include_str!("../../../../docs/formats/cast.schema.json");
+    let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
+    for of_set in ["one", "two/front", "two/again"] {
+        let of_set = folder.path().join(of_set);
+        let summary = std::fs::read_to_string(of_set.join("summary.json")).unwrap();
+        assert_eq!(schema_faults(&schema, &serde_json::from_str(&summary).unwrap()), Vec::<String>::new());
+        for file in ["t.npy", "cloud.ply", "cloud.pcd", "range.png", "top.png"] {
+            assert!(of_set.join(file).is_file(), "{file}");
+        }
+        // The front of the cube is 3 m ahead.
+        let point = read_npy_numbers(of_set.join("point.npy"), &Limits::default()).unwrap();
+        assert_eq!(point.shape, [6, 8, 3]);
+        assert!(point.values.chunks_exact(3).all(|point| point[0] == -1.0));
+    }
+    let shown = screen(folder.path(), &["cast", &cube, "two.toml", "--json"], 0);
+    let shown: serde_json::Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(
+        (&shown["sets"][1]["name"], &shown["sets"][1]["counts"]["hits"]),
+        (&"again".into(), &48.into())
+    );
+}
+
+#[test]
+fn wrong_sets_of_rays_are_an_error_with_a_place() {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("rays.toml"), "[[rays]]\nname = \"a\"\n").unwrap();
+    let cube = data("cube.obj");
+    let output = raypencil(folder.path(), &["cast", &cube, "rays.toml"]);
+    assert_trouble(&output, &["rays.toml:1:1", "`rays 0` has no pattern"]);
+}

@@ -4,6 +4,7 @@ pub(crate) mod dem;
 pub(crate) mod generate;
 pub(crate) mod key;
 pub(crate) mod kind;
+pub(crate) mod rays;
 pub(crate) mod rig;
 pub(crate) mod scene;
 pub(crate) mod shared;

@@ -5,6 +5,8 @@ use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 use toml::Spanned;
 
+use raypencil_scene::SceneError;
+
 use crate::parse::key::Key;
 use crate::scene_error::SceneIoError;
 use crate::toml_problem::TomlProblem;
@@ -19,6 +21,12 @@ impl Source<'_> {
     /// Error at these bytes of the file.
     pub(crate) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneIoError {
         SceneIoError::Toml(Box::new(TomlProblem::new(self.file, self.text, span, message)))
+    }
+
+    /// Numbers that are in range one by one, but make no rays together.
+    pub(crate) fn refused(&self, span: Range<usize>, error: &SceneError) -> SceneIoError {
+        let SceneError { field, value, expected } = error;
+        self.error(span, format!("`{field}` is {value}; expected {expected}"))
     }
 
     pub(crate) fn deserialize<T: DeserializeOwned>(&self) -> Result<T, SceneIoError> {

@@ -3,6 +3,7 @@
 mod bad_scenes;
 mod dem;
 mod drives;
+mod rays;
 mod resolved;
 mod scenes;
 /// The writer of elevation models that the tests of their reader use.

@@ -1,7 +1,7 @@
 //! Rays from files: NPY and CSV, and what is refused.
 
 use proptest::prelude::*;
-use raypencil_cast::{RayArray, rays_from_bytes};
+use raypencil_files::{RayArray, rays_from_bytes};
 
 fn read(bytes: &[u8]) -> Result<RayArray, String> {
     rays_from_bytes(bytes, "rays".as_ref()).map_err(|error| error.to_string())

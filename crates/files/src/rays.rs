@@ -3,8 +3,12 @@
 use std::path::Path;
 
 use glam::DVec3;
-use raypencil_files::{Fault, FileError, Limits, bytes, npy_numbers_from_bytes};
 use raypencil_scene::CastRay;
+
+use crate::bytes;
+use crate::error::{Fault, FileError};
+use crate::limits::Limits;
+use crate::npy::npy_numbers_from_bytes;
 
 /// Rays with the shape of the array that they come from.
 #[derive(Debug, Clone, PartialEq)]

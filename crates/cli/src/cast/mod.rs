@@ -1,0 +1,216 @@
+//! `raypencil cast`: any rays on any mesh, answered exactly.
+
+mod compared;
+
+use std::path::{Path, PathBuf};
+
+use raypencil::cast::{
+    Answers, CastSource, Questions, RayArray, cast as answer, counts_text, ray_json, ray_text,
+    rays_from_bytes, write_answers, write_set,
+};
+use raypencil::io::{
+    FileError, Limits, LoadedRaySets, bytes, hex_digits, read_ray_sets, read_triangles, sha256,
+};
+use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
+use serde_json::{Value, json};
+
+use crate::args::Cast;
+use crate::console::{Spinner, say};
+use crate::{Outcome, Trouble};
+use compared::Compared;
+
+/// Rays whose answers are printed one by one, at most, if they come from a file.
+const MAX_PRINTED_RAYS: usize = 8;
+
+/// Rays as they were given.
+enum Rays {
+    /// Rays of no set.
+    Array(RayArray),
+    /// The sets of a TOML file.
+    Sets(Vec<NamedRaySet>),
+}
+
+pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
+    let spinner = Spinner::new();
+    spinner.stage(&format!("{}: loading", command.mesh.display()));
+    let mesh = read_triangles(&command.mesh)?;
+    let (rays, given, digest) = match &command.rays {
+        None => {
+            let rays = RayArray { shape: vec![command.ray.len() as u64], rays: command.ray.clone() };
+            (Rays::Array(rays), "--ray".to_string(), None)
+        }
+        Some(path) => {
+            spinner.stage(&format!("{}: reading", path.display()));
+            let (rays, digest) = read(path)?;
+            (rays, path.display().to_string(), Some(digest))
+        }
+    };
+    let questions = Questions { any: command.any, all: command.all, margins: command.margins };
+    let source = CastSource {
+        mesh: command.mesh.display().to_string(),
+        mesh_sha256: mesh.digests.iter().map(hex_digits).collect(),
+        rays: given,
+        rays_sha256: digest,
+    };
+    let mesh = &mesh.triangles;
+    let folder = command.output.as_deref();
+    let results = match &rays {
+        Rays::Array(array) => {
+            let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
+            let answers = answer(mesh, &array.rays, sides, questions, &spinner);
+            let compared = Compared::of(command, mesh, &array.rays, sides, &spinner);
+            spinner.stage("writing");
+            if let (Some(compared), Some(folder)) = (&compared, folder) {
+                compared.write(folder, &array.shape)?;
+            }
+            let written = folder.map(|folder| write_answers(folder, &answers, (mesh, array, sides), &source));
+            vec![Answered {
+                set: None,
+                rays: &array.rays,
+                shape: &array.shape,
+                answers,
+                compared,
+                summary: written.transpose()?,
+            }]
+        }
+        Rays::Sets(sets) => {
+            let mut results = Vec::new();
+            for set in sets {
+                let sides = if command.fronts_only { Sides::Fronts } else { set.set.sides() };
+                let answers = answer(mesh, set.set.rays(), sides, questions, &spinner);
+                let compared = Compared::of(command, mesh, set.set.rays(), sides, &spinner);
+                spinner.stage(&format!("{}: writing", set.name));
+                // One set is written as rays of no set are; of several each has a folder of its own.
+                let folder: Option<PathBuf> =
+                    folder.map(|folder| if sets.len() == 1 { folder.into() } else { folder.join(&set.name) });
+                if let (Some(compared), Some(folder)) = (&compared, &folder) {
+                    compared.write(folder, &set.shape)?;
+                }
+                let written = folder.map(|folder| write_set(&folder, &answers, (mesh, set, sides), &source));
+                let summary = written.transpose()?;
+                results.push(Answered {
+                    set: Some(&set.name),
+                    rays: set.set.rays(),
+                    shape: &set.shape,
+                    answers,
+                    compared,
+                    summary,
+                });
+            }
+            results
+        }
+    };
+    drop(spinner);
+    let is_each_right = results.iter().flat_map(|result| &result.compared).all(Compared::passes);
+    let outcome = if is_each_right { Outcome::Fine } else { Outcome::Differs };
+    let printed = if command.rays.is_none() { usize::MAX } else { MAX_PRINTED_RAYS };
+    if json {
+        let documents: Vec<Value> = results.iter().map(|result| result.json(printed)).collect();
+        let document = match (&rays, documents.as_slice()) {
+            (Rays::Array(_), [document]) => document.clone(),
+            _ => json!({ "sets": documents }),
+        };
+        say(&format!("{document:#}\n"));
+        return Ok(outcome);
+    }
+    let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(mesh));
+    for result in &results {
+        text += &result.text(printed);
+    }
+    say(&text);
+    Ok(outcome)
+}
+
+/// The answers to an array or to a set of rays.
+struct Answered<'a> {
+    set: Option<&'a str>,
+    rays: &'a [CastRay],
+    shape: &'a [u64],
+    answers: Answers,
+    compared: Option<Compared<'a>>,
+    summary: Option<PathBuf>,
+}
+
+impl Answered<'_> {
+    /// Each ray, if there are at most `printed`.
+    fn json(&self, printed: usize) -> Value {
+        let (hits, ties) = self.answers.counts();
+        let rays = self.rays.len();
+        let each = (rays <= printed).then(|| {
+            self.rays.iter().enumerate().map(|(k, ray)| ray_json(ray, &self.answers, k)).collect::<Vec<_>>()
+        });
+        let counts = json!({ "rays": rays, "hits": hits, "misses": rays - hits, "ties": ties });
+        let summary = self.summary.as_ref().map(|path| path.display().to_string());
+        let mut document = json!({ "counts": counts, "rays": each, "summary": summary });
+        if let Some(name) = self.set {
+            document["name"] = json!(name);
+        }
+        if let Some(compared) = &self.compared {
+            document["compared"] = compared.json();
+        }
+        document
+    }
+
+    /// Each ray, if there are at most `printed`, then the counts.
+    fn text(&self, printed: usize) -> String {
+        let mut text = String::new();
+        if self.rays.len() <= printed {
+            for (k, ray) in self.rays.iter().enumerate() {
+                text += &ray_text(ray, &self.answers, k);
+            }
+        }
+        let name = self.set.map(|name| format!("{name}: ")).unwrap_or_default();
+        text += &format!("{name}{}\n", counts_text(&self.answers));
+        if let Some(compared) = &self.compared {
+            text += &format!("\n{}", compared.text(self.rays));
+        }
+        if let Some(summary) = &self.summary {
+            let more = if self.set.is_some() { ", point clouds and pictures" } else { "" };
+            text += &format!(
+                "\n{}\n  beside it: an array for each value, of shape {:?}{more}\n",
+                summary.display(),
+                self.shape
+            );
+        }
+        text
+    }
+}
+
+/// The rays of a file, and their SHA-256 in hexadecimal: the sets of a `.toml`, else an array.
+fn read(path: &Path) -> Result<(Rays, String), Trouble> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        let LoadedRaySets { sets, sha256 } = read_ray_sets(path)?;
+        return Ok((Rays::Sets(sets), sha256));
+    }
+    let bytes = read_bytes(path)?;
+    Ok((Rays::Array(rays_from_bytes(&bytes, path)?), hex_digits(&sha256(&bytes))))
+}
+
+/// The bytes of a file, or of standard input.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+    // The header of an NPY file comes on top of its numbers, at most 2^16 bytes.
+    let most = Limits::default().bytes + (1 << 16);
+    let read = if path == Path::new("-") {
+        bytes::read_stream(std::io::stdin().lock(), most)
+    } else {
+        bytes::read_file(path, most)
+    };
+    read.map_err(|error| FileError::io(path, "read", error))
+}
+
+fn mesh_text(mesh: &Triangles) -> String {
+    let of_zero_area = match mesh.zero_area_faces() {
+        0 => String::new(),
+        count => format!(", {count} of them without an area"),
+    };
+    let Some([low, high]) = mesh.bounds() else { return "no vertices".into() };
+    let size = high - low;
+    format!(
+        "{} vertices, {} faces{of_zero_area}; {} x {} x {} wide",
+        mesh.vertices().len(),
+        mesh.faces().len(),
+        size.x,
+        size.y,
+        size.z
+    )
+}

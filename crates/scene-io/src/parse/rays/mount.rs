@@ -1,0 +1,111 @@
+//! Where a pattern stands: the keys of a pose, or `poses` with times.
+
+use glam::DVec3;
+use serde::Deserialize;
+use std::ops::{Range, RangeInclusive};
+use toml::Spanned;
+
+use raypencil_scene::Pose;
+use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
+
+use crate::parse::key::{Key, span};
+use crate::parse::shared::{GLOBAL_M, TURN_DEG};
+use crate::parse::source::Source;
+use crate::resolve::turned;
+use crate::scene_error::SceneIoError;
+
+/// Time of a pose, and of the first ray, seconds.
+const TIME_S: RangeInclusive<f64> = -1e12..=1e12;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TimedPoseKeys {
+    time_s: Key<f64>,
+    position_m: Key<Vec<f64>>,
+    pitch_down_deg: Key<f64>,
+    yaw_left_deg: Key<f64>,
+    roll_right_deg: Key<f64>,
+}
+
+/// Keys of one pose: its position, and its yaw, pitch and roll.
+pub(super) struct OnePose<'k> {
+    position: &'k Key<Vec<f64>>,
+    turns: [(&'static str, &'k Key<f64>); 3],
+}
+
+impl<'k> OnePose<'k> {
+    pub(super) fn new(position: &'k Key<Vec<f64>>, [yaw, pitch, roll]: [&'k Key<f64>; 3]) -> Self {
+        let turns = [("yaw_left_deg", yaw), ("pitch_down_deg", pitch), ("roll_right_deg", roll)];
+        Self { position, turns }
+    }
+
+    /// The first key that is given, and its place.
+    fn first_given(&self) -> Option<(&'static str, Range<usize>)> {
+        let turns = self.turns.iter().map(|(name, key)| (*name, span(key)));
+        std::iter::once(("position_m", span(self.position)))
+            .chain(turns)
+            .find_map(|(name, place)| Some((name, place?)))
+    }
+}
+
+impl Source<'_> {
+    /// Time of the first ray, if it is given.
+    pub(super) fn start(&self, name: &str, key: &Key<f64>) -> Result<Option<f64>, SceneIoError> {
+        self.optional(key, &format!("{name}.start_s"), TIME_S, "seconds")
+    }
+
+    /// Pose, or poses, of the set `name`.
+    pub(super) fn mounting(
+        &self,
+        name: &str,
+        pose: &OnePose<'_>,
+        poses: &Key<Vec<Spanned<TimedPoseKeys>>>,
+    ) -> Result<Mounting, SceneIoError> {
+        let Some(poses) = poses else { return self.pose(name, pose).map(Mounting::Fixed) };
+        if let Some((key, place)) = pose.first_given() {
+            let message = format!("`{name}.{key}` beside `poses`; expected one of the two");
+            return Err(self.error(place, message));
+        }
+        if poses.get_ref().is_empty() {
+            let message = format!("`{name}.poses` is empty; expected at least one pose");
+            return Err(self.error(poses.span(), message));
+        }
+        let mut timed: Vec<TimedPose> = Vec::new();
+        for (index, table) in poses.get_ref().iter().enumerate() {
+            let (name, keys) = (format!("{name}.poses[{index}]"), table.get_ref());
+            let Some(time) = &keys.time_s else {
+                let message = format!("`{name}.time_s` is missing; expected the time of the pose in seconds");
+                return Err(self.error(table.span(), message));
+            };
+            let time_s = *time.get_ref();
+            self.check(time_s, time.span(), &format!("{name}.time_s"), TIME_S, "seconds")?;
+            if let Some(before) = timed.last().filter(|before| time_s <= before.time_s) {
+                let message = format!(
+                    "`{name}.time_s` is {time_s}; expected more than {} seconds, the time before it",
+                    before.time_s
+                );
+                return Err(self.error(time.span(), message));
+            }
+            let turns = [&keys.yaw_left_deg, &keys.pitch_down_deg, &keys.roll_right_deg];
+            let one = OnePose::new(&keys.position_m, turns);
+            timed.push(TimedPose { time_s, pose: self.pose(&name, &one)? });
+        }
+        let poses_of = |error| self.refused(poses.span(), &error);
+        Ok(Mounting::Moving(TimedPoses::new(timed, &format!("{name}.poses")).map_err(poses_of)?))
+    }
+
+    /// One pose: angles as those of a camera, in the mesh's frame.
+    fn pose(&self, name: &str, keys: &OnePose<'_>) -> Result<Pose, SceneIoError> {
+        let mut position = DVec3::ZERO;
+        if let Some(key) = keys.position {
+            let key_name = format!("{name}.position_m");
+            position = DVec3::from_slice(self.list(key, &key_name, &[3], GLOBAL_M, "metres")?);
+        }
+        let mut angles = [0.0; 3];
+        for ((key, value), angle) in keys.turns.iter().zip(&mut angles) {
+            self.number(value, &format!("{name}.{key}"), angle, TURN_DEG, "degrees")?;
+        }
+        let [yaw, pitch, roll] = angles;
+        Ok(Pose { position, ..turned(yaw, pitch, roll) })
+    }
+}

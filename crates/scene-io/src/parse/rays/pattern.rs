@@ -1,0 +1,130 @@
+//! What a set is made of: `file`, `spinning`, `grid`, or a `cone` of one of these.
+
+use glam::DVec3;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+
+use raypencil_files::{FileError, Limits, RayArray, Sha256Digest, bytes, rays_from_bytes, sha256};
+use raypencil_scene::SceneError;
+use raypencil_scene::pattern::{Cone, Grid, PatternRays, Spinning};
+
+use crate::parse::key::Key;
+use crate::parse::rays::cone::{ConeKeys, OfKeys};
+use crate::parse::rays::grid::GridKeys;
+use crate::parse::rays::spinning::SpinningKeys;
+use crate::parse::source::Source;
+use crate::scene_error::SceneIoError;
+
+/// Keys of which exactly one is given.
+pub(super) struct PatternKeys<'k> {
+    pub file: &'k Key<String>,
+    pub spinning: &'k Key<SpinningKeys>,
+    pub grid: &'k Key<GridKeys>,
+}
+
+/// A pattern whose rays are not made yet.
+pub(super) enum Pattern {
+    File(RayArray),
+    Spinning(Spinning),
+    Grid(Grid),
+    Cone(Cone, Box<Pattern>),
+}
+
+impl Pattern {
+    /// Number of rays.
+    pub(super) fn count(&self) -> u64 {
+        match self {
+            Self::File(array) => array.rays.len() as u64,
+            Self::Spinning(head) => head.steps.saturating_mul(head.channels.len() as u64),
+            Self::Grid(grid) => grid.columns.saturating_mul(grid.rows),
+            Self::Cone(cone, inner) => cone.count().saturating_mul(inner.count()),
+        }
+    }
+
+    /// The rays in the pattern's frame.
+    pub(super) fn rays(self, name: &str) -> Result<PatternRays, SceneError> {
+        match self {
+            Self::File(RayArray { shape, rays }) => Ok(PatternRays {
+                shape,
+                rays,
+                times: None,
+                weights: None,
+                elevations_deg: None,
+                up: DVec3::Z,
+            }),
+            Self::Spinning(head) => head.rays(&format!("{name}.spinning")),
+            Self::Grid(grid) => grid.rays(&format!("{name}.grid")),
+            Self::Cone(cone, inner) => cone.spread(&inner.rays(name)?, &format!("{name}.cone")),
+        }
+    }
+}
+
+impl Source<'_> {
+    /// The pattern of a table `name` at `place`. `cone` is `None` where a cone may not be: within a cone.
+    pub(super) fn pattern(
+        &self,
+        (name, place): (&str, Range<usize>),
+        keys: PatternKeys<'_>,
+        cone: Option<&Key<ConeKeys>>,
+        digests: &mut Vec<Sha256Digest>,
+    ) -> Result<Pattern, SceneIoError> {
+        let is_given = [
+            ("file", keys.file.is_some()),
+            ("spinning", keys.spinning.is_some()),
+            ("grid", keys.grid.is_some()),
+            ("cone", cone.is_some_and(Option::is_some)),
+        ];
+        let given: Vec<String> =
+            is_given.iter().filter(|(_, given)| *given).map(|(key, _)| format!("`{key}`")).collect();
+        if given.len() != 1 {
+            let wanted = match cone {
+                Some(_) => "`file`, `spinning`, `grid` and `cone`",
+                None => "`file`, `spinning` and `grid`",
+            };
+            let found = match given.len() {
+                0 => "no pattern".to_string(),
+                _ => given.join(" and "),
+            };
+            return Err(self.error(place, format!("`{name}` has {found}; expected exactly one of {wanted}")));
+        }
+        if let Some(file) = keys.file {
+            return self.rays_of_file(name, file, digests).map(Pattern::File);
+        }
+        if let Some(spinning) = keys.spinning {
+            return self.spinning(&format!("{name}.spinning"), spinning).map(Pattern::Spinning);
+        }
+        if let Some(grid) = keys.grid {
+            return self.grid(&format!("{name}.grid"), grid).map(Pattern::Grid);
+        }
+        let Some(cone) = cone.and_then(Option::as_ref) else { unreachable!("one of the four is given") };
+        let name = format!("{name}.cone");
+        let (cone, of) = self.cone(&name, cone)?;
+        let OfKeys { file, spinning, grid } = of.get_ref();
+        let keys = PatternKeys { file, spinning, grid };
+        let inner = self.pattern((&format!("{name}.of"), of.span()), keys, None, digests)?;
+        Ok(Pattern::Cone(cone, Box::new(inner)))
+    }
+
+    /// The rays of an NPY or CSV file. Its path is relative to the TOML file.
+    fn rays_of_file(
+        &self,
+        name: &str,
+        key: &Spanned<String>,
+        digests: &mut Vec<Sha256Digest>,
+    ) -> Result<RayArray, SceneIoError> {
+        let file = self.file.parent().unwrap_or(Path::new("")).join(key.get_ref());
+        if !file.is_file() {
+            let message = format!(
+                "`{name}.file`: there is no file \"{}\"; expected rays as NPY or CSV, the path relative to this file",
+                file.display()
+            );
+            return Err(self.error(key.span(), message));
+        }
+        // The header of an NPY file comes on top of its numbers, at most 2^16 bytes.
+        let most = Limits::default().bytes + (1 << 16);
+        let bytes = bytes::read_file(&file, most).map_err(|error| FileError::io(&file, "read", error))?;
+        digests.push(sha256(&bytes));
+        Ok(rays_from_bytes(&bytes, &file)?)
+    }
+}

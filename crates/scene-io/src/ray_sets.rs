@@ -1,0 +1,77 @@
+//! Files that have ray sets and nothing else.
+
+use serde::Deserialize;
+use std::path::Path;
+use toml::Spanned;
+
+use raypencil_files::{bytes, combined_sha256_hex, hex_digits, sha256};
+use raypencil_scene::NamedRaySet;
+
+use crate::load::MAX_TOML_BYTES;
+use crate::parse::key::Key;
+use crate::parse::rays::RaysKeys;
+use crate::parse::source::Source;
+use crate::scene_error::SceneIoError;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileKeys {
+    version: Key<i64>,
+    rays: Option<Vec<Spanned<RaysKeys>>>,
+}
+
+/// Ray sets and the digest of what defines them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedRaySets {
+    /// The sets, in the order of the file: at least one.
+    pub sets: Vec<NamedRaySet>,
+    /// SHA-256 in hexadecimal: of the TOML file, or, if it names other files, of their digests one after the other, its own
+    /// first.
+    pub sha256: String,
+}
+
+/// Reads a TOML file that has tables `[[rays]]` and nothing else.
+///
+/// # Errors
+/// Names the file, the place in it, the value found and the values expected.
+pub fn read_ray_sets(path: &Path) -> Result<LoadedRaySets, SceneIoError> {
+    let bytes = bytes::read_file(path, MAX_TOML_BYTES).map_err(|e| SceneIoError::io(path, "read", e))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
+        SceneIoError::io(path, "read", error)
+    })?;
+    ray_sets_from_text(&text, path)
+}
+
+/// Reads the text of such a file. `file` is its name in messages; paths in the text are relative to it.
+///
+/// ```
+/// use raypencil_scene_io::ray_sets_from_text;
+///
+/// let text = "[[rays]]\nname = \"roof\"\nspinning = { preset = \"vlp-16\" }\nposition_m = [0, 0, 1.2]\n";
+/// let loaded = ray_sets_from_text(text, "roof.toml".as_ref())?;
+/// assert_eq!((loaded.sets[0].name.as_str(), &loaded.sets[0].shape[..]), ("roof", &[1808, 16][..]));
+/// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+/// ```
+///
+/// # Errors
+/// As [`read_ray_sets`].
+pub fn ray_sets_from_text(text: &str, file: &Path) -> Result<LoadedRaySets, SceneIoError> {
+    let source = Source { file, text };
+    let keys: FileKeys = source.deserialize()?;
+    if let Some(version) = keys.version.filter(|version| *version.get_ref() != 1) {
+        let message = format!("`version` is {}; expected 1, the only version there is", version.get_ref());
+        return Err(source.error(version.span(), message));
+    }
+    let tables = keys.rays.unwrap_or_default();
+    if tables.is_empty() {
+        return Err(source.error(0..0, "there is no table `[[rays]]`; expected at least one"));
+    }
+    let (sets, of_files) = source.ray_sets(&tables)?;
+    let own = sha256(text.as_bytes());
+    let sha256 = match of_files.len() {
+        0 => hex_digits(&own),
+        _ => combined_sha256_hex(&[vec![own], of_files].concat()),
+    };
+    Ok(LoadedRaySets { sets, sha256 })
+}
