@@ -4,6 +4,7 @@
 //! answers        what is asked, and the answers of the referee
 //! cloud          the points that are hit, as PLY and PCD
 //! comparison/    another program's first hits against the exact ones
+//! pack/          packs of rays: a mesh, rays, exact answers; the check of a candidate, and what explains its mistakes
 //! range_picture  ranges as a picture, and the points from above
 //! write          answers as NPY arrays, and their summary
 //! text           the answers to one ray, and counts of many, as text and as JSON
@@ -32,6 +33,7 @@
 mod answers;
 mod cloud;
 mod comparison;
+mod pack;
 mod range_picture;
 mod text;
 mod write;
@@ -41,6 +43,10 @@ pub use cloud::{write_pcd, write_ply};
 pub use comparison::{
     CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, comparison_headline,
     comparison_json, comparison_text, write_comparison,
+};
+pub use pack::{
+    CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, is_ray_pack, ray_check_json,
+    ray_check_text, write_ray_check, write_ray_pack,
 };
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};

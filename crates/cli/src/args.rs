@@ -280,6 +280,19 @@ pub(crate) struct Pack {
     #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading"])]
     pub(crate) input: bool,
 
+    /// Write a pack of rays: SCENE is a mesh, and these are rays on it, both as `cast` takes them.
+    #[arg(
+        long,
+        value_name = "RAYS",
+        requires = "scene",
+        conflicts_with_all = ["blind", "no_bench", "input", "fan", "thickness", "flux", "at", "heading"]
+    )]
+    pub(crate) rays: Option<PathBuf>,
+
+    /// With --rays: let rays pass through the backs of faces.
+    #[arg(long, requires = "rays")]
+    pub(crate) fronts_only: bool,
+
     /// Output folder.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
@@ -375,12 +388,12 @@ pub(crate) struct Minimise {
 
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// Folder of the reference pack, with its manifest.json, or of an input pack.
+    /// Folder of the reference pack, with its manifest.json, of an input pack, or of a pack of rays.
     #[arg(value_name = "PACK")]
     pub(crate) pack: PathBuf,
 
     /// Folder of the answers to check: EXR, NPY or PFM files, named as docs/formats/files.md says. For an input pack:
-    /// triangles.npy, and reflectivity.npy if there is one.
+    /// triangles.npy, and reflectivity.npy if there is one. For a pack of rays: arrays as `cast` writes them.
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
 

@@ -1,5 +1,9 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
+use raypencil::Precision;
+use raypencil::cast::{
+    CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
+};
 use raypencil::judge::Conventions;
 use raypencil::pack::{
     check_input, check_json, check_pack_by, check_screen, input_json, input_screen, is_input_pack,
@@ -14,6 +18,9 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     if is_input_pack(&command.pack) {
         return check_loader(command, json);
     }
+    if is_ray_pack(&command.pack) {
+        return check_rays(command, json);
+    }
     let spinner = Spinner::new();
     let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
     let checked =
@@ -23,6 +30,23 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     }
     drop(spinner);
     say(&if json { check_json(&checked) } else { check_screen(&checked) });
+    Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
+}
+
+/// The same for a pack of rays.
+fn check_rays(command: &Check, json: bool) -> Result<Outcome, Trouble> {
+    let spinner = Spinner::new();
+    let conventions = CandidateConventions { miss: command.miss, ignores_faces: command.no_faces };
+    let precision = command.arithmetic.unwrap_or(Precision::F64);
+    let checked = check_ray_pack(&command.pack, &command.candidate, precision, conventions, &spinner)?;
+    if let Some(folder) = &command.output {
+        write_ray_check(&checked, folder)?;
+    }
+    drop(spinner);
+    say(&match json {
+        true => format!("{:#}\n", ray_check_json(&checked)),
+        false => ray_check_text(&checked),
+    });
     Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
 }
 

@@ -52,8 +52,19 @@ pub fn compare(
     progress: &dyn Progress,
 ) -> Comparison {
     progress.stage(&format!("comparing {} rays", rays.len()));
-    let exact = ExactCast::new(mesh);
-    let judge = Judge { exact: &exact, mesh, sides, stated, precision };
+    compare_with(&ExactCast::new(mesh), mesh, rays, sides, stated, precision)
+}
+
+/// [`compare`] with a tree that is there already.
+pub(crate) fn compare_with(
+    exact: &ExactCast<'_>,
+    mesh: &Triangles,
+    rays: &[CastRay],
+    sides: Sides,
+    stated: &Stated,
+    precision: Precision,
+) -> Comparison {
+    let judge = Judge { exact, mesh, sides, stated, precision };
     let judged: Vec<Judged> = rays.par_iter().enumerate().map(|(index, ray)| judge.ray(index, ray)).collect();
     let given = |value: &CastValue| stated.part(*value, 0).is_some() || rays.is_empty();
     let tally = |value: CastValue| {

@@ -63,4 +63,22 @@ impl Stated {
         let distance = self.t.as_ref().or(self.range.as_ref())?;
         Some(distance[index].is_finite())
     }
+
+    /// The answers to the rays with these indices.
+    pub(crate) fn some_of(&self, indices: &[usize]) -> Self {
+        fn some<T: Copy>(array: &Option<Vec<T>>, indices: &[usize]) -> Option<Vec<T>> {
+            let array = array.as_ref()?;
+            Some(indices.iter().map(|&index| array[index]).collect())
+        }
+        Self {
+            face: some(&self.face, indices),
+            t: some(&self.t, indices),
+            range: some(&self.range, indices),
+            side: some(&self.side, indices),
+            point: some(&self.point, indices),
+            normal: some(&self.normal, indices),
+            barycentric: some(&self.barycentric, indices),
+            cos_incidence: some(&self.cos_incidence, indices),
+        }
+    }
 }

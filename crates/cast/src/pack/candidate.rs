@@ -1,0 +1,116 @@
+//! Another program's arrays.
+
+use std::path::Path;
+
+use glam::DVec3;
+use raypencil_files::{Fault, FileError, Limits, read_npy_numbers};
+use raypencil_scene::{FaceId, Side};
+
+use crate::comparison::Stated;
+
+/// What a candidate declares of its arrays.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CandidateConventions {
+    /// A number that means "no hit" in `face`, `t` and `range`. Numbers that are not finite, and faces of -1 or 4294967295,
+    /// always do.
+    pub miss: Option<f64>,
+    /// Leave out `face.npy`.
+    pub ignores_faces: bool,
+}
+
+/// Reads what a folder has of `face.npy`, `t.npy`, `range.npy`, `side.npy`, `point.npy`, `normal.npy`, `barycentric.npy`
+/// and `cos_incidence.npy`, in any type, of the rays' shape or flat.
+pub(super) fn read_candidate(
+    folder: &Path,
+    shape: &[u64],
+    conventions: CandidateConventions,
+) -> Result<Stated, FileError> {
+    let reader = Reader { folder, shape, count: shape.iter().product() };
+    let is_miss = |number: f64| !number.is_finite() || Some(number) == conventions.miss;
+    let distance = |name: &str| -> Result<Option<Vec<f64>>, FileError> {
+        let numbers = reader.numbers(name, &[])?;
+        Ok(numbers.map(|numbers| {
+            numbers.into_iter().map(|number| if is_miss(number) { f64::INFINITY } else { number }).collect()
+        }))
+    };
+    let vectors = |name: &str| -> Result<Option<Vec<DVec3>>, FileError> {
+        let numbers = reader.numbers(name, &[3])?;
+        Ok(numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()))
+    };
+    let face = match conventions.ignores_faces {
+        true => None,
+        false => reader.numbers("face", &[])?.map(|numbers| {
+            let face = |(cell, number): (usize, f64)| match number {
+                number if is_miss(number) || number == -1.0 || number == f64::from(u32::MAX) => Ok(None),
+                number if number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&number) => {
+                    Ok(Some(FaceId(number as u32)))
+                }
+                number => {
+                    let expected = "0 or a larger whole number; -1 or 4294967295 for no hit";
+                    Err(reader.fault("face", format!("cell {cell}"), number.to_string(), expected))
+                }
+            };
+            numbers.into_iter().enumerate().map(face).collect::<Result<Vec<_>, _>>()
+        }),
+    }
+    .transpose()?;
+    let side = reader.numbers("side", &[])?.map(|numbers| {
+        let side = |number: f64| match number {
+            number if number > 0.0 => Some(Side::Front),
+            number if number < 0.0 => Some(Side::Back),
+            _ => None,
+        };
+        numbers.into_iter().map(side).collect()
+    });
+    let stated = Stated {
+        face,
+        t: distance("t")?,
+        range: distance("range")?,
+        side,
+        point: vectors("point")?,
+        normal: vectors("normal")?,
+        barycentric: vectors("barycentric")?,
+        cos_incidence: reader.numbers("cos_incidence", &[])?,
+    };
+    if stated.face.is_none() && stated.t.is_none() && stated.range.is_none() {
+        let expected = "face.npy, t.npy or range.npy; without one of them it is not said which rays hit";
+        let fault = Fault::new("folder", "none of them", expected);
+        return Err(FileError::Array(fault.in_file(folder)));
+    }
+    Ok(stated)
+}
+
+struct Reader<'a> {
+    folder: &'a Path,
+    shape: &'a [u64],
+    count: u64,
+}
+
+impl Reader<'_> {
+    fn fault(
+        &self,
+        name: &str,
+        place: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> FileError {
+        let path = self.folder.join(format!("{name}.npy"));
+        FileError::Array(Fault::new(place, found, expected).in_file(&path))
+    }
+
+    /// The numbers of an array, if the folder has it, whose shape is that of the rays and then `last`.
+    fn numbers(&self, name: &str, last: &[u64]) -> Result<Option<Vec<f64>>, FileError> {
+        let path = self.folder.join(format!("{name}.npy"));
+        if !path.exists() {
+            return Ok(None);
+        }
+        let array = read_npy_numbers(&path, &Limits::default())?;
+        let of_rays: Vec<u64> = self.shape.iter().chain(last).copied().collect();
+        let flat: Vec<u64> = [self.count].iter().chain(last).copied().collect();
+        if array.shape != of_rays && array.shape != flat {
+            let expected = format!("{of_rays:?}, or flat {flat:?}");
+            return Err(self.fault(name, "shape", format!("{:?}", array.shape), expected));
+        }
+        Ok(Some(array.values))
+    }
+}

@@ -1,0 +1,98 @@
+//! A candidate against a pack of rays.
+
+use std::path::Path;
+
+use raypencil_files::FileError;
+use raypencil_referee::ExactCast;
+use raypencil_scene::{Precision, Progress};
+
+use super::candidate::{CandidateConventions, read_candidate};
+use super::mistakes::explain;
+use super::read::RayPack;
+use crate::comparison::{Comparison, compare_with};
+
+/// A candidate, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RayPackChecked {
+    /// The candidate's name: that of its folder.
+    pub name: String,
+    /// The folder of the pack, as it was given.
+    pub pack: String,
+    /// What became of its rays.
+    pub comparison: Comparison,
+    /// What explains why it is wrong, as one sentence. It changes no verdict.
+    pub why: Option<String>,
+    /// Each ray's numbers, as `cast --ray` takes them, for rays that are wrong: the first five.
+    pub wrong_rays: Vec<(usize, String)>,
+    /// Whether only fronts of faces are asked for.
+    pub fronts_only: bool,
+}
+
+impl RayPackChecked {
+    /// Whether no ray is wrong, and some ray hits.
+    pub fn passes(&self) -> bool {
+        self.comparison.passes()
+    }
+}
+
+/// Checks a candidate's folder of arrays against a pack of rays. The answers are computed again: only the question is read
+/// from the pack.
+///
+/// ```
+/// use raypencil_cast::{
+///     CandidateConventions, CastSource, check_ray_pack, rays_from_bytes, write_ray_pack,
+/// };
+/// use raypencil_scene::{Precision, Sides, Silent, Triangles};
+///
+/// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = Triangles::new(corners, vec![[0, 1, 2]])?;
+/// let rays = rays_from_bytes(b"0.25,0.25,1,0,0,-1\n2,2,1,0,0,-1", "here".as_ref())?;
+/// let source = CastSource {
+///     mesh: "mine".into(), mesh_sha256: vec![], rays: "mine".into(), rays_sha256: None,
+/// };
+/// let folder = tempfile::tempdir()?;
+/// let counts = write_ray_pack(folder.path(), (&mesh, &rays, Sides::Both), &source, &Silent)?;
+/// assert_eq!((counts.hits, counts.misses, counts.t_min), (1, 1, 0));
+/// // A pack is a candidate that is right.
+/// let conventions = CandidateConventions::default();
+/// let checked = check_ray_pack(folder.path(), folder.path(), Precision::F64, conventions, &Silent)?;
+/// assert!(checked.passes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// A pack whose files are not those that it lists; an array that cannot be read or has another shape; a candidate that
+/// does not say which rays hit.
+pub fn check_ray_pack(
+    pack: &Path,
+    candidate: &Path,
+    precision: Precision,
+    conventions: CandidateConventions,
+    progress: &dyn Progress,
+) -> Result<RayPackChecked, FileError> {
+    progress.stage(&format!("{}: reading", pack.display()));
+    let RayPack { mesh, rays, sides } = RayPack::read(pack)?;
+    let stated = read_candidate(candidate, &rays.shape, conventions)?;
+    let exact = ExactCast::new(&mesh);
+    progress.stage(&format!("comparing {} rays", rays.rays.len()));
+    let comparison = compare_with(&exact, &mesh, &rays.rays, sides, &stated, precision);
+    let wrong: Vec<usize> = comparison.wrong().map(|(index, _)| index).collect();
+    let why = (!wrong.is_empty()).then(|| {
+        progress.stage("looking for a mistake that explains the wrong rays");
+        explain(&exact, &mesh, (&rays.rays, sides), &stated, precision, &wrong)
+    });
+    let numbers = |index: usize| {
+        let ray = &rays.rays[index];
+        let parts = ray.origin.to_array().into_iter().chain(ray.direction.to_array());
+        parts.chain([ray.t_min, ray.t_max]).map(|part| part.to_string()).collect::<Vec<_>>().join(",")
+    };
+    let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
+    Ok(RayPackChecked {
+        name,
+        pack: pack.display().to_string(),
+        why: why.flatten().map(|explanation| explanation.sentence()),
+        wrong_rays: wrong.iter().take(5).map(|&index| (index, numbers(index))).collect(),
+        fronts_only: sides == raypencil_scene::Sides::Fronts,
+        comparison,
+    })
+}

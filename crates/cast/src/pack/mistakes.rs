@@ -1,0 +1,263 @@
+//! What a candidate may do otherwise: each mistake is undone on its own numbers, or in the question, and judged again.
+
+use glam::{DVec3, Vec3Swizzles};
+use raypencil_referee::ExactCast;
+use raypencil_scene::{CastRay, FaceId, Precision, Side, Sides, Triangles};
+
+use crate::comparison::{Stated, compare_with};
+
+/// Rays on which mistakes are tried, at most.
+const MAX_TRIED: usize = 2000;
+
+/// What explains why a candidate is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Explanation {
+    /// The mistake, or the two, in words.
+    pub mistakes: Vec<&'static str>,
+    /// Rays that are not wrong once it is undone, of those that were tried.
+    pub agree: usize,
+    /// Rays that were tried.
+    pub tried: usize,
+}
+
+impl Explanation {
+    /// One sentence.
+    pub fn sentence(&self) -> String {
+        let share = 100.0 * self.agree as f64 / self.tried as f64;
+        format!("{share:.4} % agree if {}", self.mistakes.join(", and "))
+    }
+}
+
+/// A question and its stated answers.
+#[derive(Clone)]
+struct Trial {
+    rays: Vec<CastRay>,
+    sides: Sides,
+    stated: Stated,
+    precision: Precision,
+}
+
+/// A mistake in words, and what undoes it.
+struct Mistake {
+    words: &'static str,
+    undo: fn(&mut Trial),
+}
+
+fn each<T>(array: &mut Option<Vec<T>>, change: impl Fn(usize, &mut T)) {
+    if let Some(array) = array {
+        array.iter_mut().enumerate().for_each(|(index, value)| change(index, value));
+    }
+}
+
+fn scale(trial: &mut Trial, by: f64) {
+    each(&mut trial.stated.t, |_, t| *t *= by);
+    each(&mut trial.stated.range, |_, range| *range *= by);
+    each(&mut trial.stated.point, |_, point| *point *= by);
+}
+
+fn axes(trial: &mut Trial, change: fn(DVec3) -> DVec3) {
+    each(&mut trial.stated.point, |_, point| *point = change(*point));
+    each(&mut trial.stated.normal, |_, normal| *normal = change(*normal));
+}
+
+fn weights(trial: &mut Trial, change: fn(DVec3) -> DVec3) {
+    each(&mut trial.stated.barycentric, |_, weights| *weights = change(*weights));
+}
+
+fn renumber(trial: &mut Trial, by: i64) {
+    each(&mut trial.stated.face, |_, face| {
+        *face = face.and_then(|face| u32::try_from(i64::from(face.0) + by).ok().map(FaceId));
+    });
+}
+
+const MISTAKES: &[Mistake] = &[
+    Mistake { words: "face indices are 1 too large: the first face is 0", undo: |trial| renumber(trial, -1) },
+    Mistake { words: "face indices are 1 too small: the first face is 0", undo: |trial| renumber(trial, 1) },
+    Mistake {
+        words: "t.npy holds the range: t is the range over |d|",
+        undo: |trial| {
+            let lengths: Vec<f64> = trial.rays.iter().map(|ray| ray.direction.length()).collect();
+            each(&mut trial.stated.t, |index, t| *t /= lengths[index]);
+        },
+    },
+    Mistake {
+        words: "range.npy holds t: the range is t |d|",
+        undo: |trial| {
+            let lengths: Vec<f64> = trial.rays.iter().map(|ray| ray.direction.length()).collect();
+            each(&mut trial.stated.range, |index, range| *range *= lengths[index]);
+        },
+    },
+    Mistake { words: "lengths are in thousandths of the mesh's unit", undo: |trial| scale(trial, 1e-3) },
+    Mistake { words: "lengths are in hundredths of the mesh's unit", undo: |trial| scale(trial, 1e-2) },
+    Mistake { words: "lengths are in thousands of the mesh's unit", undo: |trial| scale(trial, 1e3) },
+    Mistake { words: "lengths are in feet", undo: |trial| scale(trial, 0.3048) },
+    Mistake {
+        words: "points and normals are (x, -z, y) of the mesh's (x, y, z)",
+        undo: |trial| axes(trial, |v| DVec3::new(v.x, v.z, -v.y)),
+    },
+    Mistake {
+        words: "points and normals are (x, z, -y) of the mesh's (x, y, z)",
+        undo: |trial| axes(trial, |v| DVec3::new(v.x, -v.z, v.y)),
+    },
+    Mistake { words: "y and z of points and normals are swapped", undo: |trial| axes(trial, |v| v.xzy()) },
+    Mistake { words: "x and y of points and normals are swapped", undo: |trial| axes(trial, |v| v.yxz()) },
+    Mistake {
+        words: "normals point inward",
+        undo: |trial| each(&mut trial.stated.normal, |_, normal| *normal = -*normal),
+    },
+    Mistake {
+        words: "normals are turned to the ray: they point to the face's front",
+        undo: |trial| {
+            let sides = trial.stated.side.clone();
+            let is_back = |index: usize, cos: Option<f64>| match &sides {
+                Some(sides) => sides[index] == Some(Side::Back),
+                None => cos.is_some_and(|cos| cos < 0.0),
+            };
+            let cosines = trial.stated.cos_incidence.clone();
+            each(&mut trial.stated.normal, |index, normal| {
+                if is_back(index, cosines.as_ref().map(|cosines| cosines[index])) {
+                    *normal = -*normal;
+                }
+            });
+        },
+    },
+    Mistake {
+        words: "normals are not 1 long",
+        undo: |trial| each(&mut trial.stated.normal, |_, normal| *normal = normal.normalize_or_zero()),
+    },
+    Mistake {
+        words: "cosines of incidence have the other sign: a front has a positive one",
+        undo: |trial| each(&mut trial.stated.cos_incidence, |_, cos| *cos = -*cos),
+    },
+    Mistake {
+        words: "cosines of incidence are without sign: a back has a negative one",
+        undo: |trial| {
+            let sides = trial.stated.side.clone();
+            each(&mut trial.stated.cos_incidence, |index, cos| {
+                if sides.as_ref().is_some_and(|sides| sides[index] == Some(Side::Back)) {
+                    *cos = -cos.abs();
+                }
+            });
+        },
+    },
+    Mistake {
+        words: "angles in radians stand in place of their cosines",
+        undo: |trial| each(&mut trial.stated.cos_incidence, |_, cos| *cos = libm::cos(*cos)),
+    },
+    Mistake {
+        words: "angles in degrees stand in place of their cosines",
+        undo: |trial| each(&mut trial.stated.cos_incidence, |_, cos| *cos = libm::cos(cos.to_radians())),
+    },
+    Mistake {
+        words: "fronts and backs are taken for each other",
+        undo: |trial| {
+            each(&mut trial.stated.side, |_, side| {
+                *side = side.map(|side| if side == Side::Front { Side::Back } else { Side::Front });
+            });
+        },
+    },
+    Mistake {
+        words: "barycentric weights are in the order (b, c, a): they are those of a, b, c",
+        undo: |trial| weights(trial, |w| w.zxy()),
+    },
+    Mistake {
+        words: "barycentric weights are in the order (c, a, b): they are those of a, b, c",
+        undo: |trial| weights(trial, |w| w.yzx()),
+    },
+    Mistake {
+        words: "the first two barycentric weights are swapped: they are those of a, b, c",
+        undo: |trial| weights(trial, |w| w.yxz()),
+    },
+    Mistake {
+        words: "the last two barycentric weights are swapped: they are those of a, b, c",
+        undo: |trial| weights(trial, |w| w.xzy()),
+    },
+    Mistake {
+        words: "rays hit the backs of faces: only fronts are asked for",
+        undo: |trial| trial.sides = Sides::Both,
+    },
+    Mistake {
+        words: "rays pass through the backs of faces: both sides are asked for",
+        undo: |trial| trial.sides = Sides::Fronts,
+    },
+    Mistake {
+        words: "t_min is ignored",
+        undo: |trial| trial.rays.iter_mut().for_each(|ray| ray.t_min = 0.0),
+    },
+    Mistake {
+        words: "t_max is ignored",
+        undo: |trial| trial.rays.iter_mut().for_each(|ray| ray.t_max = f64::INFINITY),
+    },
+    Mistake {
+        words: "t_min and t_max are taken for ranges: they are values of t",
+        undo: |trial| {
+            for ray in &mut trial.rays {
+                let length = ray.direction.length();
+                (ray.t_min, ray.t_max) = (ray.t_min / length, ray.t_max / length);
+            }
+        },
+    },
+    Mistake {
+        words: "arithmetic is of single precision: declare --arithmetic f32",
+        undo: |trial| trial.precision = Precision::F32,
+    },
+];
+
+/// Looks for the mistake, or the two, without which hardly any ray is wrong. `wrong` are the indices of wrong rays.
+pub(super) fn explain(
+    exact: &ExactCast<'_>,
+    mesh: &Triangles,
+    (rays, sides): (&[CastRay], Sides),
+    stated: &Stated,
+    precision: Precision,
+    wrong: &[usize],
+) -> Option<Explanation> {
+    // Wrong rays, and as many others: what is undone must not make these wrong.
+    let every = |all: usize| all.div_ceil(MAX_TRIED / 2).max(1);
+    let mut indices: Vec<usize> = wrong.iter().copied().step_by(every(wrong.len())).collect();
+    indices.extend((0..rays.len()).step_by(every(rays.len())));
+    indices.sort_unstable();
+    indices.dedup();
+    let trial = Trial {
+        rays: indices.iter().map(|&index| rays[index]).collect(),
+        sides,
+        stated: stated.some_of(&indices),
+        precision,
+    };
+    let wrong_of = |trial: &Trial| -> usize {
+        let Trial { rays, sides, stated, precision } = trial;
+        compare_with(exact, mesh, rays, *sides, stated, *precision).counts().wrong as usize
+    };
+    let before = wrong_of(&trial);
+    let undone = |trial: &Trial, mistake: &Mistake| {
+        let mut trial = trial.clone();
+        (mistake.undo)(&mut trial);
+        trial
+    };
+    let explanation = |mistakes: Vec<&'static str>, left: usize| Explanation {
+        mistakes,
+        agree: indices.len() - left,
+        tried: indices.len(),
+    };
+    let is_explained = |left: usize| left * 100 <= before;
+    let singles: Vec<(&Mistake, usize)> =
+        MISTAKES.iter().map(|mistake| (mistake, wrong_of(&undone(&trial, mistake)))).collect();
+    if let Some((mistake, left)) =
+        singles.iter().min_by_key(|(_, left)| *left).filter(|(_, left)| is_explained(*left))
+    {
+        return Some(explanation(vec![mistake.words], *left));
+    }
+    // Single precision excuses much: it is not half of an explanation.
+    let mistakes = || MISTAKES.iter().take(MISTAKES.len() - 1);
+    let mut best: Option<(Vec<&'static str>, usize)> = None;
+    for (k, first) in mistakes().enumerate() {
+        let once = undone(&trial, first);
+        for second in mistakes().skip(k + 1) {
+            let left = wrong_of(&undone(&once, second));
+            if is_explained(left) && best.as_ref().is_none_or(|(_, kept)| left < *kept) {
+                best = Some((vec![first.words, second.words], left));
+            }
+        }
+    }
+    best.map(|(mistakes, left)| explanation(mistakes, left))
+}

@@ -1,0 +1,28 @@
+//! Packs of rays: a mesh, rays on it and their exact answers, for other people's programs.
+//!
+//! ```text
+//! write       the files of a pack, and how many of its rays test what
+//! read        a pack, after its digests are checked
+//! candidate   another program's arrays
+//! mistakes    what a candidate may do otherwise, undone one by one and two by two
+//! check       a candidate against a pack
+//! report      the check on a screen and for programs
+//! ```
+
+mod candidate;
+mod check;
+mod mistakes;
+mod read;
+mod report;
+mod write;
+
+pub use candidate::CandidateConventions;
+pub use check::{RayPackChecked, check_ray_pack};
+pub use read::is_ray_pack;
+pub use report::{ray_check_json, ray_check_text, write_ray_check};
+pub use write::{RayPackCounts, write_ray_pack};
+
+/// File that marks a pack of rays. It is written last.
+const PACK_NAME: &str = "raypack.json";
+/// Number of the format of `raypack.json`.
+const PACK_FORMAT: u64 = 1;

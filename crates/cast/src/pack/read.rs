@@ -1,0 +1,79 @@
+//! Reads a pack of rays.
+
+use std::path::Path;
+
+use raypencil_files::{Fault, FileError, RayArray, bytes, file_sha256_hex, read_rays};
+use raypencil_mesh_io::load_triangles;
+use raypencil_scene::{Sides, Triangles};
+use serde::Deserialize;
+
+use super::{PACK_FORMAT, PACK_NAME};
+
+/// The question of a pack. Its answers are computed again when a candidate is checked.
+pub(super) struct RayPack {
+    pub(super) mesh: Triangles,
+    pub(super) rays: RayArray,
+    pub(super) sides: Sides,
+}
+
+/// What is read of `raypack.json`.
+#[derive(Deserialize)]
+struct Document {
+    format: u64,
+    kind: String,
+    sides: String,
+    files: Vec<PackFile>,
+}
+
+#[derive(Deserialize)]
+struct PackFile {
+    path: String,
+    sha256: String,
+}
+
+/// Whether a folder is a pack of rays.
+pub fn is_ray_pack(folder: &Path) -> bool {
+    folder.join(PACK_NAME).is_file()
+}
+
+fn fault(path: &Path, place: &str, found: impl Into<String>, expected: impl Into<String>) -> FileError {
+    FileError::Array(Fault::new(place, found, expected).in_file(path))
+}
+
+impl RayPack {
+    /// Reads a pack whose files are those that it lists.
+    pub(super) fn read(folder: &Path) -> Result<Self, FileError> {
+        let path = folder.join(PACK_NAME);
+        let text = bytes::read_file(&path, 1 << 20).map_err(|error| FileError::io(&path, "read", error))?;
+        let document: Document = serde_json::from_slice(&text).map_err(|error| {
+            fault(&path, "document", error.to_string(), "what `raypencil pack --rays` writes")
+        })?;
+        if document.format != PACK_FORMAT {
+            return Err(fault(&path, "format", document.format.to_string(), PACK_FORMAT.to_string()));
+        }
+        if document.kind != "rays" {
+            return Err(fault(&path, "kind", document.kind, "rays"));
+        }
+        let sides = match document.sides.as_str() {
+            "both" => Sides::Both,
+            "fronts" => Sides::Fronts,
+            other => return Err(fault(&path, "sides", other, "both or fronts")),
+        };
+        for question in ["vertices.npy", "faces.npy", "rays.npy"] {
+            let Some(listed) = document.files.iter().find(|file| file.path == question) else {
+                return Err(fault(&path, "files", format!("no {question}"), "its path and SHA-256"));
+            };
+            let file = folder.join(question);
+            let (_, sha256) = file_sha256_hex(&file).map_err(|error| FileError::io(&file, "read", error))?;
+            if sha256 != listed.sha256 {
+                return Err(fault(
+                    &file,
+                    "SHA-256",
+                    sha256,
+                    format!("{}, as {PACK_NAME} says", listed.sha256),
+                ));
+            }
+        }
+        Ok(Self { mesh: load_triangles(folder)?, rays: read_rays(&folder.join("rays.npy"))?, sides })
+    }
+}

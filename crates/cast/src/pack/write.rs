@@ -1,0 +1,165 @@
+//! Writes a pack of rays.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use raypencil_files::{
+    FileError, FolderError, RayArray, begin_output_folder, file_sha256_hex, write_atomically,
+    write_npy_numbers,
+};
+use raypencil_referee::ExactCast;
+use raypencil_report::VERSION;
+use raypencil_scene::{CastRay, FaceId, Progress, Side, Sides, Triangles};
+use serde_json::json;
+
+use super::{PACK_FORMAT, PACK_NAME};
+use crate::answers::{Questions, cast};
+use crate::write::{CastSource, write_answers};
+
+/// How many rays of a pack test what. A program that gets it wrong passes a pack whose number is 0.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RayPackCounts {
+    /// All rays.
+    pub rays: u64,
+    /// Rays that hit.
+    pub hits: u64,
+    /// Rays that hit nothing.
+    pub misses: u64,
+    /// Rays on which several faces are nearest.
+    pub ties: u64,
+    /// Rays that answer otherwise if the other rule for backs is followed.
+    pub backs: u64,
+    /// Rays that answer otherwise if `t_min` is ignored.
+    pub t_min: u64,
+    /// Rays that answer otherwise if `t_max` is ignored.
+    pub t_max: u64,
+    /// Rays whose t is not their range, for their direction is not 1 long.
+    pub lengths: u64,
+}
+
+impl RayPackCounts {
+    fn of(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {
+        let exact = ExactCast::new(mesh);
+        let other = if sides == Sides::Both { Sides::Fronts } else { Sides::Both };
+        let count = |ray: &CastRay| {
+            let first = exact.first(ray, sides);
+            let differs = |ray: CastRay, sides| u64::from(exact.first(&ray, sides) != first);
+            let hit = first.first().and_then(|face: &FaceId| exact.values(ray, *face));
+            Self {
+                rays: 1,
+                hits: u64::from(hit.is_some()),
+                misses: u64::from(hit.is_none()),
+                ties: u64::from(first.len() > 1),
+                backs: match (sides, &hit) {
+                    // A program that hits fronts only is told apart by its first hit on a back.
+                    (Sides::Both, Some(hit)) => u64::from(hit.side == Side::Back),
+                    _ => differs(*ray, other),
+                },
+                t_min: differs(CastRay { t_min: 0.0, ..*ray }, sides),
+                t_max: differs(CastRay { t_max: f64::INFINITY, ..*ray }, sides),
+                lengths: u64::from(hit.is_some_and(|hit| hit.t.double != hit.range.double)),
+            }
+        };
+        rays.par_iter().map(count).reduce(Self::default, |a, b| Self {
+            rays: a.rays + b.rays,
+            hits: a.hits + b.hits,
+            misses: a.misses + b.misses,
+            ties: a.ties + b.ties,
+            backs: a.backs + b.backs,
+            t_min: a.t_min + b.t_min,
+            t_max: a.t_max + b.t_max,
+            lengths: a.lengths + b.lengths,
+        })
+    }
+
+    /// What the rays of the pack do not test, in words.
+    pub fn untested(&self) -> Vec<&'static str> {
+        let tested = [
+            (self.hits, "hits"),
+            (self.misses, "misses"),
+            (self.ties, "ties"),
+            (self.backs, "backs of faces"),
+            (self.t_min, "t_min"),
+            (self.t_max, "t_max"),
+            (self.lengths, "directions that are not 1 long"),
+        ];
+        tested.into_iter().filter(|(count, _)| *count == 0).map(|(_, name)| name).collect()
+    }
+}
+
+/// Writes a pack: `vertices.npy`, `faces.npy` and `rays.npy` (..., 8), which say the question; every answer as `cast` writes
+/// it, margins included; and last `raypack.json`, with the SHA-256 of each file.
+///
+/// # Errors
+/// The folder or a file cannot be written; the message names it.
+pub fn write_ray_pack(
+    folder: &Path,
+    (mesh, rays, sides): (&Triangles, &RayArray, Sides),
+    source: &CastSource,
+    progress: &dyn Progress,
+) -> Result<RayPackCounts, FolderError> {
+    let last = begin_output_folder(folder, PACK_NAME)?;
+    let questions = Questions { any: true, all: true, margins: true };
+    let answers = cast(mesh, &rays.rays, sides, questions, progress);
+    write_answers(folder, &answers, (mesh, rays, sides), source)?;
+    let counts = RayPackCounts::of(mesh, &rays.rays, sides);
+    progress.stage("writing the mesh and the rays");
+    let vertices: Vec<f64> = mesh.vertices().iter().flatten().copied().collect();
+    let faces: Vec<u32> = mesh.faces().iter().flatten().copied().collect();
+    let numbers = rays.rays.iter().flat_map(|ray| {
+        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
+        [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max]
+    });
+    let numbers: Vec<f64> = numbers.collect();
+    let with_eight: Vec<u64> = rays.shape.iter().copied().chain([8]).collect();
+    write_npy_numbers(folder.join("vertices.npy"), &[mesh.vertices().len() as u64, 3], &vertices)?;
+    write_npy_numbers(folder.join("faces.npy"), &[mesh.faces().len() as u64, 3], &faces)?;
+    write_npy_numbers(folder.join("rays.npy"), &with_eight, &numbers)?;
+    let mut names: Vec<String> = ["vertices", "faces", "rays"].map(|name| format!("{name}.npy")).into();
+    names.extend(answer_names());
+    let files = names.iter().map(|name| {
+        let path = folder.join(name);
+        let (bytes, sha256) = file_sha256_hex(&path).map_err(|error| FileError::io(&path, "read", error))?;
+        Ok(json!({ "path": name, "bytes": bytes, "sha256": sha256 }))
+    });
+    let files: Vec<serde_json::Value> = files.collect::<Result<_, FileError>>()?;
+    let document = json!({
+        "format": PACK_FORMAT,
+        "kind": "rays",
+        "raypencilVersion": VERSION,
+        "sides": if sides == Sides::Both { "both" } else { "fronts" },
+        "counts": {
+            "rays": counts.rays, "hits": counts.hits, "misses": counts.misses, "ties": counts.ties,
+            "backs": counts.backs, "tMin": counts.t_min, "tMax": counts.t_max, "lengths": counts.lengths,
+        },
+        "files": files,
+    });
+    write_atomically(&last, |file| file.write_all(format!("{document:#}\n").as_bytes()))?;
+    Ok(counts)
+}
+
+/// The arrays of answers that every pack has.
+fn answer_names() -> impl Iterator<Item = String> {
+    let names = [
+        "face",
+        "side",
+        "ties",
+        "t",
+        "range",
+        "cos_incidence",
+        "point",
+        "normal",
+        "barycentric",
+        "any",
+        "all.start",
+        "all.face",
+        "all.side",
+        "all.t",
+        "all.group",
+        "all.crossing",
+        "margin.face",
+        "margin.surface",
+        "across",
+    ];
+    names.into_iter().map(|name| format!("{name}.npy"))
+}
