@@ -70,6 +70,16 @@ fn renumber(trial: &mut Trial, by: i64) {
     });
 }
 
+fn misses_at(trial: &mut Trial, number: f64) {
+    let miss = |_: usize, distance: &mut f64| {
+        if *distance == number {
+            *distance = f64::INFINITY;
+        }
+    };
+    each(&mut trial.stated.t, miss);
+    each(&mut trial.stated.range, miss);
+}
+
 const MISTAKES: &[Mistake] = &[
     Mistake { words: "face indices are 1 too large: the first face is 0", undo: |trial| renumber(trial, -1) },
     Mistake { words: "face indices are 1 too small: the first face is 0", undo: |trial| renumber(trial, 1) },
@@ -197,6 +207,8 @@ const MISTAKES: &[Mistake] = &[
             }
         },
     },
+    Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| misses_at(trial, 0.0) },
+    Mistake { words: "-1 means no hit: declare --miss -1", undo: |trial| misses_at(trial, -1.0) },
     Mistake {
         words: "arithmetic is of single precision: declare --arithmetic f32",
         undo: |trial| trial.precision = Precision::F32,
