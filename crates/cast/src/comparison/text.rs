@@ -16,10 +16,11 @@ pub fn comparison_headline(comparison: &Comparison) -> String {
     let counts = comparison.counts();
     let all = counted(comparison.verdicts.len() as u64, "ray", "rays");
     if comparison.hits == 0 {
-        return format!("Nothing is hit: all {all} miss the mesh.");
+        return format!("Nothing is hit: {all} compared, and all miss the mesh.");
     }
     match counts.wrong {
         0 => format!("All {all} agree."),
+        1 => format!("1 of {all} is wrong."),
         wrong => format!("{} of {all} are wrong.", count(wrong)),
     }
 }

@@ -156,3 +156,60 @@ fn wrong_sets_of_rays_are_an_error_with_a_place() {
     let output = raypencil(folder.path(), &["cast", &cube, "rays.toml"]);
     assert_trouble(&output, &["rays.toml:1:1", "`rays 0` has no pattern"]);
 }
+
+#[test]
+fn a_renderer_stands_beside_the_truth() {
+    let folder = TempDir::new().unwrap();
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    let shown = screen(folder.path(), &["cast", &cube, &rays, "--with", "tracer", "-o", "out"], 0);
+    // All numbers of these rays are exact in f64.
+    for line in ["tracer: 25 the same (3 at ties), 0 rounding, 0 wrong", "All 25 rays agree."] {
+        assert!(shown.contains(line), "{shown}");
+    }
+    let verdicts =
+        read_npy_numbers(folder.path().join("out/tracer.verdict.npy"), &Limits::default()).unwrap();
+    assert_eq!((verdicts.shape, verdicts.values.iter().sum::<f64>()), (vec![5, 5], 3.0));
+    // Where nothing is hit, nothing is compared.
+    let shown = screen(folder.path(), &["cast", &cube, "--ray=0,0,3,0,0,1", "--with", "tracer"], 1);
+    assert!(shown.contains("Nothing is hit: 1 ray compared, and all miss the mesh."), "{shown}");
+    let shown =
+        screen(folder.path(), &["cast", &cube, "--ray=0,0,3,0,0,-1", "--with", "tracer", "--json"], 0);
+    let json: serde_json::Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(
+        json["compared"]["counts"],
+        serde_json::json!({"same": 1, "ties": 1, "rounding": 0, "wrong": 0})
+    );
+    let refused = raypencil(folder.path(), &["cast", &cube, &rays, "--with", "scanline"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("possible values: tracer"), "{}", text(&refused.stderr));
+}
+
+#[test]
+fn packs_of_rays_judge_arrays() {
+    let folder = TempDir::new().unwrap();
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    let shown = screen(folder.path(), &["pack", &cube, "--rays", &rays, "-o", "pack"], 0);
+    let untested = "Not tested by any of its rays: backs of faces, t_min, t_max";
+    assert!(
+        shown.contains("25 rays; 9 hit, 3 of them at a tie, 16 miss") && shown.contains(untested),
+        "{shown}"
+    );
+    screen(folder.path(), &["cast", &cube, &rays, "-o", "mine"], 0);
+    let shown = screen(folder.path(), &["check", "pack", "mine", "-o", "checked"], 0);
+    assert!(shown.contains("All 25 rays agree."), "{shown}");
+    assert!(folder.path().join("checked/junit.xml").is_file());
+    let check = std::fs::read_to_string(folder.path().join("checked/check.json")).unwrap();
+    let check: serde_json::Value = serde_json::from_str(&check).unwrap();
+    assert_eq!((&check["kind"], &check["candidate"]["passes"]), (&"rays".into(), &true.into()));
+    // A program that finds nothing: the rays through the top's outline are excused by rounding, that through its middle,
+    // on an edge that two faces share, is not.
+    let nothing = [f64::INFINITY; 25];
+    for name in ["t", "range"] {
+        raypencil::io::write_npy_numbers(folder.path().join(format!("mine/{name}.npy")), &[25], &nothing)
+            .unwrap();
+    }
+    std::fs::remove_file(folder.path().join("mine/face.npy")).unwrap();
+    let shown = screen(folder.path(), &["check", "pack", "mine"], 1);
+    assert!(shown.contains("1 of 25 rays is wrong."), "{shown}");
+    assert!(shown.contains("raypencil cast pack --ray=0,0,3,0,0,-1,0,inf --all --margins"), "{shown}");
+}
