@@ -4,7 +4,10 @@ use glam::DVec3;
 use proptest::prelude::*;
 use raypencil::referee::{CastRuling, ExactCast};
 use raypencil::tracer::{CastTraverser, TracerCast};
-use raypencil::{CastRay, FaceId, Precision, Sides, Triangles};
+use raypencil::{
+    Atmosphere, Beam, Camera, CastRay, ExactRenderer, FaceId, FluxModel, Lens, Material, Mesh, Mounted, Pose,
+    Precision, Renderer, Request, Scene, Sides, Triangles,
+};
 
 /// 2^-53.
 const U: f64 = f64::EPSILON / 2.0;
@@ -163,4 +166,77 @@ fn rays_of_a_set_are_answered_in_their_order() {
     let one_by_one: Vec<_> = rays.iter().map(|ray| tracer.traverser().first(ray, Sides::Both)).collect();
     assert_eq!(found, one_by_one);
     assert!(found.iter().flatten().count() > 400 && found.iter().any(Option::is_none));
+}
+
+/// Two walls with gaps and a floor, in numbers of few bits, before sensors whose rays are exact in f64.
+fn exact_scene() -> Scene {
+    let corners = [
+        [-0.5, -0.5, 2.0],
+        [0.5, -0.5, 2.0],
+        [0.5, 0.5, 2.0],
+        [-0.5, 0.5, 2.0],
+        [-2.0, -2.0, 4.0],
+        [2.0, -2.0, 4.0],
+        [2.0, 2.0, 4.0],
+        [-2.0, 2.0, 4.0],
+    ];
+    // Fronts towards the sensors, which look along z; the last face is a back.
+    let faces = vec![[0, 2, 1], [0, 3, 2], [4, 6, 5], [4, 7, 6], [0, 1, 5]];
+    let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+    let mesh = Mesh::new(DVec3::ZERO, corners.to_vec(), faces, vec![0; 5], vec![plaster]).unwrap();
+    let camera = Camera {
+        width: 32,
+        height: 24,
+        pixel_pitch: [1.0 / 16.0; 2],
+        focal_length: 1.0,
+        principal_point: [16.0, 12.0],
+        aperture: 0.0625,
+        lens: Lens::CLEAR,
+        max_range: 4.25,
+    };
+    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+    let (_, beams) = raypencil::rig::default_rig(16, DVec3::ZERO, 0.0);
+    let beam = Beam {
+        half_width: 1.0,
+        thickness: 0.25,
+        grid_distance: 1.0,
+        columns: 64,
+        rows: 4,
+        max_range: 4.25,
+        ..beams[0].sensor
+    };
+    let beams = vec![Mounted { scene_from_sensor: Pose::IDENTITY, sensor: beam }];
+    Scene::new(mesh.into(), camera, beams, Atmosphere { attenuation: 0.0 }, FluxModel::Radiometric).unwrap()
+}
+
+/// A sensor's rays, written as numbers, get the answers that the sensor gets, where these numbers are exact.
+#[test]
+fn rays_of_sensors_written_as_numbers_get_the_same_answers() {
+    let scene = exact_scene();
+    let mesh = Triangles::from(scene.mesh().as_ref());
+    let exact = ExactCast::new(&mesh);
+    let output = ExactRenderer.render(&scene, &Request::MAPS);
+    let mut counts = [0; 3];
+    for map in output.maps() {
+        let (faces, ranges) = (map.face.as_ref().unwrap(), map.range.as_ref().unwrap());
+        for j in 0..map.height {
+            for i in 0..map.width {
+                let ray = scene.ray(map.sensor, i, j).unwrap();
+                // Numbers of few bits: nothing was rounded when they were formed.
+                assert!(ray.direction.to_array().iter().all(|part| (part * 4096.0).fract() == 0.0));
+                // The contract's ray begins on the plane of its grid or image, at t = 1, and ends at its range.
+                let cast = CastRay { t_min: 1.0, ..CastRay::new(ray.origin, ray.direction) };
+                let first = exact.first(&cast, Sides::Fronts);
+                let hit = first.first().and_then(|face| exact.values(&cast, *face));
+                let is_within = |range: f64| range <= scene.max_range(map.sensor).unwrap();
+                let hit = hit.filter(|hit| is_within(hit.range.double));
+                assert_eq!(faces.at(i, j).get(), hit.map(|hit| hit.face), "{} {i},{j}", map.sensor);
+                assert_eq!(ranges.at(i, j).get(), hit.map(|hit| hit.range.double), "{} {i},{j}", map.sensor);
+                counts[usize::from(hit.is_some())] += 1;
+                counts[2] += usize::from(first.len() > 1);
+            }
+        }
+    }
+    let [misses, hits, ties] = counts;
+    assert!(misses > 100 && hits > 200 && ties > 4, "{counts:?}");
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_referee::{CastHit, CastMargins, ExactCast, SidedFace};
 use raypencil_scene::{CastRay, FaceId, Progress, Side, Sides, Triangles};
+use raypencil_tracer::{CastTraverser, TracedHit, TracerCast};
 
 /// What is asked beside the first hit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -64,6 +65,18 @@ pub struct Answers {
 }
 
 impl Answers {
+    /// First hits by the tracer, in `f64`; each is one face, the lowest of those at its t.
+    pub fn by_tracer(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {
+        let tracer = TracerCast::new(mesh);
+        let first = |traverser: &mut CastTraverser<'_>, ray| {
+            let TracedHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
+                traverser.first(ray, sides)?;
+            Some(FirstHit { face, side, ties: 1, t, range, point, normal, barycentric, cos_incidence })
+        };
+        let first = rays.par_iter().map_init(|| tracer.traverser(), first).collect();
+        Self { first, any: None, all: None, margins: None }
+    }
+
     /// Number of rays that hit something, and of these the number whose first hit is a tie.
     pub fn counts(&self) -> (usize, usize) {
         let hits = self.first.iter().flatten();

@@ -1,6 +1,7 @@
 //! `raypencil render`: writes the maps of one renderer.
 
-use raypencil::harness::write_maps;
+use raypencil::harness::{write_maps, write_ray_sets};
+use raypencil::report::counted;
 use raypencil::survey::{SensorHits, warnings};
 use raypencil::{Progress, Request, Sampling};
 
@@ -28,11 +29,13 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     }
     spinner.stage(&format!("{}: writing", command.output.display()));
     let files = write_maps(&output, renderer.name(), &subject, sampling, &command.output)?;
+    let sets = write_ray_sets(&subject, renderer.name(), &command.output, &spinner)?;
     spinner.stage("looking at the scene");
     let hits: Vec<SensorHits> = output.maps().filter_map(SensorHits::of_map).collect();
     let warnings = warnings(&subject.scene, subject.vehicle.as_ref(), Some(&hits));
     drop(spinner);
-    let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
+    let files: Vec<String> =
+        files.iter().chain(sets.iter().flatten()).map(|path| path.display().to_string()).collect();
     if json {
         let document = serde_json::json!({
             "renderer": renderer.name(),
@@ -42,6 +45,13 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
         say(&format!("{document:#}\n"));
     } else {
         warn(&warnings);
+        if sets.is_none() {
+            let count = counted(subject.scene.ray_sets().len() as u64, "set of rays", "sets of rays");
+            say(&format!(
+                "{} answers rays of cameras and beams only; not answered: {count}\n",
+                renderer.name()
+            ));
+        }
         say(&format!("{}\n", files.join("\n")));
     }
     Ok(Outcome::Fine)

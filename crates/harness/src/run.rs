@@ -7,6 +7,7 @@ use raypencil_scene::{Progress, Request, Stage, Switches};
 use raypencil_scene_io::Subject;
 use raypencil_survey::warnings;
 
+use crate::ray_sets::answer_ray_sets;
 use crate::rendered::Rendered;
 use crate::renderers::{Contender, attribute};
 use crate::validation::{Pair, Validation, most_hits};
@@ -110,11 +111,20 @@ pub fn validate(
         }
     }
     drop(judge);
+
+    // Rays of no sensor.
+    let names: Vec<String> = rendered.iter().map(|side| side.name.clone()).collect();
+    let start = Instant::now();
+    let ray_sets = answer_ray_sets(&subject.scene, &names, progress);
+    if !ray_sets.is_empty() {
+        stages.push(Stage { name: "sets of rays".into(), time: start.elapsed() });
+    }
     let scoreboard = None;
     Validation {
         subject,
         rendered,
         pairs,
+        ray_sets,
         scoreboard,
         candidates_may_fail: false,
         warnings,

@@ -8,6 +8,7 @@ use raypencil_scene_io::Subject;
 use raypencil_survey::{SensorHits, Warning};
 
 use crate::candidate::Candidate;
+use crate::ray_sets::RaySetResult;
 use crate::rendered::Rendered;
 use crate::scoreboard::{CandidateReport, Scoreboard, evaluate};
 
@@ -31,6 +32,8 @@ pub struct Validation {
     pub rendered: Vec<Rendered>,
     /// Every pair of renderers: (0, 1), (0, 2), ..., (1, 2), ...
     pub pairs: Vec<Pair>,
+    /// Every set of rays of the scene.
+    pub ray_sets: Vec<RaySetResult>,
     /// Renderers and candidates checked against the exact answers; `None` until [`Validation::evaluate`].
     pub scoreboard: Option<Scoreboard>,
     /// Whether the validation passes although a candidate is wrong: `--candidates-must-pass=false`. Reports call the
@@ -80,7 +83,7 @@ pub struct Counts {
 }
 
 impl Validation {
-    /// Numbers of rays by class, over all pairs.
+    /// Numbers of rays by class, over all pairs and all sets of rays.
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         for sensor in self.pairs.iter().flat_map(|pair| &pair.sensors) {
@@ -93,6 +96,19 @@ impl Validation {
             counts.judged += sensor.judged;
             counts.defects += sensor.of(Class::Defect);
             counts.not_compared += sensor.not_compared;
+        }
+        for set in &self.ray_sets {
+            if set.comparison.is_none() {
+                counts.not_compared += set.rays();
+                continue;
+            }
+            let of_set = set.counts();
+            counts.compared += set.rays();
+            counts.agree += of_set.same - of_set.ties;
+            counts.tie += of_set.ties;
+            counts.rounding += of_set.rounding;
+            counts.defects += of_set.wrong;
+            counts.judged += set.rays();
         }
         counts
     }
@@ -122,7 +138,8 @@ impl Validation {
 
     /// Whether a ray of any sensor hits the terrain, by any renderer.
     pub fn hits_something(&self) -> bool {
-        most_hits(&self.rendered).iter().any(|of| of.hits > 0)
+        let is_hit_by_a_set = self.ray_sets.iter().any(|set| set.hits() > 0);
+        is_hit_by_a_set || most_hits(&self.rendered).iter().any(|of| of.hits > 0)
     }
 
     /// Whether at least one ray of the renderers was compared, none is a defect or undecided, and a ray hits, unless

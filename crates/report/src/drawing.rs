@@ -188,6 +188,11 @@ impl Drawing {
         out + "</svg>\n"
     }
 
+    /// [`Self::png`] as an address that holds the picture itself, for a page.
+    pub fn data_uri(&self) -> String {
+        png::data_uri(&self.png())
+    }
+
     /// The page as PNG.
     pub fn png(&self) -> Vec<u8> {
         paint::page(&self.svg(), self.width, self.height)

@@ -6,7 +6,8 @@ use raypencil_files::{Sha256Digest, hex_digits};
 use raypencil_scene::{Filter, FluxModel, Mesh, Pose, Profile, Scene};
 
 /// SHA-256 of a resolved scene, in hexadecimal digits. It covers every number that a renderer sees, as little-endian
-/// bytes, and no name: two files that resolve to the same numbers have the same digest.
+/// bytes, and no name: two files that resolve to the same numbers have the same digest. Sets of rays are left out: the
+/// digest names what camera and beams see, for packs and candidates.
 ///
 /// ```
 /// use raypencil_scene_io::{load_text, scene_sha256};

@@ -156,6 +156,7 @@ fn load_rig(
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = parse(file)?;
     parts.append(&mut plan.kernel_digests);
+    parts.append(&mut plan.ray_digests);
     let mesh = read_ground(file, &plan)?.map(|(mesh, of_files)| {
         parts.extend(of_files);
         mesh

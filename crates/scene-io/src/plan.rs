@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use raypencil_files::Sha256Digest;
 use raypencil_scene::rig::{self, DEFAULT_BEAM_MOUNTS, DEFAULT_CAMERA_MOUNT, DefaultMount};
-use raypencil_scene::{Beam, Camera, FluxModel};
+use raypencil_scene::{Beam, Camera, FluxModel, NamedRaySet};
 use raypencil_terrain::MarsGround;
 
 use crate::drive::setup::DriveSetup;
@@ -25,6 +25,10 @@ pub(crate) struct ScenePlan {
     pub drive: Option<DriveSetup>,
     /// Digests of the files of the drive's kernels, in their order.
     pub kernel_digests: Vec<Sha256Digest>,
+    /// Sets of rays, in the vehicle frame.
+    pub ray_sets: Vec<NamedRaySet>,
+    /// Digests of the files that they name, in their order.
+    pub ray_digests: Vec<Sha256Digest>,
     /// Places of the vehicle's position and of the terrain in the file.
     pub position_span: Range<usize>,
     pub terrain_span: Range<usize>,
@@ -102,6 +106,8 @@ pub(crate) fn default_rig(terrain: Terrain) -> ScenePlan {
         flux_model: FluxModel::Radiometric,
         drive: None,
         kernel_digests: Vec::new(),
+        ray_sets: Vec::new(),
+        ray_digests: Vec::new(),
         position_span: 0..0,
         terrain_span: 0..0,
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 use raypencil_rover::{OnVehicle, Rig};
-use raypencil_scene::{Atmosphere, Mesh, Mounted, Pose, Scene, SceneError};
+use raypencil_scene::{Atmosphere, Mesh, Mounted, NamedRaySet, Pose, Scene, SceneError};
 
 use crate::plan::{Mount, ScenePlan, VehiclePlacement};
 
@@ -64,7 +64,9 @@ pub(crate) fn resolve(
         sensor: beam,
     });
     let atmosphere = Atmosphere { attenuation: plan.attenuation };
-    Scene::new(mesh, camera, beams.collect(), atmosphere, plan.flux_model)
+    let placed = |set: &NamedRaySet| set.placed(&scene_from_vehicle);
+    let ray_sets = plan.ray_sets.iter().map(placed).collect::<Result<_, _>>()?;
+    Scene::new(mesh, camera, beams.collect(), atmosphere, plan.flux_model)?.with_ray_sets(ray_sets)
 }
 
 /// Place for a vehicle, seen from above: the centre of the ground, else the middle of the nearest face that is not too

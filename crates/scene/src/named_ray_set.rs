@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::pattern::PatternRays;
-use crate::{RaySet, SceneError, Sides};
+use crate::{CastRay, Pose, RaySet, SceneError, Sides};
 
 /// Greatest length of a ray set's name.
 const MAX_NAME_CHARS: usize = 64;
@@ -49,6 +49,20 @@ impl NamedRaySet {
         let PatternRays { shape, rays, times, weights, elevations_deg, up } = pattern;
         let set = RaySet::new(rays, sides)?;
         Ok(Self { name: name.to_string(), shape, set, times, weights, elevations_deg, up })
+    }
+
+    /// The set moved with a frame that it is fixed to: origins are rotated and shifted by the pose, directions rotated.
+    ///
+    /// # Errors
+    /// Names the first ray that is none any more, its origin beyond 1e30.
+    pub fn placed(&self, pose: &Pose) -> Result<Self, SceneError> {
+        let placed = |ray: &CastRay| CastRay {
+            origin: pose.rotate(ray.origin) + pose.position,
+            direction: pose.rotate(ray.direction),
+            ..*ray
+        };
+        let set = RaySet::new(self.set.rays().iter().map(placed).collect(), self.set.sides())?;
+        Ok(Self { set, up: pose.rotate(self.up), ..self.clone() })
     }
 
     /// Refuses what is no name of a set.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::check_range;
-use crate::{Beam, Camera, Mesh, Pose, Ray, SceneError, SensorId};
+use crate::{Beam, Camera, Mesh, NamedRaySet, Pose, Ray, SceneError, SensorId};
 
 /// A sensor and its pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +78,7 @@ pub struct Scene {
     beams: Vec<Mounted<Beam>>,
     atmosphere: Atmosphere,
     flux_model: FluxModel,
+    ray_sets: Vec<NamedRaySet>,
 }
 
 impl Scene {
@@ -103,7 +104,25 @@ impl Scene {
             beam.sensor.validate(&field)?;
         }
         check_range(|| "atmosphere.attenuation".into(), atmosphere.attenuation, 0.0, 1e3, "1/m")?;
-        Ok(Self { mesh, camera, beams, atmosphere, flux_model })
+        Ok(Self { mesh, camera, beams, atmosphere, flux_model, ray_sets: Vec::new() })
+    }
+
+    /// The scene with sets of rays that belong to no camera and no beam, in the scene frame.
+    ///
+    /// # Errors
+    /// Two sets of one name.
+    pub fn with_ray_sets(self, ray_sets: Vec<NamedRaySet>) -> Result<Self, SceneError> {
+        for (index, set) in ray_sets.iter().enumerate() {
+            if ray_sets[..index].iter().any(|other| other.name == set.name) {
+                return Err(SceneError::new(format!("rays {index}.name"), &set.name, "a name of its own"));
+            }
+        }
+        Ok(Self { ray_sets, ..self })
+    }
+
+    /// Sets of rays that belong to no camera and no beam, in the scene frame.
+    pub fn ray_sets(&self) -> &[NamedRaySet] {
+        &self.ray_sets
     }
 
     /// The terrain. Shared, so that a renderer can keep what it built for it.

@@ -9,6 +9,7 @@ mod diff;
 mod drive;
 mod help;
 mod packs;
+mod ray_sets;
 mod terrain;
 
 use std::path::Path;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! DIR/<renderer>/camera.exr, beam-N.exr    the maps
+//! DIR/rays/NAME/                           a set of rays, answered exactly, as `cast` writes it
 //! DIR/misses/NAME-K/                       a candidate's miss, as a pack of that ray
 //! DIR/report.html                          for people: one file, pictures inside
 //! DIR/summary.md                           for a comment on a pull request
@@ -20,7 +21,7 @@ use raypencil_files::{
     write_exr,
 };
 use raypencil_pack::PackError;
-use raypencil_scene::{Progress, RenderOutput, Sampling, SensorId, SensorMap};
+use raypencil_scene::{Progress, RenderOutput, Sampling, SensorId, SensorMap, Triangles};
 use raypencil_scene_io::{Subject, scene_sha256};
 
 use crate::misses::write_misses;
@@ -28,6 +29,7 @@ use crate::output::junit::junit;
 use crate::output::markdown::markdown;
 use crate::output::report::html;
 use crate::output::summary::summary_json;
+use crate::ray_sets::write_ray_set;
 use crate::rendered::Rendered;
 use crate::validation::Validation;
 
@@ -105,6 +107,16 @@ pub fn write_validation(
 
     for report in validation.scoreboard.iter().flat_map(|scoreboard| &scoreboard.candidates) {
         write_misses(&validation.subject, report, &folder.join("misses"), progress)?;
+    }
+
+    let subject = &validation.subject;
+    if !validation.ray_sets.is_empty() {
+        progress.stage("writing sets of rays");
+        let mesh = Triangles::from(subject.scene.mesh().as_ref());
+        for result in &validation.ray_sets {
+            let set = &subject.scene.ray_sets()[result.index];
+            write_ray_set(subject, set, &mesh, &result.answers, folder)?;
+        }
     }
 
     progress.stage("writing the report");

@@ -31,6 +31,17 @@ pub fn junit(validation: &Validation) -> io::Result<String> {
         }
         report.push(suite);
     }
+    for set in &validation.ray_sets {
+        let mut suite = JunitSuite::new(format!("{}: rays {}", subject.name, set.name));
+        suite.push(match &set.comparison {
+            None => JunitCase::skipped("first hits", set.words()),
+            Some(comparison) if comparison.counts().wrong > 0 => {
+                JunitCase::failed("first hits", "defect", set.words())
+            }
+            Some(_) => JunitCase::passed("first hits"),
+        });
+        report.push(suite);
+    }
     for candidate in validation.candidates() {
         report.push(candidate_suite(validation, candidate));
     }

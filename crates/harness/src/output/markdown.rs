@@ -28,6 +28,7 @@ struct Page {
     command: String,
     rows: Vec<Row>,
     sensors: Vec<Sensor>,
+    ray_sets: Vec<String>,
     causes: Vec<CauseRow>,
     candidates: Vec<String>,
     panel_names: Vec<String>,
@@ -121,6 +122,11 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
         command: code(&format!("raypencil validate {}{}", subject.arguments, candidates::typed(validation))),
         rows: rows(subject, validation.pairs.iter().flat_map(|pair| &pair.sensors)),
         sensors,
+        ray_sets: validation
+            .ray_sets
+            .iter()
+            .map(|set| format!("Rays {}: {}.", set.name, set.words()))
+            .collect(),
         causes: causes(subject, &validation.approximations()),
         candidates: validation.candidates().iter().map(|report| escaped(&candidates::line(report))).collect(),
         panel_names: section.names.iter().map(|name| escaped(name)).collect(),

@@ -1,6 +1,7 @@
 //! `report.html`: the validation for people, as one file that links to nothing.
 
 use askama::Template;
+use raypencil_cast::{range_picture, top_picture};
 use raypencil_judge::{Class, SensorResult, name_of};
 use raypencil_report::{
     DefectGroup, DefectLine, MapPair, SensorPlots, VERSION, count, counted, defect_list, list, page_head,
@@ -15,6 +16,7 @@ use crate::output::light::{Light, light};
 use crate::output::plots::{max_columns, plots};
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
 use crate::output::verdict::{CAVEAT, Verdict, explanation, headline};
+use crate::ray_sets::RaySetResult;
 use crate::scoreboard::{CandidateReport, Scoreboard};
 use crate::validation::{Pair, Validation};
 
@@ -46,6 +48,7 @@ struct Page<'a> {
     comparisons: Vec<Comparison>,
     causes: Vec<CauseRow>,
     sensors: Vec<Sensor>,
+    ray_sets: Vec<RaySet>,
     light: Light,
     candidates: CandidatesSection,
     candidate_plots: Vec<CandidatePlots>,
@@ -82,6 +85,13 @@ struct Sensor {
     note: String,
     /// The pictures as HTML.
     pictures: String,
+}
+
+/// A set of rays: what became of them, and its pictures as addresses that hold them.
+struct RaySet {
+    name: String,
+    words: String,
+    pictures: Vec<String>,
 }
 
 /// The pictures of a candidate, sensor by sensor.
@@ -139,6 +149,7 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
             .sensors()
             .map(|id| sensor(validation, id, numbers(validation, id), &plots(validation, id, max_columns)))
             .collect::<Result<_, _>>()?,
+        ray_sets: validation.ray_sets.iter().map(|set| ray_set(subject, set)).collect(),
         light: light(validation, max_columns),
         candidates: candidates_section(validation),
         candidate_plots: scoreboard
@@ -157,6 +168,16 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
             .collect(),
     };
     page.render()
+}
+
+fn ray_set(subject: &Subject, result: &RaySetResult) -> RaySet {
+    let set = &subject.scene.ray_sets()[result.index];
+    let pictures = [range_picture(&result.answers, set), top_picture(&result.answers, set)];
+    RaySet {
+        name: result.name.clone(),
+        words: result.words(),
+        pictures: pictures.into_iter().flatten().map(|picture| picture.data_uri()).collect(),
+    }
 }
 
 fn sensor(

@@ -20,6 +20,9 @@ const MAX_COLUMNS: usize = 80;
 /// Maximum lines of sensors.
 const MAX_SENSORS: usize = 5;
 
+/// Maximum lines of sets of rays.
+const MAX_RAY_SETS: usize = 2;
+
 /// Maximum lines of stage times.
 const MAX_TIME_LINES: usize = 4;
 
@@ -101,6 +104,7 @@ fn screen(validation: &Validation, folder: Option<&Path>, room: Room) -> String 
         head(validation, room),
         quantities(validation, room),
         sensors(validation, room),
+        ray_sets(validation, room),
         approximations(validation, room),
         candidates(validation, room),
         times(validation, room),
@@ -204,6 +208,20 @@ fn sensors(validation: &Validation, room: Room) -> String {
     }
     if sensors.len() > MAX_SENSORS {
         let _ = writeln!(text, "... and {} more sensors in the summary", sensors.len() - MAX_SENSORS);
+    }
+    text
+}
+
+/// A line for each set of rays.
+fn ray_sets(validation: &Validation, room: Room) -> String {
+    let sets = &validation.ray_sets;
+    let most = if room == Room::Terminal { MAX_RAY_SETS } else { usize::MAX };
+    let mut text = String::new();
+    for set in sets.iter().take(most) {
+        let _ = writeln!(text, "{}", cut(&format!("rays {}: {}", set.name, set.words()), room));
+    }
+    if let Some(more) = sets.len().checked_sub(most).filter(|more| *more > 0) {
+        let _ = writeln!(text, "and {more} more sets of rays");
     }
     text
 }

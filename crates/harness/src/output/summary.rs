@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
+use raypencil_cast::comparison_json;
 use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Largest, Quantity, SensorResult};
 use raypencil_report::VERSION;
 use raypencil_scene::Switches;
 use raypencil_scene_io::{Subject, probe_command, scene_sha256};
 use raypencil_survey::{Warning, Whereabouts};
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::output::panel::{ScoreboardSummary, scoreboard_summary};
 use crate::output::table::hits;
 use crate::output::verdict::Verdict;
+use crate::ray_sets::RaySetResult;
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
 
@@ -38,6 +40,9 @@ struct Summary<'a> {
     whereabouts: Whereabouts,
     renderers: Vec<RendererSummary<'a>>,
     pairs: Vec<PairSummary<'a>>,
+    /// Left out if the scene has none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ray_sets: Vec<Value>,
     /// Renderers and candidates checked against the exact answers; null without candidates.
     #[serde(rename = "panel")]
     scoreboard: Option<ScoreboardSummary>,
@@ -191,6 +196,7 @@ pub fn summary_json(validation: &Validation) -> String {
         whereabouts: Whereabouts::of(&subject.scene, subject.vehicle.as_ref()),
         renderers: rendered.iter().map(renderer_summary).collect(),
         pairs: pairs.iter().map(|pair| pair_summary(validation, pair)).collect(),
+        ray_sets: validation.ray_sets.iter().map(ray_set_summary).collect(),
         scoreboard: scoreboard_summary(validation),
         stages: stages
             .iter()
@@ -200,6 +206,11 @@ pub fn summary_json(validation: &Validation) -> String {
     let mut json = serde_json::to_string_pretty(&summary).expect("numbers, texts and lists of them are JSON");
     json.push('\n');
     json
+}
+
+fn ray_set_summary(set: &RaySetResult) -> Value {
+    let compared = set.comparison.as_ref().map(|comparison| comparison_json("tracer", comparison));
+    json!({ "name": set.name, "rays": set.rays(), "hits": set.hits(), "compared": compared })
 }
 
 fn renderer_summary(rendered: &Rendered) -> RendererSummary<'_> {

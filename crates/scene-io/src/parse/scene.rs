@@ -1,9 +1,11 @@
 //! The whole scene file of a rig on a ground.
 
 use serde::Deserialize;
+use toml::Spanned;
 
 use crate::drive::read::DriveKeys;
 use crate::parse::key::Key;
+use crate::parse::rays::RaysKeys;
 use crate::parse::rig::{BeamKeys, CameraKeys, VehicleKeys};
 use crate::parse::source::Source;
 use crate::parse::terrain::TerrainKeys;
@@ -27,6 +29,7 @@ struct SceneKeys {
     #[serde(default)]
     flux: FluxKeys,
     drive: Option<DriveKeys>,
+    rays: Option<Vec<Spanned<RaysKeys>>>,
 }
 
 #[derive(Default, Deserialize)]
@@ -60,6 +63,9 @@ pub(crate) fn parse(source: &Source) -> Result<ScenePlan, SceneIoError> {
     source.number(attenuation, name, &mut plan.attenuation, 0.0..=1e3, "per metre")?;
     if let Some(model) = &keys.flux.model {
         plan.flux_model = source.flux_model(model)?;
+    }
+    if let Some(tables) = &keys.rays {
+        (plan.ray_sets, plan.ray_digests) = source.ray_sets(tables)?;
     }
     if let Some(keys) = &keys.drive {
         let (drive, kernel_digests) = source.drive(keys, mounted_rig(&plan))?;
