@@ -42,6 +42,24 @@ if [[ -n $python ]]; then
         expect 0 "$raypencil" check "data/packs/$pack" "$work/f32/$pack" --arithmetic f32
         expect 1 "$raypencil" check "data/packs/$pack" "$work/f32/$pack" --arithmetic f64
     done
+    # Any rays: every bit of every array once more, by other arithmetic; one bit that is off is found.
+    expect 0 "$python" reference/make_hard_rays.py --check
+    for mesh in data/rays/cube.obj data/rays/hard/*/mesh.obj; do
+        rays=data/rays/cube.npy
+        [[ $mesh == data/rays/cube.obj ]] || rays=$(dirname "$mesh")/rays.npy
+        folder=$work/cast/$(basename "$(dirname "$mesh")")
+        expect 0 "$raypencil" cast "$mesh" "$rays" --any --all --margins -o "$folder"
+        expect 0 "$python" reference/exact_cast.py "$mesh" "$rays" "$folder"
+    done
+    "$python" - "$folder/t.npy" <<'END'
+import sys
+with open(sys.argv[1], "r+b") as file:
+    file.seek(-8, 2)
+    last = file.read(1)[0]
+    file.seek(-8, 2)
+    file.write(bytes([last ^ 1]))
+END
+    expect 1 "$python" reference/exact_cast.py "$mesh" "$rays" "$folder" --displaced 0
     expect 0 "$python" reference/load_ground.py data/packs/input "$work/input"
     expect 0 "$raypencil" check data/packs/input "$work/input"
     # Nobody has seen these answers before.

@@ -101,5 +101,5 @@ fn render_writes_the_sets_of_a_renderer_that_answers_them() {
 fn a_wrong_set_is_an_error_with_its_place() {
     let folder = folder(&format!("{SCENE}[[rays]]\nname = \"front\"\ngrid = {{ preset = \"l515\" }}\n"));
     let output = raypencil(folder.path(), &["validate", "lidar.toml"]);
-    assert_trouble(&output, &["lidar.toml:24:8", "`rays 2.name` is \"front\", the name of another set"]);
+    assert_trouble(&output, &["lidar.toml:21:8", "`rays 2.name` is \"front\", the name of another set"]);
 }

@@ -40,8 +40,6 @@ struct Summary<'a> {
     whereabouts: Whereabouts,
     renderers: Vec<RendererSummary<'a>>,
     pairs: Vec<PairSummary<'a>>,
-    /// Left out if the scene has none.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     ray_sets: Vec<Value>,
     /// Renderers and candidates checked against the exact answers; null without candidates.
     #[serde(rename = "panel")]
