@@ -106,7 +106,7 @@ impl Folders {
 
     /// The candidate fails, and this explains it.
     #[track_caller]
-    fn is_told(self, words: &[&str]) {
+    fn expect_why(self, words: &[&str]) {
         let checked = self.check();
         assert!(!checked.passes());
         let why = checked.why.expect("an explanation");
@@ -143,40 +143,40 @@ fn numbers_of_another_convention_are_named() {
     let right = Folders::right;
     right()
         .change("face", |_, face| if face == no_hit { -1.0 } else { face + 1.0 })
-        .is_told(&["1 too large"]);
+        .expect_why(&["1 too large"]);
     let ranges = right().of("range");
-    right().change("t", |index, _| ranges[index]).is_told(&["t.npy holds the range"]);
+    right().change("t", |index, _| ranges[index]).expect_why(&["t.npy holds the range"]);
     let t = right().of("t");
-    right().change("range", |index, _| t[index]).is_told(&["range.npy holds t"]);
+    right().change("range", |index, _| t[index]).expect_why(&["range.npy holds t"]);
     let thousandths = |_: usize, length: f64| length * 1e3;
     right()
         .change("t", thousandths)
         .change("range", thousandths)
         .change("point", thousandths)
-        .is_told(&["thousandths"]);
-    right().change("normal", |_, part| -part).is_told(&["normals point inward"]);
-    right().change("cos_incidence", |_, cos| cos.abs()).is_told(&["without sign"]);
-    right().change("cos_incidence", |_, cos| libm::acos(cos)).is_told(&["angles in radians"]);
+        .expect_why(&["thousandths"]);
+    right().change("normal", |_, part| -part).expect_why(&["normals point inward"]);
+    right().change("cos_incidence", |_, cos| cos.abs()).expect_why(&["without sign"]);
+    right().change("cos_incidence", |_, cos| libm::acos(cos)).expect_why(&["angles in radians"]);
     let weights = right().of("barycentric");
     right()
         .change("barycentric", |index, _| weights[index / 3 * 3 + (index + 1) % 3])
-        .is_told(&["order (b, c, a)"]);
-    right().change("side", |_, side| -side).is_told(&["taken for each other"]);
+        .expect_why(&["order (b, c, a)"]);
+    right().change("side", |_, side| -side).expect_why(&["taken for each other"]);
 }
 
 #[test]
 fn two_mistakes_are_both_named() {
     let no_hit = f64::from(u32::MAX);
     let two = Folders::right().change("face", |_, face| if face == no_hit { face } else { face + 1.0 });
-    two.change("normal", |_, part| -part).is_told(&["1 too large", "normals point inward"]);
+    two.change("normal", |_, part| -part).expect_why(&["1 too large", "normals point inward"]);
 }
 
 #[test]
 fn answers_to_another_question_are_named() {
-    Folders::new(Sides::Both, Sides::Both, |ray| ray.t_min = 0.0).is_told(&["t_min is ignored"]);
-    Folders::new(Sides::Both, Sides::Both, |ray| ray.t_max = f64::INFINITY).is_told(&["t_max is ignored"]);
-    Folders::new(Sides::Both, Sides::Fronts, |_| {}).is_told(&["pass through the backs"]);
-    Folders::new(Sides::Fronts, Sides::Both, |_| {}).is_told(&["hit the backs"]);
+    Folders::new(Sides::Both, Sides::Both, |ray| ray.t_min = 0.0).expect_why(&["t_min is ignored"]);
+    Folders::new(Sides::Both, Sides::Both, |ray| ray.t_max = f64::INFINITY).expect_why(&["t_max is ignored"]);
+    Folders::new(Sides::Both, Sides::Fronts, |_| {}).expect_why(&["pass through the backs"]);
+    Folders::new(Sides::Fronts, Sides::Both, |_| {}).expect_why(&["hit the backs"]);
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn single_precision_must_be_declared() {
     let values = ["face", "t", "range", "point", "normal", "barycentric", "cos_incidence"];
     let folders = values.iter().fold(Folders::right(), |folders, name| folders.change(name, single));
     assert!(folders.check_by(Precision::F32, CandidateConventions::default()).passes());
-    folders.is_told(&["declare --arithmetic f32"]);
+    folders.expect_why(&["declare --arithmetic f32"]);
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn a_number_for_no_hit_must_be_declared() {
     let folders = Folders::right().without(&["face"]).change("t", to_zero).change("range", to_zero);
     let declared = CandidateConventions { miss: Some(0.0), ..CandidateConventions::default() };
     assert!(folders.check_by(Precision::F64, declared).passes());
-    folders.is_told(&["declare --miss 0"]);
+    folders.expect_why(&["declare --miss 0"]);
 }
 
 #[test]

@@ -76,7 +76,7 @@ pub enum RayVerdict {
         /// Whether several faces are met at exactly this t.
         is_tie: bool,
     },
-    /// The answer of a ray that is moved sideways by `moved` along the two vectors of [`CastRay::across`].
+    /// The answer of a ray that is moved sideways by `moved` along the two vectors of `CastRay::across`.
     Rounding {
         /// The displacement, in the mesh's unit.
         moved: [f64; 2],
