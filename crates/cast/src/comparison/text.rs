@@ -19,6 +19,7 @@ pub fn comparison_headline(comparison: &Comparison) -> String {
         return format!("Nothing is hit: {all} compared, and all miss the mesh.");
     }
     match counts.wrong {
+        0 if comparison.verdicts.len() == 1 => "The one ray agrees.".into(),
         0 => format!("All {all} agree."),
         1 => format!("1 of {all} is wrong."),
         wrong => format!("{} of {all} are wrong.", count(wrong)),
