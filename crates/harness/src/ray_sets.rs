@@ -9,6 +9,7 @@ use raypencil_cast::{
     Answers, CastCounts, CastSource, Comparison, Questions, Stated, cast, compare, write_set,
 };
 use raypencil_files::FolderError;
+use raypencil_report::{count, counted};
 use raypencil_scene::{NamedRaySet, Precision, Progress, Scene, Triangles};
 use raypencil_scene_io::{Subject, scene_sha256};
 
@@ -46,21 +47,13 @@ impl RaySetResult {
 
     /// The result in words.
     pub fn words(&self) -> String {
-        let count = raypencil_report::count;
-        let hits = count(self.hits());
-        match &self.comparison {
-            None => {
-                format!("{} rays, {hits} hit; not compared, only the tracer answers them", count(self.rays()))
-            }
-            Some(_) => {
-                let CastCounts { same, rounding, wrong, .. } = self.counts();
-                let [same, rounding, wrong] = [same, rounding, wrong].map(count);
-                format!(
-                    "{} rays, {hits} hit; {WITH}: {same} same, {rounding} rounding, {wrong} wrong",
-                    count(self.rays())
-                )
-            }
+        let all = format!("{}, {} hit", counted(self.rays(), "ray", "rays"), count(self.hits()));
+        if self.comparison.is_none() {
+            return format!("{all}; not compared, only the {WITH} answers them");
         }
+        let CastCounts { same, rounding, wrong, .. } = self.counts();
+        let [same, rounding, wrong] = [same, rounding, wrong].map(count);
+        format!("{all}; {WITH}: {same} same, {rounding} rounding, {wrong} wrong")
     }
 }
 

@@ -1,9 +1,9 @@
 //! First hits as another program states them.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use raypencil_scene::{CastRay, FaceId, Side, Sides, Triangles};
-use raypencil_tracer::{TracedHit, TracerCast};
+
+use crate::answers::{Answers, FirstHit};
 
 /// First hits as another program states them: for each quantity that it gives, one value for each ray, in their order.
 ///
@@ -32,15 +32,11 @@ pub struct Stated {
 impl Stated {
     /// What the tracer answers, on all threads.
     pub fn by_tracer(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {
-        let tracer = TracerCast::new(mesh);
-        let hits: Vec<Option<TracedHit>> = rays
-            .par_iter()
-            .map_init(|| tracer.traverser(), |traverser, ray| traverser.first(ray, sides))
-            .collect();
-        let number = |value: fn(&TracedHit) -> f64, miss: f64| {
+        let hits = Answers::by_tracer(mesh, rays, sides).first;
+        let number = |value: fn(&FirstHit) -> f64, miss: f64| {
             Some(hits.iter().map(|hit| hit.as_ref().map_or(miss, value)).collect())
         };
-        let vector = |value: fn(&TracedHit) -> DVec3| {
+        let vector = |value: fn(&FirstHit) -> DVec3| {
             Some(hits.iter().map(|hit| hit.as_ref().map_or(DVec3::NAN, value)).collect())
         };
         Self {
@@ -53,15 +49,6 @@ impl Stated {
             barycentric: vector(|hit| DVec3::from_array(hit.barycentric)),
             cos_incidence: number(|hit| hit.cos_incidence, f64::NAN),
         }
-    }
-
-    /// Whether the ray with this index is stated to hit; `None` if nothing given says so.
-    pub fn hits(&self, index: usize) -> Option<bool> {
-        if let Some(face) = &self.face {
-            return Some(face[index].is_some());
-        }
-        let distance = self.t.as_ref().or(self.range.as_ref())?;
-        Some(distance[index].is_finite())
     }
 
     /// The answers to the rays with these indices.

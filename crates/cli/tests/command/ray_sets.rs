@@ -43,7 +43,7 @@ fn validate_holds_the_tracer_to_the_exact_answers() {
     let folder = folder(SCENE);
     let shown = screen(folder.path(), &["validate", "lidar.toml", "-o", "out"], 0);
     for line in [
-        "rays down: 1 rays, 1 hit; tracer: 1 same, 0 rounding, 0 wrong",
+        "rays down: 1 ray, 1 hit; tracer: 1 same, 0 rounding, 0 wrong",
         "rays front: 384 rays, ",
         // 16 x 12 pixels, 1 ray and 24 x 16.
         "All 577 rays agree.",
