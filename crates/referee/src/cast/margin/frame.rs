@@ -128,6 +128,21 @@ impl<'r> Frame<'r> {
         })
     }
 
+    /// Whether a face's picture may contain the displacement (a, b), or come as near as `slack`.
+    #[inline]
+    pub(super) fn may_show(&self, corners: &[DVec3; 3], [a, b]: [f64; 2], slack: f64) -> bool {
+        let shown = corners.map(|corner| {
+            let from_origin = corner - self.rounded.origin;
+            DVec2::new(self.rounded.rows[0].dot(from_origin), self.rounded.rows[1].dot(from_origin))
+        });
+        let [p, q, r] = corners.map(DVec3::abs);
+        let size = p.max(q).max(r).max(self.rounded.origin.abs());
+        let slack = slack + ROUNDED_SLACK * (size.x + size.y + size.z);
+        let low = shown[0].min(shown[1]).min(shown[2]) - slack;
+        let high = shown[0].max(shown[1]).max(shown[2]) + slack;
+        low.x <= a && a <= high.x && low.y <= b && b <= high.y
+    }
+
     /// The least and the greatest range of a hit within the ray's ends, with slack.
     pub(super) fn ranges(&self) -> [f64; 2] {
         let length = QueryRay::length(self.ray);

@@ -11,6 +11,7 @@
 //! nearby     faces in the order of the displacement that they need
 //! faces      the margin of the set of nearest faces
 //! segment    a piece of a face's border, and what of it is hidden
+//! hidden     how far a surface hides such a piece, without exact arithmetic
 //! surface    the margin of the surface: the nearest t jumps
 //! ```
 //!
@@ -20,6 +21,7 @@
 mod faces;
 mod flat;
 mod frame;
+mod hidden;
 mod nearby;
 mod region;
 mod seams;

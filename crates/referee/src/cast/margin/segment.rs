@@ -8,11 +8,12 @@
 //! that is 0 by the sign of its change.
 
 use std::cmp::Ordering;
+use std::rc::Rc;
 
 use glam::DVec3;
 use raypencil_scene::{FaceId, Side};
 
-use super::flat::{FlatFace, Linear};
+use super::flat::{FlatFace, Linear, corner_of};
 use super::frame::{FrameNumbers, Point};
 use super::region::Bounded;
 use crate::number::{Dyadic, Interval, Number};
@@ -32,40 +33,46 @@ pub(super) enum Border {
 /// Two points with a common divisor w: D a w, D b w, D t w.
 #[derive(Debug, Clone)]
 pub(super) struct Segment<T> {
-    ends: [[T; 3]; 2],
-    divisor: T,
+    pub(super) ends: [[T; 3]; 2],
+    pub(super) divisor: T,
     /// The vertices of the mesh at both ends, if it is an edge.
     vertices: Option<[DVec3; 2]>,
 }
 
 impl<T: Number> Segment<T> {
-    pub(super) fn of(face: &FlatFace<T>, border: Border, frame: &FrameNumbers<T>) -> Self {
+    /// A border of the face with these corners, whose `side` the ray sees.
+    pub(super) fn of(corners: &[DVec3; 3], side: Side, border: Border, frame: &FrameNumbers<T>) -> Self {
         let cut_at = |[exit, enter]: [usize; 2], at: &T| {
-            let (from, to) = (crossing(face, exit, at), crossing(face, enter, at));
+            let face = FlatFace::new(frame, corners, side);
+            let (from, to) = (crossing(&face, exit, at), crossing(&face, enter, at));
             let divisor = from.1.mul(&to.1);
             let ends = [from.0.map(|part| part.mul(&to.1)), to.0.map(|part| part.mul(&from.1))];
             Self { ends, divisor, vertices: None }
         };
         match (border, &frame.to) {
+            (Border::Edge(k), _) => Self::of_edge(corners, side, k, frame),
             (Border::Start(edges), _) => cut_at(edges, &frame.from),
-            (Border::End(edges), Some(to)) => cut_at(edges, to),
-            (Border::End([k, _]) | Border::Edge(k), _) => {
-                let corner = |k: usize| face.corners[k % 3].0.clone();
-                let vertices = Some([face.vertices[k % 3], face.vertices[(k + 1) % 3]]);
-                Self { ends: [corner(k), corner(k + 1)], divisor: T::of(1.0), vertices }
-            }
+            // Only a ray with an end cuts faces off there.
+            (Border::End(edges), to) => cut_at(edges, to.as_ref().unwrap_or(&frame.from)),
         }
     }
 
+    /// An edge of a face whose `side` the ray sees, from corner k of the flat face.
+    pub(super) fn of_edge(corners: &[DVec3; 3], side: Side, k: usize, frame: &FrameNumbers<T>) -> Self {
+        let vertices = [k, k + 1].map(|k| corners[corner_of(side, k)]);
+        let ends = vertices.map(|vertex| frame.point(vertex).0);
+        Self { ends, divisor: T::of(1.0), vertices: Some(vertices) }
+    }
+
     /// The values of a linear function at both ends, times the divisor.
-    fn values(&self, linear: &Linear<T>) -> [T; 2] {
+    pub(super) fn values(&self, linear: &Linear<T>) -> [T; 2] {
         self.ends
             .each_ref()
             .map(|[a, b, _]| linear.c.mul(&self.divisor).add(&linear.x.mul(a)).add(&linear.y.mul(b)))
     }
 
     /// The values of a face's edge from corner k. At a vertex that both have it is 0, which no interval could tell.
-    fn edge_values(&self, face: &FlatFace<T>, k: usize) -> [T; 2] {
+    pub(super) fn edge_values(&self, face: &FlatFace<T>, k: usize) -> [T; 2] {
         let mut values = self.values(&face.edge(k));
         for (end, vertex) in self.vertices.iter().flatten().enumerate() {
             if face.vertices[k] == *vertex || face.vertices[(k + 1) % 3] == *vertex {
@@ -76,7 +83,7 @@ impl<T: Number> Segment<T> {
     }
 
     /// t of a face's plane less t of the segment, times positive numbers. At a common vertex it is 0.
-    fn behind(&self, face: &FlatFace<T>) -> [T; 2] {
+    pub(super) fn behind(&self, face: &FlatFace<T>) -> [T; 2] {
         let [from, to] = self.values(&face.height());
         let mut values =
             [from.sub(&self.ends[0][2].mul(&face.area)), to.sub(&self.ends[1][2].mul(&face.area))];
@@ -86,6 +93,13 @@ impl<T: Number> Segment<T> {
             }
         }
         values
+    }
+
+    /// How far a point is to the left of the segment's line, times positive numbers: 0 on the line.
+    pub(super) fn to_the_left(&self, Point([a, b, _]): &Point<T>) -> T {
+        let [[from_a, from_b, _], [to_a, to_b, _]] = &self.ends;
+        let (past_a, past_b) = (a.mul(&self.divisor).sub(from_a), b.mul(&self.divisor).sub(from_b));
+        to_a.sub(from_a).mul(&past_b).sub(&to_b.sub(from_b).mul(&past_a))
     }
 
     /// How a linear function changes to the right of the segment, away from its face.
@@ -126,6 +140,11 @@ impl Place {
     pub(super) fn end() -> Self {
         let rounded = Interval::of(1.0);
         Self { numerator: Dyadic::of(1.0), divisor: Dyadic::of(1.0), rounded }
+    }
+
+    /// The place in f64.
+    pub(super) fn middle(&self) -> f64 {
+        self.rounded.middle()
     }
 
     fn of(numerator: Dyadic, divisor: Dyadic) -> Self {
@@ -186,13 +205,14 @@ pub(super) struct Piece {
     pub(super) face: FaceId,
     pub(super) side: Side,
     pub(super) border: Border,
+    pub(super) segment: Rc<Segment<Dyadic>>,
     pub(super) near: Place,
     pub(super) far: Place,
 }
 
 impl Piece {
     /// Whether the walk goes from the segment's start to its end.
-    fn is_forward(&self) -> bool {
+    pub(super) fn is_forward(&self) -> bool {
         self.near.compare(&self.far) == Ordering::Less
     }
 

@@ -25,6 +25,7 @@
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
+use std::rc::Rc;
 
 use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Sides};
@@ -34,6 +35,7 @@ use super::super::triangle::Triangle;
 use super::faces::in_units;
 use super::flat::{FlatFace, corner_of};
 use super::frame::{Frame, FrameNumbers, least_size};
+use super::hidden::{Hidden, WalkedFace};
 use super::nearby::Nearby;
 use super::segment::{Border, Cover, Piece, Place, Segment, corner_segment, cover, covered_up_to, met_at};
 use super::{CastMargin, ExactCast};
@@ -109,10 +111,11 @@ impl ExactCast<'_> {
             match tasks.pop() {
                 None => {}
                 Some(Task::Border(face, side, border)) => {
-                    let (_, segment) = self.exact_segment(frame, face, side, border);
+                    let segment = Segment::of(&self.mesh.corners(face), side, border, frame.exact());
+                    let segment = Rc::new(segment);
                     let pieces = segment.pieces(frame.exact()).into_iter().flatten();
                     for [near, far] in pieces {
-                        let piece = Piece { face, side, border, near, far };
+                        let piece = Piece { face, side, border, segment: Rc::clone(&segment), near, far };
                         if !piece.is_empty() {
                             let size = in_units(segment.size(&piece.near), frame)[0].max(from);
                             tasks.push(size, Task::Piece(Box::new(piece)));
@@ -124,41 +127,27 @@ impl ExactCast<'_> {
                     if self.stands_alone(frame, &point, sides, &query) {
                         let near = Place::start();
                         let far = Place::end();
-                        let piece = Piece { face, side, border: Border::Edge(k), near, far };
-                        return self.jump(frame, &piece, &point, cap);
+                        let (border, segment) = (Border::Edge(k), Rc::new(point));
+                        let piece = Piece { face, side, border, segment, near, far };
+                        return self.jump(frame, &piece, cap);
                     }
                 }
-                Some(Task::Piece(mut piece)) => {
-                    let (_, segment) = self.exact_segment(frame, piece.face, piece.side, piece.border);
-                    match self.next_uncovered(frame, &piece, &segment, sides, &query) {
-                        None => return self.jump(frame, &piece, &segment, cap),
-                        Some(near) => {
-                            piece.near = near;
-                            if !piece.is_empty() {
-                                let size = in_units(segment.size(&piece.near), frame)[0].max(from);
-                                tasks.push(size, Task::Piece(piece));
-                            }
+                Some(Task::Piece(mut piece)) => match self.next_uncovered(frame, &piece, sides, &query) {
+                    None => return self.jump(frame, &piece, cap),
+                    Some(near) => {
+                        piece.near = near;
+                        if !piece.is_empty() {
+                            let size = in_units(piece.segment.size(&piece.near), frame)[0].max(from);
+                            tasks.push(size, Task::Piece(piece));
                         }
                     }
-                }
+                },
             }
         }
     }
 
     fn flat<T: Number>(&self, numbers: &FrameNumbers<T>, face: FaceId, side: Side) -> FlatFace<T> {
         FlatFace::new(numbers, &self.mesh.corners(face), side)
-    }
-
-    fn exact_segment(
-        &self,
-        frame: &Frame<'_>,
-        face: FaceId,
-        side: Side,
-        border: Border,
-    ) -> (FlatFace<Dyadic>, Segment<Dyadic>) {
-        let flat = self.flat(frame.exact(), face, side);
-        let segment = Segment::of(&flat, border, frame.exact());
-        (flat, segment)
     }
 
     /// Adds the borders of a face at which the surface may end.
@@ -179,7 +168,7 @@ impl ExactCast<'_> {
         let is_cut = near <= first || far >= last;
         for k in 0..3 {
             // Both faces show the same side: they continue one another, unless the edge is where an end cuts them.
-            if !is_cut && self.is_continued(face, side, k, query) {
+            if !is_cut && self.continued(face.id, side, k, query).is_some() {
                 continue;
             }
             let span = span_of(corner(k), corner(k + 1));
@@ -206,16 +195,15 @@ impl ExactCast<'_> {
         }
     }
 
-    /// Whether one other face has this edge, and shows the ray the same side.
-    fn is_continued(&self, face: &Triangle, side: Side, k: usize, query: &QueryRay<'_>) -> bool {
+    /// The one other face that has the edge from corner k of a flat face, if it shows the ray the same side.
+    fn continued(&self, face: FaceId, side: Side, k: usize, query: &QueryRay<'_>) -> Option<FaceId> {
         // Corner k of the flat face and the next are an edge of the mesh's face; from the second if it is turned round.
         let edge = match side {
             Side::Back => k,
             Side::Front => corner_of(side, k + 1),
         };
-        self.seams()
-            .mate(face.id, edge)
-            .is_some_and(|mate| Triangle::of(self.mesh, mate).seen_side(query) == Some(side))
+        let mate = self.seams().mate(face, edge)?;
+        (Triangle::of(self.mesh, mate).seen_side(query) == Some(side)).then_some(mate)
     }
 
     /// Where the piece begins that no face of those at its near end covers; `None` if none covers it there.
@@ -223,36 +211,76 @@ impl ExactCast<'_> {
         &self,
         frame: &Frame<'_>,
         piece: &Piece,
-        segment: &Segment<Dyadic>,
         sides: Sides,
         query: &QueryRay<'_>,
     ) -> Option<Place> {
-        let fast = Segment::of(&self.flat(&frame.fast, piece.face, piece.side), piece.border, &frame.fast);
-        let bundle = self.bundle_at(frame, segment.point(&piece.near));
-        let mut until: Option<Place> = None;
+        let numbers = &frame.fast;
+        let segment = piece.segment.as_ref();
+        let fast = Segment::of(&self.mesh.corners(piece.face), piece.side, piece.border, numbers);
+        let place = segment.point(&piece.near);
+        let bundle = self.bundle_at(frame, place);
+        let at = [place[0], place[1]].map(|part| part / numbers.scale.middle());
+        let behind = |face, side, k| {
+            let mate = self.continued(face, side, k, query)?;
+            Some(WalkedFace { face: mate, flat: self.flat(numbers, mate, side) })
+        };
+        let walk = |face, side, flat| {
+            piece
+                .hidden_by_surface(WalkedFace { face, flat }, &fast, numbers, |face, k| behind(face, side, k))
+        };
+        let is_farther = |one: f64, other: f64| if piece.is_forward() { one > other } else { one < other };
+        // The face up to whose end the piece is hidden, and where it is entered: the farther the better.
+        let mut last: Option<(f64, FaceId, Side)> = None;
+        let mut doubtful: Vec<(&Triangle, Side)> = Vec::new();
+        let mut is_hidden = false;
         self.bvh.visit(&bundle, |face| {
-            let covers = face.seen_side(query).filter(|side| sides.include(*side)).map(|side| {
-                let quick = cover(piece, &fast, &self.flat(&frame.fast, face.id, side), &frame.fast);
-                if quick == Some(Cover::None) {
-                    return (Cover::None, None);
-                }
-                let exact = self.flat(frame.exact(), face.id, side);
-                let decided = quick.or_else(|| cover(piece, segment, &exact, frame.exact()));
-                (decided.unwrap_or(Cover::None), Some(exact))
-            });
-            if let Some((covers @ (Cover::Before | Cover::GoesOn), Some(exact))) = covers {
-                let end = covered_up_to(piece, segment, &exact, frame.exact(), covers);
-                // The farther from the near end the better: nearer to the far end.
-                let is_farther = |kept: &Place| {
-                    let order = end.compare(kept);
-                    order == piece.far.compare(&piece.near)
-                };
-                if until.as_ref().is_none_or(is_farther) {
-                    until = Some(end);
-                }
+            if is_hidden || !frame.may_show(&face.corners, at, bundle.start_radius) {
+                return bundle.max_range;
             }
-            bundle.max_range
+            let Some(side) = face.seen_side(query).filter(|side| sides.include(*side)) else {
+                return bundle.max_range;
+            };
+            let flat = FlatFace::new(numbers, &face.corners, side);
+            match cover(piece, &fast, &flat, numbers) {
+                Some(Cover::None) => {}
+                Some(Cover::Before) => match walk(face.id, side, flat) {
+                    Hidden::Wholly => is_hidden = true,
+                    Hidden::UpToTheEndOf(end, entered) => {
+                        if last.is_none_or(|(kept, ..)| is_farther(entered, kept)) {
+                            last = Some((entered, end, side));
+                        }
+                    }
+                },
+                Some(Cover::GoesOn) | None => doubtful.push((face, side)),
+            }
+            if is_hidden { f64::NEG_INFINITY } else { bundle.max_range }
         });
+        if is_hidden {
+            return Some(piece.far.clone());
+        }
+        let end_of = |face, side, covers| {
+            covered_up_to(piece, segment, &self.flat(frame.exact(), face, side), frame.exact(), covers)
+        };
+        if let Some((_, face, side)) = last {
+            return Some(end_of(face, side, Cover::Before));
+        }
+        let mut until: Option<Place> = None;
+        for (face, side) in doubtful {
+            let exact = self.flat(frame.exact(), face.id, side);
+            let end = match cover(piece, segment, &exact, frame.exact()) {
+                Some(Cover::Before) => match walk(face.id, side, self.flat(numbers, face.id, side)) {
+                    Hidden::Wholly => return Some(piece.far.clone()),
+                    Hidden::UpToTheEndOf(end, _) => end_of(end, side, Cover::Before),
+                },
+                Some(Cover::GoesOn) => end_of(face.id, side, Cover::GoesOn),
+                Some(Cover::None) | None => continue,
+            };
+            // The farther from the near end the better: nearer to the far end.
+            let order = piece.far.compare(&piece.near);
+            if until.as_ref().is_none_or(|kept| end.compare(kept) == order) {
+                until = Some(end);
+            }
+        }
         until
     }
 
@@ -296,7 +324,8 @@ impl ExactCast<'_> {
         }
     }
 
-    fn jump(&self, frame: &Frame<'_>, piece: &Piece, segment: &Segment<Dyadic>, cap: f64) -> CastMargin {
+    fn jump(&self, frame: &Frame<'_>, piece: &Piece, cap: f64) -> CastMargin {
+        let segment = &piece.segment;
         let bounds = in_units(segment.size(&piece.near), frame);
         let scale = frame.fast.scale.middle();
         let [a, b, _] = segment.point(&piece.near).map(|part| part / scale);
