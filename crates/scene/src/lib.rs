@@ -70,7 +70,7 @@ pub use camera::{Camera, Filter, Lens};
 pub use error::{SceneError, check_count, check_range};
 pub use hit_quantity::{HitQuantity, HitRaster, HitRasterMut, HitValue};
 pub use image::{Image, Maybe, Sample};
-pub use mesh::{Material, Mesh};
+pub use mesh::{Material, Mesh, VertexRounding};
 pub use named_ray_set::NamedRaySet;
 pub use output::{Quantities, RenderOutput, Request, SensorMap, SensorRow, Stage};
 pub use place::Place;

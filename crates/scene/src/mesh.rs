@@ -28,7 +28,7 @@ pub struct Material {
 /// assert_eq!((mesh.faces().len(), mesh.zero_area_faces()), (2, 1));
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Mesh {
     origin: DVec3,
     vertices: Vec<[f32; 3]>,
@@ -36,6 +36,47 @@ pub struct Mesh {
     face_materials: Vec<u16>,
     materials: Vec<Material>,
     zero_area_faces: usize,
+    rounding: VertexRounding,
+}
+
+/// Vertices that moved when they were stored as `f32` offsets.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct VertexRounding {
+    /// Number of vertices whose offset is no `f32` number.
+    pub vertices: usize,
+    /// Largest distance along an axis by which one was moved, metres.
+    pub largest: f64,
+}
+
+/// Meshes are equal if all that a renderer can see of them is: how their vertices came about is not.
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |mesh: &'_ Self| (mesh.origin, mesh.zero_area_faces);
+        parts(self) == parts(other)
+            && self.vertices == other.vertices
+            && self.faces == other.faces
+            && self.face_materials == other.face_materials
+            && self.materials == other.materials
+    }
+}
+
+impl VertexRounding {
+    /// What storing these global vertices as `offsets` from the origin moved.
+    fn of(vertices: &[DVec3], origin: DVec3, offsets: &[[f32; 3]]) -> Self {
+        let moved = |(&vertex, offset): (&DVec3, &[f32; 3])| {
+            // The difference in f64, and what it lost: exact (Knuth's two-sum of v and -o).
+            let difference = vertex - origin;
+            let of_origin = difference - vertex;
+            let lost = (vertex - (difference - of_origin)) - (origin + of_origin);
+            let stored = DVec3::from_array(offset.map(f64::from));
+            ((difference - stored) + lost).abs().max_element()
+        };
+        let moved = vertices.iter().zip(offsets).map(moved).filter(|moved| *moved > 0.0);
+        moved.fold(Self::default(), |kept, moved| Self {
+            vertices: kept.vertices + 1,
+            largest: kept.largest.max(moved),
+        })
+    }
 }
 
 /// Greatest distance of a vertex from the scene origin along an axis, metres: three radii of Mars. It keeps every product of
@@ -112,7 +153,8 @@ impl Mesh {
             ));
         }
         let zero_area_faces = faces.iter().filter(|face| has_zero_area(&vertices, face)).count();
-        Ok(Self { origin, vertices, faces, face_materials, materials, zero_area_faces })
+        let rounding = VertexRounding::default();
+        Ok(Self { origin, vertices, faces, face_materials, materials, zero_area_faces, rounding })
     }
 
     /// Builds a mesh from global `f64` vertices, placing the scene origin by the rule of
@@ -130,8 +172,9 @@ impl Mesh {
             return Err(SceneError::new(format!("mesh.vertices[{index}]"), vertex, "three finite numbers"));
         }
         let origin = Self::origin_for(vertices);
-        let offsets = vertices.iter().map(|&v| (v - origin).as_vec3().to_array()).collect();
-        Self::new(origin, offsets, faces, face_materials, materials)
+        let offsets: Vec<[f32; 3]> = vertices.iter().map(|&v| (v - origin).as_vec3().to_array()).collect();
+        let rounding = VertexRounding::of(vertices, origin, &offsets);
+        Ok(Self { rounding, ..Self::new(origin, offsets, faces, face_materials, materials)? })
     }
 
     /// The scene origin for these global vertices: the whole metres nearest the centre of their bounding
@@ -150,6 +193,24 @@ impl Mesh {
     /// The scene origin in the global frame, metres.
     pub fn origin(&self) -> DVec3 {
         self.origin
+    }
+
+    /// The vertices that moved when they were stored; none if they were offsets already.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_scene::{Material, Mesh};
+    ///
+    /// // 0.1 is no f32 number: the nearest one is larger by 1.49e-9.
+    /// let corners = [DVec3::ZERO, DVec3::new(0.1, 0.0, 0.0), DVec3::Y];
+    /// let ground = Material { name: "sand".into(), reflectivity: 0.25 };
+    /// let mesh = Mesh::from_global(&corners, vec![[0, 1, 2]], vec![0], vec![ground])?;
+    /// assert_eq!(mesh.rounding().vertices, 1);
+    /// assert!((mesh.rounding().largest - 1.49e-9).abs() < 1e-11);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn rounding(&self) -> VertexRounding {
+        self.rounding
     }
 
     /// Vertices in the scene frame, metres.

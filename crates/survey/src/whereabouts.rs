@@ -1,7 +1,7 @@
 //! Where everything stands: poses, fields of view and bounds in the global frame, as numbers and as lines of text.
 
 use glam::DVec3;
-use raypencil_report::number;
+use raypencil_report::{count as thousands, counted, number};
 use raypencil_scene::{Camera, Pose, Scene, SensorId};
 use serde::Serialize;
 
@@ -61,6 +61,19 @@ pub struct Whereabouts {
     pub sensors: Vec<SensorPlace>,
     /// Smallest and largest coordinates of the terrain, metres; null without vertices.
     pub terrain_bounds_m: Option<[[f64; 3]; 2]>,
+    /// Vertices of the terrain that moved when they were stored as `f32` offsets.
+    pub rounded_vertices: RoundedVertices,
+}
+
+/// How storing a terrain as `f32` offsets moved its vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RoundedVertices {
+    /// Number of vertices that moved.
+    pub count: usize,
+    /// Number of all vertices.
+    pub of: usize,
+    /// Largest distance along an axis by which one moved, metres.
+    pub largest_m: f64,
 }
 
 /// Shortest horizontal part of a unit vector that has a heading: shorter, the view is straight up or down.
@@ -128,6 +141,11 @@ impl Whereabouts {
                 .mesh()
                 .bounds()
                 .map(|bounds| bounds.map(|corner| (corner + origin).to_array())),
+            rounded_vertices: RoundedVertices {
+                count: scene.mesh().rounding().vertices,
+                of: scene.mesh().vertices().len(),
+                largest_m: scene.mesh().rounding().largest,
+            },
         }
     }
 
@@ -142,6 +160,19 @@ impl Whereabouts {
         let Some([low, high]) = self.terrain_bounds_m else { return "terrain without vertices".into() };
         let span = |axis: usize| format!("{} to {}", rounded(low[axis], 2), rounded(high[axis], 2));
         format!("terrain x {}, y {}, z {} m", span(0), span(1), span(2))
+    }
+
+    /// How many vertices the `f32` offsets of a scene round, and by how much, in a line.
+    pub fn rounding_line(&self) -> String {
+        let RoundedVertices { count, of, largest_m } = self.rounded_vertices;
+        let all = counted(of as u64, "vertex", "vertices");
+        match count {
+            0 => format!("{all}, none of them rounded"),
+            _ => {
+                let largest = format!("{largest_m:.1e}");
+                format!("{all}, {} rounded to f32 offsets, by {largest} m at most", thousands(count as u64))
+            }
+        }
     }
 
     /// A line for each sensor.

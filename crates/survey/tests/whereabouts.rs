@@ -94,3 +94,30 @@ fn the_plan_has_a_scale_and_what_stands_in_it() {
     let alone = plan(&scene(), None).svg();
     assert_eq!(svg.matches("z\" fill").count() - alone.matches("z\" fill").count(), 1);
 }
+
+#[test]
+fn rounded_vertices_are_counted_and_the_largest_move_is_told() {
+    let mesh = |corners: &[DVec3]| {
+        let sand = Material { name: "sand".into(), reflectivity: 0.25 };
+        Mesh::from_global(corners, vec![[0, 1, 2]], vec![0], vec![sand]).unwrap()
+    };
+    let stands = |mesh: Mesh| {
+        let (camera, beams) = rig::default_rig(32, DVec3::ZERO, 0.0);
+        let air = Atmosphere { attenuation: 0.0 };
+        let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric).unwrap();
+        Whereabouts::of(&scene, None)
+    };
+    // All offsets are f32 numbers.
+    let whole = stands(mesh(&[DVec3::ZERO, DVec3::X, DVec3::Y]));
+    assert_eq!(whole.rounding_line(), "3 vertices, none of them rounded");
+    // Between 1 and 2 metres f32 numbers are 2^-23 = 8 * 2^-26 apart: 2 * 2^-26 and 3 * 2^-26 are rounded away.
+    let fine = |parts: f64| DVec3::new(1.0 + parts / 67_108_864.0, 0.0, 0.0);
+    let moved = stands(mesh(&[fine(2.0), fine(3.0), DVec3::Y]));
+    assert_eq!((moved.rounded_vertices.count, moved.rounded_vertices.of), (2, 3));
+    assert_eq!(moved.rounded_vertices.largest_m, 3.0 / 67_108_864.0);
+    assert_eq!(moved.rounding_line(), "3 vertices, 2 rounded to f32 offsets, by 4.5e-8 m at most");
+    // Far out the origin is 2^24 in x: then 2^-28 is an offset that f32 holds, though it holds no such coordinate.
+    let far = DVec3::new(16_777_216.0, 0.0, 0.0);
+    let lost = stands(mesh(&[far, far + DVec3::X / 268_435_456.0, far + DVec3::Y]));
+    assert_eq!(lost.rounded_vertices.count, 0, "{lost:?}");
+}

@@ -231,7 +231,8 @@ fn candidate_plots(
 /// Where everything stands, a line each.
 fn stands(subject: &Subject) -> Vec<String> {
     let found = Whereabouts::of(&subject.scene, subject.vehicle.as_ref());
-    [found.vehicle_line()].into_iter().chain(found.lines()).chain([found.terrain_line()]).collect()
+    let terrain = [found.terrain_line(), found.rounding_line()];
+    [found.vehicle_line()].into_iter().chain(found.lines()).chain(terrain).collect()
 }
 
 fn tiles(validation: &Validation) -> Vec<Tile> {

@@ -115,14 +115,18 @@ fn screen(validation: &Validation, folder: Option<&Path>, room: Room) -> String 
     blocks.into_iter().filter(|block| !block.is_empty()).collect::<Vec<_>>().join("\n")
 }
 
-/// The scene, its renderers, and where vehicle and terrain are.
+/// The scene, its renderers, where vehicle and terrain are, and what was rounded.
 fn head(validation: &Validation, room: Room) -> String {
     let subject = &validation.subject;
     let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let who = cut(&format!("raypencil {VERSION}: {} by {}", subject.name, list(&names)), room);
     let stands = Whereabouts::of(&subject.scene, subject.vehicle.as_ref());
     let [vehicle, terrain] = [stands.vehicle_line(), stands.terrain_line()].map(|line| cut(&line, room));
-    format!("{who}\nScene SHA-256 {}\n{vehicle}\n{terrain}\n", scene_sha256(&subject.scene))
+    let rounding = match stands.rounded_vertices.count {
+        0 => String::new(),
+        _ => cut(&stands.rounding_line(), room) + "\n",
+    };
+    format!("{who}\nScene SHA-256 {}\n{vehicle}\n{terrain}\n{rounding}", scene_sha256(&subject.scene))
 }
 
 /// The table of quantities and classes over all sensors.
