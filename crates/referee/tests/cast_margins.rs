@@ -243,6 +243,86 @@ fn cases() -> u32 {
     std::env::var("RAYPENCIL_CAST_CASES").map_or(400, |text| text.parse().expect("a number of cases"))
 }
 
+/// Displaced rays that aim at places on the edges, where changes are, find none within the margins of a ray; the
+/// witnesses show one.
+fn no_change_within_the_margins(
+    mesh: &Triangles,
+    ray: CastRay,
+    fractions: &[(f64, f64, f64)],
+) -> Result<(), TestCaseError> {
+    let cast = ExactCast::new(mesh);
+    let (vertices, faces) = (mesh.vertices(), mesh.faces());
+    let margins = cast.margins(&ray, Sides::Both);
+    let (face, surface) = (margins.face, margins.surface);
+    prop_assert!(face.lo <= face.hi && surface.lo <= surface.hi, "{margins:?}");
+    prop_assert!(face.lo <= surface.hi, "{margins:?}");
+    for margin in [face, surface] {
+        prop_assert!(margin.hi <= 1.02 * margin.lo + 1e-14, "{margins:?}");
+    }
+    let own = cast.first(&ray, Sides::Both);
+    let first_t = moved_t(&cast, &ray, [0.0; 2]);
+    if let Some(witness) = face.witness {
+        prop_assert!(cast.first_moved(&ray, Sides::Both, witness) != own, "{margins:?}");
+    }
+    // A witness of the surface is just beyond a jump: nearby t differs, however near.
+    // An end of the ray that touches a corner leaves a single place, which no rounded ray finds.
+    let t_of =
+        |v: &[f64; 3]| (DVec3::from(*v) - ray.origin).dot(ray.direction) / ray.direction.length_squared();
+    let is_touched =
+        vertices.iter().any(|v| (t_of(v) - ray.t_min).abs().min((t_of(v) - ray.t_max).abs()) < 1e-9);
+    if let Some(at) = surface.witness.filter(|_| !own.is_empty() && !is_touched) {
+        let step = 1e-7 * (1.0 + size(at));
+        // Places all round, for the jump may be in a narrow wedge.
+        let round = (0..128).map(|k| {
+            let along = f64::from(k % 32) / 16.0 - 1.0;
+            [[along, 1.0], [along, -1.0], [1.0, along], [-1.0, along]][k as usize / 32]
+        });
+        let t: Vec<f64> =
+            round.map(|s| moved_t(&cast, &ray, [at[0] + s[0] * step, at[1] + s[1] * step])).collect();
+        let (least, most) = t.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(*t), b.max(*t)));
+        // Where an edge comes out of another face, its jumps begin with 0: they are farther along the edge.
+        let sees_a_jump = most - least > 1e-6 || most == f64::INFINITY && least < most;
+        prop_assert!(sees_a_jump || jumps_near(&cast, &ray, mesh, at), "{ray:?} {margins:?} {t:?}");
+    }
+    for &(s, x, y) in fractions {
+        for triangle in faces {
+            for k in 0..3 {
+                let corner = |k: usize| DVec3::from(vertices[triangle[k % 3] as usize]);
+                let (p, q) = (flat(&ray, corner(k)), flat(&ray, corner(k + 1)));
+                // Now and then a corner itself.
+                let s = if s < 0.1 { 0.0 } else { s };
+                let at = [p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1])];
+                if size(at) < face.lo * (1.0 - 1e-9) {
+                    prop_assert_eq!(
+                        cast.first_moved(&ray, Sides::Both, at),
+                        own.clone(),
+                        "{:?} {:?}",
+                        ray,
+                        at
+                    );
+                }
+                // Two rays on both sides of the edge.
+                let step = 1e-9;
+                let beside = [[at[0] + x * step, at[1] + y * step], [at[0] - x * step, at[1] - y * step]];
+                if size(at) < surface.lo - 1e-8 && !is_touched {
+                    let [one, other] = beside.map(|by| moved_t(&cast, &ray, by));
+                    // The steepest slope of the lattice: at most 6^2 * 2 in a face whose n.d is 1 at least.
+                    prop_assert!(
+                        one == other || (one - other).abs() < 1e-5,
+                        "{ray:?} {at:?} {one} {other} {margins:?}"
+                    );
+                    prop_assert_eq!(one.is_finite(), first_t.is_finite());
+                }
+            }
+        }
+        let at = [x * face.lo, y * face.lo];
+        if size(at) < face.lo * (1.0 - 1e-9) {
+            prop_assert_eq!(cast.first_moved(&ray, Sides::Both, at), own.clone());
+        }
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
@@ -259,7 +339,6 @@ proptest! {
             corners.iter().map(|corners| corners.map(|k| (k % vertices.len()) as u32)).collect();
         let vertices: Vec<[f64; 3]> = vertices.iter().map(|v| v.map(f64::from)).collect();
         let mesh = mesh(&vertices, &faces);
-        let cast = ExactCast::new(&mesh);
         for (origin, direction, ends) in rays {
             if direction == [0; 3] {
                 continue;
@@ -271,63 +350,33 @@ proptest! {
                 1 => CastRay { t_min: 0.5, t_max: 2.0, ..ray },
                 _ => ray,
             };
-            let margins = cast.margins(&ray, Sides::Both);
-            let (face, surface) = (margins.face, margins.surface);
-            prop_assert!(face.lo <= face.hi && surface.lo <= surface.hi, "{margins:?}");
-            prop_assert!(face.lo <= surface.hi, "{margins:?}");
-            for margin in [face, surface] {
-                prop_assert!(margin.hi <= 1.02 * margin.lo + 1e-14, "{margins:?}");
-            }
-            let own = cast.first(&ray, Sides::Both);
-            let first_t = moved_t(&cast, &ray, [0.0; 2]);
-            if let Some(witness) = face.witness {
-                prop_assert!(cast.first_moved(&ray, Sides::Both, witness) != own, "{margins:?}");
-            }
-            // A witness of the surface is just beyond a jump: nearby t differs, however near.
-            // An end of the ray that touches a corner leaves a single place, which no rounded ray finds.
-            let t_of = |v: &[f64; 3]| (DVec3::from(*v) - ray.origin).dot(ray.direction) / ray.direction.length_squared();
-            let is_touched = vertices.iter().any(|v| (t_of(v) - ray.t_min).abs().min((t_of(v) - ray.t_max).abs()) < 1e-9);
-            if let Some(at) = surface.witness.filter(|_| !own.is_empty() && !is_touched) {
-                let step = 1e-7 * (1.0 + size(at));
-                // Places all round, for the jump may be in a narrow wedge.
-                let round = (0..128).map(|k| {
-                    let along = f64::from(k % 32) / 16.0 - 1.0;
-                    [[along, 1.0], [along, -1.0], [1.0, along], [-1.0, along]][k as usize / 32]
-                });
-                let t: Vec<f64> = round.map(|s| moved_t(&cast, &ray, [at[0] + s[0] * step, at[1] + s[1] * step])).collect();
-                let (least, most) = t.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(*t), b.max(*t)));
-                // Where an edge comes out of another face, its jumps begin with 0: they are farther along the edge.
-                let sees_a_jump = most - least > 1e-6 || most == f64::INFINITY && least < most;
-                prop_assert!(sees_a_jump || jumps_near(&cast, &ray, &mesh, at), "{ray:?} {margins:?} {t:?}");
-            }
-            for &(s, x, y) in &fractions {
-                for triangle in &faces {
-                    for k in 0..3 {
-                        let corner = |k: usize| DVec3::from(vertices[triangle[k % 3] as usize]);
-                        let (p, q) = (flat(&ray, corner(k)), flat(&ray, corner(k + 1)));
-                        // Now and then a corner itself.
-                        let s = if s < 0.1 { 0.0 } else { s };
-                        let at = [p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1])];
-                        if size(at) < face.lo * (1.0 - 1e-9) {
-                            prop_assert_eq!(cast.first_moved(&ray, Sides::Both, at), own.clone(), "{:?} {:?}", ray, at);
-                        }
-                        // Two rays on both sides of the edge.
-                        let step = 1e-9;
-                        let beside = [[at[0] + x * step, at[1] + y * step], [at[0] - x * step, at[1] - y * step]];
-                        if size(at) < surface.lo - 1e-8 && !is_touched {
-                            let [one, other] = beside.map(|by| moved_t(&cast, &ray, by));
-                            // The steepest slope of the lattice: at most 6^2 * 2 in a face whose n.d is 1 at least.
-                            prop_assert!(one == other || (one - other).abs() < 1e-5, "{ray:?} {at:?} {one} {other} {margins:?}");
-                            prop_assert_eq!(one.is_finite(), first_t.is_finite());
-                        }
-                    }
-                }
-                let at = [x * face.lo, y * face.lo];
-                if size(at) < face.lo * (1.0 - 1e-9) {
-                    prop_assert_eq!(cast.first_moved(&ray, Sides::Both, at), own.clone());
-                }
-            }
+            no_change_within_the_margins(&mesh, ray, &fractions)?;
         }
+    }
+
+    /// A ground of hills, seen at a low angle: borders lie hidden behind many faces of one surface.
+    #[test]
+    fn no_displaced_ray_over_hills_finds_a_change(
+        heights in prop::collection::vec(-2_i32..=2, 64),
+        origin in [0_i32..15, 0_i32..15],
+        direction in [1_i32..=6, -2_i32..=2, -2_i32..=-1],
+        start in 0_u32..3,
+        fractions in prop::collection::vec((0.0_f64..1.0, -1.0_f64..1.0, -1.0_f64..1.0), 12),
+    ) {
+        let vertex = |k: usize| [(k % 8) as f64, (k / 8) as f64, f64::from(heights[k])];
+        let cell = |k: u32| [[k, k + 1, k + 9], [k, k + 9, k + 8]];
+        let cells = (0..56).filter(|k| k % 8 != 7);
+        let faces: Vec<[u32; 3]> = cells.flat_map(cell).collect();
+        let vertices: Vec<[f64; 3]> = (0..64).map(vertex).collect();
+        let place = DVec3::new(f64::from(origin[0]) / 2.0 - 2.0, f64::from(origin[1]) / 2.0, 0.25);
+        let direction = DVec3::from(direction.map(f64::from));
+        // From outside, or from among the hills, or from a start that cuts them.
+        let ray = match start {
+            0 => CastRay::new(place - direction * 4.0, direction),
+            1 => CastRay::new(place, direction),
+            _ => CastRay { t_min: 4.0, ..CastRay::new(place - direction * 4.0, direction) },
+        };
+        no_change_within_the_margins(&mesh(&vertices, &faces), ray, &fractions)?;
     }
 }
 
