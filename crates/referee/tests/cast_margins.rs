@@ -146,6 +146,68 @@ fn a_hidden_border_is_no_jump_and_a_crossing_is_none_either() {
     assert_is(margins.surface, 3.0);
 }
 
+/// A surface of unit cells that rises by 1 from 0 to 1 and by 1/4 per cell from there: z at a whole x from -8 to 8.
+fn bend(x: i32) -> f64 {
+    let x = f64::from(x);
+    if x <= 1.0 { x } else { 1.0 + (x - 1.0) / 4.0 }
+}
+
+#[test]
+fn a_border_that_comes_out_of_a_surface_is_a_jump_from_there() {
+    // Seen from above, a plate at z = 1/2 is below the surface where x > 1/2, and above it where x < 1/2. Its border at
+    // y = 1 jumps only there: 5/2 in x from a ray at x = 3. All in the eight positions of a square.
+    for position in 0..8 {
+        let placed = |[x, y, z]: [f64; 3]| {
+            let [x, y] = if position & 1 == 0 { [x, y] } else { [-x, y] };
+            let [x, y] = if position & 2 == 0 { [x, y] } else { [x, -y] };
+            if position & 4 == 0 { [x, y, z] } else { [y, x, z] }
+        };
+        let ray = |x: f64, y: f64| {
+            let [x, y, z] = placed([x, y, 8.0]);
+            down(x, y, z)
+        };
+        let ground =
+            (0..17 * 17).map(|k| placed([f64::from(k % 17 - 8), f64::from(k / 17 - 8), bend(k % 17 - 8)]));
+        let cells = (0..17 * 16_u32).filter(|k| k % 17 != 16);
+        let cells = cells.flat_map(|k| [[k, k + 1, k + 18], [k, k + 18, k + 17]]);
+        // The far end of the border: many cells beyond the place where it comes out, in the same cell, or in the next.
+        for end in [-4.0, 0.25, -0.75] {
+            let plate = [[7.0, 1.0, 0.5], [7.0, 3.0, 0.5], [end, 3.0, 0.5], [end, 1.0, 0.5]].map(placed);
+            let vertices: Vec<[f64; 3]> = ground.clone().chain(plate).collect();
+            let first = 17 * 17;
+            let plate = [[first, first + 1, first + 2], [first, first + 2, first + 3]];
+            let faces: Vec<[u32; 3]> = cells.clone().chain(plate).collect();
+            let mesh = mesh(&vertices, &faces);
+            let cast = ExactCast::new(&mesh);
+            assert_is(cast.margins(&ray(3.0, 0.125), Sides::Both).surface, 2.5);
+            // The border is hidden by the surface and by nothing before the start of the ray: where the surface is above
+            // z = 1, for x > 1, it is not there, and the ray meets the plate or goes on.
+            let started = CastRay { t_min: 7.0, ..ray(3.0, 0.125) };
+            assert_is(cast.margins(&started, Sides::Both).surface, 0.875);
+            let started = CastRay { t_min: 7.0, ..ray(0.75, 0.125) };
+            assert_is(cast.margins(&started, Sides::Both).surface, 0.25);
+        }
+    }
+}
+
+#[test]
+fn an_edge_that_only_touches_the_start_of_the_ray_is_a_line_of_jumps() {
+    // A valley whose bottom, from (0, -2) to (0, 2), is exactly where the ray starts: its sides are before the start.
+    // Below lies a floor. So the rays that meet the bottom meet nothing else of the valley.
+    let vertices = [
+        [0.0, -2.0, 0.0],
+        [0.0, 2.0, 0.0],
+        [2.0, 0.0, 1.0],
+        [-2.0, 0.0, 1.0],
+        [-8.0, -8.0, -1.0],
+        [8.0, -8.0, -1.0],
+        [0.0, 8.0, -1.0],
+    ];
+    let valley = mesh(&vertices, &[[0, 2, 1], [0, 1, 3], [4, 5, 6]]);
+    let ray = CastRay { t_min: 4.0, ..down(0.25, 0.5, 4.0) };
+    assert_is(ExactCast::new(&valley).margins(&ray, Sides::Both).surface, 0.25);
+}
+
 #[test]
 fn a_surface_without_shared_vertices_is_still_one() {
     // One long edge on the left side, two short ones on the right: the three meet without a gap at x = 0.
@@ -354,20 +416,23 @@ proptest! {
         }
     }
 
-    /// A ground of hills, seen at a low angle: borders lie hidden behind many faces of one surface.
+    /// A ground of hills, seen at a low angle: borders lie hidden behind many faces of one surface. A plate comes out of
+    /// it anywhere.
     #[test]
     fn no_displaced_ray_over_hills_finds_a_change(
         heights in prop::collection::vec(-2_i32..=2, 64),
         origin in [0_i32..15, 0_i32..15],
         direction in [1_i32..=6, -2_i32..=2, -2_i32..=-1],
         start in 0_u32..3,
+        plate in [whole(8), whole(8), whole(8)],
         fractions in prop::collection::vec((0.0_f64..1.0, -1.0_f64..1.0, -1.0_f64..1.0), 12),
     ) {
         let vertex = |k: usize| [(k % 8) as f64, (k / 8) as f64, f64::from(heights[k])];
         let cell = |k: u32| [[k, k + 1, k + 9], [k, k + 9, k + 8]];
         let cells = (0..56).filter(|k| k % 8 != 7);
-        let faces: Vec<[u32; 3]> = cells.flat_map(cell).collect();
-        let vertices: Vec<[f64; 3]> = (0..64).map(vertex).collect();
+        let plate = plate.map(|v| [f64::from(v[0].abs()), f64::from(v[1].abs()), f64::from(v[2]) / 4.0]);
+        let faces: Vec<[u32; 3]> = cells.flat_map(cell).chain([[64, 65, 66]]).collect();
+        let vertices: Vec<[f64; 3]> = (0..64).map(vertex).chain(plate).collect();
         let place = DVec3::new(f64::from(origin[0]) / 2.0 - 2.0, f64::from(origin[1]) / 2.0, 0.25);
         let direction = DVec3::from(direction.map(f64::from));
         // From outside, or from among the hills, or from a start that cuts them.
