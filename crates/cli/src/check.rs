@@ -4,6 +4,7 @@ use raypencil::Precision;
 use raypencil::cast::{
     CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
 };
+use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
 use raypencil::judge::Conventions;
 use raypencil::pack::{
     check_input, check_json, check_pack_by, check_screen, input_json, input_screen, is_input_pack,
@@ -25,12 +26,42 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
     let checked =
         check_pack_by(&command.pack, &command.candidate, command.arithmetic, conventions, &spinner)?;
+    // The sets of rays that the pack has besides, if there are any.
+    let precision = checked.recorded.precision;
+    let of_rays = CandidateConventions { miss: command.miss, ignores_faces: command.no_faces };
+    let sets = check_packed_ray_sets(&command.pack, &command.candidate, precision, of_rays, &spinner)?;
     if let Some(folder) = &command.output {
         write_check(&checked, folder)?;
+        for CheckedRaySet { name, checked } in &sets {
+            if let Some(checked) = checked {
+                write_ray_check(checked, &folder.join("rays").join(name))?;
+            }
+        }
     }
     drop(spinner);
-    say(&if json { check_json(&checked) } else { check_screen(&checked) });
-    Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
+    say(&if json { with_sets(&check_json(&checked), &sets) } else { check_screen(&checked) });
+    if !json {
+        sets.iter().for_each(|set| say(&set_text(set)));
+    }
+    let passes = checked.passes() && sets.iter().all(CheckedRaySet::passes);
+    Ok(if passes { Outcome::Fine } else { Outcome::Differs })
+}
+
+/// A set of rays on the screen.
+fn set_text(CheckedRaySet { name, checked }: &CheckedRaySet) -> String {
+    match checked {
+        Some(checked) => format!("\nrays {}", ray_check_text(checked)),
+        None => format!("\nrays {name}: not given\n"),
+    }
+}
+
+/// The document of a check with its sets of rays, if there are any: `null` for those that are not given.
+fn with_sets(document: &str, sets: &[CheckedRaySet]) -> String {
+    let parsed = serde_json::from_str(document).ok().filter(|_| !sets.is_empty());
+    let Some(serde_json::Value::Object(mut parsed)) = parsed else { return document.to_string() };
+    let each = |CheckedRaySet { name, checked }: &CheckedRaySet| serde_json::json!({ "name": name, "check": checked.as_ref().map(ray_check_json) });
+    parsed.insert("ray_sets".into(), sets.iter().map(each).collect());
+    format!("{:#}\n", serde_json::Value::Object(parsed))
 }
 
 /// The same for a pack of rays.

@@ -6,7 +6,7 @@ use raypencil::Progress;
 use raypencil::diff::{
     Sides, Thresholds, diff as compare, diff_json, diff_screen, diff_text, rule, write_diff,
 };
-use raypencil::io::{Channels, Limits, Overrides, load, read_channels};
+use raypencil::io::{Channels, Limits, Overrides, add_ray_sets, load, read_channels};
 use raypencil::judge::{GroundTruth, Recorded, check as judge};
 use raypencil::pack::CheckError;
 
@@ -18,7 +18,9 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     let read = |path: &Path| -> Result<Channels, Trouble> {
         spinner.stage(&format!("{}: reading", path.display()));
-        Ok(read_channels(path, &Limits::default())?)
+        let mut channels = read_channels(path, &Limits::default())?;
+        add_ray_sets(&mut channels, path, &Limits::default())?;
+        Ok(channels)
     };
     if let Some(folder) = &command.output {
         // Its files would overwrite those of the recording, such as the summary.json of a validation.

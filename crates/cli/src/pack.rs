@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use raypencil::cast::{CastSource, RayPackCounts, read_rays, write_ray_pack};
+use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
 use raypencil::io::{FileError, file_sha256_hex, hex_digits, read_triangles};
-use raypencil::pack::{
-    MIN_RAYS_PER_CLAUSE, Manifest, benched, blind_subject, input_faces, write_input, write_pack,
-};
+use raypencil::pack::{MIN_RAYS_PER_CLAUSE, Manifest, benched, blind_subject, input_faces, write_input};
 use raypencil::survey::warnings;
 use raypencil::{Progress as _, Sides};
 
@@ -40,7 +39,7 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
             (if is_plain { subject } else { benched(subject)? }, warnings)
         }
     };
-    let manifest = write_pack(&subject, command.blind, &command.output, &spinner)?;
+    let (manifest, sets) = write_pack_with_ray_sets(&subject, command.blind, &command.output, &spinner)?;
     drop(spinner);
     if json {
         let document = serde_json::json!({
@@ -48,11 +47,16 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
             "scene_sha256": manifest.scene.sha256,
             "clauses": manifest.clauses,
             "warnings": warnings,
+            "ray_sets": sets.iter().map(set_json).collect::<Vec<_>>(),
         });
         say(&format!("{document:#}\n"));
     } else {
         warn(&warnings);
-        say(&format!("{folder}: the pack of {}\n{}\n", subject.name, tested(&manifest)));
+        let mut text = format!("{folder}: the pack of {}\n{}\n", subject.name, tested(&manifest));
+        for PackedRaySet { name, counts } in &sets {
+            text += &format!("rays {name}: {}", counts_text(counts));
+        }
+        say(&text);
     }
     Ok(Outcome::Fine)
 }
@@ -77,16 +81,25 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
     let untested = counts.untested();
     say(&match json {
         true => format!("{:#}\n", serde_json::json!({ "pack": folder.to_string(), "untested": untested })),
-        false => {
-            let nothing = if untested.is_empty() { "nothing".to_string() } else { untested.join(", ") };
-            let RayPackCounts { rays, hits, misses, ties, .. } = counts;
-            format!(
-                "{folder}: the pack of {rays} rays; {hits} hit, {ties} of them at a tie, {misses} miss\n\
-                 Not tested by any of its rays: {nothing}.\n"
-            )
-        }
+        false => format!("{folder}: the pack of {}", counts_text(&counts)),
     });
     Ok(Outcome::Fine)
+}
+
+/// What a pack of rays tests, in two lines.
+fn counts_text(counts: &RayPackCounts) -> String {
+    let untested = counts.untested();
+    let nothing = if untested.is_empty() { "nothing".to_string() } else { untested.join(", ") };
+    let RayPackCounts { rays, hits, misses, ties, .. } = counts;
+    format!(
+        "{rays} rays; {hits} hit, {ties} of them at a tie, {misses} miss\n\
+         Not tested by any of its rays: {nothing}.\n"
+    )
+}
+
+/// The same for programs, of a set in a pack of a scene.
+fn set_json(PackedRaySet { name, counts }: &PackedRaySet) -> serde_json::Value {
+    serde_json::json!({ "name": name, "rays": counts.rays, "hits": counts.hits, "untested": counts.untested() })
 }
 
 /// Which clauses of the contract the pack tests, in a sentence.

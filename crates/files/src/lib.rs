@@ -50,7 +50,7 @@ mod shape;
 mod values;
 
 pub use atomic::write_atomically;
-pub use channels::{Channel, Channels, read_channels, read_listed_channels};
+pub use channels::{Channel, Channels, add_ray_sets, read_channels, read_listed_channels};
 pub use error::{Fault, FileError, Problem, shortened};
 pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map};
 pub use folder::{FolderError, begin_output_folder, create_folder};

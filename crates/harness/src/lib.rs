@@ -51,6 +51,7 @@
 //! scoreboard           every renderer and candidate, checked against the exact answers
 //! misses               a ray that a candidate answers wrongly, as a pack of that ray
 //! ray_sets             rays of no sensor: the tracer against the exact answers
+//! ray_set_packs        the same in packs of scenes
 //! validation           all results of one scene
 //! run                  `validate`: from a scene to its validation
 //! output/table         the table of quantities and classes
@@ -74,6 +75,7 @@ mod monte_carlo;
 mod output;
 mod probe;
 mod radiance;
+mod ray_set_packs;
 mod ray_sets;
 mod rendered;
 mod renderers;
@@ -94,6 +96,7 @@ pub use output::screen::{one_screen, whole_screen};
 pub use output::summary::summary_json;
 pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedCandidate, ProbedReturn, probe};
 pub use radiance::{RadianceComparison, compare_radiance};
+pub use ray_set_packs::{CheckedRaySet, PackedRaySet, check_packed_ray_sets, write_pack_with_ray_sets};
 pub use ray_sets::{RaySetResult, write_ray_sets};
 pub use rendered::Rendered;
 pub use renderers::{Contender, RENDERER_NAMES, attribute, contender, typed_contenders};

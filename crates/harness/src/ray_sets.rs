@@ -82,6 +82,16 @@ pub fn write_ray_sets(
     Ok(Some(written))
 }
 
+/// Where mesh and rays of a set come from.
+pub(crate) fn source_of(subject: &Subject, set: &NamedRaySet) -> CastSource {
+    CastSource {
+        mesh: format!("the terrain of {}, in the scene frame", subject.name),
+        mesh_sha256: vec![scene_sha256(&subject.scene)],
+        rays: format!("rays {} of {}", set.name, subject.name),
+        rays_sha256: None,
+    }
+}
+
 /// The folder of one set.
 pub(crate) fn write_ray_set(
     subject: &Subject,
@@ -90,12 +100,7 @@ pub(crate) fn write_ray_set(
     answers: &Answers,
     folder: &Path,
 ) -> Result<PathBuf, FolderError> {
-    let source = CastSource {
-        mesh: format!("the terrain of {}, in the scene frame", subject.name),
-        mesh_sha256: vec![scene_sha256(&subject.scene)],
-        rays: format!("rays {} of {}", set.name, subject.name),
-        rays_sha256: None,
-    };
+    let source = source_of(subject, set);
     write_set(&folder.join("rays").join(&set.name), answers, (mesh, set, set.set.sides()), &source)
 }
 

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use raypencil::io::{Limits, read_npy_numbers};
+use raypencil::io::{Limits, read_npy_numbers, write_npy_numbers};
 use raypencil_tests::schema::schema_faults;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -96,6 +96,72 @@ fn render_writes_the_sets_of_a_renderer_that_answers_them() {
         "{shown}"
     );
     assert!(!folder.path().join("drawn/rays").exists());
+}
+
+/// Makes the range and t of one ray of the set `front` longer by a thousandth.
+fn lengthen_a_ray(candidate: &std::path::Path) {
+    for name in ["t", "range"] {
+        let path = candidate.join(format!("rays/front/{name}.npy"));
+        let mut array = read_npy_numbers(&path, &Limits::default()).expect("an array");
+        let hit = array.values.iter_mut().find(|t| t.is_finite()).expect("a hit");
+        *hit *= 1.001;
+        write_npy_numbers(&path, &array.shape, &array.values).expect("a file");
+    }
+}
+
+#[test]
+fn a_pack_has_the_sets_and_a_check_rules_on_them() {
+    let folder = folder(SCENE);
+    let at = folder.path();
+    let shown = screen(at, &["pack", "lidar.toml", "--no-bench", "-o", "pack"], 0);
+    assert!(shown.contains("rays down: 1 rays; 1 hit, 0 of them at a tie, 0 miss"), "{shown}");
+    screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
+    let shown = screen(at, &["check", "pack", "traced"], 0);
+    assert!(shown.contains("rays front: 384 the same (0 at ties), 0 rounding, 0 wrong"), "{shown}");
+    // One wrong ray of a set fails the check, though all pixels agree.
+    lengthen_a_ray(&at.join("traced"));
+    let shown = screen(at, &["check", "pack", "traced", "-o", "checked"], 1);
+    assert!(shown.contains("192 rays agree") && shown.contains("rays front: 383 the same"), "{shown}");
+    let document: Value =
+        serde_json::from_str(&screen(at, &["--json", "check", "pack", "traced"], 1)).expect("JSON");
+    let schema: Value =
+        serde_json::from_str(include_str!("../../../../docs/formats/check.schema.json")).expect("JSON");
+    assert_eq!(schema_faults(&schema, &document), Vec::<String>::new());
+    assert_eq!(document["ray_sets"][1]["name"], "front");
+    assert!(at.join("checked/rays/front/check.json").is_file());
+    // What is not given is told, and is no mistake.
+    fs::remove_dir_all(at.join("traced/rays/front")).expect("a folder");
+    let shown = screen(at, &["check", "pack", "traced"], 0);
+    assert!(shown.contains("rays front: not given"), "{shown}");
+    // A set that was changed is found, by its own list or by that of the pack.
+    let rays = at.join("pack/rays/front/rays.npy");
+    let mut bytes = fs::read(&rays).expect("a file");
+    *bytes.last_mut().expect("a byte") ^= 1;
+    fs::write(&rays, bytes).expect("a file");
+    screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
+    assert_trouble(&raypencil(at, &["check", "pack", "traced"]), &["pack/rays/front/rays.npy"]);
+    fs::remove_file(at.join("pack/rays/down/raypack.json")).expect("a file");
+    assert_trouble(&raypencil(at, &["check", "pack", "traced"]), &["rays/down/raypack.json"]);
+}
+
+#[test]
+fn diff_compares_the_sets_too() {
+    let folder = folder(SCENE);
+    let at = folder.path();
+    for name in ["a", "b"] {
+        screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", name], 0);
+    }
+    let shown = screen(at, &["--json", "diff", "a", "b"], 0);
+    assert!(shown.contains("rays/front/point.X") && shown.contains("rays/down/face"), "{shown}");
+    lengthen_a_ray(&at.join("b"));
+    let shown = screen(at, &["diff", "a", "b", "-o", "difference"], 1);
+    assert!(shown.contains("rays/front/range") && shown.contains("rays/front/t "), "{shown}");
+    // The scene's sensors are ruled on; sets are compared all the same.
+    screen(at, &["diff", "a", "b", "--scene", "lidar.toml"], 1);
+    // Sets on one side only are named.
+    fs::remove_dir_all(at.join("b/rays")).expect("a folder");
+    let shown = screen(at, &["diff", "a", "b"], 1);
+    assert!(shown.contains("rays/down/face"), "{shown}");
 }
 
 #[test]

@@ -3,7 +3,9 @@
 mod channel;
 mod find;
 mod merge;
+mod ray_sets;
 mod read;
 
 pub use channel::{Channel, Channels};
+pub use ray_sets::add_ray_sets;
 pub use read::{read_channels, read_listed_channels};

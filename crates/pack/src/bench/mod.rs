@@ -68,5 +68,6 @@ pub fn with_bench(scene: &Scene) -> Result<Scene, SceneError> {
     beams.push(backward_beam(&camera, &mut faces));
     beams.extend(bench_beams(&mut faces));
     let mesh = faces.added_to(scene.mesh(), BENCH_REFLECTIVITY)?;
-    Scene::new(Arc::new(mesh), camera, beams, scene.atmosphere(), scene.flux_model())
+    Scene::new(Arc::new(mesh), camera, beams, scene.atmosphere(), scene.flux_model())?
+        .with_ray_sets(scene.ray_sets().to_vec())
 }

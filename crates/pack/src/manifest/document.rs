@@ -101,6 +101,9 @@ pub enum FileRole {
     Rays,
     /// Correctly rounded answers.
     Answers,
+    /// The list of a set's own pack: rays of no sensor, with their answers.
+    #[serde(rename = "raySet")]
+    RaySet,
 }
 
 /// Type of a file's cells.

@@ -34,6 +34,14 @@ impl Manifest {
         write_atomically(&path, |file| file.write_all(&text))
     }
 
+    /// Removes the manifest from `folder` and nothing else: the pack is no complete one until it is written again.
+    ///
+    /// # Errors
+    /// A file that cannot be removed.
+    pub fn withdraw(folder: impl AsRef<Path>) -> Result<(), FileError> {
+        remove(&folder.as_ref().join(MANIFEST_NAME))
+    }
+
     /// Removes an earlier pack from `folder`: first its manifest, then the files that a readable manifest lists. Files
     /// out of the folder stay.
     ///
@@ -43,13 +51,7 @@ impl Manifest {
         let folder = folder.as_ref();
         let path = folder.join(MANIFEST_NAME);
         let earlier = std::fs::read(&path).ok().and_then(|text| serde_json::from_slice::<Self>(&text).ok());
-        let remove = |path: &Path| match std::fs::remove_file(path) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                Err(FileError::io(path, "remove", error))
-            }
-            _ => Ok(()),
-        };
-        remove(&path)?;
+        Self::withdraw(folder)?;
         for file in earlier.iter().flat_map(|manifest| &manifest.files) {
             // A file that no longer exists cannot be resolved, and needs no removal.
             if let Ok(file) = resolve_inside(folder, &file.path) {
@@ -57,5 +59,15 @@ impl Manifest {
             }
         }
         Ok(())
+    }
+}
+
+/// Removes a file; one that is not there is no error.
+fn remove(path: &Path) -> Result<(), FileError> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(FileError::io(path, "remove", error))
+        }
+        _ => Ok(()),
     }
 }
