@@ -447,13 +447,14 @@ pub(crate) struct Probe {
 
 #[derive(Debug, Args)]
 pub(crate) struct Cast {
-    /// A mesh: .glb, .gltf, .stl, .obj or .ply, or a folder with vertices.npy and faces.npy.
+    /// A mesh: .glb, .gltf, .stl, .obj or .ply, or a folder with vertices.npy and faces.npy. Or a scene file (.toml) with
+    /// tables [[rays]]: its terrain, and its own sets of rays unless others are given; its camera and beams are left out.
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
 
     /// Rays: NPY of shape (..., 6) or (..., 8), or CSV: origin, direction, and if wanted t_min and t_max. `-` is standard
     /// input. Or sets of rays, such as patterns of LiDAR: TOML with tables [[rays]].
-    #[arg(value_name = "RAYS", required_unless_present = "ray", conflicts_with = "ray")]
+    #[arg(value_name = "RAYS", conflicts_with = "ray")]
     pub(crate) rays: Option<PathBuf>,
 
     /// A ray by its numbers, separated by commas: ox,oy,oz,dx,dy,dz and if wanted t_min,t_max. Its answers are printed.

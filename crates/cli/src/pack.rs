@@ -6,6 +6,7 @@ use raypencil::cast::{CastSource, RayPackCounts, read_rays, write_ray_pack};
 use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
 use raypencil::io::{FileError, file_sha256_hex, hex_digits, read_triangles};
 use raypencil::pack::{MIN_RAYS_PER_CLAUSE, Manifest, benched, blind_subject, input_faces, write_input};
+use raypencil::report::counted;
 use raypencil::survey::warnings;
 use raypencil::{Progress as _, Sides};
 
@@ -92,8 +93,9 @@ fn counts_text(counts: &RayPackCounts) -> String {
     let nothing = if untested.is_empty() { "nothing".to_string() } else { untested.join(", ") };
     let RayPackCounts { rays, hits, misses, ties, .. } = counts;
     format!(
-        "{rays} rays; {hits} hit, {ties} of them at a tie, {misses} miss\n\
-         Not tested by any of its rays: {nothing}.\n"
+        "{}; {hits} hit, {ties} of them at a tie, {misses} miss\n\
+         Not tested by any of its rays: {nothing}.\n",
+        counted(*rays, "ray", "rays")
     )
 }
 

@@ -50,16 +50,17 @@ pub(crate) fn read_ground(
 pub(crate) fn terrain_file(
     source: &Source,
     key: &str,
-    ends: &[&str; 2],
+    ends: &[&str],
     file: &Path,
     span: &Range<usize>,
 ) -> Result<PathBuf, SceneIoError> {
     let terrain = source.file.parent().unwrap_or(Path::new("")).join(file);
     let known = |end: &&str| terrain.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
     if !ends.iter().any(known) {
-        let [a, b] = ends;
+        let (last, others) = ends.split_last().expect("at least one ending");
+        let ends = format!(".{} or .{last}", others.join(", ."));
         let message =
-            format!("`terrain.{key}` is \"{}\"; expected a file that ends in .{a} or .{b}", file.display());
+            format!("`terrain.{key}` is \"{}\"; expected a file that ends in {ends}", file.display());
         return Err(source.error(span.clone(), message));
     }
     if !terrain.is_file() {

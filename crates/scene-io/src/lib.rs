@@ -13,7 +13,8 @@
 //! 6. `digest`: SHA-256 of a scene's numbers;
 //! 7. `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
 //!
-//! `parse/rays` reads tables `[[rays]]` into named ray sets, `ray_sets` a file that has nothing else.
+//! `parse/rays` reads tables `[[rays]]` into named ray sets, `ray_sets` a file that has nothing else, `ray_scene` a scene of
+//! them without a camera.
 //!
 //! `subject` stands alone: a scene under test, and the commands that show it.
 //!
@@ -42,6 +43,7 @@ mod load;
 mod overrides;
 mod parse;
 mod plan;
+mod ray_scene;
 mod ray_sets;
 mod resolve;
 mod resolved;
@@ -54,6 +56,7 @@ pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, default_threshold};
 pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_text};
 pub use overrides::Overrides;
+pub use ray_scene::{RayScene, load_ray_scene};
 pub use ray_sets::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
 pub use resolved::write::write_resolved;
 pub use scene_error::SceneIoError;

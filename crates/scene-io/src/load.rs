@@ -1,5 +1,6 @@
 //! From a built-in name or a file to a scene.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -165,14 +166,19 @@ fn load_rig(
     finish(source, plan, parts, mesh, overrides).map_err(|error| match error {
         // A vehicle off the ground is the fault of a line in the file, unless the command line put it there.
         SceneIoError::NoGround { x, y, ground, .. } if overrides.at.is_none() => {
-            let message = format!(
-                "`vehicle.position_m`: no ground under ({x}, {y}); expected a place within {ground}, or a height as \
-                 the third number"
-            );
-            file.error(position_span, message)
+            no_ground(file, position_span, [x, y], &ground)
         }
         other => other,
     })
+}
+
+/// The error of a vehicle that should stand where there is no ground.
+pub(crate) fn no_ground(file: &Source, span: Range<usize>, [x, y]: [f64; 2], ground: &str) -> SceneIoError {
+    let message = format!(
+        "`vehicle.position_m`: no ground under ({x}, {y}); expected a place within {ground}, or a height as the \
+         third number"
+    );
+    file.error(span, message)
 }
 
 /// Loads a scene whose numbers stand in the file as they are. `parts` are digests.

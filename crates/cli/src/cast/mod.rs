@@ -9,7 +9,8 @@ use raypencil::cast::{
     rays_from_bytes, write_answers, write_set,
 };
 use raypencil::io::{
-    FileError, Limits, LoadedRaySets, bytes, hex_digits, read_ray_sets, read_triangles, sha256,
+    FileError, Limits, LoadedRaySets, RayScene, bytes, hex_digits, load_ray_scene, read_ray_sets,
+    read_triangles, sha256,
 };
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
 use serde_json::{Value, json};
@@ -33,26 +34,11 @@ enum Rays {
 pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.mesh.display()));
-    let mesh = read_triangles(&command.mesh)?;
-    let (rays, given, digest) = match &command.rays {
-        None => {
-            let rays = RayArray { shape: vec![command.ray.len() as u64], rays: command.ray.clone() };
-            (Rays::Array(rays), "--ray".to_string(), None)
-        }
-        Some(path) => {
-            spinner.stage(&format!("{}: reading", path.display()));
-            let (rays, digest) = read(path)?;
-            (rays, path.display().to_string(), Some(digest))
-        }
-    };
+    let Given { mesh, mesh_sha256, rays, from, rays_sha256 } = given(command, &spinner)?;
     let questions = Questions { any: command.any, all: command.all, margins: command.margins };
-    let source = CastSource {
-        mesh: command.mesh.display().to_string(),
-        mesh_sha256: mesh.digests.iter().map(hex_digits).collect(),
-        rays: given,
-        rays_sha256: digest,
-    };
-    let mesh = &mesh.triangles;
+    let source =
+        CastSource { mesh: command.mesh.display().to_string(), mesh_sha256, rays: from, rays_sha256 };
+    let mesh = &mesh;
     let folder = command.output.as_deref();
     let results = match &rays {
         Rays::Array(array) => {
@@ -103,7 +89,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     drop(spinner);
     let is_each_right = results.iter().flat_map(|result| &result.compared).all(Compared::passes);
     let outcome = if is_each_right { Outcome::Fine } else { Outcome::Differs };
-    let printed = if command.rays.is_none() { usize::MAX } else { MAX_PRINTED_RAYS };
+    let printed = if command.ray.is_empty() { MAX_PRINTED_RAYS } else { usize::MAX };
     if json {
         let documents: Vec<Value> = results.iter().map(|result| result.json(printed)).collect();
         let document = match (&rays, documents.as_slice()) {
@@ -176,9 +162,60 @@ impl Answered<'_> {
     }
 }
 
+/// Mesh and rays, and where they come from.
+struct Given {
+    mesh: Triangles,
+    mesh_sha256: Vec<String>,
+    rays: Rays,
+    /// The rays' file, or what else they come from.
+    from: String,
+    rays_sha256: Option<String>,
+}
+
+fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
+    let name = command.mesh.display().to_string();
+    let has_rays = command.rays.is_some() || !command.ray.is_empty();
+    let (mesh, digests) = match is_toml(&command.mesh) {
+        true => {
+            let RayScene { triangles, sets, terrain_digests, sha256 } = load_ray_scene(&command.mesh)?;
+            if !has_rays {
+                let mesh_sha256 = terrain_digests.iter().map(hex_digits).collect();
+                let (rays, rays_sha256) = (Rays::Sets(sets), Some(sha256));
+                return Ok(Given { mesh: triangles, mesh_sha256, rays, from: name, rays_sha256 });
+            }
+            (triangles, terrain_digests)
+        }
+        false if !has_rays => {
+            let text = "no rays are given; expected RAYS, --ray, or a scene file with tables [[rays]]";
+            return Err(Trouble::Usage(format!("{name}: {text}")));
+        }
+        false => {
+            let read = read_triangles(&command.mesh)?;
+            (read.triangles, read.digests)
+        }
+    };
+    let mesh_sha256 = digests.iter().map(hex_digits).collect();
+    let (rays, from, rays_sha256) = match &command.rays {
+        None => {
+            let rays = RayArray { shape: vec![command.ray.len() as u64], rays: command.ray.clone() };
+            (Rays::Array(rays), "--ray".to_string(), None)
+        }
+        Some(path) => {
+            spinner.stage(&format!("{}: reading", path.display()));
+            let (rays, digest) = read(path)?;
+            (rays, path.display().to_string(), Some(digest))
+        }
+    };
+    Ok(Given { mesh, mesh_sha256, rays, from, rays_sha256 })
+}
+
+fn is_toml(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
 /// The rays of a file, and their SHA-256 in hexadecimal: the sets of a `.toml`, else an array.
 fn read(path: &Path) -> Result<(Rays, String), Trouble> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+    if is_toml(path) {
         let LoadedRaySets { sets, sha256 } = read_ray_sets(path)?;
         return Ok((Rays::Sets(sets), sha256));
     }

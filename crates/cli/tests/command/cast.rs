@@ -1,5 +1,6 @@
 //! `cast`: any rays on any mesh.
 
+use std::fs;
 use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
@@ -109,7 +110,7 @@ fn rubbish_is_refused_with_its_place() {
     refused(&[&cube, "bad.csv", "-o", "out"], &["bad.csv: ray 1.direction is [0, 0, 0]"]);
     refused(&[&cube, "none.npy"], &["none.npy: cannot read"]);
     refused(&[&cube, "--ray", "1,2,3"], &["--ray", "3 fields; expected 6 numbers"]);
-    refused(&[&cube], &["required"]);
+    refused(&[&cube], &["no rays are given; expected RAYS, --ray"]);
     // Nothing was written.
     assert!(!folder.path().join("out").exists());
 }
@@ -212,4 +213,44 @@ fn packs_of_rays_judge_arrays() {
     let shown = screen(folder.path(), &["check", "pack", "mine"], 1);
     assert!(shown.contains("1 of 25 rays is wrong."), "{shown}");
     assert!(shown.contains("raypencil cast pack --ray=0,0,3,0,0,-1,0,inf --all --margins"), "{shown}");
+}
+
+#[test]
+fn a_scene_without_a_camera_has_its_terrain_as_the_file_gives_it() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    // A tilted square around (0.1, 0.1) whose heights are no f32 numbers, in a text file.
+    let hill = "v -1 -1 0.1\nv 1.2 -1 0.1\nv 1.2 1.2 0.3\nv -1 1.2 0.3\nf 1 2 3\nf 1 3 4\n";
+    fs::write(at.join("hill.obj"), hill).expect("a file");
+    let scene = "version = 1\n[terrain]\nfile = \"hill.obj\"\n[vehicle]\nposition_m = [0.1, 0.25]\n";
+    let sets = "[[rays]]\nname = \"down\"\nspinning = { elevations_deg = [-90], steps = 1 }\nposition_m = [0, 0, 1]\n";
+    fs::write(at.join("scene.toml"), format!("{scene}{sets}")).expect("a file");
+    let shown = screen(at, &["cast", "scene.toml", "-o", "out", "--with", "tracer", "--margins"], 0);
+    assert!(shown.contains("4 vertices, 2 faces") && shown.contains("down: 1 ray"), "{shown}");
+    let read = |name: &str| {
+        let array = read_npy_numbers(at.join("out").join(format!("{name}.npy")), &Limits::default());
+        array.expect("an array").values
+    };
+    // The vehicle stands on the ground and the ray starts 1 m above it: to the rounding of the vehicle's height, which
+    // comes from f32.
+    let point = read("point");
+    assert!((point[2] - (0.1 + 0.2 * (0.25 + 1.0) / 2.2)).abs() < 1e-15, "{point:?}");
+    assert!((read("range")[0] - 1.0).abs() < 1e-6);
+    // Other rays on the same terrain, as the commands of wrong rays have them.
+    let shown = screen(at, &["cast", "scene.toml", "--ray", "-1,-1,1,0,0,-1"], 0);
+    assert!(shown.contains("(-1, -1, 0.1)"), "{shown}");
+    // A scene with sets and a camera keeps f32 offsets and says so; one of a text file has no camera.
+    assert_trouble(
+        &raypencil(at, &["validate", "scene.toml"]),
+        &["hill.obj", "expected a file that ends in .glb or .gltf"],
+    );
+    fs::write(at.join("no-rays.toml"), scene).expect("a file");
+    assert_trouble(
+        &raypencil(at, &["cast", "no-rays.toml"]),
+        &["no-rays.toml", "there is no table `[[rays]]`"],
+    );
+    let outcome = raypencil(at, &["cast", "hill.obj"]);
+    assert_trouble(&outcome, &["hill.obj: no rays are given; expected RAYS, --ray, or a scene file"]);
+    fs::write(at.join("off.toml"), scene.replace("0.25]", "9]") + sets).expect("a file");
+    assert_trouble(&raypencil(at, &["cast", "off.toml"]), &["off.toml:5:14", "no ground under (0.1, 9)"]);
 }

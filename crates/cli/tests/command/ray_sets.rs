@@ -114,7 +114,7 @@ fn a_pack_has_the_sets_and_a_check_rules_on_them() {
     let folder = folder(SCENE);
     let at = folder.path();
     let shown = screen(at, &["pack", "lidar.toml", "--no-bench", "-o", "pack"], 0);
-    assert!(shown.contains("rays down: 1 rays; 1 hit, 0 of them at a tie, 0 miss"), "{shown}");
+    assert!(shown.contains("rays down: 1 ray; 1 hit, 0 of them at a tie, 0 miss"), "{shown}");
     screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
     let shown = screen(at, &["check", "pack", "traced"], 0);
     assert!(shown.contains("rays front: 384 the same (0 at ties), 0 rounding, 0 wrong"), "{shown}");

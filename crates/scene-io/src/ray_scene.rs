@@ -1,0 +1,126 @@
+//! A scene of rays alone: terrain, vehicle and sets of rays, and no camera.
+//!
+//! A camera and beams need vertices that are `f32` offsets from one origin. Rays given as numbers do not: here a terrain's
+//! file is read as it is, in double precision and in its own coordinates.
+
+use std::path::Path;
+
+use glam::DVec3;
+use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, read_triangles};
+use raypencil_scene::{Material, Mesh, NamedRaySet, Pose, SceneError, Triangles};
+
+use crate::ground::{make_ground, read_ground, terrain_file};
+use crate::load::{MAX_TOML_BYTES, no_ground};
+use crate::parse::kind::Kind;
+use crate::parse::scene::parse;
+use crate::parse::source::Source;
+use crate::plan::{ScenePlan, Terrain};
+use crate::resolve::extent;
+use crate::scene_error::SceneIoError;
+
+/// Endings of terrain files that rays alone can be cast on.
+const MESH_ENDINGS: [&str; 5] = ["glb", "gltf", "stl", "obj", "ply"];
+
+/// Sets of rays on a terrain.
+#[derive(Debug, Clone)]
+pub struct RayScene {
+    /// The terrain. That of a mesh file is in the file's own coordinates, as the file gives them; any other, which has `f32`
+    /// offsets from the start, is in the scene frame.
+    pub triangles: Triangles,
+    /// The sets, in the frame of the terrain: at least one.
+    pub sets: Vec<NamedRaySet>,
+    /// SHA-256 of the terrain's files, or of its numbers if it has none.
+    pub terrain_digests: Vec<Sha256Digest>,
+    /// SHA-256 in hexadecimal of the scene file, followed by the digests of the files that its sets name.
+    pub sha256: String,
+}
+
+/// Loads the terrain, the vehicle and the sets of rays of a scene file. A camera, beams and their light are checked and
+/// not used.
+///
+/// ```
+/// use raypencil_scene_io::load_ray_scene;
+///
+/// let folder = tempfile::tempdir()?;
+/// // 0.1 is no f32 number: here it stays the nearest f64.
+/// std::fs::write(folder.path().join("hill.obj"), "v -1 -1 0.1\nv 1 -1 0.1\nv 0 1 0.1\nf 1 2 3\n")?;
+/// let text = "version = 1\n[terrain]\nfile = \"hill.obj\"\n[vehicle]\nposition_m = [0, 0, 2]\n\
+///     [[rays]]\nname = \"down\"\nspinning = { elevations_deg = [-90], steps = 1 }\n";
+/// let path = folder.path().join("scene.toml");
+/// std::fs::write(&path, text)?;
+/// let scene = load_ray_scene(&path)?;
+/// assert_eq!(scene.triangles.vertices()[0], [-1.0, -1.0, 0.1]);
+/// assert_eq!(scene.sets[0].set.rays()[0].origin.to_array(), [0.0, 0.0, 2.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Names the file, the place in it, the value found and the values expected: also for a file without sets of rays.
+pub fn load_ray_scene(path: &Path) -> Result<RayScene, SceneIoError> {
+    let text = bytes::read_file(path, MAX_TOML_BYTES).map_err(|e| SceneIoError::io(path, "read", e))?;
+    let text = String::from_utf8(text).map_err(|error| {
+        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
+        SceneIoError::io(path, "read", error)
+    })?;
+    let file = Source { file: path, text: &text };
+    if matches!(file.kind()?, Kind::Resolved) {
+        let message = "a resolved scene has no sets of rays; expected a scene file with tables `[[rays]]`";
+        return Err(file.error(0..0, message));
+    }
+    let plan = parse(&file)?;
+    if plan.ray_sets.is_empty() {
+        return Err(file.error(0..0, "there is no table `[[rays]]`; expected at least one"));
+    }
+    let unfit = |error: SceneError| SceneIoError::scene(path.display().to_string(), error);
+    let (triangles, vehicle, terrain_digests) = match &plan.terrain {
+        Terrain::File(terrain) => {
+            let terrain = terrain_file(&file, "file", &MESH_ENDINGS, terrain, &plan.terrain_span)?;
+            let read = read_triangles(&terrain)?;
+            // A vehicle with a height needs no ground, which may then have any size.
+            let ground = match plan.vehicle.height {
+                Some(_) => Mesh::from_global(&[], vec![], vec![], vec![]),
+                None => ground_of(&read.triangles),
+            };
+            let vehicle = stood(&file, &plan, &ground.map_err(unfit)?)?;
+            (read.triangles, vehicle, read.digests)
+        }
+        _ => {
+            let (mesh, digests) = match read_ground(&file, &plan)? {
+                Some(read) => read,
+                None => {
+                    let mesh = make_ground(&plan).map_err(unfit)?;
+                    let digest = crate::digest::mesh(&mesh);
+                    (mesh, vec![digest])
+                }
+            };
+            let global = stood(&file, &plan, &mesh)?;
+            let vehicle = Pose { position: global.position - mesh.origin(), ..global };
+            (Triangles::from(&mesh), vehicle, digests)
+        }
+    };
+    let sets = plan.ray_sets.iter().map(|set| set.placed(&vehicle));
+    let sets: Vec<NamedRaySet> = sets.collect::<Result<_, _>>().map_err(unfit)?;
+    let own = vec![sha256(text.as_bytes())];
+    Ok(RayScene {
+        triangles,
+        sets,
+        terrain_digests,
+        sha256: combined_sha256_hex(&[own, plan.ray_digests].concat()),
+    })
+}
+
+/// The vehicle's pose in the global frame.
+fn stood(file: &Source, plan: &ScenePlan, mesh: &Mesh) -> Result<Pose, SceneIoError> {
+    let [x, y] = plan.vehicle.position;
+    plan.vehicle
+        .global_from_vehicle(mesh)
+        .ok_or_else(|| no_ground(file, plan.position_span.clone(), [x, y], &extent(mesh)))
+}
+
+/// The same terrain in `f32` offsets: only the height under the vehicle is taken from it.
+fn ground_of(triangles: &Triangles) -> Result<Mesh, SceneError> {
+    let vertices: Vec<DVec3> = triangles.vertices().iter().map(|&vertex| DVec3::from(vertex)).collect();
+    let materials = vec![Material { name: "ground".into(), reflectivity: DEFAULT_REFLECTIVITY }];
+    Mesh::from_global(&vertices, triangles.faces().to_vec(), vec![0; triangles.faces().len()], materials)
+}
