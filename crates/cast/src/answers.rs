@@ -67,7 +67,11 @@ pub struct Answers {
 impl Answers {
     /// First hits by the tracer, in `f64`; each is one face, the lowest of those at its t.
     pub fn by_tracer(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {
-        let tracer = TracerCast::new(mesh);
+        Self::traced(&TracerCast::new(mesh), rays, sides)
+    }
+
+    /// The same with a tree that is there already.
+    pub fn traced(tracer: &TracerCast, rays: &[CastRay], sides: Sides) -> Self {
         let first = |traverser: &mut CastTraverser<'_>, ray| {
             let TracedHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
                 traverser.first(ray, sides)?;
@@ -95,13 +99,23 @@ pub fn cast(
     progress: &dyn Progress,
 ) -> Answers {
     progress.stage(&format!("building a tree of {} faces", mesh.faces().len()));
-    let exact = ExactCast::new(mesh);
+    cast_with(&ExactCast::new(mesh), rays, sides, questions, progress)
+}
+
+/// [`cast`] with a tree that is there already.
+pub fn cast_with(
+    exact: &ExactCast<'_>,
+    rays: &[CastRay],
+    sides: Sides,
+    questions: Questions,
+    progress: &dyn Progress,
+) -> Answers {
     progress.stage(&format!("casting {} rays", rays.len()));
-    let first = rays.par_iter().map(|ray| first(&exact, ray, sides)).collect();
+    let first = rays.par_iter().map(|ray| first(exact, ray, sides)).collect();
     let any = questions.any.then(|| rays.par_iter().map(|ray| exact.any(ray, sides)).collect());
     let all = questions.all.then(|| {
         progress.stage(&format!("all hits of {} rays", rays.len()));
-        rays.par_iter().map(|ray| all(&exact, ray, sides)).collect()
+        rays.par_iter().map(|ray| all(exact, ray, sides)).collect()
     });
     let margins = questions.margins.then(|| {
         progress.stage(&format!("margins of {} rays", rays.len()));

@@ -38,11 +38,11 @@ mod range_picture;
 mod text;
 mod write;
 
-pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast};
+pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast, cast_with};
 pub use cloud::{write_pcd, write_ply};
 pub use comparison::{
-    CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, comparison_headline,
-    comparison_json, comparison_text, write_comparison,
+    CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, compare_with,
+    comparison_headline, comparison_json, comparison_text, write_comparison,
 };
 pub use pack::{
     CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, is_ray_pack, ray_check_json,

@@ -6,12 +6,14 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_cast::{
-    Answers, CastCounts, CastSource, Comparison, Questions, Stated, cast, compare, write_set,
+    Answers, CastCounts, CastSource, Comparison, Questions, Stated, cast_with, compare_with, write_set,
 };
 use raypencil_files::FolderError;
+use raypencil_referee::ExactCast;
 use raypencil_report::{count, counted};
 use raypencil_scene::{NamedRaySet, Precision, Progress, Scene, Triangles};
 use raypencil_scene_io::{Subject, scene_sha256};
+use raypencil_tracer::TracerCast;
 
 /// The renderer that answers rays of no sensor.
 const WITH: &str = "tracer";
@@ -68,14 +70,19 @@ pub fn write_ray_sets(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<Option<Vec<PathBuf>>, FolderError> {
+    if subject.scene.ray_sets().is_empty() {
+        return Ok(Some(Vec::new()));
+    }
     let mesh = Triangles::from(subject.scene.mesh().as_ref());
+    let tracer = (renderer == WITH).then(|| TracerCast::new(&mesh));
+    let exact = (renderer == "referee").then(|| ExactCast::new(&mesh));
     let mut written = Vec::new();
     for set in subject.scene.ray_sets() {
         let (rays, sides) = (set.set.rays(), set.set.sides());
-        let answers = match renderer {
-            "tracer" => Answers::by_tracer(&mesh, rays, sides),
-            "referee" => cast(&mesh, rays, sides, Questions::default(), progress),
-            _ => return Ok(None),
+        let answers = match (&tracer, &exact) {
+            (Some(tracer), _) => Answers::traced(tracer, rays, sides),
+            (None, Some(exact)) => cast_with(exact, rays, sides, Questions::default(), progress),
+            (None, None) => return Ok(None),
         };
         written.push(write_ray_set(subject, set, &mesh, &answers, folder)?);
     }
@@ -115,14 +122,16 @@ pub(crate) fn answer_ray_sets(
     }
     // The scene's vertices are f32 offsets, which f64 holds as they are.
     let mesh = Triangles::from(scene.mesh().as_ref());
-    let is_traced = renderers.iter().any(|name| name == WITH);
+    progress.stage(&format!("rays: building trees of {} faces", mesh.faces().len()));
+    let exact = ExactCast::new(&mesh);
+    let tracer = renderers.iter().any(|name| name == WITH).then(|| TracerCast::new(&mesh));
     let answer = |(index, set): (usize, &NamedRaySet)| {
         progress.stage(&format!("rays {}: answering", set.name));
         let (rays, sides) = (set.set.rays(), set.set.sides());
-        let answers = cast(&mesh, rays, sides, Questions::default(), progress);
-        let comparison = is_traced.then(|| {
-            let stated = Stated::by_tracer(&mesh, rays, sides);
-            compare(&mesh, rays, sides, &stated, Precision::F64, progress)
+        let answers = cast_with(&exact, rays, sides, Questions::default(), progress);
+        let comparison = tracer.as_ref().map(|tracer| {
+            let stated = Stated::of(&Answers::traced(tracer, rays, sides));
+            compare_with(&exact, &mesh, rays, sides, &stated, Precision::F64)
         });
         RaySetResult { index, name: set.name.clone(), answers, comparison }
     };

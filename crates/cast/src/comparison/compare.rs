@@ -55,8 +55,8 @@ pub fn compare(
     compare_with(&ExactCast::new(mesh), mesh, rays, sides, stated, precision)
 }
 
-/// [`compare`] with a tree that is there already.
-pub(crate) fn compare_with(
+/// [`compare`] with a tree of the mesh that is there already.
+pub fn compare_with(
     exact: &ExactCast<'_>,
     mesh: &Triangles,
     rays: &[CastRay],
@@ -130,7 +130,12 @@ impl Judge<'_> {
             Ok(face) => face,
             Err(wrong) => return judged(RayVerdict::Wrong(wrong)),
         };
-        match self.exact.rule(ray, self.sides, stated, self.precision) {
+        let is_same = stated.map_or(first.is_empty(), |face| first.contains(&face));
+        let ruling = match is_same {
+            true => CastRuling::Same,
+            false => self.exact.rule(ray, self.sides, stated, self.precision),
+        };
+        match ruling {
             CastRuling::Rounding { moved } => judged(RayVerdict::Rounding { moved }),
             CastRuling::Wrong => {
                 judged(RayVerdict::Wrong(Wrong::Hit { stated, exact: first.first().copied() }))

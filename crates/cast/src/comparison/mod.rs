@@ -14,8 +14,7 @@ mod stated;
 mod text;
 mod verdict;
 
-pub use compare::compare;
-pub(crate) use compare::compare_with;
+pub use compare::{compare, compare_with};
 pub use files::write_comparison;
 pub use stated::Stated;
 pub use text::{comparison_headline, comparison_json, comparison_text};

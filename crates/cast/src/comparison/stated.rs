@@ -32,7 +32,12 @@ pub struct Stated {
 impl Stated {
     /// What the tracer answers, on all threads.
     pub fn by_tracer(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {
-        let hits = Answers::by_tracer(mesh, rays, sides).first;
+        Self::of(&Answers::by_tracer(mesh, rays, sides))
+    }
+
+    /// The first hits of answers.
+    pub fn of(answers: &Answers) -> Self {
+        let hits = &answers.first;
         let number = |value: fn(&FirstHit) -> f64, miss: f64| {
             Some(hits.iter().map(|hit| hit.as_ref().map_or(miss, value)).collect())
         };
