@@ -24,12 +24,13 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     }
     let spinner = Spinner::new();
     let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
-    let checked =
+    let mut checked =
         check_pack_by(&command.pack, &command.candidate, command.arithmetic, conventions, &spinner)?;
     // The sets of rays that the pack has besides, if there are any.
     let precision = checked.recorded.precision;
     let of_rays = CandidateConventions { miss: command.miss, ignores_faces: command.no_faces };
     let sets = check_packed_ray_sets(&command.pack, &command.candidate, precision, of_rays, &spinner)?;
+    checked.ray_sets = sets.iter().map(CheckedRaySet::outcome).collect();
     if let Some(folder) = &command.output {
         write_check(&checked, folder)?;
         for CheckedRaySet { name, checked } in &sets {
@@ -39,12 +40,13 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         }
     }
     drop(spinner);
-    say(&if json { with_sets(&check_json(&checked), &sets) } else { check_screen(&checked) });
-    if !json {
+    if json {
+        say(&check_json(&checked));
+    } else {
+        say(&check_screen(&checked));
         sets.iter().for_each(|set| say(&set_text(set)));
     }
-    let passes = checked.passes() && sets.iter().all(CheckedRaySet::passes);
-    Ok(if passes { Outcome::Fine } else { Outcome::Differs })
+    Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
 }
 
 /// A set of rays on the screen.
@@ -53,15 +55,6 @@ fn set_text(CheckedRaySet { name, checked }: &CheckedRaySet) -> String {
         Some(checked) => format!("\nrays {}", ray_check_text(checked)),
         None => format!("\nrays {name}: not given\n"),
     }
-}
-
-/// The document of a check with its sets of rays, if there are any: `null` for those that are not given.
-fn with_sets(document: &str, sets: &[CheckedRaySet]) -> String {
-    let parsed = serde_json::from_str(document).ok().filter(|_| !sets.is_empty());
-    let Some(serde_json::Value::Object(mut parsed)) = parsed else { return document.to_string() };
-    let each = |CheckedRaySet { name, checked }: &CheckedRaySet| serde_json::json!({ "name": name, "check": checked.as_ref().map(ray_check_json) });
-    parsed.insert("ray_sets".into(), sets.iter().map(each).collect());
-    format!("{:#}\n", serde_json::Value::Object(parsed))
 }
 
 /// The same for a pack of rays.

@@ -5,9 +5,11 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_cast::{CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, write_ray_pack};
+use raypencil_cast::{
+    CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, comparison_headline, write_ray_pack,
+};
 use raypencil_files::{FileError, RayArray};
-use raypencil_pack::{FileRole, Manifest, ManifestFile, PackError, write_pack};
+use raypencil_pack::{FileRole, Manifest, ManifestFile, PackError, RaySetOutcome, write_pack};
 use raypencil_scene::{NamedRaySet, Precision, Progress, Triangles};
 use raypencil_scene_io::Subject;
 
@@ -35,9 +37,14 @@ pub struct CheckedRaySet {
 }
 
 impl CheckedRaySet {
-    /// Whether no ray is wrong. What a candidate does not give is no mistake.
-    pub fn passes(&self) -> bool {
-        self.checked.as_ref().is_none_or(RayPackChecked::passes)
+    /// What became of it. What a candidate does not give is no mistake.
+    pub fn outcome(&self) -> RaySetOutcome {
+        let words = |checked: &RayPackChecked| comparison_headline(&checked.comparison);
+        RaySetOutcome {
+            name: self.name.clone(),
+            passes: self.checked.as_ref().map(RayPackChecked::passes),
+            words: self.checked.as_ref().map_or_else(|| "not given".into(), words),
+        }
     }
 }
 

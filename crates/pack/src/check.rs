@@ -65,12 +65,26 @@ pub struct Checked {
     pub exact_ranges: Vec<Image<Maybe<f64>>>,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
+    /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked.
+    pub ray_sets: Vec<RaySetOutcome>,
+}
+
+/// What became of a set of rays.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RaySetOutcome {
+    /// Name of the set.
+    pub name: String,
+    /// Whether no ray of it is wrong; `None`: the candidate has no folder `rays/NAME`.
+    pub passes: Option<bool>,
+    /// The result in a sentence.
+    pub words: String,
 }
 
 impl Checked {
-    /// Whether the candidate agrees on a pack in which something is hit.
+    /// Whether the candidate agrees on a pack in which something is hit, and on its sets of rays.
     pub fn passes(&self) -> bool {
-        self.check.passes() && self.hits_anything()
+        let sets_pass = self.ray_sets.iter().all(|set| set.passes != Some(false));
+        self.check.passes() && self.hits_anything() && sets_pass
     }
 
     /// Whether any ray of the pack hits. On a pack without hits a program that answers nothing is right.
@@ -207,7 +221,8 @@ pub fn check_pack_by(
         vehicle: None,
     };
     let is_blind = manifest.kind == PackKind::Blind;
-    Ok(Checked { subject, recorded, check, diagnosis, exact_ranges, is_blind })
+    let ray_sets = Vec::new();
+    Ok(Checked { subject, recorded, check, diagnosis, exact_ranges, is_blind, ray_sets })
 }
 
 /// Reads the answers of a pack that holds them, in f64.

@@ -46,7 +46,7 @@ fn arrays_have_the_shape_of_the_rays() {
     assert_eq!(all.values[from..to], [2.0, 2.0, 4.0, 4.0]);
     assert_eq!(crossing.values[from..to], [1.0, 1.0, -1.0, -1.0]);
     assert_eq!(read("all.group.npy").values[from..to], [0.0, 0.0, 1.0, 1.0]);
-    let summary = std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+    let summary = fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
     let schema = include_str!("../../../../docs/formats/cast.schema.json");
     let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
     assert_eq!(schema_faults(&schema, &serde_json::from_str(&summary).unwrap()), Vec::<String>::new());
@@ -100,8 +100,8 @@ fn rays_come_from_standard_input() {
 #[test]
 fn rubbish_is_refused_with_its_place() {
     let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("bad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
-    std::fs::write(folder.path().join("bad.csv"), "0,0,0,0,0,1\n0,0,0,0,0,0\n").unwrap();
+    fs::write(folder.path().join("bad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
+    fs::write(folder.path().join("bad.csv"), "0,0,0,0,0,1\n0,0,0,0,0,0\n").unwrap();
     let refused = |arguments: &[&str], words: &[&str]| {
         assert_trouble(&raypencil(folder.path(), &[&["cast"], arguments].concat()), words);
     };
@@ -121,8 +121,8 @@ fn sets_of_rays_have_a_folder_each_with_clouds_and_pictures() {
     let cube = data("cube.obj");
     let grid = "grid = { columns = 8, rows = 6, width_deg = 30, height_deg = 20 }\nposition_m = [-4, 0, 0]\n";
     let set = |name: &str| format!("[[rays]]\nname = \"{name}\"\n{grid}");
-    std::fs::write(folder.path().join("one.toml"), set("front")).unwrap();
-    std::fs::write(folder.path().join("two.toml"), set("front") + &set("again")).unwrap();
+    fs::write(folder.path().join("one.toml"), set("front")).unwrap();
+    fs::write(folder.path().join("two.toml"), set("front") + &set("again")).unwrap();
     let shown = screen(folder.path(), &["cast", &cube, "one.toml", "-o", "one"], 0);
     assert!(shown.contains("front: 48 rays: 48 hit"), "{shown}");
     let shown = screen(folder.path(), &["cast", &cube, "two.toml", "-o", "two"], 0);
@@ -131,7 +131,7 @@ fn sets_of_rays_have_a_folder_each_with_clouds_and_pictures() {
     let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
     for of_set in ["one", "two/front", "two/again"] {
         let of_set = folder.path().join(of_set);
-        let summary = std::fs::read_to_string(of_set.join("summary.json")).unwrap();
+        let summary = fs::read_to_string(of_set.join("summary.json")).unwrap();
         assert_eq!(schema_faults(&schema, &serde_json::from_str(&summary).unwrap()), Vec::<String>::new());
         for file in ["t.npy", "cloud.ply", "cloud.pcd", "range.png", "top.png"] {
             assert!(of_set.join(file).is_file(), "{file}");
@@ -152,7 +152,7 @@ fn sets_of_rays_have_a_folder_each_with_clouds_and_pictures() {
 #[test]
 fn wrong_sets_of_rays_are_an_error_with_a_place() {
     let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("rays.toml"), "[[rays]]\nname = \"a\"\n").unwrap();
+    fs::write(folder.path().join("rays.toml"), "[[rays]]\nname = \"a\"\n").unwrap();
     let cube = data("cube.obj");
     let output = raypencil(folder.path(), &["cast", &cube, "rays.toml"]);
     assert_trouble(&output, &["rays.toml:1:1", "`rays 0` has no pattern"]);
@@ -199,7 +199,7 @@ fn packs_of_rays_judge_arrays() {
     let shown = screen(folder.path(), &["check", "pack", "mine", "-o", "checked"], 0);
     assert!(shown.contains("All 25 rays agree."), "{shown}");
     assert!(folder.path().join("checked/junit.xml").is_file());
-    let check = std::fs::read_to_string(folder.path().join("checked/check.json")).unwrap();
+    let check = fs::read_to_string(folder.path().join("checked/check.json")).unwrap();
     let check: serde_json::Value = serde_json::from_str(&check).unwrap();
     assert_eq!((&check["kind"], &check["candidate"]["passes"]), (&"rays".into(), &true.into()));
     // A program that finds nothing: the rays through the top's outline are excused by rounding, that through its middle,
@@ -209,7 +209,7 @@ fn packs_of_rays_judge_arrays() {
         raypencil::io::write_npy_numbers(folder.path().join(format!("mine/{name}.npy")), &[25], &nothing)
             .unwrap();
     }
-    std::fs::remove_file(folder.path().join("mine/face.npy")).unwrap();
+    fs::remove_file(folder.path().join("mine/face.npy")).unwrap();
     let shown = screen(folder.path(), &["check", "pack", "mine"], 1);
     assert!(shown.contains("1 of 25 rays is wrong."), "{shown}");
     assert!(shown.contains("raypencil cast pack --ray=0,0,3,0,0,-1,0,inf --all --margins"), "{shown}");

@@ -127,7 +127,13 @@ fn a_pack_has_the_sets_and_a_check_rules_on_them() {
     let schema: Value =
         serde_json::from_str(include_str!("../../../../docs/formats/check.schema.json")).expect("JSON");
     assert_eq!(schema_faults(&schema, &document), Vec::<String>::new());
-    assert_eq!(document["ray_sets"][1]["name"], "front");
+    assert_eq!(
+        (&document["ray_sets"][1]["name"], &document["ray_sets"][1]["passes"]),
+        (&"front".into(), &false.into())
+    );
+    assert_eq!(document["ray_sets"][0]["passes"], true);
+    let junit = fs::read_to_string(at.join("checked/junit.xml")).expect("a file");
+    assert!(junit.contains("rays front") && junit.contains("rays down"), "{junit}");
     assert!(at.join("checked/rays/front/check.json").is_file());
     // What is not given is told, and is no mistake.
     fs::remove_dir_all(at.join("traced/rays/front")).expect("a folder");

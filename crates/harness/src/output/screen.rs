@@ -122,9 +122,11 @@ fn head(validation: &Validation, room: Room) -> String {
     let who = cut(&format!("raypencil {VERSION}: {} by {}", subject.name, list(&names)), room);
     let stands = Whereabouts::of(&subject.scene, subject.vehicle.as_ref());
     let [vehicle, terrain] = [stands.vehicle_line(), stands.terrain_line()].map(|line| cut(&line, room));
+    // On a terminal warnings take its room; the report has it all the same.
+    let is_told = room == Room::Unlimited || validation.warnings.is_empty();
     let rounding = match stands.rounded_vertices.count {
-        0 => String::new(),
-        _ => cut(&stands.rounding_line(), room) + "\n",
+        1.. if is_told => cut(&stands.rounding_line(), room) + "\n",
+        _ => String::new(),
     };
     format!("{who}\nScene SHA-256 {}\n{vehicle}\n{terrain}\n{rounding}", scene_sha256(&subject.scene))
 }

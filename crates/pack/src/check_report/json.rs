@@ -6,7 +6,7 @@ use raypencil_judge::{
 use raypencil_scene::SensorId;
 use serde_json::json;
 
-use crate::check::Checked;
+use crate::check::{Checked, RaySetOutcome};
 use crate::check_report::verdict::{arithmetic, not_given, verdict};
 
 /// Number of the format. It grows when a key changes its meaning or goes away.
@@ -53,6 +53,7 @@ pub fn check_json(checked: &Checked) -> String {
             "worst_defects": wrong.collect::<Vec<_>>(),
         })
     };
+    let set_json = |set: &RaySetOutcome| json!({ "name": set.name, "passes": set.passes, "what": set.words });
     let diagnosis_json = diagnosis.as_ref().map(|found| {
         let mistakes = found.mistakes.iter().map(|mistake| {
             let (file, place) = mistake.docs();
@@ -79,6 +80,7 @@ pub fn check_json(checked: &Checked) -> String {
         "diagnosis": diagnosis_json,
         "unknown_channels": recorded.unknown,
         "sensors": check.sensors.iter().map(sensor_json).collect::<Vec<_>>(),
+        "ray_sets": checked.ray_sets.iter().map(set_json).collect::<Vec<_>>(),
     });
     format!("{document:#}\n")
 }

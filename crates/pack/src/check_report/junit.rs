@@ -17,6 +17,14 @@ pub(crate) fn junit(checked: &Checked) -> io::Result<String> {
     if !checked.hits_anything() {
         suite.push(JunitCase::failed("something is hit", "nothing_hit", "no ray of this pack hits anything"));
     }
+    for set in &checked.ray_sets {
+        let name = format!("rays {}", set.name);
+        suite.push(match set.passes {
+            Some(true) => JunitCase::passed(name),
+            Some(false) => JunitCase::failed(name, "wrong", &set.words),
+            None => JunitCase::skipped(name, &set.words),
+        });
+    }
     report.push(suite);
     report.to_xml()
 }
