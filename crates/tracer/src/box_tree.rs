@@ -1,9 +1,8 @@
 //! Faces in the order of the leaves of an obvhs `Bvh2`.
 
-use std::collections::HashMap;
-
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
+use rayon::prelude::*;
 
 use crate::grouped_build;
 
@@ -28,46 +27,111 @@ impl<F> std::fmt::Debug for BoxTree<F> {
     }
 }
 
-impl<F> BoxTree<F> {
-    /// Builds the tree of some faces with their boxes.
-    pub(crate) fn build(faces: impl Iterator<Item = (Aabb, F)>) -> Self {
+impl<F: Send> BoxTree<F> {
+    /// Builds the tree of `count` faces. `box_of` gives the box of a face; faces without one are left out. `face` makes
+    /// the face itself.
+    pub(crate) fn build(
+        count: usize,
+        box_of: impl Fn(u32) -> Option<Aabb> + Sync,
+        face: impl Fn(u32) -> F + Sync,
+    ) -> Self {
+        let boxes = (0..count as u32).into_par_iter().map(|index| box_of(index).unwrap_or(Aabb::INVALID));
         // Faces with identical boxes share one leaf entry: many identical boxes would make the build quadratic.
-        let mut boxes: Vec<Aabb> = Vec::with_capacity(faces.size_hint().1.unwrap_or(0));
-        let mut box_by_bounds: HashMap<[u32; 6], u32> = HashMap::with_capacity(boxes.capacity());
-        let mut faces_with_box: Vec<(u32, F)> = Vec::with_capacity(boxes.capacity());
-        for (bounds, face) in faces {
-            let bits = [bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z]
-                .map(f32::to_bits);
-            let box_index = *box_by_bounds.entry(bits).or_insert_with(|| {
-                boxes.push(bounds);
-                boxes.len() as u32 - 1
-            });
-            faces_with_box.push((box_index, face));
-        }
-        drop(box_by_bounds);
-
+        let Distinct { boxes, faces, first_face } = Distinct::of(boxes.collect());
         let tree = grouped_build::build(&boxes);
         // The fixed stacks of obvhs overflow silently, so the traversals bring one that fits the tree's depth.
         let stack_size = max_depth(&tree) + 1;
 
-        // Lay the faces out in the order of the leaves.
-        let mut rank_of_box = vec![0u32; boxes.len()];
-        for (rank, &box_index) in tree.primitive_indices.iter().enumerate() {
-            rank_of_box[box_index as usize] = rank as u32;
-        }
-        // The sort is stable: faces of one box stay in their order.
-        faces_with_box.sort_by_key(|&(box_index, _)| rank_of_box[box_index as usize]);
-        let mut first_face = vec![0u32; boxes.len() + 1];
-        for (box_index, _) in &faces_with_box {
-            first_face[rank_of_box[*box_index as usize] as usize + 1] += 1;
-        }
-        for rank in 0..boxes.len() {
-            first_face[rank + 1] += first_face[rank];
-        }
-        let faces = faces_with_box.into_iter().map(|(_, face)| face).collect();
-        Self { tree, faces, first_face, stack_size }
+        // Lay the faces out in the order of the leaves; faces of one box stay in their order.
+        let of_box = |&index: &u32| first_face[index as usize]..first_face[index as usize + 1];
+        let mut first = Vec::with_capacity(first_face.len());
+        first.push(0);
+        first.extend(tree.primitive_indices.iter().map(of_box).scan(0, |end, range| {
+            *end += range.len() as u32;
+            Some(*end)
+        }));
+        let members = tree.primitive_indices.iter().flat_map(of_box);
+        let order: Vec<u32> = members.map(|member| faces[member as usize]).collect();
+        let faces = order.par_iter().map(|&index| face(index)).collect();
+        Self { tree, faces, first_face: first, stack_size }
     }
+}
 
+/// Places of the table that are tried for a box. In a table that is half full hardly any box needs a dozen. A repetition
+/// that is not found has an entry of its own, so that no choice of boxes makes the search slow.
+const MAX_PLACES_TRIED: usize = 64;
+
+/// The boxes of some faces without repetitions, in the order of their first faces.
+struct Distinct {
+    boxes: Vec<Aabb>,
+    /// The faces of the k-th box, in their order, are `faces[first_face[k]..first_face[k + 1]]`.
+    faces: Vec<u32>,
+    first_face: Vec<u32>,
+}
+
+impl Distinct {
+    /// `boxes` of the faces 0, 1 ... Invalid ones are left out.
+    fn of(boxes: Vec<Aabb>) -> Self {
+        let is_valid = |bounds: &Aabb| bounds.min.x <= bounds.max.x;
+        // The face with the same box that comes first, for each.
+        const FREE: u32 = u32::MAX;
+        let places = (2 * boxes.len()).next_power_of_two();
+        let start = |bounds: &Aabb| (hash(bounds) >> 32) as u32 & (places as u32 - 1);
+        let starts: Vec<u32> = boxes.par_iter().map(start).collect();
+        let mut table = vec![FREE; places];
+        let mut leaders: Vec<u32> = Vec::with_capacity(boxes.len());
+        let mut all_differ = true;
+        for (face, (bounds, start)) in boxes.iter().zip(starts).enumerate() {
+            let mut leader = face as u32;
+            let tried = (0..MAX_PLACES_TRIED).map(|step| (start as usize + step) & (places - 1));
+            for place in tried {
+                let other = table[place];
+                if other == FREE {
+                    table[place] = leader;
+                    break;
+                }
+                if bits(&boxes[other as usize]) == bits(bounds) {
+                    leader = other;
+                    break;
+                }
+            }
+            all_differ &= leader == face as u32 && is_valid(bounds);
+            leaders.push(leader);
+        }
+        let count = boxes.len() as u32;
+        if all_differ {
+            return Self { boxes, faces: leaders, first_face: (0..=count).collect() };
+        }
+        let kept: Vec<u32> = (0..count).filter(|&face| is_valid(&boxes[face as usize])).collect();
+        let mut faces = kept;
+        // The sort is stable: faces of one box stay in their order.
+        faces.sort_by_key(|&face| leaders[face as usize]);
+        let is_first =
+            |&at: &usize| at == 0 || leaders[faces[at] as usize] != leaders[faces[at - 1] as usize];
+        let mut first_face: Vec<u32> = (0..faces.len()).filter(is_first).map(|at| at as u32).collect();
+        let boxes = first_face.iter().map(|&at| boxes[faces[at as usize] as usize]).collect();
+        first_face.push(faces.len() as u32);
+        Self { boxes, faces, first_face }
+    }
+}
+
+fn bits(bounds: &Aabb) -> [u32; 6] {
+    let Aabb { min, max } = bounds;
+    [min.x, min.y, min.z, max.x, max.y, max.z].map(f32::to_bits)
+}
+
+/// A hash of a box's bits, by the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+fn hash(bounds: &Aabb) -> u64 {
+    let [a, b, c, d, e, f] = bits(bounds).map(u64::from);
+    let mixed = |z: u64| {
+        let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    };
+    mixed(mixed(mixed(a << 32 | b) ^ (c << 32 | d)) ^ (e << 32 | f))
+}
+
+impl<F> BoxTree<F> {
     /// The tree of boxes.
     pub(crate) fn tree(&self) -> &Bvh2 {
         &self.tree
@@ -106,3 +170,7 @@ pub(crate) fn max_depth(tree: &Bvh2) -> usize {
     }
     max_depth
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/box_tree.rs"]
+mod tests;

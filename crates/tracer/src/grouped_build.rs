@@ -20,63 +20,68 @@ use rayon::prelude::*;
 /// ordinary terrain is as fast as with one group.
 const MAX_GROUP_BOXES: usize = 2048;
 
-/// A range of boxes in the order array, and the index of the node that will hold them.
-struct Group {
-    node: usize,
-    first: usize,
-    count: usize,
+/// A box by its index, with twice its centre, which has the order of the centre.
+#[derive(Debug, Clone, Copy)]
+struct Member {
+    centre: [f32; 3],
+    index: u32,
+}
+
+impl Member {
+    fn of(boxes: &[Aabb], index: u32) -> Self {
+        let Aabb { min, max } = boxes[index as usize];
+        Self { centre: (min + max).to_array(), index }
+    }
+}
+
+/// Part of the tree: its own nodes, the root first, and its boxes in the order of its leaves.
+struct Part {
+    nodes: Vec<Bvh2Node>,
+    order: Vec<u32>,
 }
 
 /// Builds the tree.
 pub(crate) fn build(boxes: &[Aabb]) -> Bvh2 {
-    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-    let mut nodes = vec![Bvh2Node::default()];
     if boxes.is_empty() {
         return Bvh2::default();
     }
-
-    // Split until the groups are small. The children of an inner node are neighbours in `nodes`.
-    let mut stack = vec![Group { node: 0, first: 0, count: boxes.len() }];
-    let mut groups = Vec::new();
-    while let Some(group) = stack.pop() {
-        let Group { node, first, count } = group;
-        if count <= MAX_GROUP_BOXES {
-            groups.push(group);
-            continue;
-        }
-        let range = &mut order[first..first + count];
-        let middle = count / 2;
-        split_at_median(boxes, range, middle);
-        let children = nodes.len();
-        nodes[node] = Bvh2Node::new(bounding_box(boxes, range), 0, children as u32);
-        nodes.extend([Bvh2Node::default(); 2]);
-        stack.push(Group { node: children, first, count: middle });
-        stack.push(Group { node: children + 1, first: first + middle, count: count - middle });
-    }
-
-    // The preset `fast` measured best between build time and rays per second.
-    let trees: Vec<Bvh2> = groups
-        .par_iter()
-        .map(|group| {
-            let members: Vec<Aabb> = order[group.first..group.first + group.count]
-                .iter()
-                .map(|&index| boxes[index as usize])
-                .collect();
-            build_bvh2(&members, BvhBuildParams::fast_build(), &mut Duration::default())
-        })
-        .collect();
-
-    // The root of a group's tree goes to the group's node; the tree's other nodes are appended.
-    for (Group { node, first, count }, tree) in groups.into_iter().zip(trees) {
-        let end = nodes.len() as u32;
-        nodes[node] = rebased(tree.nodes[0], first as u32, end);
-        nodes.extend(tree.nodes[1..].iter().map(|&of_group| rebased(of_group, first as u32, end)));
-        let members = order[first..first + count].to_vec();
-        for (entry, &member) in order[first..first + count].iter_mut().zip(&tree.primitive_indices) {
-            *entry = members[member as usize];
-        }
-    }
+    let mut members: Vec<Member> =
+        (0..boxes.len() as u32).into_par_iter().map(|index| Member::of(boxes, index)).collect();
+    let Part { nodes, order } = build_part(boxes, &mut members);
     Bvh2 { nodes, primitive_indices: order, ..Bvh2::default() }
+}
+
+/// Splits until the groups are small, the halves on two threads if there are. The result does not depend on that.
+fn build_part(boxes: &[Aabb], members: &mut [Member]) -> Part {
+    if members.len() <= MAX_GROUP_BOXES {
+        return build_group(boxes, members);
+    }
+    let middle = members.len() / 2;
+    split_at_median(members, middle);
+    let (lower, upper) = members.split_at_mut(middle);
+    let (lower, upper) = rayon::join(|| build_part(boxes, lower), || build_part(boxes, upper));
+    // Children are neighbours: both roots first, then the other nodes of the lower half, then those of the upper.
+    let (of_lower, of_upper) = (lower.nodes.len() as u32, upper.nodes.len() as u32);
+    let first_box = lower.order.len() as u32;
+    let mut nodes = Vec::with_capacity(1 + (of_lower + of_upper) as usize);
+    let around = lower.nodes[0].aabb().union(upper.nodes[0].aabb());
+    nodes.push(Bvh2Node::new(around, 0, 1));
+    nodes.push(rebased(lower.nodes[0], 0, 3));
+    nodes.push(rebased(upper.nodes[0], first_box, 2 + of_lower));
+    nodes.extend(lower.nodes[1..].iter().map(|&node| rebased(node, 0, 3)));
+    nodes.extend(upper.nodes[1..].iter().map(|&node| rebased(node, first_box, 2 + of_lower)));
+    let mut order = lower.order;
+    order.extend(upper.order);
+    Part { nodes, order }
+}
+
+/// The tree of a small group, by obvhs alone.
+fn build_group(boxes: &[Aabb], members: &[Member]) -> Part {
+    let of_members: Vec<Aabb> = members.iter().map(|member| boxes[member.index as usize]).collect();
+    // The preset `fast` measured best between build time and rays per second.
+    let tree = build_bvh2(&of_members, BvhBuildParams::fast_build(), &mut Duration::default());
+    let order = tree.primitive_indices.iter().map(|&member| members[member as usize].index).collect();
+    Part { nodes: tree.nodes, order }
 }
 
 /// A node of a group's tree with the indices of the whole tree. The group's boxes begin at `first_box`, its nodes
@@ -87,26 +92,19 @@ fn rebased(mut node: Bvh2Node, first_box: u32, first_node: u32) -> Bvh2Node {
     node
 }
 
-/// Moves the `middle` boxes with the lowest centres to the front of `range`. The centres are compared along the
-/// axis on which they spread most.
-fn split_at_median(boxes: &[Aabb], range: &mut [u32], middle: usize) {
-    // Twice the centre, which has the same order.
-    let centre = |index: u32| boxes[index as usize].min + boxes[index as usize].max;
-    let (low, high) = range
-        .iter()
-        .map(|&index| centre(index))
+/// Moves the `middle` boxes with the lowest centres to the front. The centres are compared along the axis on which they
+/// spread most.
+fn split_at_median(members: &mut [Member], middle: usize) {
+    let centres = members.iter().map(|member| Vec3A::from_array(member.centre));
+    let (low, high) = centres
         .fold((Vec3A::splat(f32::INFINITY), Vec3A::splat(f32::NEG_INFINITY)), |(low, high), centre| {
             (low.min(centre), high.max(centre))
         });
     let axis = (high - low).max_position();
     // Equal centres are ordered by index, so the halves have the same sizes in any case.
-    range
-        .select_nth_unstable_by(middle, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
-}
-
-/// The union of the boxes in `range`.
-fn bounding_box(boxes: &[Aabb], range: &[u32]) -> Aabb {
-    range.iter().map(|&index| boxes[index as usize]).reduce(|a, b| a.union(&b)).unwrap_or(Aabb::INVALID)
+    members.select_nth_unstable_by(middle, |a, b| {
+        a.centre[axis].total_cmp(&b.centre[axis]).then(a.index.cmp(&b.index))
+    });
 }
 
 #[cfg(test)]

@@ -75,14 +75,14 @@ impl std::fmt::Debug for Hierarchy {
 impl Hierarchy {
     /// Builds the tree for rays whose hits lie within `max_trace_distance` metres of their origin.
     pub(crate) fn build(mesh: &Mesh, max_trace_distance: f64) -> Self {
+        let vertices = |index: u32| mesh.faces()[index as usize].map(|v| mesh.vertices()[v as usize]);
+        let triangle = |index| Triangle::new(vertices(index), FaceId(index));
         // Faces without area are never hit and get no box.
-        let faces = mesh.faces().iter().enumerate().filter_map(|(index, face)| {
-            let vertices = face.map(|v| mesh.vertices()[v as usize]);
-            let triangle = Triangle::new(vertices, FaceId(index as u32));
-            let has_area = triangle.normal() != glam::DVec3::ZERO;
-            has_area.then(|| (padded_box(&vertices, max_trace_distance), triangle))
-        });
-        Self { boxes: BoxTree::build(faces), max_trace_distance }
+        let box_of = |index| {
+            let has_area = triangle(index).normal() != glam::DVec3::ZERO;
+            has_area.then(|| padded_box(&vertices(index), max_trace_distance))
+        };
+        Self { boxes: BoxTree::build(mesh.faces().len(), box_of, triangle), max_trace_distance }
     }
 
     /// The boxes with their faces.

@@ -35,10 +35,12 @@ impl TracerCast {
     /// Builds the tree.
     pub fn new(mesh: &Triangles) -> Self {
         let frame = Frame::of(mesh);
-        let faces =
-            (0..mesh.faces().len() as u32).map(|index| CastFace::of(mesh, FaceId(index), frame.scale));
-        let faces = faces.filter(CastFace::has_area);
-        Self { boxes: BoxTree::build(faces.map(|face| (frame.padded_box(face.corners), face))), frame }
+        let face = |index| CastFace::of(mesh, FaceId(index), frame.scale);
+        let box_of = |index| {
+            let face = face(index);
+            face.has_area().then(|| frame.padded_box(face.corners))
+        };
+        Self { boxes: BoxTree::build(mesh.faces().len(), box_of, face), frame }
     }
 
     /// A traversal with its own stack, for many rays on one thread.

@@ -45,9 +45,9 @@ fn boxes_are_split_by_their_centres_along_the_axis_of_largest_spread() {
         [0, 1].map(|k| Aabb::new(corner(k, 0), corner(k, 1)))
     };
     let split = |boxes: &[Aabb]| {
-        let mut order = [0, 1];
-        split_at_median(boxes, &mut order, 1);
-        order
+        let mut members = [0, 1].map(|index| Member::of(boxes, index));
+        split_at_median(&mut members, 1);
+        members.map(|member| member.index)
     };
     // Centres 2, -3 along x and 1, 1.5 along y, farther from 0 but nearer each other.
     assert_eq!(split(&boxes([[1.0, 3.0], [-4.0, -2.0]], [[0.5, 1.5], [1.0, 2.0]])), [1, 0]);
@@ -75,4 +75,25 @@ fn boxes_beyond_one_group_are_split_along_the_longest_axis() {
     assert_eq!(built.primitive_indices, alone.primitive_indices);
     let links = |tree: &Bvh2| -> Vec<u32> { tree.nodes.iter().map(|node| node.first_index).collect() };
     assert_eq!(links(&built), links(&alone));
+}
+
+#[test]
+fn the_tree_is_the_same_on_any_number_of_threads() {
+    let boxes = scattered(20_000);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let tree = pool.install(|| build(&boxes));
+        let nodes: Vec<_> =
+            tree.nodes.iter().map(|node| (node.first_index, node.prim_count, *node.aabb())).collect();
+        (nodes, tree.primitive_indices)
+    };
+    let alone = on(1);
+    assert_eq!(alone.0.len(), 2 * alone.1.len() - 1 - repeated_leaves(&alone.0));
+    assert_eq!(on(2), alone);
+    assert_eq!(on(8), alone);
+}
+
+/// How many boxes share a leaf with another, each costing two nodes less.
+fn repeated_leaves(nodes: &[(u32, u32, Aabb)]) -> usize {
+    nodes.iter().filter(|node| node.1 > 1).map(|node| 2 * (node.1 as usize - 1)).sum()
 }
