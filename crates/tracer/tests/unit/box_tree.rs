@@ -25,7 +25,9 @@ fn faces_with_one_box_share_it_and_faces_without_are_left_out() {
     let differ = Distinct::of((0..1000).map(|k| cube(k as f32)).collect());
     assert_eq!((differ.boxes.len(), differ.faces.len()), (1000, 1000));
     assert_eq!(faces_of(&differ)[999], [999]);
-    for empty in [vec![], vec![Aabb::INVALID; 3]] {
+    let one_out = Distinct::of(vec![cube(3.0), Aabb::INVALID, cube(1.0)]);
+    assert_eq!(faces_of(&one_out), [[0], [2]]);
+    for empty in [vec![], vec![Aabb::INVALID], vec![Aabb::INVALID; 3]] {
         let none = Distinct::of(empty);
         assert_eq!((none.boxes.len(), none.faces.len(), none.first_face), (0, 0, vec![0]));
     }
