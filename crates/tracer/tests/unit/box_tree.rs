@@ -44,11 +44,11 @@ fn a_table_of_a_few_boxes_keeps_thousands_of_repetitions_together() {
 #[test]
 fn every_face_is_once_in_a_leaf_beside_those_of_its_box() {
     let x = |index: u32| if index.is_multiple_of(5) { 0.0 } else { (index * 37 % 1024) as f32 };
-    let box_of = |index: u32| (index % 11 != 0).then(|| cube(x(index)));
+    let box_of = |index: u32| (!index.is_multiple_of(11)).then(|| cube(x(index)));
     let tree = BoxTree::build(3000, box_of, |index| index);
     let mut all = tree.faces().to_vec();
     all.sort_unstable();
-    assert!(all.into_iter().eq((0..3000).filter(|index| index % 11 != 0)));
+    assert!(all.into_iter().eq((0..3000_u32).filter(|index| !index.is_multiple_of(11))));
     for node in tree.tree().nodes.iter().filter(|node| node.is_leaf()) {
         for &face in tree.leaf_faces(node.first_index, node.prim_count) {
             let bounds = box_of(face).unwrap();
