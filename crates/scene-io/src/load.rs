@@ -99,16 +99,16 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
             finish_alone(&source, terrain, vec![sha], mesh, overrides)
         }
-        SceneSource::Toml(path) => {
-            let bytes =
-                bytes::read_file(path, MAX_TOML_BYTES).map_err(|e| SceneIoError::io(path, "read", e))?;
-            let text = String::from_utf8(bytes).map_err(|error| {
-                let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
-                SceneIoError::io(path, "read", error)
-            })?;
-            load_toml(&source, path, &text, overrides)
-        }
+        SceneSource::Toml(path) => load_toml(&source, path, &read_toml(path)?, overrides),
     }
+}
+
+/// The text of a TOML file, at most [`MAX_TOML_BYTES`] long.
+pub(crate) fn read_toml(path: &Path) -> Result<String, SceneIoError> {
+    let refused = |error| SceneIoError::io(path, "read", error);
+    let bytes = bytes::read_file(path, MAX_TOML_BYTES).map_err(refused)?;
+    String::from_utf8(bytes)
+        .map_err(|error| refused(std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error())))
 }
 
 /// Loads a scene from the text of a scene file. Messages call the file `<name>.toml`; paths in the text are relative to

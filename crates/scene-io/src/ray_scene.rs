@@ -6,12 +6,12 @@
 use std::path::Path;
 
 use glam::DVec3;
-use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
+use raypencil_files::{Sha256Digest, combined_sha256_hex, sha256};
 use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, read_triangles};
 use raypencil_scene::{Material, Mesh, NamedRaySet, Pose, SceneError, Triangles};
 
 use crate::ground::{make_ground, read_ground, terrain_file};
-use crate::load::{MAX_TOML_BYTES, no_ground};
+use crate::load::{no_ground, read_toml};
 use crate::parse::kind::Kind;
 use crate::parse::scene::parse;
 use crate::parse::source::Source;
@@ -58,11 +58,7 @@ pub struct RayScene {
 /// # Errors
 /// Names the file, the place in it, the value found and the values expected: also for a file without sets of rays.
 pub fn load_ray_scene(path: &Path) -> Result<RayScene, SceneIoError> {
-    let text = bytes::read_file(path, MAX_TOML_BYTES).map_err(|e| SceneIoError::io(path, "read", e))?;
-    let text = String::from_utf8(text).map_err(|error| {
-        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
-        SceneIoError::io(path, "read", error)
-    })?;
+    let text = read_toml(path)?;
     let file = Source { file: path, text: &text };
     if matches!(file.kind()?, Kind::Resolved) {
         let message = "a resolved scene has no sets of rays; expected a scene file with tables `[[rays]]`";

@@ -4,10 +4,10 @@ use serde::Deserialize;
 use std::path::Path;
 use toml::Spanned;
 
-use raypencil_files::{bytes, combined_sha256_hex, hex_digits, sha256};
+use raypencil_files::{combined_sha256_hex, hex_digits, sha256};
 use raypencil_scene::NamedRaySet;
 
-use crate::load::MAX_TOML_BYTES;
+use crate::load::read_toml;
 use crate::parse::key::Key;
 use crate::parse::rays::RaysKeys;
 use crate::parse::source::Source;
@@ -35,11 +35,7 @@ pub struct LoadedRaySets {
 /// # Errors
 /// Names the file, the place in it, the value found and the values expected.
 pub fn read_ray_sets(path: &Path) -> Result<LoadedRaySets, SceneIoError> {
-    let bytes = bytes::read_file(path, MAX_TOML_BYTES).map_err(|e| SceneIoError::io(path, "read", e))?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
-        SceneIoError::io(path, "read", error)
-    })?;
+    let text = read_toml(path)?;
     ray_sets_from_text(&text, path)
 }
 
