@@ -160,18 +160,32 @@ pub struct SensorRow<'a> {
 
 impl SensorRow<'_> {
     /// Writes those quantities of a hit that the maps hold into column `i`.
+    #[inline]
     pub fn put(&mut self, i: u32, hit: &Hit) {
-        fn write<T: crate::Sample>(row: &mut Option<&mut [Maybe<T>]>, i: u32, value: T) {
-            if let Some(cells) = row {
-                cells[i as usize] = Maybe::some(value);
-            }
-        }
-        write(&mut self.range, i, hit.range);
-        write(&mut self.depth, i, hit.depth);
-        write(&mut self.face, i, hit.face);
-        write(&mut self.point, i, hit.point);
+        self.put_place(i, hit.face, hit.range, hit.depth, hit.point);
         write(&mut self.normal, i, hit.normal);
         write(&mut self.cos_incidence, i, hit.cos_incidence);
+    }
+
+    /// Writes those of a hit's face, range, depth and point that the maps hold into column `i`.
+    #[inline]
+    pub fn put_place(&mut self, i: u32, face: FaceId, range: f64, depth: f64, point: DVec3) {
+        write(&mut self.range, i, range);
+        write(&mut self.depth, i, depth);
+        write(&mut self.face, i, face);
+        write(&mut self.point, i, point);
+    }
+
+    /// Whether the maps hold the normal or the cosine of incidence, for which the face's plane is needed.
+    pub fn wants_the_plane(&self) -> bool {
+        self.normal.is_some() || self.cos_incidence.is_some()
+    }
+}
+
+#[inline]
+fn write<T: crate::Sample>(row: &mut Option<&mut [Maybe<T>]>, i: u32, value: T) {
+    if let Some(cells) = row {
+        cells[i as usize] = Maybe::some(value);
     }
 }
 

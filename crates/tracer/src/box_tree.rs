@@ -5,6 +5,7 @@ use obvhs::bvh2::Bvh2;
 use rayon::prelude::*;
 
 use crate::grouped_build;
+use crate::wide_tree::WideTree;
 
 /// Faces in a tree of boxes that their owner has drawn around them, as wide as its rays need.
 pub(crate) struct BoxTree<F> {
@@ -132,6 +133,11 @@ fn hash(bounds: &Aabb) -> u64 {
 }
 
 impl<F> BoxTree<F> {
+    /// The same with eight boxes a node, and the faces in the order of its entries.
+    pub(crate) fn into_wide(self) -> (WideTree, Vec<F>) {
+        (WideTree::collapse(&self.tree, &self.first_face), self.faces)
+    }
+
     /// The tree of boxes.
     pub(crate) fn tree(&self) -> &Bvh2 {
         &self.tree

@@ -1,12 +1,13 @@
 //! The closest hit of a ray: obvhs walks the tree, `triangle` decides, and ties go to the lowest face index.
 
-use obvhs::faststack::HeapStack;
-use obvhs::ray::RayHit;
+use glam::DVec3;
 use raypencil_scene::Hit;
 
 use crate::hierarchy::{Hierarchy, round_up};
 use crate::rays::TracedRay;
+use crate::tile::{BLOCK, BLOCKS, Directions, Nearest, SeenFace, Tile};
 use crate::triangle::Triangle;
+use crate::wide_tree::{Next, Waiting};
 
 /// The intersection of a ray with a face, at t.
 #[derive(Debug, Clone, Copy)]
@@ -56,39 +57,87 @@ pub(crate) fn update_closest(
     true
 }
 
-/// A closest-hit traversal with its own stack, for many rays on one thread.
+/// A closest-hit traversal with its own stack, for many tiles of rays on one thread.
 pub(crate) struct ClosestHitTraverser<'a> {
     hierarchy: &'a Hierarchy,
-    stack: HeapStack<u32>,
+    stack: Vec<Waiting>,
 }
 
 impl<'a> ClosestHitTraverser<'a> {
     pub(crate) fn new(hierarchy: &'a Hierarchy) -> Self {
-        Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.boxes().stack_size()) }
+        Self { hierarchy, stack: hierarchy.boxes().stack() }
     }
 
     /// The nearest front that `ray` meets between the SPP and `max_range` metres.
-    #[inline]
     pub(crate) fn closest_hit(&mut self, ray: &TracedRay, max_range: f64) -> Option<Intersection> {
+        let Self { hierarchy, stack } = self;
         let mut closest = None;
-        self.hierarchy.boxes().tree().ray_traverse_dynamic(
-            &mut self.stack,
-            ray.box_ray(round_up(max_range)),
-            &mut RayHit::none(),
-            |node, box_ray, _| {
-                for triangle in self.hierarchy.boxes().leaf_faces(node.first_index, node.prim_count) {
-                    if update_closest(&mut closest, triangle, ray, max_range) {
-                        // obvhs enters a box only if it begins strictly before tmax. A face at the same t may
-                        // still have the lower index, so the bound is rounded up: the padding makes the box of
-                        // such a face begin at or before the true range.
-                        let range = closest.map_or(max_range, |hit: Intersection| hit.t * ray.metres_per_t);
-                        box_ray.tmax = round_up(range * (1.0 + f64::EPSILON));
+        hierarchy.boxes().walk(stack, &mut ray.bundle(round_up(max_range)), |leaf, far| {
+            for triangle in &hierarchy.faces()[leaf] {
+                if update_closest(&mut closest, triangle, ray, max_range) {
+                    let range = closest.map_or(max_range, |hit: Intersection| hit.t * ray.metres_per_t);
+                    *far = round_up(range * (1.0 + f64::EPSILON));
+                }
+            }
+            Next::On
+        });
+        closest
+    }
+
+    /// The nearest front that each ray from `origin` meets between the SPP and `max_range` metres.
+    #[inline(always)]
+    pub(crate) fn closest_hits(
+        &mut self,
+        origin: DVec3,
+        directions: &Directions,
+        max_range: f64,
+    ) -> [Nearest; BLOCKS] {
+        let mut nearest = [Nearest::NOTHING; BLOCKS];
+        directions.tiles(origin, |tile, lanes| {
+            for (b, nearest) in nearest.iter_mut().enumerate() {
+                let mask = lanes >> (b * BLOCK);
+                for k in 0..BLOCK {
+                    let takes_part = mask & (1 << k) != 0;
+                    nearest.limit[k] = if takes_part { max_range } else { -1.0 };
+                    let of_ray = tile.blocks[b].metres_per_t[k];
+                    nearest.metres_per_t[k] = if takes_part { of_ray } else { nearest.metres_per_t[k] };
+                }
+            }
+            self.walk(tile, &mut nearest, max_range);
+        });
+        nearest
+    }
+
+    #[inline(always)]
+    fn walk(&mut self, tile: &Tile, nearest: &mut [Nearest; BLOCKS], max_range: f64) {
+        let Self { hierarchy, stack } = self;
+        let mut far = [max_range; BLOCKS];
+        let mut bundle = tile.bundle(round_up(max_range));
+        hierarchy.boxes().walk(stack, &mut bundle, |leaf, bundle_far| {
+            for triangle in &hierarchy.faces()[leaf] {
+                let face = SeenFace::new(triangle, tile);
+                if tile.misses_front(&face) {
+                    continue;
+                }
+                let mut changed = false;
+                for b in 0..BLOCKS {
+                    if tile.block_misses_front(b, &face) {
+                        continue;
+                    }
+                    if tile.update_closest(b, &face, triangle, &mut nearest[b]) {
+                        far[b] = nearest[b].far(&tile.blocks[b]);
+                        changed = true;
                     }
                 }
-                true
-            },
-        );
-        closest
+                if changed {
+                    // A face at the same t may still have the lower index, so the bound is rounded up: the padding makes
+                    // the box of such a face begin at or before the true range.
+                    let farthest = far[0].max(far[1]).max(far[2].max(far[3]));
+                    *bundle_far = round_up(farthest * (1.0 + f64::EPSILON));
+                }
+            }
+            Next::On
+        });
     }
 }
 

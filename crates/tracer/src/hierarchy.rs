@@ -38,6 +38,7 @@ use raypencil_scene::{Beam, FaceId, Mesh, Mounted, Scene};
 
 use crate::box_tree::BoxTree;
 use crate::triangle::Triangle;
+use crate::wide_tree::WideTree;
 
 /// Padding of a box, relative to (largest |coordinate| + maximum trace distance): 9 x 2^-24, derived above.
 const RELATIVE_PADDING: f64 = 9.0 / (1u32 << 24) as f64;
@@ -58,15 +59,18 @@ pub(crate) fn max_trace_distance(scene: &Scene) -> f64 {
 
 /// The terrain's faces in a tree of padded boxes.
 pub(crate) struct Hierarchy {
-    boxes: BoxTree<Triangle>,
+    boxes: WideTree,
+    /// In the order of the boxes' entries.
+    faces: Vec<Triangle>,
     max_trace_distance: f64,
 }
 
 impl std::fmt::Debug for Hierarchy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { boxes, max_trace_distance } = self;
+        let Self { boxes, faces, max_trace_distance } = self;
         f.debug_struct("Hierarchy")
             .field("boxes", boxes)
+            .field("faces", &faces.len())
             .field("max_trace_distance", max_trace_distance)
             .finish()
     }
@@ -82,12 +86,17 @@ impl Hierarchy {
             let has_area = triangle(index).normal() != glam::DVec3::ZERO;
             has_area.then(|| padded_box(&vertices(index), max_trace_distance))
         };
-        Self { boxes: BoxTree::build(mesh.faces().len(), box_of, triangle), max_trace_distance }
+        let (boxes, faces) = BoxTree::build(mesh.faces().len(), box_of, triangle).into_wide();
+        Self { boxes, faces, max_trace_distance }
     }
 
-    /// The boxes with their faces.
-    pub(crate) fn boxes(&self) -> &BoxTree<Triangle> {
+    pub(crate) fn boxes(&self) -> &WideTree {
         &self.boxes
+    }
+
+    /// The faces, in the order of the boxes' entries.
+    pub(crate) fn faces(&self) -> &[Triangle] {
+        &self.faces
     }
 
     /// The distance from a ray's origin up to which no hit is lost to the boxes, metres.

@@ -52,14 +52,18 @@ mod closest_hit;
 mod flux;
 mod grouped_build;
 mod hierarchy;
+mod lanes;
 mod occlusion;
 mod rays;
 mod renderer;
 mod returns;
 mod shares;
+mod tile;
 mod triangle;
+mod wide_tree;
 
 pub use cast::{CastTraverser, TracedHit, TracerCast};
+pub use lanes::Instructions;
 pub use renderer::Tracer;
 
 /// Compiles the README's example.

@@ -26,17 +26,17 @@
 //! decide that case, rounding does: a ray displaced by as little gets the other answer.
 
 use glam::DVec3;
-use obvhs::faststack::{FastStack, HeapStack};
-use obvhs::ray::RayHit;
 
 use crate::closest_hit::Intersection;
 use crate::hierarchy::{Hierarchy, round_up};
 use crate::rays::TracedRay;
+use crate::tile::{BLOCK, BLOCKS, Directions, SeenFace};
 use crate::triangle::{Triangle, widen};
+use crate::wide_tree::{Next, Waiting};
 
 /// The line of sight from the camera to the point that a pencil hits.
-#[derive(Debug)]
-pub(crate) struct LineOfSight<'a> {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LineOfSight {
     /// The ray from the projection centre along P - c. The point is at u = 1.
     ray: TracedRay,
     /// P, scene frame, metres.
@@ -45,20 +45,20 @@ pub(crate) struct LineOfSight<'a> {
     focal_length: f64,
     /// r, metres.
     depth: f64,
-    pencil: &'a TracedRay,
+    pencil: TracedRay,
     /// The pencil's hit.
-    hit: &'a Intersection,
+    hit: Intersection,
 }
 
-impl<'a> LineOfSight<'a> {
+impl LineOfSight {
     /// From the camera's `centre` to `point`, the `hit` of `pencil`. The point's `depth` exceeds `focal_length`.
     pub(crate) fn new(
         centre: DVec3,
         focal_length: f64,
         point: DVec3,
         depth: f64,
-        pencil: &'a TracedRay,
-        hit: &'a Intersection,
+        pencil: TracedRay,
+        hit: Intersection,
     ) -> Self {
         Self { ray: TracedRay::new(centre, point - centre), point, focal_length, depth, pencil, hit }
     }
@@ -83,48 +83,74 @@ impl<'a> LineOfSight<'a> {
             return true;
         }
         let tied = triangle
-            .intersect_either_side(self.pencil)
+            .intersect_either_side(&self.pencil)
             .is_some_and(|crossing| crossing.n_dot_offset / crossing.n_dot_q == self.hit.t);
         let (normal, vertex) = (hit_face.normal(), widen(hit_face.vertices[0]));
         tied || triangle.vertices.iter().all(|&v| normal.dot(widen(v) - vertex) == 0.0)
     }
 }
 
-/// An any-hit traversal with its own stack, for many points on one thread.
+/// An any-hit traversal with its own stack, for many tiles of points on one thread.
 pub(crate) struct OcclusionTraverser<'a> {
     hierarchy: &'a Hierarchy,
-    stack: HeapStack<u32>,
+    stack: Vec<Waiting>,
 }
 
 impl<'a> OcclusionTraverser<'a> {
     pub(crate) fn new(hierarchy: &'a Hierarchy) -> Self {
-        Self { hierarchy, stack: HeapStack::new_with_capacity(hierarchy.boxes().stack_size()) }
+        Self { hierarchy, stack: hierarchy.boxes().stack() }
     }
 
-    /// Whether any face hides the point at the end of `line_of_sight`.
-    pub(crate) fn is_occluded(&mut self, line_of_sight: &LineOfSight) -> bool {
-        let distance = line_of_sight.ray.metres_per_t;
-        debug_assert!(
-            distance <= self.hierarchy.max_trace_distance(),
-            "the line of sight is {distance} m long; the boxes are padded for {} m",
-            self.hierarchy.max_trace_distance()
-        );
-        // obvhs enters a box only if it begins strictly before the far end, hence rounded up. It knows no near
-        // end, so faces before the image plane are proposed too, and refused by the exact test.
-        let box_ray = line_of_sight.ray.box_ray(round_up(distance));
-        // A traversal that ended early leaves entries of its own ray on the stack.
-        self.stack.clear();
-        let mut occluded = false;
-        self.hierarchy.boxes().tree().ray_traverse_dynamic(
-            &mut self.stack,
-            box_ray,
-            &mut RayHit::none(),
-            |node, _, _| {
-                let triangles = self.hierarchy.boxes().leaf_faces(node.first_index, node.prim_count);
-                occluded = triangles.iter().any(|triangle| line_of_sight.is_blocked_by(triangle));
-                !occluded
-            },
-        );
+    /// Which of the points at the ends of up to 64 lines of sight from one camera any face hides; lane by lane.
+    #[inline(always)]
+    pub(crate) fn occluded(&mut self, lines: &[Option<LineOfSight>]) -> u64 {
+        let Some(first) = lines.iter().flatten().next() else { return 0 };
+        let origin = first.ray.origin;
+        let mut directions = Directions::NONE;
+        for (lane, line) in lines.iter().enumerate() {
+            if let Some(line) = line {
+                let distance = line.ray.metres_per_t;
+                debug_assert!(
+                    distance <= self.hierarchy.max_trace_distance(),
+                    "the line of sight is {distance} m long; the boxes are padded for {} m",
+                    self.hierarchy.max_trace_distance()
+                );
+                directions.set(lane, line.ray.direction);
+            }
+        }
+        let Self { hierarchy, stack } = self;
+        let mut occluded = 0_u64;
+        directions.tiles(origin, |tile, lanes| {
+            let taking_part = lines.iter().enumerate().filter(|(lane, _)| lanes & (1 << lane) != 0);
+            let lengths = taking_part.filter_map(|(_, line)| line.as_ref()).map(|line| line.ray.metres_per_t);
+            let far = lengths.fold(0.0, f64::max);
+            // A box is entered if it begins at or before the far end. There is no near end, so faces before the image plane
+            // are proposed too, and refused by the exact test.
+            let mut bundle = tile.bundle(round_up(far));
+            hierarchy.boxes().walk(stack, &mut bundle, |leaf, _| {
+                for triangle in &hierarchy.faces()[leaf] {
+                    let face = SeenFace::new(triangle, tile);
+                    if tile.misses(&face) {
+                        continue;
+                    }
+                    for b in 0..BLOCKS {
+                        let open = (lanes & !occluded) >> (b * BLOCK) & ((1 << BLOCK) - 1);
+                        if open == 0 {
+                            continue;
+                        }
+                        let mut inside = tile.inside(b, &face) & open;
+                        while inside != 0 {
+                            let lane = b * BLOCK + inside.trailing_zeros() as usize;
+                            inside &= inside - 1;
+                            if lines[lane].as_ref().is_some_and(|line| line.is_blocked_by(triangle)) {
+                                occluded |= 1 << lane;
+                            }
+                        }
+                    }
+                }
+                if lanes & !occluded == 0 { Next::Stop } else { Next::On }
+            });
+        });
         occluded
     }
 }

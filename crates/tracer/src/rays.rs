@@ -1,8 +1,10 @@
 //! The contract's rays, formed in the scene frame for tracing. (Contract: camera and beam rays)
 
 use glam::{DVec3, Vec3A};
-use obvhs::ray::Ray as BoxRay;
 use raypencil_scene::{Beam, Camera, Mounted, Pose, Sampling};
+
+use crate::tile::{Directions, TILE};
+use crate::wide_tree::Bundle;
 
 /// One ray, prepared for many triangle tests.
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +22,13 @@ pub(crate) struct TracedRay {
 
 impl TracedRay {
     pub(crate) fn new(origin: DVec3, direction: DVec3) -> Self {
+        let axes = Self::axes_of(direction);
+        Self { origin, direction, metres_per_t: direction.length(), axes }
+    }
+
+    /// The axes of a ray along `direction`, as in [`TracedRay::axes`].
+    #[inline(always)]
+    pub(crate) fn axes_of(direction: DVec3) -> [usize; 3] {
         let size = direction.abs();
         let longest = if size.x >= size.y && size.x >= size.z {
             0
@@ -30,15 +39,14 @@ impl TracedRay {
         };
         let (next, last) = ((longest + 1) % 3, (longest + 2) % 3);
         // Seen along +z, with x to the right, y runs down; seen along -z it runs up.
-        let axes = if direction[longest] < 0.0 { [next, last, longest] } else { [last, next, longest] };
-        Self { origin, direction, metres_per_t: direction.length(), axes }
+        if direction[longest] < 0.0 { [next, last, longest] } else { [last, next, longest] }
     }
 
-    /// The ray for obvhs: f32, with a unit direction, so that its t is the range in metres. It ends at `max_range`.
-    pub(crate) fn box_ray(&self, max_range: f32) -> BoxRay {
+    /// The ray for the boxes: f32, with a unit direction, so that its t is the range in metres. It ends at `max_range`.
+    pub(crate) fn bundle(&self, max_range: f32) -> Bundle {
         let unit = self.direction / self.metres_per_t;
         let narrow = |v: DVec3| Vec3A::new(v.x as f32, v.y as f32, v.z as f32);
-        BoxRay::new(narrow(self.origin), narrow(unit), 0.0, max_range)
+        Bundle::new(narrow(self.origin), narrow(unit), narrow(unit), max_range)
     }
 }
 
@@ -118,8 +126,48 @@ impl SensorRays {
         }
     }
 
+    /// Columns and rows of cells whose rays start in one point; `None` if each has a point of its own.
+    pub(crate) fn tile_size(&self) -> Option<(u32, u32)> {
+        match &self.source {
+            RaySource::Camera(_) => Some((8, TILE as u32 / 8)),
+            RaySource::Beam(PencilGrid { sampling: Sampling::Centres, .. }) => Some((TILE as u32, 1)),
+            RaySource::Beam(PencilGrid { sampling: Sampling::Jittered { .. }, .. }) => None,
+        }
+    }
+
+    /// The rays of a tile of cells from (i, j) to before the `end` column and row: their origin, and their directions row by
+    /// row, as far apart in `columns` lanes.
+    #[inline(always)]
+    pub(crate) fn tile(&self, [i, j]: [u32; 2], end: [u32; 2], columns: u32) -> (DVec3, Directions) {
+        let mut directions = Directions::NONE;
+        for row in j..end[1] {
+            for column in i..end[0] {
+                let lane = ((row - j) * columns + (column - i)) as usize;
+                directions.set(lane, self.scene_from_sensor.apply(self.q(column, row).1));
+            }
+        }
+        (self.origin(self.q(i, j).0), directions)
+    }
+
     /// The ray of cell (i, j).
+    #[inline(always)]
     pub(crate) fn ray(&self, i: u32, j: u32) -> TracedRay {
+        let (y, q) = self.q(i, j);
+        TracedRay::new(self.origin(y), self.scene_from_sensor.apply(q))
+    }
+
+    /// The start of a ray `y` along the sensor's y axis, scene frame, metres.
+    #[inline(always)]
+    fn origin(&self, y: f64) -> DVec3 {
+        match &self.source {
+            RaySource::Camera(_) => self.position,
+            RaySource::Beam(_) => self.position + self.scene_from_sensor.apply(DVec3::new(0.0, y, 0.0)),
+        }
+    }
+
+    /// Where the ray of cell (i, j) starts along the sensor's y axis, and its vector q to the SPP, sensor frame, metres.
+    #[inline(always)]
+    fn q(&self, i: u32, j: u32) -> (f64, DVec3) {
         match &self.source {
             // From the projection centre through the centre of the pixel.
             RaySource::Camera(camera) => {
@@ -127,16 +175,13 @@ impl SensorRays {
                 let [centre_x, centre_y] = camera.principal_point;
                 let x = (f64::from(i) + 0.5 - centre_x) * pitch_x;
                 let y = (f64::from(j) + 0.5 - centre_y) * pitch_y;
-                let q = DVec3::new(x, y, camera.focal_length);
-                TracedRay::new(self.position, self.scene_from_sensor.apply(q))
+                (0.0, DVec3::new(x, y, camera.focal_length))
             }
             // From the focal axis at the height y of the crossing, through the grid plane at the same height. (§5,
             // figure 6: the thickness is constant.) The origin of the ray is not the origin of the beam.
             RaySource::Beam(grid) => {
                 let (x, y) = grid.crossing(i, j);
-                let q = DVec3::new(x, 0.0, grid.beam.grid_distance);
-                let start = self.scene_from_sensor.apply(DVec3::new(0.0, y, 0.0));
-                TracedRay::new(self.position + start, self.scene_from_sensor.apply(q))
+                (y, DVec3::new(x, 0.0, grid.beam.grid_distance))
             }
         }
     }
@@ -162,6 +207,7 @@ impl Rotation {
         Self { u, w: q.w, ww_minus_uu: ww - uu, norm_squared: ww + uu }
     }
 
+    #[inline(always)]
     pub(crate) fn apply(&self, p: DVec3) -> DVec3 {
         let sum = p * self.ww_minus_uu + self.u * (2.0 * self.u.dot(p)) + self.u.cross(p) * (2.0 * self.w);
         sum / self.norm_squared

@@ -5,13 +5,17 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use raypencil_scene::{
-    Mesh, Precision, Quantities, RenderOutput, Renderer, Request, Scene, SensorId, SensorMap, Stage,
+    FaceId, Mesh, Precision, Quantities, RenderOutput, Renderer, Request, Scene, SensorId, SensorMap,
+    SensorRow, Stage,
 };
 
-use crate::closest_hit::ClosestHitTraverser;
+use crate::closest_hit::{ClosestHitTraverser, Intersection};
 use crate::hierarchy::{self, Hierarchy};
-use crate::rays::{PencilGrid, SensorRays};
+use crate::lanes::{self, Instructions, Work};
+use crate::rays::{PencilGrid, SensorRays, TracedRay};
 use crate::returns::{self, PencilHit};
+use crate::tile::BLOCK;
+use crate::triangle::Triangle;
 
 /// Factor by which a new hierarchy's maximum trace distance exceeds the one asked for.
 const DISTANCE_HEADROOM: f64 = 1.0 + 1.0 / 64.0;
@@ -55,6 +59,7 @@ const DISTANCE_HEADROOM: f64 = 1.0 + 1.0 / 64.0;
 #[derive(Debug, Default)]
 pub struct Tracer {
     cached: Mutex<Option<CachedHierarchy>>,
+    instructions: Instructions,
 }
 
 #[derive(Debug)]
@@ -80,6 +85,23 @@ impl Tracer {
     /// ```
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A tracer that uses these instructions of the processor. They change the speed, and no bit of a frame.
+    ///
+    /// ```
+    /// # mod doc { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/doc/scene.rs")); }
+    /// # use doc::scene_above;
+    /// use raypencil_scene::{Renderer, Request};
+    /// use raypencil_tracer::{Instructions, Tracer};
+    ///
+    /// let scene = scene_above([[-40.0, -40.0, 0.0], [40.0, -40.0, 0.0], [0.0, 40.0, 0.0]]);
+    /// let [wide, plain] = [Instructions::Detected, Instructions::Baseline]
+    ///     .map(|instructions| Tracer::with_instructions(instructions).render(&scene, &Request::EVERYTHING));
+    /// assert_eq!((wide.camera, wide.returns), (plain.camera, plain.returns));
+    /// ```
+    pub fn with_instructions(instructions: Instructions) -> Self {
+        Self { instructions, ..Self::default() }
     }
 
     /// A hierarchy of `mesh` for rays of up to `max_trace_distance` metres: the cached one if it serves, else a
@@ -111,7 +133,8 @@ impl Renderer for Tracer {
 
     fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let start = Instant::now();
-        let hierarchy = self.hierarchy(scene.mesh(), hierarchy::max_trace_distance(scene));
+        let mesh = scene.mesh();
+        let hierarchy = self.hierarchy(mesh, hierarchy::max_trace_distance(scene));
         let mut frame = RenderOutput {
             camera: None,
             beams: Vec::new(),
@@ -123,7 +146,15 @@ impl Renderer for Tracer {
         if request.camera {
             let start = Instant::now();
             let rays = SensorRays::of_camera(scene.camera());
-            let (map, _) = trace_sensor(&hierarchy, SensorId::Camera, &rays, request.quantities, false);
+            let (map, _) = trace_sensor(
+                mesh,
+                &hierarchy,
+                SensorId::Camera,
+                &rays,
+                request.quantities,
+                false,
+                self.instructions,
+            );
             frame.camera = Some(map);
             frame.stages.push(Stage { name: SensorId::Camera.to_string(), time: start.elapsed() });
         }
@@ -135,14 +166,16 @@ impl Renderer for Tracer {
             let grid = PencilGrid::new(beam.sensor, index, request.sampling);
             let rays = SensorRays::of_beam(beam, grid);
             let quantities = if request.beams { request.quantities } else { Quantities::NONE };
-            let (map, hits) = trace_sensor(&hierarchy, sensor, &rays, quantities, request.returns);
+            let (map, hits) =
+                trace_sensor(mesh, &hierarchy, sensor, &rays, quantities, request.returns, self.instructions);
             frame.stages.push(Stage { name: sensor.to_string(), time: start.elapsed() });
             if request.beams {
                 frame.beams.push(map);
             }
             if request.returns {
                 let start = Instant::now();
-                let (returns, flux) = returns::trace_returns(scene, &hierarchy, &rays, grid, &hits);
+                let (returns, flux) =
+                    returns::trace_returns(scene, &hierarchy, &rays, grid, &hits, self.instructions);
                 frame.returns.push(returns);
                 frame.flux.push(flux);
                 frame.stages.push(Stage { name: format!("{sensor} returns"), time: start.elapsed() });
@@ -155,33 +188,88 @@ impl Renderer for Tracer {
 /// Traces every cell of a sensor into its maps. With `collect_hits` it also returns the hit of every cell, row by
 /// row; otherwise that list is empty.
 ///
-/// Rows are independent: the number of threads changes no bit.
+/// Tiles of cells are independent: the number of threads changes no bit.
 fn trace_sensor(
+    mesh: &Mesh,
     hierarchy: &Hierarchy,
     sensor: SensorId,
     rays: &SensorRays,
     quantities: Quantities,
     collect_hits: bool,
+    instructions: Instructions,
 ) -> (SensorMap, Vec<Option<PencilHit>>) {
     let (width, height) = rays.size();
     let mut map = SensorMap::empty(sensor, width, height, quantities);
     let mut hits = vec![None; if collect_hits { map.cell_count() } else { 0 }];
     let mut hit_rows = hits.chunks_exact_mut(width as usize);
-    let rows: Vec<_> = map.rows_mut().into_iter().map(|row| (row, hit_rows.next())).collect();
-    rows.into_par_iter().for_each(|(mut row, mut hits)| {
-        let mut traverser = ClosestHitTraverser::new(hierarchy);
-        for i in 0..width {
-            let ray = rays.ray(i, row.j);
-            if let Some(intersection) = traverser.closest_hit(&ray, rays.max_range()) {
-                row.put(i, &intersection.hit(&ray, rays.depth_per_t()));
-                if let Some(hits) = &mut hits {
-                    hits[i as usize] =
-                        Some(PencilHit { face: intersection.triangle.face, t: intersection.t });
+    let mut rows: Vec<_> = map.rows_mut().into_iter().map(|row| (row, hit_rows.next())).collect();
+    let rows_per_band = rays.tile_size().map_or(1, |(_, rows)| rows) as usize;
+    rows.par_chunks_mut(rows_per_band).for_each_init(
+        || ClosestHitTraverser::new(hierarchy),
+        |traverser, rows| lanes::run(instructions, Band { mesh, rays, traverser, rows }),
+    );
+    drop(rows);
+    (map, hits)
+}
+
+/// Some neighbouring rows of a sensor.
+struct Band<'a, 'r, 'm, 'h> {
+    mesh: &'a Mesh,
+    rays: &'a SensorRays,
+    traverser: &'r mut ClosestHitTraverser<'h>,
+    /// Each with the hits of its cells, if they are collected.
+    rows: &'r mut [(SensorRow<'m>, Option<&'m mut [Option<PencilHit>]>)],
+}
+
+impl Work for Band<'_, '_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { mesh, rays, traverser, rows } = self;
+        let (width, _) = rays.size();
+        let first_row = rows[0].0.j;
+        let Some((columns, _)) = rays.tile_size() else {
+            for (row, hits) in rows {
+                for i in 0..width {
+                    let ray = rays.ray(i, row.j);
+                    if let Some(intersection) = traverser.closest_hit(&ray, rays.max_range()) {
+                        row.put(i, &intersection.hit(&ray, rays.depth_per_t()));
+                        if let Some(hits) = hits {
+                            hits[i as usize] =
+                                Some(PencilHit { face: intersection.triangle.face, t: intersection.t });
+                        }
+                    }
+                }
+            }
+            return;
+        };
+        for i in (0..width).step_by(columns as usize) {
+            let end = [(i + columns).min(width), first_row + rows.len() as u32];
+            let (origin, directions) = rays.tile([i, first_row], end, columns);
+            let nearest = traverser.closest_hits(origin, &directions, rays.max_range());
+            for (row, hits) in rows.iter_mut() {
+                for column in i..end[0] {
+                    let lane = ((row.j - first_row) * columns + (column - i)) as usize;
+                    let (of_block, k) = (&nearest[lane / BLOCK], lane % BLOCK);
+                    let Ok(face) = u32::try_from(of_block.face[k]) else { continue };
+                    let (face, t) = (FaceId(face), of_block.t[k]);
+                    let (direction, metres_per_t) = (directions.get(lane), of_block.metres_per_t[k]);
+                    let ray = || TracedRay::new(origin, direction);
+                    if row.wants_the_plane() {
+                        let triangle = Triangle::of(mesh, face);
+                        row.put(column, &Intersection { triangle, t }.hit(&ray(), rays.depth_per_t()));
+                    } else {
+                        let (range, depth) = (t * metres_per_t, t * rays.depth_per_t());
+                        row.put_place(column, face, range, depth, origin + direction * t);
+                    }
+                    if let Some(hits) = hits {
+                        hits[column as usize] = Some(PencilHit { face, t });
+                    }
                 }
             }
         }
-    });
-    (map, hits)
+    }
 }
 
 #[cfg(test)]

@@ -2,15 +2,17 @@
 //! and §6)
 
 use rayon::prelude::*;
-use raypencil_scene::{FaceId, Image, Mesh, Return, Returns, Scene};
+use raypencil_scene::{FaceId, Hit, Image, Mesh, Return, Returns, Scene};
 
-use crate::camera::PosedCamera;
+use crate::camera::{CameraPoint, PosedCamera};
 use crate::closest_hit::Intersection;
 use crate::flux::{FluxEquation, LightPath};
 use crate::hierarchy::Hierarchy;
+use crate::lanes::{self, Instructions, Work};
 use crate::occlusion::{LineOfSight, OcclusionTraverser};
 use crate::rays::{PencilGrid, SensorRays};
 use crate::shares::PowerShares;
+use crate::tile::TILE;
 use crate::triangle::{Triangle, widen};
 
 /// The face that a pencil hits, and the t of the hit.
@@ -40,6 +42,7 @@ pub(crate) fn trace_returns(
     rays: &SensorRays,
     grid: PencilGrid,
     hits: &[Option<PencilHit>],
+    instructions: Instructions,
 ) -> (Returns, Image<f64>) {
     let tracer = BeamTracer {
         mesh: scene.mesh(),
@@ -53,25 +56,30 @@ pub(crate) fn trace_returns(
     let mut returns = Returns::empty(columns, rows);
     let mut image = Image::filled(camera.width, camera.height, 0.0);
 
-    let cell = |pencil: usize| ((pencil % columns as usize) as u32, (pencil / columns as usize) as u32);
-    let mut batch = Vec::new();
-    for (start, hits) in (0..).step_by(PENCILS_PER_BATCH).zip(hits.chunks(PENCILS_PER_BATCH)) {
+    let rows_per_batch = (PENCILS_PER_BATCH / columns as usize).max(1);
+    let mut batch = vec![None; rows_per_batch.min(rows as usize) * columns as usize];
+    for (first_row, hits) in (0..).step_by(rows_per_batch).zip(hits.chunks(rows_per_batch * columns as usize))
+    {
+        let batch = &mut batch[..hits.len()];
         // Pencils are independent: the number of threads changes no bit.
-        hits.par_iter()
-            .enumerate()
-            .with_min_len(64)
-            .map_init(
+        let rows = batch.par_chunks_mut(columns as usize).zip(hits.par_chunks(columns as usize));
+        rows.enumerate().for_each(|(row, (returns, hits))| {
+            let tiles = returns.par_chunks_mut(TILE).zip(hits.par_chunks(TILE));
+            tiles.enumerate().for_each_init(
                 || OcclusionTraverser::new(hierarchy),
-                |traverser, (index, hit)| {
-                    let (i, j) = cell(start + index);
-                    hit.map(|hit| tracer.trace_return(traverser, i, j, hit))
+                |traverser, (tile, (returns, hits))| {
+                    let first = ((tile * TILE) as u32, (first_row + row) as u32);
+                    lanes::run(
+                        instructions,
+                        TileOfPencils { tracer: &tracer, traverser, first, hits, returns },
+                    );
                 },
-            )
-            .collect_into_vec(&mut batch);
+            );
+        });
         // Row by row on one thread: the additions of each pixel's sum have one order.
         for (index, pencil_return) in batch.iter().enumerate() {
             let Some(pencil_return) = pencil_return else { continue };
-            let (i, j) = cell(start + index);
+            let (i, j) = ((index % columns as usize) as u32, (first_row + index / columns as usize) as u32);
             returns.put(i, j, pencil_return);
             if let (true, Some(pixel)) = (pencil_return.visible, pencil_return.pixel) {
                 image.set(pixel.i, pixel.j, image.at(pixel.i, pixel.j) + pencil_return.flux);
@@ -81,9 +89,56 @@ pub(crate) fn trace_returns(
     (returns, image)
 }
 
+/// Neighbouring pencils of a row, whose lines of sight run close to one another.
+struct TileOfPencils<'a, 't, 'h> {
+    tracer: &'a BeamTracer<'a>,
+    traverser: &'t mut OcclusionTraverser<'h>,
+    /// Column and row of the first pencil.
+    first: (u32, u32),
+    hits: &'a [Option<PencilHit>],
+    returns: &'t mut [Option<Return>],
+}
+
+impl Work for TileOfPencils<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { tracer, traverser, first: (i, j), hits, returns } = self;
+        let mut views = [const { None }; TILE];
+        let mut lines = [const { None }; TILE];
+        for (lane, hit) in hits.iter().enumerate() {
+            if let Some(hit) = hit {
+                let (view, line_of_sight) = tracer.view(i + lane as u32, j, *hit);
+                views[lane] = Some(view);
+                lines[lane] = line_of_sight;
+            }
+        }
+        let occluded = traverser.occluded(&lines);
+        for (lane, pencil_return) in returns.iter_mut().enumerate() {
+            *pencil_return = views[lane].as_ref().map(|view| {
+                let visible = lines[lane].is_some() && occluded & (1 << lane) == 0;
+                tracer.pencil_return(i + lane as u32, j, view, visible)
+            });
+        }
+    }
+}
+
+/// A pencil's hit as the camera sees it, if nothing is in between.
+struct View {
+    hit: Hit,
+    observed: CameraPoint,
+    /// cos(phi)
+    cos_off_axis: f64,
+    /// cos(theta)
+    cos_view: f64,
+}
+
 impl BeamTracer<'_> {
-    /// The return of pencil (i, j), which has the given hit.
-    fn trace_return(&self, traverser: &mut OcclusionTraverser, i: u32, j: u32, hit: PencilHit) -> Return {
+    /// The view of pencil (i, j), which has the given hit; and the line of sight to it, if the camera sees the front of the
+    /// face and the point is on its image.
+    #[inline(always)]
+    fn view(&self, i: u32, j: u32, hit: PencilHit) -> (View, Option<LineOfSight>) {
         let pencil = self.rays.ray(i, j);
         let vertices = self.mesh.faces()[hit.face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
         let intersection = Intersection { triangle: Triangle::new(vertices, hit.face), t: hit.t };
@@ -92,7 +147,7 @@ impl BeamTracer<'_> {
         // The camera's angles. A point exactly in the projection centre has none; both cosines are 0 there.
         let observed = self.camera.observe(hit.point);
         let (depth, distance) = (observed.in_camera.z, observed.distance);
-        let (cos_phi, cos_theta) = if distance == 0.0 {
+        let (cos_off_axis, cos_view) = if distance == 0.0 {
             (0.0, 0.0)
         } else {
             // cos(theta) = n.(c - P) / (|n| d), and n.(c - P) = n.(c - a). The vertex a is not rounded, so a camera
@@ -102,36 +157,33 @@ impl BeamTracer<'_> {
             (depth / distance, n_dot_offset / normal.length() / distance)
         };
 
-        // Visible: from the front, beyond the image plane and on the image, with nothing in between. (Contract)
-        let focal_length = self.camera.intrinsics.focal_length;
-        let front_pixel = observed.pixel.filter(|_| cos_theta > 0.0);
-        let visible_pixel = front_pixel.filter(|_| {
-            let centre = self.camera.centre;
-            let line_of_sight =
-                LineOfSight::new(centre, focal_length, hit.point, depth, &pencil, &intersection);
-            !traverser.is_occluded(&line_of_sight)
+        // From the front, beyond the image plane and on the image. (Contract: visible)
+        let line_of_sight = (cos_view > 0.0 && observed.pixel.is_some()).then(|| {
+            let focal_length = self.camera.intrinsics.focal_length;
+            LineOfSight::new(self.camera.centre, focal_length, hit.point, depth, pencil, intersection)
         });
-        let flux = visible_pixel.map_or(0.0, |pixel| {
+        (View { hit, observed, cos_off_axis, cos_view }, line_of_sight)
+    }
+
+    /// The return of pencil (i, j).
+    #[inline(always)]
+    fn pencil_return(&self, i: u32, j: u32, view: &View, visible: bool) -> Return {
+        let View { hit, observed, cos_off_axis, cos_view } = *view;
+        let depth = observed.in_camera.z;
+        let flux = observed.pixel.filter(|_| visible).map_or(0.0, |pixel| {
             let material = self.mesh.face_materials()[hit.face.0 as usize];
             self.flux_equation.flux(&LightPath {
                 power: self.shares.power(i, j),
                 range: hit.range,
                 cos_psi: hit.cos_incidence,
                 reflectivity: self.mesh.materials()[usize::from(material)].reflectivity,
-                cos_theta,
+                cos_theta: cos_view,
                 depth,
-                distance,
+                distance: observed.distance,
                 point: observed.in_camera,
                 pixel_ray: self.camera.pixel_ray(pixel),
             })
         });
-        Return {
-            visible: visible_pixel.is_some(),
-            pixel: observed.pixel,
-            depth,
-            cos_off_axis: cos_phi,
-            cos_view: cos_theta,
-            flux,
-        }
+        Return { visible, pixel: observed.pixel, depth, cos_off_axis, cos_view, flux }
     }
 }

@@ -15,7 +15,7 @@
 //! mesh.
 
 use glam::DVec3;
-use raypencil_scene::FaceId;
+use raypencil_scene::{FaceId, Mesh};
 
 use crate::rays::TracedRay;
 
@@ -38,6 +38,11 @@ impl Triangle {
             [c, a, b]
         };
         Self { vertices, face }
+    }
+
+    /// A face of `mesh`.
+    pub(crate) fn of(mesh: &Mesh, face: FaceId) -> Self {
+        Self::new(mesh.faces()[face.0 as usize].map(|v| mesh.vertices()[v as usize]), face)
     }
 
     /// The normal n = (b - a) x (c - a), scene frame, square metres; not a unit vector.
