@@ -5,7 +5,7 @@
 //! speed measure GROUND ROUNDS WHAT...  # milliseconds of each kind of work, as a line of JSON
 //! ```
 //!
-//! `GROUND` is a number of faces of generated ground, or a scene or mesh of your own. `WHAT` is any of `maps`, `tree`,
+//! `GROUND` is a number of faces of generated ground, or a scene or mesh of your own. `WHAT` is any of `scanline`, `tracer`, `tree`,
 //! `validate`, `referee`. The number of threads is that of `RAYON_NUM_THREADS`.
 
 use std::error::Error;
@@ -121,43 +121,18 @@ fn measure(subject: &Subject, rounds: usize, what: &[&str]) -> Result<Map<String
     let scene = &subject.scene;
     let mut times = Map::new();
     times.insert("faces".into(), json!(scene.mesh().faces().len()));
-    let mut put = |name: &str, mut run: Box<dyn FnMut() -> f64 + '_>| {
+    let mut put = |name: &str, run: &mut dyn FnMut() -> f64| {
         times.insert(name.into(), json!((0..rounds).map(|_| run()).collect::<Vec<_>>()));
     };
     for &what in what {
         match what {
-            "maps" => {
-                let renderers: [(&str, Box<dyn Renderer>); 2] =
-                    [("scanline", Box::new(Scanline::exact())), ("tracer", Box::new(Tracer::new()))];
-                for (name, renderer) in &renderers {
-                    for (sensor, request) in [("camera", CAMERA), ("beams", BEAMS)] {
-                        renderer.render(scene, &request);
-                        put(
-                            &format!("{sensor}, {name}"),
-                            Box::new(|| timed(|| renderer.render(scene, &request))),
-                        );
-                    }
-                    // From the pencils' hits on: lines of sight and light, without the maps of the pencils.
-                    put(
-                        &format!("returns, {name}"),
-                        Box::new(|| {
-                            let frame = renderer.render(scene, &Request::FLUX);
-                            let of_returns = |stage: &&Stage| {
-                                let is_map = scene.sensors().any(|sensor| sensor.to_string() == stage.name);
-                                !is_map
-                                    && !["hierarchy", "tables", "flux tables"].contains(&stage.name.as_str())
-                            };
-                            let stages = frame.stages.iter().filter(of_returns);
-                            stages.map(|stage| 1e3 * stage.time.as_secs_f64()).sum()
-                        }),
-                    );
-                }
-            }
+            "scanline" => maps(scene, &Scanline::exact(), &mut put),
+            "tracer" => maps(scene, &Tracer::new(), &mut put),
             "tree" => {
                 let one = Request { camera: false, ..Request::FLUX };
                 put(
                     "tree, tracer",
-                    Box::new(|| {
+                    &mut (|| {
                         let frame = Tracer::new().render(scene, &one);
                         let tree = frame.stages.iter().find(|stage| stage.name == "hierarchy");
                         1e3 * tree.expect("the tracer's first stage").time.as_secs_f64()
@@ -167,10 +142,10 @@ fn measure(subject: &Subject, rounds: usize, what: &[&str]) -> Result<Map<String
             "validate" => {
                 let contenders =
                     ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
-                put("validate", Box::new(|| timed(|| validated(subject, &contenders))));
+                put("validate", &mut (|| timed(|| validated(subject, &contenders))));
                 let last = validated(subject, &contenders);
                 for stage in &last.stages {
-                    put(&format!("validate: {}", stage.name), Box::new(|| 1e3 * stage.time.as_secs_f64()));
+                    put(&format!("validate: {}", stage.name), &mut (|| 1e3 * stage.time.as_secs_f64()));
                 }
             }
             "referee" => {
@@ -178,17 +153,37 @@ fn measure(subject: &Subject, rounds: usize, what: &[&str]) -> Result<Map<String
                 let (width, height) = scene.size(SensorId::Camera).expect("every scene has a camera");
                 put(
                     "referee, rays per second",
-                    Box::new(|| {
+                    &mut (|| {
                         let time = timed(|| certify(&referee, width, height));
                         f64::from(width) * f64::from(height) / time * 1e3
                     }),
                 );
             }
-            other => return Err(format!("`{other}`: expected maps, tree, validate or referee").into()),
+            other => {
+                return Err(format!("`{other}`: expected scanline, tracer, tree, validate or referee").into());
+            }
         }
     }
     times.insert("peak memory, bytes".into(), json!(peak_memory()));
     Ok(times)
+}
+
+/// The maps of the camera and of the beams, and the rest of the returns.
+fn maps(scene: &Scene, renderer: &dyn Renderer, put: &mut dyn FnMut(&str, &mut dyn FnMut() -> f64)) {
+    let name = renderer.name();
+    for (sensor, request) in [("camera", CAMERA), ("beams", BEAMS)] {
+        renderer.render(scene, &request);
+        put(&format!("{sensor}, {name}"), &mut || timed(|| renderer.render(scene, &request)));
+    }
+    // From the pencils' hits on: lines of sight and light, without the maps of the pencils.
+    put(&format!("returns, {name}"), &mut || {
+        let frame = renderer.render(scene, &Request::FLUX);
+        let of_returns = |stage: &&Stage| {
+            let is_map = scene.sensors().any(|sensor| sensor.to_string() == stage.name);
+            !is_map && !["hierarchy", "tables", "flux tables"].contains(&stage.name.as_str())
+        };
+        frame.stages.iter().filter(of_returns).map(|stage| 1e3 * stage.time.as_secs_f64()).sum()
+    });
 }
 
 /// Milliseconds of one run, without the time to give its result's memory back.

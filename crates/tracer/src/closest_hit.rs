@@ -1,13 +1,14 @@
 //! The closest hit of a ray: obvhs walks the tree, `triangle` decides, and ties go to the lowest face index.
 
-use glam::DVec3;
+use std::ops::Range;
+
 use raypencil_scene::Hit;
 
 use crate::hierarchy::{Hierarchy, round_up};
 use crate::rays::TracedRay;
-use crate::tile::{BLOCK, BLOCKS, Directions, Nearest, SeenFace, Tile};
+use crate::tile::{BLOCK, BLOCKS, Nearest, SeenFace, Tile};
 use crate::triangle::Triangle;
-use crate::wide_tree::{Next, Waiting};
+use crate::wide_tree::{Next, Visitor, Waiting};
 
 /// The intersection of a ray with a face, at t.
 #[derive(Debug, Clone, Copy)]
@@ -71,73 +72,98 @@ impl<'a> ClosestHitTraverser<'a> {
     /// The nearest front that `ray` meets between the SPP and `max_range` metres.
     pub(crate) fn closest_hit(&mut self, ray: &TracedRay, max_range: f64) -> Option<Intersection> {
         let Self { hierarchy, stack } = self;
-        let mut closest = None;
-        hierarchy.boxes().walk(stack, &mut ray.bundle(round_up(max_range)), |leaf, far| {
-            for triangle in &hierarchy.faces()[leaf] {
-                if update_closest(&mut closest, triangle, ray, max_range) {
-                    let range = closest.map_or(max_range, |hit: Intersection| hit.t * ray.metres_per_t);
-                    *far = round_up(range * (1.0 + f64::EPSILON));
-                }
-            }
-            Next::On
-        });
-        closest
+        let mut seeker = RaySeeker { faces: hierarchy.faces(), ray, max_range, closest: None };
+        hierarchy.boxes().walk(stack, &mut ray.bundle(round_up(max_range)), &mut seeker);
+        seeker.closest
     }
 
-    /// The nearest front that each ray from `origin` meets between the SPP and `max_range` metres.
+    /// The nearest front that each ray of `tile` in the lanes of `active` meets between the SPP and `max_range` metres.
     #[inline(always)]
     pub(crate) fn closest_hits(
         &mut self,
-        origin: DVec3,
-        directions: &Directions,
+        tile: &mut Tile,
+        active: u64,
         max_range: f64,
-    ) -> [Nearest; BLOCKS] {
-        let mut nearest = [Nearest::NOTHING; BLOCKS];
-        directions.tiles(origin, |tile, lanes| {
-            for (b, nearest) in nearest.iter_mut().enumerate() {
-                let mask = lanes >> (b * BLOCK);
-                for k in 0..BLOCK {
-                    let takes_part = mask & (1 << k) != 0;
-                    nearest.limit[k] = if takes_part { max_range } else { -1.0 };
-                    let of_ray = tile.blocks[b].metres_per_t[k];
-                    nearest.metres_per_t[k] = if takes_part { of_ray } else { nearest.metres_per_t[k] };
-                }
-            }
-            self.walk(tile, &mut nearest, max_range);
-        });
-        nearest
-    }
-
-    #[inline(always)]
-    fn walk(&mut self, tile: &Tile, nearest: &mut [Nearest; BLOCKS], max_range: f64) {
+        nearest: &mut [Nearest; BLOCKS],
+    ) {
         let Self { hierarchy, stack } = self;
-        let mut far = [max_range; BLOCKS];
-        let mut bundle = tile.bundle(round_up(max_range));
-        hierarchy.boxes().walk(stack, &mut bundle, |leaf, bundle_far| {
-            for triangle in &hierarchy.faces()[leaf] {
-                let face = SeenFace::new(triangle, tile);
-                if tile.misses_front(&face) {
+        *nearest = [Nearest::NOTHING; BLOCKS];
+        let mut left = active;
+        while left != 0 {
+            let lanes = tile.begin(left);
+            left &= !lanes;
+            for (b, nearest) in nearest.iter_mut().enumerate() {
+                nearest.begin(lanes >> (b * BLOCK), max_range);
+            }
+            let mut bundle = tile.bundle(round_up(max_range));
+            let far = [max_range; BLOCKS];
+            let mut seeker = TileSeeker { faces: hierarchy.faces(), tile, nearest, far };
+            hierarchy.boxes().walk(stack, &mut bundle, &mut seeker);
+        }
+    }
+}
+
+/// How long a bundle stays whose hits so far are at most `range` metres away. A face at the same t may still have the lower
+/// index, so it is rounded up: the padding makes the box of such a face begin at or before the true range.
+#[inline(always)]
+fn still_to_seek(range: f64) -> f32 {
+    round_up(range * (1.0 + f64::EPSILON))
+}
+
+/// Seeks the closest hit of one ray.
+struct RaySeeker<'a> {
+    faces: &'a [Triangle],
+    ray: &'a TracedRay,
+    max_range: f64,
+    closest: Option<Intersection>,
+}
+
+impl Visitor for RaySeeker<'_> {
+    #[inline(always)]
+    fn leaf(&mut self, entries: Range<usize>, far: &mut f32) -> Next {
+        for triangle in &self.faces[entries] {
+            if update_closest(&mut self.closest, triangle, self.ray, self.max_range) {
+                let range = self.closest.map_or(self.max_range, |hit| hit.t * self.ray.metres_per_t);
+                *far = still_to_seek(range);
+            }
+        }
+        Next::On
+    }
+}
+
+/// Seeks the closest hits of a tile's rays.
+struct TileSeeker<'a> {
+    faces: &'a [Triangle],
+    tile: &'a Tile,
+    nearest: &'a mut [Nearest; BLOCKS],
+    /// The largest range at which a hit of a block would still count, metres.
+    far: [f64; BLOCKS],
+}
+
+impl Visitor for TileSeeker<'_> {
+    #[inline(always)]
+    fn leaf(&mut self, entries: Range<usize>, bundle_far: &mut f32) -> Next {
+        let Self { faces, tile, nearest, far } = self;
+        for triangle in &faces[entries] {
+            let face = SeenFace::new(triangle, tile);
+            if tile.misses_front(&face) {
+                continue;
+            }
+            let mut changed = false;
+            for b in 0..BLOCKS {
+                if tile.block_misses_front(b, &face) {
                     continue;
                 }
-                let mut changed = false;
-                for b in 0..BLOCKS {
-                    if tile.block_misses_front(b, &face) {
-                        continue;
-                    }
-                    if tile.update_closest(b, &face, triangle, &mut nearest[b]) {
-                        far[b] = nearest[b].far(&tile.blocks[b]);
-                        changed = true;
-                    }
-                }
-                if changed {
-                    // A face at the same t may still have the lower index, so the bound is rounded up: the padding makes
-                    // the box of such a face begin at or before the true range.
-                    let farthest = far[0].max(far[1]).max(far[2].max(far[3]));
-                    *bundle_far = round_up(farthest * (1.0 + f64::EPSILON));
+                if tile.update_closest(b, &face, triangle, &mut nearest[b]) {
+                    far[b] = nearest[b].far(&tile.blocks[b]);
+                    changed = true;
                 }
             }
-            Next::On
-        });
+            if changed {
+                *bundle_far = still_to_seek(far[0].max(far[1]).max(far[2].max(far[3])));
+            }
+        }
+        Next::On
     }
 }
 

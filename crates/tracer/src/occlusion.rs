@@ -25,14 +25,16 @@
 //! There remains a pencil within rounding of an edge between two faces of different slope. The definition does not
 //! decide that case, rounding does: a ray displaced by as little gets the other answer.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::closest_hit::Intersection;
 use crate::hierarchy::{Hierarchy, round_up};
 use crate::rays::TracedRay;
-use crate::tile::{BLOCK, BLOCKS, Directions, SeenFace};
+use crate::tile::{BLOCK, BLOCKS, SeenFace, Tile};
 use crate::triangle::{Triangle, widen};
-use crate::wide_tree::{Next, Waiting};
+use crate::wide_tree::{Next, Visitor, Waiting};
 
 /// The line of sight from the camera to the point that a pencil hits.
 #[derive(Debug, Clone, Copy)]
@@ -105,8 +107,9 @@ impl<'a> OcclusionTraverser<'a> {
     #[inline(always)]
     pub(crate) fn occluded(&mut self, lines: &[Option<LineOfSight>]) -> u64 {
         let Some(first) = lines.iter().flatten().next() else { return 0 };
-        let origin = first.ray.origin;
-        let mut directions = Directions::NONE;
+        let mut tile = Tile::EMPTY;
+        tile.origin = first.ray.origin;
+        let mut left = 0;
         for (lane, line) in lines.iter().enumerate() {
             if let Some(line) = line {
                 let distance = line.ray.metres_per_t;
@@ -115,43 +118,69 @@ impl<'a> OcclusionTraverser<'a> {
                     "the line of sight is {distance} m long; the boxes are padded for {} m",
                     self.hierarchy.max_trace_distance()
                 );
-                directions.set(lane, line.ray.direction);
+                tile.set_direction(lane, line.ray.direction);
+                left |= 1 << lane;
             }
         }
         let Self { hierarchy, stack } = self;
         let mut occluded = 0_u64;
-        directions.tiles(origin, |tile, lanes| {
-            let taking_part = lines.iter().enumerate().filter(|(lane, _)| lanes & (1 << lane) != 0);
-            let lengths = taking_part.filter_map(|(_, line)| line.as_ref()).map(|line| line.ray.metres_per_t);
-            let far = lengths.fold(0.0, f64::max);
+        tile.prepare();
+        while left != 0 {
+            let lanes = tile.begin(left);
+            left &= !lanes;
+            let mut far = 0.0;
+            for (lane, line) in lines.iter().enumerate() {
+                if let Some(line) = line
+                    && lanes & (1 << lane) != 0
+                {
+                    far = f64::max(far, line.ray.metres_per_t);
+                }
+            }
             // A box is entered if it begins at or before the far end. There is no near end, so faces before the image plane
             // are proposed too, and refused by the exact test.
             let mut bundle = tile.bundle(round_up(far));
-            hierarchy.boxes().walk(stack, &mut bundle, |leaf, _| {
-                for triangle in &hierarchy.faces()[leaf] {
-                    let face = SeenFace::new(triangle, tile);
-                    if tile.misses(&face) {
-                        continue;
-                    }
-                    for b in 0..BLOCKS {
-                        let open = (lanes & !occluded) >> (b * BLOCK) & ((1 << BLOCK) - 1);
-                        if open == 0 {
-                            continue;
-                        }
-                        let mut inside = tile.inside(b, &face) & open;
-                        while inside != 0 {
-                            let lane = b * BLOCK + inside.trailing_zeros() as usize;
-                            inside &= inside - 1;
-                            if lines[lane].as_ref().is_some_and(|line| line.is_blocked_by(triangle)) {
-                                occluded |= 1 << lane;
-                            }
-                        }
+            let mut seeker = Seeker { faces: hierarchy.faces(), tile: &tile, lines, open: lanes };
+            hierarchy.boxes().walk(stack, &mut bundle, &mut seeker);
+            occluded |= lanes & !seeker.open;
+        }
+        occluded
+    }
+}
+
+/// Seeks a face before each of a tile's points.
+struct Seeker<'a> {
+    faces: &'a [Triangle],
+    tile: &'a Tile,
+    lines: &'a [Option<LineOfSight>],
+    /// Lanes of the points that nothing hides so far.
+    open: u64,
+}
+
+impl Visitor for Seeker<'_> {
+    #[inline(always)]
+    fn leaf(&mut self, entries: Range<usize>, _: &mut f32) -> Next {
+        let Self { faces, tile, lines, open } = self;
+        for triangle in &faces[entries] {
+            let face = SeenFace::new(triangle, tile);
+            if tile.misses(&face) {
+                continue;
+            }
+            for b in 0..BLOCKS {
+                let of_block = *open >> (b * BLOCK) & ((1 << BLOCK) - 1);
+                if of_block == 0 {
+                    continue;
+                }
+                let mut inside = tile.inside(b, &face) & of_block;
+                while inside != 0 {
+                    let lane = b * BLOCK + inside.trailing_zeros() as usize;
+                    inside &= inside - 1;
+                    if lines[lane].as_ref().is_some_and(|line| line.is_blocked_by(triangle)) {
+                        *open &= !(1 << lane);
                     }
                 }
-                if lanes & !occluded == 0 { Next::Stop } else { Next::On }
-            });
-        });
-        occluded
+            }
+        }
+        if *open == 0 { Next::Stop } else { Next::On }
     }
 }
 

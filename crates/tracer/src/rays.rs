@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3A};
 use raypencil_scene::{Beam, Camera, Mounted, Pose, Sampling};
 
-use crate::tile::{Directions, TILE};
+use crate::tile::{BLOCK, BLOCKS, TILE, Tile};
 use crate::wide_tree::Bundle;
 
 /// One ray, prepared for many triangle tests.
@@ -135,18 +135,49 @@ impl SensorRays {
         }
     }
 
-    /// The rays of a tile of cells from (i, j) to before the `end` column and row: their origin, and their directions row by
-    /// row, as far apart in `columns` lanes.
+    /// Makes `tile` that of the cells from (i, j) to before the `end` column and row, its rows `columns` lanes apart. Returns
+    /// which lanes have a ray.
     #[inline(always)]
-    pub(crate) fn tile(&self, [i, j]: [u32; 2], end: [u32; 2], columns: u32) -> (DVec3, Directions) {
-        let mut directions = Directions::NONE;
-        for row in j..end[1] {
-            for column in i..end[0] {
-                let lane = ((row - j) * columns + (column - i)) as usize;
-                directions.set(lane, self.scene_from_sensor.apply(self.q(column, row).1));
+    pub(crate) fn fill(&self, tile: &mut Tile, [i, j]: [u32; 2], end: [u32; 2], columns: u32) -> u64 {
+        let mut active = 0;
+        for b in 0..BLOCKS {
+            let mut cells = [[0_u32; 2]; BLOCK];
+            for k in 0..BLOCK {
+                let lane = (b * BLOCK + k) as u32;
+                let cell = [i + lane % columns, j + lane / columns];
+                // A lane beyond the end has a ray too, but does not take part.
+                cells[k] = [cell[0].min(end[0] - 1), cell[1].min(end[1] - 1)];
+                active |= u64::from(cell == cells[k]) << lane;
             }
+            let mut directions = [[0.0; BLOCK]; 3];
+            match &self.source {
+                RaySource::Camera(camera) => {
+                    for k in 0..BLOCK {
+                        let q = pixel_direction(camera, cells[k][0], cells[k][1]);
+                        let direction = self.scene_from_sensor.apply(q);
+                        directions[0][k] = direction.x;
+                        directions[1][k] = direction.y;
+                        directions[2][k] = direction.z;
+                    }
+                }
+                RaySource::Beam(grid) => {
+                    let columns = f64::from(grid.beam.columns);
+                    for k in 0..BLOCK {
+                        let x =
+                            (2.0 * f64::from(cells[k][0]) + 1.0 - columns) * grid.beam.half_width / columns;
+                        let direction =
+                            self.scene_from_sensor.apply(DVec3::new(x, 0.0, grid.beam.grid_distance));
+                        directions[0][k] = direction.x;
+                        directions[1][k] = direction.y;
+                        directions[2][k] = direction.z;
+                    }
+                }
+            }
+            tile.blocks[b].direction = directions;
         }
-        (self.origin(self.q(i, j).0), directions)
+        tile.origin = self.origin(self.q(i, j).0);
+        tile.prepare();
+        active
     }
 
     /// The ray of cell (i, j).
@@ -169,14 +200,7 @@ impl SensorRays {
     #[inline(always)]
     fn q(&self, i: u32, j: u32) -> (f64, DVec3) {
         match &self.source {
-            // From the projection centre through the centre of the pixel.
-            RaySource::Camera(camera) => {
-                let [pitch_x, pitch_y] = camera.pixel_pitch;
-                let [centre_x, centre_y] = camera.principal_point;
-                let x = (f64::from(i) + 0.5 - centre_x) * pitch_x;
-                let y = (f64::from(j) + 0.5 - centre_y) * pitch_y;
-                (0.0, DVec3::new(x, y, camera.focal_length))
-            }
+            RaySource::Camera(camera) => (0.0, pixel_direction(camera, i, j)),
             // From the focal axis at the height y of the crossing, through the grid plane at the same height. (§5,
             // figure 6: the thickness is constant.) The origin of the ray is not the origin of the beam.
             RaySource::Beam(grid) => {
@@ -185,6 +209,16 @@ impl SensorRays {
             }
         }
     }
+}
+
+/// The vector from the projection centre through the centre of a pixel to the image plane, camera frame, metres.
+#[inline(always)]
+fn pixel_direction(camera: &Camera, i: u32, j: u32) -> DVec3 {
+    let [pitch_x, pitch_y] = camera.pixel_pitch;
+    let [centre_x, centre_y] = camera.principal_point;
+    let x = (f64::from(i) + 0.5 - centre_x) * pitch_x;
+    let y = (f64::from(j) + 0.5 - centre_y) * pitch_y;
+    DVec3::new(x, y, camera.focal_length)
 }
 
 /// The rotation of a pose, (q p q*) / (q . q), expanded as

@@ -14,7 +14,7 @@ use crate::hierarchy::{self, Hierarchy};
 use crate::lanes::{self, Instructions, Work};
 use crate::rays::{PencilGrid, SensorRays, TracedRay};
 use crate::returns::{self, PencilHit};
-use crate::tile::BLOCK;
+use crate::tile::{BLOCK, BLOCKS, Nearest, Tile};
 use crate::triangle::Triangle;
 
 /// Factor by which a new hierarchy's maximum trace distance exceeds the one asked for.
@@ -244,24 +244,26 @@ impl Work for Band<'_, '_, '_, '_> {
             }
             return;
         };
+        let (mut tile, mut nearest) = (Tile::EMPTY, [Nearest::NOTHING; BLOCKS]);
         for i in (0..width).step_by(columns as usize) {
             let end = [(i + columns).min(width), first_row + rows.len() as u32];
-            let (origin, directions) = rays.tile([i, first_row], end, columns);
-            let nearest = traverser.closest_hits(origin, &directions, rays.max_range());
+            let active = rays.fill(&mut tile, [i, first_row], end, columns);
+            traverser.closest_hits(&mut tile, active, rays.max_range(), &mut nearest);
             for (row, hits) in rows.iter_mut() {
                 for column in i..end[0] {
                     let lane = ((row.j - first_row) * columns + (column - i)) as usize;
                     let (of_block, k) = (&nearest[lane / BLOCK], lane % BLOCK);
                     let Ok(face) = u32::try_from(of_block.face[k]) else { continue };
                     let (face, t) = (FaceId(face), of_block.t[k]);
-                    let (direction, metres_per_t) = (directions.get(lane), of_block.metres_per_t[k]);
-                    let ray = || TracedRay::new(origin, direction);
+                    let (direction, metres_per_t) =
+                        (tile.direction(lane), tile.blocks[lane / BLOCK].metres_per_t[k]);
                     if row.wants_the_plane() {
+                        let ray = TracedRay::new(tile.origin, direction);
                         let triangle = Triangle::of(mesh, face);
-                        row.put(column, &Intersection { triangle, t }.hit(&ray(), rays.depth_per_t()));
+                        row.put(column, &Intersection { triangle, t }.hit(&ray, rays.depth_per_t()));
                     } else {
                         let (range, depth) = (t * metres_per_t, t * rays.depth_per_t());
-                        row.put_place(column, face, range, depth, origin + direction * t);
+                        row.put_place(column, face, range, depth, tile.origin + direction * t);
                     }
                     if let Some(hits) = hits {
                         hits[column as usize] = Some(PencilHit { face, t });

@@ -44,10 +44,12 @@ pub(crate) type Lanes = [f64; BLOCK];
 /// Sixteen rays of a tile, component by component.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Block {
-    /// The rays' directions along x, y, z.
+    /// The rays' directions along x, y, z. Of a cell without a ray any direction but 0.
     pub(crate) direction: [Lanes; 3],
-    /// Metres per unit of t. Of a ray that does not take part, whatever.
+    /// Metres per unit of t.
     pub(crate) metres_per_t: Lanes,
+    /// Which axis is the longest, and the way along it: 2 k, or 2 k + 1 for the negative way.
+    way: Lanes,
     corners: Corners,
 }
 
@@ -58,67 +60,139 @@ struct Corners {
     y: [f64; 4],
 }
 
-/// Up to 64 rays from one point that run the same way along the same longest axis.
+/// Up to 64 rays from one point. Those that [take part](Tile::begin) run the same way along the same longest axis.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tile {
     pub(crate) origin: DVec3,
-    pub(crate) axes: [usize; 3],
+    pub(crate) blocks: [Block; BLOCKS],
+    /// Rays that take part now, lane by lane.
+    lanes: u64,
+    /// Their [way](Block::way), and the axes that belong to it.
+    way: f64,
+    axes: [usize; 3],
     /// The sign of the longest axis.
     forward: f64,
-    pub(crate) blocks: [Block; BLOCKS],
     corners: Corners,
-    /// Least and greatest components of the unit directions.
+    /// Least and greatest components of their unit directions.
     least: DVec3,
     greatest: DVec3,
 }
 
-/// The directions of up to [`TILE`] rays, by component, before they are sorted by their longest axes.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Directions {
-    pub(crate) components: [[Lanes; 3]; BLOCKS],
-    /// Which lanes have a ray; the others have any direction but 0.
-    pub(crate) active: u64,
-}
+impl Tile {
+    /// A tile of no rays.
+    pub(crate) const EMPTY: Self = Self {
+        origin: DVec3::ZERO,
+        blocks: [Block {
+            direction: [[1.0; BLOCK]; 3],
+            metres_per_t: [1.0; BLOCK],
+            way: [0.0; BLOCK],
+            corners: Corners::of([0.0; 4]),
+        }; BLOCKS],
+        lanes: 0,
+        way: 0.0,
+        axes: [0, 1, 2],
+        forward: 1.0,
+        corners: Corners::of([0.0; 4]),
+        least: DVec3::ZERO,
+        greatest: DVec3::ZERO,
+    };
 
-impl Directions {
-    pub(crate) const NONE: Self = Self { components: [[[1.0; BLOCK]; 3]; BLOCKS], active: 0 };
+    /// The direction of one ray.
+    #[inline(always)]
+    pub(crate) fn direction(&self, lane: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|k| self.blocks[lane / BLOCK].direction[k][lane % BLOCK]))
+    }
 
     #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, direction: DVec3) {
+    pub(crate) fn set_direction(&mut self, lane: usize, direction: DVec3) {
         for k in 0..3 {
-            self.components[lane / BLOCK][k][lane % BLOCK] = direction[k];
+            self.blocks[lane / BLOCK].direction[k][lane % BLOCK] = direction[k];
         }
-        self.active |= 1 << lane;
     }
 
+    /// Computes what else is known of the rays, once their directions are set.
     #[inline(always)]
-    pub(crate) fn get(&self, lane: usize) -> DVec3 {
-        DVec3::from_array([0, 1, 2].map(|k| self.components[lane / BLOCK][k][lane % BLOCK]))
-    }
-
-    /// Calls `visit` with the tiles of these rays, and the lanes of each: one tile, but where the longest axis changes.
-    #[inline(always)]
-    pub(crate) fn tiles(&self, origin: DVec3, mut visit: impl FnMut(&Tile, u64)) {
-        let mut left = self.active;
-        while left != 0 {
-            let lead = left.trailing_zeros() as usize;
-            let axes = TracedRay::axes_of(self.get(lead));
-            let mut lanes = 0;
-            for lane in 0..TILE {
-                let same = TracedRay::axes_of(self.get(lane)) == axes;
-                lanes |= u64::from(same) << lane;
+    pub(crate) fn prepare(&mut self) {
+        for Block { direction: [dx, dy, dz], metres_per_t, way, .. } in &mut self.blocks {
+            for k in 0..BLOCK {
+                let (x, y, z) = (dx[k], dy[k], dz[k]);
+                metres_per_t[k] = DVec3::new(x, y, z).length();
+                // As `TracedRay::axes_of` chooses.
+                let of = |k: f64, component: f64| if component < 0.0 { 2.0 * k + 1.0 } else { 2.0 * k };
+                let is_x = (x.abs() >= y.abs()) & (x.abs() >= z.abs());
+                let is_y = y.abs() >= z.abs();
+                way[k] = if is_x {
+                    of(0.0, x)
+                } else if is_y {
+                    of(1.0, y)
+                } else {
+                    of(2.0, z)
+                };
             }
-            lanes &= left;
-            left &= !lanes;
-            visit(&Tile::new(origin, axes, self, lanes, lead), lanes);
         }
+    }
+
+    /// Lets those of the rays in `left` take part that run the way of the first of them: nearly always all. Returns their
+    /// lanes.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, left: u64) -> u64 {
+        let lead = left.trailing_zeros() as usize;
+        let stand_in = self.direction(lead);
+        self.way = self.blocks[lead / BLOCK].way[lead % BLOCK];
+        self.axes = TracedRay::axes_of(stand_in);
+        let [kx, ky, kz] = self.axes;
+        self.forward = if stand_in[kz] < 0.0 { -1.0 } else { 1.0 };
+        self.lanes = 0;
+        // Whatever does not take part counts as the first ray.
+        let lead_unit = stand_in / stand_in.length();
+        let lead_x = stand_in[kx] / stand_in[kz].abs();
+        let lead_y = stand_in[ky] / stand_in[kz].abs();
+        let mut bounds = [lead_x, lead_x, lead_y, lead_y];
+        (self.least, self.greatest) = (lead_unit, lead_unit);
+        for b in 0..BLOCKS {
+            let of_left = (left >> (b * BLOCK)) & ((1 << BLOCK) - 1);
+            let Block { direction, metres_per_t, way, corners } = &mut self.blocks[b];
+            let mut part = [0_u64; BLOCK];
+            for k in 0..BLOCK {
+                part[k] = u64::from(way[k] == self.way) & (of_left >> k);
+            }
+            let mask = (0..BLOCK).fold(0, |mask, k| mask | (part[k] & 1) << k);
+            self.lanes |= mask << (b * BLOCK);
+            let mut units = [[0.0; BLOCK]; 3];
+            let mut x = [0.0; BLOCK];
+            let mut y = [0.0; BLOCK];
+            for k in 0..BLOCK {
+                let takes_part = part[k] & 1 == 1;
+                for axis in 0..3 {
+                    let unit = direction[axis][k] / metres_per_t[k];
+                    units[axis][k] = if takes_part { unit } else { lead_unit[axis] };
+                }
+                let longest = direction[kz][k].abs();
+                x[k] = if takes_part { direction[kx][k] / longest } else { lead_x };
+                y[k] = if takes_part { direction[ky][k] / longest } else { lead_y };
+            }
+            let of_block = [least_of(&x), greatest_of(&x), least_of(&y), greatest_of(&y)];
+            *corners = Corners::of(of_block);
+            for axis in 0..3 {
+                self.least[axis] = self.least[axis].min(least_of(&units[axis]));
+                self.greatest[axis] = self.greatest[axis].max(greatest_of(&units[axis]));
+            }
+            bounds = [
+                bounds[0].min(of_block[0]),
+                bounds[1].max(of_block[1]),
+                bounds[2].min(of_block[2]),
+                bounds[3].max(of_block[3]),
+            ];
+        }
+        self.corners = Corners::of(bounds);
+        self.lanes
     }
 }
 
 impl Corners {
     /// Around those rays whose coordinates, divided by the longest, are within these bounds.
     #[inline(always)]
-    fn of([x_min, x_max, y_min, y_max]: [f64; 4]) -> Self {
+    const fn of([x_min, x_max, y_min, y_max]: [f64; 4]) -> Self {
         Self { x: [x_min, x_max, x_min, x_max], y: [y_min, y_min, y_max, y_max] }
     }
 
@@ -197,71 +271,6 @@ impl SeenFace {
 }
 
 impl Tile {
-    /// The rays in `lanes`, which have these `axes`; the others are as the one in lane `lead`, and take no part.
-    #[inline(always)]
-    fn new(origin: DVec3, axes: [usize; 3], directions: &Directions, lanes: u64, lead: usize) -> Self {
-        let [kx, ky, kz] = axes;
-        let stand_in = directions.get(lead);
-        let forward = if stand_in[kz] < 0.0 { -1.0 } else { 1.0 };
-        let no_bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-        let no_block = Block {
-            direction: [[1.0; BLOCK]; 3],
-            metres_per_t: [1.0; BLOCK],
-            corners: Corners::of([0.0; 4]),
-        };
-        let mut tile = Self {
-            origin,
-            axes,
-            forward,
-            blocks: [no_block; BLOCKS],
-            corners: Corners::of([0.0; 4]),
-            least: DVec3::INFINITY,
-            greatest: DVec3::NEG_INFINITY,
-        };
-        let mut of_tile = no_bounds;
-        for b in 0..BLOCKS {
-            let mask = (lanes >> (b * BLOCK)) & ((1 << BLOCK) - 1);
-            let Block { direction, metres_per_t, corners } = &mut tile.blocks[b];
-            *direction = directions.components[b];
-            if mask != (1 << BLOCK) - 1 {
-                for lane in 0..BLOCK {
-                    if mask & (1 << lane) == 0 {
-                        for k in 0..3 {
-                            direction[k][lane] = stand_in[k];
-                        }
-                    }
-                }
-            }
-            let [dx, dy, dz] = &*direction;
-            let mut units = [[0.0; BLOCK]; 3];
-            let mut x = [0.0; BLOCK];
-            let mut y = [0.0; BLOCK];
-            let (qx, qy, qz) = (&direction[kx], &direction[ky], &direction[kz]);
-            for lane in 0..BLOCK {
-                let direction = DVec3::new(dx[lane], dy[lane], dz[lane]);
-                metres_per_t[lane] = direction.length();
-                let unit = direction / metres_per_t[lane];
-                units[0][lane] = unit.x;
-                units[1][lane] = unit.y;
-                units[2][lane] = unit.z;
-                x[lane] = qx[lane] / qz[lane].abs();
-                y[lane] = qy[lane] / qz[lane].abs();
-            }
-            let bounds = [least_of(&x), greatest_of(&x), least_of(&y), greatest_of(&y)];
-            *corners = Corners::of(bounds);
-            tile.least = tile.least.min(DVec3::from_array([0, 1, 2].map(|k| least_of(&units[k]))));
-            tile.greatest = tile.greatest.max(DVec3::from_array([0, 1, 2].map(|k| greatest_of(&units[k]))));
-            of_tile = [
-                of_tile[0].min(bounds[0]),
-                of_tile[1].max(bounds[1]),
-                of_tile[2].min(bounds[2]),
-                of_tile[3].max(bounds[3]),
-            ];
-        }
-        tile.corners = Corners::of(of_tile);
-        tile
-    }
-
     /// The rays for the boxes, of which the longest is `far` metres long.
     #[inline(always)]
     pub(crate) fn bundle(&self, far: f32) -> Bundle {
@@ -362,17 +371,19 @@ pub(crate) struct Nearest {
     pub(crate) face: [i64; BLOCK],
     /// Maximum range, metres; negative for rays that take no part.
     pub(crate) limit: Lanes,
-    /// Of the ray.
-    pub(crate) metres_per_t: Lanes,
 }
 
 impl Nearest {
-    pub(crate) const NOTHING: Self = Self {
-        t: [f64::INFINITY; BLOCK],
-        face: [-1; BLOCK],
-        limit: [-1.0; BLOCK],
-        metres_per_t: [1.0; BLOCK],
-    };
+    pub(crate) const NOTHING: Self =
+        Self { t: [f64::INFINITY; BLOCK], face: [-1; BLOCK], limit: [-1.0; BLOCK] };
+
+    /// Sets the limits of the rays in the first 16 of `lanes`; the others take no part from now on.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, lanes: u64, max_range: f64) {
+        for k in 0..BLOCK {
+            self.limit[k] = if (lanes >> k) & 1 == 1 { max_range } else { -1.0 };
+        }
+    }
 
     /// The largest range at which a hit would still count, metres.
     #[inline(always)]

@@ -78,6 +78,13 @@ impl Bundle {
     }
 }
 
+/// Who looks at the leaves of a walk. A trait and not a closure: a closure would not be compiled for the wide lanes of
+/// its caller.
+pub(crate) trait Visitor {
+    /// Looks at the entries of a leaf. May shorten the bundle, which is `far` long.
+    fn leaf(&mut self, entries: std::ops::Range<usize>, far: &mut f32) -> Next;
+}
+
 /// What the entries of a leaf make of a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Next {
@@ -138,19 +145,12 @@ impl WideTree {
         Vec::with_capacity(self.stack_size)
     }
 
-    /// Shows the leaves that any ray of the bundle may meet before `far`, nearer boxes first, until one says that it is
-    /// enough. `visit` may shorten the bundle.
+    /// Shows the leaves that any ray of the bundle may meet, nearer boxes first, until it is enough.
     #[inline(always)]
-    pub(crate) fn walk(
-        &self,
-        stack: &mut Vec<Waiting>,
-        bundle: &mut Bundle,
-        mut visit: impl FnMut(std::ops::Range<usize>, &mut f32) -> Next,
-    ) {
+    pub(crate) fn walk(&self, stack: &mut Vec<Waiting>, bundle: &mut Bundle, visitor: &mut impl Visitor) {
         if self.nodes.is_empty() {
             return;
         }
-        // Which bounds the rays meet first, and the inverses that give the earliest entry and the latest exit.
         let origin = bundle.origin;
         stack.clear();
         stack.push(Waiting { near: 0.0, child: 0, end: 0 });
@@ -159,7 +159,7 @@ impl WideTree {
                 continue;
             }
             if child & LEAF != 0 {
-                if visit((child & !LEAF) as usize..end as usize, &mut bundle.far) == Next::Stop {
+                if visitor.leaf((child & !LEAF) as usize..end as usize, &mut bundle.far) == Next::Stop {
                     return;
                 }
                 continue;
