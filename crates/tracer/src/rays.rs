@@ -67,14 +67,27 @@ impl PencilGrid {
     /// x and y at which the ray of pencil (i, j) crosses the grid plane, beam frame, metres. This is the centre of
     /// its cell, or the point drawn in the cell. Offsets are multiples of 2^-33, so i + dx is exact for every i.
     pub(crate) fn crossing(&self, i: u32, j: u32) -> (f64, f64) {
-        let Beam { half_width, thickness, .. } = self.beam;
-        let (columns, rows) = (f64::from(self.beam.columns), f64::from(self.beam.rows));
+        let Beam { thickness, rows, .. } = self.beam;
+        let rows = f64::from(rows);
         let [dx, dy] = self.sampling.offset(self.index, i, j);
-        let x = (2.0 * (f64::from(i) + dx) + 1.0 - columns) * half_width / columns;
+        let x = self.across(f64::from(i) + dx);
         let y = (2.0 * (f64::from(j) + dy) + 1.0 - rows) * thickness / (2.0 * rows);
         (x, y)
     }
+
+    /// x of a point `i` columns to the right of the centre of the first, beam frame, metres.
+    #[inline(always)]
+    fn across(&self, i: f64) -> f64 {
+        let columns = f64::from(self.beam.columns);
+        (2.0 * i + 1.0 - columns) * self.beam.half_width / columns
+    }
 }
+
+/// Columns and rows of the pixels that are traced together.
+const PIXEL_TILE: [u32; 2] = [8, TILE as u32 / 8];
+
+/// Columns and rows of the pencils that are traced together: their rows start in different points.
+const PENCIL_TILE: [u32; 2] = [TILE as u32, 1];
 
 /// All rays of one sensor.
 #[derive(Debug)]
@@ -126,58 +139,57 @@ impl SensorRays {
         }
     }
 
-    /// Columns and rows of cells whose rays start in one point; `None` if each has a point of its own.
-    pub(crate) fn tile_size(&self) -> Option<(u32, u32)> {
+    /// Columns and rows of cells whose rays start in one point and run close to one another; `None` if each starts in a point
+    /// of its own.
+    pub(crate) fn tile_size(&self) -> Option<[u32; 2]> {
         match &self.source {
-            RaySource::Camera(_) => Some((8, TILE as u32 / 8)),
-            RaySource::Beam(PencilGrid { sampling: Sampling::Centres, .. }) => Some((TILE as u32, 1)),
+            RaySource::Camera(_) => Some(PIXEL_TILE),
+            RaySource::Beam(PencilGrid { sampling: Sampling::Centres, .. }) => Some(PENCIL_TILE),
             RaySource::Beam(PencilGrid { sampling: Sampling::Jittered { .. }, .. }) => None,
         }
     }
 
-    /// Makes `tile` that of the cells from (i, j) to before the `end` column and row, its rows `columns` lanes apart. Returns
-    /// which lanes have a ray.
+    /// Makes `tile` that of the cells from (i, j) on, row by row, as wide as a [tile](Self::tile_size). Returns which lanes
+    /// have a ray; the others are beyond the last cell.
     #[inline(always)]
-    pub(crate) fn fill(&self, tile: &mut Tile, [i, j]: [u32; 2], end: [u32; 2], columns: u32) -> u64 {
-        let mut active = 0;
-        for b in 0..BLOCKS {
-            let mut cells = [[0_u32; 2]; BLOCK];
-            for k in 0..BLOCK {
-                let lane = (b * BLOCK + k) as u32;
-                let cell = [i + lane % columns, j + lane / columns];
-                // A lane beyond the end has a ray too, but does not take part.
-                cells[k] = [cell[0].min(end[0] - 1), cell[1].min(end[1] - 1)];
-                active |= u64::from(cell == cells[k]) << lane;
-            }
-            let mut directions = [[0.0; BLOCK]; 3];
-            match &self.source {
-                RaySource::Camera(camera) => {
+    pub(crate) fn fill(&self, tile: &mut Tile, i: u32, j: u32) -> u64 {
+        let (width, height) = self.size();
+        // A lane beyond the last cell has that cell's ray, but does not take part.
+        let cell = |i: u32, j: u32| (f64::from(i.min(width - 1)), f64::from(j.min(height - 1)));
+        let [columns, rows] = match &self.source {
+            RaySource::Camera(camera) => {
+                let [columns, rows] = PIXEL_TILE;
+                for b in 0..BLOCKS {
+                    let [dx, dy, dz] = &mut tile.blocks[b].direction;
                     for k in 0..BLOCK {
-                        let q = pixel_direction(camera, cells[k][0], cells[k][1]);
+                        let lane = (b * BLOCK + k) as u32;
+                        let (i, j) = cell(i + lane % columns, j + lane / columns);
+                        let direction = self.scene_from_sensor.apply(pixel_direction(camera, i, j));
+                        (dx[k], dy[k], dz[k]) = (direction.x, direction.y, direction.z);
+                    }
+                }
+                [columns, rows]
+            }
+            RaySource::Beam(grid) => {
+                for b in 0..BLOCKS {
+                    let [dx, dy, dz] = &mut tile.blocks[b].direction;
+                    for k in 0..BLOCK {
+                        let (i, _) = cell(i + (b * BLOCK + k) as u32, j);
+                        let q = DVec3::new(grid.across(i), 0.0, grid.beam.grid_distance);
                         let direction = self.scene_from_sensor.apply(q);
-                        directions[0][k] = direction.x;
-                        directions[1][k] = direction.y;
-                        directions[2][k] = direction.z;
+                        (dx[k], dy[k], dz[k]) = (direction.x, direction.y, direction.z);
                     }
                 }
-                RaySource::Beam(grid) => {
-                    let columns = f64::from(grid.beam.columns);
-                    for k in 0..BLOCK {
-                        let x =
-                            (2.0 * f64::from(cells[k][0]) + 1.0 - columns) * grid.beam.half_width / columns;
-                        let direction =
-                            self.scene_from_sensor.apply(DVec3::new(x, 0.0, grid.beam.grid_distance));
-                        directions[0][k] = direction.x;
-                        directions[1][k] = direction.y;
-                        directions[2][k] = direction.z;
-                    }
-                }
+                PENCIL_TILE
             }
-            tile.blocks[b].direction = directions;
-        }
+        };
         tile.origin = self.origin(self.q(i, j).0);
         tile.prepare();
-        active
+        if i + columns <= width && j + rows <= height {
+            return u64::MAX;
+        }
+        let is_cell = |lane: &u32| i + lane % columns < width && j + lane / columns < height;
+        (0..TILE as u32).filter(is_cell).fold(0, |active, lane| active | 1 << lane)
     }
 
     /// The ray of cell (i, j).
@@ -200,7 +212,7 @@ impl SensorRays {
     #[inline(always)]
     fn q(&self, i: u32, j: u32) -> (f64, DVec3) {
         match &self.source {
-            RaySource::Camera(camera) => (0.0, pixel_direction(camera, i, j)),
+            RaySource::Camera(camera) => (0.0, pixel_direction(camera, f64::from(i), f64::from(j))),
             // From the focal axis at the height y of the crossing, through the grid plane at the same height. (§5,
             // figure 6: the thickness is constant.) The origin of the ray is not the origin of the beam.
             RaySource::Beam(grid) => {
@@ -213,11 +225,11 @@ impl SensorRays {
 
 /// The vector from the projection centre through the centre of a pixel to the image plane, camera frame, metres.
 #[inline(always)]
-fn pixel_direction(camera: &Camera, i: u32, j: u32) -> DVec3 {
+fn pixel_direction(camera: &Camera, i: f64, j: f64) -> DVec3 {
     let [pitch_x, pitch_y] = camera.pixel_pitch;
     let [centre_x, centre_y] = camera.principal_point;
-    let x = (f64::from(i) + 0.5 - centre_x) * pitch_x;
-    let y = (f64::from(j) + 0.5 - centre_y) * pitch_y;
+    let x = (i + 0.5 - centre_x) * pitch_x;
+    let y = (j + 0.5 - centre_y) * pitch_y;
     DVec3::new(x, y, camera.focal_length)
 }
 

@@ -203,7 +203,7 @@ fn trace_sensor(
     let mut hits = vec![None; if collect_hits { map.cell_count() } else { 0 }];
     let mut hit_rows = hits.chunks_exact_mut(width as usize);
     let mut rows: Vec<_> = map.rows_mut().into_iter().map(|row| (row, hit_rows.next())).collect();
-    let rows_per_band = rays.tile_size().map_or(1, |(_, rows)| rows) as usize;
+    let rows_per_band = rays.tile_size().map_or(1, |[_, rows]| rows) as usize;
     rows.par_chunks_mut(rows_per_band).for_each_init(
         || ClosestHitTraverser::new(hierarchy),
         |traverser, rows| lanes::run(instructions, Band { mesh, rays, traverser, rows }),
@@ -229,7 +229,7 @@ impl Work for Band<'_, '_, '_, '_> {
         let Self { mesh, rays, traverser, rows } = self;
         let (width, _) = rays.size();
         let first_row = rows[0].0.j;
-        let Some((columns, _)) = rays.tile_size() else {
+        let Some([columns, _]) = rays.tile_size() else {
             for (row, hits) in rows {
                 for i in 0..width {
                     let ray = rays.ray(i, row.j);
@@ -246,11 +246,10 @@ impl Work for Band<'_, '_, '_, '_> {
         };
         let (mut tile, mut nearest) = (Tile::EMPTY, [Nearest::NOTHING; BLOCKS]);
         for i in (0..width).step_by(columns as usize) {
-            let end = [(i + columns).min(width), first_row + rows.len() as u32];
-            let active = rays.fill(&mut tile, [i, first_row], end, columns);
+            let active = rays.fill(&mut tile, i, first_row);
             traverser.closest_hits(&mut tile, active, rays.max_range(), &mut nearest);
             for (row, hits) in rows.iter_mut() {
-                for column in i..end[0] {
+                for column in i..(i + columns).min(width) {
                     let lane = ((row.j - first_row) * columns + (column - i)) as usize;
                     let (of_block, k) = (&nearest[lane / BLOCK], lane % BLOCK);
                     let Ok(face) = u32::try_from(of_block.face[k]) else { continue };
