@@ -58,24 +58,7 @@ pub(crate) struct HitBounds {
 impl HitBounds {
     /// The bounds for a hit on `face` at `range` metres along `ray`.
     pub(crate) fn of(mesh: &Mesh, face: FaceId, ray: &Ray, range: f64, precision: Precision) -> Self {
-        let u = precision.unit_roundoff;
-        let [a, b, c] = mesh.faces()[face.0 as usize].map(|v| {
-            let [x, y, z] = mesh.vertices()[v as usize];
-            DVec3::new(f64::from(x), f64::from(y), f64::from(z))
-        });
-        let (e1, e2) = (b - a, c - a);
-        let n = e1.cross(e2);
-        let aspect = e1.length() * e2.length() / n.length();
-        let longest_edge = e1.length().max(e2.length()).max((c - b).length());
-        let scale = range + longest_edge + ray.origin.length();
-        let cosine = (n.dot(ray.direction) / (n.length() * ray.direction.length())).abs();
-        let range_bound = RANGE_ROUNDINGS * aspect * u * scale / cosine;
-        Self {
-            range: range_bound,
-            point: range_bound + POINT_ROUNDINGS * u * scale,
-            normal: NORMAL_ROUNDINGS * aspect * u,
-            cos_incidence: INCIDENCE_ROUNDINGS * aspect * u * scale / range,
-        }
+        FaceShape::of(mesh, face).met_by(ray).bounds(range, precision)
     }
 
     /// The bounds for an exact hit along `ray`.
@@ -100,6 +83,71 @@ impl HitBounds {
             point: self.point + other.point,
             normal: self.normal + other.normal,
             cos_incidence: self.cos_incidence + other.cos_incidence,
+        }
+    }
+}
+
+/// What the bounds of all hits on one face depend on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FaceShape {
+    /// n, square metres.
+    n: DVec3,
+    n_length: f64,
+    /// kappa.
+    aspect: f64,
+    /// L, metres.
+    longest_edge: f64,
+}
+
+impl FaceShape {
+    pub(crate) fn of(mesh: &Mesh, face: FaceId) -> Self {
+        let [a, b, c] = mesh.faces()[face.0 as usize].map(|v| {
+            let [x, y, z] = mesh.vertices()[v as usize];
+            DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+        });
+        let (e1, e2) = (b - a, c - a);
+        let n = e1.cross(e2);
+        let n_length = n.length();
+        let aspect = e1.length() * e2.length() / n_length;
+        let longest_edge = e1.length().max(e2.length()).max((c - b).length());
+        Self { n, n_length, aspect, longest_edge }
+    }
+
+    /// With what the ray adds.
+    #[inline]
+    pub(crate) fn met_by(&self, ray: &Ray) -> MetFace {
+        MetFace {
+            aspect: self.aspect,
+            longest_edge: self.longest_edge,
+            origin: ray.origin.length(),
+            cosine: (self.n.dot(ray.direction) / (self.n_length * ray.direction.length())).abs(),
+        }
+    }
+}
+
+/// What the bounds of a hit depend on, beside its range and the arithmetic.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MetFace {
+    aspect: f64,
+    longest_edge: f64,
+    /// |o|, metres.
+    origin: f64,
+    /// c = cos(psi).
+    cosine: f64,
+}
+
+impl MetFace {
+    /// The bounds for a hit at `range` metres.
+    #[inline]
+    pub(crate) fn bounds(&self, range: f64, precision: Precision) -> HitBounds {
+        let u = precision.unit_roundoff;
+        let scale = range + self.longest_edge + self.origin;
+        let range_bound = RANGE_ROUNDINGS * self.aspect * u * scale / self.cosine;
+        HitBounds {
+            range: range_bound,
+            point: range_bound + POINT_ROUNDINGS * u * scale,
+            normal: NORMAL_ROUNDINGS * self.aspect * u,
+            cos_incidence: INCIDENCE_ROUNDINGS * self.aspect * u * scale / range,
         }
     }
 }

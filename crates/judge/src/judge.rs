@@ -84,9 +84,9 @@ impl<'s> Judge<'s> {
         range: Option<f64>,
         precision: Precision,
     ) -> Ruling {
-        let tolerance = self.tolerance(place, answer, range, precision);
+        let tolerance = || self.tolerance(place, answer, range, precision);
         // A face that the mesh does not have is as wrong as can be.
-        self.referee.rule(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
+        self.referee.rule_within(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
     }
 
     /// Rules on the visibility and the pixel that one side states for a pencil's hit on `face`.

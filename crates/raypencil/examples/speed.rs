@@ -2,11 +2,12 @@
 //!
 //! ```sh
 //! speed write GROUND FOLDER            # the triangles and the rays of a scene, as Embree is asked
-//! speed measure GROUND ROUNDS WHAT...  # milliseconds of each kind of work, as a line of JSON
+//! speed measure GROUND ROUNDS ROW...   # milliseconds of rows of the table, as a line of JSON
 //! ```
 //!
-//! `GROUND` is a number of faces of generated ground, or a scene or mesh of your own. `WHAT` is any of `scanline`, `tracer`, `tree`,
-//! `validate`, `referee`. The number of threads is that of `RAYON_NUM_THREADS`.
+//! `GROUND` is a number of faces of generated ground, or a scene or mesh of your own. `ROW` is `camera, NAME`, `beams, NAME`,
+//! `returns, NAME` or `first frame, NAME` of a renderer, or `validate` or `referee`. The number of threads is that of
+//! `RAYON_NUM_THREADS`.
 
 use std::error::Error;
 use std::fs::File;
@@ -20,7 +21,7 @@ use raypencil::harness::{Contender, contender, validate};
 use raypencil::io::{Overrides, Subject, load, load_text};
 use raypencil::judge::JudgeShare;
 use raypencil::{
-    Camera, Mounted, Quantities, Referee, Renderer, Request, Scanline, Scene, SensorId, Silent, Stage, Tracer,
+    Camera, Mounted, Quantities, Referee, Renderer, Request, Scanline, Scene, SensorId, Silent, Stage,
 };
 use serde_json::{Map, Value, json};
 
@@ -34,12 +35,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["write", ground, folder] => write(&subject(ground)?.scene, Path::new(folder)),
-        ["measure", ground, rounds, ref what @ ..] if !what.is_empty() => {
-            let times = measure(&subject(ground)?, rounds.parse()?, what)?;
+        ["measure", ground, rounds, ref rows @ ..] if !rows.is_empty() => {
+            let times = measure(&subject(ground)?, rounds.parse()?, rows)?;
             println!("{}", Value::Object(times));
             Ok(())
         }
-        _ => Err("expected `write GROUND FOLDER` or `measure GROUND ROUNDS WHAT...`".into()),
+        _ => Err("expected `write GROUND FOLDER` or `measure GROUND ROUNDS ROW...`".into()),
     }
 }
 
@@ -116,74 +117,85 @@ fn floats(path: &Path, numbers: impl Iterator<Item = f32>) -> std::io::Result<()
     file.flush()
 }
 
-/// Milliseconds of `rounds` runs of each kind of work; peak memory.
-fn measure(subject: &Subject, rounds: usize, what: &[&str]) -> Result<Map<String, Value>, Box<dyn Error>> {
-    let scene = &subject.scene;
-    let mut times = Map::new();
-    times.insert("faces".into(), json!(scene.mesh().faces().len()));
-    let mut put = |name: &str, run: &mut dyn FnMut() -> f64| {
-        times.insert(name.into(), json!((0..rounds).map(|_| run()).collect::<Vec<_>>()));
-    };
-    for &what in what {
-        match what {
-            "scanline" => maps(scene, &Scanline::exact(), &mut put),
-            "tracer" => maps(scene, &Tracer::new(), &mut put),
-            "tree" => {
-                let one = Request { camera: false, ..Request::FLUX };
-                put(
-                    "tree, tracer",
-                    &mut (|| {
-                        let frame = Tracer::new().render(scene, &one);
-                        let tree = frame.stages.iter().find(|stage| stage.name == "hierarchy");
-                        1e3 * tree.expect("the tracer's first stage").time.as_secs_f64()
-                    }),
-                );
+/// What each row of the table measures, `rounds` times; and the most memory that it took.
+fn measure(subject: &Subject, rounds: usize, rows: &[&str]) -> Result<Map<String, Value>, Box<dyn Error>> {
+    let mut measured = Map::new();
+    measured.insert("faces".into(), json!(subject.scene.mesh().faces().len()));
+    for &row in rows {
+        match row.split_once(", ") {
+            Some((what @ ("camera" | "beams" | "returns" | "first frame"), name)) => {
+                let renderer =
+                    || contender(name).ok_or(format!("`{name}` is no renderer")).map(|of| of.renderer);
+                let times = maps(&subject.scene, what, rounds, &mut || renderer())?;
+                measured.insert(row.into(), json!(times));
             }
-            "validate" => {
-                let contenders =
-                    ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
-                put("validate", &mut (|| timed(|| validated(subject, &contenders))));
-                let last = validated(subject, &contenders);
-                for stage in &last.stages {
-                    put(&format!("validate: {}", stage.name), &mut (|| 1e3 * stage.time.as_secs_f64()));
-                }
-            }
-            "referee" => {
-                let referee = Referee::new(scene);
-                let (width, height) = scene.size(SensorId::Camera).expect("every scene has a camera");
-                put(
-                    "referee, rays per second",
-                    &mut (|| {
-                        let time = timed(|| certify(&referee, width, height));
-                        f64::from(width) * f64::from(height) / time * 1e3
-                    }),
-                );
-            }
-            other => {
-                return Err(format!("`{other}`: expected scanline, tracer, tree, validate or referee").into());
-            }
+            _ => measured.extend(work(subject, row, rounds)?),
         }
     }
-    times.insert("peak memory, bytes".into(), json!(peak_memory()));
-    Ok(times)
+    measured.insert("peak memory, bytes".into(), json!(peak_memory()));
+    Ok(measured)
 }
 
-/// The maps of the camera and of the beams, and the rest of the returns.
-fn maps(scene: &Scene, renderer: &dyn Renderer, put: &mut dyn FnMut(&str, &mut dyn FnMut() -> f64)) {
-    let name = renderer.name();
-    for (sensor, request) in [("camera", CAMERA), ("beams", BEAMS)] {
-        renderer.render(scene, &request);
-        put(&format!("{sensor}, {name}"), &mut || timed(|| renderer.render(scene, &request)));
-    }
-    // From the pencils' hits on: lines of sight and light, without the maps of the pencils.
-    put(&format!("returns, {name}"), &mut || {
+/// Milliseconds of a renderer's maps of the camera or of the beams; of the rest of the returns; or of the tree that its first
+/// frame begins with.
+fn maps(
+    scene: &Scene,
+    what: &str,
+    rounds: usize,
+    renderer: &mut dyn FnMut() -> Result<Box<dyn Renderer>, String>,
+) -> Result<Vec<f64>, String> {
+    let kept = renderer()?;
+    let is_map = |stage: &Stage| scene.sensors().any(|sensor| sensor.to_string() == stage.name);
+    let is_kept = |stage: &Stage| ["hierarchy", "tables", "flux tables"].contains(&stage.name.as_str());
+    let of_stages = |renderer: &dyn Renderer, counts: &dyn Fn(&Stage) -> bool| -> f64 {
         let frame = renderer.render(scene, &Request::FLUX);
-        let of_returns = |stage: &&Stage| {
-            let is_map = scene.sensors().any(|sensor| sensor.to_string() == stage.name);
-            !is_map && !["hierarchy", "tables", "flux tables"].contains(&stage.name.as_str())
-        };
-        frame.stages.iter().filter(of_returns).map(|stage| 1e3 * stage.time.as_secs_f64()).sum()
-    });
+        frame.stages.iter().filter(|stage| counts(stage)).map(|stage| 1e3 * stage.time.as_secs_f64()).sum()
+    };
+    let request = if what == "camera" { CAMERA } else { BEAMS };
+    // The first frame makes what a renderer keeps.
+    kept.render(scene, if what == "returns" { &Request::FLUX } else { &request });
+    (0..rounds)
+        .map(|_| match what {
+            // From the pencils' hits on: lines of sight and light.
+            "returns" => Ok(of_stages(kept.as_ref(), &|stage| !is_map(stage) && !is_kept(stage))),
+            "first frame" => Ok(of_stages(renderer()?.as_ref(), &is_kept)),
+            _ => Ok(timed(|| kept.render(scene, &request))),
+        })
+        .collect()
+}
+
+/// What belongs to no single renderer.
+fn work(subject: &Subject, row: &str, rounds: usize) -> Result<Map<String, Value>, Box<dyn Error>> {
+    let mut measured = Map::new();
+    match row {
+        "validate" => {
+            let contenders = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
+            validated(subject, &contenders);
+            let mut stages: Vec<(String, Vec<f64>)> = vec![("validate".into(), Vec::new())];
+            for _ in 0..rounds {
+                let start = Instant::now();
+                let validation = validated(subject, &contenders);
+                stages[0].1.push(1e3 * start.elapsed().as_secs_f64());
+                for stage in &validation.stages {
+                    let (name, time) = (format!("validate: {}", stage.name), 1e3 * stage.time.as_secs_f64());
+                    match stages.iter_mut().find(|(of, _)| *of == name) {
+                        Some((_, times)) => times.push(time),
+                        None => stages.push((name, vec![time])),
+                    }
+                }
+            }
+            measured.extend(stages.into_iter().map(|(name, times)| (name, json!(times))));
+        }
+        "referee" => {
+            let referee = Referee::new(&subject.scene);
+            let (width, height) = subject.scene.size(SensorId::Camera).expect("every scene has a camera");
+            let rays_per_second = |time: f64| f64::from(width) * f64::from(height) / time * 1e3;
+            let rates = (0..rounds).map(|_| rays_per_second(timed(|| certify(&referee, width, height))));
+            measured.insert(row.into(), json!(rates.collect::<Vec<_>>()));
+        }
+        other => return Err(format!("`{other}`: no row of the table").into()),
+    }
+    Ok(measured)
 }
 
 /// Milliseconds of one run, without the time to give its result's memory back.

@@ -69,6 +69,18 @@ impl Referee<'_> {
         answer: Option<FaceId>,
         tolerance: Tolerance,
     ) -> Option<Ruling> {
+        self.rule_within(sensor, i, j, answer, || tolerance)
+    }
+
+    /// The same, the tolerance being asked for only where the answer is not the exact one.
+    pub fn rule_within(
+        &self,
+        sensor: SensorId,
+        i: u32,
+        j: u32,
+        answer: Option<FaceId>,
+        tolerance: impl FnOnce() -> Tolerance,
+    ) -> Option<Ruling> {
         let (sensor, aim) = self.sensor_and_aim(sensor, i, j)?;
         let nearest = self.nearest(&sensor, aim);
         match answer {
@@ -78,6 +90,7 @@ impl Referee<'_> {
             }
             _ => {}
         }
+        let tolerance = tolerance();
         let lateral = tolerance.lateral.clamp(0.0, 1.0);
         let witness = match answer {
             None => self.displaced_miss(&sensor, aim, &nearest, lateral),

@@ -8,7 +8,8 @@ use crate::difference::{Difference, distance, hit_values};
 use crate::entry::RayEntry;
 use crate::judge::Judge;
 use crate::quantity::{Item, Quantity};
-use raypencil_scene::{HitQuantity, Place, Precision};
+use raypencil_referee::Ruling;
+use raypencil_scene::{FaceId, Hit, HitQuantity, Place, Precision};
 
 /// One ray's hit on two sides, compared.
 #[derive(Debug, Clone, Copy)]
@@ -47,11 +48,18 @@ pub(super) fn compare_hit<'m>(
     let is_named = |answer: &StatedHit<'_>| !answer.hits() || answer.face.is_some();
     let ruled = (is_named(&of_a) && is_named(&of_b) && (differ || judge.samples(place))).then(|| {
         entry.judged();
-        let class_of = |answer: &StatedHit<'_>, side: Side<'_>| {
-            let ruling = judge.rule(place, answer.face, answer.range, side.precision);
+        let rule = |answer: &StatedHit<'_>, side: Side<'_>| {
+            judge.rule(place, answer.face, answer.range, side.precision)
+        };
+        let of_first = rule(&of_a, a);
+        // The exact answer and a tie are so for any arithmetic.
+        let is_settled = matches!(of_first, Ruling::Exact | Ruling::Tie) && of_a.face == of_b.face && !differ;
+        let rulings = [of_first, if is_settled { of_first } else { rule(&of_b, b) }];
+        let class_of = |(ruling, side): (Ruling, Side<'_>)| {
             Class::of(ruling, side.attributions.is_some_and(|causes| causes.cause(place).is_some()))
         };
-        class_of(&of_a, a).max(class_of(&of_b, b))
+        let [of_a, of_b] = [(rulings[0], a), (rulings[1], b)].map(class_of);
+        of_a.max(of_b)
     });
     // Answers without a ruling agree only if they are the same.
     let class = ruled.unwrap_or(if differ { Class::Defect } else { Class::Agree });
@@ -77,8 +85,15 @@ pub(super) fn compare_hit<'m>(
     let bounds = compared.bounds.map(|[of_a, of_b]| of_a.plus(&of_b));
     // Each side's values must be those of the face that it names itself, whatever the other side states.
     if ruled.is_some() {
+        let mut exact: Option<(FaceId, Option<Hit>)> = None;
         for (answer, side) in answers.iter().zip([a, b]) {
-            entry.force_defect(item_off_its_face(judge, place, answer, side));
+            let Some(face) = answer.face else { continue };
+            let hit = match exact {
+                Some((of, hit)) if of == face => hit,
+                _ => judge.plane_hit(place, face),
+            };
+            exact = Some((face, hit));
+            entry.force_defect(hit.and_then(|hit| item_off_its_face(judge, place, answer, side, &hit)));
         }
     }
     if same_face.is_some() {
@@ -103,21 +118,21 @@ pub(super) fn compare_hit<'m>(
     compared
 }
 
-/// The item of an answer, if any, that is not within its bound of the values of the face that it names. Numbers come
-/// before vectors.
+/// The item of an answer, if any, that is not within its bound of the `exact` values of the face that it names. Numbers
+/// come before vectors.
 fn item_off_its_face(
     judge: &Judge<'_>,
     place: Place,
     answer: &StatedHit<'_>,
     side: Side<'_>,
+    exact: &Hit,
 ) -> Option<Item> {
     let scene = judge.scene();
-    let exact = judge.plane_hit(place, answer.face?)?;
     let ray = scene.ray(place.sensor, place.i, place.j)?;
-    let bounds = |precision| HitBounds::of_exact(scene, &ray, &exact, precision);
+    let bounds = |precision| HitBounds::of_exact(scene, &ray, exact, precision);
     // The exact values are the referee's, rounded to f64.
     let bounds = bounds(side.precision).plus(&bounds(Precision::F64));
-    let values = hit_values(answer, &exact, &bounds);
+    let values = hit_values(answer, exact, &bounds);
     let is_off = |is_scalar: bool| {
         values.iter().find(move |value| value.is_scalar() == is_scalar && !value.difference().is_within())
     };

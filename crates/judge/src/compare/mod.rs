@@ -4,6 +4,7 @@
 //! rays add up to those compared. The referee rules on every ray whose two answers differ, and on a sample of those
 //! that agree: two renderers may share a mistake.
 
+mod agreeing;
 mod flux_pair;
 mod hit;
 mod pencil;
@@ -15,6 +16,7 @@ pub(crate) mod single;
 use rayon::prelude::*;
 
 use crate::answer::{StatedHit, StatedReturn};
+use crate::compare::agreeing::AgreeingPixels;
 use crate::compare::flux_pair::FluxPair;
 use crate::compare::pixel::BeamImages;
 use crate::compare::ray::{ComparedRays, compare_ray};
@@ -192,8 +194,14 @@ fn compare_maps(
         .into_par_iter()
         .map(|j| {
             let mut row = ComparedRays::none(sensor);
-            for i in 0..width {
-                compare_ray(judge, Place { sensor, i, j }, (map_a, a), (map_b, b), light, &mut row);
+            let mut agreeing = match sensor {
+                SensorId::Camera => AgreeingPixels::new(judge, (map_a, a), (map_b, b), light),
+                SensorId::Beam(_) => None,
+            };
+            for place in (0..width).map(|i| Place { sensor, i, j }) {
+                if !agreeing.as_mut().is_some_and(|agreeing| agreeing.enter(place, &mut row)) {
+                    compare_ray(judge, place, (map_a, a), (map_b, b), light, &mut row);
+                }
             }
             row
         })

@@ -15,7 +15,10 @@ use raypencil_scene::{Image, Scene, Switches};
 /// The images of one beam on both sides, and the pencils that contribute to each pixel.
 pub(super) struct BeamImages<'a> {
     images: [&'a Image<f64>; 2],
-    pixels: Vec<PixelPencils>,
+    /// For each pixel the place of its pencils in `pencils`.
+    index: Vec<u32>,
+    /// First those of all pixels without any.
+    pencils: Vec<PixelPencils>,
     /// u, of the coarser of the two arithmetics.
     unit_roundoff: f64,
 }
@@ -58,7 +61,8 @@ impl<'a> BeamImages<'a> {
         unit_roundoff: f64,
     ) -> Self {
         let camera = &scene.camera().sensor;
-        let mut pixels = vec![PixelPencils::NONE; camera.width as usize * camera.height as usize];
+        let mut index_of = vec![0; camera.width as usize * camera.height as usize];
+        let mut all = vec![PixelPencils::NONE];
         for pencil in pencils {
             let index = |k: usize| {
                 pencil.delivered[k]
@@ -69,7 +73,11 @@ impl<'a> BeamImages<'a> {
             let is_alike = a.map(|(at, _)| at) == b.map(|(at, _)| at) && pencil.class == Class::Agree;
             for (k, delivered) in [a, b].into_iter().enumerate() {
                 let Some((at, flux)) = delivered else { continue };
-                let pixel = &mut pixels[at];
+                if index_of[at] == 0 {
+                    index_of[at] = all.len() as u32;
+                    all.push(PixelPencils::NONE);
+                }
+                let pixel = &mut all[index_of[at] as usize];
                 pixel.count += 1;
                 pixel.sums[k] += flux;
                 if is_alike {
@@ -83,11 +91,19 @@ impl<'a> BeamImages<'a> {
                 }
             }
         }
-        Self { images, pixels, unit_roundoff }
+        Self { images, index: index_of, pencils: all, unit_roundoff }
     }
 
     fn pencils(&self, i: u32, j: u32) -> &PixelPencils {
-        &self.pixels[j as usize * self.images[0].width() as usize + i as usize]
+        let at = j as usize * self.images[0].width() as usize + i as usize;
+        &self.pencils[self.index[at] as usize]
+    }
+
+    /// Whether no pencil lands in a pixel, and neither side has light there.
+    #[inline]
+    pub(super) fn are_dark(&self, i: u32, j: u32) -> bool {
+        let at = j as usize * self.images[0].width() as usize + i as usize;
+        self.index[at] == 0 && self.images.iter().all(|image| image.cells()[at] == 0.0)
     }
 
     /// The causes of the pencils in a pixel that are not alike.
