@@ -146,7 +146,8 @@ fn maps(
 ) -> Result<Vec<f64>, String> {
     let kept = renderer()?;
     let is_map = |stage: &Stage| scene.sensors().any(|sensor| sensor.to_string() == stage.name);
-    let is_kept = |stage: &Stage| ["hierarchy", "tables", "flux tables"].contains(&stage.name.as_str());
+    let is_kept =
+        |stage: &Stage| ["hierarchy", "clusters", "tables", "flux tables"].contains(&stage.name.as_str());
     let of_stages = |renderer: &dyn Renderer, counts: &dyn Fn(&Stage) -> bool| -> f64 {
         let frame = renderer.render(scene, &Request::FLUX);
         frame.stages.iter().filter(|stage| counts(stage)).map(|stage| 1e3 * stage.time.as_secs_f64()).sum()

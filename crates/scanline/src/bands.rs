@@ -1,10 +1,12 @@
-//! The main loop of §4: faces are sorted into bands of rows, and the bands are scanned in parallel.
+//! The main loop of §4: faces are sorted into bands of rows, and the bands are scanned in parallel. Of equally near faces a
+//! cell keeps the one with the lowest index, so neither the order of faces nor the number of threads matters.
 
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{FaceId, Mesh, Quantities, SensorId, SensorMap, SensorRow};
 
 use crate::clip::{AddedLines, ClippedTriangle, Edge, clip_at_spp};
+use crate::clusters::Clusters;
 use crate::options::ScanlineOptions;
 use crate::plane::{Plane, plane_in_scene};
 use crate::printed_skip::SensorScreen;
@@ -12,12 +14,13 @@ use crate::raster::{InverseTLimits, Raster};
 use crate::scan::SplitTriangle;
 use crate::skip::{ABOVE, BEHIND_SPP, BELOW, LEFT, RIGHT};
 use crate::spp::ProjectedLine;
+use crate::spp::widen;
 use crate::transformation::Transformation;
-use crate::vertices::{self, SensorVertex, widen};
+use crate::vertices::{PlacedFace, SensorVertex, TransformedClusters};
 use crate::{Fidelity, edges};
 
-/// Number of faces that one task sorts into bands.
-const FACES_PER_TASK: usize = 8192;
+/// Number of clusters whose faces one task sorts into bands.
+const CLUSTERS_PER_TASK: usize = 64;
 
 /// Number of cells of a band: 1/t and face of that many fit a core's own cache.
 const CELLS_PER_BAND: u32 = 32_768;
@@ -27,9 +30,17 @@ fn rows_per_band(width: u32, height: u32) -> u32 {
     (CELLS_PER_BAND / width).clamp(1, height)
 }
 
+/// The faces of some clusters, sorted into bands of rows.
+struct SortedClusters {
+    clusters: TransformedClusters,
+    /// The faces that may touch each band.
+    bands: Vec<Vec<PlacedFace>>,
+}
+
 /// Renders the maps of one sensor.
 pub(crate) fn render<T: Transformation>(
     mesh: &Mesh,
+    clusters: &Clusters,
     transformation: &T,
     sensor: SensorId,
     quantities: Quantities,
@@ -38,54 +49,60 @@ pub(crate) fn render<T: Transformation>(
     let (width, height) = (transformation.columns().count(), transformation.rows().count());
     let mut map = SensorMap::empty(sensor, width, height, quantities);
 
-    // Step 2: all vertices into the sensor's frame.
-    let vertices = vertices::transform(mesh, |scene_point| {
-        let sensor_from_scene = transformation.sensor_from_scene();
-        let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
-        let projection = transformation.project(position);
-        SensorVertex { position, projection, outside: transformation.outside(position) }
-    });
-
-    // Steps 1 and 3: drop the faces that cannot be seen, sort the others into bands of rows.
-    let rows_per_band = rows_per_band(width, height);
-    let band_count = height.div_ceil(rows_per_band) as usize;
     let as_printed = options.switches.skip_rules == Fidelity::Paper;
     let scanner = FaceScanner {
         mesh,
-        vertices: &vertices,
         transformation,
         skip_unseen: options.skip_unseen && !as_printed,
         screen: SensorScreen::new(transformation.columns(), transformation.rows()),
     };
     let printed_rules_3 = options.skip_unseen && as_printed;
-    let faces_by_task: Vec<Vec<Vec<FaceId>>> = (0..mesh.faces().len().div_ceil(FACES_PER_TASK))
-        .into_par_iter()
-        .map(|task| {
+    let sensor_from_scene = transformation.sensor_from_scene();
+
+    // Steps 1 and 3 for whole clusters.
+    let seen = if scanner.skip_unseen {
+        clusters.seen(sensor_from_scene.position(), |corners| {
+            let outside = |corner: &DVec3| transformation.outside(sensor_from_scene.in_sensor_axes(*corner));
+            corners.iter().fold(u8::MAX, |all, corner| all & outside(corner)) != 0
+        })
+    } else {
+        clusters.all()
+    };
+
+    // Step 2: the vertices of the others into the sensor's frame. Steps 1 and 3: drop the faces that cannot be seen, sort
+    // the others into bands of rows.
+    let rows_per_band = rows_per_band(width, height);
+    let band_count = height.div_ceil(rows_per_band) as usize;
+    let sorted: Vec<SortedClusters> = seen
+        .par_chunks(CLUSTERS_PER_TASK)
+        .map(|which| {
+            let clusters = TransformedClusters::new(mesh, clusters, which, |scene_point| {
+                let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
+                let projection = transformation.project(position);
+                SensorVertex { position, projection, outside: transformation.outside(position) }
+            });
             let mut bands = vec![Vec::new(); band_count];
-            let first = task * FACES_PER_TASK;
-            let end = (first + FACES_PER_TASK).min(mesh.faces().len());
-            for index in first..end {
-                let id = FaceId(index as u32);
-                if let Some(rows) = scanner.rows(id) {
+            for &face in &clusters.faces {
+                if let Some(rows) = scanner.rows(&clusters, face) {
                     for band in rows.start / rows_per_band..=(rows.end - 1) / rows_per_band {
-                        bands[band as usize].push(id);
+                        bands[band as usize].push(face);
                     }
                 }
             }
-            bands
+            SortedClusters { clusters, bands }
         })
         .collect();
 
-    // Step 4, band by band. A band scans its faces in ascending order for any number of threads.
+    // Step 4, band by band.
     let mut rows = map.rows_mut();
     rows.par_chunks_mut(rows_per_band as usize).enumerate().for_each(|(band, rows)| {
         let mut raster = Raster::new(rows[0].j, rows.len() as u32, width);
-        for bands in &faces_by_task {
+        for SortedClusters { clusters, bands } in &sorted {
             // Decided here, not for every face: that would cost the exact rules some 3 % of their time.
             if printed_rules_3 {
-                scanner.scan::<true>(&bands[band], rows, &mut raster);
+                scanner.scan::<true>(clusters, &bands[band], rows, &mut raster);
             } else {
-                scanner.scan::<false>(&bands[band], rows, &mut raster);
+                scanner.scan::<false>(clusters, &bands[band], rows, &mut raster);
             }
         }
         raster.resolve(mesh, transformation, quantities, rows);
@@ -94,10 +111,9 @@ pub(crate) fn render<T: Transformation>(
     map
 }
 
-/// The terrain's faces in the frame of one sensor, and the rules by which they are skipped.
+/// The terrain in the frame of one sensor, and the rules by which faces are skipped.
 struct FaceScanner<'a, T> {
     mesh: &'a Mesh,
-    vertices: &'a [SensorVertex],
     transformation: &'a T,
     /// Whether faces are skipped by the conservative forms of rules 1 and 3.
     skip_unseen: bool,
@@ -111,10 +127,9 @@ impl<T: Transformation> FaceScanner<'_, T> {
     /// The printed rules are applied later, since they concern what clipping leaves: 1b in
     /// `Transformation::row_inverse_t`, rules 3 in `scan_clipped`.
     #[inline]
-    fn rows(&self, id: FaceId) -> Option<std::ops::Range<u32>> {
+    fn rows(&self, clusters: &TransformedClusters, face: PlacedFace) -> Option<std::ops::Range<u32>> {
         let transformation = self.transformation;
-        let face = self.mesh.faces()[id.0 as usize];
-        let [a, b, c] = face.map(|v| &self.vertices[v as usize]);
+        let [a, b, c] = clusters.vertices_of(face);
         let (all, any) = (a.outside & b.outside & c.outside, a.outside | b.outside | c.outside);
         // 1a, 3a, 3b.
         if self.skip_unseen && all != 0 {
@@ -142,7 +157,8 @@ impl<T: Transformation> FaceScanner<'_, T> {
             }
             // 1b, if no row sees the front. (The rows of a beam differ. Between the first and the last the offset is
             // affine in y.)
-            let scene_vertices = face.map(|v| widen(self.mesh.vertices()[v as usize]));
+            let scene_vertices =
+                self.mesh.faces()[face.id.0 as usize].map(|v| widen(self.mesh.vertices()[v as usize]));
             let (n, offset) = plane_in_scene(&scene_vertices, transformation.sensor_from_scene());
             let plane = Plane {
                 normal: transformation.sensor_from_scene().in_sensor_axes(n),
@@ -168,9 +184,15 @@ impl<T: Transformation> FaceScanner<'_, T> {
 
     /// Step 4: scans faces into some rows. With `PRINTED_RULES_3` it first applies rules 3 as printed.
     #[inline(never)]
-    fn scan<const PRINTED_RULES_3: bool>(&self, ids: &[FaceId], rows: &[SensorRow<'_>], raster: &mut Raster) {
-        for &id in ids {
-            self.scan_face::<PRINTED_RULES_3>(id, rows, raster);
+    fn scan<const PRINTED_RULES_3: bool>(
+        &self,
+        clusters: &TransformedClusters,
+        faces: &[PlacedFace],
+        rows: &[SensorRow<'_>],
+        raster: &mut Raster,
+    ) {
+        for &face in faces {
+            self.scan_face::<PRINTED_RULES_3>(clusters, face, rows, raster);
         }
     }
 
@@ -178,16 +200,17 @@ impl<T: Transformation> FaceScanner<'_, T> {
     #[inline]
     fn scan_face<const PRINTED_RULES_3: bool>(
         &self,
-        id: FaceId,
+        clusters: &TransformedClusters,
+        face: PlacedFace,
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
     ) {
-        let face = self.mesh.faces()[id.0 as usize];
-        let in_scene = face.map(|v| self.mesh.vertices()[v as usize]);
+        let id = face.id;
+        let in_scene = self.mesh.faces()[id.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
         let plane = Plane::new(&in_scene.map(widen), self.transformation.sensor_from_scene());
-        let in_sensor = face.map(|v| &self.vertices[v as usize]);
+        let in_sensor = clusters.vertices_of(face);
         if self.transformation.stripe_volume().is_some() {
-            self.scan_within_stripe::<PRINTED_RULES_3>(id, &plane, rows, raster);
+            self.scan_within_stripe::<PRINTED_RULES_3>(id, in_sensor, &plane, rows, raster);
         } else if in_sensor.iter().all(|vertex| vertex.outside & BEHIND_SPP == 0) {
             let triangle = ClippedTriangle {
                 points: in_sensor.map(|vertex| vertex.position),
@@ -208,7 +231,7 @@ impl<T: Transformation> FaceScanner<'_, T> {
                 raster,
             );
         } else {
-            self.scan_beyond_spp::<PRINTED_RULES_3>(id, &plane, rows, raster);
+            self.scan_beyond_spp::<PRINTED_RULES_3>(id, in_sensor, &plane, rows, raster);
         }
     }
 
@@ -225,10 +248,8 @@ impl<T: Transformation> FaceScanner<'_, T> {
     }
 
     /// The three edges of a face.
-    fn edges(&self, id: FaceId) -> [Edge<T::Line>; 3] {
-        let face = self.mesh.faces()[id.0 as usize];
-        let in_scene = face.map(|v| self.mesh.vertices()[v as usize]);
-        let in_sensor = face.map(|v| &self.vertices[v as usize]);
+    fn edges(&self, id: FaceId, in_sensor: [&SensorVertex; 3]) -> [Edge<T::Line>; 3] {
+        let in_scene = self.mesh.faces()[id.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
         edges::edges(self.transformation, &in_scene, &in_sensor)
     }
 
@@ -237,12 +258,12 @@ impl<T: Transformation> FaceScanner<'_, T> {
     fn scan_beyond_spp<const PRINTED_RULES_3: bool>(
         &self,
         id: FaceId,
+        vertices: [&SensorVertex; 3],
         plane: &Plane,
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
     ) {
         let transformation = self.transformation;
-        let vertices = self.mesh.faces()[id.0 as usize].map(|v| &self.vertices[v as usize]);
         let points = vertices.map(|vertex| vertex.position);
         let corners = vertices.map(|vertex| vertex.projection);
         let added_lines = AddedLines {
@@ -250,7 +271,7 @@ impl<T: Transformation> FaceScanner<'_, T> {
             diagonal: |from: DVec3, to: DVec3| transformation.project_edge(from, to, to - from),
         };
         let spp = transformation.spp_distance();
-        clip_at_spp(spp, points, corners, &self.edges(id), added_lines, |triangle| {
+        clip_at_spp(spp, points, corners, &self.edges(id, vertices), added_lines, |triangle| {
             let limits = InverseTLimits::CLAMP_TO_SPP;
             self.scan_clipped::<_, PRINTED_RULES_3>(triangle, plane, limits, id, rows, raster);
         });
@@ -261,13 +282,14 @@ impl<T: Transformation> FaceScanner<'_, T> {
     fn scan_within_stripe<const PRINTED_RULES_3: bool>(
         &self,
         id: FaceId,
+        vertices: [&SensorVertex; 3],
         plane: &Plane,
         rows: &[SensorRow<'_>],
         raster: &mut Raster,
     ) {
-        let points = self.mesh.faces()[id.0 as usize].map(|v| self.vertices[v as usize].position);
+        let points = vertices.map(|vertex| vertex.position);
         if let Some(volume) = self.transformation.stripe_volume() {
-            volume.clip(points, &self.edges(id), |triangle| {
+            volume.clip(points, &self.edges(id, vertices), |triangle| {
                 let limits = InverseTLimits::REJECT_BEFORE_SPP;
                 self.scan_clipped::<_, PRINTED_RULES_3>(triangle, plane, limits, id, rows, raster);
             });

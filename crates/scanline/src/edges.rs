@@ -1,8 +1,9 @@
 //! The edges of a face, their ends in the one order that both faces of an edge find. (§4, 4a)
 
 use crate::clip::Edge;
+use crate::spp::widen;
 use crate::transformation::Transformation;
-use crate::vertices::{SensorVertex, widen};
+use crate::vertices::SensorVertex;
 
 /// The edge of a face from vertex k to `next`. `in_scene` are the face's vertices in the scene, `in_sensor` in the
 /// sensor's frame.

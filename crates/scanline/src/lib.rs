@@ -8,6 +8,7 @@
 //! ```text
 //! 1, 3  skip               faces that cannot be seen, by rules that never change a map
 //!       printed_skip       the same rules as the paper prints them
+//!       clusters           neighbouring faces, skipped together
 //! 2     sensor_from_scene  the motion into the sensor's frame
 //!       vertices           the vertices in that frame and on the SPP
 //!       perspective        the camera's transformation
@@ -51,8 +52,8 @@
 //! "Without using square roots" (§5): along a row 1/t is affine in x in *both* transformations. So the nearest face has
 //! the largest 1/t, and the range follows from a table of |q|.
 //!
-//! Bands of rows are scanned in parallel. A band scans its faces in ascending order for any number of threads, so the
-//! number of threads changes no bit of a frame.
+//! Bands of rows are scanned in parallel. Of equally near faces a cell keeps the one with the lowest index, whichever comes
+//! first, so the number of threads changes no bit of a frame.
 //!
 //! # Example
 //!
@@ -80,6 +81,7 @@ mod bands;
 mod bins;
 mod cache;
 mod clip;
+mod clusters;
 mod cylindrical;
 mod edges;
 #[cfg(test)]

@@ -5,13 +5,15 @@ use raypencil_scene::{FaceId, Mesh};
 
 use crate::bins::ProjectedBounds;
 use crate::clip::{AddedLines, ClippedTriangle, clip_at_spp};
+use crate::clusters::Clusters;
 use crate::edges;
 use crate::perspective::{Perspective, StraightLine};
 use crate::plane::Plane;
 use crate::skip::{self, BEHIND_SPP};
 use crate::spp::SppPoint;
+use crate::spp::widen;
 use crate::transformation::Transformation;
-use crate::vertices::{self, SensorVertex, widen};
+use crate::vertices::{SensorVertex, TransformedClusters};
 use crate::{Fidelity, Switches};
 
 /// The faces that occlude, by the side that they show.
@@ -42,7 +44,7 @@ impl Facing {
 pub(crate) struct Occluders<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) camera: &'a Perspective<'a>,
-    vertices: Vec<SensorVertex>,
+    clusters: &'a Clusters,
     facing: Facing,
     /// An occluder needs a vertex no deeper than this, metres.
     extent: f64,
@@ -59,20 +61,56 @@ pub(crate) struct Occluder {
 }
 
 impl<'a> Occluders<'a> {
-    pub(crate) fn new(mesh: &'a Mesh, camera: &'a Perspective<'a>, facing: Facing, extent: f64) -> Self {
-        let spp = camera.spp_distance();
-        // Step 2. The camera's maximum range and the borders of its screen do not matter here.
-        let vertices = vertices::transform(mesh, |scene_point| {
-            let sensor_from_scene = camera.sensor_from_scene();
-            let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
-            let outside = skip::outside_bits(position.z < spp, false, false, false, false, false);
-            SensorVertex { position, projection: camera.project(position), outside }
-        });
-        Self { mesh, camera, vertices, facing, extent }
+    pub(crate) fn new(
+        mesh: &'a Mesh,
+        clusters: &'a Clusters,
+        camera: &'a Perspective<'a>,
+        facing: Facing,
+        extent: f64,
+    ) -> Self {
+        Self { mesh, camera, clusters, facing, extent }
     }
 
-    pub(crate) fn face_count(&self) -> usize {
-        self.mesh.faces().len()
+    /// The clusters of which a face may occlude anything: those with a part at or beyond the SPP, if that part's bounds are
+    /// `relevant`. The bounds of a cluster are those of its box, within which are those of all its faces.
+    pub(crate) fn clusters(&self, relevant: impl Fn(&ProjectedBounds) -> bool + Sync) -> Vec<u32> {
+        let (spp, sensor_from_scene) = (self.camera.spp_distance(), self.camera.sensor_from_scene());
+        self.clusters.seen(sensor_from_scene.position(), |corners| {
+            let points = corners.map(|corner| sensor_from_scene.in_sensor_axes(corner));
+            if points.iter().all(|p| p.z < spp) {
+                return true;
+            }
+            if points.iter().any(|p| p.z < spp) {
+                return false;
+            }
+            let mut bounds = ProjectedBounds {
+                low: SppPoint { x: f64::INFINITY, y: f64::INFINITY },
+                high: SppPoint { x: f64::NEG_INFINITY, y: f64::NEG_INFINITY },
+                max_inverse_t: 0.0,
+            };
+            for p in points {
+                let SppPoint { x, y } = self.camera.project(p);
+                bounds.low = SppPoint { x: bounds.low.x.min(x), y: bounds.low.y.min(y) };
+                bounds.high = SppPoint { x: bounds.high.x.max(x), y: bounds.high.y.max(y) };
+                bounds.max_inverse_t = bounds.max_inverse_t.max(spp / p.z);
+            }
+            !relevant(&bounds)
+        })
+    }
+
+    /// All clusters.
+    pub(crate) fn all_clusters(&self) -> Vec<u32> {
+        self.clusters.all()
+    }
+
+    /// Step 2 for some clusters. The camera's maximum range and the borders of its screen do not matter here.
+    pub(crate) fn transformed(&self, clusters: &[u32]) -> TransformedClusters {
+        let (spp, sensor_from_scene) = (self.camera.spp_distance(), self.camera.sensor_from_scene());
+        TransformedClusters::new(self.mesh, self.clusters, clusters, |scene_point| {
+            let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
+            let outside = skip::outside_bits(position.z < spp, false, false, false, false, false);
+            SensorVertex { position, projection: self.camera.project(position), outside }
+        })
     }
 
     /// Calls `visit` with each triangle of a face, if the face occludes. Triangles whose bounds are not `relevant` are
@@ -81,14 +119,14 @@ impl<'a> Occluders<'a> {
     pub(crate) fn visit_face(
         &self,
         face: FaceId,
+        vertices: [&SensorVertex; 3],
         relevant: impl Fn(&ProjectedBounds) -> bool,
         mut visit: impl FnMut(&Occluder),
     ) {
-        let vertices = self.mesh.faces()[face.0 as usize].map(|v| &self.vertices[v as usize]);
         if vertices.iter().any(|vertex| vertex.outside & BEHIND_SPP != 0) {
             // 1a: no part of it is beyond the SPP.
             if !vertices.iter().all(|vertex| vertex.outside & BEHIND_SPP != 0) {
-                self.visit_cut_face(face, relevant, visit);
+                self.visit_cut_face(face, vertices, relevant, visit);
             }
             return;
         }
@@ -110,12 +148,11 @@ impl<'a> Occluders<'a> {
     fn visit_cut_face(
         &self,
         face: FaceId,
+        vertices: [&SensorVertex; 3],
         relevant: impl Fn(&ProjectedBounds) -> bool,
         mut visit: impl FnMut(&Occluder),
     ) {
-        let indices = self.mesh.faces()[face.0 as usize];
-        let vertices = indices.map(|v| &self.vertices[v as usize]);
-        let in_scene = indices.map(|v| self.mesh.vertices()[v as usize]);
+        let in_scene = self.mesh.faces()[face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
         let points = vertices.map(|vertex| vertex.position);
         let Some(plane) = self.occluding_plane(face, &points) else { return };
         let added_lines = AddedLines {

@@ -15,7 +15,6 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
-use raypencil_scene::FaceId;
 
 use crate::bins::{BinnedPoint, Bins, ProjectedBounds};
 use crate::occluders::{Occluder, Occluders};
@@ -23,11 +22,11 @@ use crate::perspective::StraightLine;
 use crate::rounding::{RELATIVE_ROUNDING, longest_edges_product, max_vertex_distance};
 use crate::scan::SplitTriangle;
 use crate::spp::SppPoint;
+use crate::spp::widen;
 use crate::transformation::Transformation;
-use crate::vertices::widen;
 
-/// Number of faces that one task scans.
-const FACES_PER_TASK: usize = 4096;
+/// Number of clusters whose faces one task scans.
+const CLUSTERS_PER_TASK: usize = 16;
 
 /// Up to this many points in a row are all tested; of more, the triangle's span first narrows them down. Tuned: 4 to 64
 /// are alike.
@@ -56,7 +55,7 @@ pub(crate) fn hidden(occluders: &Occluders<'_>, bins: &Bins, skip_unseen: bool) 
             test(if few { row_points.points } else { bins.narrow(row_points, &triangle) });
         }
     };
-    scan_occluders(occluders, bins, visit, |bounds| {
+    scan_occluders(occluders, bins, skip_unseen, visit, |bounds| {
         !skip_unseen || bins.rows_touched(bounds).next().is_some()
     })
 }
@@ -66,13 +65,19 @@ pub(crate) fn hidden(occluders: &Occluders<'_>, bins: &Bins, skip_unseen: bool) 
 pub(crate) fn scan_occluders(
     occluders: &Occluders<'_>,
     bins: &Bins,
+    skip_unseen: bool,
     visit: impl Fn(&Occluder, &[AtomicBool]) + Sync,
     relevant: impl Fn(&ProjectedBounds) -> bool + Sync,
 ) -> Vec<bool> {
     let hidden: Vec<AtomicBool> = bins.points().iter().map(|_| AtomicBool::new(false)).collect();
     if !hidden.is_empty() {
-        (0..occluders.face_count()).into_par_iter().with_min_len(FACES_PER_TASK).for_each(|index| {
-            occluders.visit_face(FaceId(index as u32), &relevant, |occluder| visit(occluder, &hidden));
+        let clusters = if skip_unseen { occluders.clusters(&relevant) } else { occluders.all_clusters() };
+        clusters.par_chunks(CLUSTERS_PER_TASK).for_each(|clusters| {
+            let transformed = occluders.transformed(clusters);
+            for &face in &transformed.faces {
+                let vertices = transformed.vertices_of(face);
+                occluders.visit_face(face.id, vertices, &relevant, |occluder| visit(occluder, &hidden));
+            }
         });
     }
     hidden.into_iter().map(AtomicBool::into_inner).collect()

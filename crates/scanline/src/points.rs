@@ -15,8 +15,8 @@ use crate::perspective::Perspective;
 use crate::plane::{Plane, plane_in_scene};
 use crate::rounding::{PointError, RELATIVE_ROUNDING, longest_edges_product, max_vertex_distance};
 use crate::spp::SppPoint;
+use crate::spp::widen;
 use crate::transformation::Transformation;
-use crate::vertices::widen;
 
 /// The point that one pencil hits, with its geometry towards the laser and towards the camera.
 #[derive(Debug, Clone, Copy)]

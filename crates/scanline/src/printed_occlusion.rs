@@ -84,7 +84,7 @@ pub(crate) fn hidden_at_centres(occluders: &Occluders<'_>, bins: &Bins, skip_uns
         let at_any_depth = ProjectedBounds { max_inverse_t: f64::INFINITY, ..*bounds };
         !skip_unseen || bins.rows_touched(&at_any_depth).next().is_some()
     };
-    scan_occluders(occluders, bins, visit, relevant)
+    scan_occluders(occluders, bins, skip_unseen, visit, relevant)
 }
 
 #[cfg(test)]

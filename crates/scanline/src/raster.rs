@@ -4,8 +4,8 @@
 use raypencil_scene::{FaceId, Hit, Maybe, Mesh, Quantities, SensorRow};
 
 use crate::plane::{Plane, plane_in_scene};
+use crate::spp::widen;
 use crate::transformation::{RowInverseT, Transformation};
-use crate::vertices::widen;
 
 /// Limits on the 1/t of a triangle's cells. t = 1 is the SPP; a larger 1/t is in front of it.
 #[derive(Debug, Clone, Copy)]
@@ -49,8 +49,7 @@ impl Raster {
         }
     }
 
-    /// Scans the cells `columns` of row `j`; each keeps the nearer face. Faces come in ascending order, so of
-    /// equally near ones the lowest is kept.
+    /// Scans the cells `columns` of row `j`; each keeps the nearer face, of equally near ones the lowest.
     #[inline]
     pub(crate) fn scan_row(
         &mut self,
@@ -68,7 +67,8 @@ impl Raster {
         for ((stored, face), x) in stored.iter_mut().zip(faces).zip(&centres[range]) {
             let candidate = row_inverse_t.slope * x + row_inverse_t.start;
             let clamped = candidate.min(limits.clamp_to);
-            if clamped > *stored && candidate <= limits.accept_up_to {
+            let is_nearer = clamped > *stored || clamped == *stored && id < *face;
+            if is_nearer && candidate <= limits.accept_up_to {
                 *stored = clamped;
                 *face = id;
             }

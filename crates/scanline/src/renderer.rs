@@ -11,6 +11,7 @@ use raypencil_scene::{
 use crate::Switches;
 use crate::bands;
 use crate::cache::{Cached, cached};
+use crate::clusters::Clusters;
 use crate::cylindrical::Cylindrical;
 use crate::flux::PixelTables;
 use crate::options::ScanlineOptions;
@@ -21,7 +22,8 @@ use crate::tables::CameraTables;
 
 /// The scanline renderer.
 ///
-/// It caches the tables of the last camera and beams that it rendered. They depend on nothing else.
+/// It caches the tables of the last camera and beams that it rendered, which depend on nothing else, and the clusters of the
+/// last terrain.
 ///
 /// It answers for the pencils' central rays. With [`Sampling::Jittered`] the maps of the beams have no quantity, the
 /// returns are [unsupported](Returns::unsupported), and there is no flux.
@@ -47,6 +49,7 @@ use crate::tables::CameraTables;
 pub struct Scanline {
     options: ScanlineOptions,
     name: String,
+    clusters: Cached<Clusters>,
     camera_tables: Cached<CameraTables>,
     pixel_tables: Cached<PixelTables>,
     shares: Cached<Vec<ColumnShares>>,
@@ -82,6 +85,7 @@ impl Scanline {
         Self {
             options,
             name,
+            clusters: Mutex::new(None),
             camera_tables: Mutex::new(None),
             pixel_tables: Mutex::new(None),
             shares: Mutex::new(None),
@@ -127,6 +131,7 @@ impl Scanline {
     fn render_returns(
         &self,
         scene: &Scene,
+        clusters: &Clusters,
         camera_tables: &CameraTables,
         hits: &[Image<Maybe<FaceId>>],
         stages: &mut Vec<Stage>,
@@ -144,7 +149,7 @@ impl Scanline {
         });
         stages.push(Stage { name: "flux tables".into(), time: start.elapsed() });
         let tables = ReturnTables { camera: camera_tables, shares: &shares, pixels: pixels.as_deref() };
-        returns::render(scene, self.options, &tables, hits, stages)
+        returns::render(scene, self.options, &tables, clusters, hits, stages)
     }
 }
 
@@ -164,6 +169,10 @@ impl Renderer for Scanline {
         let supported = request.sampling == Sampling::Centres;
         let needs_returns = request.returns && supported;
 
+        let start = Instant::now();
+        let clusters =
+            cached(&self.clusters, |clusters| clusters.fit(scene.mesh()), || Clusters::new(scene.mesh()));
+        stages.push(Stage { name: "clusters".into(), time: start.elapsed() });
         let tables = (request.camera || needs_returns).then(|| {
             let start = Instant::now();
             let camera = &scene.camera().sensor;
@@ -175,8 +184,14 @@ impl Renderer for Scanline {
         let camera = tables.as_ref().filter(|_| request.camera).map(|tables| {
             let start = Instant::now();
             let perspective = Perspective::new(scene.camera(), tables);
-            let map =
-                bands::render(scene.mesh(), &perspective, SensorId::Camera, request.quantities, self.options);
+            let map = bands::render(
+                scene.mesh(),
+                &clusters,
+                &perspective,
+                SensorId::Camera,
+                request.quantities,
+                self.options,
+            );
             stages.push(Stage { name: SensorId::Camera.to_string(), time: start.elapsed() });
             map
         });
@@ -196,7 +211,8 @@ impl Renderer for Scanline {
                 let start = Instant::now();
                 let sensor = SensorId::Beam(index);
                 let cylindrical = Cylindrical::new(beam, self.options.switches);
-                let map = bands::render(scene.mesh(), &cylindrical, sensor, quantities, self.options);
+                let map =
+                    bands::render(scene.mesh(), &clusters, &cylindrical, sensor, quantities, self.options);
                 stages.push(Stage { name: sensor.to_string(), time: start.elapsed() });
                 map
             })
@@ -207,7 +223,7 @@ impl Renderer for Scanline {
                     if requested.face { map.face.clone() } else { map.face.take() }
                 };
                 let hits: Vec<_> = beams.iter_mut().filter_map(faces).collect();
-                self.render_returns(scene, tables, &hits, &mut stages)
+                self.render_returns(scene, &clusters, tables, &hits, &mut stages)
             }
             _ => (Vec::new(), Vec::new()),
         };

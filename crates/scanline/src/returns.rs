@@ -5,6 +5,7 @@ use std::time::Instant;
 use raypencil_scene::{FaceId, FluxModel, Image, Maybe, Return, Returns, Scene, Stage};
 
 use crate::bins::Bins;
+use crate::clusters::Clusters;
 use crate::cylindrical::Cylindrical;
 use crate::flux::{BeamFlux, PixelTables};
 use crate::occluders::{Facing, Occluders};
@@ -34,6 +35,7 @@ pub(crate) fn render(
     scene: &Scene,
     options: ScanlineOptions,
     tables: &ReturnTables<'_>,
+    clusters: &Clusters,
     hits: &[Image<Maybe<FaceId>>],
     stages: &mut Vec<Stage>,
 ) -> (Vec<Returns>, Vec<Image<f64>>) {
@@ -50,7 +52,7 @@ pub(crate) fn render(
 
     // Step 5 comes before step 4: hidden points deliver no flux.
     let start = Instant::now();
-    let visible = visible_points(scene, options, &camera, pixels, &stripes);
+    let visible = visible_points(scene, clusters, options, &camera, pixels, &stripes);
     stages.push(Stage { name: "occlusion".into(), time: start.elapsed() });
 
     // Step 4: the flux.
@@ -102,6 +104,7 @@ pub(crate) fn render(
 /// Whether the camera sees the point of each pencil; all beams, one after the other.
 fn visible_points(
     scene: &Scene,
+    clusters: &Clusters,
     options: ScanlineOptions,
     camera: &Perspective<'_>,
     pixels: PixelGrid,
@@ -115,7 +118,7 @@ fn visible_points(
             printed_occlusion::upper_extent(camera.sensor_from_scene(), scene.beams(), stripes)
         }
     };
-    let occluders = Occluders::new(scene.mesh(), camera, Facing::from_switches(switches), extent);
+    let occluders = Occluders::new(scene.mesh(), clusters, camera, Facing::from_switches(switches), extent);
     let hidden = match switches.place {
         Fidelity::Exact => occlusion::hidden(&occluders, &bins, options.skip_unseen),
         Fidelity::Paper => printed_occlusion::hidden_at_centres(&occluders, &bins, options.skip_unseen),

@@ -28,6 +28,11 @@ impl SensorFromScene {
         Self { position: pose.position, axes }
     }
 
+    /// Position of the sensor, scene frame, metres.
+    pub(crate) fn position(&self) -> DVec3 {
+        self.position
+    }
+
     /// Rotates a vector from the scene's axes to the sensor's axes.
     #[inline]
     pub(crate) fn in_sensor_axes(&self, v: DVec3) -> DVec3 {

@@ -73,8 +73,8 @@ impl Axis {
     #[inline]
     pub(crate) fn first_at_or_after(&self, value: f64) -> u32 {
         let count = self.count();
-        // `as` saturates, and takes NaN to 0.
-        let mut index = self.approximate_index(value).ceil() as u32;
+        // `as` rounds towards 0, saturates, and takes NaN to 0.
+        let mut index = self.approximate_index(value) as u32;
         index = index.min(count);
         while index > 0 && self.centres[index as usize - 1] >= value {
             index -= 1;
@@ -89,7 +89,7 @@ impl Axis {
     #[inline]
     pub(crate) fn end_at_or_before(&self, value: f64) -> u32 {
         let count = self.count();
-        let mut end = (self.approximate_index(value).floor() + 1.0) as u32;
+        let mut end = (self.approximate_index(value) + 1.0) as u32;
         end = end.min(count);
         while end > 0 && self.centres[end as usize - 1] > value {
             end -= 1;

@@ -1,10 +1,10 @@
 //! Step 2: the vertices in the sensor's frame and on the SPP. (§4, 2; figure 7)
 
 use glam::DVec3;
-use rayon::prelude::*;
-use raypencil_scene::Mesh;
+use raypencil_scene::{FaceId, Mesh};
 
-use crate::spp::SppPoint;
+use crate::clusters::{ClusterFace, Clusters};
+use crate::spp::{SppPoint, widen};
 
 /// A vertex in the sensor's frame.
 #[derive(Debug, Clone, Copy)]
@@ -17,16 +17,46 @@ pub(crate) struct SensorVertex {
     pub(crate) outside: u8,
 }
 
-/// Transforms all vertices in parallel; each is independent of the others.
-pub(crate) fn transform(
-    mesh: &Mesh,
-    transform_one: impl Fn(DVec3) -> SensorVertex + Sync,
-) -> Vec<SensorVertex> {
-    mesh.vertices().par_iter().with_min_len(4096).map(|&v| transform_one(widen(v))).collect()
+/// A face with its vertices' places among the vertices that were transformed together with them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlacedFace {
+    pub(crate) id: FaceId,
+    pub(crate) corners: [u32; 3],
 }
 
-/// A vertex in f64, exactly.
-#[inline]
-pub(crate) fn widen([x, y, z]: [f32; 3]) -> DVec3 {
-    DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+/// Some clusters of a mesh in a sensor's frame.
+#[derive(Debug, Default)]
+pub(crate) struct TransformedClusters {
+    pub(crate) vertices: Vec<SensorVertex>,
+    pub(crate) faces: Vec<PlacedFace>,
+}
+
+impl TransformedClusters {
+    /// Transforms the vertices of some clusters, each cluster by itself: a vertex of two clusters twice, to the same bits.
+    pub(crate) fn new(
+        mesh: &Mesh,
+        clusters: &Clusters,
+        which: &[u32],
+        transform_one: impl Fn(DVec3) -> SensorVertex,
+    ) -> Self {
+        let mut transformed = Self::default();
+        for &cluster in which {
+            let content = clusters.content(cluster);
+            let first = transformed.vertices.len() as u32;
+            let of_vertex = |&v: &u32| transform_one(widen(mesh.vertices()[v as usize]));
+            transformed.vertices.extend(content.vertices.iter().map(of_vertex));
+            let placed = |face: &ClusterFace| PlacedFace {
+                id: face.id,
+                corners: face.corners.map(|place| first + u32::from(place)),
+            };
+            transformed.faces.extend(content.faces.iter().map(placed));
+        }
+        transformed
+    }
+
+    /// The vertices of a face.
+    #[inline]
+    pub(crate) fn vertices_of(&self, face: PlacedFace) -> [&SensorVertex; 3] {
+        face.corners.map(|place| &self.vertices[place as usize])
+    }
 }

@@ -13,19 +13,19 @@ fn rows_of(corners: [[f32; 3]; 3], skip_unseen: bool) -> Option<std::ops::Range<
     let tables = CameraTables::new(&camera);
     let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
     let transformation = Perspective::new(&mounted, &tables);
-    let vertices = vertices::transform(&mesh, |position| SensorVertex {
+    let clusters = Clusters::new(&mesh);
+    let transformed = TransformedClusters::new(&mesh, &clusters, &clusters.all(), |position| SensorVertex {
         position,
         projection: transformation.project(position),
         outside: transformation.outside(position),
     });
     let faces = FaceScanner {
         mesh: &mesh,
-        vertices: &vertices,
         transformation: &transformation,
         skip_unseen,
         screen: SensorScreen::new(transformation.columns(), transformation.rows()),
     };
-    faces.rows(FaceId(0))
+    faces.rows(&transformed, transformed.faces[0])
 }
 
 /// A face at depth z that shows its front. The corners are given on the SPP.

@@ -1,5 +1,7 @@
 //! Sensors and meshes for the unit tests.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use raypencil_scene::{Beam, Camera, Lens, Material, Mesh, Profile};
 
@@ -33,8 +35,10 @@ pub(crate) fn beam() -> Beam {
 }
 
 /// A mesh of faces that share no vertex.
-pub(crate) fn mesh(faces: &[[[f32; 3]; 3]]) -> Mesh {
+pub(crate) fn mesh(faces: &[[[f32; 3]; 3]]) -> Arc<Mesh> {
     let indices = (0..faces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
     let materials = vec![Material { name: "ground".into(), reflectivity: 0.5 }];
-    Mesh::new(DVec3::ZERO, faces.concat(), indices, vec![0; faces.len()], materials).expect("a mesh")
+    Arc::new(
+        Mesh::new(DVec3::ZERO, faces.concat(), indices, vec![0; faces.len()], materials).expect("a mesh"),
+    )
 }

@@ -1,10 +1,13 @@
 //! Unit tests of `occlusion`: the tolerance, and the paper's claim about faces turned away.
 
+use std::sync::Arc;
+
 use super::*;
 use glam::DVec3;
-use raypencil_scene::{Beam, Camera, Lens, Mesh, Mounted, Pose, Profile, Quantities, SensorId};
+use raypencil_scene::{Beam, Camera, FaceId, Lens, Mesh, Mounted, Pose, Profile, Quantities, SensorId};
 use raypencil_terrain::{BUILTIN_NAMES, RandomGround, builtin, height_at};
 
+use crate::clusters::Clusters;
 use crate::cylindrical::Cylindrical;
 use crate::fixtures::{camera, mesh};
 use crate::occluders::Facing;
@@ -16,7 +19,7 @@ use crate::{ScanlineOptions, Switches, bands};
 
 /// Which stripe points of a rig are hidden if the faces of that `facing` occlude. It is the default rig with rasters
 /// four times coarser and sheets 2 cm thick.
-fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
+fn hidden_by(mesh: &Arc<Mesh>, facing: Facing) -> Vec<bool> {
     let z = height_at(mesh, 0.0, 0.0).expect("ground under the vehicle");
     let mount = |height: f64, pitch_down_deg: f64| {
         Pose::from_position(DVec3::new(0.3, 0.0, z + height) - mesh.origin())
@@ -44,6 +47,7 @@ fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
         wavelength: 810e-9,
         profile: Profile::Paper,
     };
+    let clusters = Clusters::new(mesh);
     let tables = CameraTables::new(&camera);
     let mounted = Mounted { scene_from_sensor: mount(1.5, 20.0), sensor: camera };
     let perspective = Perspective::new(&mounted, &tables);
@@ -53,13 +57,14 @@ fn hidden_by(mesh: &Mesh, facing: Facing) -> Vec<bool> {
         let beam = Mounted { scene_from_sensor: mount(height, down), sensor: beam };
         let cylindrical = Cylindrical::new(&beam, Switches::EXACT);
         let sensor = SensorId::Beam(0);
-        let map = bands::render(mesh, &cylindrical, sensor, Quantities::RANGE_MAP, ScanlineOptions::EXACT);
+        let ranges = Quantities::RANGE_MAP;
+        let map = bands::render(mesh, &clusters, &cylindrical, sensor, ranges, ScanlineOptions::EXACT);
         let hits = map.face.expect("asked for");
         stripes.extend(points::stripe_points(mesh, &cylindrical, &perspective, pixels, &hits));
     }
     let bins = Bins::new(pixels, stripes.iter().map(Option::as_ref));
     assert!(bins.points().len() > 500);
-    hidden(&Occluders::new(mesh, &perspective, facing, f64::INFINITY), &bins, true)
+    hidden(&Occluders::new(mesh, &clusters, &perspective, facing, f64::INFINITY), &bins, true)
 }
 
 /// Hills, rocks, mushrooms, floating slabs and walls, all of them closed surfaces.
@@ -75,11 +80,14 @@ fn a_plane_contains_a_point_within_rounding() {
     let tables = CameraTables::new(&camera());
     let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
     let perspective = Perspective::new(&mounted, &tables);
-    let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
+    let clusters = Clusters::new(&ground);
+    let occluders = Occluders::new(&ground, &clusters, &perspective, Facing::Every, f64::INFINITY);
+    let transformed = occluders.transformed(&clusters.all());
     let contained_at = |beyond: f64, error: PointError| {
         let mut answers = Vec::new();
         occluders.visit_face(
             FaceId(0),
+            transformed.vertices_of(transformed.faces[0]),
             |_| true,
             |occluder| {
                 // By this choice |d| (1/t - 1/t_P) / (1/t_P) = |d| beyond.
@@ -117,7 +125,7 @@ fn faces_turned_away_suffice_on_closed_ground() {
     let grounds = (0..6).map(|seed| closed(seed).build());
     let mut count = 0;
     for ground in grounds.chain(BUILTIN_NAMES.iter().map(|name| builtin(name, 0.25).unwrap())) {
-        let mesh = ground.into_mesh().unwrap();
+        let mesh = Arc::new(ground.into_mesh().unwrap());
         let hidden = hidden_by(&mesh, Facing::Every);
         assert_eq!(hidden, hidden_by(&mesh, Facing::AwayFromCamera));
         count += hidden.iter().filter(|hidden| **hidden).count();
@@ -129,7 +137,7 @@ fn faces_turned_away_suffice_on_closed_ground() {
 fn faces_turned_away_do_not_suffice_on_open_ground() {
     // The ground has loose slivers, half of which show the camera their front.
     let differs = |seed| {
-        let mesh = RandomGround { slivers: 600, ..closed(seed) }.build().into_mesh().unwrap();
+        let mesh = Arc::new(RandomGround { slivers: 600, ..closed(seed) }.build().into_mesh().unwrap());
         hidden_by(&mesh, Facing::Every) != hidden_by(&mesh, Facing::AwayFromCamera)
     };
     assert!((0..6).any(differs));

@@ -4,6 +4,7 @@ use glam::DVec3;
 use raypencil_scene::{FaceId, Pixel, Pose};
 
 use super::*;
+use crate::clusters::Clusters;
 use crate::fixtures::{beam, camera, mesh};
 use crate::occluders::Facing;
 use crate::perspective::Perspective;
@@ -41,7 +42,8 @@ fn a_face_deeper_than_a_point_may_be_nearer_at_the_centre_of_its_pixel() {
     let bins = Bins::new(PixelGrid::new(&camera()), [Some(&point)].into_iter());
     for (wall, is_hidden) in [(2.05, true), (2.1, false)] {
         let ground = mesh(&[[[-9.0, -9.0, wall], [9.0, -9.0, wall], [0.0, 9.0, wall]]]);
-        let occluders = Occluders::new(&ground, &perspective, Facing::Every, f64::INFINITY);
+        let clusters = Clusters::new(&ground);
+        let occluders = Occluders::new(&ground, &clusters, &perspective, Facing::Every, f64::INFINITY);
         for skip_unseen in [true, false] {
             assert_eq!(hidden_at_centres(&occluders, &bins, skip_unseen), [is_hidden], "{wall}");
         }
