@@ -101,7 +101,7 @@ pub use ray_sets::{RaySetResult, write_ray_sets};
 pub use rendered::Rendered;
 pub use renderers::{Contender, RENDERER_NAMES, attribute, contender, typed_contenders};
 pub use reproducer::{Reproducer, write_reproducer};
-pub use run::validate;
+pub use run::{Validator, validate};
 pub use scoreboard::{CandidateReport, RendererReport, Scoreboard};
 pub use validation::{Counts, Pair, Validation};
 

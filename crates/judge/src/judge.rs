@@ -2,8 +2,8 @@
 
 use crate::bounds::HitBounds;
 use raypencil_referee::{
-    Approximations, Displacement, Explained, ExplainedVisibility, Format, Referee, RoundedReturn, Ruling,
-    Tolerance, VisibilityApproximations, VisibilityRuling,
+    Approximations, Displacement, Explained, ExplainedVisibility, Format, Referee, RefereeTree,
+    RoundedReturn, Ruling, Tolerance, VisibilityApproximations, VisibilityRuling,
 };
 use raypencil_scene::{FaceId, Hit, Pixel, Place, Precision, Return, Sampling, Scene, SensorId};
 
@@ -69,6 +69,14 @@ impl<'s> Judge<'s> {
     /// Prepares to judge the rays of `scene`.
     pub fn new(scene: &'s Scene, share: JudgeShare) -> Self {
         Self { referee: Referee::new(scene), scene, share }
+    }
+
+    /// The same with a hierarchy that was built for the scene's mesh before.
+    ///
+    /// # Panics
+    /// If it was built for another mesh.
+    pub fn on(scene: &'s Scene, tree: &RefereeTree, share: JudgeShare) -> Self {
+        Self { referee: Referee::on(scene, tree), scene, share }
     }
 
     /// Whether a ray of agreeing answers is judged.

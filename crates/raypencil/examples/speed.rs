@@ -17,7 +17,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use raypencil::harness::{Contender, contender, validate};
+use raypencil::harness::{Contender, Validation, Validator, contender};
 use raypencil::io::{Overrides, Subject, load, load_text};
 use raypencil::judge::JudgeShare;
 use raypencil::{
@@ -171,11 +171,12 @@ fn work(subject: &Subject, row: &str, rounds: usize) -> Result<Map<String, Value
     match row {
         "validate" => {
             let contenders = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
-            validated(subject, &contenders);
+            let mut validator = Validator::default();
+            validated(subject, &contenders, &mut validator);
             let mut stages: Vec<(String, Vec<f64>)> = vec![("validate".into(), Vec::new())];
             for _ in 0..rounds {
                 let start = Instant::now();
-                let validation = validated(subject, &contenders);
+                let validation = validated(subject, &contenders, &mut validator);
                 stages[0].1.push(1e3 * start.elapsed().as_secs_f64());
                 for stage in &validation.stages {
                     let (name, time) = (format!("validate: {}", stage.name), 1e3 * stage.time.as_secs_f64());
@@ -208,7 +209,7 @@ fn timed<T>(run: impl FnOnce() -> T) -> f64 {
     1e3 * time.as_secs_f64()
 }
 
-fn validated(subject: &Subject, contenders: &[Contender]) -> raypencil::harness::Validation {
+fn validated(subject: &Subject, contenders: &[Contender], validator: &mut Validator) -> Validation {
     let subject = Subject {
         vehicle: subject.vehicle.clone(),
         scene: subject.scene.clone(),
@@ -216,7 +217,7 @@ fn validated(subject: &Subject, contenders: &[Contender]) -> raypencil::harness:
         arguments: subject.arguments.clone(),
         sha256: subject.sha256.clone(),
     };
-    validate(subject, contenders, JudgeShare::Sample, &Silent)
+    validator.validate(subject, contenders, JudgeShare::Sample, &Silent)
 }
 
 /// Every pixel's exact hit with all its values, correctly rounded to f64 and f32.

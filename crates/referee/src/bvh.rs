@@ -61,39 +61,76 @@ pub(crate) struct RayBundle {
     pub(crate) spread: f64,
 }
 
-impl<F: InBox> Bvh<F> {
+/// Faces of which one thread builds the hierarchy by itself.
+const FACES_PER_TASK: usize = 4096;
+
+impl<F: InBox + Send> Bvh<F> {
+    /// Builds the hierarchy, on all threads. The result does not depend on their number.
     pub(crate) fn build(faces: impl Iterator<Item = F>) -> Self {
         let mut faces: Vec<F> = faces.collect();
-        let mut nodes = Vec::with_capacity(faces.len());
-        if !faces.is_empty() {
-            let (low, high) = bounds(&faces);
-            nodes.push(Node { low, high, first: 0, count: faces.len() as u32 });
-            let mut waiting = vec![0usize];
-            while let Some(index) = waiting.pop() {
-                let Node { low, high, first, count } = nodes[index];
-                if count as usize <= MAX_LEAF_FACES {
-                    continue;
-                }
-                // Halves of equal number: the depth is logarithmic for any input.
-                let axis = (high - low).max_position();
-                let range = &mut faces[first as usize..(first + count) as usize];
-                let middle = range.len() / 2;
-                range.select_nth_unstable_by(middle, |a, b| {
-                    a.middle(axis).total_cmp(&b.middle(axis)).then(a.id().cmp(&b.id()))
-                });
-                let children = nodes.len();
-                for (start, end) in [(0, middle), (middle, range.len())] {
-                    let (low, high) = bounds(&range[start..end]);
-                    nodes.push(Node { low, high, first: first + start as u32, count: (end - start) as u32 });
-                }
-                nodes[index].first = children as u32;
-                nodes[index].count = 0;
-                waiting.extend([children, children + 1]);
-            }
-        }
+        let nodes = if faces.is_empty() { Vec::new() } else { build_nodes(&mut faces, 0) };
         Self { nodes, faces }
     }
+}
 
+/// The nodes of a hierarchy of `faces`, the root first, of which the first has the index `first_face`. Children come after
+/// their node, and side by side.
+fn build_nodes<F: InBox + Send>(faces: &mut [F], first_face: u32) -> Vec<Node> {
+    let (low, high) = bounds(faces);
+    let mut nodes = Vec::with_capacity(faces.len());
+    nodes.push(Node { low, high, first: first_face, count: faces.len() as u32 });
+    let middle = faces.len() / 2;
+    if faces.len() > FACES_PER_TASK {
+        split(faces, low, high);
+        let (lower, upper) = faces.split_at_mut(middle);
+        let (lower, upper) =
+            rayon::join(|| build_nodes(lower, first_face), || build_nodes(upper, first_face + middle as u32));
+        // Both roots first, then what is below the lower, then what is below the upper.
+        let of_lower = lower.len() as u32;
+        nodes[0] = Node { low, high, first: 1, count: 0 };
+        nodes.extend([moved(lower[0], 2), moved(upper[0], 1 + of_lower)]);
+        nodes.extend(lower[1..].iter().map(|&node| moved(node, 2)));
+        nodes.extend(upper[1..].iter().map(|&node| moved(node, 1 + of_lower)));
+        return nodes;
+    }
+    let mut waiting = vec![0_usize];
+    while let Some(index) = waiting.pop() {
+        let Node { low, high, first, count } = nodes[index];
+        if count as usize <= MAX_LEAF_FACES {
+            continue;
+        }
+        let start = (first - first_face) as usize;
+        let range = &mut faces[start..start + count as usize];
+        let middle = split(range, low, high);
+        let children = nodes.len();
+        for (start, end) in [(0, middle), (middle, range.len())] {
+            let (low, high) = bounds(&range[start..end]);
+            nodes.push(Node { low, high, first: first + start as u32, count: (end - start) as u32 });
+        }
+        nodes[index].first = children as u32;
+        nodes[index].count = 0;
+        waiting.extend([children, children + 1]);
+    }
+    nodes
+}
+
+/// A node of a part with the indices of the whole: nodes below the part's root begin `by` nodes later.
+fn moved(node: Node, by: u32) -> Node {
+    if node.count == 0 { Node { first: node.first + by, ..node } } else { node }
+}
+
+/// Parts faces into halves of equal number along the longest side of their box: the depth is logarithmic for any input.
+/// Returns where the second half begins.
+fn split<F: InBox>(faces: &mut [F], low: DVec3, high: DVec3) -> usize {
+    let axis = (high - low).max_position();
+    let middle = faces.len() / 2;
+    faces.select_nth_unstable_by(middle, |a, b| {
+        a.middle(axis).total_cmp(&b.middle(axis)).then(a.id().cmp(&b.id()))
+    });
+    middle
+}
+
+impl<F> Bvh<F> {
     pub(crate) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }

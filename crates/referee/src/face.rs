@@ -17,6 +17,7 @@ use glam::DVec3;
 use raypencil_scene::{FaceId, Mesh};
 
 use crate::bvh::InBox;
+use crate::edge_filter::{EdgeFilter, Passes};
 use crate::number::{Dyadic, Interval, Number};
 use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::vector::Vector;
@@ -31,12 +32,14 @@ pub(crate) struct ExactRay<'a> {
     sensor: &'a MountedSensor,
     aim: Aim,
     fast: ScaledRay<Interval>,
+    filter: EdgeFilter,
     exact: OnceCell<ScaledRay<Dyadic>>,
 }
 
 impl<'a> ExactRay<'a> {
     pub(crate) fn new(sensor: &'a MountedSensor, aim: Aim) -> Self {
-        Self { sensor, aim, fast: sensor.ray(aim), exact: OnceCell::new() }
+        let fast = sensor.ray(aim);
+        Self { sensor, aim, filter: EdgeFilter::new(&fast), fast, exact: OnceCell::new() }
     }
 
     /// The ray in intervals.
@@ -124,7 +127,12 @@ impl Face {
     /// `max_range`. Other faces are not considered.
     pub(crate) fn is_met_by(&self, ray: &ExactRay<'_>, max_range: f64) -> bool {
         // The cheapest conditions, and those most likely to fail, come first.
-        (0..3).all(|k| ray.sign(&EdgeSide { face: self, k }) != Ordering::Greater)
+        let is_inside = match ray.filter.passes(self.corners()) {
+            Passes::Outside => false,
+            Passes::Inside => true,
+            Passes::Near => (0..3).all(|k| ray.sign(&EdgeSide { face: self, k }) != Ordering::Greater),
+        };
+        is_inside
             && ray.sign(&Approach(self)) == Ordering::Less
             && ray.sign(&BeforePlane(self)) != Ordering::Greater
             && ray.sign(&BeyondRange { face: self, max_range }) != Ordering::Greater

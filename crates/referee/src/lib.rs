@@ -48,6 +48,7 @@
 //! kleene                three-valued logic of intervals
 //! displacement          displacements of a ray, in cells
 //! ray                   the contract's rays, multiplied by their denominators
+//! edge_filter           on which side of a face's edges a ray passes, in f64
 //! face                  the contract's conditions, as signs of polynomials
 //! form, moving_ray      bilinear forms in a displacement; a ray as it is displaced
 //! face_forms, region    the conditions of a face as forms, and where they hold
@@ -85,6 +86,7 @@ mod cast;
 mod certified;
 mod displacement;
 mod double_double;
+mod edge_filter;
 mod enclosure;
 mod face;
 mod face_forms;
@@ -142,7 +144,7 @@ pub use render::ExactRenderer;
 pub use rounding::{Format, Rounded};
 pub use ruling::{Ruling, Tolerance};
 pub use values::RoundedHit;
-pub use verdict::{Referee, Verdict};
+pub use verdict::{Referee, RefereeTree, Verdict};
 pub use visibility::Visibility;
 pub use visibility_margin::VisibilityMargins;
 pub use visibility_ruling::VisibilityRuling;

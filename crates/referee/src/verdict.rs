@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use raypencil_scene::{FaceId, Scene, SensorId};
+use raypencil_scene::{FaceId, Mesh, Scene, SensorId};
 
 use crate::arithmetic::WeightSum;
 use crate::bvh::{Bvh, RayBundle};
@@ -27,6 +27,39 @@ impl Verdict {
     }
 }
 
+/// The bounding volume hierarchy of a mesh, which the referees of many scenes may share.
+///
+/// ```
+/// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
+/// # use wall::wall_scene;
+/// use raypencil_referee::{Referee, RefereeTree};
+/// use raypencil_scene::{FaceId, SensorId};
+///
+/// let scene = wall_scene();
+/// let tree = RefereeTree::new(scene.mesh());
+/// let verdict = Referee::on(&scene, &tree).verdict(SensorId::Camera, 4, 4).unwrap();
+/// assert_eq!(verdict.faces, [FaceId(0)]);
+/// ```
+#[derive(Debug, Clone)]
+pub struct RefereeTree {
+    mesh: Arc<Mesh>,
+    bvh: Arc<Bvh<Face>>,
+}
+
+impl RefereeTree {
+    /// Builds the hierarchy.
+    pub fn new(mesh: &Arc<Mesh>) -> Self {
+        let faces = (0..mesh.faces().len() as u32).map(|index| Face::of(mesh, FaceId(index)));
+        let bvh = Bvh::build(faces.filter(Face::has_area));
+        Self { mesh: Arc::clone(mesh), bvh: Arc::new(bvh) }
+    }
+
+    /// Whether this is the hierarchy of `mesh`: of the same one in memory.
+    pub fn fits(&self, mesh: &Arc<Mesh>) -> bool {
+        Arc::ptr_eq(&self.mesh, mesh)
+    }
+}
+
 /// The exact answers to every ray of a scene.
 ///
 /// ```
@@ -47,7 +80,7 @@ impl Verdict {
 #[derive(Debug)]
 pub struct Referee<'s> {
     pub(crate) scene: &'s Scene,
-    pub(crate) bvh: Bvh<Face>,
+    pub(crate) bvh: Arc<Bvh<Face>>,
     /// The sum of the weights of each beam's central pencils.
     pub(crate) weight_sums: Vec<Arc<WeightSum>>,
 }
@@ -55,10 +88,17 @@ pub struct Referee<'s> {
 impl<'s> Referee<'s> {
     /// A referee for `scene`; it builds a bounding volume hierarchy.
     pub fn new(scene: &'s Scene) -> Self {
+        Self::on(scene, &RefereeTree::new(scene.mesh()))
+    }
+
+    /// A referee for `scene`, whose mesh `tree` was built for.
+    ///
+    /// # Panics
+    /// If it was built for another mesh.
+    pub fn on(scene: &'s Scene, tree: &RefereeTree) -> Self {
+        assert!(tree.fits(scene.mesh()), "the tree of another mesh");
         let weight_sums = scene.beams().iter().map(|_| Arc::default()).collect();
-        let mesh = scene.mesh();
-        let faces = (0..mesh.faces().len() as u32).map(|index| Face::of(mesh, FaceId(index)));
-        Self { scene, bvh: Bvh::build(faces.filter(Face::has_area)), weight_sums }
+        Self { scene, bvh: Arc::clone(&tree.bvh), weight_sums }
     }
 
     /// The exact verdict on the ray of cell (i, j), or `None` if there is no such cell.

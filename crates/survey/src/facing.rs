@@ -55,23 +55,43 @@ pub struct Facing {
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
 pub fn facings(scene: &Scene) -> Vec<Facing> {
-    let mut beams = scene.beams().to_vec();
-    for Mounted { sensor: beam, .. } in &mut beams {
-        (beam.columns, beam.rows) = (beam.columns.min(SAMPLE_COLUMNS), beam.rows.min(SAMPLE_ROWS));
+    BothSides::default().facings(scene)
+}
+
+/// Renderers of a terrain and of the same terrain turned over, with what they keep of both.
+#[derive(Debug, Default)]
+pub(crate) struct BothSides {
+    renderers: [Scanline; 2],
+    /// A mesh, and the same turned over.
+    turned: Option<[Arc<Mesh>; 2]>,
+}
+
+impl BothSides {
+    /// What the rays of each sensor meet first.
+    pub(crate) fn facings(&mut self, scene: &Scene) -> Vec<Facing> {
+        let mut beams = scene.beams().to_vec();
+        for Mounted { sensor: beam, .. } in &mut beams {
+            (beam.columns, beam.rows) = (beam.columns.min(SAMPLE_COLUMNS), beam.rows.min(SAMPLE_ROWS));
+        }
+        let with = |mesh: &Arc<Mesh>, sensor: Camera| {
+            let camera = Mounted { sensor, ..*scene.camera() };
+            Scene::new(Arc::clone(mesh), camera, beams.clone(), scene.atmosphere(), scene.flux_model())
+        };
+        let ranges = Request { quantities: Quantities { range: true, ..Quantities::NONE }, ..Request::MAPS };
+        let meshes = match self.turned.take().filter(|[mesh, _]| Arc::ptr_eq(mesh, scene.mesh())) {
+            Some(meshes) => meshes,
+            None => [Arc::clone(scene.mesh()), Arc::new(turned_over(scene.mesh()))],
+        };
+        let seen = |side: usize| -> RenderOutput {
+            let own = scene.camera().sensor;
+            // Pixels that are large already cannot be larger: then all of them are looked at.
+            let sample = with(&meshes[side], coarse_camera(own)).or_else(|_| with(&meshes[side], own));
+            self.renderers[side].render(&sample.expect("the sensors of a scene"), &ranges)
+        };
+        let (fronts, backs) = (seen(0), seen(1));
+        self.turned = Some(meshes);
+        fronts.maps().zip(backs.maps()).map(|(fronts, backs)| facing(fronts, backs)).collect()
     }
-    let with = |mesh: Arc<Mesh>, sensor: Camera| {
-        let camera = Mounted { sensor, ..*scene.camera() };
-        Scene::new(mesh, camera, beams.clone(), scene.atmosphere(), scene.flux_model())
-    };
-    let ranges = Request { quantities: Quantities { range: true, ..Quantities::NONE }, ..Request::MAPS };
-    let seen = |mesh: Arc<Mesh>| -> RenderOutput {
-        let own = scene.camera().sensor;
-        // Pixels that are large already cannot be larger: then all of them are looked at.
-        let sample = with(Arc::clone(&mesh), coarse_camera(own)).or_else(|_| with(mesh, own));
-        Scanline::exact().render(&sample.expect("the sensors of a scene"), &ranges)
-    };
-    let (fronts, backs) = (seen(Arc::clone(scene.mesh())), seen(Arc::new(turned_over(scene.mesh()))));
-    fronts.maps().zip(backs.maps()).map(|(fronts, backs)| facing(fronts, backs)).collect()
 }
 
 /// What the rays of a sensor meet first, by the ranges of the terrain and of the same terrain turned over.

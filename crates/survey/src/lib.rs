@@ -53,7 +53,7 @@ pub use warnings::hits::{SensorHits, few_hits, mostly_backs, no_hits};
 pub use warnings::image::{principal_point_off_centre, principal_point_outside};
 pub use warnings::terrain::{TerrainShape, terrain_on_its_side, terrain_too_large};
 pub use warnings::vehicle::{vehicle_above_ground, vehicle_below_ground};
-pub use warnings::warnings;
+pub use warnings::{Surveyor, warnings};
 pub use whereabouts::{Attitude, RoundedVertices, SensorPlace, Whereabouts};
 
 /// The README's example, compiled.

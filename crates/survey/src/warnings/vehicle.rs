@@ -11,21 +11,31 @@ use crate::warning::{Warning, WarningCode};
 const MAX_GROUND_DISTANCE_M: f64 = 0.35;
 
 /// Height of the vehicle's origin above the ground at its place, metres. `None` if there is no ground.
-fn height_above_ground(mesh: &Mesh, vehicle: &Pose) -> Option<f64> {
+pub(crate) fn height_above_ground(mesh: &Mesh, vehicle: &Pose) -> Option<f64> {
     let place = vehicle.position;
     height_at(mesh, place.x, place.y).map(|ground| place.z - ground)
 }
 
 /// Warns if the vehicle floats. `vehicle` is its pose in the global frame.
 pub fn vehicle_above_ground(mesh: &Mesh, vehicle: &Pose) -> Option<Warning> {
-    let height = height_above_ground(mesh, vehicle).filter(|height| *height > MAX_GROUND_DISTANCE_M)?;
-    let sentence = format!("the vehicle is {height:.2} m above the ground at its place.");
-    Some(Warning::of_scene(WarningCode::VehicleAboveGround, sentence))
+    height_above_ground(mesh, vehicle).and_then(too_high)
 }
 
 /// Warns if the vehicle is buried. `vehicle` is its pose in the global frame.
 pub fn vehicle_below_ground(mesh: &Mesh, vehicle: &Pose) -> Option<Warning> {
-    let height = height_above_ground(mesh, vehicle).filter(|height| *height < -MAX_GROUND_DISTANCE_M)?;
-    let sentence = format!("the vehicle is {:.2} m below the ground at its place.", -height);
-    Some(Warning::of_scene(WarningCode::VehicleBelowGround, sentence))
+    height_above_ground(mesh, vehicle).and_then(too_low)
+}
+
+pub(crate) fn too_high(height: f64) -> Option<Warning> {
+    (height > MAX_GROUND_DISTANCE_M).then(|| {
+        let sentence = format!("the vehicle is {height:.2} m above the ground at its place.");
+        Warning::of_scene(WarningCode::VehicleAboveGround, sentence)
+    })
+}
+
+pub(crate) fn too_low(height: f64) -> Option<Warning> {
+    (height < -MAX_GROUND_DISTANCE_M).then(|| {
+        let sentence = format!("the vehicle is {:.2} m below the ground at its place.", -height);
+        Warning::of_scene(WarningCode::VehicleBelowGround, sentence)
+    })
 }
