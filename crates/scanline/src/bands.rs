@@ -47,7 +47,7 @@ pub(crate) fn render<T: Transformation>(
     options: ScanlineOptions,
 ) -> SensorMap {
     let (width, height) = (transformation.columns().count(), transformation.rows().count());
-    let mut map = SensorMap::empty(sensor, width, height, quantities);
+    let mut map = SensorMap::unwritten(sensor, width, height, quantities);
 
     let as_printed = options.switches.skip_rules == Fidelity::Paper;
     let scanner = FaceScanner {

@@ -93,11 +93,13 @@ impl Raster {
                 inverse_ts.iter().zip(faces).zip(q_lengths).enumerate()
             {
                 if inverse_t == 0.0 {
+                    row.put_miss(i as u32);
                     continue;
                 }
                 // R = t |q|, from the table.
                 let range = q_length / inverse_t;
                 if !(range <= transformation.max_range()) {
+                    row.put_miss(i as u32);
                     continue;
                 }
                 if needs_hit {

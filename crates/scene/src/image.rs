@@ -1,5 +1,6 @@
 //! Row-major rasters, and the compact optional value that their cells hold.
 
+use bytemuck::Zeroable;
 use glam::DVec3;
 
 use crate::{FaceId, SceneError};
@@ -26,6 +27,14 @@ impl<T: Copy> Image<T> {
     /// A raster whose cells all hold `value`.
     pub fn filled(width: u32, height: u32, value: T) -> Self {
         Self { width, height, cells: vec![value; width as usize * height as usize] }
+    }
+
+    /// A raster whose cells are all zero: memory that costs nothing until it is written.
+    pub(crate) fn zeroed(width: u32, height: u32) -> Self
+    where
+        T: Zeroable,
+    {
+        Self { width, height, cells: bytemuck::zeroed_vec(width as usize * height as usize) }
     }
 
     /// A raster of given cells, row by row.
@@ -77,7 +86,7 @@ impl<T: Copy> Image<T> {
 }
 
 /// A type with one value of its own that can mean "nothing here".
-pub trait Sample: Copy {
+pub trait Sample: Copy + Zeroable {
     /// The value that means nothing; never a value of a quantity.
     const NOTHING: Self;
     /// Whether this is [`Sample::NOTHING`].
@@ -114,7 +123,7 @@ impl Sample for FaceId {
 /// assert_eq!(Maybe::some(2.5).get(), Some(2.5));
 /// assert_eq!(Maybe::<f64>::NONE.get(), None);
 /// ```
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Zeroable)]
 #[repr(transparent)]
 pub struct Maybe<T>(T);
 

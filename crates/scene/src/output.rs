@@ -108,6 +108,26 @@ impl SensorMap {
         }
     }
 
+    /// Maps of the `quantities` asked for whose cells are yet to be written, *every one of them*: by
+    /// [`SensorRow::put`] or [`SensorRow::put_miss`]. For renderers: to fill large maps with misses first takes as long as
+    /// to render them.
+    pub fn unwritten(sensor: SensorId, width: u32, height: u32, quantities: Quantities) -> Self {
+        fn raster<T: crate::Sample>(wanted: bool, width: u32, height: u32) -> Option<Image<Maybe<T>>> {
+            wanted.then(|| Image::zeroed(width, height))
+        }
+        Self {
+            sensor,
+            width,
+            height,
+            range: raster(quantities.range, width, height),
+            depth: raster(quantities.depth, width, height),
+            face: raster(quantities.face, width, height),
+            point: raster(quantities.point, width, height),
+            normal: raster(quantities.normal, width, height),
+            cos_incidence: raster(quantities.cos_incidence, width, height),
+        }
+    }
+
     /// The rows of all rasters, to be filled in any order and on any thread.
     pub fn rows_mut(&mut self) -> Vec<SensorRow<'_>> {
         fn rows<T: Copy>(raster: &mut Option<Image<T>>, width: usize) -> impl Iterator<Item = &mut [T]> {
@@ -163,8 +183,23 @@ impl SensorRow<'_> {
     #[inline]
     pub fn put(&mut self, i: u32, hit: &Hit) {
         self.put_place(i, hit.face, hit.range, hit.depth, hit.point);
-        write(&mut self.normal, i, hit.normal);
-        write(&mut self.cos_incidence, i, hit.cos_incidence);
+        self.put_plane(i, hit.normal, hit.cos_incidence);
+    }
+
+    /// Writes "no hit" into column `i` of all maps.
+    #[inline]
+    pub fn put_miss(&mut self, i: u32) {
+        fn clear<T: crate::Sample>(row: &mut Option<&mut [Maybe<T>]>, i: u32) {
+            if let Some(cells) = row {
+                cells[i as usize] = Maybe::NONE;
+            }
+        }
+        clear(&mut self.range, i);
+        clear(&mut self.depth, i);
+        clear(&mut self.face, i);
+        clear(&mut self.point, i);
+        clear(&mut self.normal, i);
+        clear(&mut self.cos_incidence, i);
     }
 
     /// Writes those of a hit's face, range, depth and point that the maps hold into column `i`.
@@ -174,6 +209,13 @@ impl SensorRow<'_> {
         write(&mut self.depth, i, depth);
         write(&mut self.face, i, face);
         write(&mut self.point, i, point);
+    }
+
+    /// Writes those of a hit's normal and cosine of incidence that the maps hold into column `i`.
+    #[inline]
+    pub fn put_plane(&mut self, i: u32, normal: DVec3, cos_incidence: f64) {
+        write(&mut self.normal, i, normal);
+        write(&mut self.cos_incidence, i, cos_incidence);
     }
 
     /// Whether the maps hold the normal or the cosine of incidence, for which the face's plane is needed.

@@ -5,7 +5,7 @@ use std::fmt;
 use glam::DVec3;
 
 /// The index of a face in [`crate::Mesh::faces`]. A renderer's own orders never show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Zeroable)]
 pub struct FaceId(pub u32);
 
 /// A half line `origin + t direction` in the scene frame, t >= 1. At t = 1 it crosses the sensor

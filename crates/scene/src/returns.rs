@@ -3,7 +3,7 @@
 use crate::{Image, Maybe, Sample};
 
 /// A pixel of the camera's image: column `i` of row `j`, row 0 on top.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Zeroable)]
 pub struct Pixel {
     /// Column.
     pub i: u32,

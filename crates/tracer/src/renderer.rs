@@ -3,16 +3,17 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
+use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{
     FaceId, Mesh, Precision, Quantities, RenderOutput, Renderer, Request, Scene, SensorId, SensorMap,
     SensorRow, Stage,
 };
 
-use crate::closest_hit::{ClosestHitTraverser, Intersection};
+use crate::closest_hit::ClosestHitTraverser;
 use crate::hierarchy::{self, Hierarchy};
 use crate::lanes::{self, Instructions, Work};
-use crate::rays::{PencilGrid, SensorRays, TracedRay};
+use crate::rays::{PencilGrid, SensorRays};
 use crate::returns::{self, PencilHit};
 use crate::tile::{BLOCK, BLOCKS, Nearest, Tile};
 use crate::triangle::Triangle;
@@ -199,7 +200,7 @@ fn trace_sensor(
     instructions: Instructions,
 ) -> (SensorMap, Vec<Option<PencilHit>>) {
     let (width, height) = rays.size();
-    let mut map = SensorMap::empty(sensor, width, height, quantities);
+    let mut map = SensorMap::unwritten(sensor, width, height, quantities);
     let mut hits = vec![None; if collect_hits { map.cell_count() } else { 0 }];
     let mut hit_rows = hits.chunks_exact_mut(width as usize);
     let mut rows: Vec<_> = map.rows_mut().into_iter().map(|row| (row, hit_rows.next())).collect();
@@ -239,12 +240,16 @@ impl Work for Band<'_, '_, '_, '_> {
                             hits[i as usize] =
                                 Some(PencilHit { face: intersection.triangle.face, t: intersection.t });
                         }
+                    } else {
+                        row.put_miss(i);
                     }
                 }
             }
             return;
         };
         let (mut tile, mut nearest) = (Tile::EMPTY, [Nearest::NOTHING; BLOCKS]);
+        // The face of the cell before, and its normal: neighbours often share it.
+        let mut last: Option<(FaceId, DVec3)> = None;
         for i in (0..width).step_by(columns as usize) {
             let active = rays.fill(&mut tile, i, first_row);
             traverser.closest_hits(&mut tile, active, rays.max_range(), &mut nearest);
@@ -252,17 +257,22 @@ impl Work for Band<'_, '_, '_, '_> {
                 for column in i..(i + columns).min(width) {
                     let lane = ((row.j - first_row) * columns + (column - i)) as usize;
                     let (of_block, k) = (&nearest[lane / BLOCK], lane % BLOCK);
-                    let Ok(face) = u32::try_from(of_block.face[k]) else { continue };
+                    let Ok(face) = u32::try_from(of_block.face[k]) else {
+                        row.put_miss(column);
+                        continue;
+                    };
                     let (face, t) = (FaceId(face), of_block.t[k]);
                     let (direction, metres_per_t) =
                         (tile.direction(lane), tile.blocks[lane / BLOCK].metres_per_t[k]);
+                    let (range, depth) = (t * metres_per_t, t * rays.depth_per_t());
+                    row.put_place(column, face, range, depth, tile.origin + direction * t);
                     if row.wants_the_plane() {
-                        let ray = TracedRay::new(tile.origin, direction);
-                        let triangle = Triangle::of(mesh, face);
-                        row.put(column, &Intersection { triangle, t }.hit(&ray, rays.depth_per_t()));
-                    } else {
-                        let (range, depth) = (t * metres_per_t, t * rays.depth_per_t());
-                        row.put_place(column, face, range, depth, tile.origin + direction * t);
+                        let normal = match last {
+                            Some((last, normal)) if last == face => normal,
+                            _ => Triangle::of(mesh, face).normal().normalize(),
+                        };
+                        last = Some((face, normal));
+                        row.put_plane(column, normal, -normal.dot(direction) / metres_per_t);
                     }
                     if let Some(hits) = hits {
                         hits[column as usize] = Some(PencilHit { face, t });
