@@ -418,3 +418,7 @@ fn greatest_of(of: &Lanes) -> f64 {
     }
     greatest[0].max(greatest[1]).max(greatest[2].max(greatest[3]))
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/tile.rs"]
+mod tests;
