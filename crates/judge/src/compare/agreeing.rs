@@ -138,3 +138,7 @@ impl<'c> AgreeingPixels<'c> {
         ])
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/agreeing.rs"]
+mod tests;

@@ -94,3 +94,22 @@ fn a_face_that_the_spp_cuts_may_touch_any_row() {
         assert_eq!(rows_of(behind, skip_unseen), None);
     }
 }
+
+#[test]
+fn of_equally_near_faces_the_lowest_is_kept_whichever_comes_first() {
+    // Two faces in the plane z = 2 that both cover the pixel at (1/8, 1/8). The one with the higher index is the first along
+    // the clusters' curve, and so the first that is scanned.
+    let right = front(2.0, [[-0.5, -0.25], [1.0, 4.0], [1.5, -0.25]]);
+    let left = front(2.0, [[-4.0, -0.25], [0.0, 1.0], [0.5, -0.25]]);
+    let tables = CameraTables::new(&camera());
+    let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera() };
+    let transformation = Perspective::new(&mounted, &tables);
+    for faces in [[right, left], [left, right]] {
+        let mesh = mesh(&faces);
+        let clusters = Clusters::new(&mesh);
+        let quantities = Quantities::RANGE_MAP;
+        let options = ScanlineOptions::EXACT;
+        let map = render(&mesh, &clusters, &transformation, SensorId::Camera, quantities, options);
+        assert_eq!(map.face.unwrap().at(4, 4).get(), Some(FaceId(0)));
+    }
+}
