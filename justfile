@@ -42,6 +42,11 @@ results MESH:
 truth:
     cargo run --release -p raypencil --example truth
 
+# The times of raypencil and of Embree on the same rays: docs/speed.md. MESH: a mesh of your own beside the generated grounds
+speed MESH="":
+    cargo build --release -p raypencil --example speed
+    python3 reference/speed/speed.py target/release/examples/speed {{ if MESH == "" { "" } else { "--mesh " + quote(MESH) } }} -o docs/speed.md
+
 # The detection of each injected fault, and the smallest scene that reveals it: docs/evidence/injected-faults.md
 injected-faults:
     cargo run --release -p raypencil-tests --example injected_faults > docs/evidence/injected-faults.md

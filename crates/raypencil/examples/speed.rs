@@ -5,23 +5,28 @@
 //! speed measure GROUND ROUNDS ROW...   # milliseconds of rows of the table, as a line of JSON
 //! ```
 //!
-//! `GROUND` is a number of faces of generated ground, or a scene or mesh of your own. `ROW` is `camera, NAME`, `beams, NAME`,
-//! `returns, NAME` or `first frame, NAME` of a renderer, or `validate` or `referee`. The number of threads is that of
-//! `RAYON_NUM_THREADS`.
+//! `GROUND` is a number of faces of generated ground (`FACES@SIDE`: seen by a camera of so many pixels a side), or a scene
+//! or mesh of your own. `ROW` is `camera, NAME`, `beams, NAME`, `returns, NAME` or `first frame, NAME` of a renderer, or
+//! `validate`, `referee`, `drive` or `floor`. The number of threads is that of `RAYON_NUM_THREADS`.
 
 use std::error::Error;
 use std::fs::File;
 use std::hint::black_box;
 use std::io::{BufWriter, Write};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
+use glam::DVec3;
 use rayon::prelude::*;
+use raypencil::drive::DriveJob;
 use raypencil::harness::{Contender, Validation, Validator, contender};
 use raypencil::io::{Overrides, Subject, load, load_text};
 use raypencil::judge::JudgeShare;
+use raypencil::rover::{CameraImage, Drive};
 use raypencil::{
-    Camera, Mounted, Quantities, Referee, Renderer, Request, Scanline, Scene, SensorId, Silent, Stage,
+    Camera, FaceId, Image, Mounted, Quantities, Referee, Renderer, Request, Scanline, Scene, SensorId,
+    SensorMap, Silent, Stage,
 };
 use serde_json::{Map, Value, json};
 
@@ -46,13 +51,18 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The default rig on generated ground of so many faces over 50 m, or the user's own scene.
 fn subject(ground: &str) -> Result<Subject, Box<dyn Error>> {
-    let loaded = match ground.parse::<u32>() {
-        Ok(faces) => load_text(
-            &format!(
-                "version = 1\n[terrain]\ngenerate = {{ kind = \"plain\", seed = 1, faces = {faces}, extent_m = 50 }}\n"
-            ),
-            "plain",
-        )?,
+    // `FACES@SIDE`: a camera of that many pixels across and down, over the same field of view.
+    let (faces, side) = ground.split_once('@').unwrap_or((ground, "1024"));
+    let loaded = match faces.parse::<u32>() {
+        Ok(faces) => {
+            let side: u32 = side.parse()?;
+            let pitch_um = 9.0 * 1024.0 / f64::from(side);
+            let text = format!(
+                "version = 1\n[terrain]\ngenerate = {{ kind = \"plain\", seed = 1, faces = {faces}, extent_m = 50 }}\n\
+                 [camera]\nwidth_px = {side}\nheight_px = {side}\npixel_pitch_um = {pitch_um}\n"
+            );
+            load_text(&text, "plain")?
+        }
         Err(_) => load(ground, &Overrides::default())?,
     };
     Ok(Subject {
@@ -187,6 +197,51 @@ fn work(subject: &Subject, row: &str, rounds: usize) -> Result<Map<String, Value
                 }
             }
             measured.extend(stages.into_iter().map(|(name, times)| (name, json!(times))));
+        }
+        "drive" => {
+            // A whole cycle, as `cargo bench --bench drive` has it, with the noise of a camera chip.
+            let ground = match subject.arguments.parse::<u32>() {
+                Ok(faces) => {
+                    format!("generate = {{ kind = \"plain\", seed = 1, faces = {faces}, extent_m = 50 }}")
+                }
+                Err(_) => format!("file = {:?}", std::path::absolute(&subject.arguments)?),
+            };
+            let text = format!(
+                "version = 1\n[vehicle]\nposition_m = [-15, 0]\n[terrain]\n{ground}\n[drive]\nwaypoints_m = [[15, 0]]\n\
+                 scans = false\n"
+            );
+            let job = DriveJob::new(&load_text(&text, "drive")?, None, String::new())?;
+            let (_, sensor) = raypencil::sensor::preset("cmos").ok_or("the preset `cmos`")?;
+            let renderer = Scanline::exact();
+            let mut drive = Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?;
+            let mut exposures = 0;
+            let mut camera_pipeline = |_, flux: Image<f64>| {
+                exposures += 1;
+                CameraImage::Numbers(sensor.numbers(&flux, None, exposures))
+            };
+            let mut cycle = || drive.step(&renderer, &mut camera_pipeline).expect("a frame");
+            cycle();
+            measured.insert(row.into(), json!((0..rounds).map(|_| timed(&mut cycle)).collect::<Vec<_>>()));
+        }
+        "floor" => {
+            let mesh = subject.scene.mesh();
+            let read = || -> u64 {
+                let vertices = mesh.vertices().iter().flatten().map(|x| u64::from(x.to_bits()));
+                vertices.fold(0, u64::wrapping_add)
+                    + mesh.faces().iter().flatten().map(|&v| u64::from(v)).sum::<u64>()
+            };
+            let times = (0..rounds).map(|_| timed(|| black_box(read())));
+            measured.insert("floor: the mesh read once".into(), json!(times.collect::<Vec<_>>()));
+            let (width, height) = subject.scene.size(SensorId::Camera).expect("every scene has a camera");
+            let write = || {
+                let mut map = SensorMap::unwritten(SensorId::Camera, width, height, Quantities::RANGE_MAP);
+                for row in &mut map.rows_mut() {
+                    (0..width).for_each(|i| row.put_place(i, FaceId(i), 1.0, 1.0, DVec3::ZERO));
+                }
+                map
+            };
+            let times = (0..rounds).map(|_| timed(|| black_box(write())));
+            measured.insert("floor: the map written once".into(), json!(times.collect::<Vec<_>>()));
         }
         "referee" => {
             let referee = Referee::new(&subject.scene);

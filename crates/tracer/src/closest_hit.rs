@@ -5,8 +5,8 @@ use std::ops::Range;
 use raypencil_scene::Hit;
 
 use crate::hierarchy::{Hierarchy, round_up};
-use crate::rays::TracedRay;
 use crate::tile::{BLOCK, BLOCKS, Nearest, SeenFace, Tile};
+use crate::traced_ray::TracedRay;
 use crate::triangle::Triangle;
 use crate::wide_tree::{Next, Visitor, Waiting};
 

@@ -8,11 +8,15 @@
 //! The files, each using only those above it:
 //!
 //! ```text
-//! rays           the contract's rays, formed in the scene frame
-//! triangle       the watertight test: does a ray meet a face, and at which t
 //! grouped_build  the obvhs tree, built in bounded time for any input
+//! wide_tree      the same tree with eight boxes a node; the walk of many rays at once
+//! traced_ray     one ray, for triangles and for boxes
+//! triangle       the watertight test: does a ray meet a face, and at which t
 //! box_tree       faces in the order of the tree's leaves
 //! hierarchy      the terrain's faces in padded boxes
+//! lanes          work compiled for wide lanes too
+//! tile           64 rays from one point, tested together
+//! rays           the contract's rays, formed in the scene frame
 //! closest_hit    the hit of a ray: smallest t, lowest face index on ties
 //! occlusion      does any face stand between a hit point and the camera
 //! camera         a point in the camera frame and on the image
@@ -59,6 +63,7 @@ mod renderer;
 mod returns;
 mod shares;
 mod tile;
+mod traced_ray;
 mod triangle;
 mod wide_tree;
 

@@ -31,8 +31,8 @@ use glam::DVec3;
 
 use crate::closest_hit::Intersection;
 use crate::hierarchy::{Hierarchy, round_up};
-use crate::rays::TracedRay;
 use crate::tile::{BLOCK, BLOCKS, SeenFace, Tile};
+use crate::traced_ray::TracedRay;
 use crate::triangle::{Triangle, widen};
 use crate::wide_tree::{Next, Visitor, Waiting};
 

@@ -22,7 +22,7 @@
 
 use glam::{DVec3, Vec3A};
 
-use crate::rays::TracedRay;
+use crate::traced_ray::TracedRay;
 use crate::triangle::{Triangle, widen};
 use crate::wide_tree::Bundle;
 

@@ -17,7 +17,7 @@
 use glam::DVec3;
 use raypencil_scene::{FaceId, Mesh};
 
-use crate::rays::TracedRay;
+use crate::traced_ray::TracedRay;
 
 /// A face as stored beside the tree: its unrounded vertices and its index in the mesh.
 #[derive(Debug, Clone, Copy)]

@@ -18,7 +18,7 @@ use obvhs::ray::Ray as BoxRay;
 use raypencil_scene::{CastRay, Triangles};
 
 use crate::hierarchy::{round_down, round_up};
-use crate::rays::TracedRay;
+use crate::traced_ray::TracedRay;
 
 /// u = 2^-24: the unit roundoff of f32.
 const U: f64 = 1.0 / (1u32 << 24) as f64;

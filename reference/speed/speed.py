@@ -1,0 +1,227 @@
+"""Times raypencil and Embree on the very same triangles and rays, in turns, and writes docs/speed.md.
+
+    speed.py PROGRAM [--mesh FILE] [--rounds N] [-o FILE]
+
+PROGRAM is the example `speed` of the crate `raypencil`, built with optimisation. Embree is that of the Python package
+`embreex` (reference/requirements.txt), called from C++ (embree.cpp); without it, or without a C++ compiler, the page says
+so and has no column of it. `just speed` does all this.
+"""
+
+import argparse
+import importlib.util
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+
+HERE = Path(__file__).resolve().parent
+SIZES = ["2000", "200000", "2000000"]
+RUNS_A_ROUND = 5
+MAP_ROWS = [f"{what}, {name}" for what in ("camera", "beams", "returns") for name in ("scanline", "tracer")]
+
+
+def embree_program(folder: Path) -> Path | None:
+    """The C++ program, linked to the library inside the package; None if that cannot be."""
+    spec = importlib.util.find_spec("embreex")
+    libraries = sorted(Path(spec.origin).parent.with_name("embreex.libs").glob("libembree4*")) if spec else []
+    if not libraries:
+        print("embreex is not installed: no times of Embree", file=sys.stderr)
+        return None
+    program = folder / "embree"
+    command = ["c++", "-std=c++20", "-O2", "-march=native", str(HERE / "embree.cpp"), "-o", str(program)]
+    command += [str(libraries[0]), f"-Wl,-rpath,{libraries[0].parent}"]
+    try:
+        subprocess.run(command, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        print(f"no C++ compiler that makes it: {error}: no times of Embree", file=sys.stderr)
+        return None
+    return program
+
+
+class Runs:
+    """Times of each row, as lists: one list a round."""
+
+    def __init__(self):
+        self.times: dict[str, list[list[float]]] = {}
+
+    def add(self, measured: dict):
+        for row, times in measured.items():
+            times = times if isinstance(times, list) else [times]
+            self.times.setdefault(row, []).append([time for time in times if time is not None])
+
+    def median(self, row: str) -> float | None:
+        times = [time for of_round in self.times.get(row, []) for time in of_round]
+        return median(times) if times else None
+
+    def ratio(self, other: "Runs", row: str, of_other: str) -> float | None:
+        """How many times as fast this is as the other: the median over the rounds, each a pair."""
+        pairs = zip(self.times.get(row, []), other.times.get(of_other, []))
+        ratios = [median(theirs) / median(ours) for ours, theirs in pairs if ours and theirs]
+        return median(ratios) if ratios else None
+
+
+def run(command: list[str], threads: int) -> dict:
+    environment = {**os.environ, "RAYON_NUM_THREADS": str(threads)}
+    done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def number(value: float | None) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.0f}" if value >= 99.5 else f"{value:.3g}"
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def processor() -> str:
+    try:
+        names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
+        return f"{names[0]}, {len(names)} threads of it"
+    except (OSError, IndexError):
+        return f"{platform.processor() or platform.machine()}, {os.cpu_count()} threads of it"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=Path)
+    parser.add_argument("--mesh", type=Path, help="a mesh of your own beside the generated grounds")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--no-scaling", action="store_true", help="leave out the tables by size, which take minutes")
+    parser.add_argument("-o", "--out", type=Path)
+    given = parser.parse_args()
+    ours_program = str(given.program.resolve())
+    grounds = {size: f"{int(size):,} faces" for size in SIZES}
+    if given.mesh:
+        grounds[str(given.mesh)] = given.mesh.stem
+
+    ours, theirs, two, theirs_two = ({ground: Runs() for ground in grounds} for _ in range(4))
+    with tempfile.TemporaryDirectory() as temporary:
+        embree = embree_program(Path(temporary))
+        for index, ground in enumerate(grounds):
+            print(f"{grounds[ground]}: writing rays", file=sys.stderr)
+            folder = Path(temporary) / str(index)
+            subprocess.run([ours_program, "write", ground, str(folder)], check=True)
+            for k in range(given.rounds):
+                print(f"{grounds[ground]}: round {k + 1} of {given.rounds}", file=sys.stderr)
+                measure = [ours_program, "measure", ground, str(RUNS_A_ROUND)]
+                ours[ground].add(run([*measure, *MAP_ROWS, "floor"], 1))
+                if embree:
+                    theirs[ground].add(run([str(embree), str(folder), str(RUNS_A_ROUND), "1"], 1))
+                two[ground].add(run([*measure, "first frame, tracer", "first frame, scanline"], 2))
+                if embree:
+                    theirs_two[ground].add(run([str(embree), str(folder), str(RUNS_A_ROUND), "2"], 2))
+                two[ground].add(run([*measure, "validate"], 2))
+                two[ground].add(run([ours_program, "measure", ground, "1", "referee", "drive"], 2))
+        scaling = [] if given.no_scaling else scaled(ours_program)
+    text = page(given, grounds, ours, theirs, two, theirs_two, embree is not None, scaling)
+    if given.out:
+        beside = given.out.with_name(given.out.name + ".part")
+        beside.write_text(text)
+        beside.replace(given.out)
+    else:
+        print(text)
+
+
+def scaled(program: str) -> list[str]:
+    """Tables of times by the number of faces and by that of pixels."""
+    rows = ["camera, scanline", "camera, tracer", "beams, scanline", "beams, tracer"]
+    head = ["", *[f"{row}, {threads}" for row in rows for threads in ("1 thread", "2 threads")]]
+    parts = []
+    by_faces = [(f"{faces}", f"{faces:,} faces", 3) for faces in (2_000, 20_000, 200_000, 2_000_000, 20_000_000)]
+    by_pixels = [(f"200000@{side}", f"{side} x {side} pixels", 3) for side in (550, 1024, 2048, 4096, 8192)]
+    for title, cases in (("By the number of faces", by_faces), ("By the number of pixels", by_pixels)):
+        lines = []
+        for ground, name, rounds in cases:
+            print(f"scaling: {name}", file=sys.stderr)
+            wanted = rows if title.endswith("faces") else rows[:2]
+            one, two = (run([program, "measure", ground, str(rounds), *wanted], threads) for threads in (1, 2))
+            first = run([program, "measure", ground, "1", "first frame, scanline", "first frame, tracer"], 2)
+            memory = one["peak memory, bytes"]
+            cells = [number(median(times[row])) if row in times else "" for row in wanted for times in (one, two)]
+            trees = [number(first[f"first frame, {name}"][0]) for name in ("scanline", "tracer")]
+            extra = [*trees, f"{memory / one['faces']:,.0f}"] if title.endswith("faces") else []
+            lines.append([name, *cells, *extra])
+        wide = head if title.endswith("faces") else head[:5]
+        tail = ["clusters, 2 threads", "tree, 2 threads", "peak bytes a face"] if title.endswith("faces") else []
+        parts.append(f"## {title}\n\n" + table([*wide, *tail], lines))
+    return parts
+
+
+def page(given, grounds, ours, theirs, two, theirs_two, has_embree: bool, scaling: list[str]) -> str:
+    names = list(grounds)
+    head = ["ms", *[grounds[ground] for ground in names]]
+
+    def row(title: str, runs: dict, key: str) -> list[str]:
+        return [title, *[number(runs[ground].median(key)) for ground in names]]
+
+    def ratios(title: str, mine: dict, key: str, others: dict, of_other: str) -> list[str]:
+        cells = [mine[ground].ratio(others[ground], key, of_other) for ground in names]
+        return [title, *[f"{cell:.2f}" if cell else "-" for cell in cells]]
+
+    lines = []
+    for what, of_embree in (("camera", "camera"), ("beams", "beams"), ("returns", "shadow")):
+        lines += [row(f"{what}, `{name}`", ours, f"{what}, {name}") for name in ("scanline", "tracer")]
+        for kind in ("single", "packets") if has_embree else ():
+            title = "shadow rays alone" if what == "returns" else what
+            lines.append(row(f"{title}, Embree, {kind}", theirs, f"{of_embree}, {kind}"))
+    lines.append(row("clusters of `scanline`, first frame, 2 threads", two, "first frame, scanline"))
+    lines.append(row("tree of `tracer`, first frame, 2 threads", two, "first frame, tracer"))
+    if has_embree:
+        lines.append(row("tree of Embree, medium quality, 2 threads", theirs_two, "tree"))
+    lines.append(row("a whole validation, tree and tables kept, 2 threads", two, "validate"))
+    lines.append(row("a cycle of the rover with the noise of `cmos`, 2 threads", two, "drive"))
+    lines.append(row("certified camera rays a second, 2 threads", two, "referee"))
+    lines.append(row("floor: to read the mesh once", ours, "floor: the mesh read once"))
+    lines.append(row("floor: to write the camera's map once", ours, "floor: the map written once"))
+
+    goals = []
+    if has_embree:
+        for what, of_embree in (("camera", "camera"), ("beams", "beams"), ("returns", "shadow")):
+            other = "shadow rays" if what == "returns" else what
+            for kind in ("single", "packets"):
+                title = f"{what}, `tracer` / {other}, Embree, {kind}"
+                goals.append(ratios(title, ours, f"{what}, tracer", theirs, f"{of_embree}, {kind}"))
+        for what in ("camera", "beams"):
+            title = f"{what}, `scanline` / Embree, packets"
+            goals.append(ratios(title, ours, f"{what}, scanline", theirs, f"{what}, packets"))
+        goals.append(ratios("tree / Embree, 2 threads", two, "first frame, tracer", theirs_two, "tree"))
+
+    command = "just speed" + (" MESH" if given.mesh else "")
+    parts = [
+        "# How fast\n",
+        f"Made by `{command}` (`reference/speed/speed.py`) on one {processor()}. Medians of {given.rounds} rounds of "
+        f"{RUNS_A_ROUND} runs; in each round the programs take turns. One thread, unless a row says otherwise.\n",
+        "The grounds are generated plains of 50 m x 50 m"
+        + (", and a mesh of the user's own (the last column). " if given.mesh else ". ")
+        + "The rig is the default one: a camera of 1024 x 1024 pixels, two beams of 1024 x 16 pencils. A map is the range "
+        "and the face of every ray. *Returns* are what follows from the pencils' hits: line of sight to the camera, "
+        "geometry and light.\n",
+        table(head, lines) + "\n",
+    ]
+    if has_embree:
+        parts += [
+            "## Beside Embree\n",
+            "Embree 4.4 in robust mode gets the same triangles and the same rays in single precision, with the same nearest "
+            "and farthest t: one at a time, and in packets of sixteen neighbours of a row, marked as coherent. It gives the "
+            "range and the face of the nearest hit from either side. raypencil's answers are in double precision, to the bit "
+            "the same on every machine, and of the fronts alone. Our times include the making of the rays and of the map; "
+            "Embree's rays lie ready in memory. The trees are compared as each program builds its own.\n",
+            "How many times as fast raypencil is (median of the ratios of all rounds):\n",
+            table(["", *head[1:]], goals) + "\n",
+        ]
+    else:
+        parts.append("Embree could not be asked: the package `embreex` or a C++ compiler is missing.\n")
+    parts += [part + "\n" for part in scaling]
+    return "\n".join(parts)
+
+
+if __name__ == "__main__":
+    main()
