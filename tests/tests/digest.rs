@@ -7,7 +7,8 @@
 
 use glam::DVec3;
 use raypencil::terrain::{Crevasses, MarsGround, RandomGround, Rocks, builtin, height_at};
-use raypencil::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request, Sampling, Scene};
+use raypencil::tracer::Instructions;
+use raypencil::{Atmosphere, Filter, FluxModel, Lens, Profile, Renderer, Request, Sampling, Scene, Tracer};
 use raypencil_tests::{bits, light_bits, renderers, rig, scene};
 use sha2::{Digest, Sha256};
 
@@ -90,6 +91,22 @@ fn every_number_of_threads_and_every_build_gives_the_committed_bits() {
         }
     }
     assert!(found == DIGESTS, "the digests are now {found:#?}");
+}
+
+#[test]
+fn wide_lanes_change_no_bit() {
+    // On a processor without them the two are one; CI's has them.
+    let [detected, baseline] =
+        [Instructions::Detected, Instructions::Baseline].map(Tracer::with_instructions);
+    for (name, scene) in scenes().into_iter().chain(lit_scenes()) {
+        assert_eq!(digest(&detected, &scene), digest(&baseline, &scene), "{name}");
+        for sampling in [Sampling::Centres, Sampling::Jittered { seed: 3 }] {
+            let request = Request { sampling, ..Request::EVERYTHING };
+            let [wide, plain] =
+                [&detected, &baseline].map(|renderer| light_bits(&renderer.render(&scene, &request)));
+            assert!(wide == plain, "{name}, {sampling:?}");
+        }
+    }
 }
 
 /// The pyramids in both flux models, through a filter in attenuating air, with beams of two profiles.

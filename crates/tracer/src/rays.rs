@@ -139,7 +139,7 @@ impl SensorRays {
                 PENCIL_TILE
             }
         };
-        tile.origin = self.origin(self.q(i, j).0);
+        tile.origin = self.start(self.q(i, j).0);
         tile.prepare();
         if i + columns <= width && j + rows <= height {
             return u64::MAX;
@@ -152,12 +152,12 @@ impl SensorRays {
     #[inline(always)]
     pub(crate) fn ray(&self, i: u32, j: u32) -> TracedRay {
         let (y, q) = self.q(i, j);
-        TracedRay::new(self.origin(y), self.scene_from_sensor.apply(q))
+        TracedRay::new(self.start(y), self.scene_from_sensor.apply(q))
     }
 
     /// The start of a ray `y` along the sensor's y axis, scene frame, metres.
     #[inline(always)]
-    fn origin(&self, y: f64) -> DVec3 {
+    fn start(&self, y: f64) -> DVec3 {
         match &self.source {
             RaySource::Camera(_) => self.position,
             RaySource::Beam(_) => self.position + self.scene_from_sensor.apply(DVec3::new(0.0, y, 0.0)),
