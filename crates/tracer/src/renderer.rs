@@ -262,8 +262,7 @@ impl Work for Band<'_, '_, '_, '_> {
                         continue;
                     };
                     let (face, t) = (FaceId(face), of_block.t[k]);
-                    let (direction, metres_per_t) =
-                        (tile.direction(lane), tile.blocks[lane / BLOCK].metres_per_t[k]);
+                    let (direction, metres_per_t) = (tile.q(lane), tile.blocks[lane / BLOCK].metres_per_t[k]);
                     let (range, depth) = (t * metres_per_t, t * rays.depth_per_t());
                     row.put_place(column, face, range, depth, tile.origin + direction * t);
                     if row.wants_the_plane() {

@@ -97,9 +97,9 @@ impl Tile {
         greatest: DVec3::ZERO,
     };
 
-    /// The direction of one ray.
+    /// The direction of one ray: from its origin to the SPP, or to a point.
     #[inline(always)]
-    pub(crate) fn direction(&self, lane: usize) -> DVec3 {
+    pub(crate) fn q(&self, lane: usize) -> DVec3 {
         DVec3::from_array([0, 1, 2].map(|k| self.blocks[lane / BLOCK].direction[k][lane % BLOCK]))
     }
 
@@ -137,7 +137,7 @@ impl Tile {
     #[inline(always)]
     pub(crate) fn begin(&mut self, left: u64) -> u64 {
         let lead = left.trailing_zeros() as usize;
-        let stand_in = self.direction(lead);
+        let stand_in = self.q(lead);
         self.way = self.blocks[lead / BLOCK].way[lead % BLOCK];
         self.axes = TracedRay::axes_of(stand_in);
         let [kx, ky, kz] = self.axes;

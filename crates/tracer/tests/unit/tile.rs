@@ -98,7 +98,7 @@ proptest! {
         for instructions in [Instructions::Detected, Instructions::Baseline] {
             let work = Hits { traverser: &mut traverser, tile, active, max_range };
             for (lane, hit) in lanes::run(instructions, work).into_iter().enumerate() {
-                let ray = TracedRay::new(origin, tile.direction(lane));
+                let ray = TracedRay::new(origin, tile.q(lane));
                 let is_active = active & (1 << lane) != 0;
                 let expected = if is_active { exhaustive(&mesh, &ray, max_range) } else { None };
                 prop_assert_eq!(hit, expected, "lane {} with {:?}", lane, instructions);
@@ -124,7 +124,7 @@ fn a_refused_face_is_met_by_no_ray_of_a_block_however_narrow_the_margin() {
     for block in 0..BLOCKS {
         assert!(!tile.block_misses_front(block, &face));
         let meets = |k: usize| {
-            let ray = TracedRay::new(tile.origin, tile.direction(block * BLOCK + k));
+            let ray = TracedRay::new(tile.origin, tile.q(block * BLOCK + k));
             u64::from(triangle.intersect_either_side(&ray).is_some()) << k
         };
         assert_eq!(tile.inside(block, &face), (0..BLOCK).fold(0, |mask, k| mask | meets(k)));
