@@ -6,7 +6,7 @@ use glam::DVec2;
 use raypencil_rover::{DrivePlan, Rig};
 use raypencil_scene::{FluxModel, Image, Mesh};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource};
-use raypencil_sensor::{ImageSensor, Optics, Sunlight};
+use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Sunlight};
 use raypencil_survey::Warning;
 
 use crate::beam_columns::with_columns;
@@ -140,16 +140,22 @@ impl DriveJob {
     /// Digital numbers of one exposure, steps 7 and 8. `flux` is the laser's light and `background` that of sun and
     /// sky, both in watts per pixel; `number` selects the noise. With `subtract_unlit`, the numbers of a second
     /// exposure without the laser are subtracted.
+    /// `pattern` keeps the noise that is the same in every exposure.
     pub(crate) fn expose(
         &self,
         flux: &Image<f64>,
         background: Option<&Image<f64>>,
         number: u64,
+        pattern: &mut Option<FixedPattern>,
     ) -> Image<i32> {
-        if self.subtract_unlit {
-            return self.sensor.lit_minus_unlit(flux, background, number);
+        let size = (flux.width(), flux.height());
+        if !pattern.as_ref().is_some_and(|pattern| pattern.is_of(&self.sensor, size)) {
+            *pattern = Some(self.sensor.fixed_pattern(size.0, size.1));
         }
-        self.sensor.numbers(flux, background, number)
+        if self.subtract_unlit {
+            return self.sensor.lit_minus_unlit(pattern.as_ref(), flux, background, number);
+        }
+        self.sensor.numbers_with(pattern.as_ref(), flux, background, number)
     }
 
     /// Number of frames of the route.

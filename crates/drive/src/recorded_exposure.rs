@@ -70,6 +70,6 @@ impl RecordedExposure {
             flux.cells_mut()[index as usize] = watts;
         }
         let background = self.scene.as_ref().zip(sun).map(|(scene, sun)| sun.background(job, scene));
-        job.expose(&flux, background.as_ref(), self.number)
+        job.expose(&flux, background.as_ref(), self.number, &mut None)
     }
 }

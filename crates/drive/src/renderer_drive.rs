@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use raypencil_rover::{CameraImage, Drive, DriveFrame, ElevationMap, Exposure};
 use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
+use raypencil_sensor::FixedPattern;
 use raypencil_terrain::HeightIndex;
 
 use crate::job::DriveJob;
@@ -20,6 +21,8 @@ pub(crate) struct RendererDrive<'a> {
     drive: Drive,
     /// Number of exposures so far.
     exposures: u64,
+    /// Noise that is the same in all of them.
+    pattern: Option<FixedPattern>,
     /// Time of the sensor, steps 7 and 8.
     exposing: Duration,
     /// Time of all steps, rendering and sensor included.
@@ -50,6 +53,7 @@ impl<'a> RendererDrive<'a> {
             renderer: ThroughOptics::new(renderer, job, sun),
             drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
             exposures: 0,
+            pattern: None,
             exposing: Duration::ZERO,
             stepping: Duration::ZERO,
         })
@@ -62,12 +66,13 @@ impl<'a> RendererDrive<'a> {
     pub(crate) fn step(&mut self, record: bool) -> Result<Option<ExposedFrame>, SceneError> {
         let (mut recorded, mut images, mut room) = (Vec::new(), Vec::new(), MAX_LIT_PIXELS);
         let (job, renderer) = (self.job, &self.renderer);
-        let (exposures, exposing) = (&mut self.exposures, &mut self.exposing);
+        let (exposures, exposing, pattern) = (&mut self.exposures, &mut self.exposing, &mut self.pattern);
         let mut camera_pipeline = |exposure: Exposure, flux: Image<f64>| {
             let start = Instant::now();
             // Steps 7 and 8.
             let background = renderer.background();
-            let numbers = job.expose(&flux, background.as_ref().map(|(_, flux)| flux), *exposures);
+            let light = background.as_ref().map(|(_, flux)| flux);
+            let numbers = job.expose(&flux, light, *exposures, pattern);
             if record {
                 let scene = background.map(|(scene, _)| scene);
                 let record = RecordedExposure::new(exposure, *exposures, scene, &flux, &numbers, room);

@@ -105,9 +105,11 @@ fn exposures(bencher: Bencher<'_, '_>, name: &str) {
         plan.rig.scene(Arc::clone(&JOB.mesh), pose, plan.atmosphere, plan.flux_model).expect("a scene");
     let output = renderer("tracer").render(&scene, &Request::FLUX);
     let (_, sensor) = raypencil::sensor::preset(name).expect("a preset");
+    let camera = plan.rig.camera.sensor;
+    let pattern = sensor.fixed_pattern(camera.width, camera.height);
     bencher.bench_local(|| {
         for (image, exposure) in output.flux.iter().zip(0..) {
-            black_box::<Image<i32>>(sensor.numbers(black_box(image), None, exposure));
+            black_box::<Image<i32>>(sensor.numbers_with(Some(&pattern), black_box(image), None, exposure));
         }
     });
 }

@@ -214,10 +214,12 @@ fn work(subject: &Subject, row: &str, rounds: usize) -> Result<Map<String, Value
             let (_, sensor) = raypencil::sensor::preset("cmos").ok_or("the preset `cmos`")?;
             let renderer = Scanline::exact();
             let mut drive = Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?;
+            let camera = job.plan.rig.camera.sensor;
+            let pattern = sensor.fixed_pattern(camera.width, camera.height);
             let mut exposures = 0;
             let mut camera_pipeline = |_, flux: Image<f64>| {
                 exposures += 1;
-                CameraImage::Numbers(sensor.numbers(&flux, None, exposures))
+                CameraImage::Numbers(sensor.numbers_with(Some(&pattern), &flux, None, exposures))
             };
             let mut cycle = || drive.step(&renderer, &mut camera_pipeline).expect("a frame");
             cycle();

@@ -95,6 +95,22 @@ struct Pixel {
     signal: f64,
 }
 
+/// What [`ImageSensor::fixed_pattern`] keeps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FixedPattern {
+    sensor: ImageSensor,
+    size: (u32, u32),
+    /// DSNU of each pixel, electrons.
+    dark_signals: Vec<f64>,
+}
+
+impl FixedPattern {
+    /// Whether it is that of this sensor, for images of that size.
+    pub fn is_of(&self, sensor: &ImageSensor, size: (u32, u32)) -> bool {
+        self.sensor == *sensor && self.size == size
+    }
+}
+
 /// Flux on the pixel of an index, watts.
 fn fluxes<'a>(optical: &'a Image<f64>, background: Option<&'a Image<f64>>) -> impl Fn(usize) -> f64 + Sync {
     if let Some(background) = background {
@@ -128,7 +144,8 @@ impl ImageSensor {
         let flux = fluxes(optical, background);
         let dark = self.dark_electrons();
         let pixels = (0..optical.cells().len()).into_par_iter();
-        let pixels: Vec<Pixel> = pixels.map(|index| self.pixel(flux(index), dark, frame, index)).collect();
+        let pixels: Vec<Pixel> =
+            pixels.map(|index| self.pixel(flux(index), dark, frame, index, None)).collect();
         let image = |of: fn(&Pixel) -> f64| Image::from_cells(width, height, pixels.iter().map(of).collect());
         let numbers = pixels.iter().map(|pixel| self.digitised(pixel.signal)).collect();
         DigitalImage {
@@ -150,16 +167,67 @@ impl ImageSensor {
         background: Option<&Image<f64>>,
         frame: u64,
     ) -> Image<T> {
+        self.numbers_with(None, optical, background, frame)
+    }
+
+    /// The same with a [fixed pattern](ImageSensor::fixed_pattern) that is kept from frame to frame: it changes no number,
+    /// and takes half of the time.
+    ///
+    /// ```
+    /// use raypencil_scene::Image;
+    /// use raypencil_sensor::ImageSensor;
+    ///
+    /// let (sensor, flux) = (ImageSensor::cmos(), Image::filled(8, 4, 1e-15));
+    /// let pattern = sensor.fixed_pattern(8, 4);
+    /// for frame in 0..3 {
+    ///     let numbers: Image<u16> = sensor.numbers_with(Some(&pattern), &flux, None, frame);
+    ///     assert_eq!(numbers, sensor.numbers(&flux, None, frame));
+    /// }
+    /// ```
+    ///
+    /// # Panics
+    /// As [`ImageSensor::expose`]; and if the pattern is another sensor's, or of another size.
+    pub fn numbers_with<T: Copy + From<u16> + Send + Sync>(
+        &self,
+        pattern: Option<&FixedPattern>,
+        optical: &Image<f64>,
+        background: Option<&Image<f64>>,
+        frame: u64,
+    ) -> Image<T> {
+        let size = (optical.width(), optical.height());
+        if let Some(pattern) = pattern {
+            assert!(pattern.is_of(self, size), "the fixed pattern of another sensor");
+        }
+        let dark_signal = |index: usize| pattern.map(|pattern| pattern.dark_signals[index]);
         let flux = fluxes(optical, background);
         let dark = self.dark_electrons();
         // Without noise all dark pixels are equal, and most pixels are dark.
-        let in_the_dark = self.is_noiseless().then(|| self.digitised(self.pixel(0.0, dark, frame, 0).signal));
+        let in_the_dark =
+            self.is_noiseless().then(|| self.digitised(self.pixel(0.0, dark, frame, 0, None).signal));
         let number = |index| match (flux(index), in_the_dark) {
             (0.0, Some(number)) => number.into(),
-            (watts, _) => self.digitised(self.pixel(watts, dark, frame, index).signal).into(),
+            (watts, _) => {
+                self.digitised(self.pixel(watts, dark, frame, index, dark_signal(index)).signal).into()
+            }
         };
         let numbers = (0..optical.cells().len()).into_par_iter().map(number).collect();
         Image::from_cells(optical.width(), optical.height(), numbers)
+    }
+
+    /// The part of the noise that is the same in every frame, for images of this size.
+    pub fn fixed_pattern(&self, width: u32, height: u32) -> FixedPattern {
+        let pixels = (0..width as usize * height as usize).into_par_iter();
+        let dark_signals = pixels.map(|index| self.dark_signal(index as u32)).collect();
+        FixedPattern { sensor: *self, size: (width, height), dark_signals }
+    }
+
+    /// DSNU of a pixel, electrons.
+    fn dark_signal(&self, pixel: u32) -> f64 {
+        if self.dsnu > 0.0 {
+            self.dsnu * NoiseStream::new(self.seed, NoiseSource::Dsnu, 0, pixel).normal()
+        } else {
+            0.0
+        }
     }
 
     /// Whether the output of a pixel depends on its flux alone.
@@ -172,13 +240,18 @@ impl ImageSensor {
         self.dark_current.electrons_per_second() * self.exposure
     }
 
-    fn pixel(&self, watts: f64, dark: f64, frame: u64, index: usize) -> Pixel {
+    /// `dark_signal`: its DSNU, electrons, if it is known.
+    fn pixel(&self, watts: f64, dark: f64, frame: u64, index: usize, dark_signal: Option<f64>) -> Pixel {
         assert!(watts >= 0.0 && watts.is_finite(), "flux of pixel {index} is {watts} W");
         let pixel = index as u32;
         // mu_e + mu_d: the first includes the pixel's own sensitivity.
-        let expected = self.photoelectrons(watts) * self.sensitivity(pixel) + dark;
+        // No light: no sensitivity, which is finite, makes more than 0 of it.
+        let photoelectrons =
+            if watts == 0.0 { 0.0 } else { self.photoelectrons(watts) * self.sensitivity(pixel) };
+        let expected = photoelectrons + dark;
         let electrons = self.collected(expected, frame, pixel);
-        Pixel { expected, electrons, signal: self.signal(electrons, frame, pixel) }
+        let dark_signal = dark_signal.unwrap_or_else(|| self.dark_signal(pixel));
+        Pixel { expected, electrons, signal: self.signal(electrons, frame, pixel, dark_signal) }
     }
 
     /// Exposes frame 2 `pair` with the laser on and frame 2 `pair` + 1 with it off, and subtracts them.
@@ -215,13 +288,14 @@ impl ImageSensor {
     /// As [`ImageSensor::expose`].
     pub fn lit_minus_unlit(
         &self,
+        pattern: Option<&FixedPattern>,
         optical: &Image<f64>,
         background: Option<&Image<f64>>,
         pair: u64,
     ) -> Image<i32> {
         let off = Image::filled(optical.width(), optical.height(), 0.0);
-        let lit = self.numbers(optical, background, 2 * pair);
-        let unlit = self.numbers(&off, background, 2 * pair + 1);
+        let lit = self.numbers_with(pattern, optical, background, 2 * pair);
+        let unlit = self.numbers_with(pattern, &off, background, 2 * pair + 1);
         difference(&lit, &unlit)
     }
 
@@ -250,11 +324,8 @@ impl ImageSensor {
     }
 
     /// Input of the converter, DN: bias + K (electrons + DSNU + read noise).
-    fn signal(&self, electrons: f64, frame: u64, pixel: u32) -> f64 {
-        let mut offset = 0.0;
-        if self.dsnu > 0.0 {
-            offset += self.dsnu * NoiseStream::new(self.seed, NoiseSource::Dsnu, 0, pixel).normal();
-        }
+    fn signal(&self, electrons: f64, frame: u64, pixel: u32, dark_signal: f64) -> f64 {
+        let mut offset = dark_signal;
         if self.read_noise > 0.0 {
             offset += self.read_noise * NoiseStream::new(self.seed, NoiseSource::Read, frame, pixel).normal();
         }

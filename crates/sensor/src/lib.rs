@@ -45,7 +45,7 @@ mod sunlight;
 pub use airy::{airy_pattern, encircled_energy};
 pub use convolve::{ConvolvedImage, binned, convolve};
 pub use dust::{Dust, DustedImage};
-pub use image_sensor::{DarkCurrent, DigitalImage, ImagePair, ImageSensor, difference};
+pub use image_sensor::{DarkCurrent, DigitalImage, FixedPattern, ImagePair, ImageSensor, difference};
 pub use kernel::Kernel;
 pub use noise_stream::{NoiseSource, NoiseStream};
 pub use optics::{FluxBudget, Optics, OpticsOutput};
