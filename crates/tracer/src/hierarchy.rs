@@ -34,9 +34,10 @@
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
+use rayon::prelude::*;
 use raypencil_scene::{Beam, FaceId, Mesh, Mounted, Scene};
 
-use crate::box_tree::BoxTree;
+use crate::grouped_build::Forest;
 use crate::triangle::Triangle;
 use crate::wide_tree::WideTree;
 
@@ -86,8 +87,10 @@ impl Hierarchy {
             let has_area = triangle(index).normal() != glam::DVec3::ZERO;
             has_area.then(|| padded_box(&vertices(index), max_trace_distance))
         };
-        let (boxes, faces) = BoxTree::build(mesh.faces().len(), box_of, triangle).into_wide();
-        Self { boxes, faces, max_trace_distance }
+        let forest = Forest::build(mesh.faces().len(), box_of);
+        let (order, first_faces) = forest.faces();
+        let boxes = WideTree::collapse(&forest, &first_faces);
+        Self { boxes, faces: order.into_par_iter().map(triangle).collect(), max_trace_distance }
     }
 
     pub(crate) fn boxes(&self) -> &WideTree {

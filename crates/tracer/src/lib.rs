@@ -8,11 +8,12 @@
 //! The files, each using only those above it:
 //!
 //! ```text
-//! grouped_build  the obvhs tree, built in bounded time for any input
-//! wide_tree      the same tree with eight boxes a node; the walk of many rays at once
+//! distinct       equal boxes of faces
+//! grouped_build  the obvhs trees of groups of faces, built in bounded time for any input
+//! wide_tree      the same trees as one with eight boxes a node; the walk of many rays at once
 //! traced_ray     one ray, for triangles and for boxes
 //! triangle       the watertight test: does a ray meet a face, and at which t
-//! box_tree       faces in the order of the tree's leaves
+//! box_tree       the same trees as one of obvhs, and faces in the order of its leaves
 //! hierarchy      the terrain's faces in padded boxes
 //! lanes          work compiled for wide lanes too
 //! tile           64 rays from one point, tested together
@@ -53,6 +54,7 @@ mod box_tree;
 mod camera;
 mod cast;
 mod closest_hit;
+mod distinct;
 mod flux;
 mod grouped_build;
 mod hierarchy;

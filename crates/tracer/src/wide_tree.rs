@@ -1,4 +1,4 @@
-//! The tree with eight boxes a node, collapsed from obvhs's tree of two, and the walk of many rays at once.
+//! The tree with eight boxes a node, collapsed from obvhs's trees of two, and the walk of many rays at once.
 //!
 //! # Why no ray loses a box
 //!
@@ -8,9 +8,14 @@
 //! enters a box no later, and leaves it no sooner, than each of its rays would by itself. The padding of `hierarchy` is
 //! derived for that single ray. An axis along which the rays run both ways does not limit the bundle.
 
+use bytemuck::Zeroable;
 use glam::Vec3A;
-use obvhs::bvh2::Bvh2;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ray::safe_inverse;
+use rayon::prelude::*;
+
+use crate::grouped_build::Forest;
 
 /// Boxes of a node.
 const WIDTH: usize = 8;
@@ -19,7 +24,7 @@ const WIDTH: usize = 8;
 const LEAF: u32 = 1 << 31;
 
 /// Eight boxes, and what is in each.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Zeroable)]
 #[repr(C, align(64))]
 struct Node {
     /// Lower bounds along x, y, z, then upper bounds. A box that does not exist has a lower bound above its upper.
@@ -43,9 +48,9 @@ const EMPTY: Node = Node {
     end: [0; WIDTH],
 };
 
-/// A tree of boxes; its leaves are ranges of entries in the order of obvhs's tree.
+/// A tree of boxes; its leaves are ranges of the forest's faces.
 pub(crate) struct WideTree {
-    nodes: Vec<Node>,
+    nodes: Box<[Node]>,
     /// Entries that can wait on a walk's stack.
     stack_size: usize,
 }
@@ -101,37 +106,34 @@ pub(crate) struct Waiting {
 }
 
 impl WideTree {
-    /// Collapses `tree`; `first_entry[k]` is the first entry of the k-th box of its order.
-    pub(crate) fn collapse(tree: &Bvh2, first_entry: &[u32]) -> Self {
-        let mut nodes = Vec::new();
-        let mut depth = 0;
-        if let Some(root) = tree.nodes.first() {
-            // A root that is a leaf becomes the only box of a node.
-            let children = if root.is_leaf() { vec![0] } else { widened(tree, 0) };
-            nodes.push(EMPTY);
-            let mut to_fill = vec![(0_usize, children, 1)];
-            while let Some((at, children, level)) = to_fill.pop() {
-                depth = depth.max(level);
-                for (lane, &child) in children.iter().enumerate() {
-                    let from = &tree.nodes[child as usize];
-                    let (min, max) = (from.aabb().min, from.aabb().max);
-                    let bounds = [min.x, min.y, min.z, max.x, max.y, max.z];
-                    for (axis, bound) in bounds.into_iter().enumerate() {
-                        nodes[at].bounds[axis][lane] = bound;
-                    }
-                    if from.is_leaf() {
-                        let first = from.first_index as usize;
-                        nodes[at].child[lane] = LEAF | first_entry[first];
-                        nodes[at].end[lane] = first_entry[first + from.prim_count as usize];
-                    } else {
-                        let next = nodes.len();
-                        nodes[at].child[lane] = next as u32;
-                        nodes.push(EMPTY);
-                        to_fill.push((next, widened(tree, child), level + 1));
-                    }
-                }
-            }
+    /// Collapses the trees of `forest`, each group by itself. The faces of group k begin at `first_faces[k]`.
+    pub(crate) fn collapse(forest: &Forest, first_faces: &[u32]) -> Self {
+        if forest.upper.is_empty() {
+            return Self { nodes: Box::default(), stack_size: 0 };
         }
+        let upper = Plan::of(&forest.upper);
+        let plans: Vec<Plan> = forest.groups.par_iter().map(|group| Plan::of(&group.nodes)).collect();
+        let depth = upper.depth + plans.iter().map(|plan| plan.depth).max().unwrap_or(0);
+        let count = upper.nodes.len() + plans.iter().map(|plan| plan.nodes.len()).sum::<usize>();
+        // Each group fills its own part of the nodes, on any thread.
+        let mut nodes: Box<[Node]> = bytemuck::zeroed_slice_box(count);
+        let (of_upper, mut rest) = nodes.split_at_mut(upper.nodes.len());
+        let mut end = of_upper.len() as u32;
+        let mut parts = Vec::with_capacity(plans.len());
+        for (plan, group) in plans.iter().zip(&forest.groups) {
+            let (part, others) = rest.split_at_mut(plan.nodes.len());
+            parts.push((part, plan, group, end));
+            end += plan.nodes.len() as u32;
+            rest = others;
+        }
+        let roots: Vec<u32> = parts.iter().map(|(_, _, _, first)| *first).collect();
+        upper.fill(of_upper, &forest.upper, 0, |leaf| [roots[leaf.first_index as usize], 0]);
+        parts.into_par_iter().zip(first_faces).for_each(|((part, plan, group, first), first_face)| {
+            plan.fill(part, &group.nodes, first, |leaf| {
+                let face = first_face + leaf.first_index;
+                [LEAF | face, face + leaf.prim_count]
+            });
+        });
         Self { nodes, stack_size: depth * WIDTH + 1 }
     }
 
@@ -200,18 +202,87 @@ impl WideTree {
     }
 }
 
+/// No node.
+const NONE: u32 = u32::MAX;
+
+/// Which nodes of a tree of two are the boxes of each wide node. Below the boxes that are not leaves, the next wide nodes
+/// follow in their order.
+struct Plan {
+    nodes: Vec<[u32; WIDTH]>,
+    depth: usize,
+}
+
+impl Plan {
+    /// The first node is the root. A root that is a leaf becomes the only box of a wide node.
+    fn of(tree: &[Bvh2Node]) -> Self {
+        let root =
+            if tree[0].is_leaf() { [0, NONE, NONE, NONE, NONE, NONE, NONE, NONE] } else { widened(tree, 0) };
+        let mut nodes = vec![root];
+        let (mut at, mut depth) = (0, 0);
+        while at < nodes.len() {
+            // All wide nodes of one depth.
+            depth += 1;
+            for of_depth in at..nodes.len() {
+                for child in nodes[of_depth] {
+                    if child != NONE && !tree[child as usize].is_leaf() {
+                        nodes.push(widened(tree, child));
+                    }
+                }
+                at = of_depth + 1;
+            }
+        }
+        Self { nodes, depth }
+    }
+
+    /// Writes the nodes, of which the first has the index `first`. `leaf` gives what is in the box of a leaf.
+    fn fill(&self, nodes: &mut [Node], tree: &[Bvh2Node], first: u32, leaf: impl Fn(&Bvh2Node) -> [u32; 2]) {
+        let mut next = first;
+        for (node, children) in nodes.iter_mut().zip(&self.nodes) {
+            let mut filled = EMPTY;
+            for (lane, &child) in children.iter().enumerate().filter(|(_, child)| **child != NONE) {
+                let from = &tree[child as usize];
+                let Aabb { min, max } = from.aabb();
+                for (axis, bound) in [min.x, min.y, min.z, max.x, max.y, max.z].into_iter().enumerate() {
+                    filled.bounds[axis][lane] = bound;
+                }
+                [filled.child[lane], filled.end[lane]] = if from.is_leaf() {
+                    leaf(from)
+                } else {
+                    next += 1;
+                    [next, 0]
+                };
+            }
+            *node = filled;
+        }
+    }
+}
+
 /// The up to eight nodes below `node` that become one wide node: the largest is opened first.
-fn widened(tree: &Bvh2, node: u32) -> Vec<u32> {
-    let first = tree.nodes[node as usize].first_index;
-    let mut children = vec![first, first + 1];
-    while children.len() < WIDTH {
-        let area = |child: u32| tree.nodes[child as usize].aabb().half_area();
-        let inner = children.iter().enumerate().filter(|(_, child)| !tree.nodes[**child as usize].is_leaf());
-        let largest = inner.max_by(|a, b| area(*a.1).total_cmp(&area(*b.1)));
-        let Some((at, _)) = largest else { break };
-        let first = tree.nodes[children[at] as usize].first_index;
-        children[at] = first;
-        children.push(first + 1);
+fn widened(tree: &[Bvh2Node], node: u32) -> [u32; WIDTH] {
+    let first = tree[node as usize].first_index;
+    let area = |child: u32| {
+        let child = &tree[child as usize];
+        if child.is_leaf() { -1.0 } else { child.aabb().half_area() }
+    };
+    let (mut children, mut areas) = ([NONE; WIDTH], [-1.0; WIDTH]);
+    let put = |children: &mut [u32; WIDTH], areas: &mut [f32; WIDTH], lane: usize, child: u32| {
+        (children[lane], areas[lane]) = (child, area(child));
+    };
+    put(&mut children, &mut areas, 0, first);
+    put(&mut children, &mut areas, 1, first + 1);
+    for count in 2..WIDTH {
+        let largest =
+            (0..count).fold(0, |largest, lane| if areas[lane] > areas[largest] { lane } else { largest });
+        if areas[largest] < 0.0 {
+            break;
+        }
+        let first = tree[children[largest] as usize].first_index;
+        put(&mut children, &mut areas, largest, first);
+        put(&mut children, &mut areas, count, first + 1);
     }
     children
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/wide_tree.rs"]
+mod tests;

@@ -109,13 +109,15 @@ fn faces_of_the_same_corners_tie_for_the_lowest_index() {
 
 #[test]
 fn a_million_identical_boxes_build_quickly() {
-    // Faces with identical boxes are one entry of the tree. (As separate entries they would make the build
-    // quadratic, and this test would take hours.)
+    // Faces with identical boxes are one entry of their group. (As separate entries they would make the build of
+    // the group quadratic.)
     let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let count = 1_000_000;
     let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]; count], vec![0; count], ground()).unwrap();
     let hierarchy = Hierarchy::build(&mesh, 10.0);
-    assert_eq!(hierarchy.boxes().node_count(), 1);
+    // A node for each of some 500 groups, and those above them.
+    let nodes = hierarchy.boxes().node_count();
+    assert!((400..1000).contains(&nodes), "{nodes} nodes");
 }
 
 #[test]

@@ -1,0 +1,73 @@
+//! Unit tests of `wide_tree`.
+
+use super::*;
+
+/// Boxes of 1 m on a square grid.
+fn grid(count: u32) -> Vec<Aabb> {
+    let corner = |k: u32| Vec3A::new((k % 64) as f32, (k / 64) as f32, (k * 37 % 11) as f32);
+    (0..count).map(|k| Aabb::new(corner(k), corner(k) + 1.0)).collect()
+}
+
+/// Every face that a walk shows, in the order of the walk.
+#[derive(Default)]
+struct Shown(Vec<usize>);
+
+impl Visitor for Shown {
+    fn leaf(&mut self, entries: std::ops::Range<usize>, _: &mut f32) -> Next {
+        self.0.extend(entries);
+        Next::On
+    }
+}
+
+fn walk(boxes: &[Aabb], bundle: &Bundle) -> Vec<u32> {
+    let forest = Forest::build(boxes.len(), |face| Some(boxes[face as usize]));
+    let (faces, first_faces) = forest.faces();
+    let tree = WideTree::collapse(&forest, &first_faces);
+    let mut shown = Shown::default();
+    let mut stack = tree.stack();
+    let capacity = stack.capacity();
+    let mut bundle = *bundle;
+    tree.walk(&mut stack, &mut bundle, &mut shown);
+    assert_eq!(stack.capacity(), capacity, "the stack was too small");
+    shown.0.into_iter().map(|at| faces[at]).collect()
+}
+
+#[test]
+fn a_walk_without_limits_shows_every_face_once() {
+    // Rays in all directions, so that no axis limits them.
+    let everywhere = Bundle { origin: [0.0; 3], inverse: [None; 3], far: f32::MAX };
+    for count in [0, 1, 2, 7, 8, 9, 100, 2048, 2049, 5000, 20_000] {
+        let mut faces = walk(&grid(count), &everywhere);
+        faces.sort_unstable();
+        assert!(faces.into_iter().eq(0..count), "{count}");
+    }
+}
+
+#[test]
+fn a_walk_shows_the_faces_whose_boxes_the_rays_meet_and_few_others() {
+    let boxes = grid(4096);
+    // Up from below the box 20, 30, a little to all sides.
+    let aslant = [Some([20.0_f32, 30.0]), Some([-30.0, -20.0]), Some([1.0, 1.01])];
+    let bundle = Bundle { origin: [20.0, 31.0, -1.0], inverse: aslant, far: 100.0 };
+    let faces = walk(&boxes, &bundle);
+    let meets = |face: &u32| {
+        // A dozen rays of the bundle, in double precision.
+        let Aabb { min, max } = boxes[*face as usize];
+        (0..12).any(|k| {
+            let part = f64::from(k) / 11.0;
+            let inverse =
+                aslant.map(|ends| ends.map(|[a, b]| f64::from(a) + part * f64::from(b - a)).unwrap());
+            let (mut enter, mut leave) = (0.0_f64, 100.0_f64);
+            for axis in 0..3 {
+                let ends =
+                    [min[axis], max[axis]].map(|end| f64::from(end - bundle.origin[axis]) * inverse[axis]);
+                enter = enter.max(ends[0].min(ends[1]));
+                leave = leave.min(ends[0].max(ends[1]));
+            }
+            enter <= leave
+        })
+    };
+    let met: Vec<u32> = (0..4096).filter(meets).collect();
+    assert!(!met.is_empty() && met.iter().all(|face| faces.contains(face)), "{met:?} of {faces:?}");
+    assert!(faces.len() < 64, "{} faces", faces.len());
+}
