@@ -3,7 +3,7 @@
 //! ```text
 //! 6  splat (disc) -> psf -> kernel (airy) -> convolve -> optics, dust   filter the image for aberrations and dust
 //!    sunlight                                                           the background light of sun and sky
-//! 7  noise_stream, poisson -> image_sensor (photon)                     add the sensor's noise
+//! 7  noise_stream, poisson, dark_pixels -> image_sensor (photon)        add the sensor's noise
 //! 8  image_sensor                                                       adjust the range, digitise, subtract frames
 //!    presets                                                            optics and sensors by name, with sources
 //! ```
@@ -28,6 +28,7 @@
 
 mod airy;
 mod convolve;
+mod dark_pixels;
 mod disc;
 mod dust;
 mod image_sensor;
