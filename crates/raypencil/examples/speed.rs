@@ -268,7 +268,7 @@ fn timed<T>(run: impl FnOnce() -> T) -> f64 {
 
 fn validated(subject: &Subject, contenders: &[Contender], validator: &mut Validator) -> Validation {
     let subject = Subject {
-        vehicle: subject.vehicle.clone(),
+        vehicle: subject.vehicle,
         scene: subject.scene.clone(),
         name: subject.name.clone(),
         arguments: subject.arguments.clone(),

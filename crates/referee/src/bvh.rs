@@ -12,6 +12,10 @@ const MAX_LEAF_FACES: usize = 4;
 /// Relative slack of the slab test: 2^-40, where its rounding is a few 2^-53.
 const RELATIVE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
+/// Largest inverse of a direction's component. A ray at right angles to an axis stays where it is along that: between low <
+/// 0 < high the products are beyond any range, and otherwise too, unless a bound is 0 but for 1e-290 m.
+const MAX_INVERSE: f64 = 1e300;
+
 /// A face that boxes can be drawn around.
 pub(crate) trait InBox: Copy {
     /// The face's index in its mesh.
@@ -200,7 +204,7 @@ impl<'t, F> Traversal<'t, F> {
         let mut walk = Self {
             bvh,
             bundle: *bundle,
-            inverse: bundle.direction.recip(),
+            inverse: bundle.direction.map(|part| part.recip().clamp(-MAX_INVERSE, MAX_INVERSE)),
             widened: bundle.start_radius * (1.0 + bundle.spread) + RELATIVE_SLACK * bundle.origin.length(),
             waiting: Vec::with_capacity(64),
             beyond: Vec::new(),
@@ -247,22 +251,23 @@ impl<'t, F> Traversal<'t, F> {
     #[inline]
     fn entry(&self, node: &Node) -> Option<f64> {
         let bundle = &self.bundle;
-        let (low, high) = (node.low - bundle.origin, node.high - bundle.origin);
-        let far = low.abs().max(high.abs()).length();
-        let size = node.low.abs().max(node.high.abs()).max_element();
+        // Comparisons are one instruction each; `min` and `max` take several, for the sake of NaN, which is not here.
+        let less = |x: f64, y: f64| if x < y { x } else { y };
+        let more = |x: f64, y: f64| if x > y { x } else { y };
+        let (mut low, mut high) = (node.low - bundle.origin, node.high - bundle.origin);
+        let most = |low: DVec3, high: DVec3| [0, 1, 2].map(|k| more(low[k].abs(), high[k].abs()));
+        let [x, y, z] = most(low, high);
+        // The sum is an upper bound of the length, and enough where only roundings are to be covered.
+        let far = if bundle.spread == 0.0 { x + y + z } else { (x * x + y * y + z * z).sqrt() };
+        let [x, y, z] = most(node.low, node.high);
+        let size = more(more(x, y), z);
         let margin = DVec3::splat(self.widened + bundle.spread * far + RELATIVE_SLACK * (far + size));
-        let (low, high) = (low - margin, high + margin);
+        (low, high) = (low - margin, high + margin);
         let (mut enter, mut leave) = (0.0_f64, bundle.max_range);
         for k in 0..3 {
-            if bundle.direction[k] == 0.0 {
-                if low[k] > 0.0 || high[k] < 0.0 {
-                    return None;
-                }
-                continue;
-            }
             let (a, b) = (low[k] * self.inverse[k], high[k] * self.inverse[k]);
-            enter = enter.max(a.min(b));
-            leave = leave.min(a.max(b));
+            enter = more(less(a, b), enter);
+            leave = less(more(a, b), leave);
         }
         if enter <= leave { Some(enter) } else { None }
     }

@@ -113,29 +113,48 @@ impl Face {
         self.corner(1).sub(&a).cross(&self.corner(2).sub(&a))
     }
 
-    /// n.a' = s n.(a - o).
-    pub(crate) fn height<T: Number>(&self, ray: &ScaledRay<T>) -> T {
-        self.normal().dot(&self.corner(0).scaled(&ray.origin_scale).sub(&ray.origin))
-    }
-
-    /// n.D = sigma n.q.
-    pub(crate) fn approach<T: Number>(&self, ray: &ScaledRay<T>) -> T {
-        self.normal().dot(&ray.direction)
+    /// What the ray and the face's plane have in common.
+    #[inline]
+    pub(crate) fn crossing<T: Number>(&self, ray: &ScaledRay<T>) -> Crossing<T> {
+        let normal = self.normal();
+        Crossing {
+            height: normal.dot(&self.corner(0).scaled(&ray.origin_scale).sub(&ray.origin)),
+            approach: normal.dot(&ray.direction),
+            normal,
+        }
     }
 
     /// Whether the ray meets this face's front, edges and corners included, at or beyond the SPP and within
     /// `max_range`. Other faces are not considered.
     pub(crate) fn is_met_by(&self, ray: &ExactRay<'_>, max_range: f64) -> bool {
+        self.met_by(ray, max_range).is_some()
+    }
+
+    /// The crossing of a ray [that meets this face](Self::is_met_by).
+    #[inline]
+    pub(crate) fn met_by(&self, ray: &ExactRay<'_>, max_range: f64) -> Option<Crossing<Interval>> {
         // The cheapest conditions, and those most likely to fail, come first.
         let is_inside = match ray.filter.passes(self.corners()) {
             Passes::Outside => false,
             Passes::Inside => true,
             Passes::Near => (0..3).all(|k| ray.sign(&EdgeSide { face: self, k }) != Ordering::Greater),
         };
-        is_inside
-            && ray.sign(&Approach(self)) == Ordering::Less
-            && ray.sign(&BeforePlane(self)) != Ordering::Greater
-            && ray.sign(&BeyondRange { face: self, max_range }) != Ordering::Greater
+        if !is_inside {
+            return None;
+        }
+        // One crossing serves all conditions; where one is in doubt, so does the exact crossing.
+        let crossing = self.crossing(&ray.fast);
+        let exact = OnceCell::new();
+        let exact = || exact.get_or_init(|| self.crossing(ray.exact()));
+        let sign = |fast: Option<Ordering>, slow: &dyn Fn() -> Option<Ordering>| {
+            fast.or_else(slow).unwrap_or(Ordering::Equal)
+        };
+        let is_met = sign(crossing.approach.sign(), &|| exact().approach.sign()) == Ordering::Less
+            && sign(crossing.before_plane(&ray.fast), &|| exact().before_plane(ray.exact()))
+                != Ordering::Greater
+            && sign(crossing.beyond(max_range, &ray.fast), &|| exact().beyond(max_range, ray.exact()))
+                != Ordering::Greater;
+        is_met.then_some(crossing)
     }
 
     /// Whether `other` lies in this face's plane and faces the same way, exactly.
@@ -156,22 +175,9 @@ impl Face {
         (0..3).all(|k| n.dot(&self.corner(k).sub(&a)).sign() == Some(Ordering::Equal))
     }
 
-    /// An upper bound of the range at which the ray meets the face, metres.
-    pub(crate) fn farthest_range(&self, ray: &ExactRay<'_>, max_range: f64) -> f64 {
-        // R = n.a' |D| / (s n.D). Where n.D may be 0, only the sensor's own range bounds it.
-        let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
-        let scale = ray.fast.origin_scale.low * -approach.high;
-        if !(scale > 0.0) {
-            return max_range;
-        }
-        let length = ray.fast.direction.length_squared().high.sqrt();
-        // Four roundings, each below 2^-52.
-        (height.magnitude() * length / scale * (1.0 + 8.0 * f64::EPSILON)).min(max_range)
-    }
-
     /// The range at which the ray meets the face's plane, metres, to f64 rounding.
     pub(crate) fn range(&self, ray: &ExactRay<'_>) -> f64 {
-        let (height, approach) = (self.height(&ray.fast), self.approach(&ray.fast));
+        let Crossing { height, approach, .. } = self.crossing(&ray.fast);
         let length = ray.fast.direction.length_squared().middle().sqrt();
         height.middle() * length / (approach.middle() * ray.fast.origin_scale.middle())
     }
@@ -202,31 +208,7 @@ struct Approach<'a>(&'a Face);
 
 impl Polynomial for Approach<'_> {
     fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
-        self.0.approach(ray)
-    }
-}
-
-/// sigma n.a' - s n.D: positive where t < 1.
-struct BeforePlane<'a>(&'a Face);
-
-impl Polynomial for BeforePlane<'_> {
-    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
-        let height = self.0.height(ray).mul(&ray.direction_scale);
-        height.sub(&self.0.approach(ray).mul(&ray.origin_scale))
-    }
-}
-
-/// (n.a')^2 |D|^2 - (M s n.D)^2: positive where the range exceeds M.
-struct BeyondRange<'a> {
-    face: &'a Face,
-    max_range: f64,
-}
-
-impl Polynomial for BeyondRange<'_> {
-    fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
-        let range = self.face.height(ray).square().mul(&ray.direction.length_squared());
-        let limit = T::of(self.max_range).mul(&ray.origin_scale).mul(&self.face.approach(ray));
-        range.sub(&limit.square())
+        self.0.normal().dot(&ray.direction)
     }
 }
 
@@ -238,8 +220,55 @@ struct Nearness<'a> {
 
 impl Polynomial for Nearness<'_> {
     fn value<T: Number>(&self, ray: &ScaledRay<T>) -> T {
-        let first = self.face.height(ray).mul(&self.other.approach(ray));
-        first.sub(&self.other.height(ray).mul(&self.face.approach(ray)))
+        self.face.crossing(ray).before(&self.other.crossing(ray))
+    }
+}
+
+/// A ray and the plane of a face.
+#[derive(Debug, Clone)]
+pub(crate) struct Crossing<T> {
+    /// The face's normal n, not a unit vector.
+    pub(crate) normal: Vector<T>,
+    /// n.a' = s n.(a - o).
+    pub(crate) height: T,
+    /// n.D = sigma n.q: negative where the front is met.
+    pub(crate) approach: T,
+}
+
+impl<T: Number> Crossing<T> {
+    /// The sign of sigma n.a' - s n.D: positive where t < 1.
+    #[inline]
+    fn before_plane(&self, ray: &ScaledRay<T>) -> Option<Ordering> {
+        let height = self.height.mul(&ray.direction_scale);
+        height.sub(&self.approach.mul(&ray.origin_scale)).sign()
+    }
+
+    /// The sign of (n.a')^2 |D|^2 - (M s n.D)^2: positive where the range exceeds M.
+    #[inline]
+    fn beyond(&self, max_range: f64, ray: &ScaledRay<T>) -> Option<Ordering> {
+        let range = self.height.square().mul(&ray.direction.length_squared());
+        let limit = T::of(max_range).mul(&ray.origin_scale).mul(&self.approach);
+        range.sub(&limit.square()).sign()
+    }
+
+    /// n.a' n'.D - n'.a'' n.D: negative where this plane is met before the other.
+    pub(crate) fn before(&self, other: &Self) -> T {
+        self.height.mul(&other.approach).sub(&other.height.mul(&self.approach))
+    }
+}
+
+impl Crossing<Interval> {
+    /// An upper bound of the range at which the ray meets the face, metres.
+    #[inline]
+    pub(crate) fn farthest_range(&self, ray: &ExactRay<'_>, max_range: f64) -> f64 {
+        // R = n.a' |D| / (s n.D). Where n.D may be 0, only the sensor's own range bounds it.
+        let scale = ray.fast.origin_scale.low * -self.approach.high;
+        if !(scale > 0.0) {
+            return max_range;
+        }
+        let length = ray.fast.direction.length_squared().high.sqrt();
+        // Four roundings, each below 2^-52.
+        (self.height.magnitude() * length / scale * (1.0 + 8.0 * f64::EPSILON)).min(max_range)
     }
 }
 

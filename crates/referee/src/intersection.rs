@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 
 use dashu_int::Sign;
 
-use crate::face::Face;
+use crate::face::{Crossing, Face};
 use crate::number::{Dyadic, Number};
 use crate::ray::ScaledRay;
 use crate::rounding::{Rounded, quotient, root};
@@ -39,7 +39,7 @@ pub(crate) struct Intersection<T> {
 
 impl<T: Number> Intersection<T> {
     pub(crate) fn new(ray: ScaledRay<T>, face: &Face) -> Self {
-        let (normal, height, approach) = (face.normal::<T>(), face.height(&ray), face.approach(&ray));
+        let Crossing { normal, height, approach } = face.crossing(&ray);
         Self {
             scale: ray.origin_scale.mul(&approach),
             direction_squared: ray.direction.length_squared(),

@@ -31,7 +31,7 @@ use glam::DVec3;
 use raypencil_scene::{Camera, Mounted, Pixel};
 
 use crate::bvh::RayBundle;
-use crate::face::{ExactRay, Face};
+use crate::face::{Crossing, ExactRay, Face};
 use crate::number::{Dyadic, Interval, Number};
 use crate::ray::{Aim, MountedSensor, ScaledRay};
 use crate::rounding;
@@ -58,7 +58,7 @@ impl<T: Number> LineOfSight<T> {
     pub(crate) fn new(ray: &ScaledRay<T>, face: &Face, camera: &Mounted<Camera>, is_back: bool) -> Self {
         let pose = camera.scene_from_sensor;
         let (centre, rotation) = (Vector::of(pose.position), ScaledRotation::<T>::of(pose.rotation));
-        let (approach, height) = (face.approach(ray), face.height(ray));
+        let Crossing { approach, height, .. } = face.crossing(ray);
         let minus_scale = approach.mul(&ray.origin_scale);
         // V = -(O n.D + n.a' D) + s n.D c.
         let point = ray.origin.scaled(&approach).add(&ray.direction.scaled(&height));
@@ -89,11 +89,12 @@ impl LineOfSight<Interval> {
         let pose = camera.scene_from_sensor;
         let (centre, rotation) = (Vector::<I>::of(pose.position), ScaledRotation::<I>::of(pose.rotation));
         let focal = I::of(camera.sensor.focal_length).mul(&rotation.norm_squared);
-        let normal = face.normal::<I>();
+        let crossing = face.crossing(&ray);
+        let normal = &crossing.normal;
         // O - s c and n.a' with their slopes in dy, D and n.D with theirs in dx.
         let start = [ray.origin.sub(&centre.scaled(&ray.origin_scale)), down.clone()];
-        let height = [face.height(&ray), normal.dot(&down).negated()];
-        let approach = [face.approach(&ray), normal.dot(&across)];
+        let height = [crossing.height, normal.dot(&down).negated()];
+        let approach = [crossing.approach, normal.dot(&across)];
         let ray_direction = [ray.direction.clone(), across];
         [0, 1, 2, 3].map(|part: usize| {
             let (x, y) = (part & 1, part >> 1);

@@ -126,7 +126,13 @@ impl Number for Interval {
     fn mul(&self, other: &Self) -> Self {
         let [a, b, c, d] =
             [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
-        widened(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+        // Comparisons are one instruction each, but lose what `min` keeps beside a product of 0 and infinity.
+        if (a + b + c + d).is_nan() {
+            return widened(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
+        }
+        let less = |x: f64, y: f64| if x < y { x } else { y };
+        let more = |x: f64, y: f64| if x > y { x } else { y };
+        widened(less(less(a, b), less(c, d)), more(more(a, b), more(c, d)))
     }
 
     #[inline]

@@ -53,9 +53,8 @@ impl RoundedHit {
 /// parallel, or the face has no area.
 pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<RoundedHit> {
     let fast = Intersection::new(sensor.ray::<DoubleDouble>(aim), face);
-    let exact_ray = ExactRay::new(sensor, aim);
     let exact = OnceCell::new();
-    let exact = || exact.get_or_init(|| Intersection::new(exact_ray.exact().clone(), face));
+    let exact = || exact.get_or_init(|| Intersection::new(sensor.ray::<Dyadic>(aim), face));
     if fast.approach.sign().is_none_or(Ordering::is_eq) && exact().approach.sign() == Some(Ordering::Equal) {
         return None;
     }

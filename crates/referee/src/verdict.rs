@@ -8,8 +8,9 @@ use raypencil_scene::{FaceId, Mesh, Scene, SensorId};
 use crate::arithmetic::WeightSum;
 use crate::bvh::{Bvh, RayBundle};
 use crate::displacement::Displacement;
-use crate::face::{ExactRay, Face};
+use crate::face::{Crossing, ExactRay, Face};
 use crate::moving_ray::MovingRay;
+use crate::number::{Interval, Number};
 use crate::ray::{Aim, MountedSensor};
 
 /// The contract's answer to a ray, without rounding.
@@ -150,16 +151,26 @@ impl<'s> Referee<'s> {
         let ray = ExactRay::new(sensor, aim);
         let max_range = sensor.max_range();
         let mut nearest: Vec<&Face> = Vec::new();
+        // The crossing of the first of them, and the range up to which faces matter.
+        let mut kept: Option<(Crossing<Interval>, f64)> = None;
         self.bvh.visit(&bundle(sensor, aim, 0.0), |face| {
-            if face.is_met_by(&ray, max_range) {
-                match nearest.first().map(|kept| face.compare(kept, &ray)) {
-                    None | Some(Ordering::Less) => nearest = vec![face],
+            if let Some(crossing) = face.met_by(&ray, max_range) {
+                let order = kept.as_ref().map(|(kept, _)| {
+                    let fast = crossing.before(kept).sign();
+                    fast.unwrap_or_else(|| face.compare(nearest[0], &ray))
+                });
+                match order {
+                    None | Some(Ordering::Less) => {
+                        nearest.clear();
+                        nearest.push(face);
+                        let farthest = crossing.farthest_range(&ray, max_range);
+                        kept = Some((crossing, farthest));
+                    }
                     Some(Ordering::Equal) => nearest.push(face),
                     Some(Ordering::Greater) => {}
                 }
             }
-            // From here on only faces up to the nearest matter.
-            nearest.first().map_or(max_range, |kept| kept.farthest_range(&ray, max_range))
+            kept.as_ref().map_or(max_range, |(_, farthest)| *farthest)
         });
         nearest.sort_by_key(|face| face.id);
         nearest

@@ -52,19 +52,18 @@ fn joined(forest: &Forest, first_faces: &[u32]) -> Bvh2 {
         }
         // The root takes the place of the leaf; the group's other nodes follow at the end.
         let index = nodes[at].first_index as usize;
-        let (group, end) = (&forest.groups[index].nodes, nodes.len() as u32);
-        let moved = |mut node: Bvh2Node| {
-            node.first_index = if node.is_leaf() {
-                node.first_index + first_faces[index]
-            } else {
-                node.first_index - 1 + end
-            };
-            node
-        };
-        nodes[at] = moved(group[0]);
-        nodes.extend(group[1..].iter().copied().map(moved));
+        let (group, by_faces, by_nodes) =
+            (&forest.groups[index].nodes, first_faces[index], nodes.len() as u32 - 1);
+        nodes[at] = moved(group[0], by_faces, by_nodes);
+        nodes.extend(group[1..].iter().map(|&node| moved(node, by_faces, by_nodes)));
     }
     Bvh2 { nodes, ..Bvh2::default() }
+}
+
+/// A node of a group with the indices of the whole.
+fn moved(mut node: Bvh2Node, by_faces: u32, by_nodes: u32) -> Bvh2Node {
+    node.first_index += if node.is_leaf() { by_faces } else { by_nodes };
+    node
 }
 
 impl<F> BoxTree<F> {

@@ -222,13 +222,14 @@ impl Plan {
         while at < nodes.len() {
             // All wide nodes of one depth.
             depth += 1;
-            for of_depth in at..nodes.len() {
-                for child in nodes[of_depth] {
+            let end = nodes.len();
+            while at < end {
+                for child in nodes[at] {
                     if child != NONE && !tree[child as usize].is_leaf() {
                         nodes.push(widened(tree, child));
                     }
                 }
-                at = of_depth + 1;
+                at += 1;
             }
         }
         Self { nodes, depth }
