@@ -1,20 +1,17 @@
-//! Bounding volume hierarchy of the referee's own: the faces that a ray may meet, in f64.
+//! Bounding volume hierarchy of the referee's own: the faces that a ray may meet.
 //!
-//! It only has to be complete. Faces are split at the median of their centres, boxes are exact in f64, and the slab
-//! test is widened by far more than its rounding, and by the displacement that is asked about.
+//! It only has to be complete. Faces are split at the median of their centres. Walks go through a copy with four boxes a node
+//! in f32, relative to the middle of all, and rounded outward. Their slab test is widened by far more than its rounding, and by
+//! the displacement that is asked about.
 
 use glam::DVec3;
 use raypencil_scene::FaceId;
 
+pub(crate) use crate::wide_boxes::RayBundle;
+use crate::wide_boxes::{BoxRays, Node, Waiting, WideBoxes};
+
 /// Maximum faces in a leaf.
 const MAX_LEAF_FACES: usize = 4;
-
-/// Relative slack of the slab test: 2^-40, where its rounding is a few 2^-53.
-const RELATIVE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
-
-/// Largest inverse of a direction's component. A ray at right angles to an axis stays where it is along that: between low <
-/// 0 < high the products are beyond any range, and otherwise too, unless a bound is 0 but for 1e-290 m.
-const MAX_INVERSE: f64 = 1e300;
 
 /// A face that boxes can be drawn around.
 pub(crate) trait InBox: Copy {
@@ -29,18 +26,10 @@ pub(crate) trait InBox: Copy {
 /// Faces in a hierarchy of boxes.
 #[derive(Debug)]
 pub(crate) struct Bvh<F> {
+    /// The root first; none if they are [not kept](Self::for_walks).
     nodes: Vec<Node>,
+    wide: WideBoxes,
     faces: Vec<F>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    low: DVec3,
-    high: DVec3,
-    /// Leaf: index of its first face. Inner node: its children are the nodes `first` and `first + 1`.
-    first: u32,
-    /// Number of faces; 0 for an inner node.
-    count: u32,
 }
 
 /// What is in a node.
@@ -48,21 +37,6 @@ pub(crate) enum NodeContent<'b, F> {
     /// The indices of two nodes.
     Children([u32; 2]),
     Faces(&'b [F]),
-}
-
-/// A ray in f64 and all rays near it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RayBundle {
-    /// Start of the middle ray, scene frame, metres.
-    pub(crate) origin: DVec3,
-    /// Unit direction of the middle ray.
-    pub(crate) direction: DVec3,
-    /// Largest range of interest, metres.
-    pub(crate) max_range: f64,
-    /// Largest distance of a ray's start from `origin`, metres.
-    pub(crate) start_radius: f64,
-    /// Largest distance of a ray's unit direction from `direction`: metres per metre of range.
-    pub(crate) spread: f64,
 }
 
 /// Faces of which one thread builds the hierarchy by itself.
@@ -73,7 +47,12 @@ impl<F: InBox + Send> Bvh<F> {
     pub(crate) fn build(faces: impl Iterator<Item = F>) -> Self {
         let mut faces: Vec<F> = faces.collect();
         let nodes = if faces.is_empty() { Vec::new() } else { build_nodes(&mut faces, 0) };
-        Self { nodes, faces }
+        Self { wide: WideBoxes::of(&nodes), nodes, faces }
+    }
+
+    /// The same without what walks do not need: it is asked for no node.
+    pub(crate) fn for_walks(self) -> Self {
+        Self { nodes: Vec::new(), ..self }
     }
 }
 
@@ -136,7 +115,7 @@ fn split<F: InBox>(faces: &mut [F], low: DVec3, high: DVec3) -> usize {
 
 impl<F> Bvh<F> {
     pub(crate) fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
+        self.faces.is_empty()
     }
 
     /// Number of nodes; the root, if there is one, is node 0.
@@ -189,50 +168,31 @@ impl<F> Bvh<F> {
 #[derive(Debug)]
 pub(crate) struct Traversal<'t, F> {
     bvh: &'t Bvh<F>,
-    bundle: RayBundle,
-    inverse: DVec3,
-    /// Widening of every box, metres, wherever it lies.
-    widened: f64,
-    /// Nodes to visit, with the range at which the bundle enters each.
-    waiting: Vec<(f64, u32)>,
+    rays: BoxRays,
+    /// Nodes to visit.
+    waiting: Vec<Waiting>,
     /// Nodes entered beyond the range.
-    beyond: Vec<(f64, u32)>,
+    beyond: Vec<Waiting>,
 }
 
 impl<'t, F> Traversal<'t, F> {
     pub(crate) fn new(bvh: &'t Bvh<F>, bundle: &RayBundle) -> Self {
-        let mut walk = Self {
-            bvh,
-            bundle: *bundle,
-            inverse: bundle.direction.map(|part| part.recip().clamp(-MAX_INVERSE, MAX_INVERSE)),
-            widened: bundle.start_radius * (1.0 + bundle.spread) + RELATIVE_SLACK * bundle.origin.length(),
-            waiting: Vec::with_capacity(64),
-            beyond: Vec::new(),
-        };
-        if let Some(entry) = bvh.nodes.first().and_then(|root| walk.entry(root)) {
-            walk.waiting.push((entry, 0));
-        }
-        walk
+        let mut waiting = Vec::with_capacity(64);
+        waiting.extend(bvh.wide.root());
+        Self { bvh, rays: bvh.wide.rays(bundle), waiting, beyond: Vec::new() }
     }
 
     /// The faces of the next leaf that the bundle enters within `max_range`; `None` if there is none.
+    #[inline]
     pub(crate) fn next_leaf(&mut self, max_range: f64) -> Option<&'t [F]> {
-        while let Some((entry, index)) = self.waiting.pop() {
-            if entry > max_range {
-                self.beyond.push((entry, index));
-                continue;
-            }
-            let node = &self.bvh.nodes[index as usize];
-            if node.count > 0 {
+        while let Some(node) = self.waiting.pop() {
+            if f64::from(node.entry) > max_range {
+                self.beyond.push(node);
+            } else if node.count > 0 {
                 return Some(&self.bvh.faces[node.first as usize..(node.first + node.count) as usize]);
+            } else {
+                self.bvh.wide.enter(node.first, &self.rays, &mut self.waiting);
             }
-            let child = |child: u32| (self.entry(&self.bvh.nodes[child as usize]), child);
-            let mut children = [child(node.first), child(node.first + 1)];
-            // The nearer child goes on top of the stack.
-            if children[0].0 < children[1].0 {
-                children.swap(0, 1);
-            }
-            self.waiting.extend(children.into_iter().filter_map(|(entry, child)| Some((entry?, child))));
         }
         None
     }
@@ -240,36 +200,6 @@ impl<'t, F> Traversal<'t, F> {
     /// Puts the nodes that were beyond the range back on the stack.
     pub(crate) fn resume(&mut self) {
         self.waiting.append(&mut self.beyond);
-    }
-
-    /// The range at which the bundle enters a node's widened box; `None` if it does not.
-    ///
-    /// A ray of the bundle meets a point P of the box at its own range R. The ray starts at most `start_radius` from
-    /// the bundle's origin, and its direction is at most `spread` from the bundle's. So the middle ray's point at R
-    /// lies within `start_radius + spread R` of P, and R is at most the distance of P plus `start_radius`. The
-    /// widened box contains that point, hence it is entered at R or before.
-    #[inline]
-    fn entry(&self, node: &Node) -> Option<f64> {
-        let bundle = &self.bundle;
-        // Comparisons are one instruction each; `min` and `max` take several, for the sake of NaN, which is not here.
-        let less = |x: f64, y: f64| if x < y { x } else { y };
-        let more = |x: f64, y: f64| if x > y { x } else { y };
-        let (mut low, mut high) = (node.low - bundle.origin, node.high - bundle.origin);
-        let most = |low: DVec3, high: DVec3| [0, 1, 2].map(|k| more(low[k].abs(), high[k].abs()));
-        let [x, y, z] = most(low, high);
-        // The sum is an upper bound of the length, and enough where only roundings are to be covered.
-        let far = if bundle.spread == 0.0 { x + y + z } else { (x * x + y * y + z * z).sqrt() };
-        let [x, y, z] = most(node.low, node.high);
-        let size = more(more(x, y), z);
-        let margin = DVec3::splat(self.widened + bundle.spread * far + RELATIVE_SLACK * (far + size));
-        (low, high) = (low - margin, high + margin);
-        let (mut enter, mut leave) = (0.0_f64, bundle.max_range);
-        for k in 0..3 {
-            let (a, b) = (low[k] * self.inverse[k], high[k] * self.inverse[k]);
-            enter = more(less(a, b), enter);
-            leave = less(more(a, b), leave);
-        }
-        if enter <= leave { Some(enter) } else { None }
     }
 }
 

@@ -52,6 +52,7 @@
 //! face                  the contract's conditions, as signs of polynomials
 //! form, moving_ray      bilinear forms in a displacement; a ray as it is displaced
 //! face_forms, region    the conditions of a face as forms, and where they hold
+//! wide_boxes            boxes of a hierarchy, four a node, as rays walk through them
 //! bvh                   bounding volume hierarchy: the faces that a ray may meet
 //! verdict               the referee and the nearest faces of a ray
 //! through_point         the displacement whose ray passes through a point
@@ -121,6 +122,7 @@ mod verdict;
 mod visibility;
 mod visibility_margin;
 mod visibility_ruling;
+mod wide_boxes;
 
 #[cfg(test)]
 #[path = "../tests/common/splitmix.rs"]

@@ -51,7 +51,7 @@ impl RefereeTree {
     /// Builds the hierarchy.
     pub fn new(mesh: &Arc<Mesh>) -> Self {
         let faces = (0..mesh.faces().len() as u32).map(|index| Face::of(mesh, FaceId(index)));
-        let bvh = Bvh::build(faces.filter(Face::has_area));
+        let bvh = Bvh::build(faces.filter(Face::has_area)).for_walks();
         Self { mesh: Arc::clone(mesh), bvh: Arc::new(bvh) }
     }
 
