@@ -174,14 +174,30 @@ fn write_answers(
         [Format::Double, Format::Single].map(|format| certified.in_format(format, model));
     let attributes =
         Attributes { renderer: "referee".into(), scene_sha256: scene_sha256(scene), extra: Vec::new() };
-    let mut files = Vec::new();
-    for sensor in scene.sensors() {
+    let margins = |sensor: SensorId| {
         progress.stage(&format!("{sensor}: margins"));
-        let margins = SensorMargins::find(referee, scene, sensor);
-        progress.stage(&format!("{sensor}: writing"));
+        SensorMargins::find(referee, scene, sensor)
+    };
+    let write = |sensor: SensorId, margins: &SensorMargins| -> Result<Vec<ManifestFile>, PackError> {
         create_folder(&folder.join(sensor.to_string()))?;
-        files.extend(ArrayWriter::new(folder, sensor).write(&doubles, &margins, model)?);
-        files.push(write_exr_map(&singles, &margins, model, &attributes, sensor, folder)?);
+        let (arrays, map) = rayon::join(
+            || ArrayWriter::new(folder, sensor).write(&doubles, margins, model),
+            || write_exr_map(&singles, margins, model, &attributes, sensor, folder),
+        );
+        let mut files = arrays?;
+        files.push(map?);
+        Ok(files)
+    };
+    // A sensor's files are written while the margins of the next are found.
+    let mut files = Vec::new();
+    let mut found: Option<(SensorId, SensorMargins)> = None;
+    for next in scene.sensors().map(Some).chain([None]) {
+        let (of_next, written) = rayon::join(
+            || next.map(|sensor| (sensor, margins(sensor))),
+            || found.take().map_or(Ok(Vec::new()), |(sensor, margins)| write(sensor, &margins)),
+        );
+        files.extend(written?);
+        found = of_next;
     }
     Ok(files)
 }
