@@ -38,6 +38,10 @@ impl Distinct {
             }
             leaders.push(leader);
         }
+        if leaders.iter().enumerate().all(|(at, leader)| *leader == at as u32) {
+            let first_member = (0..=boxes.len() as u32).collect();
+            return Self { boxes, members: leaders, first_member };
+        }
         let mut members: Vec<u32> = (0..boxes.len() as u32).collect();
         // The sort is stable: members of one box stay in their order.
         members.sort_by_key(|&at| leaders[at as usize]);
