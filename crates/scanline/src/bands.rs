@@ -51,7 +51,6 @@ pub(crate) fn render<T: Transformation>(
 
     let as_printed = options.switches.skip_rules == Fidelity::Paper;
     let scanner = FaceScanner {
-        mesh,
         transformation,
         skip_unseen: options.skip_unseen && !as_printed,
         screen: SensorScreen::new(transformation.columns(), transformation.rows()),
@@ -76,10 +75,11 @@ pub(crate) fn render<T: Transformation>(
     let sorted: Vec<SortedClusters> = seen
         .par_chunks(CLUSTERS_PER_TASK)
         .map(|which| {
-            let clusters = TransformedClusters::new(mesh, clusters, which, |scene_point| {
-                let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
+            let clusters = TransformedClusters::new(mesh, clusters, which, |in_scene| {
+                let offset = sensor_from_scene.offset_of(widen(in_scene));
+                let position = sensor_from_scene.in_sensor_axes(offset);
                 let projection = transformation.project(position);
-                SensorVertex { position, projection, outside: transformation.outside(position) }
+                SensorVertex { in_scene, position, projection, outside: transformation.outside(position) }
             });
             let mut bands = vec![Vec::new(); band_count];
             for &face in &clusters.faces {
@@ -111,9 +111,8 @@ pub(crate) fn render<T: Transformation>(
     map
 }
 
-/// The terrain in the frame of one sensor, and the rules by which faces are skipped.
+/// A sensor, and the rules by which faces are skipped.
 struct FaceScanner<'a, T> {
-    mesh: &'a Mesh,
     transformation: &'a T,
     /// Whether faces are skipped by the conservative forms of rules 1 and 3.
     skip_unseen: bool,
@@ -157,8 +156,7 @@ impl<T: Transformation> FaceScanner<'_, T> {
             }
             // 1b, if no row sees the front. (The rows of a beam differ. Between the first and the last the offset is
             // affine in y.)
-            let scene_vertices =
-                self.mesh.faces()[face.id.0 as usize].map(|v| widen(self.mesh.vertices()[v as usize]));
+            let scene_vertices = [a, b, c].map(|vertex| widen(vertex.in_scene));
             let (n, offset) = plane_in_scene(&scene_vertices, transformation.sensor_from_scene());
             let plane = Plane {
                 normal: transformation.sensor_from_scene().in_sensor_axes(n),
@@ -206,9 +204,9 @@ impl<T: Transformation> FaceScanner<'_, T> {
         raster: &mut Raster,
     ) {
         let id = face.id;
-        let in_scene = self.mesh.faces()[id.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
-        let plane = Plane::new(&in_scene.map(widen), self.transformation.sensor_from_scene());
         let in_sensor = clusters.vertices_of(face);
+        let in_scene = in_sensor.map(|vertex| widen(vertex.in_scene));
+        let plane = Plane::new(&in_scene, self.transformation.sensor_from_scene());
         if self.transformation.stripe_volume().is_some() {
             self.scan_within_stripe::<PRINTED_RULES_3>(id, in_sensor, &plane, rows, raster);
         } else if in_sensor.iter().all(|vertex| vertex.outside & BEHIND_SPP == 0) {
@@ -216,9 +214,9 @@ impl<T: Transformation> FaceScanner<'_, T> {
                 points: in_sensor.map(|vertex| vertex.position),
                 corners: in_sensor.map(|vertex| vertex.projection),
                 lines: [
-                    self.edge(&in_scene, &in_sensor, 0, 1).line,
-                    self.edge(&in_scene, &in_sensor, 1, 2).line,
-                    self.edge(&in_scene, &in_sensor, 2, 0).line,
+                    self.edge(&in_sensor, 0, 1).line,
+                    self.edge(&in_sensor, 1, 2).line,
+                    self.edge(&in_sensor, 2, 0).line,
                 ],
             };
             // The whole face is at or beyond the SPP.
@@ -237,20 +235,13 @@ impl<T: Transformation> FaceScanner<'_, T> {
 
     /// The edge of a face from vertex k to `next`.
     #[inline]
-    fn edge(
-        &self,
-        in_scene: &[[f32; 3]; 3],
-        in_sensor: &[&SensorVertex; 3],
-        k: usize,
-        next: usize,
-    ) -> Edge<T::Line> {
-        edges::edge(self.transformation, in_scene, in_sensor, k, next)
+    fn edge(&self, vertices: &[&SensorVertex; 3], k: usize, next: usize) -> Edge<T::Line> {
+        edges::edge(self.transformation, vertices, k, next)
     }
 
     /// The three edges of a face.
-    fn edges(&self, id: FaceId, in_sensor: [&SensorVertex; 3]) -> [Edge<T::Line>; 3] {
-        let in_scene = self.mesh.faces()[id.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
-        edges::edges(self.transformation, &in_scene, &in_sensor)
+    fn edges(&self, vertices: [&SensorVertex; 3]) -> [Edge<T::Line>; 3] {
+        edges::edges(self.transformation, &vertices)
     }
 
     /// Step 4 for a face that the SPP cuts. Few are: it is kept out of line of the others.
@@ -271,7 +262,7 @@ impl<T: Transformation> FaceScanner<'_, T> {
             diagonal: |from: DVec3, to: DVec3| transformation.project_edge(from, to, to - from),
         };
         let spp = transformation.spp_distance();
-        clip_at_spp(spp, points, corners, &self.edges(id, vertices), added_lines, |triangle| {
+        clip_at_spp(spp, points, corners, &self.edges(vertices), added_lines, |triangle| {
             let limits = InverseTLimits::CLAMP_TO_SPP;
             self.scan_clipped::<_, PRINTED_RULES_3>(triangle, plane, limits, id, rows, raster);
         });
@@ -289,7 +280,7 @@ impl<T: Transformation> FaceScanner<'_, T> {
     ) {
         let points = vertices.map(|vertex| vertex.position);
         if let Some(volume) = self.transformation.stripe_volume() {
-            volume.clip(points, &self.edges(id, vertices), |triangle| {
+            volume.clip(points, &self.edges(vertices), |triangle| {
                 let limits = InverseTLimits::REJECT_BEFORE_SPP;
                 self.scan_clipped::<_, PRINTED_RULES_3>(triangle, plane, limits, id, rows, raster);
             });

@@ -5,32 +5,30 @@ use crate::spp::widen;
 use crate::transformation::Transformation;
 use crate::vertices::SensorVertex;
 
-/// The edge of a face from vertex k to `next`. `in_scene` are the face's vertices in the scene, `in_sensor` in the
-/// sensor's frame.
+/// The edge of a face from vertex k to `next`.
 #[inline]
 pub(crate) fn edge<T: Transformation>(
     transformation: &T,
-    in_scene: &[[f32; 3]; 3],
-    in_sensor: &[&SensorVertex; 3],
+    vertices: &[&SensorVertex; 3],
     k: usize,
     next: usize,
 ) -> Edge<T::Line> {
-    let reversed = precedes(&in_scene[next], &in_scene[k]);
-    let (first, second) = if reversed { (next, k) } else { (k, next) };
+    let (from, to) = (vertices[k], vertices[next]);
+    let reversed = precedes(&to.in_scene, &from.in_scene);
+    let (first, second) = if reversed { (to, from) } else { (from, to) };
     // Formed in the scene frame, where it is exact, and then rotated.
-    let along = widen(in_scene[second]) - widen(in_scene[first]);
+    let along = widen(second.in_scene) - widen(first.in_scene);
     let along = transformation.sensor_from_scene().in_sensor_axes(along);
-    let (first, second) = (in_sensor[first].position, in_sensor[second].position);
+    let (first, second) = (first.position, second.position);
     Edge { first, second, reversed, line: transformation.project_edge(first, second, along) }
 }
 
 /// All three edges of a face: the k-th joins vertex k to k + 1.
 pub(crate) fn edges<T: Transformation>(
     transformation: &T,
-    in_scene: &[[f32; 3]; 3],
-    in_sensor: &[&SensorVertex; 3],
+    vertices: &[&SensorVertex; 3],
 ) -> [Edge<T::Line>; 3] {
-    [(0, 1), (1, 2), (2, 0)].map(|(k, next)| edge(transformation, in_scene, in_sensor, k, next))
+    [(0, 1), (1, 2), (2, 0)].map(|(k, next)| edge(transformation, vertices, k, next))
 }
 
 /// The scene's order of vertex *positions*: lexicographic, with -0 equal to +0. By position, not by index, so that

@@ -106,10 +106,11 @@ impl<'a> Occluders<'a> {
     /// Step 2 for some clusters. The camera's maximum range and the borders of its screen do not matter here.
     pub(crate) fn transformed(&self, clusters: &[u32]) -> TransformedClusters {
         let (spp, sensor_from_scene) = (self.camera.spp_distance(), self.camera.sensor_from_scene());
-        TransformedClusters::new(self.mesh, self.clusters, clusters, |scene_point| {
-            let position = sensor_from_scene.in_sensor_axes(sensor_from_scene.offset_of(scene_point));
+        TransformedClusters::new(self.mesh, self.clusters, clusters, |in_scene| {
+            let offset = sensor_from_scene.offset_of(widen(in_scene));
+            let position = sensor_from_scene.in_sensor_axes(offset);
             let outside = skip::outside_bits(position.z < spp, false, false, false, false, false);
-            SensorVertex { position, projection: self.camera.project(position), outside }
+            SensorVertex { in_scene, position, projection: self.camera.project(position), outside }
         })
     }
 
@@ -134,10 +135,9 @@ impl<'a> Occluders<'a> {
         let corners = vertices.map(|vertex| vertex.projection);
         let (bounds, min_inverse_t) = self.bounds(&points, &corners);
         if relevant(&bounds)
-            && let Some(plane) = self.occluding_plane(face, &points)
+            && let Some(plane) = self.occluding_plane(&vertices)
         {
-            let in_scene = self.mesh.faces()[face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
-            let lines = edges::edges(self.camera, &in_scene, &vertices).map(|edge| edge.line);
+            let lines = edges::edges(self.camera, &vertices).map(|edge| edge.line);
             let triangle = ClippedTriangle { points, corners, lines };
             visit(&Occluder { face, triangle, plane, bounds, min_inverse_t });
         }
@@ -152,15 +152,14 @@ impl<'a> Occluders<'a> {
         relevant: impl Fn(&ProjectedBounds) -> bool,
         mut visit: impl FnMut(&Occluder),
     ) {
-        let in_scene = self.mesh.faces()[face.0 as usize].map(|v| self.mesh.vertices()[v as usize]);
         let points = vertices.map(|vertex| vertex.position);
-        let Some(plane) = self.occluding_plane(face, &points) else { return };
+        let Some(plane) = self.occluding_plane(&vertices) else { return };
         let added_lines = AddedLines {
             along_spp: |from, to| self.camera.project_spp_cut(from, to, &plane),
             diagonal: |from: DVec3, to: DVec3| self.camera.project_edge(from, to, to - from),
         };
         let corners = vertices.map(|vertex| vertex.projection);
-        let edges = edges::edges(self.camera, &in_scene, &vertices);
+        let edges = edges::edges(self.camera, &vertices);
         clip_at_spp(self.camera.spp_distance(), points, corners, &edges, added_lines, |triangle| {
             let (bounds, min_inverse_t) = self.bounds(&triangle.points, &triangle.corners);
             if relevant(&bounds) {
@@ -171,14 +170,14 @@ impl<'a> Occluders<'a> {
 
     /// The plane of a face, if the face occludes.
     #[inline]
-    fn occluding_plane(&self, face: FaceId, points: &[DVec3; 3]) -> Option<Plane> {
+    fn occluding_plane(&self, vertices: &[&SensorVertex; 3]) -> Option<Plane> {
         // "only considering triangles with a least one vertex not past the furthest extent of the upper laser
         // beam". The extent is infinite, and culls nothing, unless `extent = paper`.
-        if !points.iter().any(|p| p.z <= self.extent) {
+        if !vertices.iter().any(|vertex| vertex.position.z <= self.extent) {
             return None;
         }
-        let vertices = self.mesh.faces()[face.0 as usize].map(|v| widen(self.mesh.vertices()[v as usize]));
-        let plane = Plane::new(&vertices, self.camera.sensor_from_scene());
+        let plane =
+            Plane::new(&vertices.map(|vertex| widen(vertex.in_scene)), self.camera.sensor_from_scene());
         let occludes = match self.facing {
             // d = 0: the plane contains the projection centre. Every ray meets it in that centre alone, or is parallel
             // to it. Faces without area have d = 0 too.

@@ -4,11 +4,13 @@ use glam::DVec3;
 use raypencil_scene::{FaceId, Mesh};
 
 use crate::clusters::{ClusterFace, Clusters};
-use crate::spp::{SppPoint, widen};
+use crate::spp::SppPoint;
 
 /// A vertex in the sensor's frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SensorVertex {
+    /// Position in the scene's frame, metres, as the mesh has it.
+    pub(crate) in_scene: [f32; 3],
     /// Position in the sensor's frame, metres.
     pub(crate) position: DVec3,
     /// Projection onto the SPP. Meaningful only for a vertex at or beyond the SPP.
@@ -37,13 +39,13 @@ impl TransformedClusters {
         mesh: &Mesh,
         clusters: &Clusters,
         which: &[u32],
-        transform_one: impl Fn(DVec3) -> SensorVertex,
+        transform_one: impl Fn([f32; 3]) -> SensorVertex,
     ) -> Self {
         let mut transformed = Self::default();
         for &cluster in which {
             let content = clusters.content(cluster);
             let first = transformed.vertices.len() as u32;
-            let of_vertex = |&v: &u32| transform_one(widen(mesh.vertices()[v as usize]));
+            let of_vertex = |&v: &u32| transform_one(mesh.vertices()[v as usize]);
             transformed.vertices.extend(content.vertices.iter().map(of_vertex));
             let placed = |face: &ClusterFace| PlacedFace {
                 id: face.id,
