@@ -122,6 +122,9 @@ def main():
                     theirs_two[ground].add(run([str(embree), str(folder), str(RUNS_A_ROUND), "2"], 2))
                 two[ground].add(run([*measure, "validate"], 2))
                 two[ground].add(run([ours_program, "measure", ground, "1", "referee", "drive"], 2))
+            two[ground].add(run([ours_program, "measure", ground, "1", "pack"], 2))
+            memory = run([ours_program, "measure", ground, "1", "memory"], 2)
+            two[ground].add({"validation, bytes": memory["peak memory, bytes"], "faces": memory["faces"]})
         scaling = [] if given.no_scaling else scaled(ours_program)
     text = page(given, grounds, ours, theirs, two, theirs_two, embree is not None, scaling)
     if given.out:
@@ -140,7 +143,7 @@ def scaled(program: str) -> list[str]:
     by_faces = [(f"{faces}", f"{faces:,} faces", 3) for faces in (2_000, 20_000, 200_000, 2_000_000, 16_000_000)]
     by_pixels = [(f"200000@{side}", f"{side} x {side} pixels", 3) for side in (550, 1024, 2048, 4096, 8192)]
     for title, cases in (("By the number of faces", by_faces), ("By the number of pixels", by_pixels)):
-        lines = []
+        lines, last = [], None
         for ground, name, rounds in cases:
             print(f"scaling: {name}", file=sys.stderr)
             wanted = rows if title.endswith("faces") else rows[:2]
@@ -149,10 +152,13 @@ def scaled(program: str) -> list[str]:
             memory = one["peak memory, bytes"]
             cells = [number(median(times[row])) if row in times else "" for row in wanted for times in (one, two)]
             trees = [number(first[f"first frame, {name}"][0]) for name in ("scanline", "tracer")]
-            extra = [*trees, f"{memory / one['faces']:,.0f}"] if title.endswith("faces") else []
+            # What a face more takes: nothing that every frame has is in it.
+            growth = (memory - last[0]) / (one["faces"] - last[1]) if last else None
+            last = (memory, one["faces"])
+            extra = [*trees, number(growth), f"{memory / one['faces']:,.0f}"] if title.endswith("faces") else []
             lines.append([name, *cells, *extra])
         wide = head if title.endswith("faces") else head[:5]
-        tail = ["clusters, 2 threads", "tree, 2 threads", "peak bytes a face"] if title.endswith("faces") else []
+        tail = ["clusters, 2 threads", "tree, 2 threads", "bytes a further face", "peak bytes a face"] if title.endswith("faces") else []
         parts.append(f"## {title}\n\n" + table([*wide, *tail], lines))
     return parts
 
@@ -181,8 +187,27 @@ def page(given, grounds, ours, theirs, two, theirs_two, has_embree: bool, scalin
     lines.append(row("a whole validation, tree and tables kept, 2 threads", two, "validate"))
     lines.append(row("a cycle of the rover with the noise of `cmos`, 2 threads", two, "drive"))
     lines.append(row("certified camera rays a second, 2 threads", two, "referee"))
+    lines.append(row("a whole pack, 2 threads", two, "pack"))
+    memory = [two[ground].median("validation, bytes") for ground in names]
+    lines.append(["memory of a validation, MB", *[number(of and of / 1e6) for of in memory]])
     lines.append(row("floor: to read the mesh once", ours, "floor: the mesh read once"))
     lines.append(row("floor: to write the camera's map once", ours, "floor: the map written once"))
+
+    def floors(title: str, runs: dict, key: str, *floor: str) -> list[str]:
+        cells = []
+        for ground in names:
+            time, least = runs[ground].median(key), [ours[ground].median(f"floor: {name}") for name in floor]
+            cells.append(f"{time / sum(least):.0f}" if time and all(least) else "-")
+        return [title, *cells]
+
+    both, mesh = ("the mesh read once", "the map written once"), ("the mesh read once",)
+    above = [floors(f"camera, `{name}`", ours, f"camera, {name}", *both) for name in ("scanline", "tracer")]
+    above.append(floors("tree of `tracer`", two, "first frame, tracer", *mesh))
+    above.append(floors("clusters of `scanline`", two, "first frame, scanline", *mesh))
+    # 120 bytes a face, and 150 a pixel or pencil for each of the two renderers.
+    cells_of_rig = 1024 * 1024 + 2 * 1024 * 16
+    faces = [two[ground].median("faces") for ground in names]
+    share = [f"{of / (120 * n + 300 * cells_of_rig):.2f}" if of else "-" for of, n in zip(memory, faces)]
 
     goals = []
     if has_embree:
@@ -207,6 +232,13 @@ def page(given, grounds, ours, theirs, two, theirs_two, has_embree: bool, scalin
         "and the face of every ray. *Returns* are what follows from the pencils' hits: line of sight to the camera, "
         "geometry and light.\n",
         table(head, lines) + "\n",
+        "## Above the floor\n",
+        "No camera map is made without the map's memory being written and the mesh being read, and no tree without the "
+        "latter. How many times as long each takes:\n",
+        table(["", *head[1:]], above) + "\n",
+        "The memory of a validation (both renderers with every quantity, the comparison, the scene itself) as a part of 120 "
+        "bytes a face and 150 bytes a pixel or pencil and renderer:\n",
+        table(["", *head[1:]], [["memory", *share]]) + "\n",
     ]
     if has_embree:
         parts += [

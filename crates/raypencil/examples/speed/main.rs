@@ -7,34 +7,30 @@
 //!
 //! `GROUND` is a number of faces of generated ground (`FACES@SIDE`: seen by a camera of so many pixels a side), or a scene
 //! or mesh of your own. `ROW` is `camera, NAME`, `beams, NAME`, `returns, NAME` or `first frame, NAME` of a renderer, or
-//! `validate`, `referee`, `drive` or `floor`. The number of threads is that of `RAYON_NUM_THREADS`.
+//! `validate`, `referee`, `drive`, `pack`, `memory` or `floor`. The number of threads is that of `RAYON_NUM_THREADS`.
+//! `cargo bench --bench goals` times the same work.
 
 use std::error::Error;
 use std::fs::File;
 use std::hint::black_box;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use rayon::prelude::*;
-use raypencil::drive::DriveJob;
-use raypencil::harness::{Contender, Validation, Validator, contender};
-use raypencil::io::{Overrides, Subject, load, load_text};
-use raypencil::judge::JudgeShare;
-use raypencil::rover::{CameraImage, Drive};
+use raypencil::harness::{Validator, contender};
+use raypencil::io::Subject;
 use raypencil::{
-    Camera, FaceId, Image, Mounted, Quantities, Referee, Renderer, Request, Scanline, Scene, SensorId,
-    SensorMap, Silent, Stage,
+    Camera, FaceId, Mounted, Quantities, Referee, Renderer, Request, Scanline, Scene, SensorId, SensorMap,
 };
 use serde_json::{Map, Value, json};
 
-/// The camera's range map alone.
-const CAMERA: Request = Request { beams: false, quantities: Quantities::RANGE_MAP, ..Request::MAPS };
+mod work;
 
-/// The range maps of the beams alone.
-const BEAMS: Request = Request { camera: false, quantities: Quantities::RANGE_MAP, ..Request::MAPS };
+use work::{
+    BEAMS, CAMERA, DriveCycles, both_renderers, certify, is_kept, is_map, milliseconds_of, subject,
+    validated, write_whole_pack,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -47,31 +43,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         _ => Err("expected `write GROUND FOLDER` or `measure GROUND ROUNDS ROW...`".into()),
     }
-}
-
-/// The default rig on generated ground of so many faces over 50 m, or the user's own scene.
-fn subject(ground: &str) -> Result<Subject, Box<dyn Error>> {
-    // `FACES@SIDE`: a camera of that many pixels across and down, over the same field of view.
-    let (faces, side) = ground.split_once('@').unwrap_or((ground, "1024"));
-    let loaded = match faces.parse::<u32>() {
-        Ok(faces) => {
-            let side: u32 = side.parse()?;
-            let pitch_um = 9.0 * 1024.0 / f64::from(side);
-            let text = format!(
-                "version = 1\n[terrain]\ngenerate = {{ kind = \"plain\", seed = 1, faces = {faces}, extent_m = 50 }}\n\
-                 [camera]\nwidth_px = {side}\nheight_px = {side}\npixel_pitch_um = {pitch_um}\n"
-            );
-            load_text(&text, "plain")?
-        }
-        Err(_) => load(ground, &Overrides::default())?,
-    };
-    Ok(Subject {
-        vehicle: loaded.standing_vehicle(),
-        scene: loaded.scene,
-        name: loaded.name,
-        arguments: ground.into(),
-        sha256: loaded.source_sha256,
-    })
 }
 
 /// Writes the triangles (`vertices.f32`, `faces.u32`) and the rays of the camera, the beams, and from the camera to all
@@ -155,21 +126,16 @@ fn maps(
     renderer: &mut dyn FnMut() -> Result<Box<dyn Renderer>, String>,
 ) -> Result<Vec<f64>, String> {
     let kept = renderer()?;
-    let is_map = |stage: &Stage| scene.sensors().any(|sensor| sensor.to_string() == stage.name);
-    let is_kept =
-        |stage: &Stage| ["hierarchy", "clusters", "tables", "flux tables"].contains(&stage.name.as_str());
-    let of_stages = |renderer: &dyn Renderer, counts: &dyn Fn(&Stage) -> bool| -> f64 {
-        let frame = renderer.render(scene, &Request::FLUX);
-        frame.stages.iter().filter(|stage| counts(stage)).map(|stage| 1e3 * stage.time.as_secs_f64()).sum()
-    };
     let request = if what == "camera" { CAMERA } else { BEAMS };
     // The first frame makes what a renderer keeps.
     kept.render(scene, if what == "returns" { &Request::FLUX } else { &request });
     (0..rounds)
         .map(|_| match what {
             // From the pencils' hits on: lines of sight and light.
-            "returns" => Ok(of_stages(kept.as_ref(), &|stage| !is_map(stage) && !is_kept(stage))),
-            "first frame" => Ok(of_stages(renderer()?.as_ref(), &is_kept)),
+            "returns" => {
+                Ok(milliseconds_of(scene, kept.as_ref(), |stage| !is_map(scene, stage) && !is_kept(stage)))
+            }
+            "first frame" => Ok(milliseconds_of(scene, renderer()?.as_ref(), is_kept)),
             _ => Ok(timed(|| kept.render(scene, &request))),
         })
         .collect()
@@ -180,7 +146,7 @@ fn work(subject: &Subject, row: &str, rounds: usize) -> Result<Map<String, Value
     let mut measured = Map::new();
     match row {
         "validate" => {
-            let contenders = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
+            let contenders = both_renderers();
             let mut validator = Validator::default();
             validated(subject, &contenders, &mut validator);
             let mut stages: Vec<(String, Vec<f64>)> = vec![("validate".into(), Vec::new())];
@@ -199,31 +165,18 @@ fn work(subject: &Subject, row: &str, rounds: usize) -> Result<Map<String, Value
             measured.extend(stages.into_iter().map(|(name, times)| (name, json!(times))));
         }
         "drive" => {
-            // A whole cycle, as `cargo bench --bench drive` has it, with the noise of a camera chip.
-            let ground = match subject.arguments.parse::<u32>() {
-                Ok(faces) => {
-                    format!("generate = {{ kind = \"plain\", seed = 1, faces = {faces}, extent_m = 50 }}")
-                }
-                Err(_) => format!("file = {:?}", std::path::absolute(&subject.arguments)?),
-            };
-            let text = format!(
-                "version = 1\n[vehicle]\nposition_m = [-15, 0]\n[terrain]\n{ground}\n[drive]\nwaypoints_m = [[15, 0]]\n\
-                 scans = false\n"
-            );
-            let job = DriveJob::new(&load_text(&text, "drive")?, None, String::new())?;
-            let (_, sensor) = raypencil::sensor::preset("cmos").ok_or("the preset `cmos`")?;
-            let renderer = Scanline::exact();
-            let mut drive = Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?;
-            let camera = job.plan.rig.camera.sensor;
-            let pattern = sensor.fixed_pattern(camera.width, camera.height);
-            let mut exposures = 0;
-            let mut camera_pipeline = |_, flux: Image<f64>| {
-                exposures += 1;
-                CameraImage::Numbers(sensor.numbers_with(Some(&pattern), &flux, None, exposures))
-            };
-            let mut cycle = || drive.step(&renderer, &mut camera_pipeline).expect("a frame");
-            cycle();
-            measured.insert(row.into(), json!((0..rounds).map(|_| timed(&mut cycle)).collect::<Vec<_>>()));
+            let mut cycles = DriveCycles::new(subject)?;
+            cycles.step();
+            let times = (0..rounds).map(|_| timed(|| cycles.step()));
+            measured.insert(row.into(), json!(times.collect::<Vec<_>>()));
+        }
+        "pack" => {
+            let times = (0..rounds).map(|_| timed(|| write_whole_pack(subject)));
+            measured.insert(row.into(), json!(times.collect::<Vec<_>>()));
+        }
+        "memory" => {
+            // The peak is told of every run: here it is that of one validation alone.
+            validated(subject, &both_renderers(), &mut Validator::default());
         }
         "floor" => {
             let mesh = subject.scene.mesh();
@@ -264,26 +217,6 @@ fn timed<T>(run: impl FnOnce() -> T) -> f64 {
     let time = start.elapsed();
     drop(result);
     1e3 * time.as_secs_f64()
-}
-
-fn validated(subject: &Subject, contenders: &[Contender], validator: &mut Validator) -> Validation {
-    let subject = Subject {
-        vehicle: subject.vehicle,
-        scene: subject.scene.clone(),
-        name: subject.name.clone(),
-        arguments: subject.arguments.clone(),
-        sha256: subject.sha256.clone(),
-    };
-    validator.validate(subject, contenders, JudgeShare::Sample, &Silent)
-}
-
-/// Every pixel's exact hit with all its values, correctly rounded to f64 and f32.
-fn certify(referee: &Referee, width: u32, height: u32) -> usize {
-    let values = |i, j| referee.values(SensorId::Camera, i, j);
-    (0..height)
-        .into_par_iter()
-        .map(|j| (0..width).filter(|&i| black_box(values(i, j)).is_some()).count())
-        .sum()
 }
 
 /// The most memory that this process ever had, bytes; `None` where the system does not say.
