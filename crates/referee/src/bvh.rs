@@ -5,6 +5,7 @@
 //! the displacement that is asked about.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use raypencil_scene::FaceId;
 
 pub(crate) use crate::wide_boxes::RayBundle;
@@ -26,7 +27,7 @@ pub(crate) trait InBox: Copy {
 /// Faces in a hierarchy of boxes.
 #[derive(Debug)]
 pub(crate) struct Bvh<F> {
-    /// The root first; none if they are [not kept](Self::for_walks).
+    /// The root first; none if it is built [for walks](Self::for_walks) alone.
     nodes: Vec<Node>,
     wide: WideBoxes,
     faces: Vec<F>,
@@ -40,20 +41,74 @@ pub(crate) enum NodeContent<'b, F> {
 }
 
 /// Faces of which one thread builds the hierarchy by itself.
-const FACES_PER_TASK: usize = 4096;
+const FACES_PER_PIECE: usize = 4096;
 
 impl<F: InBox + Send> Bvh<F> {
     /// Builds the hierarchy, on all threads. The result does not depend on their number.
-    pub(crate) fn build(faces: impl Iterator<Item = F>) -> Self {
-        let mut faces: Vec<F> = faces.collect();
+    pub(crate) fn build(mut faces: Vec<F>) -> Self {
         let nodes = if faces.is_empty() { Vec::new() } else { build_nodes(&mut faces, 0) };
         Self { wide: WideBoxes::of(&nodes), nodes, faces }
     }
 
-    /// The same without what walks do not need: it is asked for no node.
-    pub(crate) fn for_walks(self) -> Self {
-        Self { nodes: Vec::new(), ..self }
+    /// The same for walks alone, without nodes: it takes a third of the memory.
+    pub(crate) fn for_walks(mut faces: Vec<F>) -> Self {
+        if faces.is_empty() {
+            return Self::build(faces);
+        }
+        let (low, high) = bounds(&faces);
+        let middle = 0.5 * low + 0.5 * high;
+        let mut pieces = Vec::new();
+        into_pieces(&mut faces, 0, &mut pieces);
+        let pieces: Vec<(Node, WideBoxes)> = pieces
+            .into_par_iter()
+            .map(|(first_face, faces)| {
+                let nodes = build_nodes(faces, first_face);
+                (nodes[0], WideBoxes::around(&nodes, middle))
+            })
+            .collect();
+        let (roots, pieces): (Vec<Node>, Vec<WideBoxes>) = pieces.into_iter().unzip();
+        let mut upper = vec![roots[0]];
+        join(&mut upper, 0, faces.len(), &mut roots.into_iter().enumerate());
+        Self { wide: WideBoxes::joined(&upper, pieces, middle), nodes: Vec::new(), faces }
     }
+}
+
+/// Splits faces, of which the first has the index `first_face`, until the pieces are small; the halves on two threads.
+fn into_pieces<'f, F: InBox + Send>(
+    faces: &'f mut [F],
+    first_face: u32,
+    pieces: &mut Vec<(u32, &'f mut [F])>,
+) {
+    if faces.len() <= FACES_PER_PIECE {
+        pieces.push((first_face, faces));
+        return;
+    }
+    let (low, high) = bounds(faces);
+    let middle = split(faces, low, high);
+    let (lower, upper) = faces.split_at_mut(middle);
+    let mut others = Vec::new();
+    rayon::join(
+        || into_pieces(lower, first_face, pieces),
+        || into_pieces(upper, first_face + middle as u32, &mut others),
+    );
+    pieces.append(&mut others);
+}
+
+/// Makes node `at` the root of the hierarchy over the pieces of `faces` faces, which have the next of `roots`; a leaf is one
+/// piece, by its index. Halves as [`into_pieces`] does.
+fn join(nodes: &mut Vec<Node>, at: usize, faces: usize, roots: &mut impl Iterator<Item = (usize, Node)>) {
+    if faces <= FACES_PER_PIECE {
+        if let Some((piece, root)) = roots.next() {
+            nodes[at] = Node { first: piece as u32, count: 1, ..root };
+        }
+        return;
+    }
+    let first = nodes.len();
+    nodes.extend([nodes[at]; 2]);
+    join(nodes, first, faces / 2, roots);
+    join(nodes, first + 1, faces - faces / 2, roots);
+    let [a, b] = [nodes[first], nodes[first + 1]];
+    nodes[at] = Node { low: a.low.min(b.low), high: a.high.max(b.high), first: first as u32, count: 0 };
 }
 
 /// The nodes of a hierarchy of `faces`, the root first, of which the first has the index `first_face`. Children come after
@@ -63,7 +118,7 @@ fn build_nodes<F: InBox + Send>(faces: &mut [F], first_face: u32) -> Vec<Node> {
     let mut nodes = Vec::with_capacity(faces.len());
     nodes.push(Node { low, high, first: first_face, count: faces.len() as u32 });
     let middle = faces.len() / 2;
-    if faces.len() > FACES_PER_TASK {
+    if faces.len() > FACES_PER_PIECE {
         split(faces, low, high);
         let (lower, upper) = faces.split_at_mut(middle);
         let (lower, upper) =

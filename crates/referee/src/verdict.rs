@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use raypencil_scene::{FaceId, Mesh, Scene, SensorId};
 
 use crate::arithmetic::WeightSum;
@@ -50,8 +51,12 @@ pub struct RefereeTree {
 impl RefereeTree {
     /// Builds the hierarchy.
     pub fn new(mesh: &Arc<Mesh>) -> Self {
-        let faces = (0..mesh.faces().len() as u32).map(|index| Face::of(mesh, FaceId(index)));
-        let bvh = Bvh::build(faces.filter(Face::has_area)).for_walks();
+        let indices = (0..mesh.faces().len() as u32).into_par_iter();
+        let mut faces: Vec<Face> = indices.map(|index| Face::of(mesh, FaceId(index))).collect();
+        if !faces.par_iter().all(Face::has_area) {
+            faces.retain(Face::has_area);
+        }
+        let bvh = Bvh::for_walks(faces);
         Self { mesh: Arc::clone(mesh), bvh: Arc::new(bvh) }
     }
 

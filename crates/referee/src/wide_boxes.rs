@@ -103,6 +103,11 @@ impl WideBoxes {
     /// The hierarchy of `nodes`, of which the first is the root.
     pub(crate) fn of(nodes: &[Node]) -> Self {
         let middle = nodes.first().map_or(DVec3::ZERO, |root| 0.5 * root.low + 0.5 * root.high);
+        Self::around(nodes, middle)
+    }
+
+    /// The same with coordinates relative to `middle`.
+    pub(crate) fn around(nodes: &[Node], middle: DVec3) -> Self {
         let mut wide = Vec::new();
         if !nodes.is_empty() {
             wide.push(NO_BOXES);
@@ -127,7 +132,43 @@ impl WideBoxes {
                 }
             }
         }
+        wide.shrink_to_fit();
         Self { nodes: wide, middle }
+    }
+
+    /// One hierarchy of `pieces`, whose coordinates are relative to `middle` too. A leaf of `upper` is a piece.
+    pub(crate) fn joined(upper: &[Node], pieces: Vec<Self>, middle: DVec3) -> Self {
+        let Self { nodes: mut above, .. } = Self::around(upper, middle);
+        let mut nodes =
+            Vec::with_capacity(above.len() + pieces.iter().map(|piece| piece.nodes.len()).sum::<usize>());
+        let mut end = above.len() as u32;
+        let firsts: Vec<u32> = pieces
+            .iter()
+            .map(|piece| {
+                let first = end;
+                end += piece.nodes.len() as u32;
+                first
+            })
+            .collect();
+        for boxes in &mut above {
+            for lane in 0..WIDTH {
+                if boxes.count[lane] == 1 {
+                    (boxes.first[lane], boxes.count[lane]) = (firsts[boxes.first[lane] as usize], 0);
+                }
+            }
+        }
+        nodes.extend(above);
+        for (piece, first) in pieces.into_iter().zip(firsts) {
+            nodes.extend(piece.nodes.into_iter().map(|mut boxes| {
+                for lane in 0..WIDTH {
+                    if boxes.count[lane] == 0 {
+                        boxes.first[lane] += first;
+                    }
+                }
+                boxes
+            }));
+        }
+        Self { nodes, middle }
     }
 
     /// The node that a walk begins with, if there is any.

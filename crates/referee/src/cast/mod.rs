@@ -88,7 +88,7 @@ impl<'t> ExactCast<'t> {
         let [low, high] = mesh.bounds().unwrap_or_default();
         Self {
             mesh,
-            bvh: Bvh::build(faces.filter(Triangle::has_area)),
+            bvh: Bvh::build(faces.filter(Triangle::has_area).collect()),
             diagonal: (high - low).length(),
             largest_coordinate: low.abs().max(high.abs()).max_element(),
             seams: OnceLock::new(),
