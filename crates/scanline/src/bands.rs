@@ -46,6 +46,30 @@ pub(crate) fn render<T: Transformation>(
     quantities: Quantities,
     options: ScanlineOptions,
 ) -> SensorMap {
+    render_side::<T, false>(mesh, clusters, transformation, sensor, quantities, options)
+}
+
+/// Renders the range map of one sensor as if all faces were turned over.
+pub(crate) fn render_backs<T: Transformation>(
+    mesh: &Mesh,
+    clusters: &Clusters,
+    transformation: &T,
+    sensor: SensorId,
+    options: ScanlineOptions,
+) -> SensorMap {
+    // What follows from a hit is of the mesh's own faces: the range alone is asked for.
+    let range = Quantities { range: true, ..Quantities::NONE };
+    render_side::<T, true>(mesh, clusters, transformation, sensor, range, options)
+}
+
+fn render_side<T: Transformation, const TURNED_OVER: bool>(
+    mesh: &Mesh,
+    clusters: &Clusters,
+    transformation: &T,
+    sensor: SensorId,
+    quantities: Quantities,
+    options: ScanlineOptions,
+) -> SensorMap {
     let (width, height) = (transformation.columns().count(), transformation.rows().count());
     let mut map = SensorMap::unwritten(sensor, width, height, quantities);
 
@@ -75,7 +99,7 @@ pub(crate) fn render<T: Transformation>(
     let sorted: Vec<SortedClusters> = seen
         .par_chunks(CLUSTERS_PER_TASK)
         .map(|which| {
-            let clusters = TransformedClusters::new(mesh, clusters, which, |in_scene| {
+            let clusters = TransformedClusters::new(mesh, clusters, which, TURNED_OVER, |in_scene| {
                 let offset = sensor_from_scene.offset_of(widen(in_scene));
                 let position = sensor_from_scene.in_sensor_axes(offset);
                 let projection = transformation.project(position);

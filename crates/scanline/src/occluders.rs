@@ -106,7 +106,7 @@ impl<'a> Occluders<'a> {
     /// Step 2 for some clusters. The camera's maximum range and the borders of its screen do not matter here.
     pub(crate) fn transformed(&self, clusters: &[u32]) -> TransformedClusters {
         let (spp, sensor_from_scene) = (self.camera.spp_distance(), self.camera.sensor_from_scene());
-        TransformedClusters::new(self.mesh, self.clusters, clusters, |in_scene| {
+        TransformedClusters::new(self.mesh, self.clusters, clusters, false, |in_scene| {
             let offset = sensor_from_scene.offset_of(widen(in_scene));
             let position = sensor_from_scene.in_sensor_axes(offset);
             let outside = skip::outside_bits(position.z < spp, false, false, false, false, false);

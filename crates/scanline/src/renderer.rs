@@ -1,11 +1,11 @@
 //! The renderer: the maps of all sensors, then the returns of the beams.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use raypencil_scene::{
-    FaceId, Image, Maybe, Precision, Quantities, RenderOutput, Renderer, Request, Returns, Sampling, Scene,
-    SensorId, SensorMap, Stage,
+    Beam, FaceId, Image, Maybe, Mounted, Precision, Quantities, RenderOutput, Renderer, Request, Returns,
+    Sampling, Scene, SensorId, SensorMap, Stage,
 };
 
 use crate::Switches;
@@ -127,6 +127,41 @@ impl Scanline {
         self.options
     }
 
+    /// The range maps of all sensors as if every face of the terrain were turned over: rays meet the backs, and nothing but
+    /// the backs. Of the camera first, then of the beams.
+    ///
+    /// ```
+    /// # mod doc { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/doc/scene.rs")); }
+    /// # use doc::scene_above;
+    /// use raypencil_scanline::Scanline;
+    ///
+    /// // From above, a triangle whose corners run clockwise shows its back.
+    /// let scene = scene_above([[-40.0, -40.0, 0.0], [0.0, 40.0, 0.0], [40.0, -40.0, 0.0]], 20.0);
+    /// let maps = Scanline::exact().ranges_of_backs(&scene);
+    /// assert_eq!(maps[0].range.as_ref().expect("a range map").at(1, 0).get(), Some(10.0));
+    /// ```
+    pub fn ranges_of_backs(&self, scene: &Scene) -> Vec<SensorMap> {
+        let (mesh, clusters) = (scene.mesh(), self.clusters_of(scene));
+        let tables = self.camera_tables_of(scene);
+        let camera = Perspective::new(scene.camera(), &tables);
+        let of_camera = bands::render_backs(mesh, &clusters, &camera, SensorId::Camera, self.options);
+        let of_beam = |(index, beam): (usize, &Mounted<Beam>)| {
+            let cylindrical = Cylindrical::new(beam, self.options.switches);
+            bands::render_backs(mesh, &clusters, &cylindrical, SensorId::Beam(index), self.options)
+        };
+        std::iter::once(of_camera).chain(scene.beams().iter().enumerate().map(of_beam)).collect()
+    }
+
+    fn clusters_of(&self, scene: &Scene) -> Arc<Clusters> {
+        let mesh = scene.mesh();
+        cached(&self.clusters, |clusters| clusters.fit(mesh), || Clusters::new(mesh))
+    }
+
+    fn camera_tables_of(&self, scene: &Scene) -> Arc<CameraTables> {
+        let camera = &scene.camera().sensor;
+        cached(&self.camera_tables, |tables| tables.fit(camera), || CameraTables::new(camera))
+    }
+
     /// Returns and flux of all beams, with cached tables.
     fn render_returns(
         &self,
@@ -170,14 +205,11 @@ impl Renderer for Scanline {
         let needs_returns = request.returns && supported;
 
         let start = Instant::now();
-        let clusters =
-            cached(&self.clusters, |clusters| clusters.fit(scene.mesh()), || Clusters::new(scene.mesh()));
+        let clusters = self.clusters_of(scene);
         stages.push(Stage { name: "clusters".into(), time: start.elapsed() });
         let tables = (request.camera || needs_returns).then(|| {
             let start = Instant::now();
-            let camera = &scene.camera().sensor;
-            let fits = |tables: &CameraTables| tables.fit(camera);
-            let tables = cached(&self.camera_tables, fits, || CameraTables::new(camera));
+            let tables = self.camera_tables_of(scene);
             stages.push(Stage { name: "tables".into(), time: start.elapsed() });
             tables
         });

@@ -35,10 +35,12 @@ pub(crate) struct TransformedClusters {
 
 impl TransformedClusters {
     /// Transforms the vertices of some clusters, each cluster by itself: a vertex of two clusters twice, to the same bits.
+    /// With `turned_over` the corners of each face come in the opposite order.
     pub(crate) fn new(
         mesh: &Mesh,
         clusters: &Clusters,
         which: &[u32],
+        turned_over: bool,
         transform_one: impl Fn([f32; 3]) -> SensorVertex,
     ) -> Self {
         let mut transformed = Self::default();
@@ -47,9 +49,9 @@ impl TransformedClusters {
             let first = transformed.vertices.len() as u32;
             let of_vertex = |&v: &u32| transform_one(mesh.vertices()[v as usize]);
             transformed.vertices.extend(content.vertices.iter().map(of_vertex));
-            let placed = |face: &ClusterFace| PlacedFace {
-                id: face.id,
-                corners: face.corners.map(|place| first + u32::from(place)),
+            let placed = |face: &ClusterFace| {
+                let [a, b, c] = face.corners.map(|place| first + u32::from(place));
+                PlacedFace { id: face.id, corners: if turned_over { [a, c, b] } else { [a, b, c] } }
             };
             transformed.faces.extend(content.faces.iter().map(placed));
         }

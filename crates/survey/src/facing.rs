@@ -9,9 +9,7 @@
 use std::sync::Arc;
 
 use raypencil_scanline::Scanline;
-use raypencil_scene::{
-    Camera, Mesh, Mounted, Quantities, RenderOutput, Renderer, Request, Scene, SensorId, SensorMap,
-};
+use raypencil_scene::{Camera, Mounted, Quantities, Renderer, Request, Scene, SensorId, SensorMap};
 
 /// Most columns and rows of the camera in a sample: shares of the image are then good to one in 16,384.
 const SAMPLE_PIXELS: u32 = 128;
@@ -58,39 +56,31 @@ pub fn facings(scene: &Scene) -> Vec<Facing> {
     BothSides::default().facings(scene)
 }
 
-/// Renderers of a terrain and of the same terrain turned over, with what they keep of both.
+/// A renderer of both sides of a terrain, with what it keeps of it.
 #[derive(Debug, Default)]
 pub(crate) struct BothSides {
-    renderers: [Scanline; 2],
-    /// A mesh, and the same turned over.
-    turned: Option<[Arc<Mesh>; 2]>,
+    renderer: Scanline,
 }
 
 impl BothSides {
     /// What the rays of each sensor meet first.
-    pub(crate) fn facings(&mut self, scene: &Scene) -> Vec<Facing> {
+    pub(crate) fn facings(&self, scene: &Scene) -> Vec<Facing> {
         let mut beams = scene.beams().to_vec();
         for Mounted { sensor: beam, .. } in &mut beams {
             (beam.columns, beam.rows) = (beam.columns.min(SAMPLE_COLUMNS), beam.rows.min(SAMPLE_ROWS));
         }
-        let with = |mesh: &Arc<Mesh>, sensor: Camera| {
+        let with = |sensor: Camera| {
             let camera = Mounted { sensor, ..*scene.camera() };
-            Scene::new(Arc::clone(mesh), camera, beams.clone(), scene.atmosphere(), scene.flux_model())
+            let mesh = Arc::clone(scene.mesh());
+            Scene::new(mesh, camera, beams.clone(), scene.atmosphere(), scene.flux_model())
         };
+        let own = scene.camera().sensor;
+        // Pixels that are large already cannot be larger: then all of them are looked at.
+        let sample = with(coarse_camera(own)).or_else(|_| with(own)).expect("the sensors of a scene");
         let ranges = Request { quantities: Quantities { range: true, ..Quantities::NONE }, ..Request::MAPS };
-        let meshes = match self.turned.take().filter(|[mesh, _]| Arc::ptr_eq(mesh, scene.mesh())) {
-            Some(meshes) => meshes,
-            None => [Arc::clone(scene.mesh()), Arc::new(turned_over(scene.mesh()))],
-        };
-        let seen = |side: usize| -> RenderOutput {
-            let own = scene.camera().sensor;
-            // Pixels that are large already cannot be larger: then all of them are looked at.
-            let sample = with(&meshes[side], coarse_camera(own)).or_else(|_| with(&meshes[side], own));
-            self.renderers[side].render(&sample.expect("the sensors of a scene"), &ranges)
-        };
-        let (fronts, backs) = (seen(0), seen(1));
-        self.turned = Some(meshes);
-        fronts.maps().zip(backs.maps()).map(|(fronts, backs)| facing(fronts, backs)).collect()
+        let fronts = self.renderer.render(&sample, &ranges);
+        let backs = self.renderer.ranges_of_backs(&sample);
+        fronts.maps().zip(&backs).map(|(fronts, backs)| facing(fronts, backs)).collect()
     }
 }
 
@@ -111,14 +101,6 @@ fn facing(fronts: &SensorMap, backs: &SensorMap) -> Facing {
 /// The ranges of a map, cell by cell.
 fn ranges(map: &SensorMap) -> impl Iterator<Item = Option<f64>> {
     map.range.iter().flat_map(|ranges| ranges.cells()).map(|range| range.get())
-}
-
-/// The same terrain with the corners of each face in the opposite order.
-fn turned_over(mesh: &Mesh) -> Mesh {
-    let faces = mesh.faces().iter().map(|&[a, b, c]| [a, c, b]).collect();
-    let (vertices, kinds) = (mesh.vertices().to_vec(), mesh.face_materials().to_vec());
-    Mesh::new(mesh.origin(), vertices, faces, kinds, mesh.materials().to_vec())
-        .expect("the corners of a mesh, in another order")
 }
 
 /// A camera with fewer, larger pixels over the same image.

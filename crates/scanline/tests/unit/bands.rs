@@ -14,7 +14,7 @@ fn rows_of(corners: [[f32; 3]; 3], skip_unseen: bool) -> Option<std::ops::Range<
     let mounted = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
     let transformation = Perspective::new(&mounted, &tables);
     let clusters = Clusters::new(&mesh);
-    let transformed = TransformedClusters::new(&mesh, &clusters, &clusters.all(), |in_scene| {
+    let transformed = TransformedClusters::new(&mesh, &clusters, &clusters.all(), false, |in_scene| {
         let position = widen(in_scene);
         let (projection, outside) = (transformation.project(position), transformation.outside(position));
         SensorVertex { in_scene, position, projection, outside }
