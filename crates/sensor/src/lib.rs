@@ -3,8 +3,9 @@
 //! ```text
 //! 6  splat (disc) -> psf -> kernel (airy) -> convolve -> optics, dust   filter the image for aberrations and dust
 //!    sunlight                                                           the background light of sun and sky
-//! 7  noise_stream, poisson, dark_pixels -> image_sensor (photon)        add the sensor's noise
+//! 7  noise_stream, poisson -> image_sensor (photon)                     add the sensor's noise
 //! 8  image_sensor                                                       adjust the range, digitise, subtract frames
+//!    image_sensor, dark_pixels -> numbers                               the same, the numbers alone
 //!    presets                                                            optics and sensors by name, with sources
 //! ```
 //!
@@ -34,6 +35,7 @@ mod dust;
 mod image_sensor;
 mod kernel;
 mod noise_stream;
+mod numbers;
 mod optics;
 mod photon;
 mod poisson;
@@ -46,9 +48,10 @@ mod sunlight;
 pub use airy::{airy_pattern, encircled_energy};
 pub use convolve::{ConvolvedImage, binned, convolve};
 pub use dust::{Dust, DustedImage};
-pub use image_sensor::{DarkCurrent, DigitalImage, FixedPattern, ImagePair, ImageSensor, difference};
+pub use image_sensor::{DarkCurrent, DigitalImage, ImagePair, ImageSensor, difference};
 pub use kernel::Kernel;
 pub use noise_stream::{NoiseSource, NoiseStream};
+pub use numbers::FixedPattern;
 pub use optics::{FluxBudget, Optics, OpticsOutput};
 pub use photon::{PLANCK_CONSTANT, SPEED_OF_LIGHT, photon_energy};
 pub use poisson::poisson;
