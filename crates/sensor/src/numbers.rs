@@ -26,7 +26,7 @@ impl FixedPattern {
 }
 
 impl ImageSensor {
-    /// [`DigitalImage::numbers`] of [`ImageSensor::expose`] alone, without the other images, as any type that holds a
+    /// [`DigitalImage::numbers`](crate::DigitalImage::numbers) of [`ImageSensor::expose`] alone, without the other images, as any type that holds a
     /// `u16`.
     ///
     /// # Panics
@@ -113,7 +113,7 @@ impl ImageSensor {
         FixedPattern { sensor: *self, size: (width, height), dark_signals }
     }
 
-    /// [`ImagePair::difference`] of [`ImageSensor::expose_pair`] alone, without the other images.
+    /// [`ImagePair::difference`](crate::ImagePair::difference) of [`ImageSensor::expose_pair`] alone, without the other images.
     ///
     /// # Panics
     /// As [`ImageSensor::expose`].
