@@ -76,3 +76,14 @@ fn squares_are_never_negative() {
     let found = square(-3.0, -2.0);
     assert!(found.low <= 4.0 && found.low > 3.999 && found.high >= 9.0 && found.high < 9.001, "{found:?}");
 }
+
+#[test]
+fn a_product_with_a_line_without_ends_has_none_either() {
+    // Beside products of 0 and infinity, which are no numbers.
+    let line = Interval::between(f64::NEG_INFINITY, f64::INFINITY);
+    for part in [Interval::between(-1.0, 0.0), Interval::between(0.0, 2.0), Interval::between(-3.0, 4.0)] {
+        for product in [part.mul(&line), line.mul(&part)] {
+            assert_eq!((product.low, product.high), (f64::NEG_INFINITY, f64::INFINITY), "{part:?}");
+        }
+    }
+}

@@ -28,3 +28,15 @@ fn every_face_is_once_in_a_leaf_beside_those_of_its_box() {
         assert_eq!(tree.faces().len(), count - count.div_ceil(11));
     }
 }
+
+#[test]
+fn groups_of_one_box_are_leaves_with_faces_of_their_own() {
+    // Three groups and more, each of them a single leaf.
+    let tree = BoxTree::build(6000, |_| Some(cube(1.0)), |index| index);
+    let leaves = tree.tree().nodes.iter().filter(|node| node.is_leaf());
+    let mut all: Vec<u32> =
+        leaves.flat_map(|leaf| tree.leaf_faces(leaf.first_index, leaf.prim_count)).copied().collect();
+    assert_eq!(all.len(), 6000);
+    all.sort_unstable();
+    assert!(all.into_iter().eq(0..6000));
+}
