@@ -153,7 +153,8 @@ def scaled(program: str) -> list[str]:
             cells = [number(median(times[row])) if row in times else "" for row in wanted for times in (one, two)]
             trees = [number(first[f"first frame, {name}"][0]) for name in ("scanline", "tracer")]
             # What a face more takes: nothing that every frame has is in it.
-            growth = (memory - last[0]) / (one["faces"] - last[1]) if last else None
+            more = one["faces"] - last[1] if last else 0
+            growth = (memory - last[0]) / more if more else None
             last = (memory, one["faces"])
             extra = [*trees, number(growth), f"{memory / one['faces']:,.0f}"] if title.endswith("faces") else []
             lines.append([name, *cells, *extra])
