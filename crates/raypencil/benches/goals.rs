@@ -1,13 +1,14 @@
 //! The work that `docs/speed.md` sets beside Embree's, row by row, without Embree: `just speed` has the ratios.
 //!
 //! The grounds are generated plains of 2,000, 200,000 and 2,000,000 faces, and the Mars yard if RAYPENCIL_EXTRA_DATA names
-//! the folder with `marsyard2021.glb`. One thread, but for what is said to be on all.
+//! the folder with `marsyard2021.glb`. One thread, but for what is said to be on all. Memory is no time: the example `speed`
+//! tells that of a validation.
 
 use std::path::Path;
 use std::sync::LazyLock;
 
 use divan::counter::ItemsCount;
-use divan::{AllocProfiler, Bencher, black_box};
+use divan::{Bencher, black_box};
 use raypencil::harness::{Validator, contender};
 use raypencil::io::Subject;
 use raypencil::{Referee, Request, SensorId};
@@ -16,10 +17,6 @@ use raypencil::{Referee, Request, SensorId};
 mod work;
 
 use work::{BEAMS, CAMERA, DriveCycles, both_renderers, certify, subject, validated, write_whole_pack};
-
-/// Counts the memory of [`memory_of_a_validation`], and costs the others next to nothing: they allocate little.
-#[global_allocator]
-static MEMORY: AllocProfiler = AllocProfiler::system();
 
 fn main() {
     divan::main();
@@ -115,13 +112,6 @@ fn whole_validation(bencher: Bencher, name: &str) {
     let mut validator = Validator::default();
     validated(subject, &renderers, &mut validator);
     bencher.bench_local(|| validated(subject, &renderers, &mut validator));
-}
-
-/// A first validation: "max alloc" is its memory, but for the scene's own.
-#[divan::bench(args = grounds(), sample_count = 1, sample_size = 1)]
-fn memory_of_a_validation(bencher: Bencher, name: &str) {
-    let subject = ground(name);
-    bencher.bench_local(|| validated(subject, &both_renderers(), &mut Validator::default()));
 }
 
 /// Every pixel of the camera, on all threads.
