@@ -4,7 +4,7 @@
 //! the folder with `marsyard2021.glb`. One thread, but for what is said to be on all. Memory is no time: the example `speed`
 //! tells that of a validation.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use divan::counter::ItemsCount;
@@ -35,19 +35,20 @@ static GROUNDS: [Ground; 4] = [
     Ground { name: "yard", subject: LazyLock::new(yard) },
 ];
 
-/// The yard, if it is there.
+/// The file of the yard, if it is there.
+fn yard_file() -> Option<PathBuf> {
+    let file = Path::new(&std::env::var_os("RAYPENCIL_EXTRA_DATA")?).join("marsyard2021.glb");
+    file.exists().then_some(file)
+}
+
 fn yard() -> Option<Subject> {
-    let path = Path::new(&std::env::var_os("RAYPENCIL_EXTRA_DATA")?).join("marsyard2021.glb");
-    path.exists().then(|| subject(path.to_str().expect("a path in UTF-8")).expect("a valid yard"))
+    Some(subject(yard_file()?.to_str().expect("a path in UTF-8")).expect("a valid yard"))
 }
 
 /// Names of the grounds.
 fn grounds() -> Vec<&'static str> {
-    let yard_is_there = || {
-        let folder = std::env::var_os("RAYPENCIL_EXTRA_DATA");
-        folder.is_some_and(|folder| Path::new(&folder).join("marsyard2021.glb").exists())
-    };
-    GROUNDS.iter().map(|ground| ground.name).filter(|name| *name != "yard" || yard_is_there()).collect()
+    let is_there = |name: &&str| *name != "yard" || yard_file().is_some();
+    GROUNDS.iter().map(|ground| ground.name).filter(is_there).collect()
 }
 
 fn ground(name: &str) -> &'static Subject {

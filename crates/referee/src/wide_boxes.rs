@@ -113,7 +113,7 @@ impl WideBoxes {
             wide.push(NO_BOXES);
             let mut to_fill = vec![(0_usize, 0_u32)];
             while let Some((at, node)) = to_fill.pop() {
-                for (lane, node) in inside(nodes, node).into_iter().enumerate() {
+                for (lane, node) in inside(nodes, node).enumerate() {
                     let Node { low, high, first, count } = nodes[node as usize];
                     let first = if count > 0 {
                         first
@@ -249,12 +249,12 @@ impl WideBoxes {
 }
 
 /// The up to four nodes in a node: its children's children, or a child that is a leaf. A root that is a leaf is in itself.
-fn inside(nodes: &[Node], node: u32) -> Vec<u32> {
+fn inside(nodes: &[Node], node: u32) -> impl Iterator<Item = u32> {
     let children = |node: u32| match nodes[node as usize] {
-        Node { count: 0, first, .. } => vec![first, first + 1],
-        _ => vec![node],
+        Node { count: 0, first, .. } => first..first + 2,
+        _ => node..node + 1,
     };
-    children(node).into_iter().flat_map(children).collect()
+    children(node).flat_map(children)
 }
 
 #[cfg(test)]

@@ -37,37 +37,21 @@ struct SortedClusters {
     bands: Vec<Vec<PlacedFace>>,
 }
 
+/// The side of the faces that rays meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MetSide {
+    Fronts,
+    /// As if all faces were turned over. What follows from a hit's face is still that of the face itself.
+    Backs,
+}
+
 /// Renders the maps of one sensor.
 pub(crate) fn render<T: Transformation>(
     mesh: &Mesh,
     clusters: &Clusters,
     transformation: &T,
     sensor: SensorId,
-    quantities: Quantities,
-    options: ScanlineOptions,
-) -> SensorMap {
-    render_side::<T, false>(mesh, clusters, transformation, sensor, quantities, options)
-}
-
-/// Renders the range map of one sensor as if all faces were turned over.
-pub(crate) fn render_backs<T: Transformation>(
-    mesh: &Mesh,
-    clusters: &Clusters,
-    transformation: &T,
-    sensor: SensorId,
-    options: ScanlineOptions,
-) -> SensorMap {
-    // What follows from a hit is of the mesh's own faces: the range alone is asked for.
-    let range = Quantities { range: true, ..Quantities::NONE };
-    render_side::<T, true>(mesh, clusters, transformation, sensor, range, options)
-}
-
-fn render_side<T: Transformation, const TURNED_OVER: bool>(
-    mesh: &Mesh,
-    clusters: &Clusters,
-    transformation: &T,
-    sensor: SensorId,
-    quantities: Quantities,
+    (quantities, side): (Quantities, MetSide),
     options: ScanlineOptions,
 ) -> SensorMap {
     let (width, height) = (transformation.columns().count(), transformation.rows().count());
@@ -99,12 +83,13 @@ fn render_side<T: Transformation, const TURNED_OVER: bool>(
     let sorted: Vec<SortedClusters> = seen
         .par_chunks(CLUSTERS_PER_TASK)
         .map(|which| {
-            let clusters = TransformedClusters::new(mesh, clusters, which, TURNED_OVER, |in_scene| {
-                let offset = sensor_from_scene.offset_of(widen(in_scene));
-                let position = sensor_from_scene.in_sensor_axes(offset);
-                let projection = transformation.project(position);
-                SensorVertex { in_scene, position, projection, outside: transformation.outside(position) }
-            });
+            let clusters =
+                TransformedClusters::new(mesh, clusters, which, side == MetSide::Backs, |in_scene| {
+                    let offset = sensor_from_scene.offset_of(widen(in_scene));
+                    let position = sensor_from_scene.in_sensor_axes(offset);
+                    let projection = transformation.project(position);
+                    SensorVertex { in_scene, position, projection, outside: transformation.outside(position) }
+                });
             let mut bands = vec![Vec::new(); band_count];
             for &face in &clusters.faces {
                 if let Some(rows) = scanner.rows(&clusters, face) {

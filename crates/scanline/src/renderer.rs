@@ -9,7 +9,7 @@ use raypencil_scene::{
 };
 
 use crate::Switches;
-use crate::bands;
+use crate::bands::{self, MetSide};
 use crate::cache::{Cached, cached};
 use crate::clusters::Clusters;
 use crate::cylindrical::Cylindrical;
@@ -144,10 +144,12 @@ impl Scanline {
         let (mesh, clusters) = (scene.mesh(), self.clusters_of(scene));
         let tables = self.camera_tables_of(scene);
         let camera = Perspective::new(scene.camera(), &tables);
-        let of_camera = bands::render_backs(mesh, &clusters, &camera, SensorId::Camera, self.options);
+        // The range alone: normals and angles are those of the faces as they are.
+        let asked = (Quantities { range: true, ..Quantities::NONE }, MetSide::Backs);
+        let of_camera = bands::render(mesh, &clusters, &camera, SensorId::Camera, asked, self.options);
         let of_beam = |(index, beam): (usize, &Mounted<Beam>)| {
             let cylindrical = Cylindrical::new(beam, self.options.switches);
-            bands::render_backs(mesh, &clusters, &cylindrical, SensorId::Beam(index), self.options)
+            bands::render(mesh, &clusters, &cylindrical, SensorId::Beam(index), asked, self.options)
         };
         std::iter::once(of_camera).chain(scene.beams().iter().enumerate().map(of_beam)).collect()
     }
@@ -221,7 +223,7 @@ impl Renderer for Scanline {
                 &clusters,
                 &perspective,
                 SensorId::Camera,
-                request.quantities,
+                (request.quantities, MetSide::Fronts),
                 self.options,
             );
             stages.push(Stage { name: SensorId::Camera.to_string(), time: start.elapsed() });
@@ -235,6 +237,7 @@ impl Renderer for Scanline {
         // Of the maps, the returns need the faces alone.
         let requested = if request.beams { request.quantities } else { Quantities::NONE };
         let quantities = Quantities { face: requested.face || needs_returns, ..requested };
+        let asked = (quantities, MetSide::Fronts);
         let beams = if request.beams || needs_returns { scene.beams() } else { &[] };
         let mut beams: Vec<SensorMap> = beams
             .iter()
@@ -243,8 +246,7 @@ impl Renderer for Scanline {
                 let start = Instant::now();
                 let sensor = SensorId::Beam(index);
                 let cylindrical = Cylindrical::new(beam, self.options.switches);
-                let map =
-                    bands::render(scene.mesh(), &clusters, &cylindrical, sensor, quantities, self.options);
+                let map = bands::render(scene.mesh(), &clusters, &cylindrical, sensor, asked, self.options);
                 stages.push(Stage { name: sensor.to_string(), time: start.elapsed() });
                 map
             })

@@ -92,39 +92,37 @@ pub struct SensorMap {
 impl SensorMap {
     /// Empty maps (no hit anywhere) of the `quantities` asked for.
     pub fn empty(sensor: SensorId, width: u32, height: u32, quantities: Quantities) -> Self {
-        fn raster<T: crate::Sample>(wanted: bool, width: u32, height: u32) -> Option<Image<Maybe<T>>> {
-            wanted.then(|| Image::filled(width, height, Maybe::NONE))
-        }
-        Self {
-            sensor,
-            width,
-            height,
-            range: raster(quantities.range, width, height),
-            depth: raster(quantities.depth, width, height),
-            face: raster(quantities.face, width, height),
-            point: raster(quantities.point, width, height),
-            normal: raster(quantities.normal, width, height),
-            cos_incidence: raster(quantities.cos_incidence, width, height),
-        }
+        Self::of::<true>(sensor, width, height, quantities)
     }
 
     /// Maps of the `quantities` asked for whose cells are yet to be written, *every one of them*: by
     /// [`SensorRow::put`] or [`SensorRow::put_miss`]. For renderers: to fill large maps with misses first takes as long as
     /// to render them.
     pub fn unwritten(sensor: SensorId, width: u32, height: u32, quantities: Quantities) -> Self {
-        fn raster<T: crate::Sample>(wanted: bool, width: u32, height: u32) -> Option<Image<Maybe<T>>> {
-            wanted.then(|| Image::zeroed(width, height))
+        Self::of::<false>(sensor, width, height, quantities)
+    }
+
+    fn of<const MISSES: bool>(sensor: SensorId, width: u32, height: u32, quantities: Quantities) -> Self {
+        fn raster<const MISSES: bool, T: crate::Sample>(
+            wanted: bool,
+            width: u32,
+            height: u32,
+        ) -> Option<Image<Maybe<T>>> {
+            let new = || {
+                if MISSES { Image::filled(width, height, Maybe::NONE) } else { Image::zeroed(width, height) }
+            };
+            wanted.then(new)
         }
         Self {
             sensor,
             width,
             height,
-            range: raster(quantities.range, width, height),
-            depth: raster(quantities.depth, width, height),
-            face: raster(quantities.face, width, height),
-            point: raster(quantities.point, width, height),
-            normal: raster(quantities.normal, width, height),
-            cos_incidence: raster(quantities.cos_incidence, width, height),
+            range: raster::<MISSES, _>(quantities.range, width, height),
+            depth: raster::<MISSES, _>(quantities.depth, width, height),
+            face: raster::<MISSES, _>(quantities.face, width, height),
+            point: raster::<MISSES, _>(quantities.point, width, height),
+            normal: raster::<MISSES, _>(quantities.normal, width, height),
+            cos_incidence: raster::<MISSES, _>(quantities.cos_incidence, width, height),
         }
     }
 

@@ -108,7 +108,14 @@ fn of_equally_near_faces_the_lowest_is_kept_whichever_comes_first() {
         let clusters = Clusters::new(&mesh);
         let quantities = Quantities::RANGE_MAP;
         let options = ScanlineOptions::EXACT;
-        let map = render(&mesh, &clusters, &transformation, SensorId::Camera, quantities, options);
+        let map = render(
+            &mesh,
+            &clusters,
+            &transformation,
+            SensorId::Camera,
+            (quantities, MetSide::Fronts),
+            options,
+        );
         assert_eq!(map.face.unwrap().at(4, 4).get(), Some(FaceId(0)));
     }
 }

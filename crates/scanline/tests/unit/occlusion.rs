@@ -58,7 +58,14 @@ fn hidden_by(mesh: &Arc<Mesh>, facing: Facing) -> Vec<bool> {
         let cylindrical = Cylindrical::new(&beam, Switches::EXACT);
         let sensor = SensorId::Beam(0);
         let ranges = Quantities::RANGE_MAP;
-        let map = bands::render(mesh, &clusters, &cylindrical, sensor, ranges, ScanlineOptions::EXACT);
+        let map = bands::render(
+            mesh,
+            &clusters,
+            &cylindrical,
+            sensor,
+            (ranges, bands::MetSide::Fronts),
+            ScanlineOptions::EXACT,
+        );
         let hits = map.face.expect("asked for");
         stripes.extend(points::stripe_points(mesh, &cylindrical, &perspective, pixels, &hits));
     }
