@@ -9,7 +9,7 @@ use raypencil::judge::{Class, JudgeShare};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 use crate::parsers::{
-    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, shard, switch,
+    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, rule, shard, switch,
     threshold,
 };
 
@@ -240,10 +240,24 @@ pub(crate) struct Drive {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
 
-    /// Waypoint in the global frame, metres; replaces the waypoints of the scene's drive. The drive begins at the
-    /// scene's vehicle. May be repeated.
+    /// Waypoint, metres ahead and to the left of the vehicle at its start; replaces the waypoints of the scene's drive.
+    /// May be repeated.
     #[arg(long, value_name = "X,Y", value_parser = pair::<f64>, allow_hyphen_values = true)]
     pub(crate) to: Vec<[f64; 2]>,
+
+    /// The waypoints of --to are in the global frame.
+    #[arg(long, requires = "to")]
+    pub(crate) to_global: bool,
+
+    /// Drive as the paper prints it: ten frames a second, both beams lit together, the flux of equation 1 in W/m, points
+    /// from the table, and the printed rules of the maps.
+    #[arg(long)]
+    pub(crate) as_printed: bool,
+
+    /// Put one rule of the maps in force as printed or mended. Rules: start, elevation, extrapolate, several,
+    /// inconsistency, gap, settle, tests; start also takes footprint. May be repeated.
+    #[arg(long = "rule", value_name = "NAME=paper|mended", value_parser = rule)]
+    pub(crate) rules: Vec<(String, String)>,
 
     /// Renderer of the rover's images.
     #[arg(long, value_name = "NAME", default_value = DRIVE_WITH)]

@@ -6,7 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
 use raypencil::drive::{self, DriveJob, DriveProgress, drive_json, drive_screen, write_drive};
-use raypencil::io::{DriveSetup, load};
+use raypencil::io::{DriveSetup, WaypointFrame, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
 use crate::console::{Spinner, say};
@@ -58,11 +58,19 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let mut arguments = command.scene.typed();
     if !command.to.is_empty() {
         let rig = loaded.rig();
-        let drive = loaded.drive.get_or_insert_with(|| DriveSetup::new(rig, Vec::new()));
-        drive.plan.route.waypoints = command.to.iter().map(|&to| to.into()).collect();
+        let new = || DriveSetup::new(rig, Vec::new(), WaypointFrame::Vehicle);
+        let drive = loaded.drive.get_or_insert_with(new);
+        drive.waypoints = command.to.iter().map(|&to| to.into()).collect();
+        drive.waypoint_frame = if command.to_global { WaypointFrame::Global } else { WaypointFrame::Vehicle };
     }
     for [x, y] in &command.to {
         arguments.push_str(&format!(" --to {x},{y}"));
+    }
+    for (flag, is_set) in [(" --to-global", command.to_global), (" --as-printed", command.as_printed)] {
+        arguments.push_str(if is_set { flag } else { "" });
+    }
+    for (name, word) in &command.rules {
+        arguments.push_str(&format!(" --rule {name}={word}"));
     }
     if command.both {
         arguments.push_str(" --both");
@@ -72,7 +80,13 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let typed = if is_default { args::DEFAULT_WITH.map(String::from).to_vec() } else { names };
     arguments.push_str(&typed_renderers(&typed, &command.switches));
     let trouble = |error| Trouble::Drive { scene: command.scene.scene.clone(), error };
-    let job = DriveJob::new(&loaded, command.scene.at, arguments).map_err(trouble)?;
+    let mut job = DriveJob::new(&loaded, command.scene.at, arguments).map_err(trouble)?;
+    if command.as_printed {
+        job = job.as_printed().map_err(trouble)?;
+    }
+    for (name, word) in &command.rules {
+        job.plan.set_rule(name, word).expect("checked when it was parsed");
+    }
     let folder: PathBuf = match &command.output {
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),

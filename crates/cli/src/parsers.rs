@@ -6,6 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use raypencil::campaign::{PartName, Shard};
 use raypencil::cast::rays_from_bytes;
 use raypencil::judge::{Class, JudgeShare};
+use raypencil::rover::RULE_NAMES;
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 /// A value that an option accepts: its name, its line of help, and what it stands for.
@@ -107,6 +108,19 @@ pub(crate) fn switch(text: &str) -> Result<(String, Fidelity), String> {
         "paper" => Ok((name.into(), Fidelity::Paper)),
         "exact" => Ok((name.into(), Fidelity::Exact)),
         _ => Err("expected a switch and its setting, such as beam-edges=paper or skip-rules=exact".into()),
+    }
+}
+
+/// `NAME=paper` or `NAME=mended`, a rule of the rover's maps; `start=footprint` as well.
+pub(crate) fn rule(text: &str) -> Result<(String, String), String> {
+    let (name, word) = text.split_once('=').unwrap_or((text, ""));
+    if !RULE_NAMES.contains(&name) {
+        return Err(format!("expected one of {}", RULE_NAMES.join(", ")));
+    }
+    match (name, word) {
+        (_, "paper" | "mended") | ("start", "footprint") => Ok((name.into(), word.into())),
+        ("start", _) => Err("expected start=paper, start=mended or start=footprint".into()),
+        _ => Err(format!("expected {name}=paper or {name}=mended")),
     }
 }
 

@@ -176,8 +176,13 @@ mod tests {
         let job = job(FLAT, SHORT);
         let mount = job.plan.rig.camera.vehicle_from_sensor;
         let edge = EdgePoint { i: 3, j: 5, row: 5.5 };
-        let measured =
-            MeasuredPoint { step: Some(7), beam: 1, edge, point: mount * DVec3::new(1e-6, 1e-6, 4.0) };
+        let measured = MeasuredPoint {
+            step: Some(7),
+            beam: 1,
+            edge,
+            point: mount * DVec3::new(1e-6, 1e-6, 4.0),
+            standard_error: 0.0,
+        };
         let behind = MeasuredPoint { point: mount * DVec3::new(0.0, 0.0, -1.0), ..measured };
         let blank = [9; 3];
         let view = CameraView {

@@ -17,7 +17,10 @@ pub enum DriveError {
     )]
     NoDrive,
     /// The flux model's unit is W/m, which no camera can expose.
-    #[error("flux model eq1 is in W/m, which no camera can expose; expected radiometric")]
+    #[error(
+        "flux model eq1 is in W/m, which no camera can expose; expected radiometric, or a drive without sensor, optics, \
+         electronics and sun"
+    )]
     Unit,
     /// The route has more than 36,000 frames.
     #[error(

@@ -36,11 +36,6 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
         0 => String::new(),
         scans => format!(", {} of them", counted(scans, "vertical scan", "vertical scans")),
     };
-    let short = if (run.frames.len() as u64) < run.planned {
-        format!(" of {} (the route leads off the ground)", run.planned)
-    } else {
-        String::new()
-    };
     let sectors: Vec<String> = sector_counts(run)
         .iter()
         .map(|(label, sectors)| format!("{sectors} {}", label_word(*label)))
@@ -65,7 +60,7 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
         ("start", run.whereabouts.vehicle_line().replacen("vehicle at ", "", 1)),
         ("terrain", run.whereabouts.terrain_line().replacen("terrain ", "", 1)),
         ("camera", job.preset.to_string()),
-        ("frames", format!("{}{short}{scans}, one per {} m", run.frames.len(), number(frame_step))),
+        ("frames", format!("{}{scans}, one per {} m", run.frames.len(), number(frame_step))),
         ("driven", format!("{:.2} m at {} m/s", run.driven(), number(route.speed))),
         ("points", points),
         (
@@ -82,8 +77,8 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
     if let Some((frame, _, _)) = &run.obstacles {
         facts.push(("sectors", format!("{} (frame {frame})", sectors.join(", "))));
     }
-    if run.confusion.maps > 0 {
-        facts.extend(run.confusion.sentences().map(|sentence| ("truth", sentence)));
+    if run.truth.maps > 0 {
+        facts.extend(run.truth.sentences().map(|sentence| ("truth", sentence)));
     }
     facts.extend(job.notes.iter().map(|note| ("note", note.clone())));
     facts

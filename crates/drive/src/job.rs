@@ -3,18 +3,15 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use raypencil_rover::{DrivePlan, Rig};
+use raypencil_rover::{Detection, DrivePlan, Rig};
 use raypencil_scene::{FluxModel, Image, Mesh};
-use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource};
+use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource, WaypointFrame};
 use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Sunlight};
 use raypencil_survey::Warning;
 
 use crate::beam_columns::with_columns;
 use crate::error::{DriveError, MAX_FRAMES};
 use crate::warnings::{beams_out_of_order, blind_threshold};
-
-/// Frame rate of the built-in drives, frames per second: one frame per 0.1 m at 0.3 m/s.
-const BUILTIN_FRAMES_PER_S: f64 = 3.0;
 
 /// Drive, ready to start: ground, plan of the rover and camera.
 ///
@@ -26,8 +23,8 @@ const BUILTIN_FRAMES_PER_S: f64 = 3.0;
 /// // "The vehicle starts at 7.5 meters from where the view from the camera in Figure 11 was taken." (Paper, section 8)
 /// let route = &job.plan.route;
 /// assert_eq!((route.start.x, route.waypoints[0].x), (-7.5, 0.0));
-/// // One frame per 0.1 m, from the start to the end: 76 frames.
-/// assert!(route.frame(75).is_some() && route.frame(76).is_none());
+/// // 7.5 m at 0.3 m/s take 25 s: 251 frames at ten per second, both ends included.
+/// assert!(route.frame(250).is_some() && route.frame(251).is_none());
 /// // 4 pencils per pixel, where the fan of 60 degrees fills 2 tan(30 deg) 8 mm / 9 um = 1026.4 pixels.
 /// assert_eq!(job.plan.rig.beams[0].sensor.columns, 4106);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -54,6 +51,10 @@ pub struct DriveJob {
     pub sunlight: Option<Sunlight>,
     /// Whether an image without the laser is subtracted from each image.
     pub subtract_unlit: bool,
+    /// Whether the scene asks for a camera: a sensor preset, optics, electronics or a sun.
+    pub has_camera: bool,
+    /// Threshold of images of flux, as a share of their maximum.
+    pub threshold_share: f64,
     /// Notes on how the drive was set up.
     pub notes: Vec<String>,
     /// Warnings about settings that may spoil the drive.
@@ -74,12 +75,7 @@ fn builtin_start(name: &str) -> Option<DVec2> {
 
 /// Drive of a rig on a built-in ground.
 fn builtin_drive(rig: Rig) -> DriveSetup {
-    let mut drive = DriveSetup::new(rig, vec![DVec2::ZERO]);
-    // CHOICE: one frame per 0.1 m, the spacing of the map: the map's own extrapolation closes the space between.
-    // Ten frames per second would be one per 3 cm.
-    drive.plan.route.frame_rate = BUILTIN_FRAMES_PER_S;
-    // Every 0.5 m, and at the very end.
-    drive.plan.obstacles_every = 5;
+    let mut drive = DriveSetup::new(rig, vec![DVec2::ZERO], WaypointFrame::Global);
     // CHOICE: no scans. Figures 12 and 15 show the cells that the stripes alone do not see.
     drive.plan.scans = None;
     drive
@@ -90,22 +86,16 @@ impl DriveJob {
     /// `at` (global x and y, metres) if it is given. `arguments` are the words for [`DriveJob::arguments`].
     ///
     /// # Errors
-    /// [`DriveError::NoDrive`] for a scene without a route, [`DriveError::Unit`] for the flux model `eq1`,
+    /// [`DriveError::NoDrive`] for a scene without a route, [`DriveError::Unit`] for the flux model `eq1` with a camera,
     /// [`DriveError::Plan`] with the field of a number out of range.
     pub fn new(loaded: &LoadedScene, at: Option<[f64; 2]>, arguments: String) -> Result<Self, DriveError> {
         let scene = &loaded.scene;
-        if scene.flux_model() == FluxModel::Eq1 {
-            return Err(DriveError::Unit);
-        }
         let mut notes = Vec::new();
         let (mut drive, start) = match (&loaded.drive, &loaded.source) {
             (Some(drive), _) => (drive.clone(), None),
             (None, SceneSource::Builtin(name)) => {
                 let start = builtin_start(name).ok_or(DriveError::NoDrive)?;
-                notes.push(
-                    "built-in drive: one frame per 0.1 m, not ten per second, and no vertical scans"
-                        .to_string(),
-                );
+                notes.push("built-in drive: no vertical scans".to_string());
                 (builtin_drive(loaded.rig()), Some(at.map_or(start, DVec2::from_array)))
             }
             (None, _) => return Err(DriveError::NoDrive),
@@ -114,6 +104,12 @@ impl DriveJob {
         drive.place(scene, &loaded.vehicle);
         drive.validate_camera()?;
         let mut plan = drive.plan;
+        if plan.flux_model == FluxModel::Eq1 {
+            if drive.has_camera {
+                return Err(DriveError::Unit);
+            }
+            plan.extraction.detection = Detection::Share(drive.threshold_share);
+        }
         plan.route.start = start.unwrap_or(plan.route.start);
 
         let (rig, mut warnings) = with_columns(plan.rig, drive.pencils_per_pixel, &mut notes);
@@ -132,9 +128,33 @@ impl DriveJob {
             sensor: drive.sensor,
             sunlight: drive.sunlight,
             subtract_unlit: drive.subtract_unlit,
+            has_camera: drive.has_camera,
+            threshold_share: drive.threshold_share,
             notes,
             warnings,
         })
+    }
+
+    /// The same drive by the paper's own rules: [`DrivePlan::as_printed`], with the flux of its equation 1. The image stays
+    /// in W/m: no photons, no noise, and a threshold as a share of its maximum.
+    ///
+    /// # Errors
+    /// [`DriveError::Unit`] if the scene asks for a camera that exposes photons.
+    pub fn as_printed(mut self) -> Result<Self, DriveError> {
+        if self.has_camera {
+            return Err(DriveError::Unit);
+        }
+        self.plan = self.plan.as_printed();
+        self.plan.flux_model = FluxModel::Eq1;
+        self.plan.extraction.detection = Detection::Share(self.threshold_share);
+        self.notes
+            .push("as printed: ten frames a second, both beams together, eq1, table, printed rules".into());
+        Ok(self)
+    }
+
+    /// Whether images are the flux itself, in W/m: no camera exposes that.
+    pub fn is_flux_only(&self) -> bool {
+        self.plan.flux_model == FluxModel::Eq1
     }
 
     /// Digital numbers of one exposure, steps 7 and 8. `flux` is the laser's light and `background` that of sun and

@@ -12,7 +12,8 @@
 //! 3. `shadow_map`, `sun`: light of sun and sky behind the stripes; `through_optics`: a renderer behind the camera's
 //!    optics;
 //! 4. `recorded_exposure`, `differences`: [`Differences`] between two sides, stage by stage;
-//! 5. `confusion`: [`ConfusionMatrix`] of the obstacle maps; `noise_level`: [`NoiseLevel`]s for its table;
+//! 5. `swept_ground`, `sector_truth`: [`SectorTruth`], the obstacle maps against what the vehicle can pass;
+//!    `noise_level`: [`NoiseLevel`]s for its table;
 //!    `sensitivity`, `pointing`: [`pointing_table`], blur against pointing errors;
 //! 6. `camera_view`, `animation_frame`: pictures of a frame;
 //! 7. `renderer_drive`, `run`: [`drive()`] itself and its [`DriveRun`];
@@ -33,7 +34,7 @@
 //!     camera = { width_px = 96, height_px = 96, pixel_pitch_um = 96 }
 //!     beam = [{ rows = 2 }, { rows = 2 }]
 //!     terrain = { builtin = 'pyramids' }
-//!     drive = { waypoints_m = [[0, 0]], frames_per_s = 3, scans = false }";
+//!     drive = { waypoints_m = [[0.6, 0]], frames_per_s = 3, scans = false }";
 //! let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
 //! let run = drive(&job, &[&Scanline::default()], &Silent)?;
 //! // 0.6 m at 0.3 m/s take 2 s: 7 frames at 3 per second, both ends included.
@@ -45,7 +46,6 @@ mod animation;
 mod animation_frame;
 mod beam_columns;
 mod camera_view;
-mod confusion;
 mod counts;
 mod differences;
 mod error;
@@ -62,14 +62,15 @@ mod recorded_exposure;
 mod renderer_drive;
 mod run;
 mod screen;
+mod sector_truth;
 mod sensitivity;
 mod shadow_map;
 mod summary;
 mod sun;
+mod swept_ground;
 mod through_optics;
 mod warnings;
 
-pub use confusion::{ConfusionMatrix, Predicted};
 pub use differences::{Differences, FluxDifferences, StageDifferences};
 pub use error::DriveError;
 pub use folder::{WrittenDrive, write_drive};
@@ -83,6 +84,7 @@ pub use noise_level::NoiseLevel;
 pub use pointing::pointing_table;
 pub use run::{DriveProgress, DriveRun, drive};
 pub use screen::drive_screen;
+pub use sector_truth::{Missed, NotFound, SectorTruth};
 pub use sensitivity::StripeSensitivity;
 pub use summary::drive_json;
 

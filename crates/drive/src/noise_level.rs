@@ -1,7 +1,7 @@
 //! Noise levels of the truth table: how well a rover sees, and how well it knows where it is.
 
 use glam::DVec2;
-use raypencil_rover::{Detection, LocalisationErrors, PositionFixes, TraversabilityRules};
+use raypencil_rover::{Detection, LocalisationErrors, PositionFixes, Route};
 use raypencil_scene_io::default_threshold;
 use raypencil_sensor::{ImageSensor, preset};
 
@@ -43,10 +43,10 @@ impl NoiseLevel {
     /// Errors of the localisation at `speed`, metres per second.
     ///
     /// CHOICE: all numbers; the paper gives none. The position drifts by 1 % or 4 % of the distance driven, along the
-    /// global x and y axes in the ratio 4 to 3. Position fixes from beacons come every 10 s (at the 3 frames per second
-    /// of the built-in drives), or never.
-    fn errors(self, speed: f64) -> LocalisationErrors {
-        let drift = |share: f64| DVec2::new(0.8, 0.6) * (share * speed);
+    /// global x and y axes in the ratio 4 to 3. Position fixes from beacons come every 10 s, or never.
+    fn errors(self, route: &Route) -> LocalisationErrors {
+        let every_frames = ((10.0 * route.frame_rate).round() as u64).max(1);
+        let drift = |share: f64| DVec2::new(0.8, 0.6) * (share * route.speed);
         match self {
             Self::None => LocalisationErrors::default(),
             Self::Modest => LocalisationErrors {
@@ -55,7 +55,7 @@ impl NoiseLevel {
                 heading_drift: 0.002_f64.to_radians(),
                 attitude_noise: 0.1_f64.to_radians(),
                 proximity_noise: 0.01,
-                fixes: Some(PositionFixes { every_frames: 30, noise: 0.05 }),
+                fixes: Some(PositionFixes { every_frames, noise: 0.05 }),
                 ..LocalisationErrors::default()
             },
             Self::Coarse => LocalisationErrors {
@@ -70,8 +70,7 @@ impl NoiseLevel {
         }
     }
 
-    /// Job with this level's sensor and errors in place of its own, with seeds 0, and with the rules as the paper
-    /// prints them, where no gap is crossed.
+    /// Job with this level's sensor and errors in place of its own, and with seeds 0.
     #[must_use]
     pub fn applied(self, mut job: DriveJob) -> DriveJob {
         let wavelength = job.sensor.wavelength;
@@ -80,9 +79,8 @@ impl NoiseLevel {
         job.optics = optics;
         job.sensor = ImageSensor { wavelength, seed: 0, ..sensor };
         job.plan.extraction.detection = Detection::Fixed(default_threshold(job.preset));
-        job.plan.errors = self.errors(job.plan.route.speed);
+        job.plan.errors = self.errors(&job.plan.route);
         job.plan.seed = 0;
-        job.plan.rules = TraversabilityRules::for_vehicle(&job.plan.vehicle);
         job
     }
 }
@@ -100,7 +98,6 @@ mod tests {
         for level in NoiseLevel::ALL {
             let noisy = level.applied(job.clone());
             noisy.plan.validate("drive").unwrap();
-            assert_eq!(noisy.plan.rules.gaps, None);
             // 1 % of the distance at 0.3 m/s is 3 mm per second.
             let drift = noisy.plan.errors.position_drift.length();
             let expected = [0.0, 0.003, 0.012][level as usize];

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use raypencil_rover::{CameraImage, Drive, DriveFrame, ElevationMap, Exposure};
+use raypencil_rover::{CameraImage, Drive, DriveFrame, DrivePlan, ElevationMap, Exposure};
 use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
 use raypencil_sensor::FixedPattern;
 use raypencil_terrain::HeightIndex;
@@ -12,6 +12,7 @@ use raypencil_terrain::HeightIndex;
 use crate::job::DriveJob;
 use crate::recorded_exposure::{MAX_LIT_PIXELS, RecordedExposure};
 use crate::sun::Sun;
+use crate::swept_ground::SweptGround;
 use crate::through_optics::ThroughOptics;
 
 /// Drive in progress with one renderer.
@@ -23,6 +24,10 @@ pub(crate) struct RendererDrive<'a> {
     exposures: u64,
     /// Noise that is the same in all of them.
     pattern: Option<FixedPattern>,
+    /// What the stripes swept, if the drive is to be held to the truth.
+    swept: Option<SweptGround>,
+    /// Whether the last exposure belonged to a scan.
+    was_scan: bool,
     /// Time of the sensor, steps 7 and 8.
     exposing: Duration,
     /// Time of all steps, rendering and sensor included.
@@ -54,9 +59,23 @@ impl<'a> RendererDrive<'a> {
             drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
             exposures: 0,
             pattern: None,
+            swept: None,
+            was_scan: false,
             exposing: Duration::ZERO,
             stepping: Duration::ZERO,
         })
+    }
+
+    /// The same drive, which also keeps what its stripes swept.
+    pub(crate) fn keeping_swept(self) -> Self {
+        let DrivePlan { map, route, .. } = &self.job.plan;
+        let swept = SweptGround::new(*map, route.start);
+        Self { swept: Some(swept), renderer: self.renderer.keeping_lit(), ..self }
+    }
+
+    /// What the stripes swept so far; `None` if it is not kept.
+    pub(crate) fn swept(&self) -> Option<&SweptGround> {
+        self.swept.as_ref()
     }
 
     /// Next frame; `None` at the end of the route. `record`: keep records of its exposures.
@@ -67,12 +86,28 @@ impl<'a> RendererDrive<'a> {
         let (mut recorded, mut images, mut room) = (Vec::new(), Vec::new(), MAX_LIT_PIXELS);
         let (job, renderer) = (self.job, &self.renderer);
         let (exposures, exposing, pattern) = (&mut self.exposures, &mut self.exposing, &mut self.pattern);
+        let (swept, was_scan) = (&mut self.swept, &mut self.was_scan);
+        let (heights, clears) =
+            (Arc::clone(self.drive.ground()), job.plan.scans.is_some_and(|scans| scans.clear_map));
         let mut camera_pipeline = |exposure: Exposure, flux: Image<f64>| {
             let start = Instant::now();
+            if let (Some(swept), Some((scene, lit))) = (swept.as_mut(), renderer.take_lit()) {
+                let camera = scene.camera().scene_from_sensor.position + scene.mesh().origin();
+                swept.recentre(camera.truncate(), &heights);
+                if exposure.step == Some(0) && clears {
+                    swept.clear();
+                }
+                let is_scan = exposure.step.is_some();
+                swept.add(&scene, &lit, exposure.step == Some(0) || is_scan != *was_scan);
+                *was_scan = is_scan;
+            }
             // Steps 7 and 8.
             let background = renderer.background();
             let light = background.as_ref().map(|(_, flux)| flux);
-            let numbers = job.expose(&flux, light, *exposures, pattern);
+            let numbers = match job.is_flux_only() {
+                true => lit_mask(&flux, job.threshold_share),
+                false => job.expose(&flux, light, *exposures, pattern),
+            };
             if record {
                 let scene = background.map(|(scene, _)| scene);
                 let record = RecordedExposure::new(exposure, *exposures, scene, &flux, &numbers, room);
@@ -84,7 +119,7 @@ impl<'a> RendererDrive<'a> {
                 images.push((exposure.beam, numbers.clone()));
             }
             *exposing += start.elapsed();
-            CameraImage::Numbers(numbers)
+            if job.is_flux_only() { CameraImage::Flux(flux) } else { CameraImage::Numbers(numbers) }
         };
         let start = Instant::now();
         let frame = self.drive.step(renderer, &mut camera_pipeline)?;
@@ -103,7 +138,7 @@ impl<'a> RendererDrive<'a> {
     }
 
     /// True ground.
-    pub(crate) fn ground(&self) -> &HeightIndex {
+    pub(crate) fn ground(&self) -> &Arc<HeightIndex> {
         self.drive.ground()
     }
 
@@ -124,4 +159,11 @@ impl<'a> RendererDrive<'a> {
         .map(|(stage, time)| Stage { name: format!("{name}: {stage}"), time })
         .collect()
     }
+}
+
+/// What stands for digital numbers where the image is one of flux: 1 at or above a share of its maximum, otherwise 0.
+fn lit_mask(flux: &Image<f64>, share: f64) -> Image<i32> {
+    let largest = flux.cells().iter().copied().fold(0.0, f64::max);
+    let is_lit = |&flux: &f64| i32::from(largest > 0.0 && flux >= share * largest);
+    Image::from_cells(flux.width(), flux.height(), flux.cells().iter().map(is_lit).collect())
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use raypencil_chassis::GroundFaces;
 use raypencil_report::Drawing;
 use raypencil_rover::{Detection, DriveFrame, ElevationMap, LabelledVector, ObstacleMap};
 use raypencil_scene::{Pose, Renderer, Silent, Stage};
@@ -10,12 +11,12 @@ use raypencil_survey::{Warning, Whereabouts, plan as survey_plan};
 
 use crate::animation_frame::{AnimationFrame, HALF_SIDE_PX, MapThumbnail};
 use crate::camera_view::{CameraView, camera_view};
-use crate::confusion::ConfusionMatrix;
 use crate::differences::Differences;
 use crate::error::DriveError;
 use crate::job::DriveJob;
 use crate::maps::ply::MarkedPoint;
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
+use crate::sector_truth::{SectorTruth, TrueGround};
 use crate::sun::Sun;
 use crate::warnings::{at_the_start, nothing_measured};
 
@@ -58,8 +59,8 @@ pub struct DriveRun {
     pub believed: Pose,
     /// Frame of the last obstacle map, that map, and its navigator map.
     pub obstacles: Option<(u64, ObstacleMap, Vec<LabelledVector>)>,
-    /// All obstacle maps against the true ground.
-    pub confusion: ConfusionMatrix,
+    /// All obstacle maps against what the vehicle can pass on the true ground.
+    pub truth: SectorTruth,
     /// Number of edge points of all frames.
     pub edge_points: u64,
     /// Edge points, global: the first 16,777,216.
@@ -109,7 +110,7 @@ impl DriveRun {
 ///     camera = { width_px = 96, height_px = 96, pixel_pitch_um = 96 }
 ///     beam = [{ rows = 2 }, { rows = 2 }]
 ///     terrain = { builtin = 'pyramids' }
-///     drive = { waypoints_m = [[0, 0]], frames_per_s = 3, scans = false }";
+///     drive = { waypoints_m = [[0.6, 0]], frames_per_s = 3, scans = false }";
 /// let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
 /// let run = drive(&job, &[&Scanline::default(), &Tracer::new()], &Silent)?;
 /// // 0.6 m at 0.3 m/s take 2 s: 7 frames at 3 per second, both ends included.
@@ -128,13 +129,15 @@ pub fn drive(
     let planned = job.frames()?;
     let animation_step = planned.div_ceil(MAX_ANIMATION_FRAMES).max(1);
     let sun = Sun::of(job)?;
-    let mut first = RendererDrive::new(job, renderers[0], sun.as_ref())?;
+    let mut first = RendererDrive::new(job, renderers[0], sun.as_ref())?.keeping_swept();
     let mut second =
         renderers.get(1).map(|&renderer| RendererDrive::new(job, renderer, sun.as_ref())).transpose()?;
     let mut differences = second.as_ref().map(|_| Differences::default());
     let (mut frames, mut points, mut animation) = (Vec::new(), Vec::new(), Vec::new());
     let (mut obstacles, mut edge_points) = (None, 0);
-    let (mut confusion, mut judging) = (ConfusionMatrix::default(), Duration::ZERO);
+    let start = Instant::now();
+    let faces = GroundFaces::new(&job.mesh);
+    let (mut truth, mut judging) = (SectorTruth::default(), start.elapsed());
     let mut last: Option<(ExposedFrame, Pose)> = None;
     let (mut comparing, mut drawing) = (Duration::ZERO, Duration::ZERO);
 
@@ -163,7 +166,10 @@ pub fn drive(
         if let Some((map, vectors)) = &frame.obstacles {
             obstacles = Some((frame.index, map.clone(), vectors.clone()));
             let start = Instant::now();
-            confusion.add(first.map(), first.ground(), &job.plan, &believed);
+            if let Some(swept) = first.swept() {
+                let ground = TrueGround { faces: &faces, heights: first.ground(), swept };
+                truth.add(&map.sectors, first.map(), &ground, &job.plan, &frame.stance.pose());
+            }
             judging += start.elapsed();
         }
         let start = Instant::now();
@@ -188,6 +194,7 @@ pub fn drive(
         Detection::Fixed(threshold) if !exposed.images.is_empty() => {
             last_view.with_lit_pixels(&exposed.images, threshold)
         }
+        Detection::Share(_) if !exposed.images.is_empty() => last_view.with_lit_pixels(&exposed.images, 0.5),
         _ => last_view.with_edges(&job.plan.rig, &exposed.frame.measured),
     };
     drawing += start.elapsed();
@@ -208,7 +215,7 @@ pub fn drive(
     if second.is_some() {
         stages.push(Stage { name: "comparing".into(), time: comparing });
     }
-    stages.push(Stage { name: "obstacle maps of the true ground".into(), time: judging });
+    stages.push(Stage { name: "what the vehicle can truly pass".into(), time: judging });
     stages.push(Stage { name: "views for figures".into(), time: drawing });
     stages.push(Stage { name: "looking at the scene".into(), time: looking });
     Ok(DriveRun {
@@ -220,7 +227,7 @@ pub fn drive(
         map: first.map().clone(),
         believed: first.believed(),
         obstacles,
-        confusion,
+        truth,
         edge_points,
         points,
         warnings,

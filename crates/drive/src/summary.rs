@@ -3,12 +3,12 @@
 use raypencil_report::VERSION;
 use serde_json::{Value, json};
 
-use crate::confusion::{ConfusionMatrix, Predicted};
 use crate::counts::{CellCounts, scans, sector_counts};
 use crate::differences::{Differences, StageDifferences};
 use crate::job::DriveJob;
 use crate::labels::label_word;
 use crate::run::DriveRun;
+use crate::sector_truth::SectorTruth;
 
 /// Summary of a drive as JSON text. The keys tell the units.
 ///
@@ -45,7 +45,7 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
     let route = &job.plan.route;
     let all = json!({
         "format": "raypencil-drive",
-        "format_version": 2,
+        "format_version": 3,
         "version": VERSION,
         "scene": job.name,
         "arguments": job.arguments,
@@ -77,7 +77,7 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "obstacle_map_frame": run.obstacles.as_ref().map(|(frame, _, _)| frame),
         "sectors": labels,
         "largest_elevation_error_m": elevation_error(run),
-        "truth": confusion(&run.confusion),
+        "truth": truth(&run.truth),
         "passes": run.passes(),
         "differences": run.differences.as_ref().map(differences),
         "whereabouts": run.whereabouts,
@@ -94,21 +94,32 @@ fn elevation_error(run: &DriveRun) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-fn confusion(matrix: &ConfusionMatrix) -> Value {
-    let predicted = |points: Predicted| {
-        json!({
-            "found_obstacle": points.obstacle,
-            "found_unknown": points.unknown,
-            "found_clear": points.clear,
-        })
-    };
+fn truth(truth: &SectorTruth) -> Value {
     json!({
-        "obstacle_maps": matrix.maps,
-        "obstacle_points": predicted(matrix.obstacle),
-        "clear_points": predicted(matrix.clear),
-        "points_off_the_ground": matrix.off_ground,
-        "sectors": matrix.sectors,
-        "sectors_free_past_an_obstacle": matrix.free_past_obstacle,
+        "obstacle_maps": truth.maps,
+        "sectors": truth.sectors,
+        "with_obstacle": truth.with_obstacle,
+        "found": truth.found,
+        "missed": {
+            "by_errors": truth.missed.by_errors,
+            "by_spacing": truth.missed.by_spacing,
+            "by_rule": truth.missed.by_rule,
+        },
+        "not_seen": {
+            "hidden": truth.not_found.hidden,
+            "not_swept": truth.not_found.not_swept,
+            "outside": truth.not_found.outside,
+        },
+        "false_obstacle": truth.false_obstacle,
+        "false_before_a_true_one": truth.false_before,
+        "unknown": {
+            "not_measured": truth.unknown_not_measured,
+            "may_hide": truth.unknown_may_hide,
+            "beyond_map": truth.unknown_beyond_map,
+        },
+        "clear": truth.clear,
+        "off_ground": truth.off_ground,
+        "clear_way_m": truth.clear_mm as f64 / 1000.0,
     })
 }
 

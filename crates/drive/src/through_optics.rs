@@ -18,6 +18,8 @@ pub(crate) struct ThroughOptics<'a> {
     job: &'a DriveJob,
     sun: Option<&'a Sun>,
     times: Mutex<RenderTimes>,
+    /// The scene that was rendered last and its output without flux, if someone wants to see the lit points.
+    lit: Option<Mutex<Option<(Scene, RenderOutput)>>>,
 }
 
 /// Time spent in all renderings.
@@ -33,7 +35,18 @@ pub(crate) struct RenderTimes {
 
 impl<'a> ThroughOptics<'a> {
     pub(crate) fn new(inner: &'a dyn Renderer, job: &'a DriveJob, sun: Option<&'a Sun>) -> Self {
-        Self { inner, optics: &job.optics, background: Mutex::default(), job, sun, times: Mutex::default() }
+        let (background, times) = (Mutex::default(), Mutex::default());
+        Self { inner, optics: &job.optics, background, job, sun, times, lit: None }
+    }
+
+    /// The same, keeping the lit points of each scene for [`ThroughOptics::take_lit`].
+    pub(crate) fn keeping_lit(self) -> Self {
+        Self { lit: Some(Mutex::default()), ..self }
+    }
+
+    /// The scene that was rendered since the last call, with the points that its pencils lit. `None` if there is none.
+    pub(crate) fn take_lit(&self) -> Option<(Scene, RenderOutput)> {
+        self.lit.as_ref()?.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
     }
 
     /// Scene that was rendered last, and its background in watts per pixel. `None` without a sun.
@@ -79,8 +92,9 @@ impl Renderer for ThroughOptics<'_> {
 
     fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
         let is_perfect = self.is_perfect();
-        let quantities = Quantities { point: !is_perfect || request.quantities.point, ..request.quantities };
-        let request = Request { beams: !is_perfect || request.beams, quantities, ..*request };
+        let wants_points = !is_perfect || self.lit.is_some();
+        let quantities = Quantities { point: wants_points || request.quantities.point, ..request.quantities };
+        let request = Request { beams: wants_points || request.beams, quantities, ..*request };
         let start = Instant::now();
         let mut output = self.inner.render(scene, &request);
         let rendering = start.elapsed();
@@ -96,6 +110,17 @@ impl Renderer for ThroughOptics<'_> {
             let mut last = self.background.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
             *last = Some((scene.clone(), background));
             sun = start.elapsed();
+        }
+        if let Some(lit) = &self.lit {
+            // The flux goes on to the camera; the points stay here.
+            let points = RenderOutput {
+                camera: None,
+                beams: std::mem::take(&mut output.beams),
+                returns: std::mem::take(&mut output.returns),
+                flux: Vec::new(),
+                stages: Vec::new(),
+            };
+            *lit.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some((scene.clone(), points));
         }
         let mut times = self.times.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         times.rendering += rendering;

@@ -1,71 +1,108 @@
-//! Confusion matrices of the rover's obstacle maps, by noise level and by setting, and the table of pointing errors:
-//! the tables of `docs/evidence/results.md` below its mark, as Markdown on standard output.
+//! Obstacle maps of the rover against what the vehicle can truly pass, by rules and by noise level, and the table of
+//! pointing errors: the tables of `docs/evidence/results.md` below its mark, as Markdown on standard output.
 //!
 //! ```sh
-//! cargo run --release -p raypencil --example truth
+//! cargo run --release -p raypencil --example truth            # all tables
+//! cargo run --release -p raypencil --example truth rules      # one: rules, noise, pointing
 //! ```
 
 use glam::DVec2;
 use raypencil::Silent;
-use raypencil::drive::{ConfusionMatrix, DriveJob, NoiseLevel, drive, pointing_table};
+use raypencil::drive::{DriveJob, NoiseLevel, SectorTruth, drive, pointing_table};
 use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
-use raypencil::rover::{DrivePlan, MapSize, ScanRule};
+use raypencil::rover::{DrivePlan, MapRules, MapSize, Rule, ScanRule, StartRule, TraversabilityRules};
 
 /// Drives: name in the table, scene, and a further waypoint. (The route of `rocky-drive` ends before the first
 /// obstacle.)
-const DRIVES: [(&str, &str, Option<DVec2>); 3] = [
+const DRIVES: [(&str, &str, Option<[f64; 2]>); 3] = [
     ("pyramids", "pyramids", None),
     ("facets", "facets", None),
-    ("rocky-drive, on to (5, 3)", "data/scenes/rocky-drive.toml", Some(DVec2::new(5.0, 3.0))),
+    ("rocky-drive, on to (5, 3)", "data/scenes/rocky-drive.toml", Some([5.0, 3.0])),
 ];
 
 type Failure = Box<dyn std::error::Error>;
 
+/// A change of a plan.
+type Change = fn(&mut DrivePlan);
+
+/// All rules as printed.
+fn printed(plan: &mut DrivePlan) {
+    plan.map_rules = MapRules::AS_PRINTED;
+    plan.rules = TraversabilityRules::as_printed(&plan.vehicle);
+}
+
+/// One mended rule put back at a time.
+const PUT_BACK: [(&str, Change); 8] = [
+    ("elevation as printed", |plan| plan.map_rules.elevation = Rule::Paper),
+    ("extrapolate as printed", |plan| plan.map_rules.extrapolate = Rule::Paper),
+    ("several as printed", |plan| plan.map_rules.several = Rule::Paper),
+    ("inconsistency as printed", |plan| plan.map_rules.inconsistency = Rule::Paper),
+    ("gap as printed", |plan| plan.rules.gaps = None),
+    ("settle as printed", |plan| plan.map_rules.settle = Rule::Paper),
+    ("tests as printed", |plan| plan.rules.tests = Rule::Paper),
+    ("start by the footprint", |plan| plan.map_rules.start = StartRule::Footprint),
+];
+
+/// Other settings, each alone.
+const SETTINGS: [(&str, Change); 2] = [
+    ("scans: at the start and each 5 m", |plan| plan.scans = Some(ScanRule::default())),
+    ("map of 401 points 0.05 m apart", |plan| plan.map = MapSize { spacing: 0.05, points: 401 }),
+];
+
 fn main() -> Result<(), Failure> {
+    let asked = std::env::args().nth(1);
+    let only = std::env::args().nth(2);
+    let wants = |table: &str| asked.as_deref().is_none_or(|asked| asked == table);
     let mut jobs = Vec::new();
     for (name, scene, on_to) in DRIVES {
-        let loaded = load(scene, &Overrides::default())?;
-        let mut job = DriveJob::new(&loaded, None, scene.into())?;
-        job.plan.route.waypoints.extend(on_to);
-        jobs.push((name, job));
-    }
-    println!("{}", ConfusionMatrix::table_header());
-    for (name, job) in &jobs {
-        for level in NoiseLevel::ALL {
-            println!("{}", confusion(&level.applied(job.clone()))?.table_row(name, level.word()));
-        }
-    }
-    println!("\n{}", ConfusionMatrix::table_header());
-    for (name, job) in &jobs {
-        let printed = NoiseLevel::None.applied(job.clone());
-        let coarse = NoiseLevel::Coarse.applied(job.clone()).plan.errors;
-        let row = |settings: &str, change: &dyn Fn(&mut DrivePlan)| -> Result<(), Failure> {
-            let mut job = printed.clone();
-            change(&mut job.plan);
-            println!("{}", confusion(&job)?.table_row(name, settings));
-            Ok(())
-        };
-        row("as printed", &|_| {})?;
-        row("gaps crossed", &|plan| plan.rules = plan.rules.crossing_gaps(&plan.vehicle))?;
-        if job.plan.scans.is_some() {
+        if only.as_deref().is_some_and(|only| only != scene && only != name) {
             continue;
         }
-        row("scans: at the start and each 5 m", &|plan| plan.scans = Some(ScanRule::default()))?;
-        row("map of 401 points 0.05 m apart", &|plan| plan.map = MapSize { spacing: 0.05, points: 401 })?;
-        row("coarse drift of the position alone", &|plan| {
-            plan.errors.position_drift = coarse.position_drift
-        })?;
-        row("all coarse errors, `ideal` sensor", &|plan| plan.errors = coarse)?;
+        let loaded = load(scene, &Overrides::default())?;
+        let mut job = DriveJob::new(&loaded, None, scene.into())?;
+        job.plan.route.waypoints.extend(on_to.map(DVec2::from_array));
+        jobs.push((name, NoiseLevel::None.applied(job)));
     }
-    let renderer = contender("scanline").ok_or("there is no renderer scanline")?.renderer;
-    // On the slopes of `facets`, edges lie anywhere within a pixel.
-    println!("\n{}", pointing_table(&jobs[1].1, renderer.as_ref())?.trim_end());
+    let row = |name: &str, settings: &str, job: &DriveJob, change: Change| -> Result<(), Failure> {
+        let mut job = job.clone();
+        change(&mut job.plan);
+        println!("{}", truth(&job)?.table_row(name, settings));
+        Ok(())
+    };
+    if wants("rules") {
+        println!("{}", SectorTruth::table_header());
+        for (name, job) in &jobs {
+            row(name, "mended", job, |_| {})?;
+            row(name, "as printed", job, printed)?;
+            for (settings, change) in PUT_BACK.into_iter().chain(SETTINGS) {
+                row(name, settings, job, change)?;
+            }
+        }
+    }
+    if wants("noise") {
+        println!("\n{}", SectorTruth::table_header());
+        for (name, job) in &jobs {
+            for level in [NoiseLevel::Modest, NoiseLevel::Coarse] {
+                let job = level.applied(job.clone());
+                row(name, &format!("{}, mended", level.word()), &job, |_| {})?;
+                row(name, &format!("{}, as printed", level.word()), &job, printed)?;
+            }
+        }
+    }
+    if wants("pointing") {
+        let renderer = contender("scanline").ok_or("there is no renderer scanline")?.renderer;
+        // On the slopes of `facets`, edges lie anywhere within a pixel.
+        let loaded = load("facets", &Overrides::default())?;
+        let facets = DriveJob::new(&loaded, None, "facets".into())?;
+        println!("\n{}", pointing_table(&facets, renderer.as_ref())?.trim_end());
+    }
     Ok(())
 }
 
-/// Confusion matrix of a drive with `scanline`. `tracer` gives the same labels (`docs/guide/drive.md`).
-fn confusion(job: &DriveJob) -> Result<ConfusionMatrix, Failure> {
+/// Truth of a drive with `scanline`. `tracer` gives the same labels (`docs/guide/drive.md`).
+fn truth(job: &DriveJob) -> Result<SectorTruth, Failure> {
     let renderer = contender("scanline").ok_or("there is no renderer scanline")?.renderer;
-    Ok(drive(job, &[renderer.as_ref()], &Silent)?.confusion)
+    let run = drive(job, &[renderer.as_ref()], &Silent)?;
+    Ok(run.truth)
 }

@@ -1,22 +1,25 @@
 //! A whole drive: images, pose estimate, maps and obstacles, frame by frame. (Paper, §7 and §8)
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
+use raypencil_chassis::GroundFaces;
 use raypencil_scene::{Image, Mesh, Pose, Renderer, Request, SceneError};
 use raypencil_terrain::HeightIndex;
 
-use crate::drive_plan::{DrivePlan, ExposureMode};
+use crate::drive_plan::{DrivePlan, ExposureMode, PointLookup};
 use crate::elevation_map::Inconsistency;
 use crate::localisation::{Localisation, LocalisationReading};
-use crate::mapper::{MapUpdate, Mapper};
+use crate::mapper::{KnownNoise, MapUpdate, Mapper, StripePoint};
 use crate::navigator_map::{LabelledVector, navigator_map};
 use crate::obstacle_map::{ObstacleMap, obstacle_map_due};
 use crate::rig::Pan;
 use crate::route::{Route, RoutePose};
+use crate::rules::Rule;
 use crate::scan::ScanReason;
 use crate::stripe::EdgePoint;
-use crate::triangulation::{SheetPlane, Triangulation};
+use crate::triangulation::{SheetPlane, Triangulation, TriangulationTable};
+use crate::true_vehicle::TrueVehicle;
 use crate::vehicle::Stance;
 
 /// Identity of an exposure.
@@ -53,6 +56,8 @@ pub struct MeasuredPoint {
     pub edge: EdgePoint,
     /// Point on the beam's plane, vehicle frame, metres.
     pub point: DVec3,
+    /// Standard error of its elevation by the edge's row alone, metres.
+    pub standard_error: f64,
 }
 
 /// Result of one frame of a drive.
@@ -128,36 +133,47 @@ pub struct DriveFrame {
 pub struct Drive {
     plan: DrivePlan,
     mesh: Arc<Mesh>,
-    ground: HeightIndex,
+    true_vehicle: TrueVehicle,
     localisation: Localisation,
     mapper: Option<Mapper>,
     frame: u64,
     last_scan: Option<f64>,
     inconsistency: Inconsistency,
+    /// Tables of the beams as they are mounted, each made when it is first needed.
+    tables: Vec<OnceLock<Arc<TriangulationTable>>>,
 }
 
 impl Drive {
     /// Starts a drive: puts the vehicle on the ground `mesh` at the start of the route.
     ///
     /// # Errors
-    /// As [`DrivePlan::validate`]. Names `drive.route.start` if a wheel has no ground below it there.
+    /// As [`DrivePlan::validate`]. Names `drive.route.start` if a wheel has no ground below it there, and `drive.route` with
+    /// the place where the route leaves the ground.
     pub fn new(plan: DrivePlan, mesh: Arc<Mesh>) -> Result<Self, SceneError> {
         plan.validate("drive")?;
-        let ground = HeightIndex::new(&mesh);
+        let ground = Arc::new(HeightIndex::new(&mesh));
         let localisation = Localisation::new(plan.errors, plan.seed, plan.route.frame_rate);
         let Route { start, heading, .. } = plan.route;
-        if plan.vehicle.settle(&ground, start, heading).is_none() {
+        let faces = match plan.map_rules.settle {
+            Rule::Paper => None,
+            Rule::Mended => Some(GroundFaces::new(&mesh)),
+        };
+        let true_vehicle = TrueVehicle { vehicle: plan.vehicle, heights: Arc::clone(&ground), faces };
+        if true_vehicle.stance(start, heading).is_none() {
             return Err(SceneError::new("drive.route.start", start, "a place with ground under every wheel"));
         }
+        true_vehicle.check_route(&plan.route)?;
+        let tables = plan.rig.beams.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
             plan,
             mesh,
-            ground,
+            true_vehicle,
             localisation,
             mapper: None,
             frame: 0,
             last_scan: None,
             inconsistency: Inconsistency::default(),
+            tables,
         })
     }
 
@@ -172,11 +188,11 @@ impl Drive {
     }
 
     /// Heights of the true ground.
-    pub fn ground(&self) -> &HeightIndex {
-        &self.ground
+    pub fn ground(&self) -> &Arc<HeightIndex> {
+        &self.true_vehicle.heights
     }
 
-    /// Drives one frame. `None` after the end of the route, and when the route leaves the ground.
+    /// Drives one frame. `None` after the end of the route.
     ///
     /// CHOICE: a scan replaces its frame's exposures. All beams are used in every frame.
     ///
@@ -189,10 +205,8 @@ impl Drive {
     ) -> Result<Option<DriveFrame>, SceneError> {
         let index = self.frame;
         let Some(place) = self.plan.route.frame(index) else { return Ok(None) };
-        let Some(stance) = self.plan.vehicle.settle(&self.ground, place.place, place.heading) else {
-            return Ok(None);
-        };
-        let sensed = self.localisation.read(&stance, &self.ground);
+        let Some(stance) = self.true_vehicle.stance(place.place, place.heading) else { return Ok(None) };
+        let sensed = self.localisation.read(&stance, &self.true_vehicle.heights);
         let rule = self.plan.scans;
         let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.inconsistency));
         let (mut measured, mut columns_left_out) = (Vec::new(), 0);
@@ -207,11 +221,20 @@ impl Drive {
             (measured, columns_left_out) = self.measure_stripes(renderer, pipeline, &stance, index, None)?;
         }
 
-        let points = measured.iter().map(|measured| measured.point);
-        let DrivePlan { vehicle, map, .. } = self.plan;
+        let DrivePlan { vehicle, map, map_rules, errors, .. } = self.plan;
+        let position = |beam: usize| self.plan.rig.beams[beam].vehicle_from_sensor.position;
+        // Sensors turn about their own origins: a panned one is where it was.
+        let camera = self.plan.rig.camera.vehicle_from_sensor.position;
+        let points = measured.iter().map(|measured| StripePoint {
+            point: measured.point,
+            standard_error: measured.standard_error,
+            seen_from: Some([camera, position(measured.beam)]),
+        });
+        let noise = KnownNoise { attitude: errors.attitude_noise, proximity: errors.proximity_noise };
         // CHOICE: the first elevation is the true one.
-        let mapper =
-            self.mapper.get_or_insert_with(|| Mapper::start(vehicle, map, &sensed, stance.position.z));
+        let mapper = self.mapper.get_or_insert_with(|| {
+            Mapper::with_rules(vehicle, map, map_rules, &sensed, stance.position.z).with_noise(noise)
+        });
         let update = if scan.is_some() {
             self.last_scan = Some(place.driven);
             // A scan also corrects the elevations that it contradicts.
@@ -299,14 +322,38 @@ impl Drive {
             }
         };
         let plane = SheetPlane::for_location(plan.extraction.place);
+        let row_error = plan.extraction.place.row_error();
         let mut measured = Vec::new();
         for (beam, edges) in stripes.iter().enumerate() {
             let triangulation = Triangulation::new(&rig, beam, plane);
+            let table = self.table(&triangulation, beam, step.is_some());
             measured.extend(edges.iter().filter_map(|&edge| {
-                let point = triangulation.at_edge(&edge)?;
-                Some(MeasuredPoint { step, beam, edge, point })
+                let point = match &table {
+                    Some(table) => table.at_pixel(edge.i, edge.j)?,
+                    None => triangulation.at_edge(&edge)?,
+                };
+                let standard_error = triangulation.elevation_error(&edge, row_error).unwrap_or(0.0);
+                Some(MeasuredPoint { step, beam, edge, point, standard_error })
             }));
         }
         Ok((measured, columns_left_out))
+    }
+
+    /// Table of a beam's points, if the plan looks points up. That of the rig as it is mounted is kept; a scan position
+    /// has its own. (Paper, §8)
+    fn table(
+        &self,
+        triangulation: &Triangulation,
+        beam: usize,
+        panned: bool,
+    ) -> Option<Arc<TriangulationTable>> {
+        match self.plan.lookup {
+            PointLookup::Computed => None,
+            PointLookup::Table if panned => Some(Arc::new(triangulation.table())),
+            PointLookup::Table => {
+                let kept = self.tables[beam].get_or_init(|| Arc::new(triangulation.table()));
+                Some(Arc::clone(kept))
+            }
+        }
     }
 }

@@ -3,6 +3,8 @@
 use glam::{DVec2, DVec3};
 use raypencil_scene::{SceneError, check_count, check_range};
 
+use crate::rules::MapRules;
+
 /// Size of an elevation map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapSize {
@@ -50,24 +52,47 @@ impl ElevationSource {
     }
 }
 
-/// Content of the map at a grid point.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Cell {
-    /// Global z, metres. Meaningless if the source is unknown.
-    elevation: f64,
-    source: ElevationSource,
-    /// Number of the update that made it a new data point; 0 if its elevation was not measured.
-    update: u64,
+/// Line of sight from a sensor to a measured point. Nothing between the two stands above it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// Direction from the point to the sensor in the plane, a unit vector.
+    pub towards: DVec2,
+    /// Rise of the line towards the sensor over horizontal distance.
+    pub slope: f64,
 }
 
-/// Difference between new measurements and the elevations measured before.
+/// Content of the map at a grid point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Cell {
+    /// Global z, metres. Meaningless if the source is unknown.
+    pub elevation: f64,
+    pub source: ElevationSource,
+    /// Number of the update that made it a new data point; 0 if its elevation was not measured.
+    pub update: u64,
+    /// Place of the measured point, global x and y, metres. Meaningless if the source is not `Measured`.
+    pub place: DVec2,
+    /// Variance of the elevation, square metres.
+    pub variance: f64,
+    /// Odometer of the vehicle at the last measurement, metres.
+    pub odometer: f64,
+    /// Flattest line of sight by which it was measured.
+    pub sight: Option<Sight>,
+    /// Lowest and highest elevation ever measured here, metres; `None` before the first. Extrapolation leaves it.
+    pub measured: Option<(f64, f64)>,
+    /// Elevation of the wheels' plane when the vehicle stood over it or beside it, metres. Obstacle tests may use it where nothing was
+    /// measured; it is no elevation of the map.
+    pub stood: Option<f64>,
+}
+
+/// Difference between new measurements and all that were measured before in the same cells: how far a new elevation
+/// lies outside the range of the earlier ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inconsistency {
     /// Number of grid points that were measured now and before.
     pub count: u32,
-    /// Mean of |new - old| over these points, metres.
+    /// Mean difference over these points, metres.
     pub mean: f64,
-    /// Maximum of |new - old|, metres.
+    /// Maximum difference, metres.
     pub largest: f64,
 }
 
@@ -96,8 +121,11 @@ pub struct ElevationMap {
     origin: DVec2,
     centre: GridPoint,
     /// Row by row. The index of a grid point is its i and j modulo `points`, so that no cell moves with the map.
-    cells: Vec<Cell>,
-    update: u64,
+    pub(crate) cells: Vec<Cell>,
+    pub(crate) update: u64,
+    pub(crate) rules: MapRules,
+    /// Distance driven so far, metres. Measurements age with it.
+    pub(crate) odometer: f64,
 }
 
 impl ElevationMap {
@@ -107,9 +135,17 @@ impl ElevationMap {
     /// # Panics
     /// If the size is not valid.
     pub fn new(size: MapSize, origin: DVec2) -> Self {
+        Self::with_rules(size, origin, MapRules::MENDED)
+    }
+
+    /// An unknown map that is updated by these rules. Of them `extrapolate`, `several` and `inconsistency` matter here.
+    ///
+    /// # Panics
+    /// If the size is not valid.
+    pub fn with_rules(size: MapSize, origin: DVec2, rules: MapRules) -> Self {
         assert!(size.validate("map").is_ok(), "invalid map size: {size:?}");
         let cells = vec![Cell::default(); size.points as usize * size.points as usize];
-        Self { size, origin, centre: GridPoint { i: 0, j: 0 }, cells, update: 0 }
+        Self { size, origin, centre: GridPoint { i: 0, j: 0 }, cells, update: 0, rules, odometer: 0.0 }
     }
 
     /// Size of the map.
@@ -148,12 +184,12 @@ impl ElevationMap {
             .flat_map(move |j| (-half..=half).map(move |i| GridPoint { i: centre.i + i, j: centre.j + j }))
     }
 
-    fn index(&self, point: GridPoint) -> usize {
+    pub(crate) fn index(&self, point: GridPoint) -> usize {
         let points = i64::from(self.size.points);
         (point.j.rem_euclid(points) * points + point.i.rem_euclid(points)) as usize
     }
 
-    fn cell(&self, point: GridPoint) -> Cell {
+    pub(crate) fn cell(&self, point: GridPoint) -> Cell {
         if self.contains(point) { self.cells[self.index(point)] } else { Cell::default() }
     }
 
@@ -166,6 +202,31 @@ impl ElevationMap {
     pub fn elevation(&self, point: GridPoint) -> Option<f64> {
         let cell = self.cell(point);
         (cell.source != ElevationSource::Unknown).then_some(cell.elevation)
+    }
+
+    /// Point of the ground that stands for a grid point, global, metres: the measured point itself, which may lie half a
+    /// cell beside the grid point; otherwise the grid point with its elevation. `None` if it is not known.
+    pub fn sample(&self, point: GridPoint) -> Option<DVec3> {
+        let cell = self.cell(point);
+        let place = match cell.source {
+            ElevationSource::Unknown => return None,
+            ElevationSource::Measured => cell.place,
+            ElevationSource::Proximity | ElevationSource::Extrapolated => self.place(point),
+        };
+        Some(place.extend(cell.elevation))
+    }
+
+    /// Notes that the vehicle stands over a grid point, with the plane of its wheels at this elevation, metres.
+    pub(crate) fn stand_over(&mut self, point: GridPoint, elevation: f64) {
+        if self.contains(point) {
+            let index = self.index(point);
+            self.cells[index].stood = Some(elevation);
+        }
+    }
+
+    /// Adds to the distance driven, metres. What was measured before becomes less certain with it.
+    pub fn drive(&mut self, distance: f64) {
+        self.odometer += distance;
     }
 
     /// Centres the map on the grid point nearest to the vehicle, and returns the motion in grid steps. "The
@@ -196,63 +257,10 @@ impl ElevationMap {
     pub fn set_proximity(&mut self, point: GridPoint, elevation: f64) {
         if self.contains(point) {
             let index = self.index(point);
-            self.cells[index] = Cell { elevation, source: ElevationSource::Proximity, update: 0 };
-        }
-    }
-
-    /// Enters measured points (global, metres). One call takes all points of a frame or of a scan; the points of each
-    /// stripe are in row-major order of its image. Points beyond the map and points that are not finite are ignored.
-    ///
-    /// "The grid point having x,y coordinates closest to an edge point inherits the elevation of the edge point and its
-    /// key field is set to 'u'." If several points have the same grid point, the last one counts. Then "extrapolating
-    /// the elevation of each new data point to each of its neighboring grid points that is not itself a new data point"
-    /// (§7): eight neighbours, even if their elevation was known before.
-    ///
-    /// CHOICE: data points are extrapolated in the order in which they first became data points. If several have the
-    /// same neighbour, the last one counts.
-    pub fn insert(&mut self, points: impl IntoIterator<Item = DVec3>) -> Inconsistency {
-        self.update += 1;
-        let mut new = Vec::new();
-        let mut found = Inconsistency::default();
-        let mut before = Vec::new();
-        for edge in points {
-            if !edge.is_finite() {
-                continue;
-            }
-            let point = self.nearest(edge.truncate());
-            if !self.contains(point) {
-                continue;
-            }
-            let index = self.index(point);
-            let old = self.cells[index];
-            if old.update != self.update {
-                new.push(point);
-                before.push((old.source == ElevationSource::Measured).then_some(old.elevation));
-            }
+            let stood = self.cells[index].stood;
             self.cells[index] =
-                Cell { elevation: edge.z, source: ElevationSource::Measured, update: self.update };
+                Cell { elevation, source: ElevationSource::Proximity, stood, ..Cell::default() };
         }
-        for (&point, before) in new.iter().zip(before) {
-            let elevation = self.cells[self.index(point)].elevation;
-            if let Some(before) = before {
-                let difference = (elevation - before).abs();
-                found.count += 1;
-                found.mean += difference;
-                found.largest = found.largest.max(difference);
-            }
-            for (i, j) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
-                let neighbour = GridPoint { i: point.i + i, j: point.j + j };
-                if !self.contains(neighbour) {
-                    continue;
-                }
-                let index = self.index(neighbour);
-                if self.cells[index].update != self.update {
-                    self.cells[index] = Cell { elevation, source: ElevationSource::Extrapolated, update: 0 };
-                }
-            }
-        }
-        found.mean /= f64::from(found.count.max(1));
-        found
     }
 }
 
@@ -260,7 +268,7 @@ impl MapSize {
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(|| format!("{field}.spacing"), self.spacing, 1e-4, 1e3, "m")?;
-        check_count(|| format!("{field}.points"), self.points.into(), 3, 8191)?;
+        check_count(|| format!("{field}.points"), self.points.into(), 3, 4095)?;
         if self.points.is_multiple_of(2) {
             return Err(SceneError::new(format!("{field}.points"), self.points, "an odd number"));
         }

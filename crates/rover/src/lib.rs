@@ -8,11 +8,14 @@
 //!    the vehicle frame;
 //! 3. `localisation` (with `vehicle` and `noise_stream`): [`Localisation`] measures position, attitude and the distance
 //!    to the ground, with errors;
-//! 4. `mapper` and `elevation_map`: [`Mapper`] estimates the vehicle's pose, moves the [`ElevationMap`] and enters the
-//!    points;
-//! 5. `obstacle_map`, `traversability` and `gap`: in one of [`FRAMES_PER_OBSTACLE_MAP`] frames, [`ObstacleMap`] tests a
+//! 4. `mapper`, `elevation_map` and `map_update`: [`Mapper`] estimates the vehicle's pose (mended: `elevation_estimate`,
+//!    `registration`), moves the [`ElevationMap`] and enters the points;
+//! 5. `obstacle_map`, `traversability`, `wheel_tests` and `gap`: in one of [`FRAMES_PER_OBSTACLE_MAP`] frames, [`ObstacleMap`] tests a
 //!    radial grid by [`TraversabilityRules`];
 //! 6. `navigator_map`: [`navigator_map()`] joins the ends of the sectors by labelled vectors.
+//!
+//! `rules` are the switches between printed and mended rules. `true_vehicle` is the vehicle on the true ground, by the
+//! crate `chassis`; the rover knows nothing of it.
 //!
 //! `route` and `scan` decide where the vehicle drives and when it stops to pan its beams. `drive_plan` holds all
 //! settings. `drive` puts everything together: [`Drive`] takes a renderer for the images.
@@ -38,8 +41,8 @@
 //! }));
 //! mapper.update(&reading, points);
 //!
-//! // Straight ahead the slope from axle to axle is 0.4 / 1.2 at x = 3 m; the default maximum is 0.35 / 1.2.
-//! let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+//! // By the printed tests: straight ahead the slope from axle to axle is 0.4 / 1.2 at x = 3 m; the maximum is 0.35 / 1.2.
+//! let (rules, grid) = (TraversabilityRules::as_printed(&vehicle), RadialGrid::for_vehicle(&vehicle));
 //! let obstacles = ObstacleMap::extract(mapper.map(), &vehicle, &rules, &grid, &mapper.pose());
 //! let ahead = obstacles.sectors[15];
 //! assert_eq!(ahead.label, Label::Obstacle);
@@ -51,28 +54,36 @@
 
 mod drive;
 mod drive_plan;
+mod elevation_estimate;
 mod elevation_map;
 mod gap;
 mod localisation;
+mod map_update;
 mod mapper;
 mod navigator_map;
 mod noise_stream;
 mod obstacle_map;
 mod otsu;
+mod registration;
 mod rig;
 mod route;
+mod rules;
 mod scan;
 mod stripe;
 mod traversability;
 mod triangulation;
+mod true_vehicle;
 mod vehicle;
+mod vehicle_plane;
+mod wheel_tests;
 
 pub use drive::{CameraImage, CameraPipeline, Drive, DriveFrame, Exposure, MeasuredPoint};
-pub use drive_plan::{DrivePlan, ExposureMode};
-pub use elevation_map::{ElevationMap, ElevationSource, GridPoint, Inconsistency, MapSize};
-pub use gap::GapRule;
+pub use drive_plan::{DrivePlan, ExposureMode, PointLookup, RULE_NAMES};
+pub use elevation_map::{ElevationMap, ElevationSource, GridPoint, Inconsistency, MapSize, Sight};
+pub use gap::{GapRule, MapWithShadows};
 pub use localisation::{Localisation, LocalisationErrors, LocalisationReading, PositionFixes};
-pub use mapper::{MapUpdate, Mapper};
+pub use map_update::MapPoint;
+pub use mapper::{KnownNoise, MapUpdate, Mapper, StripePoint};
 pub use navigator_map::{LabelledVector, VectorRules, navigator_map};
 pub use obstacle_map::{
     FRAMES_PER_OBSTACLE_MAP, Label, ObstacleMap, RadialGrid, SectorEnd, obstacle_map_due,
@@ -80,9 +91,12 @@ pub use obstacle_map::{
 pub use otsu::otsu_threshold;
 pub use rig::{OnVehicle, Pan, Rig};
 pub use route::{Route, RoutePose};
+pub use rules::{MapRules, Rule, StartRule};
 pub use scan::{ScanReason, ScanRule, Sweep};
 pub use stripe::{Detection, EdgePoint, Extraction, StripeLocation};
-pub use traversability::{SlopeLimits, Traversability, TraversabilityRules, TraversabilityTest};
+pub use traversability::{
+    Missing, MissingReason, SlopeLimits, Traversability, TraversabilityRules, TraversabilityTest, VehiclePart,
+};
 pub use triangulation::{SheetPlane, Triangulation, TriangulationTable};
 pub use vehicle::{Attitude, Stance, Vehicle};
 

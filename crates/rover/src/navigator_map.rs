@@ -97,7 +97,14 @@ mod tests {
     use super::*;
 
     fn end(radius: f64, label: Label) -> SectorEnd {
-        SectorEnd { direction: 0.0, radius, point: DVec2::new(radius, 0.0), label, failed: None }
+        SectorEnd {
+            direction: 0.0,
+            radius,
+            point: DVec2::new(radius, 0.0),
+            label,
+            failed: None,
+            missing: None,
+        }
     }
 
     #[test]

@@ -4,7 +4,8 @@ use glam::DVec2;
 use raypencil_scene::{Pose, SceneError, check_count, check_range};
 
 use crate::elevation_map::ElevationMap;
-use crate::traversability::{Traversability, TraversabilityRules, TraversabilityTest};
+use crate::gap::MapWithShadows;
+use crate::traversability::{Missing, Traversability, TraversabilityRules, TraversabilityTest};
 use crate::vehicle::Vehicle;
 
 /// Radial grid around the vehicle. "Determination of the obstacle regions is based upon a radial grid that is overlain
@@ -30,13 +31,13 @@ impl RadialGrid {
     /// Radial grid for a vehicle.
     ///
     /// CHOICE: 31 sectors, 2 degrees apart, over the 60 degrees of the beams' fan. The radii are one grid spacing of
-    /// 0.1 m apart, so that no grid point is skipped. They begin one step in front of the front axle and end at 5 m,
-    /// just inside the far stripe of the default rig on level ground (5.25 m): that stripe suffices to make a sector
-    /// clear.
+    /// 0.1 m apart, so that no grid point is skipped. They begin one step in front of the front axle and end at 4.8 m:
+    /// the rims of the front wheels, 0.35 m farther on, are then just inside the far stripe of the default rig on level
+    /// ground (5.25 m), so that this stripe suffices to make a sector clear.
     pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         let step = 0.1;
         let first = 0.5 * vehicle.wheelbase + step;
-        Self { sectors: 31, half_angle: 30.0_f64.to_radians(), first, step, last: 5.0 }
+        Self { sectors: 31, half_angle: 30.0_f64.to_radians(), first, step, last: 4.8 }
     }
 
     /// Angle of a sector from the heading, to the left, radians. Sector 0 is the rightmost.
@@ -71,7 +72,7 @@ impl RadialGrid {
     pub fn classify_sector(
         &self,
         sector: u32,
-        map: &ElevationMap,
+        map: &MapWithShadows,
         vehicle: &Vehicle,
         rules: &TraversabilityRules,
         global_from_vehicle: &Pose,
@@ -128,6 +129,8 @@ pub struct SectorEnd {
     pub label: Label,
     /// Failed test of an obstacle point; otherwise `None`.
     pub failed: Option<TraversabilityTest>,
+    /// What is missing at an unknown point; otherwise `None`.
+    pub missing: Option<Missing>,
 }
 
 /// Obstacle map: the labelled points of all sectors.
@@ -168,7 +171,7 @@ impl ObstacleMap {
     ///     map.set_proximity(point, 0.0);
     /// }
     /// let vehicle = Vehicle::default();
-    /// let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    /// let (rules, grid) = (TraversabilityRules::as_printed(&vehicle), RadialGrid::for_vehicle(&vehicle));
     /// let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
     /// let ahead = obstacles.sectors[15];
     /// assert_eq!(ahead.label, Label::Unknown);
@@ -182,25 +185,30 @@ impl ObstacleMap {
         global_from_vehicle: &Pose,
     ) -> Self {
         let centre = global_from_vehicle.position.truncate();
+        let map = MapWithShadows::of(map);
         let sector = |index| {
             let (direction, unit) = grid.direction(index, global_from_vehicle);
-            let end = |radius, label, failed| {
+            let end = |radius, label| {
                 let point = centre + unit * radius;
-                SectorEnd { direction, radius, point, label, failed }
+                SectorEnd { direction, radius, point, label, failed: None, missing: None }
             };
             for (radius, traversability) in
-                grid.classify_sector(index, map, vehicle, rules, global_from_vehicle)
+                grid.classify_sector(index, &map, vehicle, rules, global_from_vehicle)
             {
                 match traversability {
                     // "... and testing for that sector stops." (§7)
-                    Traversability::Obstacle(test) => return end(radius, Label::Obstacle, Some(test)),
-                    Traversability::Unknown => return end(radius, Label::Unknown, None),
+                    Traversability::Obstacle(test) => {
+                        return SectorEnd { failed: Some(test), ..end(radius, Label::Obstacle) };
+                    }
+                    Traversability::Unknown(missing) => {
+                        return SectorEnd { missing: Some(missing), ..end(radius, Label::Unknown) };
+                    }
                     // "... and testing for that sector continues unless that point is the last one of the sector, in
                     // which case, the point is labelled as a visibility limit." (§7)
                     Traversability::Clear => {}
                 }
             }
-            end(grid.radius(grid.radii() - 1), Label::Visibility, None)
+            end(grid.radius(grid.radii() - 1), Label::Visibility)
         };
         Self { centre, sectors: (0..grid.sectors).map(sector).collect() }
     }

@@ -12,6 +12,9 @@ pub enum Detection {
     /// Fixed threshold: a pixel at or above this value is lit. "Extraction of the stripe edges is currently performed
     /// by simple thresholding." (§6)
     Fixed(f64),
+    /// Threshold as a share of the image's largest value, from 0 to 1: for images of flux, whose unit says nothing about
+    /// what is bright.
+    Share(f64),
     /// Threshold from the image's histogram. (N. Otsu, "A threshold selection method from gray-level histograms", 1979)
     Otsu,
     /// Edge detection: an edge is a local extremum of the difference of vertical neighbours, of at least this size.
@@ -31,6 +34,19 @@ pub enum StripeLocation {
     /// Centroid of the light: each row weighted by its value. It lies on the middle plane of the light sheet, not on
     /// its lower edge plane: triangulate with `SheetPlane::Middle`.
     Centroid,
+}
+
+impl StripeLocation {
+    /// Standard error of a measured row, pixels.
+    ///
+    /// The middle of a pixel stands for an edge anywhere in it: a uniform distribution of width 1 has the standard
+    /// deviation 1 / sqrt(12). CHOICE for the others: a tenth, which the table of `docs/evidence/results.md` bears out.
+    pub fn row_error(self) -> f64 {
+        match self {
+            Self::Pixel => (1.0_f64 / 12.0).sqrt(),
+            Self::SubPixel | Self::Centroid => 0.1,
+        }
+    }
 }
 
 /// Settings of the stripe extraction.
@@ -126,6 +142,11 @@ impl Extraction {
     fn columns<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<Vec<EdgePoint>> {
         let level = match self.detection {
             Detection::Fixed(level) | Detection::Gradient(level) => Some(level),
+            Detection::Share(share) => {
+                let largest = image.cells().iter().map(|&cell| cell.into()).fold(0.0, f64::max);
+                // A dark image has no stripes.
+                (largest > 0.0).then_some(share * largest)
+            }
             Detection::Otsu => otsu_threshold(image),
         };
         let Some(level) = level else { return vec![Vec::new(); image.width() as usize] };
@@ -182,6 +203,7 @@ impl Extraction {
             Detection::Gradient(level) => {
                 check_range(|| format!("{field}.gradient"), level, 1e-300, 1e30, "")?
             }
+            Detection::Share(share) => check_range(|| format!("{field}.share"), share, 1e-9, 1.0, "")?,
             Detection::Otsu => {}
         }
         check_range(|| format!("{field}.least_rows"), f64::from(self.least_rows), 1.0, 1e6, "rows")

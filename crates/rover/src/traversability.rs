@@ -1,15 +1,15 @@
 //! Traversability of a point: the slope tests and the belly test of a vehicle with its front axle there. (Paper, §7)
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use raypencil_scene::{SceneError, check_range};
 
-use crate::elevation_map::ElevationMap;
-use crate::gap::GapRule;
+use crate::gap::{GapRule, MapWithShadows};
+use crate::rules::Rule;
 use crate::vehicle::Vehicle;
 
 /// Tolerance of a rise, metres: a slope exactly at its limit passes. Coordinates within 1e4 m have rounding errors of
 /// 2e-12 m, and a rise and its distance have a few of these.
-const RISE_ROUNDING_M: f64 = 1e-11;
+pub(crate) const RISE_ROUNDING_M: f64 = 1e-11;
 
 /// A test of a point. The letters are the paper's: "The point pairs for slope testing are: a) two front
 /// wheel centers b) two rear wheel centers c) the point midway between front wheel centers and the point midway
@@ -31,15 +31,50 @@ pub enum TraversabilityTest {
     Belly,
 }
 
+/// A part of the vehicle that stands over a point of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum VehiclePart {
+    /// Left or right front wheel.
+    FrontWheel,
+    /// Left or right rear wheel.
+    RearWheel,
+    /// A point of the centre line.
+    CentreLine,
+    /// The belly.
+    Belly,
+}
+
+/// Why nothing can be said of a point of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MissingReason {
+    /// No stripe has measured it.
+    NotMeasured,
+    /// The map ends before it.
+    BeyondMap,
+    /// What may hide in the shadow before it is higher than the vehicle can pass.
+    MayHide,
+}
+
+/// What is missing for a verdict.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Missing {
+    /// Part of the vehicle that stands over it.
+    pub part: VehiclePart,
+    /// Place, global x and y, metres.
+    pub place: DVec2,
+    /// Why nothing can be said of it.
+    pub reason: MissingReason,
+}
+
 /// Result of the tests of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Traversability {
     /// A test failed; this is the first one. "If any of the slope tests exceed the maximum slope for that point pair,
     /// point Q is labelled an obstacle point." (§7)
     Obstacle(TraversabilityTest),
     /// No test failed, but an elevation is missing. "If all the slope tests are satisfied, but if one of the slope
-    /// points has unknown LTM elevation, the point Q is labeled as unknown." (§7)
-    Unknown,
+    /// points has unknown LTM elevation, the point Q is labeled as unknown." (§7) This is the first one that is missing.
+    Unknown(Missing),
     /// All tests passed. "Otherwise, if all tests are passed and all points have known elevation, the point is labeled
     /// as being clear." (§7)
     Clear,
@@ -71,15 +106,22 @@ pub struct TraversabilityRules {
     /// Rule for narrow gaps. `None`: no gap is crossed, as in the paper, whose solution is one "which we have not yet
     /// implemented" (§7).
     pub gaps: Option<GapRule>,
+    /// What is tested. Paper: seven points of the map. Mended: all cells under wheels and belly, see `wheel_tests`.
+    pub tests: Rule,
 }
 
 impl TraversabilityRules {
-    /// Settings for a vehicle.
+    /// Mended settings for a vehicle: wheels and belly are tested, and gaps of up to one wheel width may be crossed.
     ///
     /// CHOICE: the maximum slope of a pair is that of a step of one wheel radius between its points: a rigid wheel
     /// cannot climb a step as high as its hub. For the default vehicle this is 0.35 (19 degrees) across and 0.29 (16
-    /// degrees) along. The closer points are half way between centre and axles. No gap is crossed, as in the paper.
+    /// degrees) along. The closer points are half way between centre and axles.
     pub fn for_vehicle(vehicle: &Vehicle) -> Self {
+        Self { tests: Rule::Mended, ..Self::as_printed(vehicle) }.crossing_gaps(vehicle)
+    }
+
+    /// The paper's settings: seven points are tested, and no gap is crossed.
+    pub fn as_printed(vehicle: &Vehicle) -> Self {
         let step = vehicle.wheel_radius;
         let closer_share = 0.5;
         let across = step / vehicle.track;
@@ -89,12 +131,26 @@ impl TraversabilityRules {
             length: step / vehicle.wheelbase,
             closer: step / (closer_share * vehicle.wheelbase),
         };
-        Self { slopes, closer_share, rear_needed: true, gaps: None }
+        Self { slopes, closer_share, rear_needed: true, gaps: None, tests: Rule::Paper }
     }
 
     /// The same settings, but gaps up to one wheel width may be crossed.
     pub fn crossing_gaps(self, vehicle: &Vehicle) -> Self {
         Self { gaps: Some(GapRule { max_width: vehicle.wheel_width }), ..self }
+    }
+
+    /// Tests a point by the rules in force. What `front` and `forward` mean: [`TraversabilityRules::classify_points`].
+    pub fn classify(
+        &self,
+        map: &MapWithShadows,
+        vehicle: &Vehicle,
+        front: DVec2,
+        forward: DVec2,
+    ) -> Traversability {
+        match self.tests {
+            Rule::Paper => self.classify_points(map, vehicle, front, forward),
+            Rule::Mended => self.classify_wheels(map, vehicle, front, forward),
+        }
     }
 
     /// Tests the global point `front`, the paper's Q. `forward` is the direction of the sector, a unit vector. "The
@@ -106,7 +162,9 @@ impl TraversabilityRules {
     ///
     /// ```
     /// use glam::DVec2;
-    /// use raypencil_rover::{ElevationMap, MapSize, Traversability, TraversabilityRules, TraversabilityTest, Vehicle};
+    /// use raypencil_rover::{
+    ///     ElevationMap, MapSize, MapWithShadows, Traversability, TraversabilityRules, TraversabilityTest, Vehicle,
+    /// };
     ///
     /// // Level ground, but 0.36 m higher from x = 1 on. With the front axle at x = 1 the slope along the default
     /// // vehicle is 0.36 / 1.2 = 0.30; the maximum is 0.35 / 1.2 = 0.29.
@@ -115,23 +173,24 @@ impl TraversabilityRules {
     ///     map.set_proximity(point, if point.i >= 10 { 0.36 } else { 0.0 });
     /// }
     /// let vehicle = Vehicle::default();
-    /// let rules = TraversabilityRules::for_vehicle(&vehicle);
-    /// let at = |x| rules.classify(&map, &vehicle, DVec2::new(x, 0.0), DVec2::X);
+    /// let rules = TraversabilityRules::as_printed(&vehicle);
+    /// let map = MapWithShadows::of(&map);
+    /// let at = |x| rules.classify_points(&map, &vehicle, DVec2::new(x, 0.0), DVec2::X);
     /// assert_eq!(at(0.9), Traversability::Clear);
     /// assert_eq!(at(1.0), Traversability::Obstacle(TraversabilityTest::Length));
     /// ```
-    pub fn classify(
+    pub fn classify_points(
         &self,
-        map: &ElevationMap,
+        shadows: &MapWithShadows,
         vehicle: &Vehicle,
         front: DVec2,
         forward: DVec2,
     ) -> Traversability {
         let Vehicle { wheelbase, track, clearance, .. } = *vehicle;
-        let left = forward.perp();
+        let (left, map) = (forward.perp(), shadows.map());
         let ground = |place: DVec2| {
             let point = map.nearest(place);
-            let estimate = || self.gaps.and_then(|gaps| gaps.upper_estimate(map, point));
+            let estimate = || self.gaps.and_then(|gaps| gaps.upper_estimate(shadows, point));
             map.elevation(point).or_else(estimate).map(|z| map.place(point).extend(z))
         };
         // A point this far behind the front axle, and this far to the left of the centre line, metres.
@@ -139,13 +198,14 @@ impl TraversabilityRules {
         let axle = |behind: f64| [at(behind, 0.5 * track), at(behind, -0.5 * track)];
         let [front_wheels, rear_wheels] = [axle(0.0), axle(wheelbase)];
         let rear_known = rear_wheels.iter().all(Option::is_some);
-        let (along, pair) = if rear_known {
-            (TraversabilityTest::Length, [at(0.0, 0.0), at(wheelbase, 0.0)])
+        let (along, along_places) = if rear_known {
+            (TraversabilityTest::Length, [0.0, wheelbase])
         } else {
             let from_centre = 0.5 * wheelbase * self.closer_share;
             let centre = 0.5 * wheelbase;
-            (TraversabilityTest::Closer, [at(centre - from_centre, 0.0), at(centre + from_centre, 0.0)])
+            (TraversabilityTest::Closer, [centre - from_centre, centre + from_centre])
         };
+        let pair = along_places.map(|behind| at(behind, 0.0));
 
         // "The slope tests are made on all point pairs whose LTM elevation is known." (§7)
         let limits = self.slopes;
@@ -175,12 +235,29 @@ impl TraversabilityRules {
             }
         }
 
-        let needed = front_wheels.iter().chain(&pair).chain([&belly]).all(Option::is_some);
-        if needed && (rear_known || !self.rear_needed) {
-            Traversability::Clear
-        } else {
-            Traversability::Unknown
+        let missing = |part, behind: f64, aside: f64| {
+            let point = map.nearest(front - forward * behind + left * aside);
+            let reason =
+                if map.contains(point) { MissingReason::NotMeasured } else { MissingReason::BeyondMap };
+            Traversability::Unknown(Missing { part, place: map.place(point), reason })
+        };
+        // The half track to the left or to the right, wherever the wheel without an elevation is.
+        let side = |wheels: &[Option<DVec3>; 2]| if wheels[0].is_none() { 0.5 * track } else { -0.5 * track };
+        if front_wheels.iter().any(Option::is_none) {
+            return missing(VehiclePart::FrontWheel, 0.0, side(&front_wheels));
         }
+        if !rear_known && self.rear_needed {
+            return missing(VehiclePart::RearWheel, wheelbase, side(&rear_wheels));
+        }
+        for (ground, behind) in pair.iter().zip(along_places) {
+            if ground.is_none() {
+                return missing(VehiclePart::CentreLine, behind, 0.0);
+            }
+        }
+        if belly.is_none() {
+            return missing(VehiclePart::Belly, 0.5 * wheelbase, 0.0);
+        }
+        Traversability::Clear
     }
 
     /// Checks every field. The error names the first one that is out of range.

@@ -138,6 +138,17 @@ impl Triangulation {
         self.at(f64::from(edge.i) + 0.5, edge.row)
     }
 
+    /// Error of the elevation of an edge's point if its row is off by `rows` pixels: metres, in the vehicle frame. The
+    /// larger of both ways. `None` if the beam cannot light the point.
+    pub fn elevation_error(&self, edge: &EdgePoint, rows: f64) -> Option<f64> {
+        let u = f64::from(edge.i) + 0.5;
+        let middle = self.at(u, edge.row)?.z;
+        let off = |row: f64| self.at(u, row).map(|point| (point.z - middle).abs());
+        // Past the end of the fan's range there is no point: the other way says as much.
+        let ways = [off(edge.row - rows), off(edge.row + rows)];
+        ways.into_iter().flatten().reduce(f64::max)
+    }
+
     /// Table of the points of all pixels.
     pub fn table(&self) -> TriangulationTable {
         let Camera { width, height, .. } = self.camera.sensor;

@@ -1,6 +1,7 @@
 //! The vehicle: its dimensions, and how it stands on the ground.
 
 use glam::{DVec2, DVec3};
+use raypencil_chassis::{Chassis, GroundFaces};
 use raypencil_scene::{Pose, SceneError, check_count, check_range};
 use raypencil_terrain::HeightIndex;
 
@@ -103,6 +104,12 @@ impl Vehicle {
         point.x.abs() <= half_length && point.y.abs() <= half_width
     }
 
+    /// Radius of the circle that the vehicle needs to turn on the spot, metres.
+    pub fn turning_radius(&self) -> f64 {
+        let corner = DVec2::new(0.5 * self.wheelbase + self.wheel_radius, 0.5 * self.width());
+        corner.length()
+    }
+
     /// Overall width, metres.
     pub fn width(&self) -> f64 {
         self.track + self.wheel_width
@@ -172,6 +179,17 @@ impl Vehicle {
             attitude.roll_right += share * 2.0 * left / self.track;
         }
         Some(Stance { position, attitude, residual })
+    }
+
+    /// Pose of the vehicle when its centre is at the global point `place` with this heading, by the mended rule: wheels
+    /// as discs of their width in contact with the true faces, and the plane of the hubs solved. `None` if a wheel has no
+    /// ground below it.
+    pub fn stand(&self, ground: &GroundFaces, place: DVec2, heading: f64) -> Option<Stance> {
+        let Self { wheelbase, track, wheel_radius, wheel_width, clearance, .. } = *self;
+        let chassis = Chassis { wheelbase, track, wheel_radius, wheel_width, clearance };
+        let rest = chassis.rest(ground, place, heading)?;
+        let attitude = Attitude { heading, pitch_down: rest.pitch_down, roll_right: rest.roll_right };
+        Some(Stance { position: rest.position, attitude, residual: rest.residual })
     }
 
     /// Checks every field. The error names the first one that is out of range.

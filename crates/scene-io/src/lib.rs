@@ -53,7 +53,7 @@ mod subject;
 mod toml_problem;
 
 pub use digest::scene_sha256;
-pub use drive::setup::{DriveSetup, default_threshold};
+pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
 pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_text};
 pub use overrides::Overrides;
 pub use ray_scene::{RayScene, load_ray_scene};

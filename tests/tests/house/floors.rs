@@ -19,6 +19,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("files", 2),
     ("report", 2),
     ("minimise", 2),
+    ("chassis", 2),
     ("rover", 3),
     ("survey", 3),
     ("judge", 3),
@@ -42,6 +43,8 @@ const NARROWER: &[(&str, &[&str])] = &[
     ("tracer", &["scene"]),
     ("naive", &["scene"]),
     ("referee", &["scene"]),
+    // The simulated vehicle is the truth for the rover: it shares no code with it.
+    ("chassis", &["scene"]),
     // The judge knows no renderer.
     ("judge", &["scene", "referee", "files"]),
     // An explanation is tried on the candidate's own numbers: it asks the judge, and renders nothing of the house.

@@ -16,10 +16,14 @@ fn folder() -> TempDir {
         [camera]\nwidth_px = 96\nheight_px = 96\npixel_pitch_um = 96\n\
         [[beam]]\nrows = 2\ncolumns = 16\n[[beam]]\nrows = 2\ncolumns = 16\n\
         [terrain]\nbuiltin = \"pyramids\"\n\
-        [drive]\nwaypoints_m = [[0, 0]]\nframes_per_s = 3\nscans = false\n";
+        [drive]\nwaypoints_m = [[0.6, 0]]\nframes_per_s = 3\nscans = false\n";
     std::fs::write(folder.path().join("small.toml"), scene).expect("a scene file");
     folder
 }
+
+/// A drive with a camera that exposes photons.
+const CAMERA: &str = "version = 1\n[terrain]\nbuiltin = \"pyramids\"\n[drive]\nwaypoints_m = [[1, 0]]\n\
+    sensor = \"cmos\"\n";
 
 const FILES: [&str; 20] = [
     "summary.json",
@@ -75,14 +79,19 @@ fn json_is_the_summary_that_was_written_and_the_folder_has_the_scenes_name() {
 fn waypoints_of_the_command_line_replace_those_of_the_scene() {
     let folder = folder();
     let path = folder.path();
-    // The scene's drive with other waypoints: from -0.6 to 0.2 and back to 0, with half a turn in between.
-    let there = ["drive", "small.toml", "--to", "0.2,0", "--to", "0,0", "--json"];
+    // The scene's drive with other waypoints: 0.8 m ahead and back to 0.6 m, with half a turn in between.
+    let there = ["drive", "small.toml", "--to", "0.8,0", "--to", "0.6,0", "--json"];
     let said: serde_json::Value = serde_json::from_str(&screen(path, &there, 0)).expect("JSON");
     assert!((said["driven_m"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{}", said["driven_m"]);
     assert_eq!(
         (&said["arguments"], &said["frames_per_s"]),
-        (&"small.toml --to 0.2,0 --to 0,0".into(), &3.0.into())
+        (&"small.toml --to 0.8,0 --to 0.6,0".into(), &3.0.into())
     );
+    // The same places in the global frame: the vehicle starts at x = -0.6 m.
+    let global = ["drive", "small.toml", "--to", "0.2,0", "--to", "0,0", "--to-global", "--json"];
+    let said: serde_json::Value = serde_json::from_str(&screen(path, &global, 0)).expect("JSON");
+    assert!((said["driven_m"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{}", said["driven_m"]);
+    assert_eq!(said["arguments"], "small.toml --to 0.2,0 --to 0,0 --to-global");
     // A scene without a drive uses the defaults: ten frames per second, and a vertical scan first.
     let text = std::fs::read_to_string(path.join("small.toml")).unwrap();
     let still = text.split("[drive]").next().unwrap();
@@ -95,6 +104,25 @@ fn waypoints_of_the_command_line_replace_those_of_the_scene() {
 }
 
 #[test]
+fn a_drive_as_printed_is_one_word_and_a_rule_another() {
+    let folder = folder();
+    let summary = |words: &[&str]| -> serde_json::Value {
+        let words = [&["drive", "small.toml"], words, &["--json"]].concat();
+        serde_json::from_str(&screen(folder.path(), &words, 0)).expect("JSON")
+    };
+    let printed = summary(&["--as-printed", "--both"]);
+    // 0.6 m at 0.3 m/s and ten frames a second.
+    assert_eq!((&printed["frames"], &printed["frames_per_s"]), (&21.into(), &10.0.into()));
+    assert_eq!(printed["arguments"], "small.toml --as-printed --both");
+    assert!(printed["notes"].to_string().contains("eq1"), "{}", printed["notes"]);
+    let one = summary(&["--rule", "start=footprint"]);
+    assert_eq!(one["arguments"], "small.toml --rule start=footprint");
+    // The footprint of the vehicle is known from the start, and nothing else of it is here.
+    let known = |summary: &serde_json::Value| summary["map"]["known"].as_u64().unwrap();
+    assert!(known(&one) > known(&summary(&[])) + 100);
+}
+
+#[test]
 fn errors_leave_no_folder_that_looks_complete() {
     let folder = folder();
     let path = folder.path();
@@ -104,7 +132,23 @@ fn errors_leave_no_folder_that_looks_complete() {
         &raypencil(path, &["drive", "still.toml", "-o", "out"]),
         &["still.toml: there is no drive", "[drive] table"],
     );
-    assert_trouble(&raypencil(path, &["drive", "small.toml", "--flux", "eq1"]), &["eq1 is in W/m"]);
+    std::fs::write(path.join("camera.toml"), CAMERA).unwrap();
+    for unit in [["--flux", "eq1"].as_slice(), &["--as-printed"]] {
+        let words = [&["drive", "camera.toml"], unit].concat();
+        assert_trouble(&raypencil(path, &words), &["eq1 is in W/m"]);
+    }
+    assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "--to", "60,0"]),
+        &["drive.route is off the ground after 23.70 m, at (23.10, 0.00) m", "ground under every wheel"],
+    );
+    assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "--rule", "gaps=paper"]),
+        &["expected one of start"],
+    );
+    assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "--rule", "gap=exact"]),
+        &["gap=paper or gap=mended"],
+    );
     assert_trouble(
         &raypencil(path, &["drive", "small.toml", "--at", "100,0"]),
         &["no ground under the vehicle"],
@@ -175,7 +219,7 @@ fn a_difference_is_exit_code_1() {
 fn a_wrong_drive_is_marked_in_the_scene_file() {
     let folder = folder();
     let path = folder.path().join("wrong.toml");
-    std::fs::write(&path, "version = 1\n[drive]\nwaypoints_m = [[0, 0]]\nspeed_m_per_s = -1\n").unwrap();
+    std::fs::write(&path, "version = 1\n[drive]\nwaypoints_m = [[1, 0]]\nspeed_m_per_s = -1\n").unwrap();
     let output = raypencil(folder.path(), &["drive", "wrong.toml"]);
     assert_trouble(&output, &["wrong.toml:4:17", "`drive.speed_m_per_s` is -1; expected"]);
     assert!(!text(&output.stderr).contains("panicked"));

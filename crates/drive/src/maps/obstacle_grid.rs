@@ -24,7 +24,7 @@ use crate::maps::occupancy::{Occupancy, OccupancyGrid};
 ///     map.set_proximity(point, if map.place(point).x > 2.95 { 1.0 } else { 0.0 });
 /// }
 /// let vehicle = Vehicle::default();
-/// let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+/// let (rules, grid) = (TraversabilityRules::as_printed(&vehicle), RadialGrid::for_vehicle(&vehicle));
 /// let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
 /// let cells = occupancy_grid(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY).cells;
 /// // Row 100 lies straight ahead, and column 100 + 10 x is at x metres: before, at and behind the step.
@@ -97,7 +97,7 @@ mod tests {
             map.set_proximity(point, z);
         }
         let vehicle = Vehicle::default();
-        let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+        let (rules, grid) = (TraversabilityRules::as_printed(&vehicle), RadialGrid::for_vehicle(&vehicle));
         let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
         let cells = occupancy_grid(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY);
         // 201 x 201 cells of 0.1 m around the origin.

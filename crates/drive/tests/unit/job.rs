@@ -1,10 +1,13 @@
-use raypencil_rover::{Detection, ExposureMode, RadialGrid, StripeLocation, TraversabilityRules};
+use raypencil_rover::{
+    Detection, ExposureMode, MapRules, PointLookup, RadialGrid, Rule, StartRule, StripeLocation,
+    TraversabilityRules,
+};
 use raypencil_scene::Scene;
 use raypencil_scene_io::{load, load_text};
 use raypencil_sensor::{DarkCurrent, Dust, ImageLength, Psf};
 
 use super::*;
-use crate::common::{FLAT, SHORT, job, scene};
+use crate::common::{FLAT, SHORT, driven, job, scene};
 
 #[test]
 fn the_built_in_drives_are_the_papers() {
@@ -15,11 +18,11 @@ fn the_built_in_drives_are_the_papers() {
     let pyramids = of("pyramids");
     assert_eq!((pyramids.plan.route.start, pyramids.plan.route.heading), (DVec2::new(-7.5, 0.0), 0.0));
     assert_eq!(pyramids.plan.route.waypoints, [DVec2::ZERO]);
-    // 7.5 m with one frame per 0.1 m, both ends included.
-    assert_eq!(pyramids.frames().unwrap(), 76);
+    // 7.5 m at 0.3 m/s and ten frames a second, both ends included.
+    assert_eq!(pyramids.frames().unwrap(), 251);
     assert_eq!(pyramids.plan.rig.beams[0].sensor.columns, 4106);
     assert!(pyramids.plan.scans.is_none());
-    assert_eq!(of("facets").frames().unwrap(), 61);
+    assert_eq!(of("facets").frames().unwrap(), 201);
 }
 
 #[test]
@@ -27,13 +30,14 @@ fn every_key_of_the_drive_is_read() {
     let all = "waypoints_m = [[1, 0], [1, 2]]\nspeed_m_per_s = 0.5\nturn_deg_per_s = 90\nframes_per_s = 5\nseed = 9\n\
         sensor = \"cmos\"\nsensor_seed = 4\nexposures = \"together\"\ndetection = \"gradient\"\nthreshold_dn = 30\n\
         place = \"sub_pixel\"\nleast_rows = 2\nmap_spacing_m = 0.2\nmap_points = 101\nobstacles_every_frames = 4\n\
-        cross_gaps = true\nscans = true\nscan_every_m = 3\nscan_steps = 21\nwheelbase_m = 1.5\ntrack_m = 1.1\n\
+        scans = true\nscan_every_m = 3\nscan_steps = 21\nwheelbase_m = 1.5\ntrack_m = 1.1\n\
         wheel_radius_m = 0.4\nwheel_width_m = 0.3\nclearance_m = 0.45\nposition_drift_m_per_s = [0.01, 0]\n\
         position_walk_m = 0.02\nheading_drift_deg_per_s = 1\nattitude_noise_deg = 2\nproximity_noise_m = 0.03\n\
         fix_every_frames = 50\nfix_noise_m = 0.1\nslope_front = 0.3\nslope_length = 0.25\ngrid_first_m = 0.9\n\
         grid_last_m = 4\ngrid_step_m = 0.2\ngrid_half_angle_deg = 45\ngrid_sectors = 19\nvector_large_m = 1\n\
         vector_small_m = 0.4\nscan_from_deg = -5\nscan_to_deg = 30\nscan_inconsistency_m = 0.2\n\
-        scan_least_points = 40\nheading_bias_deg = 1\npitch_bias_deg = -2\nroll_bias_deg = 3";
+        scan_least_points = 40\nheading_bias_deg = 1\npitch_bias_deg = -2\nroll_bias_deg = 3\nlookup = \"table\"\n\
+        waypoints_frame = \"global\"\n[drive.rules]\nstart = \"footprint\"\nelevation = \"paper\"\ntests = \"paper\"";
     let job = job(FLAT, all);
     let plan = &job.plan;
     let route = &plan.route;
@@ -41,13 +45,17 @@ fn every_key_of_the_drive_is_read() {
     assert_eq!(route.turn_rate, 90.0_f64.to_radians());
     assert_eq!((job.preset, job.sensor.seed, job.sensor.bits), ("cmos", 4, 12));
     assert_eq!((plan.seed, plan.map.points, plan.map.spacing, plan.obstacles_every), (9, 101, 0.2, 4));
-    assert_eq!(plan.exposures, ExposureMode::Together);
+    assert_eq!(route.waypoints, [DVec2::new(1.0, 0.0), DVec2::new(1.0, 2.0)]);
+    assert_eq!((plan.exposures, plan.lookup), (ExposureMode::Together, PointLookup::Table));
+    let of_the_map = MapRules { start: StartRule::Footprint, elevation: Rule::Paper, ..MapRules::MENDED };
+    assert_eq!(plan.map_rules, of_the_map);
     assert_eq!(plan.extraction.detection, Detection::Gradient(30.0));
     assert_eq!((plan.extraction.place, plan.extraction.least_rows), (StripeLocation::SubPixel, 2));
     assert_eq!((plan.sweep.steps, plan.scans.unwrap().every), (21, Some(3.0)));
     assert_eq!((plan.vehicle.wheelbase, plan.vehicle.track, plan.vehicle.clearance), (1.5, 1.1, 0.45));
     // Rules that follow from the vehicle's measures follow from the given ones.
-    let mut rules = TraversabilityRules::for_vehicle(&plan.vehicle).crossing_gaps(&plan.vehicle);
+    let mended = TraversabilityRules::for_vehicle(&plan.vehicle);
+    let mut rules = TraversabilityRules { tests: Rule::Paper, ..mended };
     (rules.slopes.front, rules.slopes.length) = (0.3, 0.25);
     assert_eq!(plan.rules, rules);
     let half_angle = 45.0_f64.to_radians();
@@ -185,6 +193,8 @@ fn scenes_without_a_drive_are_refused() {
     let still = load_text(&format!("version = 1\n{FLAT}\n"), "still").unwrap();
     let error = DriveJob::new(&still, None, String::new()).unwrap_err();
     assert!(matches!(error, DriveError::NoDrive), "{error}");
+    // Without a camera a drive by eq1 takes the flux itself, with a threshold that is a share of its maximum. With one it
+    // is refused.
     let mut unit = scene(FLAT, SHORT);
     unit.scene = Scene::new(
         unit.scene.mesh().clone(),
@@ -194,7 +204,38 @@ fn scenes_without_a_drive_are_refused() {
         FluxModel::Eq1,
     )
     .unwrap();
+    let by_eq1 = DriveJob::new(&unit, None, String::new()).unwrap();
+    assert!(by_eq1.is_flux_only() && by_eq1.plan.extraction.detection == Detection::Share(0.02));
+    unit.drive.as_mut().unwrap().has_camera = true;
     assert!(matches!(DriveJob::new(&unit, None, String::new()), Err(DriveError::Unit)));
+    for camera in
+        ["sensor = \"cmos\"", "sun = { elevation_deg = 9 }", "subtract_unlit = true", "electronics = {}"]
+    {
+        let with_camera = job(FLAT, &format!("{SHORT}\n{camera}"));
+        assert!(matches!(with_camera.as_printed(), Err(DriveError::Unit)), "{camera}");
+    }
     let endless = job(FLAT, "waypoints_m = [[1e9, 0]]\nscans = false");
     assert!(matches!(endless.frames(), Err(DriveError::Frames)));
+}
+
+#[test]
+fn a_drive_as_printed_is_the_papers_in_all_its_rules() {
+    let printed = job(FLAT, &format!("{SHORT}\nthreshold_share = 0.1")).as_printed().unwrap();
+    let plan = &printed.plan;
+    assert_eq!((plan.route.frame_rate, plan.exposures), (10.0, ExposureMode::Together));
+    assert_eq!((plan.lookup, plan.flux_model), (PointLookup::Table, FluxModel::Eq1));
+    assert_eq!(plan.extraction.detection, Detection::Share(0.1));
+    assert_eq!((plan.extraction.place, plan.map_rules), (StripeLocation::Pixel, MapRules::AS_PRINTED));
+    assert_eq!((plan.rules.gaps, plan.rules.tests), (None, Rule::Paper));
+    // It can be driven, by both renderers alike, and finds its stripes: beam 0 is 3.296 m ahead.
+    let run = driven(&printed, &["scanline", "tracer"]);
+    assert!(run.passes(), "{:?}", run.differences);
+    // 0.6 m take 2 s: 21 frames at ten a second.
+    assert_eq!((run.frames.len(), run.truth.missed.all()), (21, 0));
+    let first: Vec<_> = run.points.iter().filter(|point| point.frame == 0 && point.beam == 0).collect();
+    assert!(
+        first.len() > 50 && first.iter().all(|point| (point.point.x - 3.296).abs() < 0.4),
+        "{}",
+        first.len()
+    );
 }

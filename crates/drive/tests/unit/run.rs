@@ -34,15 +34,14 @@ fn stripes_on_flat_ground_are_where_trigonometry_predicts() {
     let (frame, obstacles, vectors) = run.obstacles.as_ref().unwrap();
     assert_eq!((*frame, vectors.len()), (6, obstacles.sectors.len() - 1));
     assert!(obstacles.sectors.iter().all(|sector| sector.label == Label::Unknown));
-    // Obstacle maps of frames 0, 3 and 6, each with 31 sectors of 44 points, all truly clear.
-    let matrix = &run.confusion;
-    assert_eq!((matrix.maps, matrix.sectors, matrix.free_past_obstacle, matrix.off_ground), (3, 93, 0, 0));
-    assert_eq!((matrix.obstacle.points(), matrix.clear.points()), (0, 4092));
+    // Obstacle maps of frames 0, 3 and 6, each with 31 sectors that end unknown; the plane has no obstacle.
+    let truth = &run.truth;
+    assert_eq!((truth.maps, truth.sectors, truth.with_obstacle, truth.off_ground), (3, 93, 0, 0));
+    assert_eq!((truth.unknown_not_measured, truth.clear, truth.false_obstacle), (93, 0, 0));
     let json: serde_json::Value = serde_json::from_str(&crate::drive_json(&job, &run)).unwrap();
     // The vehicle still stands on cells that the proximity sensor measured at the start.
     assert!(json["largest_elevation_error_m"].as_f64().unwrap() < 1e-6);
-    let clear = &json["truth"]["clear_points"];
-    assert_eq!(clear["found_unknown"].as_u64().unwrap(), matrix.clear.unknown);
+    assert_eq!(json["truth"]["unknown"]["not_measured"].as_u64().unwrap(), 93);
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod common;
 mod elevation_map;
 mod localisation;
 mod mapper;
+mod mended;
 mod obstacle_map;
 mod rig;
 mod traversability;

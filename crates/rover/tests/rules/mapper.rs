@@ -1,18 +1,40 @@
 //! The estimated elevation of the vehicle, and the order of a map update.
 
 use glam::{DVec2, DVec3};
-use raypencil_rover::{Attitude, ElevationSource, LocalisationReading, MapSize, Mapper, Vehicle};
+use raypencil_rover::{
+    Attitude, ElevationSource, LocalisationReading, MapRules, MapSize, Mapper, StartRule, Vehicle,
+};
+
+const NO_POINTS: [DVec3; 0] = [];
 
 fn sensed(x: f64, proximity: Option<f64>) -> LocalisationReading {
     LocalisationReading { position: DVec2::new(x, 0.0), attitude: Attitude::default(), proximity }
 }
 
+/// The printed rules, with all ground under the vehicle known at the start.
+const RULES: MapRules = MapRules { start: StartRule::Footprint, ..MapRules::AS_PRINTED };
+
+fn mapper_on(sensed: &LocalisationReading, rules: MapRules) -> Mapper {
+    Mapper::with_rules(Vehicle::default(), MapSize::default(), rules, sensed, 5.0)
+}
+
 fn mapper() -> Mapper {
-    Mapper::start(Vehicle::default(), MapSize::default(), &sensed(0.0, Some(0.0)), 5.0)
+    mapper_on(&sensed(0.0, Some(0.0)), RULES)
 }
 
 #[test]
-fn at_the_start_the_map_knows_what_is_under_the_vehicle() {
+fn at_the_start_the_map_knows_the_point_under_the_origin() {
+    // 0.05 m below an origin at 5 m.
+    for rules in [MapRules::AS_PRINTED, MapRules::MENDED] {
+        let mapper = mapper_on(&sensed(0.0, Some(0.05)), rules);
+        assert_eq!(mapper.known_count(), 1);
+        assert_eq!(mapper.map().elevation(mapper.map().centre()), Some(4.95));
+    }
+    assert_eq!(mapper_on(&sensed(0.0, None), MapRules::MENDED).known_count(), 0);
+}
+
+#[test]
+fn by_the_footprint_the_map_knows_what_is_under_the_vehicle() {
     // The half length is 0.6 + 0.35 = 0.95 m, the half width 0.625 m: 19 columns of 13 grid points.
     let mapper = mapper();
     assert_eq!(mapper.known_count(), 19 * 13);
@@ -21,7 +43,7 @@ fn at_the_start_the_map_knows_what_is_under_the_vehicle() {
     assert_eq!(map.source(map.nearest(DVec2::new(1.0, 0.0))).key(), 's');
     // The vehicle is 5 cm above the ground, which is therefore at 4.95 m.
     let start = sensed(0.0, Some(0.05));
-    let raised = Mapper::start(Vehicle::default(), MapSize::default(), &start, 5.0);
+    let raised = mapper_on(&start, RULES);
     assert_eq!(raised.map().elevation(raised.map().centre()), Some(4.95));
 }
 
@@ -30,7 +52,7 @@ fn under_a_tilted_vehicle_the_ground_is_tilted() {
     // The vehicle pitches up by atan 1/4: 0.4 m ahead, the ground is 0.1 m higher.
     let attitude = Attitude { pitch_down: -libm::atan(0.25), ..Attitude::default() };
     let start = LocalisationReading { attitude, ..sensed(0.0, Some(0.0)) };
-    let mapper = Mapper::start(Vehicle::default(), MapSize::default(), &start, 5.0);
+    let mapper = mapper_on(&start, RULES);
     let map = mapper.map();
     let ahead = map.elevation(map.nearest(DVec2::new(0.4, 0.3))).unwrap();
     assert!((ahead - 5.1).abs() < 1e-12, "{ahead}");
@@ -72,7 +94,7 @@ fn points_turn_with_the_vehicle() {
 fn over_unknown_ground_the_vehicle_moves_in_the_plane_of_its_wheels() {
     let mut mapper = mapper();
     let attitude = Attitude { pitch_down: -libm::atan(0.25), ..Attitude::default() };
-    let update = mapper.update(&LocalisationReading { attitude, ..sensed(4.0, Some(0.3)) }, []);
+    let update = mapper.update(&LocalisationReading { attitude, ..sensed(4.0, Some(0.3)) }, NO_POINTS);
     assert!(!update.elevation_read);
     assert!((mapper.pose().position.z - 6.0).abs() < 1e-12);
 }

@@ -20,7 +20,7 @@ fn map(elevation: impl Fn(f64, f64) -> Option<f64>) -> ElevationMap {
 
 fn obstacles(map: &ElevationMap, heading: f64) -> ObstacleMap {
     let vehicle = Vehicle::default();
-    let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    let (rules, grid) = (TraversabilityRules::as_printed(&vehicle), RadialGrid::for_vehicle(&vehicle));
     let pose = Pose::from_axis_angle(DVec3::Z, heading);
     ObstacleMap::extract(map, &vehicle, &rules, &grid, &pose)
 }
@@ -31,12 +31,12 @@ fn on_level_ground_every_sector_ends_at_the_visibility_limit() {
     assert_eq!(all.sectors.len(), 31);
     for sector in &all.sectors {
         assert_eq!((sector.label, sector.failed), (Label::Visibility, None));
-        assert!((sector.radius - 5.0).abs() < 1e-12);
+        assert!((sector.radius - 4.8).abs() < 1e-12);
     }
     // The sectors go from right to left, 2 degrees apart; the middle one is straight ahead.
     assert!((all.sectors[0].direction + 30.0_f64.to_radians()).abs() < 1e-12);
     assert!(all.sectors[15].direction.abs() < 1e-12);
-    assert!((all.sectors[30].point - DVec2::new(5.0 * 0.75_f64.sqrt(), 2.5)).length() < 1e-12);
+    assert!((all.sectors[30].point - DVec2::new(4.8 * 0.75_f64.sqrt(), 2.4)).length() < 1e-12);
 }
 
 #[test]

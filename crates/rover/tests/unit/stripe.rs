@@ -171,3 +171,17 @@ fn two_beams_in_one_exposure_by_order() {
     assert!(Extraction::thresholding(f64::NAN).validate("stripes").is_err());
     assert!(Extraction::thresholding(1.0).validate("stripes").is_ok());
 }
+
+#[test]
+fn a_share_is_one_of_the_brightest_pixel() {
+    // The brightest pixel has 8e-9 W: a quarter of it is 2e-9 W. The sum of all would be far more.
+    let mut image = Image::filled(6, 8, 1e-9);
+    for (i, watts) in [(0, 8e-9), (1, 2e-9), (2, 1.9e-9), (3, 3e-9)] {
+        image.set(i, 4, watts);
+    }
+    let extraction = Extraction { detection: Detection::Share(0.25), ..Extraction::thresholding(0.0) };
+    let columns: Vec<u32> = extraction.edges(&image).iter().map(|edge| edge.i).collect();
+    assert_eq!(columns, [0, 1, 3]);
+    // A dark image has no stripes.
+    assert!(extraction.edges(&Image::filled(6, 8, 0.0)).is_empty());
+}

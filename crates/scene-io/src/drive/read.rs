@@ -7,13 +7,13 @@ use toml::Spanned;
 
 use raypencil_files::Sha256Digest;
 use raypencil_rover::{
-    Detection, DrivePlan, ExposureMode, PositionFixes, RadialGrid, Rig, ScanRule, StripeLocation,
-    TraversabilityRules, VectorRules, Vehicle,
+    Detection, DrivePlan, ExposureMode, PointLookup, PositionFixes, RULE_NAMES, RadialGrid, Rig, ScanRule,
+    StripeLocation, TraversabilityRules, VectorRules, Vehicle,
 };
 use raypencil_sensor::{MARS_SEMI_MAJOR_AXIS_AU, PRESET_NAMES, SOLAR_IRRADIANCE_810_NM, Sunlight};
 
 use crate::drive::camera::{ElectronicsKeys, OpticsKeys};
-use crate::drive::setup::{DriveSetup, default_threshold};
+use crate::drive::setup::{DriveSetup, WaypointFrame, default_threshold};
 use crate::parse::key::{Key, span};
 use crate::parse::shared::GLOBAL_M;
 use crate::parse::source::Source;
@@ -32,6 +32,7 @@ const DEFAULT_OPTICAL_DEPTH: f64 = 0.5;
 #[serde(deny_unknown_fields)]
 pub(crate) struct DriveKeys {
     waypoints_m: Spanned<Vec<Spanned<Vec<f64>>>>,
+    waypoints_frame: Key<String>,
     speed_m_per_s: Key<f64>,
     turn_deg_per_s: Key<f64>,
     frames_per_s: Key<f64>,
@@ -44,12 +45,14 @@ pub(crate) struct DriveKeys {
     exposures: Key<String>,
     detection: Key<String>,
     threshold_dn: Key<f64>,
+    threshold_share: Key<f64>,
+    lookup: Key<String>,
     place: Key<String>,
     least_rows: Key<i64>,
     map_spacing_m: Key<f64>,
     map_points: Key<i64>,
     obstacles_every_frames: Key<i64>,
-    cross_gaps: Option<bool>,
+    rules: Option<RuleKeys>,
     slope_front: Key<f64>,
     slope_rear: Key<f64>,
     slope_length: Key<f64>,
@@ -87,6 +90,20 @@ pub(crate) struct DriveKeys {
     electronics: Option<ElectronicsKeys>,
 }
 
+/// `[drive.rules]`: a word for each of `rover::RULE_NAMES`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RuleKeys {
+    start: Key<String>,
+    elevation: Key<String>,
+    extrapolate: Key<String>,
+    several: Key<String>,
+    inconsistency: Key<String>,
+    gap: Key<String>,
+    settle: Key<String>,
+    tests: Key<String>,
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SunKeys {
@@ -106,7 +123,10 @@ impl Source<'_> {
         keys: &DriveKeys,
         rig: Rig,
     ) -> Result<(DriveSetup, Vec<Sha256Digest>), SceneIoError> {
-        let mut drive = DriveSetup::new(rig, self.waypoints(&keys.waypoints_m)?);
+        let mut frame = WaypointFrame::Vehicle;
+        let frames = [("vehicle", WaypointFrame::Vehicle), ("global", WaypointFrame::Global)];
+        self.choice(&keys.waypoints_frame, "drive.waypoints_frame", &mut frame, &frames)?;
+        let mut drive = DriveSetup::new(rig, self.waypoints(&keys.waypoints_m)?, frame);
         self.route(keys, &mut drive.plan)?;
         self.light(keys, &mut drive)?;
         self.extraction(keys, &mut drive)?;
@@ -121,7 +141,13 @@ impl Source<'_> {
         if let Some(keys) = &keys.electronics {
             self.electronics(keys, &mut drive.sensor)?;
         }
-        let by_default = keys.threshold_dn.is_none() && drive.plan.extraction.detection != Detection::Otsu;
+        drive.has_camera |= keys.optics.is_some()
+            || keys.electronics.is_some()
+            || keys.sun.is_some()
+            || keys.subtract_unlit == Some(true);
+        let is_fixed =
+            matches!(drive.plan.extraction.detection, Detection::Fixed(_) | Detection::Gradient(_));
+        let by_default = keys.threshold_dn.is_none() && is_fixed;
         drive.threshold_ignores = if !by_default {
             None
         } else if keys.sun.is_some() {
@@ -164,6 +190,7 @@ impl Source<'_> {
         if let Some(sensor) = &keys.sensor {
             let presets: Vec<_> = PRESET_NAMES.iter().map(|name| (*name, *name)).collect();
             drive.use_preset(self.word(sensor, "drive.sensor", &presets)?);
+            drive.has_camera = true;
         }
         self.integer(&keys.sensor_seed, "drive.sensor_seed", &mut drive.sensor.seed, 0..=i64::MAX, "")?;
         drive.sunlight = keys.sun.as_ref().map(|sun| self.sun(sun)).transpose()?;
@@ -212,6 +239,19 @@ impl Source<'_> {
             return Err(self.error(threshold.span(), message));
         }
         self.optional(&keys.threshold_dn, "drive.threshold_dn", 1e-3..=65535.0, "digital numbers")?;
+        let (share, name) = (&keys.threshold_share, "drive.threshold_share");
+        self.number(share, name, &mut drive.threshold_share, 1e-9..=1.0, "of the image's maximum")?;
+        if let Some(share) = share {
+            if extraction.detection != Detection::Fixed(level) || keys.threshold_dn.is_some() {
+                let message =
+                    "`drive.threshold_share` is given; expected no threshold_dn and no other detection";
+                return Err(self.error(share.span(), message));
+            }
+            extraction.detection = Detection::Share(drive.threshold_share);
+        }
+        let lookups = [("computed", PointLookup::Computed), ("table", PointLookup::Table)];
+        self.choice(&keys.lookup, "drive.lookup", &mut drive.plan.lookup, &lookups)?;
+        let extraction = &mut drive.plan.extraction;
         let places = [
             ("pixel", StripeLocation::Pixel),
             ("sub_pixel", StripeLocation::SubPixel),
@@ -245,8 +285,8 @@ impl Source<'_> {
         self.integer(every, name, &mut plan.obstacles_every, 1..=i64::MAX, "")?;
 
         plan.rules = TraversabilityRules::for_vehicle(&plan.vehicle);
-        if keys.cross_gaps == Some(true) {
-            plan.rules = plan.rules.crossing_gaps(&plan.vehicle);
+        if let Some(rules) = &keys.rules {
+            self.rules(rules, plan)?;
         }
         let limits = &mut plan.rules.slopes;
         let slopes = [
@@ -282,6 +322,28 @@ impl Source<'_> {
         let vectors = &mut plan.vectors;
         self.number(&keys.vector_large_m, "drive.vector_large_m", &mut vectors.large, 0.0..=1e3, "metres")?;
         self.number(&keys.vector_small_m, "drive.vector_small_m", &mut vectors.small, 0.0..=1e3, "metres")
+    }
+
+    fn rules(&self, keys: &RuleKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {
+        let words = [
+            &keys.start,
+            &keys.elevation,
+            &keys.extrapolate,
+            &keys.several,
+            &keys.inconsistency,
+            &keys.gap,
+            &keys.settle,
+            &keys.tests,
+        ];
+        for (name, key) in RULE_NAMES.iter().zip(words) {
+            let Some(key) = key else { continue };
+            plan.set_rule(name, key.get_ref()).map_err(|expected| {
+                let message =
+                    format!("`drive.rules.{name}` is \"{}\"; expected one of {expected}", key.get_ref());
+                self.error(key.span(), message)
+            })?;
+        }
+        Ok(())
     }
 
     /// Number of points along a side of the map: odd, so that one is in the middle.

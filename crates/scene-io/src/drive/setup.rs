@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use raypencil_rover::{DrivePlan, Extraction, Rig, Route};
+use raypencil_rover::{DrivePlan, Extraction, Rig, Route, StripeLocation};
 use raypencil_scene::{Pose, Scene, SceneError};
 use raypencil_sensor::{ImageSensor, Optics, PRESET_NAMES, Psf, Sunlight, preset};
 
@@ -12,6 +12,16 @@ const MAX_FINE_CELLS: u64 = 1 << 28;
 /// Pencils across each pixel of the camera, along the fan. CHOICE: with fewer than two some columns of the image see no
 /// pencil and the stripe has gaps; four leave it unbroken on slanted ground too.
 const DEFAULT_PENCILS_PER_PIXEL: f64 = 4.0;
+
+/// Frame in which waypoints are given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WaypointFrame {
+    /// That of the vehicle at its start: x forward, y to the left, metres.
+    #[default]
+    Vehicle,
+    /// The global one.
+    Global,
+}
 
 /// A drive as a scene file describes it, in SI. All that a file leaves out has the default of `rover` or of the sensor
 /// preset.
@@ -23,6 +33,14 @@ const DEFAULT_PENCILS_PER_PIXEL: f64 = 4.0;
 pub struct DriveSetup {
     /// Plan of the rover.
     pub plan: DrivePlan,
+    /// Waypoints in their frame, metres. [`DriveSetup::place`] makes the route's waypoints of them.
+    pub waypoints: Vec<DVec2>,
+    /// Frame of the waypoints.
+    pub waypoint_frame: WaypointFrame,
+    /// Whether the file asks for a camera: a sensor preset, optics, electronics or a sun.
+    pub has_camera: bool,
+    /// Threshold as a share of the image's maximum, where the image is one of flux.
+    pub threshold_share: f64,
     /// Name of the sensor preset, one of [`PRESET_NAMES`].
     pub preset: &'static str,
     /// Optics of the camera: step 6.
@@ -40,6 +58,9 @@ pub struct DriveSetup {
     /// default.
     pub threshold_ignores: Option<&'static str>,
 }
+
+/// Default threshold of images of flux, as a share of their maximum. CHOICE: as in [`default_threshold`], a fiftieth.
+const DEFAULT_THRESHOLD_SHARE: f64 = 0.02;
 
 /// Default threshold between lit and dark pixels for a sensor preset, DN; for an unknown name that of `ideal`.
 ///
@@ -60,25 +81,33 @@ pub(crate) fn rig_of(scene: &Scene, vehicle: &Pose) -> Rig {
 }
 
 impl DriveSetup {
-    /// Drive of a rig over these waypoints (global x and y, metres), with the preset `ideal` and all other defaults.
+    /// Drive of a rig over these waypoints (metres, in their frame), with the preset `ideal` and all other defaults.
     ///
     /// ```
-    /// use raypencil_scene_io::{DriveSetup, Overrides, load};
+    /// use raypencil_scene_io::{DriveSetup, Overrides, WaypointFrame, load};
     ///
     /// let loaded = load("pyramids", &Overrides::default())?;
-    /// let mut drive = DriveSetup::new(loaded.rig(), vec![[3.0, 0.0].into()]);
+    /// let ahead = vec![[3.0, 0.0].into()];
+    /// let mut drive = DriveSetup::new(loaded.rig(), ahead, WaypointFrame::Vehicle);
     /// drive.place(&loaded.scene, &loaded.vehicle);
     /// // The default vehicle stands at (0, 0) and drives 0.3 m/s: 3 m take 10 s, 100 frames and the first.
     /// assert_eq!(drive.plan.route.frame(100).map(|pose| pose.driven), Some(3.0));
     /// assert_eq!(drive.plan.route.frame(101), None);
     /// # Ok::<(), raypencil_scene_io::SceneIoError>(())
     /// ```
-    pub fn new(rig: Rig, waypoints: Vec<DVec2>) -> Self {
+    pub fn new(rig: Rig, waypoints: Vec<DVec2>, waypoint_frame: WaypointFrame) -> Self {
         let name = PRESET_NAMES[0];
         let (optics, sensor) = preset(name).expect("a name of the list of presets");
-        let extraction = Extraction::thresholding(default_threshold(name));
+        // CHOICE: centroids. A stripe of the default rig is about a pixel thin, and the last lit pixel of it is off by half
+        // a pixel either way; on level ground by the same on all of it, so that the map would rise or fall on the way.
+        let threshold = Extraction::thresholding(default_threshold(name));
+        let extraction = Extraction { place: StripeLocation::Centroid, ..threshold };
         let mut drive = Self {
-            plan: DrivePlan::new(rig, Route::through(DVec2::ZERO, waypoints), extraction),
+            plan: DrivePlan::new(rig, Route::through(DVec2::ZERO, Vec::new()), extraction),
+            waypoints,
+            waypoint_frame,
+            has_camera: false,
+            threshold_share: DEFAULT_THRESHOLD_SHARE,
             preset: name,
             optics,
             sensor,
@@ -105,6 +134,13 @@ impl DriveSetup {
         self.plan.rig = rig_of(scene, vehicle);
         self.plan.route.start = vehicle.position.truncate();
         self.plan.route.heading = libm::atan2(forward.y, forward.x);
+        self.plan.route.waypoints = match self.waypoint_frame {
+            WaypointFrame::Global => self.waypoints.clone(),
+            WaypointFrame::Vehicle => {
+                let (start, ahead) = (self.plan.route.start, forward.truncate().normalize_or_zero());
+                self.waypoints.iter().map(|at| start + ahead * at.x + ahead.perp() * at.y).collect()
+            }
+        };
         self.plan.atmosphere = scene.atmosphere();
         self.plan.flux_model = scene.flux_model();
         self.fit_to_camera();

@@ -29,7 +29,11 @@ fn a_drive_starts_where_the_vehicle_stands() {
     let loaded = scene("", "");
     let plan = &loaded.drive.as_ref().unwrap().plan;
     assert_eq!(plan.rig, loaded.rig());
-    assert_eq!((plan.route.start, plan.route.waypoints[0]), (DVec2::new(1.0, 2.0), DVec2::new(4.0, 5.0)));
+    assert_eq!(plan.route.start, DVec2::new(1.0, 2.0));
+    // 4 m ahead along global y and 5 m to the left of (1, 2); in the global frame it is what it says.
+    assert!((plan.route.waypoints[0] - DVec2::new(-4.0, 6.0)).length() < 1e-12);
+    let global = drive("waypoints_frame = \"global\"").plan;
+    assert_eq!(global.route.waypoints, [DVec2::new(4.0, 5.0)]);
     assert!((plan.route.heading - 90.0_f64.to_radians()).abs() < 1e-15);
     assert_eq!(plan.flux_model, loaded.scene.flux_model());
 }
@@ -88,10 +92,11 @@ fn only_a_default_threshold_ignores_what_the_file_changes() {
 
 #[test]
 fn rules_follow_from_the_vehicle_of_the_file() {
-    let plan = drive("wheelbase_m = 2\ncross_gaps = true\ngrid_sectors = 7\nslope_rear = 0.5").plan;
+    let plan = drive("wheelbase_m = 2\nrules = { gap = \"paper\" }\ngrid_sectors = 7\nslope_rear = 0.5").plan;
     let vehicle = Vehicle { wheelbase: 2.0, ..Vehicle::default() };
     assert_eq!(plan.vehicle, vehicle);
-    let mut rules = TraversabilityRules::for_vehicle(&vehicle).crossing_gaps(&vehicle);
+    let mut rules = TraversabilityRules::for_vehicle(&vehicle);
+    rules.gaps = None;
     rules.slopes.rear = 0.5;
     assert_eq!(plan.rules, rules);
     assert_eq!(plan.grid, RadialGrid { sectors: 7, ..RadialGrid::for_vehicle(&vehicle) });

@@ -1,0 +1,315 @@
+//! The obstacle maps of a drive against what the vehicle itself can pass on the true ground.
+//!
+//! The truth is the vehicle's own: its wheels as discs and its belly as a surface, on the faces of the mesh (crate
+//! `chassis`). It shares nothing with the rover's tests. Sector by sector, the rover's end is compared with the first
+//! place at which the vehicle cannot stand, both as distances from the vehicle where it truly is.
+
+use raypencil_chassis::{Chassis, GroundFaces, Obstruction, Passage, PassageLimits};
+use raypencil_report::count;
+use raypencil_rover::{
+    DrivePlan, ElevationMap, GridPoint, Label, MapPoint, MapSize, MapWithShadows, Missing, MissingReason,
+    SectorEnd, SlopeLimits, Vehicle,
+};
+use raypencil_scene::Pose;
+use raypencil_terrain::HeightIndex;
+
+use crate::swept_ground::{Swept, SweptGround};
+
+/// Why an obstacle was called clear.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NotFound {
+    /// Stripes passed over it, but other ground hid it.
+    pub hidden: u64,
+    /// No stripe had come to it yet.
+    pub not_swept: u64,
+    /// It lies beside the stripes or outside the camera's view.
+    pub outside: u64,
+}
+
+/// Why an obstacle that stripes swept and nothing hid was called clear.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Missed {
+    /// The rover's rules find it on true elevations of the same cells: errors of the measured points or of the pose.
+    pub by_errors: u64,
+    /// They find it only on true elevations four times as dense.
+    pub by_spacing: u64,
+    /// They do not find it even there.
+    pub by_rule: u64,
+}
+
+impl Missed {
+    /// Number of all.
+    pub fn all(self) -> u64 {
+        self.by_errors + self.by_spacing + self.by_rule
+    }
+}
+
+/// Counts of the sectors of obstacle maps against the truth. Each sector of each map counts once.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SectorTruth {
+    /// Number of obstacle maps.
+    pub maps: u64,
+    /// Number of sectors.
+    pub sectors: u64,
+    /// Sectors with an obstacle within their last radius.
+    pub with_obstacle: u64,
+    /// Of these: testing stopped at an obstacle, not more than one step before or two after the true one.
+    pub found: u64,
+    /// Of these: called clear beyond the true obstacle by more than one step, though stripes swept it and nothing hid it.
+    pub missed: Missed,
+    /// Of these: called clear beyond it likewise, but it could not be seen.
+    pub not_found: NotFound,
+    /// Sectors called an obstacle more than one step before any true one, or without any.
+    pub false_obstacle: u64,
+    /// Of the false ones: those before a true obstacle of the sector.
+    pub false_before: u64,
+    /// Sectors that end unknown before any true obstacle, by reason.
+    pub unknown_not_measured: u64,
+    /// Likewise: more may hide in a shadow than the vehicle can pass.
+    pub unknown_may_hide: u64,
+    /// Likewise: the map ends.
+    pub unknown_beyond_map: u64,
+    /// Sectors that are clear to their last radius, and truly so.
+    pub clear: u64,
+    /// Sectors in which the true ground ends before the rover's end: not judged.
+    pub off_ground: u64,
+    /// Sum of the radii up to which sectors were truly clear and called so, millimetres.
+    pub clear_mm: u64,
+}
+
+/// The true ground, ready to be asked.
+pub(crate) struct TrueGround<'a> {
+    pub faces: &'a GroundFaces,
+    pub heights: &'a HeightIndex,
+    pub swept: &'a SweptGround,
+}
+
+/// The vehicle as the mechanics know it.
+pub(crate) fn chassis(vehicle: &Vehicle) -> Chassis {
+    let Vehicle { wheelbase, track, wheel_radius, wheel_width, clearance, .. } = *vehicle;
+    Chassis { wheelbase, track, wheel_radius, wheel_width, clearance }
+}
+
+/// First obstacle of a sector on the true ground.
+enum First {
+    Obstacle {
+        radius: f64,
+        obstruction: Obstruction,
+    },
+    /// The ground ends there.
+    Edge {
+        radius: f64,
+    },
+    None,
+}
+
+impl SectorTruth {
+    /// Adds an obstacle map that a vehicle with the true pose `global_from_vehicle` made of `map`, believing to be at
+    /// `believed`.
+    pub(crate) fn add(
+        &mut self,
+        sectors: &[SectorEnd],
+        map: &ElevationMap,
+        ground: &TrueGround,
+        plan: &DrivePlan,
+        global_from_vehicle: &Pose,
+    ) {
+        self.maps += 1;
+        let mut dense: Option<[ElevationMap; 2]> = None;
+        for (index, end) in sectors.iter().enumerate() {
+            self.sectors += 1;
+            let first = first_obstacle(index as u32, ground.faces, plan, global_from_vehicle);
+            let finds = |maps: &mut Option<[ElevationMap; 2]>| {
+                maps.get_or_insert_with(|| true_maps(map, ground.heights, global_from_vehicle)).clone()
+            };
+            self.add_sector(index as u32, end, &first, ground, plan, global_from_vehicle, &mut || {
+                finds(&mut dense)
+            });
+        }
+    }
+
+    fn add_sector(
+        &mut self,
+        sector: u32,
+        end: &SectorEnd,
+        first: &First,
+        ground: &TrueGround,
+        plan: &DrivePlan,
+        global_from_vehicle: &Pose,
+        true_maps: &mut dyn FnMut() -> [ElevationMap; 2],
+    ) {
+        let step = plan.grid.step;
+        // Radii are multiples of a step: half a step on either side of the limit keeps rounding out.
+        let within = 1.5 * step;
+        let last_clear = if end.label == Label::Visibility { end.radius } else { end.radius - step };
+        let (radius, obstruction) = match first {
+            First::Edge { radius } if last_clear > *radius - 0.5 * step => {
+                self.off_ground += 1;
+                return;
+            }
+            First::Obstacle { radius, obstruction } => (*radius, Some(obstruction)),
+            First::Edge { .. } | First::None => (f64::INFINITY, None),
+        };
+        self.with_obstacle += u64::from(obstruction.is_some());
+        self.clear_mm += (1000.0 * last_clear.min(radius - step).max(0.0)).round() as u64;
+        if end.label == Label::Obstacle && end.radius < radius - within {
+            self.false_obstacle += 1;
+            self.false_before += u64::from(obstruction.is_some());
+        } else if let Some(obstruction) = obstruction.filter(|_| last_clear > radius + within) {
+            let swept = obstruction.points.iter().map(|&point| ground.swept.at(point)).max();
+            match swept.unwrap_or(Swept::Never) {
+                Swept::Never => self.not_found.not_swept += 1,
+                Swept::Outside => self.not_found.outside += 1,
+                Swept::Hidden => self.not_found.hidden += 1,
+                Swept::Seen => {
+                    let [same, dense] = true_maps();
+                    let finds = |map: &ElevationMap| {
+                        let DrivePlan { vehicle, rules, grid, .. } = plan;
+                        let map = &MapWithShadows::of(map);
+                        let mut classes =
+                            grid.classify_sector(sector, map, vehicle, rules, global_from_vehicle);
+                        classes
+                            .find(|(_, class)| *class != raypencil_rover::Traversability::Clear)
+                            .is_some_and(|(at, _)| at - step <= radius + within)
+                    };
+                    let missed = &mut self.missed;
+                    if finds(&same) {
+                        missed.by_errors += 1;
+                    } else if finds(&dense) {
+                        missed.by_spacing += 1;
+                    } else {
+                        missed.by_rule += 1;
+                    }
+                }
+            }
+        } else {
+            match (end.label, end.missing) {
+                (Label::Obstacle, _) => self.found += 1,
+                (Label::Visibility, _) => self.clear += 1,
+                (Label::Unknown, Some(Missing { reason: MissingReason::MayHide, .. })) => {
+                    self.unknown_may_hide += 1;
+                }
+                (Label::Unknown, Some(Missing { reason: MissingReason::BeyondMap, .. })) => {
+                    self.unknown_beyond_map += 1;
+                }
+                (Label::Unknown, _) => self.unknown_not_measured += 1,
+            }
+        }
+    }
+
+    /// Share of the sectors with an obstacle that stripes swept and nothing hid in which it was missed, of 1.
+    pub fn missed_share(&self) -> f64 {
+        self.missed.all() as f64 / (self.found + self.missed.all()).max(1) as f64
+    }
+
+    /// Share of all sectors with a false obstacle, of 1.
+    pub fn false_share(&self) -> f64 {
+        self.false_obstacle as f64 / self.sectors.max(1) as f64
+    }
+
+    /// Sentences for a screen.
+    pub(crate) fn sentences(&self) -> [String; 2] {
+        let Self { missed, not_found, .. } = self;
+        let unknown = self.unknown_not_measured + self.unknown_may_hide + self.unknown_beyond_map;
+        [
+            format!(
+                "of {} sectors {} end at a true obstacle, {} at a false one, {} unknown, {} are clear",
+                count(self.sectors),
+                count(self.found),
+                count(self.false_obstacle),
+                count(unknown),
+                count(self.clear),
+            ),
+            format!(
+                "{} miss an obstacle that stripes swept, {} pass one that could not be seen",
+                count(missed.all()),
+                count(not_found.hidden + not_found.not_swept + not_found.outside),
+            ),
+        ]
+    }
+
+    /// Header of a Markdown table of [`SectorTruth::table_row`]s.
+    pub const fn table_header() -> &'static str {
+        "\
+| drive | | sectors | found | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide | clear | clear way |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    }
+
+    /// Row of a Markdown table: the drive, the settings that were changed, and the counts.
+    pub fn table_row(&self, drive: &str, settings: &str) -> String {
+        let Self { missed, not_found, .. } = self;
+        format!(
+            "| {drive} | {settings} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} | {} | {:.2} m |",
+            count(self.sectors),
+            count(self.found),
+            count(missed.all()),
+            count(missed.by_errors),
+            count(missed.by_spacing),
+            count(missed.by_rule),
+            percent(missed.all(), self.found + missed.all()),
+            count(not_found.hidden),
+            count(not_found.not_swept),
+            count(not_found.outside),
+            count(self.false_obstacle),
+            percent(self.false_obstacle, self.sectors),
+            count(self.unknown_not_measured + self.unknown_beyond_map),
+            count(self.unknown_may_hide),
+            count(self.clear),
+            self.clear_mm as f64 / 1000.0 / self.sectors.max(1) as f64,
+        )
+    }
+}
+
+/// First place of a sector at which the vehicle cannot stand.
+fn first_obstacle(sector: u32, faces: &GroundFaces, plan: &DrivePlan, global_from_vehicle: &Pose) -> First {
+    let DrivePlan { grid, vehicle, rules, .. } = plan;
+    let SlopeLimits { front, rear, length, .. } = rules.slopes;
+    let limits = PassageLimits { front, rear, length };
+    let (chassis, (_, unit)) = (chassis(vehicle), grid.direction(sector, global_from_vehicle));
+    let centre = global_from_vehicle.position.truncate();
+    for index in 0..grid.radii() {
+        let radius = grid.radius(index);
+        match chassis.passage(faces, centre + unit * radius, unit, &limits) {
+            Passage::Clear => {}
+            Passage::OffGround => return First::Edge { radius },
+            Passage::Blocked(obstruction) => return First::Obstacle { radius, obstruction },
+        }
+    }
+    First::None
+}
+
+/// Maps of the true elevations around a vehicle: one with the cells of `map`, and one of a quarter of its spacing.
+fn true_maps(map: &ElevationMap, ground: &HeightIndex, global_from_vehicle: &Pose) -> [ElevationMap; 2] {
+    let size = map.size();
+    let dense = MapSize { spacing: 0.25 * size.spacing, points: (4 * (size.points / 2) + 1).min(801) };
+    [size, dense].map(|size| {
+        let mut truth = ElevationMap::new(size, global_from_vehicle.position.truncate());
+        let points: Vec<GridPoint> = truth.points().collect();
+        let elevations: Vec<MapPoint> = points
+            .into_iter()
+            .filter_map(|point| {
+                let place = truth.place(point);
+                Some(MapPoint::from(place.extend(ground.height_at(place.x, place.y)?)))
+            })
+            .collect();
+        truth.insert(elevations);
+        truth
+    })
+}
+
+/// Percentage of a part, with a tenth of a percent below 9.95 %. "0 %" and "100 %" mean exactly none and exactly all.
+fn percent(part: u64, all: u64) -> String {
+    let share = 100.0 * part as f64 / all.max(1) as f64;
+    match share {
+        _ if part == 0 => "0 %".into(),
+        ..0.05 => "< 0.1 %".into(),
+        ..9.95 => format!("{share:.1} %"),
+        // A part that is not all is never 100 %.
+        99.5.. if part < all => format!("{:.1} %", share.min(99.9)),
+        _ => format!("{share:.0} %"),
+    }
+}
+
+#[cfg(test)]
+#[path = "../tests/unit/sector_truth.rs"]
+mod tests;

@@ -1,0 +1,136 @@
+use glam::{DVec2, DVec3};
+use raypencil_rover::{Attitude, Extraction, OnVehicle, RadialGrid, Rig, Route, TraversabilityTest};
+use raypencil_scene::{Camera, Lens, Mesh};
+
+use super::*;
+use crate::common::mesh;
+
+/// Ground at 0 up to x = 3 m and at 0.5 m from there to 9 m, where it ends. The step is a wall.
+fn step() -> std::sync::Arc<Mesh> {
+    let profile = [(-9.0, 0.0), (3.0, 0.0), (3.0, 0.5), (9.0, 0.5)];
+    let vertices: Vec<DVec3> =
+        profile.iter().flat_map(|&(x, z)| [DVec3::new(x, -9.0, z), DVec3::new(x, 9.0, z)]).collect();
+    let faces = (0..3).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect();
+    mesh(&vertices, faces)
+}
+
+/// A plan with one sector straight ahead, from 0.7 to 4.8 m.
+fn plan() -> DrivePlan {
+    let camera = Camera {
+        width: 8,
+        height: 8,
+        pixel_pitch: [9e-6; 2],
+        focal_length: 8e-3,
+        principal_point: [4.0; 2],
+        aperture: 2e-3,
+        lens: Lens::CLEAR,
+        max_range: 20.0,
+    };
+    let rig =
+        Rig { camera: OnVehicle { vehicle_from_sensor: Pose::IDENTITY, sensor: camera }, beams: Vec::new() };
+    let route = Route::through(DVec2::ZERO, vec![DVec2::X]);
+    let plan = DrivePlan::new(rig, route, Extraction::thresholding(1.0));
+    DrivePlan { grid: RadialGrid { sectors: 1, ..plan.grid }, ..plan }
+}
+
+/// End of the sector at this radius.
+fn end(radius: f64, label: Label) -> SectorEnd {
+    let failed = (label == Label::Obstacle).then_some(TraversabilityTest::Length);
+    let missing = (label == Label::Unknown).then_some(Missing {
+        part: raypencil_rover::VehiclePart::FrontWheel,
+        place: DVec2::new(radius, 0.5),
+        reason: MissingReason::NotMeasured,
+    });
+    SectorEnd { direction: 0.0, radius, point: DVec2::new(radius, 0.0), label, failed, missing }
+}
+
+/// Counts of one sector with this end, by a vehicle at (x, 0). `is_seen`: stripes swept all of the ground.
+fn counted(x: f64, radius: f64, label: Label, is_seen: bool) -> SectorTruth {
+    let (mesh, plan) = (step(), plan());
+    let (faces, heights) = (GroundFaces::new(&mesh), HeightIndex::new(&mesh));
+    let mut swept = SweptGround::new(plan.map, DVec2::ZERO);
+    swept.recentre(DVec2::new(x, 0.0), &heights);
+    if is_seen {
+        for i in -20..90 {
+            for j in -20..=20 {
+                let place = DVec2::new(0.1 * f64::from(i), 0.1 * f64::from(j));
+                let z = heights.height_at(place.x, place.y);
+                swept.see(place.extend(z.unwrap_or(0.0)));
+            }
+        }
+    }
+    let map = ElevationMap::new(plan.map, DVec2::new(x, 0.0));
+    let pose = Attitude::default().at(DVec3::new(x, 0.0, 0.0));
+    let ground = TrueGround { faces: &faces, heights: &heights, swept: &swept };
+    let mut truth = SectorTruth::default();
+    truth.add(&[end(radius, label)], &map, &ground, &plan, &pose);
+    truth
+}
+
+// The wheels' rims touch the wall's edge 0.35 m ahead of the front axle: 0.5 m over 1.2 + 0.35 m is a slope of 0.32, more than
+// 0.35 / 1.2 = 0.29. So the vehicle cannot stand with its front axle from 3 - 0.35 = 2.65 m on: the first radius is 2.7 m.
+
+#[test]
+fn an_obstacle_is_found_within_a_step() {
+    for radius in [2.6, 2.7, 2.8, 2.9] {
+        let truth = counted(0.0, radius, Label::Obstacle, true);
+        assert_eq!((truth.found, truth.with_obstacle, truth.sectors, truth.maps), (1, 1, 1, 1), "{radius}");
+    }
+}
+
+#[test]
+fn an_obstacle_before_the_true_one_is_false() {
+    let truth = counted(0.0, 2.5, Label::Obstacle, true);
+    assert_eq!((truth.found, truth.false_obstacle, truth.false_before), (0, 1, 1));
+    assert_eq!(truth.false_share(), 1.0);
+    // From x = -3 m the true one, 5.7 m ahead, is beyond the sector.
+    let truth = counted(-3.0, 3.0, Label::Obstacle, true);
+    assert_eq!((truth.false_obstacle, truth.false_before, truth.with_obstacle), (1, 0, 0));
+}
+
+#[test]
+fn clear_beyond_it_by_more_than_a_step_is_missed_if_stripes_swept_it() {
+    // Called clear up to 2.8 m: one step beyond. Up to 2.9 m: two.
+    let within = counted(0.0, 2.9, Label::Unknown, true);
+    assert_eq!((within.missed.all(), within.unknown_not_measured), (0, 1));
+    let beyond = counted(0.0, 3.0, Label::Unknown, true);
+    // On true elevations of the same cells the rover's own tests stop there: this was an error.
+    assert_eq!(
+        (beyond.missed, beyond.unknown_not_measured),
+        (Missed { by_errors: 1, ..Missed::default() }, 0)
+    );
+    assert_eq!(beyond.missed_share(), 1.0);
+    assert_eq!(counted(0.0, 4.8, Label::Visibility, true).missed.all(), 1);
+    // No stripe came there: it could not be found.
+    let unseen = counted(0.0, 4.8, Label::Visibility, false);
+    assert_eq!((unseen.missed.all(), unseen.not_found.not_swept, unseen.missed_share()), (0, 1, 0.0));
+}
+
+#[test]
+fn clear_ground_is_clear_and_ground_that_ends_is_not_judged() {
+    let clear = counted(-3.0, 4.8, Label::Visibility, true);
+    assert_eq!((clear.clear, clear.with_obstacle, clear.clear_mm), (1, 0, 4800));
+    // From x = 5 m the ground ends 4 m ahead. A front wheel has ground below it up to 0.35 m beyond: to 4.3 m.
+    let off = counted(5.0, 4.8, Label::Visibility, true);
+    assert_eq!((off.off_ground, off.clear), (1, 0));
+    let before = counted(5.0, 4.0, Label::Unknown, true);
+    assert_eq!((before.off_ground, before.unknown_not_measured), (0, 1));
+}
+
+#[test]
+fn a_wall_is_seen_only_as_high_as_a_stripe_came() {
+    let mesh = step();
+    let heights = HeightIndex::new(&mesh);
+    let mut swept = SweptGround::new(MapSize::default(), DVec2::ZERO);
+    swept.recentre(DVec2::ZERO, &heights);
+    let top = DVec3::new(3.0, 0.0, 0.5);
+    assert_eq!(swept.at(top), Swept::Never);
+    // Half a spacing below the top counts, more does not.
+    for (z, expected) in [(0.2, Swept::Never), (0.44, Swept::Never), (0.46, Swept::Seen)] {
+        swept.see(DVec3::new(2.99, 0.0, z));
+        assert_eq!(swept.at(top), expected, "{z}");
+    }
+    // What was swept before a scan counts no more.
+    swept.clear();
+    assert_eq!(swept.at(top), Swept::Never);
+}

@@ -1,0 +1,231 @@
+//! New points in the elevation map: which one a cell keeps, and what its neighbours get. (Paper, §7)
+
+use glam::DVec3;
+
+use crate::elevation_map::{Cell, ElevationMap, ElevationSource, GridPoint, Inconsistency, Sight};
+use crate::rules::Rule;
+
+/// Measured point, on its way into the map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapPoint {
+    /// The point, global, metres.
+    pub point: DVec3,
+    /// Standard error of its elevation, metres.
+    pub standard_error: f64,
+    /// The flatter of the two lines of sight to it, from camera and beam. `None`: not known.
+    pub sight: Option<Sight>,
+}
+
+/// New data of a cell: the point that it keeps, and the range of all.
+#[derive(Debug, Clone, Copy)]
+struct NewData {
+    at: GridPoint,
+    point: MapPoint,
+    /// Lowest and highest elevation, metres.
+    range: (f64, f64),
+}
+
+/// Standard error of a point about which nothing else is said, metres. CHOICE.
+const DEFAULT_STANDARD_ERROR_M: f64 = 0.01;
+
+impl From<DVec3> for MapPoint {
+    /// A point with a standard error of 1 cm, seen from nowhere in particular.
+    fn from(point: DVec3) -> Self {
+        Self { point, standard_error: DEFAULT_STANDARD_ERROR_M, sight: None }
+    }
+}
+
+/// Loss of certainty of what was measured, metres per metre driven since. CHOICE: a position that drifts by 1 % on
+/// slopes of 45 degrees, as in the modest errors of `docs/evidence/results.md`.
+const AGEING_M_PER_M: f64 = 0.01;
+
+/// Two elevations of a cell belong to one surface if they differ by at most this many standard deviations, beyond what
+/// a slope accounts for. CHOICE: three.
+const GATE_DEVIATIONS: f64 = 3.0;
+
+/// Maximum slope of one surface in a cell, rise over distance. CHOICE: the limit of the default vehicle's slope tests,
+/// 0.35; what is steeper is a step, and its top counts.
+const MAX_SURFACE_SLOPE: f64 = 0.35;
+
+/// Smallest variance of a cell, square metres: half a millimetre. Blending cannot remove the errors that all points of
+/// a drive share.
+const MIN_VARIANCE_M2: f64 = 0.25e-6;
+
+/// The eight neighbours of a grid point, in steps.
+const NEIGHBOURS: [(i64, i64); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+
+impl ElevationMap {
+    /// Enters measured points (global, metres). One call takes all points of a frame or of a scan; the points of each
+    /// stripe are in row-major order of its image. Points beyond the map and points that are not finite are ignored.
+    ///
+    /// "The grid point having x,y coordinates closest to an edge point inherits the elevation of the edge point and its
+    /// key field is set to 'u'." Then "extrapolating the elevation of each new data point to each of its neighboring
+    /// grid points that is not itself a new data point" (§7): eight neighbours. [`crate::MapRules`] says which of
+    /// several points a cell keeps, and which neighbours get an elevation.
+    ///
+    /// CHOICE: data points are extrapolated in the order in which they first became data points.
+    pub fn insert<P: Into<MapPoint>>(&mut self, points: impl IntoIterator<Item = P>) -> Inconsistency {
+        self.update += 1;
+        let new = self.one_for_each_cell(points.into_iter().map(Into::into));
+        let mut found = Inconsistency::default();
+        for &NewData { at, point, range } in &new {
+            let index = self.index(at);
+            let before = self.cells[index];
+            if let (Rule::Mended, Some((low, high))) = (self.rules.inconsistency, before.measured) {
+                let difference = (low - point.point.z).max(point.point.z - high).max(0.0);
+                found.count += 1;
+                found.mean += difference;
+                found.largest = found.largest.max(difference);
+            }
+            let (low, high) = before.measured.unwrap_or(range);
+            let measured = Some((low.min(range.0), high.max(range.1)));
+            self.cells[index] = Cell { measured, ..self.measured_cell(&before, &point) };
+        }
+        found.mean /= f64::from(found.count.max(1));
+        match self.rules.extrapolate {
+            Rule::Paper => self.extrapolate_over_all(&new),
+            Rule::Mended => self.extrapolate_to_unmeasured(&new),
+        }
+        found
+    }
+
+    /// The point of each cell that holds new ones, in the order in which the cells got their first.
+    fn one_for_each_cell(&self, points: impl Iterator<Item = MapPoint>) -> Vec<NewData> {
+        let mut new: Vec<NewData> = Vec::new();
+        // Index into `new`, plus one; 0: no new point.
+        let mut slots = vec![0_u32; self.cells.len()];
+        for point in points {
+            if !point.point.is_finite() {
+                continue;
+            }
+            let at = self.nearest(point.point.truncate());
+            if !self.contains(at) {
+                continue;
+            }
+            let slot = &mut slots[self.index(at)];
+            if *slot == 0 {
+                new.push(NewData { at, point, range: (point.point.z, point.point.z) });
+                *slot = new.len() as u32;
+                continue;
+            }
+            let NewData { point: kept, range, .. } = &mut new[*slot as usize - 1];
+            *range = (range.0.min(point.point.z), range.1.max(point.point.z));
+            let replaces = match self.rules.several {
+                Rule::Paper => true,
+                // The pan goes from far to near and a stripe climbs what it meets: the last point of a wall is its foot.
+                Rule::Mended => point.point.z > kept.point.z,
+            };
+            if replaces {
+                *kept = point;
+            }
+        }
+        new
+    }
+
+    /// A cell that held `before`, with this new point; without the range of its measurements.
+    fn measured_cell(&self, before: &Cell, point: &MapPoint) -> Cell {
+        let z = point.point.z;
+        let new = Cell {
+            elevation: z,
+            source: ElevationSource::Measured,
+            update: self.update,
+            place: point.point.truncate(),
+            variance: (point.standard_error * point.standard_error).max(MIN_VARIANCE_M2),
+            odometer: self.odometer,
+            sight: point.sight,
+            measured: None,
+            stood: before.stood,
+        };
+        if self.rules.several == Rule::Paper || before.source != ElevationSource::Measured {
+            return new;
+        }
+        let aged = before.variance + self.ageing_variance(before);
+        let rise = new.elevation - before.elevation;
+        let by_slope = MAX_SURFACE_SLOPE * (new.place - before.place).length();
+        if rise.abs() > GATE_DEVIATIONS * (aged + new.variance).sqrt() + by_slope {
+            // There is a step in the cell, and its top decides what a wheel meets.
+            return if rise > 0.0 { new } else { Cell { update: new.update, ..*before } };
+        }
+        // The mean by inverse variances, of the place too: on a plane it stays on the plane.
+        let share = aged / (aged + new.variance);
+        Cell {
+            elevation: before.elevation + share * rise,
+            place: before.place + (new.place - before.place) * share,
+            variance: (share * new.variance).max(MIN_VARIANCE_M2),
+            sight: flatter(new.sight, before.sight),
+            ..new
+        }
+    }
+
+    /// Variance that a measurement has gained since it was made, square metres.
+    pub(crate) fn ageing_variance(&self, cell: &Cell) -> f64 {
+        let error = AGEING_M_PER_M * (self.odometer - cell.odometer);
+        error * error
+    }
+
+    /// As printed: to all neighbours that are not new data points, "even" to those measured before. The last one counts.
+    fn extrapolate_over_all(&mut self, new: &[NewData]) {
+        for NewData { at, .. } in new {
+            let elevation = self.cells[self.index(*at)].elevation;
+            for index in self.neighbours(*at) {
+                let cell = &mut self.cells[index];
+                if cell.update != self.update {
+                    let measured = cell.measured;
+                    *cell = Cell {
+                        elevation,
+                        source: ElevationSource::Extrapolated,
+                        measured,
+                        ..Cell::default()
+                    };
+                }
+            }
+        }
+    }
+
+    /// Mended: only where nothing was measured. The highest neighbour counts, for a guess must not hide a step.
+    fn extrapolate_to_unmeasured(&mut self, new: &[NewData]) {
+        let mut guesses: Vec<(usize, f64)> = Vec::new();
+        for NewData { at, .. } in new {
+            let elevation = self.cells[self.index(*at)].elevation;
+            guesses.extend(
+                self.neighbours(*at)
+                    .filter(|&index| {
+                        let source = self.cells[index].source;
+                        matches!(source, ElevationSource::Unknown | ElevationSource::Extrapolated)
+                    })
+                    .map(|index| (index, elevation)),
+            );
+        }
+        // An older guess gives way; of those of this update the highest stays.
+        for &(index, _) in &guesses {
+            self.cells[index] = Cell {
+                elevation: f64::NEG_INFINITY,
+                source: ElevationSource::Extrapolated,
+                measured: self.cells[index].measured,
+                stood: self.cells[index].stood,
+                ..Cell::default()
+            };
+        }
+        for (index, elevation) in guesses {
+            let cell = &mut self.cells[index];
+            cell.elevation = cell.elevation.max(elevation);
+        }
+    }
+
+    /// Indices of the neighbours that are on the map.
+    fn neighbours(&self, of: GridPoint) -> impl Iterator<Item = usize> + use<> {
+        let on_map = NEIGHBOURS.map(|(i, j)| {
+            let at = GridPoint { i: of.i + i, j: of.j + j };
+            self.contains(at).then(|| self.index(at))
+        });
+        on_map.into_iter().flatten()
+    }
+}
+
+/// The flatter of two lines of sight.
+pub(crate) fn flatter(a: Option<Sight>, b: Option<Sight>) -> Option<Sight> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.slope < a.slope { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}

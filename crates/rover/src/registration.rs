@@ -1,0 +1,84 @@
+//! Registration of a frame's stripes with the map: how much too high the vehicle believes to be.
+//!
+//! The near stripe meets ground that the far stripe, or a scan, measured some metres ago. The mean height of its points
+//! over that ground is the error of the vehicle's elevation relative to the map. "Although, to a degree, only relative
+//! elevations are important, error accumulation can lead to inconsistency between points taken at different frames." (§7)
+
+use glam::DVec3;
+
+use crate::elevation_estimate::Estimate;
+use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint};
+
+/// Ground must have been measured at least this way ago, metres. CHOICE: three cells. What the same stripe measured just
+/// before says nothing new.
+const MIN_WAY_M: f64 = 0.3;
+
+/// Fewest points that count. CHOICE: those of a few cells.
+const MIN_POINTS: usize = 20;
+
+/// Ground steeper than this around a point is left out: there a small shift in the plane looks like one in height. Rise
+/// over distance. CHOICE: a slope of 45 degrees.
+const MAX_SLOPE: f64 = 1.0;
+
+/// Least standard error that all points of a stripe share, metres. CHOICE: what a fifth of a pixel's row makes at the
+/// stripes of the default rig.
+const MIN_SHARED_ERROR_M: f64 = 0.005;
+
+/// Error of the vehicle's elevation relative to the map, with its variance, from points of a frame (global, metres) that
+/// were placed by that elevation. `None` if too few lie on ground that was measured long enough ago.
+///
+/// `row_error` is the standard error of a point by its row in the image, metres. On level ground the whole stripe lies in
+/// one row, so that all of its points share that error.
+pub(crate) fn elevation_error(map: &ElevationMap, points: &[DVec3], row_error: f64) -> Option<Estimate> {
+    let mut heights: Vec<f64> =
+        points.iter().filter_map(|&point| Some(point.z - old_ground(map, point)?)).collect();
+    if heights.len() < MIN_POINTS {
+        return None;
+    }
+    // The median: walls, edges and what moved into another cell do not count.
+    heights.sort_by(f64::total_cmp);
+    let median = |sorted: &[f64]| sorted[sorted.len() / 2];
+    let middle = median(&heights);
+    let mut off: Vec<f64> = heights.iter().map(|height| (height - middle).abs()).collect();
+    off.sort_by(f64::total_cmp);
+    // 1.4826 times the median deviation is the standard deviation of a normal distribution, and its median has a standard
+    // error of sqrt(pi / 2) times that of its mean.
+    let deviation = 1.4826 * median(&off);
+    let variance = std::f64::consts::FRAC_PI_2 * deviation * deviation / heights.len() as f64;
+    let shared = row_error.max(MIN_SHARED_ERROR_M);
+    Some(Estimate { elevation: middle, variance: variance + shared * shared })
+}
+
+/// Elevation of the ground at a point's place by what was measured around it some way ago: a plane through the nine cells
+/// around. `None` if its own cell was not measured then, or if the ground is too steep there.
+fn old_ground(map: &ElevationMap, point: DVec3) -> Option<f64> {
+    let at = map.nearest(point.truncate());
+    let is_old = |at: GridPoint| {
+        let cell = map.cell(at);
+        let old = cell.source == ElevationSource::Measured && map.odometer - cell.odometer >= MIN_WAY_M;
+        old.then(|| cell.place.extend(cell.elevation))
+    };
+    is_old(at)?;
+    let around = (-1..=1).flat_map(|j| (-1..=1).map(move |i| GridPoint { i: at.i + i, j: at.j + j }));
+    let near: Vec<DVec3> = around.filter_map(is_old).collect();
+    let count = near.len() as f64;
+    let mean = near.iter().sum::<DVec3>() / count;
+    let (mut xx, mut xy, mut yy, mut xz, mut yz) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for sample in &near {
+        let from = *sample - mean;
+        xx += from.x * from.x;
+        xy += from.x * from.y;
+        yy += from.y * from.y;
+        xz += from.x * from.z;
+        yz += from.y * from.z;
+    }
+    let (det, trace) = (xx * yy - xy * xy, xx + yy);
+    // Points on a line have no slope across it.
+    if near.len() < 4 || !(det > 1e-2 * trace * trace) {
+        return None;
+    }
+    let slope = [(yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det];
+    let steep = slope[0] * slope[0] + slope[1] * slope[1] > MAX_SLOPE * MAX_SLOPE;
+    let away = point - mean;
+    (!steep).then(|| mean.z + slope[0] * away.x + slope[1] * away.y)
+}

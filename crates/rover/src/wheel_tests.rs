@@ -1,0 +1,354 @@
+//! Traversability of a point, mended: the ground under wheels and belly instead of seven points.
+//!
+//! The printed tests look at the points below the wheels' centres and at one point under the belly. A rock between the
+//! centre line and a wheel's track meets none of them, and a wheel touches an edge a good part of its radius before its
+//! centre is there. Here each wheel is a disc over its width that rests on the highest of the measured points below it,
+//! and the belly is a surface. The limits are those of the printed tests.
+//!
+//! *Obstacle* is said only by measured points. *Clear* needs every cell under the vehicle to be measured, or to be a gap
+//! that [`GapRule`](crate::GapRule) lets pass with its highest possible ground. All else is *unknown*.
+
+use glam::{DVec2, DVec3};
+
+use crate::elevation_map::{ElevationMap, GridPoint};
+use crate::gap::{MapWithShadows, is_measured};
+use crate::traversability::{
+    Missing, MissingReason, RISE_ROUNDING_M, Traversability, TraversabilityRules, TraversabilityTest,
+    VehiclePart,
+};
+use crate::vehicle::Vehicle;
+
+/// Half of the eight neighbours of a grid point: each pair of neighbours is met once.
+const FORWARD_NEIGHBOURS: [(i64, i64); 4] = [(1, 0), (0, 1), (1, 1), (1, -1)];
+
+/// Rounding of a place on a border, metres: coordinates within 1e4 m have rounding errors of 2e-12 m, and a clipped point
+/// a few of these.
+const BORDER_ROUNDING_M: f64 = 1e-11;
+
+/// What is known of the ground at a grid point.
+enum Known {
+    /// A measured point, global, metres.
+    Measured(DVec3),
+    /// Ground at most this high, global, metres.
+    AtMost(DVec3),
+    Nothing(Missing),
+}
+
+/// Contact of a wheel: its hub rests on the ground at `point`.
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    hub_height: f64,
+    point: DVec3,
+}
+
+/// A wheel on the ground: its contact by measured points alone, and by all that may be there.
+struct WheelOnMap {
+    measured: Option<Contact>,
+    highest: Option<Contact>,
+    missing: Option<Missing>,
+}
+
+impl WheelOnMap {
+    /// Whether all ground under the wheel is measured or bounded.
+    fn is_known(&self) -> bool {
+        self.missing.is_none()
+    }
+}
+
+/// A rectangle on the map that a part of the vehicle stands over.
+struct Rectangle {
+    middle: DVec2,
+    forward: DVec2,
+    half_length: f64,
+    half_width: f64,
+}
+
+impl Rectangle {
+    /// Place in the rectangle's own axes, forward and left, metres. Borders belong to it, within rounding.
+    fn within(&self, place: DVec2) -> Option<DVec2> {
+        let from = place - self.middle;
+        let at = DVec2::new(from.dot(self.forward), from.dot(self.forward.perp()));
+        let [length, width] = [self.half_length, self.half_width].map(|half| half + BORDER_ROUNDING_M);
+        (at.x.abs() <= length && at.y.abs() <= width).then_some(at)
+    }
+
+    /// Points of the straight line between two points of the ground on which a wheel in this rectangle may rest: where the
+    /// line enters and leaves the rectangle, and where the wheel's rim touches it between.
+    fn highest_on_edge(&self, a: DVec3, b: DVec3, radius: f64) -> impl Iterator<Item = DVec3> + use<> {
+        let in_axes = |point: DVec3| {
+            let from = point.truncate() - self.middle;
+            DVec2::new(from.dot(self.forward), from.dot(self.forward.perp()))
+        };
+        let (from, to) = (in_axes(a), in_axes(b));
+        let along = to - from;
+        // The part of the line within both pairs of sides, as shares of it.
+        let (mut low, mut high) = (0.0_f64, 1.0_f64);
+        for (start, way, half) in [(from.x, along.x, self.half_length), (from.y, along.y, self.half_width)] {
+            if way == 0.0 {
+                if start.abs() > half {
+                    high = -1.0;
+                }
+                continue;
+            }
+            let (enter, leave) = ((-half - start) / way, (half - start) / way);
+            low = low.max(enter.min(leave));
+            high = high.min(enter.max(leave));
+        }
+        // z + sqrt(R^2 - x^2) is highest where dz/dx = x / sqrt(R^2 - x^2): at x = R m / sqrt(1 + m^2).
+        let touch = (along.x != 0.0).then(|| {
+            let slope = (b.z - a.z) / along.x;
+            (radius * slope / (1.0 + slope * slope).sqrt() - from.x) / along.x
+        });
+        let shares = [Some(low), Some(high), touch.filter(|share| (low..=high).contains(share))];
+        let inside = low <= high;
+        shares.into_iter().flatten().filter(move |_| inside).map(move |share| a + (b - a) * share)
+    }
+
+    /// Grid points whose cells the rectangle may touch.
+    fn grid_points(&self, map: &ElevationMap) -> impl Iterator<Item = GridPoint> + use<> {
+        let left = self.forward.perp();
+        let reach = self.forward.abs() * self.half_length + left.abs() * self.half_width;
+        // A measured point lies within half a cell of its grid point, and a line may come from the cell beside.
+        let reach = reach + DVec2::splat(1.5 * map.size().spacing);
+        let (low, high) = (map.nearest(self.middle - reach), map.nearest(self.middle + reach));
+        (low.j..=high.j).flat_map(move |j| (low.i..=high.i).map(move |i| GridPoint { i, j }))
+    }
+}
+
+impl TraversabilityRules {
+    /// Tests the global point `front` by wheels and belly. Arguments as [`TraversabilityRules::classify`].
+    ///
+    /// CHOICE: wheels are upright, at the places that they have on level ground, as the paper's points are.
+    ///
+    /// CHOICE: ground that was never measured, but lies in the circle in which the vehicle could turn on the spot now or
+    /// before, is taken to be the plane of its wheels then: the rear wheels of the imaginary vehicle are there, beside the
+    /// real one, when it looks to the side. It is no elevation of the map, so that none is read from it.
+    pub(crate) fn classify_wheels(
+        &self,
+        shadows: &MapWithShadows,
+        vehicle: &Vehicle,
+        front: DVec2,
+        forward: DVec2,
+    ) -> Traversability {
+        let Vehicle { wheelbase, track, wheel_radius, wheel_width, clearance, .. } = *vehicle;
+        let (left, map) = (forward.perp(), shadows.map());
+        let ground = Ground { rules: self, map, shadows };
+        let wheel = |part, behind: f64, aside: f64| {
+            let middle = front - forward * behind + left * aside;
+            ground.wheel(
+                part,
+                &Rectangle { middle, forward, half_length: wheel_radius, half_width: 0.5 * wheel_width },
+            )
+        };
+        let axle = |part, behind: f64| [0.5, -0.5].map(|side| wheel(part, behind, side * track));
+        let front_wheels = axle(VehiclePart::FrontWheel, 0.0);
+        let rear_wheels = axle(VehiclePart::RearWheel, wheelbase);
+        let slopes = [
+            (TraversabilityTest::Front, pair_slope(&front_wheels), self.slopes.front),
+            (TraversabilityTest::Rear, pair_slope(&rear_wheels), self.slopes.rear),
+            (
+                TraversabilityTest::Length,
+                length_slope(&front_wheels, &rear_wheels, forward),
+                self.slopes.length,
+            ),
+        ];
+        for (test, slope, limit) in &slopes {
+            if slope.certain.is_some_and(|[rise, run]| rise > limit * run + RISE_ROUNDING_M) {
+                return Traversability::Obstacle(*test);
+            }
+        }
+        let wheels = || front_wheels.iter().chain(&rear_wheels);
+        if let Some(missing) = wheels().find_map(|wheel| wheel.missing) {
+            return Traversability::Unknown(missing);
+        }
+        // All wheels are known from here on. What may stand in gaps may still be too high.
+        for (test, slope, limit) in &slopes {
+            if slope.possible.is_some_and(|[rise, run]| rise > limit * run + RISE_ROUNDING_M) {
+                let part = match test {
+                    TraversabilityTest::Rear => VehiclePart::RearWheel,
+                    _ => VehiclePart::FrontWheel,
+                };
+                return Traversability::Unknown(Missing {
+                    part,
+                    place: front,
+                    reason: MissingReason::MayHide,
+                });
+            }
+        }
+
+        let hubs: Vec<DVec3> = wheels()
+            .zip([(0.0, 0.5), (0.0, -0.5), (wheelbase, 0.5), (wheelbase, -0.5)])
+            .filter_map(|(wheel, (behind, side))| {
+                let place = front - forward * behind + left * (side * track);
+                Some(place.extend(wheel.highest?.hub_height))
+            })
+            .collect();
+        let [a, b, c, d] = hubs[..] else {
+            return Traversability::Unknown(Missing {
+                part: VehiclePart::FrontWheel,
+                place: front,
+                reason: MissingReason::NotMeasured,
+            });
+        };
+        // The plane of least squares through the corners of a rectangle.
+        let middle = (a + b + c + d) * 0.25;
+        let along = (a.z + b.z - c.z - d.z) / (2.0 * wheelbase);
+        let across = (a.z - b.z + c.z - d.z) / (2.0 * track);
+        // The underside lies `wheel_radius - clearance` below the hubs, measured square to their plane.
+        let drop = (wheel_radius - clearance) * (1.0 + along * along + across * across).sqrt();
+        let belly = Rectangle {
+            middle: middle.truncate(),
+            forward,
+            half_length: 0.5 * wheelbase,
+            half_width: 0.5 * (track - wheel_width).max(0.0),
+        };
+        let underside = |at: DVec2| middle.z - drop + along * at.x + across * at.y;
+        let mut missing = None;
+        for point in belly.grid_points(map) {
+            match ground.under_belly(point) {
+                Known::Measured(sample) => {
+                    // Points within the rectangle are enough: the belly is far wider than a cell.
+                    if belly.within(sample.truncate()).is_some_and(|at| sample.z >= underside(at)) {
+                        return Traversability::Obstacle(TraversabilityTest::Belly);
+                    }
+                }
+                Known::AtMost(top) => {
+                    if belly.within(top.truncate()).is_some_and(|at| top.z >= underside(at)) {
+                        let (part, place) = (VehiclePart::Belly, top.truncate());
+                        missing = missing.or(Some(Missing { part, place, reason: MissingReason::MayHide }));
+                    }
+                }
+                Known::Nothing(reason) => {
+                    if belly.within(reason.place).is_some() {
+                        missing = missing.or(Some(reason));
+                    }
+                }
+            }
+        }
+        missing.map_or(Traversability::Clear, Traversability::Unknown)
+    }
+}
+
+/// The ground as the map knows it.
+struct Ground<'a> {
+    rules: &'a TraversabilityRules,
+    map: &'a ElevationMap,
+    shadows: &'a MapWithShadows<'a>,
+}
+
+impl Ground<'_> {
+    /// A wheel at rest in its rectangle.
+    fn wheel(&self, part: VehiclePart, rectangle: &Rectangle) -> WheelOnMap {
+        let mut wheel = WheelOnMap { measured: None, highest: None, missing: None };
+        let radius = rectangle.half_length;
+        let rest_on = |point: DVec3, kept: &mut Option<Contact>| {
+            let Some(at) = rectangle.within(point.truncate()) else { return };
+            let hub_height = point.z + (radius * radius - at.x * at.x).max(0.0).sqrt();
+            if kept.is_none_or(|kept| hub_height > kept.hub_height) {
+                *kept = Some(Contact { hub_height, point });
+            }
+        };
+        for point in rectangle.grid_points(self.map) {
+            match self.under_wheel(part, point) {
+                Known::Measured(sample) => {
+                    rest_on(sample, &mut wheel.measured);
+                    rest_on(sample, &mut wheel.highest);
+                    // Between neighbouring points the ground is taken to be straight.
+                    for (i, j) in FORWARD_NEIGHBOURS {
+                        let beside = GridPoint { i: point.i + i, j: point.j + j };
+                        if !is_measured(self.map, beside) {
+                            continue;
+                        }
+                        if let Some(other) = self.map.sample(beside) {
+                            for on_edge in rectangle.highest_on_edge(sample, other, radius) {
+                                rest_on(on_edge, &mut wheel.measured);
+                                rest_on(on_edge, &mut wheel.highest);
+                            }
+                        }
+                    }
+                }
+                Known::AtMost(top) => rest_on(top, &mut wheel.highest),
+                Known::Nothing(missing) => {
+                    if rectangle.within(missing.place).is_some() {
+                        wheel.missing = wheel.missing.or(Some(missing));
+                    }
+                }
+            }
+        }
+        wheel
+    }
+
+    fn under_wheel(&self, part: VehiclePart, point: GridPoint) -> Known {
+        self.at(part, point, || match self.rules.gaps {
+            Some(gaps) => gaps.upper_estimate(self.shadows, point),
+            // Without the rule, a guess counts as ground, as printed.
+            None => self.map.elevation(point),
+        })
+    }
+
+    /// Under the belly a gap may be of any width, if nothing high can hide in it: no wheel sinks into it.
+    fn under_belly(&self, point: GridPoint) -> Known {
+        self.at(VehiclePart::Belly, point, || match self.rules.gaps {
+            Some(gaps) => self.shadows.ceiling(point).or_else(|| gaps.upper_estimate(self.shadows, point)),
+            None => self.map.elevation(point),
+        })
+    }
+
+    fn at(&self, part: VehiclePart, point: GridPoint, upper: impl Fn() -> Option<f64>) -> Known {
+        let map = self.map;
+        if is_measured(map, point)
+            && let Some(sample) = map.sample(point)
+        {
+            return Known::Measured(sample);
+        }
+        let place = map.place(point);
+        if let Some(z) = map.cell(point).stood {
+            return Known::AtMost(place.extend(z));
+        }
+        if let Some(top) = upper() {
+            return Known::AtMost(place.extend(top));
+        }
+        let reason = if map.contains(point) { MissingReason::NotMeasured } else { MissingReason::BeyondMap };
+        Known::Nothing(Missing { part, place, reason })
+    }
+}
+
+/// Slope of two supports, as rise and run in metres.
+struct PairSlope {
+    /// By measured points: at least this much. `None` if the lower one may be higher than it looks.
+    certain: Option<[f64; 2]>,
+    /// With all that may be there.
+    possible: Option<[f64; 2]>,
+}
+
+/// Slope between the contacts of an axle's wheels.
+fn pair_slope(wheels: &[WheelOnMap; 2]) -> PairSlope {
+    let between = |a: DVec3, b: DVec3| [(a.z - b.z).abs(), (a - b).truncate().length()];
+    let certain = match [wheels[0].measured, wheels[1].measured] {
+        [Some(a), Some(b)] => {
+            let lower = usize::from(b.point.z < a.point.z);
+            wheels[lower].is_known().then(|| between(a.point, b.point))
+        }
+        _ => None,
+    };
+    let possible = match [wheels[0].highest, wheels[1].highest] {
+        [Some(a), Some(b)] => Some(between(a.point, b.point)),
+        _ => None,
+    };
+    PairSlope { certain, possible }
+}
+
+/// Slope between the middles of the two axles' contacts, along the vehicle.
+fn length_slope(front: &[WheelOnMap; 2], rear: &[WheelOnMap; 2], forward: DVec2) -> PairSlope {
+    let middle = |wheels: &[WheelOnMap; 2], of: fn(&WheelOnMap) -> Option<Contact>| {
+        Some((of(&wheels[0])?.point + of(&wheels[1])?.point) * 0.5)
+    };
+    let between = |a: DVec3, b: DVec3| [(a.z - b.z).abs(), (a - b).truncate().dot(forward).abs()];
+    let measured = middle(front, |wheel| wheel.measured).zip(middle(rear, |wheel| wheel.measured));
+    let certain = measured.and_then(|(a, b)| {
+        let lower = if b.z < a.z { rear } else { front };
+        lower.iter().all(WheelOnMap::is_known).then(|| between(a, b))
+    });
+    let highest = middle(front, |wheel| wheel.highest).zip(middle(rear, |wheel| wheel.highest));
+    PairSlope { certain, possible: highest.map(|(a, b)| between(a, b)) }
+}
