@@ -76,7 +76,7 @@ pub struct LabelledVector {
 /// // An obstacle at 2 m next to a visibility limit at 5 m. The difference of 3 m is large, so that the vector is no
 /// // obstacle, and it is not small, so that the vector is no visibility limit either.
 /// let end = |radius, label| SectorEnd {
-///     direction: 0.0, radius, point: DVec2::new(radius, 0.0), label, failed: None,
+///     direction: 0.0, radius, point: DVec2::new(radius, 0.0), label, failed: None, missing: None,
 /// };
 /// let sectors = vec![end(2.0, Label::Obstacle), end(5.0, Label::Visibility)];
 /// let obstacles = ObstacleMap { centre: DVec2::ZERO, sectors };
