@@ -9,8 +9,8 @@ use raypencil::judge::{Class, JudgeShare};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 use crate::parsers::{
-    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, rule, shard, switch,
-    threshold,
+    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, record, rule, shard,
+    switch, threshold,
 };
 
 /// Simulates a Mars rover's structured-light vision system with two independent renderers and compares every ray.
@@ -258,6 +258,14 @@ pub(crate) struct Drive {
     /// inconsistency, gap, settle, tests; start also takes footprint. May be repeated.
     #[arg(long = "rule", value_name = "NAME=paper|mended", value_parser = rule)]
     pub(crate) rules: Vec<(String, String)>,
+
+    /// Record for other programs: images (png, npy), points, maps, or all. Poses and sectors always are.
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = record)]
+    pub(crate) record: Vec<String>,
+
+    /// Take the stripes from DIR/stripes.npy, as a recording has them, instead of the rover's own extraction.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) stripes: Option<PathBuf>,
 
     /// Renderer of the rover's images.
     #[arg(long, value_name = "NAME", default_value = DRIVE_WITH)]

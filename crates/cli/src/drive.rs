@@ -1,11 +1,15 @@
 //! Command `raypencil drive`: drives the rover over a ground, with one renderer or with two.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
-use raypencil::drive::{self, DriveJob, DriveProgress, drive_json, drive_screen, write_drive};
+use raypencil::drive::{
+    self, DriveExtras, DriveJob, DriveProgress, RecordContents, Recording, StripeFile, drive_json,
+    drive_screen, write_drive,
+};
 use raypencil::io::{DriveSetup, WaypointFrame, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
@@ -20,7 +24,7 @@ impl FrameBar {
     fn new() -> Self {
         let bar = ProgressBar::new(0);
         if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos}/{len} frames  {elapsed} elapsed, {eta} left")
+            ProgressStyle::with_template("{bar:30} {pos}/{len} frames{msg}  {elapsed} elapsed, {eta} left")
         {
             bar.set_style(style);
         }
@@ -33,6 +37,11 @@ impl DriveProgress for FrameBar {
     fn frames(&self, done: u64, planned: u64) {
         self.0.set_length(planned);
         self.0.set_position(done);
+        self.0.set_message("");
+    }
+
+    fn scan(&self, done: u64, planned: u64) {
+        self.0.set_message(format!(", scan: {done}/{planned}"));
     }
 }
 
@@ -72,6 +81,12 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     for (name, word) in &command.rules {
         arguments.push_str(&format!(" --rule {name}={word}"));
     }
+    if !command.record.is_empty() {
+        arguments.push_str(&format!(" --record {}", command.record.join(",")));
+    }
+    if let Some(folder) = &command.stripes {
+        arguments.push_str(&format!(" --stripes {}", folder.display()));
+    }
     if command.both {
         arguments.push_str(" --both");
     }
@@ -91,10 +106,19 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
     };
+    let stripes = command.stripes.as_deref().map(StripeFile::read).transpose()?;
+    let mut contents = RecordContents::default();
+    for word in &command.record {
+        contents.add(word).expect("checked when it was parsed");
+    }
+    let extras = DriveExtras {
+        extractor: stripes.map(|file| Arc::new(file) as _),
+        recording: Some(Recording::begin(&folder, contents)?),
+    };
     drop(spinner);
 
     let renderers: Vec<_> = contenders.iter().map(|contender| contender.renderer.as_ref()).collect();
-    let run = drive::drive(&job, &renderers, &FrameBar::new()).map_err(trouble)?;
+    let run = drive::drive_with(&job, &renderers, extras, &FrameBar::new()).map_err(trouble)?;
     let spinner = Spinner::new();
     write_drive(&job, &run, &folder, &spinner)?;
     drop(spinner);

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use raypencil::campaign::{PartName, Shard};
 use raypencil::cast::rays_from_bytes;
+use raypencil::drive::RecordContents;
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::rover::RULE_NAMES;
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
@@ -122,6 +123,12 @@ pub(crate) fn rule(text: &str) -> Result<(String, String), String> {
         ("start", _) => Err("expected start=paper, start=mended or start=footprint".into()),
         _ => Err(format!("expected {name}=paper or {name}=mended")),
     }
+}
+
+/// A word of `--record`.
+pub(crate) fn record(text: &str) -> Result<String, String> {
+    let checked = RecordContents::default().add(text);
+    checked.map(|()| text.to_string()).map_err(|words| format!("expected {words}"))
 }
 
 /// `N` numbers separated by commas.

@@ -16,7 +16,9 @@
 //!    `noise_level`: [`NoiseLevel`]s for its table;
 //!    `sensitivity`, `pointing`: [`pointing_table`], blur against pointing errors;
 //! 6. `camera_view`, `animation_frame`: pictures of a frame;
-//! 7. `renderer_drive`, `run`: [`drive()`] itself and its [`DriveRun`];
+//! 7. `recording`: [`Recording`], images, points, poses and maps for other people's programs; `stripe_file`:
+//!    [`StripeFile`], their stripes in place of the rover's;
+//!    `renderer_drive`, `run`: [`drive()`] itself and its [`DriveRun`];
 //! 8. `counts`, `facts`, `screen`, `summary`: [`drive_screen`] for people and [`drive_json`] for programs;
 //! 9. `figures`, `animation`, `maps`, `page`, `folder`: [`write_drive`], the folder with all files.
 //!
@@ -59,12 +61,14 @@ mod noise_level;
 mod page;
 mod pointing;
 mod recorded_exposure;
+mod recording;
 mod renderer_drive;
 mod run;
 mod screen;
 mod sector_truth;
 mod sensitivity;
 mod shadow_map;
+mod stripe_file;
 mod summary;
 mod sun;
 mod swept_ground;
@@ -82,10 +86,12 @@ pub use maps::ply::{MarkedPoint, write_ply};
 pub use maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
 pub use noise_level::NoiseLevel;
 pub use pointing::pointing_table;
-pub use run::{DriveProgress, DriveRun, drive};
+pub use recording::{RecordContents, Recording};
+pub use run::{DriveExtras, DriveProgress, DriveRun, drive, drive_with};
 pub use screen::drive_screen;
 pub use sector_truth::{Missed, NotFound, SectorTruth};
 pub use sensitivity::StripeSensitivity;
+pub use stripe_file::StripeFile;
 pub use summary::drive_json;
 
 /// The README's example, compiled.

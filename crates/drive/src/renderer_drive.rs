@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use raypencil_rover::{CameraImage, Drive, DriveFrame, DrivePlan, ElevationMap, Exposure};
+use raypencil_rover::{CameraImage, Drive, DriveFrame, DrivePlan, ElevationMap, Exposure, StripeExtractor};
 use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
 use raypencil_sensor::FixedPattern;
 use raypencil_terrain::HeightIndex;
@@ -66,6 +66,12 @@ impl<'a> RendererDrive<'a> {
         })
     }
 
+    /// The same drive with another extraction of stripes.
+    pub(crate) fn with_extractor(self, extractor: Option<&Arc<dyn StripeExtractor>>) -> Self {
+        let Some(extractor) = extractor else { return self };
+        Self { drive: self.drive.with_extractor(Arc::clone(extractor)), ..self }
+    }
+
     /// The same drive, which also keeps what its stripes swept.
     pub(crate) fn keeping_swept(self) -> Self {
         let DrivePlan { map, route, .. } = &self.job.plan;
@@ -78,11 +84,16 @@ impl<'a> RendererDrive<'a> {
         self.swept.as_ref()
     }
 
-    /// Next frame; `None` at the end of the route. `record`: keep records of its exposures.
+    /// Next frame; `None` at the end of the route. `record`: keep records of its exposures. `look` sees every image that the
+    /// stripe extraction gets.
     ///
     /// # Errors
     /// As [`Drive::step`].
-    pub(crate) fn step(&mut self, record: bool) -> Result<Option<ExposedFrame>, SceneError> {
+    pub(crate) fn step(
+        &mut self,
+        record: bool,
+        look: &mut dyn FnMut(&Exposure, &CameraImage),
+    ) -> Result<Option<ExposedFrame>, SceneError> {
         let (mut recorded, mut images, mut room) = (Vec::new(), Vec::new(), MAX_LIT_PIXELS);
         let (job, renderer) = (self.job, &self.renderer);
         let (exposures, exposing, pattern) = (&mut self.exposures, &mut self.exposing, &mut self.pattern);
@@ -118,8 +129,11 @@ impl<'a> RendererDrive<'a> {
             if exposure.step.is_none() {
                 images.push((exposure.beam, numbers.clone()));
             }
+            let image =
+                if job.is_flux_only() { CameraImage::Flux(flux) } else { CameraImage::Numbers(numbers) };
             *exposing += start.elapsed();
-            if job.is_flux_only() { CameraImage::Flux(flux) } else { CameraImage::Numbers(numbers) }
+            look(&exposure, &image);
+            image
         };
         let start = Instant::now();
         let frame = self.drive.step(renderer, &mut camera_pipeline)?;

@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use raypencil_chassis::GroundFaces;
+use raypencil_files::FolderError;
 use raypencil_report::Drawing;
-use raypencil_rover::{Detection, DriveFrame, ElevationMap, LabelledVector, ObstacleMap};
-use raypencil_scene::{Pose, Renderer, Silent, Stage};
+use raypencil_rover::{Detection, DriveFrame, ElevationMap, LabelledVector, ObstacleMap, StripeExtractor};
+use raypencil_scene::{Pose, Renderer, SceneError, Silent, Stage};
 use raypencil_survey::{Warning, Whereabouts, plan as survey_plan};
 
 use crate::animation_frame::{AnimationFrame, HALF_SIDE_PX, MapThumbnail};
@@ -15,6 +16,7 @@ use crate::differences::Differences;
 use crate::error::DriveError;
 use crate::job::DriveJob;
 use crate::maps::ply::MarkedPoint;
+use crate::recording::Recording;
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sector_truth::{SectorTruth, TrueGround};
 use crate::sun::Sun;
@@ -33,11 +35,25 @@ const FIGURE_VIEW_SIDE_PX: u32 = 640;
 pub trait DriveProgress: Sync {
     /// `done` frames of `planned` are done.
     fn frames(&self, done: u64, planned: u64);
+
+    /// `done` stripes of the `planned` ones of a vertical scan are done. The frame of the scan goes on.
+    fn scan(&self, done: u64, planned: u64);
 }
 
 /// Discards them.
 impl DriveProgress for Silent {
     fn frames(&self, _done: u64, _planned: u64) {}
+
+    fn scan(&self, _done: u64, _planned: u64) {}
+}
+
+/// What may be added to a drive.
+#[derive(Debug, Default)]
+pub struct DriveExtras {
+    /// Extraction of stripes in place of the rover's own, for all renderers.
+    pub extractor: Option<Arc<dyn StripeExtractor>>,
+    /// Recording of the first renderer's drive.
+    pub recording: Option<Recording>,
 }
 
 /// Result of a drive.
@@ -125,13 +141,36 @@ pub fn drive(
     renderers: &[&dyn Renderer],
     progress: &dyn DriveProgress,
 ) -> Result<DriveRun, DriveError> {
+    drive_with(job, renderers, DriveExtras::default(), progress)
+}
+
+/// The same with extras: another extraction of stripes, and a recording.
+///
+/// # Errors
+/// As [`drive`]; [`DriveError::Folder`] for a recording that cannot be written.
+///
+/// # Panics
+/// As [`drive`].
+pub fn drive_with(
+    job: &DriveJob,
+    renderers: &[&dyn Renderer],
+    extras: DriveExtras,
+    progress: &dyn DriveProgress,
+) -> Result<DriveRun, DriveError> {
+    let DriveExtras { extractor, mut recording } = extras;
     assert!((1..=2).contains(&renderers.len()), "{} renderers", renderers.len());
     let planned = job.frames()?;
     let animation_step = planned.div_ceil(MAX_ANIMATION_FRAMES).max(1);
     let sun = Sun::of(job)?;
-    let mut first = RendererDrive::new(job, renderers[0], sun.as_ref())?.keeping_swept();
-    let mut second =
-        renderers.get(1).map(|&renderer| RendererDrive::new(job, renderer, sun.as_ref())).transpose()?;
+    let start = |at: usize| -> Result<Option<RendererDrive>, SceneError> {
+        let Some(&renderer) = renderers.get(at) else { return Ok(None) };
+        let drive = RendererDrive::new(job, renderer, sun.as_ref())?;
+        Ok(Some(drive.with_extractor(extractor.as_ref())))
+    };
+    let mut first = start(0)?.expect("there is a renderer").keeping_swept();
+    let mut second = start(1)?;
+    let stripes = u64::from(job.plan.sweep.steps);
+    progress.frames(0, planned);
     let mut differences = second.as_ref().map(|_| Differences::default());
     let (mut frames, mut points, mut animation) = (Vec::new(), Vec::new(), Vec::new());
     let (mut obstacles, mut edge_points) = (None, 0);
@@ -142,9 +181,16 @@ pub fn drive(
     let (mut comparing, mut drawing) = (Duration::ZERO, Duration::ZERO);
 
     loop {
-        let exposed = first.step(second.is_some())?;
+        let exposed = first.step(second.is_some(), &mut |exposure, image| {
+            if let Some(step) = exposure.step {
+                progress.scan(u64::from(step), stripes);
+            }
+            if let Some(recording) = &mut recording {
+                recording.image(job, exposure, image);
+            }
+        })?;
         if let (Some(second), Some(differences)) = (&mut second, &mut differences) {
-            let other = second.step(true)?;
+            let other = second.step(true, &mut |_, _| {})?;
             let start = Instant::now();
             if let (Some(exposed), Some(other)) = (&exposed, &other) {
                 differences.add_exposures(job, sun.as_ref(), &exposed.recorded, &other.recorded);
@@ -156,6 +202,9 @@ pub fn drive(
 
         let frame = &mut exposed.frame;
         let believed = frame.believed;
+        if let Some(recording) = &mut recording {
+            recording.frame(job, frame, first.map()).map_err(FolderError::from)?;
+        }
         edge_points += frame.measured.len() as u64;
         let room = MAX_EDGE_POINTS - points.len();
         points.extend(frame.measured.iter().take(room).map(|measured| MarkedPoint {
@@ -180,12 +229,16 @@ pub fn drive(
         }
         drawing += start.elapsed();
         let index = frame.index;
-        frames.push(DriveFrame { measured: Vec::new(), obstacles: None, ..*frame });
+        let edges = Vec::new();
+        frames.push(DriveFrame { edges, measured: Vec::new(), obstacles: None, ..*frame });
         let pose = frame.stance.pose();
         last = Some((exposed, pose));
         progress.frames(index + 1, planned);
     }
 
+    if let Some(recording) = recording {
+        recording.finish(job).map_err(FolderError::from)?;
+    }
     // There is always a first frame: its stance was found when the drive was made.
     let (exposed, pose) = last.ok_or(DriveError::Frames)?;
     let start = Instant::now();

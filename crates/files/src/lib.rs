@@ -8,6 +8,7 @@
 //! error                          FileError: the file, the place in it, what was found and what was expected
 //! limits, bytes                  how much a file may ask for, and reading one up to a limit
 //! atomic, folder, sha256         writing a file whole, output folders, digests
+//! growing_file                   a file or table that grows for a while and is seen only when it is complete
 //! values -> shape                cells as a file stores them, and the size that a header claims
 //! npy, pfm                       arrays of NumPy and portable float maps
 //! rays                           rays of no sensor, from NPY and CSV
@@ -41,6 +42,7 @@ mod channels;
 mod error;
 mod exr;
 mod folder;
+mod growing_file;
 mod limits;
 mod npy;
 mod pfm;
@@ -54,6 +56,7 @@ pub use channels::{Channel, Channels, add_ray_sets, read_channels, read_listed_c
 pub use error::{Fault, FileError, Problem, shortened};
 pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map};
 pub use folder::{FolderError, begin_output_folder, create_folder};
+pub use growing_file::{GrowingFile, NpyRows};
 pub use limits::Limits;
 pub use npy::{
     ArrayNumber, Numbers, npy_from_bytes, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,

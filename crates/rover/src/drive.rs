@@ -9,8 +9,9 @@ use raypencil_terrain::HeightIndex;
 
 use crate::drive_plan::{DrivePlan, ExposureMode, PointLookup};
 use crate::elevation_map::Inconsistency;
+use crate::local_mapper::{LocalMapper, Mapping, MissionStart};
 use crate::localisation::{Localisation, LocalisationReading};
-use crate::mapper::{KnownNoise, MapUpdate, Mapper, StripePoint};
+use crate::mapper::{KnownNoise, MapUpdate, StripePoint};
 use crate::navigator_map::{LabelledVector, navigator_map};
 use crate::obstacle_map::{ObstacleMap, obstacle_map_due};
 use crate::rig::Pan;
@@ -18,32 +19,24 @@ use crate::route::{Route, RoutePose};
 use crate::rules::Rule;
 use crate::scan::ScanReason;
 use crate::stripe::EdgePoint;
+use crate::stripe_extractor::{CameraImage, Exposure, OwnExtraction, StripeExtractor};
 use crate::triangulation::{SheetPlane, Triangulation, TriangulationTable};
 use crate::true_vehicle::TrueVehicle;
 use crate::vehicle::Stance;
 
-/// Identity of an exposure.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Exposure {
-    /// Index of the frame.
-    pub frame: u64,
-    /// Index of the sweep position in a vertical scan; otherwise `None`.
-    pub step: Option<u32>,
-    /// Index of the lit beam. `None`: all beams.
-    pub beam: Option<usize>,
-}
-
-/// Image that the camera passes to the stripe extraction.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CameraImage {
-    /// Flux per pixel, watts: the camera has no steps 6 to 8.
-    Flux(Image<f64>),
-    /// Digital numbers. They may be negative after subtraction of an unlit image.
-    Numbers(Image<i32>),
-}
-
 /// Imaging pipeline of the camera, steps 6 to 8 (§3): from the ideal image, in watts per pixel, to the camera's image.
 pub type CameraPipeline<'a> = dyn FnMut(Exposure, Image<f64>) -> CameraImage + 'a;
+
+/// Edge of a stripe in a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundEdge {
+    /// Index of the sweep position in a vertical scan; otherwise `None`.
+    pub step: Option<u32>,
+    /// Index of the beam.
+    pub beam: usize,
+    /// Edge in the image.
+    pub edge: EdgePoint,
+}
 
 /// Measured point of a stripe.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,6 +66,8 @@ pub struct DriveFrame {
     pub sensed: LocalisationReading,
     /// Reason for a scan in this frame; `None`: no scan.
     pub scan: Option<ScanReason>,
+    /// Edges of the stripes, also those that gave no point.
+    pub edges: Vec<FoundEdge>,
     /// Number of measured points.
     pub points: usize,
     /// Number of image columns that were left out: with [`ExposureMode::Together`], those that hold light but not
@@ -129,13 +124,15 @@ pub struct DriveFrame {
 /// assert!(frames[0].measured.iter().all(|measured| (measured.point.x - 2.996).abs() < 0.049));
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Drive {
     plan: DrivePlan,
     mesh: Arc<Mesh>,
     true_vehicle: TrueVehicle,
     localisation: Localisation,
-    mapper: Option<Mapper>,
+    extractor: Arc<dyn StripeExtractor>,
+    mapping: Mapping,
+    mapper: Option<Box<dyn LocalMapper>>,
     frame: u64,
     last_scan: Option<f64>,
     inconsistency: Inconsistency,
@@ -164,8 +161,11 @@ impl Drive {
         }
         true_vehicle.check_route(&plan.route)?;
         let tables = plan.rig.beams.iter().map(|_| OnceLock::new()).collect();
+        let extractor = OwnExtraction { extraction: plan.extraction, beams: plan.rig.beams.len() };
         Ok(Self {
             plan,
+            extractor: Arc::new(extractor),
+            mapping: Mapping::own(),
             mesh,
             true_vehicle,
             localisation,
@@ -177,9 +177,22 @@ impl Drive {
         })
     }
 
+    /// The same drive with another extraction of stripes.
+    pub fn with_extractor(self, extractor: Arc<dyn StripeExtractor>) -> Self {
+        Self { extractor, ..self }
+    }
+
+    /// The same drive with another mapping, which is made in the first frame.
+    pub fn with_mapping(
+        self,
+        make: impl Fn(&MissionStart) -> Box<dyn LocalMapper> + Send + Sync + 'static,
+    ) -> Self {
+        Self { mapping: Mapping::new(make), ..self }
+    }
+
     /// Elevation map and estimated pose; `None` before the first frame.
-    pub fn mapper(&self) -> Option<&Mapper> {
-        self.mapper.as_ref()
+    pub fn mapper(&self) -> Option<&dyn LocalMapper> {
+        self.mapper.as_deref()
     }
 
     /// Plan of the drive.
@@ -209,39 +222,39 @@ impl Drive {
         let sensed = self.localisation.read(&stance, &self.true_vehicle.heights);
         let rule = self.plan.scans;
         let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.inconsistency));
-        let (mut measured, mut columns_left_out) = (Vec::new(), 0);
+        let mut seen = Seen::default();
         if scan.is_some() {
             for (step, pan) in self.plan.sweep.pans().enumerate() {
                 let position = Some((step as u32, pan));
-                let (points, columns) = self.measure_stripes(renderer, pipeline, &stance, index, position)?;
-                measured.extend(points);
-                columns_left_out += columns;
+                self.look(renderer, pipeline, &stance, index, position, &mut seen)?;
             }
         } else {
-            (measured, columns_left_out) = self.measure_stripes(renderer, pipeline, &stance, index, None)?;
+            self.look(renderer, pipeline, &stance, index, None, &mut seen)?;
         }
+        let Seen { edges, measured, columns_left_out } = seen;
 
         let DrivePlan { vehicle, map, map_rules, errors, .. } = self.plan;
         let position = |beam: usize| self.plan.rig.beams[beam].vehicle_from_sensor.position;
         // Sensors turn about their own origins: a panned one is where it was.
         let camera = self.plan.rig.camera.vehicle_from_sensor.position;
-        let points = measured.iter().map(|measured| StripePoint {
+        let stripe_point = |measured: &MeasuredPoint| StripePoint {
             point: measured.point,
             standard_error: measured.standard_error,
             seen_from: Some([camera, position(measured.beam)]),
-        });
+        };
+        let points = measured.iter().map(stripe_point).collect();
         let noise = KnownNoise { attitude: errors.attitude_noise, proximity: errors.proximity_noise };
         // CHOICE: the first elevation is the true one.
-        let mapper = self.mapper.get_or_insert_with(|| {
-            Mapper::with_rules(vehicle, map, map_rules, &sensed, stance.position.z).with_noise(noise)
-        });
+        let elevation = stance.position.z;
+        let start = || MissionStart { vehicle, size: map, rules: map_rules, noise, sensed, elevation };
+        let mapper = self.mapper.get_or_insert_with(|| self.mapping.start(&start()));
         let update = if scan.is_some() {
             self.last_scan = Some(place.driven);
             // A scan also corrects the elevations that it contradicts.
             self.inconsistency = Inconsistency::default();
-            mapper.update_from_scan(&sensed, points, rule.is_some_and(|rule| rule.clear_map))
+            mapper.scan(&sensed, points, rule.is_some_and(|rule| rule.clear_map))
         } else {
-            let update = mapper.update(&sensed, points);
+            let update = mapper.frame(&sensed, points);
             self.inconsistency = update.inconsistency;
             update
         };
@@ -260,6 +273,7 @@ impl Drive {
             stance,
             sensed,
             scan,
+            edges,
             points,
             columns_left_out,
             measured,
@@ -269,16 +283,16 @@ impl Drive {
         }))
     }
 
-    /// Points of the stripes that the camera sees, beam by beam, in row-major order of the image. The second value is
-    /// the number of image columns that were left out. `scan` holds the index and the angles of a scan position.
-    fn measure_stripes(
+    /// Adds the stripes that the camera sees to `seen`. `scan` holds the index and the angles of a scan position.
+    fn look(
         &self,
         renderer: &dyn Renderer,
         pipeline: &mut CameraPipeline,
         stance: &Stance,
         frame: u64,
         scan: Option<(u32, Pan)>,
-    ) -> Result<(Vec<MeasuredPoint>, usize), SceneError> {
+        seen: &mut Seen,
+    ) -> Result<(), SceneError> {
         let plan = &self.plan;
         let rig = scan.map_or_else(|| plan.rig.clone(), |(_, pan)| plan.rig.panned(pan));
         let mesh = Arc::clone(&self.mesh);
@@ -290,53 +304,53 @@ impl Drive {
             let expected = format!("{}, one for each beam", rig.beams.len());
             return Err(SceneError::new(renderer.name(), given, expected));
         }
-        let step = scan.map(|(step, _)| step);
-        let exposure = |beam| Exposure { frame, step, beam };
         // Steps 6 to 9.
-        let mut columns_left_out = 0;
-        let stripes = match plan.exposures {
+        let step = scan.map(|(step, _)| step);
+        let first = seen.edges.len();
+        let exposed: Vec<(Option<usize>, Image<f64>)> = match plan.exposures {
             ExposureMode::InTurn => {
-                let images = flux.into_iter().enumerate();
-                images
-                    .map(|(beam, ideal)| match pipeline(exposure(Some(beam)), ideal) {
-                        CameraImage::Flux(image) => plan.extraction.edges(&image),
-                        CameraImage::Numbers(image) => plan.extraction.edges(&image),
-                    })
-                    .collect()
+                flux.into_iter().enumerate().map(|(beam, image)| (Some(beam), image)).collect()
             }
-            ExposureMode::Together => {
-                let mut images = flux.into_iter();
-                let Some(mut sum) = images.next() else { return Ok((Vec::new(), 0)) };
-                for image in images {
-                    for (pixel, more) in sum.cells_mut().iter_mut().zip(image.cells()) {
-                        *pixel += more;
-                    }
-                }
-                let beams = rig.beams.len();
-                let (stripes, columns) = match pipeline(exposure(None), sum) {
-                    CameraImage::Flux(image) => plan.extraction.edges_by_order(&image, beams),
-                    CameraImage::Numbers(image) => plan.extraction.edges_by_order(&image, beams),
-                };
-                columns_left_out = columns;
-                stripes
-            }
+            ExposureMode::Together => sum(flux).map(|image| (None, image)).into_iter().collect(),
         };
-        let plane = SheetPlane::for_location(plan.extraction.place);
-        let row_error = plan.extraction.place.row_error();
-        let mut measured = Vec::new();
-        for (beam, edges) in stripes.iter().enumerate() {
-            let triangulation = Triangulation::new(&rig, beam, plane);
-            let table = self.table(&triangulation, beam, step.is_some());
-            measured.extend(edges.iter().filter_map(|&edge| {
-                let point = match &table {
-                    Some(table) => table.at_pixel(edge.i, edge.j)?,
-                    None => triangulation.at_edge(&edge)?,
-                };
-                let standard_error = triangulation.elevation_error(&edge, row_error).unwrap_or(0.0);
-                Some(MeasuredPoint { step, beam, edge, point, standard_error })
+        for (beam, light) in exposed {
+            let exposure = Exposure { frame, step, beam };
+            let stripes = self.extractor.stripes(exposure, &pipeline(exposure, light))?;
+            seen.columns_left_out += stripes.columns_left_out;
+            seen.edges.extend(stripes.edges.into_iter().map(|of| FoundEdge {
+                step,
+                beam: of.beam,
+                edge: of.edge,
             }));
         }
-        Ok((measured, columns_left_out))
+        let plane = SheetPlane::for_location(plan.extraction.place);
+        let row_error = plan.extraction.place.row_error();
+        let triangulations: Vec<_> = (0..rig.beams.len())
+            .map(|beam| {
+                let triangulation = Triangulation::new(&rig, beam, plane);
+                let table = self.table(&triangulation, beam, step.is_some());
+                (triangulation, table)
+            })
+            .collect();
+        for &FoundEdge { beam, edge, .. } in &seen.edges[first..] {
+            let Some((triangulation, table)) = triangulations.get(beam) else {
+                let expected = format!("below {}, the number of beams", rig.beams.len());
+                return Err(SceneError::new("stripe extraction: beam of an edge", beam, expected));
+            };
+            let point = match table {
+                Some(table) => table.at_pixel(edge.i, edge.j),
+                None => triangulation.at_edge(&edge),
+            };
+            let standard_error = || triangulation.elevation_error(&edge, row_error).unwrap_or(0.0);
+            seen.measured.extend(point.map(|point| MeasuredPoint {
+                step,
+                beam,
+                edge,
+                point,
+                standard_error: standard_error(),
+            }));
+        }
+        Ok(())
     }
 
     /// Table of a beam's points, if the plan looks points up. That of the rig as it is mounted is kept; a scan position
@@ -356,4 +370,24 @@ impl Drive {
             }
         }
     }
+}
+
+/// What the camera saw of the stripes in a frame.
+#[derive(Debug, Default)]
+struct Seen {
+    edges: Vec<FoundEdge>,
+    measured: Vec<MeasuredPoint>,
+    columns_left_out: usize,
+}
+
+/// Sum of images of one size; `None` if there are none.
+fn sum(images: Vec<Image<f64>>) -> Option<Image<f64>> {
+    let mut images = images.into_iter();
+    let mut sum = images.next()?;
+    for image in images {
+        for (pixel, more) in sum.cells_mut().iter_mut().zip(image.cells()) {
+            *pixel += more;
+        }
+    }
+    Some(sum)
 }

@@ -252,6 +252,24 @@ impl ElevationMap {
         self.cells.fill(Cell::default());
     }
 
+    /// Sets a measured elevation by one's own rules: the point (global, metres) is kept as it is in the cell of the grid
+    /// point nearest to it, and no neighbour gets anything. A point beyond the map is ignored.
+    pub fn set_measured(&mut self, point: DVec3, standard_error: f64) {
+        let at = self.nearest(point.truncate());
+        if self.contains(at) {
+            let index = self.index(at);
+            self.cells[index] = Cell {
+                elevation: point.z,
+                source: ElevationSource::Measured,
+                place: point.truncate(),
+                variance: standard_error * standard_error,
+                odometer: self.odometer,
+                stood: self.cells[index].stood,
+                ..Cell::default()
+            };
+        }
+    }
+
     /// Sets the elevation of a grid point, global z in metres, as from the proximity sensor. A point beyond the map is
     /// ignored.
     pub fn set_proximity(&mut self, point: GridPoint, elevation: f64) {

@@ -3,13 +3,15 @@
 //! Source: step 9 of the paper (section 3) and its section 7, "Building the local obstacle map". One frame goes through
 //! these modules in order:
 //!
-//! 1. `stripe` (with `otsu`): [`Extraction`] finds the lower edges of the light stripes in an image;
+//! 1. `stripe` (with `otsu`): [`Extraction`] finds the lower edges of the light stripes in an image; `stripe_extractor`:
+//!    [`StripeExtractor`], for algorithms in its place;
 //! 2. `triangulation` (with `rig`): [`Triangulation`] turns edge pixels into points of the beam's lower edge plane, in
 //!    the vehicle frame;
 //! 3. `localisation` (with `vehicle` and `noise_stream`): [`Localisation`] measures position, attitude and the distance
 //!    to the ground, with errors;
 //! 4. `mapper`, `elevation_map` and `map_update`: [`Mapper`] estimates the vehicle's pose (mended: `elevation_estimate`,
-//!    `registration`), moves the [`ElevationMap`] and enters the points;
+//!    `registration`), moves the [`ElevationMap`] and enters the points; `local_mapper`: [`LocalMapper`], for maps in its
+//!    place;
 //! 5. `obstacle_map`, `traversability`, `wheel_tests` and `gap`: in one of [`FRAMES_PER_OBSTACLE_MAP`] frames, [`ObstacleMap`] tests a
 //!    radial grid by [`TraversabilityRules`];
 //! 6. `navigator_map`: [`navigator_map()`] joins the ends of the sectors by labelled vectors.
@@ -35,7 +37,7 @@
 //! let reading =
 //!     LocalisationReading { position: DVec2::ZERO, attitude: Attitude::default(), proximity: Some(0.0) };
 //! let mut mapper = Mapper::start(vehicle, MapSize::default(), &reading, 0.0);
-//! let points = (0..60).flat_map(|i| (-40..=40).map(move |j| {
+//! let points = (-20..60).flat_map(|i| (-40..=40).map(move |j| {
 //!     let (x, y) = (0.1 * f64::from(i), 0.1 * f64::from(j));
 //!     DVec3::new(x, y, if x < 2.95 { 0.0 } else { 0.4 })
 //! }));
@@ -57,6 +59,7 @@ mod drive_plan;
 mod elevation_estimate;
 mod elevation_map;
 mod gap;
+mod local_mapper;
 mod localisation;
 mod map_update;
 mod mapper;
@@ -70,6 +73,7 @@ mod route;
 mod rules;
 mod scan;
 mod stripe;
+mod stripe_extractor;
 mod traversability;
 mod triangulation;
 mod true_vehicle;
@@ -77,10 +81,11 @@ mod vehicle;
 mod vehicle_plane;
 mod wheel_tests;
 
-pub use drive::{CameraImage, CameraPipeline, Drive, DriveFrame, Exposure, MeasuredPoint};
+pub use drive::{CameraPipeline, Drive, DriveFrame, FoundEdge, MeasuredPoint};
 pub use drive_plan::{DrivePlan, ExposureMode, PointLookup, RULE_NAMES};
 pub use elevation_map::{ElevationMap, ElevationSource, GridPoint, Inconsistency, MapSize, Sight};
 pub use gap::{GapRule, MapWithShadows};
+pub use local_mapper::{LocalMapper, MissionStart};
 pub use localisation::{Localisation, LocalisationErrors, LocalisationReading, PositionFixes};
 pub use map_update::MapPoint;
 pub use mapper::{KnownNoise, MapUpdate, Mapper, StripePoint};
@@ -94,6 +99,7 @@ pub use route::{Route, RoutePose};
 pub use rules::{MapRules, Rule, StartRule};
 pub use scan::{ScanReason, ScanRule, Sweep};
 pub use stripe::{Detection, EdgePoint, Extraction, StripeLocation};
+pub use stripe_extractor::{BeamEdge, CameraImage, Exposure, StripeExtractor, Stripes};
 pub use traversability::{
     Missing, MissingReason, SlopeLimits, Traversability, TraversabilityRules, TraversabilityTest, VehiclePart,
 };

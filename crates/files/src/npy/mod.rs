@@ -12,4 +12,5 @@ mod write;
 
 pub use numbers::{Numbers, npy_numbers_from_bytes, read_npy_numbers};
 pub use read::{npy_from_bytes, read_npy};
+pub(crate) use write::header;
 pub use write::{ArrayNumber, write_npy, write_npy_numbers};

@@ -71,7 +71,7 @@ pub fn write_npy_numbers<T: ArrayNumber>(
 }
 
 /// Everything before the numbers.
-fn header(description: &str, shape: &str) -> Vec<u8> {
+pub(crate) fn header(description: &str, shape: &str) -> Vec<u8> {
     let mut dictionary = format!("{{'descr': '{description}', 'fortran_order': False, 'shape': {shape}, }}");
     // Magic, version and length take 10 bytes; spaces and a line feed fill the rest.
     let length = (10 + dictionary.len() + 1).next_multiple_of(ALIGNMENT_BYTES) - 10;
@@ -84,7 +84,7 @@ fn header(description: &str, shape: &str) -> Vec<u8> {
     header
 }
 
-/// Number type that is written to NPY: `f64`, `f32`, `i64`, `i32`, `u64`, `u32`, `u8` or `i8`.
+/// Number type that is written to NPY: `f64`, `f32`, `i64`, `i32`, `u64`, `u32`, `u16`, `u8` or `i8`.
 pub trait ArrayNumber: Copy + private::Bytes {}
 
 impl ArrayNumber for f64 {}
@@ -92,6 +92,8 @@ impl ArrayNumber for f64 {}
 impl ArrayNumber for f32 {}
 
 impl ArrayNumber for u32 {}
+
+impl ArrayNumber for u16 {}
 
 impl ArrayNumber for u8 {}
 
@@ -126,6 +128,6 @@ mod private {
         )*};
     }
     bytes!(
-        f64: "<f8", f32: "<f4", u64: "<u8", u32: "<u4", u8: "|u1", i64: "<i8", i32: "<i4", i8: "|i1"
+        f64: "<f8", f32: "<f4", u64: "<u8", u32: "<u4", u16: "<u2", u8: "|u1", i64: "<i8", i32: "<i4", i8: "|i1"
     );
 }

@@ -1,0 +1,136 @@
+//! All files of a recording, in one folder.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use raypencil_files::{FileError, FolderError, begin_output_folder, create_folder, write_atomically};
+use raypencil_rover::{CameraImage, DriveFrame, ElevationMap, Exposure};
+
+use crate::job::DriveJob;
+use crate::recording::contents::RecordContents;
+use crate::recording::images::write_image;
+use crate::recording::maps::MapFiles;
+use crate::recording::points::PointFiles;
+use crate::recording::poses::PoseFiles;
+use crate::recording::sectors::SectorFiles;
+use crate::recording::setup::setup_json;
+
+/// Name of the folder in the folder of a drive.
+const FOLDER: &str = "recording";
+
+/// File that is written last: a folder that has it is complete.
+const LAST: &str = "setup.json";
+
+/// Recording in progress. Images are written as they are taken, and nothing grows in memory.
+#[derive(Debug)]
+pub struct Recording {
+    folder: PathBuf,
+    contents: RecordContents,
+    poses: PoseFiles,
+    sectors: SectorFiles,
+    points: Option<PointFiles>,
+    maps: Option<MapFiles>,
+    start_elevation: Option<f64>,
+    /// First failure to write an image. The camera's pipeline has no way to report it.
+    failure: Option<FileError>,
+}
+
+impl Recording {
+    /// Begins a recording in the folder `recording` of a drive's folder, which loses its mark of completeness. What an
+    /// earlier recording left there is removed.
+    ///
+    /// # Errors
+    /// The folder or file that could not be made, and the reason.
+    pub fn begin(drive: &Path, contents: RecordContents) -> Result<Self, FolderError> {
+        begin_output_folder(drive, "summary.json")?;
+        let folder = drive.join(FOLDER);
+        create_folder(&folder)?;
+        remove_earlier(&folder)?;
+        if contents.png || contents.npy {
+            create_folder(&folder.join("images"))?;
+        }
+        if contents.maps {
+            create_folder(&folder.join("maps"))?;
+        }
+        Ok(Self {
+            poses: PoseFiles::create(&folder)?,
+            sectors: SectorFiles::create(&folder)?,
+            points: contents.points.then(|| PointFiles::create(&folder)).transpose()?,
+            maps: contents.maps.then(|| MapFiles::create(&folder)).transpose()?,
+            folder,
+            contents,
+            start_elevation: None,
+            failure: None,
+        })
+    }
+
+    /// Takes an image. A failure is reported by the next [`Recording::frame`].
+    pub(crate) fn image(&mut self, job: &DriveJob, exposure: &Exposure, image: &CameraImage) {
+        let is_wanted = self.contents.png || self.contents.npy;
+        if is_wanted && self.failure.is_none() {
+            let folder = self.folder.join("images");
+            self.failure = write_image(&folder, self.contents, exposure, image, job.subtract_unlit).err();
+        }
+    }
+
+    /// Takes a frame and the map after it.
+    pub(crate) fn frame(
+        &mut self,
+        job: &DriveJob,
+        frame: &DriveFrame,
+        map: &ElevationMap,
+    ) -> Result<(), FileError> {
+        if let Some(failure) = self.failure.take() {
+            return Err(failure);
+        }
+        self.start_elevation.get_or_insert(frame.stance.position.z);
+        self.poses.add(frame, job.plan.route.frame_rate)?;
+        self.sectors.add(frame)?;
+        if let Some(points) = &mut self.points {
+            points.add(frame)?;
+        }
+        match &mut self.maps {
+            Some(maps) if frame.obstacles.is_some() => maps.add(frame.index, map),
+            _ => Ok(()),
+        }
+    }
+
+    /// Puts all files in their places.
+    pub(crate) fn finish(self, job: &DriveJob) -> Result<(), FileError> {
+        self.poses.finish()?;
+        self.sectors.finish()?;
+        self.points.map_or(Ok(()), PointFiles::finish)?;
+        self.maps.map_or(Ok(()), MapFiles::finish)?;
+        let setup = setup_json(job, self.start_elevation.unwrap_or(0.0));
+        write_atomically(self.folder.join(LAST), |file| file.write_all(setup.as_bytes()))
+    }
+}
+
+/// Removes the files of an earlier recording, and nothing else: images and maps of frames that this drive may not have.
+fn remove_earlier(folder: &Path) -> Result<(), FolderError> {
+    let failed = |path: &Path, source| FolderError::RemoveEarlier { path: path.to_path_buf(), source };
+    let names = ["setup.json", "stripes.npy", "points.npy", "points.csv", "maps.csv"];
+    let mut stale: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
+    for part in ["images", "maps"] {
+        let Ok(entries) = std::fs::read_dir(folder.join(part)) else { continue };
+        stale.extend(entries.filter_map(Result::ok).map(|entry| entry.path()).filter(|path| is_ours(path)));
+    }
+    for path in stale {
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(&path, error)),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Whether a file in `images` or `maps` has a name that recordings give: six digits, a dash, and a known ending.
+fn is_ours(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let begins = name.len() > 7 && name.as_bytes()[..6].iter().all(u8::is_ascii_digit) && &name[6..7] == "-";
+    begins && (name.ends_with(".png") || name.ends_with(".npy"))
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/recording.rs"]
+mod tests;

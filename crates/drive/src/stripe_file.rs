@@ -1,0 +1,150 @@
+//! Stripes from a file in place of the rover's own extraction: other people's edges, found in recorded images.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use raypencil_files::{Fault, FileError, Limits, read_npy_numbers};
+use raypencil_rover::{BeamEdge, CameraImage, EdgePoint, Exposure, StripeExtractor, Stripes};
+use raypencil_scene::SceneError;
+
+/// Numbers of a row: frame, step, beam, column, row.
+const COLUMNS: usize = 5;
+
+/// Largest file, bytes: 40 bytes an edge, of fifty million edges.
+const MAX_BYTES: u64 = 2_000_000_000;
+
+/// Edges of a whole drive, by frame and step of a scan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StripeFile {
+    path: PathBuf,
+    edges: BTreeMap<(u64, Option<u32>), Vec<BeamEdge>>,
+}
+
+impl StripeFile {
+    /// Reads `stripes.npy` of a folder (docs/formats/recording.md). The frames need not be in order, but the edges of an
+    /// exposure enter the map in the order of the file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, with the row that is wrong and what was expected.
+    pub fn read(folder: &Path) -> Result<Self, FileError> {
+        let path = folder.join("stripes.npy");
+        let fault = |place: String, found: String, expected: &str| {
+            FileError::Array(Fault::new(place, found, expected).in_file(&path))
+        };
+        let limits = Limits { bytes: MAX_BYTES, ..Limits::default() };
+        let numbers = read_npy_numbers(&path, &limits)?;
+        if numbers.shape.len() != 2 || numbers.shape[1] != COLUMNS as u64 {
+            let expected = "(n, 5): frame, step, beam, column, row";
+            return Err(fault("shape".into(), format!("{:?}", numbers.shape), expected));
+        }
+        let mut edges: BTreeMap<_, Vec<BeamEdge>> = BTreeMap::new();
+        for (index, row) in numbers.values.chunks_exact(COLUMNS).enumerate() {
+            let whole = |column: usize, name: &str, least: f64| {
+                let value = row[column];
+                let is_whole = value.fract() == 0.0 && (least..=f64::from(u32::MAX)).contains(&value);
+                let place = || format!("row {index}, {name}");
+                let expected = if least < 0.0 {
+                    "a whole number from 0, or -1: no scan"
+                } else {
+                    "a whole number from 0"
+                };
+                if is_whole { Ok(value) } else { Err(fault(place(), value.to_string(), expected)) }
+            };
+            let (frame, step) = (whole(0, "frame", 0.0)? as u64, whole(1, "step", -1.0)?);
+            let (beam, column) = (whole(2, "beam", 0.0)? as usize, whole(3, "column", 0.0)? as u32);
+            let at = row[4];
+            if !(0.0..=f64::from(u32::MAX)).contains(&at) {
+                let expected = "pixels from the image's upper border";
+                return Err(fault(format!("row {index}, row"), at.to_string(), expected));
+            }
+            let step = (step >= 0.0).then_some(step as u32);
+            // The pixel that holds the row; its middle is half a pixel below its upper border.
+            let edge = EdgePoint { i: column, j: at.floor() as u32, row: at };
+            edges.entry((frame, step)).or_default().push(BeamEdge { beam, edge });
+        }
+        Ok(Self { path, edges })
+    }
+}
+
+impl StripeExtractor for StripeFile {
+    fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError> {
+        let (width, height) = match image {
+            CameraImage::Flux(image) => (image.width(), image.height()),
+            CameraImage::Numbers(image) => (image.width(), image.height()),
+        };
+        let found = self.edges.get(&(exposure.frame, exposure.step)).map_or(&[][..], Vec::as_slice);
+        let mut edges = Vec::new();
+        for of in found {
+            if exposure.beam.is_some_and(|beam| beam != of.beam) {
+                continue;
+            }
+            let EdgePoint { i, row, .. } = of.edge;
+            if i >= width || row > f64::from(height) {
+                let field = format!("{}: edge in frame {}", self.path.display(), exposure.frame);
+                let expected = format!("a place in the image of {width} x {height} pixels");
+                return Err(SceneError::new(field, format!("column {i}, row {row}"), expected));
+            }
+            edges.push(*of);
+        }
+        Ok(Stripes { edges, columns_left_out: 0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use raypencil_files::write_npy_numbers;
+    use raypencil_scene::Image;
+
+    use super::*;
+
+    fn written(numbers: &[f64]) -> (tempfile::TempDir, Result<StripeFile, FileError>) {
+        let folder = tempfile::tempdir().unwrap();
+        let shape = [numbers.len() as u64 / 5, 5];
+        write_npy_numbers(folder.path().join("stripes.npy"), &shape, numbers).unwrap();
+        let read = StripeFile::read(folder.path());
+        (folder, read)
+    }
+
+    #[test]
+    fn each_exposure_gets_its_own_edges() {
+        let rows = [
+            [3.0, -1.0, 0.0, 2.0, 4.5],
+            [3.0, -1.0, 1.0, 2.0, 1.25],
+            [3.0, 7.0, 0.0, 1.0, 0.5],
+            [2.0, -1.0, 0.0, 5.0, 3.0],
+        ];
+        let (_folder, file) = written(&rows.concat());
+        let file = file.unwrap();
+        let image = CameraImage::Numbers(Image::filled(6, 5, 0));
+        let at = |frame, step, beam| file.stripes(Exposure { frame, step, beam }, &image).map(|s| s.edges);
+        let edge = |beam, i, j, row| BeamEdge { beam, edge: EdgePoint { i, j, row } };
+        assert_eq!(at(3, None, Some(0)).unwrap(), [edge(0, 2, 4, 4.5)]);
+        assert_eq!(at(3, None, None).unwrap(), [edge(0, 2, 4, 4.5), edge(1, 2, 1, 1.25)]);
+        assert_eq!(at(3, Some(7), Some(0)).unwrap(), [edge(0, 1, 0, 0.5)]);
+        assert!(at(4, None, None).unwrap().is_empty());
+        // The image has columns 0 to 5: a narrower one refuses the edge of frame 2.
+        assert!(at(2, None, None).is_ok());
+        let narrow = CameraImage::Numbers(Image::filled(5, 5, 0));
+        let refused = file.stripes(Exposure { frame: 2, step: None, beam: None }, &narrow).unwrap_err();
+        assert!(refused.to_string().contains("frame 2 is column 5, row 3"), "{refused}");
+    }
+
+    #[test]
+    fn wrong_files_are_refused_with_their_place() {
+        for (row, words) in [
+            ([0.5, -1.0, 0.0, 0.0, 0.0], "row 0, frame"),
+            ([0.0, -2.0, 0.0, 0.0, 0.0], "row 0, step"),
+            ([0.0, -1.0, f64::NAN, 0.0, 0.0], "row 0, beam"),
+            ([0.0, -1.0, 0.0, -1.0, 0.0], "row 0, column"),
+            ([0.0, -1.0, 0.0, 0.0, f64::INFINITY], "row 0, row"),
+        ] {
+            let (_folder, file) = written(&row);
+            let error = file.unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        write_npy_numbers(folder.path().join("stripes.npy"), &[4], &[0.0; 4]).unwrap();
+        let error = StripeFile::read(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("(n, 5)"), "{error}");
+    }
+}
