@@ -5,6 +5,7 @@ use raypencil_report::{count, counted, number};
 use crate::counts::{CellCounts, scans, sector_counts};
 use crate::job::DriveJob;
 use crate::labels::label_word;
+use crate::point_errors::PointErrors;
 use crate::run::DriveRun;
 
 /// Verdict in one sentence.
@@ -63,6 +64,7 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
         ("frames", format!("{}{scans}, one per {} m", run.frames.len(), number(frame_step))),
         ("driven", format!("{:.2} m at {} m/s", run.driven(), number(route.speed))),
         ("points", points),
+        ("points", off_ground(&run.point_errors)),
         (
             "map",
             format!(
@@ -82,6 +84,18 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
     }
     facts.extend(job.notes.iter().map(|note| ("note", note.clone())));
     facts
+}
+
+/// How far the points are off the true ground.
+fn off_ground(errors: &PointErrors) -> String {
+    if errors.points == 0 {
+        return "none over the true ground".into();
+    }
+    format!(
+        "{:.1} mm rms off the true ground below them, {:.1} % of them less than 1 cm",
+        1e3 * errors.rms(),
+        100.0 * errors.share_within_1cm()
+    )
 }
 
 /// Lines about the differences, stage by stage; none with one renderer.

@@ -13,6 +13,7 @@
 //!    optics;
 //! 4. `recorded_exposure`, `differences`: [`Differences`] between two sides, stage by stage;
 //! 5. `swept_ground`, `sector_truth`: [`SectorTruth`], the obstacle maps against what the vehicle can pass;
+//!    `point_errors`: [`PointErrors`], the points against the true ground;
 //!    `noise_level`: [`NoiseLevel`]s for its table;
 //!    `sensitivity`, `pointing`: [`pointing_table`], blur against pointing errors;
 //! 6. `camera_view`, `animation_frame`: pictures of a frame;
@@ -59,6 +60,7 @@ mod labels;
 mod maps;
 mod noise_level;
 mod page;
+mod point_errors;
 mod pointing;
 mod recorded_exposure;
 mod recording;
@@ -85,6 +87,7 @@ pub use maps::occupancy::{Occupancy, OccupancyGrid, occupancy_files, write_occup
 pub use maps::ply::{MarkedPoint, write_ply};
 pub use maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
 pub use noise_level::NoiseLevel;
+pub use point_errors::PointErrors;
 pub use pointing::pointing_table;
 pub use recording::{RecordContents, Recording};
 pub use run::{DriveExtras, DriveProgress, DriveRun, drive, drive_with};

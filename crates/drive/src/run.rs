@@ -16,6 +16,7 @@ use crate::differences::Differences;
 use crate::error::DriveError;
 use crate::job::DriveJob;
 use crate::maps::ply::MarkedPoint;
+use crate::point_errors::PointErrors;
 use crate::recording::Recording;
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sector_truth::{SectorTruth, TrueGround};
@@ -77,6 +78,8 @@ pub struct DriveRun {
     pub obstacles: Option<(u64, ObstacleMap, Vec<LabelledVector>)>,
     /// All obstacle maps against what the vehicle can pass on the true ground.
     pub truth: SectorTruth,
+    /// Edge points against the true ground.
+    pub point_errors: PointErrors,
     /// Number of edge points of all frames.
     pub edge_points: u64,
     /// Edge points, global: the first 16,777,216.
@@ -173,7 +176,7 @@ pub fn drive_with(
     progress.frames(0, planned);
     let mut differences = second.as_ref().map(|_| Differences::default());
     let (mut frames, mut points, mut animation) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut obstacles, mut edge_points) = (None, 0);
+    let (mut obstacles, mut edge_points, mut point_errors) = (None, 0, PointErrors::default());
     let start = Instant::now();
     let faces = GroundFaces::new(&job.mesh);
     let (mut truth, mut judging) = (SectorTruth::default(), start.elapsed());
@@ -206,6 +209,7 @@ pub fn drive_with(
             recording.frame(job, frame, first.map()).map_err(FolderError::from)?;
         }
         edge_points += frame.measured.len() as u64;
+        point_errors.add(&frame.measured, &frame.stance.pose(), first.ground());
         let room = MAX_EDGE_POINTS - points.len();
         points.extend(frame.measured.iter().take(room).map(|measured| MarkedPoint {
             point: believed * measured.point,
@@ -281,6 +285,7 @@ pub fn drive_with(
         believed: first.believed(),
         obstacles,
         truth,
+        point_errors,
         edge_points,
         points,
         warnings,

@@ -66,6 +66,13 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "driven_m": run.driven(),
         "vertical_scans": scans(run),
         "edge_points": run.edge_points,
+        "points_off_ground": {
+            "points": run.point_errors.points,
+            "beyond_ground": run.point_errors.beyond,
+            "within_1cm": run.point_errors.within_1cm,
+            "rms_m": run.point_errors.rms(),
+            "largest_m": run.point_errors.largest,
+        },
         "columns_left_out": run.frames.iter().map(|frame| frame.columns_left_out as u64).sum::<u64>(),
         "map": {
             "spacing_m": job.plan.map.spacing,
