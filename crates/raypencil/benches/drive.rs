@@ -25,7 +25,7 @@ position_m = [-15, 0]
 [terrain]
 generate = { kind = "plain", seed = 1, faces = 500000, extent_m = 50 }
 [drive]
-waypoints_m = [[15, 0]]
+waypoints_m = [[30, 0]]
 scans = false
 "#;
 

@@ -7,10 +7,12 @@ use std::sync::Arc;
 use common::{extruded, first_hit, from_vehicle, rig, seen_at};
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    CameraImage, Detection, Drive, DriveFrame, DrivePlan, ElevationSource, ExposureMode, Extraction, Label,
-    LocalisationErrors, OnVehicle, PositionFixes, Rig, Route, ScanReason, ScanRule, StripeLocation, Sweep,
+    BeamEdge, CameraImage, Detection, Drive, DriveFrame, DrivePlan, EdgePoint, ElevationMap, ElevationSource,
+    Exposure, ExposureMode, Extraction, Inconsistency, Label, LocalMapper, LocalisationErrors,
+    LocalisationReading, MapUpdate, MissionStart, OnVehicle, PositionFixes, Rig, Route, ScanReason, ScanRule,
+    StripeExtractor, StripeLocation, StripePoint, Stripes, Sweep,
 };
-use raypencil_scene::{Image, Mesh, Pose, Precision, RenderOutput, Renderer, Request, Scene};
+use raypencil_scene::{Image, Mesh, Pose, Precision, RenderOutput, Renderer, Request, Scene, SceneError};
 
 /// A renderer that puts one watt into a pixel for every pencil that the pixel sees.
 struct StandIn;
@@ -170,7 +172,7 @@ fn images_may_be_developed() {
     };
     let mut drive = Drive::new(plan, mesh).unwrap();
     let mut seen = Vec::new();
-    let mut develop = |exposure: raypencil_rover::Exposure, mut image: Image<f64>| {
+    let mut develop = |exposure: Exposure, mut image: Image<f64>| {
         seen.push((exposure.frame, exposure.step, exposure.beam));
         for value in image.cells_mut() {
             *value = (*value * 20.0).min(60.0).round() + 12.0;
@@ -209,4 +211,107 @@ fn a_start_off_the_ground_and_a_route_off_it_are_refused() {
     let expected =
         "drive.route is off the ground after 1.80 m, at (1.80, 0.00) m: expected ground under every wheel";
     assert!(message.starts_with(expected), "{message}");
+}
+
+/// Extraction that sees only what lies to the right of the middle of the image.
+#[derive(Debug)]
+struct RightHalf(Extraction);
+
+impl StripeExtractor for RightHalf {
+    fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError> {
+        let (Some(beam), CameraImage::Flux(image)) = (exposure.beam, image) else {
+            return Err(SceneError::new("exposures", "together", "in turn"));
+        };
+        let edges = self.0.edges(image).into_iter().filter(|edge| 2 * edge.i > image.width());
+        let edges = edges.map(|edge| BeamEdge { beam, edge });
+        Ok(Stripes { edges: edges.collect(), columns_left_out: 0 })
+    }
+}
+
+/// Mapping that enters points where they are, with the vehicle at the elevation that it was given at the start.
+#[derive(Debug)]
+struct Level {
+    map: ElevationMap,
+    elevation: f64,
+    pose: Pose,
+}
+
+impl LocalMapper for Level {
+    fn frame(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>) -> MapUpdate {
+        self.pose = sensed.attitude.at(sensed.position.extend(self.elevation));
+        let moved = self.map.recentre(sensed.position);
+        for StripePoint { point, standard_error, .. } in points {
+            self.map.set_measured(self.pose * point, standard_error);
+        }
+        let inconsistency = Inconsistency::default();
+        MapUpdate { elevation_read: false, elevation_error: 0.0, moved, inconsistency }
+    }
+
+    fn scan(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>, clear_map: bool) -> MapUpdate {
+        if clear_map {
+            self.map.clear();
+        }
+        self.frame(sensed, points)
+    }
+
+    fn map(&self) -> &ElevationMap {
+        &self.map
+    }
+
+    fn pose(&self) -> Pose {
+        self.pose
+    }
+}
+
+#[test]
+fn ones_own_extraction_and_map_take_the_place_of_the_rovers() {
+    let mesh = extruded(&[(-20.0, 0.0), (5.0, 0.0), (5.0, 0.5), (20.0, 0.5)]);
+    let start = || Drive::new(plan(), Arc::clone(&mesh)).unwrap();
+    let end = |mut drive: Drive| -> Result<(ElevationMap, Vec<DriveFrame>), SceneError> {
+        let mut frames = Vec::new();
+        while let Some(frame) = drive.step(&StandIn, &mut |_, image| CameraImage::Flux(image))? {
+            frames.push(frame);
+        }
+        Ok((drive.mapper().unwrap().map().clone(), frames))
+    };
+    let (own, frames) = end(start()).unwrap();
+    let right = Arc::new(RightHalf(plan().extraction));
+    let (half, half_frames) = end(start().with_extractor(right.clone())).unwrap();
+    // Image columns go to the right: nothing is measured to the left of the vehicle, which drives along x.
+    let measured = |map: &ElevationMap, left: bool| {
+        let is_measured = |point| map.source(point) == ElevationSource::Measured;
+        map.points().filter(|&point| is_measured(point) && (map.place(point).y > 0.1) == left).count()
+    };
+    assert!(measured(&own, true) > 100 && measured(&half, false) > 100);
+    assert_eq!(measured(&half, true), 0);
+    assert!(half_frames.iter().zip(&frames).all(|(half, own)| half.points < own.points && half.points > 0));
+    assert!(half_frames.iter().all(|frame| frame.edges.len() >= frame.points));
+
+    let level = |start: &MissionStart| -> Box<dyn LocalMapper> {
+        let map = ElevationMap::new(start.size, start.sensed.position);
+        Box::new(Level { map, elevation: start.elevation, pose: Pose::IDENTITY })
+    };
+    let (mapped, frames) = end(start().with_mapping(level)).unwrap();
+    // No cell is a guess, and the obstacle maps are made of this map.
+    assert!(mapped.points().all(|point| mapped.source(point) != ElevationSource::Extrapolated));
+    assert!(measured(&mapped, true) > 100 && mapped != own);
+    assert!(frames.iter().any(|frame| frame.obstacles.is_some()));
+
+    // What an extractor refuses, and a beam that is not there, end the drive.
+    let together = DrivePlan { exposures: ExposureMode::Together, ..plan() };
+    let refused = end(Drive::new(together, Arc::clone(&mesh)).unwrap().with_extractor(right)).unwrap_err();
+    assert!(refused.to_string().contains("in turn"), "{refused}");
+    let refused = end(start().with_extractor(Arc::new(Beam7))).unwrap_err();
+    assert!(refused.to_string().contains("beam of an edge is 7"), "{refused}");
+}
+
+/// Extraction that names a beam that no rig here has.
+#[derive(Debug)]
+struct Beam7;
+
+impl StripeExtractor for Beam7 {
+    fn stripes(&self, _: Exposure, _: &CameraImage) -> Result<Stripes, SceneError> {
+        let edge = EdgePoint { i: 1, j: 1, row: 1.5 };
+        Ok(Stripes { edges: vec![BeamEdge { beam: 7, edge }], columns_left_out: 0 })
+    }
 }

@@ -224,3 +224,29 @@ fn a_wrong_drive_is_marked_in_the_scene_file() {
     assert_trouble(&output, &["wrong.toml:4:17", "`drive.speed_m_per_s` is -1; expected"]);
     assert!(!text(&output.stderr).contains("panicked"));
 }
+
+#[test]
+fn a_recording_is_driven_again_by_its_own_stripes() {
+    let folder = folder();
+    let path = folder.path();
+    let said = |words: &[&str]| -> serde_json::Value {
+        let words = [&["drive", "small.toml"], words, &["--json"]].concat();
+        serde_json::from_str(&screen(path, &words, 0)).expect("JSON")
+    };
+    let first = said(&["--record", "points,png", "-o", "a"]);
+    assert_eq!(first["arguments"], "small.toml --record points,png");
+    assert!(first["edge_points"].as_u64().unwrap() > 100, "{}", first["edge_points"]);
+    let again = said(&["--stripes", "a/recording", "-o", "b"]);
+    for key in ["edge_points", "points_off_ground", "map", "sectors", "truth"] {
+        assert_eq!(first[key], again[key], "{key}");
+    }
+    let images = std::fs::read_dir(path.join("a/recording/images")).unwrap().count();
+    assert_eq!(images, 2 * 7);
+    // What was not asked for is not written; the small files are.
+    assert!(!path.join("b/recording/images").exists() && path.join("b/recording/poses.csv").is_file());
+    assert_trouble(&raypencil(path, &["drive", "small.toml", "--record", "film"]), &["film", "images"]);
+    assert_trouble(&raypencil(path, &["drive", "small.toml", "--stripes", "none"]), &["none", "stripes.npy"]);
+    // Rubbish in place of stripes.
+    std::fs::write(path.join("a/recording/stripes.npy"), "frame,step").unwrap();
+    assert_trouble(&raypencil(path, &["drive", "small.toml", "--stripes", "a/recording"]), &["stripes.npy"]);
+}

@@ -115,7 +115,7 @@ impl DriveCycles {
             Err(_) => format!("file = {:?}", std::path::absolute(&subject.arguments)?),
         };
         let text = format!(
-            "version = 1\n[vehicle]\nposition_m = [-15, 0]\n[terrain]\n{ground}\n[drive]\nwaypoints_m = [[15, 0]]\n\
+            "version = 1\n[vehicle]\nposition_m = [-15, 0]\n[terrain]\n{ground}\n[drive]\nwaypoints_m = [[30, 0]]\n\
              scans = false\n"
         );
         let job = DriveJob::new(&load_text(&text, "drive")?, None, String::new())?;
