@@ -7,8 +7,8 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
 use raypencil::drive::{
-    self, DriveExtras, DriveJob, DriveProgress, RecordContents, Recording, StripeFile, drive_json,
-    drive_screen, write_drive,
+    self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_json, drive_screen,
+    write_drive,
 };
 use raypencil::io::{DriveSetup, WaypointFrame, load};
 
@@ -113,7 +113,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     }
     let extras = DriveExtras {
         extractor: stripes.map(|file| Arc::new(file) as _),
-        recording: Some(Recording::begin(&folder, contents)?),
+        record: Some((folder.clone(), contents)),
     };
     drop(spinner);
 

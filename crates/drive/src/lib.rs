@@ -17,7 +17,7 @@
 //!    `noise_level`: [`NoiseLevel`]s for its table;
 //!    `sensitivity`, `pointing`: [`pointing_table`], blur against pointing errors;
 //! 6. `camera_view`, `animation_frame`: pictures of a frame;
-//! 7. `recording`: [`Recording`], images, points, poses and maps for other people's programs; `stripe_file`:
+//! 7. `recording`: [`RecordContents`], images, points, poses and maps for other people's programs; `stripe_file`:
 //!    [`StripeFile`], their stripes in place of the rover's;
 //!    `renderer_drive`, `run`: [`drive()`] itself and its [`DriveRun`];
 //! 8. `counts`, `facts`, `screen`, `summary`: [`drive_screen`] for people and [`drive_json`] for programs;
@@ -89,7 +89,7 @@ pub use maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
 pub use noise_level::NoiseLevel;
 pub use point_errors::PointErrors;
 pub use pointing::pointing_table;
-pub use recording::{RecordContents, Recording};
+pub use recording::RecordContents;
 pub use run::{DriveExtras, DriveProgress, DriveRun, drive, drive_with};
 pub use screen::drive_screen;
 pub use sector_truth::{Missed, NotFound, SectorTruth};

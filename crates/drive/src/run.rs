@@ -1,5 +1,6 @@
 //! Drive from its first frame to its last, with one renderer or with two in lockstep.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -17,7 +18,7 @@ use crate::error::DriveError;
 use crate::job::DriveJob;
 use crate::maps::ply::MarkedPoint;
 use crate::point_errors::PointErrors;
-use crate::recording::Recording;
+use crate::recording::{RecordContents, Recording};
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sector_truth::{SectorTruth, TrueGround};
 use crate::sun::Sun;
@@ -53,8 +54,9 @@ impl DriveProgress for Silent {
 pub struct DriveExtras {
     /// Extraction of stripes in place of the rover's own, for all renderers.
     pub extractor: Option<Arc<dyn StripeExtractor>>,
-    /// Recording of the first renderer's drive.
-    pub recording: Option<Recording>,
+    /// Folder of the drive, and what is recorded there of the first renderer's drive. The recording begins when the drive
+    /// has been accepted.
+    pub record: Option<(PathBuf, RecordContents)>,
 }
 
 /// Result of a drive.
@@ -160,7 +162,7 @@ pub fn drive_with(
     extras: DriveExtras,
     progress: &dyn DriveProgress,
 ) -> Result<DriveRun, DriveError> {
-    let DriveExtras { extractor, mut recording } = extras;
+    let DriveExtras { extractor, record } = extras;
     assert!((1..=2).contains(&renderers.len()), "{} renderers", renderers.len());
     let planned = job.frames()?;
     let animation_step = planned.div_ceil(MAX_ANIMATION_FRAMES).max(1);
@@ -172,6 +174,8 @@ pub fn drive_with(
     };
     let mut first = start(0)?.expect("there is a renderer").keeping_swept();
     let mut second = start(1)?;
+    let begin = |(folder, contents): (PathBuf, _)| Recording::begin(&folder, contents);
+    let mut recording = record.map(begin).transpose()?;
     let stripes = u64::from(job.plan.sweep.steps);
     progress.frames(0, planned);
     let mut differences = second.as_ref().map(|_| Differences::default());

@@ -24,4 +24,4 @@ mod sectors;
 mod setup;
 
 pub use contents::RecordContents;
-pub use recording::Recording;
+pub(crate) use recording::Recording;

@@ -23,7 +23,7 @@ const LAST: &str = "setup.json";
 
 /// Recording in progress. Images are written as they are taken, and nothing grows in memory.
 #[derive(Debug)]
-pub struct Recording {
+pub(crate) struct Recording {
     folder: PathBuf,
     contents: RecordContents,
     poses: PoseFiles,
@@ -41,7 +41,7 @@ impl Recording {
     ///
     /// # Errors
     /// The folder or file that could not be made, and the reason.
-    pub fn begin(drive: &Path, contents: RecordContents) -> Result<Self, FolderError> {
+    pub(crate) fn begin(drive: &Path, contents: RecordContents) -> Result<Self, FolderError> {
         begin_output_folder(drive, "summary.json")?;
         let folder = drive.join(FOLDER);
         create_folder(&folder)?;

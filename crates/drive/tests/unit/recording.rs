@@ -23,8 +23,8 @@ fn recorded(
     contents: RecordContents,
     extractor: Option<Arc<dyn StripeExtractor>>,
 ) -> DriveRun {
-    let recording = Some(Recording::begin(folder, contents).unwrap());
-    drive_with(job, &[&Scanline::default()], DriveExtras { extractor, recording }, &Silent).unwrap()
+    let record = Some((folder.to_path_buf(), contents));
+    drive_with(job, &[&Scanline::default()], DriveExtras { extractor, record }, &Silent).unwrap()
 }
 
 fn all() -> RecordContents {
