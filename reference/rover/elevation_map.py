@@ -1,0 +1,205 @@
+"""The elevation map (the paper's local terrain map): sections "Elevation map" and "Mended rules" of rover.md."""
+
+import numpy as np
+
+UNKNOWN, PROXIMITY, EXTRAPOLATED, MEASURED = 0, 1, 2, 3
+
+# Numbers of the mended rules, each a CHOICE of docs/theory/rover.md.
+AGEING = 0.01  # m of standard deviation for each metre driven since the measurement
+STEP_DEVIATIONS = 3.0  # two elevations differ by a step in the cell beyond this many standard deviations ...
+STEP_SLOPE = 0.35  # ... and this slope between their places
+
+NEIGHBOURS = [(di, dj) for dj in (-1, 0, 1) for di in (-1, 0, 1) if (di, dj) != (0, 0)]
+
+
+def nearest(number):
+    """The whole number nearest to each; halves upwards."""
+    return np.floor(np.asarray(number) + 0.5).astype(int)
+
+
+class ElevationMap:
+    """A square of grid points. Index (j, i): j counts northwards (y), i eastwards (x), both from 0.
+
+    Grid points are counted from `origin`, the first central point, in whole numbers: the centre is `centre`.
+    """
+
+    # name: (type, value where nothing is known)
+    FIELDS = {
+        "elevation": (float, np.nan), "source": (np.uint8, UNKNOWN),
+        "x": (float, np.nan), "y": (float, np.nan),  # place of the measurement, which is not the grid point
+        "variance": (float, np.nan), "way": (float, np.nan),  # of the elevation, and way driven when measured
+        "lowest": (float, np.inf), "highest": (float, -np.inf),  # of all elevations since the map was cleared
+        "tied": (bool, False),  # a point near here lay within rounding of the border between two cells
+        "slope_x": (float, np.nan), "slope_y": (float, np.nan),  # of the flatter line of sight: see gaps.py
+    }
+
+    def __init__(self, setup, origin):
+        self.spacing, self.points = setup["map"]["spacing"], setup["map"]["points"]
+        self.rules = setup["rules"]
+        self.origin = np.array(origin, float)
+        self.centre = np.zeros(2, int)
+        self.clear()
+
+    def clear(self):
+        shape = (self.points, self.points)
+        for name, (kind, value) in self.FIELDS.items():
+            setattr(self, name, np.full(shape, value, kind))
+
+    # Places
+
+    def grid(self, x, y):
+        """Indices i, j in the map's array of the grid points nearest to places; may lie outside."""
+        half = self.points // 2
+        i = nearest((np.asarray(x) - self.origin[0]) / self.spacing) - self.centre[0] + half
+        j = nearest((np.asarray(y) - self.origin[1]) / self.spacing) - self.centre[1] + half
+        return i, j
+
+    def inside(self, i, j):
+        return (i >= 0) & (i < self.points) & (j >= 0) & (j < self.points)
+
+    def place(self, i, j):
+        """Global x and y of grid points."""
+        half = self.points // 2
+        return (self.origin[0] + (np.asarray(i) - half + self.centre[0]) * self.spacing,
+                self.origin[1] + (np.asarray(j) - half + self.centre[1]) * self.spacing)
+
+    def tie(self, x, y, width=1e-9):
+        """Whether a place lies within `width` metres of the border between two cells."""
+        out = np.zeros(np.shape(x), bool)
+        for value, zero in ((x, self.origin[0]), (y, self.origin[1])):
+            steps = (np.asarray(value) - zero) / self.spacing + 0.5
+            out |= np.abs(steps - np.round(steps)) * self.spacing <= width
+        return out
+
+    def read(self, x, y):
+        """Elevation and source at the grid points nearest to places; beyond the map nothing is known."""
+        i, j = self.grid(x, y)
+        ok = self.inside(i, j)
+        i, j = np.where(ok, i, 0), np.where(ok, j, 0)
+        return np.where(ok, self.elevation[j, i], np.nan), np.where(ok, self.source[j, i], UNKNOWN)
+
+    def move(self, x, y):
+        """Moves the central grid point to the one nearest to the vehicle; returns the steps."""
+        target = np.array([nearest((x - self.origin[0]) / self.spacing),
+                           nearest((y - self.origin[1]) / self.spacing)])
+        steps = target - self.centre
+        if steps.any():
+            n = self.points
+            for name, (kind, value) in self.FIELDS.items():
+                old, new = getattr(self, name), np.full((n, n), value, kind)
+                i0, j0 = max(0, -steps[0]), max(0, -steps[1])
+                i1, j1 = min(n, n - steps[0]), min(n, n - steps[1])
+                if i0 < i1 and j0 < j1:
+                    new[j0:j1, i0:i1] = old[j0 + steps[1]:j1 + steps[1], i0 + steps[0]:i1 + steps[0]]
+                setattr(self, name, new)
+        self.centre = target
+        return steps
+
+    # Elevations
+
+    def set_proximity(self, x, y, ground):
+        """The grid point under the vehicle's origin, at the start and after the map was cleared."""
+        i, j = self.grid(x, y)
+        self.elevation[j, i], self.source[j, i] = ground, PROXIMITY
+        self.x[j, i], self.y[j, i] = x, y
+
+    def set_footprint(self, x, y, z, rotation, vehicle):
+        """The whole rectangle around the wheels gets the elevation of the wheels' plane."""
+        ahead = vehicle["wheelbase"] / 2 + vehicle["wheel_radius"]
+        aside = (vehicle["track"] + vehicle["wheel_width"]) / 2
+        jj, ii = np.mgrid[0:self.points, 0:self.points]
+        px, py = self.place(ii, jj)
+        slope = -rotation[:2, 2] / rotation[2, 2]
+        dx, dy = px - x, py - y
+        rise = slope[0] * dx + slope[1] * dy
+        along = dx * rotation[0, 0] + dy * rotation[1, 0] + rise * rotation[2, 0]
+        across = dx * rotation[0, 1] + dy * rotation[1, 1] + rise * rotation[2, 1]
+        under = (np.abs(along) <= ahead) & (np.abs(across) <= aside)
+        self.elevation[under], self.source[under] = (z + rise)[under], PROXIMITY
+
+    def enter(self, points, variance, way, sight):
+        """Enters the new data points of a frame, or of a scan, in their order.
+
+        `points` are global, `variance` is that of each elevation, `sight` each point's flatter line of sight. Returns what `inconsistency` found: number of
+        measured grid points met again, mean and largest distance from the range of their old elevations.
+        """
+        i, j = self.grid(points[:, 0], points[:, 1])
+        ok = self.inside(i, j)
+        i, j, points, variance, sight = i[ok], j[ok], points[ok], variance[ok], sight[ok]
+        for k in np.flatnonzero(self.tie(points[:, 0], points[:, 1])):
+            # Either cell may have got the point, and each hands elevations to its eight neighbours.
+            self.tied[max(0, j[k] - 2):j[k] + 3, max(0, i[k] - 2):i[k] + 3] = True
+        cell = j * self.points + i
+        if self.rules["several"] == "paper":
+            order = np.arange(len(cell))  # the last point of a cell stays
+        else:
+            # The highest of a cell stays; of equally high ones the first.
+            order = np.lexsort((-np.arange(len(cell)), points[:, 2]))
+        winner = np.full(self.points * self.points, -1)
+        winner[cell[order]] = order  # numpy assigns in order: the last one of `order` remains
+        cells = np.flatnonzero(winner >= 0)
+        chosen = winner[cells]
+        jj, ii = np.divmod(cells, self.points)
+        found = self.contradiction(jj, ii, points[chosen, 2])
+        self.settle(jj, ii, points[chosen], variance[chosen], way)
+        self.slope_x[jj, ii], self.slope_y[jj, ii] = sight[chosen].T
+        self.extrapolate(jj, ii, chosen)
+        return found
+
+    def contradiction(self, j, i, z):
+        """How far new elevations lie outside the range of all that were measured in their cells."""
+        if self.rules["inconsistency"] == "paper":
+            return 0, np.nan, np.nan
+        again = self.lowest[j, i] <= self.highest[j, i]
+        outside = np.maximum(0, np.maximum(self.lowest[j, i] - z, z - self.highest[j, i]))[again]
+        if not again.any():
+            return 0, np.nan, np.nan
+        return int(again.sum()), float(outside.mean()), float(outside.max())
+
+    def settle(self, j, i, points, variance, way):
+        """Writes one new point per cell; by the mended rule it is blended with what was measured there."""
+        x, y, z = points[:, 0].copy(), points[:, 1].copy(), points[:, 2].copy()
+        variance = variance.copy()
+        since = np.full(len(z), way)
+        self.lowest[j, i] = np.minimum(self.lowest[j, i], z)
+        self.highest[j, i] = np.maximum(self.highest[j, i], z)
+        old = self.source[j, i] == MEASURED
+        if self.rules["several"] == "mended" and old.any():
+            oj, oi = j[old], i[old]
+            ox, oy, oz = self.x[oj, oi], self.y[oj, oi], self.elevation[oj, oi]
+            aged = self.variance[oj, oi] + (AGEING * (way - self.way[oj, oi])) ** 2
+            nx, ny, nz, nv = x[old], y[old], z[old], variance[old]
+            limit = STEP_DEVIATIONS * np.sqrt(aged + nv) + STEP_SLOPE * np.hypot(nx - ox, ny - oy)
+            step = np.abs(nz - oz) > limit
+            keep_old = step & (oz > nz)
+            share = aged / (aged + nv)  # of the new one
+            share = np.where(step, np.where(keep_old, 0.0, 1.0), share)
+            x[old], y[old] = ox + share * (nx - ox), oy + share * (ny - oy)
+            z[old] = oz + share * (nz - oz)
+            variance[old] = np.where(step, np.where(keep_old, aged, nv), aged * nv / (aged + nv))
+        self.x[j, i], self.y[j, i], self.elevation[j, i] = x, y, z
+        self.variance[j, i], self.way[j, i], self.source[j, i] = variance, since, MEASURED
+
+    def extrapolate(self, j, i, rank):
+        """Each new data point is handed to its neighbours that are not themselves new data points."""
+        n = self.points
+        new = np.zeros((n, n), bool)
+        new[j, i] = True
+        elevation = self.elevation[j, i]
+        if self.rules["extrapolate"] == "paper":
+            order = np.argsort(rank, kind="stable")  # later data points win
+            may = ~new
+        else:
+            order = np.argsort(elevation, kind="stable")  # the highest neighbour wins
+            may = ~new & (self.source != MEASURED) & (self.source != PROXIMITY)
+        # A neighbour takes the point of highest position in `order` among those next to it.
+        best = np.full((n, n), -1)
+        position = np.empty(len(order), int)
+        position[order] = np.arange(len(order))
+        for di, dj in NEIGHBOURS:
+            tj, ti = j + dj, i + di
+            ok = self.inside(ti, tj)
+            np.maximum.at(best, (tj[ok], ti[ok]), position[ok])
+        target = (best >= 0) & may
+        self.elevation[target] = elevation[order[best[target]]]
+        self.source[target] = EXTRAPOLATED

@@ -1,0 +1,174 @@
+"""The second rover: one frame after the other, in the order that docs/theory/rover.md gives at its beginning."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+import images
+from elevation_estimate import Elevation
+from elevation_map import ElevationMap
+from gaps import Shadows
+from geometry import Pose, attitude, slopes_of_plane
+from navigator import navigator_map
+from obstacle_map import PointTests, obstacle_map
+from stripes import edges_of
+from triangulate import Rig
+from wheel_tests import WheelTests
+
+CENTROID_ROWS, PIXEL_ROWS = 0.1, 1 / np.sqrt(12)  # standard deviation of an edge's row
+
+
+@dataclass
+class Exposure:
+    """One image: of a beam, or of all; step of a scan or -1."""
+
+    step: int
+    beam: int  # -1: all
+    stem: str
+
+
+@dataclass
+class Frame:
+    """What the second rover made of a frame."""
+
+    edges: np.ndarray  # frame, step, beam, column, row
+    points: np.ndarray  # the same five, vehicle x y z, global x y z
+    left_out: int
+    position: np.ndarray
+    rotation: np.ndarray
+    elevation_read: bool
+    elevation_error: float
+    moved: tuple
+    inconsistency: tuple  # points, mean, largest
+    elevation: np.ndarray = None
+    source: np.ndarray = None
+    corner: tuple = None
+    sectors: list = field(default_factory=list)
+    vectors: list = field(default_factory=list)
+
+
+class Rover:
+    """Follows a recording. `believed_z`, if given, replaces its own elevation in each frame (to find a first fault)."""
+
+    def __init__(self, recording, believed_z=None):
+        self.recording, self.setup, self.sensed = recording, recording.setup, recording.sensed
+        self.rig = Rig(self.setup)
+        self.elevation = Elevation(self.setup)
+        self.map = None
+        self.way = 0.0
+        self.believed_z = believed_z
+        self.stands = []  # x, y, z and slopes of each frame, for the turning circles
+        camera = self.setup["camera"]
+        self.shape = (camera["height"], camera["width"])
+
+    def exposures(self, frame):
+        """The images of a frame, in the order in which their edges enter the map."""
+        together = self.setup["extraction"]["exposures"] == "together"
+        steps = range(self.setup["scan"]["steps"]) if self.sensed.scan[frame] else [-1]
+        for step in steps:
+            for beam in [-1] if together else range(len(self.setup["beams"])):
+                yield Exposure(step, beam, images.name(frame, beam, step, together))
+
+    def rig_at(self, step):
+        if step < 0:
+            return self.rig
+        scan = self.setup["scan"]
+        share = step / (scan["steps"] - 1) if scan["steps"] > 1 else 0.0
+        return self.rig.panned(scan["from"] + (scan["to"] - scan["from"]) * share, scan["camera"])
+
+    def look(self, frame, rotation):
+        """Edges and points of a frame in the vehicle's frame, with what the map needs to know of each point."""
+        extraction = self.setup["extraction"]
+        centroid = extraction["place"] == "centroid"
+        rows = PIXEL_ROWS if extraction["place"] == "pixel" else CENTROID_ROWS
+        edges, points, errors, sights, left_out = [], [], [], [], 0
+        for exposure in self.exposures(frame):
+            image = images.load(self.recording.folder / "images", exposure.stem, self.shape)
+            beams = list(range(len(self.setup["beams"]))) if exposure.beam < 0 else [exposure.beam]
+            found, out = edges_of(image, beams, extraction)
+            left_out += out
+            rig = self.rig_at(exposure.step)
+            for e in found:
+                n = len(e.column)
+                edge = np.column_stack([np.full(n, frame), np.full(n, exposure.step), np.full(n, e.beam),
+                                        e.column, e.row])
+                row = e.pixel_row + 0.5 if extraction["lookup"] == "table" else e.row
+                place, ok = rig.points(e.beam, e.column, row, centroid)
+                edges.append(edge)
+                points.append(np.column_stack([edge, place])[ok])
+                error = rows * rig.height_of_a_pixel(e.beam, e.column, row, rotation, centroid)
+                errors.append(error[ok])
+                sights.append(sight(place[ok], rig, e.beam, rotation))
+        return (np.vstack(edges), np.vstack(points), np.concatenate(errors), np.vstack(sights), left_out)
+
+    def frame(self, k):
+        setup, s = self.setup, self.sensed
+        rotation = attitude(s.heading[k], s.pitch_down[k], s.roll_right[k])
+        x, y, proximity = s.x[k], s.y[k], s.proximity[k]
+        edges, seen, image_error, sight_slopes, left_out = self.look(k, rotation)
+        if k > 0:
+            self.way += float(np.hypot(x - s.x[k - 1], y - s.y[k - 1]))
+        mended = setup["rules"]["elevation"] == "mended"
+        distance = np.linalg.norm(seen[:, 5:8], axis=1)
+        own = image_error ** 2 + (setup["known_noise"]["attitude"] * distance) ** 2
+        read = False
+        if k == 0:
+            self.map = ElevationMap(setup, (x, y))
+            self.elevation.start(x, y, rotation)
+        elif mended:
+            self.elevation.predict(x, y, rotation)
+            read = self.elevation.correct_by_ground(self.map, x, y, proximity)
+            if not s.scan[k]:
+                rough = seen[:, 5:8] @ rotation.T + [x, y, self.elevation.z]
+                near = seen[:, 2] == 0
+                read |= self.elevation.correct_by_stripes(self.map, rough[near], own[near], self.way)
+        else:
+            read = self.elevation.printed(self.map, x, y, rotation, proximity)
+        if self.believed_z is not None:
+            self.elevation.z = float(self.believed_z[k])
+        pose = Pose((x, y, self.elevation.z), rotation)
+        moved = self.map.move(x, y)
+        fresh = k == 0 or (s.scan[k] and setup["scan"]["clear_map"])
+        if fresh:
+            self.map.clear()
+            if setup["rules"]["start"] == "footprint":
+                self.map.set_footprint(x, y, self.elevation.z, rotation, setup["vehicle"])
+            elif np.isfinite(proximity):
+                self.map.set_proximity(x, y, self.elevation.z - proximity)
+        placed = pose.apply(seen[:, 5:8])
+        points = np.column_stack([seen, placed])
+        self.stands.append((x, y, self.elevation.z, slopes_of_plane(rotation)))
+        found = self.map.enter(placed, own + self.elevation.variance, self.way, sight_slopes)
+        out = Frame(edges, points, left_out, pose.position, rotation, read, np.sqrt(self.elevation.variance),
+                    tuple(int(m) for m in moved), found)
+        if k % setup["obstacles_every"] == 0:
+            self.obstacles(out, x, y, s.heading[k])
+        return out
+
+    def obstacles(self, out, x, y, heading):
+        """Obstacle map and navigator map, with a copy of the map they were made from."""
+        setup = self.setup
+        out.elevation, out.source = self.map.elevation.copy(), self.map.source.copy()
+        out.corner = tuple(float(v) for v in self.map.place(0, 0))
+        gap = setup["rules"]["gap"] == "mended" and setup["tests"]["max_gap_width"] is not None
+        shadows = Shadows(self.map, setup["tests"]["max_gap_width"]) if gap else None
+        if setup["rules"]["tests"] == "paper":
+            test = PointTests(self.map, setup)
+        else:
+            test = WheelTests(self.map, setup, shadows, self.stands)
+        out.sectors = obstacle_map(setup["grid"], x, y, heading, test)
+        out.vectors = navigator_map(out.sectors, setup["vectors"])
+
+
+def sight(place, rig, beam, rotation):
+    """Of each point the flatter of the lines to camera and beam: horizontal direction times slope."""
+    best, best_slope = np.full((len(place), 2), np.nan), np.full(len(place), np.inf)
+    for origin in (rig.camera_pose.position, rig.beam_poses[beam].position):
+        line = (origin - place) @ rotation.T
+        flat = np.hypot(line[:, 0], line[:, 1])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = line[:, 2] / flat
+            vector = line[:, :2] / flat[:, None] * slope[:, None]
+        better = slope < best_slope
+        best[better], best_slope[better] = vector[better], slope[better]
+    return best

@@ -1,0 +1,138 @@
+"""Lower edges of the stripes in an image: the section "Stripes" of docs/theory/rover.md.
+
+Rows are counted downwards, so that the lower end of a run of lit pixels is the one with the highest row.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+BINS = 256  # of Otsu's histogram
+
+
+@dataclass
+class Edges:
+    """One image's edges of one beam, in row-major order; `row` is j + 1/2 for the middle of pixel row j."""
+
+    beam: int
+    column: np.ndarray
+    row: np.ndarray
+    pixel_row: np.ndarray  # the pixel that holds the edge; "lookup": "table" takes the point of its middle
+
+
+def level_of(image, extraction):
+    """The number at or above which a pixel is lit; infinite if the image has no light."""
+    detection = extraction["detection"]
+    if detection == "fixed":
+        return float(extraction["threshold"])
+    brightest = float(image.max())
+    if detection == "share":
+        return extraction["threshold"] * brightest if brightest > 0 else np.inf
+    return otsu(image)
+
+
+def otsu(image):
+    """Otsu's cut of a histogram of 256 bins from the lowest to the highest number; of equal cuts the middle one."""
+    low, high = float(image.min()), float(image.max())
+    if not high > low:
+        return np.inf
+    bins = np.minimum(((image - low) * (BINS / (high - low))).astype(int), BINS - 1)
+    count = np.bincount(bins.reshape(-1), minlength=BINS).astype(float)
+    below = np.cumsum(count)[:-1]  # pixels in bins 0..k, for a cut above bin k
+    moment = np.cumsum(count * np.arange(BINS))
+    above = count.sum() - below
+    with np.errstate(divide="ignore", invalid="ignore"):
+        spread = below * above * (moment[:-1] / below - (moment[-1] - moment[:-1]) / above) ** 2
+    best = np.flatnonzero(spread == np.nanmax(spread))
+    cut = best[len(best) // 2]
+    return low + (cut + 1) * (high - low) / BINS
+
+
+def runs(image, extraction):
+    """First and last row of each run of lit pixels that does not reach the lower border, with its column.
+
+    Also the level, for the crossing between the last lit pixel and the next. Sorted by (last row, column).
+    """
+    height = image.shape[0]
+    if extraction["detection"] == "gradient":
+        first, last, column = steep_runs(image, float(extraction["threshold"]))
+        level = None
+    else:
+        level = level_of(image, extraction)
+        lit = image >= level
+        # One dark row above and below turns both ends of a run into differences.
+        padded = np.zeros((height + 2, image.shape[1]), np.int8)
+        padded[1:-1] = lit
+        change = np.diff(padded, axis=0)
+        # Transposed: np.nonzero then walks down each column, so that starts and ends pair up.
+        column, first = np.nonzero(change.T > 0)
+        _, after = np.nonzero(change.T < 0)
+        last = after - 1
+    keep = (last < height - 1) & (last - first + 1 >= extraction["least_rows"])
+    first, last, column = first[keep], last[keep], column[keep]
+    order = np.lexsort((column, last))
+    return first[order], last[order], column[order], level
+
+
+def steep_runs(image, least):
+    """Runs between a steepest rise and the next steepest fall of a column, each at least `least` strong."""
+    step = np.diff(image.astype(float), axis=0)  # step[j] is from row j to row j + 1
+    def peaks(s):
+        """At least `least`, and no smaller than the differences above and below; of equal ones the first."""
+        before = np.vstack([np.full((1, s.shape[1]), -np.inf), s[:-1]])
+        behind = np.vstack([s[1:], np.full((1, s.shape[1]), -np.inf)])
+        return (s >= least) & (s > before) & (s >= behind)
+    rise, fall = peaks(step), peaks(-step)
+    first, last, column = [], [], []
+    for i in np.flatnonzero(rise.any(axis=0) & fall.any(axis=0)):
+        start = None
+        for j in np.flatnonzero(rise[:, i] | fall[:, i]):
+            if rise[j, i]:
+                start = j + 1
+            elif start is not None:
+                first.append(start), last.append(j), column.append(i)
+                start = None
+    return np.array(first, int), np.array(last, int), np.array(column, int)
+
+
+def places(image, first, last, column, level, place):
+    """Row of each edge, by the setup's "place"."""
+    if place == "pixel" or len(last) == 0:
+        return last + 0.5
+    if place == "sub_pixel":
+        here, below = image[last, column].astype(float), image[last + 1, column].astype(float)
+        if level is None:
+            return last + 1.0  # a steepest fall lies between the two pixels
+        return last + 0.5 + (here - level) / (here - below)
+    weight, moment = np.zeros(len(last)), np.zeros(len(last))
+    for k in range(int((last - first).max()) + 1):
+        inside = first + k <= last
+        row = np.where(inside, first + k, last)
+        value = np.where(inside, image[row, column].astype(float), 0.0)
+        weight += value
+        moment += value * (row + 0.5)
+    return moment / weight
+
+
+def edges_of(image, beams, extraction):
+    """Edges by beam and the number of columns left out. `beams` lists the beams that light the image."""
+    first, last, column, level = runs(image, extraction)
+    row = places(image, first, last, column, level, extraction["place"])
+    pixel_row = np.floor(row).astype(int)
+    order = np.lexsort((column, pixel_row))
+    column, row, pixel_row, last = column[order], row[order], pixel_row[order], last[order]
+    if len(beams) == 1:
+        return [Edges(beams[0], column, row, pixel_row)], 0
+    per_column = np.bincount(column, minlength=image.shape[1])
+    told_apart = per_column == len(beams)
+    left_out = int(((per_column > 0) & ~told_apart).sum())
+    out = []
+    # The lowest run of a column is beam 0's, the next one above it beam 1's.
+    rank = np.empty(len(column), int)
+    by_column = np.lexsort((-last, column))
+    starts = np.cumsum(per_column) - per_column
+    rank[by_column] = np.arange(len(column)) - starts[column[by_column]]
+    for k, beam in enumerate(beams):
+        mine = told_apart[column] & (rank == k)
+        out.append(Edges(beam, column[mine], row[mine], pixel_row[mine]))
+    return out, left_out
