@@ -12,6 +12,11 @@ HUBER = 1.345  # standard deviations
 OTHER_LEVEL_DEVIATIONS = 3.0
 OTHER_LEVEL_SLOPE = 0.35
 MIN_AGE = 0.3  # m of way; younger cells share the present error of the elevation
+MIN_POINTS = 20  # fewest points that correct by the ground that stripes meet again
+MAX_SLOPE = 1.0  # of that ground
+MIN_SHARED_ERROR = 0.005  # m, of all points of a stripe
+MIN_VARIANCE = 1e-8  # square metres
+AGEING = 0.01  # m per m driven since a measurement
 
 
 class Elevation:
@@ -48,7 +53,7 @@ class Elevation:
         self.variance += TILT_DEVIATION ** 2 * length + (self.noise["attitude"] * length) ** 2
         self.before = (here, slopes)
 
-    def correct_by_ground(self, elevation_map, x, y, proximity):
+    def correct_by_ground(self, elevation_map, x, y, proximity, way):
         """A plane through the measured points around the origin, at their own places."""
         if not np.isfinite(proximity):
             return False
@@ -56,61 +61,85 @@ class Elevation:
         dx, dy = elevation_map.x[known] - x, elevation_map.y[known] - y
         near = np.hypot(dx, dy) <= GROUND_RADIUS
         dx, dy = dx[near], dy[near]
-        z, variance = elevation_map.elevation[known][near], elevation_map.variance[known][near]
-        predicted = self.z - proximity
-        limit = OTHER_LEVEL_DEVIATIONS * np.sqrt(self.variance + variance) + OTHER_LEVEL_SLOPE * np.hypot(dx, dy)
-        same = np.abs(z - predicted) <= limit
-        fit = huber_plane(dx[same], dy[same], z[same], variance[same])
+        distance = np.hypot(dx, dy)
+        age = way - elevation_map.way[known][near]
+        variance = elevation_map.variance[known][near] + (AGEING * age) ** 2
+        noise = self.noise["proximity"] ** 2
+        slopes = self.before[1]
+        residual = elevation_map.elevation[known][near] - (self.z - proximity) - slopes[0] * dx - slopes[1] * dy
+        limit = OTHER_LEVEL_DEVIATIONS * np.sqrt(self.variance + noise + variance) + OTHER_LEVEL_SLOPE * distance
+        same = np.abs(residual) <= limit
+        share = np.maximum(1 - (distance / GROUND_RADIUS) ** 2, 1e-3)
+        fit = huber_plane(dx[same], dy[same], residual[same], (variance / share)[same])
         if fit is None:
             return False
-        ground, ground_variance = fit
-        measured = ground + proximity
-        measured_variance = ground_variance + self.noise["proximity"] ** 2
-        share = self.variance / (self.variance + measured_variance)
-        self.z += share * (measured - self.z)
-        self.variance *= 1 - share
+        height, height_variance = fit
+        self.weigh(self.z + height, height_variance + noise)
         return True
 
-    def correct_by_stripes(self, elevation_map, points, variance, way):
-        """Median height of new points over the planes through the nine old cells around each."""
+    def correct_by_stripes(self, elevation_map, points, row_error, way):
+        """Median height of new points over the planes through the old cells around each. `points` were placed by z."""
         heights = []
+        n = elevation_map.points
+        old = (elevation_map.source == MEASURED) & (way - elevation_map.way >= MIN_AGE)
         for x, y, z in points:
             i, j = elevation_map.grid(x, y)
-            if not (1 <= i < elevation_map.points - 1 and 1 <= j < elevation_map.points - 1):
+            if not (0 <= i < n and 0 <= j < n and old[j, i]):
                 continue
-            block = (slice(j - 1, j + 2), slice(i - 1, i + 2))
-            old = (elevation_map.source[block] == MEASURED) & (way - elevation_map.way[block] >= MIN_AGE)
-            if old.sum() < 3:
+            block = (slice(max(0, j - 1), j + 2), slice(max(0, i - 1), i + 2))
+            at = old[block]
+            if at.sum() < 4:
                 continue
-            dx, dy = elevation_map.x[block][old] - x, elevation_map.y[block][old] - y
-            fit = plane(dx, dy, elevation_map.elevation[block][old], np.ones(old.sum()))
-            if fit is not None:
+            dx, dy = elevation_map.x[block][at] - x, elevation_map.y[block][at] - y
+            fit = plane(dx, dy, elevation_map.elevation[block][at], np.ones(at.sum()), 1e-2)
+            if fit is not None and fit[1] ** 2 + fit[2] ** 2 <= MAX_SLOPE ** 2:
                 heights.append(z - fit[0])
-        if not heights:
-            return False
-        error = float(np.median(heights))
-        self.z -= error
-        return True
+        if len(heights) < MIN_POINTS:
+            return
+        heights = np.sort(heights)
+        middle = heights[len(heights) // 2]
+        deviation = 1.4826 * np.sort(np.abs(heights - middle))[len(heights) // 2]
+        variance = np.pi / 2 * deviation ** 2 / len(heights) + max(row_error, MIN_SHARED_ERROR) ** 2
+        self.weigh(self.z - middle, variance)
+
+    def weigh(self, z, variance):
+        """Believes both what is believed and z, by their inverse variances."""
+        own, other = max(self.variance, MIN_VARIANCE), max(variance, MIN_VARIANCE)
+        share = own / (own + other)
+        self.z += share * (z - self.z)
+        self.variance = share * other
 
 
-def plane(dx, dy, z, weight):
-    """Weighted least squares of z = a + b dx + c dy; None if the points lie on a line. Returns a, b, c, inverse."""
-    matrix = np.column_stack([np.ones(len(dx)), dx, dy])
-    normal = matrix.T @ (weight[:, None] * matrix)
-    if len(dx) < 3 or np.linalg.matrix_rank(matrix) < 3:
+def plane(dx, dy, z, weight, least_spread):
+    """Weighted least squares of z = a + b dx + c dy: a, b, c and the variance of a; None for points on a line."""
+    if len(dx) < 3:
         return None
-    inverse = np.linalg.inv(normal)
-    a, b, c = inverse @ (matrix.T @ (weight * z))
-    return a, b, c, inverse
+    total = weight.sum()
+    mx, my, mz = (weight * dx).sum() / total, (weight * dy).sum() / total, (weight * z).sum() / total
+    u, v, w = dx - mx, dy - my, z - mz
+    xx, xy, yy = (weight * u * u).sum(), (weight * u * v).sum(), (weight * v * v).sum()
+    xz, yz = (weight * u * w).sum(), (weight * v * w).sum()
+    det, trace = xx * yy - xy * xy, xx + yy
+    if not det > least_spread * trace * trace:
+        return None
+    b, c = (yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det
+    a = mz - b * mx - c * my
+    # The error of the mean, and that of the slope over the distance to the mean.
+    variance = 1 / total + (yy * mx * mx - 2 * xy * mx * my + xx * my * my) / det
+    if len(dx) > 3:
+        # Ground that is no plane makes larger residuals than its errors do.
+        variance *= max(1, (weight * (z - a - b * dx - c * dy) ** 2).sum() / (len(dx) - 3))
+    return a, b, c, variance
 
 
-def huber_plane(dx, dy, z, variance, rounds=20):
+def huber_plane(dx, dy, z, variance, rounds=3):
     """Height of the plane at (0, 0) with Huber's weights, and its variance; None if there is no plane."""
-    weight = 1 / variance
+    huber = np.ones(len(z))
+    fit = None
     for _ in range(rounds):
-        fit = plane(dx, dy, z, weight)
+        fit = plane(dx, dy, z, huber / variance, 1e-3)
         if fit is None:
             return None
-        residual = np.abs(z - (fit[0] + fit[1] * dx + fit[2] * dy)) / np.sqrt(variance)
-        weight = np.minimum(1, HUBER / np.maximum(residual, 1e-300)) / variance
-    return fit[0], fit[3][0, 0]
+        off = np.abs(z - (fit[0] + fit[1] * dx + fit[2] * dy)) / np.sqrt(variance)
+        huber = np.where(off > HUBER, HUBER / np.maximum(off, 1e-300), 1)
+    return fit[0], fit[3]

@@ -141,19 +141,24 @@ class ElevationMap:
         chosen = winner[cells]
         jj, ii = np.divmod(cells, self.points)
         found = self.contradiction(jj, ii, points[chosen, 2])
+        # The range of a cell is that of all of its points, whichever it keeps.
+        np.minimum.at(self.lowest, (j, i), points[:, 2])
+        np.maximum.at(self.highest, (j, i), points[:, 2])
         self.settle(jj, ii, points[chosen], variance[chosen], way)
         self.slope_x[jj, ii], self.slope_y[jj, ii] = sight[chosen].T
-        self.extrapolate(jj, ii, chosen)
+        first = np.full(self.points * self.points, -1)
+        first[cell[::-1]] = np.arange(len(cell))[::-1]  # numpy assigns in order: the first of each cell remains
+        self.extrapolate(jj, ii, first[cells])
         return found
 
     def contradiction(self, j, i, z):
         """How far new elevations lie outside the range of all that were measured in their cells."""
         if self.rules["inconsistency"] == "paper":
-            return 0, np.nan, np.nan
+            return 0, 0.0, 0.0
         again = self.lowest[j, i] <= self.highest[j, i]
         outside = np.maximum(0, np.maximum(self.lowest[j, i] - z, z - self.highest[j, i]))[again]
         if not again.any():
-            return 0, np.nan, np.nan
+            return 0, 0.0, 0.0
         return int(again.sum()), float(outside.mean()), float(outside.max())
 
     def settle(self, j, i, points, variance, way):
@@ -161,8 +166,6 @@ class ElevationMap:
         x, y, z = points[:, 0].copy(), points[:, 1].copy(), points[:, 2].copy()
         variance = variance.copy()
         since = np.full(len(z), way)
-        self.lowest[j, i] = np.minimum(self.lowest[j, i], z)
-        self.highest[j, i] = np.maximum(self.highest[j, i], z)
         old = self.source[j, i] == MEASURED
         if self.rules["several"] == "mended" and old.any():
             oj, oi = j[old], i[old]

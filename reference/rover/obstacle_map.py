@@ -116,5 +116,5 @@ class PointTests:
             for k in points:
                 if not known[k]:
                     reason = "not_measured" if self.map.inside(i[k], j[k]) else "beyond_map"
-                    return Verdict("unknown", reason, part, (float(px[k]), float(py[k])), tie)
+                    return Verdict("unknown", reason, part, (float(gx[k]), float(gy[k])), tie)
         return Verdict(CLEAR, near_tie=tie)

@@ -96,7 +96,7 @@ class Rover:
                 place, ok = rig.points(e.beam, e.column, row, centroid)
                 edges.append(edge)
                 points.append(np.column_stack([edge, place])[ok])
-                error = rows * rig.height_of_a_pixel(e.beam, e.column, row, rotation, centroid)
+                error = rig.height_error(e.beam, e.column, e.row, rows, centroid)
                 errors.append(error[ok])
                 sights.append(sight(place[ok], rig, e.beam, rotation))
         return (np.vstack(edges), np.vstack(points), np.concatenate(errors), np.vstack(sights), left_out)
@@ -109,32 +109,32 @@ class Rover:
         if k > 0:
             self.way += float(np.hypot(x - s.x[k - 1], y - s.y[k - 1]))
         mended = setup["rules"]["elevation"] == "mended"
-        distance = np.linalg.norm(seen[:, 5:8], axis=1)
+        away = seen[:, 5:8] @ rotation.T
+        distance = np.hypot(away[:, 0], away[:, 1])
         own = image_error ** 2 + (setup["known_noise"]["attitude"] * distance) ** 2
         read = False
         if k == 0:
             self.map = ElevationMap(setup, (x, y))
             self.elevation.start(x, y, rotation)
+            self.fill_at_start(x, y, rotation, proximity)
+        if k == 0 and mended:
+            pass  # nothing is measured yet, and nothing was driven
         elif mended:
             self.elevation.predict(x, y, rotation)
-            read = self.elevation.correct_by_ground(self.map, x, y, proximity)
-            if not s.scan[k]:
-                rough = seen[:, 5:8] @ rotation.T + [x, y, self.elevation.z]
-                near = seen[:, 2] == 0
-                read |= self.elevation.correct_by_stripes(self.map, rough[near], own[near], self.way)
+            read = self.elevation.correct_by_ground(self.map, x, y, proximity, self.way)
         else:
             read = self.elevation.printed(self.map, x, y, rotation, proximity)
         if self.believed_z is not None:
             self.elevation.z = float(self.believed_z[k])
-        pose = Pose((x, y, self.elevation.z), rotation)
         moved = self.map.move(x, y)
-        fresh = k == 0 or (s.scan[k] and setup["scan"]["clear_map"])
-        if fresh:
+        if s.scan[k] and setup["scan"]["clear_map"]:
             self.map.clear()
-            if setup["rules"]["start"] == "footprint":
-                self.map.set_footprint(x, y, self.elevation.z, rotation, setup["vehicle"])
-            elif np.isfinite(proximity):
-                self.map.set_proximity(x, y, self.elevation.z - proximity)
+            self.fill_at_start(x, y, rotation, proximity)
+        if mended and k > 0:
+            self.elevation.correct_by_stripes(self.map, away + [x, y, self.elevation.z], image_error.mean() if len(image_error) else 0, self.way)
+        if self.believed_z is not None:
+            self.elevation.z = float(self.believed_z[k])
+        pose = Pose((x, y, self.elevation.z), rotation)
         placed = pose.apply(seen[:, 5:8])
         points = np.column_stack([seen, placed])
         self.stands.append((x, y, self.elevation.z, slopes_of_plane(rotation)))
@@ -144,6 +144,15 @@ class Rover:
         if k % setup["obstacles_every"] == 0:
             self.obstacles(out, x, y, s.heading[k])
         return out
+
+    def fill_at_start(self, x, y, rotation, proximity):
+        """What is known before the first stripe: the ground under the origin, or the rectangle around the wheels."""
+        if not np.isfinite(proximity):
+            return
+        if self.setup["rules"]["start"] == "footprint":
+            self.map.set_footprint(x, y, self.elevation.z - proximity, rotation, self.setup["vehicle"])
+        else:
+            self.map.set_proximity(x, y, self.elevation.z - proximity)
 
     def obstacles(self, out, x, y, heading):
         """Obstacle map and navigator map, with a copy of the map they were made from."""

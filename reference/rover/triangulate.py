@@ -49,8 +49,13 @@ class Rig:
         ok &= np.linalg.norm(in_camera, axis=1) <= camera["max_range"] + size
         return in_vehicle, ok
 
-    def height_of_a_pixel(self, beam, column, row, rotation, in_the_middle):
-        """How much the global elevation of the point changes over one row of the image, without a sign."""
-        low, _ = self.points(beam, column, row + 0.5, in_the_middle)
-        high, _ = self.points(beam, column, row - 0.5, in_the_middle)
-        return np.abs((high - low) @ rotation[2])
+    def height_error(self, beam, column, row, rows, in_the_middle):
+        """How much z of the point changes, in the vehicle frame, if its row is off by `rows`: the larger of both ways."""
+        middle, _ = self.points(beam, column, row, in_the_middle)
+        largest = np.zeros(len(column))
+        for off in (-rows, rows):
+            place, ok = self.points(beam, column, row + off, in_the_middle)
+            change = np.abs(place[:, 2] - middle[:, 2])
+            # Past the end of the fan's range there is no point: the other way says as much.
+            largest = np.where(ok, np.maximum(largest, np.where(ok, change, 0)), largest)
+        return largest
