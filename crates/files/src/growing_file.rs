@@ -1,6 +1,6 @@
 //! A file that grows line by line or row by row for a while, and is seen by others only when it is complete.
 
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -16,7 +16,7 @@ use crate::npy::header;
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("log.csv");
 /// let mut file = GrowingFile::create(&path)?;
-/// file.write("a,b\n")?;
+/// file.add("a,b\n")?;
 /// assert!(!path.exists());
 /// file.finish()?;
 /// assert_eq!(std::fs::read_to_string(&path)?, "a,b\n");
@@ -52,7 +52,7 @@ impl GrowingFile {
     ///
     /// # Errors
     /// The error of the file system, with the path.
-    pub fn write(&mut self, bytes: impl AsRef<[u8]>) -> Result<(), FileError> {
+    pub fn add(&mut self, bytes: impl AsRef<[u8]>) -> Result<(), FileError> {
         self.file.write_all(bytes.as_ref()).map_err(|error| FileError::io(&self.path, "write", error))
     }
 
@@ -69,6 +69,23 @@ impl GrowingFile {
         };
         attempt().map_err(|error| FileError::io(&path, "write", error))?;
         Ok(path)
+    }
+}
+
+/// For encoders that write where they like. Their errors do not name the path.
+impl Write for GrowingFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for GrowingFile {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.file.seek(place)
     }
 }
 
@@ -103,21 +120,21 @@ impl NpyRows {
     /// As [`GrowingFile::create`].
     pub fn create(path: impl AsRef<Path>, columns: u64) -> Result<Self, FileError> {
         let mut file = GrowingFile::create(path)?;
-        file.write(header("<f8", &format!("({ROWS_PLACEHOLDER}, {columns})")))?;
+        file.add(header("<f8", &format!("({ROWS_PLACEHOLDER}, {columns})")))?;
         Ok(Self { file, columns, rows: 0 })
     }
 
     /// Adds one row.
     ///
     /// # Errors
-    /// As [`GrowingFile::write`].
+    /// As [`GrowingFile::add`].
     ///
     /// # Panics
     /// If it has not as many numbers as there are columns.
     pub fn push(&mut self, row: &[f64]) -> Result<(), FileError> {
         assert_eq!(row.len() as u64, self.columns, "numbers in a row");
         self.rows += 1;
-        row.iter().try_for_each(|number| self.file.write(number.to_le_bytes()))
+        row.iter().try_for_each(|number| self.file.add(number.to_le_bytes()))
     }
 
     /// Puts the complete file in its place.

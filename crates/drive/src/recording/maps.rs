@@ -18,7 +18,7 @@ impl MapFiles {
     /// `folder` is the recording's, with a folder `maps` in it.
     pub(super) fn create(folder: &Path) -> Result<Self, FileError> {
         let mut table = GrowingFile::create(folder.join("maps.csv"))?;
-        table.write("frame,west_m,south_m,spacing_m,points\n")?;
+        table.add("frame,west_m,south_m,spacing_m,points\n")?;
         Ok(Self { folder: folder.join("maps"), table })
     }
 
@@ -27,7 +27,7 @@ impl MapFiles {
         write_npy(named("elevation"), &[&elevation_image(map)])?;
         write_npy(named("source"), &[&source_image(map)])?;
         let (corner, size) = (height_grid(map).corner, map.size());
-        self.table.write(format!("{frame},{},{},{},{}\n", corner.x, corner.y, size.spacing, size.points))
+        self.table.add(format!("{frame},{},{},{},{}\n", corner.x, corner.y, size.spacing, size.points))
     }
 
     pub(super) fn finish(self) -> Result<(), FileError> {

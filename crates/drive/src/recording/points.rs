@@ -21,7 +21,7 @@ pub(super) struct PointFiles {
 impl PointFiles {
     pub(super) fn create(folder: &Path) -> Result<Self, FileError> {
         let mut text = GrowingFile::create(folder.join("points.csv"))?;
-        text.write(HEADER)?;
+        text.add(HEADER)?;
         Ok(Self {
             stripes: NpyRows::create(folder.join("stripes.npy"), 5)?,
             points: NpyRows::create(folder.join("points.npy"), 11)?,
@@ -47,7 +47,7 @@ impl PointFiles {
             let _ =
                 writeln!(lines, "{index},{step},{beam},{column},{row},{x},{y},{z},{gx},{gy},{gz},{error}");
         }
-        self.text.write(lines)
+        self.text.add(lines)
     }
 
     pub(super) fn finish(self) -> Result<(), FileError> {

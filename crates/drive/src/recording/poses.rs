@@ -24,7 +24,7 @@ pub(super) struct PoseFiles {
 impl PoseFiles {
     pub(super) fn create(folder: &Path) -> Result<Self, FileError> {
         let mut table = GrowingFile::create(folder.join("poses.csv"))?;
-        table.write(HEADER)?;
+        table.add(HEADER)?;
         Ok(Self {
             table,
             truth: GrowingFile::create(folder.join("poses-true.tum"))?,
@@ -51,10 +51,10 @@ impl PoseFiles {
         fields.push(update.inconsistency.count.to_string());
         fields.extend([update.inconsistency.mean, update.inconsistency.largest].map(|m| m.to_string()));
         fields.extend([frame.edges.len(), frame.points, frame.columns_left_out].map(|n| n.to_string()));
-        self.table.write(fields.join(",") + "\n")?;
+        self.table.add(fields.join(",") + "\n")?;
         for (file, pose) in [(&mut self.truth, truth), (&mut self.believed, believed)] {
             let words: Vec<String> = pose.iter().map(f64::to_string).collect();
-            file.write(format!("{time} {}\n", words.join(" ")))?;
+            file.add(format!("{time} {}\n", words.join(" ")))?;
         }
         Ok(())
     }

@@ -1,0 +1,44 @@
+//! Bags of ROS 2: an MCAP file with the definitions of its messages, and the `metadata.yaml` of rosbag2 beside it.
+//! Nothing of ROS is needed to write them, and `ros2 bag`, RViz, Foxglove and Python read them.
+//!
+//! ```text
+//! messages       the messages, field by field as ROS 2 defines them
+//! definitions    their texts, which the bag carries along
+//! bag            the bag itself
+//! metadata       its metadata.yaml
+//! ```
+//!
+//! ```
+//! use raypencil_rosbag::{BagWriter, Header, Image, Stamp, Topic};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let mut bag = BagWriter::create(&folder.path().join("drive"))?;
+//! let stamp = Stamp::from_nanoseconds(1_000_000_000);
+//! let image = Image {
+//!     header: Header { stamp, frame_id: "camera".into() },
+//!     height: 1,
+//!     width: 2,
+//!     encoding: "mono16".into(),
+//!     is_bigendian: 0,
+//!     step: 4,
+//!     data: vec![1, 0, 2, 0].into(),
+//! };
+//! bag.write(&Topic::new("/camera/image_raw"), stamp, &image)?;
+//! bag.finish()?;
+//! assert!(folder.path().join("drive/drive_0.mcap").exists() && folder.path().join("drive/metadata.yaml").exists());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! (MCAP specification 1.0; OMG CDR 1.0 as ROS 2 encodes it, little endian; rosbag2 metadata, version 5)
+
+mod bag;
+mod definitions;
+mod messages;
+mod metadata;
+
+pub use bag::{BagWriter, Topic};
+pub use messages::{
+    Bytes, CameraInfo, Header, Image, MapMetaData, Message, OccupancyGrid, Odometry, Point, PointCloud2,
+    PointField, Pose, PoseWithCovariance, Quaternion, RegionOfInterest, Stamp, TfMessage, Transform,
+    TransformStamped, Twist, TwistWithCovariance, Vector3,
+};
