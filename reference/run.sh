@@ -24,6 +24,18 @@ expect() {
     printf 'ok (exit code %d): %s\n' "$code" "$*"
 }
 
+# other_bit FILE: changes one bit, eight bytes before the end.
+other_bit() {
+    "$python" - "$1" <<'END'
+import sys
+with open(sys.argv[1], "r+b") as file:
+    file.seek(-8, 2)
+    last = file.read(1)[0]
+    file.seek(-8, 2)
+    file.write(bytes([last ^ 1]))
+END
+}
+
 python=""
 if python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
     if python3 -m venv "$work/venv" >/dev/null 2>&1 \
@@ -51,14 +63,7 @@ if [[ -n $python ]]; then
         expect 0 "$raypencil" cast "$mesh" "$rays" --any --all --margins -o "$folder"
         expect 0 "$python" reference/exact_cast.py "$mesh" "$rays" "$folder"
     done
-    "$python" - "$folder/t.npy" <<'END'
-import sys
-with open(sys.argv[1], "r+b") as file:
-    file.seek(-8, 2)
-    last = file.read(1)[0]
-    file.seek(-8, 2)
-    file.write(bytes([last ^ 1]))
-END
+    other_bit "$folder/t.npy"
     expect 1 "$python" reference/exact_cast.py "$mesh" "$rays" "$folder" --displaced 0
     expect 0 "$python" reference/load_ground.py data/packs/input "$work/input"
     expect 0 "$raypencil" check data/packs/input "$work/input"
@@ -68,6 +73,13 @@ END
         expect 0 "$python" reference/numpy_candidate.py "$work/blind-$seed" "$work/f64/blind-$seed"
         expect 0 "$raypencil" check "$work/blind-$seed" "$work/f64/blind-$seed"
     done
+    # The bag of a drive, by two readers; one pixel of the recording that is off is found.
+    expect 0 "$raypencil" drive data/scenes/rocky-drive.toml --record npy,points,maps,mcap -o "$work/drive"
+    expect 0 "$python" reference/rosbag/check.py "$work/drive/recording"
+    tail -n 1 "$work/output"
+    other_bit "$work/drive/recording/images/000012-beam0.npy"
+    expect 1 "$python" reference/rosbag/check.py "$work/drive/recording"
+    rm -r "$work/drive"
     candidates=data/candidates
     make=(reference/make.py --pack)
     for pack in "${packs[@]}"; do

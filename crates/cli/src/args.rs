@@ -259,7 +259,7 @@ pub(crate) struct Drive {
     #[arg(long = "rule", value_name = "NAME=paper|mended", value_parser = rule)]
     pub(crate) rules: Vec<(String, String)>,
 
-    /// Record for other programs: images (png, npy), points, maps, or all. Poses and sectors always are.
+    /// Record for other programs: images (png, npy), points, maps, mcap (a bag of ROS 2), or all. Poses and sectors always are.
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = record)]
     pub(crate) record: Vec<String>,
 

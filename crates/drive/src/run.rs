@@ -174,7 +174,7 @@ pub fn drive_with(
     };
     let mut first = start(0)?.expect("there is a renderer").keeping_swept();
     let mut second = start(1)?;
-    let begin = |(folder, contents): (PathBuf, _)| Recording::begin(&folder, contents);
+    let begin = |(folder, contents): (PathBuf, _)| Recording::begin(&folder, job, contents);
     let mut recording = record.map(begin).transpose()?;
     let stripes = u64::from(job.plan.sweep.steps);
     progress.frames(0, planned);

@@ -20,6 +20,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("report", 2),
     ("minimise", 2),
     ("chassis", 2),
+    ("rosbag", 3),
     ("rover", 3),
     ("survey", 3),
     ("judge", 3),

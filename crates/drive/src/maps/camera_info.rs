@@ -5,12 +5,19 @@ use raypencil_scene::Camera;
 
 use crate::maps::yaml::{quoted, real};
 
-/// Calibration file of a camera. In ROS, as in OpenCV, the *middle* of pixel (0, 0) is at (0, 0); here, that is the
-/// pixel's outer corner. The principal point therefore moves by half a pixel. A camera without distortion has the model
-/// `plumb_bob` with zeros.
-pub fn camera_info(camera: &Camera, name: &str) -> String {
+/// Camera matrix (3 x 3) and projection (3 x 4), row by row, pixels. In ROS, as in OpenCV, the *middle* of pixel (0, 0) is at (0, 0); here, that is the
+/// pixel's outer corner. The principal point therefore moves by half a pixel.
+pub(crate) fn camera_matrices(camera: &Camera) -> ([f64; 9], [f64; 12]) {
     let [fx, fy] = camera.pixel_pitch.map(|pitch| camera.focal_length / pitch);
     let [cx, cy] = camera.principal_point.map(|point| point - 0.5);
+    let matrix = [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0];
+    let projection = [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0];
+    (matrix, projection)
+}
+
+/// Calibration file of a camera. A camera without distortion has the model `plumb_bob` with zeros.
+pub fn camera_info(camera: &Camera, name: &str) -> String {
+    let (camera_matrix, projection) = camera_matrices(camera);
     let matrix = |name: &str, rows: u32, columns: u32, data: &[f64]| {
         let data: Vec<String> = data.iter().map(|&value| real(value)).collect();
         format!("{name}:\n  rows: {rows}\n  cols: {columns}\n  data: [{}]\n", data.join(", "))
@@ -22,11 +29,10 @@ pub fn camera_info(camera: &Camera, name: &str) -> String {
         camera.height,
         quoted(name)
     );
-    text += &matrix("camera_matrix", 3, 3, &[fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]);
+    text += &matrix("camera_matrix", 3, 3, &camera_matrix);
     text += "distortion_model: plumb_bob\n";
     text += &matrix("distortion_coefficients", 1, 5, &[0.0; 5]);
     text += &matrix("rectification_matrix", 3, 3, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
-    let projection = [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0];
     text + &matrix("projection_matrix", 3, 4, &projection)
 }
 

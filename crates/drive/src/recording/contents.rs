@@ -11,10 +11,12 @@ pub struct RecordContents {
     pub points: bool,
     /// Snapshots of the elevation map.
     pub maps: bool,
+    /// All of it as a bag of ROS 2.
+    pub mcap: bool,
 }
 
 /// Words of [`RecordContents::add`].
-const WORDS: &str = "images, png, npy, points, poses, maps, all";
+const WORDS: &str = "images, png, npy, points, poses, maps, mcap, all";
 
 impl RecordContents {
     /// Adds what a word stands for. `poses` is always recorded.
@@ -28,7 +30,7 @@ impl RecordContents {
     /// let mut contents = RecordContents::default();
     /// contents.add("images").unwrap();
     /// assert!(contents.png && contents.npy && !contents.points);
-    /// assert_eq!(contents.add("film").unwrap_err(), "images, png, npy, points, poses, maps, all");
+    /// assert_eq!(contents.add("film").unwrap_err(), "images, png, npy, points, poses, maps, mcap, all");
     /// ```
     pub fn add(&mut self, word: &str) -> Result<(), String> {
         match word {
@@ -38,7 +40,8 @@ impl RecordContents {
             "points" => self.points = true,
             "poses" => {}
             "maps" => self.maps = true,
-            "all" => *self = Self { png: true, npy: true, points: true, maps: true },
+            "mcap" => self.mcap = true,
+            "all" => *self = Self { png: true, npy: true, points: true, maps: true, mcap: true },
             _ => return Err(WORDS.into()),
         }
         Ok(())

@@ -9,10 +9,13 @@
 //! poses      true, believed and sensed poses
 //! sectors    sectors with their reasons, and vectors
 //! maps       snapshots of the elevation map
+//! ros        the house's things as messages of ROS 2
+//! bag        all of them as a bag of ROS 2
 //! setup      all that defines the algorithms
 //! recording  Recording: all of them, in one folder
 //! ```
 
+mod bag;
 mod contents;
 mod images;
 mod maps;
@@ -20,6 +23,7 @@ mod points;
 mod poses;
 #[expect(clippy::module_inception, reason = "the folder is named by what it makes")]
 mod recording;
+mod ros;
 mod sectors;
 mod setup;
 

@@ -7,6 +7,7 @@ use raypencil_files::{FileError, FolderError, begin_output_folder, create_folder
 use raypencil_rover::{CameraImage, DriveFrame, ElevationMap, Exposure};
 
 use crate::job::DriveJob;
+use crate::recording::bag::DriveBag;
 use crate::recording::contents::RecordContents;
 use crate::recording::images::write_image;
 use crate::recording::maps::MapFiles;
@@ -30,6 +31,7 @@ pub(crate) struct Recording {
     sectors: SectorFiles,
     points: Option<PointFiles>,
     maps: Option<MapFiles>,
+    bag: Option<DriveBag>,
     start_elevation: Option<f64>,
     /// First failure to write an image. The camera's pipeline has no way to report it.
     failure: Option<FileError>,
@@ -41,7 +43,7 @@ impl Recording {
     ///
     /// # Errors
     /// The folder or file that could not be made, and the reason.
-    pub(crate) fn begin(drive: &Path, contents: RecordContents) -> Result<Self, FolderError> {
+    pub(crate) fn begin(drive: &Path, job: &DriveJob, contents: RecordContents) -> Result<Self, FolderError> {
         begin_output_folder(drive, "summary.json")?;
         let folder = drive.join(FOLDER);
         create_folder(&folder)?;
@@ -57,6 +59,7 @@ impl Recording {
             sectors: SectorFiles::create(&folder)?,
             points: contents.points.then(|| PointFiles::create(&folder)).transpose()?,
             maps: contents.maps.then(|| MapFiles::create(&folder)).transpose()?,
+            bag: contents.mcap.then(|| DriveBag::create(&folder, job)).transpose()?,
             folder,
             contents,
             start_elevation: None,
@@ -70,6 +73,9 @@ impl Recording {
         if is_wanted && self.failure.is_none() {
             let folder = self.folder.join("images");
             self.failure = write_image(&folder, self.contents, exposure, image, job.subtract_unlit).err();
+        }
+        if let (Some(bag), None) = (&mut self.bag, &self.failure) {
+            self.failure = bag.image(job, exposure, image).err();
         }
     }
 
@@ -89,6 +95,9 @@ impl Recording {
         if let Some(points) = &mut self.points {
             points.add(frame)?;
         }
+        if let Some(bag) = &mut self.bag {
+            bag.frame(job, frame, map)?;
+        }
         match &mut self.maps {
             Some(maps) if frame.obstacles.is_some() => maps.add(frame.index, map),
             _ => Ok(()),
@@ -102,6 +111,7 @@ impl Recording {
         self.points.map_or(Ok(()), PointFiles::finish)?;
         self.maps.map_or(Ok(()), MapFiles::finish)?;
         let setup = setup_json(job, self.start_elevation.unwrap_or(0.0));
+        self.bag.map_or(Ok(()), |bag| bag.finish(job, &setup))?;
         write_atomically(self.folder.join(LAST), |file| file.write_all(setup.as_bytes()))
     }
 }
@@ -109,7 +119,15 @@ impl Recording {
 /// Removes the files of an earlier recording, and nothing else: images and maps of frames that this drive may not have.
 fn remove_earlier(folder: &Path) -> Result<(), FolderError> {
     let failed = |path: &Path, source| FolderError::RemoveEarlier { path: path.to_path_buf(), source };
-    let names = ["setup.json", "stripes.npy", "points.npy", "points.csv", "maps.csv"];
+    let names = [
+        "setup.json",
+        "stripes.npy",
+        "points.npy",
+        "points.csv",
+        "maps.csv",
+        "rosbag/metadata.yaml",
+        "rosbag/rosbag_0.mcap",
+    ];
     let mut stale: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
     for part in ["images", "maps"] {
         let Ok(entries) = std::fs::read_dir(folder.join(part)) else { continue };

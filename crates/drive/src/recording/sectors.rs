@@ -17,9 +17,8 @@ pub(super) struct SectorFiles {
 impl SectorFiles {
     pub(super) fn create(folder: &Path) -> Result<Self, FileError> {
         let mut sectors = GrowingFile::create(folder.join("sectors.csv"))?;
-        sectors.add(
-            "frame,sector,direction_rad,radius_m,x_m,y_m,label,reason,part,missing_x_m,missing_y_m\n",
-        )?;
+        sectors
+            .add("frame,sector,direction_rad,radius_m,x_m,y_m,label,reason,part,missing_x_m,missing_y_m\n")?;
         let mut vectors = GrowingFile::create(folder.join("vectors.csv"))?;
         vectors.add("frame,from_x_m,from_y_m,to_x_m,to_y_m,label\n")?;
         Ok(Self { sectors, vectors })
@@ -31,8 +30,7 @@ impl SectorFiles {
         for (sector, end) in map.sectors.iter().enumerate() {
             let SectorEnd { direction, radius, point, label, .. } = *end;
             let (x, y, label, reason) = (point.x, point.y, label_word(label), reason(end));
-            self.sectors
-                .add(format!("{index},{sector},{direction},{radius},{x},{y},{label},{reason}\n"))?;
+            self.sectors.add(format!("{index},{sector},{direction},{radius},{x},{y},{label},{reason}\n"))?;
         }
         for vector in vectors {
             let (from, to, label) = (vector.from, vector.to, label_word(vector.label));

@@ -28,7 +28,7 @@ fn recorded(
 }
 
 fn all() -> RecordContents {
-    RecordContents { png: true, npy: true, points: true, maps: true }
+    RecordContents { png: true, npy: true, points: true, maps: true, mcap: true }
 }
 
 /// Lines of a table without its first.
@@ -136,7 +136,7 @@ fn a_new_recording_removes_what_the_last_one_left_and_nothing_else() {
     let foreign = recording.join("images/notes.txt");
     std::fs::write(&foreign, "mine").unwrap();
     // Begun and given up: no file says that it is complete.
-    drop(Recording::begin(folder.path(), RecordContents::default()).unwrap());
+    drop(Recording::begin(folder.path(), &job, RecordContents::default()).unwrap());
     assert!(!recording.join("setup.json").exists() && !recording.join("stripes.npy").exists());
     let left: Vec<_> =
         std::fs::read_dir(recording.join("images")).unwrap().map(|e| e.unwrap().path()).collect();
