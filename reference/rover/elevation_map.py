@@ -8,6 +8,7 @@ UNKNOWN, PROXIMITY, EXTRAPOLATED, MEASURED = 0, 1, 2, 3
 AGEING = 0.01  # m of standard deviation for each metre driven since the measurement
 STEP_DEVIATIONS = 3.0  # two elevations differ by a step in the cell beyond this many standard deviations ...
 STEP_SLOPE = 0.35  # ... and this slope between their places
+MIN_VARIANCE = 0.0005 ** 2  # m^2, of any elevation
 
 NEIGHBOURS = [(di, dj) for dj in (-1, 0, 1) for di in (-1, 0, 1) if (di, dj) != (0, 0)]
 
@@ -144,8 +145,7 @@ class ElevationMap:
         # The range of a cell is that of all of its points, whichever it keeps.
         np.minimum.at(self.lowest, (j, i), points[:, 2])
         np.maximum.at(self.highest, (j, i), points[:, 2])
-        self.settle(jj, ii, points[chosen], variance[chosen], way)
-        self.slope_x[jj, ii], self.slope_y[jj, ii] = sight[chosen].T
+        self.settle(jj, ii, points[chosen], variance[chosen], way, sight[chosen])
         first = np.full(self.points * self.points, -1)
         first[cell[::-1]] = np.arange(len(cell))[::-1]  # numpy assigns in order: the first of each cell remains
         self.extrapolate(jj, ii, first[cells])
@@ -161,27 +161,36 @@ class ElevationMap:
             return 0, 0.0, 0.0
         return int(again.sum()), float(outside.mean()), float(outside.max())
 
-    def settle(self, j, i, points, variance, way):
+    def settle(self, j, i, points, variance, way, sight):
         """Writes one new point per cell; by the mended rule it is blended with what was measured there."""
-        x, y, z = points[:, 0].copy(), points[:, 1].copy(), points[:, 2].copy()
-        variance = variance.copy()
-        since = np.full(len(z), way)
-        old = self.source[j, i] == MEASURED
-        if self.rules["several"] == "mended" and old.any():
-            oj, oi = j[old], i[old]
-            ox, oy, oz = self.x[oj, oi], self.y[oj, oi], self.elevation[oj, oi]
-            aged = self.variance[oj, oi] + (AGEING * (way - self.way[oj, oi])) ** 2
-            nx, ny, nz, nv = x[old], y[old], z[old], variance[old]
-            limit = STEP_DEVIATIONS * np.sqrt(aged + nv) + STEP_SLOPE * np.hypot(nx - ox, ny - oy)
-            step = np.abs(nz - oz) > limit
-            keep_old = step & (oz > nz)
-            share = aged / (aged + nv)  # of the new one
-            share = np.where(step, np.where(keep_old, 0.0, 1.0), share)
-            x[old], y[old] = ox + share * (nx - ox), oy + share * (ny - oy)
-            z[old] = oz + share * (nz - oz)
-            variance[old] = np.where(step, np.where(keep_old, aged, nv), aged * nv / (aged + nv))
-        self.x[j, i], self.y[j, i], self.elevation[j, i] = x, y, z
-        self.variance[j, i], self.way[j, i], self.source[j, i] = variance, since, MEASURED
+        new = {"x": points[:, 0], "y": points[:, 1], "elevation": points[:, 2],
+               "variance": np.maximum(variance, MIN_VARIANCE), "way": np.full(len(i), way),
+               "slope_x": sight[:, 0], "slope_y": sight[:, 1]}
+        new = {name: values.copy() for name, values in new.items()}
+        met = self.source[j, i] == MEASURED
+        if self.rules["several"] == "mended" and met.any():
+            old = {name: getattr(self, name)[j[met], i[met]] for name in new}
+            now = {name: values[met] for name, values in new.items()}
+            aged = old["variance"] + (AGEING * (way - old["way"])) ** 2
+            apart = np.hypot(now["x"] - old["x"], now["y"] - old["y"])
+            limit = STEP_DEVIATIONS * np.sqrt(aged + now["variance"]) + STEP_SLOPE * apart
+            rise = now["elevation"] - old["elevation"]
+            step = np.abs(rise) > limit
+            share = aged / (aged + now["variance"])  # of the new one
+            blend = {name: old[name] + share * (now[name] - old[name]) for name in ("x", "y", "elevation")}
+            blend["variance"] = np.maximum(share * now["variance"], MIN_VARIANCE)
+            blend["way"] = now["way"]
+            flatter = np.hypot(old["slope_x"], old["slope_y"]) <= np.hypot(now["slope_x"], now["slope_y"])
+            flatter |= np.isnan(now["slope_x"])
+            for name in ("slope_x", "slope_y"):
+                blend[name] = np.where(flatter & ~np.isnan(old["slope_x"]), old[name], now[name])
+            for name in new:
+                # A step: its top stays, with all that is known of it.
+                top = np.where(rise > 0, now[name], old[name])
+                new[name][met] = np.where(step, top, blend[name])
+        for name, values in new.items():
+            getattr(self, name)[j, i] = values
+        self.source[j, i] = MEASURED
 
     def extrapolate(self, j, i, rank):
         """Each new data point is handed to its neighbours that are not themselves new data points."""

@@ -129,6 +129,7 @@ class Rover:
         moved = self.map.move(x, y)
         if s.scan[k] and setup["scan"]["clear_map"]:
             self.map.clear()
+            self.stands.clear()  # the ground it stood on is forgotten with all other
             self.fill_at_start(x, y, rotation, proximity)
         if mended and k > 0:
             self.elevation.correct_by_stripes(self.map, away + [x, y, self.elevation.z], image_error.mean() if len(image_error) else 0, self.way)

@@ -170,11 +170,12 @@ impl ElevationMap {
             for index in self.neighbours(*at) {
                 let cell = &mut self.cells[index];
                 if cell.update != self.update {
-                    let measured = cell.measured;
+                    let (measured, stood) = (cell.measured, cell.stood);
                     *cell = Cell {
                         elevation,
                         source: ElevationSource::Extrapolated,
                         measured,
+                        stood,
                         ..Cell::default()
                     };
                 }

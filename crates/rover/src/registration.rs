@@ -13,6 +13,9 @@ use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint};
 /// before says nothing new.
 const MIN_WAY_M: f64 = 0.3;
 
+/// What rounding may make of a way that is just long enough: frames of 3 or 6 cm meet the limit to the last digit.
+const WAY_ROUNDING_M: f64 = 1e-9;
+
 /// Fewest points that count. CHOICE: those of a few cells.
 const MIN_POINTS: usize = 20;
 
@@ -55,7 +58,7 @@ fn old_ground(map: &ElevationMap, point: DVec3) -> Option<f64> {
     let at = map.nearest(point.truncate());
     let is_old = |at: GridPoint| {
         let cell = map.cell(at);
-        let old = cell.source == ElevationSource::Measured && map.odometer - cell.odometer >= MIN_WAY_M;
+        let old = cell.source == ElevationSource::Measured && map.odometer - cell.odometer >= MIN_WAY_M - WAY_ROUNDING_M;
         old.then(|| cell.place.extend(cell.elevation))
     };
     is_old(at)?;
