@@ -31,7 +31,8 @@ class ElevationMap:
         "variance": (float, np.nan), "way": (float, np.nan),  # of the elevation, and way driven when measured
         "lowest": (float, np.inf), "highest": (float, -np.inf),  # of all elevations since the map was cleared
         "tied": (bool, False),  # a point near here lay within rounding of the border between two cells
-        "slope_x": (float, np.nan), "slope_y": (float, np.nan),  # of the flatter line of sight: see gaps.py
+        # Flatter line of sight, towards its sensor: unit vector in plan, and rise over distance. See gaps.py
+        "sight_x": (float, np.nan), "sight_y": (float, np.nan), "sight_slope": (float, np.nan),
     }
 
     def __init__(self, setup, origin):
@@ -121,8 +122,9 @@ class ElevationMap:
     def enter(self, points, variance, way, sight):
         """Enters the new data points of a frame, or of a scan, in their order.
 
-        `points` are global, `variance` is that of each elevation, `sight` each point's flatter line of sight. Returns what `inconsistency` found: number of
-        measured grid points met again, mean and largest distance from the range of their old elevations.
+        `points` are global, `variance` is that of each elevation, `sight` each point's flatter line of sight. Returns
+        what `inconsistency` found: number of measured grid points met again, mean and largest distance from the range
+        of their old elevations.
         """
         i, j = self.grid(points[:, 0], points[:, 1])
         ok = self.inside(i, j)
@@ -165,7 +167,7 @@ class ElevationMap:
         """Writes one new point per cell; by the mended rule it is blended with what was measured there."""
         new = {"x": points[:, 0], "y": points[:, 1], "elevation": points[:, 2],
                "variance": np.maximum(variance, MIN_VARIANCE), "way": np.full(len(i), way),
-               "slope_x": sight[:, 0], "slope_y": sight[:, 1]}
+               "sight_x": sight[:, 0], "sight_y": sight[:, 1], "sight_slope": sight[:, 2]}
         new = {name: values.copy() for name, values in new.items()}
         met = self.source[j, i] == MEASURED
         if self.rules["several"] == "mended" and met.any():
@@ -180,10 +182,10 @@ class ElevationMap:
             blend = {name: old[name] + share * (now[name] - old[name]) for name in ("x", "y", "elevation")}
             blend["variance"] = np.maximum(share * now["variance"], MIN_VARIANCE)
             blend["way"] = now["way"]
-            flatter = np.hypot(old["slope_x"], old["slope_y"]) <= np.hypot(now["slope_x"], now["slope_y"])
-            flatter |= np.isnan(now["slope_x"])
-            for name in ("slope_x", "slope_y"):
-                blend[name] = np.where(flatter & ~np.isnan(old["slope_x"]), old[name], now[name])
+            # The flatter of both; of equal ones the new one.
+            keep = (old["sight_slope"] < now["sight_slope"]) | np.isnan(now["sight_slope"])
+            for name in ("sight_x", "sight_y", "sight_slope"):
+                blend[name] = np.where(keep, old[name], now[name])
             for name in new:
                 # A step: its top stays, with all that is known of it.
                 top = np.where(rise > 0, now[name], old[name])

@@ -1,45 +1,40 @@
-"""Which unmeasured cells a wheel bridges, and how high at most they are: rule `gap` of docs/theory/rover.md."""
+"""Which unmeasured cells a wheel bridges, and how high their ground is at most: rule `gap` of docs/theory/rover.md."""
 
 import numpy as np
 
-from elevation_map import MEASURED
+from elevation_map import MEASURED, PROXIMITY
 
 SIGHT_LENGTH = 2.0  # m; a line of sight is followed back from its point no farther than this
 LINES = [(1, 0), (0, 1), (1, 1), (1, -1)]  # row, column, and both diagonals: steps (di, dj)
 
 
 class Shadows:
-    """What stands in the unmeasured cells, at most.
+    """What stands in the unmeasured cells, at most; NaN where nothing is known.
 
-    `bridged`: the run of unmeasured cells through a cell is no wider than a wheel, along one of the four lines.
-    `ceiling`: no ground in the cell stands above it; infinite where nothing is known.
+    `bridge`: of cells in a run of unmeasured ones that is no wider than a wheel. `ceiling`: of cells below a line of sight.
     """
 
     def __init__(self, elevation_map, max_width):
-        self.measured = elevation_map.source == MEASURED
-        z = np.where(self.measured, elevation_map.elevation, np.nan)
-        n = elevation_map.points
-        self.bridged = np.zeros((n, n), bool)
-        ends = np.full((n, n), np.inf)
+        measured = (elevation_map.source == MEASURED) | (elevation_map.source == PROXIMITY)
+        z = np.where(measured, elevation_map.elevation, np.nan)
+        ends = np.full(z.shape, -np.inf)
         for di, dj in LINES:
             step = elevation_map.spacing * np.hypot(di, dj)
             longest = int(np.floor(max_width / step + 1e-9))
-            before, first = run_to_measured(self.measured, z, -di, -dj, longest)
-            behind, last = run_to_measured(self.measured, z, di, dj, longest)
-            run = before + behind - 1
-            bridge = ~self.measured & (run <= longest)
-            self.bridged |= bridge
-            ends = np.where(bridge, np.minimum(ends, np.maximum(first, last)), ends)
-        self.hidden = hidden(elevation_map, self.measured)
-        self.ceiling = np.where(self.bridged, np.minimum(ends, self.hidden), self.hidden)
-        self.ceiling = np.where(self.measured, z, self.ceiling)
+            before, first = run_to_measured(measured, z, -di, -dj, longest)
+            behind, last = run_to_measured(measured, z, di, dj, longest)
+            bridged = ~measured & (before + behind - 1 <= longest)
+            ends = np.where(bridged, np.maximum(ends, np.maximum(first, last)), ends)
+        hidden = lines_of_sight(elevation_map, measured)
+        self.ceiling = np.where(np.isfinite(hidden), hidden, np.nan)
+        # The higher end, or what can hide there if that is more.
+        self.bridge = np.where(np.isfinite(ends), np.fmax(ends, self.ceiling), np.nan)
 
 
 def run_to_measured(measured, z, di, dj, longest):
     """Steps from each cell to the first measured one along (di, dj), at most `longest`, and its elevation."""
-    n = measured.shape[0]
-    steps = np.full((n, n), 10 ** 6)
-    height = np.full((n, n), np.nan)
+    steps = np.full(measured.shape, 10 ** 6)
+    height = np.full(measured.shape, np.nan)
     for k in range(1, longest + 1):
         target = shifted(measured, k * di, k * dj, False)
         value = shifted(z, k * di, k * dj, np.nan)
@@ -58,27 +53,22 @@ def shifted(array, di, dj, fill):
     return out
 
 
-def hidden(elevation_map, measured):
-    """The lowest of the lines of sight over each unmeasured cell; infinite where there is none.
-
-    Each measured cell has the horizontal direction towards camera and beam, and the flatter line's slope, as the
-    vector (slope_x, slope_y) with the length of the slope.
-    """
-    n = elevation_map.points
-    ceiling = np.full((n, n), np.inf)
-    j, i = np.nonzero(measured & np.isfinite(elevation_map.slope_x))
-    sx, sy = elevation_map.slope_x[j, i], elevation_map.slope_y[j, i]
-    slope = np.hypot(sx, sy)
-    x, y, z = elevation_map.x[j, i], elevation_map.y[j, i], elevation_map.elevation[j, i]
-    live = slope > 0
-    ux, uy = np.where(live, sx / np.where(live, slope, 1), 0), np.where(live, sy / np.where(live, slope, 1), 0)
-    step = elevation_map.spacing / 2
+def lines_of_sight(elevation_map, measured):
+    """The lowest line of sight over each unmeasured cell, where it leaves the cell; infinite where there is none."""
+    m = elevation_map
+    ceiling = np.full(measured.shape, np.inf)
+    j, i = np.nonzero((m.source == MEASURED) & np.isfinite(m.sight_slope))
+    x, y, z = m.x[j, i], m.y[j, i], m.elevation[j, i]
+    ux, uy, slope = m.sight_x[j, i], m.sight_y[j, i], np.maximum(m.sight_slope[j, i], 0)
+    live = np.ones(len(j), bool)
+    step = m.spacing / 2
     for k in range(1, int(round(SIGHT_LENGTH / step)) + 1):
         way = k * step
-        ci, cj = elevation_map.grid(x + way * ux, y + way * uy)
-        ok = live & elevation_map.inside(ci, cj)
-        blocked = np.zeros(len(ok), bool)
-        blocked[ok] = measured[cj[ok], ci[ok]] & ((cj[ok] != j[ok]) | (ci[ok] != i[ok]))
-        live &= ok & ~blocked
-        np.minimum.at(ceiling, (cj[live], ci[live]), (z + slope * way)[live])
+        ci, cj = m.grid(x + way * ux, y + way * uy)
+        own = (ci == i) & (cj == j)
+        inside = m.inside(ci, cj)
+        live &= own | inside
+        live[live] &= own[live] | ~measured[cj[live], ci[live]]
+        over = live & ~own
+        np.minimum.at(ceiling, (cj[over], ci[over]), (z + slope * (way + m.spacing))[over])
     return ceiling

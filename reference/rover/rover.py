@@ -171,14 +171,13 @@ class Rover:
 
 
 def sight(place, rig, beam, rotation):
-    """Of each point the flatter of the lines to camera and beam: horizontal direction times slope."""
-    best, best_slope = np.full((len(place), 2), np.nan), np.full(len(place), np.inf)
+    """Of each point the flatter of the lines to camera and beam: unit vector in plan, and slope; of equal ones the camera's."""
+    best = np.full((len(place), 3), np.nan)
     for origin in (rig.camera_pose.position, rig.beam_poses[beam].position):
         line = (origin - place) @ rotation.T
         flat = np.hypot(line[:, 0], line[:, 1])
         with np.errstate(divide="ignore", invalid="ignore"):
-            slope = line[:, 2] / flat
-            vector = line[:, :2] / flat[:, None] * slope[:, None]
-        better = slope < best_slope
-        best[better], best_slope[better] = vector[better], slope[better]
+            this = np.column_stack([line[:, :2], line[:, 2]]) / flat[:, None]
+        better = (flat > 0) & (np.isnan(best[:, 2]) | (this[:, 2] < best[:, 2]))
+        best[better] = this[better]
     return best

@@ -75,24 +75,34 @@ def runs(image, extraction):
 
 
 def steep_runs(image, least):
-    """Runs between a steepest rise and the next steepest fall of a column, each at least `least` strong."""
-    step = np.diff(image.astype(float), axis=0)  # step[j] is from row j to row j + 1
+    """Runs between a steepest rise and the next steepest fall of a column, each at least `least` strong.
+
+    Light without a rise begins at the upper border, or below the fall before it.
+    """
+    step = steps_down(image)  # step[j] is from row j to row j + 1; one row of zeros above and below them
+
     def peaks(s):
-        """At least `least`, and no smaller than the differences above and below; of equal ones the first."""
-        before = np.vstack([np.full((1, s.shape[1]), -np.inf), s[:-1]])
-        behind = np.vstack([s[1:], np.full((1, s.shape[1]), -np.inf)])
-        return (s >= least) & (s > before) & (s >= behind)
+        """Of equal differences the first is the steepest."""
+        return (s[1:-1] >= least) & (s[1:-1] > s[:-2]) & (s[1:-1] >= s[2:])
+
     rise, fall = peaks(step), peaks(-step)
     first, last, column = [], [], []
-    for i in np.flatnonzero(rise.any(axis=0) & fall.any(axis=0)):
-        start = None
+    for i in np.flatnonzero(fall.any(axis=0)):
+        start = 0
         for j in np.flatnonzero(rise[:, i] | fall[:, i]):
             if rise[j, i]:
                 start = j + 1
-            elif start is not None:
+            else:
                 first.append(start), last.append(j), column.append(i)
-                start = None
+                start = j + 1
     return np.array(first, int), np.array(last, int), np.array(column, int)
+
+
+def steps_down(image):
+    """Differences from each row to the next; beyond the image they are 0."""
+    step = np.zeros((image.shape[0] + 1, image.shape[1]))
+    step[1:-1] = np.diff(image.astype(float), axis=0)
+    return step
 
 
 def places(image, first, last, column, level, place):
@@ -102,7 +112,12 @@ def places(image, first, last, column, level, place):
     if place == "sub_pixel":
         here, below = image[last, column].astype(float), image[last + 1, column].astype(float)
         if level is None:
-            return last + 1.0  # a steepest fall lies between the two pixels
+            # The vertex of the parabola through the fall and the differences above and below it.
+            step = steps_down(image)
+            above, fall, under = (step[last + k, column] for k in (0, 1, 2))
+            bend = above - 2 * fall + under
+            shift = np.where(bend > 0, 0.5 * (above - under) / np.where(bend > 0, bend, 1), 0.0)
+            return last + 1.0 + shift
         return last + 0.5 + (here - level) / (here - below)
     weight, moment = np.zeros(len(last)), np.zeros(len(last))
     for k in range(int((last - first).max()) + 1):
@@ -118,7 +133,7 @@ def edges_of(image, beams, extraction):
     """Edges by beam and the number of columns left out. `beams` lists the beams that light the image."""
     first, last, column, level = runs(image, extraction)
     row = places(image, first, last, column, level, extraction["place"])
-    pixel_row = np.floor(row).astype(int)
+    pixel_row = np.floor(row).astype(int) if extraction["place"] == "centroid" else last
     order = np.lexsort((column, pixel_row))
     column, row, pixel_row, last = column[order], row[order], pixel_row[order], last[order]
     if len(beams) == 1:

@@ -1,160 +1,216 @@
 """The mended obstacle tests, with whole wheels: rule `tests` of docs/theory/rover.md."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from elevation_map import MEASURED
+from elevation_map import MEASURED, PROXIMITY, UNKNOWN
 from obstacle_map import CLEAR, Verdict
 
-WHEELS = [("front", 0.0, 1), ("front", 0.0, -1), ("rear", -1.0, 1), ("rear", -1.0, -1)]  # axle, share of L, side
+# Axle, share of the wheelbase ahead of Q, side.
+WHEELS = [("front", 0.0, 1), ("front", 0.0, -1), ("rear", -1.0, 1), ("rear", -1.0, -1)]
+BORDER = 1e-11  # m; a place this far beyond a border lies on it
+RISE = 1e-11  # m; a rise this much above a limit is at it
+NEAR = 1e-9  # a decision nearer than this is one of rounding
+
+
+@dataclass
+class Support:
+    """Where a wheel rests: height of its hub, and the ground point."""
+
+    hub: float
+    point: np.ndarray
+
+
+@dataclass
+class Wheel:
+    """By measured ground alone, by all that may be there, and what is missing: None, or index j, i."""
+
+    measured: Support
+    highest: Support
+    missing: tuple
 
 
 class WheelTests:
     """Wheels are upright discs over their width; the belly is a rectangle between them."""
 
-    def __init__(self, elevation_map, setup, shadows, turning_circles):
-        self.map, self.vehicle, self.limits = elevation_map, setup["vehicle"], setup["tests"]
-        v = self.vehicle
-        self.ground = np.where(elevation_map.source == MEASURED, elevation_map.elevation, np.nan)
-        self.measured = elevation_map.source == MEASURED
-        n = elevation_map.points
-        jj, ii = np.mgrid[0:n, 0:n]
-        gx, gy = elevation_map.place(ii, jj)
-        reach = np.hypot(v["wheelbase"] / 2 + v["wheel_radius"], (v["track"] + v["wheel_width"]) / 2)
-        # Ground that the vehicle has stood on, or could turn on: it counts as the plane of its wheels.
-        for x, y, z, slopes in turning_circles:
-            inside = ~self.measured & (np.hypot(gx - x, gy - y) <= reach)
-            self.ground = np.where(inside, z + slopes[0] * (gx - x) + slopes[1] * (gy - y), self.ground)
-        self.stood = ~self.measured & np.isfinite(self.ground)
-        self.bridged = shadows.bridged if shadows is not None else np.zeros((n, n), bool)
-        self.ceiling = shadows.ceiling if shadows is not None else np.full((n, n), np.inf)
+    def __init__(self, elevation_map, setup, shadows, stands):
+        m = self.map = elevation_map
+        self.vehicle, self.limits = setup["vehicle"], setup["tests"]
+        self.measured = (m.source == MEASURED) | (m.source == PROXIMITY)
+        jj, ii = np.mgrid[0:m.points, 0:m.points]
+        gx, gy = m.place(ii, jj)
+        self.grid_x, self.grid_y = gx, gy
+        # A measurement stands at its own place, all else at its grid point.
+        own = m.source == MEASURED
+        self.x, self.y = np.where(own, m.x, gx), np.where(own, m.y, gy)
+        self.z = np.where(self.measured, m.elevation, np.nan)
+        if shadows is None:
+            # Without the rule a guess counts as ground.
+            guess = np.where(m.source != UNKNOWN, m.elevation, np.nan)
+            under_wheel, under_belly = guess, guess
+        else:
+            under_wheel = shadows.bridge
+            under_belly = np.where(np.isnan(shadows.ceiling), shadows.bridge, shadows.ceiling)
+        stood = self.stood(stands, gx, gy)
+        known = ~np.isnan(stood)
+        self.wheel_top = np.where(self.measured, np.nan, np.where(known, stood, under_wheel))
+        self.belly_top = np.where(self.measured, np.nan, np.where(known, stood, under_belly))
 
-    def window(self, cx, cy, reach):
-        """Index ranges of the map around a place, and whether they are cut off by the map's border."""
+    def stood(self, stands, gx, gy):
+        """The plane of the wheels over each grid point in the circle of a turn on the spot, the last one's."""
+        v = self.vehicle
+        reach = np.hypot(v["wheelbase"] / 2 + v["wheel_radius"], (v["track"] + v["wheel_width"]) / 2)
+        out = np.full(gx.shape, np.nan)
+        for x, y, z, slopes in stands:
+            inside = np.hypot(gx - x, gy - y) <= reach
+            out = np.where(inside, z + slopes[0] * (gx - x) + slopes[1] * (gy - y), out)
+        return out
+
+    def window(self, cx, cy, ahead, aside):
         i, j = self.map.grid(cx, cy)
-        k = int(np.ceil(reach / self.map.spacing)) + 2
+        k = int(np.ceil(np.hypot(ahead, aside) / self.map.spacing)) + 2
         n = self.map.points
         return slice(max(0, j - k), min(n, j + k + 1)), slice(max(0, i - k), min(n, i + k + 1))
 
-    def contact(self, cx, cy, ux, uy, known):
-        """Where an upright wheel at (cx, cy) rests: height of its lowest point, and of the contact with its place.
+    def rest(self, cx, cy, ux, uy, axle):
+        """A wheel whose hub is over (cx, cy) and rolls along u."""
+        radius, half = self.vehicle["wheel_radius"], self.vehicle["wheel_width"] / 2
+        w = self.window(cx, cy, radius, half)
 
-        `known` are the elevations that count. None if there are none.
-        """
-        v = self.vehicle
-        radius, half = v["wheel_radius"], v["wheel_width"] / 2
-        js, is_ = self.window(cx, cy, np.hypot(radius, half))
-        z = known[js, is_]
-        jj, ii = np.mgrid[js, is_]
-        gx, gy = self.map.place(ii, jj)
-        a = (gx - cx) * ux + (gy - cy) * uy
-        b = (gy - cy) * ux - (gx - cx) * uy
-        best = (-np.inf, np.nan, np.nan)
+        def axes(x, y):
+            return (x - cx) * ux + (y - cy) * uy, (y - cy) * ux - (x - cx) * uy
 
-        def offer(height, along, across):
-            """The wheel's centre stands at z + sqrt(R^2 - a^2) over a contact; its lowest point R below that."""
-            nonlocal best
-            ok = np.isfinite(height) & (np.abs(along) <= radius)
-            if not ok.any():
-                return
-            low = np.where(ok, height + np.sqrt(np.maximum(0, radius ** 2 - along ** 2)) - radius, -np.inf)
-            k = np.argmax(low)
-            if low.flat[k] > best[0]:
-                best = (float(low.flat[k]), float(height.flat[k]), float(along.flat[k]))
+        def inside(a, b):
+            return (np.abs(a) <= radius + BORDER) & (np.abs(b) <= half + BORDER)
 
-        on = np.abs(b) <= half
-        offer(np.where(on, z, np.nan), a, b)
+        x, y, z = self.x[w], self.y[w], self.z[w]
+        a, b = axes(x, y)
+        offers = [(np.where(inside(a, b), z, np.nan), x, y, a)]
+        # The straight lines between neighbouring measured points, cut to the rectangle.
         for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1)):
-            h, w = z.shape
-            j0, j1 = max(0, -dj), h - max(0, dj)
-            one = (slice(j0, j1), slice(0, w - di))
-            two = (slice(j0 + dj, j1 + dj), slice(di, w))
-            za, zb, aa, ab, ba, bb = z[one], z[two], a[one], a[two], b[one], b[two]
-            # The part of the segment within the wheel's width and length, as shares from the first end.
-            low, high = np.zeros(za.shape), np.ones(za.shape)
-            for p, q, limit in ((ba, bb, half), (aa, ab, radius)):
+            height, width = z.shape
+            j0, j1 = max(0, -dj), height - max(0, dj)
+            one, two = (slice(j0, j1), slice(0, width - di)), (slice(j0 + dj, j1 + dj), slice(di, width))
+            low, high = np.zeros(z[one].shape), np.ones(z[one].shape)
+            for p, q, limit in ((a[one], a[two], radius), (b[one], b[two], half)):
                 with np.errstate(divide="ignore", invalid="ignore"):
                     t1, t2 = (-limit - p) / (q - p), (limit - p) / (q - p)
-                flat = q == p
-                low = np.where(flat, np.where(np.abs(p) <= limit, low, 2.0), np.maximum(low, np.minimum(t1, t2)))
-                high = np.where(flat, high, np.minimum(high, np.maximum(t1, t2)))
-            ok = np.isfinite(za) & np.isfinite(zb) & (low <= high)
-            if not ok.any():
-                continue
+                level = q == p
+                low = np.where(level, low, np.maximum(low, np.minimum(t1, t2)))
+                high = np.where(level, np.where(np.abs(p) <= limit, high, -1.0), np.minimum(high, np.maximum(t1, t2)))
+            ok = np.isfinite(z[one]) & np.isfinite(z[two]) & (low <= high)
             with np.errstate(divide="ignore", invalid="ignore"):
-                m = (zb - za) / (ab - aa)
-                t0 = (radius * m / np.sqrt(1 + m * m) - aa) / (ab - aa)
-            for t in (low, high, np.clip(np.where(np.isfinite(t0), t0, low), low, high)):
-                t = np.where(ok, t, 0)
-                offer(np.where(ok, za + t * (zb - za), np.nan), aa + t * (ab - aa), ba + t * (bb - ba))
-        return best if np.isfinite(best[0]) else None
+                slope = (z[two] - z[one]) / (a[two] - a[one])
+                touch = (radius * slope / np.sqrt(1 + slope * slope) - a[one]) / (a[two] - a[one])
+            touches = ok & (touch >= low) & (touch <= high)
+            for share, may in ((low, ok), (high, ok), (touch, touches)):
+                t = np.where(may, share, 0.0)
+                px, py = x[one] + t * (x[two] - x[one]), y[one] + t * (y[two] - y[one])
+                offers.append((np.where(may, z[one] + t * (z[two] - z[one]), np.nan), px, py, axes(px, py)[0]))
+        measured = self.highest_of(offers)
+        gx, gy, top = self.grid_x[w], self.grid_y[w], self.wheel_top[w]
+        a, b = axes(gx, gy)
+        under = inside(a, b)
+        highest = self.highest_of(offers + [(np.where(under, top, np.nan), gx, gy, a)])
+        lacks = under & np.isnan(top) & ~self.measured[w]
+        missing = None
+        if lacks.any():
+            j, i = np.argwhere(lacks)[0]
+            missing = (j + w[0].start, i + w[1].start)
+        if not self.is_on_map(cx, cy, ux, uy, radius, half):
+            missing = missing or "beyond"
+        return Wheel(measured, highest, missing)
 
-    def under(self, cx, cy, ux, uy, ahead, aside):
-        """Grid points within a rectangle: indices j, i of those on the map, and whether some lie beyond it."""
-        js, is_ = self.window(cx, cy, np.hypot(ahead, aside))
-        jj, ii = np.mgrid[js, is_]
-        gx, gy = self.map.place(ii, jj)
-        a = (gx - cx) * ux + (gy - cy) * uy
-        b = (gy - cy) * ux - (gx - cx) * uy
-        on = (np.abs(a) <= ahead) & (np.abs(b) <= aside)
-        return jj[on], ii[on]
+    def is_on_map(self, cx, cy, ux, uy, ahead, aside):
+        """Whether all of a rectangle lies on the map."""
+        corners = [(cx + s * ahead * ux - t * aside * uy, cy + s * ahead * uy + t * aside * ux)
+                   for s in (1, -1) for t in (1, -1)]
+        return all(self.map.inside(*self.map.grid(x, y)) for x, y in corners)
+
+    def highest_of(self, offers):
+        """The ground point over which the hub is highest: z + sqrt(R^2 - a^2)."""
+        radius, best = self.vehicle["wheel_radius"], None
+        for z, x, y, a in offers:
+            if not np.isfinite(z).any():
+                continue
+            hub = np.where(np.isfinite(z), z + np.sqrt(np.maximum(0, radius ** 2 - a ** 2)), -np.inf)
+            k = int(np.argmax(hub))
+            if best is None or hub.flat[k] > best.hub:
+                best = Support(float(hub.flat[k]), np.array([x.flat[k], y.flat[k], z.flat[k]]))
+        return best
 
     def __call__(self, qx, qy, ux, uy):
         v, slopes = self.vehicle, self.limits["slopes"]
         length, half_track = v["wheelbase"], v["track"] / 2
-        places, contacts, cells = [], [], []
-        for _, share, side in WHEELS:
-            cx = qx + share * length * ux - side * half_track * uy
-            cy = qy + share * length * uy + side * half_track * ux
-            places.append((cx, cy))
-            contacts.append(self.contact(cx, cy, ux, uy, self.ground))
-            cells.append(self.under(cx, cy, ux, uy, v["wheel_radius"], v["wheel_width"] / 2))
-        whole = [c is not None and bool(np.isfinite(self.ground[jj, ii]).all())
-                 for c, (jj, ii) in zip(contacts, cells)]
+        u = np.array([ux, uy])
+        hubs = [(qx + share * length * ux - side * half_track * uy, qy + share * length * uy + side * half_track * ux)
+                for _, share, side in WHEELS]
+        wheels = [self.rest(cx, cy, ux, uy, axle) for (cx, cy), (axle, _, _) in zip(hubs, WHEELS)]
+        tie = False
 
-        def fails(name, high, low, distance):
-            """Obstacle only if the ground under the lower support is all known."""
-            if any(contacts[k] is None for k in high + low):
-                return False
-            top = np.mean([contacts[k][1] for k in high])
-            bottom = np.mean([contacts[k][1] for k in low])
-            if bottom > top:
-                top, bottom, low = bottom, top, high
-            apart = abs(distance)
-            return top - bottom > slopes[name] * apart and all(whole[k] for k in low)
+        def compare(by, name, high, low):
+            """Rise beyond the limit, and which side is the lower one; None if a support is missing."""
+            nonlocal tie
+            supports = [getattr(wheels[k], by) for k in high + low]
+            if any(support is None for support in supports):
+                return None
+            one, two = (np.mean([getattr(wheels[k], by).point for k in side], axis=0) for side in (high, low))
+            apart = one - two
+            run = abs(float(apart[:2] @ u)) if name == "length" else float(np.hypot(apart[0], apart[1]))
+            over = abs(float(apart[2])) - slopes[name] * run
+            tie |= abs(over) <= NEAR
+            return over > RISE, low if two[2] < one[2] else high
 
-        if fails("front", [0], [1], 2 * half_track):
-            return Verdict("obstacle", "front")
-        if fails("rear", [2], [3], 2 * half_track):
-            return Verdict("obstacle", "rear")
-        along = length
-        if all(c is not None for c in contacts):
-            along = length + np.mean([contacts[0][2], contacts[1][2]]) - np.mean([contacts[2][2], contacts[3][2]])
-        if fails("length", [0, 1], [2, 3], along):
-            return Verdict("obstacle", "length")
+        pairs = [("front", [0], [1]), ("rear", [2], [3]), ("length", [0, 1], [2, 3])]
+        for name, one, two in pairs:
+            # Obstacle only by measured points, and if all ground below the lower support is known.
+            found = compare("measured", name, one, two)
+            if found and found[0] and all(wheels[k].missing is None for k in found[1]):
+                return Verdict("obstacle", name, near_tie=tie)
+        for wheel, (axle, _, _) in zip(wheels, WHEELS):
+            if wheel.missing == "beyond":
+                return Verdict("unknown", "beyond_map", f"{axle}_wheel", near_tie=tie)
+            if wheel.missing is not None:
+                return self.lacking("not_measured", f"{axle}_wheel", *wheel.missing, tie)
+        for name, one, two in pairs:
+            # What may stand in gaps may be too high.
+            found = compare("highest", name, one, two)
+            if found and found[0]:
+                part = "rear_wheel" if name == "rear" else "front_wheel"
+                return Verdict("unknown", "may_hide", part, (float(qx), float(qy)), tie)
+        return self.belly(qx, qy, ux, uy, [wheel.highest.hub for wheel in wheels], tie)
+
+    def lacking(self, reason, part, j, i, tie):
+        return Verdict("unknown", reason, part, (float(self.grid_x[j, i]), float(self.grid_y[j, i])), tie)
+
+    def belly(self, qx, qy, ux, uy, hub, tie):
+        """The ground against the underside, which is parallel to the plane through the hubs."""
+        v = self.vehicle
+        length, track = v["wheelbase"], v["track"]
         cx, cy = qx - length / 2 * ux, qy - length / 2 * uy
-        bj, bi = self.under(cx, cy, ux, uy, length / 2, half_track - v["wheel_width"] / 2)
-        if all(c is not None for c in contacts):
-            low = np.array([c[0] for c in contacts])
-            # The plane of least squares through the four lowest points.
-            mean, rise, bank = low.mean(), (low[:2].mean() - low[2:].mean()) / length, \
-                (low[[0, 2]].mean() - low[[1, 3]].mean()) / (2 * half_track)
-            gx, gy = self.map.place(bi, bj)
-            a, b = (gx - cx) * ux + (gy - cy) * uy, (gy - cy) * ux - (gx - cx) * uy
-            floor = mean + rise * a + bank * b + v["clearance"]
-            z = self.ground[bj, bi]
-            if all(whole) and (z >= floor).any():
-                return Verdict("obstacle", "belly")
-        for k, (axle, _, _) in enumerate(WHEELS):
-            jj, ii = cells[k]
-            missing = ~np.isfinite(self.ground[jj, ii]) & ~self.bridged[jj, ii]
-            if missing.any():
-                m = int(np.argmax(missing))
-                place = self.map.place(ii[m], jj[m])
-                return Verdict("unknown", "not_measured", f"{axle}_wheel", (float(place[0]), float(place[1])))
-        missing = ~np.isfinite(self.ground[bj, bi]) & ~(self.ceiling[bj, bi] < floor)
-        if missing.any():
-            m = int(np.argmax(missing))
-            place = self.map.place(bi[m], bj[m])
-            reason = "may_hide" if np.isfinite(self.ceiling[bj[m], bi[m]]) else "not_measured"
-            return Verdict("unknown", reason, "belly", (float(place[0]), float(place[1])))
-        return Verdict(CLEAR)
+        along = (hub[0] + hub[1] - hub[2] - hub[3]) / (2 * length)
+        across = (hub[0] - hub[1] + hub[2] - hub[3]) / (2 * track)
+        below = (v["wheel_radius"] - v["clearance"]) * np.sqrt(1 + along ** 2 + across ** 2)
+        ahead, aside = length / 2, max(0.0, (track - v["wheel_width"]) / 2)
+        w = self.window(cx, cy, ahead, aside)
+
+        def over(x, y, z):
+            """Height above the underside; NaN outside of it."""
+            a, b = (x - cx) * ux + (y - cy) * uy, (y - cy) * ux - (x - cx) * uy
+            within = (np.abs(a) <= ahead + BORDER) & (np.abs(b) <= aside + BORDER)
+            return np.where(within, z - (np.mean(hub) - below + along * a + across * b), np.nan), within
+
+        hit, _ = over(self.x[w], self.y[w], self.z[w])
+        tie |= bool((np.abs(hit) <= NEAR).any())
+        if (hit >= 0).any():
+            return Verdict("obstacle", "belly", near_tie=tie)
+        may, within = over(self.grid_x[w], self.grid_y[w], self.belly_top[w])
+        tie |= bool((np.abs(may) <= NEAR).any())
+        lacks = within & np.isnan(self.belly_top[w]) & ~self.measured[w]
+        wrong = np.argwhere((may >= 0) | lacks)
+        if len(wrong):
+            j, i = wrong[0]
+            reason = "not_measured" if lacks[j, i] else "may_hide"
+            return self.lacking(reason, "belly", j + w[0].start, i + w[1].start, tie)
+        return Verdict(CLEAR, near_tie=tie)
