@@ -143,7 +143,7 @@ class Rover:
         out = Frame(edges, points, left_out, pose.position, rotation, read, np.sqrt(self.elevation.variance),
                     tuple(int(m) for m in moved), found)
         if k % setup["obstacles_every"] == 0:
-            self.obstacles(out, x, y, s.heading[k])
+            self.obstacles(out, x, y, float(np.arctan2(rotation[1, 0], rotation[0, 0])))
         return out
 
     def fill_at_start(self, x, y, rotation, proximity):

@@ -228,11 +228,11 @@ def check_tests():
         check(f"{rules}: unmeasured ground ({gone.label} {gone.reason} {gone.part} at {gone.radius:.1f})",
               gone.label == "unknown" and gone.reason == "not_measured" and gone.part == "front_wheel")
     tree, m = flat_map("mended", lambda x, y: 0.2 * x)
-    wheel = WheelTests(m, tree, None, []).contact(0.03, 0.01, 1.0, 0.0, m.elevation)
+    wheel = WheelTests(m, tree, None, []).rest(0.03, 0.01, 1.0, 0.0, "front").measured
     # A circle of radius R on a line of slope m: the contact lies R m / sqrt(1 + m^2) ahead of its middle, and its
-    # lowest point is R (sqrt(1 + m^2) - 1) above the line.
-    check("a wheel on a slope of 0.2", abs(wheel[0] - (0.2 * 0.03 + 0.35 * (np.sqrt(1.04) - 1))) < 1e-12
-          and abs(wheel[2] - 0.35 * 0.2 / np.sqrt(1.04)) < 1e-12)
+    # hub is R sqrt(1 + m^2) above the line.
+    check("a wheel on a slope of 0.2", abs(wheel.hub - (0.2 * 0.03 + 0.35 * np.sqrt(1.04))) < 1e-12
+          and abs(wheel.point[0] - 0.03 - 0.35 * 0.2 / np.sqrt(1.04)) < 1e-12)
 
 
 def check_navigator():
