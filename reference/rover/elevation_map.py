@@ -8,6 +8,7 @@ UNKNOWN, PROXIMITY, EXTRAPOLATED, MEASURED = 0, 1, 2, 3
 AGEING = 0.01  # m of standard deviation for each metre driven since the measurement
 STEP_DEVIATIONS = 3.0  # two elevations differ by a step in the cell beyond this many standard deviations ...
 STEP_SLOPE = 0.35  # ... and this slope between their places
+EQUALLY_HIGH = 1e-9  # m; differences below it are rounding
 MIN_VARIANCE = 0.0005 ** 2  # m^2, of any elevation
 
 NEIGHBOURS = [(di, dj) for dj in (-1, 0, 1) for di in (-1, 0, 1) if (di, dj) != (0, 0)]
@@ -133,13 +134,14 @@ class ElevationMap:
             # Either cell may have got the point, and each hands elevations to its eight neighbours.
             self.tied[max(0, j[k] - 2):j[k] + 3, max(0, i[k] - 2):i[k] + 3] = True
         cell = j * self.points + i
+        winner = np.full(self.points * self.points, -1)
         if self.rules["several"] == "paper":
-            order = np.arange(len(cell))  # the last point of a cell stays
+            winner[cell] = np.arange(len(cell))  # numpy assigns in order: the last point of a cell stays
         else:
             # The highest of a cell stays; of equally high ones the first.
-            order = np.lexsort((-np.arange(len(cell)), points[:, 2]))
-        winner = np.full(self.points * self.points, -1)
-        winner[cell[order]] = order  # numpy assigns in order: the last one of `order` remains
+            for k, (c, z) in enumerate(zip(cell, points[:, 2])):
+                if winner[c] < 0 or z > points[winner[c], 2] + EQUALLY_HIGH:
+                    winner[c] = k
         cells = np.flatnonzero(winner >= 0)
         chosen = winner[cells]
         jj, ii = np.divmod(cells, self.points)

@@ -180,19 +180,19 @@ def check_map():
         tree = setup(rules)
         m = ElevationMap(tree, (0, 0))
         points = np.array([[1.0, 0, 0.3], [1.02, 0, 0.1], [2, 2, -1]])
-        m.enter(points, np.full(3, 1e-6), 0.0, np.zeros((3, 2)))
+        m.enter(points, np.full(3, 1e-6), 0.0, np.zeros((3, 3)))
         check(f"{rules}: several points of a cell", m.read(1.0, 0.0)[0] == z)
         check(f"{rules}: neighbours get a guess", m.read(1.1, 0.1) == (z, EXTRAPOLATED))
         old = m.elevation[100, 110]
         m.move(0.26, -0.14)
         check(f"{rules}: the map moves in whole steps and keeps its cells",
               m.centre.tolist() == [3, -1] and m.elevation[101, 107] == old)
-        m.enter(np.array([[1.1, 0, 0.5]]), np.array([1e-6]), 0.1, np.zeros((1, 2)))
+        m.enter(np.array([[1.1, 0, 0.5]]), np.array([1e-6]), 0.1, np.zeros((1, 3)))
         source = m.read(1.0, 0.0)[1]
         check(f"{rules}: a guess over what was measured", source == (EXTRAPOLATED if rules == "paper" else MEASURED))
     m = ElevationMap(setup(), (0, 0))
     for way, z in ((0.0, 0.1), (1.0, 0.2), (2.0, 0.5)):
-        found = m.enter(np.array([[1.0, 0, z]]), np.array([1e-6]), way, np.zeros((1, 2)))
+        found = m.enter(np.array([[1.0, 0, z]]), np.array([1e-6]), way, np.zeros((1, 3)))
     check("inconsistency: distance from the range of old elevations", abs(found[1] - 0.3) < 1e-12)
 
 

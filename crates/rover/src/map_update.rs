@@ -51,6 +51,10 @@ const MAX_SURFACE_SLOPE: f64 = 0.35;
 /// a drive share.
 const MIN_VARIANCE_M2: f64 = 0.25e-6;
 
+/// Points of a cell that differ by less are equally high, and the first of them stays, metres. The points of one image row
+/// on level ground are equally high but for rounding, which must not choose between them.
+const HEIGHT_ROUNDING_M: f64 = 1e-9;
+
 /// The eight neighbours of a grid point, in steps.
 const NEIGHBOURS: [(i64, i64); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
@@ -113,7 +117,7 @@ impl ElevationMap {
             let replaces = match self.rules.several {
                 Rule::Paper => true,
                 // The pan goes from far to near and a stripe climbs what it meets: the last point of a wall is its foot.
-                Rule::Mended => point.point.z > kept.point.z,
+                Rule::Mended => point.point.z > kept.point.z + HEIGHT_ROUNDING_M,
             };
             if replaces {
                 *kept = point;

@@ -58,7 +58,8 @@ fn old_ground(map: &ElevationMap, point: DVec3) -> Option<f64> {
     let at = map.nearest(point.truncate());
     let is_old = |at: GridPoint| {
         let cell = map.cell(at);
-        let old = cell.source == ElevationSource::Measured && map.odometer - cell.odometer >= MIN_WAY_M - WAY_ROUNDING_M;
+        let old = cell.source == ElevationSource::Measured
+            && map.odometer - cell.odometer >= MIN_WAY_M - WAY_ROUNDING_M;
         old.then(|| cell.place.extend(cell.elevation))
     };
     is_old(at)?;
