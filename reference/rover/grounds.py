@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes twenty scenes of random ground for the two rovers to be compared on.
+"""Writes twenty scenes of random ground for the two rovers to be compared on, and five drives for the laws of the sensor.
 
     python3 reference/rover/grounds.py FOLDER
-    for scene in FOLDER/*.toml; do
+    for scene in FOLDER/ground*.toml; do
         raypencil drive "$scene" --record npy,points,maps -o out/drive
         python3 reference/rover/follow.py out/drive/recording
     done
@@ -10,6 +10,8 @@
 Six kinds of ground, random starts, headings and turns, and ten ways to see and to map: rules as printed and mended, alone and
 together, each detection and place of a stripe, both lit together, noisy sensors, an unlit image subtracted, scans. The camera is
 small, 160 x 160 pixels over the field of view of the default one, so that a drive takes seconds.
+
+`sensor-ideal.toml` and the others of its name are one drive by several cameras, for `check_sensor.py`.
 """
 
 import math
@@ -78,6 +80,26 @@ def scene(k):
     return "\n".join(lines) + "\n"
 
 
+# Cameras without blur and dust. Their lens is so small that nothing is out of focus, and the laser as much brighter.
+PLAIN = "optics = { blurs = [], dust = { transmission = 1, halo_share = 0 } }"
+SENSORS = {
+    "ideal": ['sensor = "ideal"'],
+    "ccd_1989": ['sensor = "ccd_1989"', PLAIN],
+    "cmos": ['sensor = "cmos"', PLAIN],
+    # A stronger fixed pattern, and light beyond the full well and beyond the highest number.
+    "cmos-full": ['sensor = "cmos"', PLAIN, "electronics = { prnu = 0.02, full_well_e = 4000 }"],
+    "cmos-bright": ['sensor = "cmos"', PLAIN, "electronics = { prnu = 0.02, gain_dn_per_e = 1.2 }"],
+}
+
+
+def sensor_scene(keys):
+    """Text of a drive over the facets with these keys of [drive]."""
+    beam = ["[[beam]]", "power_w = 10000"]
+    return "\n".join(["version = 1", "[vehicle]", "position_m = [-6, 0]", "[camera]", "aperture_mm = 0.02", *beam, *beam,
+                      "[terrain]", 'builtin = "facets"', "[drive]", "waypoints_m = [[3, 0]]", "frames_per_s = 5",
+                      "scans = false", *keys]) + "\n"
+
+
 def main():
     if len(sys.argv) != 2:
         print(__doc__, file=sys.stderr)
@@ -86,6 +108,10 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     for k in range(COUNT):
         (folder / f"ground{k:02}.toml").write_text(scene(k))
+    for name, keys in SENSORS.items():
+        (folder / f"sensor-{name}.toml").write_text(sensor_scene(keys))
+    (folder / "cmos-full.json").write_text('{"prnu": 0.02, "well": 4000}')
+    (folder / "cmos-bright.json").write_text('{"prnu": 0.02, "gain": 1.2}')
     return 0
 
 
