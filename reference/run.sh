@@ -80,6 +80,23 @@ if [[ -n $python ]]; then
     other_bit "$work/drive/recording/images/000012-beam0.npy"
     expect 1 "$python" reference/rosbag/check.py "$work/drive/recording"
     rm -r "$work/drive"
+    # The second rover: from the images of twenty random grounds to the navigator maps, and the laws of the sensor.
+    expect 0 "$python" reference/rover/self_check.py
+    expect 0 "$python" reference/rover/grounds.py "$work/grounds"
+    for scene in "$work"/grounds/ground*.toml; do
+        expect 0 "$raypencil" drive "$scene" --record npy,points,maps -o "$work/drive"
+        expect 0 "$python" reference/rover/follow.py "$work/drive/recording"
+        tail -n 1 "$work/output"
+        rm -r "$work/drive"
+    done
+    for camera in ideal ccd_1989 cmos; do
+        expect 0 "$raypencil" drive "$work/grounds/sensor-$camera.toml" --record npy -o "$work/sensor/$camera"
+    done
+    for camera in ccd_1989 cmos; do
+        expect 0 "$python" reference/rover/check_sensor.py "$work/sensor/ideal/recording" \
+            "$work/sensor/$camera/recording" --preset "$camera"
+    done
+    rm -r "$work/sensor"
     candidates=data/candidates
     make=(reference/make.py --pack)
     for pack in "${packs[@]}"; do
