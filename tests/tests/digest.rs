@@ -20,8 +20,8 @@ const DIGESTS: &[[&str; 3]] = &[
     ["facets", "tracer", "1905cb7cbc43982c40074f170e880b19e76abe463e25b39d83e80d7ba874070a"],
     ["nasty", "scanline", "86d097bed95fc548bf11874b108a3ec07712782defa47d67fcfa584d29eaf014"],
     ["nasty", "tracer", "bebd1d66b54614459e73653cf8184770ac5d30228a93099da1063a6ba5f2b9c6"],
-    ["worst", "scanline", "fc17bae8effa1c0bad412a564340356f26c800f06b3d621cb5b4613b0a392bc9"],
-    ["worst", "tracer", "8d7a02db598507fce37de0b2aa717521362fd0906f8b6859eafc39d346cab8fd"],
+    ["worst", "scanline", "faf8d03526591774ff6e6f5186285969618d85073d9f5e62a86bdff2f9e5d6e9"],
+    ["worst", "tracer", "23df2c0733f1510fa2c97dc8c77f35c20c5c101157ac196ece92defbf4037bdb"],
 ];
 
 /// Scene, renderer, sampling and SHA-256 of the bits of all light.

@@ -603,6 +603,11 @@ pub(crate) struct TerrainGenerate {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) post_spacing: Option<f64>,
 
+    /// Distance from the middle within which posts stand at a quarter of the spacing, metres; within 2.5 times of it
+    /// they stand at half. 0: one spacing everywhere.
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) fine_radius: Option<f64>,
+
     /// Fraction of the area that rocks cover, 0 to 0.4.
     #[arg(long, value_name = "K", allow_hyphen_values = true)]
     pub(crate) rock_coverage: Option<f64>,

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use raypencil::io::write_atomically;
 use raypencil::terrain::{MarsGround, PRESET_NAMES, height_at};
 use raypencil::tracer::Tracer;
@@ -36,8 +36,12 @@ const SUN_ELEVATION_DEG: f64 = 22.0;
 /// Azimuth of the sun, degrees to the left of the x axis: behind the camera to its left.
 const SUN_AZIMUTH_DEG: f64 = 140.0;
 
-/// Angle of the camera's view to the left of an axis, degrees.
+/// Angle of the camera's view to the left of the x axis, degrees, where there is no crevasse: not exactly along a line of
+/// posts.
 const YAW_DEG: f64 = 8.0;
+
+/// Distance of the camera from the crevasse that it looks at, metres.
+const CREVASSE_DISTANCE_M: f64 = 3.5;
 
 /// Light of the sky relative to that of the sun.
 const SKY_LIGHT: f64 = 0.18;
@@ -52,9 +56,9 @@ fn main() {
     let folder = PathBuf::from(std::env::args().nth(1).expect("a folder to write to"));
     for &name in PRESET_NAMES {
         let ground = MarsGround::preset(name, SEED).expect("a preset");
-        let (extent, along_y) = (ground.extent, ground.crevasses.count > 0);
+        let extent = ground.extent;
         let mesh = Arc::new(ground.build().expect("a ground").into_mesh().expect("a mesh"));
-        let figure = figure(name, extent, along_y, &mesh);
+        let figure = figure(name, extent, &mesh);
         let path = folder.join(format!("ground-{name}.svg"));
         write_atomically(&path, |file| file.write_all(figure.as_bytes())).expect("a folder to write to");
         println!("{}: {} faces, {} kB", path.display(), mesh.faces().len(), figure.len() / 1000);
@@ -62,7 +66,7 @@ fn main() {
 }
 
 /// The SVG: both pictures under a title, with the scale of the picture from above.
-fn figure(name: &str, extent: f64, along_y: bool, mesh: &Arc<Mesh>) -> String {
+fn figure(name: &str, extent: f64, mesh: &Arc<Mesh>) -> String {
     let tracer = Tracer::new();
     let sun = Sun::new(mesh, &tracer, extent);
     let above = {
@@ -77,16 +81,15 @@ fn figure(name: &str, extent: f64, along_y: bool, mesh: &Arc<Mesh>) -> String {
         let pose = Pose { position: DVec3::new(0.0, 0.0, distance), rotation };
         picture(mesh, &tracer, &sun, Mounted { scene_from_sensor: pose, sensor: camera })
     };
+    let (eye, heading) = eye(mesh);
     let seen = {
         let (width, height) = (VIEW_WIDTH * RAYS_PER_PIXEL_SIDE, HEIGHT * RAYS_PER_PIXEL_SIDE);
         // 70 degrees across.
         let pitch = 1e-5;
         let focal_length = 0.5 * f64::from(width) * pitch / libm::tan(35_f64.to_radians());
         let camera = Camera { max_range: 1e3, ..rig::camera(width, height, pitch, focal_length) };
-        let eye = height_at(mesh, 0.0, 0.0).expect("ground in its middle") + 1.8;
-        // Crevasses run along x, so the camera looks across them. The yaw avoids looking exactly along a line of posts.
-        let heading = YAW_DEG.to_radians() + if along_y { std::f64::consts::FRAC_PI_2 } else { 0.0 };
-        let turned = Pose { position: DVec3::new(0.0, 0.0, eye), ..Pose::from_axis_angle(DVec3::Z, heading) };
+        let above = height_at(mesh, eye.x, eye.y).expect("ground under the camera") + 1.8;
+        let turned = Pose { position: eye.extend(above), ..Pose::from_axis_angle(DVec3::Z, heading) };
         let pitched = rig::pitched(DVec3::ZERO, 12_f64.to_radians(), camera);
         let scene_from_sensor = turned * pitched.scene_from_sensor;
         picture(mesh, &tracer, &sun, Mounted { scene_from_sensor, ..pitched })
@@ -103,7 +106,7 @@ fn figure(name: &str, extent: f64, along_y: bool, mesh: &Arc<Mesh>) -> String {
 <image x="{left}" y="{top}" width="{VIEW_WIDTH}" height="{HEIGHT}" href="data:image/png;base64,{seen}"/>
 <path d="M1 {tick} v8 M1 {bar_y} h{bar:.1} m0 -4 v8" stroke="#000" stroke-width="2" fill="none"/>
 <text x="{bar_text:.1}" y="{text_y}">10 m; x to the right, y up</text>
-<text x="{left}" y="{text_y}">from (0, 0), 1.8 m above ground, {YAW_DEG} degrees left of {axis}, 12 degrees down, 70 degrees across; sun {sun_high} degrees high</text>
+<text x="{left}" y="{text_y}">from ({x:.1}, {y:.1}), 1.8 m above ground, {yaw:.0} degrees left of x, 12 degrees down, 70 degrees across; sun {sun_high} degrees high</text>
 </svg>
 "##,
         faces = mesh.faces().len(),
@@ -114,9 +117,31 @@ fn figure(name: &str, extent: f64, along_y: bool, mesh: &Arc<Mesh>) -> String {
         bar_y = base + 16,
         bar_text = bar + 10.0,
         text_y = base + 21,
-        axis = if along_y { "y" } else { "x" },
         sun_high = SUN_ELEVATION_DEG,
+        x = eye.x,
+        y = eye.y,
+        yaw = heading.to_degrees(),
     )
+}
+
+/// Place of the camera, and the angle of its view to the left of the x axis, radians: in the middle of the ground, or
+/// before the nearest crevasse.
+fn eye(mesh: &Mesh) -> (DVec2, f64) {
+    let is_wall = |kind: u16| mesh.materials()[usize::from(kind)].name == "crevasse wall";
+    let walls = mesh.faces().iter().zip(mesh.face_materials()).filter(|(_, kind)| is_wall(**kind));
+    let corners = walls.flat_map(|(face, _)| {
+        face.map(|vertex| {
+            let [x, y, _] = mesh.vertices()[vertex as usize].map(f64::from);
+            DVec2::new(x, y)
+        })
+    });
+    match corners.min_by(|a, b| a.length().total_cmp(&b.length())) {
+        None => (DVec2::ZERO, YAW_DEG.to_radians()),
+        Some(wall) => {
+            let distance = (wall.length() - CREVASSE_DISTANCE_M).max(0.0);
+            (wall.normalize() * distance, libm::atan2(wall.y, wall.x))
+        }
+    }
 }
 
 /// A scene of a mesh and a camera, and the camera's map.

@@ -120,6 +120,23 @@ impl HeightGrid {
         self.heights[row as usize * self.columns as usize + column as usize]
     }
 
+    /// Height of the posts' surface at a place, bilinear between the four posts around it; outside, the height at the
+    /// nearest border.
+    pub(crate) fn bilinear(&self, place: DVec2) -> f64 {
+        let locate = |offset: f64, count: u32| {
+            let at = offset.clamp(0.0, f64::from(count - 1));
+            let cell = (at as u32).min(count.saturating_sub(2));
+            (cell, at - f64::from(cell))
+        };
+        let offset = (place - self.corner) / self.spacing;
+        let ((i, s), (j, t)) = (locate(offset.x, self.columns), locate(offset.y, self.rows));
+        let post = |i: u32, j: u32| self.at(i, j).z;
+        // At a post the result is the post's own height, even if its neighbours are unknown.
+        let between = |a: f64, b: f64, share: f64| if share == 0.0 { a } else { a + (b - a) * share };
+        let line = |j: u32| if s == 0.0 { post(i, j) } else { between(post(i, j), post(i + 1, j), s) };
+        if t == 0.0 { line(j) } else { between(line(j), line(j + 1), t) }
+    }
+
     /// Whether a cell, named by its near left post, has four known corners.
     pub(crate) fn is_complete(&self, column: u32, row: u32) -> bool {
         [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)]

@@ -51,7 +51,7 @@ pub use height_index::HeightIndex;
 pub use inspect::{
     Inspection, MeshElement, Occurrence, Occurrences, OpenEdgePiece, OpenEdges, ZeroAreaKinds, inspect,
 };
-pub use mars::{Crater, Craters, Crevasses, MarsGround, PRESET_NAMES, Rocks, Roughness};
+pub use mars::{Crater, Craters, Crevasses, MarsGround, PRESET_NAMES, Rim, Rocks, Roughness};
 pub use random_ground::RandomGround;
 pub use repair::{Repairs, repair};
 pub use simplify::simplify;

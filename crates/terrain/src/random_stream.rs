@@ -27,6 +27,9 @@ pub(crate) enum StreamPurpose {
     RockShapes = 16,
     Crevasses = 17,
     Corners = 18,
+    FineOctaves = 19,
+    FineDiagonals = 20,
+    Rims = 21,
 }
 
 /// Random numbers of one (seed, purpose): ChaCha's key stream, read in order.

@@ -16,13 +16,14 @@ pub fn mars_grounds(cells: u32) -> impl Strategy<Value = MarsGround> {
 /// If there is no such preset.
 pub fn mars_grounds_of(name: &'static str, cells: u32) -> impl Strategy<Value = MarsGround> {
     let share = || 0.0..=1.0;
-    (any::<u64>(), 4..=cells, 2.0..40.0, [share(), share(), share(), share()]).prop_map(
-        move |(seed, cells, extent, [relief, coverage, density, cracks]): (u64, u32, f64, [f64; 4])| {
+    (any::<u64>(), 4..=cells, 2.0..40.0, [share(), share(), share(), share(), share()]).prop_map(
+        move |(seed, cells, extent, [relief, coverage, density, cracks, fine]): (u64, u32, f64, [f64; 5])| {
             let mut ground = MarsGround::preset(name, seed).expect("a preset");
             // Scale all lengths with the extent; use fewer posts.
             let scale = extent / ground.extent;
             ground.extent = extent;
             ground.post_spacing = extent / f64::from(cells);
+            ground.fine_radius *= scale * fine;
             ground.roughness.rms_at_1_m *= relief;
             let Rocks { coverage: max_coverage, largest, .. } = ground.rocks;
             // Leave out small rocks, so that there are only a few for each cell.

@@ -23,6 +23,7 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     let given = [
         (command.extent, &mut ground.extent),
         (command.post_spacing, &mut ground.post_spacing),
+        (command.fine_radius, &mut ground.fine_radius),
         (command.rock_coverage, &mut ground.rocks.coverage),
         (command.rock_smallest, &mut ground.rocks.smallest),
     ];
@@ -56,6 +57,7 @@ fn parameters(command: &TerrainGenerate, ground: &MarsGround) -> Value {
         "seed": ground.seed,
         "extent_m": ground.coarse.is_none().then_some(ground.extent),
         "post_spacing_m": ground.post_spacing,
+        "fine_radius_m": ground.fine_radius,
         "coarse": coarse.map(|name| name.to_string_lossy()),
         "hurst": roughness.hurst,
         "roughness_m": roughness.rms_at_1_m,

@@ -13,7 +13,7 @@ use crate::run::{DriveRun, drive};
 
 /// Terrain that rises nowhere by a micrometre.
 pub(crate) const FLAT: &str = "[terrain]\ngenerate = { preset = \"viking1\", seed = 3, extent_m = 30, \
-    post_spacing_m = 5, roughness_m = 1e-9, rock_coverage = 0, crater_density = 0 }";
+    post_spacing_m = 5, fine_radius_m = 0, roughness_m = 1e-9, rock_coverage = 0, crater_density = 0 }";
 
 /// Route of 0.6 m in 7 frames, with obstacle maps of frames 0, 3 and 6.
 pub(crate) const SHORT: &str =

@@ -32,6 +32,7 @@ pub(crate) struct GenerateKeys {
     extent_m: Key<f64>,
     offset_m: Key<Vec<f64>>,
     post_spacing_m: Key<f64>,
+    fine_radius_m: Key<f64>,
     coarse: Key<String>,
     hurst: Key<f64>,
     roughness_m: Key<f64>,
@@ -108,6 +109,7 @@ impl Source<'_> {
         let numbers = [
             ("extent_m", &keys.extent_m, &mut ground.extent, 1.0..=1e5, "metres"),
             ("post_spacing_m", &keys.post_spacing_m, &mut ground.post_spacing, POST_SPACING_M, "metres"),
+            ("fine_radius_m", &keys.fine_radius_m, &mut ground.fine_radius, 0.0..=1e4, "metres"),
             ("hurst", &keys.hurst, &mut roughness.hurst, 0.01..=0.99, ""),
             ("roughness_m", &keys.roughness_m, &mut roughness.rms_at_1_m, 0.0..=10.0, "metres"),
             ("rock_coverage", &keys.rock_coverage, &mut rocks.coverage, 0.0..=0.4, ""),
@@ -150,6 +152,7 @@ impl Source<'_> {
 fn first_of_preset(keys: &GenerateKeys) -> Option<(&'static str, Range<usize>)> {
     [
         ("post_spacing_m", span(&keys.post_spacing_m)),
+        ("fine_radius_m", span(&keys.fine_radius_m)),
         ("hurst", span(&keys.hurst)),
         ("roughness_m", span(&keys.roughness_m)),
         ("rock_coverage", span(&keys.rock_coverage)),

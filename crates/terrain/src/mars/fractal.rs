@@ -48,20 +48,28 @@ pub(crate) fn corner_posts(side: f64, roughness: &Roughness, seed: u64) -> Heigh
 /// Halves the spacing of `posts` `octaves` times. The old posts stay among the new ones, unchanged to the bit.
 pub(crate) fn refine(posts: HeightGrid, octaves: u32, roughness: &Roughness, seed: u64) -> HeightGrid {
     let mut random = RandomStream::new(seed, StreamPurpose::Octaves);
-    let mut posts = posts;
-    for octave in 0..octaves as usize {
-        posts = halve_spacing(posts);
-        // CHOICE: a new post in the middle of a cell is sqrt(2) farther from its neighbours than one on a side.
-        // Both are displaced alike, as in the paper of 1982.
-        let spacing = (posts.spacing.x * posts.spacing.y).sqrt();
-        let displacement = roughness.displacement(octave, spacing);
-        let columns = posts.columns as usize;
-        for (row, heights) in posts.heights.chunks_exact_mut(columns).enumerate() {
-            // In even rows every second post is an old one.
-            let (first, step) = if row % 2 == 0 { (1, 2) } else { (0, 1) };
-            for height in heights.iter_mut().skip(first).step_by(step) {
-                *height += displacement * random.normal();
-            }
+    (0..octaves as usize).fold(posts, |posts, octave| refine_once(posts, octave, 1.0, roughness, &mut random))
+}
+
+/// Halves the spacing of `posts` once, as octave number `octave`, with displacements `gain` times as large.
+pub(crate) fn refine_once(
+    posts: HeightGrid,
+    octave: usize,
+    gain: f64,
+    roughness: &Roughness,
+    random: &mut RandomStream,
+) -> HeightGrid {
+    let mut posts = halve_spacing(posts);
+    // CHOICE: a new post in the middle of a cell is sqrt(2) farther from its neighbours than one on a side. Both are
+    // displaced alike, as in the paper of 1982.
+    let spacing = (posts.spacing.x * posts.spacing.y).sqrt();
+    let displacement = gain * roughness.displacement(octave, spacing);
+    let columns = posts.columns as usize;
+    for (row, heights) in posts.heights.chunks_exact_mut(columns).enumerate() {
+        // In even rows every second post is an old one.
+        let (first, step) = if row % 2 == 0 { (1, 2) } else { (0, 1) };
+        for height in heights.iter_mut().skip(first).step_by(step) {
+            *height += displacement * random.normal();
         }
     }
     posts

@@ -1,30 +1,35 @@
 //! Mars-like ground: relief at every scale, craters, crevasses and rocks, each by its own published law.
 //!
 //! ```text
-//! fractal    relief: stochastic interpolation between coarse posts
-//! craters    bowls, rims and ejecta, added to the posts
-//! crevasses  the courses of cracks, and how the grid rows bend around them
-//! sheet      the faces over the posts, cut open at the crevasses
-//! rocks      sizes, places and bodies of rocks
-//! presets    grounds by name, with a source for every number
+//! fractal                           posts by stochastic interpolation between coarse posts
+//! craters                           bowls, rims and ejecta: old craters first, and young ones over them
+//! relief                            the posts of a whole ground, closer near its middle
+//! crevasses, corridor               the courses of cracks and their openings; the cells that they touch
+//! sheet -> cut, sheet_posts         the faces over the posts; those about the crevasses, and their walls
+//! rocks, rock_places, rock_bodies   rocks
+//! presets                           grounds by name, with a source for every number
 //! ```
 
+mod corridor;
 mod craters;
 mod crevasses;
+mod cut;
 mod fractal;
 mod presets;
+mod relief;
+mod rock_bodies;
+mod rock_places;
 mod rocks;
 mod sheet;
-#[cfg(test)]
-#[path = "../../tests/unit/mars/whole_grounds.rs"]
-mod tests;
+mod sheet_posts;
 
 use glam::{DVec2, DVec3};
 use raypencil_scene::{Material, SceneError};
 
 use crate::{Ground, HeightGrid};
+use relief::Relief;
 
-pub use craters::{Crater, Craters};
+pub use craters::{Crater, Craters, Rim};
 pub use crevasses::Crevasses;
 pub use fractal::Roughness;
 pub use presets::PRESET_NAMES;
@@ -47,6 +52,7 @@ const MAX_FACES: f64 = (1 << 25) as f64;
 /// let mars = MarsGround {
 ///     extent: 12.0,
 ///     post_spacing: 0.2,
+///     fine_radius: 0.0,
 ///     rocks: Rocks { coverage: 0.0, ..preset.rocks },
 ///     craters: Craters { density: 0.0, ..preset.craters },
 ///     crevasses: Crevasses { count: 0, ..preset.crevasses },
@@ -74,6 +80,9 @@ pub struct MarsGround {
     pub craters: Craters,
     /// Crevasses; none if the count is 0.
     pub crevasses: Crevasses,
+    /// Within this distance of the middle, metres, posts stand at a quarter of `post_spacing`, and within 2.5 times of
+    /// it at half: from near, soil shows no triangles. 0 for posts of one spacing.
+    pub fine_radius: f64,
     /// Translation of all vertices, metres.
     pub offset: DVec3,
 }
@@ -94,22 +103,17 @@ impl MarsGround {
     /// As [`MarsGround::validate`].
     pub fn build(&self) -> Result<Ground, SceneError> {
         self.validate()?;
-        let mut posts = self.relief();
-        for crater in self.crater_list() {
-            crater.carve(&mut posts);
-        }
-        let cells = [posts.columns - 1, posts.rows - 1];
-        let crevasses = self.crevasses.draw(cells, posts.spacing, self.seed);
-
+        let relief = self.relief();
+        let crevasses = self.crevasses.draw(&self.field(), self.seed);
         let mut ground = Ground { materials: materials(), ..Ground::default() };
         sheet::add(
             &mut ground,
-            &posts,
+            &relief,
             &crevasses,
-            &sheet::SheetMaterials { soil: SOIL_MATERIAL, wall: WALL_MATERIAL },
+            &sheet_posts::SheetMaterials { soil: SOIL_MATERIAL, wall: WALL_MATERIAL },
             self.seed,
         );
-        self.add_rocks(&mut ground, &posts, &crevasses);
+        self.add_rocks(&mut ground, &relief, &crevasses);
         if self.offset != DVec3::ZERO {
             for vertex in &mut ground.vertices {
                 *vertex += self.offset;
@@ -139,11 +143,17 @@ impl MarsGround {
         }
     }
 
-    /// Posts before craters are added.
-    fn relief(&self) -> HeightGrid {
+    /// Heights of the soil, with the craters.
+    fn relief(&self) -> Relief {
+        let (posts, octaves) = self.posts();
+        Relief::new(posts, self.fine_radius, &self.roughness, octaves, &self.crater_list(), self.seed)
+    }
+
+    /// Posts before craters are made, and the number of halvings from which they come.
+    fn posts(&self) -> (HeightGrid, u32) {
         if let Some(coarse) = &self.coarse {
             let octaves = octaves(coarse.spacing.max_element(), self.post_spacing);
-            return fractal::refine(coarse.clone(), octaves, &self.roughness, self.seed);
+            return (fractal::refine(coarse.clone(), octaves, &self.roughness, self.seed), octaves);
         }
         let cells = self.cells();
         let octaves = cells.next_power_of_two().ilog2();
@@ -159,13 +169,25 @@ impl MarsGround {
             })
             .collect();
         let corner = DVec2::splat(-0.5 * f64::from(cells) * self.post_spacing);
-        HeightGrid {
-            columns: cells + 1,
-            rows: cells + 1,
-            corner,
-            spacing: DVec2::splat(self.post_spacing),
-            heights,
-        }
+        let spacing = DVec2::splat(self.post_spacing);
+        (HeightGrid { columns: cells + 1, rows: cells + 1, corner, spacing, heights }, octaves)
+    }
+
+    /// Ground that crevasses are drawn on.
+    fn field(&self) -> crevasses::Field {
+        let spacing = match &self.coarse {
+            None => DVec2::splat(self.post_spacing),
+            Some(coarse) => {
+                let halvings = octaves(coarse.spacing.max_element(), self.post_spacing);
+                coarse.spacing * libm::exp2(-f64::from(halvings))
+            }
+        };
+        crevasses::Field { extent: self.extents(), spacing, free_radius: self.free_radius() }
+    }
+
+    /// Distance of rocks and crevasses from the middle, metres.
+    fn free_radius(&self) -> f64 {
+        FREE_RADIUS_M.min(0.125 * self.extents().min_element())
     }
 
     /// Cells per side of a ground without coarse posts.
@@ -174,10 +196,10 @@ impl MarsGround {
         ((self.extent / self.post_spacing).ceil() as u32).max(2)
     }
 
-    fn add_rocks(&self, ground: &mut Ground, posts: &HeightGrid, crevasses: &[crevasses::Crevasse]) {
-        let extent = posts.extent();
-        let middle = posts.corner + 0.5 * extent;
-        let free_radius = FREE_RADIUS_M.min(0.125 * extent.min_element());
+    fn add_rocks(&self, ground: &mut Ground, relief: &Relief, crevasses: &[crevasses::Crevasse]) {
+        let extent = relief.posts.extent();
+        let middle = relief.middle;
+        let free_radius = self.free_radius();
         let is_free = |place: DVec2, diameter: f64| {
             let local = place - middle;
             let beyond = local.abs().cmpgt(0.5 * extent).any();
@@ -185,12 +207,20 @@ impl MarsGround {
                 && local.length() > free_radius + 0.5 * diameter
                 && !crevasses.iter().any(|crevasse| crevasse.overlaps_disc(local, 0.6 * diameter))
         };
-        let sites =
-            rocks::place_rocks(&self.rock_diameters(), middle, extent.max_element(), self.seed, is_free);
-        let mut bodies = rocks::RockBodies::new(self.seed);
+        let sites = rock_places::place_rocks(
+            &self.rock_diameters(),
+            middle,
+            extent.max_element(),
+            self.seed,
+            is_free,
+        );
+        let mut bodies = rock_bodies::RockBodies::new(self.seed);
         for site in sites {
-            let centre = site.place.extend(sheet::height(posts, site.place));
-            bodies.add(ground, centre, site.diameter, ROCK_MATERIAL);
+            let at = |x: f64, y: f64| relief.height(site.place + 0.5 * site.diameter * DVec2::new(x, y));
+            let gradient =
+                DVec2::new(at(1.0, 0.0) - at(-1.0, 0.0), at(0.0, 1.0) - at(0.0, -1.0)) / site.diameter;
+            let place = site.place.extend(relief.height(site.place));
+            bodies.add(ground, place, gradient, site.diameter, ROCK_MATERIAL);
         }
     }
 
@@ -214,6 +244,7 @@ impl MarsGround {
             ("crevasse_width_m", crevasses.width, 1e-3..=100.0),
             ("crevasse_depth_m", crevasses.depth, 1e-3..=1000.0),
             ("crevasse_overhang_m", crevasses.overhang, 0.0..=100.0),
+            ("fine_radius_m", self.fine_radius, 0.0..=1e4),
             ("offset_m", self.offset.abs().max_element(), 0.0..=1e7),
         ];
         for (field, value, range) in ranges {
@@ -248,8 +279,13 @@ impl MarsGround {
             let found = format!("{} m: {} faces", self.post_spacing, 2.0 * cells);
             return Err(SceneError::new("post_spacing_m", found, most));
         }
+        let most_fine = self.max_fine_faces(extent, cells);
+        if most_fine > MAX_FACES {
+            let found = format!("{} m: up to {most_fine:.0} faces", self.fine_radius);
+            return Err(SceneError::new("fine_radius_m", found, most));
+        }
         let rocks = self.rocks.max_expected_faces(extent.x * extent.y);
-        if 2.0 * cells + rocks > MAX_FACES {
+        if most_fine + rocks > MAX_FACES {
             let found = format!("{} m: up to {rocks:.0} faces of rocks", self.rocks.smallest);
             return Err(SceneError::new("rock_smallest_m", found, most));
         }
@@ -266,13 +302,35 @@ impl MarsGround {
         if crevasses.count > MAX_CREVASSES {
             return Err(SceneError::new("crevasses", crevasses.count, format!("0 to {MAX_CREVASSES}")));
         }
-        let max_width = crevasses.max_width(extent.y);
-        if crevasses.count > 0 && crevasses.width > max_width {
-            let expected =
-                format!("at most {max_width:.3} m for {} of them on {} m", crevasses.count, extent.y);
-            return Err(SceneError::new("crevasse_width_m", crevasses.width, expected));
+        let found = crevasses.draw(&self.field(), self.seed);
+        let walls: f64 = found.iter().map(|crevasse| cut::faces_per_node() * crevasse.last() as f64).sum();
+        if most_fine + rocks + walls > MAX_FACES {
+            let found = format!("{}: {walls:.0} faces of walls", crevasses.count);
+            return Err(SceneError::new("crevasses", found, most));
+        }
+        if found.len() < crevasses.count as usize {
+            let expected = format!(
+                "at most {}: there is no place for more of {} m on {} x {} m",
+                found.len(),
+                crevasses.width,
+                extent.x,
+                extent.y
+            );
+            return Err(SceneError::new("crevasses", crevasses.count, expected));
         }
         Ok(())
+    }
+
+    /// Upper bound on the number of faces of the soil, with its fine part.
+    fn max_fine_faces(&self, extent: DVec2, cells: f64) -> f64 {
+        let share = |radius: f64| {
+            // All cells that a square about the circle touches.
+            let side =
+                (2.0 * radius / extent + 2.0 * (extent.x * extent.y / cells).sqrt() / extent).min(DVec2::ONE);
+            if radius > 0.0 { side.x * side.y } else { 0.0 }
+        };
+        let [half, quarter] = relief::radii(self.fine_radius).map(share);
+        2.0 * cells * (1.0 + 3.0 * half + 12.0 * quarter)
     }
 }
 
@@ -317,3 +375,7 @@ fn materials() -> Vec<Material> {
         .map(|(name, reflectivity)| Material { name: name.into(), reflectivity })
         .into()
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/mars/whole_grounds.rs"]
+mod tests;

@@ -17,7 +17,8 @@ struct Numbers {
 }
 
 impl MarsGround {
-    /// Ground by its name and seed, 40 m square, with a post each 0.1 m; `None` for an unknown name.
+    /// Ground by its name and seed, 40 m square, with a post each 0.1 m, each 0.05 m within 10 m of the middle, and each
+    /// 0.025 m within 4 m; `None` for an unknown name.
     ///
     /// * `smooth`: a plain with few and small rocks. CHOICE: a third of the roughness of Viking 1 and rocks on
     ///   0.01 of the ground, as on the plains that landers are sent to.
@@ -92,6 +93,7 @@ impl MarsGround {
                 depth: crevasses.2,
                 overhang: crevasses.3,
             },
+            fine_radius: 4.0,
             offset: DVec3::ZERO,
         })
     }

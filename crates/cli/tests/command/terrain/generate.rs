@@ -67,6 +67,8 @@ fn the_surface_interpolates_the_coarse_posts() {
         "0",
         "--post-spacing",
         "0.3",
+        "--fine-radius",
+        "0",
         "--coarse",
         "mola.tif",
         "-o",
@@ -84,7 +86,7 @@ fn the_surface_interpolates_the_coarse_posts() {
     }
     // The same parameters in a scene give the same terrain.
     let scene = "version = 1\n[vehicle]\nposition_m = [1000005, 496]\n[terrain]\n\
-        generate = { preset = \"smooth\", rock_coverage = 0, post_spacing_m = 0.3, coarse = \"mola.tif\" }\n";
+        generate = { preset = \"smooth\", rock_coverage = 0, post_spacing_m = 0.3, fine_radius_m = 0, coarse = \"mola.tif\" }\n";
     std::fs::write(folder.path().join("fine.toml"), scene).expect("a file");
     let same = screen(folder.path(), &["terrain", "inspect", "fine.toml", "--json"], 0);
     let same: Value = serde_json::from_str(&same).expect("JSON");
@@ -104,9 +106,13 @@ fn errors_are_named_and_leave_no_file() {
     heights[7] = -9999.0;
     std::fs::write(folder.path().join("hole.tif"), geotiff(5, 4, &heights)).expect("a file");
     trouble(&["--preset", "venus", "-o", "x.glb"], &["--preset venus", "viking1, pathfinder"]);
-    trouble(&["--preset", "worst", "-o", "x.glb"], &["crevasse_width_m is 0.8", "for 4 of them on 6 m"]);
+    trouble(
+        &["--preset", "worst", "--crevasses", "40", "-o", "x.glb"],
+        &["crevasses is 40", "there is no place for more of 0.8 m"],
+    );
     trouble(&["--rock-coverage", "NaN", "-o", "x.glb"], &["rock_coverage is NaN", "0 to 0.4"]);
     trouble(&["--rock-smallest", "1e-9", "-o", "x.glb"], &["rock_smallest_m"]);
+    trouble(&["--fine-radius", "-1", "-o", "x.glb"], &["fine_radius_m is -1", "0 to 10000"]);
     trouble(&["-o", "x.ply"], &["x.ply", "ends in .glb"]);
     let coarse = ["terrain", "generate", "--coarse", "hole.tif", "-o", "x.glb"];
     // Rows of posts count from the south: the second row from the north is the third of four.

@@ -1,12 +1,6 @@
-//! Rocks against the law of their sizes, their places and their bodies.
+//! Sizes of rocks against their law.
 
 use super::*;
-use crate::ground::tests::assert_closed_and_outward;
-
-/// Number of faces of a rock of that diameter.
-pub(in crate::mars) fn faces(diameter: f64) -> usize {
-    32 << (2 * (subdivisions(diameter) - 1))
-}
 
 const PATHFINDER: Rocks = Rocks { coverage: 0.19, smallest: 0.05, largest: 3.0 };
 
@@ -61,67 +55,4 @@ fn smaller_rocks_are_added_at_the_end() {
     assert_eq!(fine[..coarse.len()], coarse);
     assert!(fine.is_sorted_by(|a, b| a >= b));
     assert!(Rocks { coverage: 0.0, ..PATHFINDER }.diameters(400.0, 3).is_empty());
-}
-
-#[test]
-fn rocks_keep_apart_and_out_of_what_is_not_free() {
-    let diameters = PATHFINDER.diameters(900.0, 8);
-    let free = |place: DVec2, diameter: f64| place.length() > 2.0 + 0.5 * diameter;
-    let sites = place_rocks(&diameters, DVec2::ZERO, 30.0, 8, free);
-    assert_eq!(sites.len(), diameters.len());
-    let touching = |k: usize| {
-        let rock = sites[k];
-        sites[..k]
-            .iter()
-            .any(|other| rock.place.distance(other.place) <= 0.5 * (rock.diameter + other.diameter))
-    };
-    let count = (0..sites.len()).filter(|&k| touching(k)).count();
-    // 24 failures in a row need a very full ground: with a fifth covered, they never happen.
-    assert_eq!(count, 0);
-    assert!(sites.iter().all(|site| free(site.place, site.diameter)));
-    assert!(place_rocks(&diameters, DVec2::ZERO, 30.0, 8, |_, _| false).is_empty());
-}
-
-#[test]
-fn bodies_are_closed_outward_and_as_wide_and_high_as_asked_for() {
-    let mut bodies = RockBodies::new(5);
-    for k in 0..200 {
-        let diameter = 0.05 + 0.01 * f64::from(k);
-        let mut ground = Ground::default();
-        let centre = DVec3::new(3.0, -2.0, 0.7);
-        bodies.add(&mut ground, centre, diameter, 0);
-        assert_eq!(ground.faces.len(), faces(diameter));
-        assert_closed_and_outward(&ground, 0..ground.faces.len());
-        let plan = plan_area(&ground.vertices, &ground.faces);
-        let circle = std::f64::consts::FRAC_PI_4 * diameter * diameter;
-        assert!((plan / circle - 1.0).abs() < 1e-9, "{plan} for {circle}");
-        let heights = ground.vertices.iter().map(|v| (v.z - centre.z) / diameter);
-        let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
-        assert!((low + 0.35).abs() < 1e-9 && (0.3..0.7001).contains(&high), "{low} to {high}");
-    }
-}
-
-#[test]
-fn the_outline_is_as_large_as_the_faces_say() {
-    // The upper side hardly ever folds over itself. The outline, counted on a raster of 2 % of the diameter,
-    // therefore equals the sum of the projected faces within 1 %, on the mean of 40 rocks.
-    let mut bodies = RockBodies::new(6);
-    let mut ratio = 0.0;
-    for _ in 0..40 {
-        let mut ground = Ground::default();
-        bodies.add(&mut ground, DVec3::ZERO, 1.0, 0);
-        let triangles: Vec<[DVec2; 3]> =
-            ground.faces.iter().map(|f| f.map(|v| ground.vertices[v as usize].truncate())).collect();
-        let inside = |p: DVec2| {
-            triangles.iter().any(|[a, b, c]| {
-                let side = |a: &DVec2, b: &DVec2| (*b - *a).perp_dot(p - *a) >= 0.0;
-                side(a, b) && side(b, c) && side(c, a)
-            })
-        };
-        let step = 0.02;
-        let raster = (-50..50).flat_map(|i| (-50..50).map(move |j| DVec2::new(f64::from(i), f64::from(j))));
-        let count = raster.filter(|&p| inside((p + 0.5) * step)).count();
-        ratio += count as f64 * step * step / std::f64::consts::FRAC_PI_4 / 40.0;
-    }
-    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
 }

@@ -13,23 +13,7 @@ fn small(name: &str, seed: u64) -> MarsGround {
     let mars = MarsGround::preset(name, seed).expect("a preset");
     // Four crevasses do not fit on 12 m.
     let crevasses = Crevasses { count: mars.crevasses.count.min(2), ..mars.crevasses };
-    MarsGround { extent: 12.0, post_spacing: 0.2, crevasses, ..mars }
-}
-
-#[test]
-fn heights_between_posts_are_bilinear() {
-    // Posts 2 m apart along x and 4 m along y, with the heights 0 and 1 in the near row, 10 and 21 in the far one. A
-    // quarter of the way along x the rows are at 1/4 and 10 + 11/4; half way between these it is 13/2.
-    let posts = HeightGrid {
-        columns: 2,
-        rows: 2,
-        corner: DVec2::new(10.0, 20.0),
-        spacing: DVec2::new(2.0, 4.0),
-        heights: vec![0.0, 1.0, 10.0, 21.0],
-    };
-    assert_eq!(sheet::height(&posts, DVec2::new(10.5, 22.0)), 6.5);
-    // Outside, the height at the nearest border: 1 at the near right post.
-    assert_eq!(sheet::height(&posts, DVec2::new(99.0, -99.0)), 1.0);
+    MarsGround { extent: 12.0, post_spacing: 0.2, fine_radius: 1.0, crevasses, ..mars }
 }
 
 /// First face that is not of the sheet: rocks come last.
@@ -64,7 +48,7 @@ fn every_preset_is_a_mesh_whose_rocks_are_closed_and_outward() {
             let promised = mars.rocks.diameters(144.0, seed);
             assert_eq!(bodies.len(), promised.len(), "{name}");
             for (body, diameter) in bodies.into_iter().zip(promised) {
-                assert_eq!(body.len(), rocks::tests::faces(diameter));
+                assert_eq!(body.len(), rock_bodies::tests::faces(diameter));
                 assert_closed_and_outward(&ground, body);
             }
             let mesh = ground.into_mesh().unwrap();
@@ -86,28 +70,105 @@ fn edges(ground: &Ground) -> BTreeMap<[u32; 2], [u32; 2]> {
     edges
 }
 
+/// Checks that the sheet is closed but for its outer border, that all faces have one orientation, and that soil looks up.
+fn assert_one_sheet(ground: &Ground, half: DVec2, what: &str) {
+    let edges = edges(ground);
+    assert!(edges.values().all(|uses| uses[0] <= 1 && uses[1] <= 1), "{what}: an edge of three faces");
+    let mut border = 0.0;
+    for (edge, _) in edges.iter().filter(|(_, uses)| **uses != [1, 1]) {
+        let [a, b] = edge.map(|v| ground.vertices[v as usize].truncate());
+        let on = |p: DVec2| (p.abs() - half).abs().cmplt(DVec2::splat(1e-9));
+        assert!((on(a) & on(b)).any(), "{what}: an open edge from {a} to {b}");
+        border += a.distance(b);
+    }
+    assert!((border - 4.0 * (half.x + half.y)).abs() < 1e-6, "{what}: {border} m of border");
+    let sheet = first_rock_face(ground);
+    for (face, &kind) in ground.faces[..sheet].iter().zip(&ground.face_materials) {
+        assert!(kind == WALL_MATERIAL || normal(ground, *face).z > 0.0, "{what}: {face:?}");
+    }
+    // Soil and floors cover the ground once: walls that stand or recede add nothing, seen from above.
+    let area: f64 = ground.faces[..sheet].iter().map(|face| 0.5 * normal(ground, *face).z).sum();
+    assert!((area / (4.0 * half.x * half.y) - 1.0).abs() < 1e-9, "{what}: {area} square metres");
+}
+
 #[test]
 fn the_sheet_has_no_gap_and_no_fold_however_it_is_cut() {
     for name in ["smooth", "crevassed", "worst"] {
-        for seed in 0..4 {
-            let mars = small(name, seed);
-            let ground = mars.build().unwrap();
-            let cells = mars.cells();
-            // The sheet is closed but for its outer border of four times `cells` edges, and all faces have the
-            // same orientation.
-            let border = edges(&ground).values().filter(|uses| **uses != [1, 1]).count();
-            assert_eq!(border, 4 * cells as usize, "{name}, seed {seed}");
-            assert!(edges(&ground).values().all(|uses| uses[0] <= 1 && uses[1] <= 1));
-            // Soil faces look up everywhere.
-            let sheet = first_rock_face(&ground);
-            for (face, &kind) in ground.faces[..sheet].iter().zip(&ground.face_materials) {
-                assert!(
-                    kind == WALL_MATERIAL || normal(&ground, *face).z > 0.0,
-                    "{name}, seed {seed}: {face:?}"
+        for seed in 0..8 {
+            for fine_radius in [0.0, 1.0, 2.0, 9.0] {
+                let mars = MarsGround { fine_radius, ..small(name, seed) };
+                let ground = mars.build().unwrap();
+                let walls = ground.face_materials.iter().filter(|kind| **kind == WALL_MATERIAL).count();
+                assert_eq!(walls > 500, mars.crevasses.count > 0, "{name}: {walls} faces of walls");
+                assert_one_sheet(
+                    &ground,
+                    DVec2::splat(6.0),
+                    &format!("{name}, seed {seed}, fine {fine_radius} m"),
                 );
+                // Every vertex is used.
+                let mut used = vec![false; ground.vertices.len()];
+                ground.faces.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+                assert!(used.iter().all(|used| *used));
             }
         }
     }
+}
+
+#[test]
+fn a_crevasse_finer_than_the_posts_is_cut_all_the_same() {
+    // Cracks of 4 cm between posts of 1 m, and on posts of two spacings.
+    for seed in 0..10 {
+        let plain = small("crevassed", seed);
+        let crevasses = Crevasses { width: 0.04, ..plain.crevasses };
+        let rocks = Rocks { coverage: 0.0, ..plain.rocks };
+        let mars = MarsGround { post_spacing: 1.0, crevasses, rocks, ..plain.clone() };
+        let ground = mars.build().unwrap();
+        assert!(ground.face_materials.contains(&WALL_MATERIAL));
+        assert_one_sheet(&ground, DVec2::splat(6.0), &format!("seed {seed}"));
+        let coarse = HeightGrid {
+            columns: 5,
+            rows: 9,
+            corner: DVec2::new(1e5 - 8.0, 2e5 - 8.0),
+            spacing: DVec2::new(4.0, 2.0),
+            heights: (0..45).map(|k| f64::from(k * 7 % 5) * 0.1).collect(),
+        };
+        let mars = MarsGround { coarse: Some(coarse), post_spacing: 0.5, ..mars };
+        let mut ground = mars.build().unwrap();
+        ground.vertices.iter_mut().for_each(|v| *v -= DVec3::new(1e5, 2e5, 0.0));
+        assert_one_sheet(&ground, DVec2::splat(8.0), &format!("coarse, seed {seed}"));
+    }
+}
+
+#[test]
+fn near_the_middle_no_face_of_soil_is_large_or_stands_out() {
+    // Within 3.5 m the posts are 2.5 cm apart: no side of a face is longer than a diagonal of about 3.6 cm in plan.
+    // Neighbours differ by less than on posts of 10 cm: the median angle between them is under half of that there.
+    let angles = |fine_radius: f64| {
+        let plain = MarsGround::preset("viking1", 5).unwrap();
+        let rocks = Rocks { coverage: 0.0, ..plain.rocks };
+        let ground = MarsGround { extent: 10.0, fine_radius, rocks, ..plain }.build().unwrap();
+        let near =
+            |face: &[u32; 3]| face.iter().all(|&v| ground.vertices[v as usize].truncate().length() < 3.5);
+        let mut longest: f64 = 0.0;
+        let mut normals: BTreeMap<[u32; 2], Vec<DVec3>> = BTreeMap::new();
+        for face in ground.faces.iter().filter(|face| near(face)) {
+            for [p, q] in [[0, 1], [1, 2], [2, 0]].map(|pair| pair.map(|k: usize| face[k])) {
+                let [a, b] = [p, q].map(|v| ground.vertices[v as usize].truncate());
+                longest = longest.max(a.distance(b));
+                let normal = normal(&ground, *face).normalize();
+                normals.entry([p.min(q), p.max(q)]).or_default().push(normal);
+            }
+        }
+        let pairs = normals.values().filter(|pair| pair.len() == 2);
+        let mut angles: Vec<f64> =
+            pairs.map(|pair| libm::acos(pair[0].dot(pair[1]).min(1.0)).to_degrees()).collect();
+        angles.sort_unstable_by(f64::total_cmp);
+        (longest, angles[angles.len() / 2])
+    };
+    let ((longest, fine), (coarse_longest, coarse)) = (angles(4.0), angles(0.0));
+    println!("median angle between neighbouring faces: {fine} degrees, without fine posts {coarse}");
+    assert!(longest < 0.036 && coarse_longest > 0.14, "{longest} m and {coarse_longest} m");
+    assert!(fine < 0.5 * coarse, "{fine} and {coarse} degrees");
 }
 
 #[test]
@@ -158,7 +219,12 @@ fn coarse_posts_are_vertices_of_the_ground() {
         spacing: DVec2::new(4.0, 4.0),
         heights,
     };
-    let mars = MarsGround { coarse: Some(coarse.clone()), post_spacing: 0.3, ..small("smooth", 6) };
+    let mars = MarsGround {
+        coarse: Some(coarse.clone()),
+        post_spacing: 0.3,
+        fine_radius: 0.0,
+        ..small("smooth", 6)
+    };
     let mars = MarsGround { rocks: Rocks { coverage: 0.0, ..mars.rocks }, ..mars };
     let ground = mars.build().unwrap();
     // 4 m halved four times is 0.25 m.
@@ -174,18 +240,20 @@ fn coarse_posts_are_vertices_of_the_ground() {
 
 #[test]
 fn a_crater_of_the_ground_has_its_depth_and_rim() {
-    // The same ground with and without craters: the difference at the posts of the first crater that lies well
-    // inside. Other craters may overlap it, so only seeds in which it is alone are measured.
+    // On level ground, the first crater that lies well inside, in seeds where it is alone.
     let mut measured = 0;
     for seed in 0..400 {
+        let plain = small("smooth", seed);
         let mars = MarsGround {
             extent: 30.0,
             post_spacing: 0.1,
+            fine_radius: 0.0,
+            roughness: Roughness { rms_at_1_m: 0.0, ..plain.roughness.clone() },
             craters: Craters { density: 0.02, smallest: 6.0, largest: 8.0 },
-            ..small("smooth", seed)
+            rocks: Rocks { coverage: 0.0, ..plain.rocks },
+            ..plain
         };
-        let mars = MarsGround { rocks: Rocks { coverage: 0.0, ..mars.rocks }, ..mars };
-        let craters = mars.craters.draw(DVec2::ZERO, 30.0, seed);
+        let craters = mars.crater_list();
         let inside = |crater: &&Crater| crater.centre.abs().max_element() < 15.0 - crater.diameter;
         let Some(crater) = craters.iter().find(inside) else { continue };
         let reach = |other: &Crater| 1.5 * (crater.diameter + other.diameter);
@@ -193,27 +261,23 @@ fn a_crater_of_the_ground_has_its_depth_and_rim() {
         if craters.iter().filter(near).count() > 1 {
             continue;
         }
-        let without = MarsGround { craters: Craters { density: 0.0, ..mars.craters }, ..mars.clone() };
-        let (with, without) = (mars.build().unwrap(), without.build().unwrap());
+        let ground = mars.build().unwrap();
         let (mut floor, mut rim) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (a, b) in with.vertices.iter().zip(&without.vertices) {
-            let distance = a.truncate().distance(crater.centre);
-            if distance <= 1.5 * crater.diameter {
-                floor = floor.min(a.z - b.z);
-                rim = rim.max(a.z - b.z);
+        for post in &ground.vertices {
+            let distance = post.truncate().distance(crater.centre);
+            if distance <= 1.4 * crater.diameter {
+                floor = floor.min(post.z);
+                rim = rim.max(post.z);
             } else {
-                assert!((a.z - b.z).abs() < 1e-12 || craters.len() > 1);
+                assert!(post.z.abs() < 0.03 * crater.diameter || craters.len() > 1);
             }
         }
-        // Posts lie within 0.07 m of the centre and of any point of the crest. There the bowl, with a slope of at
-        // most 0.8, is at most 0.06 m lower than the crest, and 0.2 D (2 * 0.07 / D)^2 < 1e-3 m higher than its
-        // lowest point.
-        assert!(
-            (0.0..0.06).contains(&(crater.rim_height() - rim + 1e-9)),
-            "{rim} for {}",
-            crater.rim_height()
-        );
-        let depth = crater.rim_height() - floor;
+        // The crest is up to 0.25 (1/2 + ... + 1/6) = 36 % higher than its mean. Posts lie within 0.07 m of the centre and
+        // of any point of the crest: there the bowl, with a slope of at most 0.8, is at most 0.06 m lower than the
+        // crest, and 0.2 D (2 * 0.07 / D)^2 < 1e-3 m higher than its lowest point.
+        let mean = crater.rim_height();
+        assert!((mean - 0.06..1.37 * mean).contains(&rim), "{rim} for {mean}");
+        let depth = mean - floor;
         assert!((depth - crater.depth()).abs() < 2e-3, "{depth} for {}", crater.depth());
         measured += 1;
     }
@@ -238,7 +302,7 @@ fn the_bytes_are_these() {
             digest = (digest ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }
     }
-    assert_eq!(format!("{digest:016x}"), "c21aadf62f8f191a");
+    assert_eq!(format!("{digest:016x}"), "0f761cdae7d239d8");
 }
 
 #[test]
@@ -254,7 +318,8 @@ fn a_finer_coarse_model_has_a_limit_of_faces() {
         };
         let mars = small("smooth", 6);
         let rocks = Rocks { coverage: 0.0, ..mars.rocks };
-        MarsGround { coarse: Some(coarse), post_spacing: 4.0 / 2048.0, rocks, ..mars }.check_size()
+        MarsGround { coarse: Some(coarse), post_spacing: 4.0 / 2048.0, fine_radius: 0.0, rocks, ..mars }
+            .check_size()
     };
     for [columns, rows] in [[2, 4], [4, 2], [2, 5], [5, 2], [3, 3]] {
         assert!(size(columns, rows).is_ok(), "{columns} x {rows}");
@@ -293,7 +358,11 @@ fn numbers_out_of_range_are_refused_by_name() {
         ),
         (
             refused(MarsGround { crevasses: Crevasses { count: 50, ..base().crevasses }, ..base() }),
-            "crevasse_width_m",
+            "crevasses is 50: expected at most",
+        ),
+        (
+            refused(MarsGround { fine_radius: 100.0, extent: 400.0, ..base() }),
+            "fine_radius_m is 100 m: up to",
         ),
         (
             refused(MarsGround { crevasses: Crevasses { count: u32::MAX, ..base().crevasses }, ..base() }),
@@ -334,7 +403,7 @@ proptest! {
         coverage in 0.0..0.4,
         density in 0.0..0.1,
         (count, width, overhang) in (0_u32..4, 0.05..0.3, 0.0..0.3),
-        far in -1e6..1e6,
+        (far, fine_radius) in (-1e6..1e6, 0.0..4.0),
     ) {
         let base = MarsGround::preset("worst", seed).unwrap();
         let mars = MarsGround {
@@ -344,6 +413,7 @@ proptest! {
             rocks: Rocks { coverage, smallest: 0.1, largest: 2.0 },
             craters: Craters { density, smallest: 1.0, largest: 6.0 },
             crevasses: Crevasses { count, width, depth: 1.0, overhang },
+            fine_radius,
             offset: DVec3::new(far, -far, 0.5 * far),
             ..base
         };
@@ -354,6 +424,9 @@ proptest! {
         for body in rocks_of(&ground) {
             assert_closed_and_outward(&ground, body);
         }
+        let mut near = ground.clone();
+        near.vertices.iter_mut().for_each(|v| *v -= mars.offset);
+        assert_one_sheet(&near, 0.5 * mars.extents(), "about the middle");
         let mesh = ground.into_mesh();
         prop_assert!(mesh.is_ok(), "{:?}", mesh.err());
         prop_assert!(height_at(&mesh.unwrap(), far, -far).is_some());
