@@ -8,10 +8,12 @@ use raypencil::harness::{
     Candidate, Estimate, MonteCarloImage, RadianceMap, Validation, contender, validate,
 };
 use raypencil::io::Subject;
-use raypencil::judge::{Class, Defect, DefectMargin, JudgeShare, Largest, ListedDefect, Quantity, Recorded};
+use raypencil::judge::{
+    Class, Defect, DefectMargin, DifferingRay, JudgeShare, Largest, ListedDefect, Quantity, Recorded,
+};
 use raypencil::{
     Atmosphere, Beam, Camera, FluxModel, Image, Lens, Maybe, Mounted, Place, Pose, Precision, Profile, Scene,
-    SensorId, Silent,
+    SensorId, Silent, Switches,
 };
 
 /// The pyramids with a small camera and one small beam.
@@ -168,6 +170,8 @@ pub fn defective() -> Validation {
     let described = ["scanline: <no> & \"hit\"; tracer: face 3", "scanline: face 3; tracer: face 3"];
     for ((place, quantity), what) in DEFECTS.into_iter().zip([Quantity::Hit, Quantity::Range]).zip(described)
     {
+        let (class, causes) = (Class::Defect, Switches::EXACT);
+        sensor.differing.push(DifferingRay { i: place.i, j: place.j, class, item: quantity.into(), causes });
         sensor.defects.push(Defect { place, item: quantity.into(), what: what.into() });
         sensor.listed.push(ListedDefect {
             place,

@@ -11,7 +11,7 @@
 //! scenes             the scenes of a terrain
 //! terrain -> shard   runs one terrain; runs the terrains of a shard
 //! merge -> totals    the records of all shards; counts and worst errors over them
-//! summary, screen    reports for programs and for people
+//! summary, screen, page   reports for programs and for people, on a screen and as HTML
 //! ```
 //!
 //! ```
@@ -28,6 +28,7 @@
 pub mod cases;
 mod error;
 mod merge;
+mod page;
 mod plan;
 mod record;
 mod scenes;

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FolderError, begin_output_folder, write_atomically};
+use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
 use raypencil_judge::{COMPARE_CLASSES, class_counts_json};
 use serde_json::{Value, json};
 
 use crate::merge::Merged;
+use crate::page::campaign_html;
 use crate::record::{PartName, probe_arguments};
 use crate::totals::{CampaignTotal, WorstRay, wrong_rays};
 
@@ -87,12 +88,19 @@ pub fn campaign_json(merged: &Merged) -> String {
     format!("{document:#}\n")
 }
 
-/// Writes `summary.json` into a folder, and returns its path.
+/// Writes `report.html`, and last `summary.json`, into a folder. Returns the path of the summary.
 ///
 /// # Errors
 /// Names the file or folder that could not be written, and why.
 pub fn write_campaign(merged: &Merged, folder: &Path) -> Result<PathBuf, FolderError> {
     let path = begin_output_folder(folder, "summary.json")?;
+    let report = folder.join("report.html");
+    let page = campaign_html(merged, |path| folder.join(path).is_file()).map_err(|error| FileError::Io {
+        path: report.clone(),
+        action: "write",
+        source: std::io::Error::other(error),
+    })?;
+    write_atomically(&report, |file| file.write_all(page.as_bytes()))?;
     write_atomically(&path, |file| file.write_all(campaign_json(merged).as_bytes()))?;
     Ok(path)
 }

@@ -2,7 +2,7 @@
 
 use raypencil_campaign::{
     Campaign, Merged, PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay,
-    campaign_json, campaign_screen, terrain,
+    campaign_json, campaign_screen, terrain, write_campaign,
 };
 use raypencil_judge::Quantity;
 use raypencil_tests::schema::schema_faults;
@@ -110,4 +110,47 @@ fn the_summary_keeps_to_its_schema() {
     total.remove("judged");
     total.insert("surplus".into(), Value::Null);
     assert_eq!(schema_faults(&schema, &summary).len(), 2);
+}
+
+/// The page of a campaign that was written into a folder with these files in its folder `wrong`.
+fn page(merged: &Merged, wrong: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("wrong")).unwrap();
+    wrong.iter().for_each(|name| std::fs::write(folder.path().join("wrong").join(name), "").unwrap());
+    write_campaign(merged, folder.path()).unwrap();
+    assert!(folder.path().join("summary.json").exists());
+    std::fs::read_to_string(folder.path().join("report.html")).unwrap()
+}
+
+#[test]
+fn the_page_counts_lists_and_links() {
+    let mut merged = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
+    merged.terrains[1].parts[2].by_class = [980, 6, 12, 0, 1, 1];
+    let page = page(&merged, &["terrain-000000-own.toml", "terrain-000000-own-smallest.md"]);
+    // Eight scenes of 1000 rays, with a defect and an undecided one each.
+    assert!(page.contains("16 of 8,000 rays are wrong or undecided"), "{page}");
+    // Terrain 1 has ten rays more of class `rounding`: it is the harder one, and its scene `aimed` is to be seen again.
+    let at = |words: &str| page.find(words).unwrap_or_else(|| panic!("{words} is not in {page}"));
+    let [one, zero] =
+        [1, 0].map(|terrain| at(&format!("<tr class=\"fails\"><th scope=\"row\">{terrain}</th>")));
+    assert!(one < zero);
+    at("raypencil campaign replay --seed 5 --terrain 1 --part aimed -o DIR</code>");
+    // Links lead to files that are there, and to no others.
+    at("<a href=\"wrong/terrain-000000-own-smallest.md\">smallest scene</a>");
+    at("<a href=\"wrong/terrain-000000-own.toml\">whole scene</a>");
+    assert_eq!(page.matches("<a href").count(), 2);
+    at("beam-0 3,1</b>, range: 1 m and 2 m");
+    at("raypencil probe DIR/scene.toml --beam 0 --pencil 3,1");
+}
+
+#[test]
+fn a_page_without_defects_or_hits_says_so() {
+    let fine = page(&made_up([990, 6, 4, 0, 0, 0], Vec::new()), &[]);
+    assert!(
+        fine.contains("8,000 rays, no defect, none undecided") && fine.contains("<p>None.</p>"),
+        "{fine}"
+    );
+    let nothing = page(&with_hits(0, [1000, 0, 0, 0, 0, 0], Vec::new()), &[]);
+    assert!(nothing.contains("Nothing is hit: all 8,000 rays miss the terrain"), "{nothing}");
+    assert!(nothing.contains("Warning: scenes own: none of its 2,000 rays hits"), "{nothing}");
 }

@@ -10,6 +10,7 @@ use raypencil_scene::{Image, Maybe};
 
 use crate::cells::{Comparison, compare_numbers};
 use crate::difference::{ChannelDifference, Difference, Sides};
+use crate::explorer::explorer;
 use crate::words::{allowed, exact, headline, rulings, unequal};
 
 /// CSS rules of this page, beside those of every report.
@@ -38,6 +39,10 @@ struct Page<'a> {
     channels: Vec<Section>,
     /// How many more channels are not equal but have no pictures; else empty.
     more: String,
+    /// Which channels the explorer leaves out; empty if none.
+    left_out: String,
+    /// Data, style and script of the part that answers when asked, as HTML.
+    explorer: String,
 }
 
 /// A channel in the table.
@@ -87,6 +92,7 @@ pub(crate) fn html(difference: &Difference, sides: &Sides) -> Result<String, ask
     let more = unequal.len() - pictured.len();
     let headline = headline(difference);
     let sign = if difference.passes() { "PASS" } else { "FAIL" };
+    let (explorer, left_out) = explorer(difference, sides);
     let page = Page {
         head: page_head(&format!("{sign} {headline}"), STYLE),
         passes: difference.passes(),
@@ -103,6 +109,8 @@ pub(crate) fn html(difference: &Difference, sides: &Sides) -> Result<String, ask
         rulings: rulings(difference).into_iter().filter(|line| !line.is_empty()).collect(),
         channels: pictured.iter().map(|channel| section(channel, sides, max_side)).collect(),
         more: if more > 0 { counted(more as u64, "more channel", "more channels") } else { String::new() },
+        left_out,
+        explorer,
     };
     page.render()
 }

@@ -10,6 +10,7 @@
 //! unit -> compare                compares two recordings
 //! rule                           which side is right, where there is a scene
 //! words -> screen, html, junit   reports for people and for CI
+//! explorer                       the part of the page that answers when asked
 //! summary                        the report for programs
 //! folder                         all reports as files
 //! ```
@@ -36,6 +37,7 @@
 mod cells;
 mod compare;
 mod difference;
+mod explorer;
 mod folder;
 mod html;
 mod junit;

@@ -19,9 +19,10 @@
 //! 6. `camera_view`, `animation_frame`: pictures of a frame;
 //! 7. `recording`: [`RecordContents`], images, points, poses and maps for other people's programs; `stripe_file`:
 //!    [`StripeFile`], their stripes in place of the rover's;
+//!    `history`: the drive frame by frame, for the page;
 //!    `renderer_drive`, `run`: [`drive()`] itself and its [`DriveRun`];
 //! 8. `counts`, `facts`, `screen`, `summary`: [`drive_screen`] for people and [`drive_json`] for programs;
-//! 9. `figures`, `animation`, `maps`, `page`, `folder`: [`write_drive`], the folder with all files.
+//! 9. `figures`, `animation`, `maps`, `explorer`, `page`, `folder`: [`write_drive`], the folder with all files.
 //!
 //! `docs/guide/drive.md` describes routes, settings and files.
 //!
@@ -52,9 +53,11 @@ mod camera_view;
 mod counts;
 mod differences;
 mod error;
+mod explorer;
 mod facts;
 mod figures;
 mod folder;
+mod history;
 mod job;
 mod labels;
 mod maps;

@@ -5,6 +5,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use raypencil_report::{VERSION, page_head, time};
 
+use crate::explorer::explorer;
 use crate::facts::{difference_lines, facts, headline};
 use crate::figures::Figure;
 use crate::job::DriveJob;
@@ -42,6 +43,8 @@ struct Page {
     stages: Vec<(String, String)>,
     command: String,
     version: &'static str,
+    /// Data, style and script of the part that answers when asked, as HTML.
+    explorer: String,
 }
 
 /// HTML of the report. `animation` are the bytes of the APNG.
@@ -71,6 +74,7 @@ pub(crate) fn html(
         stages: run.stages.iter().map(|stage| (stage.name.clone(), time(stage.time))).collect(),
         command: format!("raypencil drive {}", job.arguments),
         version: VERSION,
+        explorer: explorer(job, run),
     };
     page.render()
 }

@@ -8,13 +8,14 @@ use raypencil_chassis::GroundFaces;
 use raypencil_files::FolderError;
 use raypencil_report::Drawing;
 use raypencil_rover::{Detection, DriveFrame, ElevationMap, LabelledVector, ObstacleMap, StripeExtractor};
-use raypencil_scene::{Pose, Renderer, SceneError, Silent, Stage};
+use raypencil_scene::{Pose, Renderer, Scene, SceneError, Silent, Stage};
 use raypencil_survey::{Warning, Whereabouts, plan as survey_plan};
 
 use crate::animation_frame::{AnimationFrame, HALF_SIDE_PX, MapThumbnail};
 use crate::camera_view::{CameraView, camera_view};
 use crate::differences::Differences;
 use crate::error::DriveError;
+use crate::history::DriveHistory;
 use crate::job::DriveJob;
 use crate::maps::ply::MarkedPoint;
 use crate::point_errors::PointErrors;
@@ -92,6 +93,10 @@ pub struct DriveRun {
     pub whereabouts: Whereabouts,
     /// The same from above.
     pub(crate) plan: Drawing,
+    /// Ground and rig at the start.
+    pub(crate) scene_at_start: Scene,
+    /// The drive frame by frame.
+    pub(crate) history: DriveHistory,
     /// Differences between the two sides; `None` with one renderer.
     pub differences: Option<Differences>,
     /// Time of each part of the work.
@@ -181,6 +186,7 @@ pub fn drive_with(
     let mut differences = second.as_ref().map(|_| Differences::default());
     let (mut frames, mut points, mut animation) = (Vec::new(), Vec::new(), Vec::new());
     let (mut obstacles, mut edge_points, mut point_errors) = (None, 0, PointErrors::default());
+    let mut history = DriveHistory::new(planned);
     let start = Instant::now();
     let faces = GroundFaces::new(&job.mesh);
     let (mut truth, mut judging) = (SectorTruth::default(), start.elapsed());
@@ -212,6 +218,7 @@ pub fn drive_with(
         if let Some(recording) = &mut recording {
             recording.frame(job, frame, first.map()).map_err(FolderError::from)?;
         }
+        history.add(frame, first.map());
         edge_points += frame.measured.len() as u64;
         point_errors.add(&frame.measured, &frame.stance.pose(), first.ground());
         let room = MAX_EDGE_POINTS - points.len();
@@ -295,6 +302,8 @@ pub fn drive_with(
         warnings,
         whereabouts,
         plan,
+        scene_at_start: scene,
+        history,
         differences,
         stages,
     })

@@ -135,7 +135,7 @@ impl Validator {
         let mesh = subject.scene.mesh();
         let tree = self.tree.take().filter(|tree| tree.fits(mesh)).unwrap_or_else(|| RefereeTree::new(mesh));
         let judge = Judge::on(&subject.scene, &tree, share);
-        self.tree = Some(tree);
+        self.tree = Some(tree.clone());
         stages.push(Stage { name: "referee: preparing".into(), time: start.elapsed() });
 
         // Attribute errors to the paper's approximations.
@@ -173,6 +173,7 @@ impl Validator {
             subject,
             rendered,
             pairs,
+            tree,
             ray_sets,
             scoreboard,
             candidates_may_fail: false,

@@ -3,8 +3,8 @@
 //! Maps are judged as by `check`. The images of a Monte Carlo renderer are not sums over pencils: they have the same
 //! expectation, and are compared by their own standard errors.
 
-use raypencil_judge::{Check, Class, GroundTruth, ListedDefect, Recorded, check, listed_defects};
-use raypencil_scene::{Image, Maybe, Progress};
+use raypencil_judge::{Answers, Check, Class, GroundTruth, ListedDefect, Recorded, check, listed_defects};
+use raypencil_scene::Progress;
 use raypencil_scene_io::Subject;
 
 use crate::candidate::Candidate;
@@ -73,8 +73,8 @@ pub struct Scoreboard {
     pub ours: Vec<RendererReport>,
     /// The candidates.
     pub candidates: Vec<CandidateReport>,
-    /// The exact range map of each sensor, the camera first, metres.
-    pub exact_ranges: Vec<Image<Maybe<f64>>>,
+    /// The exact answers, correctly rounded.
+    pub exact: Answers,
 }
 
 /// Checks `rendered` and `candidates` against the exact answer to every ray of the scene.
@@ -100,8 +100,7 @@ pub(crate) fn evaluate(
         CandidateReport { check, images: images.collect(), radiance: radiance.collect(), candidate }
     };
     let candidates = candidates.into_iter().map(report).collect();
-    let exact_ranges = truth.answers().maps.iter().filter_map(|map| map.range.clone()).collect();
-    Scoreboard { ours, candidates, exact_ranges }
+    Scoreboard { ours, candidates, exact: truth.into_answers() }
 }
 
 /// A program's name reduced to what a folder's name may have: lower-case letters, digits and `-`.

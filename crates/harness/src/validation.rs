@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use raypencil_judge::{ApproximationTallies, Class, SensorResult};
+use raypencil_referee::RefereeTree;
 use raypencil_scene::{Progress, Stage};
 use raypencil_scene_io::Subject;
 use raypencil_survey::{SensorHits, Warning};
@@ -32,6 +33,8 @@ pub struct Validation {
     pub rendered: Vec<Rendered>,
     /// Every pair of renderers: (0, 1), (0, 2), ..., (1, 2), ...
     pub pairs: Vec<Pair>,
+    /// The referee's hierarchy of the terrain, for reports that ask it again.
+    pub tree: RefereeTree,
     /// Every set of rays of the scene.
     pub ray_sets: Vec<RaySetResult>,
     /// Renderers and candidates checked against the exact answers; `None` until [`Validation::evaluate`].

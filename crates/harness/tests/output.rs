@@ -1,5 +1,6 @@
 //! The folder of a validation, and every kind of report in it.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -9,7 +10,7 @@ use raypencil_harness::{
     Candidate, HarnessError, Validation, junit_xml, one_screen, report_html, summary_json, summary_markdown,
     write_validation,
 };
-use raypencil_judge::Recorded;
+use raypencil_judge::{ApproximationTallies, COMPARE_CLASSES, Class, Recorded};
 use raypencil_referee::{Displacement, Referee};
 use raypencil_scene::{Image, Place, Precision, Quantities, SensorId, SensorMap, Silent};
 use raypencil_scene_io::probe_command;
@@ -332,6 +333,29 @@ fn assert_well_formed(xml: &str) {
         rest = after;
     }
     assert!(open.is_empty() && rest.trim().is_empty());
+}
+
+#[test]
+fn every_ray_that_differs_is_kept_with_its_class_and_its_cause() {
+    let validation = fixtures::approximate();
+    let sensors = &validation.pairs[0].sensors;
+    let mut by_causes: ApproximationTallies = BTreeMap::new();
+    for sensor in sensors {
+        for class in COMPARE_CLASSES.into_iter().filter(|class| *class != Class::Agree) {
+            let kept = sensor.differing.iter().filter(|ray| ray.class == class).count() as u64;
+            assert_eq!(kept, sensor.of(class), "{} {class:?}", sensor.sensor);
+        }
+        assert!(sensor.differing.is_sorted_by_key(|ray| (ray.j, ray.i)), "in reading order");
+        for ray in &sensor.differing {
+            by_causes.entry(ray.causes).or_default().rays += 1;
+        }
+    }
+    let expected = validation.approximations();
+    assert!(expected.len() > 1 && expected.values().map(|tally| tally.rays).sum::<u64>() > 10);
+    for (causes, tally) in &expected {
+        assert_eq!(by_causes[causes].rays, tally.rays, "{causes}");
+    }
+    assert_eq!(by_causes.len(), expected.len());
 }
 
 /// Every report of a validation that people or CI read, by name.

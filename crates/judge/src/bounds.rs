@@ -26,7 +26,8 @@ use glam::DVec3;
 
 use crate::answer::{StatedHit, StatedReturn};
 use raypencil_scene::{
-    Beam, FaceId, Filter, FluxModel, Hit, HitQuantity, HitValue, Mesh, Precision, Profile, Ray, Return, Scene,
+    Beam, FaceId, Filter, FluxModel, Hit, HitQuantity, HitValue, Mesh, Place, Precision, Profile, Ray,
+    Return, Scene,
 };
 
 /// Roundings of the range: |dR| <= RANGE_ROUNDINGS kappa u S / c.
@@ -85,6 +86,42 @@ impl HitBounds {
             cos_incidence: self.cos_incidence + other.cos_incidence,
         }
     }
+}
+
+/// How far the ranges of two renderers, with these precisions, may differ at a hit on `face` at `range` metres, in metres;
+/// `None` if the scene has no such ray or face.
+///
+/// ```
+/// # use raypencil_scene::{Atmosphere, FluxModel, Renderer, Request, Scene, rig};
+/// # use glam::DVec3;
+/// use raypencil_judge::range_bound;
+/// use raypencil_referee::ExactRenderer;
+/// use raypencil_scene::{Place, Precision, SensorId};
+///
+/// # let mesh = raypencil_terrain::builtin("facets", 0.25).expect("a built-in name").into_mesh()?;
+/// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(mesh.into(), camera, beams, air, FluxModel::Radiometric)?;
+/// let place = Place { sensor: SensorId::Camera, i: 8, j: 15 };
+/// let hit = ExactRenderer.render(&scene, &Request::MAPS).map(SensorId::Camera).unwrap().hit(8, 15).unwrap();
+/// let bound = |precisions| range_bound(&scene, place, hit.face, hit.range, precisions).unwrap();
+/// // A few hundred roundings of 2^-53 of the range, and 2^29 times as much where both compute in f32.
+/// let doubles = bound([Precision::F64; 2]);
+/// assert!(doubles > hit.range * 2e-16 && doubles < hit.range * 1e-12);
+/// assert!(bound([Precision::F32; 2]) > 1e8 * doubles);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+pub fn range_bound(
+    scene: &Scene,
+    place: Place,
+    face: FaceId,
+    range: f64,
+    precisions: [Precision; 2],
+) -> Option<f64> {
+    let ray = scene.ray(place.sensor, place.i, place.j)?;
+    let is_known = (face.0 as usize) < scene.mesh().faces().len();
+    let met = is_known.then(|| FaceShape::of(scene.mesh(), face).met_by(&ray))?;
+    Some(precisions.map(|precision| met.bounds(range, precision).range).iter().sum())
 }
 
 /// What the bounds of all hits on one face depend on.

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use crate::class::Class;
 use crate::difference::Difference;
 use crate::quantity::{Item, Quantity, name_of};
-use crate::tally::{Defect, SensorResult, WrongRay};
-use raypencil_scene::Place;
+use crate::tally::{Defect, DifferingRay, SensorResult, WrongRay};
+use raypencil_scene::{Place, Switches};
 
 /// One ray while it is judged.
 pub(crate) struct RayEntry<'r> {
@@ -150,6 +150,10 @@ impl<'r> RayEntry<'r> {
             return (Class::Agree, Quantity::Hit.into());
         };
         result.by_class[class as usize] += 1;
+        if class != Class::Agree {
+            let Place { i, j, .. } = place;
+            result.differing.push(DifferingRay { i, j, class, item, causes: Switches::EXACT });
+        }
         if class >= Class::Undecided {
             result.describe(|| {
                 let what = ruling.map_or_else(answers, |ruling| format!("{notes} (referee: {ruling})"));

@@ -103,6 +103,7 @@ struct Readme;
 
 pub use attribution::cause::{Attributions, Cause, VisibilityCause};
 pub use attribution::context::Rerender;
+pub use bounds::range_bound;
 pub use check::ground_truth::{GroundTruth, UncertifiedAnswer};
 pub use check::single::{CheckedItem, CheckedRay, check_ray};
 pub use check::{Check, check, check_rays};
@@ -120,5 +121,6 @@ pub use recorded::error::{Help, RecordingError};
 pub use recorded::names::{flux_channel, image_channel, item_of_channel};
 pub use scene_answers::{Answers, BeamLight, Certified};
 pub use tally::{
-    ApproximationTallies, ApproximationTally, Defect, ItemTallies, ItemTally, Largest, SensorResult, WrongRay,
+    ApproximationTallies, ApproximationTally, Defect, DifferingRay, ItemTallies, ItemTally, Largest,
+    SensorResult, WrongRay,
 };

@@ -226,6 +226,21 @@ pub struct Defect {
     pub what: String,
 }
 
+/// A ray whose class is not [`Class::Agree`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DifferingRay {
+    /// Column.
+    pub i: u32,
+    /// Row.
+    pub j: u32,
+    /// Its class.
+    pub class: Class,
+    /// The worst quantity; of several the first that was entered.
+    pub item: Item,
+    /// `compare`: the approximations of the paper that cause the difference; none for other classes.
+    pub causes: Switches,
+}
+
 /// Defects that are described for each sensor; all are counted.
 const MAX_DEFECTS_DESCRIBED: usize = 100;
 
@@ -243,6 +258,8 @@ pub struct SensorResult {
     pub judged: u64,
     /// Each quantity. `compare` has all of [`Quantity::ALL`], `check` those that were asked about.
     pub items: ItemTallies,
+    /// Every ray that does not agree, in reading order.
+    pub differing: Vec<DifferingRay>,
     /// The first defects, in reading order.
     pub defects: Vec<Defect>,
     /// The worst and most telling defects, for reports: `listed` has the rule by which they are chosen.
@@ -262,6 +279,7 @@ impl SensorResult {
             not_compared: 0,
             judged: 0,
             items: ItemTallies::default(),
+            differing: Vec::new(),
             defects: Vec::new(),
             listed: Vec::new(),
             approximations: BTreeMap::new(),
@@ -309,6 +327,7 @@ impl SensorResult {
         for (item, tally) in later.items.iter() {
             self.tally(item).add(tally);
         }
+        self.differing.extend(later.differing);
         let room = MAX_DEFECTS_DESCRIBED.saturating_sub(self.defects.len());
         self.defects.extend(later.defects.into_iter().take(room));
         for (cause, tally) in later.approximations {

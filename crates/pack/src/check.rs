@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use raypencil_diagnosis::{Diagnosis, diagnose};
 use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
-use raypencil_judge::{Check, Conventions, GroundTruth, Item, Quantity, Recorded, RecordingError, check};
-use raypencil_scene::{Image, Maybe, Place, Precision, Progress, Scene};
+use raypencil_judge::{
+    Answers, Check, Conventions, GroundTruth, Item, Quantity, Recorded, RecordingError, check,
+};
+use raypencil_scene::{Place, Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
@@ -61,8 +63,8 @@ pub struct Checked {
     pub check: Check,
     /// The mistake that explains why the candidate is wrong nearly everywhere, or the two. It changes no verdict.
     pub diagnosis: Option<Diagnosis>,
-    /// The exact range map of each sensor, the camera first, metres.
-    pub exact_ranges: Vec<Image<Maybe<f64>>>,
+    /// The exact answers of the pack.
+    pub exact: Answers,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
     /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked.
@@ -89,7 +91,8 @@ impl Checked {
 
     /// Whether any ray of the pack hits. On a pack without hits a program that answers nothing is right.
     pub fn hits_anything(&self) -> bool {
-        self.exact_ranges.iter().flat_map(|map| map.cells()).any(|range| range.get().is_some())
+        let ranges = self.exact.maps.iter().filter_map(|map| map.range.as_ref());
+        ranges.flat_map(|map| map.cells()).any(|range| range.get().is_some())
     }
 
     /// The diagnosis as one sentence, if there is one.
@@ -211,8 +214,7 @@ pub fn check_pack_by(
         progress.stage("looking for a mistake that explains the wrong rays");
         diagnose(&truth, &recorded, &check)
     };
-    let exact_ranges = truth.answers().maps.iter().filter_map(|map| map.range.clone()).collect();
-    drop(truth);
+    let exact = truth.into_answers();
     let subject = Subject {
         name: manifest.scene.name,
         arguments: quoted(&scene_file.to_string_lossy()),
@@ -222,7 +224,7 @@ pub fn check_pack_by(
     };
     let is_blind = manifest.kind == PackKind::Blind;
     let ray_sets = Vec::new();
-    Ok(Checked { subject, recorded, check, diagnosis, exact_ranges, is_blind, ray_sets })
+    Ok(Checked { subject, recorded, check, diagnosis, exact, is_blind, ray_sets })
 }
 
 /// Reads the answers of a pack that holds them, in f64.

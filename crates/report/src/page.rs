@@ -6,6 +6,10 @@ use crate::version::VERSION;
 /// CSS of every report.
 const STYLE: &str = include_str!("../templates/style.css");
 
+/// What a page may load: nothing but what it holds itself.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
+
 /// Start of a page up to and including `<main>`, with title, style and the version of raypencil.
 ///
 /// `title` is plain text; `more_style` is CSS that only this page needs. [`PAGE_END`] ends the page.
@@ -25,6 +29,7 @@ pub fn page_head(title: &str, more_style: &str) -> String {
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
+<meta http-equiv="Content-Security-Policy" content="{POLICY}">
 <meta name="generator" content="raypencil {VERSION}">
 <title>{title}</title>
 <style>

@@ -25,9 +25,10 @@ const FLOORS: &[(&str, u32)] = &[
     ("survey", 3),
     ("judge", 3),
     ("mesh-io", 3),
-    ("diff", 4),
+    ("explorer", 4),
     ("diagnosis", 4),
     ("scene-io", 4),
+    ("diff", 5),
     ("drive", 5),
     ("cast", 5),
     ("pack", 5),
@@ -50,6 +51,8 @@ const NARROWER: &[(&str, &[&str])] = &[
     ("judge", &["scene", "referee", "files"]),
     // An explanation is tried on the candidate's own numbers: it asks the judge, and renders nothing of the house.
     ("diagnosis", &["scene", "files", "judge"]),
+    // Pages show what the judge found; they render nothing.
+    ("explorer", &["scene", "judge"]),
     // The command sees what every user of the library sees.
     ("cli", &["raypencil"]),
 ];

@@ -130,7 +130,8 @@ fn stripe(validation: &Validation, beam: usize, unit: &'static str) -> Option<St
     if !(most > 0.0) {
         return None;
     }
-    let scale = Scale::linear(0.0, most);
+    // A little room above, so that the line is not cut at the top.
+    let scale = Scale::linear(0.0, 1.05 * most);
     let [width, height] = CHART_SIZE;
     let curve = |(index, (name, line)): (usize, &(&str, Vec<f64>))| {
         let (colour, stroke) = CURVE_STYLES[index.min(CURVE_STYLES.len() - 1)];

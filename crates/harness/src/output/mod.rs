@@ -2,6 +2,7 @@
 //! `docs/guide/report.md` describes both.
 
 pub(crate) mod candidates;
+pub(crate) mod explorer;
 pub(crate) mod folder;
 pub(crate) mod junit;
 pub(crate) mod light;

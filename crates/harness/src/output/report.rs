@@ -12,6 +12,7 @@ use raypencil_scene_io::{Subject, probe_command, scene_sha256};
 use raypencil_survey::{Whereabouts, plan};
 
 use crate::output::candidates::{CandidatesSection, all_misses, candidates_section, typed};
+use crate::output::explorer::explorer;
 use crate::output::light::{Light, light};
 use crate::output::plots::{max_columns, plots};
 use crate::output::table::{CauseRow, Row, causes, hits, rows};
@@ -55,6 +56,8 @@ struct Page<'a> {
     /// The lists of defects as HTML.
     defects: String,
     stages: Vec<Timed>,
+    /// Data, style and script of the part that answers when asked, as HTML.
+    explorer: String,
 }
 
 /// A large number with its name.
@@ -166,6 +169,7 @@ pub fn html(validation: &Validation) -> Result<String, askama::Error> {
                 percent: if longest > 0.0 { 100.0 * stage.time.as_secs_f64() / longest } else { 0.0 },
             })
             .collect(),
+        explorer: explorer(validation),
     };
     page.render()
 }
@@ -201,7 +205,8 @@ fn candidate_plots(
     let name = report.candidate.name.as_str();
     let scene = &validation.subject.scene;
     let mut sensors = Vec::new();
-    for (id, exact) in scene.sensors().zip(&scoreboard.exact_ranges) {
+    for id in scene.sensors() {
+        let exact = scoreboard.exact.map(id).range.as_ref().expect("the referee knows every range");
         let mut plots = SensorPlots::new(id, scene.size(id).expect("a sensor of this scene"), max_columns);
         let checked = report.check.sensors.iter().find(|checked| checked.sensor == id);
         let mut numbers: Vec<String> = checked

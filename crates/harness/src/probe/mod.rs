@@ -2,12 +2,19 @@
 
 mod text;
 
-use raypencil_judge::{Cause, CheckedRay, Class, Judge, JudgeShare, Quantity, VisibilityCause, check_ray};
+use std::borrow::Cow;
+
+use raypencil_judge::{
+    Attributions, Cause, CheckedRay, Class, Judge, JudgeShare, Quantity, VisibilityCause, check_ray,
+};
 use raypencil_referee::{Format, Margin, Margins, Ruling, Verdict, VisibilityMargins, VisibilityRuling};
-use raypencil_scene::{Hit, Place, Progress, Ray, RenderOutput, Request, Return, Sampling, SensorId};
+use raypencil_scene::{
+    Hit, Place, Precision, Progress, Ray, RenderOutput, Request, Return, Sampling, SensorId,
+};
 use raypencil_scene_io::{Subject, probe_command, quoted};
 
 use crate::candidate::Candidate;
+use crate::rendered::Rendered;
 use crate::renderers::{Contender, attribute};
 
 /// One ray with every renderer's answer and the exact one.
@@ -166,22 +173,48 @@ pub fn probe(
         return Err(NoSuchRay::Beam { index, count: scene.beams().len() });
     };
     let no_such_cell = NoSuchRay::Cell { sensor, i, j, width, height };
-    let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
+    if i >= width || j >= height {
         return Err(no_such_cell);
-    };
+    }
     progress.stage("referee: preparing");
     let judge = Judge::new(scene, JudgeShare::Sample);
-    let answers = contenders
+    let answers: Vec<ProbedAnswer> = contenders
         .iter()
         .map(|contender| {
             progress.stage(&format!("{}: rendering", contender.renderer.name()));
             ask(&judge, place, contender)
         })
         .collect();
+    with_exact_answer(&judge, subject, place, answers).ok_or(no_such_cell)
+}
+
+/// One ray of outputs that are there already: no renderer runs again. `None` if the scene does not have the ray.
+pub(crate) fn probe_rendered(
+    judge: &Judge<'_>,
+    subject: &Subject,
+    place: Place,
+    rendered: &[Rendered],
+) -> Option<Probe> {
+    let answers = rendered.iter().map(|side| {
+        let Rendered { name, precision, attributions, output, .. } = side;
+        answer(judge, place, name, *precision, output, |_| Cow::Borrowed(attributions))
+    });
+    let answers = answers.collect();
+    with_exact_answer(judge, subject, place, answers)
+}
+
+/// Adds the exact answer and its margins. `None` if the scene does not have the ray.
+fn with_exact_answer(
+    judge: &Judge<'_>,
+    subject: &Subject,
+    place: Place,
+    answers: Vec<ProbedAnswer>,
+) -> Option<Probe> {
+    let Place { sensor, i, j } = place;
+    let scene = &subject.scene;
+    let (ray, max_range) = (scene.ray(sensor, i, j)?, scene.max_range(sensor)?);
     let referee = judge.referee();
-    let Some(Margins { verdict, face, surface }) = referee.margins(sensor, i, j) else {
-        return Err(no_such_cell);
-    };
+    let Margins { verdict, face, surface } = referee.margins(sensor, i, j)?;
     let exact = verdict.faces.first().and_then(|face| referee.hit(sensor, i, j, *face));
     let exact = exact.map(|hit| hit.in_format(Format::Double));
     let exact_return = match sensor {
@@ -196,7 +229,7 @@ pub fn probe(
         SensorId::Beam(index) => referee.visibility_margins(index, i, j),
     };
     let command = probe_command(subject, place);
-    Ok(Probe {
+    Some(Probe {
         place,
         command,
         ray,
@@ -213,9 +246,9 @@ pub fn probe(
     })
 }
 
-/// One renderer's answer.
+/// One renderer's answer, for which it runs.
 fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
-    let Place { sensor, i, j } = place;
+    let sensor = place.sensor;
     // The whole sensor is rendered for one ray, so that the answer is the one that `validate` compares.
     let request = Request {
         camera: sensor == SensorId::Camera,
@@ -225,28 +258,42 @@ fn ask(judge: &Judge<'_>, place: Place, contender: &Contender) -> ProbedAnswer {
     };
     let renderer = &contender.renderer;
     let output = renderer.render(judge.scene(), &request);
+    let attributions =
+        |output: &_| Cow::Owned(attribute(judge, output, contender.approximations(), renderer.precision()));
+    answer(judge, place, renderer.name(), renderer.precision(), &output, attributions)
+}
+
+/// The answer of an output to one ray. `attributions` are asked for if the answer is wrong.
+fn answer<'a>(
+    judge: &Judge<'_>,
+    place: Place,
+    name: &str,
+    precision: Precision,
+    output: &RenderOutput,
+    attributions: impl FnOnce(&RenderOutput) -> Cow<'a, Attributions>,
+) -> ProbedAnswer {
+    let Place { sensor, i, j } = place;
     let hit = output.map(sensor).and_then(|map| map.hit(i, j));
     let (face, range) = (hit.map(|hit| hit.face), hit.map(|hit| hit.range));
-    let ruling = judge.rule(place, face, range, renderer.precision());
-    let mut back = returned(judge, place, contender, &output, hit);
+    let ruling = judge.rule(place, face, range, precision);
+    let mut back = returned(judge, place, precision, output, hit);
     let is_wrong =
         ruling == Ruling::Wrong || back.as_ref().is_some_and(|back| back.ruling.visible == Ruling::Wrong);
-    let attributions =
-        is_wrong.then(|| attribute(judge, &output, contender.approximations(), renderer.precision()));
+    let attributions = is_wrong.then(|| attributions(output));
     let cause = attributions.as_ref().and_then(|attributions| attributions.cause(place).cloned());
     if let Some(back) = &mut back {
         back.cause =
             attributions.as_ref().and_then(|attributions| attributions.visibility_cause(place).cloned());
     }
     let class = Class::of(ruling, cause.is_some());
-    ProbedAnswer { renderer: renderer.name().to_string(), hit, ruling, class, cause, back }
+    ProbedAnswer { renderer: name.to_string(), hit, ruling, class, cause, back }
 }
 
 /// One renderer's return of a pencil.
 fn returned(
     judge: &Judge<'_>,
     place: Place,
-    contender: &Contender,
+    precision: Precision,
     output: &RenderOutput,
     hit: Option<Hit>,
 ) -> Option<ProbedReturn> {
@@ -260,7 +307,6 @@ fn returned(
         cos_view: returns.cos_view.as_ref()?.at(i, j).get()?,
         flux: returns.flux.as_ref()?.at(i, j),
     };
-    let precision = contender.renderer.precision();
     let ruling =
         judge.rule_visibility(place, hit.face, Some(hit.range), back.visible, back.pixel, precision)?;
     Some(ProbedReturn { back, ruling, cause: None })

@@ -49,6 +49,11 @@ impl<'s> GroundTruth<'s> {
         &self.answers
     }
 
+    /// The exact answers alone, without the judge.
+    pub fn into_answers(self) -> Answers {
+        self.answers
+    }
+
     /// The hit of ray (i, j) of a sensor, each value correctly rounded.
     pub fn hit_at(&self, sensor: SensorId, i: u32, j: u32) -> Option<Hit> {
         self.hit(Place { sensor, i, j })

@@ -85,6 +85,7 @@ pub(super) fn compare_ray(
             causes = causes.union(images.causes(i, j));
         }
         rays.result.approximations.entry(causes).or_default().add(&tally);
+        rays.result.differing.last_mut().expect("this ray differs").causes = causes;
     }
     (class, item.quantity)
 }

@@ -5,10 +5,12 @@
 //! screen     one terminal screen
 //! json       check.json
 //! junit      junit.xml
+//! explorer   the part of report.html that answers when asked
 //! page       report.html
 //! folder     all files in a folder
 //! ```
 
+mod explorer;
 mod folder;
 mod json;
 mod junit;

@@ -9,6 +9,7 @@ use raypencil_report::{
 use raypencil_scene::{Image, Maybe};
 
 use crate::check::Checked;
+use crate::check_report::explorer::explorer;
 use crate::check_report::verdict::{
     arithmetic, half_precision, headline, items_not_given, listed_totals, not_given, sign, verdict,
 };
@@ -40,6 +41,8 @@ struct Page<'a> {
     defects: String,
     rows: Vec<Row>,
     sensors: Vec<Sensor>,
+    /// Data, style and script of the part that answers when asked, as HTML.
+    explorer: String,
 }
 
 /// One quantity over all sensors.
@@ -73,14 +76,14 @@ struct Sensor {
 /// # Errors
 /// An error of the template.
 pub fn check_page(checked: &Checked) -> Result<String, askama::Error> {
-    let Checked { subject, recorded, check, exact_ranges, is_blind, .. } = checked;
+    let Checked { subject, recorded, check, exact, is_blind, .. } = checked;
     let headline = headline(checked);
     let head = page_head(&format!("{} {}: {headline}", sign(checked), recorded.name), "");
     let worst = listed_defects(&check.sensors);
     let worst = worst.first().map(|one| format!("{}, {}: {}", one.place, name_of(one.item), one.words()));
     let absent: Vec<String> =
         items_not_given(check).into_iter().map(|(item, why)| format!("{} ({why})", name_of(item))).collect();
-    let sizes: Vec<(u32, u32)> = exact_ranges.iter().map(|map| (map.width(), map.height())).collect();
+    let sizes: Vec<(u32, u32)> = exact.maps.iter().map(|map| (map.width, map.height)).collect();
     let max_side = max_side_of_pictures(&sizes, PICTURES_OF_SENSOR);
     let groups: Vec<DefectGroup> =
         check.sensors.iter().filter_map(|sensor| defects(checked, sensor)).collect();
@@ -108,9 +111,10 @@ pub fn check_page(checked: &Checked) -> Result<String, askama::Error> {
         sensors: check
             .sensors
             .iter()
-            .zip(exact_ranges)
+            .filter_map(|sensor| Some((sensor, exact.map(sensor.sensor).range.as_ref()?)))
             .map(|(sensor, exact)| pictures(checked, sensor, exact, max_side))
             .collect::<Result<_, _>>()?,
+        explorer: explorer(checked),
     };
     page.render()
 }

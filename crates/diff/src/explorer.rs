@@ -1,0 +1,80 @@
+//! The part of the page that answers when asked: both recordings, channel by channel, cell by cell.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use raypencil_explorer::{RasterChannel, RasterGroup, raster_page};
+use raypencil_files::Values;
+
+use crate::cells::{Comparison, compare_numbers};
+use crate::difference::{ChannelDifference, Difference, Sides};
+use crate::words::unequal;
+
+/// Maximum number of cells of all channels together that keeps the page to some twenty megabytes.
+const MAX_CELLS: u64 = 6_000_000;
+
+/// The elements of the page that the explorer needs, and which channels it leaves out, in words.
+pub(crate) fn explorer(difference: &Difference, sides: &Sides) -> (String, String) {
+    let unequal = unequal(difference);
+    let equal = difference.channels.iter().filter(|channel| channel.unequal == 0);
+    let mut room = MAX_CELLS;
+    let mut groups: BTreeMap<(String, u32, u32), RasterGroup> = BTreeMap::new();
+    let mut left_out = 0_u64;
+    for channel in unequal.iter().copied().chain(equal) {
+        let Some(left) = room.checked_sub(channel.cells()) else {
+            left_out += 1;
+            continue;
+        };
+        room = left;
+        add(&mut groups, channel, sides);
+    }
+    let groups: Vec<RasterGroup> = groups.into_values().collect();
+    let title = format!("{} and {}", sides.names[0], sides.names[1]);
+    let words = match left_out {
+        0 => String::new(),
+        left_out => format!(
+            "{left_out} channels are not among the maps above, which have at most {MAX_CELLS} cells; the table has all."
+        ),
+    };
+    (raster_page("diff", &title, sides.names, &groups), words)
+}
+
+/// Adds a channel to the group of its folder and size.
+fn add(groups: &mut BTreeMap<(String, u32, u32), RasterGroup>, channel: &ChannelDifference, sides: &Sides) {
+    let (group, name) = channel.key.rsplit_once('/').unwrap_or(("", &channel.key));
+    let size = (channel.width, channel.height);
+    let values = sides.channels.map(|side| &side.by_key[&channel.key].values);
+    let numbers = values.map(numbers_of);
+    let packed = match values {
+        [Values::Wholes(a), Values::Wholes(b)] => {
+            RasterChannel::Wholes([a, b].map(|image| image.cells().to_vec()))
+        }
+        _ => {
+            let single = |cells: &Vec<f64>| cells.iter().map(|cell| *cell as f32).collect();
+            RasterChannel::Reals(numbers.each_ref().map(single))
+        }
+    };
+    let key = (group.to_string(), size.0, size.1);
+    let entry = groups.entry(key).or_insert_with(|| RasterGroup {
+        name: if group.is_empty() { format!("{} x {}", size.0, size.1) } else { group.to_string() },
+        size,
+        channels: Vec::new(),
+        differing: Vec::new(),
+    });
+    let index = entry.channels.len();
+    let earlier: BTreeSet<u32> = entry.differing.iter().map(|(cell, _)| *cell).collect();
+    let [a, b] = &numbers;
+    let apart =
+        a.iter().zip(b).zip(0_u32..).filter(|((a, b), _)| compare_numbers(**a, **b) != Comparison::Equal);
+    let new = apart.map(|(_, cell)| cell).filter(|cell| !earlier.contains(cell)).map(|cell| (cell, index));
+    let new: Vec<(u32, usize)> = new.collect();
+    entry.differing.extend(new);
+    entry.channels.push((name.to_string(), channel.unit.clone(), packed));
+}
+
+/// The cells as numbers; whole numbers are exact.
+fn numbers_of(values: &Values) -> Vec<f64> {
+    match values {
+        Values::Reals(image) => image.cells().to_vec(),
+        Values::Wholes(image) => image.cells().iter().map(|cell| f64::from(*cell)).collect(),
+    }
+}

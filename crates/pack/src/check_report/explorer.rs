@@ -1,0 +1,100 @@
+//! The part of the page that answers when asked: the candidate beside the exact answers.
+
+use raypencil_explorer::{DescribedRay, ExplorerPage, RayMargins, SensorPair, SideKind, SideMaps};
+use raypencil_judge::{Answers, Judge, JudgeShare, ListedDefect, name_of};
+use raypencil_referee::Format;
+use raypencil_report::count;
+use raypencil_scene::{Image, Sampling, SensorId};
+
+use crate::check::Checked;
+use crate::check_report::verdict::arithmetic;
+
+/// Indices of the sides.
+const EXACT: usize = 0;
+const CANDIDATE: usize = 1;
+
+/// The elements of the page that the explorer needs, with all that it shows.
+pub(super) fn explorer(checked: &Checked) -> String {
+    let Checked { subject, recorded, check, exact, .. } = checked;
+    let scene = &subject.scene;
+    let judge = Judge::new(scene, JudgeShare::Sample);
+    let probe = format!("raypencil probe {}", subject.arguments);
+    let title = format!("{} on {}", recorded.name, subject.name);
+    let mut page = ExplorerPage::new("check", scene, &title, &probe);
+    page.add_side("exact", SideKind::Exact, "the pack's answers, correctly rounded");
+    page.add_side(&recorded.name, SideKind::Candidate, arithmetic(recorded.precision));
+    for result in &check.sensors {
+        let sensor = result.sensor;
+        let fluxes = [exact, &recorded.answers].map(|answers| flux_on(answers, sensor));
+        let sides = [exact, &recorded.answers].map(|answers| {
+            let returns = match sensor {
+                SensorId::Camera => None,
+                SensorId::Beam(beam) => Some(&answers.light[beam].returns),
+            };
+            SideMaps { map: answers.map(sensor), returns, flux: &[] }
+        });
+        let [of_exact, of_candidate] = [0, 1].map(|k| Some(SideMaps { flux: &fluxes[k], ..sides[k] }));
+        let pair = SensorPair { sides: [EXACT, CANDIDATE], result, compared: None };
+        let margins = RayMargins::of_judged(&judge, sensor, &[pair]);
+        page.add_sensor(sensor, &[of_exact, of_candidate], &[pair], Some(&margins));
+    }
+    let listed: Vec<&ListedDefect> = check.sensors.iter().flat_map(|sensor| &sensor.listed).collect();
+    let total: usize = check.sensors.iter().map(|sensor| sensor.differing.len()).sum();
+    let rays: Vec<DescribedRay> = listed.iter().map(|defect| describe(checked, &judge, defect)).collect();
+    let words = format!(
+        "{} of the {} rays that are not 'agree' are described in full: the worst of each quantity. The command of each ray \
+         prints the rest.",
+        count(rays.len() as u64),
+        count(total as u64)
+    );
+    page.set_rays(&rays, &words);
+    page.html()
+}
+
+/// The images of the beams, which belong to the camera.
+fn flux_on(answers: &Answers, sensor: SensorId) -> Vec<Option<&Image<f64>>> {
+    let images = answers.light.iter().map(|light| light.image.as_ref());
+    if sensor == SensorId::Camera { images.collect() } else { Vec::new() }
+}
+
+fn describe(checked: &Checked, judge: &Judge<'_>, defect: &ListedDefect) -> DescribedRay {
+    let place = defect.place;
+    let referee = judge.referee();
+    let margins = referee.margins(place.sensor, place.i, place.j);
+    let hit = referee.values(place.sensor, place.i, place.j).map(|hit| hit.in_format(Format::Double));
+    let (back, of_view) = match place.sensor {
+        SensorId::Camera => (None, None),
+        SensorId::Beam(beam) => {
+            let light = referee.light(beam, Sampling::Centres);
+            let back = light.and_then(|light| light.returned(place.i, place.j));
+            let back = back.map(|back| back.in_format(Format::Double, checked.subject.scene.flux_model()));
+            (back, referee.visibility_margins(beam, place.i, place.j))
+        }
+    };
+    let faces = margins.as_ref().map(|margins| margins.verdict.faces.iter().map(|face| face.0).collect());
+    let text = format!(
+        "{place}, {}\n  {}\n  {}\n  again: {}\n",
+        name_of(defect.item),
+        defect.words(),
+        defect.what,
+        checked.repro(place)
+    );
+    let witness = |margin: Option<raypencil_referee::Margin>| margin?.witness.map(|by| [by.dx, by.dy]);
+    let [of_face, of_surface] = match margins {
+        Some(margins) => [Some(margins.face), Some(margins.surface)],
+        None => [None, None],
+    };
+    DescribedRay {
+        place,
+        pair: 0,
+        text,
+        faces: faces.unwrap_or_default(),
+        hit: hit.map(|hit| (hit.point.to_array(), hit.range)),
+        visible: back.map(|back| (back.visible, back.pixel)),
+        witnesses: [
+            witness(of_face),
+            witness(of_surface),
+            witness(of_view.map(|margins| margins.visibility)),
+        ],
+    }
+}
