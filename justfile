@@ -51,6 +51,12 @@ speed MESH="":
 injected-faults:
     cargo run --release -p raypencil-tests --example injected_faults > docs/evidence/injected-faults.md
 
+# The picture of a report in README.md: docs/figures/report.png. Needs Chromium
+report-figure:
+    cargo run --release -- validate pyramids --with scanline-paper,tracer --thickness 80 -o out/report-figure
+    chromium --headless --no-sandbox --hide-scrollbars --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
+        --window-size=1280,1480 --virtual-time-budget=60000 --screenshot=docs/figures/report.png "file://$PWD/out/report-figure/report.html"
+
 # Pictures of the presets of generated ground: docs/figures/ground-*.svg
 portraits:
     cargo run --release -p raypencil --example portraits -- docs/figures

@@ -212,7 +212,8 @@ fn rulings() -> Rulings {
 
 /// The text of an HTML page: without styles, pictures and tags, one line for each piece of text.
 fn text_of_page(html: &str) -> String {
-    let body = html.split_once("</style>").map_or(html, |(_, body)| body);
+    let html = raypencil_explorer::without_explorer(html);
+    let body = html.split_once("</style>").map_or(html.as_str(), |(_, body)| body);
     let pieces = body.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text.trim());
     pieces.filter(|text| !text.is_empty()).collect::<Vec<_>>().join("\n")
 }

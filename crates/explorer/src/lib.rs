@@ -31,7 +31,7 @@ mod switch_words;
 
 pub use arrays::{Arrays, Change, Packed};
 pub use channels::SideMaps;
-pub use page::{DescribedRay, ExplorerPage, SideKind};
+pub use page::{DescribedRay, ExplorerPage, SideKind, without_explorer};
 pub use pair::{ComparedMaps, SensorPair};
 pub use raster_page::{RasterChannel, RasterGroup, raster_page};
 pub use sensor::RayMargins;

@@ -236,13 +236,32 @@ impl<'s> ExplorerPage<'s> {
     }
 }
 
+/// Comments around the elements of the explorer.
+const BEGIN: &str = "<!-- explorer: data, style and script -->\n";
+const END: &str = "<!-- end of the explorer -->\n";
+
+/// The page without the explorer's elements: what people see without JavaScript, for programs that read its text.
+///
+/// ```
+/// use raypencil_explorer::{raster_page, without_explorer};
+///
+/// let page = format!("<h1>Title</h1>\n{}<footer></footer>", raster_page("diff", "a title", ["a", "b"], &[]));
+/// assert_eq!(without_explorer(&page), "<h1>Title</h1>\n<footer></footer>");
+/// ```
+pub fn without_explorer(page: &str) -> String {
+    match page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1))) {
+        Some((before, after)) => format!("{before}{after}"),
+        None => page.to_string(),
+    }
+}
+
 /// A model, its arrays and the script as elements of a page.
 pub(crate) fn html_of(model: &Value, arrays: &Arrays) -> String {
     // `<` would be the only way to end the element.
     let model = model.to_string().replace('<', "\\u003c");
     format!(
-        "<style>\n{STYLE}</style>\n<script type=\"application/json\" id=\"page-model\">{model}</script>\n{arrays}\
-         <script type=\"module\">\n{script}</script>\n",
+        "{BEGIN}<style>\n{STYLE}</style>\n<script type=\"application/json\" id=\"page-model\">{model}</script>\n{arrays}\
+         <script type=\"module\">\n{script}</script>\n{END}",
         arrays = arrays.scripts(),
         script = *SCRIPT,
     )

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
+use raypencil_explorer::without_explorer;
 use raypencil_files::FolderError;
 use raypencil_harness::{
     Candidate, HarnessError, Validation, junit_xml, one_screen, report_html, summary_json, summary_markdown,
@@ -225,7 +226,7 @@ fn junit() {
 #[test]
 fn pages() {
     for (name, validation) in every_validation() {
-        let page = report_html(&validation).unwrap();
+        let page = static_page(&validation);
         // The section in which each differs from the others; the whole page once.
         let (start, end) = match name {
             "defective" => ("<!DOCTYPE", "</html>"),
@@ -253,11 +254,9 @@ fn nothing_compared_is_no_pass_anywhere() {
     let validation = fixtures::lonely();
     assert!(junit_xml(&validation).unwrap().contains("<failure message=\"Nothing was compared\""));
     assert!(summary_json(&validation).contains("\"verdict\": \"nothing_compared\""));
-    for text in [
-        one_screen(&validation, None),
-        summary_markdown(&validation).unwrap(),
-        report_html(&validation).unwrap(),
-    ] {
+    for text in
+        [one_screen(&validation, None), summary_markdown(&validation).unwrap(), static_page(&validation)]
+    {
         assert!(text.contains("Nothing was compared"), "{text}");
         assert!(!text.contains("All "), "{text}");
     }
@@ -265,7 +264,7 @@ fn nothing_compared_is_no_pass_anywhere() {
 
 #[test]
 fn the_page_is_self_contained_and_escapes_what_it_quotes() {
-    let html = report_html(&fixtures::defective()).unwrap();
+    let html = static_page(&fixtures::defective());
     assert!(html.contains("&#60;no&#62; &#38;") && !html.contains("<no>"));
     for outside in ["http:", "https:", "<script", "<link", "@import", "url("] {
         assert!(!html.contains(outside), "{outside}");
@@ -275,7 +274,10 @@ fn the_page_is_self_contained_and_escapes_what_it_quotes() {
     assert_eq!(html.matches("src=").count(), 8);
     assert_eq!(html.matches("<polyline ").count(), 2);
     assert!(!html.contains("NaN%") && !html.contains("inf%"));
-    let with_candidate = report_html(&fixtures::with_candidate()).unwrap();
+    // The whole page may load nothing but what it holds.
+    let whole = report_html(&fixtures::defective()).unwrap();
+    assert!(whole.contains("content=\"default-src 'none';") && whole.contains("id=\"page-model\""));
+    let with_candidate = static_page(&fixtures::with_candidate());
     assert!(with_candidate.contains("Odd &#60;renderer&#62; 1") && !with_candidate.contains("<renderer>"));
 }
 
@@ -358,11 +360,16 @@ fn every_ray_that_differs_is_kept_with_its_class_and_its_cause() {
     assert_eq!(by_causes.len(), expected.len());
 }
 
+/// The page as people see it without JavaScript.
+fn static_page(validation: &Validation) -> String {
+    without_explorer(&report_html(validation).unwrap())
+}
+
 /// Every report of a validation that people or CI read, by name.
 fn every_report(validation: &Validation) -> [(&'static str, String); 4] {
     [
         ("screen", one_screen(validation, None)),
-        ("page", report_html(validation).unwrap()),
+        ("page", static_page(validation)),
         ("markdown", summary_markdown(validation).unwrap()),
         ("junit", junit_xml(validation).unwrap()),
     ]

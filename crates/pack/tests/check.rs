@@ -108,7 +108,7 @@ fn the_worst_defects_are_listed_hits_before_values() {
 
 #[test]
 fn the_page_has_verdict_quantities_defects_and_pictures() {
-    let page = check_page(&three_faults()).expect("a page");
+    let page = raypencil_explorer::without_explorer(&check_page(&three_faults()).expect("a page"));
     assert!(page.contains("<span aria-hidden=\"true\">✗</span> 3 of 6,912 rays are wrong"), "{page}");
     assert!(page.contains("mine says no hit; true is face"), "the worst defect is told");
     assert_eq!(page.matches("<li>").count(), 3);
