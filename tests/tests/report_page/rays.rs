@@ -137,7 +137,7 @@ fn a_click_on_a_planted_defect_leads_to_its_pixel_and_its_words() {
     assert!((read("difference") - 1e-3).abs() < 1e-6, "{}", read("difference"));
     assert!(read("share") > 1e6, "{}", read("share"));
     let words = page.text("document.querySelector('[data-detail]').textContent");
-    for part in ["one-wrong", "raypencil probe pyramids --fan 60 --pixel 20,30", "camera pixel 20,30"] {
+    for part in ["one-wrong", "raypencil probe pyramids --fan 60 --pixel 20,30", "camera (20, 30)"] {
         assert!(words.contains(part), "{part} is not in {words}");
     }
     page.assert_quiet();
@@ -153,24 +153,26 @@ fn the_geometry_shows_the_hit_where_it_is() {
     page.click("[data-show-3d]");
     page.wait("document.querySelector('.view3d')?.dataset.state === 'ready'");
     page.wait("document.querySelector('.view3d').dataset.ray === '0/1460'");
-    // Seen exactly as by the camera, the hit of pixel (20, 30) lies on that pixel: of 48 x 40 pixels, which fill the
-    // picture's height or width.
+    // Seen exactly as by the camera, the hit of pixel (20, 30) lies on that pixel.
     page.ask("document.querySelector('button[data-view=\"camera\"]').click()");
     page.wait("document.querySelector('[data-geometry] [data-view]') !== null");
-    let hit = written.validation.rendered[0].output.map(SensorId::Camera).unwrap().hit(20, 30).unwrap();
-    let [x, y, z] = hit.point.to_array();
-    let project = format!("document.querySelector('[data-geometry]').view3d.project([{x}, {y}, {z}])");
-    page.wait(&format!("{project} !== null"));
-    std::thread::sleep(std::time::Duration::from_millis(500));
-    let place = page.ask(&project);
-    let at = |k: usize| place[k].as_f64().expect("a place");
-    let size = page.ask("(c => [c.clientWidth, c.clientHeight])(document.querySelector('.view3d canvas'))");
-    let (width, height) = (size[0].as_f64().unwrap(), size[1].as_f64().unwrap());
-    // Square pixels of the larger size that shows all of the image, about the middle of the picture.
-    let scale = (width / 48.0).min(height / 40.0);
-    let expected = [width / 2.0 + (20.5 - 24.0) * scale, height / 2.0 + (30.5 - 20.0) * scale];
+    let map = written.validation.rendered[0].output.map(SensorId::Camera).expect("the camera's map");
+    let place = |i: u32, j: u32| {
+        let [x, y, z] = map.hit(i, j).expect("a hit").point.to_array();
+        let project = format!("document.querySelector('[data-geometry]').view3d.project([{x}, {y}, {z}])");
+        page.wait(&format!("{project} !== null"));
+        let place = page.ask(&project);
+        [0, 1].map(|k| place[k].as_f64().expect("a place"))
+    };
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    // Two pixels tell the size of a pixel and the middle of the image; the hit lies where its pixel then is.
+    let (one, other, hit) = (place(8, 38), place(44, 24), place(20, 30));
+    let size = (other[0] - one[0]) / f64::from(44 - 8);
+    let expected = [one[0] + f64::from(20 - 8) * size, one[1] - f64::from(38 - 30) * size];
+    assert!(size > 5.0, "{size} px for a pixel of the camera");
+    assert!((other[1] - (one[1] - f64::from(38 - 24) * size)).abs() < 2.0, "{one:?}, {other:?}, {size}");
     for k in 0..2 {
-        assert!((at(k) - expected[k]).abs() < 2.0, "{place} for {expected:?} of {width} x {height}");
+        assert!((hit[k] - expected[k]).abs() < 2.0, "{hit:?} for {expected:?}");
     }
     // The picture is not empty: something was drawn, and the caption says what.
     assert!(page.number("Number(document.querySelector('.view3d').dataset.frames)") > 0.0);

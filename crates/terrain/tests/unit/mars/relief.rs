@@ -102,3 +102,24 @@ fn fine_posts_are_smoother_than_the_law_by_the_gain() {
     // The rms of n Gaussian numbers has the relative error 1 / sqrt(2 n): 1.2 % here, of which four are allowed.
     assert!(count > 3500.0 && (rms / 5.590e-3 - 1.0).abs() < 0.05, "{rms} of {count}");
 }
+
+#[test]
+fn a_young_crater_cuts_an_old_one_in_whatever_order_they_are_listed() {
+    let one = |x: f64, diameter: f64, degradation: f64| Crater {
+        centre: DVec2::new(x, -50.0),
+        diameter,
+        degradation,
+        ..craters()[0]
+    };
+    let (old, young) = (one(99.0, 4.0, 0.8), one(101.0, 3.0, 0.1));
+    // The old one first, and then the young one, measured from the plane of its rim.
+    let mut expected = posts(|_, _| 0.0);
+    for crater in [old, young] {
+        let plane = crater.plane(&expected);
+        crater.carve(&mut expected, plane);
+    }
+    for listed in [[old, young], [young, old]] {
+        let relief = Relief::new(posts(|_, _| 0.0), 0.0, &rough(0.7, 0.05), 5, &listed, 4);
+        assert_eq!(relief.posts.heights, expected.heights);
+    }
+}

@@ -59,6 +59,63 @@ fn every_preset_is_a_mesh_whose_rocks_are_closed_and_outward() {
     assert_eq!(MarsGround::preset("viking2", 0), None);
 }
 
+#[test]
+fn no_rock_hangs_over_a_crevasse() {
+    let mut rocks = 0;
+    for seed in 0..6 {
+        let plain = small("crevassed", seed);
+        let mars = MarsGround { rocks: Rocks { coverage: 0.3, ..plain.rocks }, ..plain };
+        let ground = mars.build().unwrap();
+        let crevasses = mars.crevasses.draw(&mars.field(), mars.seed);
+        for body in rocks_of(&ground) {
+            let corners: Vec<DVec2> = ground.faces[body]
+                .as_flattened()
+                .iter()
+                .map(|&v| ground.vertices[v as usize].truncate())
+                .collect();
+            let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
+            assert!(!crevasses.iter().any(|one| one.overlaps_disc(middle, 0.0)), "a rock at {middle}");
+            rocks += 1;
+        }
+    }
+    assert!(rocks > 500, "{rocks}");
+}
+
+#[test]
+fn floors_lie_below_the_lower_edge_by_the_depth() {
+    // Soil that rises by 0.3 along x: one edge of a crevasse is higher than the other.
+    let plain = small("crevassed", 2);
+    let coarse = HeightGrid {
+        columns: 4,
+        rows: 4,
+        corner: DVec2::splat(-6.0),
+        spacing: DVec2::splat(4.0),
+        heights: (0..16).map(|k| 1.2 * f64::from(k % 4)).collect(),
+    };
+    let mars = MarsGround {
+        coarse: Some(coarse),
+        roughness: Roughness { rms_at_1_m: 0.0, ..plain.roughness.clone() },
+        rocks: Rocks { coverage: 0.0, ..plain.rocks },
+        craters: Craters { density: 0.0, ..plain.craters },
+        ..plain
+    };
+    let (ground, relief) = (mars.build().unwrap(), mars.relief());
+    let (mut floors, mut aslant) = (0, 0);
+    for crevasse in mars.crevasses.draw(&mars.field(), mars.seed) {
+        for node in 1..crevasse.last() {
+            let [right, left] =
+                [-1.0, 1.0].map(|side| relief.height(relief.middle + crevasse.wall(node, side, 0.0)));
+            aslant += u32::from((right - left).abs() > 0.05);
+            let place = relief.middle + crevasse.wall(node, -1.0, 1.0);
+            let floor = ground.vertices.iter().find(|v| v.truncate().distance(place) < 1e-9);
+            let floor = floor.expect("the floor has a vertex there").z;
+            assert!((right.min(left) - floor - crevasse.depth(node)).abs() < 1e-9, "node {node}");
+            floors += 1;
+        }
+    }
+    assert!(floors > 50 && aslant > 20, "{floors} floors, {aslant} with edges of different heights");
+}
+
 /// Number of faces along each edge of the sheet, in either direction.
 fn edges(ground: &Ground) -> BTreeMap<[u32; 2], [u32; 2]> {
     let mut edges: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
