@@ -36,7 +36,7 @@ impl ChannelPacker {
     /// The channels of one side, as the page model has them.
     pub(crate) fn pack(&mut self, arrays: &mut Arrays, scene: &Scene, side: &SideMaps<'_>) -> Value {
         let mut channels = Map::new();
-        let faces = side.map.face.as_ref().map(|faces| faces_of(faces));
+        let faces = side.map.face.as_ref().map(faces_of);
         if let Some(faces) = &faces {
             channels.insert("face.I".into(), self.whole(arrays, "face.I", faces));
         }
