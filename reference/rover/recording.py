@@ -24,7 +24,7 @@ NEEDED = {
     "known_noise": ["attitude", "proximity"],
     "map": ["spacing", "points"],
     "rules": ["start", "elevation", "extrapolate", "several", "inconsistency", "gap", "tests"],
-    "tests": ["slopes", "closer_share", "rear_needed", "max_gap_width"],
+    "tests": ["slopes", "closer_share", "obstacle_margin", "clear_margin", "rear_needed", "max_gap_width"],
     "grid": ["sectors", "half_angle", "first", "step", "last"],
     "vectors": ["large", "small"],
 }

@@ -165,7 +165,7 @@ class Rover:
         if setup["rules"]["tests"] == "paper":
             test = PointTests(self.map, setup)
         else:
-            test = WheelTests(self.map, setup, shadows, self.stands)
+            test = WheelTests(self.map, setup, shadows, self.stands, self.way)
         out.sectors = obstacle_map(setup["grid"], x, y, heading, test)
         out.vectors = navigator_map(out.sectors, setup["vectors"])
 

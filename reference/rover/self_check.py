@@ -59,7 +59,7 @@ def setup(rules="mended", **changes):
         "rules": {"start": "origin"} | {r: rules for r in ("elevation", "extrapolate", "several", "inconsistency",
                                                           "gap", "tests")},
         "tests": {"slopes": {"front": 0.35, "rear": 0.35, "length": 0.29, "closer": 0.58}, "closer_share": 0.5,
-                  "rear_needed": True, "max_gap_width": 0.25},
+                  "obstacle_margin": 0.5, "clear_margin": 2.0, "rear_needed": True, "max_gap_width": 0.25},
         "grid": {"sectors": 31, "half_angle": 0.5235987755982988, "first": 0.7, "step": 0.1, "last": 4.8},
         "vectors": {"large": 1.25, "small": 0.625}, "obstacles_every": 10, "scan": None, "start_elevation": 0.0,
     }
@@ -212,12 +212,13 @@ def check_tests():
         def sectors(height, change=lambda m: None):
             tree, m = flat_map(rules, height)
             change(m)
-            test = PointTests(m, tree) if rules == "paper" else WheelTests(m, tree, None, [])
+            test = PointTests(m, tree) if rules == "paper" else WheelTests(m, tree, None, [], 0.0)
             return obstacle_map(tree["grid"], 0, 0, 0, test)
         check(f"{rules}: level ground is clear to the limit",
               all(s.label == "visibility" and abs(s.radius - 4.8) < 1e-9 for s in sectors(lambda x, y: 0 * x)))
         step = sectors(lambda x, y: np.where(x > 2.95, 0.6, 0.0))[15]
-        # The paper's points meet the step with the axle's midpoint, a wheel one radius before it.
+        # The paper's points meet the step with the axle's midpoint. A wheel is lifted by
+        # 0.6 - R + sqrt(R^2 - d^2) at d before it: by 0.348 m at d = 0.336 m.
         where = 3.0 if rules == "paper" else 2.7
         check(f"{rules}: a step of 0.6 m across the way ({step.label} {step.reason} at {step.radius:.1f})",
               step.label == "obstacle" and step.reason == "length" and abs(step.radius - where) < 0.101)
@@ -228,7 +229,7 @@ def check_tests():
         check(f"{rules}: unmeasured ground ({gone.label} {gone.reason} {gone.part} at {gone.radius:.1f})",
               gone.label == "unknown" and gone.reason == "not_measured" and gone.part == "front_wheel")
     tree, m = flat_map("mended", lambda x, y: 0.2 * x)
-    wheel = WheelTests(m, tree, None, []).rest(0.03, 0.01, 1.0, 0.0, "front").measured
+    wheel = WheelTests(m, tree, None, [], 0.0).rest(0.03, 0.01, 1.0, 0.0, "front").measured
     # A circle of radius R on a line of slope m: the contact lies R m / sqrt(1 + m^2) ahead of its middle, and its
     # hub is R sqrt(1 + m^2) above the line.
     check("a wheel on a slope of 0.2", abs(wheel.hub - (0.2 * 0.03 + 0.35 * np.sqrt(1.04))) < 1e-12

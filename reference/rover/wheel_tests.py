@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from elevation_map import MEASURED, PROXIMITY, UNKNOWN
+from elevation_map import AGEING, MEASURED, PROXIMITY, UNKNOWN
 from obstacle_map import CLEAR, Verdict
 
 # Axle, share of the wheelbase ahead of Q, side.
@@ -16,10 +16,11 @@ NEAR = 1e-9  # a decision nearer than this is one of rounding
 
 @dataclass
 class Support:
-    """Where a wheel rests: height of its hub, and the ground point."""
+    """Where a wheel rests: height of its hub, the ground point, and the mean variance of the points below it."""
 
     hub: float
     point: np.ndarray
+    variance: float
 
 
 @dataclass
@@ -34,7 +35,7 @@ class Wheel:
 class WheelTests:
     """Wheels are upright discs over their width; the belly is a rectangle between them."""
 
-    def __init__(self, elevation_map, setup, shadows, stands):
+    def __init__(self, elevation_map, setup, shadows, stands, way):
         m = self.map = elevation_map
         self.vehicle, self.limits = setup["vehicle"], setup["tests"]
         self.measured = (m.source == MEASURED) | (m.source == PROXIMITY)
@@ -45,6 +46,8 @@ class WheelTests:
         own = m.source == MEASURED
         self.x, self.y = np.where(own, m.x, gx), np.where(own, m.y, gy)
         self.z = np.where(self.measured, m.elevation, np.nan)
+        # The proximity sensor's cells count as without error.
+        self.variance = np.where(own, m.variance + (AGEING * (way - m.way)) ** 2, 0.0)
         if shadows is None:
             # Without the rule a guess counts as ground.
             guess = np.where(m.source != UNKNOWN, m.elevation, np.nan)
@@ -84,9 +87,9 @@ class WheelTests:
         def inside(a, b):
             return (np.abs(a) <= radius + BORDER) & (np.abs(b) <= half + BORDER)
 
-        x, y, z = self.x[w], self.y[w], self.z[w]
+        x, y, z, variance = self.x[w], self.y[w], self.z[w], self.variance[w]
         a, b = axes(x, y)
-        offers = [(np.where(inside(a, b), z, np.nan), x, y, a)]
+        offers = [(np.where(inside(a, b), z, np.nan), x, y, a, variance)]
         # The straight lines between neighbouring measured points, cut to the rectangle.
         for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1)):
             height, width = z.shape
@@ -107,12 +110,13 @@ class WheelTests:
             for share, may in ((low, ok), (high, ok), (touch, touches)):
                 t = np.where(may, share, 0.0)
                 px, py = x[one] + t * (x[two] - x[one]), y[one] + t * (y[two] - y[one])
-                offers.append((np.where(may, z[one] + t * (z[two] - z[one]), np.nan), px, py, axes(px, py)[0]))
+                offers.append((np.where(may, z[one] + t * (z[two] - z[one]), np.nan), px, py, axes(px, py)[0],
+                               np.maximum(variance[one], variance[two])))
         measured = self.highest_of(offers)
         gx, gy, top = self.grid_x[w], self.grid_y[w], self.wheel_top[w]
         a, b = axes(gx, gy)
         under = inside(a, b)
-        highest = self.highest_of(offers + [(np.where(under, top, np.nan), gx, gy, a)])
+        highest = self.highest_of(offers + [(np.where(under, top, np.nan), gx, gy, a, np.zeros(a.shape))])
         lacks = under & np.isnan(top) & ~self.measured[w]
         missing = None
         if lacks.any():
@@ -131,13 +135,18 @@ class WheelTests:
     def highest_of(self, offers):
         """The ground point over which the hub is highest: z + sqrt(R^2 - a^2)."""
         radius, best = self.vehicle["wheel_radius"], None
-        for z, x, y, a in offers:
+        for z, x, y, a, variance in offers:
             if not np.isfinite(z).any():
                 continue
             hub = np.where(np.isfinite(z), z + np.sqrt(np.maximum(0, radius ** 2 - a ** 2)), -np.inf)
             k = int(np.argmax(hub))
             if best is None or hub.flat[k] > best.hub:
-                best = Support(float(hub.flat[k]), np.array([x.flat[k], y.flat[k], z.flat[k]]))
+                best = Support(float(hub.flat[k]), np.array([x.flat[k], y.flat[k], z.flat[k]]),
+                               float(variance.flat[k]))
+        # Rounding may decide which point carries the wheel, but not how well the ground below it is known.
+        below = np.isfinite(offers[0][0])
+        if below.any():
+            best.variance = float(offers[0][4][below].mean())
         return best
 
     def __call__(self, qx, qy, ux, uy):
@@ -149,24 +158,28 @@ class WheelTests:
         wheels = [self.rest(cx, cy, ux, uy, axle) for (cx, cy), (axle, _, _) in zip(hubs, WHEELS)]
         tie = False
 
-        def compare(by, name, high, low):
-            """Rise beyond the limit, and which side is the lower one; None if a support is missing."""
+        def compare(by, name, one, two, errors):
+            """Whether the rise between the hubs, with so many of its standard errors, exceeds the limit; and the lower side."""
             nonlocal tie
-            supports = [getattr(wheels[k], by) for k in high + low]
-            if any(support is None for support in supports):
+            supports = [[getattr(wheels[k], by) for k in side] for side in (one, two)]
+            if any(support is None for side in supports for support in side):
                 return None
-            one, two = (np.mean([getattr(wheels[k], by).point for k in side], axis=0) for side in (high, low))
-            apart = one - two
-            run = abs(float(apart[:2] @ u)) if name == "length" else float(np.hypot(apart[0], apart[1]))
-            over = abs(float(apart[2])) - slopes[name] * run
+            apart = float(np.mean([s.hub for s in supports[0]]) - np.mean([s.hub for s in supports[1]]))
+            variance = sum(sum(s.variance for s in side) / len(side) ** 2 for side in supports)
+            run = length if name == "length" else v["track"]
+            over = abs(apart) + errors * float(np.sqrt(variance)) - slopes[name] * run
             tie |= abs(over) <= NEAR
-            return over > RISE, low if two[2] < one[2] else high
+            return over > RISE, two if apart > 0 else one
 
         pairs = [("front", [0], [1]), ("rear", [2], [3]), ("length", [0, 1], [2, 3])]
+
+        def by_measured(name, one, two, errors):
+            """Only if all ground below the lower side is known."""
+            found = compare("measured", name, one, two, errors)
+            return bool(found and found[0] and all(wheels[k].missing is None for k in found[1]))
+
         for name, one, two in pairs:
-            # Obstacle only by measured points, and if all ground below the lower support is known.
-            found = compare("measured", name, one, two)
-            if found and found[0] and all(wheels[k].missing is None for k in found[1]):
+            if by_measured(name, one, two, -self.limits["obstacle_margin"]):
                 return Verdict("obstacle", name, near_tie=tie)
         for wheel, (axle, _, _) in zip(wheels, WHEELS):
             if wheel.missing == "beyond":
@@ -174,11 +187,12 @@ class WheelTests:
             if wheel.missing is not None:
                 return self.lacking("not_measured", f"{axle}_wheel", *wheel.missing, tie)
         for name, one, two in pairs:
-            # What may stand in gaps may be too high.
-            found = compare("highest", name, one, two)
+            # What may stand in gaps may be too high, or the errors may be too large.
+            found = compare("highest", name, one, two, self.limits["clear_margin"])
             if found and found[0]:
                 part = "rear_wheel" if name == "rear" else "front_wheel"
-                return Verdict("unknown", "may_hide", part, (float(qx), float(qy)), tie)
+                hides = compare("highest", name, one, two, 0)[0] and not by_measured(name, one, two, 0)
+                return Verdict("unknown", "may_hide" if hides else "near_limit", part, (float(qx), float(qy)), tie)
         return self.belly(qx, qy, ux, uy, [wheel.highest.hub for wheel in wheels], tie)
 
     def lacking(self, reason, part, j, i, tie):

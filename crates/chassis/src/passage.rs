@@ -13,14 +13,14 @@ use crate::rectangle::Rectangle;
 /// heights, its difference to another and a product with a limit have a few of these.
 const RISE_ROUNDING_M: f64 = 1e-11;
 
-/// Maximum slopes between contact points: rise over horizontal distance.
+/// Maximum slopes between wheels' centres: rise over horizontal distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassageLimits {
-    /// Between the contacts of the two front wheels.
+    /// Between the two front wheels.
     pub front: f64,
-    /// Between the contacts of the two rear wheels.
+    /// Between the two rear wheels.
     pub rear: f64,
-    /// Between the mean of the front contacts and the mean of the rear ones, over their distance along the vehicle.
+    /// Between the middle of the front wheels and that of the rear ones, over the wheelbase.
     pub length: f64,
 }
 
@@ -79,14 +79,17 @@ impl Chassis {
     /// axles' middles, and the rear axle one wheelbase behind. This is the "imaginary vehicle" of the paper's tests
     /// (§7).
     ///
-    /// *Slopes* are between the ground points that carry the wheels; a slope at its limit passes. Such a point need not
-    /// be below the hub. A wheel of radius R touches a step of height h already when its axle is
-    /// d = sqrt(R^2 - (R - h)^2) before it (R, if h >= R). With the front axle at d' <= d before a step across the way,
-    /// the slope along the vehicle of wheelbase L is h / (L + d').
+    /// *Slopes* are between the wheels' centres: the difference of their heights over their distance on level ground,
+    /// which is the track, or for the axles' middles the wheelbase; a slope at its limit passes. On a plane this is the
+    /// plane's own slope. CHOICE: centres as the paper says ("two front wheel centers"), not the ground points that
+    /// carry them. A wheel that rests on two points at once may be carried by either, which differ in height and place,
+    /// but its centre is at one height.
     ///
-    /// So a step stops the vehicle if h > length L, at d' = min(d, h / length - L). A wall is met at its first touch,
-    /// d' = R, if h > length (L + R). A lower one lets the axle come nearer first, even if it is as high as the hub: no
-    /// test asks whether a wheel could climb what it touches.
+    /// A wheel of radius R touches a step of height h before its centre is over it: with the centre at d < R before the
+    /// step it is lifted by h - R + sqrt(R^2 - d^2), if that is positive. A step across the way stops a vehicle of
+    /// wheelbase L if h > length L, as soon as the lift exceeds length L. A wall is met at its first touch, d = R, if
+    /// h - R > length L. A lower one lets the axle come nearer first: no test asks whether a wheel could climb what it
+    /// touches.
     ///
     /// *Belly*: the underside is a flat rectangle from axle to axle and between the wheels' inner sides. The hubs'
     /// plane is z = h + p a + q b, with h the mean of the four hubs, p the rise from rear to front axle over L, and q
@@ -125,38 +128,31 @@ impl Chassis {
         let origin = ground.origin();
         let place = front - origin.truncate();
 
-        // Of each wheel the height of its hub and its contact, both from the mesh's origin in height, and the contact
-        // in plan from `front`, along and to the left. Small numbers: the distances between them have no rounding of
-        // far places.
+        // Heights of the hubs from the mesh's origin, and the ground points that carry them.
         let mut hubs = [0.0; 4];
-        let mut contacts = [DVec3::ZERO; 4];
         let mut points = [DVec3::ZERO; 4];
         for (wheel, (sign_x, sign_y)) in WHEEL_SIGNS.into_iter().enumerate() {
             let axle = DVec2::new(if sign_x > 0.0 { 0.0 } else { -wheelbase }, 0.5 * sign_y * track);
             let rectangle = self.below_wheel(place, forward * axle.x + left * axle.y, forward);
             let Some(touch) = self.touch(ground, &rectangle) else { return Passage::OffGround };
             hubs[wheel] = touch.hub;
-            contacts[wheel] = touch.point + axle.extend(0.0);
             points[wheel] = touch.global(ground, &rectangle).point;
         }
 
-        let [front_left, front_right, rear_left, rear_right] = contacts;
-        let across = |a: DVec3, b: DVec3| [(a.z - b.z).abs(), (a - b).truncate().length()];
+        let [front_left, front_right, rear_left, rear_right] = hubs;
         let along = 0.5 * ((front_left + front_right) - (rear_left + rear_right));
-        for (kind, [rise, distance], limit, range) in [
-            (ObstructionKind::FrontSlope, across(front_left, front_right), limits.front, 0..2),
-            (ObstructionKind::RearSlope, across(rear_left, rear_right), limits.rear, 2..4),
-            (ObstructionKind::LengthSlope, [along.z.abs(), along.x], limits.length, 0..4),
+        for (kind, rise, distance, limit, range) in [
+            (ObstructionKind::FrontSlope, front_left - front_right, track, limits.front, 0..2),
+            (ObstructionKind::RearSlope, rear_left - rear_right, track, limits.rear, 2..4),
+            (ObstructionKind::LengthSlope, along, wheelbase, limits.length, 0..4),
         ] {
-            // A product instead of a quotient: with wheels of half the wheelbase the distance may be zero.
-            if rise > limit * distance + RISE_ROUNDING_M {
+            if rise.abs() > limit * distance + RISE_ROUNDING_M {
                 return Passage::Blocked(Obstruction { kind, points: points[range].to_vec() });
             }
         }
 
-        let [front_left, front_right, rear_left, rear_right] = hubs;
         let mean = 0.25 * ((front_left + front_right) + (rear_left + rear_right));
-        let p = 0.5 * ((front_left + front_right) - (rear_left + rear_right)) / wheelbase;
+        let p = along / wheelbase;
         let q = 0.5 * ((front_left + rear_left) - (front_right + rear_right)) / track;
         let upright = (1.0 + p * p + q * q).sqrt();
         let underside = Plane { middle: mean + (clearance - wheel_radius) * upright, along: p, across: q };

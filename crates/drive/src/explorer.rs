@@ -143,6 +143,9 @@ fn reason(end: &SectorEnd) -> String {
     match reason {
         MissingReason::NotMeasured => format!("The ground under {part} at {place} was never measured."),
         MissingReason::BeyondMap => format!("The map ends before the ground under {part} at {place}."),
+        MissingReason::NearLimit => {
+            "A slope of the vehicle would be too near its limit: the errors of the points decide.".into()
+        }
         MissingReason::MayHide => {
             format!("In the shadow under {part} at {place} something may hide that the vehicle cannot pass.")
         }

@@ -67,6 +67,8 @@ pub struct SectorTruth {
     pub unknown_not_measured: u64,
     /// Likewise: more may hide in a shadow than the vehicle can pass.
     pub unknown_may_hide: u64,
+    /// Likewise: a slope is nearer to its limit than its errors.
+    pub unknown_near_limit: u64,
     /// Likewise: the map ends.
     pub unknown_beyond_map: u64,
     /// Sectors that are clear to their last radius, and truly so.
@@ -189,6 +191,9 @@ impl SectorTruth {
                 (Label::Unknown, Some(Missing { reason: MissingReason::MayHide, .. })) => {
                     self.unknown_may_hide += 1;
                 }
+                (Label::Unknown, Some(Missing { reason: MissingReason::NearLimit, .. })) => {
+                    self.unknown_near_limit += 1;
+                }
                 (Label::Unknown, Some(Missing { reason: MissingReason::BeyondMap, .. })) => {
                     self.unknown_beyond_map += 1;
                 }
@@ -210,7 +215,10 @@ impl SectorTruth {
     /// Sentences for a screen.
     pub(crate) fn sentences(&self) -> [String; 2] {
         let Self { missed, not_found, .. } = self;
-        let unknown = self.unknown_not_measured + self.unknown_may_hide + self.unknown_beyond_map;
+        let unknown = self.unknown_not_measured
+            + self.unknown_may_hide
+            + self.unknown_near_limit
+            + self.unknown_beyond_map;
         [
             format!(
                 "of {} sectors {} end at a true obstacle, {} at a false one, {} unknown, {} are clear",
@@ -231,7 +239,7 @@ impl SectorTruth {
     /// Header of a Markdown table of [`SectorTruth::table_row`]s.
     pub const fn table_header() -> &'static str {
         "\
-| drive | | sectors | found | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide | clear | clear way |
+| drive | | sectors | found | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide, near limit | clear | clear way |
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
     }
 
@@ -239,7 +247,7 @@ impl SectorTruth {
     pub fn table_row(&self, drive: &str, settings: &str) -> String {
         let Self { missed, not_found, .. } = self;
         format!(
-            "| {drive} | {settings} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} | {} | {:.2} m |",
+            "| {drive} | {settings} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} + {} | {} | {:.2} m |",
             count(self.sectors),
             count(self.found),
             count(missed.all()),
@@ -254,6 +262,7 @@ impl SectorTruth {
             percent(self.false_obstacle, self.sectors),
             count(self.unknown_not_measured + self.unknown_beyond_map),
             count(self.unknown_may_hide),
+            count(self.unknown_near_limit),
             count(self.clear),
             self.clear_mm as f64 / 1000.0 / self.sectors.max(1) as f64,
         )
@@ -289,7 +298,8 @@ fn true_maps(map: &ElevationMap, ground: &HeightIndex, global_from_vehicle: &Pos
             .into_iter()
             .filter_map(|point| {
                 let place = truth.place(point);
-                Some(MapPoint::from(place.extend(ground.height_at(place.x, place.y)?)))
+                let point = place.extend(ground.height_at(place.x, place.y)?);
+                Some(MapPoint { point, standard_error: 0.0, sight: None })
             })
             .collect();
         truth.insert(elevations);

@@ -122,6 +122,7 @@ fn truth(truth: &SectorTruth) -> Value {
         "unknown": {
             "not_measured": truth.unknown_not_measured,
             "may_hide": truth.unknown_may_hide,
+            "near_limit": truth.unknown_near_limit,
             "beyond_map": truth.unknown_beyond_map,
         },
         "clear": truth.clear,

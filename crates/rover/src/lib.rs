@@ -101,7 +101,8 @@ pub use scan::{ScanReason, ScanRule, Sweep};
 pub use stripe::{Detection, EdgePoint, Extraction, StripeLocation};
 pub use stripe_extractor::{BeamEdge, CameraImage, Exposure, StripeExtractor, Stripes};
 pub use traversability::{
-    Missing, MissingReason, SlopeLimits, Traversability, TraversabilityRules, TraversabilityTest, VehiclePart,
+    ErrorMargins, Missing, MissingReason, SlopeLimits, Traversability, TraversabilityRules,
+    TraversabilityTest, VehiclePart,
 };
 pub use triangulation::{SheetPlane, Triangulation, TriangulationTable};
 pub use vehicle::{Attitude, Stance, Vehicle};

@@ -3,14 +3,15 @@
 //! The printed tests look at the points below the wheels' centres and at one point under the belly. A rock between the
 //! centre line and a wheel's track meets none of them, and a wheel touches an edge a good part of its radius before its
 //! centre is there. Here each wheel is a disc over its width that rests on the highest of the measured points below it,
-//! and the belly is a surface. The limits are those of the printed tests.
+//! and the belly is a surface. Slopes are those between the wheels' centres, with the limits of the printed tests.
 //!
-//! *Obstacle* is said only by measured points. *Clear* needs every cell under the vehicle to be measured, or to be a gap
-//! that [`GapRule`](crate::GapRule) lets pass with its highest possible ground. All else is *unknown*.
+//! *Obstacle* is said only by measured points, beyond their errors. *Clear* needs every cell under the vehicle to be
+//! measured, or to be a gap that [`GapRule`](crate::GapRule) lets pass with its highest possible ground, and slopes that
+//! stay below their limits by more than the errors. All else is *unknown*.
 
 use glam::{DVec2, DVec3};
 
-use crate::elevation_map::{ElevationMap, GridPoint};
+use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint};
 use crate::gap::{MapWithShadows, is_measured};
 use crate::traversability::{
     Missing, MissingReason, RISE_ROUNDING_M, Traversability, TraversabilityRules, TraversabilityTest,
@@ -27,24 +28,25 @@ const BORDER_ROUNDING_M: f64 = 1e-11;
 
 /// What is known of the ground at a grid point.
 enum Known {
-    /// A measured point, global, metres.
-    Measured(DVec3),
+    /// A measured point, global, metres, and the variance of its elevation, square metres.
+    Measured(DVec3, f64),
     /// Ground at most this high, global, metres.
     AtMost(DVec3),
     Nothing(Missing),
 }
 
-/// Contact of a wheel: its hub rests on the ground at `point`.
+/// Height of a wheel's centre, global, metres, and its variance, square metres: the mean of the measured points
+/// below the wheel.
 #[derive(Debug, Clone, Copy)]
-struct Contact {
-    hub_height: f64,
-    point: DVec3,
+struct Hub {
+    height: f64,
+    variance: f64,
 }
 
-/// A wheel on the ground: its contact by measured points alone, and by all that may be there.
+/// A wheel on the ground: its hub by measured points alone, and by all that may be there.
 struct WheelOnMap {
-    measured: Option<Contact>,
-    highest: Option<Contact>,
+    measured: Option<Hub>,
+    highest: Option<Hub>,
     missing: Option<Missing>,
 }
 
@@ -143,17 +145,27 @@ impl TraversabilityRules {
         let axle = |part, behind: f64| [0.5, -0.5].map(|side| wheel(part, behind, side * track));
         let front_wheels = axle(VehiclePart::FrontWheel, 0.0);
         let rear_wheels = axle(VehiclePart::RearWheel, wheelbase);
-        let slopes = [
-            (TraversabilityTest::Front, pair_slope(&front_wheels), self.slopes.front),
-            (TraversabilityTest::Rear, pair_slope(&rear_wheels), self.slopes.rear),
+        let [[front_left, front_right], [rear_left, rear_right]] =
+            [&front_wheels, &rear_wheels].map(|[a, b]| [a, b]);
+        let tests = [
+            (
+                TraversabilityTest::Front,
+                Rises::between([front_left], [front_right]),
+                self.slopes.front * track,
+            ),
+            (TraversabilityTest::Rear, Rises::between([rear_left], [rear_right]), self.slopes.rear * track),
             (
                 TraversabilityTest::Length,
-                length_slope(&front_wheels, &rear_wheels, forward),
-                self.slopes.length,
+                Rises::between([front_left, front_right], [rear_left, rear_right]),
+                self.slopes.length * wheelbase,
             ),
         ];
-        for (test, slope, limit) in &slopes {
-            if slope.certain.is_some_and(|[rise, run]| rise > limit * run + RISE_ROUNDING_M) {
+        // A rise this many standard errors higher is still above its limit.
+        let exceeds = |rise: Option<Rise>, errors: f64, limit: f64| {
+            rise.is_some_and(|rise| rise.height + errors * rise.standard_error > limit + RISE_ROUNDING_M)
+        };
+        for (test, rises, limit) in &tests {
+            if exceeds(rises.measured, -self.margins.obstacle, *limit) {
                 return Traversability::Obstacle(*test);
             }
         }
@@ -161,18 +173,16 @@ impl TraversabilityRules {
         if let Some(missing) = wheels().find_map(|wheel| wheel.missing) {
             return Traversability::Unknown(missing);
         }
-        // All wheels are known from here on. What may stand in gaps may still be too high.
-        for (test, slope, limit) in &slopes {
-            if slope.possible.is_some_and(|[rise, run]| rise > limit * run + RISE_ROUNDING_M) {
+        // All wheels are known from here on. What may stand in gaps may still be too high, or the errors too large.
+        for (test, rises, limit) in &tests {
+            if exceeds(rises.highest, self.margins.clear, *limit) {
                 let part = match test {
                     TraversabilityTest::Rear => VehiclePart::RearWheel,
                     _ => VehiclePart::FrontWheel,
                 };
-                return Traversability::Unknown(Missing {
-                    part,
-                    place: front,
-                    reason: MissingReason::MayHide,
-                });
+                let by_gaps = exceeds(rises.highest, 0.0, *limit) && !exceeds(rises.measured, 0.0, *limit);
+                let reason = if by_gaps { MissingReason::MayHide } else { MissingReason::NearLimit };
+                return Traversability::Unknown(Missing { part, place: front, reason });
             }
         }
 
@@ -180,7 +190,7 @@ impl TraversabilityRules {
             .zip([(0.0, 0.5), (0.0, -0.5), (wheelbase, 0.5), (wheelbase, -0.5)])
             .filter_map(|(wheel, (behind, side))| {
                 let place = front - forward * behind + left * (side * track);
-                Some(place.extend(wheel.highest?.hub_height))
+                Some(place.extend(wheel.highest?.height))
             })
             .collect();
         let [a, b, c, d] = hubs[..] else {
@@ -206,7 +216,7 @@ impl TraversabilityRules {
         let mut missing = None;
         for point in belly.grid_points(map) {
             match ground.under_belly(point) {
-                Known::Measured(sample) => {
+                Known::Measured(sample, _) => {
                     // Points within the rectangle are enough: the belly is far wider than a cell.
                     if belly.within(sample.truncate()).is_some_and(|at| sample.z >= underside(at)) {
                         return Traversability::Obstacle(TraversabilityTest::Belly);
@@ -241,18 +251,22 @@ impl Ground<'_> {
     fn wheel(&self, part: VehiclePart, rectangle: &Rectangle) -> WheelOnMap {
         let mut wheel = WheelOnMap { measured: None, highest: None, missing: None };
         let radius = rectangle.half_length;
-        let rest_on = |point: DVec3, kept: &mut Option<Contact>| {
+        let rest_on = |point: DVec3, variance: f64, kept: &mut Option<Hub>| {
             let Some(at) = rectangle.within(point.truncate()) else { return };
-            let hub_height = point.z + (radius * radius - at.x * at.x).max(0.0).sqrt();
-            if kept.is_none_or(|kept| hub_height > kept.hub_height) {
-                *kept = Some(Contact { hub_height, point });
+            let height = point.z + (radius * radius - at.x * at.x).max(0.0).sqrt();
+            if kept.is_none_or(|kept| height > kept.height) {
+                *kept = Some(Hub { height, variance });
             }
         };
+        let mut inside = (0.0, 0_u32);
         for point in rectangle.grid_points(self.map) {
             match self.under_wheel(part, point) {
-                Known::Measured(sample) => {
-                    rest_on(sample, &mut wheel.measured);
-                    rest_on(sample, &mut wheel.highest);
+                Known::Measured(sample, variance) => {
+                    rest_on(sample, variance, &mut wheel.measured);
+                    rest_on(sample, variance, &mut wheel.highest);
+                    if rectangle.within(sample.truncate()).is_some() {
+                        inside = (inside.0 + variance, inside.1 + 1);
+                    }
                     // Between neighbouring points the ground is taken to be straight.
                     for (i, j) in FORWARD_NEIGHBOURS {
                         let beside = GridPoint { i: point.i + i, j: point.j + j };
@@ -260,14 +274,15 @@ impl Ground<'_> {
                             continue;
                         }
                         if let Some(other) = self.map.sample(beside) {
+                            let variance = variance.max(self.variance(beside));
                             for on_edge in rectangle.highest_on_edge(sample, other, radius) {
-                                rest_on(on_edge, &mut wheel.measured);
-                                rest_on(on_edge, &mut wheel.highest);
+                                rest_on(on_edge, variance, &mut wheel.measured);
+                                rest_on(on_edge, variance, &mut wheel.highest);
                             }
                         }
                     }
                 }
-                Known::AtMost(top) => rest_on(top, &mut wheel.highest),
+                Known::AtMost(top) => rest_on(top, 0.0, &mut wheel.highest),
                 Known::Nothing(missing) => {
                     if rectangle.within(missing.place).is_some() {
                         wheel.missing = wheel.missing.or(Some(missing));
@@ -275,7 +290,23 @@ impl Ground<'_> {
                 }
             }
         }
+        // Which of several points carries the wheel can be a matter of rounding, and must not decide the variance.
+        if inside.1 > 0 {
+            let mean = inside.0 / f64::from(inside.1);
+            for hub in [&mut wheel.measured, &mut wheel.highest].into_iter().flatten() {
+                hub.variance = mean;
+            }
+        }
         wheel
+    }
+
+    /// Variance of a measured elevation now, square metres. CHOICE: what the proximity sensor measured has none.
+    fn variance(&self, point: GridPoint) -> f64 {
+        let cell = self.map.cell(point);
+        match cell.source {
+            ElevationSource::Measured => cell.variance + self.map.ageing_variance(&cell),
+            _ => 0.0,
+        }
     }
 
     fn under_wheel(&self, part: VehiclePart, point: GridPoint) -> Known {
@@ -299,7 +330,7 @@ impl Ground<'_> {
         if is_measured(map, point)
             && let Some(sample) = map.sample(point)
         {
-            return Known::Measured(sample);
+            return Known::Measured(sample, self.variance(point));
         }
         let place = map.place(point);
         if let Some(z) = map.cell(point).stood {
@@ -313,42 +344,43 @@ impl Ground<'_> {
     }
 }
 
-/// Slope of two supports, as rise and run in metres.
-struct PairSlope {
-    /// By measured points: at least this much. `None` if the lower one may be higher than it looks.
-    certain: Option<[f64; 2]>,
+/// Height of one side of the vehicle above the other, metres, and its standard error.
+#[derive(Debug, Clone, Copy)]
+struct Rise {
+    height: f64,
+    standard_error: f64,
+}
+
+/// Rise between two sides of the vehicle: the wheels of an axle, one each, or both axles.
+struct Rises {
+    /// By measured points. `None` if the lower side may be higher than it looks.
+    measured: Option<Rise>,
     /// With all that may be there.
-    possible: Option<[f64; 2]>,
+    highest: Option<Rise>,
 }
 
-/// Slope between the contacts of an axle's wheels.
-fn pair_slope(wheels: &[WheelOnMap; 2]) -> PairSlope {
-    let between = |a: DVec3, b: DVec3| [(a.z - b.z).abs(), (a - b).truncate().length()];
-    let certain = match [wheels[0].measured, wheels[1].measured] {
-        [Some(a), Some(b)] => {
-            let lower = usize::from(b.point.z < a.point.z);
-            wheels[lower].is_known().then(|| between(a.point, b.point))
-        }
-        _ => None,
-    };
-    let possible = match [wheels[0].highest, wheels[1].highest] {
-        [Some(a), Some(b)] => Some(between(a.point, b.point)),
-        _ => None,
-    };
-    PairSlope { certain, possible }
-}
-
-/// Slope between the middles of the two axles' contacts, along the vehicle.
-fn length_slope(front: &[WheelOnMap; 2], rear: &[WheelOnMap; 2], forward: DVec2) -> PairSlope {
-    let middle = |wheels: &[WheelOnMap; 2], of: fn(&WheelOnMap) -> Option<Contact>| {
-        Some((of(&wheels[0])?.point + of(&wheels[1])?.point) * 0.5)
-    };
-    let between = |a: DVec3, b: DVec3| [(a.z - b.z).abs(), (a - b).truncate().dot(forward).abs()];
-    let measured = middle(front, |wheel| wheel.measured).zip(middle(rear, |wheel| wheel.measured));
-    let certain = measured.and_then(|(a, b)| {
-        let lower = if b.z < a.z { rear } else { front };
-        lower.iter().all(WheelOnMap::is_known).then(|| between(a, b))
-    });
-    let highest = middle(front, |wheel| wheel.highest).zip(middle(rear, |wheel| wheel.highest));
-    PairSlope { certain, possible: highest.map(|(a, b)| between(a, b)) }
+impl Rises {
+    fn between<const N: usize>(a: [&WheelOnMap; N], b: [&WheelOnMap; N]) -> Self {
+        type Part = fn(&WheelOnMap) -> Option<Hub>;
+        let middle = |wheels: [&WheelOnMap; N], part: Part| {
+            let mut mean = Hub { height: 0.0, variance: 0.0 };
+            for wheel in wheels {
+                let hub = part(wheel)?;
+                mean.height += hub.height / N as f64;
+                mean.variance += hub.variance / (N * N) as f64;
+            }
+            Some(mean)
+        };
+        let rise = |part: Part| {
+            let (a, b) = (middle(a, part)?, middle(b, part)?);
+            Some((a.height - b.height, (a.variance + b.variance).sqrt()))
+        };
+        let is_known = |wheels: [&WheelOnMap; N]| wheels.iter().all(|wheel| wheel.is_known());
+        let measured = rise(|wheel| wheel.measured)
+            .filter(|&(height, _)| is_known(if height > 0.0 { b } else { a }))
+            .map(|(height, standard_error)| Rise { height: height.abs(), standard_error });
+        let highest = rise(|wheel| wheel.highest)
+            .map(|(height, standard_error)| Rise { height: height.abs(), standard_error });
+        Self { measured, highest }
+    }
 }

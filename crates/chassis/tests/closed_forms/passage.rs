@@ -42,9 +42,12 @@ fn a_step_just_passes_or_just_not() {
 
 #[test]
 fn a_step_stops_the_vehicle_where_its_slope_reaches_the_limit() {
-    // The edge is touched up to d = 0.35 m before the axle (0.34994 m for 11/32 m). The slope h / (L + d') reaches 1/4
-    // at d' = 4 h - L: for 11/32 m at 0.125 m, for a wall of 1/2 m at 0.75 m, so at once.
-    for (height, stop) in [(0.34375, 0.125), (0.5, 0.35), (0.375, 0.25), (2.0, 0.35)] {
+    // With the axle at d before the edge the front wheels are lifted by h - R + sqrt(R^2 - d^2). That is L / 4 at
+    // d = sqrt(R^2 - (L / 4 + R - h)^2): 0.14456 m for 11/32 m, 0.19961 m for 3/8 m, 0.30999 m for 1/2 m. A wall of
+    // L / 4 + R = 0.6625 m or more is met at its first touch.
+    for (height, stop) in
+        [(0.34375, 0.14456), (0.375, 0.19961), (0.5, 0.30999), (0.671875, 0.35), (2.0, 0.35)]
+    {
         let step = Shape::step(height);
         assert_eq!(at(&step, -stop - 1e-4), Passage::Clear, "{height}");
         let stopped = obstruction(at(&step, -stop + 1e-4));
@@ -61,13 +64,28 @@ fn a_step_stops_the_vehicle_where_its_slope_reaches_the_limit() {
 }
 
 #[test]
-fn a_step_down_stops_the_vehicle_once_its_wheels_have_left_the_edge() {
-    // Facing -x from above, 11/32 m: the front wheels hang on the edge until they are sqrt(R^2 - (R - h)^2) = 0.34994 m
-    // past it. Then they are below, and 11/32 / 1.25 = 0.275 is too steep.
+fn a_step_down_stops_the_vehicle_when_its_wheels_hang_too_low() {
+    // Facing -x from above, 11/32 m: the front wheels hang on the edge, R - sqrt(R^2 - d^2) lower with their axle d past
+    // it. That is L / 4 = 0.3125 m at d = sqrt(0.35^2 - 0.0375^2) = 0.34799 m.
     let ground = Shape::step(0.34375).ground();
     let down = |x: f64| CHASSIS.passage(&ground, DVec2::new(-x, 0.0), DVec2::NEG_X, &LIMITS);
-    assert_eq!(down(0.3499), Passage::Clear);
-    assert_eq!(kind(down(0.35)), ObstructionKind::LengthSlope);
+    assert_eq!(down(0.3479), Passage::Clear);
+    assert_eq!(kind(down(0.3481)), ObstructionKind::LengthSlope);
+}
+
+#[test]
+fn which_of_two_points_carries_a_wheel_does_not_matter() {
+    // The right front wheel stands on level ground. A stone 1/4 m before its axle that is R - sqrt(R^2 - 1/16) = 0.105 m
+    // high touches its rim, and a millionth of a metre decides which of the two carries it: points that differ by
+    // 0.105 m in height. The left wheel stands on a stone of 0.34 or 0.36 m, against a limit of 0.35 m.
+    let tie = 0.35 - (0.1225_f64 - 0.0625).sqrt();
+    for (height, passes) in [(0.34, true), (0.36, false)] {
+        for more in [-1e-6, 1e-6] {
+            let under = Shape::plane(0.0, 0.0, 0.0).stone((1.25, 0.5), (0.0625, 0.0625), height);
+            let ground = under.stone((1.525, -0.5), (0.025, 0.125), tie + more);
+            assert_eq!(at(&ground, 1.25) == Passage::Clear, passes, "{height} {more}");
+        }
+    }
 }
 
 #[test]

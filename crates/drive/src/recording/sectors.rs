@@ -62,6 +62,7 @@ fn reason(end: &SectorEnd) -> String {
         MissingReason::NotMeasured => "not_measured",
         MissingReason::BeyondMap => "beyond_map",
         MissingReason::MayHide => "may_hide",
+        MissingReason::NearLimit => "near_limit",
     };
     let part = match missing.part {
         VehiclePart::FrontWheel => "front_wheel",

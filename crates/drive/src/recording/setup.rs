@@ -113,6 +113,8 @@ pub(super) fn setup_json(job: &DriveJob, start_elevation: f64) -> String {
                 "closer": tests.slopes.closer,
             },
             "closer_share": tests.closer_share,
+            "obstacle_margin": tests.margins.obstacle,
+            "clear_margin": tests.margins.clear,
             "rear_needed": tests.rear_needed,
             "max_gap_width": tests.gaps.map(|gaps| gaps.max_width),
         },

@@ -5,9 +5,9 @@ use raypencil_scene::{Camera, Lens, Mesh};
 use super::*;
 use crate::common::mesh;
 
-/// Ground at 0 up to x = 3 m and at 0.5 m from there to 9 m, where it ends. The step is a wall.
+/// Ground at 0 up to x = 3 m and at 0.75 m from there to 9 m, where it ends. The step is a wall.
 fn step() -> std::sync::Arc<Mesh> {
-    let profile = [(-9.0, 0.0), (3.0, 0.0), (3.0, 0.5), (9.0, 0.5)];
+    let profile = [(-9.0, 0.0), (3.0, 0.0), (3.0, 0.75), (9.0, 0.75)];
     let vertices: Vec<DVec3> =
         profile.iter().flat_map(|&(x, z)| [DVec3::new(x, -9.0, z), DVec3::new(x, 9.0, z)]).collect();
     let faces = (0..3).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect();
@@ -67,8 +67,9 @@ fn counted(x: f64, radius: f64, label: Label, is_seen: bool) -> SectorTruth {
     truth
 }
 
-// The wheels' rims touch the wall's edge 0.35 m ahead of the front axle: 0.5 m over 1.2 + 0.35 m is a slope of 0.32, more than
-// 0.35 / 1.2 = 0.29. So the vehicle cannot stand with its front axle from 3 - 0.35 = 2.65 m on: the first radius is 2.7 m.
+// The wheels' rims touch the wall's edge 0.35 m ahead of the front axle, and are lifted by 0.75 - 0.35 = 0.4 m, more than the
+// 0.35 m that the slope along the vehicle allows. So it cannot stand with its front axle from 3 - 0.35 = 2.65 m on: the
+// first radius is 2.7 m.
 
 #[test]
 fn an_obstacle_is_found_within_a_step() {

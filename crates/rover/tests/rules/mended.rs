@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 use raypencil_chassis::GroundFaces;
 use raypencil_rover::{
-    Attitude, ElevationMap, ElevationSource, GridPoint, Inconsistency, LocalisationReading, MapPoint,
-    MapRules, MapSize, MapWithShadows, Mapper, Missing, MissingReason, Rule, ScanReason, ScanRule, Sight,
-    StartRule, StripePoint, Traversability, TraversabilityRules, TraversabilityTest, Vehicle,
+    Attitude, ElevationMap, ElevationSource, ErrorMargins, GridPoint, Inconsistency, LocalisationReading,
+    MapPoint, MapRules, MapSize, MapWithShadows, Mapper, Missing, MissingReason, Rule, ScanReason, ScanRule,
+    Sight, StartRule, StripePoint, Traversability, TraversabilityRules, TraversabilityTest, Vehicle,
 };
 use raypencil_scene::Material;
 use raypencil_terrain::{Ground, HeightIndex};
@@ -237,12 +237,69 @@ fn wheels_and_belly_meet_what_no_point_meets() {
 
 #[test]
 fn a_slope_at_its_limit_passes_and_one_above_it_does_not() {
-    let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
+    let margins = ErrorMargins { obstacle: 0.0, clear: 0.0 };
+    let rules = TraversabilityRules { margins, ..TraversabilityRules::for_vehicle(&Vehicle::default()) };
     for (slope, is_clear) in [(0.29, true), (0.30, false)] {
         let hill = measured(|i, _| Some(slope * 0.1 * i as f64));
         let expected = Traversability::Obstacle(TraversabilityTest::Length);
         let expected = if is_clear { Traversability::Clear } else { expected };
         assert_eq!(judge(&rules, &hill), expected);
+    }
+}
+
+#[test]
+fn a_slope_near_its_limit_is_unknown_within_its_errors() {
+    // Points have a standard error of 1 cm. A rise between two wheels has 1.41 cm, one between two axles 1 cm: the mean of
+    // two wheels has half of their variance. The limit is 0.35 m each. So a rise across is clear up to 0.35 - 0.0283 m
+    // and an obstacle from 0.35 + 0.0071 m on, one along up to 0.33 m and from 0.355 m on.
+    let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
+    let unknown = |verdict| match verdict {
+        Traversability::Unknown(Missing { reason, .. }) => reason == MissingReason::NearLimit,
+        _ => false,
+    };
+    for (rise, expected) in
+        [(0.3215, "clear"), (0.3219, "unknown"), (0.3569, "unknown"), (0.3573, "obstacle")]
+    {
+        // The left half of the ground is higher: both left wheels.
+        let verdict = judge(&rules, &measured(|_, j| Some(if j > 0 { rise } else { 0.0 })));
+        let said = match verdict {
+            Traversability::Clear => "clear",
+            Traversability::Obstacle(TraversabilityTest::Front) => "obstacle",
+            _ if unknown(verdict) => "unknown",
+            other => panic!("{rise}: {other:?}"),
+        };
+        assert_eq!(said, expected, "{rise}");
+    }
+    for (rise, expected) in
+        [(0.3298, "clear"), (0.3302, "unknown"), (0.3548, "unknown"), (0.3552, "obstacle")]
+    {
+        let verdict = judge(&rules, &measured(|i, _| Some(if i > 4 { rise } else { 0.0 })));
+        let said = match verdict {
+            Traversability::Clear => "clear",
+            Traversability::Obstacle(TraversabilityTest::Length) => "obstacle",
+            _ if unknown(verdict) => "unknown",
+            other => panic!("{rise}: {other:?}"),
+        };
+        assert_eq!(said, expected, "{rise}");
+    }
+}
+
+#[test]
+fn which_of_two_points_carries_a_wheel_changes_no_verdict() {
+    // Level ground, and a stone 0.3 m before the right front wheel's axle that touches its rim within a millimetre: it
+    // carries the wheel, or the ground below it does. The left wheels stand 0.3 or 0.4 m higher, against 0.35 m.
+    let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
+    let tie = 0.35 - (0.1225_f64 - 0.09).sqrt();
+    for (rise, expected) in
+        [(0.3, Traversability::Clear), (0.4, Traversability::Obstacle(TraversabilityTest::Front))]
+    {
+        for more in [-0.001, 0.001] {
+            let stone = |i, j| (i, j) == (13, -5);
+            let ground = measured(|i, j| {
+                Some(if j > 0 { rise } else { 0.0 } + if stone(i, j) { tie + more } else { 0.0 })
+            });
+            assert_eq!(judge(&rules, &ground), expected, "{rise} {more}");
+        }
     }
 }
 

@@ -1,0 +1,60 @@
+//! Reports in a real browser: what people see is what the files hold, and everything that differs is found.
+//!
+//! A test says so where no browser is installed. `RAYPENCIL_NEEDS_BROWSER` makes that a failure.
+
+mod browser;
+mod drive;
+mod maps;
+mod rays;
+mod reach;
+
+use std::path::PathBuf;
+
+use raypencil::Silent;
+use raypencil::harness::{Contender, Validation, contender, validate, write_validation};
+use raypencil::io::{LoadedScene, Overrides, Subject, load};
+use raypencil::judge::JudgeShare;
+use tempfile::TempDir;
+
+/// A validation in a folder.
+struct Written {
+    folder: TempDir,
+    validation: Validation,
+}
+
+impl Written {
+    fn new(validation: Validation) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        write_validation(&validation, folder.path(), &Silent).expect("a report");
+        Self { folder, validation }
+    }
+
+    fn page(&self) -> PathBuf {
+        self.folder.path().join("report.html")
+    }
+}
+
+/// A scene by its name, with these overrides.
+fn subject(scene: &str, overrides: &Overrides) -> Subject {
+    let LoadedScene { scene: loaded, name, source_sha256, vehicle, .. } =
+        load(scene, overrides).expect("a scene");
+    Subject { scene: loaded, name, arguments: scene.into(), sha256: source_sha256, vehicle: Some(vehicle) }
+}
+
+fn contenders<const N: usize>(names: [&str; N]) -> [Contender; N] {
+    names.map(|name| contender(name).expect("a renderer"))
+}
+
+/// The default scene by both renderers, which agree.
+fn pyramids() -> Written {
+    let subject = subject("pyramids", &Overrides::default());
+    Written::new(validate(subject, &contenders(["scanline", "tracer"]), JudgeShare::Sample, &Silent))
+}
+
+/// A sheet of 80 mm by the paper's algorithm: some hundred rays differ.
+fn paper() -> Written {
+    let overrides = Overrides { thickness_mm: Some(80.0), ..Overrides::default() };
+    let subject = subject("pyramids", &overrides);
+    let found = validate(subject, &contenders(["scanline-paper", "tracer"]), JudgeShare::Sample, &Silent);
+    Written::new(found)
+}
