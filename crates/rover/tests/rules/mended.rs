@@ -6,6 +6,7 @@ use raypencil_rover::{
     Attitude, ElevationMap, ElevationSource, ErrorMargins, GridPoint, Inconsistency, LocalisationReading,
     MapPoint, MapRules, MapSize, MapWithShadows, Mapper, Missing, MissingReason, Rule, ScanReason, ScanRule,
     Sight, StartRule, StripePoint, Traversability, TraversabilityRules, TraversabilityTest, Vehicle,
+    VehiclePart,
 };
 use raypencil_scene::Material;
 use raypencil_terrain::{Ground, HeightIndex};
@@ -282,6 +283,20 @@ fn a_slope_near_its_limit_is_unknown_within_its_errors() {
         };
         assert_eq!(said, expected, "{rise}");
     }
+}
+
+#[test]
+fn what_may_stand_in_a_narrow_gap_is_told_from_a_slope_near_its_limit() {
+    // On the left, columns 12 and 13 are a gap of 0.2 m before ground at 0.45 m: it may hide ground of that height, 0.2 m
+    // before the axle. The left front wheel would be lifted by 0.45 - 0.35 + sqrt(0.35^2 - 0.2^2) = 0.387 m, more than 0.35.
+    let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
+    let ground = measured(|i, j| match i {
+        12..=13 if j > 0 => None,
+        14.. if j > 0 => Some(0.45),
+        _ => Some(0.0),
+    });
+    let Traversability::Unknown(missing) = judge(&rules, &ground) else { panic!("crossed") };
+    assert_eq!((missing.part, missing.reason), (VehiclePart::FrontWheel, MissingReason::MayHide));
 }
 
 #[test]
