@@ -254,34 +254,24 @@ fn a_slope_near_its_limit_is_unknown_within_its_errors() {
     // two wheels has half of their variance. The limit is 0.35 m each. So a rise across is clear up to 0.35 - 0.0283 m
     // and an obstacle from 0.35 + 0.0071 m on, one along up to 0.33 m and from 0.355 m on.
     let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
-    let unknown = |verdict| match verdict {
-        Traversability::Unknown(Missing { reason, .. }) => reason == MissingReason::NearLimit,
-        _ => false,
+    let said = |ground: ElevationMap, test| match judge(&rules, &ground) {
+        Traversability::Clear => "clear",
+        Traversability::Obstacle(failed) if failed == test => "obstacle",
+        Traversability::Unknown(Missing { reason: MissingReason::NearLimit, .. }) => "unknown",
+        other => panic!("{other:?}"),
     };
     for (rise, expected) in
         [(0.3215, "clear"), (0.3219, "unknown"), (0.3569, "unknown"), (0.3573, "obstacle")]
     {
         // The left half of the ground is higher: both left wheels.
-        let verdict = judge(&rules, &measured(|_, j| Some(if j > 0 { rise } else { 0.0 })));
-        let said = match verdict {
-            Traversability::Clear => "clear",
-            Traversability::Obstacle(TraversabilityTest::Front) => "obstacle",
-            _ if unknown(verdict) => "unknown",
-            other => panic!("{rise}: {other:?}"),
-        };
-        assert_eq!(said, expected, "{rise}");
+        let ground = measured(|_, j| Some(if j > 0 { rise } else { 0.0 }));
+        assert_eq!(said(ground, TraversabilityTest::Front), expected, "{rise}");
     }
     for (rise, expected) in
         [(0.3298, "clear"), (0.3302, "unknown"), (0.3548, "unknown"), (0.3552, "obstacle")]
     {
-        let verdict = judge(&rules, &measured(|i, _| Some(if i > 4 { rise } else { 0.0 })));
-        let said = match verdict {
-            Traversability::Clear => "clear",
-            Traversability::Obstacle(TraversabilityTest::Length) => "obstacle",
-            _ if unknown(verdict) => "unknown",
-            other => panic!("{rise}: {other:?}"),
-        };
-        assert_eq!(said, expected, "{rise}");
+        let ground = measured(|i, _| Some(if i > 4 { rise } else { 0.0 }));
+        assert_eq!(said(ground, TraversabilityTest::Length), expected, "{rise}");
     }
 }
 
