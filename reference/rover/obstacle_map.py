@@ -62,10 +62,16 @@ def obstacle_map(grid, x, y, heading, test):
     for direction in directions(grid, heading):
         ux, uy = np.cos(direction), np.sin(direction)
         tie = False
-        for radius in radii(grid):
-            qx, qy = x + radius * ux, y + radius * uy
+        places = [(radius, x + radius * ux, y + radius * uy) for radius in radii(grid)]
+        for k, (radius, qx, qy) in enumerate(places):
             verdict = test(qx, qy, ux, uy)
             tie |= verdict.near_tie
+            if verdict.reason == "near_limit" and k + 1 < len(places):
+                # An obstacle begins at the point before it, if that one is too near a limit to tell.
+                following = test(*places[k + 1][1:], ux, uy)
+                tie |= following.near_tie
+                if following.label == OBSTACLE:
+                    verdict = Verdict(OBSTACLE, following.reason)
             if verdict.label != CLEAR:
                 out.append(Sector(direction, radius, qx, qy, verdict.label, verdict.reason, verdict.part,
                                   *verdict.missing, tie))

@@ -5,7 +5,9 @@ use raypencil_scene::{Pose, SceneError, check_count, check_range};
 
 use crate::elevation_map::ElevationMap;
 use crate::gap::MapWithShadows;
-use crate::traversability::{Missing, Traversability, TraversabilityRules, TraversabilityTest};
+use crate::traversability::{
+    Missing, MissingReason, Traversability, TraversabilityRules, TraversabilityTest,
+};
 use crate::vehicle::Vehicle;
 
 /// Radial grid around the vehicle. "Determination of the obstacle regions is based upon a radial grid that is overlain
@@ -108,7 +110,7 @@ impl RadialGrid {
 /// unknown, or visibility." (§7)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Label {
-    /// The point is not traversable.
+    /// The point is not traversable, or it is too near a limit to tell and the next point of its sector is not.
     Obstacle,
     /// The traversability of the point is unknown.
     Unknown,
@@ -127,7 +129,8 @@ pub struct SectorEnd {
     pub point: DVec2,
     /// Label of the point: the reason why testing stopped there.
     pub label: Label,
-    /// Failed test of an obstacle point; otherwise `None`.
+    /// Failed test of an obstacle point; otherwise `None`. At a point too near a limit to tell it is that of the next
+    /// point of the sector.
     pub failed: Option<TraversabilityTest>,
     /// What is missing at an unknown point; otherwise `None`.
     pub missing: Option<Missing>,
@@ -192,15 +195,21 @@ impl ObstacleMap {
                 let point = centre + unit * radius;
                 SectorEnd { direction, radius, point, label, failed: None, missing: None }
             };
-            for (radius, traversability) in
-                grid.classify_sector(index, &map, vehicle, rules, global_from_vehicle)
-            {
+            let mut points = grid.classify_sector(index, &map, vehicle, rules, global_from_vehicle);
+            while let Some((radius, traversability)) = points.next() {
                 match traversability {
                     // "... and testing for that sector stops." (§7)
                     Traversability::Obstacle(test) => {
                         return SectorEnd { failed: Some(test), ..end(radius, Label::Obstacle) };
                     }
                     Traversability::Unknown(missing) => {
+                        // CHOICE: an obstacle rises over several radii, so the point before a certain one is often too
+                        // near a limit to tell. Such an obstacle begins there. The clear way is the same either way.
+                        if missing.reason == MissingReason::NearLimit
+                            && let Some((_, Traversability::Obstacle(test))) = points.next()
+                        {
+                            return SectorEnd { failed: Some(test), ..end(radius, Label::Obstacle) };
+                        }
                         return SectorEnd { missing: Some(missing), ..end(radius, Label::Unknown) };
                     }
                     // "... and testing for that sector continues unless that point is the last one of the sector, in

@@ -3,12 +3,12 @@
 use glam::{DVec2, DVec3};
 use raypencil_chassis::GroundFaces;
 use raypencil_rover::{
-    Attitude, ElevationMap, ElevationSource, ErrorMargins, GridPoint, Inconsistency, LocalisationReading,
-    MapPoint, MapRules, MapSize, MapWithShadows, Mapper, Missing, MissingReason, Rule, ScanReason, ScanRule,
-    Sight, StartRule, StripePoint, Traversability, TraversabilityRules, TraversabilityTest, Vehicle,
-    VehiclePart,
+    Attitude, ElevationMap, ElevationSource, ErrorMargins, GridPoint, Inconsistency, Label,
+    LocalisationReading, MapPoint, MapRules, MapSize, MapWithShadows, Mapper, Missing, MissingReason,
+    ObstacleMap, RadialGrid, Rule, ScanReason, ScanRule, Sight, StartRule, StripePoint, Traversability,
+    TraversabilityRules, TraversabilityTest, Vehicle, VehiclePart,
 };
-use raypencil_scene::Material;
+use raypencil_scene::{Material, Pose};
 use raypencil_terrain::{Ground, HeightIndex};
 
 /// A reading of perfect sensors.
@@ -273,6 +273,36 @@ fn a_slope_near_its_limit_is_unknown_within_its_errors() {
         let ground = measured(|i, _| Some(if i > 4 { rise } else { 0.0 }));
         assert_eq!(said(ground, TraversabilityTest::Length), expected, "{rise}");
     }
+}
+
+#[test]
+fn an_obstacle_begins_where_it_is_too_near_a_limit_to_tell() {
+    // A wall across the way, straight ahead, at x = 3 m. The front wheels meet its upper edge 0.3 m before their axle:
+    // they are lifted by h - 0.35 + sqrt(0.35^2 - 0.3^2) = h - 0.1697 m, and one step farther by h - 0.0628 m. The limit is
+    // 0.35 m over the wheelbase, an obstacle from 0.355 m on, clear up to 0.33 m.
+    let (vehicle, pose) = (Vehicle::default(), Pose::IDENTITY);
+    let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    let ahead = |map: &ElevationMap| {
+        let sector = ObstacleMap::extract(map, &vehicle, &rules, &grid, &pose).sectors[15];
+        (sector.label, sector.failed, (sector.radius * 100.0).round())
+    };
+    let wall = |h: f64| measured(move |i, _| Some(if i >= 30 { h } else { 0.0 }));
+    let by_length = Some(TraversabilityTest::Length);
+    // At the first touch 0.36 m; 0.345 m, too near to tell, and 0.452 m next; 0.32 m, clear, and 0.427 m next.
+    for (h, radius) in [(0.5297, 270.0), (0.5147, 270.0), (0.4897, 280.0)] {
+        assert_eq!(ahead(&wall(h)), (Label::Obstacle, by_length, radius), "{h}");
+    }
+    // On a slope of 0.343 m over the wheelbase the next point is as near to the limit as this one.
+    let slope = measured(|i, _| Some(0.343 / 1.2 * 0.1 * i as f64));
+    assert_eq!(ahead(&slope), (Label::Unknown, None, 70.0));
+    // Ground that was never measured stays unknown. The left half ends at x = 2.8 m, under the left wheel at 2.6 m; at
+    // 2.7 m the right one meets a wall of 1.2 m, which lifts the middle of the axle by half of 1.03 m.
+    let half = measured(|i, j| match (i, j) {
+        (29.., 1..) => None,
+        (30.., _) => Some(1.2),
+        _ => Some(0.0),
+    });
+    assert_eq!(ahead(&half), (Label::Unknown, None, 260.0));
 }
 
 #[test]
