@@ -57,6 +57,10 @@ report-figure:
     chromium --headless --no-sandbox --hide-scrollbars --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
         --window-size=1280,1480 --virtual-time-budget=60000 --screenshot=docs/figures/report.png "file://$PWD/out/report-figure/report.html"
 
+# Sizes of reports and the time to their first picture, as in docs/evidence/page-times.md. Needs Chromium with its driver
+page-times:
+    cargo run --release -p raypencil-tests --example page_times
+
 # Pictures of the presets of generated ground: docs/figures/ground-*.svg
 portraits:
     cargo run --release -p raypencil --example portraits -- docs/figures

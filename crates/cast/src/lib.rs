@@ -4,6 +4,7 @@
 //! answers        what is asked, and the answers of the referee
 //! cloud          the points that are hit, as PLY and PCD
 //! comparison/    another program's first hits against the exact ones
+//! page           the answers as a page that answers when asked
 //! pack/          packs of rays: a mesh, rays, exact answers; the check of a candidate, and what explains its mistakes
 //! range_picture  ranges as a picture, and the points from above
 //! write          answers as NPY arrays, and their summary
@@ -34,6 +35,7 @@ mod answers;
 mod cloud;
 mod comparison;
 mod pack;
+mod page;
 mod range_picture;
 mod text;
 mod write;
@@ -48,6 +50,7 @@ pub use pack::{
     CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, is_ray_pack, ray_check_json,
     ray_check_text, write_ray_check, write_ray_pack,
 };
+pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
 pub use text::{counts_text, ray_json, ray_text};

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use raypencil_explorer::{RasterChannel, RasterGroup, raster_page};
+use raypencil_explorer::{DifferingCell, RasterChannel, RasterGroup, RasterPage, SideKind};
 use raypencil_files::Values;
+use raypencil_judge::Class;
 
 use crate::cells::{Comparison, compare_numbers};
 use crate::difference::{ChannelDifference, Difference, Sides};
@@ -35,7 +36,15 @@ pub(crate) fn explorer(difference: &Difference, sides: &Sides) -> (String, Strin
             "{left_out} channels are not among the maps above, which have at most {MAX_CELLS} cells; the table has all."
         ),
     };
-    (raster_page("diff", &title, sides.names, &groups), words)
+    let page = RasterPage {
+        kind: "diff",
+        title: &title,
+        sides: &sides.names.map(|name| (name, SideKind::Candidate)),
+        classes: ["equal", "tie", "rounding", "approximation", "undecided", "differs"],
+        groups: &groups,
+        described_words: "",
+    };
+    (page.html(), words)
 }
 
 /// Adds a channel to the group of its folder and size.
@@ -46,11 +55,11 @@ fn add(groups: &mut BTreeMap<(String, u32, u32), RasterGroup>, channel: &Channel
     let numbers = values.map(numbers_of);
     let packed = match values {
         [Values::Wholes(a), Values::Wholes(b)] => {
-            RasterChannel::Wholes([a, b].map(|image| image.cells().to_vec()))
+            RasterChannel::Wholes([a, b].map(|image| Some(image.cells().to_vec())).into())
         }
         _ => {
-            let single = |cells: &Vec<f64>| cells.iter().map(|cell| *cell as f32).collect();
-            RasterChannel::Reals(numbers.each_ref().map(single))
+            let single = |cells: &Vec<f64>| Some(cells.iter().map(|cell| *cell as f32).collect());
+            RasterChannel::Reals(numbers.each_ref().map(single).into())
         }
     };
     let key = (group.to_string(), size.0, size.1);
@@ -59,14 +68,18 @@ fn add(groups: &mut BTreeMap<(String, u32, u32), RasterGroup>, channel: &Channel
         size,
         channels: Vec::new(),
         differing: Vec::new(),
+        described: Vec::new(),
     });
     let index = entry.channels.len();
-    let earlier: BTreeSet<u32> = entry.differing.iter().map(|(cell, _)| *cell).collect();
+    let earlier: BTreeSet<u32> = entry.differing.iter().map(|differing| differing.cell).collect();
     let [a, b] = &numbers;
     let apart =
         a.iter().zip(b).zip(0_u32..).filter(|((a, b), _)| compare_numbers(**a, **b) != Comparison::Equal);
-    let new = apart.map(|(_, cell)| cell).filter(|cell| !earlier.contains(cell)).map(|cell| (cell, index));
-    let new: Vec<(u32, usize)> = new.collect();
+    let new: Vec<DifferingCell> = apart
+        .map(|(_, cell)| cell)
+        .filter(|cell| !earlier.contains(cell))
+        .map(|cell| DifferingCell { cell, channel: index, class: Class::Defect })
+        .collect();
     entry.differing.extend(new);
     entry.channels.push((name.to_string(), channel.unit.clone(), packed));
 }

@@ -165,7 +165,11 @@ export function channelOf(model, key) {
       words,
     };
   }
-  return null;
+  // A channel of other programs' files: its own name, and the unit that the page has for it.
+  const quantity = (model.quantities ?? []).find(({ name }) => name === key);
+  return quantity
+    ? { key, title: key, unit: quantity.unit, drawing: 'value', belongs: 'side', words: `The channel ${key}.` }
+    : null;
 }
 
 /**

@@ -29,8 +29,8 @@ export class DriveTimeline {
         button('◀ map', () => this.stepMap(-1), {
           title: 'previous obstacle map (Page up)', 'aria-label': 'previous obstacle map',
         }),
-        button('−1', () => this.step(-1), { title: 'previous frame (left)', 'aria-label': 'previous frame' }),
-        button('+1', () => this.step(1), { title: 'next frame (right)', 'aria-label': 'next frame' }),
+        button('−1', () => this.step(-1), { title: 'previous frame (left)', 'aria-label': '−1: previous frame' }),
+        button('+1', () => this.step(1), { title: 'next frame (right)', 'aria-label': '+1: next frame' }),
         button('map ▶', () => this.stepMap(1), {
           title: 'next obstacle map (Page down)', 'aria-label': 'next obstacle map',
         }),

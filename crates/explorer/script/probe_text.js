@@ -27,6 +27,14 @@ export function probeBlocks(text) {
 }
 
 /**
+ * The command that prints such a text again; an empty text if it names none.
+ * @param {string} text
+ */
+export function commandOf(text) {
+  return /^ *again: (.*)$/m.exec(text)?.[1] ?? '';
+}
+
+/**
  * The blocks as elements. In a renderer's answer, digits that the exact answer has otherwise are marked.
  * @param {string} text
  */

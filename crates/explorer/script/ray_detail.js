@@ -11,7 +11,7 @@ import { plain, signedWithUnit, withUnit } from './numbers.js';
 import { channelOf, channelsOfSensor, isNamed } from './channels.js';
 import { readCell } from './cell_reading.js';
 import { recordedWords } from './cell_words.js';
-import { probeElement } from './probe_text.js';
+import { commandOf, probeElement } from './probe_text.js';
 
 /** @typedef {import('./page_data.js').PageData} PageData */
 /** @typedef {import('./page_model.js').DescribedRay} DescribedRay */
@@ -27,6 +27,28 @@ const CLASS_WORDS = [
   'The referee could not tell which side is right.',
   'No rounding and no approximation of the paper explains this answer. It is wrong.',
 ];
+
+/** The channel of a quantity that is not the hit itself. @type {Record<string, string>} */
+const CHANNEL_OF_QUANTITY = {
+  depth: 'depth.Z',
+  incidence: 'incidence.V',
+  visible: 'visible.V',
+  pixel: 'pixel.I',
+  'pencil flux': 'flux.V',
+  'pixel flux': 'flux.V',
+};
+
+/** What the last class says on pages that know less. @type {Record<string, string>} */
+const LAST_CLASS_WORDS = {
+  diff: 'The recordings are not the same here. Nothing on this page says which of them is right.',
+  cast: 'No rounding explains this answer. It is wrong.',
+};
+
+/** @param {string} kind of the page @param {number} code */
+function classWords(kind, code) {
+  const isLast = code === CLASS_WORDS.length - 1;
+  return (isLast ? LAST_CLASS_WORDS[kind] : undefined) ?? CLASS_WORDS[code];
+}
 
 export class RayDetail {
   /**
@@ -71,7 +93,11 @@ export class RayDetail {
       return;
     }
     const names = [a, b].map((side) => model.sides[side]?.name ?? '?');
-    const command = probeCommand(model, sensor, cell);
+    const apart = await this.apartWords(reading, [sensor, cell, a, b], names);
+    if (ticket !== this.ticket) {
+      return;
+    }
+    const command = (ray && commandOf(ray.text)) || probeCommand(model, sensor, cell);
     /** @type {HTMLElement[]} */
     const parts = [
       element(
@@ -80,7 +106,7 @@ export class RayDetail {
         ...(reading.code === NO_CODE ? [] : [classMark(reading.code), ' ']),
         placeWords(model, sensor, cell),
       ),
-      element('p', { 'data-detail-verdict': true }, verdictWords(reading, names)),
+      element('p', { 'data-detail-verdict': true }, verdictWords(reading, names, apart, model.kind)),
       ...this.causeLines(reading),
       ...exactLines(ray),
       this.buttons(command),
@@ -118,7 +144,7 @@ export class RayDetail {
         element(
           'details',
           { open: true, 'data-detail-probe': true },
-          element('summary', {}, 'What ', element('code', {}, 'probe'), ' says'),
+          element('summary', {}, 'What ', element('code', {}, model.kind === 'cast' ? 'cast' : 'probe'), ' says'),
           probeElement(ray.text),
         ),
       );
@@ -135,6 +161,32 @@ export class RayDetail {
     this.root.dataset.cell = String(cell);
     this.root.replaceChildren(...parts);
     this.root.hidden = false;
+  }
+
+  /**
+   * What the sides say of the quantity that decides.
+   * @param {CellReading} reading @param {[number, number, number, number]} where sensor, cell, both sides
+   * @param {string[]} names
+   */
+  async apartWords(reading, where, names) {
+    const { data } = this;
+    const quantity = data.model.quantities?.[reading.quantity]?.name ?? '';
+    const channel = channelOf(data.model, CHANNEL_OF_QUANTITY[quantity] ?? '');
+    if (!channel) {
+      const isApart = Number.isFinite(reading.difference) && reading.difference !== 0;
+      return isApart ? ` Their ranges differ by ${withUnit(Math.abs(reading.difference), 'm', 3)}.` : '';
+    }
+    const [sensor, cell, a, b] = where;
+    const found = await readCell(data, sensor, a, b, channel, cell);
+    const said = [
+      [found.a, found.hasA],
+      [found.b, found.hasB],
+    ].map(([value, isGiven], side) => {
+      const words = recordedWords(Number(value), Boolean(isGiven), channel);
+      const unit = channel.unit && Number.isFinite(Number(value)) ? ` ${channel.unit}` : '';
+      return `${words}${unit} by ${names[side]}`;
+    });
+    return ` What is not the same is the ${quantity}: ${said.join(', ')}.`;
   }
 
   /** @param {string} command */
@@ -226,8 +278,8 @@ export class RayDetail {
   }
 }
 
-/** @param {CellReading} reading @param {string[]} names */
-function verdictWords(reading, names) {
+/** @param {CellReading} reading @param {string[]} names @param {string} apart @param {string} kind of the page */
+function verdictWords(reading, names, apart, kind) {
   const faces = [reading.faceA, reading.faceB].map((face) =>
     Number.isNaN(face) ? 'names no face' : face === NOTHING ? 'hits nothing' : `hits face ${face}`,
   );
@@ -235,12 +287,8 @@ function verdictWords(reading, names) {
     faces[0] === faces[1] && !Number.isNaN(reading.faceA)
       ? `Both sides say: ${faces[0].replace('hits', 'hit')}.`
       : `${names[0]} ${faces[0]}, ${names[1]} ${faces[1]}.`;
-  const apart =
-    Number.isFinite(reading.difference) && reading.difference !== 0
-      ? ` Their ranges differ by ${withUnit(Math.abs(reading.difference), 'm', 3)}.`
-      : '';
-  const kind = CLASS_WORDS[reading.code];
-  return `${both}${apart}${kind ? ` ${kind}` : ''}`;
+  const words = classWords(kind, reading.code);
+  return `${both}${apart}${words ? ` ${words}` : ''}`;
 }
 
 /** @param {DescribedRay|null} ray */

@@ -41,7 +41,7 @@ export class RayTable {
     this.selected = -1;
     this.hasPairs = false;
     this.head = element('div', { class: 'x-row x-head', role: 'row', 'aria-rowindex': 1 });
-    this.space = element('div', { class: 'x-space', role: 'rowgroup' });
+    this.space = element('div', { class: 'x-space', role: 'presentation' });
     this.box = element(
       'div',
       { class: 'x-rows', tabindex: '0', role: 'rowgroup', 'aria-label': 'Rays' },

@@ -116,7 +116,7 @@ export class Toolbar {
           'span',
           { class: 'x-joined' },
           act('−', 'zoom-out', 'Smaller', () => this.actions.zoom(1 / 1.5)),
-          act('fit', 'fit', 'Show everything. Key 0.', this.actions.fit),
+          act('fit', 'fit', 'Fit everything in. Key 0.', this.actions.fit),
           act('+', 'zoom-in', 'Larger', () => this.actions.zoom(1.5)),
         ),
         this.marks,

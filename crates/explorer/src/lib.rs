@@ -12,7 +12,8 @@
 //! switch_words      the paper's approximations in words
 //! script            the modules of `script/`, put together
 //! page              the whole
-//! raster_page       two recordings without a scene
+//! described         which rays a page describes in full
+//! raster_page       rasters without a scene
 //! ```
 //!
 //! Sizes: of a sensor the page stores faces, visibility, pixels and flux of the first side, and of the others what
@@ -22,6 +23,7 @@
 mod arrays;
 mod channels;
 mod derived;
+mod described;
 mod page;
 mod pair;
 mod raster_page;
@@ -31,9 +33,10 @@ mod switch_words;
 
 pub use arrays::{Arrays, Change, Packed};
 pub use channels::SideMaps;
+pub use described::{RayToDescribe, rays_to_describe};
 pub use page::{DescribedRay, ExplorerPage, SideKind, without_explorer};
 pub use pair::{ComparedMaps, SensorPair};
-pub use raster_page::{RasterChannel, RasterGroup, raster_page};
+pub use raster_page::{DifferingCell, RasterChannel, RasterGroup, RasterPage};
 pub use sensor::RayMargins;
 
 #[cfg(doctest)]

@@ -22,6 +22,17 @@ pub enum SideKind {
     Exact,
 }
 
+impl SideKind {
+    /// The kind's name in the page model.
+    pub(crate) fn key(self) -> &'static str {
+        match self {
+            Self::Renderer => "renderer",
+            Self::Candidate => "candidate",
+            Self::Exact => "exact",
+        }
+    }
+}
+
 /// A ray that the page describes in full.
 #[derive(Debug, Clone)]
 pub struct DescribedRay {
@@ -151,12 +162,7 @@ impl<'s> ExplorerPage<'s> {
 
     /// Adds a side; its index counts from 0.
     pub fn add_side(&mut self, name: &str, kind: SideKind, words: &str) {
-        let kind = match kind {
-            SideKind::Renderer => "renderer",
-            SideKind::Candidate => "candidate",
-            SideKind::Exact => "exact",
-        };
-        self.sides.push(json!({ "name": name, "kind": kind, "words": words }));
+        self.sides.push(json!({ "name": name, "kind": kind.key(), "words": words }));
     }
 
     /// Sets the causes of the rays of class `approximation`. To be called before the sensors are added.
@@ -243,9 +249,17 @@ const END: &str = "<!-- end of the explorer -->\n";
 /// The page without the explorer's elements: what people see without JavaScript, for programs that read its text.
 ///
 /// ```
-/// use raypencil_explorer::{raster_page, without_explorer};
+/// use raypencil_explorer::{RasterPage, SideKind, without_explorer};
 ///
-/// let page = format!("<h1>Title</h1>\n{}<footer></footer>", raster_page("diff", "a title", ["a", "b"], &[]));
+/// let of_rasters = RasterPage {
+///     kind: "diff",
+///     title: "a title",
+///     sides: &[("a", SideKind::Candidate), ("b", SideKind::Candidate)],
+///     classes: ["equal", "", "", "", "", "differs"],
+///     groups: &[],
+///     described_words: "",
+/// };
+/// let page = format!("<h1>Title</h1>\n{}<footer></footer>", of_rasters.html());
 /// assert_eq!(without_explorer(&page), "<h1>Title</h1>\n<footer></footer>");
 /// ```
 pub fn without_explorer(page: &str) -> String {

@@ -105,7 +105,7 @@ pub use attribution::cause::{Attributions, Cause, VisibilityCause};
 pub use attribution::context::Rerender;
 pub use bounds::range_bound;
 pub use check::ground_truth::{GroundTruth, UncertifiedAnswer};
-pub use check::single::{CheckedItem, CheckedRay, check_ray};
+pub use check::single::{CheckedItem, CheckedRay, check_ray, check_ray_against};
 pub use check::{Check, check, check_rays};
 pub use class::{CHECK_CLASSES, COMPARE_CLASSES, Class, ClassCounts, class_counts_json};
 pub use compare::side::Side;

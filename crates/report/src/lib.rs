@@ -54,7 +54,7 @@ pub use plot::{
 };
 pub use scale::{Scale, Spread, Tick};
 pub use table::{Align, Table};
-pub use text::{count, counted, list, number, quantity, time};
+pub use text::{count, counted, described_words, list, number, quantity, time};
 pub use version::VERSION;
 
 #[cfg(doctest)]

@@ -102,3 +102,21 @@ pub fn escaped(text: &str) -> String {
     }
     out
 }
+
+/// How many of the rays of a page are described in full, and which, in words.
+///
+/// ```
+/// use raypencil_report::described_words;
+///
+/// assert_eq!(described_words(17, 17), "Every ray that is not 'agree' is described in full: 17.");
+/// ```
+pub fn described_words(described: u64, all: u64) -> String {
+    let [described_words, all_words] = [described, all].map(count);
+    if described == all {
+        return format!("Every ray that is not 'agree' is described in full: {described_words}.");
+    }
+    format!(
+        "{described_words} of the {all_words} rays that are not 'agree' are described in full: the worst half by class \
+         and size, and a fair sample of the others. The command of each ray prints the rest."
+    )
+}

@@ -151,8 +151,13 @@ impl Page {
     }
 
     /// A command of the DevTools protocol.
-    fn devtools(&self, command: &str, parameters: &Value) -> Value {
+    pub fn devtools(&self, command: &str, parameters: &Value) -> Value {
         self.command("/goog/cdp/execute", &json!({ "cmd": command, "params": parameters }))
+    }
+
+    /// Runs a script in the page.
+    pub fn run(&self, script: &str) {
+        self.command("/execute/sync", &json!({ "script": script, "args": [] }));
     }
 
     /// The value of a JavaScript expression; promises are waited for.

@@ -2,8 +2,11 @@
 //!
 //! A test says so where no browser is installed. `RAYPENCIL_NEEDS_BROWSER` makes that a failure.
 
+mod accessibility;
 mod browser;
-mod drive;
+mod candidates;
+mod cast;
+mod drives;
 mod maps;
 mod rays;
 mod reach;

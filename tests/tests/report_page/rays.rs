@@ -64,6 +64,7 @@ fn every_differing_ray_has_its_words() {
     page.ask("document.querySelector('canvas[data-panel]').focus()");
     let total = (counts.compared - counts.agree).min(40);
     let mut seen = std::collections::BTreeSet::new();
+    let mut of_flux = 0;
     for _ in 0..total {
         let before = page.ask("document.querySelector('[data-detail]')?.dataset.cell ?? null");
         let sensor_before = page.ask("document.querySelector('[data-detail]')?.dataset.sensor ?? null");
@@ -83,9 +84,10 @@ fn every_differing_ray_has_its_words() {
         let command = raypencil::io::probe_command(&written.validation.subject, place);
         assert!(text.contains(&command), "{command} is not in {text}");
         assert!(text.contains("error of the paper"), "{text}");
+        of_flux += usize::from(text.contains("What is not the same is the pixel flux: "));
         assert!(seen.insert((sensor, cell)), "{place} comes twice");
     }
-    assert!(seen.len() > 20);
+    assert!(seen.len() > 20 && of_flux > 5, "{} rays, {of_flux} by their flux", seen.len());
     page.assert_quiet();
 }
 

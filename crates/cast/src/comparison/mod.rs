@@ -17,5 +17,6 @@ mod verdict;
 pub use compare::{compare, compare_with};
 pub use files::write_comparison;
 pub use stated::Stated;
+pub(crate) use text::wrong_text;
 pub use text::{comparison_headline, comparison_json, comparison_text};
 pub use verdict::{CastCounts, CastValue, Comparison, RayVerdict, ValueTally, Wrong};

@@ -60,7 +60,7 @@ fn face_text(face: Option<FaceId>) -> String {
 }
 
 /// What is wrong with a ray, in words.
-fn wrong_text(wrong: &Wrong) -> String {
+pub(crate) fn wrong_text(wrong: &Wrong) -> String {
     match wrong {
         Wrong::Hit { stated, exact } => {
             format!("{}; exactly it is {}", face_text(*stated), face_text(*exact))

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use raypencil_files::FileError;
+use raypencil_files::{FileError, RayArray};
 use raypencil_referee::ExactCast;
 use raypencil_scene::{Precision, Progress};
 
 use super::candidate::{CandidateConventions, read_candidate};
 use super::mistakes::explain;
 use super::read::RayPack;
-use crate::comparison::{Comparison, compare_with};
+use crate::answers::{Answers, Questions, cast_with};
+use crate::comparison::{Comparison, Stated, compare_with};
 
 /// A candidate, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +23,12 @@ pub struct RayPackChecked {
     pub comparison: Comparison,
     /// What explains why it is wrong, as one sentence. It changes no verdict.
     pub why: Option<String>,
-    /// Each ray's numbers, as `cast --ray` takes them, for rays that are wrong: the first five.
-    pub wrong_rays: Vec<(usize, String)>,
+    /// The rays of the pack.
+    pub rays: RayArray,
+    /// The exact answers.
+    pub answers: Answers,
+    /// What the candidate says.
+    pub stated: Stated,
     /// Whether only fronts of faces are asked for.
     pub fronts_only: bool,
 }
@@ -32,6 +37,15 @@ impl RayPackChecked {
     /// Whether no ray is wrong, and some ray hits.
     pub fn passes(&self) -> bool {
         self.comparison.passes()
+    }
+
+    /// The command that shows everything about the ray with this index.
+    pub fn ray_command(&self, index: usize) -> String {
+        let ray = &self.rays.rays[index];
+        let parts = ray.origin.to_array().into_iter().chain(ray.direction.to_array());
+        let numbers: Vec<String> = parts.chain([ray.t_min, ray.t_max]).map(|part| part.to_string()).collect();
+        let fronts = if self.fronts_only { " --fronts-only" } else { "" };
+        format!("raypencil cast {} --ray={}{fronts} --all --margins", self.pack, numbers.join(","))
     }
 }
 
@@ -81,18 +95,16 @@ pub fn check_ray_pack(
         progress.stage("looking for a mistake that explains the wrong rays");
         explain(&exact, &mesh, (&rays.rays, sides), &stated, precision, &wrong)
     });
-    let numbers = |index: usize| {
-        let ray = &rays.rays[index];
-        let parts = ray.origin.to_array().into_iter().chain(ray.direction.to_array());
-        parts.chain([ray.t_min, ray.t_max]).map(|part| part.to_string()).collect::<Vec<_>>().join(",")
-    };
+    let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
     let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
     Ok(RayPackChecked {
         name,
         pack: pack.display().to_string(),
         why: why.flatten().map(|explanation| explanation.sentence()),
-        wrong_rays: wrong.iter().take(5).map(|&index| (index, numbers(index))).collect(),
         fronts_only: sides == raypencil_scene::Sides::Fronts,
         comparison,
+        rays,
+        answers,
+        stated,
     })
 }

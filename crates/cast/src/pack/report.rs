@@ -8,17 +8,12 @@ use serde_json::{Value, json};
 
 use super::check::RayPackChecked;
 use crate::comparison::{comparison_headline, comparison_json, comparison_text};
+use crate::page::{CastPage, ComparedHits, write_cast_page};
 
 /// The check on one screen.
 pub fn ray_check_text(checked: &RayPackChecked) -> String {
-    let RayPackChecked { name, pack, comparison, why, wrong_rays, fronts_only } = checked;
-    let fronts = if *fronts_only { " --fronts-only" } else { "" };
-    let command = |index: usize| {
-        let numbers = wrong_rays.iter().find(|(wrong, _)| *wrong == index);
-        let numbers = numbers.map_or("", |(_, numbers)| numbers.as_str());
-        format!("raypencil cast {pack} --ray={numbers}{fronts} --all --margins")
-    };
-    let mut text = comparison_text(name, comparison, command);
+    let RayPackChecked { name, comparison, why, .. } = checked;
+    let mut text = comparison_text(name, comparison, |index| checked.ray_command(index));
     if let Some(why) = why {
         text += &format!("  Why: {why}.\n");
     }
@@ -37,7 +32,7 @@ pub fn ray_check_json(checked: &RayPackChecked) -> Value {
     })
 }
 
-/// Writes `junit.xml` and last `check.json`.
+/// Writes `junit.xml`, `report.html` and last `check.json`.
 ///
 /// # Errors
 /// The folder or a file cannot be written; the message names it.
@@ -54,6 +49,24 @@ pub fn write_ray_check(checked: &RayPackChecked, folder: &Path) -> Result<(), Fo
     let path = folder.join("junit.xml");
     let xml = report.to_xml().map_err(|error| raypencil_files::FileError::io(&path, "write", error))?;
     write_atomically(&path, |file| file.write_all(xml.as_bytes()))?;
+    let title = format!("{} on {}", checked.name, checked.pack);
+    let mut facts = vec![("pack", checked.pack.clone()), ("candidate", checked.name.clone())];
+    facts.extend(checked.why.iter().map(|why| ("why", why.clone())));
+    let page = CastPage {
+        title: &title,
+        facts: &facts,
+        shape: &checked.rays.shape,
+        rays: &checked.rays.rays,
+        answers: &checked.answers,
+        set: None,
+        compared: Some(ComparedHits {
+            name: &checked.name,
+            stated: &checked.stated,
+            comparison: &checked.comparison,
+            ray_command: &|index| checked.ray_command(index),
+        }),
+    };
+    write_cast_page(folder, &page)?;
     let document = ray_check_json(checked);
     Ok(write_atomically(&last, |file| file.write_all(format!("{document:#}\n").as_bytes()))?)
 }

@@ -2,11 +2,14 @@
 
 use std::path::Path;
 
-use raypencil::cast::{Comparison, Stated, compare, comparison_json, comparison_text, write_comparison};
-use raypencil::io::{FolderError, create_folder, quoted};
+use raypencil::cast::{
+    ComparedHits, Comparison, Stated, compare, comparison_json, comparison_text, write_comparison,
+};
+use raypencil::io::FileError;
 use raypencil::{CastRay, Precision, Progress, Sides, Triangles};
 use serde_json::Value;
 
+use super::ray_command;
 use crate::args::Cast;
 
 /// A renderer's first hits, and what became of them.
@@ -43,26 +46,18 @@ impl<'a> Compared<'a> {
     }
 
     pub(super) fn text(&self, rays: &[CastRay]) -> String {
-        comparison_text(self.name, &self.comparison, |index| self.ray_command(&rays[index]))
+        comparison_text(self.name, &self.comparison, |index| ray_command(self.command, &rays[index]))
+    }
+
+    /// The comparison as a page shows it.
+    pub(super) fn hits<'p>(&'p self, ray_command: &'p dyn Fn(usize) -> String) -> ComparedHits<'p> {
+        let Self { name, stated, comparison, .. } = self;
+        ComparedHits { name, stated, comparison, ray_command }
     }
 
     /// Writes the arrays of the comparison into the folder of the answers.
-    pub(super) fn write(&self, folder: &Path, shape: &[u64]) -> Result<(), FolderError> {
-        create_folder(folder)?;
+    pub(super) fn write(&self, folder: &Path, shape: &[u64]) -> Result<(), FileError> {
         write_comparison(folder, self.name, shape, &self.stated, &self.comparison)?;
         Ok(())
-    }
-
-    /// The command that shows everything about a ray.
-    fn ray_command(&self, ray: &CastRay) -> String {
-        let [ox, oy, oz] = ray.origin.to_array();
-        let [dx, dy, dz] = ray.direction.to_array();
-        let mut numbers = format!("{ox},{oy},{oz},{dx},{dy},{dz}");
-        if ray.t_min > 0.0 || ray.t_max < f64::INFINITY {
-            numbers += &format!(",{},{}", ray.t_min, ray.t_max);
-        }
-        let mesh = quoted(&self.command.mesh.display().to_string());
-        let fronts = if self.command.fronts_only { " --fronts-only" } else { "" };
-        format!("raypencil cast {mesh} --ray={numbers}{fronts} --all --margins")
     }
 }

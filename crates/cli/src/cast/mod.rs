@@ -5,12 +5,12 @@ mod compared;
 use std::path::{Path, PathBuf};
 
 use raypencil::cast::{
-    Answers, CastSource, Questions, RayArray, cast as answer, counts_text, ray_json, ray_text,
-    rays_from_bytes, write_answers, write_set,
+    Answers, CastPage, CastSource, Questions, RayArray, cast as answer, counts_text, ray_json, ray_text,
+    rays_from_bytes, write_answers, write_cast_page, write_set,
 };
 use raypencil::io::{
-    FileError, Limits, LoadedRaySets, RayScene, bytes, hex_digits, load_ray_scene, read_ray_sets,
-    read_triangles, sha256,
+    FileError, Limits, LoadedRaySets, RayScene, bytes, create_folder, hex_digits, load_ray_scene, quoted,
+    read_ray_sets, read_triangles, sha256,
 };
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
 use serde_json::{Value, json};
@@ -46,8 +46,17 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             let answers = answer(mesh, &array.rays, sides, questions, &spinner);
             let compared = Compared::of(command, mesh, &array.rays, sides, &spinner);
             spinner.stage("writing");
-            if let (Some(compared), Some(folder)) = (&compared, folder) {
-                compared.write(folder, &array.shape)?;
+            if let Some(folder) = folder {
+                let set = None;
+                write_page(
+                    folder,
+                    command,
+                    &source,
+                    (&array.rays, &array.shape, set),
+                    sides,
+                    &answers,
+                    &compared,
+                )?;
             }
             let written = folder.map(|folder| write_answers(folder, &answers, (mesh, array, sides), &source));
             vec![Answered {
@@ -69,8 +78,9 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 // One set is written as rays of no set are; of several each has a folder of its own.
                 let folder: Option<PathBuf> =
                     folder.map(|folder| if sets.len() == 1 { folder.into() } else { folder.join(&set.name) });
-                if let (Some(compared), Some(folder)) = (&compared, &folder) {
-                    compared.write(folder, &set.shape)?;
+                if let Some(folder) = &folder {
+                    let of_set = (set.set.rays(), set.shape.as_slice(), Some(set));
+                    write_page(folder, command, &source, of_set, sides, &answers, &compared)?;
                 }
                 let written = folder.map(|folder| write_set(&folder, &answers, (mesh, set, sides), &source));
                 let summary = written.transpose()?;
@@ -105,6 +115,51 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     }
     say(&text);
     Ok(outcome)
+}
+
+/// Writes what a folder of answers has beside them: the page, and the arrays of a comparison.
+fn write_page(
+    folder: &Path,
+    command: &Cast,
+    source: &CastSource,
+    (rays, shape, set): (&[CastRay], &[u64], Option<&NamedRaySet>),
+    sides: Sides,
+    answers: &Answers,
+    compared: &Option<Compared<'_>>,
+) -> Result<(), Trouble> {
+    create_folder(folder)?;
+    if let Some(compared) = compared {
+        compared.write(folder, shape)?;
+    }
+    let of_rays = match set {
+        Some(set) => format!("{} of {}", set.name, source.rays),
+        None if command.rays.is_none() => "rays of the command line".to_string(),
+        None => source.rays.clone(),
+    };
+    let title = format!("{of_rays} on {}", source.mesh);
+    let sides = if sides == Sides::Fronts { "fronts only" } else { "both" };
+    let facts = [
+        ("mesh", source.mesh.clone()),
+        ("rays", of_rays.clone()),
+        ("sides of faces that are hit", sides.into()),
+    ];
+    let ray_command = |index: usize| ray_command(command, &rays[index]);
+    let compared = compared.as_ref().map(|compared| compared.hits(&ray_command));
+    write_cast_page(folder, &CastPage { title: &title, facts: &facts, shape, rays, answers, set, compared })?;
+    Ok(())
+}
+
+/// The command that shows everything about a ray.
+fn ray_command(command: &Cast, ray: &CastRay) -> String {
+    let [ox, oy, oz] = ray.origin.to_array();
+    let [dx, dy, dz] = ray.direction.to_array();
+    let mut numbers = format!("{ox},{oy},{oz},{dx},{dy},{dz}");
+    if ray.t_min > 0.0 || ray.t_max < f64::INFINITY {
+        numbers += &format!(",{},{}", ray.t_min, ray.t_max);
+    }
+    let mesh = quoted(&command.mesh.display().to_string());
+    let fronts = if command.fronts_only { " --fronts-only" } else { "" };
+    format!("raypencil cast {mesh} --ray={numbers}{fronts} --all --margins")
 }
 
 /// The answers to an array or to a set of rays.
@@ -151,7 +206,8 @@ impl Answered<'_> {
             text += &format!("\n{}", compared.text(self.rays));
         }
         if let Some(summary) = &self.summary {
-            let more = if self.set.is_some() { ", point clouds and pictures" } else { "" };
+            let more =
+                if self.set.is_some() { ", report.html, point clouds and pictures" } else { ", report.html" };
             text += &format!(
                 "\n{}\n  beside it: an array for each value, of shape {:?}{more}\n",
                 summary.display(),

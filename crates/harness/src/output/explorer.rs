@@ -2,17 +2,15 @@
 
 use rayon::prelude::*;
 use raypencil_explorer::{
-    ComparedMaps, DescribedRay, ExplorerPage, RayMargins, SensorPair, SideKind, SideMaps,
+    ComparedMaps, DescribedRay, ExplorerPage, RayMargins, RayToDescribe, SensorPair, SideKind, SideMaps,
+    rays_to_describe,
 };
-use raypencil_judge::{Answers, Class, Judge, JudgeShare, SensorResult};
-use raypencil_report::count;
-use raypencil_scene::{Image, Place, Pose, RenderOutput, SensorId, SensorMap, Switches};
+use raypencil_judge::{Answers, GroundTruth, Judge, JudgeShare};
+use raypencil_report::described_words;
+use raypencil_scene::{Image, Pose, RenderOutput, SensorId, Switches};
 
 use crate::probe::{Probe, probe_rendered};
 use crate::validation::Validation;
-
-/// Maximum number of rays that a page describes in full. Each takes about 1.5 kB before it is deflated.
-const MAX_DESCRIBED_RAYS: usize = 1000;
 
 /// The elements of the page that the explorer needs, with all that it shows.
 pub(crate) fn explorer(validation: &Validation) -> String {
@@ -118,81 +116,42 @@ fn pairs_on(validation: &Validation, sensor: SensorId, exact_side: usize) -> Vec
     of_renderers.chain(of_candidates).collect()
 }
 
-/// A ray that a pair of renderers answers differently.
-struct Differing {
-    place: Place,
-    pair: usize,
-    class: Class,
-    /// Difference of the ranges, metres; where one side hits nothing, the range of the other.
-    size: f64,
-}
-
-/// The rays that are described in full, and which these are in words.
+/// The rays that are described in full, and which these are in words: of renderers beside each other, and of candidates
+/// beside the exact answers.
 fn described(validation: &Validation, judge: &Judge<'_>) -> (Vec<DescribedRay>, String) {
-    let mut all: Vec<Differing> = Vec::new();
+    let mut all: Vec<RayToDescribe> = Vec::new();
     for (pair, of_pair) in validation.pairs.iter().enumerate() {
         for result in &of_pair.sensors {
             let maps = [of_pair.a, of_pair.b].map(|side| validation.rendered[side].output.map(result.sensor));
-            all.extend(differing_rays(pair, result, maps));
+            all.extend(RayToDescribe::of(pair, result, maps));
         }
     }
+    let first_candidate = validation.pairs.len();
+    let truth = validation.scoreboard.as_ref().map(|scoreboard| {
+        let exact = &scoreboard.exact;
+        for (index, report) in scoreboard.candidates.iter().enumerate() {
+            for result in &report.check.sensors {
+                let answers = [exact, &report.candidate.recorded.answers];
+                let maps = answers.map(|answers| Some(answers.map(result.sensor)));
+                all.extend(RayToDescribe::of(first_candidate + index, result, maps));
+            }
+        }
+        GroundTruth::borrowing(&validation.subject.scene, exact)
+    });
     let total = all.len();
-    let chosen = chosen(all);
-    let words = if chosen.len() == total {
-        format!("Every ray that is not 'agree' is described in full: {}.", count(total as u64))
-    } else {
-        format!(
-            "{} of the {} rays that are not 'agree' are described in full: the worst half by class and size, and a fair \
-             sample of the others. The command of each ray prints the rest.",
-            count(chosen.len() as u64),
-            count(total as u64)
-        )
-    };
+    let chosen = rays_to_describe(all);
+    let words = described_words(chosen.len() as u64, total as u64);
     let rays = chosen
         .par_iter()
         .filter_map(|ray| {
-            let probe = probe_rendered(judge, &validation.subject, ray.place, &validation.rendered)?;
+            let mut probe = probe_rendered(judge, &validation.subject, ray.place, &validation.rendered)?;
+            if let (Some(truth), Some(index)) = (&truth, ray.pair.checked_sub(first_candidate)) {
+                probe.ask_one(truth, &validation.candidates()[index].candidate);
+            }
             Some(describe(&probe, ray.pair))
         })
         .collect();
     (rays, words)
-}
-
-fn differing_rays<'r>(
-    pair: usize,
-    result: &'r SensorResult,
-    maps: [Option<&'r SensorMap>; 2],
-) -> impl Iterator<Item = Differing> + 'r {
-    result.differing.iter().map(move |ray| {
-        let ranges = maps.map(|map| map?.range.as_ref()?.at(ray.i, ray.j).get());
-        let size = match ranges {
-            [Some(a), Some(b)] => (a - b).abs(),
-            [Some(one), None] | [None, Some(one)] => one,
-            [None, None] => 0.0,
-        };
-        let place = Place { sensor: result.sensor, i: ray.i, j: ray.j };
-        Differing { place, pair, class: ray.class, size }
-    })
-}
-
-/// At most [`MAX_DESCRIBED_RAYS`]: the worst half, and a sample of the others, spread evenly in reading order.
-fn chosen(mut all: Vec<Differing>) -> Vec<Differing> {
-    if all.len() <= MAX_DESCRIBED_RAYS {
-        return all;
-    }
-    // Stable: of equals the first in reading order.
-    all.sort_by(|a, b| b.class.cmp(&a.class).then(b.size.total_cmp(&a.size)));
-    let mut others = all.split_off(MAX_DESCRIBED_RAYS / 2);
-    others.sort_by_key(|ray| (ray.pair, ray.place.sensor, ray.place.j, ray.place.i));
-    let room = MAX_DESCRIBED_RAYS - all.len();
-    let count = others.len();
-    let mut next = 0;
-    all.extend(others.into_iter().enumerate().filter_map(|(index, ray)| {
-        let is_due = index * room >= next * count && next < room;
-        next += usize::from(is_due);
-        is_due.then_some(ray)
-    }));
-    all
 }
 
 fn describe(probe: &Probe, pair: usize) -> DescribedRay {

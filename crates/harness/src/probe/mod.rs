@@ -5,7 +5,8 @@ mod text;
 use std::borrow::Cow;
 
 use raypencil_judge::{
-    Attributions, Cause, CheckedRay, Class, Judge, JudgeShare, Quantity, VisibilityCause, check_ray,
+    Attributions, Cause, CheckedRay, Class, GroundTruth, Judge, JudgeShare, Quantity, VisibilityCause,
+    check_ray, check_ray_against,
 };
 use raypencil_referee::{Format, Margin, Margins, Ruling, Verdict, VisibilityMargins, VisibilityRuling};
 use raypencil_scene::{
@@ -60,13 +61,19 @@ pub struct ProbedCandidate {
 impl Probe {
     /// Adds the answers of candidates, recordings of the same scene, to those of the renderers.
     pub fn ask(&mut self, subject: &Subject, candidates: &[Candidate]) {
-        self.candidates.extend(candidates.iter().filter_map(|candidate| {
-            let ray = check_ray(&subject.scene, &candidate.recorded, self.place)?;
-            Some(ProbedCandidate { name: candidate.name.clone(), ray })
-        }));
-        let folders = candidates.iter().map(|candidate| quoted(&candidate.folder.to_string_lossy()));
-        let words = folders.map(|folder| format!(" --candidate {folder}"));
-        self.command.extend(words);
+        for candidate in candidates {
+            self.add(candidate, check_ray(&subject.scene, &candidate.recorded, self.place));
+        }
+    }
+
+    /// Adds the answer of one candidate, judged by exact answers that are there already.
+    pub(crate) fn ask_one(&mut self, truth: &GroundTruth<'_>, candidate: &Candidate) {
+        self.add(candidate, check_ray_against(truth, &candidate.recorded, self.place));
+    }
+
+    fn add(&mut self, candidate: &Candidate, ray: Option<CheckedRay>) {
+        self.candidates.extend(ray.map(|ray| ProbedCandidate { name: candidate.name.clone(), ray }));
+        self.command += &format!(" --candidate {}", quoted(&candidate.folder.to_string_lossy()));
     }
 }
 

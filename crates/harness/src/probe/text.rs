@@ -3,7 +3,7 @@
 use std::fmt;
 
 use glam::DVec3;
-use raypencil_judge::{Class, name_of};
+use raypencil_judge::name_of;
 use raypencil_referee::{Explained, Margin, Ruling};
 use raypencil_scene::{Hit, Ray, Return};
 use serde::Serialize;
@@ -131,49 +131,6 @@ fn candidate_json(ProbedCandidate { name, ray }: &ProbedCandidate) -> serde_json
     })
 }
 
-/// A candidate's answer: said, true and class of each quantity.
-fn write_candidate(
-    f: &mut fmt::Formatter<'_>,
-    ProbedCandidate { name, ray }: &ProbedCandidate,
-) -> fmt::Result {
-    match ray.class {
-        None => return writeln!(f, "  {name} (candidate): not given"),
-        Some(class) => writeln!(f, "  {name} (candidate): {} ({})", class_words(class), ray.ruling)?,
-    }
-    for of in &ray.items {
-        let quantity = name_of(of.item);
-        let Some(said) = &of.said else {
-            writeln!(f, "    {quantity}: not given, true is {}", of.truth)?;
-            continue;
-        };
-        write!(f, "    {quantity}: says {said}, true is {}", of.truth)?;
-        if let Some(difference) = of.difference.filter(|difference| *difference != 0.0) {
-            let unit = of.difference_unit;
-            write!(f, ", off by {difference:.3e}{}{unit}", if unit.is_empty() { "" } else { " " })?;
-        }
-        if let Some(ratio) = of.ratio.filter(|ratio| *ratio != 0.0) {
-            write!(f, ", {ratio:.2e} times its bound")?;
-        }
-        writeln!(f, ": {}", of.class.map_or("not compared", class_words))?;
-    }
-    if !ray.what.is_empty() {
-        writeln!(f, "    {}", ray.what)?;
-    }
-    Ok(())
-}
-
-/// A class in one word.
-fn class_words(class: Class) -> &'static str {
-    match class {
-        Class::Agree => "agrees",
-        Class::Tie => "tie",
-        Class::Rounding => "rounding",
-        Class::Approximation => "approximation",
-        Class::Undecided => "undecided",
-        Class::Defect => "defect",
-    }
-}
-
 /// The reasons for which a face is added or lost, in words.
 fn explained_in_words(one: &Explained) -> String {
     let reasons: Vec<String> = one.reasons.iter().map(ToString::to_string).collect();
@@ -252,7 +209,7 @@ impl fmt::Display for Probe {
             }
         }
         for candidate in &self.candidates {
-            write_candidate(f, candidate)?;
+            f.write_str(&candidate.ray.text(&candidate.name))?;
         }
         writeln!(f, "  again: {}", self.command)
     }

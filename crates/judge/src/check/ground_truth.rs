@@ -1,5 +1,7 @@
 //! The exact answers to all rays of a scene, and the judge of other answers.
 
+use std::borrow::Cow;
+
 use crate::answer::StatedReturn;
 use crate::judge::{Judge, JudgeShare};
 use crate::scene_answers::{Answers, Certified};
@@ -10,7 +12,7 @@ use raypencil_scene::{Hit, Pixel, Place, Progress, Return, Returns, Sampling, Sc
 #[derive(Debug)]
 pub struct GroundTruth<'s> {
     judge: Judge<'s>,
-    answers: Answers,
+    answers: Cow<'s, Answers>,
 }
 
 /// An answer of a ground truth that is not the one that the referee gives now.
@@ -31,7 +33,12 @@ impl<'s> GroundTruth<'s> {
 
     /// Takes answers that hold every quantity as the truth.
     pub fn of_answers(scene: &'s Scene, answers: Answers) -> Self {
-        Self { judge: Judge::new(scene, JudgeShare::Sample), answers }
+        Self { judge: Judge::new(scene, JudgeShare::Sample), answers: Cow::Owned(answers) }
+    }
+
+    /// The same without taking them.
+    pub fn borrowing(scene: &'s Scene, answers: &'s Answers) -> Self {
+        Self { judge: Judge::new(scene, JudgeShare::Sample), answers: Cow::Borrowed(answers) }
     }
 
     /// The scene.
@@ -51,7 +58,7 @@ impl<'s> GroundTruth<'s> {
 
     /// The exact answers alone, without the judge.
     pub fn into_answers(self) -> Answers {
-        self.answers
+        self.answers.into_owned()
     }
 
     /// The hit of ray (i, j) of a sensor, each value correctly rounded.

@@ -9,6 +9,7 @@ mod hit;
 mod pencil;
 mod pixel;
 pub(crate) mod single;
+mod single_text;
 mod stored;
 mod uncertain;
 

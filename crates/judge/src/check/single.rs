@@ -26,7 +26,8 @@ pub struct CheckedRay {
     pub ruling: String,
     /// All that is wrong, in words; empty if nothing is.
     pub what: String,
-    /// Each quantity of the ray, but the flux of a pixel, which is a sum over many pencils.
+    /// Each quantity of the ray. The flux of a pixel, a sum over many pencils, is here only if the exact images are known,
+    /// and without a class.
     pub items: Vec<CheckedItem>,
 }
 
@@ -87,11 +88,18 @@ pub fn check_ray(scene: &Scene, recorded: &Recorded, place: Place) -> Option<Che
     let Place { sensor, i, j } = place;
     scene.ray(sensor, i, j)?;
     let truth = GroundTruth::of_answers(scene, answers_to_one_ray(scene, place));
+    check_ray_against(&truth, recorded, place)
+}
+
+/// As [`check_ray`], where the exact answers to all rays are there already.
+pub fn check_ray_against(truth: &GroundTruth<'_>, recorded: &Recorded, place: Place) -> Option<CheckedRay> {
+    let (scene, Place { sensor, i, j }) = (truth.scene(), place);
+    scene.ray(sensor, i, j)?;
     let mut result = SensorResult::new(sensor);
     let mut entry = RayEntry::checked(place, &mut result);
-    let assumed = judge_hit(&truth, recorded, &mut entry);
+    let assumed = judge_hit(truth, recorded, &mut entry);
     if sensor != SensorId::Camera {
-        judge_return(&truth, recorded, &mut entry, &assumed);
+        judge_return(truth, recorded, &mut entry, &assumed);
     }
     let ruling = entry.ruling().to_string();
     entry.finish(String::new);
@@ -119,12 +127,14 @@ pub fn check_ray(scene: &Scene, recorded: &Recorded, place: Place) -> Option<Che
     };
     let plain = Quantity::ALL.into_iter().filter(|one| one.is_of(sensor) && *one != Quantity::PixelFlux);
     let other = (sensor != SensorId::Camera).then(|| Item::pencil_flux(true));
+    let beams = if sensor == SensorId::Camera { scene.beams().len() } else { 0 };
+    let images = (0..beams).map(Item::of_image);
     Some(CheckedRay {
         place,
         class: (result.compared() > 0).then(|| class_of_counts(&result.by_class)).flatten(),
         ruling,
         what: result.defects.first().map_or(String::new(), |defect| defect.what.clone()),
-        items: plain.map(Item::from).chain(other).filter_map(item).collect(),
+        items: plain.map(Item::from).chain(other).chain(images).filter_map(item).collect(),
     })
 }
 

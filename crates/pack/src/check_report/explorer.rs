@@ -1,10 +1,13 @@
 //! The part of the page that answers when asked: the candidate beside the exact answers.
 
-use raypencil_explorer::{DescribedRay, ExplorerPage, RayMargins, SensorPair, SideKind, SideMaps};
-use raypencil_judge::{Answers, Judge, JudgeShare, ListedDefect, name_of};
+use rayon::prelude::*;
+use raypencil_explorer::{
+    DescribedRay, ExplorerPage, RayMargins, RayToDescribe, SensorPair, SideKind, SideMaps, rays_to_describe,
+};
+use raypencil_judge::{Answers, GroundTruth, Judge, JudgeShare, check_ray_against};
 use raypencil_referee::Format;
-use raypencil_report::count;
-use raypencil_scene::{Image, Sampling, SensorId};
+use raypencil_report::described_words;
+use raypencil_scene::{Image, Place, Sampling, SensorId};
 
 use crate::check::Checked;
 use crate::check_report::verdict::arithmetic;
@@ -38,15 +41,16 @@ pub(super) fn explorer(checked: &Checked) -> String {
         let margins = RayMargins::of_judged(&judge, sensor, &[pair]);
         page.add_sensor(sensor, &[of_exact, of_candidate], &[pair], Some(&margins));
     }
-    let listed: Vec<&ListedDefect> = check.sensors.iter().flat_map(|sensor| &sensor.listed).collect();
-    let total: usize = check.sensors.iter().map(|sensor| sensor.differing.len()).sum();
-    let rays: Vec<DescribedRay> = listed.iter().map(|defect| describe(checked, &judge, defect)).collect();
-    let words = format!(
-        "{} of the {} rays that are not 'agree' are described in full: the worst of each quantity. The command of each ray \
-         prints the rest.",
-        count(rays.len() as u64),
-        count(total as u64)
-    );
+    let differing = check.sensors.iter().flat_map(|result| {
+        let maps = [exact, &recorded.answers].map(|answers| Some(answers.map(result.sensor)));
+        RayToDescribe::of(0, result, maps)
+    });
+    let all: Vec<RayToDescribe> = differing.collect();
+    let total = all.len() as u64;
+    let chosen = rays_to_describe(all);
+    let truth = GroundTruth::borrowing(scene, exact);
+    let rays: Vec<DescribedRay> = chosen.par_iter().map(|ray| describe(checked, &truth, ray.place)).collect();
+    let words = described_words(rays.len() as u64, total);
     page.set_rays(&rays, &words);
     page.html()
 }
@@ -57,9 +61,8 @@ fn flux_on(answers: &Answers, sensor: SensorId) -> Vec<Option<&Image<f64>>> {
     if sensor == SensorId::Camera { images.collect() } else { Vec::new() }
 }
 
-fn describe(checked: &Checked, judge: &Judge<'_>, defect: &ListedDefect) -> DescribedRay {
-    let place = defect.place;
-    let referee = judge.referee();
+fn describe(checked: &Checked, truth: &GroundTruth<'_>, place: Place) -> DescribedRay {
+    let referee = truth.judge().referee();
     let margins = referee.margins(place.sensor, place.i, place.j);
     let hit = referee.values(place.sensor, place.i, place.j).map(|hit| hit.in_format(Format::Double));
     let (back, of_view) = match place.sensor {
@@ -72,13 +75,9 @@ fn describe(checked: &Checked, judge: &Judge<'_>, defect: &ListedDefect) -> Desc
         }
     };
     let faces = margins.as_ref().map(|margins| margins.verdict.faces.iter().map(|face| face.0).collect());
-    let text = format!(
-        "{place}, {}\n  {}\n  {}\n  again: {}\n",
-        name_of(defect.item),
-        defect.words(),
-        defect.what,
-        checked.repro(place)
-    );
+    let said = check_ray_against(truth, &checked.recorded, place);
+    let said = said.map_or(String::new(), |ray| ray.text(&checked.recorded.name));
+    let text = format!("{place}\n{said}  again: {}\n", checked.repro(place));
     let witness = |margin: Option<raypencil_referee::Margin>| margin?.witness.map(|by| [by.dx, by.dy]);
     let [of_face, of_surface] = match margins {
         Some(margins) => [Some(margins.face), Some(margins.surface)],

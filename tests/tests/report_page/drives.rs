@@ -1,8 +1,9 @@
 //! The page of a drive: at its last frame the map is the one of the files, and each sector has its reason.
 
-use raypencil::drive::{DriveJob, drive, write_drive};
+use raypencil::drive::{DriveJob, DriveRun, drive, write_drive};
 use raypencil::io::load_text;
 use raypencil::{Scanline, Silent};
+use tempfile::TempDir;
 
 use crate::browser::open;
 
@@ -14,13 +15,19 @@ const SCENE: &str = "version = 1
     terrain = { builtin = 'pyramids' }
     drive = { waypoints_m = [[0.6, 0]], frames_per_s = 3, obstacles_every_frames = 3, scans = false }";
 
-#[test]
-fn the_time_line_ends_with_the_map_of_the_files() {
+/// The drive in a folder.
+pub fn small() -> (TempDir, DriveRun) {
     let loaded = load_text(SCENE, "small").expect("a scene");
     let job = DriveJob::new(&loaded, None, "small.toml".into()).expect("a drive");
     let run = drive(&job, &[&Scanline::default()], &Silent).expect("a drive");
     let folder = tempfile::tempdir().expect("a folder");
     write_drive(&job, &run, folder.path(), &Silent).expect("files");
+    (folder, run)
+}
+
+#[test]
+fn the_time_line_ends_with_the_map_of_the_files() {
+    let (folder, run) = small();
     let Some(page) = open(&folder.path().join("report.html"), "#frame/6", (1280, 1000)) else { return };
     page.wait("document.querySelector('[data-drive]')?.dataset.state === 'ready'");
     page.wait("document.querySelector('[data-drive]').dataset.frame === '6'");
