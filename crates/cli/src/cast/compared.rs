@@ -9,7 +9,7 @@ use raypencil::io::FileError;
 use raypencil::{CastRay, Precision, Progress, Sides, Triangles};
 use serde_json::Value;
 
-use super::ray_command;
+use super::ray_command::ray_command;
 use crate::args::Cast;
 
 /// A renderer's first hits, and what became of them.

@@ -1,6 +1,7 @@
 //! `raypencil cast`: any rays on any mesh, answered exactly.
 
 mod compared;
+mod ray_command;
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +10,7 @@ use raypencil::cast::{
     rays_from_bytes, write_answers, write_cast_page, write_set,
 };
 use raypencil::io::{
-    FileError, Limits, LoadedRaySets, RayScene, bytes, create_folder, hex_digits, load_ray_scene, quoted,
+    FileError, Limits, LoadedRaySets, RayScene, bytes, create_folder, hex_digits, load_ray_scene,
     read_ray_sets, read_triangles, sha256,
 };
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
@@ -19,6 +20,7 @@ use crate::args::Cast;
 use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
 use compared::Compared;
+use ray_command::ray_command;
 
 /// Rays whose answers are printed one by one, at most, if they come from a file.
 const MAX_PRINTED_RAYS: usize = 8;
@@ -147,19 +149,6 @@ fn write_page(
     let compared = compared.as_ref().map(|compared| compared.hits(&ray_command));
     write_cast_page(folder, &CastPage { title: &title, facts: &facts, shape, rays, answers, set, compared })?;
     Ok(())
-}
-
-/// The command that shows everything about a ray.
-fn ray_command(command: &Cast, ray: &CastRay) -> String {
-    let [ox, oy, oz] = ray.origin.to_array();
-    let [dx, dy, dz] = ray.direction.to_array();
-    let mut numbers = format!("{ox},{oy},{oz},{dx},{dy},{dz}");
-    if ray.t_min > 0.0 || ray.t_max < f64::INFINITY {
-        numbers += &format!(",{},{}", ray.t_min, ray.t_max);
-    }
-    let mesh = quoted(&command.mesh.display().to_string());
-    let fronts = if command.fronts_only { " --fronts-only" } else { "" };
-    format!("raypencil cast {mesh} --ray={numbers}{fronts} --all --margins")
 }
 
 /// The answers to an array or to a set of rays.
