@@ -52,6 +52,9 @@ pub struct ComparedHits<'a> {
     pub ray_command: &'a dyn Fn(usize) -> String,
 }
 
+/// A number of a hit.
+type OfHit = fn(&FirstHit) -> f64;
+
 #[derive(Template)]
 #[template(path = "cast.html")]
 struct Page<'a> {
@@ -190,7 +193,7 @@ impl CastPage<'_> {
     fn channels(&self) -> Vec<(&'static str, &'static str, PerRay)> {
         let hits = &self.answers.first;
         let stated = self.compared.map(|compared| compared.stated);
-        let real = |of: fn(&FirstHit) -> f64, miss: f64| -> Vec<f64> {
+        let real = |of: OfHit, miss: f64| -> Vec<f64> {
             hits.iter().map(|hit| hit.as_ref().map_or(miss, of)).collect()
         };
         let both = |exact: Vec<f64>, other: Option<Vec<f64>>| match stated {
@@ -210,9 +213,9 @@ impl CastPage<'_> {
         let part = |vectors: &Option<Vec<glam::DVec3>>, axis: usize| -> Option<Vec<f64>> {
             Some(vectors.as_ref()?.iter().map(|vector| vector[axis]).collect())
         };
-        let t_and_range = |of: fn(&Stated) -> &Option<Vec<f64>>| stated.and_then(|stated| of(stated).clone());
+        let given = |of: fn(&Stated) -> &Option<Vec<f64>>| stated.and_then(|stated| of(stated).clone());
         let mut channels = vec![
-            ("range.T", "m", both(real(|hit| hit.range, f64::INFINITY), t_and_range(|stated| &stated.range))),
+            ("range.T", "m", both(real(|hit| hit.range, f64::INFINITY), given(|stated| &stated.range))),
             (
                 "face.I",
                 "",
@@ -226,7 +229,7 @@ impl CastPage<'_> {
             (
                 "incidence.V",
                 "",
-                both(real(|hit| hit.cos_incidence, f64::NAN), t_and_range(|stated| &stated.cos_incidence)),
+                both(real(|hit| hit.cos_incidence, f64::NAN), given(|stated| &stated.cos_incidence)),
             ),
             // Which ray of the arrays a cell is.
             (
@@ -245,11 +248,11 @@ impl CastPage<'_> {
                 ),
             ),
             ("faces at this t", "", both(real(|hit| f64::from(hit.ties), 0.0), None)),
-            ("t", "", both(real(|hit| hit.t, f64::INFINITY), t_and_range(|stated| &stated.t))),
+            ("t", "", both(real(|hit| hit.t, f64::INFINITY), given(|stated| &stated.t))),
         ];
-        let points: [(&str, fn(&FirstHit) -> f64); 3] =
+        let points: [(&str, OfHit); 3] =
             [("P.X", |hit| hit.point.x), ("P.Y", |hit| hit.point.y), ("P.Z", |hit| hit.point.z)];
-        let normals: [(&str, fn(&FirstHit) -> f64); 3] =
+        let normals: [(&str, OfHit); 3] =
             [("N.X", |hit| hit.normal.x), ("N.Y", |hit| hit.normal.y), ("N.Z", |hit| hit.normal.z)];
         for (axis, (name, of)) in points.into_iter().enumerate() {
             let other = stated.and_then(|stated| part(&stated.point, axis));
