@@ -110,25 +110,9 @@ impl CastPage<'_> {
     /// # Errors
     /// The template cannot be filled.
     pub fn html(&self) -> Result<String, askama::Error> {
-        let layout = Layout::of(self.shape, self.set);
-        let (group, left_out) = self.group(&layout);
-        let described = group.described.len() as u64;
-        let differing = group.differing.len() as u64;
-        let (sides, words): (Vec<(&str, SideKind)>, String) = match &self.compared {
-            Some(compared) => (
-                vec![("exact", SideKind::Exact), (compared.name, SideKind::Candidate)],
-                if differing == 0 { String::new() } else { described_words(described, differing) },
-            ),
-            None => (vec![("exact", SideKind::Exact)], String::new()),
-        };
-        let explorer = RasterPage {
-            kind: "cast",
-            title: self.title,
-            sides: &sides,
-            classes: ["same", "tie", "rounding", "approximation", "undecided", "wrong"],
-            groups: &[group],
-            described_words: &words,
-        };
+        let (explorer, layout, left_out) = self.explorer().unwrap_or_else(|| {
+            (String::new(), "The rays are too many to be shown one by one.".into(), String::new())
+        });
         let headline = match &self.compared {
             Some(compared) => format!("{}: {}", compared.name, comparison_headline(compared.comparison)),
             None => self.title.to_string(),
@@ -153,16 +137,53 @@ impl CastPage<'_> {
             headline,
             counts: counts_text(self.answers),
             facts: self.facts,
-            layout: layout.words,
+            layout,
             left_out,
             values: values.collect(),
             pictures: pictures
                 .filter_map(|(drawing, title)| Some((title.to_string(), drawing?.data_uri())))
                 .collect(),
             version: VERSION,
-            explorer: explorer.html(),
+            explorer,
         }
         .render()
+    }
+
+    /// Number of sides: the exact answers, and the other program's.
+    fn sides(&self) -> usize {
+        1 + usize::from(self.compared.is_some())
+    }
+
+    /// The elements of the explorer; in words, where each ray stands, and which channels found no room. `None` if not one
+    /// channel would find room: nothing is then made for each ray.
+    fn explorer(&self) -> Option<(String, String, String)> {
+        if self.sides() * self.rays.len() > MAX_CELLS {
+            return None;
+        }
+        let layout = Layout::of(self.shape, self.set);
+        let (group, left_out) = self.group(&layout);
+        let (described, differing) = (group.described.len() as u64, group.differing.len() as u64);
+        let words = match differing {
+            0 => String::new(),
+            _ if described == differing => described_words(described, differing),
+            _ => format!(
+                "{} of the {} rays that are not the same are described in full: the worst by class, the first of each.",
+                count(described),
+                count(differing)
+            ),
+        };
+        let exact = ("exact", SideKind::Exact);
+        let other = self.compared.map(|compared| (compared.name, SideKind::Candidate));
+        let sides: Vec<(&str, SideKind)> = std::iter::once(exact).chain(other).collect();
+        let page = RasterPage {
+            kind: "cast",
+            title: self.title,
+            sides: &sides,
+            classes: ["same", "tie", "rounding", "approximation", "undecided", "wrong"],
+            groups: &[group],
+            described_words: &words,
+        };
+        Some((page.html(), layout.words, left_out))
     }
 
     /// The channels of both sides, and in words which of them found no room.
@@ -170,7 +191,7 @@ impl CastPage<'_> {
         let mut room = MAX_CELLS;
         let mut channels = Vec::new();
         let mut left_out = Vec::new();
-        let sides = 1 + usize::from(self.compared.is_some());
+        let sides = self.sides();
         for (name, unit, channel) in self.channels() {
             match room.checked_sub(sides * layout.rays.len()) {
                 Some(left) => {
