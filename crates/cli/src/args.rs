@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use raypencil::campaign::{PartName, Shard};
-use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, quoted};
+use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, Setting, quoted};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 use crate::parsers::{
-    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, record, rule, shard,
-    switch, threshold,
+    class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, record, rule, setting,
+    shard, switch, threshold,
 };
 
 /// Simulates a Mars rover's structured-light vision system with two independent renderers and compares every ray.
@@ -86,6 +86,11 @@ pub(crate) struct SceneArguments {
     /// Heading of the vehicle, degrees to the left of the global x axis.
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub(crate) heading: Option<f64>,
+
+    /// Set a key of the scene file, in the file's units: camera.pitch_down_deg=25, beam.0.thickness_mm=4; beam.KEY sets
+    /// every beam. May be repeated; the other options come after it.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<Setting>,
 }
 
 impl SceneArguments {
@@ -97,6 +102,7 @@ impl SceneArguments {
             fan_deg: self.fan,
             thickness_mm: self.thickness,
             flux_model: self.flux,
+            settings: self.set.clone(),
         }
     }
 
@@ -118,8 +124,14 @@ impl SceneArguments {
         if let Some(heading) = self.heading {
             words.push(format!("--heading {heading}"));
         }
+        words.extend(self.set.iter().map(typed_setting));
         words.join(" ")
     }
+}
+
+/// A setting as typed on the command line.
+pub(crate) fn typed_setting(setting: &Setting) -> String {
+    format!("--set {}", quoted(&setting.to_string()))
 }
 
 /// Switches of the scanline renderer.
@@ -202,6 +214,7 @@ impl Validate {
                 flux: None,
                 at: None,
                 heading: None,
+                set: Vec::new(),
             },
             with: DEFAULT_WITH.map(String::from).to_vec(),
             switches: SwitchArguments::default(),
@@ -290,7 +303,7 @@ pub(crate) struct Pack {
     pub(crate) scene: SceneArguments,
 
     /// Write a difficult random scene with this seed, and its rays without answers; `check` computes the answers.
-    #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading"])]
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading", "set"])]
     pub(crate) blind: Option<u64>,
 
     /// Leave the scene as it is. Without this, plates and beams are added whose rays meet every limit of the contract
@@ -299,7 +312,7 @@ pub(crate) struct Pack {
     pub(crate) no_bench: bool,
 
     /// Write an input pack: a glTF file with all that a loader can get wrong, and the triangles that it must become.
-    #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading"])]
+    #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading", "set"])]
     pub(crate) input: bool,
 
     /// Write a pack of rays: SCENE is a mesh, and these are rays on it, both as `cast` takes them.
@@ -307,7 +320,7 @@ pub(crate) struct Pack {
         long,
         value_name = "RAYS",
         requires = "scene",
-        conflicts_with_all = ["blind", "no_bench", "input", "fan", "thickness", "flux", "at", "heading"]
+        conflicts_with_all = ["blind", "no_bench", "input", "fan", "thickness", "flux", "at", "heading", "set"]
     )]
     pub(crate) rays: Option<PathBuf>,
 
@@ -500,6 +513,10 @@ pub(crate) struct Cast {
     #[arg(long)]
     pub(crate) margins: bool,
 
+    /// Set a key of the scene file MESH, as in `validate`. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<Setting>,
+
     /// Compare a renderer's first hits with the exact ones, ray by ray. Exit code 1: a ray is wrong, or nothing is hit.
     #[arg(long, value_name = "RENDERER", value_parser = ["tracer"])]
     pub(crate) with: Option<String>,
@@ -550,6 +567,10 @@ pub(crate) struct Diff {
     #[arg(long, value_name = "SCENE")]
     pub(crate) scene: Option<String>,
 
+    /// Set a key of the scene file SCENE, as in `validate`. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", requires = "scene", value_parser = setting)]
+    pub(crate) set: Vec<Setting>,
+
     /// Arithmetic in which both recordings were computed, for the referee.
     #[arg(long, value_name = "ARITHMETIC", default_value = "f64", requires = "scene", value_parser = precision())]
     pub(crate) arithmetic: Precision,
@@ -574,6 +595,10 @@ pub(crate) struct TerrainInspect {
     /// A terrain .glb or .gltf, a scene .toml, or a built-in terrain (pyramids, facets).
     #[arg(value_name = "MESH")]
     pub(crate) mesh: String,
+
+    /// Set a key of the scene file MESH, as in `validate`. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<Setting>,
 
     /// Remove faces without area, duplicate faces and unused vertices, weld vertices at the same position, and flip
     /// inverted faces. The exit code is then that of the repaired mesh.

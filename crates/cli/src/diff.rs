@@ -49,7 +49,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     let sides = Sides { names: [&names[0], &names[1]], channels: [&a, &b] };
     if let Some(scene) = &command.scene {
         spinner.stage(&format!("{scene}: loading"));
-        let scene = load(scene, &Overrides::default())?.scene;
+        let scene = load(scene, &Overrides { settings: command.set.clone(), ..Overrides::default() })?.scene;
         let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, command.arithmetic));
         let [of_a, of_b] = recorded;
         let (of_a, of_b) = (of_a.map_err(CheckError::from)?, of_b.map_err(CheckError::from)?);

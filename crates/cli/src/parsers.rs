@@ -6,6 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use raypencil::campaign::{PartName, Shard};
 use raypencil::cast::rays_from_bytes;
 use raypencil::drive::RecordContents;
+use raypencil::io::{SceneIoError, Setting};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::rover::RULE_NAMES;
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
@@ -100,6 +101,14 @@ pub(crate) fn percent(text: &str) -> Result<f64, String> {
         Ok(number) if (0.0..=100.0).contains(&number) => Ok(number),
         _ => Err("expected a percentage from 0 to 100".into()),
     }
+}
+
+/// `KEY=VALUE`, a key of the scene file. Whether there is such a key is checked when the scene is read.
+pub(crate) fn setting(text: &str) -> Result<Setting, String> {
+    Setting::parse(text).map_err(|error| match error {
+        SceneIoError::Setting { message, .. } => message,
+        error => error.to_string(),
+    })
 }
 
 /// `NAME=paper` or `NAME=exact`. Whether the switch exists is checked with the renderer.

@@ -11,7 +11,7 @@
 //!    `parse/scene` fill it in;
 //! 5. `resolve`: a plan and a mesh become a scene; `resolved`: files that hold the scene's own numbers;
 //! 6. `digest`: SHA-256 of a scene's numbers;
-//! 7. `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
+//! 7. `settings`: keys given outside of the file; `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
 //!
 //! `parse/rays` reads tables `[[rays]]` into named ray sets, `ray_sets` a file that has nothing else, `ray_scene` a scene of
 //! them without a camera.
@@ -49,18 +49,20 @@ mod resolve;
 mod resolved;
 mod scene_error;
 mod scene_source;
+mod settings;
 mod subject;
 mod toml_problem;
 
 pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
-pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_text};
+pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_text, load_text_with};
 pub use overrides::Overrides;
 pub use ray_scene::{RayScene, load_ray_scene};
 pub use ray_sets::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
 pub use resolved::write::write_resolved;
 pub use scene_error::SceneIoError;
 pub use scene_source::SceneSource;
+pub use settings::Setting;
 pub use subject::{Subject, probe_command, quoted};
 pub use toml_problem::TomlProblem;
 

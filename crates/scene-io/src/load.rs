@@ -21,6 +21,7 @@ use crate::resolve::{central_place, extent, resolve};
 use crate::resolved::read::parse_resolved;
 use crate::scene_error::SceneIoError;
 use crate::scene_source::SceneSource;
+use crate::settings::{changed, text_of_ground};
 
 /// Maximum size of a scene file, bytes: 1 MiB.
 pub const MAX_TOML_BYTES: u64 = 1 << 20;
@@ -85,6 +86,9 @@ impl LoadedScene {
 pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoError> {
     overrides.check()?;
     let source = SceneSource::parse(source)?;
+    if !overrides.settings.is_empty() {
+        return load_changed(&source, overrides);
+    }
     match &source {
         SceneSource::Builtin(name) => {
             let plan = default_rig(Terrain::Builtin(name.clone()));
@@ -100,6 +104,19 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish_alone(&source, terrain, vec![sha], mesh, overrides)
         }
         SceneSource::Toml(path) => load_toml(&source, path, &read_toml(path)?, overrides),
+    }
+}
+
+/// Loads a scene with settings: the text of a file, which a lone terrain gets for the purpose, is changed first.
+fn load_changed(source: &SceneSource, overrides: &Overrides) -> Result<LoadedScene, SceneIoError> {
+    let beside = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match source {
+        SceneSource::Toml(path) => load_toml(source, path, &read_toml(path)?, overrides),
+        SceneSource::Builtin(name) => {
+            load_toml(source, Path::new(name), &text_of_ground("builtin", name), overrides)
+        }
+        SceneSource::Gltf(path) => load_toml(source, path, &text_of_ground("file", &beside(path)), overrides),
+        SceneSource::Dem(path) => load_toml(source, path, &text_of_ground("dem", &beside(path)), overrides),
     }
 }
 
@@ -130,8 +147,17 @@ pub(crate) fn read_toml(path: &Path) -> Result<String, SceneIoError> {
 /// # Ok::<(), raypencil_scene_io::SceneIoError>(())
 /// ```
 pub fn load_text(text: &str, name: &str) -> Result<LoadedScene, SceneIoError> {
+    load_text_with(text, name, &Overrides::default())
+}
+
+/// As [`load_text`], with changes.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_text_with(text: &str, name: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoError> {
+    overrides.check()?;
     let path = PathBuf::from(format!("{name}.toml"));
-    load_toml(&SceneSource::Toml(path.clone()), &path, text, &Overrides::default())
+    load_toml(&SceneSource::Toml(path.clone()), &path, text, overrides)
 }
 
 fn load_toml(
@@ -140,8 +166,19 @@ fn load_toml(
     text: &str,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
-    let file = Source { file: path, text };
-    let parts = vec![sha256(text.as_bytes())];
+    let changed = match overrides.settings.as_slice() {
+        [] => None,
+        settings => changed(text, settings)?,
+    };
+    let file = match &changed {
+        None => Source::unchanged(path, text),
+        Some(changed) => Source { file: path, text: &changed.text, settings: &changed.places },
+    };
+    // A built-in ground takes part by its numbers, wherever its settings stand.
+    let parts = match source {
+        SceneSource::Builtin(_) => Vec::new(),
+        _ => vec![sha256(file.text.as_bytes())],
+    };
     match file.kind()? {
         Kind::Rig => load_rig(source, &file, parts, overrides),
         Kind::Resolved => load_resolved(source, &file, parts, overrides),
@@ -163,6 +200,13 @@ fn load_rig(
         mesh
     });
     let position_span = plan.position_span.clone();
+    // A lone terrain, whose text is only settings: as in `finish_alone`.
+    let is_alone = matches!(source, SceneSource::Gltf(_) | SceneSource::Dem(_));
+    if let Some(mesh) =
+        mesh.as_ref().filter(|_| is_alone && position_span.is_empty() && overrides.at.is_none())
+    {
+        plan.vehicle.position = central_place(mesh).unwrap_or_default();
+    }
     finish(source, plan, parts, mesh, overrides).map_err(|error| match error {
         // A vehicle off the ground is the fault of a line in the file, unless the command line put it there.
         SceneIoError::NoGround { x, y, ground, .. } if overrides.at.is_none() => {
@@ -261,8 +305,8 @@ fn loaded(
     overrides: &Overrides,
     drive: Option<DriveSetup>,
 ) -> LoadedScene {
-    if *overrides != Overrides::default() && !matches!(source, SceneSource::Builtin(_)) {
-        parts.push(sha256(format!("{overrides:?}").as_bytes()));
+    if let Some(words) = overrides.words().filter(|_| !matches!(source, SceneSource::Builtin(_))) {
+        parts.push(sha256(words.as_bytes()));
     }
     LoadedScene {
         name: source.folder_name(),

@@ -5,6 +5,7 @@ use raypencil_scene::{Beam, FluxModel};
 use crate::parse::shared::{FAN_DEG, GLOBAL_M, THICKNESS_MM, TURN_DEG};
 use crate::plan::ScenePlan;
 use crate::scene_error::SceneIoError;
+use crate::settings::Setting;
 
 /// Numbers that replace those of a scene, in the units of the command line. `None`: the scene's own.
 ///
@@ -18,7 +19,7 @@ use crate::scene_error::SceneIoError;
 /// assert!((beam.half_width / beam.grid_distance - 1.0).abs() < 1e-15);
 /// # Ok::<(), raypencil_scene_io::SceneIoError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overrides {
     /// Position of the vehicle on the ground, global x and y, metres. It also replaces a height.
     pub at: Option<[f64; 2]>,
@@ -30,9 +31,26 @@ pub struct Overrides {
     pub thickness_mm: Option<f64>,
     /// Model of the flux.
     pub flux_model: Option<FluxModel>,
+    /// Keys of the scene file, set before it is read; the numbers above come after them.
+    pub settings: Vec<Setting>,
 }
 
 impl Overrides {
+    /// The changes in words, for digests; `None`: there are none beside settings, which are part of the scene's text.
+    pub(crate) fn words(&self) -> Option<String> {
+        let Self { at, heading_deg, fan_deg, thickness_mm, flux_model, settings: _ } = self;
+        let changed = at.is_some()
+            || flux_model.is_some()
+            || [heading_deg, fan_deg, thickness_mm].iter().any(|number| number.is_some());
+        // The words of earlier versions, so that a digest of then is that of now.
+        changed.then(|| {
+            format!(
+                "Overrides {{ at: {at:?}, heading_deg: {heading_deg:?}, fan_deg: {fan_deg:?}, thickness_mm: \
+                 {thickness_mm:?}, flux_model: {flux_model:?} }}"
+            )
+        })
+    }
+
     /// Refuses a number out of range.
     pub(crate) fn check(&self) -> Result<(), SceneIoError> {
         let [x, y] = self.at.map_or([None; 2], |at| at.map(Some));

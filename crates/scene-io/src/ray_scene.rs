@@ -18,6 +18,7 @@ use crate::parse::source::Source;
 use crate::plan::{ScenePlan, Terrain};
 use crate::resolve::extent;
 use crate::scene_error::SceneIoError;
+use crate::settings::{Setting, changed};
 
 /// Endings of terrain files that rays alone can be cast on.
 const MESH_ENDINGS: [&str; 5] = ["glb", "gltf", "stl", "obj", "ply"];
@@ -37,7 +38,7 @@ pub struct RayScene {
 }
 
 /// Loads the terrain, the vehicle and the sets of rays of a scene file. A camera, beams and their light are checked and
-/// not used.
+/// not used. `settings` are put into the file's text first.
 ///
 /// ```
 /// use raypencil_scene_io::load_ray_scene;
@@ -49,7 +50,7 @@ pub struct RayScene {
 ///     [[rays]]\nname = \"down\"\nspinning = { elevations_deg = [-90], steps = 1 }\n";
 /// let path = folder.path().join("scene.toml");
 /// std::fs::write(&path, text)?;
-/// let scene = load_ray_scene(&path)?;
+/// let scene = load_ray_scene(&path, &[])?;
 /// assert_eq!(scene.triangles.vertices()[0], [-1.0, -1.0, 0.1]);
 /// assert_eq!(scene.sets[0].set.rays()[0].origin.to_array(), [0.0, 0.0, 2.0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -57,9 +58,13 @@ pub struct RayScene {
 ///
 /// # Errors
 /// Names the file, the place in it, the value found and the values expected: also for a file without sets of rays.
-pub fn load_ray_scene(path: &Path) -> Result<RayScene, SceneIoError> {
+pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, SceneIoError> {
     let text = read_toml(path)?;
-    let file = Source { file: path, text: &text };
+    let changed = if settings.is_empty() { None } else { changed(&text, settings)? };
+    let file = match &changed {
+        None => Source::unchanged(path, &text),
+        Some(changed) => Source { file: path, text: &changed.text, settings: &changed.places },
+    };
     if matches!(file.kind()?, Kind::Resolved) {
         let message = "a resolved scene has no sets of rays; expected a scene file with tables `[[rays]]`";
         return Err(file.error(0..0, message));
@@ -97,7 +102,7 @@ pub fn load_ray_scene(path: &Path) -> Result<RayScene, SceneIoError> {
     };
     let sets = plan.ray_sets.iter().map(|set| set.placed(&vehicle));
     let sets: Vec<NamedRaySet> = sets.collect::<Result<_, _>>().map_err(unfit)?;
-    let own = vec![sha256(text.as_bytes())];
+    let own = vec![sha256(file.text.as_bytes())];
     Ok(RayScene {
         triangles,
         sets,

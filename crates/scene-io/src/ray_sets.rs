@@ -53,7 +53,7 @@ pub fn read_ray_sets(path: &Path) -> Result<LoadedRaySets, SceneIoError> {
 /// # Errors
 /// As [`read_ray_sets`].
 pub fn ray_sets_from_text(text: &str, file: &Path) -> Result<LoadedRaySets, SceneIoError> {
-    let source = Source { file, text };
+    let source = Source::unchanged(file, text);
     let keys: FileKeys = source.deserialize()?;
     if let Some(version) = keys.version.filter(|version| *version.get_ref() != 1) {
         let message = format!("`version` is {}; expected 1, the only version there is", version.get_ref());

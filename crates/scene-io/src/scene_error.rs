@@ -48,6 +48,16 @@ pub enum SceneIoError {
         expected: String,
     },
 
+    /// Key of a scene file given outside of it, with a value that does not fit.
+    #[error("set {setting}: {message}")]
+    #[diagnostic(code(raypencil::setting))]
+    Setting {
+        /// The setting as it was given: `KEY=VALUE`.
+        setting: String,
+        /// Value found and values expected.
+        message: String,
+    },
+
     /// Position of the vehicle where there is no ground.
     #[error("{origin}: no ground under the vehicle at ({x}, {y}) m; expected a place within {ground}")]
     #[diagnostic(code(raypencil::ground), help("give the vehicle a position on the ground, or a height"))]

@@ -222,13 +222,18 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
     let has_rays = command.rays.is_some() || !command.ray.is_empty();
     let (mesh, digests) = match is_toml(&command.mesh) {
         true => {
-            let RayScene { triangles, sets, terrain_digests, sha256 } = load_ray_scene(&command.mesh)?;
+            let RayScene { triangles, sets, terrain_digests, sha256 } =
+                load_ray_scene(&command.mesh, &command.set)?;
             if !has_rays {
                 let mesh_sha256 = terrain_digests.iter().map(hex_digits).collect();
                 let (rays, rays_sha256) = (Rays::Sets(sets), Some(sha256));
                 return Ok(Given { mesh: triangles, mesh_sha256, rays, from: name, rays_sha256 });
             }
             (triangles, terrain_digests)
+        }
+        false if !command.set.is_empty() => {
+            let text = "--set changes a scene file; expected a MESH that ends in .toml, or no --set";
+            return Err(Trouble::Usage(format!("{name}: {text}")));
         }
         false if !has_rays => {
             let text = "no rays are given; expected RAYS, --ray, or a scene file with tables [[rays]]";

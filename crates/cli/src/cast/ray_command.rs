@@ -3,7 +3,7 @@
 use raypencil::CastRay;
 use raypencil::io::quoted;
 
-use crate::args::Cast;
+use crate::args::{Cast, typed_setting};
 
 /// The command that shows everything about a ray.
 pub(super) fn ray_command(command: &Cast, ray: &CastRay) -> String {
@@ -14,6 +14,7 @@ pub(super) fn ray_command(command: &Cast, ray: &CastRay) -> String {
         numbers += &format!(",{},{}", ray.t_min, ray.t_max);
     }
     let mesh = quoted(&command.mesh.display().to_string());
+    let settings: String = command.set.iter().map(|setting| format!(" {}", typed_setting(setting))).collect();
     let fronts = if command.fronts_only { " --fronts-only" } else { "" };
-    format!("raypencil cast {mesh} --ray={numbers}{fronts} --all --margins")
+    format!("raypencil cast {mesh} --ray={numbers}{settings}{fronts} --all --margins")
 }

@@ -9,18 +9,31 @@ use raypencil_scene::SceneError;
 
 use crate::parse::key::Key;
 use crate::scene_error::SceneIoError;
+use crate::settings::Setting;
 use crate::toml_problem::TomlProblem;
 
 /// Text of a scene file, to which every error points.
 pub(crate) struct Source<'a> {
     pub file: &'a Path,
     pub text: &'a str,
+    /// Bytes that settings put into the text; an error there is one of the setting.
+    pub settings: &'a [(Range<usize>, Setting)],
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    /// A file that stands as it is.
+    pub(crate) fn unchanged(file: &'a Path, text: &'a str) -> Self {
+        Self { file, text, settings: &[] }
+    }
+
     /// Error at these bytes of the file.
     pub(crate) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneIoError {
-        SceneIoError::Toml(Box::new(TomlProblem::new(self.file, self.text, span, message)))
+        let is_in = |place: &Range<usize>| place.start <= span.start && span.start < place.end;
+        match self.settings.iter().rev().find(|(place, _)| is_in(place)) {
+            Some((_, setting)) => setting.refused(message),
+            // The text is that with the settings, and so are its lines.
+            None => SceneIoError::Toml(Box::new(TomlProblem::new(self.file, self.text, span, message))),
+        }
     }
 
     /// Numbers that are in range one by one, but make no rays together.

@@ -6,6 +6,7 @@ mod drives;
 mod rays;
 mod resolved;
 mod scenes;
+mod settings;
 /// The writer of elevation models that the tests of their reader use.
 #[allow(dead_code, reason = "these tests need a part of it")]
 #[path = "../../../mesh-io/tests/dem/write.rs"]

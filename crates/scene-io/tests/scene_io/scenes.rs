@@ -8,7 +8,7 @@ use raypencil_scene_io::{LoadedScene, Overrides, SceneIoError, SceneSource, load
 
 use crate::load_path;
 
-fn scenes() -> PathBuf {
+pub(crate) fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes")
 }
 
@@ -304,6 +304,7 @@ fn overrides_change_the_scene_and_its_digests() {
         fan_deg: Some(90.0),
         thickness_mm: Some(80.0),
         flux_model: Some(FluxModel::Eq1),
+        ..Overrides::default()
     };
     let moved = load_path(&path, &moved).unwrap();
     near(moved.vehicle.position, DVec3::new(-8.0, 0.5, -2.0), 1e-12);

@@ -34,9 +34,10 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
     spinner.stage(&format!("{}: loading", command.mesh));
     let mesh: Arc<Mesh> = match &source {
         // The mesh alone: a scene would need a place for the vehicle.
-        SceneSource::Gltf(path) => Arc::new(load_mesh(path)?),
-        SceneSource::Builtin(_) | SceneSource::Toml(_) | SceneSource::Dem(_) => {
-            Arc::clone(load(&command.mesh, &Overrides::default())?.scene.mesh())
+        SceneSource::Gltf(path) if command.set.is_empty() => Arc::new(load_mesh(path)?),
+        _ => {
+            let settings = command.set.clone();
+            Arc::clone(load(&command.mesh, &Overrides { settings, ..Overrides::default() })?.scene.mesh())
         }
     };
     spinner.stage(&format!("{}: inspecting {} faces", command.mesh, mesh.faces().len()));

@@ -1,0 +1,261 @@
+//! Keys of a scene file that are given outside of it: `camera.pitch_down_deg=25`.
+//!
+//! The file's text is changed before it is read, so a setting may be any key of `docs/guide/scene.md`, in the file's
+//! units, and is checked as if it stood in the file.
+
+use std::fmt;
+use std::ops::Range;
+use std::str::FromStr;
+
+use toml_edit::{ArrayOfTables, Document, DocumentMut, InlineTable, Item, Table, TableLike, Value};
+
+use crate::scene_error::SceneIoError;
+
+/// A key of a scene file with its value.
+///
+/// ```
+/// use raypencil_scene_io::{Overrides, Setting, load};
+///
+/// let settings = vec![Setting::parse("beam.1.thickness_mm=8")?, Setting::parse("camera.pitch_down_deg=25")?];
+/// let scene = load("pyramids", &Overrides { settings, ..Overrides::default() })?.scene;
+/// assert_eq!(scene.beams()[1].sensor.thickness, 0.008);
+/// // Without a number the setting is for every beam.
+/// let settings = vec![Setting::parse("beam.thickness_mm=4")?];
+/// let scene = load("pyramids", &Overrides { settings, ..Overrides::default() })?.scene;
+/// assert!(scene.beams().iter().all(|beam| beam.sensor.thickness == 0.004));
+/// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Setting {
+    key: String,
+    value: String,
+}
+
+impl Setting {
+    /// Parses `KEY=VALUE`.
+    ///
+    /// # Errors
+    /// As [`Setting::new`], and a text without `=`.
+    pub fn parse(text: &str) -> Result<Self, SceneIoError> {
+        match text.split_once('=') {
+            Some((key, value)) => Self::new(key.trim(), value.trim()),
+            None => Err(SceneIoError::Setting {
+                setting: text.into(),
+                message: "expected KEY=VALUE, such as camera.pitch_down_deg=25".into(),
+            }),
+        }
+    }
+
+    /// A key with its value as TOML. A value that is no TOML is a text, so texts need no quotes.
+    ///
+    /// The parts of the key are joined by dots. A number chooses a table of several, from 0: `beam.0.pitch_down_deg`.
+    /// Without the number, all of them are set: `beam.pitch_down_deg`.
+    ///
+    /// # Errors
+    /// A key with an empty part, or with a character that no key has.
+    pub fn new(key: &str, value: &str) -> Result<Self, SceneIoError> {
+        let setting = Self { key: key.into(), value: value.into() };
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
+        if key.split('.').any(|part| part.is_empty() || !part.chars().all(is_plain)) {
+            return Err(
+                setting.refused(format!("`{key}` is no key; expected one such as camera.pitch_down_deg"))
+            );
+        }
+        Ok(setting)
+    }
+
+    /// The key.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// The value, as it was given.
+    pub fn value(&self) -> &str {
+        &self.value
+    }
+
+    fn parts(&self) -> Vec<&str> {
+        self.key.split('.').collect()
+    }
+
+    /// The value as TOML.
+    fn toml(&self) -> Value {
+        Value::from_str(&self.value).unwrap_or_else(|_| Value::from(self.value.as_str()))
+    }
+
+    pub(crate) fn refused(&self, message: impl Into<String>) -> SceneIoError {
+        SceneIoError::Setting { setting: self.to_string(), message: message.into() }
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.value)
+    }
+}
+
+/// The text of a scene file with the settings in it, and the place of each.
+pub(crate) struct ChangedText {
+    pub(crate) text: String,
+    /// Bytes of key and value, with the setting that put them there.
+    pub(crate) places: Vec<(Range<usize>, Setting)>,
+}
+
+/// Puts settings into the text of a scene file. The first of two settings of one key is lost.
+///
+/// # Errors
+/// A setting that does not fit the tables of the file; a file that is no TOML gives `None`, and its reader says why.
+pub(crate) fn changed(text: &str, settings: &[Setting]) -> Result<Option<ChangedText>, SceneIoError> {
+    let Ok(mut document) = DocumentMut::from_str(text) else { return Ok(None) };
+    for setting in settings {
+        let parts = setting.parts();
+        make_room(document.as_table_mut(), &parts);
+        set_in_table(document.as_table_mut(), false, &parts, setting)?;
+    }
+    let text = document.to_string();
+    let document = Document::parse(text.as_str()).expect("a document that was written");
+    let mut places = Vec::new();
+    for setting in settings {
+        find_in_table(document.as_table(), &setting.parts(), &mut |place| {
+            places.push((place, setting.clone()))
+        });
+    }
+    drop(document);
+    Ok(Some(ChangedText { text, places }))
+}
+
+/// Text of a scene file with a single ground, and nothing else. `key` is one of `[terrain]`.
+pub(crate) fn text_of_ground(key: &str, value: &str) -> String {
+    format!("version = 1\n[terrain]\n{key} = {}\n", Value::from(value))
+}
+
+/// Makes room for the first setting of a table that the file leaves out: the default beams, which a file with a beam of its
+/// own does not have. A new ground takes the place of the one before.
+fn make_room(root: &mut Table, parts: &[&str]) {
+    match parts {
+        ["beam", ..] if !root.contains_key("beam") => {
+            let mut beams = ArrayOfTables::new();
+            for _ in raypencil_scene::rig::DEFAULT_BEAM_MOUNTS {
+                beams.push(Table::new());
+            }
+            root.insert("beam", Item::ArrayOfTables(beams));
+        }
+        ["terrain", ground @ ("builtin" | "file" | "dem" | "generate"), ..] => {
+            if let Some(terrain) = root.get_mut("terrain").and_then(Item::as_table_like_mut) {
+                for other in ["builtin", "file", "dem", "generate"].iter().filter(|other| *other != ground) {
+                    terrain.remove(other);
+                }
+                if *ground != "dem" {
+                    terrain.remove("dem_window_m");
+                    terrain.remove("dem_max_error_m");
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn set_in_table(
+    table: &mut dyn TableLike,
+    is_inline: bool,
+    parts: &[&str],
+    setting: &Setting,
+) -> Result<(), SceneIoError> {
+    let [part, rest @ ..] = parts else { return Ok(()) };
+    if rest.is_empty() {
+        // The old value goes with its comment.
+        table.insert(part, Item::Value(setting.toml()));
+        return Ok(());
+    }
+    if !table.contains_key(part) {
+        let new = if is_inline { Item::Value(InlineTable::new().into()) } else { Item::Table(Table::new()) };
+        table.insert(part, new);
+    }
+    set_in_item(table.get_mut(part).expect("it was put there"), part, rest, setting)
+}
+
+fn set_in_item(item: &mut Item, name: &str, rest: &[&str], setting: &Setting) -> Result<(), SceneIoError> {
+    match item {
+        Item::Table(table) => set_in_table(table, false, rest, setting),
+        Item::ArrayOfTables(tables) => {
+            let (chosen, rest) = chosen(tables.len(), name, rest, setting)?;
+            for index in chosen {
+                let table = tables.get_mut(index).expect("an index below their number");
+                set_in_table(table, false, rest, setting)?;
+            }
+            Ok(())
+        }
+        Item::Value(Value::InlineTable(table)) => set_in_table(table, true, rest, setting),
+        Item::Value(Value::Array(values)) => {
+            let (chosen, rest) = chosen(values.len(), name, rest, setting)?;
+            for index in chosen {
+                let value = values.get_mut(index).expect("an index below their number");
+                match (value, rest) {
+                    (value, []) => *value = setting.toml(),
+                    (Value::InlineTable(table), rest) => set_in_table(table, true, rest, setting)?,
+                    (value, _) => return Err(no_table(name, &value.to_string(), setting)),
+                }
+            }
+            Ok(())
+        }
+        Item::Value(value) => Err(no_table(name, &value.to_string(), setting)),
+        Item::None => Ok(()),
+    }
+}
+
+/// Indices of the elements that a key means, and the rest of the key.
+fn chosen<'a>(
+    count: usize,
+    name: &str,
+    rest: &'a [&'a str],
+    setting: &Setting,
+) -> Result<(Range<usize>, &'a [&'a str]), SceneIoError> {
+    let Some(Ok(index)) = rest.first().map(|part| part.parse::<usize>()) else { return Ok((0..count, rest)) };
+    if index >= count {
+        return Err(setting.refused(format!(
+            "`{name}.{index}` is not there; expected 0 to {}, for the scene has {count}",
+            count.saturating_sub(1)
+        )));
+    }
+    Ok((index..index + 1, &rest[1..]))
+}
+
+fn no_table(name: &str, value: &str, setting: &Setting) -> SceneIoError {
+    setting.refused(format!("`{name}` is {} in the scene; expected a table that has keys", value.trim()))
+}
+
+fn find_in_table(table: &dyn TableLike, parts: &[&str], found: &mut dyn FnMut(Range<usize>)) {
+    let [part, rest @ ..] = parts else { return };
+    let Some((key, item)) = table.get_key_value(part) else { return };
+    if !rest.is_empty() {
+        return find_in_item(item, rest, found);
+    }
+    if let (Some(key), Some(value)) = (key.span(), item.span()) {
+        found(key.start..value.end);
+    }
+}
+
+fn find_in_item(item: &Item, rest: &[&str], found: &mut dyn FnMut(Range<usize>)) {
+    let index = rest.first().and_then(|part| part.parse::<usize>().ok());
+    let is_chosen = |at: usize| index.is_none_or(|index| index == at);
+    let rest = if index.is_some() { &rest[1..] } else { rest };
+    match item {
+        Item::Table(table) => find_in_table(table, rest, found),
+        Item::Value(Value::InlineTable(table)) => find_in_table(table, rest, found),
+        Item::ArrayOfTables(tables) => {
+            for (_, table) in tables.iter().enumerate().filter(|(at, _)| is_chosen(*at)) {
+                find_in_table(table, rest, found);
+            }
+        }
+        Item::Value(Value::Array(values)) => {
+            for (_, value) in values.iter().enumerate().filter(|(at, _)| is_chosen(*at)) {
+                match (value, rest) {
+                    (value, []) => value.span().into_iter().for_each(&mut *found),
+                    (Value::InlineTable(table), rest) => find_in_table(table, rest, found),
+                    _ => {}
+                }
+            }
+        }
+        _ => {}
+    }
+}
