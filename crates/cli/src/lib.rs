@@ -41,6 +41,7 @@ mod parsers;
 mod probe;
 mod render;
 mod subject;
+mod sweep;
 mod terrain;
 mod validate;
 
@@ -99,11 +100,18 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
         Some(Command::Minimise(command)) => minimise::minimise(command, arguments.json, registry),
         Some(Command::Check(command)) => check::check(command, arguments.json),
         Some(Command::Drive(command)) => drive::drive(command, arguments.json, registry),
+        Some(Command::Sweep(command)) => sweep::sweep(command, arguments.json, registry),
         Some(Command::Diff(command)) => diff::diff(command, arguments.json),
         Some(Command::Cast(command)) => cast::cast(command, arguments.json),
         Some(Command::Terrain(command)) => terrain::terrain(command, arguments.json),
         Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),
     }
+}
+
+/// The build of this program: version and, where git knew it, commit. Records of another build are not mixed with its own.
+pub(crate) fn build() -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    option_env!("RAYPENCIL_COMMIT").map_or(version.to_string(), |commit| format!("{version} {commit}"))
 }
 
 /// The message of an error: what is wrong, where, what was expected; for a scene file with the line and a caret.

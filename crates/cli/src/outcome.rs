@@ -7,6 +7,7 @@ use raypencil::drive::DriveError;
 use raypencil::harness::{CandidateError, Contender, HarnessError, NoSuchRay};
 use raypencil::io::{FileError, FolderError, SceneIoError};
 use raypencil::pack::{CheckError, PackError};
+use raypencil::sweep::SweepError;
 use thiserror::Error;
 
 /// Finds a renderer by its name; `None` if there is no such renderer.
@@ -71,6 +72,10 @@ pub(crate) enum Trouble {
     /// A campaign cannot run.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
+
+    /// A sweep cannot run.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
 
     /// A drive cannot run.
     #[error("{scene}: {error}")]

@@ -9,6 +9,7 @@ use raypencil::drive::RecordContents;
 use raypencil::io::{SceneIoError, Setting};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::rover::RULE_NAMES;
+use raypencil::sweep::{Axis, Chart, SweepError, Task};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 /// A value that an option accepts: its name, its line of help, and what it stands for.
@@ -41,6 +42,33 @@ pub(crate) fn flux_model() -> impl TypedValueParser<Value = FluxModel> {
         (FluxModel::Radiometric.word(), "Radiometric, in watts", FluxModel::Radiometric),
         (FluxModel::Eq1.word(), "Equation (1) of the paper as printed, in W/m", FluxModel::Eq1),
     ])
+}
+
+/// `--do`.
+pub(crate) fn task() -> impl TypedValueParser<Value = Task> {
+    one_of([
+        ("validate", "Two renderers render it, and every ray is compared", Task::Validate),
+        ("render", "One renderer renders it, and its maps are written", Task::Render),
+        ("drive", "The rover drives over it", Task::Drive),
+    ])
+}
+
+/// `KEY=VALUES` of a sweep.
+pub(crate) fn axis(text: &str) -> Result<Axis, String> {
+    Axis::parse(text).map_err(|error| without_text(&error, text))
+}
+
+/// `RESULT,KEY` or `RESULT,KEY,KEY`.
+pub(crate) fn chart(text: &str) -> Result<Chart, String> {
+    Chart::parse(text).map_err(|error| without_text(&error, text))
+}
+
+/// The message without the text that the parser of arguments names itself.
+fn without_text(error: &SweepError, text: &str) -> String {
+    match error {
+        SweepError::Axis { message, .. } => message.clone(),
+        error => error.to_string().replace(&format!("{text}: "), ""),
+    }
 }
 
 /// `--judge`.

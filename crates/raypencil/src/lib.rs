@@ -12,6 +12,7 @@
 //! harness  judge  report             a validation: run, judged, reported; candidates; probe
 //! cast                               any rays on any mesh, answered exactly
 //! pack  diff  minimise  campaign     reference packs; any two recordings; the simplest scene; random terrains
+//! sweep                              one scene with many settings, one table
 //! diagnosis                          the mistake that explains why a recording is wrong
 //! drive  rover  sensor  terrain      the rover: drives, maps, its image sensor, its ground
 //! ```
@@ -59,7 +60,7 @@ pub use {
     raypencil_minimise as minimise, raypencil_naive as naive, raypencil_pack as pack,
     raypencil_referee as referee, raypencil_report as report, raypencil_rover as rover,
     raypencil_scanline as scanline, raypencil_sensor as sensor, raypencil_survey as survey,
-    raypencil_terrain as terrain, raypencil_tracer as tracer,
+    raypencil_sweep as sweep, raypencil_terrain as terrain, raypencil_tracer as tracer,
 };
 
 /// Every file format, in and out: numbers (NPY, PFM, EXR), meshes (glTF, GeoTIFF), scenes (TOML).

@@ -8,7 +8,7 @@
 //! colour, png                     colours, and PNG in memory
 //! scale -> picture -> plot        ticks at round values, maps as pictures, pictures with axes and rings
 //! maps                            range maps of a sensor beside their differences, as HTML
-//! paint -> drawing                SVG and PNG of polygons, lines and text
+//! paint -> drawing -> axes        SVG and PNG of polygons, lines and text; axes of a plot
 //! version -> page                 head and end of an HTML page
 //! junit                           test results for continuous integration
 //! ```
@@ -26,6 +26,7 @@
 //! assert_eq!(table.lines()[1], "range  1,081,344  6.39e-14 m");
 //! ```
 
+mod axes;
 mod colour;
 mod defect_list;
 mod drawing;
@@ -41,6 +42,7 @@ mod table;
 mod text;
 mod version;
 
+pub use axes::{TICK_LENGTH_PX, draw_axes};
 pub use colour::Colour;
 pub use defect_list::{DefectGroup, DefectLine, defect_list};
 pub use drawing::{Anchor, Drawing, INK, LETTERS, Mark, SOFT};

@@ -39,6 +39,7 @@
 mod digest;
 mod drive;
 mod ground;
+mod grounds;
 mod load;
 mod overrides;
 mod parse;
@@ -55,7 +56,8 @@ mod toml_problem;
 
 pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
-pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_text, load_text_with};
+pub use grounds::Grounds;
+pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_sharing, load_text, load_text_with};
 pub use overrides::Overrides;
 pub use ray_scene::{RayScene, load_ray_scene};
 pub use ray_sets::{LoadedRaySets, ray_sets_from_text, read_ray_sets};

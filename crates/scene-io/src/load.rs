@@ -12,6 +12,7 @@ use raypencil_scene::{Mesh, Pose, Scene, SceneError};
 use crate::digest;
 use crate::drive::setup::{DriveSetup, rig_of};
 use crate::ground::{make_ground, read_ground, terrain_file};
+use crate::grounds::{Ground, Grounds};
 use crate::overrides::Overrides;
 use crate::parse::kind::Kind;
 use crate::parse::scene::parse;
@@ -87,12 +88,13 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
     overrides.check()?;
     let source = SceneSource::parse(source)?;
     if !overrides.settings.is_empty() {
-        return load_changed(&source, overrides);
+        return load_changed(&source, overrides, None);
     }
     match &source {
         SceneSource::Builtin(name) => {
             let plan = default_rig(Terrain::Builtin(name.clone()));
-            finish(&source, plan, Vec::new(), None, overrides)
+            let mesh = make_ground(&plan).map_err(|error| SceneIoError::scene(source.origin(), error))?;
+            finish(&source, plan, Vec::new(), Arc::new(mesh), false, overrides)
         }
         SceneSource::Gltf(path) => {
             let (mesh, parts) = gltf::read_mesh(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
@@ -103,20 +105,41 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
             finish_alone(&source, terrain, vec![sha], mesh, overrides)
         }
-        SceneSource::Toml(path) => load_toml(&source, path, &read_toml(path)?, overrides),
+        SceneSource::Toml(path) => load_toml(&source, path, &read_toml(path)?, overrides, None),
     }
 }
 
-/// Loads a scene with settings: the text of a file, which a lone terrain gets for the purpose, is changed first.
-fn load_changed(source: &SceneSource, overrides: &Overrides) -> Result<LoadedScene, SceneIoError> {
+/// As [`load`], for one scene after the other: those on the same ground share it.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_sharing(
+    source: &str,
+    overrides: &Overrides,
+    grounds: &Grounds,
+) -> Result<LoadedScene, SceneIoError> {
+    overrides.check()?;
+    load_changed(&SceneSource::parse(source)?, overrides, Some(grounds))
+}
+
+/// Loads a scene from a text, which a ground alone gets for the purpose, so that it can be changed.
+fn load_changed(
+    source: &SceneSource,
+    overrides: &Overrides,
+    grounds: Option<&Grounds>,
+) -> Result<LoadedScene, SceneIoError> {
     let beside = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     match source {
-        SceneSource::Toml(path) => load_toml(source, path, &read_toml(path)?, overrides),
+        SceneSource::Toml(path) => load_toml(source, path, &read_toml(path)?, overrides, grounds),
         SceneSource::Builtin(name) => {
-            load_toml(source, Path::new(name), &text_of_ground("builtin", name), overrides)
+            load_toml(source, Path::new(name), &text_of_ground("builtin", name), overrides, grounds)
         }
-        SceneSource::Gltf(path) => load_toml(source, path, &text_of_ground("file", &beside(path)), overrides),
-        SceneSource::Dem(path) => load_toml(source, path, &text_of_ground("dem", &beside(path)), overrides),
+        SceneSource::Gltf(path) => {
+            load_toml(source, path, &text_of_ground("file", &beside(path)), overrides, grounds)
+        }
+        SceneSource::Dem(path) => {
+            load_toml(source, path, &text_of_ground("dem", &beside(path)), overrides, grounds)
+        }
     }
 }
 
@@ -157,7 +180,7 @@ pub fn load_text(text: &str, name: &str) -> Result<LoadedScene, SceneIoError> {
 pub fn load_text_with(text: &str, name: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoError> {
     overrides.check()?;
     let path = PathBuf::from(format!("{name}.toml"));
-    load_toml(&SceneSource::Toml(path.clone()), &path, text, overrides)
+    load_toml(&SceneSource::Toml(path.clone()), &path, text, overrides, None)
 }
 
 fn load_toml(
@@ -165,6 +188,7 @@ fn load_toml(
     path: &Path,
     text: &str,
     overrides: &Overrides,
+    grounds: Option<&Grounds>,
 ) -> Result<LoadedScene, SceneIoError> {
     let changed = match overrides.settings.as_slice() {
         [] => None,
@@ -180,7 +204,7 @@ fn load_toml(
         _ => vec![sha256(file.text.as_bytes())],
     };
     match file.kind()? {
-        Kind::Rig => load_rig(source, &file, parts, overrides),
+        Kind::Rig => load_rig(source, &file, parts, overrides, grounds),
         Kind::Resolved => load_resolved(source, &file, parts, overrides),
     }
 }
@@ -191,23 +215,34 @@ fn load_rig(
     file: &Source,
     mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
+    grounds: Option<&Grounds>,
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = parse(file)?;
     parts.append(&mut plan.kernel_digests);
     parts.append(&mut plan.ray_digests);
-    let mesh = read_ground(file, &plan)?.map(|(mesh, of_files)| {
-        parts.extend(of_files);
-        mesh
-    });
+    let make = || -> Result<Ground, SceneIoError> {
+        match read_ground(file, &plan)? {
+            Some((mesh, digests)) => Ok(Ground { mesh: Arc::new(mesh), digests: Some(digests) }),
+            None => make_ground(&plan)
+                .map(|mesh| Ground { mesh: Arc::new(mesh), digests: None })
+                .map_err(|error| SceneIoError::scene(source.origin(), error)),
+        }
+    };
+    let ground = match grounds {
+        // All that the mesh is made of; the folder, for paths are relative to it.
+        Some(grounds) => grounds
+            .get(format!("{:?} {:?} {:?}", plan.terrain, plan.reflectivity, file.file.parent()), make)?,
+        None => make()?,
+    };
+    let is_from_file = ground.digests.is_some();
+    parts.extend(ground.digests.into_iter().flatten());
     let position_span = plan.position_span.clone();
     // A lone terrain, whose text is only settings: as in `finish_alone`.
     let is_alone = matches!(source, SceneSource::Gltf(_) | SceneSource::Dem(_));
-    if let Some(mesh) =
-        mesh.as_ref().filter(|_| is_alone && position_span.is_empty() && overrides.at.is_none())
-    {
-        plan.vehicle.position = central_place(mesh).unwrap_or_default();
+    if is_alone && is_from_file && position_span.is_empty() && overrides.at.is_none() {
+        plan.vehicle.position = central_place(&ground.mesh).unwrap_or_default();
     }
-    finish(source, plan, parts, mesh, overrides).map_err(|error| match error {
+    finish(source, plan, parts, ground.mesh, is_from_file, overrides).map_err(|error| match error {
         // A vehicle off the ground is the fault of a line in the file, unless the command line put it there.
         SceneIoError::NoGround { x, y, ground, .. } if overrides.at.is_none() => {
             no_ground(file, position_span, [x, y], &ground)
@@ -261,33 +296,29 @@ fn finish_alone(
     if overrides.at.is_none() {
         plan.vehicle.position = central_place(&mesh).unwrap_or_default();
     }
-    finish(source, plan, parts, Some(mesh), overrides)
+    finish(source, plan, parts, Arc::new(mesh), true, overrides)
 }
 
-/// Resolves a plan: makes the ground if it is not loaded yet, stands the vehicle on it, mounts the sensors.
+/// Resolves a plan: stands the vehicle on the ground and mounts the sensors.
 fn finish(
     source: &SceneSource,
     mut plan: ScenePlan,
     mut parts: Vec<Sha256Digest>,
-    mesh: Option<Mesh>,
+    mesh: Arc<Mesh>,
+    is_from_file: bool,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let unfit = |error: SceneError| SceneIoError::scene(source.origin(), error);
     overrides.apply(&mut plan);
-    let from_file = mesh.is_some();
-    let mesh = match mesh {
-        Some(mesh) => mesh,
-        None => make_ground(&plan).map_err(unfit)?,
-    };
     let Some(vehicle) = plan.vehicle.global_from_vehicle(&mesh) else {
         let [x, y] = plan.vehicle.position;
         return Err(SceneIoError::NoGround { origin: source.origin(), x, y, ground: extent(&mesh) });
     };
-    let scene = resolve(&plan, Arc::new(mesh), vehicle).map_err(unfit)?;
+    let scene = resolve(&plan, mesh, vehicle).map_err(unfit)?;
     // A generated ground takes part in the digest by its numbers, which its name does not promise.
     match source {
         SceneSource::Builtin(_) => parts.push(digest::resolved(&scene)),
-        _ if !from_file => parts.push(digest::mesh(scene.mesh())),
+        _ if !is_from_file => parts.push(digest::mesh(scene.mesh())),
         _ => {}
     }
     if let Some(drive) = &mut plan.drive {

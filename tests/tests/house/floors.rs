@@ -34,6 +34,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("pack", 5),
     ("harness", 6),
     ("campaign", 7),
+    ("sweep", 7),
     ("raypencil", 8),
     ("cli", 9),
 ];

@@ -1,9 +1,8 @@
 //! Figures 11 and 14: the camera's view with the stripes.
 
-use raypencil_report::{Anchor, Drawing, INK, Mark, Scale};
+use raypencil_report::{Anchor, Drawing, INK, Mark, Scale, draw_axes};
 
 use crate::camera_view::{BEAM_COLOURS, CameraView};
-use crate::figures::axes::draw_axes;
 use crate::figures::figure::{MARGINS_PX, PLOT_SIDE_PX};
 
 /// Drawing of a view, with axes in pixels of the camera and a key of the beams' colours.

@@ -3,14 +3,14 @@
 //! ```text
 //! figure        a figure with its caption; the layout that figures share
 //! known_extent  the known cells of a map
-//! axes          axes, and the key of elevations
+//! elevation_key the key of elevations
 //! camera_figure figures 11 and 14
 //! relief        figures 12 and 15
 //! top           figures 13 and 16: from above, over the elevations in grey
 //! ```
 
-mod axes;
 mod camera_figure;
+mod elevation_key;
 mod figure;
 mod known_extent;
 mod relief;

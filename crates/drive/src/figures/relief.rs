@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_report::{Anchor, Colour, Drawing, INK, SOFT, Scale};
 use raypencil_rover::{ElevationMap, GridPoint};
 
-use crate::figures::axes::draw_elevation_key;
+use crate::figures::elevation_key::draw_elevation_key;
 use crate::figures::known_extent::{KnownExtent, stride};
 
 /// Maximum number of cells along either side; smaller cells could not be distinguished.

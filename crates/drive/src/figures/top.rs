@@ -1,10 +1,10 @@
 //! Figures 13 and 16: the obstacle map and the navigator map from above, over the elevations of the local map.
 
 use glam::{DVec2, DVec3};
-use raypencil_report::{Anchor, Colour, Drawing, INK, Mark, SOFT, Scale, Tick};
+use raypencil_report::{Anchor, Colour, Drawing, INK, Mark, SOFT, Scale, Tick, draw_axes};
 use raypencil_rover::{GridPoint, Label, LabelledVector, ObstacleMap, Vehicle};
 
-use crate::figures::axes::{draw_axes, draw_elevation_key};
+use crate::figures::elevation_key::draw_elevation_key;
 use crate::figures::figure::{Figure, MARGINS_PX, PLOT_SIDE_PX};
 use crate::figures::known_extent::{KnownExtent, stride};
 use crate::job::DriveJob;

@@ -1,0 +1,224 @@
+//! Parameters of a sweep: keys of a scene file, each with its values.
+
+use std::path::Path;
+
+use raypencil_files::bytes;
+use raypencil_scene_io::Setting;
+use serde::{Deserialize, Serialize};
+
+use crate::error::SweepError;
+
+/// Maximum number of values of one key.
+const MAX_VALUES: usize = 1_000_000;
+
+/// Maximum size of a list of runs, bytes.
+const MAX_LIST_BYTES: u64 = 1 << 26;
+
+/// A key with the values that it takes, or several keys that take their values together.
+///
+/// ```
+/// use raypencil_sweep::Axis;
+///
+/// // From 20 to 35 in steps of 5, both ends included.
+/// let pitch = Axis::parse("beam.0.pitch_down_deg=20:35:5")?;
+/// assert_eq!(pitch.rows.iter().map(|row| row[0].as_str()).collect::<Vec<_>>(), ["20", "25", "30", "35"]);
+/// // Several values; a comma within brackets is part of one.
+/// assert_eq!(Axis::parse("terrain.generate.seed=1,2,7")?.rows.len(), 3);
+/// assert_eq!(Axis::parse("drive.waypoints_m=[[3, 0], [5, 1]]")?.rows.len(), 1);
+/// # Ok::<(), raypencil_sweep::SweepError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// The keys.
+    pub keys: Vec<String>,
+    /// For each step the values of the keys, as TOML or as plain text.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Axis {
+    /// Parses `KEY=VALUES`: values separated by commas, or `FIRST:LAST:STEP`, numbers with both ends.
+    ///
+    /// # Errors
+    /// A key that is none, no value, a range that does not end.
+    pub fn parse(text: &str) -> Result<Self, SweepError> {
+        let (key, values) = text.split_once('=').ok_or_else(|| {
+            SweepError::axis(text, "expected KEY=VALUES, such as camera.pitch_down_deg=20:35:5 or =20,25,30")
+        })?;
+        let key = key.trim();
+        // The key is checked where settings are.
+        Setting::new(key, "")?;
+        let mut rows = Vec::new();
+        for part in split(values) {
+            let part = part.trim();
+            if part.is_empty() {
+                return Err(SweepError::axis(
+                    text,
+                    "a value is empty; expected one before and after each comma",
+                ));
+            }
+            let room = MAX_VALUES - rows.len();
+            match range(part, room).map_err(|message| SweepError::axis(text, message))? {
+                Some(values) => rows.extend(values.into_iter().map(|value| vec![value])),
+                None => rows.push(vec![part.to_string()]),
+            }
+        }
+        if let Some(twice) =
+            (1..rows.len()).find(|&at| rows[..at].contains(&rows[at])).filter(|_| rows.len() <= 10_000)
+        {
+            return Err(SweepError::axis(
+                text,
+                format!("{} is given twice; expected different values", rows[twice][0]),
+            ));
+        }
+        Ok(Self { keys: vec![key.to_string()], rows })
+    }
+
+    /// Reads a CSV file: keys in its first row, and a run in each row below.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no CSV, or has no runs.
+    pub fn read_list(path: &Path) -> Result<Self, SweepError> {
+        let bytes = bytes::read_file(path, MAX_LIST_BYTES)
+            .map_err(|error| raypencil_files::FileError::io(path, "read", error))?;
+        let refused = |message: String| SweepError::List { file: path.display().to_string(), message };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes.as_slice());
+        let keys: Vec<String> =
+            reader.headers().map_err(|error| refused(error.to_string()))?.iter().map(String::from).collect();
+        for key in &keys {
+            Setting::new(key, "").map_err(|error| refused(format!("line 1: {error}")))?;
+        }
+        if let Some(twice) = (1..keys.len()).find(|&at| keys[..at].contains(&keys[at])) {
+            return Err(refused(format!(
+                "line 1: `{}` is given twice; expected different keys",
+                keys[twice]
+            )));
+        }
+        let mut rows = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|error| refused(error.to_string()))?;
+            rows.push(record.iter().map(String::from).collect());
+        }
+        if rows.is_empty() {
+            return Err(refused("there is no run; expected keys in the first line and values below".into()));
+        }
+        Ok(Self { keys, rows })
+    }
+}
+
+/// Parts between commas that are not within brackets or quotes.
+fn split(text: &str) -> Vec<&str> {
+    let (mut parts, mut depth, mut quote, mut start) = (Vec::new(), 0_i32, None, 0);
+    for (at, letter) in text.char_indices() {
+        match (quote, letter) {
+            (Some(open), _) if letter == open => quote = None,
+            (Some(_), _) => {}
+            (None, '"' | '\'') => quote = Some(letter),
+            (None, '[' | '{') => depth += 1,
+            (None, ']' | '}') => depth -= 1,
+            (None, ',') if depth == 0 => {
+                parts.push(&text[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&text[start..]);
+    parts
+}
+
+/// Values of `FIRST:LAST:STEP`; `None` if the text is no such range. The values have the decimals of the numbers, so that 0.1
+/// and two steps of 0.1 are 0.3.
+fn range(text: &str, room: usize) -> Result<Option<Vec<String>>, String> {
+    let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+    let [first, last, step] = parts.as_slice() else { return Ok(None) };
+    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
+    let (Some(low), Some(high), Some(by)) = (number(first), number(last), number(step)) else {
+        return Ok(None);
+    };
+    if by == 0.0 || (high - low) / by < 0.0 {
+        return Err(format!("{text} does not come to its end; expected FIRST:LAST:STEP, such as 20:35:5"));
+    }
+    // A thousandth of a step of room for the last value.
+    let count = ((high - low) / by + 1e-3).floor();
+    if count >= room as f64 {
+        return Err(format!("{text} has {} values; expected at most {MAX_VALUES}", count + 1.0));
+    }
+    let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    if [first, step].iter().any(|text| text.contains(['e', 'E'])) {
+        return Ok(Some((0..=count as u64).map(|k| format!("{:e}", low + k as f64 * by)).collect()));
+    }
+    let decimals = decimals(first).max(decimals(step));
+    Ok(Some((0..=count as u64).map(|k| format!("{:.decimals$}", low + k as f64 * by)).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(text: &str) -> Vec<String> {
+        Axis::parse(text).unwrap().rows.into_iter().map(|mut row| row.remove(0)).collect()
+    }
+
+    #[test]
+    fn ranges_have_both_ends_and_the_decimals_of_their_numbers() {
+        assert_eq!(values("a=0.1:0.5:0.1"), ["0.1", "0.2", "0.3", "0.4", "0.5"]);
+        assert_eq!(values("a=3:-3:-3"), ["3", "0", "-3"]);
+        assert_eq!(values("a=1:2:0.25, 7"), ["1.00", "1.25", "1.50", "1.75", "2.00", "7"]);
+        // The last step would pass the end.
+        assert_eq!(values("a=20:34:5"), ["20", "25", "30"]);
+        assert_eq!(values("a=5:5:1"), ["5"]);
+        assert_eq!(values("a=1e-3:3e-3:1e-3"), ["1e-3", "2e-3", "3e-3"]);
+        // No numbers: a text with colons.
+        assert_eq!(values("a=x:y:z"), ["x:y:z"]);
+    }
+
+    #[test]
+    fn commas_within_brackets_and_quotes_do_not_separate() {
+        assert_eq!(values("a=[1, 2],[3, 4]"), ["[1, 2]", "[3, 4]"]);
+        assert_eq!(values("a=\"x,y\",z"), ["\"x,y\"", "z"]);
+        assert_eq!(values("a={ b = 1, c = 2 }"), ["{ b = 1, c = 2 }"]);
+    }
+
+    #[test]
+    fn parameters_that_are_none_are_named() {
+        for (text, expected) in [
+            ("a", "expected KEY=VALUES"),
+            ("a=1,,2", "a value is empty"),
+            ("a=", "a value is empty"),
+            ("a b=1", "`a b` is no key"),
+            ("a=1:2:0", "does not come to its end"),
+            ("a=1:2:-1", "does not come to its end"),
+            ("a=0:1e9:1", "expected at most 1000000"),
+            ("a=1,2,1", "1 is given twice"),
+        ] {
+            let message = Axis::parse(text).unwrap_err().to_string();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn a_list_has_a_run_in_each_row() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("runs.csv");
+        std::fs::write(&path, "camera.pitch_down_deg, vehicle.position_m\n20, \"[1, 2]\"\n25,\"[0,0]\"\n")
+            .unwrap();
+        let list = Axis::read_list(&path).unwrap();
+        assert_eq!(list.keys, ["camera.pitch_down_deg", "vehicle.position_m"]);
+        assert_eq!(list.rows, [["20", "[1, 2]"], ["25", "[0,0]"]]);
+        for (text, expected) in [
+            ("a,b\n1\n", "runs.csv"),
+            ("a,a\n1,2\n", "`a` is given twice"),
+            ("a b\n1\n", "`a b` is no key"),
+            ("a\n", "there is no run"),
+            ("", "line 1"),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let message = Axis::read_list(&path).unwrap_err().to_string();
+            assert!(message.contains(expected), "{text:?}: {message}");
+        }
+        assert!(
+            Axis::read_list(&folder.path().join("none.csv")).unwrap_err().to_string().contains("none.csv")
+        );
+    }
+}

@@ -1,0 +1,45 @@
+//! Sweeps: one scene with many settings, and a table of what each of them gives.
+//!
+//! The paper built its model "as a tool for evaluating the use of structured light systems for local navigation" (section
+//! 1): which angle of a sheet, which thickness, which camera finds which obstacle on which ground. A sweep answers such a
+//! question. It takes the product of the values of some keys of a scene file, and for each of them renders, compares or
+//! drives. A run depends on its own settings alone: it can be made anywhere and at any time, and a sweep with more values
+//! takes over the runs that it shares with an earlier one.
+//!
+//! ```text
+//! axis       keys and their values: 20:35:5, or a list in a CSV file
+//! plan       all runs, their settings, and the parts that they are divided into
+//! results    what a run gives, as numbers with names
+//! record     a run's results in a file that tells whether it is whole
+//! work       makes one run
+//! run        makes the runs of a part; joins the records of all parts
+//! table      a row for each run, as CSV and Parquet
+//! chart      a result against a parameter, as SVG and PNG
+//! screen     a finished sweep as text and JSON
+//! ```
+
+mod axis;
+mod chart;
+mod error;
+mod plan;
+mod record;
+mod results;
+mod run;
+mod screen;
+mod table;
+mod work;
+
+pub use axis::Axis;
+pub use chart::Chart;
+pub use error::SweepError;
+pub use plan::{MAX_RUNS, Part, Sweep, Task};
+pub use record::Outcome;
+pub use results::Named;
+pub use run::{Finished, SweepProgress, finish, read_plan, run_part};
+pub use screen::{Written, default_charts, sweep_json, sweep_screen, write_sweep};
+pub use table::{Cells, Column, SweepTable};
+
+/// The README's example, compiled and run with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,203 @@
+//! The plan of a sweep: a scene, its parameters and what is done with each of their combinations.
+
+use raypencil_files::{FileError, bytes, hex_digits, sha256};
+use raypencil_scene_io::{MAX_TOML_BYTES, Overrides, SceneSource, Setting, load};
+use serde::{Deserialize, Serialize};
+
+use crate::axis::Axis;
+use crate::error::SweepError;
+
+/// Maximum number of runs.
+pub const MAX_RUNS: u64 = 10_000_000;
+
+/// What is done with each scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Task {
+    /// Two renderers render it, and every ray is compared.
+    Validate,
+    /// One renderer renders it, and its maps are written.
+    Render,
+    /// The rover drives over it.
+    Drive,
+}
+
+impl Task {
+    /// The name in arguments and files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Validate => "validate",
+            Self::Render => "render",
+            Self::Drive => "drive",
+        }
+    }
+}
+
+/// A sweep. Equal plans give equal tables, byte for byte.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    /// The scene: a built-in name or a path.
+    pub scene: String,
+    /// SHA-256 of the scene without settings, in hexadecimal digits.
+    pub scene_sha256: String,
+    /// The parameters. The first changes slowest.
+    pub axes: Vec<Axis>,
+    /// What is done with each scene.
+    pub task: Task,
+    /// Names of the renderers.
+    pub renderers: Vec<String>,
+    /// Whether drives are as the paper prints them.
+    pub as_printed: bool,
+    /// Build of the program, such as its commit: another may give other results.
+    pub build: String,
+}
+
+impl Sweep {
+    /// A sweep over the product of all parameters.
+    ///
+    /// ```
+    /// use raypencil_sweep::{Axis, Sweep, Task};
+    ///
+    /// let axes = vec![Axis::parse("camera.pitch_down_deg=20,25")?, Axis::parse("beam.thickness_mm=2:8:2")?];
+    /// let renderers = vec!["scanline".to_string(), "tracer".to_string()];
+    /// let sweep = Sweep::new("pyramids", axes, Task::Validate, renderers, false)?;
+    /// // The first parameter changes slowest.
+    /// assert_eq!(sweep.runs(), 8);
+    /// assert_eq!(sweep.values(5), ["25", "4"]);
+    /// # Ok::<(), raypencil_sweep::SweepError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A scene that cannot be read, a key that is given twice, too many runs.
+    pub fn new(
+        scene: &str,
+        axes: Vec<Axis>,
+        task: Task,
+        renderers: Vec<String>,
+        as_printed: bool,
+    ) -> Result<Self, SweepError> {
+        let scene_sha256 = source_digest(scene)?;
+        let build = env!("CARGO_PKG_VERSION").to_string();
+        let sweep = Self { scene: scene.into(), scene_sha256, axes, task, renderers, as_printed, build };
+        sweep.checked()
+    }
+
+    /// The same plan, if its parameters make one.
+    pub(crate) fn checked(self) -> Result<Self, SweepError> {
+        let sweep = self;
+        if let Some(axis) =
+            sweep.axes.iter().find(|axis| axis.rows.iter().any(|row| row.len() != axis.keys.len()))
+        {
+            return Err(SweepError::Plan {
+                found: format!("`{}` has rows of another length", axis.keys.join(",")),
+                expected: "a value for each key".into(),
+            });
+        }
+        let keys = sweep.keys();
+        if let Some(twice) = (1..keys.len()).find(|&at| keys[..at].contains(&keys[at])) {
+            return Err(SweepError::Plan {
+                found: format!("`{}` is given twice", keys[twice]),
+                expected: "each key once, with all of its values".into(),
+            });
+        }
+        let product =
+            sweep.axes.iter().try_fold(1_u64, |product, axis| product.checked_mul(axis.rows.len() as u64));
+        match product {
+            Some(1..=MAX_RUNS) => Ok(sweep),
+            _ => Err(SweepError::Plan {
+                found: product.map_or("more than 2^64 runs".into(), |runs| format!("{runs} runs")),
+                expected: format!("1 to {MAX_RUNS}"),
+            }),
+        }
+    }
+
+    /// Number of runs.
+    pub fn runs(&self) -> u64 {
+        self.axes.iter().map(|axis| axis.rows.len() as u64).product()
+    }
+
+    /// All keys, in order.
+    pub fn keys(&self) -> Vec<&str> {
+        self.axes.iter().flat_map(|axis| axis.keys.iter().map(String::as_str)).collect()
+    }
+
+    /// Values of the keys in a run.
+    pub fn values(&self, run: u64) -> Vec<&str> {
+        let mut rest = run;
+        let mut rows = Vec::new();
+        for axis in self.axes.iter().rev() {
+            let count = axis.rows.len() as u64;
+            rows.push(&axis.rows[(rest % count) as usize]);
+            rest /= count;
+        }
+        rows.iter().rev().flat_map(|row| row.iter().map(String::as_str)).collect()
+    }
+
+    /// Settings of a run. An empty value in a list leaves the scene's own.
+    pub(crate) fn settings(&self, run: u64) -> Result<Vec<Setting>, SweepError> {
+        let pairs = self.keys().into_iter().zip(self.values(run));
+        let given = pairs.filter(|(_, value)| !value.is_empty());
+        Ok(given.map(|(key, value)| Setting::new(key, value)).collect::<Result<_, _>>()?)
+    }
+
+    /// The runs in the order in which they are made: those of one ground one after the other, so that they share it.
+    pub(crate) fn order(&self, part: Part) -> Vec<u64> {
+        let is_of_ground: Vec<bool> = self.keys().iter().map(|key| key.starts_with("terrain.")).collect();
+        let ground = |run: u64| -> Vec<String> {
+            let values = self.values(run).into_iter().zip(&is_of_ground);
+            values.filter(|(_, is_of_ground)| **is_of_ground).map(|(value, _)| value.to_string()).collect()
+        };
+        let mut runs: Vec<u64> = part.runs(self.runs()).collect();
+        if is_of_ground.contains(&true) {
+            runs.sort_by_cached_key(|&run| (ground(run), run));
+        }
+        runs
+    }
+
+    /// SHA-256 of all that decides the results of a run, in hexadecimal digits. It does not depend on the other runs, so that
+    /// a sweep with more values takes over the runs that it shares with an earlier one.
+    pub(crate) fn identity(&self, run: u64) -> String {
+        let mut pairs: Vec<(&str, &str)> = self.keys().into_iter().zip(self.values(run)).collect();
+        pairs.retain(|(_, value)| !value.is_empty());
+        // The order of the keys changes nothing: no key is given twice.
+        pairs.sort_unstable();
+        let all = (&self.build, &self.scene_sha256, self.task, &self.renderers, self.as_printed, pairs);
+        let text = serde_json::to_string(&all).expect("JSON of texts and numbers");
+        hex_digits(&sha256(text.as_bytes()))
+    }
+}
+
+/// Part of a sweep: the runs k with k mod `count` = `index`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Index of the part, from 0.
+    pub index: u64,
+    /// Number of parts.
+    pub count: u64,
+}
+
+impl Part {
+    /// The whole sweep as one part.
+    pub const WHOLE: Self = Self { index: 0, count: 1 };
+
+    /// Numbers of the part's runs, ascending.
+    pub fn runs(self, of: u64) -> impl Iterator<Item = u64> {
+        (self.index..of).step_by(usize::try_from(self.count).unwrap_or(usize::MAX))
+    }
+}
+
+/// Digest of a scene as it stands. One that only settings make whole has that of its file.
+fn source_digest(scene: &str) -> Result<String, SweepError> {
+    match load(scene, &Overrides::default()) {
+        Ok(loaded) => Ok(loaded.source_sha256),
+        Err(error) => match SceneSource::parse(scene) {
+            Ok(SceneSource::Toml(path)) => {
+                let text = bytes::read_file(&path, MAX_TOML_BYTES)
+                    .map_err(|error| FileError::io(&path, "read", error))?;
+                Ok(hex_digits(&sha256(&text)))
+            }
+            _ => Err(error.into()),
+        },
+    }
+}
