@@ -201,7 +201,7 @@ mod tests {
     fn a_list_has_a_run_in_each_row() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("runs.csv");
-        std::fs::write(&path, "camera.pitch_down_deg, vehicle.position_m\n20, \"[1, 2]\"\n25,\"[0,0]\"\n")
+        std::fs::write(&path, "camera.pitch_down_deg, vehicle.position_m\n20,\"[1, 2]\"\n25,\"[0,0]\"\n")
             .unwrap();
         let list = Axis::read_list(&path).unwrap();
         assert_eq!(list.keys, ["camera.pitch_down_deg", "vehicle.position_m"]);
@@ -211,7 +211,7 @@ mod tests {
             ("a,a\n1,2\n", "`a` is given twice"),
             ("a b\n1\n", "`a b` is no key"),
             ("a\n", "there is no run"),
-            ("", "line 1"),
+            ("", "there is no run"),
         ] {
             std::fs::write(&path, text).unwrap();
             let message = Axis::read_list(&path).unwrap_err().to_string();

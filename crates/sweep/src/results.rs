@@ -1,7 +1,7 @@
 //! Results of a run, as numbers with names: the columns of the table.
 
 use raypencil_harness::Validation;
-use raypencil_scene::{RenderOutput, SensorId};
+use raypencil_scene::{FluxModel, RenderOutput, SensorId};
 use raypencil_survey::SensorHits;
 use serde_json::{Value, json};
 
@@ -61,7 +61,11 @@ fn share(part: f64, whole: f64) -> Value {
 }
 
 /// Results of a rendering: what each sensor hits, and the light of each beam that the camera sees.
-pub(crate) fn light_results(output: &RenderOutput) -> Vec<Named> {
+pub(crate) fn light_results(output: &RenderOutput, model: FluxModel) -> Vec<Named> {
+    let unit = match model {
+        FluxModel::Radiometric => "w",
+        FluxModel::Eq1 => "w_per_m",
+    };
     let mut results = Vec::new();
     for hits in output.maps().filter_map(SensorHits::of_map) {
         results.push((format!("{}.hits", hits.sensor), json!(hits.hits)));
@@ -81,8 +85,8 @@ pub(crate) fn light_results(output: &RenderOutput) -> Vec<Named> {
         // One after the other, from the first pixel to the last: the same bits everywhere.
         let sum: f64 = flux.cells().iter().sum();
         results.push((format!("{sensor}.lit_pixels"), json!(lit)));
-        results.push((format!("{sensor}.flux"), json!(sum)));
-        results.push((format!("{sensor}.flux_per_lit_pixel"), share(sum, lit as f64)));
+        results.push((format!("{sensor}.flux_{unit}"), json!(sum)));
+        results.push((format!("{sensor}.flux_per_lit_pixel_{unit}"), share(sum, lit as f64)));
     }
     results
 }
@@ -106,7 +110,7 @@ pub(crate) fn validation_results(validation: &Validation) -> Vec<Named> {
     .map(|(name, value)| (name.to_string(), value))
     .into();
     if let Some(first) = validation.rendered.first() {
-        results.extend(light_results(&first.output));
+        results.extend(light_results(&first.output, validation.subject.scene.flux_model()));
     }
     results
 }

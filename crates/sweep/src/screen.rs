@@ -20,7 +20,7 @@ const MAX_SHOWN_RUNS: usize = 30;
 fn main_results(task: Task) -> &'static [&'static str] {
     match task {
         Task::Validate => &["compared", "tie", "rounding", "approximation", "undecided", "defects"],
-        Task::Render => &["camera.hits", "beam-0.visible_share", "beam-0.lit_pixels", "beam-0.flux"],
+        Task::Render => &["camera.hits", "beam-0.visible_share", "beam-0.lit_pixels", "beam-0.flux_w"],
         Task::Drive => &[
             "truth.found_share",
             "truth.missed_share",

@@ -74,7 +74,7 @@ impl<'a> Worker<'a> {
         let renderer = &self.contenders[0].renderer;
         let output = renderer.render(&subject.scene, &Request::EVERYTHING);
         write_maps(&output, renderer.name(), &subject, Sampling::Centres, maps)?;
-        Ok(light_results(&output))
+        Ok(light_results(&output, subject.scene.flux_model()))
     }
 
     fn drive(&self, loaded: &LoadedScene, arguments: String, frames: &(dyn Fn(u64, u64) + Sync)) -> Outcome {
