@@ -49,6 +49,7 @@
 //! monte_carlo          a candidate's Monte Carlo images against pencils drawn at random (z-test)
 //! radiance             a candidate's radiance along single rays against the closed form
 //! scoreboard           every renderer and candidate, checked against the exact answers
+//! hunt                 one candidate of one scene, checked without rendering
 //! misses               a ray that a candidate answers wrongly, as a pack of that ray
 //! ray_sets             rays of no sensor: the tracer against the exact answers
 //! ray_set_packs        the same in packs of scenes
@@ -69,6 +70,7 @@
 
 mod candidate;
 mod estimate;
+mod hunt;
 mod interestingness;
 mod misses;
 mod monte_carlo;
@@ -86,6 +88,7 @@ mod validation;
 
 pub use candidate::{Candidate, CandidateError, RadianceMap};
 pub use estimate::{Estimate, MonteCarloImage};
+pub use hunt::{JudgedCandidate, judge_candidate};
 pub use interestingness::{first_interesting_ray, is_interesting_in_class};
 pub use monte_carlo::{ImageComparison, Z_TEST_LIMITS, ZTestLimits, compare_images, expected_images};
 pub use output::folder::{HarnessError, Written, write_maps, write_validation};

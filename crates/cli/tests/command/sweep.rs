@@ -120,6 +120,10 @@ fn sweeps_that_make_no_sense_are_refused() {
     assert_trouble(&raypencil(house, &["sweep", "merge", "nowhere"]), &["nowhere"]);
 }
 
+fn with<'a>(set: &[&'a str], words: &[&'a str]) -> Vec<&'a str> {
+    [words, set].concat()
+}
+
 #[test]
 fn every_command_that_takes_a_scene_takes_settings() {
     let house = house();
@@ -127,7 +131,6 @@ fn every_command_that_takes_a_scene_takes_settings() {
     fs::write(house.join("by-hand.toml"), SCENE.replace("rows = 2 }]", "rows = 2, thickness_mm = 60 }]"))
         .unwrap();
     let set = ["--set", "beam.1.thickness_mm=60"];
-    let with = |words: &[&str]| [words, &set].concat();
     // probe: the same answers, and another one without the setting.
     let probe = ["--beam", "1", "--pencil", "20,1", "--json"];
     let of = |scene: &str, more: &[&str]| {
@@ -137,18 +140,18 @@ fn every_command_that_takes_a_scene_takes_settings() {
     assert_eq!(of("scene.toml", &set).replace(" --set beam.1.thickness_mm=60", ""), of("by-hand.toml", &[]));
     assert_ne!(of("scene.toml", &[]), of("by-hand.toml", &[]));
     // validate: the report repeats the setting.
-    screen(house, &with(&["validate", "scene.toml", "-o", "v"]), 0);
+    screen(house, &with(&set, &["validate", "scene.toml", "-o", "v"]), 0);
     let summary = fs::read_to_string(house.join("v/summary.json")).unwrap();
     assert!(summary.contains("scene.toml --set beam.1.thickness_mm=60"), "{summary}");
     // render, and diff with the scene of both.
-    screen(house, &with(&["render", "scene.toml", "--with", "tracer", "-o", "r"]), 0);
+    screen(house, &with(&set, &["render", "scene.toml", "--with", "tracer", "-o", "r"]), 0);
     screen(house, &["render", "by-hand.toml", "--with", "scanline", "-o", "h"], 0);
-    screen(house, &with(&["diff", "r", "h", "--scene", "scene.toml"]), 0);
+    screen(house, &with(&set, &["diff", "r", "h", "--scene", "scene.toml"]), 0);
     // pack, check of the render against it, minimise, drive.
-    screen(house, &with(&["pack", "scene.toml", "--no-bench", "-o", "p"]), 0);
+    screen(house, &with(&set, &["pack", "scene.toml", "--no-bench", "-o", "p"]), 0);
     screen(house, &["check", "p", "r"], 0);
-    screen(house, &with(&["minimise", "scene.toml", "-o", "m"]), 1);
-    screen(house, &with(&["drive", "scene.toml", "-o", "d"]), 0);
+    screen(house, &with(&set, &["minimise", "scene.toml", "-o", "m"]), 1);
+    screen(house, &with(&set, &["drive", "scene.toml", "-o", "d"]), 0);
     assert!(
         fs::read_to_string(house.join("d/summary.json")).unwrap().contains("--set beam.1.thickness_mm=60")
     );
