@@ -1,4 +1,4 @@
-//! A program under test: it gets the rays of a scene as a blind pack, and its answers are checked.
+//! A program under test: it gets the rays of a scene as a pack without answers, and its answers are checked.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use raypencil_harness::{Candidate, judge_candidate};
-use raypencil_pack::write_pack;
+use raypencil_pack::write_questions;
 use raypencil_scene::Silent;
 use raypencil_scene_io::{Subject, quoted};
 
@@ -47,8 +47,8 @@ pub(crate) fn hunt(
     })?;
     let (pack, out) = (folder.path().join("pack"), folder.path().join("out"));
     raypencil_files::create_folder(&out)?;
-    // Blind: the program cannot copy what it does not get.
-    write_pack(subject, Some(0), &pack, &Silent).map_err(Box::new)?;
+    // No answers: the program cannot copy what it does not get.
+    write_questions(subject, &pack, &Silent).map_err(Box::new)?;
     let failed = |why: String| PartRecord { failed: Some(why), ..PartRecord::of(part, 0, &[]) };
     if let Some(why) = run(command, &pack, &out, folder.path())? {
         return Ok(failed(why));

@@ -65,7 +65,7 @@ impl Campaign {
     }
 
     /// The same with another program under test. For each scene the shell runs `command`, in which `{pack}` is the folder of
-    /// a blind pack, and `{out}` an empty folder for the answers, as `raypencil check` takes them.
+    /// a pack without answers, and `{out}` an empty folder for the answers, as `raypencil check` takes them.
     ///
     /// # Errors
     /// A command that lacks one of the two.

@@ -376,8 +376,8 @@ pub(crate) struct CampaignRun {
     #[arg(long, value_name = "SCENE.toml", requires = "scenes")]
     pub(crate) rig: Option<PathBuf>,
 
-    /// Hunt in another renderer: the shell runs this for each scene, with {pack} replaced by the folder of a blind pack and
-    /// {out} by that for the answers, as `check` takes them. What it answers wrongly is left as packs of single rays.
+    /// Hunt in another renderer: the shell runs this for each scene, with {pack} replaced by the folder of a pack without
+    /// answers and {out} by that for the answers, as `check` takes them. What it answers wrongly is left as packs of single rays.
     #[arg(long, value_name = "'PROGRAM {pack} {out}'")]
     pub(crate) candidate_command: Option<String>,
 
