@@ -190,9 +190,9 @@ fn classes_add_up_and_a_perfect_candidate_has_no_error() {
 
 #[test]
 fn outputs_in_memory_are_judged_in_double_precision() {
-    let scene = raypencil_scene_io::load(
+    let scene = load(
         &pack().join("scene.toml").to_string_lossy(),
-        &raypencil_scene_io::Overrides::default(),
+        &Overrides::default(),
     )
     .expect("the pack's scene")
     .scene;
