@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use raypencil::campaign::{PartName, Shard};
+use raypencil::harness::MapFormat;
 use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, Setting, quoted};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::sweep::{Axis, Chart, Task};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 use crate::parsers::{
-    axis, chart, class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, record,
-    rule, setting, shard, switch, task, threshold,
+    axis, chart, class, flux_model, judge_share, map_format, numbers, pair, part_name, percent, precision,
+    ray, record, rule, setting, shard, switch, task, threshold,
 };
 
 /// Simulates a Mars rover's structured-light vision system with two independent renderers and compares every ray.
@@ -245,6 +246,10 @@ pub(crate) struct Render {
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
+
+    /// Format of the maps.
+    #[arg(long, value_name = "FORMAT", default_value = "exr", value_parser = map_format())]
+    pub(crate) format: MapFormat,
 
     /// Output folder.
     #[arg(short, long, value_name = "DIR")]

@@ -58,6 +58,7 @@
 //! output/table         the table of quantities and classes
 //! output/verdict       the verdict in words
 //! output/candidates    the scoreboard, ready to be printed
+//! output/formats       maps as NPY, NPZ, Zarr and single EXRs
 //! output/panel         the scoreboard for programs
 //! output/plots, light  range maps, differences and flux as pictures
 //! output/screen        one terminal screen
@@ -92,6 +93,7 @@ pub use hunt::{JudgedCandidate, judge_candidate};
 pub use interestingness::{first_interesting_ray, is_interesting_in_class};
 pub use monte_carlo::{ImageComparison, Z_TEST_LIMITS, ZTestLimits, compare_images, expected_images};
 pub use output::folder::{HarnessError, Written, write_maps, write_validation};
+pub use output::formats::{MapFormat, arrays as map_arrays, write_maps_as};
 pub use output::junit::junit as junit_xml;
 pub use output::markdown::markdown as summary_markdown;
 pub use output::report::html as report_html;

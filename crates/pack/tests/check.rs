@@ -190,12 +190,9 @@ fn classes_add_up_and_a_perfect_candidate_has_no_error() {
 
 #[test]
 fn outputs_in_memory_are_judged_in_double_precision() {
-    let scene = load(
-        &pack().join("scene.toml").to_string_lossy(),
-        &Overrides::default(),
-    )
-    .expect("the pack's scene")
-    .scene;
+    let scene = load(&pack().join("scene.toml").to_string_lossy(), &Overrides::default())
+        .expect("the pack's scene")
+        .scene;
     let truth = GroundTruth::certified(&scene, &Silent);
     let renderers: [&dyn Renderer; 2] = [&Scanline::default(), &Tracer::new()];
     for renderer in renderers {
