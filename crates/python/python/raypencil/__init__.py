@@ -4,7 +4,7 @@
 ``check``, ``diff`` and ``drive`` are the commands of the same names. docs/guide/python.md has examples.
 """
 
-from . import terrain
+from . import terrain, testing
 from ._cast import AllHits, CastResult, cast
 from ._drive import Drive, ElevationMap, Frame, Sectors, Vectors, drive
 from ._errors import RaypencilError, RaypencilFileError, RaypencilFileNotFoundError
@@ -51,5 +51,6 @@ __all__ = [
     "read",
     "render",
     "terrain",
+    "testing",
     "validate",
 ]

@@ -196,7 +196,7 @@ class CastResult:
         of_rays = {1: ("ray",), 2: ("row", "column")}.get(len(self.shape))
         dimensions = of_rays or tuple(f"axis_{axis}" for axis in range(len(self.shape)))
         variables = {}
-        used = set()
+        used: set[str] = set()
         for name, array in self.arrays.items():
             if name not in _MEANINGS:
                 continue

@@ -36,12 +36,12 @@ class ElevationMap:
     @property
     def x(self) -> NDArray[np.float64]:
         """Global x of each column, metres."""
-        return self.west + self.spacing * np.arange(self.elevation.shape[1])
+        return np.asarray(self.west + self.spacing * np.arange(self.elevation.shape[1]), dtype=np.float64)
 
     @property
     def y(self) -> NDArray[np.float64]:
         """Global y of each row, metres."""
-        return self.south + self.spacing * np.arange(self.elevation.shape[0])
+        return np.asarray(self.south + self.spacing * np.arange(self.elevation.shape[0]), dtype=np.float64)
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` over ``y`` and ``x``. Raises ImportError without xarray."""

@@ -131,7 +131,7 @@ class RenderResult(Mapping[str, Mapping[str, NDArray[Any]]]):
             raise missing_extra("xarray") from None
         if sensor not in self:
             raise RaypencilError(f"sensor is {sensor!r}; expected one of {', '.join(self)}")
-        variables, coordinates = {}, {}
+        variables, coordinates = {}, dict[str, Any]()
         rows, columns = self[sensor]["range"].shape if "range" in self[sensor] else (0, 0)
         for name, array in self[sensor].items():
             unit, meaning = _MEANINGS[name]

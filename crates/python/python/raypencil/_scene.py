@@ -229,7 +229,10 @@ class Scene:
     def ray_sets(self) -> dict[str, RaySet]:
         """The sets of rays of ``[[rays]]``, by name."""
         parts = ("rays", "times", "weights", "elevations_deg", "fronts_only")
-        return {name: RaySet(**{part: of.get(part) for part in parts}) for name, of in self._core.ray_sets.items()}
+        sets: dict[str, dict[str, Any]] = {
+            name: {part: of.get(part) for part in parts} for name, of in self._core.ray_sets.items()
+        }
+        return {name: RaySet(**of) for name, of in sets.items()}
 
     @property
     def flux_unit(self) -> str:
