@@ -107,7 +107,9 @@ def hit_faces(name: str, values: ArrayLike, miss: float | None) -> NDArray[np.in
         cell = int(np.argmax(is_wrong))
         expected = f"0 or a larger whole number; -1 or {NO_FACE} for no hit"
         raise RaypencilError(f"{name}: cell {cell} is {numbers[cell]}; expected {expected}")
-    return np.where(is_miss, -1, np.where(is_miss, 0, numbers)).astype(np.int64)
+    indices = np.where(is_miss, 0, numbers).astype(np.int64)
+    indices[is_miss] = -1
+    return indices
 
 
 def frozen(values: Any) -> Any:

@@ -248,7 +248,7 @@ class Scene:
         source = self._source
         if not self._is_text and source not in BUILTIN_NAMES:
             source = os.path.abspath(source)
-        return _unpickled, (source, self._is_text, self._name, self._settings, self.sha256)
+        return _unpickled, (source, self._is_text, self._name, self._settings, self.source_sha256)
 
 
 def _posed(numbers: Mapping[str, Any]) -> dict[str, Any]:
@@ -260,7 +260,7 @@ def _unpickled(
 ) -> Scene:
     scene = Scene.__new__(Scene)
     scene._load(source, is_text, name, settings)
-    if scene.sha256 != sha256:
+    if scene.source_sha256 != sha256:
         raise RaypencilError(f"{source}: the scene is another one than that which was pickled; expected {sha256}")
     return scene
 
