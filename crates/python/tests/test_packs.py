@@ -47,7 +47,6 @@ def test_renders_are_right_on_a_pack() -> None:
     for renderer in ("tracer", "referee"):
         result = check(HARD, render(scene, renderer))
         assert result and result.kind == "scene" and result.why is None
-        assert result.summary["verdict"] == "agrees" or result.passes
     assert result.classes is None and "2,866 rays agree" in result.text
 
 
@@ -104,10 +103,10 @@ def test_answers_to_a_pack_of_rays(cube: Mesh, tmp_path: Path) -> None:
 
 def test_triangles_of_a_loader() -> None:
     folder = DATA / "packs/input"
-    result = check(folder, {"triangles": np.zeros((3, 3, 3))})
+    result = check(folder, {"triangles": np.zeros((3, 9))})
     assert not result and result.kind == "input"
     with pytest.raises(RaypencilError, match="is an input pack"):
-        check(folder, {"triangles": np.zeros((3, 3, 3))}, "f32")
+        check(folder, {"triangles": np.zeros((3, 9))}, "f32")
 
 
 @pytest.mark.parametrize(

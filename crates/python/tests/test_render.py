@@ -94,7 +94,7 @@ def test_switches_and_random_rays(small: Scene, tmp_path: Path, command: Command
     (tmp_path / "small.toml").write_text(SMALL)
     command("render", "small.toml", "--with", "tracer", "--jitter", 7, "-o", "theirs")
     assert_are_files(render(small, "tracer", jitter=7), tmp_path / "theirs")
-    command("render", "small.toml", "--switch", "beam-edges=paper", "-o", "switched")
+    command("render", "small.toml", "--with", "scanline", "--switch", "beam-edges=paper", "-o", "switched")
     assert_are_files(render(small, switches={"beam-edges": "paper"}), tmp_path / "switched")
 
 

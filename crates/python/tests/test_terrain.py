@@ -31,7 +31,8 @@ def test_a_ground_is_the_commands(command: Command, tmp_path: Path, flags: list[
     assert np.array_equal(mesh.faces, scene.mesh.faces)
     assert mesh.bounds is not None
     low, high = mesh.bounds
-    assert high[0] - low[0] == options["extent"] and high[2] > low[2]
+    # Rocks and rims move the outermost posts a little.
+    assert abs(high[0] - low[0] - float(str(options["extent"]))) < 0.5 and high[2] > low[2]
 
 
 def test_presets_are_those_of_the_engine() -> None:

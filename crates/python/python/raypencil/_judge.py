@@ -99,7 +99,8 @@ class Judgement:
 
 def answers_of(answers: Any) -> Mapping[str, Any]:
     """Answers by the names of their arrays."""
-    arrays = answers if isinstance(answers, Mapping) else getattr(answers, "arrays", None)
+    # A render is a mapping of its own, whose names are not those of files.
+    arrays = getattr(answers, "arrays", answers)
     if not isinstance(arrays, Mapping):
         raise RaypencilError(f"answers are of type {type(answers).__name__}; expected a dictionary of arrays")
     return arrays

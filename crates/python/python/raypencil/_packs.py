@@ -127,7 +127,8 @@ def check(
         pack: folder of the pack.
         answers: a folder of EXR, NPY or PFM files, or arrays. For a pack of rays: a dictionary with ``face``, ``t``, ... or a
             :class:`CastResult`. For a pack of a scene: a dictionary with the channels of docs/formats/files.md, as
-            ``"camera/range.T"`` or nested, or a :class:`RenderResult`. For an input pack: ``triangles`` and ``reflectivity``.
+            ``"camera/range.T"`` or nested, or a :class:`RenderResult`. For an input pack: ``triangles`` (m, 9) and
+            ``reflectivity`` (m,).
         arithmetic: that of the answers, whatever type they are stored in. Default: as the folder's ``candidate.json`` says,
             else ``"f64"``.
         miss: a number that means no hit.

@@ -94,6 +94,8 @@ def raypencil_check(request: pytest.FixtureRequest) -> Callable[..., CheckResult
         try:
             return assert_answers(pack, answers, arithmetic, reports=folder, **options)
         except AssertionError as error:
-            pytest.fail(str(error), pytrace=False)
+            words = str(error)
+        # Not while the error is handled: it would be shown as well.
+        pytest.fail(words, pytrace=False)
 
     return raypencil_check
