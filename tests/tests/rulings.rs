@@ -226,7 +226,7 @@ fn a_hit_exactly_on_the_projection_plane_before_a_corner_exactly_on_the_ray() {
 /// the error bound of the flux at grazing incidence.
 #[test]
 fn the_difference_of_tied_faces_is_not_an_error_of_flux() {
-    let scene = scene_of(&Campaign::new(1, 911), 910, PartName::Lattice);
+    let scene = scene_of(&Campaign::new(1, 911), 910, PartName::Lattice).expect("a random scene");
     let [a, b] = renderers();
     let sensors = compared(&scene, &*a, &*b);
     let beam = sensors.iter().find(|sensor| sensor.sensor == SensorId::Beam(0)).expect("a beam");

@@ -1,6 +1,8 @@
 //! Errors of a campaign.
 
 use raypencil_files::{FileError, FolderError};
+use raypencil_pack::PackError;
+use raypencil_scene_io::SceneIoError;
 
 /// Why a campaign could not continue.
 #[derive(Debug, thiserror::Error)]
@@ -22,6 +24,22 @@ pub enum CampaignError {
         /// What was expected.
         expected: String,
     },
+    /// A scene that cannot be loaded; the message names it.
+    #[error(transparent)]
+    Scene(#[from] Box<SceneIoError>),
+    /// A candidate's command that cannot be run.
+    #[error("{command}: {found}; expected {expected}")]
+    Candidate {
+        /// The command.
+        command: String,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+    /// A pack for a candidate, or of a ray that it answers wrongly.
+    #[error(transparent)]
+    Pack(#[from] Box<PackError>),
     /// Shards that do not make a whole campaign.
     #[error("{found}; expected {expected}")]
     Shards {

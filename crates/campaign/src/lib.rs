@@ -25,9 +25,11 @@
 //! assert_eq!(terrains, (0..10).collect::<Vec<_>>());
 //! ```
 
+mod candidate;
 pub mod cases;
 mod error;
 mod merge;
+mod own_scenes;
 mod page;
 mod plan;
 mod record;
@@ -41,6 +43,7 @@ mod totals;
 
 pub use error::CampaignError;
 pub use merge::{Merged, merge};
+pub use own_scenes::OwnScenes;
 pub use plan::{Campaign, Shard};
 pub use record::{PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay};
 pub use scenes::scene_of;

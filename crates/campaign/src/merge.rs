@@ -37,10 +37,8 @@ pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
         match &campaign {
             None => campaign = Some((own.clone(), shard.count, name.clone())),
             Some((first, count, first_name)) if *first != own || *count != shard.count => {
-                let words = |campaign: &Campaign, count: u64| {
-                    let Campaign { seed, terrains, version } = campaign;
-                    format!("{terrains} terrains, seed {seed}, version {version}, in {count} shards")
-                };
+                let words =
+                    |campaign: &Campaign, count: u64| format!("{}, in {count} shards", campaign.words());
                 let expected = format!("{}, as in {first_name}", words(first, *count));
                 return Err(refuse(words(&own, shard.count), expected));
             }

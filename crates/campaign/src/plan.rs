@@ -4,6 +4,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::CampaignError;
+use crate::own_scenes::OwnScenes;
+use crate::record::PartName;
+
 /// A campaign. Equal campaigns give equal results, byte for byte.
 ///
 /// ```
@@ -24,12 +28,59 @@ pub struct Campaign {
     pub terrains: u64,
     /// Version of raypencil. Another version may make other terrains.
     pub version: String,
+    /// Scenes in place of random ones.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenes: Option<OwnScenes>,
+    /// Command of a program whose answers are checked, in place of the two renderers; see [`Campaign::hunting`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub candidate: Option<String>,
 }
 
 impl Campaign {
     /// A campaign run by this version.
     pub fn new(seed: u64, terrains: u64) -> Self {
-        Self { seed, terrains, version: env!("CARGO_PKG_VERSION").into() }
+        Self { seed, terrains, version: env!("CARGO_PKG_VERSION").into(), scenes: None, candidate: None }
+    }
+
+    /// Words after `raypencil probe` that give a scene, once it is written by `campaign replay`.
+    pub(crate) fn arguments(&self, terrain: u64, part: PartName) -> String {
+        match (&self.scenes, part) {
+            (Some(scenes), PartName::Own) => scenes.arguments(terrain),
+            _ => "scene.toml".into(),
+        }
+    }
+
+    /// What tells one campaign from another, in words.
+    pub(crate) fn words(&self) -> String {
+        let Self { seed, terrains, version, scenes, candidate } = self;
+        let own = if scenes.is_some() { "own " } else { "" };
+        let candidate =
+            candidate.as_ref().map_or(String::new(), |command| format!(", candidate `{command}`"));
+        format!("{terrains} {own}terrains, seed {seed}, version {version}{candidate}")
+    }
+
+    /// The same over one's own scenes: each is a terrain.
+    pub fn over(self, scenes: OwnScenes) -> Self {
+        Self { terrains: scenes.len() as u64, scenes: Some(scenes), ..self }
+    }
+
+    /// The same with another program under test. For each scene the shell runs `command`, in which `{pack}` is the folder of
+    /// a pack without answers, and `{out}` an empty folder for the answers, as `raypencil check` takes them.
+    ///
+    /// # Errors
+    /// A command that lacks one of the two.
+    pub fn hunting(self, command: &str) -> Result<Self, CampaignError> {
+        for place in ["{pack}", "{out}"] {
+            if !command.contains(place) {
+                return Err(CampaignError::Candidate {
+                    command: command.into(),
+                    found: format!("it has no {place}"),
+                    expected: "{pack} where the folder of the pack stands, and {out} for that of the answers"
+                        .into(),
+                });
+            }
+        }
+        Ok(Self { candidate: Some(command.into()), ..self })
     }
 }
 

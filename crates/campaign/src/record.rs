@@ -68,6 +68,12 @@ pub struct PartRecord {
     pub quantities: Vec<QuantityRecord>,
     /// The first wrong rays.
     pub wrong: Vec<WrongRay>,
+    /// Name of the program under test, if it answered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub candidate: Option<String>,
+    /// Why the program under test did not answer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
 }
 
 /// Record of a quantity of a scene.
@@ -128,6 +134,8 @@ impl PartRecord {
             judged: 0,
             quantities: Vec::new(),
             wrong: Vec::new(),
+            candidate: None,
+            failed: None,
         };
         let mut totals = Quantity::ALL.map(|quantity| (quantity, ItemTally::default()));
         for sensor in sensors {

@@ -10,6 +10,7 @@ use crate::cases::lattice::{Lattice, Sensor};
 use crate::cases::random::{Case, campaign_cases};
 use crate::cases::split_mix::hash;
 use crate::cases::{aimed, at_origin, scene};
+use crate::error::CampaignError;
 use crate::plan::Campaign;
 use crate::record::PartName;
 
@@ -30,15 +31,27 @@ pub(crate) fn case(campaign: &Campaign, terrain: u64) -> Case {
 ///
 /// let campaign = Campaign::new(5, 10);
 /// // Equal campaigns have equal scenes; terrains differ.
-/// let scene = scene_of(&campaign, 3, PartName::Lattice);
-/// assert_eq!(scene, scene_of(&Campaign::new(5, 10), 3, PartName::Lattice));
-/// assert_ne!(scene, scene_of(&campaign, 4, PartName::Lattice));
+/// let scene = scene_of(&campaign, 3, PartName::Lattice)?;
+/// assert_eq!(scene, scene_of(&Campaign::new(5, 10), 3, PartName::Lattice)?);
+/// assert_ne!(scene, scene_of(&campaign, 4, PartName::Lattice)?);
+/// # Ok::<(), raypencil_campaign::CampaignError>(())
 /// ```
-pub fn scene_of(campaign: &Campaign, terrain: u64, part: PartName) -> Scene {
-    match part {
-        PartName::Own | PartName::Paper => case(campaign, terrain).scene(),
-        PartName::Aimed => aimed_scene(campaign, terrain, &case(campaign, terrain).mesh()),
+///
+/// # Errors
+/// One of one's own scenes that cannot be loaded.
+pub fn scene_of(campaign: &Campaign, terrain: u64, part: PartName) -> Result<Scene, CampaignError> {
+    Ok(match part {
+        PartName::Own | PartName::Paper => own_scene(campaign, terrain)?,
+        PartName::Aimed => aimed_scene(campaign, terrain, own_scene(campaign, terrain)?.mesh()),
         PartName::Lattice => lattice_scene(campaign, terrain),
+    })
+}
+
+/// The scene of a terrain: a random one, or one's own.
+pub(crate) fn own_scene(campaign: &Campaign, terrain: u64) -> Result<Scene, CampaignError> {
+    match &campaign.scenes {
+        Some(scenes) => Ok(scenes.load(terrain)?.scene),
+        None => Ok(case(campaign, terrain).scene()),
     }
 }
 

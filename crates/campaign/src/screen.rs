@@ -25,6 +25,9 @@ pub fn campaign_screen(merged: &Merged) -> String {
         merged.campaign.seed,
         count(faces)
     );
+    if let Some(command) = &merged.campaign.candidate {
+        let _ = writeln!(text, "under test: {command}\n");
+    }
     let mut table = Table::new([Align::Left].into_iter().chain([Align::Right; 7]))
         .with_gap(0)
         .with_min_widths([14, 15, 15, 10, 10, 10, 10, 8]);
@@ -76,12 +79,23 @@ pub fn campaign_screen(merged: &Merged) -> String {
             merged.replay_commands(terrain, part, &probe_arguments(&ray.sensor, ray.i, ray.j))
         );
     }
+    let failures: Vec<_> = merged.failures().collect();
+    for (terrain, part, why) in failures.iter().take(MAX_LISTED_RAYS) {
+        let _ = writeln!(text, "terrain {terrain} {}: no answer: {why}", part.word());
+    }
     for (part, warning) in merged.warnings() {
         let _ = writeln!(text, "warning: scenes `{}`: {warning}", part.word());
     }
     let defects = all.by_class[Class::Defect as usize] + all.by_class[Class::Undecided as usize];
     let verdict = if merged.passes() {
         format!("✓ {} rays, no defect, none undecided.", count(all.compared))
+    } else if !failures.is_empty() {
+        format!(
+            "✗ {} of {} rays are wrong or undecided; {} scenes have no answer.",
+            count(defects),
+            count(all.compared),
+            count(failures.len() as u64)
+        )
     } else if defects == 0 && all.compared > 0 {
         format!("? Nothing is hit: all {} rays miss the terrain.", count(all.compared))
     } else {

@@ -38,7 +38,8 @@ fn terrain_file(folder: &Path, terrain: u64) -> PathBuf {
 /// Runs a shard into `folder`, and returns the path of its result.
 ///
 /// A terrain whose record is in the folder, undamaged, is not run again. So an interruption loses at most the terrain
-/// that was running. Scenes with a wrong ray are written to `folder/wrong`.
+/// that was running. Scenes with a wrong ray are written to `folder/wrong`, rays that a program under test answers wrongly to
+/// `folder/misses`.
 ///
 /// # Errors
 /// A folder that holds another campaign; a file that cannot be read or written.
@@ -59,7 +60,7 @@ pub fn run_shard(
         let record = match earlier {
             Some(record) => record,
             None => {
-                let record = terrain(campaign, number, Some(&folder.join("wrong")))?;
+                let record = terrain(campaign, number, Some(folder))?;
                 write_sealed(&file, campaign, &record)?;
                 rays += record.parts.iter().map(|part| part.compared).sum::<u64>();
                 record
@@ -85,14 +86,8 @@ fn earlier_record(
         Ok((own, record)) if own == *campaign && record.terrain == number => Ok(Some(record)),
         Ok((own, _)) => Err(CampaignError::Record {
             file: file.display().to_string(),
-            found: format!(
-                "a record of {} terrains, seed {}, version {}",
-                own.terrains, own.seed, own.version
-            ),
-            expected: format!(
-                "one of {} terrains, seed {}, version {}: give another campaign a folder of its own",
-                campaign.terrains, campaign.seed, campaign.version
-            ),
+            found: format!("a record of {}", own.words()),
+            expected: format!("one of {}: give another campaign a folder of its own", campaign.words()),
         }),
         Err(CampaignError::Record { .. }) => Ok(None),
         Err(error) => Err(error),

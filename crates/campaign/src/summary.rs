@@ -73,6 +73,10 @@ pub fn campaign_json(merged: &Merged) -> String {
         (false, true) => "nothing_hit",
         (false, false) => "defects",
     };
+    let failures: Vec<Value> = merged
+        .failures()
+        .map(|(terrain, part, why)| json!({ "terrain": terrain, "part": part, "message": why }))
+        .collect();
     let document = json!({
         "format": FORMAT,
         "version": merged.campaign.version,
@@ -83,6 +87,8 @@ pub fn campaign_json(merged: &Merged) -> String {
         "warnings": warnings.collect::<Vec<_>>(),
         "all": total(&all),
         "parts": parts,
+        "candidate": merged.campaign.candidate,
+        "no_answer": failures,
         "first_wrong": wrong.take(MAX_LISTED_RAYS).collect::<Vec<_>>(),
     });
     format!("{document:#}\n")

@@ -10,43 +10,61 @@ use raypencil_harness::{
 use raypencil_judge::{Class, Judge, JudgeShare, SensorResult, Side, compare_judged};
 use raypencil_minimise::{MINIMISE_BUDGET, minimise};
 use raypencil_scene::{Precision, Request, Scene, SensorId, Silent, Switches};
-use raypencil_scene_io::write_resolved;
+use raypencil_scene_io::{Subject, scene_sha256, write_resolved};
 use raypencil_survey::SensorHits;
 
+use crate::candidate::hunt;
 use crate::error::CampaignError;
 use crate::plan::Campaign;
 use crate::record::{PartName, PartRecord, TerrainRecord};
-use crate::scenes::{aimed_scene, case, lattice_scene};
+use crate::scenes::{aimed_scene, lattice_scene, own_scene};
 
-/// Runs a terrain. Scenes with a wrong ray are written to the folder `wrong`, if one is given.
+/// Runs a terrain. If a folder `found` is given, scenes with a wrong ray are written to `found/wrong`, and rays that a program
+/// under test answers wrongly to `found/misses`.
 ///
 /// # Errors
 /// A file or folder that cannot be written.
 pub fn terrain(
     campaign: &Campaign,
     number: u64,
-    wrong: Option<&Path>,
+    found: Option<&Path>,
 ) -> Result<TerrainRecord, CampaignError> {
-    let case = case(campaign, number);
-    let mesh = case.mesh();
-    let own = case.scene_of(&mesh, &mesh);
-    let aimed = aimed_scene(campaign, number, &mesh);
-    let lattice = lattice_scene(campaign, number);
+    let own = own_scene(campaign, number)?;
+    let aimed = aimed_scene(campaign, number, own.mesh());
+    // A lattice has a ground of its own.
+    let lattice = campaign.scenes.is_none().then(|| lattice_scene(campaign, number));
+    let faces = own.mesh().faces().len() as u64;
     let parts = [
-        (PartName::Own, &own, JudgeShare::Sample),
-        (PartName::Paper, &own, JudgeShare::Sample),
-        (PartName::Aimed, &aimed, JudgeShare::All),
-        (PartName::Lattice, &lattice, JudgeShare::All),
+        (PartName::Own, Some(&own), JudgeShare::Sample),
+        (PartName::Paper, Some(&own), JudgeShare::Sample),
+        (PartName::Aimed, Some(&aimed), JudgeShare::All),
+        (PartName::Lattice, lattice.as_ref(), JudgeShare::All),
     ];
+    let parts = parts.into_iter().filter_map(|(part, scene, share)| Some((part, scene?, share)));
+    let mut records = Vec::new();
+    if let Some(command) = &campaign.candidate {
+        for (part, scene, _) in parts.filter(|(part, ..)| *part != PartName::Paper) {
+            let name = format!("terrain-{number:06}-{}", part.word());
+            let subject = Subject {
+                scene: scene.clone(),
+                sha256: scene_sha256(scene),
+                arguments: campaign.arguments(number, part),
+                name: name.clone(),
+                vehicle: None,
+            };
+            let misses = found.map(|folder| folder.join("misses").join(name));
+            records.push(hunt(command, part, &subject, misses.as_deref())?);
+        }
+        return Ok(TerrainRecord { terrain: number, faces, parts: records });
+    }
     // One tracer for all scenes, since it keeps the hierarchy of a ground that several scenes share.
     let tracer = contender("tracer").expect("the name of a renderer");
-    let mut records = Vec::new();
     for (part, scene, share) in parts {
         let record = compare_renderers(part, scene, share, &tracer);
         let is_wrong = record.of_class(Class::Defect) + record.of_class(Class::Undecided) > 0;
-        if let (true, Some(folder)) = (is_wrong, wrong) {
+        if let (true, Some(folder)) = (is_wrong, found) {
             write_wrong_scene(
-                folder,
+                &folder.join("wrong"),
                 &format!("terrain-{number:06}-{}", part.word()),
                 scene,
                 [&scanline_of(part), &tracer],
@@ -54,7 +72,7 @@ pub fn terrain(
         }
         records.push(record);
     }
-    Ok(TerrainRecord { terrain: number, faces: mesh.faces().len() as u64, parts: records })
+    Ok(TerrainRecord { terrain: number, faces, parts: records })
 }
 
 /// Writes a scene with a wrong ray into `folder`, and the simplest scene that still has such a ray.

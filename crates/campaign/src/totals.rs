@@ -87,6 +87,7 @@ impl Merged {
             && total.hits > 0
             && total.by_class[Class::Defect as usize] == 0
             && total.by_class[Class::Undecided as usize] == 0
+            && self.failures().next().is_none()
     }
 
     /// Warnings about scenes whose rays, over all terrains, hit nothing or nearly nothing: such an agreement proves
@@ -109,11 +110,29 @@ impl Merged {
 
     /// The commands that show a ray again. `cell` is its `raypencil probe` arguments.
     pub(crate) fn replay_commands(&self, terrain: u64, part: PartName, cell: &str) -> String {
-        format!(
-            "raypencil campaign replay --seed {} --terrain {terrain} --part {} -o DIR, then raypencil probe DIR/scene.toml {cell}",
-            self.campaign.seed,
-            part.word()
-        )
+        match (&self.campaign.scenes, part) {
+            (Some(scenes), PartName::Own | PartName::Paper) => {
+                format!("raypencil probe {} {cell}", scenes.arguments(terrain))
+            }
+            (Some(_), _) => format!(
+                "raypencil campaign replay --scenes SCENES --seed {} --terrain {terrain} --part {} -o DIR, then raypencil \
+                 probe DIR/scene.toml {cell}",
+                self.campaign.seed,
+                part.word()
+            ),
+            (None, _) => format!(
+                "raypencil campaign replay --seed {} --terrain {terrain} --part {} -o DIR, then raypencil probe DIR/scene.toml {cell}",
+                self.campaign.seed,
+                part.word()
+            ),
+        }
+    }
+
+    /// Scenes for which the program under test gave no answer, with the reason.
+    pub fn failures(&self) -> impl Iterator<Item = (u64, PartName, &str)> {
+        let parts =
+            self.terrains.iter().flat_map(|record| record.parts.iter().map(|part| (record.terrain, part)));
+        parts.filter_map(|(terrain, part)| Some((terrain, part.part, part.failed.as_deref()?)))
     }
 }
 

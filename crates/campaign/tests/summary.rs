@@ -36,6 +36,8 @@ fn with_hits(hits: u64, by_class: [u64; 6], wrong: Vec<WrongRay>) -> Merged {
             worst_ratio: worst(f64::from(i) / 16.0, i),
         }],
         wrong: wrong.clone(),
+        candidate: None,
+        failed: None,
     };
     let record = |terrain: u64| TerrainRecord {
         terrain,

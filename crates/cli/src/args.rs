@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use raypencil::campaign::{PartName, Shard};
+use raypencil::harness::MapFormat;
 use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, Setting, quoted};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::sweep::{Axis, Chart, Task};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 use crate::parsers::{
-    axis, chart, class, flux_model, judge_share, numbers, pair, part_name, percent, precision, ray, record,
-    rule, setting, shard, switch, task, threshold,
+    axis, chart, class, flux_model, judge_share, map_format, numbers, pair, part_name, percent, precision,
+    ray, record, rule, setting, shard, switch, task, threshold,
 };
 
 /// Simulates a Mars rover's structured-light vision system with two independent renderers and compares every ray.
@@ -92,8 +93,8 @@ pub(crate) struct SceneArguments {
 
     /// Set a key of the scene file, in the file's units: camera.pitch_down_deg=25, beam.0.thickness_mm=4; beam.KEY sets
     /// every beam. May be repeated; the other options come after it.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
-    pub(crate) set: Vec<Setting>,
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) settings: Vec<Setting>,
 }
 
 impl SceneArguments {
@@ -105,7 +106,7 @@ impl SceneArguments {
             fan_deg: self.fan,
             thickness_mm: self.thickness,
             flux_model: self.flux,
-            settings: self.set.clone(),
+            settings: self.settings.clone(),
         }
     }
 
@@ -127,7 +128,7 @@ impl SceneArguments {
         if let Some(heading) = self.heading {
             words.push(format!("--heading {heading}"));
         }
-        words.extend(self.set.iter().map(typed_setting));
+        words.extend(self.settings.iter().map(typed_setting));
         words.join(" ")
     }
 }
@@ -217,7 +218,7 @@ impl Validate {
                 flux: None,
                 at: None,
                 heading: None,
-                set: Vec::new(),
+                settings: Vec::new(),
             },
             with: DEFAULT_WITH.map(String::from).to_vec(),
             switches: SwitchArguments::default(),
@@ -245,6 +246,10 @@ pub(crate) struct Render {
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,
+
+    /// Format of the maps.
+    #[arg(long, value_name = "FORMAT", default_value = "exr", value_parser = map_format())]
+    pub(crate) format: MapFormat,
 
     /// Output folder.
     #[arg(short, long, value_name = "DIR")]
@@ -306,7 +311,7 @@ pub(crate) struct Pack {
     pub(crate) scene: SceneArguments,
 
     /// Write a difficult random scene with this seed, and its rays without answers; `check` computes the answers.
-    #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading", "set"])]
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading", "settings"])]
     pub(crate) blind: Option<u64>,
 
     /// Leave the scene as it is. Without this, plates and beams are added whose rays meet every limit of the contract
@@ -315,7 +320,7 @@ pub(crate) struct Pack {
     pub(crate) no_bench: bool,
 
     /// Write an input pack: a glTF file with all that a loader can get wrong, and the triangles that it must become.
-    #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading", "set"])]
+    #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading", "settings"])]
     pub(crate) input: bool,
 
     /// Write a pack of rays: SCENE is a mesh, and these are rays on it, both as `cast` takes them.
@@ -323,7 +328,7 @@ pub(crate) struct Pack {
         long,
         value_name = "RAYS",
         requires = "scene",
-        conflicts_with_all = ["blind", "no_bench", "input", "fan", "thickness", "flux", "at", "heading", "set"]
+        conflicts_with_all = ["blind", "no_bench", "input", "fan", "thickness", "flux", "at", "heading", "settings"]
     )]
     pub(crate) rays: Option<PathBuf>,
 
@@ -368,6 +373,19 @@ pub(crate) struct CampaignRun {
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: Shard,
 
+    /// Folder with scenes of your own (.toml), terrains (.glb, .gltf) or elevation models (.tif), in place of random ones.
+    #[arg(long, value_name = "DIR", conflicts_with = "terrains")]
+    pub(crate) scenes: Option<PathBuf>,
+
+    /// Scene file whose vehicle, camera and beams stand on each terrain of --scenes.
+    #[arg(long, value_name = "SCENE.toml", requires = "scenes")]
+    pub(crate) rig: Option<PathBuf>,
+
+    /// Hunt in another renderer: the shell runs this for each scene, with {pack} replaced by the folder of a pack without
+    /// answers and {out} by that for the answers, as `check` takes them. What it answers wrongly is left as packs of single rays.
+    #[arg(long, value_name = "'PROGRAM {pack} {out}'")]
+    pub(crate) candidate_command: Option<String>,
+
     /// Output folder; a campaign that was interrupted there is resumed.
     #[arg(short, long, value_name = "DIR", default_value = "out/campaign")]
     pub(crate) output: PathBuf,
@@ -393,6 +411,14 @@ pub(crate) struct CampaignReplay {
     /// Number of the terrain, from 0.
     #[arg(long, value_name = "K")]
     pub(crate) terrain: u64,
+
+    /// Folder of the campaign's own scenes.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) scenes: Option<PathBuf>,
+
+    /// Scene file of its rig.
+    #[arg(long, value_name = "SCENE.toml", requires = "scenes")]
+    pub(crate) rig: Option<PathBuf>,
 
     /// Scene of that terrain.
     #[arg(long, value_name = "PART", default_value = "own", value_parser = part_name())]

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
 use raypencil::campaign::{
-    Campaign, CampaignProgress, Merged, Shard, campaign_json, campaign_screen, merge, run_shard, scene_of,
-    write_campaign,
+    Campaign, CampaignProgress, Merged, OwnScenes, PartName, Shard, campaign_json, campaign_screen, merge,
+    run_shard, scene_of, write_campaign,
 };
 use raypencil::io::{create_folder, write_resolved};
 
@@ -53,7 +53,13 @@ impl CampaignProgress for Bar {
 }
 
 fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
-    let campaign = Campaign::new(command.seed, command.terrains);
+    let mut campaign = Campaign::new(command.seed, command.terrains);
+    if let Some(folder) = &command.scenes {
+        campaign = campaign.over(OwnScenes::read(folder, command.rig.as_deref())?);
+    }
+    if let Some(words) = &command.candidate_command {
+        campaign = campaign.hunting(words)?;
+    }
     let bar = Bar::new(command.shard.terrains(&campaign).count() as u64);
     let start = Instant::now();
     let result = run_shard(&campaign, command.shard, &command.output, &bar)?;
@@ -71,7 +77,9 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
         say(&text);
         return Ok(Outcome::Fine);
     }
-    let merged = merge(std::slice::from_ref(&command.output))?;
+    let mut merged = merge(std::slice::from_ref(&command.output))?;
+    // The same campaign, which knows where its scenes lie.
+    merged.campaign = campaign;
     write_campaign(&merged, &command.output)?;
     let seconds = start.elapsed().as_secs_f64();
     let rays = bar.rays.load(Ordering::Relaxed);
@@ -101,7 +109,22 @@ fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     spinner.stage(&format!("terrain {}", command.terrain));
     // A terrain does not depend on the number of terrains.
-    let scene = scene_of(&Campaign::new(command.seed, command.terrain + 1), command.terrain, command.part);
+    let mut campaign = Campaign::new(command.seed, command.terrain.saturating_add(1));
+    if let Some(folder) = &command.scenes {
+        campaign = campaign.over(OwnScenes::read(folder, command.rig.as_deref())?);
+        if command.terrain >= campaign.terrains {
+            let (given, most) = (command.terrain, campaign.terrains - 1);
+            return Err(Trouble::Usage(format!(
+                "--terrain {given}: expected 0 to {most}, the scenes of the folder"
+            )));
+        }
+        if command.part == PartName::Lattice {
+            return Err(Trouble::Usage(
+                "--part lattice: scenes of one's own have no lattice; expected own or aimed".into(),
+            ));
+        }
+    }
+    let scene = scene_of(&campaign, command.terrain, command.part)?;
     let folder = &command.output;
     create_folder(folder)?;
     let file = folder.join("scene.toml");

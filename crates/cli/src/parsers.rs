@@ -6,6 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use raypencil::campaign::{PartName, Shard};
 use raypencil::cast::rays_from_bytes;
 use raypencil::drive::RecordContents;
+use raypencil::harness::MapFormat;
 use raypencil::io::{SceneIoError, Setting};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::rover::RULE_NAMES;
@@ -69,6 +70,21 @@ fn without_text(error: &SweepError, text: &str) -> String {
         SweepError::Axis { message, .. } => message.clone(),
         error => error.to_string().replace(&format!("{text}: "), ""),
     }
+}
+
+/// `--format`.
+pub(crate) fn map_format() -> impl TypedValueParser<Value = MapFormat> {
+    one_of([
+        (
+            "exr",
+            "An OpenEXR file for each sensor, a channel for each quantity, single precision",
+            MapFormat::Exr,
+        ),
+        ("exr-each", "An OpenEXR file for each quantity, as viewers and OpenCV open it", MapFormat::ExrEach),
+        ("npy", "A NumPy file for each quantity, double precision", MapFormat::Npy),
+        ("npz", "A NumPy archive for each sensor, double precision", MapFormat::Npz),
+        ("zarr", "A Zarr store with a group for each sensor, double precision", MapFormat::Zarr),
+    ])
 }
 
 /// `--judge`.

@@ -1,6 +1,6 @@
 //! `raypencil render`: writes the maps of one renderer.
 
-use raypencil::harness::{write_maps, write_ray_sets};
+use raypencil::harness::{write_maps_as, write_ray_sets};
 use raypencil::report::counted;
 use raypencil::survey::{SensorHits, warnings};
 use raypencil::{Progress, Request, Sampling};
@@ -28,7 +28,7 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
         )));
     }
     spinner.stage(&format!("{}: writing", command.output.display()));
-    let files = write_maps(&output, renderer.name(), &subject, sampling, &command.output)?;
+    let files = write_maps_as(command.format, &output, renderer.name(), &subject, sampling, &command.output)?;
     let sets = write_ray_sets(&subject, renderer.name(), &command.output, &spinner)?;
     spinner.stage("looking at the scene");
     let hits: Vec<SensorHits> = output.maps().filter_map(SensorHits::of_map).collect();

@@ -44,6 +44,7 @@ mod exr;
 mod folder;
 mod growing_file;
 mod limits;
+mod named_array;
 mod npy;
 mod pfm;
 mod rays;
@@ -58,6 +59,7 @@ pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map
 pub use folder::{FolderError, begin_output_folder, create_folder};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use limits::Limits;
+pub use named_array::{ArrayData, NamedArray, write_npz, write_zarr};
 pub use npy::{
     ArrayNumber, Numbers, npy_from_bytes, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,
     write_npy_numbers,

@@ -49,6 +49,7 @@
 //! monte_carlo          a candidate's Monte Carlo images against pencils drawn at random (z-test)
 //! radiance             a candidate's radiance along single rays against the closed form
 //! scoreboard           every renderer and candidate, checked against the exact answers
+//! hunt                 one candidate of one scene, checked without rendering
 //! misses               a ray that a candidate answers wrongly, as a pack of that ray
 //! ray_sets             rays of no sensor: the tracer against the exact answers
 //! ray_set_packs        the same in packs of scenes
@@ -57,6 +58,7 @@
 //! output/table         the table of quantities and classes
 //! output/verdict       the verdict in words
 //! output/candidates    the scoreboard, ready to be printed
+//! output/formats       maps as NPY, NPZ, Zarr and single EXRs
 //! output/panel         the scoreboard for programs
 //! output/plots, light  range maps, differences and flux as pictures
 //! output/screen        one terminal screen
@@ -69,6 +71,7 @@
 
 mod candidate;
 mod estimate;
+mod hunt;
 mod interestingness;
 mod misses;
 mod monte_carlo;
@@ -86,9 +89,11 @@ mod validation;
 
 pub use candidate::{Candidate, CandidateError, RadianceMap};
 pub use estimate::{Estimate, MonteCarloImage};
+pub use hunt::{JudgedCandidate, judge_candidate};
 pub use interestingness::{first_interesting_ray, is_interesting_in_class};
 pub use monte_carlo::{ImageComparison, Z_TEST_LIMITS, ZTestLimits, compare_images, expected_images};
 pub use output::folder::{HarnessError, Written, write_maps, write_validation};
+pub use output::formats::{MapFormat, arrays as map_arrays, write_maps_as};
 pub use output::junit::junit as junit_xml;
 pub use output::markdown::markdown as summary_markdown;
 pub use output::report::html as report_html;

@@ -13,8 +13,8 @@ use raypencil_scene_io::{Subject, probe_command, quoted, scene_sha256};
 
 use crate::scoreboard::CandidateReport;
 
-/// Maximum misses per candidate that are written.
-const MAX_MISSES: usize = 10;
+/// Maximum misses per candidate that a validation writes.
+pub(crate) const MAX_MISSES: usize = 10;
 
 /// Maximum faces of a miss's terrain: those nearest the ray.
 const MAX_FACES: usize = 1000;
@@ -44,7 +44,7 @@ impl TrueAnswer {
     }
 }
 
-/// Writes each of a candidate's ten worst misses as a pack of that ray, in `folder/NAME-1`, `folder/NAME-2`, ... A
+/// Writes each of a candidate's worst misses, at most `max_count`, as a pack of that ray, in `folder/NAME-1`, `folder/NAME-2`, ... A
 /// README.md in it states the candidate's answer and the exact one.
 ///
 /// # Errors
@@ -52,10 +52,10 @@ impl TrueAnswer {
 pub(crate) fn write_misses(
     subject: &Subject,
     report: &CandidateReport,
-    folder: &Path,
+    (folder, max_count): (&Path, usize),
     progress: &dyn Progress,
 ) -> Result<(), PackError> {
-    for (index, wrong) in report.misses().take(MAX_MISSES).enumerate() {
+    for (index, wrong) in report.misses().take(max_count).enumerate() {
         progress.stage(&format!("{}: miss {}", report.candidate.name, index + 1));
         let name = report.miss_name(index);
         let folder = folder.join(&name);

@@ -65,7 +65,7 @@ pub use manifest::{
     ManifestFile, ManifestScene, ManifestSensor, PackKind,
 };
 pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, note, precision_of};
-pub use write::{PackError, write_pack};
+pub use write::{PackError, write_pack, write_questions};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -122,6 +122,41 @@ pub fn write_pack(
         return Err(PackError::Untested { name: subject.name.clone(), untested });
     }
 
+    let kind = if is_blind { PackKind::Blind } else { PackKind::Answers };
+    let clauses = clauses
+        .iter()
+        .map(|one| ManifestClause { clause: one.clause.key().into(), rays: one.rays })
+        .collect();
+    write_files(subject, folder, progress, certified.as_ref(), |manifest| Manifest {
+        kind,
+        blind_seed,
+        clauses,
+        ..manifest
+    })
+}
+
+/// Writes scene, terrain and rays, and no answers. Unlike a blind pack it may be of any scene, and a check computes the answers
+/// from the scene.
+///
+/// # Errors
+/// A file or folder that could not be written.
+pub fn write_questions(
+    subject: &Subject,
+    folder: &Path,
+    progress: &dyn Progress,
+) -> Result<Manifest, PackError> {
+    write_files(subject, folder, progress, None, |manifest| manifest)
+}
+
+/// Writes the files of a pack, its manifest last.
+fn write_files(
+    subject: &Subject,
+    folder: &Path,
+    progress: &dyn Progress,
+    certified: Option<&Certified>,
+    completed: impl FnOnce(Manifest) -> Manifest,
+) -> Result<Manifest, PackError> {
+    let scene = &subject.scene;
     create_folder(folder)?;
     Manifest::remove_pack(folder)?;
     progress.stage("writing the scene");
@@ -135,7 +170,7 @@ pub fn write_pack(
         progress.stage(&format!("{sensor}: rays"));
         files.push(write_rays(&referee, scene, sensor, folder)?);
     }
-    if let Some(certified) = &certified {
+    if let Some(certified) = certified {
         files.extend(write_answers(certified, &referee, scene, folder, progress)?);
     }
 
@@ -143,20 +178,17 @@ pub fn write_pack(
         let (columns, rows) = scene.size(sensor).expect("a sensor of this scene");
         ManifestSensor { name: sensor.to_string(), columns, rows }
     };
-    let manifest = Manifest {
+    let manifest = completed(Manifest {
         format: MANIFEST_FORMAT,
-        kind: if is_blind { PackKind::Blind } else { PackKind::Answers },
+        kind: PackKind::Questions,
         raypencil_version: env!("CARGO_PKG_VERSION").into(),
         scene: ManifestScene { name: subject.name.clone(), sha256: scene_sha256(scene) },
         flux_model: scene.flux_model(),
-        blind_seed,
+        blind_seed: None,
         sensors: scene.sensors().map(sensor).collect(),
-        clauses: clauses
-            .iter()
-            .map(|one| ManifestClause { clause: one.clause.key().into(), rays: one.rays })
-            .collect(),
+        clauses: Vec::new(),
         files,
-    };
+    });
     manifest.write(folder)?;
     Ok(manifest)
 }

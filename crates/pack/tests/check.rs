@@ -4,9 +4,13 @@ use std::path::{Path, PathBuf};
 
 use raypencil_files::{Limits, Values, read_npy, write_npy};
 use raypencil_judge::{Class, GroundTruth, ListedDefect, Quantity, Recorded, check};
-use raypencil_pack::{Checked, check_json, check_pack, check_page, check_screen, write_check};
+use raypencil_pack::{
+    Checked, FileRole, Manifest, PackKind, check_json, check_pack, check_page, check_screen, write_check,
+    write_questions,
+};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{Precision, Renderer, Request, Silent};
+use raypencil_scene_io::{Overrides, Subject, load};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 use raypencil_tracer::Tracer;
 use serde_json::Value;
@@ -186,12 +190,9 @@ fn classes_add_up_and_a_perfect_candidate_has_no_error() {
 
 #[test]
 fn outputs_in_memory_are_judged_in_double_precision() {
-    let scene = raypencil_scene_io::load(
-        &pack().join("scene.toml").to_string_lossy(),
-        &raypencil_scene_io::Overrides::default(),
-    )
-    .expect("the pack's scene")
-    .scene;
+    let scene = load(&pack().join("scene.toml").to_string_lossy(), &Overrides::default())
+        .expect("the pack's scene")
+        .scene;
     let truth = GroundTruth::certified(&scene, &Silent);
     let renderers: [&dyn Renderer; 2] = [&Scanline::default(), &Tracer::new()];
     for renderer in renderers {
@@ -234,4 +235,38 @@ fn outputs_in_memory_are_judged_in_double_precision() {
         image.cells_mut()[at] *= 0.75;
         assert!(!check(&truth, &recorded, &Silent).passes());
     }
+}
+
+#[test]
+fn a_pack_of_questions_is_checked_by_its_scene() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let questions = folder.path().join("questions");
+    let loaded = load(&pack().join("scene.toml").to_string_lossy(), &Overrides::default()).expect("a scene");
+    let subject = Subject {
+        vehicle: None,
+        name: loaded.name,
+        arguments: String::new(),
+        sha256: loaded.source_sha256,
+        scene: loaded.scene,
+    };
+    let manifest = write_questions(&subject, &questions, &Silent).expect("a writable folder");
+    assert_eq!((manifest.kind, manifest.blind_seed), (PackKind::Questions, None));
+    // Scene, terrain, and the rays of each sensor: no answers.
+    assert_eq!(manifest.files.len(), 2 + subject.scene.sensors().count());
+    assert!(manifest.files.iter().all(|file| file.role != FileRole::Answers));
+    assert_eq!(Manifest::read_verified(&questions).expect("its manifest"), manifest);
+    // The answers of the whole pack are right for its questions; one range that is wrong is found.
+    let right = check_pack(&questions, &pack(), None, &Silent).expect("a candidate");
+    assert!(right.passes());
+    assert_eq!(right.check.compared(), perfect().check.compared());
+    let wrong = folder.path().join("wrong/camera");
+    std::fs::create_dir_all(&wrong).expect("a folder");
+    let array = read_npy(pack().join("camera/range.T.npy"), &Limits::default()).expect("an array");
+    let [Values::Reals(ranges)] = array.planes.as_slice() else { panic!("one plane of reals") };
+    let mut ranges = ranges.clone();
+    let hit = ranges.cells().iter().position(|range| range.is_finite()).expect("a hit");
+    ranges.cells_mut()[hit] += 1.0;
+    write_npy(wrong.join("range.T.npy"), &[&ranges]).expect("a file");
+    let found = check_pack(&questions, &folder.path().join("wrong"), None, &Silent).expect("a candidate");
+    assert_eq!(found.check.of(Class::Defect), 1);
 }

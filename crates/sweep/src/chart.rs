@@ -94,12 +94,14 @@ impl Chart {
         };
         let (y, x) = (column(&self.result, "result")?, column(&self.parameter, "parameter")?);
         let by = self.lines.as_ref().map(|name| column(name, "parameter")).transpose()?;
+        // A run that leaves the parameter as it is in the scene is of another question.
         let runs: Vec<(usize, f64)> = (0..table.runs())
+            .filter(|&run| !x.cells.text(run).is_empty())
             .filter_map(|run| Some((run, y.cells.number(run).filter(|value| value.is_finite())?)))
             .collect();
         if runs.is_empty() {
             return Err(SweepError::Plan {
-                found: format!("`{}` has no number in any run", self.result),
+                found: format!("`{}` has no number in any run with a `{}`", self.result, self.parameter),
                 expected: "a result that is a number".into(),
             });
         }

@@ -35,7 +35,8 @@ fn main_results(task: Task) -> &'static [&'static str] {
 pub fn default_charts(table: &SweepTable, task: Task) -> Vec<Chart> {
     let mut charts = Vec::new();
     for parameter in &table.columns[1..=table.parameters] {
-        let mut values: Vec<Option<f64>> = (0..table.runs()).map(|run| parameter.cells.number(run)).collect();
+        let given = (0..table.runs()).filter(|&run| !parameter.cells.text(run).is_empty());
+        let mut values: Vec<Option<f64>> = given.map(|run| parameter.cells.number(run)).collect();
         values.dedup();
         if values.len() < 2 || values.contains(&None) {
             continue;

@@ -108,3 +108,148 @@ fn a_scene_of_a_campaign_can_be_replayed() {
         passes(folder, "validate replay/scene.toml -o out");
     }
 }
+
+/// A program under test, in a shell: it copies the answers that `raypencil` gives to a pack's scene, with one of them changed.
+#[cfg(unix)]
+fn program(folder: &Path, name: &str, change: &str) -> String {
+    let text = format!(
+        "#!/bin/sh\nset -e\n{} render \"$1/scene.toml\" --with tracer -o \"$2\" >/dev/null\n{change}\n",
+        env!("CARGO_BIN_EXE_raypencil")
+    );
+    let file = folder.join(name);
+    fs::write(&file, text).unwrap();
+    format!("sh {} {{pack}} {{out}}", file.display())
+}
+
+#[cfg(unix)]
+#[test]
+fn another_program_is_hunted() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let scenes = folder.join("scenes");
+    fs::create_dir(&scenes).unwrap();
+    let small = "version = 1\ncamera = { width_px = 48, height_px = 40, pixel_pitch_um = 200 }\n\
+                 beam = [{ columns = 64, rows = 2, thickness_mm = 60 }]\n";
+    fs::write(scenes.join("small.toml"), small).unwrap();
+    let hunt = |command: &str, out: &str| {
+        raypencil(folder, &["campaign", "--scenes", "scenes", "--candidate-command", command, "-o", out])
+    };
+    let json = |out: &str| serde_json::from_str::<serde_json::Value>(&summary(folder, out)).unwrap();
+    // A right program: every ray of every part is compared with the exact answer.
+    let right = program(folder, "right.sh", "");
+    let output = hunt(&right, "right");
+    assert_eq!(output.status.code(), Some(0), "{}", crate::text(&output.stdout));
+    let right = json("right");
+    for part in ["own", "aimed"] {
+        assert!(right["parts"][part]["compared"].as_u64().unwrap() > 500, "{part}");
+        assert!(right["parts"][part]["hits"].as_u64().unwrap() > 0, "{part}");
+    }
+    assert_eq!(right["parts"]["paper"]["compared"], 0);
+    // Random terrains have lattices too.
+    let words =
+        ["campaign", "--terrains", "1", "--seed", "2", "--candidate-command", &program(folder, "r.sh", "")];
+    let output = raypencil(folder, &[&words[..], &["-o", "random"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", crate::text(&output.stdout));
+    assert!(json("random")["parts"]["lattice"]["hits"].as_u64().unwrap() > 0);
+    assert!(!folder.join("right/misses").exists());
+    // One with the paper's approximations: its wrong rays are left as packs that show them again.
+    let wrong = program(folder, "wrong.sh", "");
+    let text = fs::read_to_string(folder.join("wrong.sh")).unwrap().replace("tracer", "scanline-paper");
+    fs::write(folder.join("wrong.sh"), text).unwrap();
+    let output = hunt(&wrong, "wrong");
+    let screen = crate::text(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{screen}");
+    assert!(screen.contains("under test: sh ") && screen.contains("rays are wrong or undecided"), "{screen}");
+    let misses: Vec<_> = walk(&folder.join("wrong/misses"));
+    let pack = misses.iter().find(|path| path.ends_with("manifest.json")).expect("a pack of a miss");
+    let pack = pack.parent().unwrap();
+    assert!(fs::read_to_string(pack.join("README.md")).unwrap().contains("raypencil check . CANDIDATE"));
+    // The pack of the miss shows the same program wrong again, and a right one right.
+    let answer = folder.join("again");
+    let status = std::process::Command::new("sh")
+        .args([folder.join("wrong.sh").as_os_str(), pack.as_os_str(), answer.as_os_str()])
+        .status()
+        .unwrap();
+    assert!(status.success());
+    let check =
+        |answers: &Path| raypencil(folder, &["check", pack.to_str().unwrap(), answers.to_str().unwrap()]);
+    assert_eq!(check(&answer).status.code(), Some(1));
+    let answer = folder.join("right-again");
+    let words =
+        ["render", &pack.join("scene.toml").display().to_string(), "--with", "tracer", "-o", "right-again"]
+            .map(String::from);
+    screen_of(folder, &words);
+    assert_eq!(check(&answer).status.code(), Some(0));
+    // One that dies says why; one that answers nothing; one that is no program.
+    let output = hunt(&program(folder, "dies.sh", "echo out of luck >&2\nexit 3"), "dies");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        crate::text(&output.stdout)
+            .contains("terrain 0 own: no answer: it ended with exit status: 3: out of luck")
+    );
+    assert_eq!(json("dies")["no_answer"].as_array().unwrap().len(), 2);
+    let output = hunt("true {pack} {out}", "empty");
+    assert!(crate::text(&output.stdout).contains("no answer: {out}"), "{}", crate::text(&output.stdout));
+    assert_trouble(
+        &hunt("no-such-program {pack} {out}", "none"),
+        &["not found", "expected a program that can be run"],
+    );
+    assert_trouble(&hunt("tracer {pack}", "none"), &["it has no {out}"]);
+}
+
+#[cfg(unix)]
+fn screen_of(folder: &Path, words: &[String]) {
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    screen(folder, &words, 0);
+}
+
+/// All files below a folder.
+#[cfg(unix)]
+fn walk(folder: &Path) -> Vec<std::path::PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() { found.extend(walk(&path)) } else { found.push(path) }
+    }
+    found
+}
+
+#[test]
+fn a_campaign_takes_scenes_of_ones_own() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let scenes = folder.join("scenes");
+    fs::create_dir(&scenes).unwrap();
+    let small = "version = 1\ncamera = { width_px = 48, height_px = 40, pixel_pitch_um = 200 }\n\
+                 beam = [{ columns = 64, rows = 2 }]\n";
+    fs::write(scenes.join("a.toml"), format!("{small}terrain = {{ builtin = \"facets\" }}\n")).unwrap();
+    fs::write(scenes.join("b.toml"), small).unwrap();
+    fs::write(scenes.join("notes.txt"), "no scene").unwrap();
+    let screen = passes(folder, "campaign --scenes scenes -o own");
+    assert!(screen.contains("2 terrains"), "{screen}");
+    let json: serde_json::Value = serde_json::from_str(&summary(folder, "own")).unwrap();
+    // Two cameras of 48 x 40 pixels and two beams of 64 x 2 pencils.
+    assert_eq!(json["parts"]["own"]["compared"], 2 * (48 * 40 + 64 * 2));
+    assert_eq!(json["parts"]["lattice"]["compared"], 0);
+    assert!(json["parts"]["aimed"]["compared"].as_u64().unwrap() > 1000);
+    let probe = json["all"]["quantities"].to_string();
+    assert!(probe.contains("raypencil probe scenes/"), "{probe}");
+    // Terrains under a rig; a scene file among them is no terrain.
+    passes(folder, "terrain generate --preset smooth --extent 6 --post-spacing 0.5 -o scenes/c.glb");
+    fs::write(folder.join("rig.toml"), small).unwrap();
+    passes(folder, "campaign --scenes scenes --rig rig.toml -o rig");
+    let json: serde_json::Value = serde_json::from_str(&summary(folder, "rig")).unwrap();
+    assert_eq!(
+        (&json["terrains"], &json["parts"]["own"]["compared"]),
+        (&1.into(), &(48 * 40 + 64 * 2).into())
+    );
+    passes(folder, "campaign replay --scenes scenes --seed 1 --terrain 2 --part aimed -o again");
+    assert!(folder.join("again/scene.toml").is_file());
+    // Another content is another campaign.
+    fs::write(scenes.join("b.toml"), format!("{small}flux = {{ model = \"eq1\" }}\n")).unwrap();
+    is_trouble(folder, "campaign --scenes scenes -o own", &["own terrains", "folder of its own"]);
+    is_trouble(folder, "campaign --scenes nowhere", &["nowhere"]);
+    fs::create_dir(folder.join("empty")).unwrap();
+    is_trouble(folder, "campaign --scenes empty", &["no scene is there", ".toml"]);
+    is_trouble(folder, "campaign replay --scenes scenes --seed 1 --terrain 9 -o x", &["expected 0 to 2"]);
+}

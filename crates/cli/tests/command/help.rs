@@ -18,13 +18,14 @@ fn help_of_every_command() {
     assert_help(&[]);
     for command in [
         "validate", "render", "probe", "pack", "check", "campaign", "minimise", "drive", "diff", "cast",
-        "terrain",
+        "terrain", "sweep",
     ] {
         assert_help(&[command]);
     }
     for command in ["merge", "replay"] {
         assert_help(&["campaign", command]);
     }
+    assert_help(&["sweep", "merge"]);
     for command in ["generate", "import", "inspect"] {
         assert_help(&["terrain", command]);
     }

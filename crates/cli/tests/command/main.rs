@@ -10,6 +10,7 @@ mod drive;
 mod help;
 mod packs;
 mod ray_sets;
+mod sweep;
 mod terrain;
 
 use std::path::Path;

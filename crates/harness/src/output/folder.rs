@@ -24,7 +24,7 @@ use raypencil_pack::PackError;
 use raypencil_scene::{Progress, RenderOutput, Sampling, SensorId, SensorMap, Triangles};
 use raypencil_scene_io::{Subject, scene_sha256};
 
-use crate::misses::write_misses;
+use crate::misses::{MAX_MISSES, write_misses};
 use crate::output::junit::junit;
 use crate::output::markdown::markdown;
 use crate::output::report::html;
@@ -106,7 +106,7 @@ pub fn write_validation(
     }
 
     for report in validation.scoreboard.iter().flat_map(|scoreboard| &scoreboard.candidates) {
-        write_misses(&validation.subject, report, &folder.join("misses"), progress)?;
+        write_misses(&validation.subject, report, (&folder.join("misses"), MAX_MISSES), progress)?;
     }
 
     let subject = &validation.subject;

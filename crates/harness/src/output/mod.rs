@@ -4,6 +4,7 @@
 pub(crate) mod candidates;
 pub(crate) mod explorer;
 pub(crate) mod folder;
+pub(crate) mod formats;
 pub(crate) mod junit;
 pub(crate) mod light;
 pub(crate) mod markdown;

@@ -29,6 +29,10 @@ impl Manifest {
                 let found = seed.to_string();
                 return Err(Fault::new("blindSeed", found, "none: the answers are in the pack"));
             }
+            (PackKind::Questions, Some(seed)) => {
+                let found = seed.to_string();
+                return Err(Fault::new("blindSeed", found, "none: the scene is of no seed"));
+            }
             _ => {}
         }
         check_digest("scene.sha256", &self.scene.sha256)?;

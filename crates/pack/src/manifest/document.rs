@@ -47,6 +47,8 @@ pub enum PackKind {
     Answers,
     /// Scene, terrain and rays. The answers are computed from the seed when a candidate is checked.
     Blind,
+    /// Scene, terrain and rays of any scene. The answers are computed from the scene.
+    Questions,
 }
 
 /// [`FluxModel`] as the manifest's words: `scene` knows no serde.

@@ -1,0 +1,128 @@
+//! One's own scenes, or terrains under one's own rig, in place of random ones.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_files::{FileError, file_sha256_hex};
+use raypencil_scene_io::{LoadedScene, Overrides, Setting, load, quoted};
+use serde::{Deserialize, Serialize};
+
+use crate::error::CampaignError;
+
+/// Endings of the files that are scenes.
+const ENDINGS: [&str; 5] = ["toml", "glb", "gltf", "tif", "tiff"];
+
+/// Scenes of a folder. Two are equal if their files have the same names and contents, wherever they lie.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OwnScenes {
+    /// Each file's name with its SHA-256, in hexadecimal digits, sorted.
+    files: Vec<(String, String)>,
+    /// SHA-256 of the scene file whose rig stands on each terrain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rig_sha256: Option<String>,
+    #[serde(skip, default = "somewhere")]
+    folder: PathBuf,
+    #[serde(skip)]
+    rig: Option<PathBuf>,
+}
+
+/// Stands for the folder of scenes that come from a record.
+fn somewhere() -> PathBuf {
+    "SCENES".into()
+}
+
+impl PartialEq for OwnScenes {
+    fn eq(&self, other: &Self) -> bool {
+        self.files == other.files && self.rig_sha256 == other.rig_sha256
+    }
+}
+
+impl Eq for OwnScenes {}
+
+impl OwnScenes {
+    /// The scene files, terrains and elevation models of a folder, by name; with the rig of a scene file, its terrains and
+    /// elevation models under that rig.
+    ///
+    /// # Errors
+    /// A folder or file that cannot be read, a folder without scenes.
+    pub fn read(folder: &Path, rig: Option<&Path>) -> Result<Self, CampaignError> {
+        let io = |path: &Path, source| FileError::Io { path: path.to_path_buf(), action: "read", source };
+        let endings = if rig.is_some() { &ENDINGS[1..] } else { &ENDINGS[..] };
+        let mut files = Vec::new();
+        for entry in std::fs::read_dir(folder).map_err(|error| io(folder, error))? {
+            let path = entry.map_err(|error| io(folder, error))?.path();
+            let is_scene = |end: &&str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
+            if !path.is_file() || !endings.iter().any(is_scene) {
+                continue;
+            }
+            let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
+            let (_, sha256) = file_sha256_hex(&path).map_err(|error| io(&path, error))?;
+            files.push((name.to_string(), sha256));
+        }
+        files.sort();
+        if files.is_empty() {
+            return Err(CampaignError::Shards {
+                found: format!("{}: no scene is there", folder.display()),
+                expected: format!("files that end in .{}", endings.join(", .")),
+            });
+        }
+        let rig_sha256 = match rig {
+            Some(rig) => Some(file_sha256_hex(rig).map_err(|error| io(rig, error))?.1),
+            None => None,
+        };
+        Ok(Self { files, rig_sha256, folder: folder.into(), rig: rig.map(PathBuf::from) })
+    }
+
+    /// Number of scenes.
+    pub fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// Whether there is no scene; never so for scenes that were read.
+    pub fn is_empty(&self) -> bool {
+        self.files.is_empty()
+    }
+
+    /// Name of a scene's file.
+    pub fn name(&self, terrain: u64) -> &str {
+        usize::try_from(terrain).ok().and_then(|at| self.files.get(at)).map_or("", |(name, _)| name)
+    }
+
+    /// Loads a scene.
+    ///
+    /// # Errors
+    /// A file that is no scene, or that is not there.
+    pub(crate) fn load(&self, terrain: u64) -> Result<LoadedScene, CampaignError> {
+        let file = self.folder.join(self.name(terrain));
+        let refused = |error| CampaignError::Scene(Box::new(error));
+        let Some(rig) = &self.rig else {
+            return load(&file.to_string_lossy(), &Overrides::default()).map_err(refused);
+        };
+        let setting = self.ground_setting(&file).map_err(refused)?;
+        load(&rig.to_string_lossy(), &Overrides { settings: vec![setting], ..Overrides::default() })
+            .map_err(refused)
+    }
+
+    /// Words after `raypencil probe` that give a scene.
+    pub(crate) fn arguments(&self, terrain: u64) -> String {
+        let file = self.folder.join(self.name(terrain));
+        let rig = match (&self.rig, &self.rig_sha256) {
+            (Some(rig), _) => quoted(&rig.to_string_lossy()),
+            (None, Some(_)) => "RIG.toml".into(),
+            (None, None) => return quoted(&file.to_string_lossy()),
+        };
+        match self.ground_setting(&file) {
+            Ok(setting) => format!("{rig} --set {}", quoted(&setting.to_string())),
+            Err(_) => rig,
+        }
+    }
+
+    /// The setting that puts a terrain under the rig.
+    fn ground_setting(&self, file: &Path) -> Result<Setting, raypencil_scene_io::SceneIoError> {
+        let is_dem =
+            file.extension().is_some_and(|end| end.to_string_lossy().to_lowercase().starts_with("tif"));
+        // A path of a scene file is relative to that file; this one may lie anywhere.
+        let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
+        Setting::new(if is_dem { "terrain.dem" } else { "terrain.file" }, &whole.to_string_lossy())
+    }
+}
