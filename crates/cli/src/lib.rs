@@ -59,21 +59,26 @@ pub(crate) use crate::outcome::{Outcome, Trouble};
 
 /// Runs the command with `arguments`, the program's name first. Renderers come from `registry`.
 pub fn main_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> ExitCode {
+    ExitCode::from(run_with(arguments, registry))
+}
+
+/// The same, with the exit code as a number: for programs in which the command is a function.
+pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> u8 {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // `--help` and `--version` are not errors. Printing fails on a closed pipe only.
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
             let _ = error.print();
-            return ExitCode::from(if asked { 0 } else { 2 });
+            return if asked { 0 } else { 2 };
         }
     };
     match run(arguments, registry) {
-        Ok(Outcome::Fine) => ExitCode::SUCCESS,
-        Ok(Outcome::Differs) => ExitCode::from(1),
+        Ok(Outcome::Fine) => 0,
+        Ok(Outcome::Differs) => 1,
         Err(trouble) => {
             console::complain(&render_trouble(&trouble));
-            ExitCode::from(2)
+            2
         }
     }
 }

@@ -37,6 +37,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("sweep", 7),
     ("raypencil", 8),
     ("cli", 9),
+    ("python", 10),
 ];
 
 /// Narrower than their floor: these crates may depend on no others than those named.
@@ -56,6 +57,8 @@ const NARROWER: &[(&str, &[&str])] = &[
     ("explorer", &["scene", "judge"]),
     // The command sees what every user of the library sees.
     ("cli", &["raypencil"]),
+    // So does the Python package, which carries the command.
+    ("python", &["raypencil", "cli"]),
 ];
 
 /// These may not even share test code: for their tests they have `terrain`, as data.

@@ -1,0 +1,56 @@
+"""raypencil: exact answers to rays on meshes, and a rover's structured-light vision simulated twice.
+
+``cast`` answers rays exactly, ``judge`` compares one's own answers with the truth; ``render``, ``validate``, ``pack``,
+``check``, ``diff`` and ``drive`` are the commands of the same names. docs/guide/python.md has examples.
+"""
+
+from . import terrain, testing
+from ._cast import AllHits, CastResult, cast
+from ._drive import Drive, ElevationMap, Frame, Sectors, Vectors, drive
+from ._errors import RaypencilError, RaypencilFileError, RaypencilFileNotFoundError
+from ._judge import Judgement, judge
+from ._mesh import Mesh, load, load_mesh
+from ._packs import CheckResult, check, pack, pack_rays, read
+from ._raypencil import __version__
+from ._render import RenderResult, render
+from ._scene import Beam, Camera, Pose, RaySet, Scene
+from ._validate import DiffResult, ValidationResult, diff, validate
+
+__all__ = [
+    "AllHits",
+    "Beam",
+    "Camera",
+    "CastResult",
+    "CheckResult",
+    "DiffResult",
+    "Drive",
+    "ElevationMap",
+    "Frame",
+    "Judgement",
+    "Mesh",
+    "Pose",
+    "RaySet",
+    "RaypencilError",
+    "RaypencilFileError",
+    "RaypencilFileNotFoundError",
+    "RenderResult",
+    "Scene",
+    "Sectors",
+    "ValidationResult",
+    "Vectors",
+    "__version__",
+    "cast",
+    "check",
+    "diff",
+    "drive",
+    "judge",
+    "load",
+    "load_mesh",
+    "pack",
+    "pack_rays",
+    "read",
+    "render",
+    "terrain",
+    "testing",
+    "validate",
+]

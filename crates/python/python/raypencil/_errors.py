@@ -1,0 +1,20 @@
+"""The exceptions of this package. Their messages are those of the command ``raypencil``."""
+
+from __future__ import annotations
+
+
+class RaypencilError(ValueError):
+    """Something is refused: the message names the file or the argument, what was found and what was expected."""
+
+
+class RaypencilFileError(RaypencilError, OSError):
+    """A file or a folder cannot be read or written."""
+
+
+class RaypencilFileNotFoundError(RaypencilFileError, FileNotFoundError):
+    """A file or a folder is not there."""
+
+
+def missing_extra(package: str, extra: str | None = None) -> ImportError:
+    """The error for a package that is optional and not installed."""
+    return ImportError(f"this needs {package}: pip install raypencil[{extra or package}]")

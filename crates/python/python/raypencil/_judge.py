@@ -1,0 +1,211 @@
+"""Somebody's answers to rays against the exact ones."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays, _raypencil
+from ._errors import RaypencilError, missing_extra
+from ._mesh import as_mesh
+from ._progress import Progress, stages
+
+Arithmetic = Literal["f64", "f32"]
+
+#: Numbers in :attr:`Judgement.classes`.
+SAME, TIE, ROUNDING, WRONG = 0, 1, 2, 3
+
+_SCALARS = ("t", "range", "side", "cos_incidence")
+_VECTORS = ("point", "normal", "barycentric")
+_KNOWN = ("face", *_SCALARS, *_VECTORS)
+
+#: Wrong rays, and as many others, on which mistakes are tried.
+_TRIED = 1000
+
+
+class Judgement:
+    """What became of each ray.
+
+    Attributes:
+        classes: uint8, the rays' shape: 0 the same, 1 the same at a tie, 2 rounding (right for a ray that is moved sideways
+            by no more than rounding may), 3 wrong.
+        moved: float64, (..., 2): the displacement that excuses a ray, along the vectors ``across``; NaN for the others.
+        passes: whether no ray is wrong, and some ray hits.
+        why: the mistake that explains the wrong rays, in words; ``None`` if none does.
+        summary: the counts and the worst values, as the command's JSON.
+    """
+
+    def __init__(self, flat: Mapping[str, Any], shape: _arrays.Shape, why: str | None) -> None:
+        self.classes: NDArray[np.uint8] = flat["verdict"].reshape(shape)
+        self.moved: NDArray[np.float64] = flat["moved"].reshape((*shape, 2))
+        self.passes: bool = flat["passes"]
+        self.headline: str = flat["headline"]
+        self.why = why
+        self.summary: dict[str, Any] = json.loads(flat["json"])
+        self._text: str = flat["text"]
+        _arrays.frozen((self.classes)), _arrays.frozen(self.moved)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Numbers of rays: ``same`` (``ties`` among them), ``rounding``, ``wrong``."""
+        return dict(self.summary["counts"])
+
+    @property
+    def wrong(self) -> NDArray[np.intp]:
+        """The indices of the wrong rays, in C order: ``np.unravel_index(wrong, classes.shape)`` has their places."""
+        return np.flatnonzero(self.classes == WRONG)
+
+    @property
+    def text(self) -> str:
+        """All of it in lines."""
+        return self._text + (f"  Why: {self.why}.\n" if self.why else "")
+
+    def __bool__(self) -> bool:
+        return self.passes
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return f"<raypencil.Judgement: {self.headline}>"
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        # Arrays of a pickle may be written to.
+        _arrays.frozen(self.classes), _arrays.frozen(self.moved)
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` of ``classes`` and ``moved``. Raises ImportError without xarray."""
+        try:
+            import xarray
+        except ImportError:
+            raise missing_extra("xarray") from None
+        of_rays = {1: ("ray",), 2: ("row", "column")}.get(self.classes.ndim)
+        dimensions = of_rays or tuple(f"axis_{axis}" for axis in range(self.classes.ndim))
+        of_classes = {"flag_values": [0, 1, 2, 3], "flag_meanings": "same tie rounding wrong", "units": "1"}
+        of_moved = {"units": "unit of the mesh", "long_name": "displacement that excuses the ray"}
+        return xarray.Dataset(
+            {"classes": (dimensions, self.classes, of_classes), "moved": ((*dimensions, "vector"), self.moved, of_moved)},
+            {"vector": ["u", "v"]},
+            attrs={"source": f"raypencil {_raypencil.__version__}", "verdict": self.headline},
+        )
+
+
+def answers_of(answers: Any) -> Mapping[str, Any]:
+    """Answers by the names of their arrays."""
+    # A render is a mapping of its own, whose names are not those of files.
+    arrays = getattr(answers, "arrays", answers)
+    if not isinstance(arrays, Mapping):
+        raise RaypencilError(f"answers are of type {type(answers).__name__}; expected a dictionary of arrays")
+    return arrays
+
+
+def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None, is_own: bool) -> dict[str, Any]:
+    """The arrays as the engine takes them: flat, with misses told."""
+    count = int(np.prod(shape, dtype=np.int64))
+    unknown = [name for name in answers if name not in (*_KNOWN, "hit")]
+    if unknown and not is_own:
+        raise RaypencilError(f"answers: there is no `{unknown[0]}`; expected some of {', '.join((*_KNOWN, 'hit'))}")
+    if not {"face", "t", "range"} & set(answers):
+        raise RaypencilError("answers: expected face, t or range; without one of them it is not said which rays hit")
+
+    def shaped(name: str, last: _arrays.Shape) -> Any:
+        array = np.asarray(answers[name])
+        if array.shape not in (shape + last, (count, *last)):
+            raise RaypencilError(f"answers: {name} has the shape {array.shape}; expected {shape + last}")
+        return array
+
+    stated: dict[str, Any] = {}
+    if "face" in answers:
+        stated["face"] = _arrays.hit_faces("answers: face", shaped("face", ()), miss)
+    for name in _SCALARS:
+        if name in answers:
+            numbers = _arrays.reals(f"answers: {name}", shaped(name, ())).reshape(count)
+            if name in ("t", "range"):
+                is_miss = ~np.isfinite(numbers) if miss is None else ~np.isfinite(numbers) | (numbers == miss)
+                numbers = np.where(is_miss, np.inf, numbers)
+            stated[name] = numbers
+    for name in _VECTORS:
+        if name in answers:
+            stated[name] = _arrays.reals(f"answers: {name}", shaped(name, (3,))).reshape(count, 3)
+    if "hit" in answers:
+        hit = shaped("hit", ()).reshape(count).astype(bool)
+        for name, none in (("face", -1), ("t", np.inf), ("range", np.inf)):
+            if name in stated:
+                stated[name] = np.where(hit, stated[name], none)
+    return stated
+
+
+def _explained(
+    core: _raypencil.MeshCore,
+    rays: NDArray[np.float64],
+    stated: Mapping[str, Any],
+    classes: NDArray[np.uint8],
+    arithmetic: str,
+    fronts_only: bool,
+) -> str | None:
+    """The mistake that explains the wrong rays, tried on some of them and on some others."""
+    some = np.concatenate([np.flatnonzero(classes == WRONG)[:_TRIED], np.flatnonzero(classes != WRONG)[:_TRIED]])
+    with tempfile.TemporaryDirectory() as folder:
+        pack, candidate = Path(folder, "pack"), Path(folder, "answers")
+        candidate.mkdir()
+        _raypencil.pack_rays(core, np.ascontiguousarray(rays[some]), [len(some)], pack, fronts_only, None)
+        for name, array in stated.items():
+            np.save(candidate / f"{name}.npy", array[some])
+        why = _raypencil.check(pack, candidate, arithmetic, None, False, None, None)["why"]
+    return None if why is None else said(why)
+
+
+def said(why: str) -> str:
+    """A mistake in the words of this package: its arguments are no options of a command."""
+    return why.replace("--arithmetic f32", 'arithmetic="f32"').replace("--miss ", "miss=").replace(".npy", "")
+
+
+def judge(
+    mesh: Any,
+    rays: Any,
+    answers: Any,
+    arithmetic: Arithmetic = "f64",
+    *,
+    fronts_only: bool = False,
+    miss: float | None = None,
+    name: str = "answers",
+    explain: bool = True,
+    progress: Progress = False,
+) -> Judgement:
+    """Compares one's own first hits with the exact ones, ray by ray.
+
+    Args:
+        mesh: as in :func:`cast`.
+        rays: (..., 6) or (..., 8), or a tuple of origins, directions, and if wanted t_min and t_max.
+        answers: a dictionary with some of ``face``, ``t``, ``range``, ``side``, ``point``, ``normal``, ``barycentric``,
+            ``cos_incidence``, as :class:`CastResult` has them, in any type; or a :class:`CastResult`. One of ``face``, ``t``
+            and ``range`` must be there. A ray misses where the face is -1 or 4294967295, where t or range is not finite,
+            where either is ``miss``, and where ``hit`` (truth values) says so.
+        arithmetic: the arithmetic that they were computed in, whatever type they are stored in.
+        fronts_only: whether only fronts of faces were to be hit.
+        miss: a number that means no hit.
+        name: a name for the messages.
+        explain: where rays are wrong, look for the mistake that explains them (:attr:`Judgement.why`).
+        progress: see :func:`cast`.
+
+    Raises:
+        RaypencilError: as :func:`cast`; arrays of another shape; answers that do not say which rays hit.
+    """
+    of_rays, shape = _arrays.given_rays(rays)
+    stated = _stated(answers_of(answers), shape, miss, is_own=not isinstance(answers, Mapping))
+    core = as_mesh(mesh)._core
+    with stages(progress) as on_stage:
+        flat = _raypencil.judge(core, of_rays, name, arithmetic, fronts_only, **stated, on_stage=on_stage)
+        why = None
+        if explain and (flat["verdict"] == WRONG).any():
+            if on_stage is not None:
+                on_stage("looking for a mistake that explains the wrong rays")
+            why = _explained(core, of_rays, stated, flat["verdict"], arithmetic, fronts_only)
+    return Judgement(flat, shape, why)

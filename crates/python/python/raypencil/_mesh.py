@@ -1,0 +1,127 @@
+"""Meshes, and what a path stands for."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _raypencil
+from ._errors import RaypencilError
+from ._progress import Progress, stages
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+#: The built-in grounds.
+BUILTIN_NAMES = ("pyramids", "facets")
+
+_SCENE_ENDINGS = (".toml", ".tif", ".tiff")
+
+
+class Mesh:
+    """Triangles with float64 vertices, in any frame and any unit. They never change.
+
+    Args:
+        vertices: (n, 3), real numbers within 1e30. Single precision is widened.
+        faces: (m, 3), integers: the vertices of each triangle, from 0, counter-clockwise as seen from its front.
+
+    Raises:
+        RaypencilError: a vertex that is not finite, an index that is out of bounds, another shape or type.
+
+    A mesh can be pickled, and works in any number of threads.
+    """
+
+    __slots__ = ("_core",)
+    _core: _raypencil.MeshCore
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+        points = _arrays.reals("vertices", vertices)
+        if points.size == 0:
+            points = points.reshape(0, 3)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise RaypencilError(f"vertices has the shape {points.shape}; expected (n, 3)")
+        self._core = _raypencil.MeshCore(points, _arrays.faces("faces", faces))
+
+    @classmethod
+    def _of(cls, core: _raypencil.MeshCore) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._core = core
+        return mesh
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """(n, 3) float64, in the mesh's unit; read-only, not a copy."""
+        return self._core.vertices
+
+    @property
+    def faces(self) -> NDArray[np.uint32]:
+        """(m, 3) uint32; read-only, not a copy."""
+        return self._core.faces
+
+    @property
+    def zero_area_faces(self) -> int:
+        """Number of faces without an area. They are never hit."""
+        return self._core.zero_area_faces
+
+    @property
+    def bounds(self) -> NDArray[np.float64] | None:
+        """(2, 3): the smallest and the largest coordinates, in the mesh's unit; ``None`` without vertices."""
+        if len(self.vertices) == 0:
+            return None
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes ``vertices.npy`` and ``faces.npy`` into a folder, which every command takes for a mesh."""
+        os.makedirs(folder, exist_ok=True)
+        np.save(os.path.join(folder, "vertices.npy"), self.vertices)
+        np.save(os.path.join(folder, "faces.npy"), self.faces)
+
+    def __repr__(self) -> str:
+        return f"<raypencil.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Mesh, (np.array(self.vertices), np.array(self.faces))
+
+
+def as_mesh(mesh: Any) -> Mesh:
+    """A mesh; a scene's terrain; or anything with ``vertices`` and ``faces``, such as a mesh of trimesh."""
+    if isinstance(mesh, Mesh):
+        return mesh
+    own = getattr(mesh, "mesh", None)
+    if isinstance(own, Mesh):
+        return own
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return Mesh(mesh.vertices, mesh.faces)
+    raise RaypencilError(f"mesh is of type {type(mesh).__name__}; expected a Mesh, or what has vertices and faces")
+
+
+def load_mesh(path: str | os.PathLike[str], *, progress: Progress = False) -> Mesh:
+    """Reads the triangles of a file, with the numbers that it gives: no axis is turned, no origin subtracted.
+
+    Args:
+        path: ``.glb``, ``.gltf``, ``.stl``, ``.obj`` or ``.ply``, or a folder with ``vertices.npy`` and ``faces.npy``.
+        progress: see :func:`cast`.
+
+    Raises:
+        RaypencilError: what is wrong with the file, and where. If it is not there, also a ``FileNotFoundError``.
+    """
+    with stages(progress) as on_stage:
+        return Mesh._of(_raypencil.load_mesh(os.fspath(path), on_stage))
+
+
+def load(source: str | os.PathLike[str], *, progress: Progress = False) -> Mesh | Scene:
+    """Loads what a path or a name stands for.
+
+    A built-in name (``pyramids``, ``facets``), a scene file (``.toml``) and an elevation model (``.tif``) are a
+    :class:`Scene`. Everything else is a :class:`Mesh`: ``.glb``, ``.gltf``, ``.stl``, ``.obj``, ``.ply``, or a folder with
+    ``vertices.npy`` and ``faces.npy``. For a scene with the default rig on a ``.glb``, write ``Scene("ground.glb")``.
+    """
+    from ._scene import Scene
+
+    path = os.fspath(source)
+    if path in BUILTIN_NAMES or path.lower().endswith(_SCENE_ENDINGS):
+        return Scene(path, progress=progress)
+    return load_mesh(path, progress=progress)

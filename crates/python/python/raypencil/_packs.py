@@ -1,0 +1,176 @@
+"""Reference packs: questions with their exact answers, and the check of somebody's answers."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays, _raypencil
+from ._errors import RaypencilError
+from ._judge import Arithmetic, answers_of
+from ._mesh import as_mesh
+from ._progress import Progress, stages
+from ._scene import as_scene
+from ._validate import Outcome
+
+PathLike = str | os.PathLike[str]
+
+
+def pack(
+    scene: Any, output: PathLike, *, bench: bool = True, progress: Progress = False
+) -> Path:
+    """Writes the reference pack of a scene: its rays, and the answer to each, correctly rounded.
+
+    Args:
+        scene: a :class:`Scene`, or a name or path of one.
+        output: the folder.
+        bench: add small sensors whose rays lie at the limits of the contract.
+        progress: see :func:`cast`.
+
+    Returns:
+        The folder.
+    """
+    with stages(progress) as on_stage:
+        _raypencil.pack_scene(as_scene(scene)._core, os.fspath(output), bench, on_stage)
+    return Path(output)
+
+
+def pack_rays(
+    mesh: Any, rays: Any, output: PathLike, *, fronts_only: bool = False, progress: Progress = False
+) -> list[str]:
+    """Writes a pack of rays on a mesh: the question, and the exact answers with their margins.
+
+    Args:
+        mesh: as in :func:`cast`.
+        rays: (..., 6) or (..., 8), or a tuple of origins, directions, and if wanted t_min and t_max.
+        output: the folder.
+        fronts_only: rays pass through the backs of faces.
+        progress: see :func:`cast`.
+
+    Returns:
+        What none of the rays tests, in words: ``ties``, ``backs of faces``, ``t_min``, ...
+    """
+    of_rays, shape = _arrays.given_rays(rays)
+    with stages(progress) as on_stage:
+        return _raypencil.pack_rays(as_mesh(mesh)._core, of_rays, list(shape), os.fspath(output), fronts_only, on_stage)
+
+
+class CheckResult(Outcome):
+    """Somebody's answers against a pack.
+
+    Attributes:
+        kind: ``"scene"``, ``"rays"`` or ``"input"``.
+        why: the mistake that explains the wrong rays, in words; ``None`` if none does, or if nothing is wrong.
+        classes: of a pack of rays, uint8 of the rays' shape: 0 the same, 1 at a tie, 2 rounding, 3 wrong; else ``None``.
+        moved: of a pack of rays, (..., 2): as :attr:`Judgement.moved`; else ``None``.
+        output: the folder with ``report.html``, if one was asked for.
+    """
+
+    def __init__(self, answer: Mapping[str, Any], output: Path | None) -> None:
+        super().__init__(answer["passes"], answer["text"], answer["json"])
+        self.kind: str = answer["kind"]
+        self.why: str | None = answer["why"]
+        self.output = output
+        self.classes: NDArray[np.uint8] | None = None
+        self.moved: NDArray[np.float64] | None = None
+        if "verdict" in answer["arrays"]:
+            shape = tuple(answer["shape"])
+            self.classes = _arrays.frozen(answer["arrays"]["verdict"].reshape(shape))
+            self.moved = _arrays.frozen(answer["arrays"]["moved"].reshape((*shape, 2)))
+
+    def __repr__(self) -> str:
+        return f"<raypencil.CheckResult: {'passes' if self.passes else 'wrong'}, a pack of {self.kind}>"
+
+
+def _flat(answers: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Arrays by their keys; of nested dictionaries joined by ``/``."""
+    for key, value in answers.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{prefix}{key}/")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _write(answers: Mapping[str, Any], folder: Path) -> None:
+    """A recording of the arrays."""
+    for key, value in _flat(answers):
+        if key.startswith("/") or ".." in key.split("/") or "\\" in key:
+            raise RaypencilError(f"answers: {key!r} is no name of an array; expected one such as camera/range.T")
+        path = folder / f"{key}.npy"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        array = np.asarray(value)
+        if array.dtype.kind not in "fiub":
+            raise RaypencilError(f"answers: {key} is of type {array.dtype}; expected real numbers")
+        np.save(path, array)
+
+
+def check(
+    pack: PathLike,
+    answers: Any,
+    arithmetic: Arithmetic | None = None,
+    *,
+    miss: float | None = None,
+    no_faces: bool = False,
+    name: str = "answers",
+    output: PathLike | None = None,
+    progress: Progress = False,
+) -> CheckResult:
+    """Checks somebody's answers against a reference pack of any kind.
+
+    Args:
+        pack: folder of the pack.
+        answers: a folder of EXR, NPY or PFM files, or arrays. For a pack of rays: a dictionary with ``face``, ``t``, ... or a
+            :class:`CastResult`. For a pack of a scene: a dictionary with the channels of docs/formats/files.md, as
+            ``"camera/range.T"`` or nested, or a :class:`RenderResult`. For an input pack: ``triangles`` (m, 9) and
+            ``reflectivity`` (m,).
+        arithmetic: that of the answers, whatever type they are stored in. Default: as the folder's ``candidate.json`` says,
+            else ``"f64"``.
+        miss: a number that means no hit.
+        no_faces: leave out the indices of faces.
+        name: what messages call answers that are no folder.
+        output: a folder for ``report.html``, ``junit.xml`` and ``check.json``.
+        progress: see :func:`cast`.
+
+    Raises:
+        RaypencilError: a pack that is not complete and unchanged, answers that break the conventions.
+    """
+    folder = None if output is None else Path(output)
+
+    def checked(candidate: Path) -> CheckResult:
+        with stages(progress) as on_stage:
+            answer = _raypencil.check(
+                os.fspath(pack), os.fspath(candidate), arithmetic, miss, no_faces, folder and os.fspath(folder), on_stage
+            )
+        return CheckResult(answer, folder)
+
+    if isinstance(answers, (str, os.PathLike)):
+        return checked(Path(answers))
+    if not name or "/" in name or name.startswith("."):
+        raise RaypencilError(f"name is {name!r}; expected one that a folder can have")
+    with tempfile.TemporaryDirectory(prefix="raypencil-") as temporary:
+        candidate = Path(temporary, name)
+        candidate.mkdir()
+        _write(answers_of(answers), candidate)
+        return checked(candidate)
+
+
+def read(path: PathLike, *, progress: Progress = False) -> dict[str, NDArray[Any]]:
+    """Reads the maps of a file or folder of any program: EXR, NPY, PFM.
+
+    Returns:
+        Channels by their keys (docs/formats/files.md), such as ``camera/range.T``: (rows, columns), row 0 on top; float32 or
+        float64 as the file has them, uint32 for whole numbers.
+
+    Raises:
+        RaypencilError: what is wrong with which file.
+    """
+    with stages(progress) as on_stage:
+        return dict(_arrays.frozen(_raypencil.read_recording(os.fspath(path), on_stage)))
+
+

@@ -1,0 +1,179 @@
+"""What the Rust library gives. Not for people: the modules beside it are."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+_OnStage = Callable[[str], object] | None
+_Path = str | PathLike[str]
+_Pairs = Sequence[tuple[str, str]]
+_Arrays = dict[str, NDArray[Any]]
+
+class MeshCore:
+    def __new__(cls, vertices: NDArray[np.float64], faces: NDArray[np.uint32]) -> MeshCore: ...
+    @property
+    def vertices(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    @property
+    def zero_area_faces(self) -> int: ...
+    @property
+    def digests(self) -> list[str]: ...
+
+class SceneCore:
+    def __new__(
+        cls, source: str, is_text: bool, name: str, settings: _Pairs, on_stage: _OnStage = None
+    ) -> SceneCore: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def source_sha256(self) -> str: ...
+    @property
+    def sha256(self) -> str: ...
+    @property
+    def arguments(self) -> str: ...
+    @property
+    def has_drive(self) -> bool: ...
+    @property
+    def flux_unit(self) -> str: ...
+    @property
+    def origin(self) -> NDArray[np.float64]: ...
+    @property
+    def vehicle(self) -> _Arrays | None: ...
+    @property
+    def camera(self) -> dict[str, Any]: ...
+    @property
+    def beams(self) -> list[dict[str, Any]]: ...
+    @property
+    def ray_sets(self) -> dict[str, dict[str, Any]]: ...
+    def mesh(self) -> MeshCore: ...
+    def reflectivity(self) -> NDArray[np.float64]: ...
+
+class ValidationCore:
+    @property
+    def passes(self) -> bool: ...
+    @property
+    def renderers(self) -> list[str]: ...
+    def json(self) -> str: ...
+    def text(self) -> str: ...
+    def report(self) -> str: ...
+    def maps(self, index: int) -> dict[str, _Arrays]: ...
+
+class DriveCore:
+    def __new__(
+        cls,
+        scene: SceneCore,
+        to: Sequence[tuple[float, float]],
+        to_global: bool,
+        as_printed: bool,
+        rules: _Pairs,
+        record: Sequence[str],
+        names: Sequence[str],
+        switches: _Pairs,
+        images: bool,
+        output: _Path | None = None,
+        on_stage: _OnStage = None,
+    ) -> DriveCore: ...
+    @property
+    def planned(self) -> int: ...
+    def next(self) -> dict[str, Any] | None: ...
+    def close(self) -> None: ...
+    def summary(self) -> tuple[bool, str, str] | None: ...
+
+def load_mesh(path: _Path, on_stage: _OnStage = None) -> MeshCore: ...
+def cast(
+    mesh: MeshCore,
+    rays: NDArray[np.float64],
+    by_tracer: bool,
+    fronts_only: bool,
+    any: bool,
+    all: bool,
+    margins: bool,
+    on_stage: _OnStage = None,
+) -> _Arrays: ...
+def judge(
+    mesh: MeshCore,
+    rays: NDArray[np.float64],
+    name: str,
+    arithmetic: str,
+    fronts_only: bool,
+    face: NDArray[np.int64] | None = None,
+    t: NDArray[np.float64] | None = None,
+    range: NDArray[np.float64] | None = None,
+    side: NDArray[np.float64] | None = None,
+    point: NDArray[np.float64] | None = None,
+    normal: NDArray[np.float64] | None = None,
+    barycentric: NDArray[np.float64] | None = None,
+    cos_incidence: NDArray[np.float64] | None = None,
+    on_stage: _OnStage = None,
+) -> dict[str, Any]: ...
+def render(
+    scene: SceneCore,
+    name: str,
+    switches: _Pairs,
+    jitter: int | None = None,
+    output: _Path | None = None,
+    on_stage: _OnStage = None,
+) -> dict[str, _Arrays]: ...
+def validate(
+    scene: SceneCore,
+    names: Sequence[str],
+    switches: _Pairs,
+    judge_all: bool,
+    candidates: Sequence[_Path],
+    allow_empty: bool,
+    output: _Path | None = None,
+    on_stage: _OnStage = None,
+) -> ValidationCore: ...
+def pack_scene(scene: SceneCore, output: _Path, bench: bool, on_stage: _OnStage = None) -> None: ...
+def pack_rays(
+    mesh: MeshCore,
+    rays: NDArray[np.float64],
+    shape: Sequence[int],
+    output: _Path,
+    fronts_only: bool,
+    on_stage: _OnStage = None,
+) -> list[str]: ...
+def check(
+    pack: _Path,
+    candidate: _Path,
+    arithmetic: str | None = None,
+    miss: float | None = None,
+    no_faces: bool = False,
+    output: _Path | None = None,
+    on_stage: _OnStage = None,
+) -> dict[str, Any]: ...
+def diff(
+    a: _Path,
+    b: _Path,
+    fail: float,
+    fail_relative: float,
+    fail_ulp: float,
+    fail_percent: float,
+    hard_fail: float | None,
+    shared_only: bool,
+    scene: SceneCore | None = None,
+    arithmetic: str = "f64",
+    output: _Path | None = None,
+    on_stage: _OnStage = None,
+) -> tuple[bool, str, str]: ...
+def read_recording(path: _Path, on_stage: _OnStage = None) -> _Arrays: ...
+def generate_ground(
+    preset: str,
+    seed: int,
+    extent: float | None = None,
+    post_spacing: float | None = None,
+    fine_radius: float | None = None,
+    rock_coverage: float | None = None,
+    rock_smallest: float | None = None,
+    crevasses: int | None = None,
+    coarse: _Path | None = None,
+    on_stage: _OnStage = None,
+) -> MeshCore: ...
+def picture(map: NDArray[np.float64], max_side: int, light: bool) -> bytes: ...
+def command(arguments: Sequence[str]) -> int: ...

@@ -1,0 +1,272 @@
+"""Scenes: a ground, a camera, beams, a vehicle."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _raypencil, _toml
+from ._errors import RaypencilError
+from ._mesh import BUILTIN_NAMES, Mesh
+from ._progress import Progress, stages
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Where something is and how it is turned: p_a = R p_b + position for a pose ``a_from_b``."""
+
+    #: (3,) float64, metres.
+    position: NDArray[np.float64]
+    #: (4,) float64: the unit quaternion x, y, z, w of R.
+    quaternion: NDArray[np.float64]
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """(4, 4): the same as a matrix for (x, y, z, 1)."""
+        x, y, z, w = self.quaternion
+        made = np.eye(4)
+        made[:3, :3] = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+        made[:3, 3] = self.position
+        return made
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera's numbers, in SI units, and its pose in the scene frame."""
+
+    width: int
+    height: int
+    #: x and y, metres.
+    pixel_pitch: tuple[float, float]
+    #: Metres.
+    focal_length: float
+    #: x and y, pixels from the outer corner of pixel (0, 0).
+    principal_point: tuple[float, float]
+    #: Metres.
+    aperture: float
+    transmission: float
+    #: Metres along a ray.
+    max_range: float
+    scene_from_sensor: Pose
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A beam's numbers, in SI units, and its pose in the scene frame."""
+
+    columns: int
+    rows: int
+    #: Metres.
+    thickness: float
+    #: Metres.
+    grid_distance: float
+    #: Metres.
+    half_width: float
+    #: Metres along a ray.
+    max_range: float
+    #: Watts.
+    power: float
+    #: Metres.
+    wavelength: float
+    scene_from_sensor: Pose
+
+
+@dataclass(frozen=True, eq=False)
+class RaySet:
+    """A set of rays of a scene, in the scene frame, such as the pattern of a LiDAR."""
+
+    #: (..., 8) float64: origin, direction, t_min, t_max; ``cast(scene, ray_set.rays)`` answers them.
+    rays: NDArray[np.float64]
+    #: Seconds, (...); ``None`` if the rays have no times.
+    times: NDArray[np.float64] | None
+    #: Shares of a beam's power along the last dimension, if rays are parts of beams.
+    weights: NDArray[np.float64] | None
+    #: Of a spinning head: the elevation of each channel, degrees.
+    elevations_deg: NDArray[np.float64] | None
+    #: Whether rays pass through the backs of faces.
+    fronts_only: bool
+
+
+class Scene:
+    """A scene. It never changes: :meth:`replace` makes another one.
+
+    Args:
+        source: a built-in ground (``pyramids``, ``facets``); a path to a scene file ``.toml``, a terrain ``.glb`` or ``.gltf``,
+            or an elevation model ``.tif``; or the text of a scene file (what has a line break is a text).
+        name: what messages and folders call a scene without a file.
+        settings: keys of docs/guide/scene.md joined by dots, in the file's units:
+            ``{"camera.pitch_down_deg": 25, "beam.0.thickness_mm": 4}``.
+        progress: see :func:`cast`.
+        tables: tables of a scene file: ``Scene(camera={"pitch_down_deg": 25}, beam=[{"rows": 8}])``. With a ``source`` they
+            are settings of it.
+
+    Raises:
+        RaypencilError: a key that is not there, a value out of range: the message has the place in the file or the setting.
+            If a file is not there, also a ``FileNotFoundError``.
+
+    A scene can be pickled: by its source, whose files must be the same where it is unpickled.
+    """
+
+    _core: _raypencil.SceneCore
+    _source: str
+    _is_text: bool
+    _name: str
+    _settings: tuple[tuple[str, str], ...]
+
+    def __init__(
+        self,
+        source: str | os.PathLike[str] | None = None,
+        /,
+        *,
+        name: str = "scene",
+        settings: Mapping[str, Any] | None = None,
+        progress: Progress = False,
+        **tables: Any,
+    ) -> None:
+        given = list(_toml.settings(settings or {}))
+        if source is None:
+            text, is_text = _toml.document(tables), True
+        else:
+            text = os.fspath(source)
+            is_text = isinstance(source, str) and "\n" in text
+            given = [*_toml.settings(tables), *given]
+        self._load(text, is_text, name, tuple(given), progress)
+
+    def _load(
+        self, source: str, is_text: bool, name: str, settings: tuple[tuple[str, str], ...], progress: Progress = False
+    ) -> None:
+        if is_text and not name.replace("-", "").replace("_", "").replace(".", "").isalnum():
+            raise RaypencilError(f"name is {name!r}; expected letters, digits, '-', '_' and '.'")
+        self._source, self._is_text, self._name, self._settings = source, is_text, name, settings
+        with stages(progress) as on_stage:
+            self._core = _raypencil.SceneCore(source, is_text, name, list(settings), on_stage)
+
+    def replace(self, /, *, progress: Progress = False, **settings: Any) -> Scene:
+        """The scene with other values: ``scene.replace(**{"camera.pitch_down_deg": 25, "beam.0.thickness_mm": 4})``.
+
+        Keys are those of docs/guide/scene.md, in the file's units. ``beam.thickness_mm``, without a number, is for every
+        beam. Tables may be dictionaries: ``scene.replace(camera={"pitch_down_deg": 25})``.
+        """
+        scene = Scene.__new__(Scene)
+        more = tuple(_toml.settings(settings))
+        scene._load(self._source, self._is_text, self._name, self._settings + more, progress)
+        return scene
+
+    @property
+    def toml(self) -> str:
+        """The text of the scene file, before its :attr:`settings`; of a ground alone a text that stands for it."""
+        if self._is_text:
+            return self._source
+        if self._source.lower().endswith(".toml"):
+            with open(self._source, encoding="utf-8") as file:
+                return file.read()
+        key = "dem" if self._source.lower().endswith((".tif", ".tiff")) else "file"
+        key = "builtin" if self._source in BUILTIN_NAMES else key
+        return _toml.document({"terrain": {key: self._source}})
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """Keys that were set besides, each with its value as TOML."""
+        return dict(self._settings)
+
+    @property
+    def name(self) -> str:
+        """A short name, fit for a folder."""
+        return self._core.name
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the numbers of the scene, which packs and recordings name."""
+        return self._core.sha256
+
+    @property
+    def source_sha256(self) -> str:
+        """SHA-256 of the files or the text that define the scene."""
+        return self._core.source_sha256
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The terrain, in the scene frame, metres."""
+        return Mesh._of(self._core.mesh())
+
+    @property
+    def reflectivity(self) -> NDArray[np.float64]:
+        """(m,): the reflectivity of each face, 0 to 1."""
+        return self._core.reflectivity()
+
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,): global position of the origin of the scene frame, metres."""
+        return self._core.origin
+
+    @property
+    def vehicle(self) -> Pose | None:
+        """Pose of the vehicle, ``global_from_vehicle``; ``None`` if the scene has none."""
+        pose = self._core.vehicle
+        return None if pose is None else Pose(**pose)
+
+    @property
+    def camera(self) -> Camera:
+        """The camera's numbers."""
+        return Camera(**_posed(self._core.camera))
+
+    @property
+    def beams(self) -> list[Beam]:
+        """The beams' numbers."""
+        return [Beam(**_posed(beam)) for beam in self._core.beams]
+
+    @property
+    def ray_sets(self) -> dict[str, RaySet]:
+        """The sets of rays of ``[[rays]]``, by name."""
+        parts = ("rays", "times", "weights", "elevations_deg", "fronts_only")
+        sets: dict[str, dict[str, Any]] = {
+            name: {part: of.get(part) for part in parts} for name, of in self._core.ray_sets.items()
+        }
+        return {name: RaySet(**of) for name, of in sets.items()}
+
+    @property
+    def flux_unit(self) -> str:
+        """The unit of every flux: ``W``, or ``W/m`` with the paper's equation (1)."""
+        return self._core.flux_unit
+
+    def __repr__(self) -> str:
+        camera = self.camera
+        beams = f"{len(self._core.beams)} beams"
+        return f"<raypencil.Scene {self._core.arguments}: {camera.width} x {camera.height} pixels, {beams}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        source = self._source
+        if not self._is_text and source not in BUILTIN_NAMES:
+            source = os.path.abspath(source)
+        return _unpickled, (source, self._is_text, self._name, self._settings, self.source_sha256)
+
+
+def _posed(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    return {**numbers, "scene_from_sensor": Pose(**numbers["scene_from_sensor"])}
+
+
+def _unpickled(
+    source: str, is_text: bool, name: str, settings: tuple[tuple[str, str], ...], sha256: str
+) -> Scene:
+    scene = Scene.__new__(Scene)
+    scene._load(source, is_text, name, settings)
+    if scene.source_sha256 != sha256:
+        raise RaypencilError(f"{source}: the scene is another one than that which was pickled; expected {sha256}")
+    return scene
+
+
+def as_scene(scene: Any) -> Scene:
+    """A scene, or what :class:`Scene` takes in place of one."""
+    return scene if isinstance(scene, Scene) else Scene(scene)
+
+

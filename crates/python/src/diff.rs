@@ -1,0 +1,83 @@
+//! Two recordings, compared channel by channel.
+
+use std::path::{Path, PathBuf};
+
+use pyo3::prelude::*;
+use raypencil::Progress;
+use raypencil::diff::{Sides, Thresholds, diff as compare, diff_json, diff_text, rule, write_diff};
+use raypencil::io::{Channels, Limits, add_ray_sets, read_channels};
+use raypencil::judge::{GroundTruth, Recorded, check as judge};
+use raypencil::pack::CheckError;
+
+use crate::failure::Failure;
+use crate::judge::precision;
+use crate::scene::SceneCore;
+use crate::watch::watched;
+
+/// Compares two files or folders: whether they pass, the screen of the command, and its JSON.
+#[pyfunction]
+#[pyo3(signature = (
+    a, b, fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only, scene=None, arithmetic="f64",
+    output=None, on_stage=None
+))]
+pub(crate) fn diff(
+    py: Python<'_>,
+    a: PathBuf,
+    b: PathBuf,
+    fail: f64,
+    fail_relative: f64,
+    fail_ulp: f64,
+    fail_percent: f64,
+    hard_fail: Option<f64>,
+    shared_only: bool,
+    scene: Option<&Bound<'_, SceneCore>>,
+    arithmetic: &str,
+    output: Option<PathBuf>,
+    on_stage: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(bool, String, String)> {
+    let precision = precision(arithmetic).map_err(|failure| failure.into_exception(py))?;
+    let scene = scene.map(|scene| scene.get().clone());
+    watched(py, on_stage, move |watch| {
+        let read = |path: &Path| -> Result<Channels, Failure> {
+            watch.stage(&format!("{}: reading", path.display()));
+            let mut channels = read_channels(path, &Limits::default())?;
+            add_ray_sets(&mut channels, path, &Limits::default())?;
+            Ok(channels)
+        };
+        if let Some(folder) = &output {
+            let same = |path: &Path| {
+                path.canonicalize().ok().is_some_and(|path| folder.canonicalize().ok() == Some(path))
+            };
+            if same(&a) || same(&b) {
+                let folder = folder.display();
+                return Err(Failure::new(format!(
+                    "output {folder}: is one of the folders to compare; expected another folder"
+                )));
+            }
+        }
+        let (of_a, of_b) = (read(&a)?, read(&b)?);
+        let thresholds = Thresholds { fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only };
+        watch.stage("comparing");
+        let mut difference = compare(&of_a, &of_b, &thresholds)?;
+        let names = [&a, &b].map(|path| path.display().to_string());
+        let sides = Sides { names: [&names[0], &names[1]], channels: [&of_a, &of_b] };
+        if let Some(scene) = &scene {
+            let scene = &scene.loaded.scene;
+            let helped = |error| {
+                let error = CheckError::from(error);
+                Failure::with_help(&error, error.help())
+            };
+            let recorded = |path: &Path| Recorded::read(path, scene, precision).map_err(helped);
+            let (of_a, of_b) = (recorded(&a)?, recorded(&b)?);
+            let truth = GroundTruth::certified(scene, watch);
+            let [of_a, of_b] = [of_a, of_b].map(|recorded| judge(&truth, &recorded, watch));
+            let rulings = rule(&difference, &sides, &truth, [&of_a, &of_b]);
+            difference = difference.with_rulings(rulings);
+        }
+        if let Some(folder) = &output {
+            write_diff(&difference, &sides, folder, watch)?;
+        }
+        let text = diff_text(&difference, &sides, output.as_deref());
+        Ok((difference.passes(), text, diff_json(&difference, &sides)))
+    })
+}

@@ -1,0 +1,80 @@
+//! The rover's own extraction of stripes, which also tells what it saw.
+
+use std::collections::HashSet;
+use std::sync::mpsc::SyncSender;
+use std::sync::{Mutex, PoisonError};
+
+use raypencil::SceneError;
+use raypencil::rover::{BeamEdge, CameraImage, Exposure, Extraction, StripeExtractor, Stripes};
+
+/// What was seen in one exposure.
+#[derive(Debug)]
+pub(super) struct Seen {
+    pub exposure: Exposure,
+    /// The image, but not those of a scan: there are hundreds of them in one frame.
+    pub image: Option<CameraImage>,
+    pub stripes: Stripes,
+}
+
+/// The rover's own extraction.
+#[derive(Debug)]
+pub(super) struct Tee {
+    extraction: Extraction,
+    beams: usize,
+    keeps_images: bool,
+    listener: SyncSender<Seen>,
+    /// The frame, and its exposures that were told: with two renderers each comes twice, first that of the first.
+    told: Mutex<(u64, HashSet<(Option<u32>, Option<usize>)>)>,
+}
+
+impl Tee {
+    pub(super) fn new(
+        extraction: Extraction,
+        beams: usize,
+        keeps_images: bool,
+        listener: SyncSender<Seen>,
+    ) -> Self {
+        Self { extraction, beams, keeps_images, listener, told: Mutex::default() }
+    }
+
+    fn extracted(&self, exposure: Exposure, image: &CameraImage) -> Stripes {
+        let Self { extraction, beams, .. } = self;
+        let (by_beam, columns_left_out) = match (exposure.beam, image) {
+            (Some(beam), CameraImage::Flux(image)) => (vec![(beam, extraction.edges(image))], 0),
+            (Some(beam), CameraImage::Numbers(image)) => (vec![(beam, extraction.edges(image))], 0),
+            (None, image) => {
+                let (edges, left_out) = match image {
+                    CameraImage::Flux(image) => extraction.edges_by_order(image, *beams),
+                    CameraImage::Numbers(image) => extraction.edges_by_order(image, *beams),
+                };
+                (edges.into_iter().enumerate().collect(), left_out)
+            }
+        };
+        let of_beam =
+            |(beam, edges): (usize, Vec<_>)| edges.into_iter().map(move |edge| BeamEdge { beam, edge });
+        Stripes { edges: by_beam.into_iter().flat_map(of_beam).collect(), columns_left_out }
+    }
+
+    fn is_news(&self, exposure: Exposure) -> bool {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.0 != exposure.frame {
+            *told = (exposure.frame, HashSet::new());
+        }
+        told.1.insert((exposure.step, exposure.beam))
+    }
+}
+
+impl StripeExtractor for Tee {
+    fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError> {
+        let stripes = self.extracted(exposure, image);
+        if self.is_news(exposure) {
+            let is_kept = self.keeps_images && exposure.step.is_none();
+            let seen = Seen { exposure, image: is_kept.then(|| image.clone()), stripes: stripes.clone() };
+            // Waits until there is room; nobody listens any more if the drive was given up.
+            self.listener
+                .send(seen)
+                .map_err(|_| SceneError::new("drive", "given up", "somebody who takes its frames"))?;
+        }
+        Ok(stripes)
+    }
+}

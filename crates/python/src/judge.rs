@@ -1,0 +1,183 @@
+//! Somebody's first hits against the exact ones.
+
+use glam::DVec3;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use raypencil::cast::{
+    Comparison, RayVerdict, Stated, compare_with, comparison_headline, comparison_json, comparison_text,
+};
+use raypencil::referee::ExactCast;
+use raypencil::{CastRay, FaceId, Precision, Progress, Side};
+
+use crate::array::Arrays;
+use crate::failure::Failure;
+use crate::mesh::MeshCore;
+use crate::rays::{rays_of, sides};
+use crate::watch::watched;
+
+/// Rays that are compared before Ctrl-C is heard again.
+const RAYS_AT_A_TIME: usize = 1 << 16;
+
+/// The precision of an arithmetic by its name.
+pub(crate) fn precision(name: &str) -> Result<Precision, Failure> {
+    match name {
+        "f64" => Ok(Precision::F64),
+        "f32" => Ok(Precision::F32),
+        _ => Err(Failure::new(format!("arithmetic is {name:?}; expected \"f64\" or \"f32\""))),
+    }
+}
+
+/// The verdict of each ray (u1) and its witness (f8, (n, 2)), named as the command's files.
+pub(crate) fn verdict_arrays(comparison: &Comparison) -> Arrays {
+    let number = |verdict: &RayVerdict| match verdict {
+        RayVerdict::Same { is_tie } => u8::from(*is_tie),
+        RayVerdict::Rounding { .. } => 2,
+        RayVerdict::Wrong(_) => 3,
+    };
+    let moved = |verdict: &RayVerdict| match verdict {
+        RayVerdict::Rounding { moved } => *moved,
+        _ => [f64::NAN; 2],
+    };
+    let (verdicts, mut arrays) = (&comparison.verdicts, Arrays::default());
+    arrays.add("verdict", &[verdicts.len()], verdicts.iter().map(number).collect::<Vec<_>>());
+    arrays.add("moved", &[verdicts.len(), 2], verdicts.iter().flat_map(moved).collect::<Vec<_>>());
+    arrays
+}
+
+/// The rays in pieces, each judged by itself: its worst values and their rays are joined.
+fn compared(
+    exact: &ExactCast<'_>,
+    mesh: &MeshCore,
+    (rays, sides): (&[CastRay], raypencil::Sides),
+    stated: &Stated,
+    precision: Precision,
+    progress: &dyn Progress,
+) -> Comparison {
+    let piece = |from: usize, to: usize| {
+        fn some<T: Copy>(all: &Option<Vec<T>>, from: usize, to: usize) -> Option<Vec<T>> {
+            all.as_ref().map(|all| all[from..to].to_vec())
+        }
+        Stated {
+            face: some(&stated.face, from, to),
+            t: some(&stated.t, from, to),
+            range: some(&stated.range, from, to),
+            side: some(&stated.side, from, to),
+            point: some(&stated.point, from, to),
+            normal: some(&stated.normal, from, to),
+            barycentric: some(&stated.barycentric, from, to),
+            cos_incidence: some(&stated.cos_incidence, from, to),
+        }
+    };
+    let mut whole: Option<Comparison> = None;
+    let mut from = 0;
+    loop {
+        let to = (from + RAYS_AT_A_TIME).min(rays.len());
+        progress.stage(&format!("comparing rays: {from} of {}", rays.len()));
+        let part = compare_with(exact, &mesh.triangles, &rays[from..to], sides, &piece(from, to), precision);
+        match &mut whole {
+            None => whole = Some(part),
+            Some(whole) => {
+                whole.verdicts.extend(part.verdicts);
+                whole.hits += part.hits;
+                for (tally, more) in whole.values.iter_mut().zip(part.values) {
+                    tally.compared += more.compared;
+                    let later = more.worst.map(|(worst, ray)| (worst, ray + from));
+                    let is_worse =
+                        |(worst, _): &(f64, usize)| tally.worst.is_none_or(|(before, _)| *worst > before);
+                    if let Some(later) = later.filter(is_worse) {
+                        tally.worst = Some(later);
+                    }
+                }
+            }
+        }
+        from = to;
+        if from == rays.len() {
+            return whole.expect("a piece was compared");
+        }
+    }
+}
+
+/// Compares first hits with the exact ones. `face` is -1 where nothing is hit; `t` and `range` are infinite there.
+#[pyfunction]
+#[pyo3(signature = (
+    mesh, rays, name, arithmetic, fronts_only, face=None, t=None, range=None, side=None, point=None, normal=None,
+    barycentric=None, cos_incidence=None, on_stage=None
+))]
+pub(crate) fn judge<'py>(
+    py: Python<'py>,
+    mesh: &MeshCore,
+    rays: PyReadonlyArray2<'py, f64>,
+    name: String,
+    arithmetic: &str,
+    fronts_only: bool,
+    face: Option<PyReadonlyArray1<'py, i64>>,
+    t: Option<PyReadonlyArray1<'py, f64>>,
+    range: Option<PyReadonlyArray1<'py, f64>>,
+    side: Option<PyReadonlyArray1<'py, f64>>,
+    point: Option<PyReadonlyArray2<'py, f64>>,
+    normal: Option<PyReadonlyArray2<'py, f64>>,
+    barycentric: Option<PyReadonlyArray2<'py, f64>>,
+    cos_incidence: Option<PyReadonlyArray1<'py, f64>>,
+    on_stage: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let failed = |failure: Failure| failure.into_exception(py);
+    let sides = sides(fronts_only);
+    let precision = precision(arithmetic).map_err(failed)?;
+    let set = rays_of(&rays, sides).map_err(failed)?;
+    let numbers = |array: Option<PyReadonlyArray1<'_, f64>>| array.map(|array| array.as_array().to_vec());
+    let vectors = |array: Option<PyReadonlyArray2<'_, f64>>| {
+        let of = |array: PyReadonlyArray2<'_, f64>| {
+            array
+                .as_array()
+                .rows()
+                .into_iter()
+                .map(|row| DVec3::new(row[0], row[1], row[2]))
+                .collect::<Vec<_>>()
+        };
+        array.map(of)
+    };
+    let of_side = |number: f64| match number {
+        number if number > 0.0 => Some(Side::Front),
+        number if number < 0.0 => Some(Side::Back),
+        _ => None,
+    };
+    let stated = Stated {
+        face: face
+            .map(|array| array.as_array().iter().map(|&face| u32::try_from(face).ok().map(FaceId)).collect()),
+        t: numbers(t),
+        range: numbers(range),
+        side: numbers(side).map(|numbers| numbers.into_iter().map(of_side).collect()),
+        point: vectors(point),
+        normal: vectors(normal),
+        barycentric: vectors(barycentric),
+        cos_incidence: numbers(cos_incidence),
+    };
+    let mesh = mesh.clone();
+    let (comparison, text, json) = watched(py, on_stage, move |watch| {
+        watch.stage(&format!("building a tree of {} faces", mesh.triangles.faces().len()));
+        let exact = ExactCast::new(&mesh.triangles);
+        let comparison = compared(&exact, &mesh, (set.rays(), sides), &stated, precision, watch);
+        let command = |index: usize| {
+            let ray = &set.rays()[index];
+            let numbers: Vec<String> = ray
+                .origin
+                .to_array()
+                .iter()
+                .chain(&ray.direction.to_array())
+                .chain(&[ray.t_min, ray.t_max])
+                .map(ToString::to_string)
+                .collect();
+            format!("origin, direction, t_min, t_max: {}", numbers.join(", "))
+        };
+        let text = comparison_text(&name, &comparison, command);
+        let json = comparison_json(&name, &comparison).to_string();
+        Ok::<_, Failure>((comparison, text, json))
+    })?;
+    let dict = verdict_arrays(&comparison).into_dict(py)?;
+    dict.set_item("passes", comparison.passes())?;
+    dict.set_item("headline", comparison_headline(&comparison))?;
+    dict.set_item("text", text)?;
+    dict.set_item("json", json)?;
+    Ok(dict)
+}

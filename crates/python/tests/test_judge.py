@@ -1,0 +1,169 @@
+"""Somebody's answers against the truth: what is right passes, each kind of wrong is called so, and told why."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import DATA, Command, random_rays, same_bits
+from numpy.typing import NDArray
+
+import raypencil
+from raypencil import Mesh, RaypencilError, cast, judge
+
+RAYS = random_rays(400, seed=3)
+
+
+def exact(cube: Mesh) -> dict[str, NDArray[Any]]:
+    """The exact answers, to be changed."""
+    return {name: np.array(array) for name, array in cast(cube, RAYS).arrays.items() if name != "ties"}
+
+
+def test_the_truth_is_right(cube: Mesh) -> None:
+    judged = judge(cube, RAYS, exact(cube))
+    assert judged and judged.passes and judged.why is None and len(judged.wrong) == 0
+    assert judged.counts == {"same": 400, "ties": 0, "rounding": 0, "wrong": 0}
+    assert judged.classes.dtype == np.uint8 and judged.classes.shape == (400,) and np.isnan(judged.moved).all()
+    assert judge(cube, RAYS, cast(cube, RAYS)).passes and "All 400 rays agree" in judged.text
+
+
+@pytest.mark.parametrize("parts", [["face"], ["t"], ["range"], ["face", "point"], ["t", "normal", "barycentric"]])
+def test_any_part_of_the_truth_is_right(cube: Mesh, parts: list[str]) -> None:
+    truth = exact(cube)
+    assert judge(cube, RAYS.reshape(40, 10, 8), {name: truth[name] for name in parts}).passes
+
+
+def test_the_tracer_is_judged_as_by_the_command(cube: Mesh, command: Command, tmp_path: Path) -> None:
+    np.save(tmp_path / "rays.npy", RAYS.reshape(80, 5, 8))
+    command("cast", DATA / "rays/cube.obj", "rays.npy", "--with", "tracer", "-o", "out")
+    rays = RAYS.reshape(80, 5, 8)
+    judged = judge(cube, rays, cast(cube, rays, with_="tracer"))
+    assert same_bits(judged.classes, np.load(tmp_path / "out/tracer.verdict.npy"))
+    assert same_bits(judged.moved, np.load(tmp_path / "out/tracer.moved.npy"))
+
+
+def test_wrong_rays_are_found_where_they_are(cube: Mesh) -> None:
+    answers = exact(cube)
+    hits, misses = (np.flatnonzero(cast(cube, RAYS).hit == is_hit) for is_hit in (True, False))
+    answers["face"][hits[3]] = (answers["face"][hits[3]] + 6) % 12
+    answers["face"][hits[5]], answers["t"][hits[5]] = 4294967295, np.inf
+    answers["face"][misses[2]] = 0
+    answers["t"][hits[8]] *= 1 + 1e-9
+    judged = judge(cube, RAYS, answers)
+    assert not judged and judged.wrong.tolist() == sorted([hits[3], hits[5], hits[8], misses[2]])
+    assert judged.counts["wrong"] == 4 and "4 of 400 rays are wrong" in judged.text
+    # What only misses is found as well, where faces alone are stated.
+    faces = np.where(np.arange(400) == hits[5], -1, cast(cube, RAYS).face.astype(int))
+    assert judge(cube, RAYS, {"face": faces}).wrong.tolist() == [hits[5]]
+
+
+def test_rounding_is_excused_with_a_witness(cube: Mesh) -> None:
+    # A ray an ulp beside the diagonal of the top: the other of its two faces is right for a ray that is moved.
+    beside = np.array([[0.25, np.nextafter(0.25, 1), 3.0, 0, 0, -1.0]])
+    truth = cast(cube, beside)
+    assert truth.ties.tolist() == [1]
+    other = 21 - truth.face.astype(int)
+    judged = judge(cube, beside, {"face": other})
+    assert judged.classes.tolist() == [raypencil._judge.ROUNDING] and judged.passes
+    assert 0 < np.abs(judged.moved).max() < 1e-14
+
+
+def test_single_precision_has_to_be_declared(cube: Mesh) -> None:
+    t = cast(cube, RAYS).t.astype(np.float32)
+    assert not judge(cube, RAYS, {"t": t}).passes and judge(cube, RAYS, {"t": t}, "f32").passes
+    assert judge(cube, RAYS, {"t": t}).why == '100.0000 % agree if arithmetic is of single precision: declare arithmetic="f32"'
+
+
+@pytest.mark.parametrize(
+    ("words", "change"),
+    [
+        ("face indices are 1 too large", lambda a: {"face": a["face"].astype(np.int64) + 1}),
+        ("t holds the range", lambda a: {"t": a["range"]}),
+        ("normals point inward", lambda a: {"face": a["face"], "normal": -a["normal"]}),
+        ("y and z of points and normals are swapped", lambda a: {"t": a["t"], "point": a["point"][..., [0, 2, 1]]}),
+        ("barycentric weights are in the order", lambda a: {"t": a["t"], "barycentric": a["barycentric"][..., [1, 2, 0]]}),
+        ("lengths are in thousandths", lambda a: {"range": 1000 * a["range"]}),
+    ],
+)
+def test_a_mistake_is_told(cube: Mesh, words: str, change: Any) -> None:
+    # Rays that hit, so that no miss becomes face 0.
+    rays = RAYS[cast(cube, RAYS).hit]
+    answers = change(cast(cube, rays).arrays)
+    judged = judge(cube, rays, answers)
+    assert not judged.passes and judged.why is not None and words in judged.why
+    assert f"Why: {judged.why}" in str(judged) and judge(cube, rays, answers, explain=False).why is None
+
+
+def test_a_mistake_of_the_question_is_told(cube: Mesh) -> None:
+    endless = cast(cube, RAYS[:, 0:3], RAYS[:, 3:6], t_min=RAYS[:, 6])
+    assert judge(cube, RAYS, endless).why == "100.0000 % agree if t_max is ignored"
+    truth = cast(cube, RAYS)
+    zeros = judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 0)})
+    assert zeros.why == "100.0000 % agree if 0 means no hit: declare miss=0"
+
+
+def test_a_miss_can_be_declared(cube: Mesh) -> None:
+    truth = cast(cube, RAYS)
+    assert judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 0)}, miss=0).passes
+    assert judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 7), "hit": truth.hit}).passes
+    assert judge(cube, RAYS, {"face": np.where(truth.hit, truth.face.astype(float), np.nan)}).passes
+
+
+def test_fronts_only_is_another_question(cube: Mesh) -> None:
+    answers = cast(cube, RAYS, fronts_only=True)
+    assert judge(cube, RAYS, answers, fronts_only=True).passes and not judge(cube, RAYS, answers).passes
+
+
+@pytest.mark.parametrize(
+    ("answers", "words"),
+    [
+        ({}, "expected face, t or range"),
+        ({"point": np.zeros((400, 3))}, "expected face, t or range"),
+        ({"T": np.zeros(400)}, "there is no `T`; expected some of face"),
+        ({"t": np.zeros(399)}, r"t has the shape \(399,\); expected \(400,\)"),
+        ({"t": np.zeros(400), "point": np.zeros((400, 2))}, r"point has the shape \(400, 2\); expected \(400, 3\)"),
+        ({"face": np.full(400, 0.5)}, "face: cell 0 is 0.5; expected 0 or a larger whole number"),
+        ({"face": np.full(400, -2)}, "face: cell 0 is -2"),
+        ({"t": np.zeros(400, dtype=complex)}, "t is of type complex128"),
+        (3, "answers are of type int"),
+    ],
+)
+def test_what_is_wrong_is_named(cube: Mesh, answers: Any, words: str) -> None:
+    with pytest.raises(RaypencilError, match=words):
+        judge(cube, RAYS, answers)
+
+
+def test_an_unknown_arithmetic_is_refused(cube: Mesh) -> None:
+    with pytest.raises(RaypencilError, match="arithmetic is \"f16\""):
+        judge(cube, RAYS, exact(cube), "f16")  # type: ignore[arg-type]
+
+
+def test_rays_may_be_a_tuple(cube: Mesh) -> None:
+    rays = (RAYS[:, 0:3], RAYS[:, 3:6], RAYS[:, 6], RAYS[:, 7])
+    assert judge(cube, rays, exact(cube)).passes
+    assert not judge(cube, rays[:2], exact(cube), explain=False).passes
+
+
+def test_many_rays_are_judged_as_one(cube: Mesh) -> None:
+    # More than are judged at a time: their places count through.
+    rays = np.tile(RAYS, (200, 1))
+    answers = {"t": np.array(cast(cube, rays).t)}
+    first, last = np.flatnonzero(cast(cube, rays).hit)[[0, -1]]
+    answers["t"][first] += 0.25
+    answers["t"][last] = np.nextafter(answers["t"][last], 9)
+    judged = judge(cube, rays, answers, explain=False)
+    assert judged.wrong.tolist() == [first] and judged.summary["values"][0]["worst"]["ray"] == last
+    assert judged.summary["values"][0]["compared"] == cast(cube, rays).hit.sum() - 1
+    answers["t"][last] += 0.25
+    assert judge(cube, rays, answers, explain=False).wrong.tolist() == [first, last]
+
+
+def test_judgements_can_be_pickled(cube: Mesh) -> None:
+    pytest.importorskip("xarray")
+    judged = pickle.loads(pickle.dumps(judge(cube, RAYS, exact(cube))))
+    assert judged.passes and not judged.classes.flags.writeable
+    dataset = judged.to_xarray()
+    assert dataset.classes.attrs["flag_meanings"] == "same tie rounding wrong" and dataset.moved.shape == (400, 2)

@@ -1,0 +1,140 @@
+"""Scenes: every way to make one, every way to be wrong, and the numbers in their units."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import DATA, SMALL, Command, same_bits
+
+import raypencil
+from raypencil import RaypencilError, Scene
+
+
+def test_a_name_a_path_a_text_and_tables_are_scenes(tmp_path: Path) -> None:
+    (tmp_path / "small.toml").write_text(SMALL)
+    by_tables = Scene(
+        terrain={"builtin": "pyramids"},
+        camera={"width_px": 48, "height_px": 36, "pixel_pitch_um": 190},
+        beam=[{"columns": 64, "rows": 4}, {"columns": np.int64(48), "rows": 2}],
+    )
+    same = [Scene(SMALL), Scene(str(tmp_path / "small.toml")), Scene(tmp_path / "small.toml"), by_tables]
+    assert len({scene.sha256 for scene in same}) == 1
+    assert Scene("pyramids").sha256 == Scene().sha256 == Scene("version = 1\n").sha256
+    assert Scene("pyramids").sha256 != Scene("facets").sha256
+    assert (Scene(tmp_path / "small.toml").name, Scene(SMALL, name="mine").name) == ("small", "mine")
+
+
+def test_settings_are_in_the_units_of_the_file() -> None:
+    scene = Scene("pyramids").replace(**{"camera.focal_length_mm": 6, "beam.1.thickness_mm": 4, "vehicle.heading_deg": 90})
+    assert scene.camera.focal_length == 0.006
+    assert [beam.thickness for beam in scene.beams] == [0.005, 0.004]
+    assert scene.vehicle is not None
+    # A quarter of a turn to the left: x becomes y.
+    assert np.allclose(scene.vehicle.matrix[:3, 0], [0, 1, 0])
+    # 20 degrees down: the camera's axis, its z, leads (cos 20, 0, -sin 20) from a vehicle that looks along x.
+    down = math.radians(25)
+    camera = Scene("pyramids", camera={"pitch_down_deg": 25}).camera
+    assert np.allclose(camera.scene_from_sensor.matrix[:3, 2], [math.cos(down), 0, -math.sin(down)])
+    assert np.allclose(camera.scene_from_sensor.position, [0.3, 0, 1.5])
+
+
+def test_replace_makes_another_scene_each_time() -> None:
+    scene = Scene(SMALL)
+    once = scene.replace(**{"beam.rows": 3})
+    twice = once.replace(beam={"columns": 32}, camera={"width_px": 24})
+    assert [beam.rows for beam in scene.beams] == [4, 2] and scene.settings == {}
+    assert [(beam.rows, beam.columns) for beam in twice.beams] == [(3, 32), (3, 32)] and twice.camera.width == 24
+    assert twice.settings == {"beam.rows": "3", "beam.columns": "32", "camera.width_px": "24"}
+    assert once.replace(**{"beam.0.rows": 7}).beams[0].rows == 7
+    assert "--set beam.rows=3" in repr(once)
+    assert Scene("pyramids", settings={"terrain.builtin": "facets"}).sha256 == Scene("facets").sha256
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Scene("version = 1\n[camera]\nfocal_length_mm = -6\n", name="short"),
+         r"short.toml:3:19: `camera.focal_length_mm` is -6; expected 0.01 to 100000 millimetres"),
+        (lambda: Scene(camera={"focal_lenght_mm": 6}), "focal_lenght_mm"),
+        (lambda: Scene(camera={"pitch_down_deg": math.nan}), "camera.pitch_down_deg"),
+        (lambda: Scene(camera={"pitch_down_deg": object()}), "`camera.pitch_down_deg` is of type object"),
+        (lambda: Scene(camera={"pitch down": 3}), "'pitch down' is no key"),
+        (lambda: Scene("pyramids").replace(**{"camera.pitch_down_deg": 400}),
+         r"set camera.pitch_down_deg=400: .*expected -360 to 360 degrees"),
+        (lambda: Scene("pyramids").replace(**{"beam.7.rows": 4}), r"beam.7"),
+        (lambda: Scene("pyramids").replace(**{"camera.": 4}), r"is no key"),
+        (lambda: Scene("ground.xyz"), r"`ground.xyz` is neither a built-in name nor a file"),
+        (lambda: Scene(SMALL, name="../up"), r"name is '../up'"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_named(make: object, words: str) -> None:
+    with pytest.raises(RaypencilError, match=words):
+        make()  # type: ignore[operator]
+
+
+def test_texts_survive_as_toml() -> None:
+    from raypencil import _toml
+
+    for text in ['a"b', "c\\d", "line\nbreak", "tab\t", "ü", "\x7f", "2", "true"]:
+        document = _toml.document({"x": text})
+        tomllib = pytest.importorskip("tomllib")
+        assert tomllib.loads(document)["x"] == text
+    for value in [True, 3, -0.1, 1e-300, 5e22, [1, [2.5]], {"a": {"b": "c"}}, np.float32(0.5), np.arange(3)]:
+        tomllib = pytest.importorskip("tomllib")
+        read = tomllib.loads(_toml.document({"x": value}))["x"]
+        assert np.array_equal(read, value) if isinstance(value, np.ndarray) else read == value
+
+
+def test_pickles_are_the_same_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mine.toml").write_text(SMALL)
+    monkeypatch.chdir(tmp_path)
+    scenes = [Scene(SMALL, name="mine"), Scene("mine.toml").replace(**{"beam.rows": 3}), Scene("facets")]
+    pickles = [pickle.dumps(scene) for scene in scenes]
+    # A worker may be elsewhere.
+    monkeypatch.chdir("/")
+    for scene, text in zip(scenes, pickles, strict=True):
+        again = pickle.loads(text)
+        assert again.sha256 == scene.sha256 and again.name == scene.name and again.settings == scene.settings
+    (tmp_path / "mine.toml").write_text(SMALL.replace("48", "40"))
+    with pytest.raises(RaypencilError, match="another one than that which was pickled"):
+        pickle.loads(pickles[1])
+
+
+def test_the_text_of_a_scene_is_the_scene(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(SMALL)
+    for scene in [Scene(SMALL), Scene(tmp_path / "mine.toml"), Scene("facets"), Scene(camera={"width_px": 100})]:
+        assert Scene(scene.toml).sha256 == scene.sha256
+
+
+def test_the_terrain_is_an_array() -> None:
+    scene = Scene(DATA / "scenes/ramp.toml")
+    mesh = scene.mesh
+    assert mesh is scene.mesh and scene.reflectivity.shape == (len(mesh.faces),)
+    # A plane that rises by 1 m in 4.
+    assert np.allclose(mesh.vertices[:, 2], mesh.vertices[:, 0] / 4) and (scene.origin == 0).all()
+    assert scene.flux_unit == "W" and scene.beams[0].rows == 4
+
+
+def test_sets_of_rays_are_arrays_and_answered_as_by_the_command(command: Command, tmp_path: Path) -> None:
+    text = SMALL + '[[rays]]\nname = "mast"\nspinning = { preset = "vlp-16" }\nposition_m = [0, 0, 1.2]\nsides = "fronts"\n'
+    (tmp_path / "lidar.toml").write_text(text)
+    command("cast", "lidar.toml", "-o", "out")
+    scene = Scene(text)
+    assert Scene(SMALL).ray_sets == {} and list(scene.ray_sets) == ["mast"]
+    mast = scene.ray_sets["mast"]
+    assert mast.rays.shape[1:] == (16, 8) and mast.fronts_only
+    assert mast.times is not None and same_bits(mast.times, np.load(tmp_path / "out/time.npy"))
+    answers = raypencil.cast(scene, mast.rays, fronts_only=mast.fronts_only)
+    for name in ("face", "t", "point"):
+        assert same_bits(answers.arrays[name], np.load(tmp_path / f"out/{name}.npy")), name
+
+
+def test_generated_ground_is_the_same_by_table_and_by_call() -> None:
+    scene = Scene(terrain={"generate": {"preset": "smooth", "seed": 3, "extent_m": 12}})
+    mesh = raypencil.terrain.generate("smooth", 3, extent=12)
+    assert mesh.vertices.tobytes() == (scene.mesh.vertices + scene.origin).tobytes()
+    assert np.array_equal(mesh.faces, scene.mesh.faces)
