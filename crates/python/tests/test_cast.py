@@ -155,7 +155,7 @@ def test_answers_may_not_be_written_and_can_be_pickled(cube: Mesh) -> None:
 
 
 def test_all_hits_of_a_ray_are_found_by_its_index(cube: Mesh) -> None:
-    answers = cast(cube, [[9, 9, 9], [0.25, 0.5, 3]], [0, 0, -2], query="all")
+    answers = cast(cube, np.array([[9, 9, 9], [0.25, 0.5, 3]]), [0, 0, -2], query="all")
     hits = answers.all
     assert hits is not None and answers.any is None and hits.start.tolist() == [0, 0, 2]
     assert hits.t[hits.of(0)].tolist() == [] and hits.t[hits.of(1)].tolist() == [1.0, 2.0]
