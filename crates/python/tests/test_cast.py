@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ def test_every_array_is_the_commands_file(cube: Mesh, command: Command, tmp_path
     rays = random_rays(300).reshape(60, 5, 8)
     np.save(tmp_path / "rays.npy", rays)
     command("cast", DATA / "rays/cube.obj", "rays.npy", *flags, "-o", "out")
-    query = tuple(name for name in ("any", "all") if f"--{name}" in flags)
+    query: Any = tuple(name for name in ("any", "all") if f"--{name}" in flags)
     answers = cast(
         cube, rays, query=query or "first", margins="--margins" in flags, fronts_only="--fronts-only" in flags
     )
@@ -100,7 +101,8 @@ def test_strides_and_types_do_not_matter(cube: Mesh) -> None:
     wide[::2, ::2] = rays
     frozen = rays.copy()
     frozen.flags.writeable = False
-    for same in [wide[::2, ::2], np.asfortranarray(rays), rays.astype(">f8"), rays[::-1][::-1], rays.tolist(), frozen]:
+    sames: list[Any] = [wide[::2, ::2], np.asfortranarray(rays), rays.astype(">f8"), rays[::-1][::-1], rays.tolist(), frozen]
+    for same in sames:
         answers = cast(cube, same)
         assert all(same_bits(expected.arrays[name], answers.arrays[name]) for name in FIRST)
     # float32 is another question.
@@ -153,7 +155,7 @@ def test_answers_may_not_be_written_and_can_be_pickled(cube: Mesh) -> None:
 
 
 def test_all_hits_of_a_ray_are_found_by_its_index(cube: Mesh) -> None:
-    answers = cast(cube, [[9, 9, 9], [0.25, 0.5, 3]], [0, 0, -2], query="all")
+    answers = cast(cube, np.array([[9, 9, 9], [0.25, 0.5, 3]]), [0, 0, -2], query="all")
     hits = answers.all
     assert hits is not None and answers.any is None and hits.start.tolist() == [0, 0, 2]
     assert hits.t[hits.of(0)].tolist() == [] and hits.t[hits.of(1)].tolist() == [1.0, 2.0]

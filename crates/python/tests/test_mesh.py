@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ VERTICES = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]
 def test_arrays_of_other_types_and_strides_give_the_same_mesh() -> None:
     wide = np.zeros((3, 6), dtype=np.float32)
     wide[:, ::2] = VERTICES
-    kinds = [
+    kinds: list[tuple[Any, Any]] = [
         (VERTICES, [[0, 1, 2]]),
         (wide[:, ::2], np.array([[0, 1, 2]], dtype=np.uint16)),
         (np.asfortranarray(VERTICES), np.asfortranarray([[0, 1, 2]], dtype=np.int64)),
@@ -100,9 +101,11 @@ def test_a_saved_mesh_is_loaded_again(cube: Mesh, tmp_path: Path) -> None:
 
 
 def test_load_tells_meshes_from_scenes() -> None:
-    for mesh in [DATA / "rays/cube.obj", DATA / "packs/hard/terrain.glb", str(DATA / "scenes/ramp.gltf")]:
+    meshes: list[str | Path] = [DATA / "rays/cube.obj", DATA / "packs/hard/terrain.glb", str(DATA / "scenes/ramp.gltf")]
+    for mesh in meshes:
         assert isinstance(raypencil.load(mesh), Mesh), mesh
-    for scene in ["facets", DATA / "scenes/ramp.toml"]:
+    scenes: list[str | Path] = ["facets", DATA / "scenes/ramp.toml"]
+    for scene in scenes:
         assert isinstance(raypencil.load(scene), raypencil.Scene), scene
 
 

@@ -19,7 +19,7 @@ def test_hard_rays_come_with_the_package() -> None:
     assert {name: len(hard.rays) for name, hard in families.items()} == told and len(told) > 10
     assert {path.name for path in (DATA / "rays/hard").iterdir() if path.is_dir()} == set(families)
     hard = families["on-surface"]
-    assert hard.rays.shape == (160, 8) and hard.what and hard.goes_wrong and str(hard) == "on-surface"
+    assert hard.rays.shape[1] == 8 and hard.what and hard.goes_wrong and str(hard) == "on-surface"
     answers = raypencil.cast(hard.mesh, hard.rays)
     for name, array in hard.answers.items():
         if name in answers.arrays:
@@ -57,7 +57,7 @@ def test_wrong_pack(raypencil_packs, raypencil_check):
 
 def test_tests_get_hard_rays_and_fail_with_reasons(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(SUITE)
-    result = pytester.runpytest_subprocess("-k", "edges or axis-aligned or pack", f"--raypencil-packs={DATA / 'packs/hard'}")
+    result = pytester.runpytest_subprocess("-k", "edges or vertices or pack", f"--raypencil-packs={DATA / 'packs/hard'}")
     outcomes = result.parseoutcomes()
     assert outcomes["passed"] == 3 and outcomes["failed"] == 3, result.stdout.str()
     result.stdout.fnmatch_lines_random(
@@ -65,8 +65,8 @@ def test_tests_get_hard_rays_and_fail_with_reasons(pytester: pytest.Pytester) ->
             "*edges: Rays exactly through edges that two faces of a closed mesh share.*",
             "*Why: 100.0000 % agree if t.npy holds the range*",
             "*rays are wrong*",
-            "*report: raypencil-reports*test_wrong-edges*report.html",
-            "*report: raypencil-reports*test_wrong_pack*report.html",
+            "*report: *raypencil-reports*test_wrong-edges*report.html",
+            "*report: *raypencil-reports*test_wrong_pack*report.html",
         ]
     )
     assert (pytester.path / "raypencil-reports/test_wrong-edges/report.html").is_file()

@@ -151,15 +151,15 @@ class Scene:
         with stages(progress) as on_stage:
             self._core = _raypencil.SceneCore(source, is_text, name, list(settings), on_stage)
 
-    def replace(self, /, *, progress: Progress = False, **settings: Any) -> Scene:
-        """The scene with other values: ``scene.replace(**{"camera.pitch_down_deg": 25, "beam.0.thickness_mm": 4})``.
+    def replace(self, settings: Mapping[str, Any] | None = None, /, **tables: Any) -> Scene:
+        """The scene with other values: ``scene.replace({"camera.pitch_down_deg": 25, "beam.0.thickness_mm": 4})``.
 
-        Keys are those of docs/guide/scene.md, in the file's units. ``beam.thickness_mm``, without a number, is for every
+        The same may be given as ``**{...}``. Keys are those of docs/guide/scene.md, in the file's units. ``beam.thickness_mm``, without a number, is for every
         beam. Tables may be dictionaries: ``scene.replace(camera={"pitch_down_deg": 25})``.
         """
         scene = Scene.__new__(Scene)
-        more = tuple(_toml.settings(settings))
-        scene._load(self._source, self._is_text, self._name, self._settings + more, progress)
+        more = (*_toml.settings(settings or {}), *_toml.settings(tables))
+        scene._load(self._source, self._is_text, self._name, self._settings + more)
         return scene
 
     @property

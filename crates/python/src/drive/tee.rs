@@ -16,6 +16,9 @@ pub(super) struct Seen {
     pub stripes: Stripes,
 }
 
+/// What tells the exposures of a frame apart: the step of a scan, and the lit beam.
+type Key = (Option<u32>, Option<usize>);
+
 /// The rover's own extraction.
 #[derive(Debug)]
 pub(super) struct Tee {
@@ -24,7 +27,7 @@ pub(super) struct Tee {
     keeps_images: bool,
     listener: SyncSender<Seen>,
     /// The frame, and its exposures that were told: with two renderers each comes twice, first that of the first.
-    told: Mutex<(u64, HashSet<(Option<u32>, Option<usize>)>)>,
+    told: Mutex<(u64, HashSet<Key>)>,
 }
 
 impl Tee {
