@@ -48,7 +48,7 @@ pub use plan::{Campaign, Shard};
 pub use record::{PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay};
 pub use scenes::scene_of;
 pub use screen::campaign_screen;
-pub use shard::{CampaignProgress, run_shard};
+pub use shard::{CampaignProgress, has_result, run_shard};
 pub use summary::{campaign_json, write_campaign};
 pub use terrain::terrain;
 

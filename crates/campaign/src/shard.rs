@@ -73,6 +73,12 @@ pub fn run_shard(
     Ok(result)
 }
 
+/// Whether the result of a shard is in the folder, whole, and of this campaign.
+pub fn has_result(campaign: &Campaign, shard: Shard, folder: &Path) -> bool {
+    let is_own = |(own, result): (Campaign, ShardResult)| own == *campaign && result.shard == shard;
+    read_sealed(&result_file(folder, shard)).is_ok_and(is_own)
+}
+
 /// The record of an earlier run. `None`: it is damaged, and the terrain must be run again.
 ///
 /// # Errors

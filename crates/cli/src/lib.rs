@@ -114,7 +114,7 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
 }
 
 /// The build of this program: version and, where git knew it, commit. Records of another build are not mixed with its own.
-pub(crate) fn build() -> String {
+pub fn build() -> String {
     let version = env!("CARGO_PKG_VERSION");
     option_env!("RAYPENCIL_COMMIT").map_or(version.to_string(), |commit| format!("{version} {commit}"))
 }

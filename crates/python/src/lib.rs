@@ -16,10 +16,12 @@
 //! drive/         a drive, frame by frame
 //! ground         generated terrain
 //! picture        a map as PNG
+//! campaign, sweep  shards, made anywhere, and what they give together
 //! command        the command line
 //! ```
 
 mod array;
+mod campaign;
 mod cast;
 mod check;
 mod command;
@@ -36,12 +38,15 @@ mod rays;
 mod recording;
 mod render;
 mod scene;
+mod sweep;
 mod validation;
 mod watch;
 
 /// The module `raypencil._raypencil`.
 #[pyo3::pymodule]
 mod _raypencil {
+    #[pymodule_export]
+    use crate::campaign::CampaignCore;
     #[pymodule_export]
     use crate::cast::cast;
     #[pymodule_export]
@@ -68,6 +73,8 @@ mod _raypencil {
     use crate::render::render;
     #[pymodule_export]
     use crate::scene::SceneCore;
+    #[pymodule_export]
+    use crate::sweep::{SweepCore, parse_axis};
     #[pymodule_export]
     use crate::validation::{ValidationCore, validate};
 

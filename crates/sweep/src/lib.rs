@@ -35,7 +35,7 @@ pub use error::SweepError;
 pub use plan::{MAX_RUNS, Part, Sweep, Task};
 pub use record::Outcome;
 pub use results::Named;
-pub use run::{Finished, SweepProgress, finish, read_plan, run_part};
+pub use run::{Finished, SweepProgress, finish, has_part, read_plan, run_part};
 pub use screen::{Written, default_charts, sweep_json, sweep_screen, write_sweep};
 pub use table::{Cells, Column, SweepTable};
 

@@ -56,6 +56,11 @@ pub fn run_part(
     Ok(())
 }
 
+/// Whether each run of a part has its results in the folder.
+pub fn has_part(sweep: &Sweep, part: Part, folder: &Path) -> bool {
+    part.runs(sweep.runs()).all(|run| matches!(read_record(folder, sweep, run), Some(Outcome::Results(_))))
+}
+
 /// A sweep with the outcomes of all of its runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finished {

@@ -5,6 +5,7 @@
 """
 
 from . import terrain, testing
+from ._campaign import CampaignResult, campaign
 from ._cast import AllHits, CastResult, cast
 from ._drive import Drive, ElevationMap, Frame, Sectors, Vectors, drive
 from ._errors import RaypencilError, RaypencilFileError, RaypencilFileNotFoundError
@@ -14,12 +15,14 @@ from ._packs import CheckResult, check, pack, pack_rays, read
 from ._raypencil import __version__
 from ._render import RenderResult, render
 from ._scene import Beam, Camera, Pose, RaySet, Scene
+from ._sweep import SweepResult, sweep
 from ._validate import DiffResult, ValidationResult, diff, validate
 
 __all__ = [
     "AllHits",
     "Beam",
     "Camera",
+    "CampaignResult",
     "CastResult",
     "CheckResult",
     "DiffResult",
@@ -36,9 +39,11 @@ __all__ = [
     "RenderResult",
     "Scene",
     "Sectors",
+    "SweepResult",
     "ValidationResult",
     "Vectors",
     "__version__",
+    "campaign",
     "cast",
     "check",
     "diff",
@@ -50,6 +55,7 @@ __all__ = [
     "pack_rays",
     "read",
     "render",
+    "sweep",
     "terrain",
     "testing",
     "validate",

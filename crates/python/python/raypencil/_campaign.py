@@ -1,0 +1,101 @@
+"""Campaigns: both renderers, or one of somebody else's, on many terrains."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from functools import partial
+from typing import Any
+
+from . import _raypencil
+from ._cluster import Files, files_below, run_shards
+from ._errors import RaypencilError
+from ._progress import Progress, stages
+from ._validate import Outcome
+
+#: Terrains of a shard, if their number is not given: some seconds of work.
+TERRAINS_OF_A_SHARD = 10
+
+
+class CampaignResult(Outcome):
+    """What a campaign found."""
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Rays of each class, over all terrains: ``agree``, ``tie``, ``rounding``, ``approximation``, ``undecided``,
+        ``defects``."""
+        return dict(self.summary["all"]["classes"])
+
+    @property
+    def wrong(self) -> list[dict[str, Any]]:
+        """The first wrong rays, each with the commands that show it."""
+        return list(self.summary["first_wrong"])
+
+    def __repr__(self) -> str:
+        return f"<raypencil.CampaignResult: {self.summary['terrains']} terrains, {self.summary['verdict']}>"
+
+
+def _shard(arguments: dict[str, Any], count: int, index: int) -> Files:
+    """A shard, made by a worker in a folder of its own."""
+    core = _raypencil.CampaignCore(**arguments)
+    with tempfile.TemporaryDirectory() as folder:
+        core.shard(index, count, folder)
+        files = files_below(folder)
+    # The records of its terrains are within its result.
+    return {name: content for name, content in files.items() if not name.startswith("terrains")}
+
+
+def campaign(
+    terrains: int = 100,
+    seed: int = 1,
+    *,
+    output: str | os.PathLike[str],
+    scenes: str | os.PathLike[str] | None = None,
+    rig: str | os.PathLike[str] | None = None,
+    candidate_command: str | None = None,
+    shards: int | None = None,
+    client: Any = None,
+    retries: int = 3,
+    progress: Progress = False,
+) -> CampaignResult:
+    """Compares both renderers on random terrains; the referee rules on every ray on which they differ.
+
+    Args:
+        terrains: their number.
+        seed: of all random numbers.
+        output: a folder for the records and the report. A campaign that was broken off there goes on.
+        scenes: a folder with scenes, terrains and elevation models of your own, in place of random ones.
+        rig: a scene file whose vehicle, camera and beams stand on each terrain of ``scenes``.
+        candidate_command: a program to hunt in: ``'my-tracer {pack} {out}'``; docs/guide/campaign.md.
+        shards: parts of the campaign; 1, or with ``client`` one for ten terrains. The result does not depend on it.
+        client: a ``distributed.Client``; then each shard is a task of its cluster. Its workers need this package, in the same
+            version, and the files that are named. Without it the campaign runs here, on all cores.
+        retries: how often a shard that fails on the cluster is tried again.
+        progress: see :func:`cast`.
+
+    Returns:
+        What was found; byte for byte the same for any number of shards and workers.
+
+    Raises:
+        RaypencilError: a folder with another campaign, a file that cannot be read or written.
+    """
+    if terrains < 1 or seed < 0:
+        raise RaypencilError(f"terrains is {terrains} and seed {seed}; expected at least 1 and at least 0")
+    arguments: dict[str, Any] = {"terrains": terrains, "seed": seed, "candidate_command": candidate_command}
+    arguments["scenes"] = None if scenes is None else os.path.abspath(os.fspath(scenes))
+    arguments["rig"] = None if rig is None else os.path.abspath(os.fspath(rig))
+    core = _raypencil.CampaignCore(**arguments)
+    folder = os.fspath(output)
+    if shards is None:
+        shards = 1 if client is None else -(-core.terrains // TERRAINS_OF_A_SHARD)
+    if not 1 <= shards <= core.terrains:
+        raise RaypencilError(f"shards is {shards}; expected 1 to {core.terrains}, the terrains")
+    if client is None:
+        with stages(progress) as on_stage:
+            for index in range(shards):
+                core.shard(index, shards, folder, on_stage)
+    else:
+        os.makedirs(folder, exist_ok=True)
+        missing = [index for index in range(shards) if not core.has_result(index, shards, folder)]
+        run_shards(client, "campaign", missing, partial(_shard, arguments, shards), folder, retries, progress)
+    return CampaignResult(*core.merge([folder], folder))

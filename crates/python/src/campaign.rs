@@ -1,0 +1,105 @@
+//! Campaigns: shards of one, made anywhere, and their results joined.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use raypencil::Progress;
+use raypencil::campaign::{
+    Campaign, CampaignProgress, OwnScenes, Shard, campaign_json, campaign_screen, has_result, merge,
+    run_shard, write_campaign,
+};
+
+use crate::failure::Failure;
+use crate::watch::{Watch, watched};
+
+/// A campaign, whose shards may be made in any process.
+#[pyclass(frozen, module = "raypencil._raypencil")]
+pub(crate) struct CampaignCore(Campaign);
+
+/// Reports each terrain as a stage.
+struct Terrains<'a>(&'a Watch);
+
+impl CampaignProgress for Terrains<'_> {
+    fn done(&self, terrains: u64, of: u64, _rays: u64) {
+        self.0.stage(&format!("{terrains} of {of} terrains"));
+    }
+}
+
+#[pymethods]
+impl CampaignCore {
+    #[new]
+    #[pyo3(signature = (terrains, seed, scenes=None, rig=None, candidate_command=None))]
+    fn new(
+        py: Python<'_>,
+        terrains: u64,
+        seed: u64,
+        scenes: Option<PathBuf>,
+        rig: Option<PathBuf>,
+        candidate_command: Option<String>,
+    ) -> PyResult<Self> {
+        let made = py.detach(|| -> Result<Campaign, Failure> {
+            let mut campaign = Campaign::new(seed, terrains);
+            if let Some(folder) = &scenes {
+                campaign = campaign.over(OwnScenes::read(folder, rig.as_deref())?);
+            }
+            if let Some(command) = &candidate_command {
+                campaign = campaign.hunting(command)?;
+            }
+            Ok(campaign)
+        });
+        made.map(Self).map_err(|failure| failure.into_exception(py))
+    }
+
+    /// Number of terrains.
+    #[getter]
+    fn terrains(&self) -> u64 {
+        self.0.terrains
+    }
+
+    /// Makes a shard in `folder`, and returns the path of its result.
+    #[pyo3(signature = (index, count, folder, on_stage=None))]
+    fn shard(
+        &self,
+        py: Python<'_>,
+        index: u64,
+        count: u64,
+        folder: PathBuf,
+        on_stage: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PathBuf> {
+        let campaign = self.0.clone();
+        watched(py, on_stage, move |watch| {
+            Ok(run_shard(&campaign, Shard { index, count }, &folder, &Terrains(watch))?)
+        })
+    }
+
+    /// Whether the result of a shard is there, whole, and of this campaign.
+    fn has_result(&self, py: Python<'_>, index: u64, count: u64, folder: PathBuf) -> bool {
+        py.detach(|| has_result(&self.0, Shard { index, count }, &folder))
+    }
+
+    /// Joins the results of all shards, writes the report into `output`, and tells whether it passes, its screen and its
+    /// `summary.json`.
+    #[pyo3(signature = (folders, output=None))]
+    fn merge(
+        &self,
+        py: Python<'_>,
+        folders: Vec<PathBuf>,
+        output: Option<PathBuf>,
+    ) -> PyResult<(bool, String, String)> {
+        let merged = py.detach(|| -> Result<_, Failure> {
+            let mut merged = merge(&folders)?;
+            if merged.campaign != self.0 {
+                return Err(Failure::new(
+                    "the shards are of another campaign; give each one a folder of its own",
+                ));
+            }
+            // The same campaign, which knows where its scenes lie.
+            merged.campaign = self.0.clone();
+            if let Some(folder) = &output {
+                write_campaign(&merged, folder)?;
+            }
+            Ok((merged.passes(), campaign_screen(&merged), campaign_json(&merged)))
+        });
+        merged.map_err(|failure| failure.into_exception(py))
+    }
+}
