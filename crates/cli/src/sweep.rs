@@ -1,6 +1,6 @@
 //! `raypencil sweep`: one scene with many settings, in parts; `merge`.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -112,7 +112,7 @@ fn merged(command: &args::SweepMerge, json: bool) -> Result<Outcome, Trouble> {
 }
 
 /// Writes table and charts, prints them and tells the exit code.
-fn tell(finished: &Finished, charts: &[Chart], folder: &PathBuf, json: bool) -> Result<Outcome, Trouble> {
+fn tell(finished: &Finished, charts: &[Chart], folder: &Path, json: bool) -> Result<Outcome, Trouble> {
     let table = SweepTable::new(finished);
     let mut all = default_charts(&table, finished.sweep.task);
     all.extend(charts.iter().filter(|chart| !all.contains(chart)).cloned().collect::<Vec<_>>());
