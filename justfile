@@ -26,6 +26,28 @@ digest:
     cargo test --profile unoptimised -p raypencil-tests --test digest --test packs
     cargo test --release -p raypencil-tests --test digest --test packs
 
+# Every number of both renderers and of a drive by the unoptimised and by the optimised program
+same-bits:
+    cargo build --profile unoptimised --bin raypencil
+    cargo build --release --bin raypencil
+    .ci/same_bits.sh target/unoptimised/raypencil target/release/raypencil
+
+# The study of docs/designs.md: 150 drives, half an hour on two cores
+designs:
+    cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/runs.csv \
+        --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --do drive -o out/designs \
+        --chart truth.found_share,beam.0.pitch_down_deg,terrain.generate.preset \
+        --chart truth.clear_way_mean_m,beam.0.pitch_down_deg,terrain.generate.preset \
+        --chart truth.found_share,beam.thickness_mm,terrain.generate.preset \
+        --chart truth.found_share,beam.power_w,terrain.generate.preset \
+        --chart truth.found_share,drive.attitude_noise_deg,terrain.generate.preset \
+        --chart truth.found_share,drive.electronics.read_noise_e,terrain.generate.preset \
+        --chart truth.false_share,drive.electronics.read_noise_e,terrain.generate.preset
+
+# The Python package into a fresh environment; its tests and its types
+python:
+    crates/python/run_tests.sh
+
 # Writes the packs of data/packs again, and runs the programs of reference/ on them
 packs:
     cargo run --release --bin raypencil -- pack data/scenes/packs/pyramids.toml -o data/packs/pyramids

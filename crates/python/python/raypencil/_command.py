@@ -52,8 +52,10 @@ def _on_cluster(words: list[str]) -> int:
     """Runs a campaign or a sweep on a cluster. Exit codes are those of the command."""
     from ._campaign import campaign
     from ._sweep import sweep
+    from ._validate import Outcome
 
     given = _parser().parse_args(words)
+    found: Outcome
     try:
         try:
             from distributed import Client

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Whether two builds of the program give the same bits: every map and all light of both renderers in double precision, a
+# drive with its camera's noise, and the committed packs, byte for byte.
+#
+#     .ci/same_bits.sh A B          A: the slower build, which renders small scenes only; B also writes the packs
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+a=$1 b=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+files=0
+for scene in data/scenes/pyramids-small.toml data/scenes/facets-small.toml data/scenes/random.toml; do
+    for renderer in scanline scanline-paper tracer; do
+        for build in a b; do
+            "${!build}" render "$scene" --with "$renderer" --format npy -o "$work/$build/$(basename "$scene")/$renderer" >/dev/null
+        done
+    done
+done
+small=(--set camera.width_px=96 --set camera.height_px=96 --set camera.pixel_pitch_um=96 --set 'drive.waypoints_m=[[0.3, 0]]'
+    --set drive.scans=false --set drive.sensor=ccd_1989 --set beam.rows=2)
+for build in a b; do
+    "${!build}" drive pyramids "${small[@]}" --record npy,points,maps -o "$work/drive-$build" >/dev/null
+    mv "$work/drive-$build/recording" "$work/$build/recording"
+done
+diff -r "$work/a" "$work/b"
+files=$(find "$work/a" -type f | wc -l)
+[[ $files -gt 300 ]] || { echo "only $files files were compared" >&2; exit 1; }
+echo "$files files of renderings and of a drive are the same"
+
+for pack in pyramids facets hard; do
+    "$b" pack "data/scenes/packs/$pack.toml" -o "$work/packs/$pack" >/dev/null
+    diff -r "$work/packs/$pack" "data/packs/$pack"
+    echo "the pack $pack is the committed one"
+done
