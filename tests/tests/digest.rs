@@ -1,8 +1,8 @@
 //! Committed digests of whole outputs: the bits are the same for any number of threads, optimisation level and machine.
 //! (Contract: same bits)
 //!
-//! CI runs the tests with `--profile unoptimised` and with `--release` too. A digest changes with any change of a
-//! ground, of a rig, or of the order of a renderer's operations. Such a commit must state the reason. The command
+//! CI runs the tests with `--profile unoptimised` too, and compares that program with the optimised one. A digest changes
+//! with any change of a ground, of a rig, or of the order of a renderer's operations. Such a commit must state the reason. The command
 //! `cargo test -p raypencil-tests --test digest -- --nocapture` prints the new digests.
 
 use glam::DVec3;

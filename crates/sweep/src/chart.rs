@@ -112,8 +112,9 @@ impl Chart {
             Some(numbers) => numbers[index],
             None => words.iter().position(|word| *word == x.cells.text(runs[index].0)).unwrap_or(0) as f64,
         };
-        let names =
-            by.map_or(vec![String::new()], |by| in_order(runs.iter().map(|&(run, _)| by.cells.text(run))));
+        // Every value has its colour, also if it has no result here: so charts of one sweep have the same colours.
+        let all = (0..table.runs()).filter(|&run| !x.cells.text(run).is_empty());
+        let names = by.map_or(vec![String::new()], |by| in_order(all.map(|run| by.cells.text(run))));
         let mut lines: Vec<BTreeMap<u64, (f64, Place)>> = vec![BTreeMap::new(); names.len()];
         for (index, &(run, value)) in runs.iter().enumerate() {
             let line =
@@ -168,8 +169,9 @@ impl Chart {
         if let Some(by) = &self.lines {
             let left = left + width + 24.0;
             drawing.text([left, above + LETTERS], by.as_str(), Anchor::Start, INK);
-            for (index, name) in names.iter().enumerate() {
-                let y = above + LETTERS + 20.0 * (index + 1) as f64;
+            let shown = names.iter().enumerate().filter(|(index, _)| !lines[*index].is_empty());
+            for (place, (index, name)) in shown.enumerate() {
+                let y = above + LETTERS + 20.0 * (place + 1) as f64;
                 let colour = COLOURS[index % COLOURS.len()];
                 drawing.line(vec![[left, y - 4.0], [left + 20.0, y - 4.0]], colour, 2.0);
                 dot(&mut drawing, [left + 10.0, y - 4.0], 3.5, colour);

@@ -168,6 +168,10 @@ fn manifests_that_contradict_themselves_are_refused() {
         changed(|m| m["kind"] = "blind".into()),
         "blindSeed: absent; expected a seed: the pack is blind"
     );
+    assert_eq!(
+        changed(|m| (m["kind"], m["blindSeed"]) = ("questions".into(), 7.into())),
+        "blindSeed: 7; expected none: the scene is of no seed"
+    );
     let digits = "expected 64 hexadecimal digits in lower case";
     assert_eq!(changed(|m| m["scene"]["sha256"] = "0".into()), format!("scene.sha256: \"0\"; {digits}"));
     let upper = ABC.to_uppercase();

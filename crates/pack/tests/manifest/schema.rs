@@ -39,7 +39,7 @@ fn the_schema_refuses_faults() {
         "/files/0/sha256: \"00\" does not match \"^[0-9a-f]{64}$\"",
         "/files/1/shape: [72] has less than 2 items",
         "/format: 1 was expected",
-        "/kind: \"secret\" is not one of \"answers\" or \"blind\"",
+        "/kind: \"secret\" is not one of \"answers\", \"blind\" or \"questions\"",
         "/scene: \"name\" is a required property",
         "/sensors/0/rows: 0 is less than the minimum of 1",
         ": Additional properties are not allowed ('host' was unexpected)",
