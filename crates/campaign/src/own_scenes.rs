@@ -88,6 +88,22 @@ impl OwnScenes {
         usize::try_from(terrain).ok().and_then(|at| self.files.get(at)).map_or("", |(name, _)| name)
     }
 
+    /// Names of all files.
+    pub(crate) fn names(&self) -> String {
+        let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
+        names.join(", ")
+    }
+
+    /// Options of the command that give these scenes.
+    pub(crate) fn options(&self) -> String {
+        let rig = match (&self.rig, &self.rig_sha256) {
+            (Some(rig), _) => format!(" --rig {}", quoted(&rig.to_string_lossy())),
+            (None, Some(_)) => " --rig RIG.toml".into(),
+            (None, None) => String::new(),
+        };
+        format!("--scenes {}{rig}", quoted(&self.folder.to_string_lossy()))
+    }
+
     /// Loads a scene.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use raypencil_judge::Class;
 use raypencil_report::{count, counted, number, page_head};
 
 use crate::merge::Merged;
+use crate::own_scenes::OwnScenes;
 use crate::record::{PartName, PartRecord, TerrainRecord, probe_arguments};
 use crate::totals::{CampaignTotal, QuantityTotal, WorstRay, wrong_rays};
 
@@ -39,6 +40,11 @@ struct Page {
     seed: u64,
     faces: String,
     command: String,
+    /// Command of the program under test; empty: the two renderers.
+    candidate: String,
+    /// Names of one's own scenes; empty: random ones.
+    own: String,
+    failures: Vec<String>,
     version: String,
     classes: [&'static str; Class::COUNT],
     parts: Vec<PartRow>,
@@ -105,7 +111,14 @@ pub(crate) fn campaign_html(merged: &Merged, has: impl Fn(&str) -> bool) -> Resu
     let defects = wrong(&all.by_class);
     let (verdict, sign, headline, explanation) = if merged.passes() {
         let headline = format!("{} rays, no defect, none undecided", count(all.compared));
-        ("agree", "✓", headline, "Every ray on which the renderers differ was judged in exact arithmetic.")
+        let explanation = match merged.campaign.candidate {
+            None => "Every ray on which the renderers differ was judged in exact arithmetic.",
+            Some(_) => "Every answer of the program under test was compared with the exact one.",
+        };
+        ("agree", "✓", headline, explanation)
+    } else if let (0, Some(_)) = (defects, merged.failures().next()) {
+        let headline = "The program under test gave no answer for some scenes".to_string();
+        ("defects", "✗", headline, "They are listed below, each with the reason.")
     } else if defects == 0 {
         let headline = format!("Nothing is hit: all {} rays miss the terrain", count(all.compared));
         ("nothing", "?", headline, "Such an agreement proves nothing.")
@@ -150,10 +163,14 @@ pub(crate) fn campaign_html(merged: &Merged, has: impl Fn(&str) -> bool) -> Resu
         terrains: count(merged.campaign.terrains),
         seed: merged.campaign.seed,
         faces: count(faces),
-        command: format!(
-            "raypencil campaign --terrains {} --seed {} -o DIR",
-            merged.campaign.terrains, merged.campaign.seed
-        ),
+        command: merged.campaign.command(),
+        candidate: merged.campaign.candidate.clone().unwrap_or_default(),
+        own: merged.campaign.scenes.as_ref().map_or(String::new(), OwnScenes::names),
+        failures: merged
+            .failures()
+            .take(MAX_LISTED_RAYS)
+            .map(|(terrain, part, why)| format!("terrain {terrain} {}: {why}", part.word()))
+            .collect(),
         version: merged.campaign.version.clone(),
         classes: CLASSES,
         parts,

@@ -2,6 +2,7 @@
 //!
 //! A terrain depends only on the campaign's seed and its own number, so a shard can run anywhere and at any time.
 
+use raypencil_scene_io::quoted;
 use serde::{Deserialize, Serialize};
 
 use crate::error::CampaignError;
@@ -48,6 +49,19 @@ impl Campaign {
             (Some(scenes), PartName::Own) => scenes.arguments(terrain),
             _ => "scene.toml".into(),
         }
+    }
+
+    /// The command that runs it again.
+    pub(crate) fn command(&self) -> String {
+        let Self { seed, terrains, scenes, candidate, .. } = self;
+        let what = match scenes {
+            Some(scenes) => scenes.options(),
+            None => format!("--terrains {terrains}"),
+        };
+        let candidate = candidate
+            .as_ref()
+            .map_or(String::new(), |command| format!(" --candidate-command {}", quoted(command)));
+        format!("raypencil campaign {what} --seed {seed}{candidate} -o DIR")
     }
 
     /// What tells one campaign from another, in words.

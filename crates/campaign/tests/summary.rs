@@ -156,3 +156,34 @@ fn a_page_without_defects_or_hits_says_so() {
     assert!(nothing.contains("Nothing is hit: all 8,000 rays miss the terrain"), "{nothing}");
     assert!(nothing.contains("Warning: scenes own: none of its 2,000 rays hits"), "{nothing}");
 }
+
+#[test]
+fn the_page_of_a_hunt_says_what_is_hunted_and_what_failed() {
+    let mut merged = made_up([990, 6, 4, 0, 0, 0], Vec::new());
+    merged.campaign = merged.campaign.hunting("my <tracer> {pack} {out}").unwrap();
+    assert!(merged.passes());
+    let fine = page(&merged, &[]);
+    assert!(
+        fine.contains("Every answer of the program under test was compared with the exact one"),
+        "{fine}"
+    );
+    assert!(fine.contains("my &#60;tracer&#62; {pack} {out}") && !fine.contains("<tracer>"), "{fine}");
+    assert!(fine.contains("--candidate-command &#39;my") && !fine.contains("<h2>No answer</h2>"), "{fine}");
+    merged.terrains[1].parts[0].failed = Some("it ended with exit status: 3".into());
+    assert!(!merged.passes());
+    assert_eq!(merged.failures().collect::<Vec<_>>(), [(1, PartName::Own, "it ended with exit status: 3")]);
+    let failed = page(&merged, &[]);
+    assert!(
+        failed.contains("gave no answer for some scenes") && !failed.contains("Nothing is hit"),
+        "{failed}"
+    );
+    assert!(failed.contains("terrain 1 own: it ended with exit status: 3"), "{failed}");
+    let screen = campaign_screen(&merged);
+    assert!(
+        screen.contains("under test: my <tracer>") && screen.contains("1 scenes have no answer"),
+        "{screen}"
+    );
+    let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
+    assert_eq!(json["no_answer"][0]["terrain"], 1);
+    assert_eq!(json["verdict"], "defects");
+}
