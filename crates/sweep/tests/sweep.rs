@@ -127,6 +127,11 @@ fn every_number_of_a_validation_is_that_of_the_scene_by_itself() {
             let sum: f64 = image.cells().iter().sum();
             assert!(sum > 0.0, "a beam that the camera sees");
             assert_eq!(found[&format!("beam-{beam}.flux_{unit}")], sum);
+            // Some pixels are lit, and most of them are dark.
+            let lit = image.cells().iter().filter(|flux| **flux != 0.0).count();
+            assert!(lit > 0 && lit < image.cells().len() / 2, "{lit}");
+            assert_eq!(found[&format!("beam-{beam}.lit_pixels")], lit);
+            assert_eq!(found[&format!("beam-{beam}.flux_per_lit_pixel_{unit}")], sum / lit as f64);
             let visible = output.returns[beam].visible.as_ref().unwrap();
             let count = visible.cells().iter().filter(|it| **it).count();
             assert_eq!(found[&format!("beam-{beam}.visible")], count);
