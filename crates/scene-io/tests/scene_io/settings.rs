@@ -153,6 +153,10 @@ fn errors_name_the_setting_or_the_line() {
     // The file's own errors keep their place.
     let message = set("version = 1\n[camera]\nfocal_length_mm = -6\n", &["camera.pitch_down_deg=1"]);
     assert!(message.unwrap_err().to_string().starts_with("scene.toml:3:19: "));
+    // Also one that stands behind the setting.
+    let text = "version = 1\n[vehicle]\nheading_deg = 0\n[camera]\nfocal_length_mm = -6\n";
+    let message = set(text, &["vehicle.heading_deg=90"]).unwrap_err().to_string();
+    assert!(message.starts_with("scene.toml:5:19: "), "{message}");
     let message = set("version = ", &["camera.pitch_down_deg=1"]).unwrap_err().to_string();
     assert!(message.starts_with("scene.toml:1:"), "{message}");
     for text in ["camera", "=3", "camera..x=3", "camera.p q=3", ".=1"] {
