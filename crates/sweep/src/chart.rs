@@ -154,8 +154,7 @@ impl Chart {
         let at = |x: f64, y: f64| {
             [left + x_scale.fraction(x) * width, above + (1.0 - y_scale.fraction(y)) * height]
         };
-        for (line, name) in lines.iter().zip(&names) {
-            let index = names.iter().position(|own| own == name).unwrap_or(0);
+        for (index, line) in lines.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
             for (x, place) in line.values() {
                 for value in place.values.iter().filter(|_| place.values.len() > 1) {

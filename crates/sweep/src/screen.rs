@@ -34,6 +34,10 @@ fn main_results(task: Task) -> &'static [&'static str] {
 /// The charts that are drawn without being asked for: the main results against each parameter that has several numbers.
 pub fn default_charts(table: &SweepTable, task: Task) -> Vec<Chart> {
     let mut charts = Vec::new();
+    // Of a validation there is nothing to draw: it agrees, or its report says where not.
+    if task == Task::Validate {
+        return charts;
+    }
     for parameter in &table.columns[1..=table.parameters] {
         let given = (0..table.runs()).filter(|&run| !parameter.cells.text(run).is_empty());
         let mut values: Vec<Option<f64>> = given.map(|run| parameter.cells.number(run)).collect();
@@ -41,7 +45,7 @@ pub fn default_charts(table: &SweepTable, task: Task) -> Vec<Chart> {
         if values.len() < 2 || values.contains(&None) {
             continue;
         }
-        for result in main_results(task).iter().filter(|_| task != Task::Validate).take(3) {
+        for result in main_results(task).iter().take(3) {
             let is_number = |column: &crate::table::Column| {
                 (0..table.runs()).any(|run| column.cells.number(run).is_some())
             };

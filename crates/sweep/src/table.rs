@@ -54,8 +54,9 @@ impl SweepTable {
         let mut columns =
             vec![Column { name: "run".into(), cells: Cells::Integers((0..runs as i64).map(Some).collect()) }];
         let keys = sweep.keys();
+        let rows: Vec<Vec<&str>> = (0..runs as u64).map(|run| sweep.values(run)).collect();
         for (at, key) in keys.iter().enumerate() {
-            let texts = (0..runs as u64).map(|run| sweep.values(run)[at]);
+            let texts = rows.iter().map(|row| row[at]);
             let texts = texts.map(|text| Some(text.to_string()).filter(|text| !text.is_empty())).collect();
             columns.push(Column { name: key.to_string(), cells: typed(texts) });
         }

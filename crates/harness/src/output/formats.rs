@@ -7,7 +7,7 @@ use raypencil_files::{
     ArrayData, Attributes, ExrMap, FileError, NamedArray, Raster, create_folder, write_atomically, write_exr,
     write_npz, write_zarr,
 };
-use raypencil_judge::{flux_channel, image_channel};
+use raypencil_judge::{Quantity, flux_channel, image_channel};
 use raypencil_scene::{
     FluxModel, HitQuantity, HitRaster, Image, Maybe, Pixel, RenderOutput, Returns, Sample, Sampling,
     SensorId, SensorMap,
@@ -150,7 +150,13 @@ pub fn arrays(map: &SensorMap, output: &RenderOutput, model: FluxModel) -> Vec<N
             for (beam, image) in output.flux.iter().enumerate() {
                 let name = image_channel(beam, None);
                 let numbers = ArrayData::F64(image.cells().to_vec());
-                arrays.push(plane(&name, unit_of_flux(model), image.width(), image.height(), numbers));
+                arrays.push(plane(
+                    &name,
+                    Quantity::PixelFlux.unit(model),
+                    image.width(),
+                    image.height(),
+                    numbers,
+                ));
             }
         }
         SensorId::Beam(index) => {
@@ -186,14 +192,13 @@ fn add_returns(arrays: &mut Vec<NamedArray>, returns: &Returns, model: FluxModel
     }
     if let Some(flux) = &returns.flux {
         let numbers = ArrayData::F64(flux.cells().to_vec());
-        arrays.push(plane(&flux_channel(None), unit_of_flux(model), flux.width(), flux.height(), numbers));
-    }
-}
-
-fn unit_of_flux(model: FluxModel) -> &'static str {
-    match model {
-        FluxModel::Radiometric => "W",
-        FluxModel::Eq1 => "W/m",
+        arrays.push(plane(
+            &flux_channel(None),
+            Quantity::PixelFlux.unit(model),
+            flux.width(),
+            flux.height(),
+            numbers,
+        ));
     }
 }
 
