@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use raypencil_files::shortened;
 use raypencil_harness::{Candidate, judge_candidate};
 use raypencil_pack::write_questions;
 use raypencil_scene::Silent;
@@ -61,7 +62,7 @@ pub(crate) fn hunt(
     let judged = judge_candidate(subject, candidate, misses.map(|folder| (folder, MAX_MISSES)), &Silent)
         .map_err(Box::new)?;
     let record = PartRecord::of(part, judged.hits, &judged.report.check.sensors);
-    Ok(PartRecord { candidate: Some(judged.report.candidate.name), ..record })
+    Ok(PartRecord { candidate: Some(shortened(judged.report.candidate.name)), ..record })
 }
 
 /// Runs the command; `Some`: why it failed.

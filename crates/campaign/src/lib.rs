@@ -7,6 +7,7 @@
 //! ```text
 //! plan, error        campaign and shards; errors
 //! record -> sealed   the record of a terrain; files with a digest of their content
+//! record_check       whether a record that was read can be that of a terrain
 //! cases/             test scenes, which property tests use, too
 //! scenes             the scenes of a terrain
 //! terrain -> shard   runs one terrain; runs the terrains of a shard
@@ -33,6 +34,7 @@ mod own_scenes;
 mod page;
 mod plan;
 mod record;
+mod record_check;
 mod scenes;
 mod screen;
 mod sealed;
@@ -44,7 +46,7 @@ mod totals;
 pub use error::CampaignError;
 pub use merge::{Merged, merge};
 pub use own_scenes::OwnScenes;
-pub use plan::{Campaign, Shard};
+pub use plan::{Campaign, MAX_SHARDS, MAX_TERRAINS, Shard};
 pub use record::{PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay};
 pub use scenes::scene_of;
 pub use screen::campaign_screen;

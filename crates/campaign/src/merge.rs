@@ -8,8 +8,11 @@ use raypencil_files::FileError;
 use crate::error::CampaignError;
 use crate::plan::{Campaign, Shard};
 use crate::record::TerrainRecord;
-use crate::sealed::read_sealed;
-use crate::shard::ShardResult;
+use crate::sealed::refused;
+use crate::shard::{ShardResult, read_result};
+
+/// Maximum number of missing shards that a message names.
+const MAX_NAMED_SHARDS: usize = 20;
 
 /// Results of a whole campaign.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,20 +23,19 @@ pub struct Merged {
     pub terrains: Vec<TerrainRecord>,
 }
 
-/// Reads the results of all shards from `folders` and merges them.
+/// Reads the results of all shards from `folders` and merges them; `commit` is that of this program, where it is known.
 ///
 /// # Errors
-/// Names the file that is damaged or belongs to another campaign, the shard that is given twice, or the shards that are
+/// Names the file that is damaged, that belongs to another campaign, or that another program has made, the shard that is given twice, or the shards that are
 /// missing.
-pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
+pub fn merge(folders: &[PathBuf], commit: Option<&str>) -> Result<Merged, CampaignError> {
     let mut campaign: Option<(Campaign, u64, String)> = None;
     let mut shards: BTreeMap<Shard, String> = BTreeMap::new();
     let mut terrains: BTreeMap<u64, TerrainRecord> = BTreeMap::new();
     for file in results_in(folders)? {
         let name = file.display().to_string();
-        let (own, ShardResult { shard, terrains: records }) = read_sealed(&file)?;
-        let refuse =
-            |found: String, expected: String| CampaignError::Record { file: name.clone(), found, expected };
+        let (own, ShardResult { shard, terrains: records }) = read_result(&file, commit)?;
+        let refuse = |found: String, expected: String| refused(&file, found, expected);
         match &campaign {
             None => campaign = Some((own.clone(), shard.count, name.clone())),
             Some((first, count, first_name)) if *first != own || *count != shard.count => {
@@ -48,11 +50,6 @@ pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
             let found = format!("shard {} of {} again", shard.index + 1, shard.count);
             return Err(refuse(found, format!("each shard once: it is in {other} too")));
         }
-        let numbers: Vec<u64> = shard.terrains(&own).collect();
-        if shard.index >= shard.count || !records.iter().map(|one| one.terrain).eq(numbers) {
-            let expected = "exactly the terrains of its shard, by their number".to_string();
-            return Err(refuse(format!("{} terrains", records.len()), expected));
-        }
         terrains.extend(records.into_iter().map(|record| (record.terrain, record)));
     }
     let Some((campaign, count, _)) = campaign else {
@@ -62,13 +59,14 @@ pub fn merge(folders: &[PathBuf]) -> Result<Merged, CampaignError> {
             expected: "folders with a shard-I-of-N.json, which a finished shard leaves".into(),
         });
     };
-    let absent: Vec<String> = (0..count)
-        .filter(|&index| !shards.contains_key(&Shard { index, count }))
-        .map(|index| (index + 1).to_string())
-        .collect();
-    if !absent.is_empty() {
+    let mut absent = (0..count).filter(|&index| !shards.contains_key(&Shard { index, count }));
+    let first: Vec<String> =
+        absent.by_ref().take(MAX_NAMED_SHARDS).map(|index| (index + 1).to_string()).collect();
+    if !first.is_empty() {
+        let others = absent.count();
+        let others = if others > 0 { format!(" and {others} others") } else { String::new() };
         return Err(CampaignError::Shards {
-            found: format!("no shard {} of {count}", absent.join(", ")),
+            found: format!("no shard {}{others} of {count}", first.join(", ")),
             expected: "all of them".into(),
         });
     }

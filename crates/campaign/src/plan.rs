@@ -5,9 +5,16 @@
 use raypencil_scene_io::quoted;
 use serde::{Deserialize, Serialize};
 
+use crate::cases::fingerprint;
 use crate::error::CampaignError;
 use crate::own_scenes::OwnScenes;
 use crate::record::PartName;
+
+/// Maximum number of terrains of a campaign.
+pub const MAX_TERRAINS: u64 = 1_000_000;
+
+/// Maximum number of shards of a campaign.
+pub const MAX_SHARDS: u64 = MAX_TERRAINS;
 
 /// A campaign. Equal campaigns give equal results, byte for byte.
 ///
@@ -29,6 +36,12 @@ pub struct Campaign {
     pub terrains: u64,
     /// Version of raypencil. Another version may make other terrains.
     pub version: String,
+    /// Commit that the program was built from, where it is known. Another commit may render otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// SHA-256 of sample scenes, in hexadecimal digits. It tells two builds apart that draw other scenes and do not know
+    /// their commits.
+    pub cases: String,
     /// Scenes in place of random ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenes: Option<OwnScenes>,
@@ -40,7 +53,49 @@ pub struct Campaign {
 impl Campaign {
     /// A campaign run by this version.
     pub fn new(seed: u64, terrains: u64) -> Self {
-        Self { seed, terrains, version: env!("CARGO_PKG_VERSION").into(), scenes: None, candidate: None }
+        Self {
+            seed,
+            terrains,
+            version: env!("CARGO_PKG_VERSION").into(),
+            commit: None,
+            cases: fingerprint().into(),
+            scenes: None,
+            candidate: None,
+        }
+    }
+
+    /// The same, by a program built from this commit.
+    pub fn of_commit(self, commit: Option<&str>) -> Self {
+        Self { commit: commit.map(String::from), ..self }
+    }
+
+    /// A campaign from a file, if this program could have made it.
+    ///
+    /// # Errors
+    /// What it has, and what was expected: 1 to [`MAX_TERRAINS`] terrains, one for each scene of one's own; the version of
+    /// this program, its commit, and its scenes.
+    pub(crate) fn checked(self, commit: Option<&str>) -> Result<Self, (String, String)> {
+        if !(1..=MAX_TERRAINS).contains(&self.terrains) {
+            return Err((format!("{} terrains", self.terrains), format!("1 to {MAX_TERRAINS}")));
+        }
+        if let Some(scenes) = self.scenes.as_ref().filter(|scenes| scenes.len() as u64 != self.terrains) {
+            let found = format!("{} terrains of {} scenes", self.terrains, scenes.len());
+            return Err((found, "one terrain of each scene".into()));
+        }
+        let this = Self::new(self.seed, self.terrains).of_commit(commit);
+        if self.build() != this.build() {
+            let expected =
+                format!("one of this program, {}: merge with the program that made it", this.build());
+            return Err((format!("a record of {}", self.build()), expected));
+        }
+        Ok(self)
+    }
+
+    /// The program that it is made by: version, commit and the start of the digest of its scenes.
+    pub(crate) fn build(&self) -> String {
+        let commit = self.commit.as_ref().map_or(String::new(), |commit| format!(", commit {commit}"));
+        let digits: String = self.cases.chars().take(8).collect();
+        format!("version {}{commit}, scenes {digits}", self.version)
     }
 
     /// Words after `raypencil probe` that give a scene, once it is written by `campaign replay`.
@@ -66,11 +121,11 @@ impl Campaign {
 
     /// What tells one campaign from another, in words.
     pub(crate) fn words(&self) -> String {
-        let Self { seed, terrains, version, scenes, candidate } = self;
+        let Self { seed, terrains, scenes, candidate, .. } = self;
         let own = if scenes.is_some() { "own " } else { "" };
         let candidate =
             candidate.as_ref().map_or(String::new(), |command| format!(", candidate `{command}`"));
-        format!("{terrains} {own}terrains, seed {seed}, version {version}{candidate}")
+        format!("{terrains} {own}terrains, seed {seed}, {}{candidate}", self.build())
     }
 
     /// The same over one's own scenes: each is a terrain.
@@ -111,6 +166,20 @@ pub struct Shard {
 impl Shard {
     /// The whole campaign as one shard.
     pub const WHOLE: Self = Self { index: 0, count: 1 };
+
+    /// A shard from a file.
+    ///
+    /// # Errors
+    /// What it has, and what was expected: 1 to [`MAX_SHARDS`] shards, and one of them.
+    pub(crate) fn checked(self) -> Result<Self, (String, String)> {
+        if (1..=MAX_SHARDS).contains(&self.count) && self.index < self.count {
+            return Ok(self);
+        }
+        Err((
+            format!("shard of index {} among {}", self.index, self.count),
+            format!("1 to {MAX_SHARDS} shards, and an index below their number"),
+        ))
+    }
 
     /// Numbers of the shard's terrains, ascending.
     pub fn terrains(self, campaign: &Campaign) -> impl Iterator<Item = u64> {

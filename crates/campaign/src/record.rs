@@ -5,7 +5,7 @@ use raypencil_judge::{Class, ItemTally, Largest, Quantity, SensorResult};
 use serde::{Deserialize, Serialize};
 
 /// Maximum number of wrong rays per scene that are described; all are counted.
-const MAX_DESCRIBED_RAYS: usize = 10;
+pub(crate) const MAX_DESCRIBED_RAYS: usize = 10;
 
 /// One of the scenes of a terrain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use raypencil_files::{FileError, write_atomically};
+use raypencil_files::{FileError, bytes, hex_digits, sha256, shortened, write_atomically};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use crate::error::CampaignError;
 use crate::plan::Campaign;
 
 /// Number of the format.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// Content of a file.
 #[derive(Debug, Serialize, Deserialize)]
@@ -26,7 +25,7 @@ struct Sealed<T> {
 /// The digest of a file's content.
 fn digest<T: Serialize>(campaign: &Campaign, contents: &T) -> String {
     let text = serde_json::to_string(&(FORMAT, campaign, contents)).expect("JSON of numbers and texts");
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    hex_digits(&sha256(text.as_bytes()))
 }
 
 /// Writes a file of `campaign`.
@@ -45,22 +44,17 @@ pub(crate) fn write_sealed<T: Serialize>(
     write_atomically(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// Reads a file: its campaign and its contents.
+/// Reads a file of at most `max_bytes` bytes: its campaign and its contents, neither of which is checked further.
+///
+/// # Errors
+/// A file that cannot be read, that is no regular file, that is larger, or that is not as it was written.
 pub(crate) fn read_sealed<T: Serialize + for<'de> Deserialize<'de>>(
     path: &Path,
+    max_bytes: u64,
 ) -> Result<(Campaign, T), CampaignError> {
-    let file = path.display().to_string();
-    let refuse = |found: String, expected: &str| CampaignError::Record {
-        file: file.clone(),
-        found,
-        expected: expected.into(),
-    };
-    let text = std::fs::read_to_string(path).map_err(|source| FileError::Io {
-        path: path.to_path_buf(),
-        action: "read",
-        source,
-    })?;
-    let sealed: Sealed<T> = serde_json::from_str(&text)
+    let refuse = |found: String, expected: &str| refused(path, found, expected.into());
+    let text = bytes::read_file(path, max_bytes).map_err(|error| FileError::io(path, "read", error))?;
+    let sealed: Sealed<T> = serde_json::from_slice(&text)
         .map_err(|error| refuse(error.to_string(), "a result file of a campaign"))?;
     if sealed.format != FORMAT {
         return Err(refuse(format!("format {}", sealed.format), &format!("format {FORMAT}")));
@@ -69,4 +63,14 @@ pub(crate) fn read_sealed<T: Serialize + for<'de> Deserialize<'de>>(
         return Err(refuse("its contents do not have the stated digest".into(), "an unchanged file"));
     }
     Ok((sealed.campaign, sealed.contents))
+}
+
+/// The error of a file that is damaged, or that no campaign can have written.
+pub(crate) fn refused(path: &Path, found: String, expected: String) -> CampaignError {
+    // Texts of the file may be long.
+    CampaignError::Record {
+        file: path.display().to_string(),
+        found: shortened(found),
+        expected: shortened(expected),
+    }
 }

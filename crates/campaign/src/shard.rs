@@ -8,8 +8,15 @@ use serde::{Deserialize, Serialize};
 use crate::error::CampaignError;
 use crate::plan::{Campaign, Shard};
 use crate::record::TerrainRecord;
-use crate::sealed::{read_sealed, write_sealed};
+use crate::record_check::check_record;
+use crate::sealed::{read_sealed, refused, write_sealed};
 use crate::terrain::terrain;
+
+/// Maximum size of the record of a terrain, bytes. One has some thousands.
+const MAX_RECORD_BYTES: u64 = 1 << 20;
+
+/// Maximum size of the result of a shard, bytes. One of 10,000 terrains has some 60 million.
+const MAX_RESULT_BYTES: u64 = 1 << 30;
 
 /// Receives the progress of a campaign.
 pub trait CampaignProgress: Sync {
@@ -42,13 +49,17 @@ fn terrain_file(folder: &Path, terrain: u64) -> PathBuf {
 /// `folder/misses`.
 ///
 /// # Errors
-/// A folder that holds another campaign; a file that cannot be read or written.
+/// A folder that holds another campaign; a file that cannot be written; a shard that is none, or a campaign with too many
+/// terrains.
 pub fn run_shard(
     campaign: &Campaign,
     shard: Shard,
     folder: &Path,
     progress: &dyn CampaignProgress,
 ) -> Result<PathBuf, CampaignError> {
+    let refuse = |(found, expected)| CampaignError::Shards { found, expected };
+    campaign.clone().checked(campaign.commit.as_deref()).map_err(refuse)?;
+    shard.checked().map_err(refuse)?;
     create_folder(&folder.join("terrains"))?;
     let result = result_file(folder, shard);
     let numbers: Vec<u64> = shard.terrains(campaign).collect();
@@ -56,8 +67,7 @@ pub fn run_shard(
     let mut rays = 0;
     for (done, &number) in (1..).zip(&numbers) {
         let file = terrain_file(folder, number);
-        let earlier = if file.exists() { earlier_record(&file, campaign, number)? } else { None };
-        let record = match earlier {
+        let record = match earlier_record(&file, campaign, number)? {
             Some(record) => record,
             None => {
                 let record = terrain(campaign, number, Some(folder))?;
@@ -76,26 +86,51 @@ pub fn run_shard(
 /// Whether the result of a shard is in the folder, whole, and of this campaign.
 pub fn has_result(campaign: &Campaign, shard: Shard, folder: &Path) -> bool {
     let is_own = |(own, result): (Campaign, ShardResult)| own == *campaign && result.shard == shard;
-    read_sealed(&result_file(folder, shard)).is_ok_and(is_own)
+    read_result(&result_file(folder, shard), campaign.commit.as_deref()).is_ok_and(is_own)
 }
 
-/// The record of an earlier run. `None`: it is damaged, and the terrain must be run again.
+/// Reads the result of a shard that a program of this commit has made.
 ///
 /// # Errors
-/// A record of another campaign; a file that cannot be read.
+/// A file that cannot be read; a record that no such shard can have.
+pub(crate) fn read_result(
+    file: &Path,
+    commit: Option<&str>,
+) -> Result<(Campaign, ShardResult), CampaignError> {
+    let refuse = |(found, expected)| refused(file, found, expected);
+    let (campaign, result) = read_sealed::<ShardResult>(file, MAX_RESULT_BYTES)?;
+    let campaign = campaign.checked(commit).map_err(refuse)?;
+    let shard = result.shard.checked().map_err(refuse)?;
+    if !result.terrains.iter().map(|one| one.terrain).eq(shard.terrains(&campaign)) {
+        let expected = "exactly the terrains of its shard, by their number".to_string();
+        return Err(refuse((format!("{} terrains", result.terrains.len()), expected)));
+    }
+    for record in &result.terrains {
+        check_record(record, &campaign)
+            .map_err(|found| refuse((found, "counts that fit together".to_string())))?;
+    }
+    Ok((campaign, result))
+}
+
+/// The record of an earlier run. `None`: there is none, or it is damaged, and the terrain must be run again.
+///
+/// # Errors
+/// A record of another campaign.
 fn earlier_record(
     file: &Path,
     campaign: &Campaign,
     number: u64,
 ) -> Result<Option<TerrainRecord>, CampaignError> {
-    match read_sealed::<TerrainRecord>(file) {
-        Ok((own, record)) if own == *campaign && record.terrain == number => Ok(Some(record)),
-        Ok((own, _)) => Err(CampaignError::Record {
-            file: file.display().to_string(),
-            found: format!("a record of {}", own.words()),
-            expected: format!("one of {}: give another campaign a folder of its own", campaign.words()),
-        }),
-        Err(CampaignError::Record { .. }) => Ok(None),
-        Err(error) => Err(error),
+    // What cannot be read is replaced: a pipe, a folder without rights, a file of any size.
+    let Ok((own, record)) = read_sealed::<TerrainRecord>(file, MAX_RECORD_BYTES) else { return Ok(None) };
+    if own != *campaign {
+        let expected = format!("one of {}: give another campaign a folder of its own", campaign.words());
+        return Err(refused(file, format!("a record of {}", own.words()), expected));
     }
+    let is_own = record.terrain == number && check_record(&record, campaign).is_ok();
+    Ok(is_own.then_some(record))
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/records.rs"]
+mod tests;

@@ -53,7 +53,7 @@ impl CampaignProgress for Bar {
 }
 
 fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
-    let mut campaign = Campaign::new(command.seed, command.terrains);
+    let mut campaign = Campaign::new(command.seed, command.terrains).of_commit(crate::commit());
     if let Some(folder) = &command.scenes {
         campaign = campaign.over(OwnScenes::read(folder, command.rig.as_deref())?);
     }
@@ -77,7 +77,7 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
         say(&text);
         return Ok(Outcome::Fine);
     }
-    let mut merged = merge(std::slice::from_ref(&command.output))?;
+    let mut merged = merge(std::slice::from_ref(&command.output), crate::commit())?;
     // The same campaign, which knows where its scenes lie.
     merged.campaign = campaign;
     write_campaign(&merged, &command.output)?;
@@ -86,13 +86,13 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     let rate = rays as f64 / seconds / 1e6;
     let before = merged.compared() - rays;
     let before = if before > 0 { format!(" ({before} rays from earlier runs)") } else { String::new() };
-    let commit = option_env!("RAYPENCIL_COMMIT").map_or(String::new(), |commit| format!(", commit {commit}"));
+    let commit = crate::commit().map_or(String::new(), |commit| format!(", commit {commit}"));
     let time = format!("seed {}{commit}; {seconds:.1} s, {rate:.2} million rays/s{before}\n", command.seed);
     tell(&merged, json, &time)
 }
 
 fn merged(command: &CampaignMerge, json: bool) -> Result<Outcome, Trouble> {
-    let merged = merge(&command.folders)?;
+    let merged = merge(&command.folders, crate::commit())?;
     if let Some(folder) = &command.output {
         write_campaign(&merged, folder)?;
     }

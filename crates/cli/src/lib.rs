@@ -113,10 +113,15 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
     }
 }
 
+/// The commit that this program is built from, where git knew it.
+pub fn commit() -> Option<&'static str> {
+    option_env!("RAYPENCIL_COMMIT")
+}
+
 /// The build of this program: version and, where git knew it, commit. Records of another build are not mixed with its own.
 pub fn build() -> String {
     let version = env!("CARGO_PKG_VERSION");
-    option_env!("RAYPENCIL_COMMIT").map_or(version.to_string(), |commit| format!("{version} {commit}"))
+    commit().map_or(version.to_string(), |commit| format!("{version} {commit}"))
 }
 
 /// The message of an error: what is wrong, where, what was expected; for a scene file with the line and a caret.

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use raypencil::campaign::{PartName, Shard};
+use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
 use raypencil::cast::rays_from_bytes;
 use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
@@ -126,7 +126,9 @@ pub(crate) fn shard(text: &str) -> Result<Shard, String> {
     let (index, count) = text.split_once('/').ok_or_else(wrong)?;
     let one = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
     match (one(index)?, one(count)?) {
-        (index, count) if (1..=count).contains(&index) => Ok(Shard { index: index - 1, count }),
+        (index, count) if count <= MAX_SHARDS && (1..=count).contains(&index) => {
+            Ok(Shard { index: index - 1, count })
+        }
         _ => Err(wrong()),
     }
 }

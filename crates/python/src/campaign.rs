@@ -38,7 +38,7 @@ impl CampaignCore {
         candidate_command: Option<String>,
     ) -> PyResult<Self> {
         let made = py.detach(|| -> Result<Campaign, Failure> {
-            let mut campaign = Campaign::new(seed, terrains);
+            let mut campaign = Campaign::new(seed, terrains).of_commit(raypencil_cli::commit());
             if let Some(folder) = &scenes {
                 campaign = campaign.over(OwnScenes::read(folder, rig.as_deref())?);
             }
@@ -87,7 +87,7 @@ impl CampaignCore {
         output: Option<PathBuf>,
     ) -> PyResult<(bool, String, String)> {
         let merged = py.detach(|| -> Result<_, Failure> {
-            let mut merged = merge(&folders)?;
+            let mut merged = merge(&folders, raypencil_cli::commit())?;
             if merged.campaign != self.0 {
                 return Err(Failure::new(
                     "the shards are of another campaign; give each one a folder of its own",

@@ -9,13 +9,17 @@
 //! random      any ground in front of any camera and beams
 //! aimed       narrow beams aimed at vertices, edges, silhouettes and grazing faces of a ground
 //! lattice     meshes all of whose vertices lie exactly on rays
+//! fingerprint   a digest of samples of all of them
 //! ```
 
 pub mod aimed;
+mod fingerprint;
 pub mod lattice;
 pub mod mars;
 pub mod random;
 pub(crate) mod split_mix;
+
+pub(crate) use fingerprint::fingerprint;
 
 use std::sync::Arc;
 

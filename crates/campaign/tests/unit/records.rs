@@ -1,0 +1,215 @@
+//! Files of a campaign that are damaged, foreign, or made to do harm.
+
+use super::*;
+use crate::merge::merge;
+use crate::record::{MAX_DESCRIBED_RAYS, PartName, PartRecord, QuantityRecord, WorstRecord, WrongRay};
+use raypencil_judge::{Class, Quantity};
+use tempfile::TempDir;
+
+const COMMIT: Option<&str> = Some("0123abc");
+
+fn campaign() -> Campaign {
+    Campaign::new(5, 4).of_commit(COMMIT)
+}
+
+/// A record whose numbers fit together.
+fn record(terrain: u64) -> TerrainRecord {
+    let part = |part: PartName| PartRecord {
+        part,
+        compared: 60,
+        hits: 30,
+        by_class: [50, 3, 2, 3, 1, 1],
+        not_compared: 4,
+        judged: 10,
+        quantities: vec![QuantityRecord {
+            quantity: Quantity::Range,
+            by_class: [30, 0, 0, 0, 0, 0],
+            not_compared: 0,
+            worst_error: Some(WorstRecord { value: Some(1e-12), sensor: "camera".into(), i: 1, j: 2 }),
+            worst_ratio: None,
+        }],
+        wrong: vec![WrongRay {
+            sensor: "beam-0".into(),
+            i: 3,
+            j: 1,
+            quantity: Quantity::Range,
+            what: "1 m and 2 m".into(),
+        }],
+        candidate: None,
+        failed: None,
+    };
+    TerrainRecord { terrain, faces: 2, parts: PartName::ALL.map(part).to_vec() }
+}
+
+/// A folder with the results of both halves of the campaign, where the second one is changed.
+fn halves(change: impl FnOnce(&mut Campaign, &mut ShardResult)) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let mut change = Some(change);
+    for index in 0..2 {
+        let shard = Shard { index, count: 2 };
+        let mut campaign = campaign();
+        let mut result = ShardResult { shard, terrains: shard.terrains(&campaign).map(record).collect() };
+        if index == 1 {
+            change.take().unwrap()(&mut campaign, &mut result);
+        }
+        write_sealed(&result_file(folder.path(), shard), &campaign, &result).unwrap();
+    }
+    folder
+}
+
+/// The error of merging the halves, and whether a resumed run would take the second one for its own.
+fn refusal(change: impl FnOnce(&mut Campaign, &mut ShardResult)) -> String {
+    let folder = halves(change);
+    let error = merge(&[folder.path().to_path_buf()], COMMIT).expect_err("a merge of damaged halves");
+    assert!(!has_result(&campaign(), Shard { index: 1, count: 2 }, folder.path()), "{error}");
+    let error = error.to_string();
+    assert!(error.len() < 1500, "{error}");
+    error
+}
+
+#[test]
+fn undamaged_halves_are_merged() {
+    let folder = halves(|_, _| {});
+    let merged = merge(&[folder.path().to_path_buf()], COMMIT).unwrap();
+    assert_eq!(merged.terrains, (0..4).map(record).collect::<Vec<_>>());
+    assert!(has_result(&campaign(), Shard { index: 1, count: 2 }, folder.path()));
+}
+
+#[test]
+fn numbers_that_no_campaign_has_are_refused() {
+    for count in [0, 1_000_000_000_000, u64::MAX] {
+        assert!(refusal(|_, result| result.shard.count = count).contains("shards"), "{count}");
+    }
+    for index in [2, u64::MAX] {
+        assert!(refusal(|_, result| result.shard.index = index).contains("index"), "{index}");
+    }
+    for terrains in [0, 1_000_001, 1_000_000_000_000, u64::MAX] {
+        assert!(refusal(|campaign, _| campaign.terrains = terrains).contains("terrains"), "{terrains}");
+    }
+    // A campaign that could be, and is not the one of the first half.
+    assert!(refusal(|campaign, _| campaign.seed = 6).contains("seed 6"));
+}
+
+#[test]
+fn records_of_another_program_are_refused() {
+    assert!(refusal(|campaign, _| campaign.version = "9.9.9".into()).contains("version 9.9.9"));
+    assert!(refusal(|campaign, _| campaign.commit = Some("fedc987".into())).contains("commit fedc987"));
+    assert!(refusal(|campaign, _| campaign.commit = None).contains("commit 0123abc"));
+    assert!(refusal(|campaign, _| campaign.cases = "0".repeat(64)).contains("scenes 00000000"));
+    // All of one other commit: they fit together, and not to this program.
+    let folder = halves(|_, _| {});
+    let error = merge(&[folder.path().to_path_buf()], Some("fedc987")).unwrap_err().to_string();
+    assert!(error.contains("commit 0123abc") && error.contains("commit fedc987"), "{error}");
+}
+
+/// A change of the first scene of the second half's first terrain.
+fn part_refusal(change: impl FnOnce(&mut PartRecord)) -> String {
+    refusal(|_, result| change(&mut result.terrains[0].parts[0]))
+}
+
+#[test]
+fn counts_that_do_not_fit_together_are_refused() {
+    assert!(part_refusal(|part| part.compared = 61).contains("61 rays compared, and 60 in all classes"));
+    assert!(part_refusal(|part| part.by_class = [u64::MAX, 0, 0, 0, 0, 0]).contains("a count of"));
+    assert!(part_refusal(|part| part.by_class[0] = 49).contains("59 in all classes"));
+    assert!(part_refusal(|part| part.hits = 65).contains("65 hits of 64 rays"));
+    assert!(part_refusal(|part| part.hits = u64::MAX).contains("a count of"));
+    assert!(part_refusal(|part| part.not_compared = 1 << 62).contains("a count of"));
+    assert!(part_refusal(|part| part.judged = 1 << 62).contains("a count of"));
+    assert!(part_refusal(|part| part.quantities[0].by_class[5] = 1 << 62).contains("a count of"));
+    assert!(part_refusal(|part| part.quantities[0].not_compared = 1 << 62).contains("a count of"));
+    assert!(part_refusal(|part| part.quantities.push(part.quantities[0].clone())).contains("again"));
+    assert!(part_refusal(|part| part.wrong.clear()).contains("2 wrong rays, of which 0"));
+    assert!(part_refusal(|part| part.wrong = vec![part.wrong[0].clone(); 3]).contains("of which 3"));
+    let many = 2 * MAX_DESCRIBED_RAYS;
+    assert!(
+        part_refusal(|part| {
+            part.by_class[Class::Agree as usize] -= 40;
+            part.by_class[Class::Defect as usize] += 40;
+            part.wrong = vec![part.wrong[0].clone(); many];
+        })
+        .contains("of which 20")
+    );
+    assert!(part_refusal(|part| part.wrong[0].what = "x".repeat(1 << 15)).contains("a text of"));
+    assert!(part_refusal(|part| part.failed = Some("x".repeat(1 << 15))).contains("a text of"));
+    assert!(part_refusal(|part| part.part = PartName::Lattice).contains("lattice, paper"));
+    assert!(refusal(|_, result| result.terrains[0].faces = u64::MAX).contains("faces"));
+    assert!(
+        refusal(|_, result| _ = result.terrains[0].parts.pop()).contains("own, paper, aimed in place of")
+    );
+    assert!(refusal(|_, result| result.terrains[0].parts.push(record(1).parts[0].clone())).contains("own"));
+    assert!(refusal(|_, result| result.terrains[0].terrain = 3).contains("exactly the terrains"));
+    assert!(refusal(|_, result| _ = result.terrains.pop()).contains("exactly the terrains"));
+}
+
+#[test]
+fn any_flipped_bit_of_a_record_makes_its_terrain_run_again() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("terrain-000003.json");
+    write_sealed(&file, &campaign(), &record(3)).unwrap();
+    let clean = std::fs::read(&file).unwrap();
+    let read = || earlier_record(&file, &campaign(), 3);
+    assert_eq!(read().unwrap(), Some(record(3)));
+    for at in 0..clean.len() {
+        for bit in 0..8 {
+            let mut damaged = clean.clone();
+            damaged[at] ^= 1 << bit;
+            std::fs::write(&file, &damaged).unwrap();
+            // Damaged, or white space in place of other white space.
+            let found = read().unwrap_or_else(|error| panic!("bit {bit} of byte {at}: {error}"));
+            assert!(found.is_none() || found == Some(record(3)), "bit {bit} of byte {at}");
+        }
+    }
+    for length in 0..clean.len() - 1 {
+        std::fs::write(&file, &clean[..length]).unwrap();
+        assert_eq!(read().unwrap(), None, "{length} bytes");
+    }
+    // Whole, and of another terrain; of another campaign.
+    write_sealed(&file, &campaign(), &record(2)).unwrap();
+    assert_eq!(read().unwrap(), None);
+    write_sealed(&file, &Campaign::new(6, 4).of_commit(COMMIT), &record(3)).unwrap();
+    assert!(read().unwrap_err().to_string().contains("seed 6"));
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_not_waited_for() {
+    let folder = TempDir::new().unwrap();
+    let file = result_file(folder.path(), Shard { index: 0, count: 2 });
+    let is_refused = |words: &str| {
+        let error = merge(&[folder.path().to_path_buf()], COMMIT).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+        assert_eq!(earlier_record(&file, &campaign(), 3).unwrap(), None);
+    };
+    let made = std::process::Command::new("mkfifo").arg(&file).status().unwrap();
+    assert!(made.success());
+    is_refused("not a regular file");
+    std::fs::remove_file(&file).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &file).unwrap();
+    is_refused("not a regular file");
+    std::fs::remove_file(&file).unwrap();
+    // Sparse: it takes no room on the disk.
+    std::fs::File::create(&file).unwrap().set_len(4 << 30).unwrap();
+    is_refused("larger than");
+    std::fs::remove_file(&file).unwrap();
+    std::fs::create_dir(&file).unwrap();
+    is_refused("not a regular file");
+    std::fs::remove_dir(&file).unwrap();
+    std::os::unix::fs::symlink("nowhere", &file).unwrap();
+    is_refused("cannot read");
+}
+
+#[test]
+fn a_shard_that_is_none_is_not_run() {
+    struct Silence;
+    impl CampaignProgress for Silence {
+        fn done(&self, _: u64, _: u64, _: u64) {}
+    }
+    let folder = TempDir::new().unwrap();
+    let run = |campaign: &Campaign, shard| run_shard(campaign, shard, folder.path(), &Silence).unwrap_err();
+    assert!(run(&campaign(), Shard { index: 0, count: 0 }).to_string().contains("shards"));
+    assert!(run(&campaign(), Shard { index: 2, count: 2 }).to_string().contains("index"));
+    let endless = Campaign { terrains: u64::MAX, ..campaign() };
+    assert!(run(&endless, Shard::WHOLE).to_string().contains("terrains"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
