@@ -1,0 +1,96 @@
+//! The arguments of `campaign`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use raypencil::campaign::{PartName, Shard};
+
+use crate::parsers::{part_name, shard};
+
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub(crate) struct Campaign {
+    #[command(subcommand)]
+    pub(crate) command: Option<CampaignCommand>,
+
+    #[command(flatten)]
+    pub(crate) run: CampaignRun,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum CampaignCommand {
+    /// Merge the results of all shards, in any order.
+    Merge(CampaignMerge),
+    /// Write one scene of a campaign, so that its rays can be probed.
+    Replay(CampaignReplay),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CampaignRun {
+    /// Number of terrains.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) terrains: u64,
+
+    /// Seed of all random numbers; the same seed gives the same campaign.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+
+    /// Run part I of N of the campaign, from 1; `campaign merge` merges the parts.
+    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
+    pub(crate) shard: Shard,
+
+    /// Folder with scenes of your own (.toml), terrains (.glb, .gltf) or elevation models (.tif), in place of random ones.
+    #[arg(long, value_name = "DIR", conflicts_with = "terrains")]
+    pub(crate) scenes: Option<PathBuf>,
+
+    /// Scene file whose vehicle, camera and beams stand on each terrain of --scenes.
+    #[arg(long, value_name = "SCENE.toml", requires = "scenes")]
+    pub(crate) rig: Option<PathBuf>,
+
+    /// Hunt in another renderer: the shell runs this for each scene, with {pack} replaced by the folder of a pack without
+    /// answers and {out} by that for the answers, as `check` takes them. What it answers wrongly is left as packs of single rays.
+    #[arg(long, value_name = "'PROGRAM {pack} {out}'")]
+    pub(crate) candidate_command: Option<String>,
+
+    /// Output folder; a campaign that was interrupted there is resumed.
+    #[arg(short, long, value_name = "DIR", default_value = "out/campaign")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CampaignMerge {
+    /// Folders with the results of the shards.
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+
+    /// Folder for summary.json; without it none is written.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CampaignReplay {
+    /// Seed of the campaign.
+    #[arg(long, value_name = "SEED")]
+    pub(crate) seed: u64,
+
+    /// Number of the terrain, from 0.
+    #[arg(long, value_name = "K")]
+    pub(crate) terrain: u64,
+
+    /// Folder of the campaign's own scenes.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) scenes: Option<PathBuf>,
+
+    /// Scene file of its rig.
+    #[arg(long, value_name = "SCENE.toml", requires = "scenes")]
+    pub(crate) rig: Option<PathBuf>,
+
+    /// Scene of that terrain.
+    #[arg(long, value_name = "PART", default_value = "own", value_parser = part_name())]
+    pub(crate) part: PartName,
+
+    /// Output folder for scene.toml and its terrain.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+}

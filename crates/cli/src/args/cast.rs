@@ -1,0 +1,56 @@
+//! The arguments of `cast`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use raypencil::CastRay;
+use raypencil::io::Setting;
+
+use crate::parsers::{ray, setting};
+
+#[derive(Debug, Args)]
+pub(crate) struct Cast {
+    /// A mesh: .glb, .gltf, .stl, .obj or .ply, or a folder with vertices.npy and faces.npy. Or a scene file (.toml) with
+    /// tables [[rays]]: its terrain, and its own sets of rays unless others are given; its camera and beams are left out.
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
+
+    /// Rays: NPY of shape (..., 6) or (..., 8), or CSV: origin, direction, and if wanted t_min and t_max. `-` is standard
+    /// input. Or sets of rays, such as patterns of LiDAR: TOML with tables [[rays]].
+    #[arg(value_name = "RAYS", conflicts_with = "ray")]
+    pub(crate) rays: Option<PathBuf>,
+
+    /// A ray by its numbers, separated by commas: ox,oy,oz,dx,dy,dz and if wanted t_min,t_max. Its answers are printed.
+    /// May be repeated.
+    #[arg(long, value_name = "NUMBERS", value_parser = ray, allow_hyphen_values = true)]
+    pub(crate) ray: Vec<CastRay>,
+
+    /// Let rays pass through the backs of faces. Without it both sides are hit.
+    #[arg(long)]
+    pub(crate) fronts_only: bool,
+
+    /// Ask for all hits of each ray, in exact order.
+    #[arg(long)]
+    pub(crate) all: bool,
+
+    /// Ask whether each ray hits anything.
+    #[arg(long)]
+    pub(crate) any: bool,
+
+    /// Ask how far each ray may be moved sideways, parallel to itself, before its answer changes.
+    #[arg(long)]
+    pub(crate) margins: bool,
+
+    /// Set a key of the scene file MESH, as in `validate`. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<Setting>,
+
+    /// Compare a renderer's first hits with the exact ones, ray by ray. Exit code 1: a ray is wrong, or nothing is hit.
+    #[arg(long, value_name = "RENDERER", value_parser = ["tracer"])]
+    pub(crate) with: Option<String>,
+
+    /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json. For sets of rays also point clouds and
+    /// pictures; several sets have a folder each.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+}

@@ -1,0 +1,38 @@
+//! The arguments of `check`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use raypencil::Precision;
+
+use crate::parsers::precision;
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// Folder of the reference pack, with its manifest.json, of an input pack, or of a pack of rays.
+    #[arg(value_name = "PACK")]
+    pub(crate) pack: PathBuf,
+
+    /// Folder of the answers to check: EXR, NPY or PFM files, named as docs/formats/files.md says. For an input pack:
+    /// triangles.npy, and reflectivity.npy if there is one. For a pack of rays: arrays as `cast` writes them.
+    #[arg(value_name = "CANDIDATE")]
+    pub(crate) candidate: PathBuf,
+
+    /// Arithmetic in which the answers were computed, which may differ from their storage. Default: as their
+    /// candidate.json says, else f64.
+    #[arg(long, value_name = "ARITHMETIC", value_parser = precision())]
+    pub(crate) arithmetic: Option<Precision>,
+
+    /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan. Numbers that are not finite, and
+    /// faces of -1 or 4294967295, always do.
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    pub(crate) miss: Option<f64>,
+
+    /// Leave out the channel of faces, face.I.
+    #[arg(long)]
+    pub(crate) no_faces: bool,
+
+    /// Folder for report.html, junit.xml and check.json; without it none are written.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+}

@@ -1,0 +1,43 @@
+//! The arguments of `pack`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::args::scene::SceneArguments;
+
+#[derive(Debug, Args)]
+pub(crate) struct Pack {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+
+    /// Write a difficult random scene with this seed, and its rays without answers; `check` computes the answers.
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["scene", "fan", "thickness", "flux", "at", "heading", "settings"])]
+    pub(crate) blind: Option<u64>,
+
+    /// Leave the scene as it is. Without this, plates and beams are added whose rays meet every limit of the contract
+    /// exactly: edges, backs, the maximum range, ties.
+    #[arg(long, conflicts_with = "blind")]
+    pub(crate) no_bench: bool,
+
+    /// Write an input pack: a glTF file with all that a loader can get wrong, and the triangles that it must become.
+    #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading", "settings"])]
+    pub(crate) input: bool,
+
+    /// Write a pack of rays: SCENE is a mesh, and these are rays on it, both as `cast` takes them.
+    #[arg(
+        long,
+        value_name = "RAYS",
+        requires = "scene",
+        conflicts_with_all = ["blind", "no_bench", "input", "fan", "thickness", "flux", "at", "heading", "settings"]
+    )]
+    pub(crate) rays: Option<PathBuf>,
+
+    /// With --rays: let rays pass through the backs of faces.
+    #[arg(long, requires = "rays")]
+    pub(crate) fronts_only: bool,
+
+    /// Output folder.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+}
