@@ -1,17 +1,40 @@
 //! Standard output and standard error, and a spinner if standard error is a terminal.
 
-use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use raypencil::Progress;
+use raypencil::io::{harmless, harmless_line};
 use raypencil::survey::Warning;
 
-/// Prints to standard output. A closed pipe (`| head`) is not an error.
+/// The first error of a write to standard output since the command began; nothing for a closed pipe.
+static FAILED_WRITE: Mutex<Option<std::io::Error>> = Mutex::new(None);
+
+/// Prints to standard output. A closed pipe (`| head`) is not an error; any other failure is, once the command ends:
+/// see [`failed_write`].
 pub(crate) fn say(text: &str) {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush());
+    note(out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()));
+}
+
+/// Keeps the error of a write to standard output.
+pub(crate) fn note(written: std::io::Result<()>) {
+    if let Err(error) = written
+        && error.kind() != std::io::ErrorKind::BrokenPipe
+    {
+        failed().get_or_insert(error);
+    }
+}
+
+fn failed() -> MutexGuard<'static, Option<std::io::Error>> {
+    FAILED_WRITE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Takes the error of a write to standard output: an answer that nobody got is no answer.
+pub(crate) fn failed_write() -> Option<std::io::Error> {
+    failed().take()
 }
 
 /// Whether standard output is a terminal, which has an edge.
@@ -19,9 +42,14 @@ pub(crate) fn is_terminal() -> bool {
     std::io::stdout().is_terminal()
 }
 
-/// Prints to standard error.
+/// Prints to standard error. That it cannot be printed is nothing to tell anybody.
 pub(crate) fn complain(text: &str) {
-    let _ = std::io::stderr().lock().write_all(harmless(text).as_bytes());
+    complain_in_colour(&harmless(text));
+}
+
+/// The same for a text with colours of our own, of which every other part is harmless already.
+pub(crate) fn complain_in_colour(text: &str) {
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Prints warnings to standard error, so that standard output holds nothing but the result.
@@ -29,29 +57,6 @@ pub(crate) fn warn(warnings: &[Warning]) {
     for warning in warnings {
         complain(&format!("warning: {warning}\n"));
     }
-}
-
-/// Replaces control codes of terminals and changes of the writing direction, since names come from untrusted files.
-/// Colours stay.
-fn harmless(text: &str) -> Cow<'_, str> {
-    let is_control = |letter: char| letter.is_control() && !"\n\t".contains(letter);
-    let changes_direction = |letter: char| matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    if !text.contains(|letter| is_control(letter) || changes_direction(letter)) {
-        return text.into();
-    }
-    let mut out = String::with_capacity(text.len());
-    for (at, letter) in text.char_indices() {
-        let stays = !(is_control(letter) || changes_direction(letter)) || is_colour(&text[at..]);
-        out.push(if stays { letter } else { char::REPLACEMENT_CHARACTER });
-    }
-    out.into()
-}
-
-/// Whether a text begins with a colour code: ESC, `[`, numbers, `m`. (ECMA-48, 8.3.117)
-fn is_colour(text: &str) -> bool {
-    let Some(code) = text.strip_prefix("\u{1b}[") else { return false };
-    in_colour()
-        && code.trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == ';').starts_with('m')
 }
 
 /// Whether standard error shows colours.
@@ -78,26 +83,12 @@ impl Spinner {
 
 impl Progress for Spinner {
     fn stage(&self, what: &str) {
-        self.bar.set_message(what.to_string());
+        self.bar.set_message(harmless_line(what));
     }
 }
 
 impl Drop for Spinner {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn control_codes_are_replaced() {
-        assert_eq!(harmless("caf\u{e9}\n\t\u{3c6}"), "caf\u{e9}\n\t\u{3c6}");
-        for code in ["\u{1b}[2J", "\u{7}", "\r", "\u{9b}2J", "\u{202e}", "\0"] {
-            let first = code.chars().next().expect("a letter");
-            assert!(!harmless(code).contains(first), "{code:?}");
-        }
     }
 }

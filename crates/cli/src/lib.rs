@@ -24,6 +24,7 @@
 //! args                  the arguments and their help texts
 //! subject               the scene and the renderers that the arguments name
 //! validate, render, ... one file per command
+//! trouble               how an error is shown
 //! lib                   runs the command and prints its error
 //! ```
 
@@ -43,6 +44,7 @@ mod render;
 mod subject;
 mod sweep;
 mod terrain;
+mod trouble;
 mod validate;
 
 use std::ffi::OsString;
@@ -50,7 +52,6 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
-use miette::{GraphicalReportHandler, GraphicalTheme};
 
 use crate::args::{Arguments, Command, Validate};
 
@@ -67,20 +68,28 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // `--help` and `--version` are not errors. Printing fails on a closed pipe only.
+            // `--help` and `--version` are not errors.
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
-            let _ = error.print();
-            return if asked { 0 } else { 2 };
+            trouble::print_usage(&error);
+            return code_after_writing(if asked { 0 } else { 2 });
         }
     };
-    match run(arguments, registry) {
+    let code = match run(arguments, registry) {
         Ok(Outcome::Fine) => 0,
         Ok(Outcome::Differs) => 1,
         Err(trouble) => {
-            console::complain(&render_trouble(&trouble));
+            console::complain_in_colour(&trouble::rendered(&trouble));
             2
         }
-    }
+    };
+    code_after_writing(code)
+}
+
+/// The exit code, which is 2 if the answer could not be written: then nobody has it.
+fn code_after_writing(code: u8) -> u8 {
+    let Some(error) = console::failed_write() else { return code };
+    console::complain(&format!("Error: standard output: cannot write: {error}\n"));
+    2
 }
 
 fn run(arguments: Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
@@ -122,19 +131,6 @@ pub fn commit() -> Option<&'static str> {
 pub fn build() -> String {
     let version = env!("CARGO_PKG_VERSION");
     commit().map_or(version.to_string(), |commit| format!("{version} {commit}"))
-}
-
-/// The message of an error: what is wrong, where, what was expected; for a scene file with the line and a caret.
-fn render_trouble(trouble: &Trouble) -> String {
-    let mut text = String::new();
-    let theme =
-        if console::in_colour() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
-    let rendered =
-        GraphicalReportHandler::new_themed(theme).with_links(false).render_report(&mut text, trouble);
-    if rendered.is_err() {
-        text = format!("{trouble}\n");
-    }
-    text
 }
 
 /// The README's example, compiled and run with the documentation tests.

@@ -43,6 +43,7 @@ mod error;
 mod exr;
 mod folder;
 mod growing_file;
+mod harmless;
 mod limits;
 mod named_array;
 mod npy;
@@ -57,6 +58,7 @@ pub use channels::{Channel, Channels, add_ray_sets, read_channels, read_listed_c
 pub use error::{Fault, FileError, Problem, shortened};
 pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map};
 pub use folder::{FolderError, begin_output_folder, create_folder};
+pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use limits::Limits;
 pub use named_array::{ArrayData, NamedArray, write_npz, write_zarr};

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use raypencil_files::write_atomically;
+use raypencil_files::{harmless, harmless_line, markdown_text, write_atomically};
 use raypencil_judge::{ListedDefect, Quantity, name_of};
 use raypencil_minimise::reduce_to_ray;
 use raypencil_pack::{PackError, write_pack};
@@ -93,7 +93,8 @@ fn readme(
     small: &Subject,
     place: Place,
 ) -> String {
-    let program = &report.candidate.name;
+    // The program names itself, and a scene is named by its file.
+    let program = markdown_text(&report.candidate.name);
     let faces = small.scene.mesh().faces().len();
     let of = subject.scene.mesh().faces().len();
     format!(
@@ -106,10 +107,10 @@ fn readme(
         at = wrong.place,
         quantity = name_of(wrong.item),
         words = wrong.words(),
-        what = wrong.what,
-        probe = probe_command(small, place),
-        name = subject.name,
+        what = harmless(&wrong.what),
+        probe = harmless_line(&probe_command(small, place)),
+        name = markdown_text(&subject.name),
         sha256 = scene_sha256(&subject.scene),
-        again = probe_command(subject, wrong.place),
+        again = harmless_line(&probe_command(subject, wrong.place)).replace('`', "'"),
     )
 }

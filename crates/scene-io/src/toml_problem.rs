@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 use thiserror::Error;
 
-use raypencil_files::shortened;
+use raypencil_files::{harmless_line, harmless_source, shortened};
 
 /// Maximum length of a line that is shown, and of the part of it that is marked, bytes.
 const MAX_SHOWN_BYTES: usize = 200;
@@ -51,7 +51,8 @@ impl TomlProblem {
         // A place too far to the right is not shown at all.
         let span = (start - line_start < MAX_SHOWN_BYTES)
             .then(|| SourceSpan::new(shown_start.into(), shown_end.saturating_sub(shown_start)));
-        let text = NamedSource::new(&file, shown);
+        // Shown on a terminal as it is. The marks count its bytes.
+        let text = NamedSource::new(harmless_line(&file), harmless_source(&shown));
         Self { file, line, column, message: shortened(message.into()), text, span }
     }
 

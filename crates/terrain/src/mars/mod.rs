@@ -253,6 +253,9 @@ impl MarsGround {
                 return Err(SceneError::new(field, value, expected));
             }
         }
+        if rocks.coverage > 0.0 && !rocks.decay().is_finite() {
+            return Err(SceneError::new("rock_coverage", rocks.coverage, "0, or 1e-300 to 0.4"));
+        }
         if let Some(gain) = roughness.octave_gains.iter().find(|gain| !(0.0..=100.0).contains(*gain)) {
             return Err(SceneError::new("octave_gains", gain, "0 to 100 each"));
         }
@@ -265,32 +268,32 @@ impl MarsGround {
     /// Refuses a ground with more faces than a file may have.
     fn check_size(&self) -> Result<(), SceneError> {
         let (extent, cells) = match &self.coarse {
-            None => {
-                let cells = (self.extent / self.post_spacing).ceil();
-                (DVec2::splat(self.extent), cells * cells)
-            }
+            // The real side: whole cells, two at least, so that it may be far longer than was asked for.
+            None => (self.extents(), f64::from(self.cells()) * f64::from(self.cells())),
             Some(coarse) => {
                 let finer = libm::exp2(f64::from(octaves(coarse.spacing.max_element(), self.post_spacing)));
                 (coarse.extent(), f64::from(coarse.columns - 1) * f64::from(coarse.rows - 1) * finer * finer)
             }
         };
         let most = format!("at most {MAX_FACES} faces in all");
-        if 2.0 * cells > MAX_FACES {
+        // Asked so that what is no number is refused, too.
+        let is_too_many = |faces: f64| !(faces <= MAX_FACES);
+        if is_too_many(2.0 * cells) {
             let found = format!("{} m: {} faces", self.post_spacing, 2.0 * cells);
             return Err(SceneError::new("post_spacing_m", found, most));
         }
         let most_fine = self.max_fine_faces(extent, cells);
-        if most_fine > MAX_FACES {
+        if is_too_many(most_fine) {
             let found = format!("{} m: up to {most_fine:.0} faces", self.fine_radius);
             return Err(SceneError::new("fine_radius_m", found, most));
         }
         let rocks = self.rocks.max_expected_faces(extent.x * extent.y);
-        if most_fine + rocks > MAX_FACES {
+        if is_too_many(most_fine + rocks) {
             let found = format!("{} m: up to {rocks:.0} faces of rocks", self.rocks.smallest);
             return Err(SceneError::new("rock_smallest_m", found, most));
         }
         let craters = self.craters.expected(extent.max_element());
-        if craters > MAX_CRATERS {
+        if !(craters <= MAX_CRATERS) {
             let found = format!("{} m: {craters:.0} craters", self.craters.smallest);
             return Err(SceneError::new(
                 "crater_smallest_m",
@@ -304,7 +307,7 @@ impl MarsGround {
         }
         let found = crevasses.draw(&self.field(), self.seed);
         let walls: f64 = found.iter().map(|crevasse| cut::faces_per_node() * crevasse.last() as f64).sum();
-        if most_fine + rocks + walls > MAX_FACES {
+        if is_too_many(most_fine + rocks + walls) {
             let found = format!("{}: {walls:.0} faces of walls", crevasses.count);
             return Err(SceneError::new("crevasses", found, most));
         }

@@ -387,6 +387,49 @@ fn a_finer_coarse_model_has_a_limit_of_faces() {
 }
 
 #[test]
+fn sizes_are_those_of_the_real_side_and_are_asked_before_the_work() {
+    // A cell of 360 m on 4 m: two cells, so 720 m, on which the smallest rocks would have more faces than a file may.
+    let long = MarsGround {
+        extent: 4.0,
+        post_spacing: 360.0,
+        rocks: Rocks { coverage: 0.3, smallest: 0.02, largest: 2.0 },
+        ..small("viking1", 3)
+    };
+    assert_eq!(long.extents(), DVec2::splat(720.0));
+    let error = long.validate().unwrap_err();
+    assert_eq!(error.field, "rock_smallest_m", "{error}");
+    // On a side of 4 m they fit.
+    MarsGround { post_spacing: 0.5, ..long.clone() }.validate().unwrap();
+    // The largest spacing of all, and craters.
+    let error = MarsGround { post_spacing: 1e4, ..long.clone() }.validate().unwrap_err();
+    assert_eq!(error.field, "rock_smallest_m", "{error}");
+    let rocks = Rocks { coverage: 0.0, ..long.rocks };
+    let craters = Craters { density: 0.5, smallest: 0.1, largest: 1.0 };
+    let error = MarsGround { post_spacing: 1e4, rocks, craters, ..long }.validate().unwrap_err();
+    assert_eq!(error.field, "crater_smallest_m", "{error}");
+}
+
+#[test]
+fn a_coverage_by_rocks_that_has_no_law_is_refused() {
+    let ground = |coverage: f64, smallest: f64| {
+        let rocks = Rocks { coverage, smallest, largest: 1.0 };
+        MarsGround { rocks, ..small("smooth", 3) }
+    };
+    // q = 1.79 + 0.152 / k is infinite below k = 8.5e-310, and with one size of rocks their number was infinity times 0.
+    for smallest in [0.1, 1.0] {
+        for coverage in [5e-324, 8e-310] {
+            let error = ground(coverage, smallest).validate().unwrap_err();
+            assert_eq!(error.field, "rock_coverage", "{error}");
+        }
+        // Just above it the law is whole: rocks of infinitely thin a share, so none.
+        let thin = ground(1e-300, smallest);
+        thin.validate().unwrap();
+        assert_eq!(thin.rock_diameters(), Vec::<f64>::new());
+        ground(0.0, smallest).validate().unwrap();
+    }
+}
+
+#[test]
 fn numbers_out_of_range_are_refused_by_name() {
     let base = || small("worst", 1);
     let refused = |mars: MarsGround| mars.build().unwrap_err().to_string();

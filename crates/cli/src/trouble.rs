@@ -1,0 +1,69 @@
+//! How an error is shown: with colours of our own, and without any that names or files bring along.
+
+use std::fmt;
+
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+use raypencil::io::harmless;
+
+use crate::console::{in_colour, note};
+
+/// An error whose words are harmless. A scene file's text was made so when the error was made, and keeps its marks.
+#[derive(Debug)]
+struct Shown<'a> {
+    words: String,
+    help: Option<String>,
+    error: &'a dyn Diagnostic,
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words)
+    }
+}
+
+impl std::error::Error for Shown<'_> {}
+
+impl Diagnostic for Shown<'_> {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.error.code()
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.error.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.error.labels()
+    }
+}
+
+/// The message of an error: what is wrong, where, what was expected; for a scene file with the line and a caret.
+pub(crate) fn rendered(error: &dyn Diagnostic) -> String {
+    let shown = Shown {
+        words: harmless(&error.to_string()).into_owned(),
+        help: error.help().map(|help| harmless(&help.to_string()).into_owned()),
+        error,
+    };
+    let theme = if in_colour() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let mut text = String::new();
+    let is_rendered =
+        GraphicalReportHandler::new_themed(theme).with_links(false).render_report(&mut text, &shown);
+    if is_rendered.is_err() {
+        text = format!("{shown}\n");
+    }
+    text
+}
+
+/// Prints what clap says: a help text to standard output, an error to standard error. An error repeats the arguments, so one
+/// with codes of terminals is shown without any colour.
+pub(crate) fn print_usage(error: &clap::Error) {
+    let plain = error.render().to_string();
+    match harmless(&plain) {
+        shown if shown == plain => note(error.print()),
+        shown => crate::console::complain(&shown),
+    }
+}
