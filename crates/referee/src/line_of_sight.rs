@@ -259,6 +259,10 @@ impl<'a> ExactLineOfSight<'a> {
 
     /// Whether `other` meets the segment from the point to the image plane.
     pub(crate) fn is_hidden_by(&self, other: &Face) -> bool {
+        // The point lies in its own plane, so the same triangle again never lies before it.
+        if other.corners == self.face.corners {
+            return false;
+        }
         let facing = self.sign(&Facing(other));
         if facing == Ordering::Equal {
             return false;

@@ -31,6 +31,8 @@ pub(crate) struct Neighbourhood<'a> {
     /// Faces whose triangles lie beside the square: the other sides of edges that cannot lie in the square either.
     beside: Vec<&'a Face>,
     edges: EdgeIndex,
+    /// Faces of which each has other corners; empty until [`Neighbourhood::find_distinct`].
+    pub(crate) distinct: Vec<usize>,
 }
 
 /// The other side of an edge.
@@ -58,6 +60,7 @@ impl<'a> Neighbourhood<'a> {
             bounds: Vec::with_capacity(16),
             beside: Vec::with_capacity(32),
             edges: EdgeIndex::default(),
+            distinct: Vec::new(),
         };
         near.gather(true);
         near
@@ -112,11 +115,17 @@ impl<'a> Neighbourhood<'a> {
     /// the face ids. Only known faces count; if one of them is met within the known range, these are the nearest of
     /// all.
     pub(crate) fn nearest_at(&self, at: [f64; 2]) -> Vec<usize> {
+        self.nearest_among(0..self.faces.len(), at)
+    }
+
+    /// The same among some faces.
+    fn nearest_among(&self, faces: impl Iterator<Item = usize>, at: [f64; 2]) -> Vec<usize> {
         let exact = OnceCell::new();
         let exact =
             || exact.get_or_init(|| ExactRay::new(self.sensor, Aim { dx: at[0], dy: at[1], ..self.aim }));
         let mut nearest: Vec<usize> = Vec::new();
-        for (index, [low, high]) in self.bounds.iter().enumerate() {
+        for index in faces {
+            let [low, high] = &self.bounds[index];
             let inside = low[0] <= at[0] && at[0] <= high[0] && low[1] <= at[1] && at[1] <= high[1];
             let forms = &self.faces[index];
             if !inside || !self.is_met(forms, at, exact) {
@@ -162,9 +171,20 @@ impl<'a> Neighbourhood<'a> {
         certain || forms.face.is_met_by(exact(), self.sensor.max_range())
     }
 
-    /// The range of a displaced ray, metres, or `None` for a miss. All faces must be known.
+    /// Finds the faces that are not the same triangle as one with a smaller id. The same triangle is met by the same rays at
+    /// the same ranges, and a thousand faces at one place would cost a million comparisons. All faces must be known.
+    pub(crate) fn find_distinct(&mut self) {
+        let triangle = |index: usize| self.faces[index].face.corners.map(key);
+        let mut order: Vec<usize> = (0..self.faces.len()).collect();
+        order.sort_by_key(|&index| (triangle(index), self.faces[index].face.id));
+        order.dedup_by_key(|index| triangle(*index));
+        order.sort_unstable();
+        self.distinct = order;
+    }
+
+    /// The range of a displaced ray, metres, or `None` for a miss. The distinct faces must be known.
     pub(crate) fn range_at(&self, at: [f64; 2]) -> Option<f64> {
-        let nearest = *self.nearest_at(at).first()?;
+        let nearest = *self.nearest_among(self.distinct.iter().copied(), at).first()?;
         let (range, doubt) = self.faces[nearest].range_at(&self.ray, at);
         // An f64 is far finer than the jumps searched for; otherwise the exact polynomials decide.
         if doubt < 1.0 / (1u64 << 30) as f64 {

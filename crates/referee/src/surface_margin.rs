@@ -54,6 +54,7 @@ impl Neighbourhood<'_> {
             return Margin::CAPPED;
         }
         self.extend_to_max_range();
+        self.find_distinct();
         let ends = self.ends();
         let mut witness = self.at_an_end(&ends, lo);
         if !is_tight(lo, witness) {
@@ -126,7 +127,7 @@ impl Neighbourhood<'_> {
     /// Places on the ends of surfaces: on edges without a second front, and where the plane or the range ends a face.
     fn ends(&mut self) -> Vec<SurfaceEnd> {
         let mut ends = Vec::new();
-        for index in 0..self.faces.len() {
+        for index in self.distinct.clone() {
             if self.faces[index].conditions().iter().any(|form| form.fails_within() >= 1.0) {
                 continue;
             }
@@ -301,6 +302,7 @@ mod tests {
         let sensor = MountedSensor::of(&scene, SensorId::Camera).expect("a camera");
         let mut near = Neighbourhood::new(&referee, &sensor, Aim { i: 4, j: 4, dx: 0.0, dy: 0.0 });
         near.extend_to_max_range();
+        near.find_distinct();
         near.jump_between([0.0; 2], [1.5, 0.0], lo)
     }
 

@@ -302,3 +302,42 @@ fn a_wall_under_the_ground_hides_no_post_behind_it() {
     // Where the ground and the post intersect nothing jumps, and the post ends farther away.
     assert_eq!(margins.surface.lo, 1.0);
 }
+
+/// The wall, `copies` times at one place.
+fn walls(copies: usize) -> Scene {
+    let wall = wall_scene();
+    let mesh = wall.mesh();
+    let faces = vec![mesh.faces()[0]; copies];
+    let many =
+        Mesh::new(mesh.origin(), mesh.vertices().to_vec(), faces, vec![0; copies], mesh.materials().to_vec());
+    Scene::new(
+        Arc::new(many.expect("a mesh")),
+        *wall.camera(),
+        wall.beams().to_vec(),
+        *wall.atmosphere(),
+        wall.flux_model(),
+    )
+    .expect("a scene")
+}
+
+/// A triangle that is there forty times has the margins of one; work that grew with the square of their number would grow
+/// with the cube of it here, and the test would not end.
+#[test]
+fn faces_at_one_place_have_the_margins_of_one() {
+    const COPIES: usize = 40;
+    let (one, many) = (walls(1), walls(COPIES));
+    let (one, many) = (Referee::new(&one), Referee::new(&many));
+    let mut ends = 0;
+    for i in 0..9 {
+        let (a, b) = (one.margins(SensorId::Camera, i, 4).unwrap(), many.margins(SensorId::Camera, i, 4).unwrap());
+        assert_eq!(a.face, b.face, "column {i}");
+        assert_eq!(a.surface, b.surface, "column {i}");
+        assert_eq!(a.verdict.faces.len() * COPIES, b.verdict.faces.len(), "column {i}");
+        ends += usize::from(b.surface.lo < 1.0);
+    }
+    // The column whose ray ends half a cell beside the wall's side, and the next one.
+    assert!(ends >= 2, "{ends}");
+    let sight = |referee: &Referee<'_>| referee.visibility(0, 0, 0, raypencil_referee::Displacement::ZERO);
+    assert_eq!(sight(&one), sight(&many));
+    assert!(sight(&many).unwrap().visible, "copies of a face hide each other");
+}
