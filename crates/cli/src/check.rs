@@ -5,9 +5,9 @@ use raypencil::cast::{
     CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
 };
 use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
-use raypencil::judge::Conventions;
+use raypencil::judge::{Conventions, JudgeShare};
 use raypencil::pack::{
-    check_input, check_json, check_pack_by, check_screen, input_json, input_screen, is_input_pack,
+    check_input, check_json, check_pack_verifying, check_screen, input_json, input_screen, is_input_pack,
     write_check, write_input_check,
 };
 
@@ -24,8 +24,10 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     }
     let spinner = Spinner::new();
     let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
+    let share = if command.verify { JudgeShare::All } else { JudgeShare::Sample };
+    let (pack, candidate) = (&command.pack, &command.candidate);
     let mut checked =
-        check_pack_by(&command.pack, &command.candidate, command.arithmetic, conventions, &spinner)?;
+        check_pack_verifying(pack, candidate, command.arithmetic, conventions, share, &spinner)?;
     // The sets of rays that the pack has besides, if there are any.
     let precision = checked.recorded.precision;
     let of_rays = CandidateConventions { miss: command.miss, ignores_faces: command.no_faces };

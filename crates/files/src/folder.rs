@@ -25,6 +25,20 @@ pub enum FolderError {
         /// The system's error.
         source: io::Error,
     },
+    /// Another run writes into the folder.
+    #[error("{}: another run is writing into it; expected another folder, or that run's end", path.display())]
+    InUse {
+        /// Path of the folder.
+        path: PathBuf,
+    },
+    /// The folder is a reference pack, which a run would mix with its files.
+    #[error("{}: it is a pack (it has {file}); expected another folder", path.display())]
+    IsPack {
+        /// Path of the folder.
+        path: PathBuf,
+        /// The file that makes it one.
+        file: &'static str,
+    },
     /// One of the files could not be written; the message names it.
     #[error(transparent)]
     File(#[from] FileError),

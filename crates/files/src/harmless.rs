@@ -68,7 +68,8 @@ mod tests {
     #[test]
     fn codes_are_replaced() {
         assert_eq!(harmless("caf\u{e9}\n\t\u{3c6}"), "caf\u{e9}\n\t\u{3c6}");
-        let codes = ["\u{1b}[2J", "\u{1b}[8m", "\u{7}", "\r", "\u{9b}2J", "\u{202e}", "\u{61c}", "\u{2028}", "\0"];
+        let codes =
+            ["\u{1b}[2J", "\u{1b}[8m", "\u{7}", "\r", "\u{9b}2J", "\u{202e}", "\u{61c}", "\u{2028}", "\0"];
         for code in codes {
             let first = code.chars().next().expect("a letter");
             assert!(!harmless(code).contains(first), "{code:?}");

@@ -8,6 +8,8 @@
 //! error                          FileError: the file, the place in it, what was found and what was expected
 //! limits, bytes                  how much a file may ask for, and reading one up to a limit
 //! atomic, folder, sha256         writing a file whole, output folders, digests
+//! output_folder                  one run at a time in a folder, and nothing of an earlier one left in it
+//! harmless                       texts of untrusted files, for terminals and Markdown
 //! growing_file                   a file or table that grows for a while and is seen only when it is complete
 //! values -> shape                cells as a file stores them, and the size that a header claims
 //! npy, pfm                       arrays of NumPy and portable float maps
@@ -47,6 +49,7 @@ mod harmless;
 mod limits;
 mod named_array;
 mod npy;
+mod output_folder;
 mod pfm;
 mod rays;
 mod sha256;
@@ -58,14 +61,15 @@ pub use channels::{Channel, Channels, add_ray_sets, read_channels, read_listed_c
 pub use error::{Fault, FileError, Problem, shortened};
 pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map};
 pub use folder::{FolderError, begin_output_folder, create_folder};
-pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
 pub use growing_file::{GrowingFile, NpyRows};
+pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
 pub use limits::Limits;
 pub use named_array::{ArrayData, NamedArray, write_npz, write_zarr};
 pub use npy::{
     ArrayNumber, Numbers, npy_from_bytes, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,
     write_npy_numbers,
 };
+pub use output_folder::OutputFolder;
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use rays::{RayArray, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};

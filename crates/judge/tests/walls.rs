@@ -549,7 +549,7 @@ fn light_that_just_misses_the_image_may_be_on_it_within_the_arithmetic() {
 fn a_ground_truth_is_held_to_the_sums_of_its_pencils() {
     let scene = walls(FluxModel::Radiometric);
     let right = GroundTruth::certified(&scene, &Silent);
-    assert_eq!(right.first_uncertified(), None);
+    assert_eq!(right.first_uncertified(JudgeShare::All).0, None);
     // A change of 2^-51 is within the roundings of a sum of two or more; one of 1e-9 is not, by either model.
     let pixel = right.answers().light[0].returns.pixel.as_ref().unwrap().at(2, 1).get().unwrap();
     let found = |is_other_model: bool, factor: f64| {
@@ -559,7 +559,7 @@ fn a_ground_truth_is_held_to_the_sums_of_its_pencils() {
         let image = image.as_mut().unwrap();
         let sum = image.at(pixel.i, pixel.j);
         image.set(pixel.i, pixel.j, sum * factor);
-        GroundTruth::of_answers(&scene, answers).first_uncertified()
+        GroundTruth::of_answers(&scene, answers).first_uncertified(JudgeShare::Sample).0
     };
     for is_other_model in [false, true] {
         assert_eq!(found(is_other_model, 1.0 + 2.0 * f64::EPSILON), None);

@@ -5,14 +5,17 @@ use std::path::{Path, PathBuf};
 use raypencil_diagnosis::{Diagnosis, diagnose};
 use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
 use raypencil_judge::{
-    Answers, Check, Conventions, GroundTruth, Item, Quantity, Recorded, RecordingError, check,
+    Answers, Check, Class, Conventions, GroundTruth, Item, JudgeShare, Quantity, Recorded, RecordingError,
+    UncertifiedAnswer, check,
 };
+use raypencil_referee::Referee;
 use raypencil_scene::{Place, Precision, Progress, Scene};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
 use crate::manifest::{FileRole, Manifest, PackKind};
 use crate::provenance::{ProvenanceError, note, precision_of};
+use crate::rays::{rays_name, rays_sha256};
 
 /// Why a candidate could not be checked against a pack.
 #[derive(Debug, thiserror::Error)]
@@ -67,8 +70,21 @@ pub struct Checked {
     pub exact: Answers,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
+    /// What of the pack was found to be what the scene gives.
+    pub verified: Verified,
     /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked.
     pub ray_sets: Vec<RaySetOutcome>,
+}
+
+/// What of a pack was verified. Anyone can change an answer and write the digests anew; the scene alone decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Verified {
+    /// Number of rays whose answers are the referee's, bit for bit.
+    pub answers: u64,
+    /// Number of rays.
+    pub of: u64,
+    /// Number of arrays of rays that are those of the scene, bit for bit.
+    pub rays: u64,
 }
 
 /// What became of a set of rays.
@@ -137,7 +153,7 @@ pub fn check_pack(
     check_pack_by(pack, candidate, precision, Conventions::STANDARD, progress)
 }
 
-/// The same for a candidate whose conventions are declared and may differ from those of `docs/formats/files.md`.
+/// The same for a candidate whose conventions are declared, and may differ from those of `docs/formats/files.md`.
 ///
 /// ```
 /// use std::path::Path;
@@ -165,6 +181,22 @@ pub fn check_pack_by(
     candidate: &Path,
     precision: Option<Precision>,
     conventions: Conventions,
+    progress: &dyn Progress,
+) -> Result<Checked, CheckError> {
+    check_pack_verifying(pack, candidate, precision, conventions, JudgeShare::Sample, progress)
+}
+
+/// The same, with the share of the pack's answers that are compared with the referee's. Each answer by which the candidate is
+/// wrong always is, and the rays are always compared with those of the scene.
+///
+/// # Errors
+/// As [`check_pack`]; answers that are not the referee's.
+pub fn check_pack_verifying(
+    pack: &Path,
+    candidate: &Path,
+    precision: Option<Precision>,
+    conventions: Conventions,
+    share: JudgeShare,
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
     progress.stage("reading the pack");
@@ -203,12 +235,37 @@ pub fn check_pack_by(
             read_answers(pack, &manifest, &scene)?
         }
     };
-    if let Some(uncertified) = truth.first_uncertified() {
-        let found =
-            format!("its answer to {}, {}, is not the referee's", uncertified.place, uncertified.part);
-        return Err(answers(found, "correctly rounded answers, as this version computes them"));
-    }
+    let uncertified = |found: UncertifiedAnswer| {
+        answers(
+            format!("its answer to {}, {}, is not the referee's", found.place, found.part),
+            "correctly rounded answers, as this version computes them",
+        )
+    };
+    progress.stage("comparing the pack with its scene");
+    let rays = verify_rays(pack, &manifest, &scene)?;
+    let computed = matches!(manifest.kind, PackKind::Blind | PackKind::Questions);
+    let of =
+        scene.sensors().filter_map(|sensor| scene.size(sensor)).map(|(w, h)| u64::from(w) * u64::from(h));
+    let of = of.sum();
+    // Answers that the referee has just given need not be asked again.
+    let answered = match if computed { (None, of) } else { truth.first_uncertified(share) } {
+        (Some(found), _) => return Err(uncertified(found)),
+        (None, asked) => asked,
+    };
     let check = check(&truth, &recorded, progress);
+    if !computed {
+        // A candidate must not be wrong by an answer that is wrong itself.
+        progress.stage("comparing the answers to wrong rays with the referee's");
+        for sensor in &check.sensors {
+            let wrong = sensor.differing.iter().filter(|ray| ray.class == Class::Defect);
+            let places: Vec<Place> =
+                wrong.map(|ray| Place { sensor: sensor.sensor, i: ray.i, j: ray.j }).collect();
+            if let Some(found) = truth.uncertified_among(sensor.sensor, &places) {
+                return Err(uncertified(found));
+            }
+        }
+    }
+    let verified = Verified { answers: answered, of, rays };
     let diagnosis = if check.passes() {
         None
     } else {
@@ -225,7 +282,30 @@ pub fn check_pack_by(
     };
     let is_blind = manifest.kind == PackKind::Blind;
     let ray_sets = Vec::new();
-    Ok(Checked { subject, recorded, check, diagnosis, exact, is_blind, ray_sets })
+    Ok(Checked { subject, recorded, check, diagnosis, exact, is_blind, verified, ray_sets })
+}
+
+/// Compares the arrays of rays of a pack with the rays of its scene, bit for bit; returns how many there are.
+fn verify_rays(pack: &Path, manifest: &Manifest, scene: &Scene) -> Result<u64, CheckError> {
+    let referee = Referee::new(scene);
+    let mut verified = 0;
+    for sensor in scene.sensors() {
+        let name = rays_name(sensor);
+        let Some(entry) = manifest.files.iter().find(|file| file.role == FileRole::Rays && file.path == name)
+        else {
+            continue;
+        };
+        let (_, own) = rays_sha256(&referee, scene, sensor)?;
+        if entry.sha256 != own {
+            return Err(CheckError::Answers {
+                pack: pack.to_path_buf(),
+                found: format!("{name} does not have the rays of {sensor} in scene.toml"),
+                expected: "origin and direction of each ray, correctly rounded".into(),
+            });
+        }
+        verified += 1;
+    }
+    Ok(verified)
 }
 
 /// Reads the answers of a pack that holds them, in f64.

@@ -50,7 +50,9 @@ mod write;
 
 pub use bench::{BENCH_BEAMS, benched, with_bench};
 pub use blind::{blind_scene, blind_subject};
-pub use check::{CheckError, Checked, RaySetOutcome, check_pack, check_pack_by};
+pub use check::{
+    CheckError, Checked, RaySetOutcome, Verified, check_pack, check_pack_by, check_pack_verifying,
+};
 pub use check_report::{
     check_json, check_page, check_screen, check_suite, items_not_given, not_given, rays_not_given,
     write_check,

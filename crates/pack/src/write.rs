@@ -158,7 +158,13 @@ fn write_files(
 ) -> Result<Manifest, PackError> {
     let scene = &subject.scene;
     create_folder(folder)?;
-    Manifest::remove_pack(folder)?;
+    // Written beside: an earlier pack stays whole until this one is.
+    let beside = tempfile::Builder::new()
+        .prefix(".raypencil-")
+        .suffix(".part")
+        .tempdir_in(folder)
+        .map_err(|error| FileError::io(folder, "write", error))?;
+    let (place, folder) = (folder, beside.path());
     progress.stage("writing the scene");
     write_resolved(folder.join("scene.toml"), scene, "terrain.glb")?;
     let mut files = vec![
@@ -189,7 +195,16 @@ fn write_files(
         clauses: Vec::new(),
         files,
     });
-    manifest.write(folder)?;
+    progress.stage("putting the pack in its place");
+    Manifest::remove_pack(place)?;
+    for file in &manifest.files {
+        let to = place.join(&file.path);
+        if let Some(parent) = to.parent() {
+            create_folder(parent)?;
+        }
+        std::fs::rename(folder.join(&file.path), &to).map_err(|error| FileError::io(&to, "write", error))?;
+    }
+    manifest.write(place)?;
     Ok(manifest)
 }
 

@@ -329,7 +329,8 @@ fn faces_at_one_place_have_the_margins_of_one() {
     let (one, many) = (Referee::new(&one), Referee::new(&many));
     let mut ends = 0;
     for i in 0..9 {
-        let (a, b) = (one.margins(SensorId::Camera, i, 4).unwrap(), many.margins(SensorId::Camera, i, 4).unwrap());
+        let (a, b) =
+            (one.margins(SensorId::Camera, i, 4).unwrap(), many.margins(SensorId::Camera, i, 4).unwrap());
         assert_eq!(a.face, b.face, "column {i}");
         assert_eq!(a.surface, b.surface, "column {i}");
         assert_eq!(a.verdict.faces.len() * COPIES, b.verdict.faces.len(), "column {i}");

@@ -32,6 +32,10 @@ pub(crate) struct Check {
     #[arg(long)]
     pub(crate) no_faces: bool,
 
+    /// Compare every answer of the pack with the referee's; without it a sample, and each by which a ray is wrong.
+    #[arg(long)]
+    pub(crate) verify: bool,
+
     /// Folder for report.html, junit.xml and check.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::answer::StatedReturn;
 use crate::judge::{Judge, JudgeShare};
 use crate::scene_answers::{Answers, Certified};
+use rayon::prelude::*;
 use raypencil_referee::Format;
 use raypencil_scene::{Hit, Pixel, Place, Progress, Return, Returns, Sampling, Scene, SensorId};
 
@@ -87,35 +88,49 @@ impl<'s> GroundTruth<'s> {
             .map(|image| image.as_ref().map_or(0.0, |image| image.at(i, j)))
     }
 
-    /// The first ray of a sample whose answer is not, bit for bit, the one that the referee gives now.
-    pub fn first_uncertified(&self) -> Option<UncertifiedAnswer> {
-        let referee = self.judge.referee();
-        let model = self.scene().flux_model();
+    /// The first ray of a sample, or of all, whose answer is not, bit for bit, the one that the referee gives now. The sums of
+    /// pixels are always looked at. The second number is how many rays were asked.
+    pub fn first_uncertified(&self, share: JudgeShare) -> (Option<UncertifiedAnswer>, u64) {
+        let is_asked = |place: &Place| share == JudgeShare::All || self.judge.samples(*place);
+        let mut asked = 0;
         for sensor in self.scene().sensors() {
             let (width, height) = self.scene().size(sensor).expect("a sensor of this scene");
-            let light = match sensor {
-                SensorId::Camera => None,
-                SensorId::Beam(beam) => referee.light(beam, Sampling::Centres).zip(Some(beam)),
-            };
             let places = (0..height).flat_map(|j| (0..width).map(move |i| Place { sensor, i, j }));
-            for place in places.filter(|place| self.judge.samples(*place)) {
-                let Place { i, j, .. } = place;
-                let own = referee.values(sensor, i, j).map(|hit| hit.in_format(Format::Double));
-                if self.hit(place) != own {
-                    return Some(UncertifiedAnswer { place, part: "what the ray meets" });
-                }
-                let Some((light, beam)) = &light else { continue };
-                let own = light.returned(i, j);
-                let [by_own, by_other] = [model, model.other()]
-                    .map(|model| own.map(|exact| exact.in_format(Format::Double, model)));
-                let stated = return_of(&self.answers.light[*beam].returns, i, j);
-                let flux = [by_own, by_other].map(|exact| exact.map_or(0.0, |exact| exact.flux));
-                if stated != by_own || self.flux(place) != flux {
-                    return Some(UncertifiedAnswer { place, part: "what comes back of the pencil" });
-                }
+            let places: Vec<Place> = places.filter(is_asked).collect();
+            asked += places.len() as u64;
+            let found = self.uncertified_among(sensor, &places);
+            if found.is_some() {
+                return (found, asked);
             }
         }
-        (0..self.scene().beams().len()).find_map(|beam| self.first_unlike_sum(beam))
+        ((0..self.scene().beams().len()).find_map(|beam| self.first_unlike_sum(beam)), asked)
+    }
+
+    /// The first of these rays of a sensor whose answer is not the one that the referee gives now.
+    pub fn uncertified_among(&self, sensor: SensorId, places: &[Place]) -> Option<UncertifiedAnswer> {
+        let referee = self.judge.referee();
+        let model = self.scene().flux_model();
+        let light = match sensor {
+            SensorId::Camera => None,
+            SensorId::Beam(beam) => referee.light(beam, Sampling::Centres).zip(Some(beam)),
+        };
+        let fault = |place: &Place| {
+            let place = *place;
+            let Place { i, j, .. } = place;
+            let own = referee.values(sensor, i, j).map(|hit| hit.in_format(Format::Double));
+            if self.hit(place) != own {
+                return Some(UncertifiedAnswer { place, part: "what the ray meets" });
+            }
+            let (light, beam) = light.as_ref()?;
+            let own = light.returned(i, j);
+            let [by_own, by_other] =
+                [model, model.other()].map(|model| own.map(|exact| exact.in_format(Format::Double, model)));
+            let stated = return_of(&self.answers.light[*beam].returns, i, j);
+            let flux = [by_own, by_other].map(|exact| exact.map_or(0.0, |exact| exact.flux));
+            let differs = stated != by_own || self.flux(place) != flux;
+            differs.then_some(UncertifiedAnswer { place, part: "what comes back of the pencil" })
+        };
+        places.par_iter().find_map_first(fault)
     }
 
     /// The first pixel whose flux is not, to rounding, the sum of its pencils'.

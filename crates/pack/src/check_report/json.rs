@@ -75,6 +75,9 @@ pub fn check_json(checked: &Checked) -> String {
         "arithmetic": arithmetic(recorded.precision),
         "scene": { "name": subject.name, "sha256": subject.sha256 },
         "blind": is_blind,
+        "verified": {
+            "answers": checked.verified.answers, "of": checked.verified.of, "ray_files": checked.verified.rays
+        },
         "compared": check.compared(),
         "classes": class_counts_json(&all, &CHECK_CLASSES),
         "diagnosis": diagnosis_json,

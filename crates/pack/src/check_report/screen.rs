@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use raypencil_judge::{Class, Largest, listed_defects, name_of, unit_of};
 use raypencil_report::{Align, Table, count, quantity};
 
-use crate::check::Checked;
+use crate::check::{Checked, Verified};
 use crate::check_report::verdict::{
     MAX_SHOWN_DEFECTS, arithmetic, half_precision, headline, items_not_given, listed_totals, not_given, sign,
 };
@@ -91,9 +91,25 @@ pub fn check_screen(checked: &Checked) -> String {
         let _ = writeln!(text, "    {}", one.what);
         let _ = writeln!(text, "    {}", checked.repro(one.place));
     }
+    let _ = writeln!(text, "{}", verified_words(checked.verified));
     let _ = writeln!(text, "{} {}", sign(checked), headline(checked));
     if let Some(why) = checked.why() {
         let _ = writeln!(text, "  Why: {why}.");
     }
     text
+}
+
+/// What of the pack was verified, in a sentence.
+fn verified_words(Verified { answers, of, rays }: Verified) -> String {
+    let all = if answers == of { "all " } else { "" };
+    let hint = if answers == of { "" } else { " (all: --verify)" };
+    let rays = match rays {
+        0 => "it holds no arrays of rays".to_string(),
+        _ => "its rays are those of its scene".into(),
+    };
+    format!(
+        "The pack: {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays}.",
+        count(answers),
+        count(of)
+    )
 }

@@ -12,7 +12,7 @@ use crate::manifest::path::resolve_inside;
 const MAX_MANIFEST_BYTES: u64 = 1 << 24;
 
 /// Reads the manifest of `folder` and checks its consistency.
-fn read_manifest(folder: &Path) -> Result<Manifest, FileError> {
+pub(super) fn read_manifest(folder: &Path) -> Result<Manifest, FileError> {
     let path = folder.join(MANIFEST_NAME);
     if !path.exists() {
         let expected = format!("a folder with {MANIFEST_NAME} (is this a pack?)");

@@ -6,6 +6,7 @@ use raypencil_files::{FileError, file_sha256_hex, write_atomically};
 
 use crate::manifest::document::{FileRole, MANIFEST_NAME, Manifest, ManifestFile, pack_fault};
 use crate::manifest::path::resolve_inside;
+use crate::manifest::read::read_manifest;
 
 impl ManifestFile {
     /// The entry of an existing file, `path` being relative to `folder`: size and digest, without type and channels.
@@ -42,19 +43,27 @@ impl Manifest {
         remove(&folder.as_ref().join(MANIFEST_NAME))
     }
 
-    /// Removes an earlier pack from `folder`: first its manifest, then the files that a readable manifest lists. Files
-    /// out of the folder stay.
+    /// Removes an earlier pack from `folder`: first its manifest, then the files that the manifest lists, as far as they are
+    /// as it says. A file that was changed is not the pack's, and stays; so does what is out of the folder.
     ///
     /// # Errors
-    /// A file that cannot be removed.
+    /// A file that cannot be removed; a `manifest.json` that is no regular file, or is none of a pack.
     pub fn remove_pack(folder: impl AsRef<Path>) -> Result<(), FileError> {
         let folder = folder.as_ref();
         let path = folder.join(MANIFEST_NAME);
-        let earlier = std::fs::read(&path).ok().and_then(|text| serde_json::from_slice::<Self>(&text).ok());
+        match std::fs::symlink_metadata(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(FileError::io(&path, "read", error)),
+            Ok(_) => {}
+        }
+        let earlier = read_manifest(folder)?;
         Self::withdraw(folder)?;
-        for file in earlier.iter().flat_map(|manifest| &manifest.files) {
+        for entry in &earlier.files {
             // A file that no longer exists cannot be resolved, and needs no removal.
-            if let Ok(file) = resolve_inside(folder, &file.path) {
+            let Ok(file) = resolve_inside(folder, &entry.path) else { continue };
+            let is_own =
+                file_sha256_hex(&file).is_ok_and(|found| found == (entry.bytes, entry.sha256.clone()));
+            if is_own {
                 remove(&file)?;
             }
         }

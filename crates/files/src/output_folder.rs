@@ -1,0 +1,222 @@
+//! The output folder of a run: one run at a time, nothing of an earlier run beside the files of this one, and nothing removed
+//! that no run has made.
+//!
+//! While a run writes, its folder has a locked file. When the run ends, it leaves the list of the files that it made, in the
+//! format of `sha256sum`. The next run removes those that it does not make again and that are as the list says: a file that was
+//! changed since, or put there by somebody else, stays.
+
+use std::collections::BTreeMap;
+use std::fs::{File, Metadata, TryLockError};
+use std::io;
+use std::path::{Component, Path, PathBuf};
+use std::time::SystemTime;
+
+use crate::atomic::write_atomically;
+use crate::bytes;
+use crate::error::FileError;
+use crate::folder::{FolderError, create_folder};
+use crate::sha256::file_sha256_hex;
+
+/// Name of the file that is locked while a run writes.
+const LOCK_NAME: &str = ".raypencil-lock";
+
+/// Name of the list of files that a run has made.
+const MADE_NAME: &str = ".raypencil-made";
+
+/// Maximum size of that list, bytes.
+const MAX_MADE_BYTES: u64 = 1 << 26;
+
+/// Depth of folders below the output folder that are looked at.
+const MAX_DEPTH: usize = 6;
+
+/// Files by which a folder is a pack.
+const PACK_NAMES: [&str; 3] = ["manifest.json", "raypack.json", "input.json"];
+
+/// What tells whether a file was written again: a file that is written anew has another time, and mostly another size.
+type Stamp = (u64, Option<SystemTime>, u64);
+
+/// An output folder that a run writes into.
+///
+/// ```
+/// use raypencil_files::{OutputFolder, write_atomically};
+///
+/// let parent = tempfile::tempdir()?;
+/// let folder = parent.path().join("out");
+/// let run = |beams: usize| -> Result<(), Box<dyn std::error::Error>> {
+///     let output = OutputFolder::begin(&folder)?;
+///     // While it writes, nobody else does.
+///     assert!(OutputFolder::begin(&folder).is_err());
+///     for beam in 0..beams {
+///         write_atomically(folder.join(format!("beam-{beam}.exr")), |file| writeln!(file, "{beam}"))?;
+///     }
+///     Ok(output.finish()?)
+/// };
+/// run(3)?;
+/// std::fs::write(folder.join("notes.txt"), "mine")?;
+/// run(2)?;
+/// assert!(folder.join("beam-1.exr").exists() && folder.join("notes.txt").exists());
+/// // Of a beam that this run does not have.
+/// assert!(!folder.join("beam-2.exr").exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct OutputFolder {
+    folder: PathBuf,
+    /// Locked until the end; `None` on a file system without locks.
+    lock: Option<File>,
+    /// Files that were there when the run began.
+    before: BTreeMap<PathBuf, Stamp>,
+    /// Files that an earlier run has made, with their digests.
+    earlier: Vec<(PathBuf, String)>,
+}
+
+impl OutputFolder {
+    /// Creates the folder where it is missing, locks it, and removes what a run that was killed has left half-written.
+    ///
+    /// # Errors
+    /// A folder that cannot be written, into which another run is writing, or that is a pack.
+    pub fn begin(folder: &Path) -> Result<Self, FolderError> {
+        if let Some(name) = PACK_NAMES.iter().find(|name| folder.join(name).exists()) {
+            return Err(FolderError::IsPack { path: folder.to_path_buf(), file: name });
+        }
+        Self::begin_any(folder)
+    }
+
+    /// The same for a folder that may be a pack.
+    ///
+    /// # Errors
+    /// As [`OutputFolder::begin`].
+    pub fn begin_any(folder: &Path) -> Result<Self, FolderError> {
+        create_folder(folder)?;
+        let lock = lock(folder)?;
+        let mut output =
+            Self { folder: folder.to_path_buf(), lock, before: BTreeMap::new(), earlier: Vec::new() };
+        output.before = files_below(folder, &mut |part| {
+            // It has the name of a half-written file, and no run that could be writing it is left.
+            let _ = if part.is_dir() { std::fs::remove_dir_all(part) } else { std::fs::remove_file(part) };
+        });
+        output.earlier = made_earlier(&folder.join(MADE_NAME));
+        Ok(output)
+    }
+
+    /// Removes the files of an earlier run that this one has not made again, and lists its own.
+    ///
+    /// # Errors
+    /// A file that cannot be removed, read or written.
+    pub fn finish(self) -> Result<(), FolderError> {
+        let now = files_below(&self.folder, &mut |_| {});
+        let is_as_before =
+            |name: &PathBuf| self.before.get(name).is_some_and(|stamp| now.get(name) == Some(stamp));
+        for (name, sha256) in self.earlier.iter().filter(|(name, _)| is_as_before(name)) {
+            let path = self.folder.join(name);
+            if file_sha256_hex(&path).is_ok_and(|(_, found)| found == *sha256) {
+                std::fs::remove_file(&path)
+                    .map_err(|source| FolderError::RemoveEarlier { path: path.clone(), source })?;
+                // Its folder too, if that was the last file.
+                let inner = path.parent().filter(|parent| *parent != self.folder);
+                inner.map(std::fs::remove_dir);
+            }
+        }
+        let mut list = String::new();
+        for name in now.keys().filter(|name| !is_as_before(name)) {
+            let Some(text) = name.to_str().filter(|text| !text.contains('\n')) else { continue };
+            let path = self.folder.join(name);
+            let (_, sha256) = file_sha256_hex(&path).map_err(|error| FileError::io(&path, "read", error))?;
+            list += &format!("{sha256}  {text}\n");
+        }
+        write_atomically(self.folder.join(MADE_NAME), |file| file.write_all(list.as_bytes()))?;
+        Ok(())
+    }
+}
+
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        if self.lock.take().is_some() {
+            // Removed while it is locked, so that nobody's lock is removed.
+            let _ = std::fs::remove_file(self.folder.join(LOCK_NAME));
+        }
+    }
+}
+
+/// Locks a folder.
+fn lock(folder: &Path) -> Result<Option<File>, FolderError> {
+    let path = folder.join(LOCK_NAME);
+    // The file may vanish between its opening and its locking, when another run ends: then it is opened again.
+    for _ in 0..100 {
+        // What is no file is not opened: a pipe would wait for its other end.
+        if std::fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
+            break;
+        }
+        let file = File::options()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(&path)
+            .map_err(|source| FolderError::Create { path: folder.to_path_buf(), source })?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => break,
+            // A file system without locks.
+            Err(TryLockError::Error(_)) => {
+                let _ = std::fs::remove_file(&path);
+                return Ok(None);
+            }
+        }
+        let is_same = |there: Metadata| file.metadata().is_ok_and(|mine| identity(&mine) == identity(&there));
+        if std::fs::symlink_metadata(&path).is_ok_and(is_same) {
+            return Ok(Some(file));
+        }
+    }
+    Err(FolderError::InUse { path: folder.to_path_buf() })
+}
+
+/// What tells two files apart; the same for all where the system does not say.
+fn identity(metadata: &Metadata) -> u64 {
+    #[cfg(unix)]
+    return std::os::unix::fs::MetadataExt::ino(metadata);
+    #[cfg(not(unix))]
+    return u64::from(metadata.is_dir());
+}
+
+/// The regular files below a folder, by their paths in it, without those of this module. Calls `part` for each half-written
+/// file or folder of a run. Links are not followed.
+fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, Stamp> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![(PathBuf::new(), 0)];
+    while let Some((inner, depth)) = folders.pop() {
+        let Ok(entries) = std::fs::read_dir(folder.join(&inner)) else { continue };
+        for entry in entries.filter_map(io::Result::ok) {
+            let file_name = entry.file_name();
+            let text = file_name.to_string_lossy();
+            let Ok(metadata) = entry.path().symlink_metadata() else { continue };
+            let name = inner.join(&file_name);
+            if text.starts_with(".raypencil-") {
+                if text.ends_with(".part") {
+                    part(&entry.path());
+                }
+            } else if metadata.is_dir() && depth < MAX_DEPTH {
+                folders.push((name, depth + 1));
+            } else if metadata.is_file() {
+                found.insert(name, (metadata.len(), metadata.modified().ok(), identity(&metadata)));
+            }
+        }
+    }
+    found
+}
+
+/// The list of an earlier run: paths that stay in the folder, with digests. Anything else in it is ignored.
+fn made_earlier(path: &Path) -> Vec<(PathBuf, String)> {
+    let Ok(text) = bytes::read_file(path, MAX_MADE_BYTES) else { return Vec::new() };
+    let text = String::from_utf8_lossy(&text);
+    let line = |line: &str| {
+        let (sha256, name) = line.split_once("  ")?;
+        let name = PathBuf::from(name);
+        let stays = name.components().all(|part| matches!(part, Component::Normal(_)));
+        (stays && sha256.len() == 64).then(|| (name, sha256.to_string()))
+    };
+    text.lines().filter_map(line).collect()
+}
+
+#[cfg(test)]
+#[path = "../tests/unit/output_folder.rs"]
+mod tests;

@@ -1,0 +1,134 @@
+//! Output folders of runs that meet, that are killed, and that find what others have put there.
+
+use super::*;
+use tempfile::TempDir;
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        files_below(folder, &mut |_| {}).keys().map(|name| name.display().to_string()).collect();
+    names.sort();
+    names
+}
+
+/// A run that writes these files.
+fn run(folder: &Path, files: &[&str]) {
+    let output = OutputFolder::begin(folder).unwrap();
+    for name in files {
+        let path = folder.join(name);
+        create_folder(path.parent().unwrap()).unwrap();
+        write_atomically(path, |file| file.write_all(name.as_bytes())).unwrap();
+    }
+    output.finish().unwrap();
+}
+
+#[test]
+fn only_what_a_run_has_made_is_removed() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("mine.txt"), "mine").unwrap();
+    run(folder, &["a", "b", "maps/c", "maps/d"]);
+    // One file was changed by hand, and one was put beside them.
+    std::fs::write(folder.join("b"), "changed").unwrap();
+    std::fs::write(folder.join("maps/e"), "e").unwrap();
+    run(folder, &["a", "maps/c"]);
+    assert_eq!(names(folder), ["a", "b", "maps/c", "maps/e", "mine.txt"]);
+    // An empty folder of its own goes too, and a third run knows what the second made.
+    std::fs::remove_file(folder.join("maps/e")).unwrap();
+    run(folder, &["z"]);
+    assert_eq!(names(folder), ["b", "mine.txt", "z"]);
+    assert!(!folder.join("maps").exists());
+    // Nothing but the list is left of the runs themselves.
+    assert!(!folder.join(LOCK_NAME).exists());
+}
+
+#[test]
+fn a_file_that_is_made_again_with_the_same_content_stays() {
+    let folder = TempDir::new().unwrap();
+    run(folder.path(), &["a"]);
+    run(folder.path(), &["a"]);
+    run(folder.path(), &["a"]);
+    assert_eq!(names(folder.path()), ["a"]);
+}
+
+#[test]
+fn a_run_that_fails_leaves_the_earlier_files() {
+    let folder = TempDir::new().unwrap();
+    run(folder.path(), &["a", "b"]);
+    drop(OutputFolder::begin(folder.path()).unwrap());
+    assert_eq!(names(folder.path()), ["a", "b"]);
+    run(folder.path(), &["a"]);
+    assert_eq!(names(folder.path()), ["a"]);
+}
+
+#[test]
+fn two_runs_do_not_write_into_one_folder() {
+    let folder = TempDir::new().unwrap();
+    let first = OutputFolder::begin(folder.path()).unwrap();
+    let error = OutputFolder::begin(folder.path()).unwrap_err().to_string();
+    assert!(error.contains("another run is writing into it"), "{error}");
+    first.finish().unwrap();
+    drop(OutputFolder::begin(folder.path()).unwrap());
+    // The lock of a run that was killed is none.
+    std::fs::write(folder.path().join(LOCK_NAME), "").unwrap();
+    drop(OutputFolder::begin(folder.path()).unwrap());
+}
+
+#[test]
+fn what_a_killed_run_has_left_half_written_is_removed() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    std::fs::create_dir_all(folder.join("maps/.raypencil-xyz.part")).unwrap();
+    for name in [".raypencil-abc.part", "maps/.raypencil-def.part", "maps/.raypencil-xyz.part/a", "my.part"] {
+        std::fs::write(folder.join(name), "half").unwrap();
+    }
+    run(folder, &["a"]);
+    assert_eq!(names(folder), ["a", "my.part"]);
+    assert!(
+        !folder.join(".raypencil-abc.part").exists() && !folder.join("maps/.raypencil-def.part").exists()
+    );
+    assert!(!folder.join("maps/.raypencil-xyz.part").exists());
+}
+
+#[test]
+fn a_pack_is_no_output_folder() {
+    for name in PACK_NAMES {
+        let folder = TempDir::new().unwrap();
+        std::fs::write(folder.path().join(name), "{}").unwrap();
+        let error = OutputFolder::begin(folder.path()).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("another folder"), "{error}");
+        drop(OutputFolder::begin_any(folder.path()).unwrap());
+    }
+}
+
+#[test]
+fn a_planted_list_removes_nothing_that_is_not_as_it_says() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("out");
+    create_folder(&folder).unwrap();
+    std::fs::write(parent.path().join("outside"), "x").unwrap();
+    std::fs::write(folder.join("inside"), "x").unwrap();
+    let x = file_sha256_hex(&folder.join("inside")).unwrap().1;
+    let other = "0".repeat(64);
+    let outside = parent.path().join("outside").display().to_string();
+    let list = format!("{x}  ../outside\n{x}  {outside}\n{other}  inside\nrubbish\n\u{fffd}\n");
+    std::fs::write(folder.join(MADE_NAME), list).unwrap();
+    run(&folder, &["a"]);
+    assert_eq!(names(&folder), ["a", "inside"]);
+    assert!(parent.path().join("outside").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_links_are_neither_waited_for_nor_followed() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let pipe = |name: &str| {
+        assert!(std::process::Command::new("mkfifo").arg(folder.join(name)).status().unwrap().success());
+    };
+    pipe(MADE_NAME);
+    std::os::unix::fs::symlink("/", folder.join("root")).unwrap();
+    run(folder, &["a"]);
+    assert_eq!(names(folder), ["a"]);
+    pipe(LOCK_NAME);
+    assert!(OutputFolder::begin(folder).is_err());
+}
