@@ -6,9 +6,10 @@
 //! ```text
 //! gltf  limits, container, json               the chunks of a GLB, and its JSON as far as it can be trusted
 //!       buffers -> accessors -> primitives    bytes, typed numbers, triangles
-//!       nodes, materials -> assemble          where each mesh stands, and one list of vertices and faces
+//!       placement -> nodes                    transforms in double precision, and where each mesh stands
+//!       nodes, materials -> assemble          one list of vertices and faces
 //!       stated_origin -> read                 a mesh with its scene origin
-//!       placement -> exact                    triangles in the axes of the file, in double precision
+//!       exact                                 triangles in the axes of the file, in double precision
 //!       write                                 a mesh to GLB
 //! dem   tags -> blocks                        tags of a TIFF, and the samples in its strips or tiles
 //!       registration -> georeference          what a pixel is, and where pixels are on the map

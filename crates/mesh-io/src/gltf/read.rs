@@ -9,7 +9,6 @@ use raypencil_scene::Mesh;
 use crate::gltf::assemble::{Parts, assemble};
 use crate::gltf::buffers::Buffers;
 use crate::gltf::limits::MAX_FILE_BYTES;
-use crate::gltf::placement::Placement;
 use crate::gltf::{container, json, materials, nodes, stated_origin};
 
 /// Reflectivity of materials that state none. CHOICE: bright Martian dust reflects about this much in the near
@@ -98,7 +97,7 @@ fn parse(
     let container = container::split(bytes).map_err(in_file)?;
     let root = json::root(container.json).map_err(in_file)?;
     let mut buffers = Buffers::new(&root, folder, container.bin);
-    let nodes = nodes::placed_nodes(&root, |_, node| Placement::rounded(node)).map_err(in_file)?;
+    let nodes = nodes::placed_nodes(&root, container.json).map_err(in_file)?;
     let materials = materials::read(&root, container.json, reflectivity).map_err(in_file)?;
     let stated = match kind {
         Vertices::Global => stated_origin::origin(&root, &nodes),
