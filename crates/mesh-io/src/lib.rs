@@ -49,7 +49,7 @@ pub mod triangles;
 
 pub use dem::{Dem, Registration, dem_from_bytes, read_dem, write_geotiff};
 pub use gltf::{
-    DEFAULT_REFLECTIVITY, Vertices, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
+    DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
     write_terrain_glb,
 };
 pub use triangles::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};

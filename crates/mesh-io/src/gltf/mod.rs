@@ -19,5 +19,6 @@ mod stated_origin;
 mod write;
 
 pub(crate) use exact::exact_triangles;
+pub use limits::MAX_BUFFER_FILES_BYTES;
 pub use read::{DEFAULT_REFLECTIVITY, Vertices, load_mesh, mesh_from_bytes, mesh_of_offsets, read_mesh};
 pub use write::{glb_bytes, write_glb, write_terrain_glb};

@@ -20,6 +20,12 @@ const MAX_COORDINATE: f64 = 1e12;
 
 /// Loads a `.glb` or `.gltf` terrain. Materials that state no reflectivity get [`DEFAULT_REFLECTIVITY`].
 ///
+/// The axes of glTF are y up: (x, y, z) of the file becomes (x, -z, y). The unit is the metre. Transforms of nodes are
+/// read and composed in double precision.
+///
+/// Limits: 1 GiB for the file, [`MAX_BUFFER_FILES_BYTES`](crate::MAX_BUFFER_FILES_BYTES) for all files of buffers beside it,
+/// each read once; 2^25 faces and vertices in all instances; 2^19 objects in the JSON.
+///
 /// # Errors
 /// Names the file and the accessor, node, buffer or line of JSON that is wrong.
 pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, FileError> {

@@ -35,6 +35,8 @@ pub struct TriangleFile {
 /// corner; [`read_triangles`] tells which polygon a face belongs to. The corners of STL become one vertex if they have
 /// the same three numbers. A file may have no faces.
 ///
+/// Limits: 1 GiB for each file; of PLY 256 elements, each of at most 1024 properties.
+///
 /// `path` is a file; or a folder with `vertices.npy` and `faces.npy`; or one of two files whose names end with these;
 /// or `rock` for `rock.vertices.npy` and `rock.faces.npy`, also with `_` or `-` for the dot.
 ///
