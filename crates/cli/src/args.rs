@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use raypencil::campaign::{PartName, Shard};
 use raypencil::harness::MapFormat;
-use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, Setting, quoted};
+use raypencil::io::{DEFAULT_REFLECTIVITY, Overrides, Setting, UpAxis, quoted};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::sweep::{Axis, Chart, Task};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
 
 use crate::parsers::{
     axis, chart, class, flux_model, judge_share, map_format, numbers, pair, part_name, percent, precision,
-    ray, record, rule, setting, shard, switch, task, threshold,
+    ray, record, rule, setting, shard, switch, task, threshold, up_axis,
 };
 
 /// Simulates a Mars rover's structured-light vision system with two independent renderers and compares every ray.
@@ -67,7 +67,8 @@ pub(crate) enum Command {
 /// The scene, and what is changed in it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain .glb or .gltf, or an elevation model .tif.
+    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain (.glb, .gltf, .stl, .obj, .ply), or an
+    /// elevation model .tif.
     #[arg(value_name = "SCENE", default_value = "pyramids")]
     pub(crate) scene: String,
 
@@ -373,7 +374,8 @@ pub(crate) struct CampaignRun {
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: Shard,
 
-    /// Folder with scenes of your own (.toml), terrains (.glb, .gltf) or elevation models (.tif), in place of random ones.
+    /// Folder with scenes of your own (.toml), terrains (.glb, .gltf, .stl, .obj, .ply) or elevation models (.tif), in place
+    /// of random ones.
     #[arg(long, value_name = "DIR", conflicts_with = "terrains")]
     pub(crate) scenes: Option<PathBuf>,
 
@@ -447,7 +449,8 @@ pub(crate) enum SweepCommand {
 
 #[derive(Debug, Args)]
 pub(crate) struct SweepRun {
-    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain .glb or .gltf, or an elevation model .tif.
+    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain (.glb, .gltf, .stl, .obj, .ply), or an
+    /// elevation model .tif.
     #[arg(value_name = "SCENE", default_value = "pyramids")]
     pub(crate) scene: String,
 
@@ -665,7 +668,8 @@ pub(crate) struct Diff {
     pub(crate) shared_only: bool,
 
     /// The scene of both recordings. The referee then rules on each cell that differs by more than is allowed, and a
-    /// channel fails only if a side is wrong. A built-in terrain, a scene .toml, .glb, .gltf or .tif.
+    /// channel fails only if a side is wrong. A built-in terrain, a scene .toml, a terrain (.glb, .gltf,
+    /// .stl, .obj, .ply) or a .tif.
     #[arg(long, value_name = "SCENE")]
     pub(crate) scene: Option<String>,
 
@@ -686,7 +690,7 @@ pub(crate) struct Diff {
 pub(crate) enum TerrainCommand {
     /// Generate a Mars-like terrain with relief, rocks, craters and crevasses.
     Generate(TerrainGenerate),
-    /// Convert an elevation model (GeoTIFF) to a GLB terrain.
+    /// Convert an elevation model (GeoTIFF) or a mesh (STL, OBJ, PLY, glTF) to a GLB terrain.
     Import(TerrainImport),
     /// Report the faults of a mesh, and repair those with only one possible repair. Exit code 1: the mesh has faults.
     Inspect(TerrainInspect),
@@ -694,7 +698,7 @@ pub(crate) enum TerrainCommand {
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainInspect {
-    /// A terrain .glb or .gltf, a scene .toml, or a built-in terrain (pyramids, facets).
+    /// A terrain (.glb, .gltf, .stl, .obj, .ply), a scene .toml, or a built-in terrain (pyramids, facets).
     #[arg(value_name = "MESH")]
     pub(crate) mesh: String,
 
@@ -758,9 +762,17 @@ pub(crate) struct TerrainGenerate {
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainImport {
-    /// A GeoTIFF with one band, in metres.
-    #[arg(value_name = "DEM")]
-    pub(crate) dem: PathBuf,
+    /// An elevation model: a GeoTIFF with one band, in metres. Or a mesh: .stl, .obj, .ply, .glb or .gltf.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    /// Axis of a mesh that points up. Without it: y for glTF, as its specification says, z for STL, OBJ and PLY.
+    #[arg(long, value_name = "AXIS", value_parser = up_axis())]
+    pub(crate) up: Option<UpAxis>,
+
+    /// Metres for each unit of a mesh: 0.001 if the file is in millimetres. Without it: 1.
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
+    pub(crate) scale: Option<f64>,
 
     /// Import only the posts in this window: x and y of its lower left corner, width and height, metres of the map.
     #[arg(long, value_name = "X,Y,W,H", value_parser = numbers::<4>, allow_hyphen_values = true)]
@@ -770,7 +782,7 @@ pub(crate) struct TerrainImport {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
 
-    /// Reflectivity of the terrain, 0 to 1.
+    /// Reflectivity of the terrain, 0 to 1; in glTF, of the materials that state none.
     #[arg(long, value_name = "R", default_value_t = DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
     pub(crate) reflectivity: f64,
 

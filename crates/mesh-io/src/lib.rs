@@ -1,4 +1,5 @@
-//! Terrain in files: glTF, GLB and GeoTIFF, in and out. Triangles of any mesh in glTF, STL, OBJ, PLY and NPY, in.
+//! Terrain in files: glTF, GLB and GeoTIFF, in and out; STL, OBJ and PLY, in. Triangles of any mesh in glTF, STL, OBJ, PLY and
+//! NPY, in.
 //!
 //! A reader checks every reference, length and number of a file before it uses it, and every size against the length of
 //! the file before it asks for memory. An error names the file, the place in it, what was found and what was expected.
@@ -19,6 +20,7 @@
 //!       stl, obj, npy_pair                    a format each
 //!       ply: header -> numbers                elements and types, and the numbers of either kind
 //!       read                                  which format a file has, and triangles as `f64`
+//! file_frame -> terrain                       the axes and the unit of a mesh file, and terrain from any of them
 //! ```
 //!
 //! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md`. Sources: glTF 2.0
@@ -44,14 +46,18 @@
 //! ```
 
 pub mod dem;
+mod file_frame;
 pub mod gltf;
+mod terrain;
 pub mod triangles;
 
 pub use dem::{Dem, Registration, dem_from_bytes, read_dem, write_geotiff};
+pub use file_frame::{FileFrame, SCALE_RANGE, UpAxis};
 pub use gltf::{
-    DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
-    write_terrain_glb,
+    DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes,
+    mesh_of_offsets, write_glb, write_terrain_glb,
 };
+pub use terrain::{load_terrain, read_terrain, terrain_from_bytes};
 pub use triangles::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};
 
 #[cfg(doctest)]
