@@ -36,6 +36,9 @@ fn target(path: &Path) -> Option<&'static str> {
         (_, "npy") => Some("npy"),
         (_, "pfm") => Some("pfm"),
         (_, "tif") => Some("dem"),
+        (_, "stl") => Some("stl"),
+        (_, "obj") => Some("obj"),
+        (_, "ply") => Some("ply"),
         _ => None,
     }
 }

@@ -61,6 +61,7 @@ faults! {
     FirstPrimitive: Primitives, "Only the first primitive of a mesh is drawn.";
     LinesAsTriangles: Primitives, "Lines are read as triangles.";
     FacesWithoutAreaDropped: FacesWithoutArea, "Faces without area are left out.";
+    TransformsInSinglePrecision: Decimals, "The numbers of a transform are rounded to single precision.";
     MaterialOfTheFirst: Reflectivity, "All faces have the first material.";
     ColourIgnored: Reflectivity, "Colours are not read: such faces have 0.25.";
     StatedIgnored: Reflectivity, "A stated reflectivity is not read.";
@@ -165,6 +166,14 @@ impl<'a> NaiveLoader<'a> {
 
     /// A node's own transform.
     fn local(&self, node: usize) -> Matrix {
+        let exact = self.exact_local(node);
+        match self.has(LoadingFault::TransformsInSinglePrecision) {
+            true => exact.map(|row| row.map(|number| f64::from(number as f32))),
+            false => exact,
+        }
+    }
+
+    fn exact_local(&self, node: usize) -> Matrix {
         let node = &self.json["nodes"][node];
         if node["matrix"].is_array() {
             let m = numbers::<16>(&node["matrix"], [0.0; 16]);

@@ -47,7 +47,7 @@ fn our_loader_and_the_naive_one_pass() {
     for faces in [faces_of(scene.mesh()), NaiveLoader::faces(&input_glb(), None)] {
         let found = checked(&faces);
         assert!(found.passes(), "{}", input_screen(&found));
-        assert_eq!((found.given, found.faces, found.has_reflectivity), (27, 27, true));
+        assert_eq!((found.given, found.faces, found.has_reflectivity), (28, 28, true));
     }
 }
 
@@ -93,12 +93,12 @@ fn an_answer_that_cannot_be_read_and_a_changed_pack_are_refused() {
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     };
     refused(&committed(), &["triangles.npy"]);
-    write_npy(folder.path().join("triangles.npy"), &[&Image::filled(3, 27, 0.0)]).expect("a file");
-    refused(&committed(), &["triangles.npy", "27 rows and 3 columns", "9 columns"]);
-    write_npy(folder.path().join("triangles.npy"), &[&Image::filled(9, 27, f64::NAN)]).expect("a file");
-    assert_eq!(check_input(&committed(), folder.path()).expect("an answer").wrong.len(), 27);
-    write_npy(folder.path().join("reflectivity.npy"), &[&Image::filled(1, 26, 0.5)]).expect("a file");
-    refused(&committed(), &["reflectivity.npy", "26 rows", "27"]);
+    write_npy(folder.path().join("triangles.npy"), &[&Image::filled(3, 28, 0.0)]).expect("a file");
+    refused(&committed(), &["triangles.npy", "28 rows and 3 columns", "9 columns"]);
+    write_npy(folder.path().join("triangles.npy"), &[&Image::filled(9, 28, f64::NAN)]).expect("a file");
+    assert_eq!(check_input(&committed(), folder.path()).expect("an answer").wrong.len(), 28);
+    write_npy(folder.path().join("reflectivity.npy"), &[&Image::filled(1, 27, 0.5)]).expect("a file");
+    refused(&committed(), &["reflectivity.npy", "27 rows", "28"]);
 
     let pack = tempfile::tempdir().expect("a folder");
     write_input(pack.path()).expect("a pack");

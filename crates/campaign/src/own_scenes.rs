@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::CampaignError;
 
 /// Endings of the files that are scenes.
-const ENDINGS: [&str; 5] = ["toml", "glb", "gltf", "tif", "tiff"];
+const ENDINGS: [&str; 8] = ["toml", "glb", "gltf", "stl", "obj", "ply", "tif", "tiff"];
 
 /// Scenes of a folder. Two are equal if their files have the same names and contents, wherever they lie.
 #[derive(Debug, Clone, Serialize, Deserialize)]

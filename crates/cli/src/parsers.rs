@@ -7,7 +7,7 @@ use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
 use raypencil::cast::rays_from_bytes;
 use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
-use raypencil::io::{SceneIoError, Setting};
+use raypencil::io::{SceneIoError, Setting, UpAxis};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::rover::RULE_NAMES;
 use raypencil::sweep::{Axis, Chart, SweepError, Task};
@@ -42,6 +42,14 @@ pub(crate) fn flux_model() -> impl TypedValueParser<Value = FluxModel> {
     one_of([
         (FluxModel::Radiometric.word(), "Radiometric, in watts", FluxModel::Radiometric),
         (FluxModel::Eq1.word(), "Equation (1) of the paper as printed, in W/m", FluxModel::Eq1),
+    ])
+}
+
+/// `--up`.
+pub(crate) fn up_axis() -> impl TypedValueParser<Value = UpAxis> {
+    one_of([
+        (UpAxis::Y.word(), "(x, y, z) of the file is (x, -z, y) of the terrain", UpAxis::Y),
+        (UpAxis::Z.word(), "The axes of the file are those of the terrain", UpAxis::Z),
     ])
 }
 

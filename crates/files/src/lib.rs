@@ -63,7 +63,9 @@ pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map
 pub use folder::{FolderError, begin_output_folder, create_folder};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
-pub use limits::Limits;
+pub use limits::{
+    Limits, MAX_EXPANSION, MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_INFLATED_BYTES,
+};
 pub use named_array::{ArrayData, NamedArray, write_npz, write_zarr};
 pub use npy::{
     ArrayNumber, Numbers, npy_from_bytes, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,

@@ -1,5 +1,22 @@
 //! Limits that a reader holds a file's claims against before it asks for memory.
 
+/// Maximum number of attributes of an OpenEXR file. Files have a few dozen.
+pub const MAX_EXR_ATTRIBUTES: usize = 1024;
+
+/// Maximum number of channels of an OpenEXR file.
+pub const MAX_EXR_CHANNELS: usize = 1024;
+
+/// Maximum size of the header of an OpenEXR file, bytes: 16 MiB. Some programs store lists of names there.
+pub const MAX_EXR_HEADER_BYTES: usize = 1 << 24;
+
+/// Maximum size of all channels of any compressed file, as the doubles that a reader makes of them, bytes: 512 MiB. It holds
+/// 64 channels of 1024 x 1024 cells. A larger file may have [`MAX_EXPANSION`] times its own length.
+pub const MAX_INFLATED_BYTES: u64 = 1 << 29;
+
+/// Maximum size of all channels of a compressed file beyond [`MAX_INFLATED_BYTES`], as doubles, in file lengths. Zeros can be
+/// compressed to a thousandth; maps of a ground are compressed to a half or a quarter.
+pub const MAX_EXPANSION: u64 = 64;
+
 /// How much a file may ask for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {

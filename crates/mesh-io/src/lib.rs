@@ -1,4 +1,5 @@
-//! Terrain in files: glTF, GLB and GeoTIFF, in and out. Triangles of any mesh in glTF, STL, OBJ, PLY and NPY, in.
+//! Terrain in files: glTF, GLB and GeoTIFF, in and out; STL, OBJ and PLY, in. Triangles of any mesh in glTF, STL, OBJ, PLY and
+//! NPY, in.
 //!
 //! A reader checks every reference, length and number of a file before it uses it, and every size against the length of
 //! the file before it asks for memory. An error names the file, the place in it, what was found and what was expected.
@@ -6,9 +7,10 @@
 //! ```text
 //! gltf  limits, container, json               the chunks of a GLB, and its JSON as far as it can be trusted
 //!       buffers -> accessors -> primitives    bytes, typed numbers, triangles
-//!       nodes, materials -> assemble          where each mesh stands, and one list of vertices and faces
+//!       placement -> nodes                    transforms in double precision, and where each mesh stands
+//!       nodes, materials -> assemble          one list of vertices and faces
 //!       stated_origin -> read                 a mesh with its scene origin
-//!       placement -> exact                    triangles in the axes of the file, in double precision
+//!       exact                                 triangles in the axes of the file, in double precision
 //!       write                                 a mesh to GLB
 //! dem   tags -> blocks                        tags of a TIFF, and the samples in its strips or tiles
 //!       registration -> georeference          what a pixel is, and where pixels are on the map
@@ -18,6 +20,7 @@
 //!       stl, obj, npy_pair                    a format each
 //!       ply: header -> numbers                elements and types, and the numbers of either kind
 //!       read                                  which format a file has, and triangles as `f64`
+//! file_frame -> terrain                       the axes and the unit of a mesh file, and terrain from any of them
 //! ```
 //!
 //! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md`. Sources: glTF 2.0
@@ -43,14 +46,18 @@
 //! ```
 
 pub mod dem;
+mod file_frame;
 pub mod gltf;
+mod terrain;
 pub mod triangles;
 
 pub use dem::{Dem, Registration, dem_from_bytes, read_dem, write_geotiff};
+pub use file_frame::{FileFrame, SCALE_RANGE, UpAxis};
 pub use gltf::{
-    DEFAULT_REFLECTIVITY, Vertices, glb_bytes, load_mesh, mesh_from_bytes, mesh_of_offsets, write_glb,
-    write_terrain_glb,
+    DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes,
+    mesh_of_offsets, write_glb, write_terrain_glb,
 };
+pub use terrain::{load_terrain, read_terrain, terrain_from_bytes};
 pub use triangles::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};
 
 #[cfg(doctest)]

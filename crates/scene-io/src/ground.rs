@@ -4,13 +4,14 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use raypencil_files::Sha256Digest;
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, Vertices, dem, gltf};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, dem, read_terrain};
 use raypencil_scene::{Mesh, SceneError};
 use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
 
 use crate::parse::source::Source;
-use crate::plan::{DemPart, ScenePlan, Terrain};
+use crate::plan::{DemPart, MeshPart, ScenePlan, Terrain};
 use crate::scene_error::SceneIoError;
+use crate::scene_source::MESH_ENDINGS;
 
 /// Side of a plain random ground without `extent_m`, metres: the default sensors see 20 m to every side.
 const PLAIN_EXTENT_M: f64 = 40.0;
@@ -22,9 +23,9 @@ pub(crate) fn read_ground(
 ) -> Result<Option<(Mesh, Vec<Sha256Digest>)>, SceneIoError> {
     let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
     match &plan.terrain {
-        Terrain::File(file) => {
-            let terrain = terrain_file(source, "file", &["glb", "gltf"], file, &plan.terrain_span)?;
-            Ok(Some(gltf::read_mesh(&terrain, reflectivity, Vertices::Global)?))
+        Terrain::File(MeshPart { file, frame }) => {
+            let terrain = terrain_file(source, "file", &MESH_ENDINGS, file, &plan.terrain_span)?;
+            Ok(Some(read_terrain(&terrain, reflectivity, frame)?))
         }
         Terrain::Dem(DemPart { file, window, max_error }) => {
             let terrain = terrain_file(source, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
@@ -97,7 +98,7 @@ pub(crate) fn make_ground(plan: &ScenePlan) -> Result<Mesh, SceneError> {
         Terrain::Mars { coarse: Some((path, _)), .. } => {
             Err(SceneError::new("terrain.generate.coarse", path.display(), "posts that are loaded already"))
         }
-        Terrain::File(path) | Terrain::Dem(DemPart { file: path, .. }) => {
+        Terrain::File(MeshPart { file: path, .. }) | Terrain::Dem(DemPart { file: path, .. }) => {
             Err(SceneError::new("terrain.file", path.display(), "a terrain that is loaded already"))
         }
     }

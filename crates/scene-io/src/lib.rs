@@ -63,7 +63,7 @@ pub use ray_scene::{RayScene, load_ray_scene};
 pub use ray_sets::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
 pub use resolved::write::write_resolved;
 pub use scene_error::SceneIoError;
-pub use scene_source::SceneSource;
+pub use scene_source::{MESH_ENDINGS, SceneSource};
 pub use settings::Setting;
 pub use subject::{Subject, probe_command, quoted};
 pub use toml_problem::TomlProblem;

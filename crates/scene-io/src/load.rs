@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, Vertices, dem, gltf};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, FileFrame, Vertices, dem, gltf, read_terrain};
 use raypencil_rover::Rig;
 use raypencil_scene::{Mesh, Pose, Scene, SceneError};
 
@@ -17,7 +17,7 @@ use crate::overrides::Overrides;
 use crate::parse::kind::Kind;
 use crate::parse::scene::parse;
 use crate::parse::source::Source;
-use crate::plan::{DemPart, ScenePlan, Terrain, default_rig};
+use crate::plan::{DemPart, MeshPart, ScenePlan, Terrain, default_rig};
 use crate::resolve::{central_place, extent, resolve};
 use crate::resolved::read::parse_resolved;
 use crate::scene_error::SceneIoError;
@@ -62,8 +62,8 @@ impl LoadedScene {
     }
 }
 
-/// Loads a scene from a built-in name, a scene `.toml`, a terrain `.glb` or `.gltf`, or an elevation model `.tif`
-/// or `.tiff`.
+/// Loads a scene from a built-in name, a scene `.toml`, a terrain (`.glb`, `.gltf`, `.stl`, `.obj`, `.ply`), or an
+/// elevation model `.tif` or `.tiff`.
 ///
 /// A terrain alone, built-in or from a file, gets the default rig. On a terrain from a file the vehicle
 /// stands level at the centre of the ground's bounding box; if there is no ground exactly there, on the
@@ -96,9 +96,11 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             let mesh = make_ground(&plan).map_err(|error| SceneIoError::scene(source.origin(), error))?;
             finish(&source, plan, Vec::new(), Arc::new(mesh), false, overrides)
         }
-        SceneSource::Gltf(path) => {
-            let (mesh, parts) = gltf::read_mesh(path, DEFAULT_REFLECTIVITY, Vertices::Global)?;
-            finish_alone(&source, Terrain::File(path.clone()), parts, mesh, overrides)
+        SceneSource::Mesh(path) => {
+            let frame = FileFrame::default();
+            let (mesh, parts) = read_terrain(path, DEFAULT_REFLECTIVITY, &frame)?;
+            let terrain = Terrain::File(MeshPart { file: path.clone(), frame });
+            finish_alone(&source, terrain, parts, mesh, overrides)
         }
         SceneSource::Dem(path) => {
             let (mesh, sha) = dem::read_mesh(path, None, None, DEFAULT_REFLECTIVITY)?;
@@ -134,7 +136,7 @@ fn load_changed(
         SceneSource::Builtin(name) => {
             load_toml(source, Path::new(name), &text_of_ground("builtin", name), overrides, grounds)
         }
-        SceneSource::Gltf(path) => {
+        SceneSource::Mesh(path) => {
             load_toml(source, path, &text_of_ground("file", &beside(path)), overrides, grounds)
         }
         SceneSource::Dem(path) => {
@@ -238,7 +240,7 @@ fn load_rig(
     parts.extend(ground.digests.into_iter().flatten());
     let position_span = plan.position_span.clone();
     // A lone terrain, whose text is only settings: as in `finish_alone`.
-    let is_alone = matches!(source, SceneSource::Gltf(_) | SceneSource::Dem(_));
+    let is_alone = matches!(source, SceneSource::Mesh(_) | SceneSource::Dem(_));
     if is_alone && is_from_file && position_span.is_empty() && overrides.at.is_none() {
         plan.vehicle.position = central_place(&ground.mesh).unwrap_or_default();
     }

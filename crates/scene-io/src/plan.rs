@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use raypencil_files::Sha256Digest;
+use raypencil_mesh_io::FileFrame;
 use raypencil_scene::rig::{self, DEFAULT_BEAM_MOUNTS, DEFAULT_CAMERA_MOUNT, DefaultMount};
 use raypencil_scene::{Beam, Camera, FluxModel, NamedRaySet};
 use raypencil_terrain::MarsGround;
@@ -58,8 +59,7 @@ pub(crate) struct Mount {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Terrain {
     Builtin(String),
-    /// Path relative to the scene file.
-    File(PathBuf),
+    File(MeshPart),
     Dem(DemPart),
     Generate {
         nasty: bool,
@@ -75,6 +75,15 @@ pub(crate) enum Terrain {
         /// the key.
         coarse: Option<(PathBuf, Range<usize>)>,
     },
+}
+
+/// A mesh file.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MeshPart {
+    /// Path relative to the scene file.
+    pub file: PathBuf,
+    /// Its axes and unit.
+    pub frame: FileFrame,
 }
 
 /// Part of an elevation model.

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::{Sha256Digest, combined_sha256_hex, sha256};
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, read_triangles};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, FileFrame, UpAxis, read_triangles};
 use raypencil_scene::{Material, Mesh, NamedRaySet, Pose, SceneError, Triangles};
 
 use crate::ground::{make_ground, read_ground, terrain_file};
@@ -15,18 +15,17 @@ use crate::load::{no_ground, read_toml};
 use crate::parse::kind::Kind;
 use crate::parse::scene::parse;
 use crate::parse::source::Source;
-use crate::plan::{ScenePlan, Terrain};
+use crate::plan::{MeshPart, ScenePlan, Terrain};
 use crate::resolve::extent;
 use crate::scene_error::SceneIoError;
+use crate::scene_source::MESH_ENDINGS;
 use crate::settings::{Setting, changed};
-
-/// Endings of terrain files that rays alone can be cast on.
-const MESH_ENDINGS: [&str; 5] = ["glb", "gltf", "stl", "obj", "ply"];
 
 /// Sets of rays on a terrain.
 #[derive(Debug, Clone)]
 pub struct RayScene {
-    /// The terrain. That of a mesh file is in the file's own coordinates, as the file gives them; any other, which has `f32`
+    /// The terrain. That of a mesh file is in the file's own coordinates, as the file gives them, unless the scene file says
+    /// which axis is up or has a scale; any other, which has `f32`
     /// offsets from the start, is in the scene frame.
     pub triangles: Triangles,
     /// The sets, in the frame of the terrain: at least one.
@@ -75,16 +74,17 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
     }
     let unfit = |error: SceneError| SceneIoError::scene(path.display().to_string(), error);
     let (triangles, vehicle, terrain_digests) = match &plan.terrain {
-        Terrain::File(terrain) => {
+        Terrain::File(MeshPart { file: terrain, frame }) => {
             let terrain = terrain_file(&file, "file", &MESH_ENDINGS, terrain, &plan.terrain_span)?;
             let read = read_triangles(&terrain)?;
+            let triangles = framed(read.triangles, frame).map_err(unfit)?;
             // A vehicle with a height needs no ground, which may then have any size.
             let ground = match plan.vehicle.height {
                 Some(_) => Mesh::from_global(&[], vec![], vec![], vec![]),
-                None => ground_of(&read.triangles),
+                None => ground_of(&triangles),
             };
             let vehicle = stood(&file, &plan, &ground.map_err(unfit)?)?;
-            (read.triangles, vehicle, read.digests)
+            (triangles, vehicle, read.digests)
         }
         _ => {
             let (mesh, digests) = match read_ground(&file, &plan)? {
@@ -109,6 +109,15 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
         terrain_digests,
         sha256: combined_sha256_hex(&[own, plan.ray_digests].concat()),
     })
+}
+
+/// The triangles with the axes and the unit that the scene file states; without these keys they are not changed.
+fn framed(triangles: Triangles, frame: &FileFrame) -> Result<Triangles, SceneError> {
+    if *frame == FileFrame::default() {
+        return Ok(triangles);
+    }
+    let vertices = triangles.vertices().iter().map(|&vertex| frame.global(vertex, UpAxis::Z).to_array());
+    Triangles::new(vertices.collect(), triangles.faces().to_vec())
 }
 
 /// The vehicle's pose in the global frame.

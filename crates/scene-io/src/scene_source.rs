@@ -6,6 +6,9 @@ use raypencil_terrain::BUILTIN_NAMES;
 
 use crate::scene_error::SceneIoError;
 
+/// Endings of the files that hold a mesh.
+pub const MESH_ENDINGS: [&str; 5] = ["glb", "gltf", "stl", "obj", "ply"];
+
 /// Maximum length of a scene's name.
 const MAX_NAME_CHARS: usize = 64;
 
@@ -16,15 +19,15 @@ pub enum SceneSource {
     Builtin(String),
     /// A scene file.
     Toml(PathBuf),
-    /// A terrain under the default rig.
-    Gltf(PathBuf),
+    /// A terrain under the default rig: glTF, STL, OBJ or PLY.
+    Mesh(PathBuf),
     /// An elevation model under the default rig.
     Dem(PathBuf),
 }
 
 impl SceneSource {
-    /// Tells a built-in name, a `.toml`, a `.glb` or `.gltf` and a `.tif` or `.tiff` apart. A built-in name wins over a
-    /// file.
+    /// Tells a built-in name, a `.toml`, a mesh (`.glb`, `.gltf`, `.stl`, `.obj`, `.ply`) and a `.tif` or `.tiff` apart. A
+    /// built-in name wins over a file.
     ///
     /// # Errors
     /// Lists the built-in names and the extensions if it is none of them, or if there is no such file.
@@ -36,8 +39,9 @@ impl SceneSource {
             given: source.to_string(),
             problem: problem.to_string(),
             expected: format!(
-                "a built-in name ({}) or a file that ends in .toml, .glb, .gltf, .tif or .tiff",
-                BUILTIN_NAMES.join(", ")
+                "a built-in name ({}) or a file that ends in .toml, .{}, .tif or .tiff",
+                BUILTIN_NAMES.join(", "),
+                MESH_ENDINGS.join(", .")
             ),
         };
         let path = PathBuf::from(source);
@@ -48,8 +52,8 @@ impl SceneSource {
         let exists = path.exists();
         let kind: Option<fn(PathBuf) -> Self> = if known("toml") {
             Some(Self::Toml)
-        } else if known("glb") || known("gltf") {
-            Some(Self::Gltf)
+        } else if MESH_ENDINGS.iter().any(|end| known(end)) {
+            Some(Self::Mesh)
         } else if known("tif") || known("tiff") {
             Some(Self::Dem)
         } else {
@@ -67,7 +71,7 @@ impl SceneSource {
     pub(crate) fn origin(&self) -> String {
         match self {
             Self::Builtin(name) => name.clone(),
-            Self::Toml(path) | Self::Gltf(path) | Self::Dem(path) => path.display().to_string(),
+            Self::Toml(path) | Self::Mesh(path) | Self::Dem(path) => path.display().to_string(),
         }
     }
 
@@ -76,7 +80,7 @@ impl SceneSource {
     pub(crate) fn folder_name(&self) -> String {
         let stem = match self {
             Self::Builtin(name) => name.clone(),
-            Self::Toml(path) | Self::Gltf(path) | Self::Dem(path) => {
+            Self::Toml(path) | Self::Mesh(path) | Self::Dem(path) => {
                 path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
             }
         };

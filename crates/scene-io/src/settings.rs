@@ -145,6 +145,11 @@ fn make_room(root: &mut Table, parts: &[&str]) {
                 for other in ["builtin", "file", "dem", "generate"].iter().filter(|other| *other != ground) {
                     terrain.remove(other);
                 }
+                // Axes and unit of a file hold for the next one, such as each terrain of a campaign under one rig.
+                if *ground != "file" {
+                    terrain.remove("up");
+                    terrain.remove("scale");
+                }
                 if *ground != "dem" {
                     terrain.remove("dem_window_m");
                     terrain.remove("dem_max_error_m");

@@ -9,6 +9,8 @@ use std::path::Path;
 pub enum Item {
     /// A file of these bytes.
     File(Vec<u8>),
+    /// A file of these bytes, and a hole behind them up to this length, which takes no space on the disk.
+    Hole(Vec<u8>, u64),
     /// An empty folder.
     Folder,
     /// A named pipe without a writer.
@@ -86,6 +88,10 @@ impl Case {
             fs::create_dir_all(path.parent().unwrap_or(folder))?;
             match item {
                 Item::File(bytes) => fs::write(path, bytes)?,
+                Item::Hole(bytes, length) => {
+                    fs::write(&path, bytes)?;
+                    fs::File::options().write(true).open(path)?.set_len(*length)?;
+                }
                 Item::Folder => fs::create_dir(path)?,
                 Item::Pipe => pipe(&path)?,
                 #[cfg(unix)]

@@ -6,7 +6,7 @@
 //! output, no file written, little memory and time.
 //!
 //! * [`Case`]: one input. `bytes`: truncation, deflate streams.
-//! * `glb`, `gltf`, `tiff`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `rays`: sets of rays. `manifest`, `candidate`:
+//! * `glb`, `gltf`, `tiff`, `mesh`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `rays`: sets of rays. `manifest`, `candidate`:
 //!   packs and recordings.
 //! * [`all`], [`tiffs`]: every case. [`good`]: well-formed files of the same formats. [`table`]: the page.
 //!
@@ -26,6 +26,7 @@ mod exr;
 mod glb;
 mod gltf;
 mod manifest;
+mod mesh;
 mod npy;
 mod pfm;
 mod rays;
@@ -40,6 +41,7 @@ pub fn all() -> Vec<Case> {
     [
         gltf::cases(),
         glb::cases(),
+        mesh::cases(),
         exr::cases(),
         npy::cases(),
         pfm::cases(),
@@ -66,6 +68,7 @@ pub fn good() -> Vec<Case> {
         Case::new("good-glb", "a good file", "validate scene.toml -o out", &[])
             .file("scene.toml", scene)
             .file("ground.glb", ground),
+        gltf::forty_buffers(),
         diff("exr", exr::good()),
         diff("npy", npy::good()),
         diff("pfm", pfm::good()),

@@ -211,6 +211,32 @@ pub fn tiffs() -> Vec<Case> {
             "StripOffsets: 4294967295 values",
             good().entry((OFFSETS, 4, u32::MAX, vec![8; 8])).bytes(),
         ),
+        case("tiles-equal", "tiles of 4 MB at the same place in the file: 5 GB out of 20 kB", "tile 1: ", {
+            let list = |value: u32| value.to_le_bytes().repeat(1250);
+            let tile = zlib(&vec![0; 4 << 20]);
+            let bytes = tile.len() as u32;
+            good()
+                .strip(tile)
+                .without(OFFSETS)
+                .without(COUNTS)
+                .without(ROWS)
+                .with(WIDTH, 16)
+                .with(HEIGHT, 20_000)
+                .with(COMPRESSION, DEFLATE)
+                .with(322, 1 << 16)
+                .with(323, 16)
+                .entry((324, 4, 1250, list(STRIP_OFFSET)))
+                .entry((325, 4, 1250, list(bytes)))
+                .bytes()
+        }),
+        case("strips-overlap", "strips that share a byte", "strip 1: 16 bytes from byte 39", {
+            let pair = |a: u32, b: u32| [a.to_le_bytes(), b.to_le_bytes()].concat();
+            good()
+                .with(ROWS, 2)
+                .entry((OFFSETS, 4, 2, pair(8, 39)))
+                .entry((COUNTS, 4, 2, pair(32, 16)))
+                .bytes()
+        }),
         case(
             "bomb",
             "a deflate stream of 16 kB that expands to 16 MB, where the header promises 64 MB",

@@ -39,7 +39,8 @@ pub(crate) struct CampaignRun {
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: Shard,
 
-    /// Folder with scenes of your own (.toml), terrains (.glb, .gltf) or elevation models (.tif), in place of random ones.
+    /// Folder with scenes of your own (.toml), terrains (.glb, .gltf, .stl, .obj, .ply) or elevation models (.tif), in place
+    /// of random ones.
     #[arg(long, value_name = "DIR", conflicts_with = "terrains")]
     pub(crate) scenes: Option<PathBuf>,
 

@@ -44,7 +44,8 @@ pub(crate) struct Diff {
     pub(crate) shared_only: bool,
 
     /// The scene of both recordings. The referee then rules on each cell that differs by more than is allowed, and a
-    /// channel fails only if a side is wrong. A built-in terrain, a scene .toml, .glb, .gltf or .tif.
+    /// channel fails only if a side is wrong. A built-in terrain, a scene .toml, a terrain (.glb, .gltf,
+    /// .stl, .obj, .ply) or a .tif.
     #[arg(long, value_name = "SCENE")]
     pub(crate) scene: Option<String>,
 

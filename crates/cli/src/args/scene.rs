@@ -9,7 +9,8 @@ use crate::parsers::{flux_model, pair, setting};
 /// The scene, and what is changed in it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain .glb or .gltf, or an elevation model .tif.
+    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain (.glb, .gltf, .stl, .obj, .ply), or an
+    /// elevation model .tif.
     #[arg(value_name = "SCENE", default_value = "pyramids")]
     pub(crate) scene: String,
 

@@ -26,7 +26,8 @@ pub(crate) enum SweepCommand {
 
 #[derive(Debug, Args)]
 pub(crate) struct SweepRun {
-    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain .glb or .gltf, or an elevation model .tif.
+    /// A built-in terrain (pyramids, facets), a scene .toml, a terrain (.glb, .gltf, .stl, .obj, .ply), or an
+    /// elevation model .tif.
     #[arg(value_name = "SCENE", default_value = "pyramids")]
     pub(crate) scene: String,
 

@@ -1,19 +1,30 @@
-//! `raypencil terrain import`: converts an elevation model to a GLB terrain.
+//! `raypencil terrain import`: converts an elevation model to a GLB terrain; `import_mesh` converts a mesh.
 
-use raypencil::io::{Dem, read_dem, write_terrain_glb};
+use raypencil::io::{Dem, MESH_ENDINGS, read_dem, write_terrain_glb};
 use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
 
 use crate::args::TerrainImport;
 use crate::console::{Spinner, say};
+use crate::terrain::import_mesh::{import_mesh, is_mesh};
 use crate::terrain::output::{check_output, create_folder};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Trouble> {
     check_output(&command.output)?;
+    if is_mesh(&command.file) {
+        return import_mesh(command, json);
+    }
+    let given = [("--up", command.up.is_some()), ("--scale", command.scale.is_some())];
+    if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        let (file, endings) = (command.file.display(), MESH_ENDINGS.join(", ."));
+        return Err(Trouble::Usage(format!(
+            "{option}: {file} is no mesh; expected a file that ends in .{endings}"
+        )));
+    }
     let spinner = Spinner::new();
-    spinner.stage(&format!("{}: reading", command.dem.display()));
-    let dem = read_dem(&command.dem, command.window)?;
+    spinner.stage(&format!("{}: reading", command.file.display()));
+    let dem = read_dem(&command.file, command.window)?;
     spinner.stage("making faces");
     let mesh = dem.mesh(command.max_error, command.reflectivity)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
@@ -28,7 +39,7 @@ pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Tro
 /// The source of the terrain, for the extras of its file: the file's name without its folder.
 fn source(command: &TerrainImport, dem: &Dem) -> Value {
     json!({
-        "source": command.dem.file_name().map(|name| name.to_string_lossy()),
+        "source": command.file.file_name().map(|name| name.to_string_lossy()),
         "windowM": command.window,
         "maxErrorM": command.max_error,
         "spacingM": dem.posts.spacing.to_array(),
@@ -42,7 +53,7 @@ fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
     let last = posts.at(posts.columns - 1, posts.rows - 1);
     let known = || posts.heights.iter().copied().filter(|height| !height.is_nan());
     json!({
-        "dem": command.dem.display().to_string(),
+        "dem": command.file.display().to_string(),
         "terrain": command.output.display().to_string(),
         "extent_m": { "x": [posts.corner.x, last.x], "y": [posts.corner.y, last.y] },
         "spacing_m": posts.spacing.to_array(),

@@ -2,6 +2,7 @@
 
 mod generate;
 mod import;
+mod import_mesh;
 mod inspect;
 mod output;
 

@@ -24,3 +24,15 @@ pub(super) fn check_output(output: &Path) -> Result<(), Trouble> {
     }
     Err(Trouble::Usage(format!("-o {}: expected a file that ends in .glb", output.display())))
 }
+
+/// Refuses to overwrite the file that is read.
+pub(super) fn refuse_same_file(output: &Path, input: &Path) -> Result<(), Trouble> {
+    let same = output.canonicalize().is_ok_and(|out| input.canonicalize().is_ok_and(|input| input == out));
+    match same {
+        true => Err(Trouble::Usage(format!(
+            "--output {}: is the mesh itself; expected another file",
+            output.display()
+        ))),
+        false => Ok(()),
+    }
+}

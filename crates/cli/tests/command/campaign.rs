@@ -243,6 +243,23 @@ fn a_campaign_takes_scenes_of_ones_own() {
         (&json["terrains"], &json["parts"]["own"]["compared"]),
         (&1.into(), &(48 * 40 + 64 * 2).into())
     );
+    // Axes and unit of the rig's file hold for every mesh: a floor of 12 m in millimetres, y up.
+    let meshes = folder.join("meshes");
+    fs::create_dir(&meshes).unwrap();
+    let floor = "v -6000 0 6000\nv 6000 0 6000\nv 6000 0 -6000\nv -6000 0 -6000\nf 1 2 3 4\n";
+    fs::write(meshes.join("floor.obj"), floor).unwrap();
+    let rig = |scale: &str| format!("{small}terrain = {{ up = \"y\", scale = {scale} }}\n");
+    fs::write(folder.join("rig-mm.toml"), rig("0.001")).unwrap();
+    passes(folder, "campaign --scenes meshes --rig rig-mm.toml -o meshed");
+    let json: serde_json::Value = serde_json::from_str(&summary(folder, "meshed")).unwrap();
+    assert_eq!(
+        (&json["terrains"], &json["parts"]["own"]["compared"]),
+        (&1.into(), &(48 * 40 + 64 * 2).into())
+    );
+    // Another unit is another campaign.
+    fs::write(folder.join("rig-mm.toml"), rig("0.002")).unwrap();
+    let words = ["own terrains", "folder of its own"];
+    is_trouble(folder, "campaign --scenes meshes --rig rig-mm.toml -o meshed", &words);
     passes(folder, "campaign replay --scenes scenes --seed 1 --terrain 2 --part aimed -o again");
     assert!(folder.join("again/scene.toml").is_file());
     // Another content is another campaign.

@@ -239,11 +239,9 @@ fn a_scene_without_a_camera_has_its_terrain_as_the_file_gives_it() {
     // Other rays on the same terrain, as the commands of wrong rays have them.
     let shown = screen(at, &["cast", "scene.toml", "--ray", "-1,-1,1,0,0,-1"], 0);
     assert!(shown.contains("(-1, -1, 0.1)"), "{shown}");
-    // A scene with sets and a camera keeps f32 offsets and says so; one of a text file has no camera.
-    assert_trouble(
-        &raypencil(at, &["validate", "scene.toml"]),
-        &["hill.obj", "expected a file that ends in .glb or .gltf"],
-    );
+    // The same scene with a camera keeps f32 offsets and says so.
+    let shown = screen(at, &["validate", "scene.toml", "--set", "camera.width_px=8", "-o", "seen"], 0);
+    assert!(shown.contains("4 vertices, 4 rounded to f32 offsets, by 4.8e-8 m at most"), "{shown}");
     fs::write(at.join("no-rays.toml"), scene).expect("a file");
     assert_trouble(
         &raypencil(at, &["cast", "no-rays.toml"]),

@@ -65,23 +65,23 @@ fn a_pack_in_which_nothing_is_hit_is_passed_by_nobody() {
 fn an_input_pack_tests_a_loader() {
     let folder = TempDir::new().expect("a temporary folder");
     let said = screen(folder.path(), &["pack", "--input", "-o", "input"], 0);
-    assert_eq!(said, "input: the input pack, 27 faces\n");
+    assert_eq!(said, "input: the input pack, 28 faces\n");
     let right = screen(folder.path(), &["check", "input", "input"], 0);
-    assert!(right.ends_with("✓ 27 faces: all are right.\n"), "{right}");
+    assert!(right.ends_with("✓ 28 faces: all are right.\n"), "{right}");
 
     fs::create_dir(folder.path().join("mine")).expect("a folder");
-    write_npy(folder.path().join("mine/triangles.npy"), &[&Image::filled(9, 28, 0.5)]).expect("a file");
+    write_npy(folder.path().join("mine/triangles.npy"), &[&Image::filled(9, 29, 0.5)]).expect("a file");
     let wrong = raypencil(folder.path(), &["check", "input", "mine", "-o", "out"]);
-    let words = ["✗ 27 of 27 faces are wrong; 28 are given.", "face 0, `axes` (glTF is y up"];
+    let words = ["✗ 28 of 28 faces are wrong; 29 are given.", "face 0, `axes` (glTF is y up"];
     assert_fails(&wrong, &words);
     let json = fs::read(folder.path().join("out/check.json")).expect("a file");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
     assert_eq!(
         (&json["passes"], &json["given"], &json["wrong"][3]["clause"]),
-        (&false.into(), &28.into(), &"scale".into())
+        (&false.into(), &29.into(), &"scale".into())
     );
     let junit = fs::read_to_string(folder.path().join("out/junit.xml")).expect("a file");
-    assert!(junit.contains("failures=\"21\""), "each clause, and the scene by a face too many: {junit}");
+    assert!(junit.contains("failures=\"22\""), "each clause, and the scene by a face too many: {junit}");
 
     let declared = ["check", "input", "mine", "--miss", "0"];
     assert_trouble(&raypencil(folder.path(), &declared), &["input is an input pack", "--miss"]);

@@ -8,6 +8,7 @@ use exr::block::chunk::{CompressedBlock, TileCoordinates};
 use exr::meta::header::Header;
 
 use crate::error::Fault;
+use crate::limits::{MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES};
 
 /// First bytes of every OpenEXR file.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -15,31 +16,74 @@ const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Bit of deep data in the second byte of the version.
 const DEEP_DATA_FLAG: u8 = 1 << 3;
 
-/// Refuses a file with the flag of deep data, and a window that ends before it starts.
+/// Bit of several parts in the second byte of the version.
+const SEVERAL_PARTS_FLAG: u8 = 1 << 4;
+
+/// Refuses a file with the flag of deep data, a window that ends before it starts, and a header that takes much memory: too
+/// many bytes, attributes or channels, or a second part.
 ///
-/// The crate looks only at the type of the part for deep data, and swaps the ends of such a window. It reports all
-/// other faults of the header itself.
+/// The crate looks only at the type of the part for deep data, swaps the ends of such a window, and reads all parts and all
+/// attributes, each of which takes over a kilobyte. It reports all other faults of the header itself. Nothing is allocated
+/// here.
 pub(super) fn check_attributes(file: &[u8]) -> Result<(), Fault> {
     if !file.starts_with(&MAGIC) {
         return Ok(());
     }
-    if file.get(5).is_some_and(|flags| flags & DEEP_DATA_FLAG != 0) {
+    let flags = file.get(5).copied().unwrap_or_default();
+    if flags & DEEP_DATA_FLAG != 0 {
         return Err(Fault::new("header", "the flag of deep data", "one sample a cell"));
     }
-    let mut rest = file.get(8..).unwrap_or_default();
-    while let Some((attribute, after)) = Attribute::first(rest) {
-        if attribute.kind == b"box2i"
-            && let Some(&[x0, y0, x1, y1]) = little_endian_words(attribute.value).first_chunk()
-            && (x1 < x0 || y1 < y0)
+    let start = file.get(8..).unwrap_or_default();
+    let mut rest = start;
+    for count in 0.. {
+        let Some((attribute, after)) = Attribute::first(rest) else { break };
+        let bytes = start.len() - after.len();
+        for (found, limit, what) in
+            [(count + 1, MAX_EXR_ATTRIBUTES, "attributes"), (bytes, MAX_EXR_HEADER_BYTES, "bytes")]
         {
-            let place = String::from_utf8_lossy(attribute.name).into_owned();
-            return Err(Fault::new(
-                place,
-                format!("from ({x0}, {y0}) to ({x1}, {y1})"),
-                "an end after its start",
-            ));
+            if found > limit {
+                let found = format!("{found} {what} or more");
+                return Err(Fault::new("header", found, format!("at most {limit}")));
+            }
         }
+        check_attribute(&attribute)?;
         rest = after;
+    }
+    if rest.first() == Some(&0)
+        && flags & SEVERAL_PARTS_FLAG != 0
+        && rest.get(1).is_some_and(|&byte| byte != 0)
+    {
+        return Err(Fault::new("header", "several parts", "one part: split multi-part files first"));
+    }
+    Ok(())
+}
+
+fn check_attribute(attribute: &Attribute) -> Result<(), Fault> {
+    match attribute.kind {
+        b"box2i" => {
+            if let Some(&[x0, y0, x1, y1]) = little_endian_words(attribute.value).first_chunk()
+                && (x1 < x0 || y1 < y0)
+            {
+                let place = String::from_utf8_lossy(attribute.name).into_owned();
+                let found = format!("from ({x0}, {y0}) to ({x1}, {y1})");
+                return Err(Fault::new(place, found, "an end after its start"));
+            }
+        }
+        b"chlist" => {
+            let mut rest = attribute.value;
+            for count in 0.. {
+                let Some((_, after)) = null_terminated(rest).filter(|(name, _)| !name.is_empty()) else {
+                    break;
+                };
+                if count == MAX_EXR_CHANNELS {
+                    let found = format!("{} channels or more", count + 1);
+                    return Err(Fault::new("header", found, format!("at most {MAX_EXR_CHANNELS}")));
+                }
+                // Type, a flag and three bytes, and the sampling along two axes.
+                rest = after.get(16..).unwrap_or_default();
+            }
+        }
+        _ => {}
     }
     Ok(())
 }

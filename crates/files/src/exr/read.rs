@@ -17,12 +17,17 @@ use crate::bytes;
 use crate::error::{Fault, FileError};
 use crate::exr::header;
 use crate::exr::map::{ExrMap, Raster, channel};
-use crate::limits::Limits;
+use crate::limits::{Limits, MAX_EXPANSION, MAX_INFLATED_BYTES};
 
 /// Reads all channels of an OpenEXR file with one part.
 ///
 /// Scan lines and tiles are read, and the largest of several resolutions. Several parts, deep data, subsampled channels
 /// and lossy compression are refused.
+///
+/// Limits beside `limits`, held before anything is decoded: [`MAX_EXR_ATTRIBUTES`](crate::MAX_EXR_ATTRIBUTES),
+/// [`MAX_EXR_CHANNELS`](crate::MAX_EXR_CHANNELS) and [`MAX_EXR_HEADER_BYTES`](crate::MAX_EXR_HEADER_BYTES) of the header; all
+/// channels together, as doubles, are at most [`MAX_INFLATED_BYTES`] or [`MAX_EXPANSION`] times as long as the file,
+/// whichever is more.
 ///
 /// # Errors
 /// Names the file, the channel or other place in it, what was found and what was expected.
@@ -130,6 +135,17 @@ fn check_claims(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(),
     if bytes > limits.bytes {
         return Err(Fault::new("channels", format!("{bytes} bytes"), format!("at most {}", limits.bytes)));
     }
+    // What a caller makes of the samples: doubles. A small file could otherwise ask for gigabytes.
+    let doubles = (width * height).saturating_mul(8 * header.channels.list.len() as u64);
+    if doubles > max_inflated_bytes(file_bytes) {
+        let found = format!(
+            "{width} x {height} cells of {} channels, {doubles} bytes as doubles, in a file of {file_bytes} bytes",
+            header.channels.list.len()
+        );
+        let expected =
+            format!("at most {MAX_INFLATED_BYTES} bytes, or {MAX_EXPANSION} times the length of the file");
+        return Err(Fault::new("data window", found, expected));
+    }
     // Every block takes 8 bytes in the offset table and 8 of its own header.
     let blocks = header.chunk_count as u64;
     let Some(expansion) = max_expansion(header.compression) else {
@@ -143,6 +159,11 @@ fn check_claims(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(),
         return Err(Fault::new("data window", found, "a size that the file can hold (is it cut off?)"));
     }
     Ok(())
+}
+
+/// Maximum size of the samples of a file of this length, as doubles, bytes.
+fn max_inflated_bytes(file_bytes: u64) -> u64 {
+    MAX_INFLATED_BYTES.max(MAX_EXPANSION.saturating_mul(file_bytes))
 }
 
 /// Upper bound of the bytes of cells that one byte of the file can hold; `None` for lossy compressions.
@@ -182,4 +203,19 @@ fn texts<'a>(
         _ => None,
     };
     attributes.into_iter().filter_map(text).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_longer_file_may_hold_more() {
+        // 512 MiB up to 8 MiB of file, from there 64 times as much.
+        for file_bytes in [0, 1, 540_000, 1 << 23] {
+            assert_eq!(max_inflated_bytes(file_bytes), 1 << 29);
+        }
+        assert_eq!(max_inflated_bytes((1 << 23) + 1), (1 << 29) + 64);
+        assert_eq!(max_inflated_bytes(u64::MAX), u64::MAX);
+    }
 }

@@ -2,5 +2,10 @@
 
 mod channels;
 mod exr;
+mod exr_limits;
 mod npy;
 mod pfm;
+
+// The file alone: it counts what a reader asks for.
+#[path = "../../../mesh-io/tests/triangles/memory.rs"]
+mod memory;

@@ -1,7 +1,7 @@
 //! Samples of a TIFF. Only the strips or tiles that are needed are read, and each is checked before it is decoded.
 
 use std::io::{Read, Seek};
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 use raypencil_files::Fault;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -151,25 +151,25 @@ impl Blocks {
         Ok(Self { width, height, sample, kind, block, across, offsets, byte_counts, expansion })
     }
 
-    /// Whether each of `count` blocks, from block `first` of the file on, has samples. A block of 0 bytes was not
-    /// written.
+    /// Places in the file of `count` blocks, from block `first` of the file on; of a block of 0 bytes, which was not
+    /// written, `None`.
     ///
     /// # Errors
     /// A block that does not lie within the file, or is too short for its samples.
-    fn check_blocks(
+    fn places(
         &self,
         tags: &Tags,
         file: &mut (impl Read + Seek),
         length: u64,
         first: u64,
         count: u64,
-    ) -> Result<Vec<bool>, Fault> {
+    ) -> Result<Vec<Option<Range<u64>>>, Fault> {
         let offsets = tags.run(file, self.offsets, first, count)?;
         let byte_counts = tags.run(file, self.byte_counts, first, count)?;
-        let mut has_samples = Vec::new();
+        let mut places = Vec::new();
         for (index, (offset, bytes)) in (first..).zip(offsets.into_iter().zip(byte_counts)) {
-            has_samples.push(bytes > 0);
             if bytes == 0 {
+                places.push(None);
                 continue;
             }
             let fault = |found: String, expected: String| Err(Fault::new(self.place(index), found, expected));
@@ -187,8 +187,31 @@ impl Blocks {
             if needed > bytes.saturating_mul(self.expansion) + slack {
                 return fault(format!("{bytes} bytes"), format!("enough for {needed} bytes of samples"));
             }
+            places.push(Some(offset..offset + bytes));
         }
-        Ok(has_samples)
+        Ok(places)
+    }
+
+    /// Refuses blocks that share bytes: then all blocks together have no more bytes than the file.
+    ///
+    /// CHOICE: a writer could store equal blocks once, but none is known to. A file of a megabyte could otherwise ask for the
+    /// work of a terabyte.
+    fn refuse_overlaps(&self, mut places: Vec<(u64, Range<u64>)>) -> Result<(), Fault> {
+        places.sort_unstable_by_key(|(index, place)| (place.start, *index));
+        for pair in places.windows(2) {
+            let [(before, first), (index, second)] = pair else { continue };
+            if second.start < first.end {
+                let found = format!("{} bytes from byte {}", second.end - second.start, second.start);
+                let expected = format!(
+                    "bytes of its own: {} has {} bytes from byte {}",
+                    self.place(*before),
+                    first.end - first.start,
+                    first.start
+                );
+                return Err(Fault::new(self.place(*index), found, expected));
+            }
+        }
+        Ok(())
     }
 
     /// Place of a block in messages.
@@ -213,20 +236,22 @@ impl Blocks {
         let ((left, right), (top, bottom)) = (part(&columns, 0), part(&rows, 1));
         let count = right - left + 1;
         // All blocks are checked before memory is allocated for their samples.
-        let mut has_any = false;
+        let mut written = Vec::new();
         for down in top..=bottom {
-            let has_samples = self.check_blocks(tags, &mut file, length, down * self.across + left, count)?;
-            if let Some(absent) = has_samples.iter().position(|has| !has).filter(|_| nodata.is_none()) {
-                let place = self.place(down * self.across + left + absent as u64);
+            let first = down * self.across + left;
+            let places = self.places(tags, &mut file, length, first, count)?;
+            if let Some(absent) = places.iter().position(Option::is_none).filter(|_| nodata.is_none()) {
                 let expected = "samples, or a value in tag 42113 GDAL_NODATA that stands for them";
-                return Err(Fault::new(place, "no bytes", expected));
+                return Err(Fault::new(self.place(first + absent as u64), "no bytes", expected));
             }
-            has_any |= has_samples.contains(&true);
+            written.extend((first..).zip(places).filter_map(|(index, place)| Some((index, place?))));
         }
-        if !has_any {
+        if written.is_empty() {
             let found = format!("no bytes in any {} that is asked for", self.kind);
             return Err(Fault::new(tag_name(self.byte_counts), found, "some heights"));
         }
+        let indices: Vec<u64> = written.iter().map(|(index, _)| *index).collect();
+        self.refuse_overlaps(written)?;
 
         let unfit = |place: String| {
             move |error: tiff::TiffError| Fault::new(place, error.to_string(), "samples that can be decoded")
@@ -242,28 +267,24 @@ impl Blocks {
             columns,
             rows,
         };
-        for down in top..=bottom {
-            let first = down * self.across + left;
-            let has_samples = self.check_blocks(tags, decoder.inner(), length, first, count)?;
-            for index in (first..).zip(has_samples).filter(|(_, has)| *has).map(|(index, _)| index) {
-                let samples = decoder.read_chunk(index as u32).map_err(unfit(self.place(index)))?;
-                let corner = [index % self.across * self.block[0], index / self.across * self.block[1]];
-                let size = [
-                    self.block[0].min(u64::from(self.width) - corner[0]),
-                    self.block[1].min(u64::from(self.height) - corner[1]),
-                ];
-                match samples {
-                    DecodingResult::U8(samples) => target.take(corner, size, &samples),
-                    DecodingResult::I8(samples) => target.take(corner, size, &samples),
-                    DecodingResult::U16(samples) => target.take(corner, size, &samples),
-                    DecodingResult::I16(samples) => target.take(corner, size, &samples),
-                    DecodingResult::U32(samples) => target.take(corner, size, &samples),
-                    DecodingResult::I32(samples) => target.take(corner, size, &samples),
-                    DecodingResult::F32(samples) => target.take(corner, size, &samples),
-                    DecodingResult::F64(samples) => target.take(corner, size, &samples),
-                    _ => Err(Fault::new(self.place(index), "other samples", "those of the tags")),
-                }?;
-            }
+        for index in indices {
+            let samples = decoder.read_chunk(index as u32).map_err(unfit(self.place(index)))?;
+            let corner = [index % self.across * self.block[0], index / self.across * self.block[1]];
+            let size = [
+                self.block[0].min(u64::from(self.width) - corner[0]),
+                self.block[1].min(u64::from(self.height) - corner[1]),
+            ];
+            match samples {
+                DecodingResult::U8(samples) => target.take(corner, size, &samples),
+                DecodingResult::I8(samples) => target.take(corner, size, &samples),
+                DecodingResult::U16(samples) => target.take(corner, size, &samples),
+                DecodingResult::I16(samples) => target.take(corner, size, &samples),
+                DecodingResult::U32(samples) => target.take(corner, size, &samples),
+                DecodingResult::I32(samples) => target.take(corner, size, &samples),
+                DecodingResult::F32(samples) => target.take(corner, size, &samples),
+                DecodingResult::F64(samples) => target.take(corner, size, &samples),
+                _ => Err(Fault::new(self.place(index), "other samples", "those of the tags")),
+            }?;
         }
         Ok(target.heights)
     }

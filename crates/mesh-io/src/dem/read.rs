@@ -36,6 +36,9 @@ pub const WINDOW_SIDE_RANGE_M: RangeInclusive<f64> = 1e-3..=1e9;
 /// `window` is x and y of its lower left corner, its width and its height, metres of the map. Posts on its border
 /// belong to it. Only the strips and tiles that it touches are read.
 ///
+/// Limits: 2^24 cells between the posts, 2^22 strips or tiles of at most 512 MiB each. Strips or tiles that share bytes are
+/// refused before any is decoded, so that the work is bounded by the length of the file.
+///
 /// # Errors
 /// Names the file and the tag, strip, tile or pixel that is wrong, what was found there and what was expected.
 ///

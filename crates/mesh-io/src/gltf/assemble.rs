@@ -13,6 +13,9 @@ use crate::gltf::limits::{MAX_FACES_OR_VERTICES, MAX_PRIMITIVES};
 use crate::gltf::nodes::{PlacedNode, node_place};
 use crate::gltf::primitives::{counts, primitives, triangle_primitive, triangles};
 
+/// Name of the material of faces that have none.
+pub(crate) const WITHOUT_MATERIAL: &str = "no material";
+
 /// Parts of a mesh, in the global frame.
 #[derive(Default)]
 pub(super) struct Parts {
@@ -103,7 +106,7 @@ pub(super) fn assemble(
                 }
                 // Primitives without a material share one additional material.
                 None => *default_material.get_or_insert_with(|| {
-                    parts.materials.push(Material { name: "no material".to_string(), reflectivity });
+                    parts.materials.push(Material { name: WITHOUT_MATERIAL.to_string(), reflectivity });
                     parts.materials.len() - 1
                 }),
             };

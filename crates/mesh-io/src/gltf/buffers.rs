@@ -1,6 +1,5 @@
 //! Buffers of a glTF file: its binary chunk, data URIs and files beside it. (glTF 2.0, §3.6.1)
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -9,28 +8,47 @@ use base64::engine::general_purpose::STANDARD;
 use gltf::json::Root;
 use raypencil_files::{Fault, Sha256Digest, bytes, sha256};
 
-use crate::gltf::limits::MAX_FILE_BYTES;
+use crate::gltf::limits::MAX_BUFFER_FILES_BYTES;
 
 /// Buffers, loaded when they are first needed; those of textures and animations never are.
 pub(super) struct Buffers<'a> {
     root: &'a Root,
     folder: &'a Path,
     bin: Option<&'a [u8]>,
-    loaded: BTreeMap<usize, Cow<'a, [u8]>>,
-    /// Digests of the buffers in files of their own.
-    external: BTreeMap<usize, Sha256Digest>,
-    external_bytes: u64,
+    loaded: BTreeMap<usize, Loaded<'a>>,
+    /// Files of buffers by their real paths, each read once.
+    files: BTreeMap<PathBuf, BufferFile>,
+    /// Bytes of these files.
+    file_bytes: u64,
+}
+
+/// Where the bytes of a buffer are.
+enum Loaded<'a> {
+    /// In the binary chunk.
+    Chunk(&'a [u8]),
+    /// Decoded from a data URI.
+    Data(Vec<u8>),
+    /// In a file, which other buffers may name too.
+    File(PathBuf),
+}
+
+/// A file with buffers.
+struct BufferFile {
+    bytes: Vec<u8>,
+    digest: Sha256Digest,
 }
 
 impl<'a> Buffers<'a> {
     pub(super) fn new(root: &'a Root, folder: &'a Path, bin: Option<&'a [u8]>) -> Self {
-        let (loaded, external) = (BTreeMap::new(), BTreeMap::new());
-        Self { root, folder, bin, loaded, external, external_bytes: 0 }
+        Self { root, folder, bin, loaded: BTreeMap::new(), files: BTreeMap::new(), file_bytes: 0 }
     }
 
-    /// Digests of the files that were read, in the order of their buffers.
+    /// Digests of the files that were read, in the order of their buffers: one for each buffer in a file.
     pub(super) fn digests(&self) -> impl Iterator<Item = Sha256Digest> + '_ {
-        self.external.values().copied()
+        self.loaded.values().filter_map(|loaded| match loaded {
+            Loaded::File(path) => self.files.get(path).map(|file| file.digest),
+            Loaded::Chunk(_) | Loaded::Data(_) => None,
+        })
     }
 
     /// Bytes of a buffer view.
@@ -61,11 +79,11 @@ impl<'a> Buffers<'a> {
         if !self.loaded.contains_key(&index) {
             let bytes = match &buffer.uri {
                 Some(uri) => match uri.strip_prefix("data:") {
-                    Some(data) => Cow::Owned(data_uri(data, &place())?),
-                    None => Cow::Owned(self.external(index, uri)?),
+                    Some(data) => Loaded::Data(data_uri(data, &place())?),
+                    None => Loaded::File(self.external(index, uri)?),
                 },
                 None => match (index, self.bin) {
-                    (0, Some(bin)) => Cow::Borrowed(bin),
+                    (0, Some(bin)) => Loaded::Chunk(bin),
                     _ => {
                         return Err(Fault::new(
                             place(),
@@ -77,7 +95,12 @@ impl<'a> Buffers<'a> {
             };
             self.loaded.insert(index, bytes);
         }
-        let bytes: &[u8] = self.loaded.get(&index).map_or(&[], |bytes| bytes);
+        let bytes: &[u8] = match self.loaded.get(&index) {
+            Some(Loaded::Chunk(bytes)) => bytes,
+            Some(Loaded::Data(bytes)) => bytes,
+            Some(Loaded::File(path)) => self.files.get(path).map_or(&[], |file| &file.bytes),
+            None => &[],
+        };
         // A BIN chunk may be longer than its buffer, by its padding.
         usize::try_from(buffer.byte_length.0).ok().and_then(|length| bytes.get(..length)).ok_or_else(|| {
             let found = format!("{} bytes", bytes.len());
@@ -85,8 +108,9 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    /// Bytes of a file in the folder of the glTF file, or below it.
-    fn external(&mut self, index: usize, uri: &str) -> Result<Vec<u8>, Fault> {
+    /// Reads a file in the folder of the glTF file, or below it, unless another buffer named it before. Returns its real
+    /// path.
+    fn external(&mut self, index: usize, uri: &str) -> Result<PathBuf, Fault> {
         let place = format!("buffer {index}");
         let quoted: String = uri.chars().take(80).collect();
         let refuse = |why: &str| {
@@ -106,18 +130,28 @@ impl<'a> Buffers<'a> {
         }
         let path = self.folder.join(PathBuf::from(&relative));
         // A symbolic link may lead out of the folder where the name does not.
-        let inside = |folder: &Path| Some(path.canonicalize().ok()?.starts_with(folder.canonicalize().ok()?));
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
-        match inside(folder) {
-            Some(true) => {}
-            Some(false) => return Err(refuse("leads out of the folder by a link")),
-            None => return Err(refuse("does not exist")),
+        let real = path.canonicalize().and_then(|path| Ok((path, folder.canonicalize()?)));
+        let Ok((path, folder)) = real else { return Err(refuse("does not exist")) };
+        if !path.starts_with(folder) {
+            return Err(refuse("leads out of the folder by a link"));
         }
-        let bytes = bytes::read_file(&path, MAX_FILE_BYTES - self.external_bytes)
-            .map_err(|error| refuse(&format!("cannot be read: {error}")))?;
-        self.external_bytes += bytes.len() as u64;
-        self.external.insert(index, sha256(&bytes));
-        Ok(bytes)
+        if !self.files.contains_key(&path) {
+            let left = MAX_BUFFER_FILES_BYTES - self.file_bytes;
+            if let Some(length) =
+                std::fs::metadata(&path).ok().map(|file| file.len()).filter(|length| *length > left)
+            {
+                let found = format!("a file of {length} bytes after {} bytes of others", self.file_bytes);
+                let expected = format!("at most {MAX_BUFFER_FILES_BYTES} bytes in all files of buffers");
+                return Err(Fault::new(&place, found, expected));
+            }
+            let bytes =
+                bytes::read_file(&path, left).map_err(|error| refuse(&format!("cannot be read: {error}")))?;
+            self.file_bytes += bytes.len() as u64;
+            let digest = sha256(&bytes);
+            self.files.insert(path.clone(), BufferFile { bytes, digest });
+        }
+        Ok(path)
     }
 }
 

@@ -6,7 +6,6 @@ use raypencil_files::{Fault, FileError, Sha256Digest};
 
 use crate::gltf::assemble::{Parts, assemble};
 use crate::gltf::buffers::Buffers;
-use crate::gltf::placement::Placement;
 use crate::gltf::{container, json, nodes};
 use crate::triangles::MAX_COORDINATE;
 
@@ -25,9 +24,7 @@ pub(crate) fn exact_triangles(bytes: &[u8], file: &Path) -> Result<ExactTriangle
         let container = container::split(bytes)?;
         let root = json::root(container.json)?;
         let mut buffers = Buffers::new(&root, file.parent().unwrap_or(Path::new("")), container.bin);
-        let placements = Placement::of_nodes(container.json)?;
-        let nodes =
-            nodes::placed_nodes(&root, |index, _| placements.get(index).cloned().unwrap_or_default())?;
+        let nodes = nodes::placed_nodes(&root, container.json)?;
         // Any reflectivity: nobody sees it.
         let parts = assemble(&root, nodes, &mut buffers, Parts::default(), 0.0, false, MAX_COORDINATE)?;
         // Terrain is turned to z up by exchanging coordinates; turned back, each is the number that it was.

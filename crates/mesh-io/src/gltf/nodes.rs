@@ -2,7 +2,6 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::json::Root;
-use gltf::json::scene::Node;
 use raypencil_files::Fault;
 use raypencil_scene::Pose;
 
@@ -30,11 +29,10 @@ pub(super) fn node_place(root: &Root, index: usize) -> String {
 
 /// All nodes below the roots: a node before its children, children in the order of the file.
 ///
-/// `placement` gives the transform of a node below its parent.
-pub(super) fn placed_nodes(
-    root: &Root,
-    placement: impl Fn(usize, &Node) -> Placement,
-) -> Result<Vec<PlacedNode>, Fault> {
+/// `json` is the text of `root`: transforms are read from it again, in double precision.
+pub(super) fn placed_nodes(root: &Root, json: &[u8]) -> Result<Vec<PlacedNode>, Fault> {
+    // As many as `root` has nodes: both are read from the same list.
+    let placements = Placement::of_nodes(json)?;
     let parents = parents(root)?;
     let mut stack: Vec<(usize, DAffine3, usize)> = Vec::new();
     for &index in roots(root, &parents)?.iter().rev() {
@@ -48,7 +46,7 @@ pub(super) fn placed_nodes(
         }
         // Every index is that of a node: roots and children have been checked.
         let node = &root.nodes[index];
-        let parent_from_node = local(&placement(index, node), &node_place(root, index))?;
+        let parent_from_node = local(&placements[index], &node_place(root, index))?;
         let file_from_node = match parent_from_node {
             Some(transform) => file_from_parent * transform,
             None => file_from_parent,
@@ -173,7 +171,7 @@ fn local(node: &Placement, place: &str) -> Result<Option<DAffine3>, Fault> {
     finite("rotation", &rotation)?;
     let [x, y, z, w] = rotation;
     let norm_squared = x * x + y * y + z * z + w * w;
-    // Single precision holds a unit quaternion to about 1e-7. The larger bound admits writers with fewer digits.
+    // Most writers give a unit quaternion in single precision, to about 1e-7. The larger bound admits fewer digits.
     if !(0.9..=1.1).contains(&norm_squared) {
         let found = format!("rotation {rotation:?}");
         return Err(Fault::new(place, found, "a unit quaternion"));

@@ -6,10 +6,10 @@ use glam::DVec3;
 use raypencil_files::{Fault, FileError, Sha256Digest, bytes, sha256};
 use raypencil_scene::Mesh;
 
+use crate::file_frame::{FileFrame, UpAxis};
 use crate::gltf::assemble::{Parts, assemble};
 use crate::gltf::buffers::Buffers;
 use crate::gltf::limits::MAX_FILE_BYTES;
-use crate::gltf::placement::Placement;
 use crate::gltf::{container, json, materials, nodes, stated_origin};
 
 /// Reflectivity of materials that state none. CHOICE: bright Martian dust reflects about this much in the near
@@ -20,6 +20,12 @@ pub const DEFAULT_REFLECTIVITY: f64 = 0.25;
 const MAX_COORDINATE: f64 = 1e12;
 
 /// Loads a `.glb` or `.gltf` terrain. Materials that state no reflectivity get [`DEFAULT_REFLECTIVITY`].
+///
+/// The axes of glTF are y up: (x, y, z) of the file becomes (x, -z, y). The unit is the metre. Transforms of nodes are
+/// read and composed in double precision.
+///
+/// Limits: 1 GiB for the file, [`MAX_BUFFER_FILES_BYTES`](crate::MAX_BUFFER_FILES_BYTES) for all files of buffers beside it,
+/// each read once; 2^25 faces and vertices in all instances; 2^19 objects in the JSON.
 ///
 /// # Errors
 /// Names the file and the accessor, node, buffer or line of JSON that is wrong.
@@ -50,7 +56,22 @@ pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, FileError> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn mesh_from_bytes(bytes: &[u8], file: &Path, reflectivity: f64) -> Result<Mesh, FileError> {
-    Ok(parse(bytes, file, reflectivity, Vertices::Global)?.0)
+    Ok(parse(bytes, file, reflectivity, Vertices::Global, &FileFrame::default())?.0)
+}
+
+/// Mesh from the bytes of a file whose axes and unit may be others than those of glTF, and the digests of the file and of the
+/// buffers beside it.
+///
+/// # Errors
+/// As [`load_mesh`].
+pub(crate) fn terrain_from_bytes(
+    bytes: &[u8],
+    file: &Path,
+    reflectivity: f64,
+    frame: &FileFrame,
+) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
+    let (mesh, external) = parse(bytes, file, reflectivity, Vertices::Global, frame)?;
+    Ok((mesh, std::iter::once(sha256(bytes)).chain(external).collect()))
 }
 
 /// Loads a `.glb` or `.gltf` file whose vertices are offsets, metres, from `origin` in the global frame.
@@ -82,7 +103,7 @@ pub fn read_mesh(
     kind: Vertices,
 ) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
     let bytes = bytes::read_file(path, MAX_FILE_BYTES).map_err(|error| FileError::io(path, "read", error))?;
-    let (mesh, external) = parse(&bytes, path, reflectivity, kind)?;
+    let (mesh, external) = parse(&bytes, path, reflectivity, kind, &FileFrame::default())?;
     Ok((mesh, std::iter::once(sha256(&bytes)).chain(external).collect()))
 }
 
@@ -92,20 +113,23 @@ fn parse(
     file: &Path,
     reflectivity: f64,
     kind: Vertices,
+    frame: &FileFrame,
 ) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let in_file = |fault: Fault| FileError::Gltf(fault.in_file(file));
     let container = container::split(bytes).map_err(in_file)?;
     let root = json::root(container.json).map_err(in_file)?;
     let mut buffers = Buffers::new(&root, folder, container.bin);
-    let nodes = nodes::placed_nodes(&root, |_, node| Placement::rounded(node)).map_err(in_file)?;
+    let nodes = nodes::placed_nodes(&root, container.json).map_err(in_file)?;
     let materials = materials::read(&root, container.json, reflectivity).map_err(in_file)?;
     let stated = match kind {
-        Vertices::Global => stated_origin::origin(&root, &nodes),
-        Vertices::OffsetsFrom(_) => None,
+        Vertices::Global if frame.is_of_gltf() => stated_origin::origin(&root, &nodes),
+        // The origin of a file that is turned or scaled follows from its vertices.
+        Vertices::Global | Vertices::OffsetsFrom(_) => None,
     };
+    let max_coordinate = MAX_COORDINATE / frame.scale;
     let parts = Parts { materials, ..Parts::default() };
-    let parts = assemble(&root, nodes, &mut buffers, parts, reflectivity, stated.is_some(), MAX_COORDINATE)
+    let parts = assemble(&root, nodes, &mut buffers, parts, reflectivity, stated.is_some(), max_coordinate)
         .map_err(in_file)?;
     let Parts { mut vertices, faces, face_materials, materials } = parts;
     if faces.is_empty() {
@@ -116,8 +140,9 @@ fn parse(
             stated_origin::mesh(origin, vertices, faces, face_materials, materials)
         }
         (Vertices::Global, None) => {
-            // z = 0 of the file becomes y = +0, not -0: the sign means nothing in ordinary files.
-            vertices.iter_mut().for_each(|vertex| vertex.y += 0.0);
+            // As numbers of the file again, from which z = 0 becomes y = +0, not -0: the sign means nothing in ordinary files.
+            let in_file = |turned: DVec3| [turned.x, turned.z, -turned.y];
+            vertices.iter_mut().for_each(|vertex| *vertex = frame.global(in_file(*vertex), UpAxis::Y));
             Mesh::from_global(&vertices, faces, face_materials, materials)
         }
         (Vertices::OffsetsFrom(origin), _) => {

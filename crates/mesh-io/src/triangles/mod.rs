@@ -13,4 +13,5 @@ mod stl;
 mod text;
 
 pub(crate) use parts::MAX_COORDINATE;
+pub(crate) use read::{Format, format, parse, read_bytes};
 pub use read::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};

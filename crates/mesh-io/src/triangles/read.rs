@@ -35,6 +35,8 @@ pub struct TriangleFile {
 /// corner; [`read_triangles`] tells which polygon a face belongs to. The corners of STL become one vertex if they have
 /// the same three numbers. A file may have no faces.
 ///
+/// Limits: 1 GiB for each file; of PLY 256 elements, each of at most 1024 properties.
+///
 /// `path` is a file; or a folder with `vertices.npy` and `faces.npy`; or one of two files whose names end with these;
 /// or `rock` for `rock.vertices.npy` and `rock.faces.npy`, also with `_` or `-` for the dot.
 ///
@@ -80,15 +82,17 @@ pub fn load_triangles(path: &Path) -> Result<Triangles, FileError> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_triangles(path: &Path) -> Result<TriangleFile, FileError> {
-    let read = |path: &Path| {
-        bytes::read_file(path, MAX_FILE_BYTES).map_err(|error| FileError::io(path, "read", error))
-    };
     if let Some(files) = npy_pair::files(path) {
-        let (vertices, faces) = (read(&files[0])?, read(&files[1])?);
+        let (vertices, faces) = (read_bytes(&files[0])?, read_bytes(&files[1])?);
         let parts = npy_pair::read(&files, [&vertices, &faces])?;
         return finished(parts, path, vec![sha256(&vertices), sha256(&faces)]);
     }
-    parse(&read(path)?, path)
+    parse(&read_bytes(path)?, path)
+}
+
+/// Bytes of a mesh file.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+    bytes::read_file(path, MAX_FILE_BYTES).map_err(|error| FileError::io(path, "read", error))
 }
 
 /// Triangles from the bytes of a GLB, glTF, STL, OBJ or PLY file. `file` is its name in messages, and its ending tells
@@ -109,14 +113,16 @@ pub fn triangles_from_bytes(bytes: &[u8], file: &Path) -> Result<Triangles, File
 }
 
 /// Mesh format of a single file.
-enum Format {
+#[derive(PartialEq)]
+pub(crate) enum Format {
     Gltf,
     Stl,
     Obj,
     Ply,
 }
 
-fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError> {
+/// Triangles of a single file from its bytes, with what ties them to it.
+pub(crate) fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError> {
     let in_file = |fault: Fault| FileError::Mesh(fault.in_file(file));
     if bytes.len() as u64 > MAX_FILE_BYTES {
         let found = format!("{} bytes", bytes.len());
@@ -137,7 +143,7 @@ fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError> {
 }
 
 /// Format of a file: by its first bytes, then by its ending, then by the rest of its bytes. OBJ has no mark of its own.
-fn format(bytes: &[u8], file: &Path) -> Result<Format, Fault> {
+pub(crate) fn format(bytes: &[u8], file: &Path) -> Result<Format, Fault> {
     let ending = file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     match (bytes, ending.as_deref()) {
         ([b'g', b'l', b'T', b'F', ..], _) => Ok(Format::Gltf),

@@ -37,6 +37,8 @@ impl<'a> Iterator for Lines<'a> {
             return None;
         }
         let (first, mut start) = (self.number, 0);
+        // Each part is looked at once, however many lines are joined.
+        let mut has_comment = false;
         loop {
             let rest = &self.rest[start..];
             let length = rest.iter().position(|byte| b"\n\r".contains(byte)).unwrap_or(rest.len());
@@ -44,7 +46,8 @@ impl<'a> Iterator for Lines<'a> {
             let line = &self.rest[..start + length];
             start = (start + end).min(self.rest.len());
             self.number += 1;
-            let goes_on = self.joined && line.ends_with(b"\\") && !line.contains(&b'#');
+            has_comment = has_comment || (self.joined && rest[..length].contains(&b'#'));
+            let goes_on = self.joined && line.ends_with(b"\\") && !has_comment;
             if !goes_on || start == self.rest.len() {
                 self.rest = &self.rest[start..];
                 return Some((first, line));

@@ -5,6 +5,10 @@ mod placement;
 mod samples;
 mod write;
 
+// The file alone: it counts what a reader asks for.
+#[path = "../triangles/memory.rs"]
+mod memory;
+
 use std::path::Path;
 use write::Tiff;
 

@@ -2,10 +2,12 @@
 
 use proptest::prelude::*;
 
+use crate::memory::peak_bytes;
 use crate::read;
 use crate::write::{Codec, Long, Short, Text, Tiff};
 use crate::{assert_names, refusal};
-use raypencil_mesh_io::read_dem;
+use raypencil_mesh_io::{dem_from_bytes, read_dem};
+use std::path::Path;
 
 #[test]
 fn a_header_alone_allocates_no_memory() {
@@ -148,4 +150,47 @@ proptest! {
 #[test]
 fn the_unchanged_file_is_read() {
     assert!(read(&Tiff::plain(), None).is_ok());
+}
+
+#[test]
+fn blocks_that_share_bytes_are_refused() {
+    // Strips of 32 and 16 bytes, at bytes 8 and 40.
+    let strips = |first: u32, second: u32| Tiff::plain().tag(273, Long(vec![first, second]));
+    assert!(read(&strips(8, 40), None).is_ok());
+    // Touching is not sharing; their order in the file is free.
+    assert!(read(&strips(24, 8), None).is_ok());
+    assert_names(
+        &refusal(&strips(8, 39), None),
+        &["strip 1: 16 bytes from byte 39; expected bytes of its own: strip 0 has 32 bytes from byte 8"],
+    );
+    assert_names(
+        &refusal(&strips(23, 8), None),
+        &["strip 0: 32 bytes from byte 23; expected bytes of its own: strip 1 has 16 bytes from byte 8"],
+    );
+    assert_names(&refusal(&strips(8, 8), None), &["strip 1: 16 bytes from byte 8"]);
+
+    // A strip that is not asked for may share bytes. Its two rows are at y = 5 and 3, the other's row is at y = 1.
+    let north = [10.0, 2.0, 4.0, 4.0];
+    assert!(read(&strips(8, 8), Some(north)).is_ok());
+}
+
+#[test]
+fn equal_offsets_take_neither_time_nor_memory() {
+    // 2^18 strips of one row of 64 posts, all with the same 256 bytes: decoded, they would be 64 MB out of 2 MB.
+    let count = 1 << 18;
+    let mut tiff = Tiff::plain();
+    tiff.size = [64, 1];
+    tiff.block = vec![1];
+    let tiff = tiff
+        .with(|column, _| column as f64)
+        .tag(257, Long(vec![count]))
+        .tag(273, Long(vec![8; count as usize]))
+        .tag(279, Long(vec![256; count as usize]));
+    let bytes = tiff.bytes();
+    assert!(bytes.len() > 2 << 20 && bytes.len() < 3 << 20);
+    let (result, peak) = peak_bytes(|| dem_from_bytes(&bytes, Path::new("dem.tif"), None));
+    let error = result.unwrap_err().to_string();
+    assert_names(&error, &["dem.tif: strip 1: 256 bytes from byte 8; expected bytes of its own: strip 0"]);
+    // 32 bytes for each strip that is checked, in a list that grows by doubling.
+    assert!(peak < 16 * bytes.len(), "{peak}");
 }

@@ -2,6 +2,7 @@
 //! files that are written and read back.
 
 pub(crate) mod any_bytes;
+pub(crate) mod buffers;
 pub(crate) mod container;
 pub(crate) mod scenes;
 pub(crate) mod storage;
@@ -13,6 +14,10 @@ use std::path::Path;
 use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, mesh_from_bytes};
 use raypencil_scene::Mesh;
 use serde_json::Value;
+
+// The file alone: it counts what a reader asks for.
+#[path = "../triangles/memory.rs"]
+mod memory;
 
 // The file alone: as a dependency, `raypencil-tests` would build the whole workspace first.
 #[path = "../../../../tests/src/glb.rs"]

@@ -79,6 +79,86 @@ fn a_hierarchy_is_composed_in_double_precision() {
     assert_eq!(vertices(&mesh)[1], [0.25, -1., 0.]);
 }
 
+/// Offsets as a map projection has them. None is a number of single precision: 0.25 m of the first is lost in it, and
+/// 0.2 m of the second.
+const MAP_M: [f64; 3] = [4_500_000.25, 4_500_000.3, -612_345.678];
+
+/// Vertices of the square below `nodes`, in the global frame, if they are at these places of the file: each is its
+/// single-precision position plus `at`, rounded once to double; from there the scene origin is taken off, and the rest
+/// is rounded to single.
+fn stands_at(nodes: Value, at: [f64; 3]) {
+    let mesh = changed(|json| json["nodes"] = nodes.clone()).unwrap();
+    let origin = mesh.origin().to_array();
+    for (vertex, local) in mesh.vertices().iter().zip(SQUARE.chunks(3)) {
+        let file: [f64; 3] = std::array::from_fn(|axis| f64::from(local[axis]) + at[axis]);
+        let global = [file[0], -file[2], file[1]];
+        let expected: [f32; 3] = std::array::from_fn(|axis| (global[axis] - origin[axis]) as f32);
+        assert_eq!(vertex, &expected, "{nodes}");
+        // The vertices are near the origin, where single precision tells micrometres apart.
+        assert!(expected.iter().all(|offset| offset.abs() <= 2.0));
+    }
+}
+
+#[test]
+fn a_translation_keeps_its_decimals_at_map_coordinates() {
+    let [x, y, z] = MAP_M;
+    stands_at(json!([{"mesh": 0, "translation": MAP_M}]), MAP_M);
+    stands_at(json!([{"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1]}]), MAP_M);
+}
+
+#[test]
+fn nested_translations_add_in_double_precision() {
+    // Half of a map coordinate twice: the sum of two equal doubles is exact.
+    let [x, y, z] = MAP_M.map(|part| 0.5 * part);
+    stands_at(
+        json!([
+            {"translation": [x, y, z], "children": [1]},
+            {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1], "children": [2]},
+            {"mesh": 0},
+        ]),
+        MAP_M,
+    );
+    // A map coordinate taken off again: what is left is exact, and single precision would leave nothing of it.
+    stands_at(
+        json!([
+            {"translation": [4_500_000.25, 0, -4_500_000.125], "children": [1]},
+            {"mesh": 0, "translation": [-4_500_000, 0, 4_500_000]},
+        ]),
+        [0.25, 0.0, -0.125],
+    );
+}
+
+#[test]
+fn scales_and_turns_keep_their_decimals() {
+    // Millimetres at a map coordinate: 0.001 times 4,500,000,250. The factor of single precision is off by 4.7e-8,
+    // which is 0.2 m there.
+    let mesh = changed(|json| {
+        json["nodes"] = json!([
+            {"scale": [0.001, 0.001, 0.001], "children": [1]},
+            {"translation": [4_500_000_250.0, 0, 0], "mesh": 0},
+        ]);
+    })
+    .unwrap();
+    let x = |vertex: usize| mesh.origin().x + f64::from(mesh.vertices()[vertex][0]);
+    assert!((x(0) - 4_500_000.25).abs() < 1e-6 && (x(1) - 4_500_000.251).abs() < 1e-6, "{} {}", x(0), x(1));
+
+    // (3, 4) / 5 is the turn by a cosine of -7/25 and a sine of 24/25 about y: x of 4,500,000 goes to
+    // (-1,260,000, 0, -4,320,000). 0.6 and 0.8 in single precision are off by 4e-8 and 1.5e-8.
+    let mesh = changed(|json| {
+        json["nodes"] = json!([
+            {"rotation": [0, 0.8, 0, 0.6], "children": [1]},
+            {"translation": [4_500_000, 0, 0], "mesh": 0},
+        ]);
+    })
+    .unwrap();
+    let corner: [f64; 3] =
+        std::array::from_fn(|axis| mesh.origin()[axis] + f64::from(mesh.vertices()[0][axis]));
+    for (found, expected) in corner.into_iter().zip([-1_260_000.0, 4_320_000.0, 0.0]) {
+        // A few roundings of doubles near 4.5e6, at 5e-10 each.
+        assert!((found - expected).abs() < 1e-8, "{corner:?}");
+    }
+}
+
 #[test]
 fn instances_stand_side_by_side_in_document_order() {
     let mesh = changed(|json| {

@@ -131,6 +131,30 @@ fn headers_of_ply() {
 }
 
 #[test]
+fn headers_of_ply_have_limits() {
+    // Each name is compared with all before it: a hundred thousand of them would take minutes.
+    let header = ply_header("ascii", "float", "uchar", "int");
+    let elements = |count: usize| (0..count).map(|k| format!("element e{k} 0\n")).collect::<String>();
+    let with = |elements: &str| header.replacen("element vertex", &format!("{elements}element vertex"), 1);
+    refused("a.ply", with(&elements(100_000)), "line 260: more than 256 elements; expected at most 256");
+    let properties: String = (0..100_000).map(|k| format!("property float p{k}\n")).collect();
+    let many = header.replacen("property float x", &format!("{properties}property float x"), 1);
+    refused("a.ply", many, "line 1029: more than 1024 properties; expected at most 1024");
+    // The limits themselves are read: here three elements are in the file already.
+    let rows = String::from_utf8(samples::text_ply()).unwrap();
+    let most = rows.replacen("element vertex", &format!("{}element vertex", elements(253)), 1);
+    assert_eq!(parse("a.ply", most.as_bytes()).unwrap().vertices().len(), 5);
+}
+
+#[test]
+fn a_statement_of_obj_may_go_on_over_any_number_of_lines() {
+    // Time grows with the length: for its square, this file would take an hour.
+    let joins = "\\\n".repeat(1 << 20);
+    let mesh = parse("a.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {joins} 3\n").as_bytes()).unwrap();
+    assert_eq!(mesh.faces(), [[0, 1, 2]]);
+}
+
+#[test]
 fn counts_of_ply_are_held_against_the_length() {
     for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
         for (from, count) in [("vertex 5", u64::MAX), ("face 2", 1 << 32), ("edge 1", 1 << 40)] {

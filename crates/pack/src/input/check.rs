@@ -63,7 +63,8 @@ pub fn is_input_pack(folder: &Path) -> bool {
 
 /// Checks a loader's `triangles.npy`, and `reflectivity.npy` if it is there, against an input pack.
 ///
-/// Coordinates must be equal, since all of them are exact in single precision. Any corner of a face may be the first.
+/// Coordinates must be equal, since all of them are exact in single precision; the translations of
+/// [`LoadingClause::Decimals`] are so only in double precision. Any corner of a face may be the first.
 ///
 /// # Errors
 /// A pack that is not the one of this version; an array that is missing, cannot be read or has another shape.

@@ -57,5 +57,6 @@ clauses! {
     Interleaved: "interleaved", "Vertices may be interleaved with other data: byteStride and byteOffset.";
     Primitives: "primitives", "All primitives of a mesh are drawn, in their order; points and lines are not.";
     FacesWithoutArea: "faces-without-area", "A face without area is kept: it counts.";
+    Decimals: "decimals", "The numbers of a transform are doubles, and transforms are composed in double precision.";
     Reflectivity: "reflectivity", "The reflectivity of a face is that of its material, or 0.25 without one.";
 }

@@ -19,6 +19,12 @@ const TURN: [f32; 4] = [0.5, 0.5, 0.5, 0.5];
 /// A quaternion whose rotation takes (x, y, z) to (-y, -z, x), exactly. Its w is unlike its x, so that the order matters.
 const OTHER_TURN: [f32; 4] = [0.5, -0.5, 0.5, 0.5];
 
+/// Translations along x as a map projection has them; the second takes off all but a quarter. In single precision the
+/// first is 4,500,000, and nothing is left.
+const ON_THE_MAP: f64 = 4_500_000.25;
+
+const OFF_THE_MAP: f64 = -4_500_000.0;
+
 /// Bytes of the binary chunk, and where each view of it begins and ends.
 #[derive(Default)]
 struct Binary {
@@ -129,6 +135,8 @@ pub(super) fn document() -> (Value, Vec<u8>) {
         {"name": "interleaved", "mesh": 6, "translation": [0.0, 0.0, 28.0]},
         {"name": "faces-without-area", "mesh": 8, "translation": [0.0, 0.0, 36.0]},
         {"name": "reflectivity", "mesh": 9, "translation": [0.0, 0.0, 40.0]},
+        {"name": "off the map", "mesh": 0, "translation": [OFF_THE_MAP, 0.0, 44.0]},
+        {"name": "decimals", "translation": [ON_THE_MAP, 0.0, 0.0], "children": [25]},
     ]);
     let json = json!({
         "asset": {"version": "2.0", "generator": "raypencil"},
@@ -137,7 +145,7 @@ pub(super) fn document() -> (Value, Vec<u8>) {
         "scenes": [
             {"name": "another scene", "nodes": [13]},
             {"name": "default", "nodes": [
-                1, 2, 3, 4, 5, 7, 8, 9, 11, 12, 16, 17, 18, 19, 20, 21, 22, 0, 23, 24,
+                1, 2, 3, 4, 5, 7, 8, 9, 11, 12, 16, 17, 18, 19, 20, 21, 22, 0, 23, 24, 26,
             ]},
         ],
         "nodes": nodes,

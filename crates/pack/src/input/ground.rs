@@ -77,6 +77,8 @@ pub fn input_faces() -> Vec<InputFace> {
     // Grey of 0.5 has the luminance 0.5; the other material states its reflectivity.
     add(LoadingClause::Reflectivity, list, 0.5, &along_z(40.0));
     add(LoadingClause::Reflectivity, [0, 1, 2], 0.125, &along_z(40.0));
+    // 4,500,000.25 m there and 4,500,000 m back, in double precision.
+    add(LoadingClause::Decimals, list, plain, &|[x, y, z]| [x + 0.25, y, z + 44.0]);
     faces
 }
 

@@ -101,8 +101,9 @@ class Scene:
     """A scene. It never changes: :meth:`replace` makes another one.
 
     Args:
-        source: a built-in ground (``pyramids``, ``facets``); a path to a scene file ``.toml``, a terrain ``.glb`` or ``.gltf``,
-            or an elevation model ``.tif``; or the text of a scene file (what has a line break is a text).
+        source: a built-in ground (``pyramids``, ``facets``); a path to a scene file ``.toml``, a terrain (``.glb``, ``.gltf``,
+            ``.stl``, ``.obj``, ``.ply``) or an elevation model ``.tif``; or the text of a scene file (what has a line break
+            is a text).
         name: what messages and folders call a scene without a file.
         settings: keys of docs/guide/scene.md joined by dots, in the file's units:
             ``{"camera.pitch_down_deg": 25, "beam.0.thickness_mm": 4}``.

@@ -1,6 +1,7 @@
 //! Scene TOML to a [`crate::plan::ScenePlan`]. Each key is checked alone; each error points to its place in the file.
 
 pub(crate) mod dem;
+pub(crate) mod file_frame;
 pub(crate) mod generate;
 pub(crate) mod key;
 pub(crate) mod kind;

@@ -9,7 +9,7 @@ use raypencil_terrain::BUILTIN_NAMES;
 use crate::parse::generate::GenerateKeys;
 use crate::parse::key::{Key, span};
 use crate::parse::source::Source;
-use crate::plan::{DemPart, ScenePlan, Terrain};
+use crate::plan::{DemPart, MeshPart, ScenePlan, Terrain};
 use crate::scene_error::SceneIoError;
 
 #[derive(Deserialize)]
@@ -17,6 +17,8 @@ use crate::scene_error::SceneIoError;
 pub(crate) struct TerrainKeys {
     builtin: Key<String>,
     file: Key<String>,
+    up: Key<String>,
+    scale: Key<f64>,
     dem: Key<String>,
     dem_window_m: Key<Vec<f64>>,
     dem_max_error_m: Key<f64>,
@@ -32,6 +34,7 @@ impl Source<'_> {
     ) -> Result<(), SceneIoError> {
         let keys = terrain.get_ref();
         plan.reflectivity = self.optional(&keys.reflectivity, "terrain.reflectivity", 0.0..=1.0, "")?;
+        let frame = self.file_frame(&keys.up, &keys.scale, &keys.file)?;
         let dem = self.dem_part(&keys.dem_window_m, &keys.dem_max_error_m, &keys.dem)?;
         let one = "exactly one of `builtin`, `file`, `dem` and `generate`";
         plan.terrain = match (&keys.builtin, &keys.file, &keys.dem, &keys.generate) {
@@ -41,7 +44,7 @@ impl Source<'_> {
             }
             (None, Some(file), None, None) => {
                 plan.terrain_span = file.span();
-                Terrain::File(PathBuf::from(file.get_ref()))
+                Terrain::File(MeshPart { file: PathBuf::from(file.get_ref()), frame })
             }
             (None, None, Some(file), None) => {
                 plan.terrain_span = file.span();

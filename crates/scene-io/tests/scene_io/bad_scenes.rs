@@ -289,9 +289,9 @@ fn only_a_gaussian_has_a_width() {
 fn terrain_files_are_found_or_marked() {
     third_line(
         "[terrain]",
-        "file = \"x.obj\"",
-        "\"x.obj\"",
-        "`terrain.file` is \"x.obj\"; expected a file that ends in .glb or .gltf",
+        "file = \"x.off\"",
+        "\"x.off\"",
+        "`terrain.file` is \"x.off\"; expected a file that ends in .glb, .gltf, .stl, .obj or .ply",
     );
     let missing = problem("version = 1\n[terrain]\nfile = \"no/such.glb\"\n");
     assert!(

@@ -3,6 +3,7 @@
 mod bad_scenes;
 mod dem;
 mod drives;
+mod meshes;
 mod rays;
 mod resolved;
 mod scenes;

@@ -337,13 +337,14 @@ fn an_unknown_source_lists_the_known_ones() {
     let message = refuse("pyramid");
     assert!(message.starts_with("`pyramid` is neither a built-in name nor a file; expected"), "{message}");
     assert!(
-        message.contains("pyramids, facets") && message.contains(".toml, .glb, .gltf, .tif or .tiff"),
+        message.contains("pyramids, facets")
+            && message.contains(".toml, .glb, .gltf, .stl, .obj, .ply, .tif or .tiff"),
         "{message}"
     );
     assert!(refuse("nowhere/mars.glb").starts_with("`nowhere/mars.glb` does not exist"));
     let folder = tempfile::tempdir().unwrap();
     assert!(refuse(folder.path().to_str().unwrap()).contains("is a folder"));
-    let other = folder.path().join("mars.obj");
+    let other = folder.path().join("mars.off");
     std::fs::write(&other, "v 0 0 0").unwrap();
     assert!(refuse(other.to_str().unwrap()).contains("is a file of an unknown kind"));
     assert_eq!(SceneSource::parse("facets").unwrap(), SceneSource::Builtin("facets".into()));

@@ -68,6 +68,15 @@ fn headers(case: Make<'_>) -> Vec<Case> {
             let all: Vec<(&str, i32, i32)> = names.iter().map(|name| (name.as_str(), 2, 1)).collect();
             small().with("channels", channels(&all)).bytes()
         }),
+        case("attributes-many", "a hundred thousand attributes", "attributes", {
+            let attribute = |number| (format!("a{number}"), "string".to_string(), b"x".to_vec());
+            let many = (0..100_000).map(attribute);
+            Exr { attributes: small().attributes.into_iter().chain(many).collect(), ..small() }.bytes()
+        }),
+        case("parts-many", "ten thousand parts", "header", {
+            let header = Exr { version: [2, 16, 0, 0], ..small() }.header();
+            [&header[..8], &header[8..].repeat(10_000), &[0]].concat()
+        }),
         case("attribute-negative", "an attribute of -1 bytes", "header", sized(-1)),
         case("attribute-top", "an attribute of 2^31 - 1 bytes", "header", sized(i32::MAX)),
         case(
@@ -202,6 +211,18 @@ fn blocks(case: Make<'_>) -> Vec<Case> {
             "a deflate stream of 256 kB that expands to 256 MB",
             "pixels",
             packed(ZIP, bomb(0, 1 << 28)),
+        ),
+        case(
+            "zeros",
+            "half a gigabyte of well-formed zeros in half a megabyte, two as doubles",
+            "data window",
+            {
+                let list = channels(&["a", "b", "c", "d"].map(|name| (name, 1, 1)));
+                let block = zlib(&vec![0; 16 * 4 * 2 << 16]);
+                let blocks = (0..64).map(|index| (16 * index, block.clone()));
+                let header = Exr::new(1 << 16, 1024, ZIP).with("channels", list);
+                Exr { blocks: blocks.collect(), ..header }.bytes()
+            },
         ),
         case("zip-cut", "a truncated deflate stream", "pixels", packed(ZIP, zlib(&[7; 32])[..6].to_vec())),
         case("rle-garbage", "invalid run-length codes", "pixels", packed(RLE, vec![127, 0, 200])),

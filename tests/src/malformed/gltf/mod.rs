@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::case::{Case, Item};
 use crate::glb::{glb, square};
 use changes::{FILE, RUN, changed, set, text};
+pub(super) use storage::forty_buffers;
 
 pub(super) fn cases() -> Vec<Case> {
     [texts(), heads(), counts::cases(), nodes::cases(), storage::layouts(), storage::uris(), bombs()].concat()

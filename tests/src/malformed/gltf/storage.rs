@@ -77,6 +77,8 @@ pub(super) fn uris() -> Vec<Case> {
             .file("../elsewhere/secret.bin", [0; 60])
             .item("down", Item::Link("../elsewhere".into())),
         uri("device", "a link to /dev/zero", "ground.bin").item("ground.bin", Item::Link("/dev/zero".into())),
+        uri("hole", "a buffer of a gigabyte, nearly all of which is a hole", "ground.bin")
+            .item("ground.bin", Item::Hole(vec![0; 60], 1 << 30)),
         uri("short", "a file that is too short", "ground.bin").file("ground.bin", [0; 59]),
         uri("data-letters", "base64 with invalid letters", "data:application/octet-stream;base64,AAAA*AAA"),
         uri("data-padding", "base64 without its padding", "data:application/octet-stream;base64,AAAAA"),
@@ -84,4 +86,31 @@ pub(super) fn uris() -> Vec<Case> {
         uri("data-plain", "a data URI without base64", "data:application/octet-stream,AAAA"),
         uri("data-cut", "a data URI without data", "data:"),
     ]
+}
+
+/// A well-formed square for each of forty buffers, which all name one file of 24 MB.
+pub(in crate::malformed) fn forty_buffers() -> Case {
+    let (mut json, bin) = square();
+    let forty = |make: &dyn Fn(usize) -> Vec<serde_json::Value>| (0..40).flat_map(make).collect();
+    json["buffers"] = forty(&|_| vec![json!({"byteLength": 60, "uri": "ground.bin"})]);
+    json["bufferViews"] = forty(&|k| {
+        let view = |at: u32, length: u32| json!({"buffer": k, "byteOffset": at, "byteLength": length});
+        vec![view(0, 48), view(48, 12)]
+    });
+    json["accessors"] = forty(&|k| {
+        vec![
+            json!({"bufferView": 2 * k, "componentType": 5126, "count": 4, "type": "VEC3"}),
+            json!({"bufferView": 2 * k + 1, "componentType": 5123, "count": 6, "type": "SCALAR"}),
+        ]
+    });
+    json["meshes"][0]["primitives"] =
+        forty(&|k| vec![json!({"attributes": {"POSITION": 2 * k}, "indices": 2 * k + 1})]);
+    Case::new(
+        "good-gltf-buffers",
+        "one file that forty buffers name",
+        "terrain import ground.gltf -o out.glb",
+        &[],
+    )
+    .file("ground.gltf", json.to_string())
+    .item("ground.bin", Item::Hole(bin, 24 << 20))
 }

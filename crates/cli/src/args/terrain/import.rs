@@ -3,15 +3,23 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use raypencil::io::DEFAULT_REFLECTIVITY;
+use raypencil::io::{DEFAULT_REFLECTIVITY, UpAxis};
 
-use crate::parsers::numbers;
+use crate::parsers::{numbers, up_axis};
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainImport {
-    /// A GeoTIFF with one band, in metres.
-    #[arg(value_name = "DEM")]
-    pub(crate) dem: PathBuf,
+    /// An elevation model: a GeoTIFF with one band, in metres. Or a mesh: .stl, .obj, .ply, .glb or .gltf.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    /// Axis of a mesh that points up. Without it: y for glTF, as its specification says, z for STL, OBJ and PLY.
+    #[arg(long, value_name = "AXIS", value_parser = up_axis())]
+    pub(crate) up: Option<UpAxis>,
+
+    /// Metres for each unit of a mesh: 0.001 if the file is in millimetres. Without it: 1.
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
+    pub(crate) scale: Option<f64>,
 
     /// Import only the posts in this window: x and y of its lower left corner, width and height, metres of the map.
     #[arg(long, value_name = "X,Y,W,H", value_parser = numbers::<4>, allow_hyphen_values = true)]
@@ -21,7 +29,7 @@ pub(crate) struct TerrainImport {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
 
-    /// Reflectivity of the terrain, 0 to 1.
+    /// Reflectivity of the terrain, 0 to 1; in glTF, of the materials that state none.
     #[arg(long, value_name = "R", default_value_t = DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
     pub(crate) reflectivity: f64,
 

@@ -9,7 +9,7 @@ use crate::parsers::setting;
 
 #[derive(Debug, Args)]
 pub(crate) struct TerrainInspect {
-    /// A terrain .glb or .gltf, a scene .toml, or a built-in terrain (pyramids, facets).
+    /// A terrain (.glb, .gltf, .stl, .obj, .ply), a scene .toml, or a built-in terrain (pyramids, facets).
     #[arg(value_name = "MESH")]
     pub(crate) mesh: String,
 

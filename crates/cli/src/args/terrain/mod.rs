@@ -14,7 +14,7 @@ pub(crate) use inspect::TerrainInspect;
 pub(crate) enum TerrainCommand {
     /// Generate a Mars-like terrain with relief, rocks, craters and crevasses.
     Generate(TerrainGenerate),
-    /// Convert an elevation model (GeoTIFF) to a GLB terrain.
+    /// Convert an elevation model (GeoTIFF) or a mesh (STL, OBJ, PLY, glTF) to a GLB terrain.
     Import(TerrainImport),
     /// Report the faults of a mesh, and repair those with only one possible repair. Exit code 1: the mesh has faults.
     Inspect(TerrainInspect),

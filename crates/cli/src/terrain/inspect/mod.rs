@@ -8,7 +8,9 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
-use raypencil::io::{Overrides, SceneSource, load, load_mesh, write_terrain_glb};
+use raypencil::io::{
+    DEFAULT_REFLECTIVITY, FileFrame, Overrides, SceneSource, load, load_terrain, write_terrain_glb,
+};
 use raypencil::terrain::{inspect as inspect_mesh, repair};
 use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
@@ -34,7 +36,9 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
     spinner.stage(&format!("{}: loading", command.mesh));
     let mesh: Arc<Mesh> = match &source {
         // The mesh alone: a scene would need a place for the vehicle.
-        SceneSource::Gltf(path) if command.set.is_empty() => Arc::new(load_mesh(path)?),
+        SceneSource::Mesh(path) if command.set.is_empty() => {
+            Arc::new(load_terrain(path, DEFAULT_REFLECTIVITY, &FileFrame::default())?)
+        }
         _ => {
             let settings = command.set.clone();
             Arc::clone(load(&command.mesh, &Overrides { settings, ..Overrides::default() })?.scene.mesh())
@@ -73,7 +77,7 @@ fn check_output(output: &Path, source: &SceneSource) -> Result<(), Trouble> {
         return refuse("is not a GLB file; expected a name that ends in .glb");
     }
     match source {
-        SceneSource::Gltf(input) => {
+        SceneSource::Mesh(input) => {
             let same = output.canonicalize().ok().is_some_and(|out| input.canonicalize().ok() == Some(out));
             if same {
                 return refuse("is the mesh to repair; expected another file");

@@ -134,3 +134,73 @@ fn errors_are_named_and_leave_no_file() {
     assert_eq!(usage.status.code(), Some(2));
     assert!(text(&usage.stderr).contains("expected 4 numbers"), "{}", text(&usage.stderr));
 }
+
+/// A level floor of 4 m by 2 m at a height of 1 m, in centimetres and with y up: z of the file from -300 to -100 is y from 1 m
+/// to 3 m.
+const FLOOR_CM: &str = "v 0 100 -100\nv 400 100 -100\nv 400 100 -300\nv 0 100 -300\nf 1 2 3 4\n";
+
+#[test]
+fn a_mesh_becomes_a_terrain() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let path = folder.path();
+    std::fs::write(path.join("floor.obj"), FLOOR_CM).expect("a file");
+    let words = ["terrain", "import", "floor.obj", "--up", "y", "--scale", "0.01", "-o", "floor.glb"];
+    let out = screen(path, &words, 0);
+    for line in [
+        "extent         x 0.000 to 4.000, y 1.000 to 3.000 m",
+        "heights        z 1.000 to 1.000 m",
+        "up axis        y",
+        "scale          0.01 m for each unit of the file",
+        "vertices       4",
+        "faces          2",
+        "floor.glb",
+    ] {
+        assert!(out.contains(line), "{line} is not in:\n{out}");
+    }
+    let json = screen(path, &["terrain", "import", "floor.obj", "-o", "plain.glb", "--json"], 0);
+    let report: Value = serde_json::from_str(&json).expect("JSON");
+    // Neither turned nor scaled: z of the file is the height.
+    assert_eq!(report["z_m"], serde_json::json!([-300.0, -100.0]));
+    assert_eq!((&report["up"], &report["scale"]), (&Value::Null, &1.0.into()));
+    // The GLB is the terrain: the same as the mesh under these words, to the bit.
+    let digest = |arguments: &[&str]| {
+        let arguments = [&["validate"], arguments, &["-o", "out", "--json", "--fan", "5"]].concat();
+        let report: Value = serde_json::from_str(&screen(path, &arguments, 0)).expect("JSON");
+        report["scene"]["sha256"].as_str().map(String::from).expect("a digest")
+    };
+    let set = ["--set", "terrain.up=y", "--set", "terrain.scale=0.01", "--set", "camera.width_px=8"];
+    let small = ["--set", "camera.width_px=8"];
+    assert_eq!(digest(&[&["floor.glb"], &small[..]].concat()), digest(&[&["floor.obj"], &set[..]].concat()));
+    let inspected = screen(path, &["terrain", "inspect", "floor.obj"], 0);
+    assert!(inspected.contains("floor.obj: 2 faces, 4 vertices"), "{inspected}");
+}
+
+#[test]
+fn options_of_meshes_and_models_are_kept_apart() {
+    let folder = folder();
+    std::fs::write(folder.path().join("floor.obj"), FLOOR_CM).expect("a file");
+    std::fs::write(folder.path().join("cut.stl"), [b' '; 90]).expect("a file");
+    let import = |arguments: &[&str]| {
+        let output = raypencil(folder.path(), &[&["terrain", "import", "-o", "out.glb"], arguments].concat());
+        assert!(!folder.path().join("out.glb").exists());
+        output
+    };
+    assert_trouble(&import(&["hill.tif", "--up", "y"]), &["--up", "hill.tif is no mesh", ".stl"]);
+    assert_trouble(&import(&["hill.tif", "--scale", "2"]), &["--scale", "hill.tif is no mesh"]);
+    assert_trouble(
+        &import(&["floor.obj", "--window", "0,0,1,1"]),
+        &["--window", "floor.obj is a mesh", ".tif"],
+    );
+    assert_trouble(&import(&["floor.obj", "--max-error", "1"]), &["--max-error", "floor.obj is a mesh"]);
+    for scale in ["0", "-1", "nan", "inf", "1e7"] {
+        assert_trouble(
+            &import(&["floor.obj", "--scale", scale]),
+            &["--scale", "expected 1e-6 to 1e6 metres"],
+        );
+    }
+    assert_trouble(&import(&["cut.stl"]), &["cut.stl: byte 80", "is it cut off?"]);
+    assert_trouble(&import(&["none.ply"]), &["none.ply", "cannot read"]);
+    let same = ["terrain", "import", "copy.glb", "-o", "copy.glb"];
+    screen(folder.path(), &["terrain", "import", "floor.obj", "-o", "copy.glb"], 0);
+    assert_trouble(&raypencil(folder.path(), &same), &["copy.glb", "is the mesh itself"]);
+}

@@ -4,6 +4,12 @@ use raypencil_files::Fault;
 
 use crate::triangles::text::{quoted, words};
 
+/// Maximum number of elements. Files have two to five.
+const MAX_ELEMENTS: usize = 256;
+
+/// Maximum number of properties of an element. Clouds of Gaussians have some sixty.
+const MAX_PROPERTIES: usize = 1024;
+
 /// How the numbers after the header are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Format {
@@ -105,6 +111,10 @@ pub(super) fn read(file: &[u8]) -> Result<Header<'_>, Fault> {
                 if elements.iter().any(|element| element.name == name) {
                     return Err(unfit("each element once"));
                 }
+                if elements.len() == MAX_ELEMENTS {
+                    let found = format!("more than {MAX_ELEMENTS} elements");
+                    return Err(Fault::new(place(), found, format!("at most {MAX_ELEMENTS}")));
+                }
                 elements.push(Element { name, count, properties: Vec::new() });
             }
             (_, Some(b"property")) => {
@@ -115,6 +125,10 @@ pub(super) fn read(file: &[u8]) -> Result<Header<'_>, Fault> {
                     elements.last_mut().ok_or_else(|| unfit("an `element` before its properties"))?;
                 if element.properties.iter().any(|other| other.name == property.name) {
                     return Err(unfit("each property of an element once"));
+                }
+                if element.properties.len() == MAX_PROPERTIES {
+                    let found = format!("more than {MAX_PROPERTIES} properties");
+                    return Err(Fault::new(place(), found, format!("at most {MAX_PROPERTIES}")));
                 }
                 element.properties.push(property);
             }

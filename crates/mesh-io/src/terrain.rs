@@ -1,0 +1,92 @@
+//! A mesh file of any format to terrain: in the global frame, with a scene origin.
+
+use std::path::Path;
+
+use glam::DVec3;
+use raypencil_files::{Fault, FileError, Sha256Digest};
+use raypencil_scene::{Material, Mesh};
+
+use crate::file_frame::{FileFrame, UpAxis};
+use crate::gltf::{self, MAX_FACES_OR_VERTICES, WITHOUT_MATERIAL};
+use crate::triangles::{Format, TriangleFile, format, parse, read_bytes};
+
+/// Loads a terrain: a GLB, glTF, STL, OBJ or PLY file.
+///
+/// glTF is read as [`crate::load_mesh`] reads it. The faces of the other formats are those of [`crate::load_triangles`]: all
+/// of them, also without area or twice, in the order of the file; their material is one of the given reflectivity. Each
+/// vertex is turned and scaled in double precision, and rounded once, to a single-precision offset from the scene origin.
+///
+/// Limits: 1 GiB of file, 2^25 vertices and 2^25 faces.
+///
+/// # Errors
+/// As [`crate::load_mesh`] and [`crate::load_triangles`]; a file without faces; a mesh beyond a limit.
+///
+/// ```
+/// use raypencil_mesh_io::{FileFrame, UpAxis, load_terrain};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("floor.obj");
+/// // A floor of 1 m in millimetres, y up.
+/// std::fs::write(&path, "v 0 0 0\nv 0 0 1000\nv 1000 0 0\nf 1 2 3\n")?;
+/// let mesh = load_terrain(&path, 0.3, &FileFrame { up: Some(UpAxis::Y), scale: 0.001 })?;
+/// assert_eq!(mesh.vertices(), [[0.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]);
+/// assert_eq!(mesh.materials()[0].reflectivity, 0.3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn load_terrain(path: impl AsRef<Path>, reflectivity: f64, frame: &FileFrame) -> Result<Mesh, FileError> {
+    Ok(read_terrain(path.as_ref(), reflectivity, frame)?.0)
+}
+
+/// Terrain of a file, and the digests of the file and of the buffers beside it.
+///
+/// # Errors
+/// As [`load_terrain`].
+pub fn read_terrain(
+    path: &Path,
+    reflectivity: f64,
+    frame: &FileFrame,
+) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
+    terrain_of_bytes(&read_bytes(path)?, path, reflectivity, frame)
+}
+
+/// Terrain from the bytes of a file, as [`load_terrain`] reads it; `file` is its name in messages, and its ending tells the
+/// format where the bytes do not.
+///
+/// # Errors
+/// As [`load_terrain`].
+pub fn terrain_from_bytes(
+    bytes: &[u8],
+    file: &Path,
+    reflectivity: f64,
+    frame: &FileFrame,
+) -> Result<Mesh, FileError> {
+    Ok(terrain_of_bytes(bytes, file, reflectivity, frame)?.0)
+}
+
+fn terrain_of_bytes(
+    bytes: &[u8],
+    file: &Path,
+    reflectivity: f64,
+    frame: &FileFrame,
+) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
+    let in_file = |fault: Fault| FileError::Mesh(fault.in_file(file));
+    if format(bytes, file).map_err(in_file)? == Format::Gltf {
+        return gltf::terrain_from_bytes(bytes, file, reflectivity, frame);
+    }
+    let TriangleFile { triangles, digests, .. } = parse(bytes, file)?;
+    let (vertices, faces) = (triangles.vertices(), triangles.faces());
+    if faces.is_empty() {
+        return Err(in_file(Fault::new("file", "no triangles", "at least one")));
+    }
+    for (kind, count) in [("vertices", vertices.len()), ("faces", faces.len())] {
+        if count as u64 > MAX_FACES_OR_VERTICES {
+            let expected = format!("at most {MAX_FACES_OR_VERTICES}");
+            return Err(in_file(Fault::new("file", format!("{count} {kind}"), expected)));
+        }
+    }
+    let vertices: Vec<DVec3> = vertices.iter().map(|&vertex| frame.global(vertex, UpAxis::Z)).collect();
+    let material = Material { name: WITHOUT_MATERIAL.to_string(), reflectivity };
+    let mesh = Mesh::from_global(&vertices, faces.to_vec(), vec![0; faces.len()], vec![material])
+        .map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
+    Ok((mesh, digests))
+}
