@@ -463,3 +463,23 @@ fn an_elevation_that_is_off_is_seen_by_the_ground_that_stripes_meet_again() {
     let (risen, kept) = believed(Rule::Paper);
     assert!((kept - risen).abs() < 1e-12 && kept > 0.03, "{kept}");
 }
+
+#[test]
+fn slopes_fail_a_thousandth_above_their_limits_and_pass_a_thousandth_below() {
+    // Without margins the errors of the points do not matter. All limits are a rise of 0.35 m: between the front wheels,
+    // between the rear ones, and between the axles. The wheels stand on level ground each, so that their centres are R
+    // above it. Under the rear wheel alone, from x = -0.6 m to 0.2 m, the ground is higher, but not under the belly,
+    // which ends at y = 0.375 m.
+    let margins = ErrorMargins { obstacle: 0.0, clear: 0.0 };
+    let rules = TraversabilityRules { margins, ..TraversabilityRules::for_vehicle(&Vehicle::default()) };
+    let is_higher: [(TraversabilityTest, fn(i64, i64) -> bool); 3] = [
+        (TraversabilityTest::Front, |_, j| j > 0),
+        (TraversabilityTest::Rear, |i, j| (-6..=2).contains(&i) && (4..=7).contains(&j)),
+        (TraversabilityTest::Length, |i, _| i > 4),
+    ];
+    for (test, is_higher) in is_higher {
+        let ground = |rise: f64| measured(move |i, j| Some(if is_higher(i, j) { rise } else { 0.0 }));
+        assert_eq!(judge(&rules, &ground(0.3496)), Traversability::Clear, "{test:?}");
+        assert_eq!(judge(&rules, &ground(0.3504)), Traversability::Obstacle(test), "{test:?}");
+    }
+}
