@@ -25,11 +25,13 @@ class Support:
 
 @dataclass
 class Wheel:
-    """By measured ground alone, by all that may be there, and what is missing: None, or index j, i."""
+    """By measured ground alone, by all that may be there, what is missing: None, or index j, i; and the first that
+    is only known to be no higher than something."""
 
     measured: Support
     highest: Support
     missing: tuple
+    bounded: tuple
 
 
 class WheelTests:
@@ -124,7 +126,9 @@ class WheelTests:
             missing = (j + w[0].start, i + w[1].start)
         if not self.is_on_map(cx, cy, ux, uy, radius, half):
             missing = missing or "beyond"
-        return Wheel(measured, highest, missing)
+        bounded = np.argwhere(under & ~np.isnan(top))
+        bounded = (bounded[0][0] + w[0].start, bounded[0][1] + w[1].start) if len(bounded) else None
+        return Wheel(measured, highest, missing, bounded)
 
     def is_on_map(self, cx, cy, ux, uy, ahead, aside):
         """Whether all of a rectangle lies on the map."""
@@ -160,14 +164,18 @@ class WheelTests:
 
         def compare(by, name, one, two, errors):
             """Whether the rise between the hubs, with so many of its standard errors, exceeds the limit; and the lower side."""
-            nonlocal tie
             supports = [[getattr(wheels[k], by) for k in side] for side in (one, two)]
+            return compared(supports, name, one, two, errors)
+
+        def compared(supports, name, one, two, errors, is_signed=False):
+            nonlocal tie
             if any(support is None for side in supports for support in side):
                 return None
             apart = float(np.mean([s.hub for s in supports[0]]) - np.mean([s.hub for s in supports[1]]))
             variance = sum(sum(s.variance for s in side) / len(side) ** 2 for side in supports)
             run = length if name == "length" else v["track"]
-            over = abs(apart) + errors * float(np.sqrt(variance)) - slopes[name] * run
+            rise = apart if is_signed else abs(apart)
+            over = rise + errors * float(np.sqrt(variance)) - slopes[name] * run
             tie |= abs(over) <= NEAR
             return over > RISE, two if apart > 0 else one
 
@@ -178,14 +186,30 @@ class WheelTests:
             found = compare("measured", name, one, two, errors)
             return bool(found and found[0] and all(wheels[k].missing is None for k in found[1]))
 
+        def by_certain(name, one, two, errors):
+            """The same with the lower side as high as it may be."""
+            found = compare("measured", name, one, two, errors)
+            if not found or any(wheels[k].missing is not None for k in found[1]):
+                return False
+            low, high = (one, two) if found[1] == one else (two, one)
+            supports = [[wheels[k].measured for k in high], [wheels[k].highest for k in low]]
+            return compared(supports, name, high, low, errors, is_signed=True)[0]
+
+        margin = -self.limits["obstacle_margin"]
         for name, one, two in pairs:
-            if by_measured(name, one, two, -self.limits["obstacle_margin"]):
+            if by_certain(name, one, two, margin):
                 return Verdict("obstacle", name, near_tie=tie)
         for wheel, (axle, _, _) in zip(wheels, WHEELS):
             if wheel.missing == "beyond":
                 return Verdict("unknown", "beyond_map", f"{axle}_wheel", near_tie=tie)
             if wheel.missing is not None:
                 return self.lacking("not_measured", f"{axle}_wheel", *wheel.missing, tie)
+        for name, one, two in pairs:
+            if by_measured(name, one, two, margin):
+                # The lower side may be higher than it looks.
+                for k in compare("measured", name, one, two, margin)[1]:
+                    if wheels[k].bounded is not None:
+                        return self.lacking("not_measured", f"{WHEELS[k][0]}_wheel", *wheels[k].bounded, tie)
         for name, one, two in pairs:
             # What may stand in gaps may be too high, or the errors may be too large.
             found = compare("highest", name, one, two, self.limits["clear_margin"])

@@ -48,6 +48,8 @@ struct WheelOnMap {
     measured: Option<Hub>,
     highest: Option<Hub>,
     missing: Option<Missing>,
+    /// First grid point under the wheel where the ground is not measured, but known to be no higher than something.
+    bounded: Option<Missing>,
 }
 
 impl WheelOnMap {
@@ -165,13 +167,21 @@ impl TraversabilityRules {
             rise.is_some_and(|rise| rise.height + errors * rise.standard_error > limit + RISE_ROUNDING_M)
         };
         for (test, rises, limit) in &tests {
-            if exceeds(rises.measured, -self.margins.obstacle, *limit) {
+            if exceeds(rises.certain, -self.margins.obstacle, *limit) {
                 return Traversability::Obstacle(*test);
             }
         }
         let wheels = || front_wheels.iter().chain(&rear_wheels);
         if let Some(missing) = wheels().find_map(|wheel| wheel.missing) {
             return Traversability::Unknown(missing);
+        }
+        // The lower side may be higher than it looks: it stands partly on ground that was never measured.
+        for (_, rises, limit) in &tests {
+            if let Some(missing) = rises.bounded
+                && exceeds(rises.measured, -self.margins.obstacle, *limit)
+            {
+                return Traversability::Unknown(missing);
+            }
         }
         // All wheels are known from here on. What may stand in gaps may still be too high, or the errors too large.
         for (test, rises, limit) in &tests {
@@ -249,7 +259,7 @@ struct Ground<'a> {
 impl Ground<'_> {
     /// A wheel at rest in its rectangle.
     fn wheel(&self, part: VehiclePart, rectangle: &Rectangle) -> WheelOnMap {
-        let mut wheel = WheelOnMap { measured: None, highest: None, missing: None };
+        let mut wheel = WheelOnMap { measured: None, highest: None, missing: None, bounded: None };
         let radius = rectangle.half_length;
         let rest_on = |point: DVec3, variance: f64, kept: &mut Option<Hub>| {
             let Some(at) = rectangle.within(point.truncate()) else { return };
@@ -282,7 +292,13 @@ impl Ground<'_> {
                         }
                     }
                 }
-                Known::AtMost(top) => rest_on(top, 0.0, &mut wheel.highest),
+                Known::AtMost(top) => {
+                    rest_on(top, 0.0, &mut wheel.highest);
+                    if rectangle.within(top.truncate()).is_some() {
+                        let (place, reason) = (top.truncate(), MissingReason::NotMeasured);
+                        wheel.bounded = wheel.bounded.or(Some(Missing { part, place, reason }));
+                    }
+                }
                 Known::Nothing(missing) => {
                     if rectangle.within(missing.place).is_some() {
                         wheel.missing = wheel.missing.or(Some(missing));
@@ -353,8 +369,13 @@ struct Rise {
 
 /// Rise between two sides of the vehicle: the wheels of an axle, one each, or both axles.
 struct Rises {
-    /// By measured points. `None` if the lower side may be higher than it looks.
+    /// By measured points. `None` if ground under the lower side is not known.
     measured: Option<Rise>,
+    /// The same with the lower side as high as it may be: its wheels may stand on ground that was never measured, under
+    /// the vehicle before it moved or in a gap.
+    certain: Option<Rise>,
+    /// What was not measured under the lower side.
+    bounded: Option<Missing>,
     /// With all that may be there.
     highest: Option<Rise>,
 }
@@ -371,16 +392,27 @@ impl Rises {
             }
             Some(mean)
         };
-        let rise = |part: Part| {
-            let (a, b) = (middle(a, part)?, middle(b, part)?);
+        let rise = |of_a: Part, of_b: Part| {
+            let (a, b) = (middle(a, of_a)?, middle(b, of_b)?);
             Some((a.height - b.height, (a.variance + b.variance).sqrt()))
         };
+        let (measured, highest): (Part, Part) = (|wheel| wheel.measured, |wheel| wheel.highest);
         let is_known = |wheels: [&WheelOnMap; N]| wheels.iter().all(|wheel| wheel.is_known());
-        let measured = rise(|wheel| wheel.measured)
-            .filter(|&(height, _)| is_known(if height > 0.0 { b } else { a }))
-            .map(|(height, standard_error)| Rise { height: height.abs(), standard_error });
-        let highest = rise(|wheel| wheel.highest)
-            .map(|(height, standard_error)| Rise { height: height.abs(), standard_error });
-        Self { measured, highest }
+        let by_measured =
+            rise(measured, measured).filter(|&(height, _)| is_known(if height > 0.0 { b } else { a }));
+        let a_is_higher = by_measured.is_some_and(|(height, _)| height > 0.0);
+        let certain = by_measured.and_then(|_| match a_is_higher {
+            true => rise(measured, highest),
+            false => rise(highest, measured).map(|(height, standard_error)| (-height, standard_error)),
+        });
+        let lower = if a_is_higher { b } else { a };
+        let upwards = |(height, standard_error): (f64, f64)| Rise { height: height.abs(), standard_error };
+        Self {
+            measured: by_measured.map(upwards),
+            // Below 0 the lower side may be the higher one.
+            certain: certain.map(|(height, standard_error)| Rise { height, standard_error }),
+            bounded: lower.iter().find_map(|wheel| wheel.bounded),
+            highest: rise(highest, highest).map(upwards),
+        }
     }
 }

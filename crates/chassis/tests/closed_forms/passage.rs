@@ -252,3 +252,20 @@ fn each_wrong_number_is_named() {
     let limits = PassageLimits { rear: -0.1, ..LIMITS };
     assert_eq!(limits.validate("limits").unwrap_err().field, "limits.rear");
 }
+
+#[test]
+fn slopes_block_a_thousandth_above_their_limits_and_pass_a_thousandth_below() {
+    // A stone under the middle of one wheel lifts its centre by the height of the stone: a rise of 0.35 m over the track
+    // of 1 m is the limit, at either axle. The front axle is at x = 1.25 m, the rear one at 0. Along, the same stone is
+    // half as high over 1.25 m, 0.14 against 0.25.
+    for (x, kind_of) in [(1.25, ObstructionKind::FrontSlope), (0.0, ObstructionKind::RearSlope)] {
+        for y in [0.5, -0.5] {
+            let on = |height: f64| {
+                let level = Shape::plane(0.0, 0.0, 0.0);
+                at(&level.stone((x, y), (0.0625, 0.0625), height), 1.25)
+            };
+            assert_eq!(on(0.3496), Passage::Clear, "{x} {y}");
+            assert_eq!(kind(on(0.3504)), kind_of, "{x} {y}");
+        }
+    }
+}

@@ -104,3 +104,75 @@ fn errors_out_of_range_are_named() {
     let errors = LocalisationErrors { attitude_noise: -1.0, ..LocalisationErrors::default() };
     assert!(errors.validate("sensors").unwrap_err().to_string().contains("sensors.attitude_noise is -1"));
 }
+
+#[test]
+fn noise_is_new_in_every_frame_and_another_in_every_sensor() {
+    // Six columns of noise over many frames: steps of the walk in x and y, heading, pitch, roll, proximity, each of
+    // standard deviation 1 in units of its own. The walk takes steps of walk / sqrt(frame rate). With n frames, a mean
+    // square has the standard error sqrt(2 / n), and a mean product of independent numbers 1 / sqrt(n). Five of them are
+    // allowed, which one of 150 figures exceeds in one of 10,000 runs by chance; and the seed is fixed.
+    const FRAMES: usize = 4000;
+    let errors = LocalisationErrors {
+        position_walk: 0.02,
+        attitude_noise: 1e-3,
+        proximity_noise: 0.01,
+        ..LocalisationErrors::default()
+    };
+    let (mut localisation, ground, stance) = (Localisation::new(errors, 7, 4.0), ground(), stance());
+    let mut walked = DVec2::ZERO;
+    let mut columns: [Vec<f64>; 6] = Default::default();
+    for frame in 0..=FRAMES {
+        let sensed = localisation.read(&stance, &ground);
+        let position = sensed.position - stance.position.truncate();
+        let (step, angles) = (position - walked, sensed.attitude);
+        walked = position;
+        if frame == 0 {
+            continue;
+        }
+        let of_frame = [
+            step.x / 0.01,
+            step.y / 0.01,
+            angles.heading / 1e-3,
+            angles.pitch_down / 1e-3,
+            angles.roll_right / 1e-3,
+            (sensed.proximity.unwrap() - 0.04) / 0.01,
+        ];
+        columns.iter_mut().zip(of_frame).for_each(|(column, number)| column.push(number));
+    }
+    assert_are_independent(&columns);
+
+    // Each fix of a position has an error of its own as well.
+    let fixes = Some(PositionFixes { every_frames: 1, noise: 0.05 });
+    let mut fixed = Localisation::new(LocalisationErrors { fixes, ..LocalisationErrors::default() }, 7, 4.0);
+    let errors =
+        (0..FRAMES).map(|_| (fixed.read(&stance, &ground).position - stance.position.truncate()) / 0.05);
+    let errors: Vec<DVec2> = errors.collect();
+    assert_are_independent(&[
+        errors.iter().map(|error| error.x).collect(),
+        errors.iter().map(|error| error.y).collect(),
+    ]);
+}
+
+/// Columns of numbers of variance 1: no column follows another, nor itself some frames ago.
+fn assert_are_independent(columns: &[Vec<f64>]) {
+    for (index, a) in columns.iter().enumerate() {
+        let count = a.len() as f64;
+        let mean = a.iter().sum::<f64>() / count;
+        let square = a.iter().map(|number| number * number).sum::<f64>() / count;
+        assert!(mean.abs() < 5.0 / count.sqrt(), "column {index}: mean {mean}");
+        assert!((square - 1.0).abs() < 5.0 * (2.0 / count).sqrt(), "column {index}: mean square {square}");
+        for (other, b) in columns.iter().enumerate() {
+            for lag in [0, 1, 2, 5] {
+                if lag == 0 && other == index {
+                    continue;
+                }
+                let products = a[lag..].iter().zip(b).map(|(now, before)| now * before);
+                let product = products.sum::<f64>() / count;
+                assert!(
+                    product.abs() < 5.0 / count.sqrt(),
+                    "{index} and {other}, {lag} frames ago: {product}"
+                );
+            }
+        }
+    }
+}

@@ -463,3 +463,56 @@ fn an_elevation_that_is_off_is_seen_by_the_ground_that_stripes_meet_again() {
     let (risen, kept) = believed(Rule::Paper);
     assert!((kept - risen).abs() < 1e-12 && kept > 0.03, "{kept}");
 }
+
+#[test]
+fn slopes_fail_a_thousandth_above_their_limits_and_pass_a_thousandth_below() {
+    // Without margins the errors of the points do not matter. All limits are a rise of 0.35 m: between the front wheels,
+    // between the rear ones, and between the axles. The wheels stand on level ground each, so that their centres are R
+    // above it. Under the rear wheel alone, from x = -0.6 m to 0.2 m, the ground is higher, but not under the belly,
+    // which ends at y = 0.375 m.
+    let margins = ErrorMargins { obstacle: 0.0, clear: 0.0 };
+    let rules = TraversabilityRules { margins, ..TraversabilityRules::for_vehicle(&Vehicle::default()) };
+    let is_higher: [(TraversabilityTest, fn(i64, i64) -> bool); 3] = [
+        (TraversabilityTest::Front, |_, j| j > 0),
+        (TraversabilityTest::Rear, |i, j| (-6..=2).contains(&i) && (4..=7).contains(&j)),
+        (TraversabilityTest::Length, |i, _| i > 4),
+    ];
+    for (test, is_higher) in is_higher {
+        let ground = |rise: f64| measured(move |i, j| Some(if is_higher(i, j) { rise } else { 0.0 }));
+        assert_eq!(judge(&rules, &ground(0.3496)), Traversability::Clear, "{test:?}");
+        assert_eq!(judge(&rules, &ground(0.3504)), Traversability::Obstacle(test), "{test:?}");
+    }
+}
+
+#[test]
+fn a_wheel_that_is_measured_at_its_rim_alone_is_not_therefore_low() {
+    // A plane that falls by 0.2 to the left; the limit across is 0.35. The vehicle stood at x = 0 and 0.1 m, and the ground
+    // around it is known to be the plane of its wheels. Points were measured from x = 0.4 m on the right, from 1.1 m on
+    // the left. With the front axle at 2 m the rear wheels are at 0.8 m. On the left only points at the front end of the
+    // rim are measured, 0.3 m before the hub, which by them is sqrt(0.35^2 - 0.3^2) = 0.18 m above the ground and not
+    // 0.35 m: the rise from left to right would be 0.37 m. By the plane of the wheels it is 0.2 m.
+    let (attitude, vehicle) = (on_plane(DVec2::new(0.0, -0.2)), Vehicle::default());
+    let verdict = |step: f64| {
+        let at = |x: f64| sensed(DVec2::new(x, 0.0), attitude, 0.0);
+        let size = MapSize { spacing: 0.1, points: 61 };
+        let mut mapper = Mapper::with_rules(vehicle, size, MapRules::MENDED, &at(0.0), 0.0);
+        let no_points: [DVec3; 0] = [];
+        mapper.update(&at(0.0), no_points);
+        let vehicle_from_global = attitude.at(DVec3::new(0.1, 0.0, 0.0)).inverse();
+        let places = (4..=29).flat_map(|i| (-15..=15).map(move |j| (i, j)));
+        let points = places.filter(|&(i, j)| j < -2 || i >= 11).map(|(i, j)| {
+            let (x, y) = (0.1 * f64::from(i), 0.1 * f64::from(j));
+            let raised = if i < 13 && j < -2 { step } else { 0.0 };
+            vehicle_from_global * DVec3::new(x, y, -0.2 * y + raised)
+        });
+        mapper.update(&at(0.1), points);
+        let rules = TraversabilityRules::for_vehicle(&vehicle);
+        rules.classify(&MapWithShadows::of(mapper.map()), &vehicle, DVec2::new(2.0, 0.0), DVec2::X)
+    };
+    let Traversability::Unknown(missing) = verdict(0.0) else { panic!("{:?}", verdict(0.0)) };
+    assert_eq!((missing.part, missing.reason), (VehiclePart::RearWheel, MissingReason::NotMeasured));
+    let place = missing.place;
+    assert!((0.4..1.05).contains(&place.x) && (0.35..0.65).contains(&place.y), "{place}");
+    // With the right wheel on a step of 0.2 m the rise is 0.4 m by the plane of the wheels, too.
+    assert_eq!(verdict(0.2), Traversability::Obstacle(TraversabilityTest::Rear));
+}

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
     ElevationMap, FRAMES_PER_OBSTACLE_MAP, Label, MapSize, ObstacleMap, RadialGrid, TraversabilityRules,
-    TraversabilityTest, Vehicle, obstacle_map_due,
+    TraversabilityTest, VectorRules, Vehicle, navigator_map, obstacle_map_due,
 };
 use raypencil_scene::Pose;
 
@@ -105,4 +105,61 @@ fn a_grid_of_too_many_points_is_refused() {
     let long = RadialGrid { sectors: 10, first: 0.0, step: 1e-3, last: 1e3, ..grid };
     assert!(long.validate("grid").unwrap_err().to_string().contains("expected 1 to 9 ("));
     assert!(RadialGrid { sectors: 9, ..long }.validate("grid").is_ok());
+}
+
+#[test]
+fn a_rock_on_the_left_is_an_obstacle_on_the_left_and_nowhere_else() {
+    // A vehicle at (1.5, -0.5) with a heading of 35 degrees. A rock, 1 m high, is a disc of 0.2 m radius, 2.5 m away and
+    // 20 degrees to the left: sector 25, since sector k is 2 (k - 15) degrees to the left.
+    let (heading, centre) = (35.0_f64.to_radians(), DVec2::new(1.5, -0.5));
+    let unit = |degrees: f64| {
+        let (sin, cos) = libm::sincos(heading + degrees.to_radians());
+        DVec2::new(cos, sin)
+    };
+    let rock = centre + unit(20.0) * 2.5;
+    let ground = map(|x, y| Some(if (DVec2::new(x, y) - rock).length() < 0.2 { 1.0 } else { 0.0 }));
+    let pose = Pose { position: centre.extend(0.0), ..Pose::from_axis_angle(DVec3::Z, heading) };
+    let vehicle = Vehicle::default();
+    let grid = RadialGrid::for_vehicle(&vehicle);
+    let mended = TraversabilityRules::for_vehicle(&vehicle);
+    let obstacles = ObstacleMap::extract(&ground, &vehicle, &mended, &grid, &pose);
+    for (sector, end) in obstacles.sectors.iter().enumerate() {
+        let degrees = 2.0 * (sector as f64 - 15.0);
+        // Each point lies at its radius in the direction of its own sector.
+        assert!((end.point - centre - unit(degrees) * end.radius).length() < 1e-12, "{sector}");
+        // The rock in the axes of the sector. A vehicle 1.25 m wide meets it for certain if its middle is less than
+        // 0.625 m aside, when its rims, 0.35 m before the front axle, reach it; a cell of 0.1 m and a step of 0.1 m
+        // either way. It passes for certain if the rock is more than 0.625 + 0.2 + 0.15 m aside.
+        let offset = rock - centre;
+        let (ahead, aside) = (offset.dot(unit(degrees)), offset.perp_dot(unit(degrees)).abs());
+        if aside < 0.6 {
+            assert_eq!(end.label, Label::Obstacle, "{sector}");
+            let met = ahead - 0.2 - 0.35;
+            assert!(end.radius > met - 0.2 && end.radius < ahead + 0.2, "{sector}: {} for {met}", end.radius);
+        } else if aside > 0.975 {
+            assert_eq!(end.label, Label::Visibility, "{sector}");
+            assert!((end.radius - 4.8).abs() < 1e-12, "{sector}: {}", end.radius);
+        }
+    }
+    // Both kinds are there, and not in a mirror: 20 degrees to the right the way is free.
+    assert_eq!(
+        [5, 25].map(|sector: usize| obstacles.sectors[sector].label),
+        [Label::Visibility, Label::Obstacle]
+    );
+
+    // The navigator map: from right to left, each vector from the end of its sector to that of the next.
+    let rules = VectorRules::for_vehicle(&vehicle);
+    let vectors = navigator_map(&obstacles, &rules);
+    assert_eq!(vectors.len(), 30);
+    for (index, vector) in vectors.iter().enumerate() {
+        let ends = [obstacles.sectors[index].point, obstacles.sectors[index + 1].point];
+        assert_eq!([vector.from, vector.to], ends, "{index}");
+        // To the left: counter-clockwise about the vehicle.
+        assert!((vector.from - centre).perp_dot(vector.to - centre) > 0.0, "{index}");
+        if vector.label == Label::Obstacle {
+            let middle = 0.5 * (vector.from + vector.to) - centre;
+            assert!(unit(0.0).perp_dot(middle) > 0.0, "{index}: the rock is to the left");
+        }
+    }
+    assert!(vectors.iter().any(|vector| vector.label == Label::Obstacle));
 }

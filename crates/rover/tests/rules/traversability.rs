@@ -185,3 +185,23 @@ fn the_maximum_slope_is_a_step_of_one_wheel_radius() {
     assert_eq!((slopes.front, slopes.rear), (0.35, 0.35));
     assert!((slopes.length - 0.35 / 1.2).abs() < 1e-15 && (slopes.closer - 0.35 / 0.6).abs() < 1e-15);
 }
+
+#[test]
+fn slopes_fail_a_thousandth_above_their_limits_and_pass_a_thousandth_below() {
+    // All limits are a rise of 0.35 m between the points of the pair, up or down.
+    use TraversabilityTest::{Closer, Front, Length, Rear};
+    for (test, at) in
+        [(Front, (10, 5)), (Front, (10, -5)), (Rear, (-2, 5)), (Length, (10, 0)), (Length, (-2, 0))]
+    {
+        for sign in [1.0, -1.0] {
+            let ground = |rise: f64| map(move |i, j| Some(if (i, j) == at { sign * rise } else { 0.0 }));
+            assert_eq!(judge(&rules(), &ground(0.3496)), Traversability::Clear, "{at:?}");
+            assert_eq!(judge(&rules(), &ground(0.3504)), Traversability::Obstacle(test), "{at:?}");
+        }
+    }
+    // The closer pair, without a rear wheel.
+    let ground =
+        |rise: f64| map(move |i, j| ((i, j) != (-2, 5)).then_some(if (i, j) == (7, 0) { rise } else { 0.0 }));
+    assert!(is_unknown(judge(&rules(), &ground(0.3496))));
+    assert_eq!(judge(&rules(), &ground(0.3504)), Traversability::Obstacle(Closer));
+}

@@ -1,6 +1,7 @@
 //! The stance of a vehicle on planes and steps.
 
 use glam::{DVec2, DVec3};
+use raypencil_chassis::GroundFaces;
 use raypencil_rover::{Attitude, Stance, Vehicle};
 use raypencil_scene::Material;
 use raypencil_terrain::{Ground, HeightIndex};
@@ -117,4 +118,49 @@ fn the_default_vehicle_is_valid_and_fields_out_of_range_are_named() {
     // Wheels of more than half the wheelbase, 0.6 m, would touch.
     assert!(Vehicle { wheel_radius: 0.59, ..Vehicle::default() }.validate("vehicle").is_ok());
     assert!(Vehicle { wheel_radius: 0.61, ..Vehicle::default() }.validate("vehicle").is_err());
+}
+
+#[test]
+fn an_attitude_is_heading_then_pitch_then_roll() {
+    // R = R_z(h) R_y(p) R_x(r), multiplied out by hand: the columns are where x, y and z of the vehicle point.
+    let (heading, pitch_down, roll_right) = (0.7, 0.3, -0.4);
+    let ([sh, ch], [sp, cp], [sr, cr]) = (sin_cos(heading), sin_cos(pitch_down), sin_cos(roll_right));
+    let pose = Attitude { heading, pitch_down, roll_right }.at(DVec3::new(3.0, -2.0, 1.0));
+    assert_eq!(pose.position, DVec3::new(3.0, -2.0, 1.0));
+    for (axis, expected) in [
+        (DVec3::X, DVec3::new(ch * cp, sh * cp, -sp)),
+        (DVec3::Y, DVec3::new(ch * sp * sr - sh * cr, sh * sp * sr + ch * cr, cp * sr)),
+        (DVec3::Z, DVec3::new(ch * sp * cr + sh * sr, sh * sp * cr - ch * sr, cp * cr)),
+    ] {
+        assert!((pose.rotate(axis) - expected).length() < 1e-15, "{axis}: {}", pose.rotate(axis));
+    }
+}
+
+fn sin_cos(angle: f64) -> [f64; 2] {
+    let (sin, cos) = libm::sincos(angle);
+    [sin, cos]
+}
+
+#[test]
+fn on_a_plane_that_leans_both_ways_its_angles_are_the_planes() {
+    // The plane rises by m along the heading and by n to the left of it. The vehicle's z axis is the normal, in the axes
+    // of the heading (-m, -n, 1) / s with s = sqrt(1 + m^2 + n^2). R_y(p) R_x(r) turns z to (sin p cos r, -sin r,
+    // cos p cos r): so tan p = -m and sin r = n / s. With roll before pitch it would be tan r = n and sin p = -m / s.
+    let (p, q, heading) = (0.25, -0.375, 0.6);
+    let [sin, cos] = sin_cos(heading);
+    let (m, n) = (p * cos + q * sin, q * cos - p * sin);
+    let s = (1.0 + m * m + n * n).sqrt();
+    let place = DVec2::new(1.0, 2.0);
+    let mesh = plane(|x, y| p * x + q * y).into_mesh().unwrap();
+    let vehicle = Vehicle::default();
+    let mended = vehicle.stand(&GroundFaces::new(&mesh), place, heading).unwrap();
+    // The printed rule ends by iteration, as for one slope alone.
+    let printed = vehicle.settle(&HeightIndex::new(&mesh), place, heading).unwrap();
+    for (stance, tolerance) in [(mended, 1e-12), (printed, 1e-6)] {
+        let Attitude { pitch_down, roll_right, .. } = stance.attitude;
+        assert!((pitch_down + libm::atan(m)).abs() < tolerance, "{stance:?}");
+        assert!((roll_right - libm::asin(n / s)).abs() < tolerance, "{stance:?}");
+        let up = stance.pose().rotate(DVec3::Z);
+        assert!((up - DVec3::new(-p, -q, 1.0).normalize()).length() < 2.0 * tolerance, "{up}");
+    }
 }
