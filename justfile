@@ -73,6 +73,10 @@ speed MESH="":
 injected-faults:
     cargo run --release -p raypencil-tests --example injected_faults > docs/evidence/injected-faults.md
 
+# The reference of the command line, from the program itself: docs/reference/commands
+reference:
+    cargo run --bin raypencil -- reference -o docs/reference/commands
+
 # The picture of a report in README.md: docs/figures/report.png. Needs Chromium
 report-figure:
     cargo run --release -- validate pyramids --with scanline-paper,tracer --thickness 80 -o out/report-figure

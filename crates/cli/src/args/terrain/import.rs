@@ -8,6 +8,11 @@ use raypencil::io::DEFAULT_REFLECTIVITY;
 use crate::parsers::numbers;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # All of an elevation model, simplified by at most 2 cm.
+  raypencil terrain import dem.tif --max-error 0.02 -o out/ground.glb
+  # A window of it, 50 m wide and high.
+  raypencil terrain import dem.tif --window 1000,2000,50,50 -o out/window.glb")]
 pub(crate) struct TerrainImport {
     /// A GeoTIFF with one band, in metres.
     #[arg(value_name = "DEM")]
