@@ -17,6 +17,10 @@ lint:
     cargo clippy --workspace --all-targets -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 
+# The documents as a book: out/book/index.html
+book:
+    mdbook build
+
 # Licences, sources and duplicates of the dependencies
 deny:
     cargo deny check bans licenses sources

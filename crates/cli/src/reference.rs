@@ -40,10 +40,10 @@ fn collect(command: &Command, pages: &mut Vec<(String, String)>) {
     below(command).for_each(|below| collect(below, pages));
 }
 
-/// `terrain-generate.md` for `raypencil terrain generate`; the command line's own page is the folder's first.
+/// `terrain-generate.md` for `raypencil terrain generate`; `raypencil.md` for the command line itself.
 fn file_name(command: &Command) -> String {
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
-    name.strip_prefix("raypencil-").map_or("README.md".into(), |name| format!("{name}.md"))
+    name.strip_prefix("raypencil-").map_or("raypencil.md".into(), |name| format!("{name}.md"))
 }
 
 /// A command's full name, `raypencil terrain generate`.
@@ -68,7 +68,7 @@ fn page(command: &Command) -> String {
         }
     }
     // The options of every command stand on the first page alone.
-    let is_first = file_name(command) == "README.md";
+    let is_first = file_name(command) == "raypencil.md";
     let shown = |argument: &&Arg| {
         !argument.is_hide_set() && (is_first || !argument.is_global_set()) && argument.get_id() != "help"
     };
@@ -86,7 +86,7 @@ fn page(command: &Command) -> String {
         let _ = writeln!(page, "\n## Examples\n\n```sh\n{}\n```", lines.collect::<Vec<_>>().join("\n"));
     }
     if !is_first {
-        page += "\n[The options of every command](README.md#options)\n";
+        page += "\n[The options of every command](raypencil.md#options)\n";
     }
     page
 }

@@ -7,6 +7,9 @@ use super::*;
 #[path = "shell_words.rs"]
 mod shell_words;
 
+#[path = "documents.rs"]
+mod documents;
+
 use shell_words::shell_words;
 
 #[test]
