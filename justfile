@@ -17,6 +17,10 @@ lint:
     cargo clippy --workspace --all-targets -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 
+# The documents as a book: out/book/index.html
+book:
+    mdbook build
+
 # Licences, sources and duplicates of the dependencies
 deny:
     cargo deny check bans licenses sources
@@ -72,6 +76,10 @@ speed MESH="":
 # The detection of each injected fault, and the smallest scene that reveals it: docs/evidence/injected-faults.md
 injected-faults:
     cargo run --release -p raypencil-tests --example injected_faults > docs/evidence/injected-faults.md
+
+# The reference of the command line, from the program itself: docs/reference/commands
+reference:
+    cargo run --bin raypencil -- reference -o docs/reference/commands
 
 # The picture of a report in README.md: docs/figures/report.png. Needs Chromium
 report-figure:

@@ -1,9 +1,9 @@
 //! `raypencil campaign`: validations of many random terrains, in shards; `merge` and `replay`.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use raypencil::Progress;
 use raypencil::campaign::{
     Campaign, CampaignProgress, Merged, OwnScenes, PartName, Shard, campaign_json, campaign_screen, merge,
@@ -12,7 +12,7 @@ use raypencil::campaign::{
 use raypencil::io::{create_folder, write_resolved};
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
-use crate::console::{Spinner, say};
+use crate::console::{Spinner, progress_bar, say};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, Trouble> {
@@ -33,12 +33,8 @@ struct Bar {
 
 impl Bar {
     fn new(terrains: u64) -> Self {
-        let bar = ProgressBar::new(terrains);
-        let template = "{bar:30} {pos}/{len} terrains  {elapsed} elapsed, {eta} left  {msg}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
+        let bar =
+            progress_bar(terrains, "{bar:30} {pos}/{len} terrains  {elapsed} elapsed, {eta} left  {msg}");
         Self { bar, start: Instant::now(), rays: AtomicU64::new(0) }
     }
 }

@@ -4,7 +4,8 @@ use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use clap::ColorChoice;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use raypencil::Progress;
 use raypencil::io::{harmless, harmless_line};
 use raypencil::survey::Warning;
@@ -12,9 +13,56 @@ use raypencil::survey::Warning;
 /// The first error of a write to standard output since the command began; nothing for a closed pipe.
 static FAILED_WRITE: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
-/// Prints to standard output. A closed pipe (`| head`) is not an error; any other failure is, once the command ends:
-/// see [`failed_write`].
+/// How a command talks. A process has one standard output, so these are of the process.
+#[derive(Debug)]
+struct Manners {
+    /// No progress, no warnings.
+    is_quiet: bool,
+    /// Of a result only its last line.
+    is_short: bool,
+    color: ColorChoice,
+    /// The last line so far, where the result is short.
+    last_line: Option<String>,
+}
+
+static MANNERS: Mutex<Manners> =
+    Mutex::new(Manners { is_quiet: false, is_short: false, color: ColorChoice::Auto, last_line: None });
+
+fn manners() -> MutexGuard<'static, Manners> {
+    // Nothing panics while it is held; what it holds is whole in any case.
+    MANNERS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Begins a command: with `is_quiet` it shows no progress and no warnings, and only the last line of a text. JSON stays
+/// whole.
+pub(crate) fn begin(is_quiet: bool, is_json: bool, color: ColorChoice) {
+    *manners() = Manners { is_quiet, is_short: is_quiet && !is_json, color, last_line: None };
+}
+
+/// Ends a command: prints the last line of its result, if that is all that is wanted.
+pub(crate) fn end() {
+    let last_line = manners().last_line.take();
+    if let Some(line) = last_line {
+        print(&format!("{line}\n"));
+    }
+}
+
+/// Prints a result, or a part of it, to standard output.
 pub(crate) fn say(text: &str) {
+    let mut manners = manners();
+    if !manners.is_short {
+        drop(manners);
+        return print(text);
+    }
+    // What is indented belongs to the line above it.
+    if let Some(line) = text.lines().rfind(|line| !line.trim().is_empty() && !line.starts_with(' ')) {
+        manners.last_line = Some(line.to_string());
+    }
+}
+
+/// Prints to standard output, all of it. A closed pipe (`| head`) is not an error; any other failure is, once the command
+/// ends: see [`failed_write`].
+pub(crate) fn print(text: &str) {
     let mut out = std::io::stdout().lock();
     note(out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()));
 }
@@ -54,6 +102,9 @@ pub(crate) fn complain_in_colour(text: &str) {
 
 /// Prints warnings to standard error, so that standard output holds nothing but the result.
 pub(crate) fn warn(warnings: &[Warning]) {
+    if manners().is_quiet {
+        return;
+    }
     for warning in warnings {
         complain(&format!("warning: {warning}\n"));
     }
@@ -61,10 +112,36 @@ pub(crate) fn warn(warnings: &[Warning]) {
 
 /// Whether standard error shows colours.
 pub(crate) fn in_colour() -> bool {
-    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+    let color = manners().color;
+    match color {
+        ColorChoice::Always => true,
+        ColorChoice::Never => false,
+        // An empty NO_COLOR is as none. (no-color.org)
+        ColorChoice::Auto => {
+            std::io::stderr().is_terminal()
+                && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+        }
+    }
 }
 
-/// A spinner with the name of the current stage. Hidden if standard error is not a terminal.
+/// A progress bar of `length` steps, with the template's layout. Hidden if standard error is not a terminal, or by
+/// `--quiet`.
+pub(crate) fn progress_bar(length: u64, template: &str) -> ProgressBar {
+    shown(ProgressBar::new(length), template, Duration::from_millis(200))
+}
+
+fn shown(bar: ProgressBar, template: &str, tick: Duration) -> ProgressBar {
+    if manners().is_quiet {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(tick);
+    bar
+}
+
+/// A spinner with the name of the current stage. Hidden if standard error is not a terminal, or by `--quiet`.
 #[derive(Debug)]
 pub(crate) struct Spinner {
     bar: ProgressBar,
@@ -73,11 +150,7 @@ pub(crate) struct Spinner {
 impl Spinner {
     pub(crate) fn new() -> Self {
         let bar = ProgressBar::new_spinner();
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed:>4} {msg}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self { bar }
+        Self { bar: shown(bar, "{spinner} {elapsed:>4} {msg}", Duration::from_millis(100)) }
     }
 }
 

@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use raypencil::Progress;
 use raypencil::drive::{
     self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_json, drive_screen,
@@ -13,7 +12,7 @@ use raypencil::drive::{
 use raypencil::io::{DriveSetup, WaypointFrame, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
-use crate::console::{Spinner, say};
+use crate::console::{Spinner, progress_bar, say};
 use crate::subject::contenders;
 use crate::{Outcome, Registry, Trouble};
 
@@ -22,13 +21,7 @@ struct FrameBar(ProgressBar);
 
 impl FrameBar {
     fn new() -> Self {
-        let bar = ProgressBar::new(0);
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos}/{len} frames{msg}  {elapsed} elapsed, {eta} left")
-        {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
+        let bar = progress_bar(0, "{bar:30} {pos}/{len} frames{msg}  {elapsed} elapsed, {eta} left");
         Self(bar)
     }
 }

@@ -32,14 +32,17 @@ mod args;
 mod campaign;
 mod cast;
 mod check;
+mod completions;
 mod console;
 mod diff;
 mod drive;
+mod man;
 mod minimise;
 mod outcome;
 mod pack;
 mod parsers;
 mod probe;
+mod reference;
 mod render;
 mod subject;
 mod sweep;
@@ -50,10 +53,9 @@ mod validate;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::Parser;
 use clap::error::ErrorKind;
 
-use crate::args::{Arguments, Command, Validate};
+use crate::args::{Arguments, Command, Everywhere, Validate};
 
 pub use crate::outcome::Registry;
 pub(crate) use crate::outcome::{Outcome, Trouble};
@@ -65,7 +67,9 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regis
 
 /// The same, with the exit code as a number: for programs in which the command is a function.
 pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> u8 {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    let color = Arguments::color_of(&words);
+    let arguments = match Arguments::read(words, color) {
         Ok(arguments) => arguments,
         Err(error) => {
             // `--help` and `--version` are not errors.
@@ -74,7 +78,11 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
             return code_after_writing(if asked { 0 } else { 2 });
         }
     };
-    let code = match run(arguments, registry) {
+    let Everywhere { quiet, json, color, .. } = arguments.everywhere;
+    console::begin(quiet, json, color);
+    let outcome = run(arguments, registry);
+    console::end();
+    let code = match outcome {
         Ok(Outcome::Fine) => 0,
         Ok(Outcome::Differs) => 1,
         Err(trouble) => {
@@ -93,7 +101,7 @@ fn code_after_writing(code: u8) -> u8 {
 }
 
 fn run(arguments: Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
-    if let Some(threads) = arguments.threads {
+    if let Some(threads) = arguments.everywhere.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads as usize)
             .build()
@@ -105,20 +113,24 @@ fn run(arguments: Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
 }
 
 fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
+    let json = arguments.everywhere.json;
     match &arguments.command {
-        None => validate::validate(&Validate::pyramids(), arguments.json, registry),
-        Some(Command::Validate(command)) => validate::validate(command, arguments.json, registry),
-        Some(Command::Render(command)) => render::render(command, arguments.json, registry),
-        Some(Command::Pack(command)) => pack::pack(command, arguments.json),
-        Some(Command::Campaign(command)) => campaign::campaign(command, arguments.json),
-        Some(Command::Minimise(command)) => minimise::minimise(command, arguments.json, registry),
-        Some(Command::Check(command)) => check::check(command, arguments.json),
-        Some(Command::Drive(command)) => drive::drive(command, arguments.json, registry),
-        Some(Command::Sweep(command)) => sweep::sweep(command, arguments.json, registry),
-        Some(Command::Diff(command)) => diff::diff(command, arguments.json),
-        Some(Command::Cast(command)) => cast::cast(command, arguments.json),
-        Some(Command::Terrain(command)) => terrain::terrain(command, arguments.json),
-        Some(Command::Probe(command)) => probe::probe(command, arguments.json, registry),
+        None => validate::validate(&Validate::pyramids(), json, registry),
+        Some(Command::Validate(command)) => validate::validate(command, json, registry),
+        Some(Command::Render(command)) => render::render(command, json, registry),
+        Some(Command::Pack(command)) => pack::pack(command, json),
+        Some(Command::Campaign(command)) => campaign::campaign(command, json),
+        Some(Command::Minimise(command)) => minimise::minimise(command, json, registry),
+        Some(Command::Check(command)) => check::check(command, json),
+        Some(Command::Drive(command)) => drive::drive(command, json, registry),
+        Some(Command::Sweep(command)) => sweep::sweep(command, json, registry),
+        Some(Command::Diff(command)) => diff::diff(command, json),
+        Some(Command::Cast(command)) => cast::cast(command, json),
+        Some(Command::Terrain(command)) => terrain::terrain(command, json),
+        Some(Command::Probe(command)) => probe::probe(command, json, registry),
+        Some(Command::Completions(command)) => completions::completions(command),
+        Some(Command::Man(command)) => man::man(command, json),
+        Some(Command::Reference(command)) => reference::reference(command, json),
     }
 }
 

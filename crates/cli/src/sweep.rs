@@ -1,16 +1,15 @@
 //! `raypencil sweep`: one scene with many settings, in parts; `merge`.
 
 use std::path::Path;
-use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use raypencil::sweep::{
     Axis, Chart, Finished, Part, Sweep, SweepProgress, SweepTable, Task, default_charts, finish, read_plan,
     run_part, sweep_json, sweep_screen, write_sweep,
 };
 
 use crate::args::{self, DEFAULT_WITH, DRIVE_WITH, SweepCommand, SwitchArguments};
-use crate::console::say;
+use crate::console::{progress_bar, say};
 use crate::subject::contenders;
 use crate::{Outcome, Registry, Trouble};
 
@@ -26,13 +25,7 @@ struct Bar(ProgressBar);
 
 impl Bar {
     fn new(runs: u64) -> Self {
-        let bar = ProgressBar::new(runs);
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos}/{len} runs{msg}  {elapsed} elapsed, {eta} left")
-        {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
+        let bar = progress_bar(runs, "{bar:30} {pos}/{len} runs{msg}  {elapsed} elapsed, {eta} left");
         Self(bar)
     }
 }

@@ -2,6 +2,7 @@
 //! (ARCHITECTURE.md)
 
 mod circles;
+mod documents;
 mod floors;
 mod kernels;
 mod scene_items;

@@ -9,6 +9,13 @@ use crate::parsers::{part_name, shard};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
+#[command(after_help = "Examples:
+  # A thousand random terrains.
+  raypencil campaign --terrains 1000 --seed 7
+  # One of four parts, to be merged.
+  raypencil campaign --terrains 1000 --shard 1/4 -o out/part-1
+  # A hunt in your own renderer.
+  raypencil campaign --terrains 20 --candidate-command 'my-renderer {pack} {out}'")]
 pub(crate) struct Campaign {
     #[command(subcommand)]
     pub(crate) command: Option<CampaignCommand>,
@@ -59,6 +66,9 @@ pub(crate) struct CampaignRun {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Both parts of a campaign.
+  raypencil campaign merge out/part-1 out/part-2 -o out/campaign")]
 pub(crate) struct CampaignMerge {
     /// Folders with the results of the shards.
     #[arg(value_name = "DIR", required = true)]
@@ -70,6 +80,9 @@ pub(crate) struct CampaignMerge {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # The thirteenth terrain of a campaign, to be probed.
+  raypencil campaign replay --seed 7 --terrain 12 -o out/terrain-12")]
 pub(crate) struct CampaignReplay {
     /// Seed of the campaign.
     #[arg(long, value_name = "SEED")]

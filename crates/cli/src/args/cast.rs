@@ -9,6 +9,13 @@ use raypencil::io::Setting;
 use crate::parsers::{ray, setting};
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # A file of rays on a mesh.
+  raypencil cast data/rays/cube.obj data/rays/cube.npy -o out/cast
+  # One ray, all its hits in exact order.
+  raypencil cast data/rays/cube.obj --ray 0.1,0.2,5,0,0,-1 --all
+  # A LiDAR's pattern, and whether a renderer answers it rightly.
+  raypencil cast data/rays/cube.obj data/rays/vlp16.toml --with tracer")]
 pub(crate) struct Cast {
     /// A mesh: .glb, .gltf, .stl, .obj or .ply, or a folder with vertices.npy and faces.npy. Or a scene file (.toml) with
     /// tables [[rays]]: its terrain, and its own sets of rays unless others are given; its camera and beams are left out.

@@ -8,6 +8,11 @@ use raypencil::Precision;
 use crate::parsers::precision;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Embree's recording, which was computed in single precision.
+  raypencil check data/packs/pyramids data/candidates/embree/pyramids --arithmetic f32
+  # Your renderer's files, with a report.
+  raypencil check data/packs/hard my-renders -o out/check")]
 pub(crate) struct Check {
     /// Folder of the reference pack, with its manifest.json, of an input pack, or of a pack of rays.
     #[arg(value_name = "PACK")]

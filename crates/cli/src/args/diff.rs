@@ -9,6 +9,11 @@ use raypencil::io::Setting;
 use crate::parsers::{percent, precision, setting, threshold};
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Two recordings, with 1 nm of tolerance.
+  raypencil diff out/pyramids/scanline out/pyramids/tracer --fail 1e-9
+  # The referee rules where they differ.
+  raypencil diff theirs ours --scene ground.glb -o out/diff")]
 pub(crate) struct Diff {
     /// A file or a folder.
     #[arg(value_name = "A")]

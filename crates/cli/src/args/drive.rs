@@ -9,6 +9,13 @@ use crate::args::scene::SceneArguments;
 use crate::parsers::{pair, record, rule};
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Both renderers in lockstep, 7.5 m towards the pyramids.
+  raypencil drive pyramids --both
+  # Your own ground, 3 m ahead, with a bag for ROS 2.
+  raypencil drive ground.glb --to 3,0 --record mcap -o out/my-drive
+  # Generated rocks, with the paper's printed rules.
+  raypencil drive data/scenes/rocky-drive.toml --as-printed")]
 pub(crate) struct Drive {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,

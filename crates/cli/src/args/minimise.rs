@@ -10,6 +10,11 @@ use crate::args::scene::SceneArguments;
 use crate::parsers::class;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # The smallest ground on which the printed skip rules miss something.
+  raypencil minimise pyramids --with scanline,tracer --switch skip-rules=paper --class approximation
+  # A defect between two renderers, on a ground of your own.
+  raypencil minimise ground.glb -o out/smallest")]
 pub(crate) struct Minimise {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,

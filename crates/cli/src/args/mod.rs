@@ -6,10 +6,14 @@
 mod campaign;
 mod cast;
 mod check;
+mod completions;
 mod diff;
 mod drive;
+mod everywhere;
+mod help;
 mod minimise;
 mod pack;
+mod pages;
 mod probe;
 mod render;
 mod renderers;
@@ -18,15 +22,20 @@ mod sweep;
 mod terrain;
 mod validate;
 
-use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 pub(crate) use campaign::{Campaign, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 pub(crate) use cast::Cast;
 pub(crate) use check::Check;
+pub(crate) use completions::Completions;
 pub(crate) use diff::Diff;
 pub(crate) use drive::Drive;
+pub(crate) use everywhere::Everywhere;
 pub(crate) use minimise::Minimise;
 pub(crate) use pack::Pack;
+pub(crate) use pages::{ManPages, ReferencePages};
 pub(crate) use probe::Probe;
 pub(crate) use render::Render;
 pub(crate) use renderers::{DEFAULT_WITH, DRIVE_WITH, SwitchArguments, typed_renderers};
@@ -41,15 +50,20 @@ pub(crate) use validate::Validate;
 ///
 /// Exit codes: 0 all agree, 1 a defect or a difference, 2 an error.
 #[derive(Debug, Parser)]
-#[command(name = "raypencil", version)]
+#[command(
+    name = "raypencil",
+    version,
+    after_help = "Examples:
+  # Simulate twice, compare every ray, and leave out/pyramids/report.html.
+  raypencil
+  # A ground of your own.
+  raypencil validate ground.glb
+  # A renderer of your own, on 2,866 rays, most of them hard.
+  raypencil check data/packs/hard my-renders"
+)]
 pub(crate) struct Arguments {
-    /// Print JSON instead of text.
-    #[arg(long, global = true)]
-    pub(crate) json: bool,
-
-    /// Number of worker threads; default: all cores. Results do not depend on it.
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) everywhere: Everywhere,
 
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -80,33 +94,49 @@ pub(crate) enum Command {
     /// Cast any rays on any mesh and answer them exactly: first hits with their ties, or all hits in order.
     Cast(Cast),
     /// Generate, import or inspect terrains.
-    #[command(subcommand)]
+    #[command(
+        subcommand,
+        after_help = "Examples:
+  # Ground like that of the Viking 1 site.
+  raypencil terrain generate --preset viking1 --seed 7 -o out/ground.glb
+  # What is wrong with a mesh.
+  raypencil terrain inspect ground.glb"
+    )]
     Terrain(TerrainCommand),
+    /// Print the script by which a shell completes the words of this command.
+    Completions(Completions),
+    /// Write the manual pages of this command and of all below it.
+    Man(ManPages),
+    /// Write the reference of the command line, as Markdown.
+    #[command(hide = true)]
+    Reference(ReferencePages),
+}
+
+/// The whole command line, as clap sees it.
+pub(crate) fn command_line() -> clap::Command {
+    help::with_groups(Arguments::command())
+}
+
+impl Arguments {
+    /// Parses words, the program's name first. Help and errors have colours as `color` says.
+    pub(crate) fn read(words: Vec<OsString>, color: ColorChoice) -> Result<Self, clap::Error> {
+        let matches = command_line().color(color).try_get_matches_from(words)?;
+        Self::from_arg_matches(&matches)
+    }
+
+    /// The value of `--color` among words that may be wrong otherwise: what clap says of them has colours too.
+    pub(crate) fn color_of(words: &[OsString]) -> ColorChoice {
+        let words = words.iter().map(|word| word.to_str().unwrap_or_default());
+        let words: Vec<&str> = words.take_while(|word| *word != "--").collect();
+        let given = words.iter().enumerate().rev().find_map(|(k, word)| match word.strip_prefix("--color") {
+            Some("") => words.get(k + 1).copied(),
+            Some(rest) => rest.strip_prefix('='),
+            None => None,
+        });
+        given.and_then(|word| ColorChoice::from_str(word, false).ok()).unwrap_or_default()
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_arguments_are_well_formed() {
-        Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn typed_arguments_are_quoted_for_a_shell() {
-        let parse = |words: &[&str]| {
-            let words = ["raypencil", "validate"].into_iter().chain(words.iter().copied());
-            match Arguments::try_parse_from(words).unwrap().command {
-                Some(Command::Validate(validate)) => validate.scene.typed(),
-                other => panic!("{other:?}"),
-            }
-        };
-        assert_eq!(parse(&[]), "pyramids");
-        assert_eq!(
-            parse(&["my yard.glb", "--at", "-1.5,2", "--heading", "-90", "--fan", "120"]),
-            "'my yard.glb' --fan 120 --at -1.5,2 --heading -90"
-        );
-    }
-}
+#[path = "../../tests/unit/arguments.rs"]
+mod tests;

@@ -7,6 +7,13 @@ use clap::Args;
 use crate::args::scene::SceneArguments;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # A scene, its rays, and the exact answer to each.
+  raypencil pack data/scenes/pyramids-small.toml -o out/pack
+  # The questions alone; check knows the answers.
+  raypencil pack --blind 7 -o out/blind
+  # Rays of your own on a mesh.
+  raypencil pack data/rays/cube.obj --rays data/rays/cube.npy -o out/cube-pack")]
 pub(crate) struct Pack {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,

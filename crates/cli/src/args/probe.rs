@@ -9,6 +9,11 @@ use crate::args::scene::SceneArguments;
 use crate::parsers::pair;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # One pencil of the first beam.
+  raypencil probe pyramids --beam 0 --pencil 412,3
+  # One pixel, by the paper's approximations too.
+  raypencil probe pyramids --pixel 412,300 --with scanline-paper,tracer")]
 pub(crate) struct Probe {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,

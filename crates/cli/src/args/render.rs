@@ -10,6 +10,11 @@ use crate::args::scene::SceneArguments;
 use crate::parsers::map_format;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Every quantity of every ray, as EXR.
+  raypencil render pyramids --with tracer -o out/maps
+  # One random ray in each pencil, as NPY.
+  raypencil render ground.glb --with tracer --jitter 1 --format npy -o out/jittered")]
 pub(crate) struct Render {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,

@@ -10,6 +10,13 @@ use crate::parsers::{axis, chart, shard, task};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
+#[command(after_help = "Examples:
+  # Every combination of four pitches and two thicknesses.
+  raypencil sweep pyramids --set camera.pitch_down_deg=20:35:5 --set beam.thickness_mm=2,4
+  # A drive over each of three grounds.
+  raypencil sweep data/scenes/rocky-drive.toml --set terrain.generate.seed=1,2,3 --do drive
+  # Runs that a table lists.
+  raypencil sweep data/designs/rover.toml --list data/designs/runs.csv --do drive -o out/designs")]
 pub(crate) struct Sweep {
     #[command(subcommand)]
     pub(crate) command: Option<SweepCommand>,
@@ -68,6 +75,9 @@ pub(crate) struct SweepRun {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Both parts of a sweep.
+  raypencil sweep merge out/part-1 out/part-2 -o out/sweep")]
 pub(crate) struct SweepMerge {
     /// Folders of the parts.
     #[arg(value_name = "DIR", required = true)]

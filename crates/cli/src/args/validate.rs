@@ -10,6 +10,13 @@ use crate::args::scene::SceneArguments;
 use crate::parsers::judge_share;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # The default rig on a ground of your own, turned to the left.
+  raypencil validate ground.glb --at 3,-2 --heading 45
+  # The paper's approximations against exact rays; a thick sheet makes them visible.
+  raypencil validate pyramids --with scanline-paper,tracer --thickness 80 -o out/paper
+  # Another program's answers, judged beside the two renderers.
+  raypencil validate facets --candidate my-renders --judge all")]
 pub(crate) struct Validate {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,

@@ -17,8 +17,21 @@ fn assert_help(command: &[&str]) {
 fn help_of_every_command() {
     assert_help(&[]);
     for command in [
-        "validate", "render", "probe", "pack", "check", "campaign", "minimise", "drive", "diff", "cast",
-        "terrain", "sweep",
+        "validate",
+        "render",
+        "probe",
+        "pack",
+        "check",
+        "campaign",
+        "minimise",
+        "drive",
+        "diff",
+        "cast",
+        "terrain",
+        "sweep",
+        "completions",
+        "man",
+        "reference",
     ] {
         assert_help(&[command]);
     }
@@ -29,4 +42,10 @@ fn help_of_every_command() {
     for command in ["generate", "import", "inspect"] {
         assert_help(&["terrain", command]);
     }
+}
+
+#[test]
+fn the_short_help_of_the_command_line() {
+    let help = screen(Path::new("."), &["-h"], 0);
+    insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!("help_short", help) });
 }

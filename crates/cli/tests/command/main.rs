@@ -8,10 +8,12 @@ mod diagnosis;
 mod diff;
 mod drive;
 mod help;
+mod manners;
 mod packs;
 mod ray_sets;
 mod sweep;
 mod terrain;
+mod tools;
 
 use std::path::Path;
 use std::process::{Command, Output};

@@ -5,6 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Ground like that of the Viking 1 site, a square of 10 m.
+  raypencil terrain generate --preset viking1 --seed 7 --extent 10 -o out/ground.glb
+  # Rocks on an elevation model of your own.
+  raypencil terrain generate --coarse dem.tif --rock-coverage 0.1 -o out/rocky.glb")]
 pub(crate) struct TerrainGenerate {
     /// Preset of all parameters: smooth, viking1, pathfinder, crater_field, crevassed or worst (docs/guide/terrain.md).
     #[arg(long, value_name = "NAME", default_value = "viking1")]

@@ -8,6 +8,11 @@ use raypencil::io::{DEFAULT_REFLECTIVITY, UpAxis};
 use crate::parsers::{numbers, up_axis};
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # All of an elevation model, simplified by at most 2 cm.
+  raypencil terrain import dem.tif --max-error 0.02 -o out/ground.glb
+  # A window of it, 50 m wide and high.
+  raypencil terrain import dem.tif --window 1000,2000,50,50 -o out/window.glb")]
 pub(crate) struct TerrainImport {
     /// An elevation model: a GeoTIFF with one band, in metres. Or a mesh: .stl, .obj, .ply, .glb or .gltf.
     #[arg(value_name = "FILE")]

@@ -8,6 +8,11 @@ use raypencil::io::Setting;
 use crate::parsers::setting;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  # Open edges, wrong windings and other faults.
+  raypencil terrain inspect ground.glb
+  # The same, repaired where only one repair is possible.
+  raypencil terrain inspect ground.glb --repair -o out/repaired.glb")]
 pub(crate) struct TerrainInspect {
     /// A terrain (.glb, .gltf, .stl, .obj, .ply), a scene .toml, or a built-in terrain (pyramids, facets).
     #[arg(value_name = "MESH")]
