@@ -5,6 +5,7 @@ use raypencil::cast::{
     CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
 };
 use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
+use raypencil::io::OutputFolder;
 use raypencil::judge::{Conventions, JudgeShare};
 use raypencil::pack::{
     check_input, check_json, check_pack_verifying, check_screen, input_json, input_screen, is_input_pack,
@@ -16,6 +17,13 @@ use crate::console::{Spinner, say};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
+    let output = command.output.as_deref().map(OutputFolder::begin).transpose()?;
+    let outcome = checked(command, json)?;
+    output.map_or(Ok(()), OutputFolder::finish)?;
+    Ok(outcome)
+}
+
+fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     if is_input_pack(&command.pack) {
         return check_loader(command, json);
     }

@@ -137,7 +137,10 @@ fn shown(bar: ProgressBar, template: &str, tick: Duration) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
-    bar.enable_steady_tick(tick);
+    // A hidden bar needs no thread that draws it.
+    if !bar.is_hidden() {
+        bar.enable_steady_tick(tick);
+    }
     bar
 }
 

@@ -6,7 +6,7 @@ use raypencil::Progress;
 use raypencil::diff::{
     Sides, Thresholds, diff as compare, diff_json, diff_screen, diff_text, rule, write_diff,
 };
-use raypencil::io::{Channels, Limits, Overrides, add_ray_sets, load, read_channels};
+use raypencil::io::{Channels, Limits, OutputFolder, Overrides, add_ray_sets, load, read_channels};
 use raypencil::judge::{GroundTruth, Recorded, check as judge};
 use raypencil::pack::CheckError;
 
@@ -34,6 +34,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
             )));
         }
     }
+    let output = command.output.as_deref().map(OutputFolder::begin).transpose()?;
     let (a, b) = (read(&command.a)?, read(&command.b)?);
     let thresholds = Thresholds {
         fail: command.fail,
@@ -61,6 +62,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     if let Some(folder) = &command.output {
         write_diff(&difference, &sides, folder, &spinner)?;
     }
+    output.map_or(Ok(()), OutputFolder::finish)?;
     drop(spinner);
     if json {
         say(&diff_json(&difference, &sides));

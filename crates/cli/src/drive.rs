@@ -9,7 +9,7 @@ use raypencil::drive::{
     self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_json, drive_screen,
     write_drive,
 };
-use raypencil::io::{DriveSetup, WaypointFrame, load};
+use raypencil::io::{DriveSetup, OutputFolder, WaypointFrame, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
 use crate::console::{Spinner, progress_bar, say};
@@ -99,6 +99,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
     };
+    let output = OutputFolder::begin(&folder)?;
     let stripes = command.stripes.as_deref().map(StripeFile::read).transpose()?;
     let mut contents = RecordContents::default();
     for word in &command.record {
@@ -114,6 +115,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let run = drive::drive_with(&job, &renderers, extras, &FrameBar::new()).map_err(trouble)?;
     let spinner = Spinner::new();
     write_drive(&job, &run, &folder, &spinner)?;
+    output.finish()?;
     drop(spinner);
     say(&if json { drive_json(&job, &run) } else { drive_screen(&job, &run, Some(&folder)) });
     Ok(if run.passes() { Outcome::Fine } else { Outcome::Differs })

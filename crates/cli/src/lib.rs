@@ -69,12 +69,20 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regis
 pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> u8 {
     let words: Vec<OsString> = arguments.into_iter().collect();
     let color = Arguments::color_of(&words);
+    let words_not_text: Vec<OsString> =
+        words.iter().filter(|word| word.to_str().is_none()).cloned().collect();
     let arguments = match Arguments::read(words, color) {
         Ok(arguments) => arguments,
         Err(error) => {
             // `--help` and `--version` are not errors.
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
-            trouble::print_usage(&error);
+            match words_not_text.as_slice() {
+                [first, ..] if error.kind() == ErrorKind::InvalidUtf8 => console::complain(&format!(
+                    "Error: {}: the argument is not UTF-8; expected a path or a value that is\n",
+                    first.to_string_lossy()
+                )),
+                _ => trouble::print_usage(&error),
+            }
             return code_after_writing(if asked { 0 } else { 2 });
         }
     };
@@ -100,15 +108,33 @@ fn code_after_writing(code: u8) -> u8 {
     2
 }
 
+/// Maximum number of worker threads.
+const MAX_THREADS: usize = 1024;
+
 fn run(arguments: Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
+    let (threads, words) = number_of_threads(&arguments)?;
+    // A pool of its own: the one that rayon makes by itself panics where the system refuses a thread.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+        let expected = "expected fewer threads, such as --threads 1, or a system that allows more";
+        Trouble::Usage(format!("{words}: {threads} threads cannot be started: {error}; {expected}"))
+    })?;
+    pool.install(|| dispatch(&arguments, registry))
+}
+
+/// The number of worker threads, and what says so: the option, the variable RAYON_NUM_THREADS, or the machine.
+fn number_of_threads(arguments: &Arguments) -> Result<(usize, String), Trouble> {
     if let Some(threads) = arguments.everywhere.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads as usize)
-            .build()
-            .map_err(|error| Trouble::Usage(format!("--threads {threads}: {error}")))?
-            .install(|| dispatch(&arguments, registry))
-    } else {
-        dispatch(&arguments, registry)
+        return Ok((threads.into(), format!("--threads {threads}")));
+    }
+    let Some(text) = std::env::var_os("RAYON_NUM_THREADS").filter(|text| !text.is_empty()) else {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS);
+        return Ok((cores, "threads".into()));
+    };
+    let words = format!("RAYON_NUM_THREADS={}", text.to_string_lossy());
+    match text.to_str().and_then(|text| text.trim().parse::<usize>().ok()) {
+        Some(0) => Ok((std::thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS), words)),
+        Some(threads) if threads <= MAX_THREADS => Ok((threads, words)),
+        _ => Err(Trouble::Usage(format!("{words}: expected a number of threads from 1 to {MAX_THREADS}"))),
     }
 }
 

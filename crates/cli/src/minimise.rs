@@ -4,6 +4,7 @@ use raypencil::Progress as _;
 use raypencil::harness::{
     Reproducer, first_interesting_ray, is_interesting_in_class, typed_contenders, write_reproducer,
 };
+use raypencil::io::OutputFolder;
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::minimise::{MINIMISE_BUDGET, minimise as search};
 use serde_json::json;
@@ -38,6 +39,7 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
     let [of_a, of_b] = [a, b].map(|contender| contender.renderer.name());
     let what = format!("{of_a} and {of_b} {}", difference(class));
 
+    let output = OutputFolder::begin(&command.output)?;
     spinner.stage("searching for the first such ray");
     let found = first_interesting_ray([a, b], &subject.scene, class, JudgeShare::All).and_then(|first| {
         let is_interesting = is_interesting_in_class([a, b], class);
@@ -55,6 +57,7 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
     let with = typed_contenders(&[a, b]);
     let reproducer = Reproducer { name: &name, what: &format!("{what}."), with: &with };
     let files = write_reproducer(&command.output, &minimised, reproducer)?;
+    output.finish()?;
     drop(spinner);
     let [scene, ground, text] = files.map(|file| file.display().to_string());
     say(&match json {

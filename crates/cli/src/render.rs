@@ -1,6 +1,7 @@
 //! `raypencil render`: writes the maps of one renderer.
 
 use raypencil::harness::{write_maps_as, write_ray_sets};
+use raypencil::io::OutputFolder;
 use raypencil::report::counted;
 use raypencil::survey::{SensorHits, warnings};
 use raypencil::{Progress, Request, Sampling};
@@ -16,6 +17,7 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     let contenders = contenders(with, &command.switches, 1, registry)?;
     let renderer = &contenders[0].renderer;
     let subject = subject(&command.scene, "", &spinner)?;
+    let folder = OutputFolder::begin(&command.output)?;
     spinner.stage(&format!("{}: rendering", renderer.name()));
     let sampling = command.jitter.map_or(Sampling::Centres, |seed| Sampling::Jittered { seed });
     let output = renderer.render(&subject.scene, &Request { sampling, ..Request::EVERYTHING });
@@ -30,6 +32,7 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     spinner.stage(&format!("{}: writing", command.output.display()));
     let files = write_maps_as(command.format, &output, renderer.name(), &subject, sampling, &command.output)?;
     let sets = write_ray_sets(&subject, renderer.name(), &command.output, &spinner)?;
+    folder.finish()?;
     spinner.stage("looking at the scene");
     let hits: Vec<SensorHits> = output.maps().filter_map(SensorHits::of_map).collect();
     let warnings = warnings(&subject.scene, subject.vehicle.as_ref(), Some(&hits));

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use indicatif::ProgressBar;
+use raypencil::io::{MIN_ABANDONED_AGE, remove_abandoned};
 use raypencil::sweep::{
     Axis, Chart, Finished, Part, Sweep, SweepProgress, SweepTable, Task, default_charts, finish, read_plan,
     run_part, sweep_json, sweep_screen, write_sweep,
@@ -72,6 +73,7 @@ fn run(command: &args::SweepRun, json: bool, registry: &Registry) -> Result<Outc
     sweep.build = crate::build();
     let part = Part { index: command.shard.index, count: command.shard.count };
     let bar = Bar::new(part.runs(sweep.runs()).count() as u64);
+    remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     run_part(&sweep, part, &contenders, &command.output, &bar)?;
     drop(bar);
     if part != Part::WHOLE {

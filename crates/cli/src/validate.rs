@@ -7,6 +7,8 @@ use raypencil::harness::{
     Candidate, one_screen, summary_json, validate as run, whole_screen, write_validation,
 };
 
+use raypencil::io::OutputFolder;
+
 use crate::args::{Validate, typed_renderers};
 use crate::console::{Spinner, is_terminal, say};
 use crate::subject::{contenders, subject};
@@ -21,6 +23,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(&subject.name),
     };
+    let output = OutputFolder::begin(&folder)?;
     // Candidates first, so that an error in their files is reported before the rendering.
     spinner.stage("reading candidates");
     let candidates: Result<Vec<Candidate>, _> =
@@ -33,6 +36,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         validation.candidates_may_fail = !command.candidates_must_pass;
     }
     write_validation(&validation, &folder, &spinner)?;
+    output.finish()?;
     drop(spinner);
     if json {
         say(&summary_json(&validation));

@@ -71,7 +71,7 @@ pub use npy::{
     ArrayNumber, Numbers, npy_from_bytes, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,
     write_npy_numbers,
 };
-pub use output_folder::OutputFolder;
+pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, remove_abandoned};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use rays::{RayArray, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::fs::{File, Metadata, TryLockError};
 use std::io;
 use std::path::{Component, Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use crate::atomic::write_atomically;
 use crate::bytes;
@@ -91,10 +91,8 @@ impl OutputFolder {
         let lock = lock(folder)?;
         let mut output =
             Self { folder: folder.to_path_buf(), lock, before: BTreeMap::new(), earlier: Vec::new() };
-        output.before = files_below(folder, &mut |part| {
-            // It has the name of a half-written file, and no run that could be writing it is left.
-            let _ = if part.is_dir() { std::fs::remove_dir_all(part) } else { std::fs::remove_file(part) };
-        });
+        // No run that could be writing them is left.
+        output.before = files_below(folder, &mut remove_part);
         output.earlier = made_earlier(&folder.join(MADE_NAME));
         Ok(output)
     }
@@ -136,6 +134,27 @@ impl Drop for OutputFolder {
             let _ = std::fs::remove_file(self.folder.join(LOCK_NAME));
         }
     }
+}
+
+/// Age after which nobody is writing a half-written file of a run any more.
+pub const MIN_ABANDONED_AGE: Duration = Duration::from_secs(600);
+
+/// Removes what killed runs have left half-written below a folder, if nothing was written to it for `min_age`: for folders
+/// that several runs share, so that none of them locks it.
+pub fn remove_abandoned(folder: &Path, min_age: Duration) {
+    files_below(folder, &mut |part| {
+        let age = part.symlink_metadata().and_then(|found| found.modified()).ok();
+        if age.and_then(|time| time.elapsed().ok()).is_some_and(|age| age >= min_age) {
+            remove_part(part);
+        }
+    });
+}
+
+/// Removes a half-written file or folder.
+fn remove_part(part: &Path) {
+    // One that cannot be removed disturbs nobody: it has a name of its own.
+    let is_folder = part.symlink_metadata().is_ok_and(|found| found.is_dir());
+    let _ = if is_folder { std::fs::remove_dir_all(part) } else { std::fs::remove_file(part) };
 }
 
 /// Locks a folder.

@@ -10,8 +10,8 @@ use raypencil::cast::{
     rays_from_bytes, write_answers, write_cast_page, write_set,
 };
 use raypencil::io::{
-    FileError, Limits, LoadedRaySets, RayScene, bytes, create_folder, hex_digits, load_ray_scene,
-    read_ray_sets, read_triangles, sha256,
+    FileError, Limits, LoadedRaySets, OutputFolder, RayScene, bytes, create_folder, hex_digits,
+    load_ray_scene, read_ray_sets, read_triangles, sha256,
 };
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
 use serde_json::{Value, json};
@@ -42,6 +42,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         CastSource { mesh: command.mesh.display().to_string(), mesh_sha256, rays: from, rays_sha256 };
     let mesh = &mesh;
     let folder = command.output.as_deref();
+    let output = folder.map(OutputFolder::begin).transpose()?;
     let results = match &rays {
         Rays::Array(array) => {
             let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
@@ -98,6 +99,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             results
         }
     };
+    output.map_or(Ok(()), OutputFolder::finish)?;
     drop(spinner);
     let is_each_right = results.iter().flat_map(|result| &result.compared).all(Compared::passes);
     let outcome = if is_each_right { Outcome::Fine } else { Outcome::Differs };

@@ -132,3 +132,17 @@ fn pipes_and_links_are_neither_waited_for_nor_followed() {
     pipe(LOCK_NAME);
     assert!(OutputFolder::begin(folder).is_err());
 }
+
+#[test]
+fn only_what_is_old_is_abandoned() {
+    let folder = TempDir::new().unwrap();
+    let part = folder.path().join(".raypencil-abc.part");
+    std::fs::write(&part, "half").unwrap();
+    std::fs::write(folder.path().join("whole"), "whole").unwrap();
+    remove_abandoned(folder.path(), Duration::from_secs(600));
+    assert!(part.exists());
+    remove_abandoned(folder.path(), Duration::ZERO);
+    assert!(!part.exists());
+    assert_eq!(names(folder.path()), ["whole"]);
+    remove_abandoned(&folder.path().join("nowhere"), Duration::ZERO);
+}
