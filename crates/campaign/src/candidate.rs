@@ -61,8 +61,17 @@ pub(crate) fn hunt(
     };
     let judged = judge_candidate(subject, candidate, misses.map(|folder| (folder, MAX_MISSES)), &Silent)
         .map_err(Box::new)?;
-    let record = PartRecord::of(part, judged.hits, &judged.report.check.sensors);
-    Ok(PartRecord { candidate: Some(shortened(judged.report.candidate.name)), ..record })
+    let sensors = &judged.report.check.sensors;
+    let record = PartRecord::of(part, judged.hits, sensors);
+    // Who answers nothing is wrong nowhere, and right nowhere either.
+    let silent: Vec<String> = sensors
+        .iter()
+        .filter(|sensor| sensor.compared() == 0 && sensor.not_compared > 0)
+        .map(|sensor| sensor.sensor.to_string())
+        .collect();
+    let failed = (!silent.is_empty())
+        .then(|| format!("it answers no ray of {}, or none that can be compared", silent.join(", ")));
+    Ok(PartRecord { failed, candidate: Some(shortened(judged.report.candidate.name)), ..record })
 }
 
 /// Runs the command; `Some`: why it failed.

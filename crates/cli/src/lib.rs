@@ -44,6 +44,7 @@ mod parsers;
 mod probe;
 mod reference;
 mod render;
+mod scene;
 mod subject;
 mod sweep;
 mod terrain;
@@ -152,6 +153,7 @@ fn dispatch(arguments: &Arguments, registry: &Registry) -> Result<Outcome, Troub
         Some(Command::Sweep(command)) => sweep::sweep(command, json, registry),
         Some(Command::Diff(command)) => diff::diff(command, json),
         Some(Command::Cast(command)) => cast::cast(command, json),
+        Some(Command::Scene(command)) => scene::scene(command, json),
         Some(Command::Terrain(command)) => terrain::terrain(command, json),
         Some(Command::Probe(command)) => probe::probe(command, json, registry),
         Some(Command::Completions(command)) => completions::completions(command),

@@ -84,6 +84,7 @@ mod rendered;
 mod renderers;
 mod reproducer;
 mod run;
+mod scene_view;
 mod scoreboard;
 mod validation;
 
@@ -107,6 +108,7 @@ pub use rendered::Rendered;
 pub use renderers::{Contender, RENDERER_NAMES, attribute, contender, typed_contenders};
 pub use reproducer::{Reproducer, write_reproducer};
 pub use run::{Validator, validate};
+pub use scene_view::{scene_json, scene_picture, scene_words};
 pub use scoreboard::{CandidateReport, RendererReport, Scoreboard};
 pub use validation::{Counts, Pair, Validation};
 

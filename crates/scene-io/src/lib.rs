@@ -54,6 +54,17 @@ mod settings;
 mod subject;
 mod toml_problem;
 
+/// A scene file with every key and what it means: the default rig on the built-in pyramids.
+///
+/// ```
+/// use raypencil_scene_io::{Overrides, SCENE_TEMPLATE, load, load_text};
+///
+/// let [written, builtin] = [load_text(SCENE_TEMPLATE, "template")?, load("pyramids", &Overrides::default())?];
+/// assert_eq!(written.scene, builtin.scene);
+/// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+/// ```
+pub const SCENE_TEMPLATE: &str = include_str!("template.toml");
+
 pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
 pub use grounds::Grounds;

@@ -18,6 +18,7 @@ mod probe;
 mod render;
 mod renderers;
 mod scene;
+mod scene_command;
 mod sweep;
 mod terrain;
 mod validate;
@@ -40,6 +41,7 @@ pub(crate) use probe::Probe;
 pub(crate) use render::Render;
 pub(crate) use renderers::{DEFAULT_WITH, DRIVE_WITH, SwitchArguments, typed_renderers};
 pub(crate) use scene::{SceneArguments, typed_setting};
+pub(crate) use scene_command::{SceneCommand, SceneInit, SceneShow};
 pub(crate) use sweep::{Sweep, SweepCommand, SweepMerge, SweepRun};
 pub(crate) use terrain::{TerrainCommand, TerrainGenerate, TerrainImport, TerrainInspect};
 pub(crate) use validate::Validate;
@@ -93,6 +95,16 @@ pub(crate) enum Command {
     Diff(Diff),
     /// Cast any rays on any mesh and answer them exactly: first hits with their ties, or all hits in order.
     Cast(Cast),
+    /// Show a scene with its units and a picture, or begin a scene file.
+    #[command(
+        subcommand,
+        after_help = "Examples:
+  # A scene file with every key, to be changed.
+  raypencil scene init my-scene.toml
+  # What a scene is, in numbers and as a picture of rig and ground.
+  raypencil scene show pyramids -o out/pyramids.png"
+    )]
+    Scene(SceneCommand),
     /// Generate, import or inspect terrains.
     #[command(
         subcommand,

@@ -190,6 +190,12 @@ fn another_program_is_hunted() {
     assert_eq!(json("dies")["no_answer"].as_array().unwrap().len(), 2);
     let output = hunt("true {pack} {out}", "empty");
     assert!(crate::text(&output.stdout).contains("no answer: {out}"), "{}", crate::text(&output.stdout));
+    // One that leaves out a whole sensor is right about the others, and does not pass.
+    let output = hunt(&program(folder, "blind.sh", "rm \"$2/camera.exr\""), "blind");
+    assert_eq!(output.status.code(), Some(1));
+    let screen = crate::text(&output.stdout);
+    assert!(screen.contains("terrain 0 own: no answer: it answers no ray of camera"), "{screen}");
+    assert!(json("blind")["parts"]["own"]["compared"].as_u64().unwrap() > 0);
     assert_trouble(
         &hunt("no-such-program {pack} {out}", "none"),
         &["not found", "expected a program that can be run"],

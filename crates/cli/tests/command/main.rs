@@ -1,5 +1,6 @@
 //! The command as users run it: exit codes, output, files.
 
+mod answers_lost;
 mod basics;
 mod campaign;
 mod cast;
@@ -7,10 +8,14 @@ mod check;
 mod diagnosis;
 mod diff;
 mod drive;
+mod folders;
+mod forged_packs;
 mod help;
+mod injection;
 mod manners;
 mod packs;
 mod ray_sets;
+mod scene;
 mod sweep;
 mod terrain;
 mod tools;

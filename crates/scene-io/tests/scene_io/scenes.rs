@@ -386,3 +386,9 @@ fn a_mesh_of_a_real_yard_is_a_scene_of_its_name() {
     };
     assert_eq!(load(path.to_str().unwrap(), &Overrides::default()).unwrap().name, "marsyard2021");
 }
+
+#[test]
+fn the_template_is_the_documented_default_scene() {
+    let written = std::fs::read_to_string(scenes().join("default.toml")).unwrap();
+    assert_eq!(raypencil_scene_io::SCENE_TEMPLATE, written);
+}
