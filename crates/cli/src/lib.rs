@@ -55,6 +55,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
+use raypencil::io::harmless_line;
 
 use crate::args::{Arguments, Command, Everywhere, Validate};
 
@@ -70,6 +71,7 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regis
 pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> u8 {
     let words: Vec<OsString> = arguments.into_iter().collect();
     let color = Arguments::color_of(&words);
+    let has_codes = words.iter().any(|word| harmless_line(&word.to_string_lossy()) != word.to_string_lossy());
     let words_not_text: Vec<OsString> =
         words.iter().filter(|word| word.to_str().is_none()).cloned().collect();
     let arguments = match Arguments::read(words, color) {
@@ -82,7 +84,7 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
                     "Error: {}: the argument is not UTF-8; expected a path or a value that is\n",
                     first.to_string_lossy()
                 )),
-                _ => trouble::print_usage(&error),
+                _ => trouble::print_usage(&error, has_codes),
             }
             return code_after_writing(if asked { 0 } else { 2 });
         }

@@ -59,11 +59,10 @@ pub(crate) fn rendered(error: &dyn Diagnostic) -> String {
 }
 
 /// Prints what clap says: a help text to standard output, an error to standard error. An error repeats the arguments, so one
-/// with codes of terminals is shown without any colour.
-pub(crate) fn print_usage(error: &clap::Error) {
-    let plain = error.render().to_string();
-    match harmless(&plain) {
-        shown if shown == plain => note(error.print()),
-        shown => crate::console::complain(&shown),
+/// about words with codes of terminals is shown without any colour.
+pub(crate) fn print_usage(error: &clap::Error, has_codes: bool) {
+    match has_codes {
+        true => crate::console::complain(&error.render().to_string()),
+        false => note(error.print()),
     }
 }

@@ -62,6 +62,8 @@ type Stamp = (u64, Option<SystemTime>, u64);
 #[derive(Debug)]
 pub struct OutputFolder {
     folder: PathBuf,
+    /// Folders that were made for it, the innermost first.
+    made: Vec<PathBuf>,
     /// Locked until the end; `None` on a file system without locks.
     lock: Option<File>,
     /// Files that were there when the run began.
@@ -87,10 +89,12 @@ impl OutputFolder {
     /// # Errors
     /// As [`OutputFolder::begin`].
     pub fn begin_any(folder: &Path) -> Result<Self, FolderError> {
+        let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+        let made: Vec<PathBuf> = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
         create_folder(folder)?;
         let lock = lock(folder)?;
-        let mut output =
-            Self { folder: folder.to_path_buf(), lock, before: BTreeMap::new(), earlier: Vec::new() };
+        let (before, earlier) = (BTreeMap::new(), Vec::new());
+        let mut output = Self { folder: folder.to_path_buf(), made, lock, before, earlier };
         // No run that could be writing them is left.
         output.before = files_below(folder, &mut remove_part);
         output.earlier = made_earlier(&folder.join(MADE_NAME));
@@ -132,6 +136,12 @@ impl Drop for OutputFolder {
         if self.lock.take().is_some() {
             // Removed while it is locked, so that nobody's lock is removed.
             let _ = std::fs::remove_file(self.folder.join(LOCK_NAME));
+        }
+        // A run that wrote nothing leaves no folder; one with files in it is not removed.
+        for folder in &self.made {
+            if std::fs::remove_dir(folder).is_err() {
+                break;
+            }
         }
     }
 }

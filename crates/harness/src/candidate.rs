@@ -81,7 +81,8 @@ impl Candidate {
         let channels = Recorded::channels(folder, scene)?;
         let recorded = Recorded::of_folder(folder, scene, precision, &channels)?;
         let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
-        // Reports name the program, not its folder.
+        // Reports name the program, not its folder. A line break in it would look like a line of the report's own.
+        let name = harmless_line(&name);
         let recorded = Recorded { name: name.clone(), ..recorded };
         let reader = ExtraChannels { folder, scene, channels: &channels };
         let images = reader.images(note.as_ref())?;

@@ -70,16 +70,16 @@ fn render_and_pack_warn_on_standard_error_and_in_json() {
     std::fs::write(folder.path().join("aside.toml"), ASIDE).unwrap();
     let sentence = "camera: none of its 3,072 rays hits the front of the terrain within the maximum range.";
     for command in [&["render", "aside.toml", "--with", "tracer"][..], &["pack", "aside.toml"][..]] {
-        let output = raypencil(folder.path(), &[command, &["-o", "out"]].concat());
+        let output = raypencil(folder.path(), &[command, &["-o", command[0]]].concat());
         assert_eq!(output.status.code(), Some(0));
         assert!(text(&output.stderr).contains(&format!("warning: {sentence}\n")), "{}", text(&output.stderr));
         assert!(!text(&output.stdout).contains("warning"));
-        let json = screen(folder.path(), &[command, &["-o", "out", "--json"]].concat(), 0);
+        let json = screen(folder.path(), &[command, &["-o", command[0], "--json"]].concat(), 0);
         let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
         assert_eq!(json["warnings"][0]["code"], "no_hits");
         assert_eq!(json["warnings"].as_array().map(Vec::len), Some(2), "{json}");
     }
-    let output = raypencil(folder.path(), &["render", "small.toml", "--with", "tracer", "-o", "out"]);
+    let output = raypencil(folder.path(), &["render", "small.toml", "--with", "tracer", "-o", "maps"]);
     assert_eq!(text(&output.stderr), "");
 }
 
@@ -228,7 +228,7 @@ fn render_writes_one_renderers_maps() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     written.sort();
-    assert_eq!(written, ["beam-0.exr", "camera.exr"]);
+    assert_eq!(written, [".raypencil-made", "beam-0.exr", "camera.exr"]);
 }
 
 #[test]

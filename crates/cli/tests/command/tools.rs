@@ -8,6 +8,9 @@ use crate::{assert_trouble, raypencil, screen};
 
 /// The commands, as their pages are named.
 const COMMANDS: &[&str] = &[
+    "scene",
+    "scene-init",
+    "scene-show",
     "campaign",
     "campaign-merge",
     "campaign-replay",
@@ -82,7 +85,7 @@ fn completions_load_in_their_shells() {
 #[test]
 fn each_command_has_a_manual_page() {
     let folder = tempfile::TempDir::new().unwrap();
-    assert_eq!(screen(folder.path(), &["man", "-o", "man"], 0), "man: 21 pages\n");
+    assert_eq!(screen(folder.path(), &["man", "-o", "man"], 0), "man: 24 pages\n");
     let pages = files(&folder.path().join("man"));
     let names = COMMANDS.iter().map(|name| format!("raypencil-{name}.1"));
     let names: BTreeSet<String> = names.chain(["raypencil.1".to_string()]).collect();

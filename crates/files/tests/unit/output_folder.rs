@@ -134,6 +134,22 @@ fn pipes_and_links_are_neither_waited_for_nor_followed() {
 }
 
 #[test]
+fn a_run_that_writes_nothing_leaves_no_folder() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("a/b");
+    drop(OutputFolder::begin(&folder).unwrap());
+    assert!(!parent.path().join("a").exists());
+    let output = OutputFolder::begin(&folder).unwrap();
+    std::fs::write(folder.join("c"), "c").unwrap();
+    drop(output);
+    assert_eq!(names(parent.path()), ["a/b/c"]);
+    // One that was there stays, though it is empty.
+    std::fs::remove_file(folder.join("c")).unwrap();
+    drop(OutputFolder::begin(&folder).unwrap());
+    assert!(folder.exists());
+}
+
+#[test]
 fn only_what_is_old_is_abandoned() {
     let folder = TempDir::new().unwrap();
     let part = folder.path().join(".raypencil-abc.part");
