@@ -7,3 +7,4 @@ mod floors;
 mod kernels;
 mod scene_items;
 mod source;
+mod unsafe_code;
