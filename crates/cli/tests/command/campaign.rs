@@ -31,7 +31,7 @@ fn summary(folder: &Path, name: &str) -> String {
 fn the_variables_of_proptest_change_nothing() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
-    // Terrain 3 of seed 11 is drawn with rejects.
+    // A runner of proptest's own would draw by the seed that is set here.
     for (name, value) in [("plain", None), ("set", Some("0"))] {
         let line = format!("campaign replay --seed 11 --terrain 3 -o {name}");
         let mut command = command(folder, &words(&line));
