@@ -1,5 +1,8 @@
 # The project's everyday commands; `just` lists them. `.ci/run` runs every check in order.
 
+# Chromium without a window
+chromium := "chromium --headless --no-sandbox --hide-scrollbars --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --virtual-time-budget=60000"
+
 _default:
     @just --list --unsorted
 
@@ -81,11 +84,15 @@ injected-faults:
 reference:
     cargo run --bin raypencil -- reference -o docs/reference/commands
 
-# The picture of a report in README.md: docs/figures/report.png. Needs Chromium
-report-figure:
-    cargo run --release -- validate pyramids --with scanline-paper,tracer --thickness 80 -o out/report-figure
-    chromium --headless --no-sandbox --hide-scrollbars --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
-        --window-size=1280,1480 --virtual-time-budget=60000 --screenshot=docs/figures/report.png "file://$PWD/out/report-figure/report.html"
+# The pictures of reports: of a wrong candidate in README.md, and of the paper's approximations. Needs Chromium
+report-figures:
+    cargo build --release --bin raypencil
+    target/release/raypencil pack data/scenes/pyramids-small.toml --no-bench -o out/figures/pack
+    target/release/raypencil render data/scenes/pyramids-small.toml --with scanline --switch place=paper --format npy -o out/figures/subtle
+    -target/release/raypencil check out/figures/pack out/figures/subtle -o out/figures/checked
+    {{ chromium }} --window-size=1280,1380 --screenshot=docs/figures/disagreement.png "file://$PWD/out/figures/checked/report.html#beam-0/117,3/visible.V"
+    target/release/raypencil validate pyramids --with scanline-paper,tracer --thickness 80 -o out/figures/paper
+    {{ chromium }} --window-size=1280,1480 --screenshot=docs/figures/report.png "file://$PWD/out/figures/paper/report.html"
 
 # Sizes of reports and the time to their first picture, as in docs/evidence/page-times.md. Needs Chromium with its driver
 page-times:

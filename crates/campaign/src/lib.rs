@@ -1,5 +1,7 @@
 //! Campaigns: both renderers on many random terrains, and the referee's ruling on every ray on which they differ.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A terrain depends only on the campaign's seed and its own number. So a campaign can be divided into shards, which
 //! run anywhere, can be interrupted, and are merged into one summary. `docs/guide/campaign.md` is the user's guide; the
 //! classes of rays are those of `raypencil-judge`.

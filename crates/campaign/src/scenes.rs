@@ -20,7 +20,16 @@ pub(crate) fn case(campaign: &Campaign, terrain: u64) -> Case {
     seed[..8].copy_from_slice(&campaign.seed.to_le_bytes());
     seed[8..16].copy_from_slice(&terrain.to_le_bytes());
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
-    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    // The variables PROPTEST_... of a developer's tests may not change a campaign: all that a drawing reads is set here,
+    // to proptest's own values.
+    let config = Config {
+        max_local_rejects: 65_536,
+        max_global_rejects: 1024,
+        max_flat_map_regens: 1_000_000,
+        verbose: 0,
+        ..Config::default()
+    };
+    let mut runner = TestRunner::new_with_rng(config, rng);
     campaign_cases(terrain).new_tree(&mut runner).expect("a strategy that rejects little").current()
 }
 

@@ -1,5 +1,7 @@
 //! Any rays on any mesh, answered exactly.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! ```text
 //! answers        what is asked, and the answers of the referee
 //! cloud          the points that are hit, as PLY and PCD

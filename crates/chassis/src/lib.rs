@@ -1,5 +1,7 @@
 //! The simulated vehicle itself, on the true triangle mesh: where its wheels touch, how it stands, what it can pass.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! This is the truth to which a rover's own obstacle tests are held. It shares no code with them: it knows no grid of
 //! heights and no map, only triangles.
 //!

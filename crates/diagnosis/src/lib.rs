@@ -1,5 +1,7 @@
 //! Why a recording is wrong nearly everywhere: the mistake that explains it, or the two.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A renderer that breaks one convention (rows reversed, depth for range, millimetres) is wrong on all rays, and its
 //! list of wrong rays does not say why. This crate undoes each known mistake on the recording's own numbers, singly and
 //! then in pairs, and asks the judge again. Mistakes of the rays themselves (hits on backs) cannot be undone; there the

@@ -1,5 +1,7 @@
 //! Compares two recordings of anything, channel by channel: what differs, by how much, and whether that is allowed.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A recording is a set of named channels, as `raypencil-files` reads them from folders and files; no scene is needed.
 //! If there is one, the referee's checks (`raypencil-judge`) tell which side is right. `docs/guide/diff.md` has the
 //! rules.

@@ -1,6 +1,8 @@
 //! Drives of the rover: the whole vision system from the renderer to the maps, with one renderer or with two in
 //! lockstep, and the folder of results.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Source: steps 1 to 9 of the paper (section 3), its maps (section 7) and its sample runs (section 8, figures 11 to
 //! 16). This crate joins the renderers, `sensor` and `rover`; it has no step of its own. With two renderers it compares
 //! everything that their light becomes: pixels, edge points, map cells and labels.

@@ -1,5 +1,7 @@
 //! The part of a report that answers when asked: maps that zoom, every differing ray, and its geometry.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A report is one file. What it shows is a *page model*, a JSON document, beside packed arrays of numbers; a script of our
 //! own turns both into panels in the reader's browser. Nothing is fetched. `docs/formats/report-page.md` describes the
 //! model for people who want to read a report by a program.

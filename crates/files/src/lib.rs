@@ -1,5 +1,7 @@
 //! Files of numbers, and how they are written: NPY, PFM and OpenEXR, recordings of channels, SHA-256, output folders.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A file is either written whole or not at all, and the same values give the same bytes on every machine. A reader
 //! checks every size that a header claims against the length of the file and against [`Limits`] before it asks for
 //! memory. An error names the file, the place in it, what was found and what was expected.

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{Channels, Storage, Values};
+use raypencil_files::{Channels, Storage, Values, harmless_line};
 use raypencil_judge::{Recorded, RecordingError};
 use raypencil_pack::{Provenance, ProvenanceError, note, precision_of};
 use raypencil_scene::{Image, Precision, Scene, SensorId};

@@ -1,5 +1,7 @@
 //! Renders one scene with several renderers, compares every ray, and reports the result.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A *validation* renders a scene with two or more renderers, compares each pair of them ray by ray, and has the
 //! referee rule on every ray whose answers differ (and on a sample of the others). *Candidates*, recordings that other
 //! people's renderers made of the same scene, can be evaluated beside them. The paper simulates its vision system once;

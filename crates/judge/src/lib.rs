@@ -1,5 +1,7 @@
 //! The judge of raypencil: it says of every ray whether an answer is right, and how far its values are from right.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Answers come from renderers of this project or from files of other programs. Faces, visibility and pixels are ruled
 //! on by the referee in exact arithmetic (`docs/theory/referee.md`). Values are held to bounds of rounding errors,
 //! which `bounds` derives. Nothing in this crate renders.

@@ -1,6 +1,8 @@
 //! Terrain in files: glTF, GLB and GeoTIFF, in and out; STL, OBJ and PLY, in. Triangles of any mesh in glTF, STL, OBJ, PLY and
 //! NPY, in.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A reader checks every reference, length and number of a file before it uses it, and every size against the length of
 //! the file before it asks for memory. An error names the file, the place in it, what was found and what was expected.
 //!

@@ -1,5 +1,7 @@
 //! Reduces a scene to the simplest one that is still interesting, for example one on which two renderers still differ.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Method: test-case reduction, as in ddmin (A. Zeller and R. Hildebrandt 2002) and C-Reduce (J. Regehr et al. 2012).
 //! The caller supplies the *interestingness test*; the crate knows no renderer. Simplest means the fewest faces, then
 //! the simplest rig, then numbers of the fewest digits.

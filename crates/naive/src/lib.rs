@@ -1,5 +1,7 @@
 //! A third renderer, by brute force: every ray is tested against every face.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! It is written from the contract alone: its own rotation, its own rays, its own triangle test, no tables, no tree,
 //! no order of faces. It is slow, and its purpose is to be wrong: a [`Fault`] can be injected into it, and a
 //! comparison with another renderer, or a reference pack, must find it. The [`Clause`]s of the contract say which faults

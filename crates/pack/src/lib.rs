@@ -1,5 +1,7 @@
 //! Reference packs: a scene with every answer correctly rounded, and the check of another program's answers.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! A pack lets other people test their renderer without running ours. The formats are described in
 //! `docs/formats/files.md`, `docs/formats/pack.schema.json` and `docs/formats/check.schema.json`. The answers come from
 //! the exact referee (`raypencil-referee`) by way of `raypencil-judge`.

@@ -55,6 +55,7 @@ impl MeshCore {
     }
 
     /// The vertices, (N, 3), as they lie in memory.
+    #[allow(unsafe_code, reason = "an array of NumPy on memory that this object owns")]
     #[getter]
     fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let cells = slf.get().triangles.vertices();
@@ -66,6 +67,7 @@ impl MeshCore {
     }
 
     /// The faces, (M, 3), as they lie in memory.
+    #[allow(unsafe_code, reason = "an array of NumPy on memory that this object owns")]
     #[getter]
     fn faces<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let cells = slf.get().triangles.faces();

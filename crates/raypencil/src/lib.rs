@@ -54,9 +54,11 @@ pub use raypencil_scanline::Scanline;
 pub use raypencil_scene_io::{LoadedScene, Overrides, load};
 pub use raypencil_tracer::Tracer;
 
+#[cfg(feature = "campaign")]
+pub use raypencil_campaign as campaign;
 pub use {
-    raypencil_campaign as campaign, raypencil_cast as cast, raypencil_diagnosis as diagnosis,
-    raypencil_diff as diff, raypencil_drive as drive, raypencil_harness as harness, raypencil_judge as judge,
+    raypencil_cast as cast, raypencil_diagnosis as diagnosis, raypencil_diff as diff,
+    raypencil_drive as drive, raypencil_harness as harness, raypencil_judge as judge,
     raypencil_minimise as minimise, raypencil_naive as naive, raypencil_pack as pack,
     raypencil_referee as referee, raypencil_report as report, raypencil_rover as rover,
     raypencil_scanline as scanline, raypencil_sensor as sensor, raypencil_survey as survey,

@@ -1,5 +1,7 @@
 //! The referee: the exact answer to any ray of the contract, and how far that answer is from changing.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Two f64 programs that agree prove only that they share their mistakes. All that the contract says of a ray is a
 //! sign of a polynomial in stored f64 numbers, so it can be known without error: by an interval if that is certain,
 //! else by exact dyadic rationals. `docs/theory/referee.md` has the proofs and the bounds.

@@ -1,5 +1,7 @@
 //! What reports are made of: numbers as text, tables, pictures, drawings, HTML pages and JUnit documents.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! The crate knows nothing of rays or judgements. The same input gives the same bytes on every machine: PNG pictures
 //! are drawn with a font that is compiled in.
 //!

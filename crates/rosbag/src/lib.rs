@@ -1,6 +1,8 @@
 //! Bags of ROS 2: an MCAP file with the definitions of its messages, and the `metadata.yaml` of rosbag2 beside it.
 //! Nothing of ROS is needed to write them, and `ros2 bag`, RViz, Foxglove and Python read them.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! ```text
 //! messages       the messages, field by field as ROS 2 defines them
 //! definitions    their texts, which the bag carries along

@@ -1,5 +1,7 @@
 //! The rover: from the images of its camera to an elevation map, an obstacle map and a navigator map.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Source: step 9 of the paper (section 3) and its section 7, "Building the local obstacle map". One frame goes through
 //! these modules in order:
 //!

@@ -1,5 +1,7 @@
 //! The first renderer: the paper's scanline algorithm. (§4, §5, §6)
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Every triangle of the terrain is projected forward onto a sensor's projection plane (SPP) and scanned row by row;
 //! each cell keeps the nearest face. The camera uses the perspective transformation, a beam the cylindrical one of
 //! figure 7. Source: J. J. Nitao and D. H. Cronquist, "Computer modelling: a structured light vision system for a Mars

@@ -1,6 +1,8 @@
 //! Scenes from files: a built-in name, a scene TOML, a glTF terrain or an elevation model becomes a
 //! [`raypencil_scene::Scene`], and a scene becomes a file again.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Source: the paper describes its scenes by pictures; the keys are this project's own, described in
 //! `docs/guide/scene.md` and `docs/guide/drive.md`. The files follow each other from floor to top:
 //!

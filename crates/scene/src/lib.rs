@@ -1,5 +1,7 @@
 //! The definitions that all renderers share.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Two renderers must mean the same by a pose, the terrain mesh, the camera, the laser beams, a ray and a hit; these
 //! stand here as *definitions*, with the [`Renderer`] trait and the form of its results. They must not share how they
 //! compute: there is no intersection code here and no IO. A test holds the public items of this crate to a list, so

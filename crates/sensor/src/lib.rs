@@ -1,5 +1,7 @@
 //! Image sensor chain, steps 6 to 8 of the paper: from watts per pixel to digital numbers.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! ```text
 //! 6  splat (disc) -> psf -> kernel (airy) -> convolve -> optics, dust   filter the image for aberrations and dust
 //!    sunlight                                                           the background light of sun and sky

@@ -1,5 +1,7 @@
 //! A scene before its rays are trusted: warnings about what looks wrong in it, and where everything stands.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! Two renderers agree on a scene in which nothing is hit, and the result tells nothing. This crate looks at the scene
 //! itself: does each sensor see the terrain, from its front; does the terrain have the right axes and unit; does the
 //! vehicle stand on it. A warning changes no answer of a renderer.

@@ -1,5 +1,7 @@
 //! Sweeps: one scene with many settings, and a table of what each of them gives.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! The paper built its model "as a tool for evaluating the use of structured light systems for local navigation" (section
 //! 1): which angle of a sheet, which thickness, which camera finds which obstacle on which ground. A sweep answers such a
 //! question. It takes the product of the values of some keys of a scene file, and for each of them renders, compares or

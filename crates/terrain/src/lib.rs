@@ -1,5 +1,7 @@
 //! Grounds for a rover: the paper's two scenes (§9), random grounds, Mars-like grounds, elevation grids.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! The crate also measures the height of any ground, and finds and repairs faults of a mesh. It reads and writes no
 //! files. Each generator names its source in its own file.
 //!

@@ -20,6 +20,7 @@ pub(crate) trait Work {
 }
 
 /// Runs `work` with these instructions.
+#[allow(unsafe_code, reason = "code for AVX2 is called where the processor was asked for it")]
 pub(crate) fn run<W: Work>(instructions: Instructions, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if instructions == Instructions::Detected && std::arch::is_x86_feature_detected!("avx2") {

@@ -1,5 +1,7 @@
 //! The second renderer: one ray per pencil or pixel, traced backward through a bounding volume hierarchy.
 //!
+//! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
+//!
 //! `obvhs` proposes the faces that a ray may meet; a watertight triangle test in `f64`, in `triangle`, decides.
 //! The tree is `f32`. Its boxes are padded by a bound that is derived in `hierarchy`, so that no hit is lost to
 //! them: tests compare the answers with an exhaustive search. Sources: S. Woop, C. Benthin, I. Wald (2013) for the

@@ -143,6 +143,26 @@ fn arrows_that_run_up_or_sideways_are_found() {
     assert_eq!(faults("rover", &none, &names(&["harness"])).len(), 1);
 }
 
+/// The crates that users link proptest with, and how `raypencil` depends on them.
+#[test]
+fn proptest_is_behind_the_feature_of_campaigns() {
+    let house = house();
+    for (name, package) in &house {
+        let is_linked = package
+            .dependencies
+            .iter()
+            .any(|other| other.name == "proptest" && other.kind == DependencyKind::Normal);
+        assert_eq!(is_linked, name == "campaign", "{name} has proptest for more than its tests");
+    }
+    let of_campaigns = |package: &&Package| {
+        package.dependencies.iter().any(|other| {
+            other.name == "raypencil-campaign" && other.kind == DependencyKind::Normal && !other.optional
+        })
+    };
+    let users: Vec<&Package> = house.values().filter(of_campaigns).collect();
+    assert!(users.is_empty(), "these crates always bring campaigns: {users:#?}");
+}
+
 #[test]
 fn the_evaluations_share_definitions_and_no_kernels() {
     let house = house();

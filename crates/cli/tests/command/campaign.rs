@@ -28,6 +28,31 @@ fn summary(folder: &Path, name: &str) -> String {
 }
 
 #[test]
+fn the_variables_of_proptest_change_nothing() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    // A runner of proptest's own would draw by the seed that is set here.
+    for (name, value) in [("plain", None), ("set", Some("0"))] {
+        let line = format!("campaign replay --seed 11 --terrain 3 -o {name}");
+        let mut command = command(folder, &words(&line));
+        for variable in
+            ["CASES", "MAX_LOCAL_REJECTS", "MAX_GLOBAL_REJECTS", "MAX_FLAT_MAP_REGENS", "RNG_SEED", "VERBOSE"]
+        {
+            let variable = format!("PROPTEST_{variable}");
+            match value {
+                Some(value) => command.env(variable, value),
+                None => command.env_remove(variable),
+            };
+        }
+        let output = command.output().expect("the binary runs");
+        assert_eq!(output.status.code(), Some(0), "{}", crate::text(&output.stderr));
+        assert!(output.stderr.is_empty(), "{}", crate::text(&output.stderr));
+    }
+    let read = |name: &str, file: &str| fs::read(folder.join(name).join(file)).expect("a file of the scene");
+    assert!(read("plain", "scene.toml") == read("set", "scene.toml"));
+}
+
+#[test]
 fn shards_in_any_order_are_the_whole_campaign() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();

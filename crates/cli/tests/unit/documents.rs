@@ -82,5 +82,5 @@ fn commands_are_found_on_a_page() {
                 raypencils\n```\n```text\nraypencil no\n```\n    raypencil no\n```sh\nraypencil\n```\n";
     let expected = [(2, "raypencil cast a b   # why"), (3, "raypencil check p q"), (13, "raypencil")];
     assert_eq!(commands(page), expected.map(|(line, text)| (line, text.to_string())));
-    assert_eq!(shell_words(&expected[0].1).unwrap().len(), 4);
+    assert_eq!(shell_words(expected[0].1).unwrap().len(), 4);
 }

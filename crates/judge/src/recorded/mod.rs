@@ -13,7 +13,7 @@ use crate::recorded::error::RecordingError;
 use crate::recorded::names::is_path_tracer_channel;
 use crate::recorded::reader::{Reader, limits, recordings_in};
 use crate::scene_answers::Answers;
-use raypencil_files::{Channels, Storage, read_channels};
+use raypencil_files::{Channels, Storage, harmless_line, read_channels};
 use raypencil_scene::{HitQuantity, Precision, RenderOutput, Renderer, Request, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -237,5 +237,5 @@ impl Recorded {
 
 /// A recording has the name of its folder.
 fn name_of_folder(folder: &Path) -> String {
-    folder.file_name().map_or("candidate".into(), |name| name.to_string_lossy().into_owned())
+    folder.file_name().map_or("candidate".into(), |name| harmless_line(&name.to_string_lossy()))
 }

@@ -14,6 +14,7 @@ struct Counting;
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
+#[allow(unsafe_code, reason = "an allocator is unsafe to write; this one counts, in tests alone")]
 // SAFETY: every request goes to the system's allocator as it is; counting allocates nothing.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
