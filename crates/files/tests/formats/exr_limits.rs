@@ -69,7 +69,7 @@ fn read(bytes: &[u8]) -> (Result<ExrMap, FileError>, usize) {
 /// Refuses a file with these words, within 64 kB of memory.
 fn assert_refused(bytes: &[u8], words: &str) {
     let (result, peak) = read(bytes);
-    let error = result.err().expect("a refusal").to_string();
+    let error = result.expect_err("a refusal").to_string();
     assert!(error.contains(words), "{error}");
     assert!(peak < 1 << 16, "{peak} bytes for a file of {}", bytes.len());
 }

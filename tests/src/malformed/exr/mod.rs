@@ -218,7 +218,7 @@ fn blocks(case: Make<'_>) -> Vec<Case> {
             "data window",
             {
                 let list = channels(&["a", "b", "c", "d"].map(|name| (name, 1, 1)));
-                let block = zlib(&vec![0; 16 * 4 * 2 << 16]);
+                let block = zlib(&vec![0; 16 * (4 * 2) * (1 << 16)]);
                 let blocks = (0..64).map(|index| (16 * index, block.clone()));
                 let header = Exr::new(1 << 16, 1024, ZIP).with("channels", list);
                 Exr { blocks: blocks.collect(), ..header }.bytes()
