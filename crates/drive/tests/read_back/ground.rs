@@ -130,7 +130,7 @@ impl Block {
     /// Distance in plan from a point (u, v); 0 inside.
     pub(crate) fn distance_in_plan(&self, [u, v]: [f64; 2]) -> f64 {
         let beyond = |at: f64, [from, to]: [f64; 2]| (from - at).max(at - to).max(0.0);
-        beyond(u, self.u).hypot(beyond(v, self.v))
+        libm::hypot(beyond(u, self.u), beyond(v, self.v))
     }
 
     /// Distance from the surface of the block, as if it had no bottom.
@@ -138,7 +138,7 @@ impl Block {
         let aside = self.distance_in_plan([u, v]);
         let above = z - self.top();
         if aside > 0.0 || above > 0.0 {
-            return aside.hypot(above.max(0.0));
+            return libm::hypot(aside, above.max(0.0));
         }
         let walls = [u - self.u[0], self.u[1] - u, v - self.v[0], self.v[1] - v];
         walls.into_iter().fold(-above, f64::min)
@@ -167,7 +167,7 @@ pub(crate) fn height(x: f64, y: f64) -> f64 {
 /// Lowest and highest ground within a distance in plan.
 pub(crate) fn heights_within([x, y]: [f64; 2], distance: f64) -> [f64; 2] {
     let [u, v, _] = ahead_and_left([x, y, 0.0]);
-    let rise = distance * SLOPE_X.hypot(SLOPE_Y);
+    let rise = distance * libm::hypot(SLOPE_X, SLOPE_Y);
     let (mut low, mut high) = (plane(x, y) - rise, plane(x, y) + rise);
     for block in BLOCKS.iter().filter(|block| block.distance_in_plan([u, v]) <= distance) {
         high = high.max(block.top());
@@ -199,10 +199,10 @@ pub(crate) fn hit(from: Vector, direction: Vector) -> Option<(f64, bool)> {
     let from = ahead_and_left(from);
     let turned = std::array::from_fn(|axis| far[axis] - from[axis]);
     for block in &BLOCKS {
-        if let Some(to_block) = block.entered(from, turned) {
-            if nearest.is_none_or(|(to, _)| to_block < to) {
-                nearest = Some((to_block, false));
-            }
+        if let Some(to_block) = block.entered(from, turned)
+            && nearest.is_none_or(|(to, _)| to_block < to)
+        {
+            nearest = Some((to_block, false));
         }
     }
     nearest
@@ -212,7 +212,7 @@ pub(crate) fn hit(from: Vector, direction: Vector) -> Option<(f64, bool)> {
 pub(crate) fn route(frame: u64) -> (f64, [f64; 2], f64) {
     let time = frame as f64 / FRAME_RATE;
     let [[first, _], [u, v]] = WAYPOINTS;
-    let (leg, turn) = ((u - first).hypot(v), libm::atan2(v, u - first));
+    let (leg, turn) = (libm::hypot(u - first, v), libm::atan2(v, u - first));
     let (there, turned) = (first / SPEED, first / SPEED + turn / TURN_RATE);
     if time < there {
         return (SPEED * time, global([SPEED * time, 0.0]), HEADING);
@@ -228,7 +228,7 @@ pub(crate) fn route(frame: u64) -> (f64, [f64; 2], f64) {
 /// Number of frames: the last one is the first at or after the end of the way.
 pub(crate) fn frames() -> u64 {
     let [[first, _], [u, v]] = WAYPOINTS;
-    let (leg, turn) = ((u - first).hypot(v), libm::atan2(v, u - first));
+    let (leg, turn) = (libm::hypot(u - first, v), libm::atan2(v, u - first));
     ((first / SPEED + turn / TURN_RATE + leg / SPEED) * FRAME_RATE).ceil() as u64 + 1
 }
 

@@ -70,7 +70,7 @@ impl Looking {
         let from = self.beam.point([0.0, y, 0.0]);
         let to = minus(point, from);
         let first = hit(from, to).map_or(f64::INFINITY, |(to, _)| to);
-        x.abs() < 0.98 * z / 3.0_f64.sqrt() && z > 0.1 && x.hypot(z) < 19.0 && first > 0.999
+        x.abs() < 0.98 * z / 3.0_f64.sqrt() && z > 0.1 && libm::hypot(x, z) < 19.0 && first > 0.999
     }
 }
 

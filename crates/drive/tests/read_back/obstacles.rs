@@ -59,7 +59,7 @@ fn sectors_lie_in_their_directions_and_end_at_what_is_there() {
             let expected = heading + (2.0 * sector - 30.0).to_radians();
             assert!((direction - expected).abs() < 1e-9, "{row:?}: {expected}");
             let (sin, cos) = sin_cos(direction);
-            let off = (x - place[0] - radius * cos).hypot(y - place[1] - radius * sin);
+            let off = libm::hypot(x - place[0] - radius * cos, y - place[1] - radius * sin);
             assert!(off < 1e-9, "{row:?}");
             let steps = (radius - FIRST) / STEP_M;
             assert!((steps - steps.round()).abs() < 1e-9 && radius < LAST + 1e-9, "{row:?}");
@@ -153,7 +153,7 @@ pub(crate) fn is_occupied(of: &Driven, frame: u64) -> impl Fn([f64; 2]) -> Optio
     move |[x, y]: [f64; 2]| {
         let [x, y] = [x - place[0], y - place[1]];
         let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
-        let (radius, degrees) = (ahead.hypot(left), libm::atan2(left, ahead).to_degrees());
+        let (radius, degrees) = (libm::hypot(ahead, left), libm::atan2(left, ahead).to_degrees());
         let sector = (degrees + 30.0) / 2.0;
         if sector.round() < 0.0 || sector.round() > 30.0 {
             return Some(false);

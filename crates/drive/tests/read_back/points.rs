@@ -113,5 +113,5 @@ fn the_tables_and_the_cloud_have_the_same_points() {
         }
     }
     // Global coordinates are of the start's surroundings, not of the vehicle's.
-    assert!(points(&CLEAN).iter().all(|point| (point[8] - START[0]).hypot(point[9] - START[1]) < 20.0));
+    assert!(points(&CLEAN).iter().all(|point| libm::hypot(point[8] - START[0], point[9] - START[1]) < 20.0));
 }

@@ -472,7 +472,8 @@ fn slopes_fail_a_thousandth_above_their_limits_and_pass_a_thousandth_below() {
     // which ends at y = 0.375 m.
     let margins = ErrorMargins { obstacle: 0.0, clear: 0.0 };
     let rules = TraversabilityRules { margins, ..TraversabilityRules::for_vehicle(&Vehicle::default()) };
-    let is_higher: [(TraversabilityTest, fn(i64, i64) -> bool); 3] = [
+    type Cells = fn(i64, i64) -> bool;
+    let is_higher: [(TraversabilityTest, Cells); 3] = [
         (TraversabilityTest::Front, |_, j| j > 0),
         (TraversabilityTest::Rear, |i, j| (-6..=2).contains(&i) && (4..=7).contains(&j)),
         (TraversabilityTest::Length, |i, _| i > 4),
