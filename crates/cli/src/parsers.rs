@@ -141,6 +141,19 @@ pub(crate) fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
+/// A number without its unit: the option's name in brackets has that.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    if let Ok(number) = text.trim().parse::<f64>() {
+        return Ok(number);
+    }
+    let unit = text.trim_start_matches(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter));
+    let digits = &text[..text.len() - unit.len()];
+    Err(match digits.parse::<f64>() {
+        Ok(_) => format!("expected a number alone, without a unit: {digits}"),
+        Err(_) => "expected a number, such as 1.5".into(),
+    })
+}
+
 /// A difference that is allowed: finite and not negative.
 pub(crate) fn threshold(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -41,10 +41,23 @@ impl Diagnostic for Shown<'_> {
     }
 }
 
+/// A text without the numbers that the system gives its errors, as in "(os error 17)": the words before them say it.
+fn without_codes_of_the_system(text: &str) -> String {
+    let mut parts = text.split(" (os error ");
+    let mut plain = parts.next().unwrap_or_default().to_string();
+    for part in parts {
+        match part.split_once(')') {
+            Some((number, rest)) if number.bytes().all(|byte| byte.is_ascii_digit()) => plain.push_str(rest),
+            _ => plain.push_str(&format!(" (os error {part}")),
+        }
+    }
+    plain
+}
+
 /// The message of an error: what is wrong, where, what was expected; for a scene file with the line and a caret.
 pub(crate) fn rendered(error: &dyn Diagnostic) -> String {
     let shown = Shown {
-        words: harmless(&error.to_string()).into_owned(),
+        words: without_codes_of_the_system(&harmless(&error.to_string())),
         help: error.help().map(|help| harmless(&help.to_string()).into_owned()),
         error,
     };
@@ -64,5 +77,17 @@ pub(crate) fn print_usage(error: &clap::Error, has_codes: bool) {
     match has_codes {
         true => crate::console::complain(&error.render().to_string()),
         false => note(error.print()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_the_system_are_left_out() {
+        let text = "x: cannot write: No space left on device (os error 28), twice (os error 28)";
+        assert_eq!(without_codes_of_the_system(text), "x: cannot write: No space left on device, twice");
+        assert_eq!(without_codes_of_the_system("a (os error x) b"), "a (os error x) b");
     }
 }

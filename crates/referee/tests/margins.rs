@@ -1,6 +1,8 @@
 //! Margins of many rays over malformed grounds: they hold, they have witnesses, and they are tight.
 
 mod common;
+#[path = "common/wall.rs"]
+mod wall;
 
 use std::sync::Arc;
 
@@ -305,7 +307,7 @@ fn a_wall_under_the_ground_hides_no_post_behind_it() {
 
 /// The wall, `copies` times at one place.
 fn walls(copies: usize) -> Scene {
-    let wall = wall_scene();
+    let wall = wall::wall_scene();
     let mesh = wall.mesh();
     let faces = vec![mesh.faces()[0]; copies];
     let many =
@@ -338,7 +340,7 @@ fn faces_at_one_place_have_the_margins_of_one() {
     }
     // The column whose ray ends half a cell beside the wall's side, and the next one.
     assert!(ends >= 2, "{ends}");
-    let sight = |referee: &Referee<'_>| referee.visibility(0, 0, 0, raypencil_referee::Displacement::ZERO);
+    let sight = |referee: &Referee<'_>| referee.visibility(0, 0, 0, Displacement::ZERO);
     assert_eq!(sight(&one), sight(&many));
     assert!(sight(&many).unwrap().visible, "copies of a face hide each other");
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use raypencil::Precision;
 
-use crate::parsers::precision;
+use crate::parsers::{number, precision};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -30,7 +30,7 @@ pub(crate) struct Check {
 
     /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan. Numbers that are not finite, and
     /// faces of -1 or 4294967295, always do.
-    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true, value_parser = number)]
     pub(crate) miss: Option<f64>,
 
     /// Leave out the channel of faces, face.I.

@@ -10,7 +10,7 @@ use clap::builder::styling::Styles;
 pub(super) const GROUPS: &[(&str, &[&str])] = &[
     ("Simulate", &["validate", "render", "probe", "drive", "sweep", "cast"]),
     ("Test renderers, yours and ours", &["check", "pack", "diff", "campaign", "minimise"]),
-    ("Terrains", &["terrain"]),
+    ("Scenes and terrains", &["scene", "terrain"]),
     ("Tools", &["completions", "man"]),
 ];
 

@@ -4,7 +4,7 @@ use clap::Args;
 use raypencil::FluxModel;
 use raypencil::io::{Overrides, Setting, quoted};
 
-use crate::parsers::{flux_model, pair, setting};
+use crate::parsers::{flux_model, number, pair, setting};
 
 /// The scene, and what is changed in it.
 #[derive(Debug, Args)]
@@ -15,11 +15,11 @@ pub(crate) struct SceneArguments {
     pub(crate) scene: String,
 
     /// Full fan angle of every beam, degrees.
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = number)]
     pub(crate) fan: Option<f64>,
 
     /// Thickness of every beam, millimetres.
-    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = number)]
     pub(crate) thickness: Option<f64>,
 
     /// Flux model; default: the scene's.
@@ -31,7 +31,7 @@ pub(crate) struct SceneArguments {
     pub(crate) at: Option<[f64; 2]>,
 
     /// Heading of the vehicle, degrees to the left of the global x axis.
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = number)]
     pub(crate) heading: Option<f64>,
 
     /// Set a key of the scene file, in the file's units: camera.pitch_down_deg=25, beam.0.thickness_mm=4; beam.KEY sets

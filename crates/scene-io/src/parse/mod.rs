@@ -5,6 +5,7 @@ pub(crate) mod file_frame;
 pub(crate) mod generate;
 pub(crate) mod key;
 pub(crate) mod kind;
+mod plain_words;
 pub(crate) mod rays;
 pub(crate) mod rig;
 pub(crate) mod scene;

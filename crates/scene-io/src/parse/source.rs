@@ -8,6 +8,7 @@ use toml::Spanned;
 use raypencil_scene::SceneError;
 
 use crate::parse::key::Key;
+use crate::parse::plain_words::plain_words;
 use crate::scene_error::SceneIoError;
 use crate::settings::Setting;
 use crate::toml_problem::TomlProblem;
@@ -44,7 +45,7 @@ impl<'a> Source<'a> {
 
     pub(crate) fn deserialize<T: DeserializeOwned>(&self) -> Result<T, SceneIoError> {
         toml::from_str(self.text)
-            .map_err(|error| self.error(error.span().unwrap_or(0..0), error.message().trim_end()))
+            .map_err(|error| self.error(error.span().unwrap_or(0..0), plain_words(error.message())))
     }
 
     /// Refuses a `value` outside `range`, and with it NaN and infinities.

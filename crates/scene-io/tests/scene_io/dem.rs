@@ -118,7 +118,7 @@ fn keys_that_are_wrong_are_marked() {
             "0",
             "`terrain.dem_max_error_m` is 0; expected 1e-6 to 1000000 metres",
         ),
-        ("dem = 5", "5", "invalid type: integer"),
+        ("dem = 5", "5", "the number 5; expected a text in quotes"),
     ] {
         match load_text(&folder, terrain) {
             Err(SceneIoError::Toml(problem)) => {

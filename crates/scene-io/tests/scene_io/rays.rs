@@ -174,10 +174,10 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         ),
         (
             "spinning = { preset = \"vlp-16\" }\npitch = 3\n",
-            "r.toml:4:1: unknown field `pitch`, expected one of `name`, `file`, `spinning`, `grid`, `cone`, `sides`, \
-             `start_s`, `position_m`, `pitch_down_deg`, `yaw_left_deg`, `roll_right_deg`, `poses`",
+            "r.toml:4:1: unknown key `pitch`; did you mean `pitch_down_deg`, in degrees? Known keys: `name`, `file`, `spinning`, \
+             `grid`, `cone`, `sides`, `start_s`, `position_m`, `pitch_down_deg`, `yaw_left_deg`, `roll_right_deg`, `poses`",
         ),
-        ("spinning = 3", "r.toml:3:12: invalid type: integer `3`, expected struct SpinningKeys"),
+        ("spinning = 3", "r.toml:3:12: the number 3; expected a table of keys, { ... } or [...]"),
     ] {
         assert_eq!(refused(text), message, "{text}");
     }

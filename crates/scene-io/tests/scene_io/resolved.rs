@@ -103,24 +103,29 @@ fn every_key_is_required_but_two() {
     for line in keys.filter(|line| !line.starts_with("version") && !line.starts_with("kind")) {
         let key = line.split_once(' ').unwrap().0;
         let problem = problem(&format!("{line}\n"), "");
-        assert_eq!(problem.message, format!("missing field `{key}`"), "{line}");
+        assert_eq!(problem.message, format!("the key `{key}` is missing"), "{line}");
         // The table without the key is marked.
         assert!(problem.line > 3 && !problem.marked().is_empty(), "{line}: {problem}");
         checked += 1;
     }
     // Nine keys of the camera, ten of each of the two beams, two of the ground, one of the air, one of the flux.
     assert_eq!(checked, 9 + 2 * 10 + 2 + 1 + 1);
-    assert_eq!(problem("[flux]\nmodel = \"radiometric\"\n", "").message, "missing field `flux`");
+    assert_eq!(problem("[flux]\nmodel = \"radiometric\"\n", "").message, "the key `flux` is missing");
     let pose = problem("position_m = ", "position = ");
-    assert!(pose.message.starts_with("unknown field `position`"), "{pose}");
+    assert!(pose.message.starts_with("unknown key `position`"), "{pose}");
     assert_eq!(pose.marked(), "position");
 }
 
 #[test]
 fn wrong_keys_and_values_are_marked() {
     let cases = [
-        ("width_px = ", "widht_px = 3\nwidth_px = ", "widht_px", "unknown field `widht_px`, expected one of"),
-        ("[flux]", "[vehicle]\n[flux]", "vehicle", "unknown field `vehicle`, expected one of"),
+        (
+            "width_px = ",
+            "widht_px = 3\nwidth_px = ",
+            "widht_px",
+            "unknown key `widht_px`; did you mean `width_px`, in pixels?",
+        ),
+        ("[flux]", "[vehicle]\n[flux]", "vehicle", "unknown key `vehicle`"),
         (
             "kind = \"resolved\"",
             "kind = \"baked\"",
@@ -187,7 +192,7 @@ fn wrong_keys_and_values_are_marked() {
             "[0, inf, 0]",
             "`terrain.origin_m` is inf; expected -1e12 to 1e12 metres",
         ),
-        ("origin_m = [0.0, 0.0, 0.0]", "origin_m = [0, 0]", "[0, 0]", "invalid length 2, expected"),
+        ("origin_m = [0.0, 0.0, 0.0]", "origin_m = [0, 0]", "[0, 0]", "a list of 2; expected"),
     ];
     for (from, to, marked, message) in cases {
         let problem = problem(from, to);

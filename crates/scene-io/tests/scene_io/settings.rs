@@ -137,7 +137,7 @@ fn errors_name_the_setting_or_the_line() {
     for key in ["camera.pitch", "beam.0.power", "camrea.pitch_down_deg"] {
         let message = refused("pyramids", &[&format!("{key}=1")]);
         assert!(
-            message.contains("unknown field") && message.contains(key.split('.').next().unwrap()),
+            message.contains("unknown key") && message.contains(key.split('.').next().unwrap()),
             "{message}"
         );
     }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::parsers::number;
+
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   # Ground like that of the Viking 1 site, a square of 10 m.
@@ -20,24 +22,24 @@ pub(crate) struct TerrainGenerate {
     pub(crate) seed: u64,
 
     /// Side length of the square terrain, metres.
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = number)]
     pub(crate) extent: Option<f64>,
 
     /// Distance between neighbouring posts, metres.
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = number)]
     pub(crate) post_spacing: Option<f64>,
 
     /// Distance from the middle within which posts stand at a quarter of the spacing, metres; within 2.5 times of it
     /// they stand at half. 0: one spacing everywhere.
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = number)]
     pub(crate) fine_radius: Option<f64>,
 
     /// Fraction of the area that rocks cover, 0 to 0.4.
-    #[arg(long, value_name = "K", allow_hyphen_values = true)]
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = number)]
     pub(crate) rock_coverage: Option<f64>,
 
     /// Diameter of the smallest rocks, metres.
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = number)]
     pub(crate) rock_smallest: Option<f64>,
 
     /// Number of crevasses.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use raypencil::io::{DEFAULT_REFLECTIVITY, UpAxis};
 
-use crate::parsers::{numbers, up_axis};
+use crate::parsers::{number, numbers, up_axis};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -23,7 +23,7 @@ pub(crate) struct TerrainImport {
     pub(crate) up: Option<UpAxis>,
 
     /// Metres for each unit of a mesh: 0.001 if the file is in millimetres. Without it: 1.
-    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = number)]
     pub(crate) scale: Option<f64>,
 
     /// Import only the posts in this window: x and y of its lower left corner, width and height, metres of the map.
@@ -31,11 +31,11 @@ pub(crate) struct TerrainImport {
     pub(crate) window: Option<[f64; 4]>,
 
     /// Simplify the mesh; maximum vertical distance of a post from the simplified terrain, metres.
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = number)]
     pub(crate) max_error: Option<f64>,
 
     /// Reflectivity of the terrain, 0 to 1; in glTF, of the materials that state none.
-    #[arg(long, value_name = "R", default_value_t = DEFAULT_REFLECTIVITY, allow_hyphen_values = true)]
+    #[arg(long, value_name = "R", default_value_t = DEFAULT_REFLECTIVITY, allow_hyphen_values = true, value_parser = number)]
     pub(crate) reflectivity: f64,
 
     /// Output file.
