@@ -316,7 +316,7 @@ fn walls(copies: usize) -> Scene {
         Arc::new(many.expect("a mesh")),
         *wall.camera(),
         wall.beams().to_vec(),
-        *wall.atmosphere(),
+        wall.atmosphere(),
         wall.flux_model(),
     )
     .expect("a scene")

@@ -9,6 +9,8 @@ use crate::source::root;
 /// The crates that may have unsafe code, and the one file of each that has it.
 const MAY: &[(&str, &str)] = &[
     // An allocator that counts, in a test.
+    ("files", "tests/formats/memory.rs"),
+    // The same.
     ("mesh-io", "tests/triangles/memory.rs"),
     // Arrays of NumPy on memory of ours.
     ("python", "src/mesh.rs"),

@@ -7,5 +7,4 @@ mod npy;
 mod pfm;
 
 // The file alone: it counts what a reader asks for.
-#[path = "../../../mesh-io/tests/triangles/memory.rs"]
 mod memory;
