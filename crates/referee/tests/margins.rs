@@ -333,8 +333,11 @@ fn faces_at_one_place_have_the_margins_of_one() {
     for i in 0..9 {
         let (a, b) =
             (one.margins(SensorId::Camera, i, 4).unwrap(), many.margins(SensorId::Camera, i, 4).unwrap());
-        assert_eq!(a.face, b.face, "column {i}");
-        assert_eq!(a.surface, b.surface, "column {i}");
+        // The same change at the same place. The proven radius depends in its last digits on how many faces were looked at.
+        for (a, b) in [(a.face, b.face), (a.surface, b.surface)] {
+            assert_eq!((a.hi, a.witness), (b.hi, b.witness), "column {i}");
+            assert!((a.lo - b.lo).abs() <= 1.0 / f64::from(1_u32 << 30), "column {i}: {} {}", a.lo, b.lo);
+        }
         assert_eq!(a.verdict.faces.len() * COPIES, b.verdict.faces.len(), "column {i}");
         ends += usize::from(b.surface.lo < 1.0);
     }

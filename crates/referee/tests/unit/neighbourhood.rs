@@ -35,7 +35,8 @@ fn the_range_of_a_grazing_ray_is_that_of_the_displaced_ray() {
             .expect("a scene");
     let referee = Referee::new(&scene);
     let sensor = MountedSensor::of(&scene, SensorId::Camera).expect("a camera");
-    let near = Neighbourhood::new(&referee, &sensor, Aim { i: 1, j: 1, dx: 0.0, dy: 0.0 });
+    let mut near = Neighbourhood::new(&referee, &sensor, Aim { i: 1, j: 1, dx: 0.0, dy: 0.0 });
+    near.find_distinct();
     let (_, doubt) = near.faces[0].range_at(&near.ray, [0.0; 2]);
     assert!(doubt >= 1.0 / (1u64 << 30) as f64, "{doubt:e}: not grazing enough to matter");
     for at in [[0.0, 0.0], [0.5, 0.0], [-0.25, 0.5], [1.0, -1.0]] {
