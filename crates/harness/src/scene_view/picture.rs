@@ -15,6 +15,9 @@ const MARGIN_PX: [f64; 2] = [76.0, 46.0];
 /// Height of a view with its axes, pixels.
 const STEP_PX: f64 = 520.0;
 
+/// Width of a sensor's name above a view, pixels.
+const NAME_PX: f64 = 66.0;
+
 /// Maximum number of points that are drawn of a sensor.
 const MAX_POINTS: usize = 1500;
 
@@ -120,9 +123,10 @@ fn draw_view(drawing: &mut Drawing, view: &View, at: [f64; 2], scene: &Scene, se
     }
     for (index, sensor) in sensors.iter().enumerate() {
         let colour = COLOURS[index % COLOURS.len()];
-        let at = place(sensor.position);
-        drawing.polygon(square(at, 5.0), colour, Some(INK));
-        drawing.text([at[0] + 9.0, at[1] - 4.0 + 14.0 * index as f64], &sensor.name, Anchor::Start, colour);
+        drawing.polygon(square(place(sensor.position), 5.0), colour, Some(INK));
+        // Sensors lie close together, so their names stand above the view.
+        let x = at[0] + VIEW_PX[0] - NAME_PX * (sensors.len() - 1 - index) as f64;
+        drawing.text([x, at[1] - 12.0], &sensor.name, Anchor::End, colour);
     }
     drawing.text([at[0], at[1] - 12.0], view.name, Anchor::Start, INK);
     // Ticks of rows are counted from above.
