@@ -25,13 +25,14 @@ class Support:
 
 @dataclass
 class Wheel:
-    """By measured ground alone, by all that may be there, what is missing: None, or index j, i; and the first that
-    is only known to be no higher than something."""
+    """By measured ground alone, by it and the ground that the vehicle stood on, by all that may be there; what is missing:
+    None, or index j, i; and the first place where it stood and did not measure."""
 
     measured: Support
+    supported: Support
     highest: Support
     missing: tuple
-    bounded: tuple
+    stood: tuple
 
 
 class WheelTests:
@@ -59,6 +60,7 @@ class WheelTests:
             under_belly = np.where(np.isnan(shadows.ceiling), shadows.bridge, shadows.ceiling)
         stood = self.stood(stands, gx, gy)
         known = ~np.isnan(stood)
+        self.is_stood = known & ~self.measured
         self.wheel_top = np.where(self.measured, np.nan, np.where(known, stood, under_wheel))
         self.belly_top = np.where(self.measured, np.nan, np.where(known, stood, under_belly))
 
@@ -126,9 +128,11 @@ class WheelTests:
             missing = (j + w[0].start, i + w[1].start)
         if not self.is_on_map(cx, cy, ux, uy, radius, half):
             missing = missing or "beyond"
-        bounded = np.argwhere(under & ~np.isnan(top))
-        bounded = (bounded[0][0] + w[0].start, bounded[0][1] + w[1].start) if len(bounded) else None
-        return Wheel(measured, highest, missing, bounded)
+        on = np.where(under & self.is_stood[w], top, np.nan)
+        supported = self.highest_of(offers + [(on, gx, gy, a, np.zeros(a.shape))])
+        stood = np.argwhere(~np.isnan(on))
+        stood = (stood[0][0] + w[0].start, stood[0][1] + w[1].start) if len(stood) else None
+        return Wheel(measured, supported, highest, missing, stood)
 
     def is_on_map(self, cx, cy, ux, uy, ahead, aside):
         """Whether all of a rectangle lies on the map."""
@@ -187,12 +191,12 @@ class WheelTests:
             return bool(found and found[0] and all(wheels[k].missing is None for k in found[1]))
 
         def by_certain(name, one, two, errors):
-            """The same with the lower side as high as it may be."""
+            """The same with the lower side also on the ground that the vehicle stood on."""
             found = compare("measured", name, one, two, errors)
             if not found or any(wheels[k].missing is not None for k in found[1]):
                 return False
             low, high = (one, two) if found[1] == one else (two, one)
-            supports = [[wheels[k].measured for k in high], [wheels[k].highest for k in low]]
+            supports = [[wheels[k].measured for k in high], [wheels[k].supported for k in low]]
             return compared(supports, name, high, low, errors, is_signed=True)[0]
 
         margin = -self.limits["obstacle_margin"]
@@ -208,8 +212,8 @@ class WheelTests:
             if by_measured(name, one, two, margin):
                 # The lower side may be higher than it looks.
                 for k in compare("measured", name, one, two, margin)[1]:
-                    if wheels[k].bounded is not None:
-                        return self.lacking("not_measured", f"{WHEELS[k][0]}_wheel", *wheels[k].bounded, tie)
+                    if wheels[k].stood is not None:
+                        return self.lacking("not_measured", f"{WHEELS[k][0]}_wheel", *wheels[k].stood, tie)
         for name, one, two in pairs:
             # What may stand in gaps may be too high, or the errors may be too large.
             found = compare("highest", name, one, two, self.limits["clear_margin"])

@@ -158,10 +158,10 @@ const HEAD: &str = "\
 # Shared faults
 
 Both renderers and the referee read one scene, so they agree on whatever is wrong before the scene exists. The image
-sensor, the rover, the terrain and the files exist only once. No comparison checks this code: its tests must. This page
-measures them. Each fault is one mistake that a person could make, planted in the source of a product by one textual
-replacement ([`tests/planted`](../../tests/planted)). `just planted-faults` plants one after the other, runs the tests,
-and writes this page.
+sensor, the rover, its chassis, the records of a drive, the terrain and the files exist only once. No comparison checks this
+code: its tests must. This page measures them. Each fault is one mistake that a person could make, planted in the source of a
+product by one textual replacement ([`tests/planted`](../../tests/planted)). `just planted-faults` plants one after the
+other, runs the tests, and writes this page.
 
 * The tests are the fast unit tests and integration tests of the fault's own crate. If they miss the fault, the tests of
   crates that depend on it are asked, as the table says. Doc tests are not run, and neither are the slowest tests: whole

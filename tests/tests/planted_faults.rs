@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use raypencil_tests::planted::{DIGEST_TESTS, PlantedFault, planted_faults};
 
 /// Crates whose code is shared or exists once.
-const CRATES: [&str; 7] = ["files", "mesh-io", "rover", "scene", "scene-io", "sensor", "terrain"];
+const CRATES: [&str; 9] =
+    ["chassis", "drive", "files", "mesh-io", "rover", "scene", "scene-io", "sensor", "terrain"];
 
 /// Minimum number of faults in all, and in each crate.
 const MIN_FAULTS: usize = 40;

@@ -30,6 +30,9 @@ const BORDER_ROUNDING_M: f64 = 1e-11;
 enum Known {
     /// A measured point, global, metres, and the variance of its elevation, square metres.
     Measured(DVec3, f64),
+    /// Ground that was never measured, where the vehicle stood or could have turned: the plane of its wheels then, global,
+    /// metres.
+    Stood(DVec3),
     /// Ground at most this high, global, metres.
     AtMost(DVec3),
     Nothing(Missing),
@@ -43,13 +46,15 @@ struct Hub {
     variance: f64,
 }
 
-/// A wheel on the ground: its hub by measured points alone, and by all that may be there.
+/// A wheel on the ground: its hub by measured points alone, by these and the ground that the vehicle stood on, and by all
+/// that may be there.
 struct WheelOnMap {
     measured: Option<Hub>,
+    supported: Option<Hub>,
     highest: Option<Hub>,
     missing: Option<Missing>,
-    /// First grid point under the wheel where the ground is not measured, but known to be no higher than something.
-    bounded: Option<Missing>,
+    /// First grid point under the wheel with ground that the vehicle stood on, and that was never measured.
+    stood: Option<Missing>,
 }
 
 impl WheelOnMap {
@@ -177,7 +182,7 @@ impl TraversabilityRules {
         }
         // The lower side may be higher than it looks: it stands partly on ground that was never measured.
         for (_, rises, limit) in &tests {
-            if let Some(missing) = rises.bounded
+            if let Some(missing) = rises.stood
                 && exceeds(rises.measured, -self.margins.obstacle, *limit)
             {
                 return Traversability::Unknown(missing);
@@ -232,7 +237,7 @@ impl TraversabilityRules {
                         return Traversability::Obstacle(TraversabilityTest::Belly);
                     }
                 }
-                Known::AtMost(top) => {
+                Known::Stood(top) | Known::AtMost(top) => {
                     if belly.within(top.truncate()).is_some_and(|at| top.z >= underside(at)) {
                         let (part, place) = (VehiclePart::Belly, top.truncate());
                         missing = missing.or(Some(Missing { part, place, reason: MissingReason::MayHide }));
@@ -259,7 +264,8 @@ struct Ground<'a> {
 impl Ground<'_> {
     /// A wheel at rest in its rectangle.
     fn wheel(&self, part: VehiclePart, rectangle: &Rectangle) -> WheelOnMap {
-        let mut wheel = WheelOnMap { measured: None, highest: None, missing: None, bounded: None };
+        let mut wheel =
+            WheelOnMap { measured: None, supported: None, highest: None, missing: None, stood: None };
         let radius = rectangle.half_length;
         let rest_on = |point: DVec3, variance: f64, kept: &mut Option<Hub>| {
             let Some(at) = rectangle.within(point.truncate()) else { return };
@@ -272,8 +278,9 @@ impl Ground<'_> {
         for point in rectangle.grid_points(self.map) {
             match self.under_wheel(part, point) {
                 Known::Measured(sample, variance) => {
-                    rest_on(sample, variance, &mut wheel.measured);
-                    rest_on(sample, variance, &mut wheel.highest);
+                    for hub in [&mut wheel.measured, &mut wheel.supported, &mut wheel.highest] {
+                        rest_on(sample, variance, hub);
+                    }
                     if rectangle.within(sample.truncate()).is_some() {
                         inside = (inside.0 + variance, inside.1 + 1);
                     }
@@ -286,19 +293,22 @@ impl Ground<'_> {
                         if let Some(other) = self.map.sample(beside) {
                             let variance = variance.max(self.variance(beside));
                             for on_edge in rectangle.highest_on_edge(sample, other, radius) {
-                                rest_on(on_edge, variance, &mut wheel.measured);
-                                rest_on(on_edge, variance, &mut wheel.highest);
+                                for hub in [&mut wheel.measured, &mut wheel.supported, &mut wheel.highest] {
+                                    rest_on(on_edge, variance, hub);
+                                }
                             }
                         }
                     }
                 }
-                Known::AtMost(top) => {
+                Known::Stood(top) => {
+                    rest_on(top, 0.0, &mut wheel.supported);
                     rest_on(top, 0.0, &mut wheel.highest);
                     if rectangle.within(top.truncate()).is_some() {
                         let (place, reason) = (top.truncate(), MissingReason::NotMeasured);
-                        wheel.bounded = wheel.bounded.or(Some(Missing { part, place, reason }));
+                        wheel.stood = wheel.stood.or(Some(Missing { part, place, reason }));
                     }
                 }
+                Known::AtMost(top) => rest_on(top, 0.0, &mut wheel.highest),
                 Known::Nothing(missing) => {
                     if rectangle.within(missing.place).is_some() {
                         wheel.missing = wheel.missing.or(Some(missing));
@@ -309,7 +319,7 @@ impl Ground<'_> {
         // Which of several points carries the wheel can be a matter of rounding, and must not decide the variance.
         if inside.1 > 0 {
             let mean = inside.0 / f64::from(inside.1);
-            for hub in [&mut wheel.measured, &mut wheel.highest].into_iter().flatten() {
+            for hub in [&mut wheel.measured, &mut wheel.supported, &mut wheel.highest].into_iter().flatten() {
                 hub.variance = mean;
             }
         }
@@ -350,7 +360,7 @@ impl Ground<'_> {
         }
         let place = map.place(point);
         if let Some(z) = map.cell(point).stood {
-            return Known::AtMost(place.extend(z));
+            return Known::Stood(place.extend(z));
         }
         if let Some(top) = upper() {
             return Known::AtMost(place.extend(top));
@@ -371,11 +381,11 @@ struct Rise {
 struct Rises {
     /// By measured points. `None` if ground under the lower side is not known.
     measured: Option<Rise>,
-    /// The same with the lower side as high as it may be: its wheels may stand on ground that was never measured, under
-    /// the vehicle before it moved or in a gap.
+    /// The same with the lower side also on ground that the vehicle stood on and did not measure. A wheel with measured
+    /// points under an end of its rim alone would seem up to a radius too low.
     certain: Option<Rise>,
-    /// What was not measured under the lower side.
-    bounded: Option<Missing>,
+    /// Where the lower side stands on such ground.
+    stood: Option<Missing>,
     /// With all that may be there.
     highest: Option<Rise>,
 }
@@ -396,14 +406,15 @@ impl Rises {
             let (a, b) = (middle(a, of_a)?, middle(b, of_b)?);
             Some((a.height - b.height, (a.variance + b.variance).sqrt()))
         };
-        let (measured, highest): (Part, Part) = (|wheel| wheel.measured, |wheel| wheel.highest);
+        let (measured, supported): (Part, Part) = (|wheel| wheel.measured, |wheel| wheel.supported);
+        let highest: Part = |wheel| wheel.highest;
         let is_known = |wheels: [&WheelOnMap; N]| wheels.iter().all(|wheel| wheel.is_known());
         let by_measured =
             rise(measured, measured).filter(|&(height, _)| is_known(if height > 0.0 { b } else { a }));
         let a_is_higher = by_measured.is_some_and(|(height, _)| height > 0.0);
         let certain = by_measured.and_then(|_| match a_is_higher {
-            true => rise(measured, highest),
-            false => rise(highest, measured).map(|(height, standard_error)| (-height, standard_error)),
+            true => rise(measured, supported),
+            false => rise(supported, measured).map(|(height, standard_error)| (-height, standard_error)),
         });
         let lower = if a_is_higher { b } else { a };
         let upwards = |(height, standard_error): (f64, f64)| Rise { height: height.abs(), standard_error };
@@ -411,7 +422,7 @@ impl Rises {
             measured: by_measured.map(upwards),
             // Below 0 the lower side may be the higher one.
             certain: certain.map(|(height, standard_error)| Rise { height, standard_error }),
-            bounded: lower.iter().find_map(|wheel| wheel.bounded),
+            stood: lower.iter().find_map(|wheel| wheel.stood),
             highest: rise(highest, highest).map(upwards),
         }
     }

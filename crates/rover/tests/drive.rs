@@ -236,8 +236,8 @@ struct Level {
     pose: Pose,
 }
 
-impl LocalMapper for Level {
-    fn frame(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>) -> MapUpdate {
+impl Level {
+    fn enter(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>) -> MapUpdate {
         self.pose = sensed.attitude.at(sensed.position.extend(self.elevation));
         let moved = self.map.recentre(sensed.position);
         for StripePoint { point, standard_error, .. } in points {
@@ -246,12 +246,29 @@ impl LocalMapper for Level {
         let inconsistency = Inconsistency::default();
         MapUpdate { elevation_read: false, elevation_error: 0.0, moved, inconsistency }
     }
+}
+
+impl LocalMapper for Level {
+    fn frame(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>) -> MapUpdate {
+        // A point is seen from the camera and lit from a beam: it lies in the lower edge plane of the beam at that very
+        // place, half a thickness below its middle.
+        let Rig { camera, beams } = rig(96, 4);
+        for StripePoint { point, seen_from, .. } in &points {
+            let [seen, lit] = seen_from.expect("a stripe is seen from somewhere");
+            assert_eq!(seen, camera.vehicle_from_sensor.position);
+            let is_at = |beam: &&OnVehicle<_>| beam.vehicle_from_sensor.position == lit;
+            let beam = beams.iter().find(is_at).expect("a beam of the rig");
+            let in_beam = beam.vehicle_from_sensor.inverse() * *point;
+            assert!((in_beam.y - 0.5 * beam.sensor.thickness).abs() < 1e-9, "{point} is lit from {lit}");
+        }
+        self.enter(sensed, points)
+    }
 
     fn scan(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>, clear_map: bool) -> MapUpdate {
         if clear_map {
             self.map.clear();
         }
-        self.frame(sensed, points)
+        self.enter(sensed, points)
     }
 
     fn map(&self) -> &ElevationMap {

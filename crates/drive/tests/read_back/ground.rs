@@ -35,8 +35,8 @@ pub(crate) const STEP: Block = Block { u: [4.3, 7.5], v: [-3.0, -0.35], height: 
 
 const BLOCKS: [Block; 2] = [ROCK, STEP];
 
-/// Waypoints: u and v, metres. The vehicle turns on the spot at the first.
-const WAYPOINTS: [[f64; 2]; 2] = [[0.6, 0.0], [1.0, 0.15]];
+/// Waypoints: u and v, metres. The vehicle turns on the spot to the left at the first, and to the right at the second.
+const WAYPOINTS: [[f64; 2]; 3] = [[0.6, 0.0], [1.0, 0.15], [1.2, 0.15]];
 pub(crate) const SPEED: f64 = 0.3;
 const TURN_RATE: f64 = 0.3;
 pub(crate) const FRAME_RATE: f64 = 2.0;
@@ -54,8 +54,8 @@ pub(crate) const THICKNESS: f64 = 6e-3;
 pub(crate) const SCAN: ([f64; 2], u32) =
     ([-8.0 * std::f64::consts::PI / 180.0, 24.0 * std::f64::consts::PI / 180.0], 17);
 
-/// An obstacle map after so many frames. The last of the ten frames makes none.
-pub(crate) const OBSTACLES_EVERY: u64 = 4;
+/// An obstacle map after so many frames. The last one is made during a turn, and the drive ends with another heading.
+pub(crate) const OBSTACLES_EVERY: u64 = 5;
 
 /// The scene, with further keys of its drive.
 pub(crate) fn scene_text(drive: &str) -> String {
@@ -68,8 +68,8 @@ pub(crate) fn scene_text(drive: &str) -> String {
         [[beam]]\nposition_m = [0.2, -0.1, 1.9]\npitch_down_deg = 33\nrows = 3\nthickness_mm = 6\npower_w = 0.2\n\
         [[beam]]\nposition_m = [0.25, 0.05, 2]\npitch_down_deg = 24\nyaw_left_deg = 2\nroll_right_deg = 1\nrows = 3\n\
         thickness_mm = 6\npower_w = 0.2\n\
-        [drive]\nwaypoints_m = [[0.6, 0], [1, 0.15]]\nframes_per_s = 2\nspeed_m_per_s = 0.3\n\
-        turn_deg_per_s = 17.188733853924695\nobstacles_every_frames = 4\n{drive}\n"
+        [drive]\nwaypoints_m = [[0.6, 0], [1, 0.15], [1.2, 0.15]]\nframes_per_s = 2\nspeed_m_per_s = 0.3\n\
+        turn_deg_per_s = 17.188733853924695\nobstacles_every_frames = 5\n{drive}\n"
     )
 }
 
@@ -208,28 +208,41 @@ pub(crate) fn hit(from: Vector, direction: Vector) -> Option<(f64, bool)> {
     nearest
 }
 
-/// Commanded way, global x and y, and heading of a frame.
+/// Parts of the way: its duration in seconds, then the direction (from u to v, radians) and its length, or the turn.
+fn parts() -> Vec<(f64, f64, f64, f64)> {
+    let (mut at, mut direction, mut parts) = ([0.0, 0.0], 0.0, Vec::new());
+    for [u, v] in WAYPOINTS {
+        let towards = libm::atan2(v - at[1], u - at[0]);
+        let (turn, length) = (towards - direction, libm::hypot(u - at[0], v - at[1]));
+        parts.push((turn.abs() / TURN_RATE, direction, 0.0, turn));
+        parts.push((length / SPEED, towards, length, 0.0));
+        (at, direction) = ([u, v], towards);
+    }
+    parts
+}
+
+/// Way driven, global x and y, and heading of a frame.
 pub(crate) fn route(frame: u64) -> (f64, [f64; 2], f64) {
-    let time = frame as f64 / FRAME_RATE;
-    let [[first, _], [u, v]] = WAYPOINTS;
-    let (leg, turn) = (libm::hypot(u - first, v), libm::atan2(v, u - first));
-    let (there, turned) = (first / SPEED, first / SPEED + turn / TURN_RATE);
-    if time < there {
-        return (SPEED * time, global([SPEED * time, 0.0]), HEADING);
+    let mut time = frame as f64 / FRAME_RATE;
+    let (mut driven, mut at, mut heading) = (0.0, [0.0, 0.0], HEADING);
+    for (duration, direction, length, turn) in parts() {
+        // 1 at the end of a part, or if there is none.
+        let share = if duration > 0.0 { (time / duration).clamp(0.0, 1.0) } else { 1.0 };
+        let (sin, cos) = sin_cos(direction);
+        driven += share * length;
+        at = [at[0] + share * length * cos, at[1] + share * length * sin];
+        heading += share * turn;
+        time -= duration;
+        if time < 0.0 {
+            break;
+        }
     }
-    if time < turned {
-        return (first, global([first, 0.0]), HEADING + TURN_RATE * (time - there));
-    }
-    let way = (SPEED * (time - turned)).min(leg);
-    let (sin, cos) = sin_cos(turn);
-    (first + way, global([first + way * cos, way * sin]), HEADING + turn)
+    (driven, global(at), heading)
 }
 
 /// Number of frames: the last one is the first at or after the end of the way.
 pub(crate) fn frames() -> u64 {
-    let [[first, _], [u, v]] = WAYPOINTS;
-    let (leg, turn) = (libm::hypot(u - first, v), libm::atan2(v, u - first));
-    ((first / SPEED + turn / TURN_RATE + leg / SPEED) * FRAME_RATE).ceil() as u64 + 1
+    (parts().iter().map(|part| part.0).sum::<f64>() * FRAME_RATE).ceil() as u64 + 1
 }
 
 /// How the default vehicle stands on the plane: heading, pitch and roll, and the height of its origin above the plane.

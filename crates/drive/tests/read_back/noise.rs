@@ -32,7 +32,7 @@ fn no_two_images_of_a_drive_have_the_same_noise() {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / count;
     let variance = product(&noise[0], &noise[0]);
     // A mean product of independent numbers has the standard error variance / sqrt(count); five of them are allowed, which
-    // one of the 153 pairs exceeds in one of 10,000 drives, and the seed is fixed. Numbers are rounded to whole ones: the
+    // one of the 325 pairs exceeds in one of 5,000 drives, and the seed is fixed. Numbers are rounded to whole ones: the
     // noise must be larger.
     assert!(variance > 4.0, "{variance}");
     for (index, a) in noise.iter().enumerate() {
