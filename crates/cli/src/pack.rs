@@ -4,7 +4,7 @@ use std::path::Path;
 
 use raypencil::cast::{CastSource, RayPackCounts, read_rays, write_ray_pack};
 use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
-use raypencil::io::{FileError, file_sha256_hex, hex_digits, read_triangles};
+use raypencil::io::{FileError, OutputFolder, file_sha256_hex, hex_digits, read_triangles};
 use raypencil::pack::{MIN_RAYS_PER_CLAUSE, Manifest, benched, blind_subject, input_faces, write_input};
 use raypencil::report::counted;
 use raypencil::survey::warnings;
@@ -17,6 +17,8 @@ use crate::{Outcome, Trouble};
 
 pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
     let folder = command.output.display().to_string();
+    // No list of files is left in a pack: its manifest is one.
+    let _locked = OutputFolder::begin_any(&command.output)?;
     if command.input {
         write_input(&command.output)?;
         say(&match json {

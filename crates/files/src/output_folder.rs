@@ -84,7 +84,7 @@ impl OutputFolder {
         Self::begin_any(folder)
     }
 
-    /// The same for a folder that may be a pack.
+    /// The same for a folder that may be a pack. One that is dropped without [`OutputFolder::finish`] leaves no list.
     ///
     /// # Errors
     /// As [`OutputFolder::begin`].

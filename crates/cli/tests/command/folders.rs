@@ -60,6 +60,8 @@ fn a_folder_into_which_another_run_writes_is_refused() {
         &["minimise", "scene.toml", "-o", "out"],
         &["check", "nowhere", "nowhere", "-o", "out"],
         &["diff", "scene.toml", "scene.toml", "-o", "out"],
+        &["pack", "scene.toml", "--no-bench", "-o", "out"],
+        &["pack", "--input", "-o", "out"],
     ] {
         assert_trouble(&raypencil(folder, line), &["out: another run is writing into it"]);
     }
