@@ -28,7 +28,7 @@
 //!    of the sheet's face that the same pencil meets, or before it, and so does the line, as in 1 and 2.
 
 use std::cmp::Ordering;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 use raypencil_scene::SensorId;
@@ -154,10 +154,15 @@ impl<'a> VisibilitySearch<'a> {
         if square.half < 1.0 {
             self.near.extend_to_max_range();
         }
-        let (certainly_hit, faces) = self.near.possible(square.middle, square.half);
+        let (certainly_hit, mut faces) = self.near.possible(square.middle, square.half);
         if self.visible && !certainly_hit {
             return false;
         }
+        // The same triangle is hit at the same points, and they are seen alike: one of its faces stands for all.
+        let mut triangles = HashSet::with_capacity(faces.len());
+        faces.retain(|&index| {
+            triangles.insert(self.near.faces[index].face.corners.map(|corner| corner.map(f32::to_bits)))
+        });
         faces.into_iter().all(|index| self.is_alike_on(index, square))
     }
 
@@ -231,7 +236,8 @@ impl<'a> VisibilitySearch<'a> {
             let own = self.near.faces[index].conditions();
             let bundle = self.lines_to(face, &parts);
             self.referee.bvh.visit(&bundle, |other| {
-                if other.id != face.id
+                // No triangle lies before itself.
+                if other.corners != face.corners
                     && let Some(occluder) = Occluder::of(other, &parts, centre)
                     && !occluder.hides.iter().any(|form| form.fails_within() >= 1.0)
                     && !(certainly_fails(&[&occluder.hides[..], own].concat(), 0, 1.0) >= 1.0)
