@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::fs::{File, Metadata, TryLockError};
 use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use crate::atomic::write_atomically;
@@ -233,15 +233,14 @@ fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, 
     found
 }
 
-/// The list of an earlier run: paths that stay in the folder, with digests. Anything else in it is ignored.
+/// The list of an earlier run: paths with digests. A path that leads out of the folder is none of the files found below it, so
+/// nothing is done with it.
 fn made_earlier(path: &Path) -> Vec<(PathBuf, String)> {
     let Ok(text) = bytes::read_file(path, MAX_MADE_BYTES) else { return Vec::new() };
     let text = String::from_utf8_lossy(&text);
     let line = |line: &str| {
         let (sha256, name) = line.split_once("  ")?;
-        let name = PathBuf::from(name);
-        let stays = name.components().all(|part| matches!(part, Component::Normal(_)));
-        (stays && sha256.len() == 64).then(|| (name, sha256.to_string()))
+        Some((PathBuf::from(name), sha256.to_string()))
     };
     text.lines().filter_map(line).collect()
 }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use raypencil_diagnosis::{Diagnosis, diagnose};
 use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
 use raypencil_judge::{
-    Answers, Check, Class, Conventions, GroundTruth, Item, JudgeShare, Quantity, Recorded, RecordingError,
-    UncertifiedAnswer, check,
+    Answers, Check, Class, Conventions, DifferingRay, GroundTruth, Item, JudgeShare, Quantity, Recorded,
+    RecordingError, SensorResult, UncertifiedAnswer, check,
 };
 use raypencil_referee::Referee;
-use raypencil_scene::{Place, Precision, Progress, Scene};
+use raypencil_scene::{Place, Precision, Progress, Scene, SensorId};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
@@ -153,7 +153,7 @@ pub fn check_pack(
     check_pack_by(pack, candidate, precision, Conventions::STANDARD, progress)
 }
 
-/// The same for a candidate whose conventions are declared, and may differ from those of `docs/formats/files.md`.
+/// The same for a candidate whose conventions are declared and may differ from those of `docs/formats/files.md`.
 ///
 /// ```
 /// use std::path::Path;
@@ -254,15 +254,9 @@ pub fn check_pack_verifying(
     };
     let check = check(&truth, &recorded, progress);
     if !computed {
-        // A candidate must not be wrong by an answer that is wrong itself.
         progress.stage("comparing the answers to wrong rays with the referee's");
-        for sensor in &check.sensors {
-            let wrong = sensor.differing.iter().filter(|ray| ray.class == Class::Defect);
-            let places: Vec<Place> =
-                wrong.map(|ray| Place { sensor: sensor.sensor, i: ray.i, j: ray.j }).collect();
-            if let Some(found) = truth.uncertified_among(sensor.sensor, &places) {
-                return Err(uncertified(found));
-            }
+        if let Some(found) = first_wrong_answer(&truth, &check) {
+            return Err(uncertified(found));
         }
     }
     let verified = Verified { answers: answered, of, rays };
@@ -283,6 +277,37 @@ pub fn check_pack_verifying(
     let is_blind = manifest.kind == PackKind::Blind;
     let ray_sets = Vec::new();
     Ok(Checked { subject, recorded, check, diagnosis, exact, is_blind, verified, ray_sets })
+}
+
+/// The first answer by which the candidate is wrong and which is itself not the referee's.
+///
+/// The flux of a pixel is a sum over pencils. Of a candidate that gives pencils, a wrong answer to a pencil shows there; one that
+/// gives none is wrong by any pencil of the beam, so all are compared.
+fn first_wrong_answer(truth: &GroundTruth<'_>, check: &Check) -> Option<UncertifiedAnswer> {
+    let wrong = |sensor: &SensorResult| -> Vec<DifferingRay> {
+        sensor.differing.iter().filter(|ray| ray.class == Class::Defect).copied().collect()
+    };
+    let is_wrong_in_flux = check
+        .sensors
+        .iter()
+        .filter(|sensor| sensor.sensor == SensorId::Camera)
+        .flat_map(wrong)
+        .any(|ray| ray.item.quantity == Quantity::PixelFlux);
+    check.sensors.iter().find_map(|result| {
+        let sensor = result.sensor;
+        let place = |i, j| Place { sensor, i, j };
+        let gives_flux = result
+            .items
+            .iter()
+            .any(|(item, tally)| item.quantity == Quantity::PencilFlux && tally.compared() > 0);
+        let places: Vec<Place> = match truth.scene().size(sensor) {
+            Some((width, height)) if sensor != SensorId::Camera && is_wrong_in_flux && !gives_flux => {
+                (0..height).flat_map(|j| (0..width).map(move |i| place(i, j))).collect()
+            }
+            _ => wrong(result).into_iter().map(|ray| place(ray.i, ray.j)).collect(),
+        };
+        truth.uncertified_among(sensor, &places)
+    })
 }
 
 /// Compares the arrays of rays of a pack with the rays of its scene, bit for bit; returns how many there are.

@@ -35,20 +35,18 @@ fn seal(pack: &Path) {
 }
 
 /// Takes a map of single precision, which would tell of a change, out of a pack.
-fn without_map(pack: &Path) {
+fn without_map(pack: &Path, map: &str) {
     let path = pack.join("manifest.json");
     let mut manifest: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    manifest["files"].as_array_mut().unwrap().retain(|file| file["path"] != "camera.exr");
+    manifest["files"].as_array_mut().unwrap().retain(|file| file["path"] != map);
     fs::write(path, manifest.to_string()).unwrap();
-    fs::remove_file(pack.join("camera.exr")).unwrap();
+    fs::remove_file(pack.join(map)).unwrap();
 }
 
 /// Changes one number of a file of one channel by one part in a thousand, where it is a number; returns whether it was.
 fn forge(pack: &Path, file: &str, cell: usize) -> bool {
     let path = pack.join(file);
-    let array = read_npy(&path, &Limits::default()).unwrap().planes.remove(0);
-    let (width, height) = array.size();
-    let mut cells: Vec<f64> = (0..(width * height) as usize).map(|index| array.real(index)).collect();
+    let (width, height, mut cells) = cells(&path);
     if !cells[cell].is_finite() {
         return false;
     }
@@ -63,7 +61,7 @@ fn no_right_renderer_is_wrong_by_a_changed_answer() {
     let mut forged = 0;
     let whole = packed();
     let folder = whole.path();
-    without_map(&folder.join("pack"));
+    without_map(&folder.join("pack"), "camera.exr");
     let original = fs::read(folder.join("pack/camera/range.T.npy")).unwrap();
     // Most of these rays are not of the sample.
     for cell in (0..96).step_by(7) {
@@ -81,12 +79,50 @@ fn no_right_renderer_is_wrong_by_a_changed_answer() {
     assert_trouble(&output, &["its answer to", "is not the referee's"]);
 }
 
+/// The numbers of a file of one channel, with its columns and rows.
+fn cells(path: &Path) -> (u32, u32, Vec<f64>) {
+    let array = read_npy(path, &Limits::default()).unwrap().planes.remove(0);
+    let (width, height) = array.size();
+    (width, height, (0..(width * height) as usize).map(|index| array.real(index)).collect())
+}
+
+/// A candidate without pencils is judged by the pack's pencils, whose sum a pixel is.
+#[test]
+fn no_right_image_is_wrong_by_a_changed_pencil() {
+    let whole = packed();
+    let folder = whole.path();
+    let pack = folder.join("pack");
+    without_map(&pack, "camera.exr");
+    without_map(&pack, "beam-0.exr");
+    let (of_pencils, of_pixels) = (pack.join("beam-0/flux.V.npy"), pack.join("camera/flux.beam0.npy"));
+    fs::create_dir_all(folder.join("image/camera")).unwrap();
+    fs::copy(&of_pixels, folder.join("image/camera/flux.beam0.npy")).unwrap();
+    screen(folder, &["check", "pack", "image"], 0);
+    let [(columns, rows, pencils), (width, height, pixels)] =
+        [&of_pencils, &of_pixels].map(|path| cells(path));
+    let [at_i, at_j] = ["I", "J"].map(|axis| cells(&pack.join(format!("beam-0/pixel.{axis}.npy"))).2);
+    let mut forged = 0;
+    for pencil in (0..pencils.len()).filter(|&pencil| pencils[pencil] > 0.0) {
+        // The pencil delivers twice as much, and its pixel gets that too: the pack fits together.
+        let (mut pencils, mut pixels) = (pencils.clone(), pixels.clone());
+        pixels[at_j[pencil] as usize * width as usize + at_i[pencil] as usize] += pencils[pencil];
+        pencils[pencil] *= 2.0;
+        write_npy(&of_pencils, &[&Image::from_cells(columns, rows, pencils)]).unwrap();
+        write_npy(&of_pixels, &[&Image::from_cells(width, height, pixels)]).unwrap();
+        seal(&pack);
+        let output = raypencil(folder, &["check", "pack", "image"]);
+        assert_trouble(&output, &["its answer to beam-0", "is not the referee's"]);
+        forged += 1;
+    }
+    assert!(forged >= 4, "{forged}");
+}
+
 #[test]
 fn a_check_says_what_it_verified() {
     let whole = packed();
     let said = screen(whole.path(), &["check", "pack", "right"], 0);
-    let sampled = "of 128 answers are the referee's (all: --verify), and so is each by which a ray is wrong; its rays are \
-                   those of its scene.";
+    let sampled = "of 128 answers are the referee's (all: --verify), and so is each by which a ray is wrong; 2 arrays of \
+                   rays are those of its scene.";
     assert!(said.contains(sampled), "{said}");
     let said = screen(whole.path(), &["check", "pack", "right", "--verify"], 0);
     assert!(said.contains("The pack: all 128 of 128 answers are the referee's, and so"), "{said}");

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use raypencil_judge::{Class, Largest, listed_defects, name_of, unit_of};
-use raypencil_report::{Align, Table, count, quantity};
+use raypencil_report::{Align, Table, count, counted, quantity};
 
 use crate::check::{Checked, Verified};
 use crate::check_report::verdict::{
@@ -103,12 +103,9 @@ pub fn check_screen(checked: &Checked) -> String {
 fn verified_words(Verified { answers, of, rays }: Verified) -> String {
     let all = if answers == of { "all " } else { "" };
     let hint = if answers == of { "" } else { " (all: --verify)" };
-    let rays = match rays {
-        0 => "it holds no arrays of rays".to_string(),
-        _ => "its rays are those of its scene".into(),
-    };
+    let rays = counted(rays, "array of rays is that", "arrays of rays are those");
     format!(
-        "The pack: {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays}.",
+        "The pack: {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays} of its scene.",
         count(answers),
         count(of)
     )
