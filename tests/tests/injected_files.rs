@@ -6,7 +6,7 @@ use std::fs;
 use raypencil::Silent;
 use raypencil::io::Subject;
 use raypencil::judge::{Quantity, RecordingError};
-use raypencil::pack::{CheckError, check_pack, write_pack};
+use raypencil::pack::{CheckError, PackLabel, check_pack, write_pack};
 use raypencil::{Precision, Scene};
 use raypencil_tests::injected_faults::files::{FileFault, FileRejection, check_files, write};
 use raypencil_tests::injected_faults::geometry::{pyramids, range_cut_wall};
@@ -68,7 +68,7 @@ fn a_pack_finds_faults_of_files_too() {
         arguments: "wall.toml".into(),
         vehicle: None,
     };
-    write_pack(&subject, None, &pack, &Silent).unwrap();
+    write_pack(&subject, None, &PackLabel::NONE, &pack, &Silent).unwrap();
     for fault in std::iter::once(None).chain(FileFault::ALL.map(Some)) {
         let candidate = folder.path().join("candidate");
         let _ = fs::remove_dir_all(&candidate);

@@ -1,4 +1,5 @@
-//! The clauses of loading: a loader that breaks one fails the input pack, and the right ones pass.
+//! The clauses of loading: a loader that breaks one fails the input pack, and the right ones pass. Cameras that are written for
+//! ROS are read back as they were.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -131,5 +132,43 @@ fn each_clause_has_a_face_and_a_row_on_the_page_of_the_contract() {
         let faults: Vec<String> = faults.map(|fault| format!("{fault:?}")).collect();
         let row = format!("| `{}` | {} | {} |", clause.key(), clause.sentence(), faults.join(", "));
         assert!(page.contains(&row), "docs/theory/contract.md lacks the row\n{row}");
+    }
+}
+
+/// Each ray of the camera that is read back is the ray that was written, but for the rounding of fx, cx and one product.
+#[test]
+fn a_camera_that_is_written_for_ros_is_read_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for keys in [
+        "width_px = 640\nheight_px = 480",
+        "width_px = 64\nheight_px = 48\nfocal_length_mm = 3.3\npixel_pitch_um = [2.2, 4.7]",
+        "width_px = 64\nheight_px = 48\nfocal_length_mm = 5\nprincipal_point_px = [12.3, 70.1]",
+        "width_px = 64\nheight_px = 48\nfield_of_view_deg = [71, 20]",
+    ] {
+        let load_camera = |keys: &str| {
+            let file = folder.path().join("scene.toml");
+            fs::write(&file, format!("version = 1\n[camera]\n{keys}\n")).expect("a file");
+            load(&file.to_string_lossy(), &Overrides::default()).expect("a scene").scene.camera().sensor
+        };
+        let written = load_camera(keys);
+        let text = raypencil::drive::camera_info(&written, "left: \"one\"");
+        fs::write(folder.path().join("left.yaml"), text).expect("a file");
+        let read = load_camera("camera_info = \"left.yaml\"");
+        assert_eq!((read.width, read.height), (written.width, written.height));
+        for j in (0..written.height).step_by(5) {
+            for i in (0..written.width).step_by(7) {
+                let [one, other] = [&written, &read].map(|camera| {
+                    let ray = camera.direction(i, j);
+                    [ray.x / ray.z, ray.y / ray.z]
+                });
+                for axis in [0, 1] {
+                    // fx = f / p is rounded once, f = fx p' and p' = f / fy once each; then a product and a quotient of the
+                    // ray on either side: eight roundings of half an ulp, and cx moves by half an ulp twice.
+                    let scale = one[axis].abs().max(written.pixel_pitch[axis] / written.focal_length);
+                    let bound = 8.0 * f64::EPSILON * scale;
+                    assert!((one[axis] - other[axis]).abs() <= bound, "{keys}: {i}, {j}: {one:?} {other:?}");
+                }
+            }
+        }
     }
 }

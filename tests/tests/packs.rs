@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 use raypencil::harness::{contender, write_maps};
 use raypencil::io::{Overrides, Subject, load};
 use raypencil::judge::{Class, Quantity};
-use raypencil::pack::{BENCH_BEAMS, Checked, Manifest, benched, check_pack, write_pack};
+use raypencil::pack::{
+    BENCH_BEAMS, Checked, Manifest, PUBLISHED, PackLabel, benched, check_pack, write_pack,
+};
 use raypencil::{Precision, Request, Sampling, Silent};
 
 const PACKS: [&str; 3] = ["pyramids", "facets", "hard"];
@@ -51,10 +53,11 @@ fn packs_are_the_same_bytes_for_any_number_of_threads_and_in_any_build() {
     for pack in PACKS {
         let committed = files(&data(&format!("packs/{pack}")));
         let subject = subject(pack);
+        let label = PackLabel { version: Some("1.0.0".into()), licence: Some("CC0-1.0".into()) };
         for threads in [1, 3] {
             let folder = tempfile::tempdir().expect("a folder");
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            pool.install(|| write_pack(&subject, None, folder.path(), &Silent)).expect("a pack");
+            pool.install(|| write_pack(&subject, None, &label, folder.path(), &Silent)).expect("a pack");
             let made = files(folder.path());
             assert_eq!(made.keys().collect::<Vec<_>>(), committed.keys().collect::<Vec<_>>(), "{pack}");
             for (name, bytes) in &made {
@@ -62,6 +65,32 @@ fn packs_are_the_same_bytes_for_any_number_of_threads_and_in_any_build() {
             }
         }
     }
+}
+
+#[test]
+fn the_published_digests_are_those_of_the_packs() {
+    let listed = fs::read_to_string(data("packs/SHA256SUMS")).expect("the list");
+    let mut names = Vec::new();
+    for line in listed.lines() {
+        let (digest, name) = line.split_once("  ").expect("a digest and a file");
+        let (_, found) = raypencil::io::file_sha256_hex(&data(&format!("packs/{name}"))).expect("a file");
+        assert_eq!(found, digest, "{name}");
+        names.push(name.to_string());
+    }
+    let of_packs = PACKS.iter().map(|pack| format!("{pack}/manifest.json"));
+    let of_input = files(&data("packs/input")).into_keys().map(|name| format!("input/{name}"));
+    let mut expected: Vec<String> = of_packs.chain(of_input).collect();
+    (names.sort(), expected.sort());
+    assert_eq!(names, expected);
+    for published in PUBLISHED {
+        let line = format!("{}  {}/manifest.json", published.sha256, published.name);
+        assert!(listed.lines().any(|other| other == line), "{line}");
+        let manifest = Manifest::read_verified(data(&format!("packs/{}", published.name))).expect("a pack");
+        assert_eq!(manifest.version.as_deref(), Some(published.version));
+        assert_eq!(manifest.licence.as_deref(), Some("CC0-1.0"));
+        assert_eq!(manifest.scene.name, published.name);
+    }
+    assert_eq!(PUBLISHED.map(|published| published.name), PACKS);
 }
 
 #[test]

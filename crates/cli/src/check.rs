@@ -14,7 +14,7 @@ use raypencil::pack::{
 
 use crate::args::Check;
 use crate::console::{Spinner, say};
-use crate::{Outcome, Trouble};
+use crate::{Outcome, Trouble, memory};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let output = command.output.as_deref().map(OutputFolder::begin).transpose()?;
@@ -34,6 +34,7 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
     let share = if command.verify { JudgeShare::All } else { JudgeShare::Sample };
     let (pack, candidate) = (&command.pack, &command.candidate);
+    memory::ask_check(pack)?;
     let mut checked =
         check_pack_verifying(pack, candidate, command.arithmetic, conventions, share, &spinner)?;
     // The sets of rays that the pack has besides, if there are any.

@@ -13,8 +13,9 @@ use raypencil::io::{DriveSetup, OutputFolder, WaypointFrame, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
 use crate::console::{Spinner, progress_bar, say};
+use crate::memory::Rates;
 use crate::subject::contenders;
-use crate::{Outcome, Registry, Trouble};
+use crate::{Outcome, Registry, Trouble, memory};
 
 /// Progress bar: frames done and time left. Hidden if standard error is no terminal.
 struct FrameBar(ProgressBar);
@@ -57,6 +58,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.scene.scene));
     let mut loaded = load(&command.scene.scene, &command.scene.overrides())?;
+    memory::ask(Rates::DRIVE, &loaded.scene)?;
     let mut arguments = command.scene.typed();
     if !command.to.is_empty() {
         let rig = loaded.rig();

@@ -21,6 +21,7 @@
 //! outcome               results and errors of the commands
 //! console               standard output, standard error, the spinner
 //! parsers               values of options
+//! memory                asks whether the memory for the work is there
 //! args                  the arguments and their help texts
 //! subject               the scene and the renderers that the arguments name
 //! validate, render, ... one file per command
@@ -37,9 +38,11 @@ mod console;
 mod diff;
 mod drive;
 mod man;
+mod memory;
 mod minimise;
 mod outcome;
 mod pack;
+mod pages;
 mod parsers;
 mod probe;
 mod reference;
@@ -89,8 +92,9 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
             return code_after_writing(if asked { 0 } else { 2 });
         }
     };
-    let Everywhere { quiet, json, color, .. } = arguments.everywhere;
+    let Everywhere { quiet, json, color, max_memory, .. } = arguments.everywhere;
     console::begin(quiet, json, color);
+    memory::begin(max_memory);
     let outcome = run(arguments, registry);
     console::end();
     let code = match outcome {

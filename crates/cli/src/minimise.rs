@@ -11,9 +11,10 @@ use serde_json::json;
 
 use crate::args::{Minimise, typed_renderers};
 use crate::console::{Spinner, say};
+use crate::memory::Rates;
 use crate::parsers::class_name;
 use crate::subject::{contenders, subject};
-use crate::{Outcome, Registry, Trouble};
+use crate::{Outcome, Registry, Trouble, memory};
 
 /// How two renderers differ, as the end of a sentence that begins with their names.
 fn difference(class: Class) -> &'static str {
@@ -35,6 +36,7 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
     };
     let words = typed_renderers(&command.with, &command.switches);
     let subject = subject(&command.scene, &words, &spinner)?;
+    memory::ask(Rates::MINIMISE, &subject.scene)?;
     let class = command.class;
     let [of_a, of_b] = [a, b].map(|contender| contender.renderer.name());
     let what = format!("{of_a} and {of_b} {}", difference(class));

@@ -5,18 +5,22 @@ use std::path::Path;
 use raypencil::cast::{CastSource, RayPackCounts, read_rays, write_ray_pack};
 use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
 use raypencil::io::{FileError, OutputFolder, file_sha256_hex, hex_digits, read_triangles};
-use raypencil::pack::{MIN_RAYS_PER_CLAUSE, Manifest, benched, blind_subject, input_faces, write_input};
+use raypencil::pack::{
+    MIN_RAYS_PER_CLAUSE, Manifest, PackLabel, benched, blind_subject, input_faces, write_input,
+};
 use raypencil::report::counted;
 use raypencil::survey::warnings;
 use raypencil::{Progress as _, Sides};
 
 use crate::args::Pack;
 use crate::console::{Spinner, say, warn};
+use crate::memory::Rates;
 use crate::subject::subject;
-use crate::{Outcome, Trouble};
+use crate::{Outcome, Trouble, memory};
 
 pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
     let folder = command.output.display().to_string();
+    let label = PackLabel { version: command.pack_version.clone(), licence: command.licence.clone() };
     // No list of files is left in a pack: its manifest is one.
     let _locked = OutputFolder::begin_any(&command.output)?;
     if command.input {
@@ -36,13 +40,15 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
         Some(seed) => (blind_subject(seed)?, Vec::new()),
         None => {
             let subject = subject(&command.scene, "", &spinner)?;
+            memory::ask(Rates::PACK, &subject.scene)?;
             spinner.stage("looking at the scene");
             let warnings = warnings(&subject.scene, subject.vehicle.as_ref(), None);
             let is_plain = command.no_bench;
             (if is_plain { subject } else { benched(subject)? }, warnings)
         }
     };
-    let (manifest, sets) = write_pack_with_ray_sets(&subject, command.blind, &command.output, &spinner)?;
+    let (manifest, sets) =
+        write_pack_with_ray_sets(&subject, command.blind, &label, &command.output, &spinner)?;
     drop(spinner);
     if json {
         let document = serde_json::json!({
@@ -77,6 +83,7 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
         rays: rays.display().to_string(),
         rays_sha256: Some(file_sha256_hex(rays).map_err(|error| FileError::io(rays, "read", error))?.1),
     };
+    memory::ask_cast(array.rays.len(), mesh.triangles.faces().len())?;
     let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
     let counts = write_ray_pack(&command.output, (&mesh.triangles, &array, sides), &source, &spinner)?;
     drop(spinner);

@@ -9,6 +9,7 @@ use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
 use raypencil::io::{SceneIoError, Setting, UpAxis};
 use raypencil::judge::{Class, JudgeShare};
+use raypencil::pack::PackLabel;
 use raypencil::rover::RULE_NAMES;
 use raypencil::sweep::{Axis, Chart, SweepError, Task};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
@@ -93,6 +94,18 @@ pub(crate) fn map_format() -> impl TypedValueParser<Value = MapFormat> {
         ("npz", "A NumPy archive for each sensor, double precision", MapFormat::Npz),
         ("zarr", "A Zarr store with a group for each sensor, double precision", MapFormat::Zarr),
     ])
+}
+
+/// Version of a pack.
+pub(crate) fn pack_version(text: &str) -> Result<String, String> {
+    let label = PackLabel { version: Some(text.into()), licence: None };
+    label.check().map(|()| text.into()).map_err(|fault| fault.to_string())
+}
+
+/// Licence of a pack.
+pub(crate) fn licence(text: &str) -> Result<String, String> {
+    let label = PackLabel { version: None, licence: Some(text.into()) };
+    label.check().map(|()| text.into()).map_err(|fault| fault.to_string())
 }
 
 /// `--judge`.

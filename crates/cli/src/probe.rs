@@ -6,8 +6,9 @@ use raypencil::{Place, SensorId};
 
 use crate::args::{Probe, typed_renderers};
 use crate::console::{Spinner, say};
+use crate::memory::Rates;
 use crate::subject::{contenders, subject};
-use crate::{Outcome, Registry, Trouble};
+use crate::{Outcome, Registry, Trouble, memory};
 
 pub(crate) fn probe(command: &Probe, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
     let place = match (command.pixel, command.beam, command.pencil) {
@@ -19,6 +20,7 @@ pub(crate) fn probe(command: &Probe, json: bool, registry: &Registry) -> Result<
     let contenders = contenders(&command.with, &command.switches, 1, registry)?;
     let words = typed_renderers(&command.with, &command.switches);
     let subject = subject(&command.scene, &words, &spinner)?;
+    memory::ask(Rates::PROBE, &subject.scene)?;
     // Candidates first, so that an error in their files is reported before the rendering.
     spinner.stage("reading candidates");
     let candidates: Result<Vec<Candidate>, _> =

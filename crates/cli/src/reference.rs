@@ -4,40 +4,18 @@
 use std::fmt::Write as _;
 
 use clap::{Arg, Command};
-use raypencil::io::{create_folder, write_atomically};
-use serde_json::json;
 
-use crate::args::{ReferencePages, command_line};
-use crate::console::say;
+use crate::args::ReferencePages;
+use crate::pages::write_pages;
 use crate::{Outcome, Trouble};
 
 pub(crate) fn reference(command: &ReferencePages, json: bool) -> Result<Outcome, Trouble> {
-    let mut whole = command_line().disable_help_subcommand(true);
-    whole.build();
-    let mut pages = Vec::new();
-    collect(&whole, &mut pages);
-    create_folder(&command.output)?;
-    for (name, page) in &pages {
-        write_atomically(command.output.join(name), |file| file.write_all(page.as_bytes()))?;
-    }
-    let names: Vec<&str> = pages.iter().map(|(name, _)| name.as_str()).collect();
-    let folder = command.output.display().to_string();
-    say(&match json {
-        true => format!("{:#}\n", json!({ "folder": folder, "files": names })),
-        false => format!("{folder}: {} pages\n", names.len()),
-    });
-    Ok(Outcome::Fine)
+    write_pages(&command.output, json, |command| (file_name(command), page(command).into_bytes()))
 }
 
 /// The commands below a command that its help names.
 fn below(command: &Command) -> impl Iterator<Item = &Command> {
     command.get_subcommands().filter(|below| !below.is_hide_set())
-}
-
-/// The pages of a command and of all below it, each with the name of its file.
-fn collect(command: &Command, pages: &mut Vec<(String, String)>) {
-    pages.push((file_name(command), page(command)));
-    below(command).for_each(|below| collect(below, pages));
 }
 
 /// `terrain-generate.md` for `raypencil terrain generate`; `raypencil.md` for the command line itself.

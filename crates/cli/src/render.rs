@@ -8,8 +8,9 @@ use raypencil::{Progress, Request, Sampling};
 
 use crate::args::Render;
 use crate::console::{Spinner, say, warn};
+use crate::memory::Rates;
 use crate::subject::{contenders, subject};
-use crate::{Outcome, Registry, Trouble};
+use crate::{Outcome, Registry, Trouble, memory};
 
 pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
@@ -17,6 +18,7 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     let contenders = contenders(with, &command.switches, 1, registry)?;
     let renderer = &contenders[0].renderer;
     let subject = subject(&command.scene, "", &spinner)?;
+    memory::ask(Rates::RENDER, &subject.scene)?;
     let folder = OutputFolder::begin(&command.output)?;
     spinner.stage(&format!("{}: rendering", renderer.name()));
     let sampling = command.jitter.map_or(Sampling::Centres, |seed| Sampling::Jittered { seed });

@@ -11,14 +11,16 @@ use raypencil::io::OutputFolder;
 
 use crate::args::{Validate, typed_renderers};
 use crate::console::{Spinner, is_terminal, say};
+use crate::memory::Rates;
 use crate::subject::{contenders, subject};
-use crate::{Outcome, Registry, Trouble};
+use crate::{Outcome, Registry, Trouble, memory};
 
 pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     let contenders = contenders(&command.with, &command.switches, 2, registry)?;
     let words = typed_renderers(&command.with, &command.switches);
     let subject = subject(&command.scene, &words, &spinner)?;
+    memory::ask(Rates::VALIDATE, &subject.scene)?;
     let folder: PathBuf = match &command.output {
         Some(folder) => folder.clone(),
         None => Path::new("out").join(&subject.name),

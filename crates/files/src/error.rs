@@ -130,6 +130,12 @@ impl Fault {
     }
 }
 
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}; expected {}", self.place, self.found, self.expected)
+    }
+}
+
 /// Maximum length of each part of a message, characters.
 const MAX_MESSAGE_CHARS: usize = 400;
 

@@ -9,7 +9,7 @@ use raypencil_cast::{
     CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, comparison_headline, write_ray_pack,
 };
 use raypencil_files::{FileError, RayArray};
-use raypencil_pack::{FileRole, Manifest, ManifestFile, PackError, RaySetOutcome, write_pack};
+use raypencil_pack::{FileRole, Manifest, ManifestFile, PackError, PackLabel, RaySetOutcome, write_pack};
 use raypencil_scene::{NamedRaySet, Precision, Progress, Triangles};
 use raypencil_scene_io::Subject;
 
@@ -55,10 +55,11 @@ impl CheckedRaySet {
 pub fn write_pack_with_ray_sets(
     subject: &Subject,
     blind_seed: Option<u64>,
+    label: &PackLabel,
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<(Manifest, Vec<PackedRaySet>), PackError> {
-    let mut manifest = write_pack(subject, blind_seed, folder, progress)?;
+    let mut manifest = write_pack(subject, blind_seed, label, folder, progress)?;
     let sets = subject.scene.ray_sets();
     if sets.is_empty() {
         return Ok((manifest, Vec::new()));

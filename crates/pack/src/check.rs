@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_diagnosis::{Diagnosis, diagnose};
-use raypencil_files::{FileError, Limits, Storage, read_listed_channels};
+use raypencil_files::{FileError, Limits, Storage, file_sha256_hex, read_listed_channels};
 use raypencil_judge::{
     Answers, Check, Class, Conventions, DifferingRay, GroundTruth, Item, JudgeShare, Quantity, Recorded,
     RecordingError, SensorResult, UncertifiedAnswer, check,
@@ -13,8 +13,9 @@ use raypencil_scene::{Place, Precision, Progress, Scene, SensorId};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
-use crate::manifest::{FileRole, Manifest, PackKind};
+use crate::manifest::{FileRole, MANIFEST_NAME, Manifest, PackKind};
 use crate::provenance::{ProvenanceError, note, precision_of};
+use crate::published::PackIdentity;
 use crate::rays::{rays_name, rays_sha256};
 
 /// Why a candidate could not be checked against a pack.
@@ -70,6 +71,8 @@ pub struct Checked {
     pub exact: Answers,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
+    /// Which pack it is.
+    pub pack: PackIdentity,
     /// What of the pack was found to be what the scene gives.
     pub verified: Verified,
     /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked.
@@ -201,6 +204,10 @@ pub fn check_pack_verifying(
 ) -> Result<Checked, CheckError> {
     progress.stage("reading the pack");
     let manifest = Manifest::read_verified(pack)?;
+    let manifest_file = pack.join(MANIFEST_NAME);
+    let (_, manifest_sha256) =
+        file_sha256_hex(&manifest_file).map_err(|error| FileError::io(&manifest_file, "read", error))?;
+    let identity = PackIdentity::new(manifest_sha256, &manifest.scene.name, manifest.label());
     let scene_file = pack.join("scene.toml");
     let LoadedScene { scene, .. } = manifest.load_scene(pack)?;
     let sha256 = scene_sha256(&scene);
@@ -276,7 +283,7 @@ pub fn check_pack_verifying(
     };
     let is_blind = manifest.kind == PackKind::Blind;
     let ray_sets = Vec::new();
-    Ok(Checked { subject, recorded, check, diagnosis, exact, is_blind, verified, ray_sets })
+    Ok(Checked { subject, recorded, check, diagnosis, exact, is_blind, pack: identity, verified, ray_sets })
 }
 
 /// The first answer by which the candidate is wrong and which is itself not the referee's.

@@ -15,6 +15,7 @@
 //! margins                            how far each ray is from another answer
 //! arrays, exr_map, rays -> write     the files of a pack
 //! provenance -> check                the candidate's note, and the check of a candidate
+//! published                          version and licence of a pack, and the packs that are published
 //! input/                             a glTF file, the triangles that it must become, and the check of a loader
 //! check_report/                      a check as screen, page, JSON and JUnit
 //! ```
@@ -45,6 +46,7 @@ mod input;
 mod manifest;
 mod margins;
 mod provenance;
+mod published;
 mod rays;
 mod split_mix;
 mod units;
@@ -69,6 +71,7 @@ pub use manifest::{
     ManifestFile, ManifestScene, ManifestSensor, PackKind,
 };
 pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, note, precision_of};
+pub use published::{PUBLISHED, PackIdentity, PackLabel, PublishedPack};
 pub use write::{PackError, write_pack, write_questions};
 
 #[cfg(doctest)]

@@ -26,6 +26,7 @@ use crate::manifest::{
     PackKind,
 };
 use crate::margins::SensorMargins;
+use crate::published::PackLabel;
 use crate::rays::write_rays;
 
 /// Why a pack could not be written.
@@ -72,6 +73,8 @@ pub enum PackError {
 /// Writes the pack of a scene into `folder`: with all answers, or without any if `blind_seed` is given. Returns its
 /// manifest.
 ///
+/// The `label` is the version and the licence of the pack itself.
+///
 /// The manifest says how many rays decide each clause of the contract. A blind seed that leaves one untested is refused.
 /// For a scene with answers they are counted where that takes less than a minute
 /// ([`can_count_clauses`](crate::can_count_clauses)); few clauses decide any ray of a scene without a
@@ -81,13 +84,13 @@ pub enum PackError {
 /// writing was interrupted, and no answer stays beside a scene that it does not belong to.
 ///
 /// ```
-/// use raypencil_pack::{FileRole, Manifest, PackKind, blind_subject, write_pack};
+/// use raypencil_pack::{FileRole, Manifest, PackKind, PackLabel, blind_subject, write_pack};
 /// use raypencil_scene::Silent;
 ///
 /// # let folder = tempfile::tempdir()?;
 /// # let folder = folder.path();
 /// let subject = blind_subject(7)?;
-/// write_pack(&subject, Some(7), folder, &Silent)?;
+/// write_pack(&subject, Some(7), &PackLabel::NONE, folder, &Silent)?;
 /// let manifest = Manifest::read_verified(folder)?;
 /// // Scene, terrain, and the rays of the camera and seven beams: ten files, none with answers.
 /// assert_eq!((manifest.kind, manifest.files.len()), (PackKind::Blind, 10));
@@ -103,6 +106,7 @@ pub enum PackError {
 pub fn write_pack(
     subject: &Subject,
     blind_seed: Option<u64>,
+    label: &PackLabel,
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<Manifest, PackError> {
@@ -129,6 +133,8 @@ pub fn write_pack(
         .collect();
     write_files(subject, folder, progress, certified.as_ref(), |manifest| Manifest {
         kind,
+        version: label.version.clone(),
+        licence: label.licence.clone(),
         blind_seed,
         clauses,
         ..manifest
@@ -188,6 +194,8 @@ fn write_files(
         format: MANIFEST_FORMAT,
         kind: PackKind::Questions,
         raypencil_version: env!("CARGO_PKG_VERSION").into(),
+        version: None,
+        licence: None,
         scene: ManifestScene { name: subject.name.clone(), sha256: scene_sha256(scene) },
         flux_model: scene.flux_model(),
         blind_seed: None,

@@ -9,9 +9,9 @@ use raypencil::cast::{
     CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
 };
 use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
-use raypencil::judge::Conventions;
+use raypencil::judge::{Conventions, JudgeShare};
 use raypencil::pack::{
-    CheckError, check_input, check_json, check_pack_by, check_screen, input_json, input_screen,
+    CheckError, check_input, check_json, check_pack_verifying, check_screen, input_json, input_screen,
     is_input_pack, write_check, write_input_check,
 };
 
@@ -27,6 +27,7 @@ struct Question {
     precision: Option<Precision>,
     miss: Option<f64>,
     ignores_faces: bool,
+    share: JudgeShare,
     output: Option<PathBuf>,
 }
 
@@ -43,7 +44,7 @@ struct Answer {
 }
 
 fn of_input(question: &Question) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, precision, miss, ignores_faces } = question;
+    let Question { pack, candidate, output, precision, miss, ignores_faces, .. } = question;
     if precision.is_some() || miss.is_some() || *ignores_faces {
         return Err(Failure::new(format!(
             "{} is an input pack: arithmetic, miss and no_faces declare how rays are answered; expected none of them",
@@ -66,7 +67,7 @@ fn of_input(question: &Question) -> Result<Answer, Failure> {
 }
 
 fn of_rays(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, precision, miss, ignores_faces } = question;
+    let Question { pack, candidate, output, precision, miss, ignores_faces, .. } = question;
     let conventions = CandidateConventions { miss: *miss, ignores_faces: *ignores_faces };
     let precision = precision.unwrap_or(Precision::F64);
     let checked = check_ray_pack(pack, candidate, precision, conventions, watch)?;
@@ -85,10 +86,11 @@ fn of_rays(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
 }
 
 fn of_scene(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, precision, miss, ignores_faces } = question;
+    let Question { pack, candidate, output, precision, miss, ignores_faces, share } = question;
     let conventions = Conventions { miss: *miss, ignores_faces: *ignores_faces };
     let helped = |error: CheckError| Failure::with_help(&error, error.help());
-    let mut checked = check_pack_by(pack, candidate, *precision, conventions, watch).map_err(helped)?;
+    let mut checked =
+        check_pack_verifying(pack, candidate, *precision, conventions, *share, watch).map_err(helped)?;
     // The sets of rays that the pack has besides, if there are any.
     let precision = checked.recorded.precision;
     let of_rays = CandidateConventions { miss: *miss, ignores_faces: *ignores_faces };
@@ -122,7 +124,10 @@ fn of_scene(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
 
 /// Checks a folder of answers against a pack of any kind.
 #[pyfunction]
-#[pyo3(signature = (pack, candidate, arithmetic=None, miss=None, no_faces=false, output=None, on_stage=None))]
+#[pyo3(signature = (
+    pack, candidate, arithmetic=None, miss=None, no_faces=false, verify=false, output=None, on_stage=None
+))]
+#[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
 pub(crate) fn check<'py>(
     py: Python<'py>,
     pack: PathBuf,
@@ -130,6 +135,7 @@ pub(crate) fn check<'py>(
     arithmetic: Option<String>,
     miss: Option<f64>,
     no_faces: bool,
+    verify: bool,
     output: Option<PathBuf>,
     on_stage: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -141,7 +147,8 @@ pub(crate) fn check<'py>(
                 pack.display()
             )));
         }
-        let question = Question { pack, candidate, precision, miss, ignores_faces: no_faces, output };
+        let share = if verify { JudgeShare::All } else { JudgeShare::Sample };
+        let question = Question { pack, candidate, precision, miss, ignores_faces: no_faces, share, output };
         if is_input_pack(&question.pack) {
             of_input(&question)
         } else if is_ray_pack(&question.pack) {

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use raypencil::Progress;
 use raypencil::cast::{CastSource, write_ray_pack};
 use raypencil::harness::write_pack_with_ray_sets;
-use raypencil::pack::benched;
+use raypencil::pack::{PackLabel, benched};
 
 use crate::mesh::MeshCore;
 use crate::rays::{rays_of, shaped, sides};
@@ -16,20 +16,26 @@ use crate::watch::watched;
 
 /// Writes the pack of a scene. `bench`: with rays at the limits of the contract.
 #[pyfunction]
-#[pyo3(signature = (scene, output, bench, on_stage=None))]
+#[pyo3(signature = (scene, output, bench, version=None, licence=None, on_stage=None))]
 pub(crate) fn pack_scene(
     py: Python<'_>,
     scene: &SceneCore,
     output: PathBuf,
     bench: bool,
+    version: Option<String>,
+    licence: Option<String>,
     on_stage: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<()> {
+    let label = PackLabel { version, licence };
+    if let Err(fault) = label.check() {
+        return Err(usage(py, fault.to_string()));
+    }
     let scene = scene.clone();
     watched(py, on_stage, move |watch| {
         watch.stage("packing");
         let subject = scene.subject("");
         let subject = if bench { benched(subject)? } else { subject };
-        write_pack_with_ray_sets(&subject, None, &output, watch)?;
+        write_pack_with_ray_sets(&subject, None, &label, &output, watch)?;
         Ok(())
     })
 }

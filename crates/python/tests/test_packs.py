@@ -32,6 +32,22 @@ def test_a_pack_is_the_commands(command: Command, tmp_path: Path) -> None:
     assert len(files(tmp_path / "plain")) < len(ours)
 
 
+def test_a_pack_has_a_label_and_is_told_apart(tmp_path: Path) -> None:
+    pack(Scene(SMALL, name="small"), tmp_path / "mine", bench=False, version="2.1", licence="CC-BY-4.0")
+    manifest = json.loads((tmp_path / "mine/manifest.json").read_text())
+    assert (manifest["version"], manifest["licence"]) == ("2.1", "CC-BY-4.0")
+    of_mine = check(tmp_path / "mine", tmp_path / "mine").summary["pack"]
+    assert (of_mine["version"], of_mine["licence"], of_mine["published"]) == ("2.1", "CC-BY-4.0", False)
+    sampled, every = (check(HARD, HARD, verify=verify) for verify in (False, True))
+    assert every.summary["pack"]["published"]
+    asked = [result.summary["verified"] for result in (sampled, every)]
+    assert asked[0]["answers"] < asked[0]["of"] == asked[1]["of"] == asked[1]["answers"] == 2866
+    for label, words in (({"version": "one"}, "version"), ({"licence": "a\nb"}, "licence")):
+        with pytest.raises(RaypencilError, match=words):
+            pack(Scene(SMALL), tmp_path / "none", bench=False, **label)
+    assert not (tmp_path / "none").exists()
+
+
 def test_a_pack_of_rays_has_the_commands_answers(cube: Mesh, command: Command, tmp_path: Path) -> None:
     rays = random_rays(60).reshape(12, 5, 8)
     np.save(tmp_path / "rays.npy", rays)

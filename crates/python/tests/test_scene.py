@@ -42,6 +42,20 @@ def test_settings_are_in_the_units_of_the_file() -> None:
     assert np.allclose(camera.scene_from_sensor.position, [0.3, 0, 1.5])
 
 
+def test_a_camera_by_pixels_angles_or_a_calibration(tmp_path: Path) -> None:
+    # fx = 889 pixels of 9 um; the middle of pixel (0, 0) is at (0, 0), so that cx = 511.5 is the middle of 1024 columns.
+    by_pixels = Scene("pyramids", camera={"intrinsics_px": {"fx": 889, "cx": 511.5, "cy": 511.5}})
+    assert by_pixels.camera.focal_length == 889 * 9e-6
+    across = 2 * math.degrees(math.atan(512 / 889))
+    by_angle = Scene("pyramids").replace(**{"camera.field_of_view_deg": across})
+    assert math.isclose(by_angle.camera.focal_length, 889 * 9e-6, rel_tol=1e-14)
+    matrix = "[889, 0, 511.5, 0, 889, 511.5, 0, 0, 1]"
+    (tmp_path / "left.yaml").write_text(f"image_width: 1024\nimage_height: 1024\ncamera_matrix: {{data: {matrix}}}\n")
+    (tmp_path / "rig.toml").write_text('version = 1\n[camera]\ncamera_info = "left.yaml"\n')
+    # The digest is of the numbers of the scene, and these are the same.
+    assert Scene(tmp_path / "rig.toml").sha256 == by_pixels.sha256
+
+
 def test_replace_makes_another_scene_each_time() -> None:
     scene = Scene(SMALL)
     once = scene.replace(**{"beam.rows": 3})

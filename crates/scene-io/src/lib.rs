@@ -8,8 +8,8 @@
 //!
 //! 1. `scene_error`, `toml_problem`: errors, which name the file, the line, the value found and the values expected;
 //! 2. `parse/key`, `parse/source`, `parse/shared`: values with their places, and the readers that check them;
-//! 3. `drive`: keys of `[drive]`, written straight into a [`DriveSetup`];
-//! 4. `plan`: a scene as checked numbers; `parse/kind`, `parse/rig`, `parse/terrain` (with `dem`, `generate`) and
+//! 3. `camera_info`: calibrations of ROS, which `parse/camera` takes a camera from; `drive`: keys of `[drive]`, written straight into a [`DriveSetup`];
+//! 4. `plan`: a scene as checked numbers; `parse/kind`, `parse/rig`, `parse/camera`, `parse/terrain` (with `dem`, `generate`) and
 //!    `parse/scene` fill it in;
 //! 5. `resolve`: a plan and a mesh become a scene; `resolved`: files that hold the scene's own numbers;
 //! 6. `digest`: SHA-256 of a scene's numbers;
@@ -38,6 +38,7 @@
 //! # Ok::<(), raypencil_scene_io::SceneIoError>(())
 //! ```
 
+mod camera_info;
 mod digest;
 mod drive;
 mod ground;

@@ -220,6 +220,7 @@ fn load_rig(
     grounds: Option<&Grounds>,
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = parse(file)?;
+    parts.extend(plan.camera_digest);
     parts.append(&mut plan.kernel_digests);
     parts.append(&mut plan.ray_digests);
     let make = || -> Result<Ground, SceneIoError> {

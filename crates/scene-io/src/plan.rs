@@ -24,6 +24,8 @@ pub(crate) struct ScenePlan {
     pub attenuation: f64,
     pub flux_model: FluxModel,
     pub drive: Option<DriveSetup>,
+    /// Digest of the camera's calibration, if the file names one.
+    pub camera_digest: Option<Sha256Digest>,
     /// Digests of the files of the drive's kernels, in their order.
     pub kernel_digests: Vec<Sha256Digest>,
     /// Sets of rays, in the vehicle frame.
@@ -114,6 +116,7 @@ pub(crate) fn default_rig(terrain: Terrain) -> ScenePlan {
         attenuation: 0.0,
         flux_model: FluxModel::Radiometric,
         drive: None,
+        camera_digest: None,
         kernel_digests: Vec::new(),
         ray_sets: Vec::new(),
         ray_digests: Vec::new(),

@@ -156,6 +156,26 @@ fn make_room(root: &mut Table, parts: &[&str]) {
                 }
             }
         }
+        // One description of the image takes the place of the one before.
+        ["camera", way @ ("focal_length_mm" | "field_of_view_deg" | "intrinsics_px" | "camera_info"), ..] => {
+            if let Some(camera) = root.get_mut("camera").and_then(Item::as_table_like_mut) {
+                let image = ["width_px", "height_px"].as_slice();
+                let point = ["principal_point_px"].as_slice();
+                let (gone, too): (&[&str], &[&str]) = match *way {
+                    "camera_info" => (image, point),
+                    "focal_length_mm" => (&[], &[]),
+                    _ => (&[], point),
+                };
+                let ways = ["focal_length_mm", "field_of_view_deg", "intrinsics_px", "camera_info"];
+                let others = ways.iter().filter(|other| *other != way);
+                for key in others.chain(gone).chain(too) {
+                    camera.remove(key);
+                }
+                if *way != "camera_info" {
+                    camera.remove("camera_info_rectified");
+                }
+            }
+        }
         _ => {}
     }
 }

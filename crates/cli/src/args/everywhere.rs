@@ -1,6 +1,9 @@
 //! The options of every command.
 
+use bytesize::ByteSize;
 use clap::{Args, ColorChoice};
+
+use crate::memory;
 
 /// The options of every command.
 #[derive(Debug, Args)]
@@ -33,4 +36,15 @@ pub(crate) struct Everywhere {
         help_heading = "Options of every command"
     )]
     pub(crate) threads: Option<u16>,
+
+    /// Refuse work that would take more memory, such as 2GB or 512MiB; default: the memory of the machine. It is asked before
+    /// the work begins.
+    #[arg(
+        long,
+        global = true,
+        value_name = "SIZE",
+        value_parser = memory::size,
+        help_heading = "Options of every command"
+    )]
+    pub(crate) max_memory: Option<ByteSize>,
 }

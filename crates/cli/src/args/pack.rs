@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::args::scene::SceneArguments;
+use crate::parsers;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -12,6 +13,8 @@ use crate::args::scene::SceneArguments;
   raypencil pack data/scenes/pyramids-small.toml -o out/pack
   # The questions alone; check knows the answers.
   raypencil pack --blind 7 -o out/blind
+  # A pack to pass on.
+  raypencil pack facets --pack-version 1.0.0 --licence CC0-1.0 -o out/shared
   # Rays of your own on a mesh.
   raypencil pack data/rays/cube.obj --rays data/rays/cube.npy -o out/cube-pack")]
 pub(crate) struct Pack {
@@ -43,6 +46,14 @@ pub(crate) struct Pack {
     /// With --rays: let rays pass through the backs of faces.
     #[arg(long, requires = "rays")]
     pub(crate) fronts_only: bool,
+
+    /// Version of the pack itself, such as 1.0.0: for packs that are passed on.
+    #[arg(long, value_name = "VERSION", value_parser = parsers::pack_version, conflicts_with_all = ["input", "rays"])]
+    pub(crate) pack_version: Option<String>,
+
+    /// Licence of the pack itself, as an SPDX expression such as CC0-1.0.
+    #[arg(long, value_name = "SPDX", value_parser = parsers::licence, conflicts_with_all = ["input", "rays"])]
+    pub(crate) licence: Option<String>,
 
     /// Output folder.
     #[arg(short, long, value_name = "DIR")]

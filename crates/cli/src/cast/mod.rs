@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 
 use crate::args::Cast;
 use crate::console::{Spinner, say};
-use crate::{Outcome, Trouble};
+use crate::{Outcome, Trouble, memory};
 use compared::Compared;
 use ray_command::ray_command;
 
@@ -41,6 +41,12 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let source =
         CastSource { mesh: command.mesh.display().to_string(), mesh_sha256, rays: from, rays_sha256 };
     let mesh = &mesh;
+    let count = match &rays {
+        Rays::Array(array) => array.rays.len(),
+        // One after the other.
+        Rays::Sets(sets) => sets.iter().map(|set| set.set.rays().len()).max().unwrap_or(0),
+    };
+    memory::ask_cast(count, mesh.faces().len())?;
     let folder = command.output.as_deref();
     let output = folder.map(OutputFolder::begin).transpose()?;
     let results = match &rays {

@@ -125,10 +125,16 @@ fn a_check_says_what_it_verified() {
                    rays are those of its scene.";
     assert!(said.contains(sampled), "{said}");
     let said = screen(whole.path(), &["check", "pack", "right", "--verify"], 0);
-    assert!(said.contains("The pack: all 128 of 128 answers are the referee's, and so"), "{said}");
+    assert!(said.contains("): all 128 of 128 answers are the referee's, and so"), "{said}");
     let json = screen(whole.path(), &["check", "pack", "right", "--verify", "--json"], 0);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["verified"], serde_json::json!({ "answers": 128, "of": 128, "ray_files": 2 }));
+    // Which pack it is: not a published one.
+    let (_, sha256) = file_sha256_hex(&whole.path().join("pack/manifest.json")).unwrap();
+    let expected =
+        serde_json::json!({ "sha256": sha256, "version": null, "licence": null, "published": false });
+    assert_eq!(json["pack"], expected);
+    assert!(said.contains(&format!("The pack (sha256 {}...): ", &sha256[..12])), "{said}");
 }
 
 #[test]

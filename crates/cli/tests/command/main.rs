@@ -13,6 +13,7 @@ mod forged_packs;
 mod help;
 mod injection;
 mod manners;
+mod memory;
 mod packs;
 mod ray_sets;
 mod scene;

@@ -74,6 +74,12 @@ pub fn check_json(checked: &Checked) -> String {
         "candidate": recorded.name,
         "arithmetic": arithmetic(recorded.precision),
         "scene": { "name": subject.name, "sha256": subject.sha256 },
+        "pack": {
+            "sha256": checked.pack.sha256,
+            "version": checked.pack.label.version,
+            "licence": checked.pack.label.licence,
+            "published": checked.pack.is_published(),
+        },
         "blind": is_blind,
         "verified": {
             "answers": checked.verified.answers, "of": checked.verified.of, "ray_files": checked.verified.rays

@@ -9,6 +9,7 @@ use crate::check::{Checked, Verified};
 use crate::check_report::verdict::{
     MAX_SHOWN_DEFECTS, arithmetic, half_precision, headline, items_not_given, listed_totals, not_given, sign,
 };
+use crate::published::PackIdentity;
 
 /// The screen: a table of all quantities, the worst defects with their `probe` commands, the verdict, and the mistake that
 /// explains it, if one does.
@@ -91,7 +92,7 @@ pub fn check_screen(checked: &Checked) -> String {
         let _ = writeln!(text, "    {}", one.what);
         let _ = writeln!(text, "    {}", checked.repro(one.place));
     }
-    let _ = writeln!(text, "{}", verified_words(checked.verified));
+    let _ = writeln!(text, "{}", pack_words(&checked.pack, checked.verified));
     let _ = writeln!(text, "{} {}", sign(checked), headline(checked));
     if let Some(why) = checked.why() {
         let _ = writeln!(text, "  Why: {why}.");
@@ -99,13 +100,14 @@ pub fn check_screen(checked: &Checked) -> String {
     text
 }
 
-/// What of the pack was verified, in a sentence.
-fn verified_words(Verified { answers, of, rays }: Verified) -> String {
+/// Which pack it was and what of it was verified, in a sentence.
+fn pack_words(pack: &PackIdentity, Verified { answers, of, rays }: Verified) -> String {
     let all = if answers == of { "all " } else { "" };
     let hint = if answers == of { "" } else { " (all: --verify)" };
     let rays = counted(rays, "array of rays is that", "arrays of rays are those");
     format!(
-        "The pack: {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays} of its scene.",
+        "The pack ({}): {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays} of its scene.",
+        pack.words(),
         count(answers),
         count(of)
     )

@@ -8,6 +8,7 @@ use crate::manifest::document::{
     FileType, MANIFEST_FORMAT, Manifest, ManifestFile, ManifestSensor, PackKind,
 };
 use crate::manifest::path::{PATH_RULE, check_relative};
+use crate::published::PackLabel;
 
 /// Maximum columns and rows of a sensor.
 const MAX_SENSOR_SIDE_CELLS: u32 = 1 << 20;
@@ -35,6 +36,7 @@ impl Manifest {
             }
             _ => {}
         }
+        self.label().check()?;
         check_digest("scene.sha256", &self.scene.sha256)?;
         self.check_sensors()?;
         // A map, since a manifest may list thousands of sensors and files.
@@ -51,6 +53,11 @@ impl Manifest {
             check_shape(&place, file, &sensors)?;
         }
         Ok(())
+    }
+
+    /// Version and licence of the pack.
+    pub fn label(&self) -> PackLabel {
+        PackLabel { version: self.version.clone(), licence: self.licence.clone() }
     }
 
     /// Checks that the sensors are the camera, then beam-0, beam-1 and so on, each with cells.

@@ -22,6 +22,12 @@ pub struct Manifest {
     pub kind: PackKind,
     /// Version of raypencil that wrote the pack.
     pub raypencil_version: String,
+    /// Version of the pack itself, if it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub version: Option<String>,
+    /// Licence of the pack itself as an SPDX expression, if it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub licence: Option<String>,
     /// The scene.
     pub scene: ManifestScene,
     /// The scene's flux model.

@@ -17,8 +17,8 @@ mod read;
 mod scene;
 mod write;
 
-pub(crate) use document::pack_fault;
 pub use document::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
     ManifestFile, ManifestScene, ManifestSensor, PackKind,
 };
+pub(crate) use document::{MANIFEST_NAME, pack_fault};

@@ -47,6 +47,14 @@ fn parse(text: &[u8], path: &Path) -> Result<Manifest, FileError> {
 }
 
 impl Manifest {
+    /// Reads the manifest of `folder` and checks its consistency. The files that it lists are not read.
+    ///
+    /// # Errors
+    /// As [`Manifest::from_bytes`], and a folder without a manifest.
+    pub fn read(folder: impl AsRef<Path>) -> Result<Self, FileError> {
+        read_manifest(folder.as_ref())
+    }
+
     /// Parses the bytes of a manifest and checks its consistency. The files that it lists are not read. `file` is the
     /// path that messages name.
     ///

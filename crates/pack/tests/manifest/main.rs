@@ -33,6 +33,8 @@ fn manifest() -> Manifest {
         format: 1,
         kind: PackKind::Answers,
         raypencil_version: "0.1.0".into(),
+        version: None,
+        licence: None,
         scene: ManifestScene { name: "pyramids".into(), sha256: NOTHING.into() },
         flux_model: FluxModel::Radiometric,
         blind_seed: None,
@@ -54,6 +56,7 @@ fn manifest() -> Manifest {
 fn blind() -> Manifest {
     let mut blind = manifest();
     (blind.kind, blind.blind_seed) = (PackKind::Blind, Some(7));
+    (blind.version, blind.licence) = (Some("1.0.0".into()), Some("CC0-1.0".into()));
     blind.files.truncate(1);
     blind.clauses = vec![ManifestClause { clause: "fronts-only".into(), rays: 9 }];
     blind

@@ -23,7 +23,13 @@ PathLike = str | os.PathLike[str]
 
 
 def pack(
-    scene: Any, output: PathLike, *, bench: bool = True, progress: Progress = False
+    scene: Any,
+    output: PathLike,
+    *,
+    bench: bool = True,
+    version: str | None = None,
+    licence: str | None = None,
+    progress: Progress = False,
 ) -> Path:
     """Writes the reference pack of a scene: its rays, and the answer to each, correctly rounded.
 
@@ -31,13 +37,18 @@ def pack(
         scene: a :class:`Scene`, or a name or path of one.
         output: the folder.
         bench: add small sensors whose rays lie at the limits of the contract.
+        version: of the pack itself, such as ``"1.0.0"``: for packs that are passed on.
+        licence: of the pack itself, an SPDX expression such as ``"CC0-1.0"``.
         progress: see :func:`cast`.
 
     Returns:
         The folder.
+
+    Raises:
+        RaypencilError: a version or a licence that is none.
     """
     with stages(progress) as on_stage:
-        _raypencil.pack_scene(as_scene(scene)._core, os.fspath(output), bench, on_stage)
+        _raypencil.pack_scene(as_scene(scene)._core, os.fspath(output), bench, version, licence, on_stage)
     return Path(output)
 
 
@@ -117,6 +128,7 @@ def check(
     *,
     miss: float | None = None,
     no_faces: bool = False,
+    verify: bool = False,
     name: str = "answers",
     output: PathLike | None = None,
     progress: Progress = False,
@@ -133,6 +145,8 @@ def check(
             else ``"f64"``.
         miss: a number that means no hit.
         no_faces: leave out the indices of faces.
+        verify: of a pack of a scene, compare every answer of the pack with the referee's; without it a sample, and each
+            by which a ray is wrong. The text says how many were.
         name: what messages call answers that are no folder.
         output: a folder for ``report.html``, ``junit.xml`` and ``check.json``.
         progress: see :func:`cast`.
@@ -145,7 +159,7 @@ def check(
     def checked(candidate: Path) -> CheckResult:
         with stages(progress) as on_stage:
             answer = _raypencil.check(
-                os.fspath(pack), os.fspath(candidate), arithmetic, miss, no_faces, folder and os.fspath(folder), on_stage
+                os.fspath(pack), os.fspath(candidate), arithmetic, miss, no_faces, verify, folder and os.fspath(folder), on_stage
             )
         return CheckResult(answer, folder)
 

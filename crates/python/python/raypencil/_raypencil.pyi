@@ -164,7 +164,14 @@ def validate(
     output: _Path | None = None,
     on_stage: _OnStage = None,
 ) -> ValidationCore: ...
-def pack_scene(scene: SceneCore, output: _Path, bench: bool, on_stage: _OnStage = None) -> None: ...
+def pack_scene(
+    scene: SceneCore,
+    output: _Path,
+    bench: bool,
+    version: str | None = None,
+    licence: str | None = None,
+    on_stage: _OnStage = None,
+) -> None: ...
 def pack_rays(
     mesh: MeshCore,
     rays: NDArray[np.float64],
@@ -179,6 +186,7 @@ def check(
     arithmetic: str | None = None,
     miss: float | None = None,
     no_faces: bool = False,
+    verify: bool = False,
     output: _Path | None = None,
     on_stage: _OnStage = None,
 ) -> dict[str, Any]: ...

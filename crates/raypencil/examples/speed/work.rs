@@ -12,7 +12,7 @@ use raypencil::drive::DriveJob;
 use raypencil::harness::{Contender, Validation, Validator, contender};
 use raypencil::io::{Overrides, Subject, load, load_text};
 use raypencil::judge::JudgeShare;
-use raypencil::pack::write_pack;
+use raypencil::pack::{PackLabel, write_pack};
 use raypencil::rover::{CameraImage, Drive};
 use raypencil::sensor::{FixedPattern, ImageSensor};
 use raypencil::{Image, Quantities, Referee, Renderer, Request, Scanline, Scene, SensorId, Silent, Stage};
@@ -93,7 +93,7 @@ pub fn certify(referee: &Referee, width: u32, height: u32) -> usize {
 /// Writes the pack of a scene, with all answers and margins, and removes it again.
 pub fn write_whole_pack(subject: &Subject) {
     let folder = tempfile::tempdir().expect("a folder for a while");
-    write_pack(subject, None, folder.path(), &Silent).expect("a pack");
+    write_pack(subject, None, &PackLabel::NONE, folder.path(), &Silent).expect("a pack");
 }
 
 /// A drive of the rover over a ground, cycle by cycle, with the noise of a camera chip.

@@ -16,9 +16,20 @@ pub(crate) fn span<T>(key: &Key<T>) -> Option<Range<usize>> {
     key.as_ref().map(Spanned::span)
 }
 
-/// A number for x and y: `9` or `[9, 9]`.
+/// A number for x, and maybe another one for y: `9` or `[9, 9]`.
 #[derive(Clone, Copy)]
-pub(crate) struct OneOrPair(pub [f64; 2]);
+pub(crate) struct OneOrPair {
+    pub x: f64,
+    /// `None`: one number is given.
+    pub y: Option<f64>,
+}
+
+impl OneOrPair {
+    /// Both numbers; one number is that of both axes.
+    pub(crate) fn pair(&self) -> [f64; 2] {
+        [self.x, self.y.unwrap_or(self.x)]
+    }
+}
 
 impl<'de> Deserialize<'de> for OneOrPair {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -31,11 +42,11 @@ impl<'de> Deserialize<'de> for OneOrPair {
             }
 
             fn visit_f64<E: Error>(self, value: f64) -> Result<OneOrPair, E> {
-                Ok(OneOrPair([value; 2]))
+                Ok(OneOrPair { x: value, y: None })
             }
 
             fn visit_i64<E: Error>(self, value: i64) -> Result<OneOrPair, E> {
-                Ok(OneOrPair([value as f64; 2]))
+                Ok(OneOrPair { x: value as f64, y: None })
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<OneOrPair, A::Error> {
@@ -44,7 +55,7 @@ impl<'de> Deserialize<'de> for OneOrPair {
                     *value = list.next_element()?.ok_or_else(|| Error::invalid_length(index, &self))?;
                 }
                 match list.next_element::<f64>()? {
-                    None => Ok(OneOrPair(values)),
+                    None => Ok(OneOrPair { x: values[0], y: Some(values[1]) }),
                     Some(_) => Err(Error::invalid_length(3, &self)),
                 }
             }

@@ -1,5 +1,6 @@
 //! Scene TOML to a [`crate::plan::ScenePlan`]. Each key is checked alone; each error points to its place in the file.
 
+pub(crate) mod camera;
 pub(crate) mod dem;
 pub(crate) mod file_frame;
 pub(crate) mod generate;

@@ -40,8 +40,26 @@ fn unknown_key(message: &str) -> Option<String> {
     })
 }
 
+/// Names of other programs for what a key of this one says.
+const OTHER_NAMES: [(&str, &[&str]); 4] = [
+    (
+        "field_of_view_deg",
+        &["fov", "fov_deg", "hfov", "hfov_deg", "horizontal_fov", "fov_x_deg", "view_angle_deg"],
+    ),
+    (
+        "intrinsics_px",
+        &["fx", "fy", "cx", "cy", "k", "K", "intrinsics", "camera_matrix", "focal_length_px", "fx_px"],
+    ),
+    ("camera_info", &["calibration", "camera_info_file", "calib", "ros_camera_info"]),
+    ("pixel_pitch_um", &["pixel_size_um", "pixel_um", "sensor_width_mm"]),
+];
+
 /// The known key that a misspelt one was meant to be.
 fn nearest<'a>(key: &str, known: &[&'a str]) -> Option<&'a str> {
+    let other = OTHER_NAMES.iter().find(|(_, names)| names.contains(&key)).map(|(name, _)| *name);
+    if let Some(name) = known.iter().find(|known| Some(**known) == other) {
+        return Some(name);
+    }
     let likeness = |name: &str| strsim::jaro_winkler(key, name);
     let best = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
     (likeness(best) >= MIN_LIKENESS).then_some(best)
@@ -129,6 +147,16 @@ mod tests {
                 "unknown field `zebra`, expected `version` or `camera`",
                 "unknown key `zebra`. Known keys: `version`, `camera`",
             ),
+            (
+                "unknown field `fx`, expected one of `fan_deg`, `intrinsics_px`",
+                "unknown key `fx`; did you mean `intrinsics_px`, in pixels? Known keys: `fan_deg`, `intrinsics_px`",
+            ),
+            (
+                "unknown field `hfov`, expected one of `width_px`, `field_of_view_deg`",
+                "unknown key `hfov`; did you mean `field_of_view_deg`, in degrees? Known keys: `width_px`, `field_of_view_deg`",
+            ),
+            // Where the key is none of that table, it is not suggested.
+            ("unknown field `fov`, expected `version`", "unknown key `fov`. Known keys: `version`"),
             ("unknown field `a`, there are no fields", "unknown key `a`; no keys are expected here"),
             (
                 "invalid type: map, expected a sequence",

@@ -1,4 +1,4 @@
-//! `[vehicle]`, `[camera]` and `[[beam]]`.
+//! `[vehicle]` and `[[beam]]`, and what cameras and beams share.
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -6,22 +6,19 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use raypencil_scene::rig::DEFAULT_FAN_DEG;
-use raypencil_scene::{Beam, Camera, Filter, Profile};
+use raypencil_scene::{Beam, Profile};
 
-use crate::parse::key::{Key, OneOrPair, span};
+use crate::parse::key::{Key, span};
 use crate::parse::shared::{FAN_DEG, GLOBAL_M, THICKNESS_MM, TURN_DEG};
 use crate::parse::source::Source;
 use crate::plan::{Mount, ScenePlan, default_beam};
 use crate::scene_error::SceneIoError;
 
-/// CHOICE: the effective index of common interference filters lies around 2.
-const DEFAULT_FILTER_INDEX: f64 = 2.0;
-
 /// Coordinate of a sensor on the vehicle, metres.
 const MOUNT_M: RangeInclusive<f64> = -1e3..=1e3;
 
 /// Maximum range of a sensor, metres.
-const MAX_RANGE_M: RangeInclusive<f64> = 1e-3..=1e7;
+pub(super) const MAX_RANGE_M: RangeInclusive<f64> = 1e-3..=1e7;
 
 /// Columns or rows of a sensor: the limits of the `scene` crate.
 const COLUMNS_OR_ROWS: RangeInclusive<i64> = 1..=1 << 20;
@@ -36,32 +33,6 @@ pub(crate) struct VehicleKeys {
     heading_deg: Key<f64>,
     pitch_down_deg: Key<f64>,
     roll_right_deg: Key<f64>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct CameraKeys {
-    position_m: Key<Vec<f64>>,
-    pitch_down_deg: Key<f64>,
-    yaw_left_deg: Key<f64>,
-    roll_right_deg: Key<f64>,
-    width_px: Key<i64>,
-    height_px: Key<i64>,
-    pixel_pitch_um: Key<OneOrPair>,
-    focal_length_mm: Key<f64>,
-    principal_point_px: Key<Vec<f64>>,
-    aperture_mm: Key<f64>,
-    transmission: Key<f64>,
-    filter: Key<FilterKeys>,
-    max_range_m: Key<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FilterKeys {
-    centre_nm: Spanned<f64>,
-    width_nm: Spanned<f64>,
-    index: Key<f64>,
 }
 
 #[derive(Deserialize)]
@@ -85,15 +56,15 @@ pub(crate) struct BeamKeys {
 
 // Divisions by a power of ten round once: 9 micrometres are the double nearest 9e-6. A product with 1e-6 rounds twice.
 
-fn from_millimetres(length: f64) -> f64 {
+pub(super) fn from_millimetres(length: f64) -> f64 {
     length / 1e3
 }
 
-fn from_micrometres(length: f64) -> f64 {
+pub(super) fn from_micrometres(length: f64) -> f64 {
     length / 1e6
 }
 
-fn from_nanometres(length: f64) -> f64 {
+pub(super) fn from_nanometres(length: f64) -> f64 {
     length / 1e9
 }
 
@@ -116,7 +87,7 @@ impl Source<'_> {
     }
 
     /// Keys that cameras and beams share. `turns` are those of pitch, yaw and roll.
-    fn mount(
+    pub(super) fn mount(
         &self,
         sensor: &str,
         position: &Key<Vec<f64>>,
@@ -136,63 +107,6 @@ impl Source<'_> {
             self.number(key, &format!("{sensor}.{name}"), slot, TURN_DEG, "degrees")?;
         }
         Ok(())
-    }
-
-    pub(super) fn camera(
-        &self,
-        keys: &CameraKeys,
-        (mount, camera): &mut (Mount, Camera),
-    ) -> Result<(), SceneIoError> {
-        let turns = [&keys.pitch_down_deg, &keys.yaw_left_deg, &keys.roll_right_deg];
-        self.mount("camera", &keys.position_m, turns, mount)?;
-        let sides = [("width_px", &keys.width_px), ("height_px", &keys.height_px)];
-        self.cells("camera", sides, [&mut camera.width, &mut camera.height], "pixels")?;
-        if let Some(pitch) = &keys.pixel_pitch_um {
-            for value in pitch.get_ref().0 {
-                self.check(value, pitch.span(), "camera.pixel_pitch_um", 0.01..=1e5, "micrometres")?;
-            }
-            camera.pixel_pitch = pitch.get_ref().0.map(from_micrometres);
-        }
-        self.converted(
-            &keys.focal_length_mm,
-            "camera.focal_length_mm",
-            &mut camera.focal_length,
-            0.01..=1e5,
-            "millimetres",
-            from_millimetres,
-        )?;
-        self.converted(
-            &keys.aperture_mm,
-            "camera.aperture_mm",
-            &mut camera.aperture,
-            1e-3..=1e4,
-            "millimetres",
-            from_millimetres,
-        )?;
-        let transmission = &mut camera.lens.transmission;
-        self.number(&keys.transmission, "camera.transmission", transmission, 0.0..=1.0, "")?;
-        if let Some(filter) = &keys.filter {
-            camera.lens.filter = self.filter(filter.get_ref())?;
-        }
-        // The middle of the image, whatever its size.
-        camera.principal_point = [camera.width, camera.height].map(|side| 0.5 * f64::from(side));
-        if let Some(point) = &keys.principal_point_px {
-            let numbers = self.list(point, "camera.principal_point_px", &[2], -1e6..=1e6, "pixels")?;
-            camera.principal_point = [numbers[0], numbers[1]];
-        }
-        self.number(&keys.max_range_m, "camera.max_range_m", &mut camera.max_range, MAX_RANGE_M, "metres")
-    }
-
-    fn filter(&self, keys: &FilterKeys) -> Result<Filter, SceneIoError> {
-        let metres = |key: &Spanned<f64>, name: &str, range: RangeInclusive<f64>| {
-            self.check(*key.get_ref(), key.span(), name, range, "nanometres")?;
-            Ok::<_, SceneIoError>(from_nanometres(*key.get_ref()))
-        };
-        let centre = metres(&keys.centre_nm, "camera.filter.centre_nm", 10.0..=1e6)?;
-        let width = metres(&keys.width_nm, "camera.filter.width_nm", 1e-3..=1e6)?;
-        let mut index = DEFAULT_FILTER_INDEX;
-        self.number(&keys.index, "camera.filter.index", &mut index, 1.0..=10.0, "")?;
-        Ok(Filter::Interference { centre, width, index })
     }
 
     pub(super) fn beam(&self, index: usize, keys: &BeamKeys) -> Result<(Mount, Beam), SceneIoError> {
@@ -251,7 +165,7 @@ impl Source<'_> {
     }
 
     /// Columns and rows of a sensor: each in range, and their product too.
-    fn cells(
+    pub(super) fn cells(
         &self,
         sensor: &str,
         keys: [(&str, &Key<i64>); 2],

@@ -4,9 +4,10 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::drive::read::DriveKeys;
+use crate::parse::camera::CameraKeys;
 use crate::parse::key::Key;
 use crate::parse::rays::RaysKeys;
-use crate::parse::rig::{BeamKeys, CameraKeys, VehicleKeys};
+use crate::parse::rig::{BeamKeys, VehicleKeys};
 use crate::parse::source::Source;
 use crate::parse::terrain::TerrainKeys;
 use crate::plan::{ScenePlan, Terrain, default_rig};
@@ -49,7 +50,7 @@ pub(crate) fn parse(source: &Source) -> Result<ScenePlan, SceneIoError> {
     let keys: SceneKeys = source.deserialize()?;
     let mut plan = default_rig(Terrain::Builtin("pyramids".to_string()));
     source.vehicle(&keys.vehicle, &mut plan)?;
-    source.camera(&keys.camera, &mut plan.camera)?;
+    plan.camera_digest = source.camera(&keys.camera, &mut plan.camera)?;
     if let Some(beams) = &keys.beam {
         let build = |(index, keys)| source.beam(index, keys);
         plan.beams = beams.iter().enumerate().map(build).collect::<Result<_, _>>()?;

@@ -1,0 +1,164 @@
+//! Asks, before the work begins, whether the memory for it is there: a clear refusal in place of an abort.
+//!
+//! What a command takes grows with the faces of the ground, and with the rays or cells that it answers. The numbers of bytes for
+//! each were measured (`docs/reference/limits.md` has them, and `tests/command/memory.rs` measures them again) and have a third
+//! on top: they are tuned, not derived.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use bytesize::ByteSize;
+use raypencil::pack::{FileRole, Manifest};
+use raypencil::report::counted;
+use raypencil::{Scene, SensorId};
+
+use crate::Trouble;
+
+/// What the program itself takes, bytes.
+const BASE: u64 = 24 << 20;
+
+/// Bytes that a command takes for each part of a scene.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rates {
+    /// Name of the command.
+    command: &'static str,
+    face: u64,
+    /// For each pixel of the camera.
+    pixel: u64,
+    /// For each pencil of all beams.
+    pencil: u64,
+}
+
+impl Rates {
+    pub(crate) const RENDER: Self = Self { command: "render", face: 180, pixel: 320, pencil: 500 };
+    pub(crate) const VALIDATE: Self = Self { command: "validate", face: 300, pixel: 380, pencil: 600 };
+    pub(crate) const MINIMISE: Self = Self { command: "minimise", ..Self::VALIDATE };
+    pub(crate) const PACK: Self = Self { command: "pack", face: 350, pixel: 660, pencil: 1100 };
+    pub(crate) const CHECK: Self = Self { command: "check", face: 350, pixel: 600, pencil: 900 };
+    pub(crate) const PROBE: Self = Self { command: "probe", face: 260, pixel: 120, pencil: 40 };
+    pub(crate) const DRIVE: Self = Self { command: "drive", face: 300, pixel: 1000, pencil: 600 };
+}
+
+/// Bytes that `cast` takes for each ray, and for each face.
+const CAST: [u64; 2] = [800, 300];
+
+/// The limit of `--max-memory`, bytes; 0: none was given.
+static GIVEN: AtomicU64 = AtomicU64::new(0);
+
+/// Sets the limit. Without one it is the memory of the machine.
+pub(crate) fn begin(max: Option<ByteSize>) {
+    GIVEN.store(max.map_or(0, |max| max.as_u64()), Ordering::Relaxed);
+}
+
+/// The memory of the machine, or of the container if that has less, bytes; `None` where the system does not say.
+fn of_machine() -> Option<u64> {
+    let kind = sysinfo::MemoryRefreshKind::nothing().with_ram();
+    let system = sysinfo::System::new_with_specifics(sysinfo::RefreshKind::nothing().with_memory(kind));
+    let whole = system.total_memory();
+    let least = system.cgroup_limits().map_or(whole, |limits| whole.min(limits.total_memory));
+    (least > 0).then_some(least)
+}
+
+/// Refuses work on a scene for which the memory is not there.
+pub(crate) fn ask(rates: Rates, scene: &Scene) -> Result<(), Trouble> {
+    let cells = |sensor: SensorId| {
+        scene.size(sensor).map_or(0, |(columns, rows)| u64::from(columns) * u64::from(rows))
+    };
+    let faces = scene.mesh().faces().len() as u64;
+    let pixels = cells(SensorId::Camera);
+    let pencils = scene.sensors().filter(|sensor| *sensor != SensorId::Camera).map(cells).sum();
+    refuse_scene(rates, faces, pixels, pencils)
+}
+
+fn refuse_scene(rates: Rates, faces: u64, pixels: u64, pencils: u64) -> Result<(), Trouble> {
+    let Rates { command, face, pixel, pencil } = rates;
+    let parts = [(faces, face), (pixels, pixel), (pencils, pencil)];
+    let words = [
+        counted(faces, "face", "faces"),
+        counted(pixels, "pixel", "pixels"),
+        counted(pencils, "pencil", "pencils"),
+    ];
+    refuse_above(command, needed(&parts), &words.join(", "))
+}
+
+/// Refuses a pack for whose answers the memory is not there. One that cannot be read is told of by its reader.
+pub(crate) fn ask_check(pack: &Path) -> Result<(), Trouble> {
+    let Ok(manifest) = Manifest::read(pack) else { return Ok(()) };
+    let cells = |is_camera: bool| {
+        let sensors = manifest.sensors.iter().filter(|sensor| (sensor.name == "camera") == is_camera);
+        sensors.map(|sensor| u64::from(sensor.columns) * u64::from(sensor.rows)).sum::<u64>()
+    };
+    // A face takes 18 bytes of the file or more: three indices, and half a vertex.
+    let terrain = manifest.files.iter().filter(|file| file.role == FileRole::Terrain);
+    let faces = terrain.map(|file| file.bytes / 18).sum();
+    refuse_scene(Rates::CHECK, faces, cells(true), cells(false))
+}
+
+/// Refuses rays on a mesh for which the memory is not there.
+pub(crate) fn ask_cast(rays: usize, faces: usize) -> Result<(), Trouble> {
+    let [ray, face] = CAST;
+    let (rays, faces) = (rays as u64, faces as u64);
+    let words = format!("{}, {}", counted(rays, "ray", "rays"), counted(faces, "face", "faces"));
+    refuse_above("cast", needed(&[(rays, ray), (faces, face)]), &words)
+}
+
+/// Bytes for so many parts at so many bytes each.
+fn needed(parts: &[(u64, u64)]) -> u64 {
+    parts.iter().fold(BASE, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(*bytes)))
+}
+
+fn refuse_above(command: &str, needed: u64, words: &str) -> Result<(), Trouble> {
+    let given = GIVEN.load(Ordering::Relaxed);
+    let (max, whose) = match given {
+        0 => {
+            (of_machine().unwrap_or(u64::MAX), "the memory of this machine; --max-memory says another limit")
+        }
+        _ => (given, "the limit of --max-memory"),
+    };
+    if needed <= max {
+        return Ok(());
+    }
+    let [needed, max] = [needed, max].map(|bytes| ByteSize(bytes).display().si().to_string());
+    Err(Trouble::Usage(format!("{command}: {words} take about {needed}; expected at most {max}, {whose}")))
+}
+
+/// Bytes as people write them: `2GB`, `512 MiB`, `1500000`.
+pub(crate) fn size(text: &str) -> Result<ByteSize, String> {
+    match text.parse::<ByteSize>() {
+        Ok(size) if size.as_u64() > 0 => Ok(size),
+        _ => Err("expected a size, such as 2GB, 512MiB or a number of bytes".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_as_people_write_them() {
+        for (text, bytes) in [
+            ("2GB", 2_000_000_000),
+            ("512MiB", 512 << 20),
+            ("1500000", 1_500_000),
+            ("1.5 kB", 1500),
+            ("4G", 4_000_000_000),
+        ] {
+            assert_eq!(size(text).map(|size| size.as_u64()), Ok(bytes), "{text}");
+        }
+        for text in ["", "0", "many", "-1GB", "nan", "2 GBs"] {
+            assert!(size(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn no_number_of_parts_wraps_around() {
+        assert_eq!(needed(&[(u64::MAX, 2), (1, 1)]), u64::MAX);
+        assert_eq!(needed(&[(10, 3), (7, 2)]), BASE + 44);
+    }
+
+    #[test]
+    fn the_machine_has_some_memory() {
+        let bytes = of_machine().expect("a system that says it");
+        assert!((64 << 20..1 << 50).contains(&bytes), "{bytes}");
+    }
+}

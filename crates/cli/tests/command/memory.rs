@@ -1,0 +1,121 @@
+//! `--max-memory`: what a command says that it takes is what it takes, and it is asked before the work begins.
+
+use std::path::Path;
+use std::process::Stdio;
+
+use wait4::Wait4;
+
+use crate::{assert_trouble, command, raypencil, text};
+
+/// Most bytes that the program held in memory while it ran.
+fn peak(folder: &Path, arguments: &[&str]) -> u64 {
+    let mut child = command(folder, arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the binary runs");
+    let used = child.wait4().expect("the resources of a child");
+    assert!(matches!(used.status.code(), Some(0 | 1)), "{arguments:?}: {}", used.status);
+    used.rusage.maxrss
+}
+
+/// Bytes that the program says it would take.
+fn said(folder: &Path, arguments: &[&str]) -> u64 {
+    let output = raypencil(folder, &[arguments, &["--max-memory", "1"]].concat());
+    assert_trouble(&output, &["take about", "expected at most 1 B, the limit of --max-memory"]);
+    let message = text(&output.stderr);
+    let words: Vec<&str> = message.split_whitespace().filter(|word| *word != "│").collect();
+    let at = words.windows(2).position(|pair| pair == ["take", "about"]).expect("a size");
+    let size = format!("{} {}", words[at + 2], words[at + 3].trim_end_matches(';'));
+    let bytes: bytesize::ByteSize = size.parse().unwrap_or_else(|error| panic!("{size}: {error}"));
+    bytes.as_u64()
+}
+
+/// Writes a scene with so many faces, pixels to a side, and pencils across and along.
+fn scene(folder: &Path, name: &str, faces: u32, side: u32, pencils: [u32; 2]) -> String {
+    let [columns, rows] = pencils;
+    let text = format!(
+        "version = 1\n[camera]\nwidth_px = {side}\nheight_px = {side}\n[[beam]]\ncolumns = {columns}\nrows = {rows}\n\
+         [terrain]\ngenerate = {{ kind = \"plain\", seed = 1, faces = {faces} }}\n"
+    );
+    let file = format!("{name}.toml");
+    std::fs::write(folder.join(&file), text).expect("a file");
+    file
+}
+
+/// What the program itself takes and every run needs, bytes; the numbers of the scene come on top.
+const BASE: u64 = 24 << 20;
+
+/// The memory that a command says is what it takes, and at most four times as much.
+fn assert_said_is_taken(folder: &Path, arguments: &[&str]) {
+    let (said, taken) = (said(folder, arguments), peak(folder, arguments));
+    assert!(taken <= said, "{arguments:?}: takes {taken} bytes, and says {said}");
+    let least = 4 * taken.saturating_sub(BASE / 4);
+    assert!(said <= BASE + least, "{arguments:?}: says {said} bytes, and takes {taken}");
+}
+
+#[test]
+fn commands_take_the_memory_that_they_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let scenes = [
+        scene(folder, "faces", 200_000, 16, [16, 2]),
+        scene(folder, "pixels", 1000, 512, [16, 2]),
+        scene(folder, "pencils", 1000, 16, [1024, 128]),
+    ];
+    for (number, scene) in scenes.iter().enumerate() {
+        let out = |name: &str| format!("{name}-{number}");
+        let outputs = ["scanline", "tracer", "referee", "validate", "pack"].map(out);
+        for (output, arguments) in [
+            (&outputs[0], vec!["render", scene, "--with", "scanline"]),
+            (&outputs[1], vec!["render", scene, "--with", "tracer"]),
+            (&outputs[2], vec!["render", scene, "--with", "referee"]),
+            (&outputs[3], vec!["validate", scene]),
+            (&outputs[4], vec!["pack", scene, "--no-bench"]),
+        ] {
+            assert_said_is_taken(folder, &[arguments.as_slice(), &["-o", output.as_str()]].concat());
+        }
+        assert_said_is_taken(folder, &["check", &outputs[4], &outputs[4]]);
+        assert_said_is_taken(folder, &["probe", scene, "--pixel", "3,3"]);
+    }
+}
+
+#[test]
+fn casting_takes_the_memory_that_it_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("ground.obj"), "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n").unwrap();
+    let rays = "0,0,1,0,0,-1\n".repeat(200_000);
+    std::fs::write(folder.join("rays.csv"), rays).unwrap();
+    for more in [vec!["--margins"], vec!["-o", "cast"]] {
+        assert_said_is_taken(folder, &[&["cast", "ground.obj", "rays.csv"], more.as_slice()].concat());
+    }
+    assert_said_is_taken(folder, &["pack", "ground.obj", "--rays", "rays.csv", "-o", "pack"]);
+}
+
+#[test]
+fn a_refusal_comes_before_the_work_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // 2^26 pixels: nobody has answered them after the second that this takes.
+    let large = scene(folder, "large", 1000, 8192, [16, 2]);
+    for arguments in [
+        vec!["render", large.as_str(), "--with", "scanline", "-o", "out"],
+        vec!["validate", large.as_str(), "-o", "out"],
+        vec!["pack", large.as_str(), "-o", "out"],
+        vec!["drive", large.as_str(), "--to", "1,0", "-o", "out"],
+    ] {
+        let output = raypencil(folder, &[arguments.as_slice(), &["--max-memory", "100MB"]].concat());
+        assert_trouble(
+            &output,
+            &[
+                "67,108,864 pixels, 32 pencils take about",
+                "expected at most 100.0 MB, the limit of --max-memory",
+            ],
+        );
+        let left = std::fs::read_dir(folder.join("out")).map_or(0, Iterator::count);
+        assert_eq!(left, 0, "{arguments:?} left something");
+    }
+    let output = raypencil(folder, &["probe", "pyramids", "--pixel", "3,3", "--max-memory", "much"]);
+    assert_trouble(&output, &["expected a size, such as 2GB, 512MiB or a number of bytes"]);
+}
