@@ -26,5 +26,5 @@ fn a_terrain_with_a_hostile_record_is_run_again() {
             }
         }
     }
-    assert_eq!((cases.len(), good, foreign), (571, 16, 4), "cases, good ones and foreign ones");
+    assert_eq!((cases.len(), good, foreign), (607, 28, 8), "cases, good ones and foreign ones");
 }

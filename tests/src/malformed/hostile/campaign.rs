@@ -147,7 +147,7 @@ pub fn campaign_records(campaign: &Value) -> Family {
     for (name, text) in changed(&result(campaign, 1)) {
         add(name, text.into_bytes());
     }
-    for (name, bytes) in cut_anywhere(good(1).as_bytes()).into_iter().step_by(16) {
+    for (name, bytes) in cut_anywhere(good(1).as_bytes()).into_iter().step_by(32) {
         add(name, bytes);
     }
     Family { cases, is_good }

@@ -68,12 +68,17 @@ pub(super) fn half_of<T>(values: &[T], place: usize) -> impl Iterator<Item = &T>
     values.iter().skip(place % 2).step_by(2)
 }
 
-/// The text with each word in turn replaced by hostile words. A name says the number of the word and what takes its place.
-pub(super) fn with_each_word(text: &str, separators: &str) -> Vec<(String, String)> {
+/// The text with each word in turn replaced by hostile words, and by each of `others`. A name says the number of the word and what takes its place.
+pub(super) fn with_each_word(
+    text: &str,
+    separators: &str,
+    others: &[(&'static str, &str)],
+) -> Vec<(String, String)> {
     let words = hostile_words();
     let mut texts = vec![("unchanged".to_string(), text.to_string())];
     for (at, place) in places(text, separators).into_iter().enumerate() {
-        for (name, word) in half_of(&words, at) {
+        let hostile = half_of(&words, at).map(|(name, word)| (*name, word.as_str()));
+        for (name, word) in hostile.chain(others.iter().copied()) {
             texts.push((format!("word-{at}-{name}"), replaced(text, place.clone(), word)));
         }
     }
@@ -86,7 +91,7 @@ pub(super) fn cut_anywhere(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
 }
 
 /// Hostile words that are good numbers of a file whose numbers have no range.
-pub(super) const NUMBERS: [&str; 4] = ["half", "minus-one", "two-to-63", "two-to-64"];
+pub(super) const NUMBERS: [&str; 5] = ["four", "half", "minus-one", "two-to-63", "two-to-64"];
 
 /// The number of a replaced word and what took its place, from the name of a case.
 pub(super) fn word_of(name: &str) -> Option<(usize, &str)> {

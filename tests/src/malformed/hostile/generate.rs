@@ -1,7 +1,7 @@
 //! Hostile settings of generated ground, in a scene file and on the command line.
 
 use super::Family;
-use super::edits::{half_of, hostile_toml, hostile_words};
+use super::edits::{hostile_toml, hostile_words};
 use crate::malformed::case::Case;
 
 /// Keys of a Mars-like ground, with values that make a small one.
@@ -59,7 +59,7 @@ pub fn generators() -> Family {
         };
         scene(format!("{ground}-unchanged"), &table(&|_, key, value| format!("{key} = {value}")));
         for (at, (key, _)) in keys.iter().enumerate() {
-            for (name, hostile) in half_of(&values, at) {
+            for (name, hostile) in &values {
                 let one =
                     table(&|k, key, value| format!("{key} = {}", if k == at { hostile } else { value }));
                 scene(format!("{ground}-{key}-{name}"), &one);
@@ -92,20 +92,29 @@ pub fn generators() -> Family {
 }
 
 /// Values in the range of their key or option.
-const GOOD: [&str; 14] = [
+const GOOD: [&str; 23] = [
     "mars-crater_density-half",
+    "mars-crater_density-tiny",
+    "mars-crater_smallest_m-half",
+    "mars-crevasse_depth_m-half",
     "mars-crevasse_overhang_m-half",
+    "mars-crevasse_overhang_m-tiny",
     "mars-crevasse_width_m-half",
+    "mars-fine_radius_m-half",
     "mars-fine_radius_m-tiny",
     "mars-hurst-half",
+    "mars-octave_gains-list",
     "mars-post_spacing_m-half",
+    "mars-rock_largest_m-half",
     "mars-rock_smallest_m-half",
+    "mars-roughness_m-half",
     "mars-roughness_m-tiny",
     "mars-seed-top",
     "option-fine-radius-half",
     "option-post-spacing-half",
     "option-rock-smallest-half",
     "option-seed-two-to-63",
+    "random-extent_m-half",
     "random-seed-top",
 ];
 

@@ -25,7 +25,10 @@ pub fn meshes() -> Family {
         }
     };
     for (ending, text) in [("stl", STL), ("obj", OBJ), ("ply", PLY)] {
-        let words = with_each_word(text, " \n").into_iter().map(|(name, text)| (name, text.into_bytes()));
+        // There are three vertices, numbered from 0 or from 1.
+        let words = with_each_word(text, " \n", &[("four", "4")])
+            .into_iter()
+            .map(|(name, text)| (name, text.into_bytes()));
         add(ending, ending, words.collect());
         add(ending, ending, cut_anywhere(text.as_bytes()));
     }

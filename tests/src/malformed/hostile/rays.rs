@@ -45,7 +45,7 @@ pub fn rays() -> Family {
         let run = format!("cast mesh.obj {file}{out}");
         cases.push(Case::of_file(&name, "changed rays", &run, file, bytes, "").file("mesh.obj", MESH));
     };
-    for (name, text) in with_each_word(CSV, ",\n") {
+    for (name, text) in with_each_word(CSV, ",\n", &[]) {
         add(format!("csv-{name}"), "rays.csv", text.into_bytes());
     }
     for (name, bytes) in cut_anywhere(CSV.as_bytes()) {
