@@ -124,8 +124,8 @@ malformed-inputs:
     cargo run --release -p raypencil-tests --example malformed_inputs > docs/evidence/malformed-inputs.md
 
 # Fuzzes a reader for SECONDS, starting from the malformed inputs: scene_toml, resolved_scene, glb, dem, exr, npy, pfm, stl,
-# obj, ply, manifest, candidate; from nothing: terrain, rays, ray_sets, numbers. Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz
-# --locked); fuzz/README.md
+# obj, ply, manifest, candidate; from good files: terrain, campaign; from nothing: rays, ray_sets, numbers. Needs a nightly
+# compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
 fuzz TARGET SECONDS:
     cargo run --release -p raypencil-tests --example malformed_inputs fuzz/corpus
     cd fuzz && cargo +nightly fuzz run {{ TARGET }} -- -rss_limit_mb=512 -timeout=5 -max_total_time={{ SECONDS }}

@@ -1,5 +1,5 @@
 #!/bin/bash -eu
-# Builds every fuzz target for OSS-Fuzz, with the malformed inputs as the corpus to start from.
+# Builds every fuzz target for OSS-Fuzz, with the malformed inputs, and good files, as the corpus to start from.
 cd "$SRC/raypencil"
 cargo run --release -p raypencil-tests --example malformed_inputs fuzz/corpus
 cargo fuzz build -O

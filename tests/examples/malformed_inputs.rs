@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::Path;
 
+use raypencil_tests::malformed::hostile::seeds;
 use raypencil_tests::malformed::{Item, all, good, table, tiffs};
 
 fn main() -> std::io::Result<()> {
@@ -21,6 +22,11 @@ fn main() -> std::io::Result<()> {
                 fs::write(folder.join(&case.name), bytes)?;
             }
         }
+    }
+    for (target, name, bytes) in seeds() {
+        let folder = Path::new(&folder).join(target);
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join(name), bytes)?;
     }
     Ok(())
 }

@@ -14,6 +14,7 @@
 //! scenes             the scenes of a terrain
 //! terrain -> shard   runs one terrain; runs the terrains of a shard
 //! merge -> totals    the records of all shards; counts and worst errors over them
+//! records            the same files as bytes, for fuzz targets
 //! summary, screen, page   reports for programs and for people, on a screen and as HTML
 //! ```
 //!
@@ -37,6 +38,7 @@ mod page;
 mod plan;
 mod record;
 mod record_check;
+pub mod records;
 mod scenes;
 mod screen;
 mod sealed;

@@ -29,12 +29,31 @@ pub struct Merged {
 /// Names the file that is damaged, that belongs to another campaign, or that another program has made, the shard that is given twice, or the shards that are
 /// missing.
 pub fn merge(folders: &[PathBuf], commit: Option<&str>) -> Result<Merged, CampaignError> {
+    let files = results_in(folders)?;
+    let read = |file: PathBuf| read_result(&file, commit).map(|result| (file, result));
+    if let Some(merged) = merge_results(files.into_iter().map(read))? {
+        return Ok(merged);
+    }
+    let given: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+    Err(CampaignError::Shards {
+        found: format!("no result in {}", given.join(", ")),
+        expected: "folders with a shard-I-of-N.json, which a finished shard leaves".into(),
+    })
+}
+
+/// Merges results, each with the name of its file. `None`: there are none.
+///
+/// # Errors
+/// Those of the results, and those of [`merge`].
+pub(crate) fn merge_results(
+    results: impl Iterator<Item = Result<(PathBuf, (Campaign, ShardResult)), CampaignError>>,
+) -> Result<Option<Merged>, CampaignError> {
     let mut campaign: Option<(Campaign, u64, String)> = None;
     let mut shards: BTreeMap<Shard, String> = BTreeMap::new();
     let mut terrains: BTreeMap<u64, TerrainRecord> = BTreeMap::new();
-    for file in results_in(folders)? {
+    for result in results {
+        let (file, (own, ShardResult { shard, terrains: records })) = result?;
         let name = file.display().to_string();
-        let (own, ShardResult { shard, terrains: records }) = read_result(&file, commit)?;
         let refuse = |found: String, expected: String| refused(&file, found, expected);
         match &campaign {
             None => campaign = Some((own.clone(), shard.count, name.clone())),
@@ -52,13 +71,7 @@ pub fn merge(folders: &[PathBuf], commit: Option<&str>) -> Result<Merged, Campai
         }
         terrains.extend(records.into_iter().map(|record| (record.terrain, record)));
     }
-    let Some((campaign, count, _)) = campaign else {
-        let given: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
-        return Err(CampaignError::Shards {
-            found: format!("no result in {}", given.join(", ")),
-            expected: "folders with a shard-I-of-N.json, which a finished shard leaves".into(),
-        });
-    };
+    let Some((campaign, count, _)) = campaign else { return Ok(None) };
     let mut absent = (0..count).filter(|&index| !shards.contains_key(&Shard { index, count }));
     let first: Vec<String> =
         absent.by_ref().take(MAX_NAMED_SHARDS).map(|index| (index + 1).to_string()).collect();
@@ -70,7 +83,7 @@ pub fn merge(folders: &[PathBuf], commit: Option<&str>) -> Result<Merged, Campai
             expected: "all of them".into(),
         });
     }
-    Ok(Merged { campaign, terrains: terrains.into_values().collect() })
+    Ok(Some(Merged { campaign, terrains: terrains.into_values().collect() }))
 }
 
 /// Paths of the results in the folders, sorted.

@@ -79,5 +79,21 @@ fn check_part(part: &PartRecord) -> Result<(), String> {
             return Err(format!("a text of {} bytes, longer than {MAX_TEXT_BYTES}", text.len()));
         }
     }
+    // Reports show commands with these names, which people copy into a shell.
+    let worst = || part.quantities.iter().flat_map(|one| [&one.worst_error, &one.worst_ratio]).flatten();
+    let sensors = part.wrong.iter().map(|ray| &ray.sensor).chain(worst().map(|worst| &worst.sensor));
+    if let Some(name) = sensors.into_iter().find(|name| !is_sensor(name)) {
+        return Err(format!("a sensor {name:?}, neither `camera` nor `beam-` and its number"));
+    }
+    // Differences and their ratios have no sign.
+    if let Some(value) = worst().filter_map(|worst| worst.value).find(|value| !(*value >= 0.0)) {
+        return Err(format!("a largest value of {value}, below 0"));
+    }
     Ok(())
+}
+
+/// Whether a text is the name of a sensor, as a record has it.
+fn is_sensor(name: &str) -> bool {
+    let is_number = |text: &str| text.parse().is_ok_and(|index: usize| index.to_string() == text);
+    name == "camera" || name.strip_prefix("beam-").is_some_and(is_number)
 }

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use proptest::strategy::{Strategy, ValueTree};
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use proptest::test_runner::{RngAlgorithm, TestRng};
 use raypencil_scene::{Mesh, Mounted, Scene, rig};
 
 use crate::cases::lattice::{Lattice, Sensor};
 use crate::cases::random::{Case, campaign_cases};
 use crate::cases::split_mix::hash;
-use crate::cases::{aimed, at_origin, scene};
+use crate::cases::{aimed, at_origin, drawing, scene};
 use crate::error::CampaignError;
 use crate::plan::Campaign;
 use crate::record::PartName;
@@ -20,16 +20,7 @@ pub(crate) fn case(campaign: &Campaign, terrain: u64) -> Case {
     seed[..8].copy_from_slice(&campaign.seed.to_le_bytes());
     seed[8..16].copy_from_slice(&terrain.to_le_bytes());
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
-    // The variables PROPTEST_... of a developer's tests may not change a campaign: all that a drawing reads is set here,
-    // to proptest's own values.
-    let config = Config {
-        max_local_rejects: 65_536,
-        max_global_rejects: 1024,
-        max_flat_map_regens: 1_000_000,
-        verbose: 0,
-        ..Config::default()
-    };
-    let mut runner = TestRunner::new_with_rng(config, rng);
+    let mut runner = drawing(rng);
     campaign_cases(terrain).new_tree(&mut runner).expect("a strategy that rejects little").current()
 }
 

@@ -34,14 +34,25 @@ pub(crate) fn write_sealed<T: Serialize>(
     campaign: &Campaign,
     contents: &T,
 ) -> Result<(), FileError> {
+    let text = sealed(campaign, contents);
+    write_atomically(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// The text of a file of `campaign`.
+pub(crate) fn sealed<T: Serialize>(campaign: &Campaign, contents: &T) -> String {
     let sealed = serde_json::json!({
         "format": FORMAT,
         "campaign": campaign,
         "sha256": digest(campaign, contents),
         "contents": contents,
     });
-    let text = format!("{sealed}\n");
-    write_atomically(path, |file| file.write_all(text.as_bytes()))
+    format!("{sealed}\n")
+}
+
+/// The text with the digest that its contents have, whatever it stated. `None`: it is no file of a campaign.
+pub(crate) fn sealed_anew<T: Serialize + for<'de> Deserialize<'de>>(text: &[u8]) -> Option<String> {
+    let read: Sealed<T> = serde_json::from_slice(text).ok()?;
+    Some(sealed(&read.campaign, &read.contents))
 }
 
 /// Reads a file of at most `max_bytes` bytes: its campaign and its contents, neither of which is checked further.
@@ -52,9 +63,20 @@ pub(crate) fn read_sealed<T: Serialize + for<'de> Deserialize<'de>>(
     path: &Path,
     max_bytes: u64,
 ) -> Result<(Campaign, T), CampaignError> {
-    let refuse = |found: String, expected: &str| refused(path, found, expected.into());
     let text = bytes::read_file(path, max_bytes).map_err(|error| FileError::io(path, "read", error))?;
-    let sealed: Sealed<T> = serde_json::from_slice(&text)
+    unsealed(&text, path)
+}
+
+/// The campaign and the contents of a file's bytes; `path` is its name in messages.
+///
+/// # Errors
+/// Bytes that are not as they were written.
+pub(crate) fn unsealed<T: Serialize + for<'de> Deserialize<'de>>(
+    text: &[u8],
+    path: &Path,
+) -> Result<(Campaign, T), CampaignError> {
+    let refuse = |found: String, expected: &str| refused(path, found, expected.into());
+    let sealed: Sealed<T> = serde_json::from_slice(text)
         .map_err(|error| refuse(error.to_string(), "a result file of a campaign"))?;
     if sealed.format != FORMAT {
         return Err(refuse(format!("format {}", sealed.format), &format!("format {FORMAT}")));

@@ -97,8 +97,19 @@ pub(crate) fn read_result(
     file: &Path,
     commit: Option<&str>,
 ) -> Result<(Campaign, ShardResult), CampaignError> {
+    checked_result(read_sealed(file, MAX_RESULT_BYTES)?, file, commit)
+}
+
+/// The result, if a shard of a program of this commit can have it.
+///
+/// # Errors
+/// A record that no such shard can have.
+pub(crate) fn checked_result(
+    (campaign, result): (Campaign, ShardResult),
+    file: &Path,
+    commit: Option<&str>,
+) -> Result<(Campaign, ShardResult), CampaignError> {
     let refuse = |(found, expected)| refused(file, found, expected);
-    let (campaign, result) = read_sealed::<ShardResult>(file, MAX_RESULT_BYTES)?;
     let campaign = campaign.checked(commit).map_err(refuse)?;
     let shard = result.shard.checked().map_err(refuse)?;
     if !result.terrains.iter().map(|one| one.terrain).eq(shard.terrains(&campaign)) {
@@ -122,7 +133,20 @@ fn earlier_record(
     number: u64,
 ) -> Result<Option<TerrainRecord>, CampaignError> {
     // What cannot be read is replaced: a pipe, a folder without rights, a file of any size.
-    let Ok((own, record)) = read_sealed::<TerrainRecord>(file, MAX_RECORD_BYTES) else { return Ok(None) };
+    let Ok(read) = read_sealed(file, MAX_RECORD_BYTES) else { return Ok(None) };
+    checked_record(read, file, campaign, number)
+}
+
+/// The record, if it is that of this terrain. `None`: the terrain must be run again.
+///
+/// # Errors
+/// A record of another campaign.
+pub(crate) fn checked_record(
+    (own, record): (Campaign, TerrainRecord),
+    file: &Path,
+    campaign: &Campaign,
+    number: u64,
+) -> Result<Option<TerrainRecord>, CampaignError> {
     if own != *campaign {
         let expected = format!("one of {}: give another campaign a folder of its own", campaign.words());
         return Err(refused(file, format!("a record of {}", own.words()), expected));

@@ -3,11 +3,12 @@
 use std::sync::OnceLock;
 
 use proptest::strategy::{Strategy, ValueTree};
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use raypencil_files::{hex_digits, sha256};
 use raypencil_scene_io::scene_sha256;
 
 use super::aimed;
+use super::drawing;
 use super::lattice::{Lattice, Sensor};
 use super::random::{Case, lit_cases, mars_cases};
 
@@ -23,7 +24,7 @@ pub(crate) fn fingerprint() -> &'static str {
 /// Digests of the sample scenes.
 fn samples() -> Vec<String> {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
-    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    let mut runner = drawing(rng);
     let mut drawn = |strategy: &dyn Fn(&mut TestRunner) -> Case| strategy(&mut runner).scene();
     let lit = drawn(&|runner| lit_cases().new_tree(runner).expect("a case").current());
     let mars = drawn(&|runner| mars_cases().new_tree(runner).expect("a case").current());

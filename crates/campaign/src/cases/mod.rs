@@ -10,15 +10,18 @@
 //! aimed       narrow beams aimed at vertices, edges, silhouettes and grazing faces of a ground
 //! lattice     meshes all of whose vertices lie exactly on rays
 //! fingerprint   a digest of samples of all of them
+//! drawing     a runner of proptest that the environment does not change
 //! ```
 
 pub mod aimed;
+mod drawing;
 mod fingerprint;
 pub mod lattice;
 pub mod mars;
 pub mod random;
 pub(crate) mod split_mix;
 
+pub(crate) use drawing::drawing;
 pub(crate) use fingerprint::fingerprint;
 
 use std::sync::Arc;

@@ -132,6 +132,18 @@ fn counts_that_do_not_fit_together_are_refused() {
     );
     assert!(part_refusal(|part| part.wrong[0].what = "x".repeat(1 << 15)).contains("a text of"));
     assert!(part_refusal(|part| part.failed = Some("x".repeat(1 << 15))).contains("a text of"));
+    // Reports make commands for a shell of a sensor's name.
+    for name in ["", "Camera", "beam-", "beam--1", "beam-01", "beam-0; reboot", "beam-99999999999999999999"] {
+        assert!(part_refusal(|part| part.wrong[0].sensor = name.into()).contains("a sensor"), "{name}");
+        let of_worst = |part: &mut PartRecord| {
+            part.quantities[0].worst_error.as_mut().unwrap().sensor = name.into();
+        };
+        assert!(part_refusal(of_worst).contains("a sensor"), "{name}");
+    }
+    let below_zero = |part: &mut PartRecord| {
+        part.quantities[0].worst_error.as_mut().unwrap().value = Some(-1e-300);
+    };
+    assert!(part_refusal(below_zero).contains("below 0"));
     assert!(part_refusal(|part| part.part = PartName::Lattice).contains("lattice, paper"));
     assert!(refusal(|_, result| result.terrains[0].faces = u64::MAX).contains("faces"));
     assert!(

@@ -31,13 +31,26 @@ fn summary(folder: &Path, name: &str) -> String {
 fn the_variables_of_proptest_change_nothing() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
-    // A runner of proptest's own would draw by the seed that is set here.
-    for (name, value) in [("plain", None), ("set", Some("0"))] {
+    // A runner of proptest's own would draw by the seed that is set here, and would print a line about a value that is none.
+    for (name, value) in [("plain", None), ("zero", Some("0")), ("malformed", Some("abc"))] {
         let line = format!("campaign replay --seed 11 --terrain 3 -o {name}");
         let mut command = command(folder, &words(&line));
-        for variable in
-            ["CASES", "MAX_LOCAL_REJECTS", "MAX_GLOBAL_REJECTS", "MAX_FLAT_MAP_REGENS", "RNG_SEED", "VERBOSE"]
-        {
+        for variable in [
+            "CASES",
+            "MAX_LOCAL_REJECTS",
+            "MAX_GLOBAL_REJECTS",
+            "MAX_FLAT_MAP_REGENS",
+            "MAX_SHRINK_TIME",
+            "MAX_SHRINK_ITERS",
+            "MAX_DEFAULT_SIZE_RANGE",
+            "FORK",
+            "TIMEOUT",
+            "VERBOSE",
+            "RNG_ALGORITHM",
+            "RNG_SEED",
+            "DISABLE_FAILURE_PERSISTENCE",
+            "SUCH_AS_NONE_KNOWS",
+        ] {
             let variable = format!("PROPTEST_{variable}");
             match value {
                 Some(value) => command.env(variable, value),
@@ -49,7 +62,8 @@ fn the_variables_of_proptest_change_nothing() {
         assert!(output.stderr.is_empty(), "{}", crate::text(&output.stderr));
     }
     let read = |name: &str, file: &str| fs::read(folder.join(name).join(file)).expect("a file of the scene");
-    assert!(read("plain", "scene.toml") == read("set", "scene.toml"));
+    assert!(read("plain", "scene.toml") == read("zero", "scene.toml"));
+    assert!(read("plain", "scene.toml") == read("malformed", "scene.toml"));
 }
 
 #[test]

@@ -2,6 +2,8 @@
 #![cfg(unix)]
 // CHOICE: Unix only, because a shell sets the limits. The readers are the same on other systems.
 
+mod hostile;
+
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -103,7 +105,9 @@ fn faults(case: &Case) -> Vec<String> {
     }
     hold(run.printed.is_empty(), format!("printed {:?}", short(&run.printed)));
     hold(run.changed.is_empty(), format!("created or deleted {:?}", run.changed));
-    hold(run.message.matches('×').count() == 1, "not exactly one message".into());
+    // An option that cannot be read has a message of clap's.
+    let messages = run.message.matches('×').count() + usize::from(run.message.starts_with("error: "));
+    hold(messages == 1, "not exactly one message".into());
     hold(!run.message.contains("panicked"), "a panic".into());
     hold(run.message.len() <= MAX_MESSAGE_BYTES, format!("a message of {} bytes", run.message.len()));
     let is_control = |letter: char| letter.is_control() && letter != '\n';
