@@ -124,7 +124,7 @@ malformed-inputs:
     cargo run --release -p raypencil-tests --example malformed_inputs > docs/evidence/malformed-inputs.md
 
 # Fuzzes a reader for SECONDS, starting from the malformed inputs: scene_toml, resolved_scene, glb, dem, exr, npy, pfm, stl,
-# obj, ply, manifest, candidate; from good files: terrain, campaign; from nothing: rays, ray_sets, numbers. Needs a nightly
+# obj, ply, manifest, candidate; from good files: terrain, campaign, camera_info; from nothing: rays, ray_sets, numbers. Needs a nightly
 # compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
 fuzz TARGET SECONDS:
     cargo run --release -p raypencil-tests --example malformed_inputs fuzz/corpus

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_saphyr::{Location, Spanned};
 use std::ops::Range;
+use std::path::Path;
 
 use crate::parse::source::Source;
 use crate::scene_error::SceneIoError;
@@ -18,9 +19,9 @@ pub(crate) const MAX_CAMERA_INFO_BYTES: u64 = 1 << 20;
 /// Most numbers that a calibration lists in one place: the fourteen coefficients of the longest model of distortion.
 const MAX_NUMBERS: usize = 64;
 
-/// Numbers of a camera without distortion.
+/// Numbers of a camera without distortion, as ROS has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct CameraInfo {
+pub struct CameraInfo {
     /// Columns and rows of the image.
     pub size: [i64; 2],
     /// fx and fy, pixels.
@@ -107,18 +108,37 @@ impl<'de> Deserialize<'de> for Numbers {
     }
 }
 
-/// Reads the text of a calibration. `is_rectified`: that of the camera's rectified images, which have no distortion, by the
+/// Reads the text of a calibration of ROS, a file of YAML or a message; `file` is its name in messages. `is_rectified`: that of the camera's rectified images, which have no distortion, by the
 /// projection P; else that of its own images, by the matrix K.
 ///
 /// # Errors
 /// Names the file, the line and what was expected: a file that is none, a camera that is not calibrated, one with skew or
 /// distortion, and one that sends a part of its image or merges its pixels.
-pub(crate) fn camera_info_from_text(source: &Source, is_rectified: bool) -> Result<CameraInfo, SceneIoError> {
+///
+/// ```
+/// use raypencil_scene_io::camera_info_from_text;
+///
+/// let text = "width: 640\nheight: 480\nk: [600, 0, 319.5, 0, 600, 239.5, 0, 0, 1]\n";
+/// let info = camera_info_from_text(text, "left.yaml".as_ref(), false)?;
+/// // The middle of pixel (0, 0) is at (0, 0), so that this is the middle of 640 columns.
+/// assert_eq!((info.size, info.principal_point), ([640, 480], [319.5, 239.5]));
+/// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+/// ```
+pub fn camera_info_from_text(
+    text: &str,
+    file: &Path,
+    is_rectified: bool,
+) -> Result<CameraInfo, SceneIoError> {
+    let source = &Source::unchanged(file, text);
     let messages: Vec<InfoKeys> = serde_saphyr::from_multiple(source.text).map_err(|error| {
         let place = error.location().map_or(0..0, |location| span(source, &location));
         // The place stands before the message already.
         let words = error.without_snippet().to_string();
         let words = words.rsplit_once(" at line ").map_or(words.as_str(), |(words, _)| words);
+        let words = words
+            .replace("invalid floating point", "this is no number")
+            .replace("invalid integer", "this is no whole number")
+            .replace("missing field", "there is no");
         source.error(place, format!("no calibration of a camera in YAML: {words}"))
     })?;
     let Some((keys, others)) = messages.split_first() else {
@@ -160,8 +180,9 @@ impl InfoKeys {
         if let Some(roi) = &self.roi {
             let part = [roi.x_offset, roi.y_offset, roi.width, roi.height];
             if part != [0; 4] && part != [0, 0, size[0], size[1]] {
-                let message =
-                    format!("`roi` is a part of the image, {part:?}; expected the whole image, zeros");
+                let message = format!(
+                    "the camera sends a part of the image, `roi` {part:?}; expected the whole image, zeros"
+                );
                 return Err(source.error(span(source, &self.camera_matrix.referenced), message));
             }
         }
@@ -234,13 +255,10 @@ fn span(source: &Source, location: &Location) -> Range<usize> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
 
     fn read(text: &str, is_rectified: bool) -> Result<CameraInfo, String> {
-        camera_info_from_text(&Source::unchanged(Path::new("left.yaml"), text), is_rectified)
-            .map_err(|error| error.to_string())
+        camera_info_from_text(text, Path::new("left.yaml"), is_rectified).map_err(|error| error.to_string())
     }
 
     /// The file of a calibrator.
@@ -293,9 +311,15 @@ mod tests {
             ),
             (message("- 600.0\n", ""), "the camera matrix K has 8 numbers; expected 3 rows of 3"),
             (message("binning_x: 0", "binning_x: 2"), "the camera merges 2 pixels into one; expected 0 or 1"),
-            (message("x_offset: 0", "x_offset: 8"), "`roi` is a part of the image, [8, 0, 0, 0]"),
-            (message("- 600.0\n", "- north\n"), "left.yaml:15:3: no calibration of a camera in YAML: "),
-            (message("width: 640\n", ""), "missing field `image_width`"),
+            (
+                message("x_offset: 0", "x_offset: 8"),
+                "the camera sends a part of the image, `roi` [8, 0, 0, 0]",
+            ),
+            (
+                message("- 600.0\n", "- north\n"),
+                "left.yaml:16:3: no calibration of a camera in YAML: this is no number",
+            ),
+            (message("width: 640\n", ""), "no calibration of a camera in YAML: there is no `image_width`"),
             (message("- 1.0\nr:", "- 2.0\nr:"), "a camera without skew"),
             (read("", false).unwrap_err(), "the file is empty"),
             (read("k: [", false).unwrap_err(), "no calibration of a camera in YAML"),

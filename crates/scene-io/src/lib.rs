@@ -68,6 +68,7 @@ mod toml_problem;
 /// ```
 pub const SCENE_TEMPLATE: &str = include_str!("template.toml");
 
+pub use camera_info::{CameraInfo, camera_info_from_text};
 pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
 pub use grounds::Grounds;

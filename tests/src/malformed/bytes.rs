@@ -1,4 +1,6 @@
-//! Bytes for malformed files: truncation, deflate streams, digests.
+//! Bytes for malformed files: truncation, deflate streams, digests, and files of a good pack.
+
+use std::path::Path;
 
 /// The lengths to truncate a file to: each of `places`, and `steps` - 1 evenly spaced ones, without duplicates and
 /// below `length`.
@@ -24,4 +26,11 @@ pub fn zlib(bytes: &[u8]) -> Vec<u8> {
 pub fn sha256(bytes: &[u8]) -> String {
     use sha2::Digest;
     sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A file of the committed pack `facets`. Read when a test asks for it, so that this crate is built without the repository around
+/// it, too.
+pub(super) fn of_good_pack(name: &str) -> Vec<u8> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/packs/facets").join(name);
+    std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::bytes::zlib;
+use super::bytes::{of_good_pack, zlib};
 use super::case::{Case, Item};
 
 const FILE: &str = "mine/candidate.json";
@@ -10,8 +10,7 @@ const RUN: &str = "check PACK mine -o out";
 
 /// A note with totals, which other tests change.
 fn note() -> Value {
-    let manifest: Value =
-        serde_json::from_str(include_str!("../../../data/packs/facets/manifest.json")).expect("a manifest");
+    let manifest: Value = serde_json::from_slice(&of_good_pack("manifest.json")).expect("a manifest");
     json!({
         "format": 1, "program": "P 1", "arithmetic": "f64",
         "scene": {"name": "s", "sha256": manifest["scene"]["sha256"]},

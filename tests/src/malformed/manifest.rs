@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::bytes::of_good_pack;
 use super::case::{Case, Item};
 
 const FILE: &str = "pack/manifest.json";
@@ -237,10 +238,10 @@ fn files() -> Vec<Case> {
 
 /// A pack with a correctly listed scene, whose terrain is outside the pack.
 fn ground_outside() -> Case {
-    let toml = include_str!("../../../data/packs/facets/scene.toml").replace("terrain.glb", "../ground.glb");
-    let glb = include_bytes!("../../../data/packs/facets/terrain.glb");
-    let mut manifest: Value =
-        serde_json::from_str(include_str!("../../../data/packs/facets/manifest.json")).expect("a manifest");
+    let toml = String::from_utf8(of_good_pack("scene.toml")).expect("a text");
+    let toml = toml.replace("terrain.glb", "../ground.glb");
+    let glb = of_good_pack("terrain.glb");
+    let mut manifest: Value = serde_json::from_slice(&of_good_pack("manifest.json")).expect("a manifest");
     for entry in manifest["files"].as_array_mut().expect("files") {
         if entry["path"] == "scene.toml" {
             entry["bytes"] = json!(toml.len());
@@ -256,5 +257,5 @@ fn ground_outside() -> Case {
             ("manifest.json", Item::File(manifest.to_string().into_bytes())),
         ],
     )
-    .file("ground.glb", *glb)
+    .file("ground.glb", glb)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use raypencil::campaign::Campaign;
-use raypencil_tests::malformed::hostile::{Family, campaign_records, generators, meshes, rays};
+use raypencil_tests::malformed::hostile::{Family, calibrations, campaign_records, generators, meshes, rays};
 
 use super::{assert_all, faults, run, short};
 
@@ -38,6 +38,11 @@ fn hostile_records_of_a_campaign() {
     let campaign = Campaign::new(5, 2).of_commit(raypencil_cli::commit());
     let campaign = serde_json::to_value(campaign).expect("JSON of numbers and texts");
     assert_family(&campaign_records(&campaign), 639, 29);
+}
+
+#[test]
+fn hostile_calibrations() {
+    assert_family(&calibrations(), 588, 75);
 }
 
 #[test]

@@ -319,6 +319,6 @@ impl Source<'_> {
         let text = String::from_utf8(bytes).map_err(|error| {
             refused(std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error()))
         })?;
-        Ok((camera_info_from_text(&Source::unchanged(&file, &text), is_rectified)?, digest))
+        Ok((camera_info_from_text(&text, &file, is_rectified)?, digest))
     }
 }

@@ -4,14 +4,16 @@
 //! of a small file, so that no check is forgotten. `crates/cli/tests/malformed` runs them under the same limits.
 //!
 //! * [`Family`]: the cases of a reader, and those of them that are good files after all.
-//! * `edits`: cuts, and values in place of others. `campaign`, `rays`, `meshes`, `generate`: the families.
+//! * `edits`: cuts, and values in place of others. `calibrations`, `campaign`, `rays`, `meshes`, `generate`: the families.
 
+mod calibrations;
 mod campaign;
 mod edits;
 mod generate;
 mod meshes;
 mod rays;
 
+pub use calibrations::calibrations;
 pub use campaign::{campaign_records, hostile_record};
 pub use generate::generators;
 pub use meshes::meshes;
@@ -39,6 +41,7 @@ pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
         }
     }
     seeds.push(("terrain", "gltf".into(), [&[3], &super::glb::good()[..]].concat()));
+    seeds.push(("camera_info", "message".into(), calibrations::MESSAGE.into()));
     for (name, bytes) in campaign::good() {
         // As `fuzz/fuzz_targets/campaign.rs` reads it: of this program and sealed there, or as it is.
         for choice in [0, 3] {
