@@ -80,7 +80,8 @@ fn the_published_digests_are_those_of_the_packs() {
     let of_packs = PACKS.iter().map(|pack| format!("{pack}/manifest.json"));
     let of_input = files(&data("packs/input")).into_keys().map(|name| format!("input/{name}"));
     let mut expected: Vec<String> = of_packs.chain(of_input).collect();
-    (names.sort(), expected.sort());
+    names.sort();
+    expected.sort();
     assert_eq!(names, expected);
     for published in PUBLISHED {
         let line = format!("{}  {}/manifest.json", published.sha256, published.name);

@@ -35,7 +35,7 @@ fn a_field_of_view_is_from_edge_to_edge() {
     // The edge is half a pixel beyond the middle of the last one: (511.5 - 256) / 256.
     near(slopes(&square, 511, 0)[0], 255.5 / 256.0);
     // Two angles: pixels that are not square. tan(53.13.../2) = 1/2, so that 128 pixels are half a focal length long.
-    let down = 2.0 * 0.5_f64.atan().to_degrees();
+    let down = 2.0 * libm::atan(0.5).to_degrees();
     let oblong = camera(&format!("width_px = 512\nheight_px = 256\nfield_of_view_deg = [90, {down:?}]"));
     near(oblong.focal_length, 256.0 * 9e-6);
     near(oblong.pixel_pitch[1], oblong.focal_length / 256.0);
