@@ -42,7 +42,8 @@ def test_a_pack_has_a_label_and_is_told_apart(tmp_path: Path) -> None:
     assert every.summary["pack"]["published"]
     asked = [result.summary["verified"] for result in (sampled, every)]
     assert asked[0]["answers"] < asked[0]["of"] == asked[1]["of"] == asked[1]["answers"] == 2866
-    for label, words in (({"version": "one"}, "version"), ({"licence": "a\nb"}, "licence")):
+    labels: list[tuple[dict[str, Any], str]] = [({"version": "one"}, "version"), ({"licence": "a\nb"}, "licence")]
+    for label, words in labels:
         with pytest.raises(RaypencilError, match=words):
             pack(Scene(SMALL), tmp_path / "none", bench=False, **label)
     assert not (tmp_path / "none").exists()

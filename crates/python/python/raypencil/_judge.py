@@ -158,7 +158,7 @@ def _explained(
         _raypencil.pack_rays(core, np.ascontiguousarray(rays[some]), [len(some)], pack, fronts_only, None)
         for name, array in stated.items():
             np.save(candidate / f"{name}.npy", array[some])
-        why = _raypencil.check(pack, candidate, arithmetic, None, False, None, None)["why"]
+        why = _raypencil.check(pack, candidate, arithmetic)["why"]
     return None if why is None else said(why)
 
 
