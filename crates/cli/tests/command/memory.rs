@@ -59,9 +59,9 @@ fn commands_take_the_memory_that_they_say() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let scenes = [
-        scene(folder, "faces", 200_000, 16, [16, 2]),
-        scene(folder, "pixels", 1000, 512, [16, 2]),
-        scene(folder, "pencils", 1000, 16, [1024, 128]),
+        scene(folder, "faces", 100_000, 16, [16, 2]),
+        scene(folder, "pixels", 1000, 384, [16, 2]),
+        scene(folder, "pencils", 1000, 16, [1024, 64]),
     ];
     for (number, scene) in scenes.iter().enumerate() {
         let out = |name: &str| format!("{name}-{number}");
@@ -87,7 +87,7 @@ fn casting_takes_the_memory_that_it_says() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     std::fs::write(folder.join("ground.obj"), "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n").unwrap();
-    let rays = "0,0,1,0,0,-1\n".repeat(200_000);
+    let rays = "0,0,1,0,0,-1\n".repeat(100_000);
     std::fs::write(folder.join("rays.csv"), rays).unwrap();
     for more in [vec!["--margins"], vec!["-o", "cast"]] {
         assert_said_is_taken(folder, &[&["cast", "ground.obj", "rays.csv"], more.as_slice()].concat());
