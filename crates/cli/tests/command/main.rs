@@ -14,6 +14,7 @@ mod help;
 mod injection;
 mod manners;
 mod memory;
+mod messages;
 mod packs;
 mod ray_sets;
 mod scene;
