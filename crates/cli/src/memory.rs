@@ -1,7 +1,7 @@
 //! Asks, before the work begins, whether the memory for it is there: a clear refusal in place of an abort.
 //!
 //! What a command takes grows with the faces of the ground, and with the rays or cells that it answers. The numbers of bytes for
-//! each were measured (`docs/reference/limits.md` has them, and `tests/command/memory.rs` measures them again) and have a third
+//! each were measured (`docs/reference/limits.md` has them, and `tests/memory/main.rs` measures them again) and have a third
 //! on top: they are tuned, not derived.
 
 use std::path::Path;

@@ -108,8 +108,8 @@ impl<'de> Deserialize<'de> for Numbers {
     }
 }
 
-/// Reads the text of a calibration of ROS, a file of YAML or a message; `file` is its name in messages. `is_rectified`: that of the camera's rectified images, which have no distortion, by the
-/// projection P; else that of its own images, by the matrix K.
+/// Reads the text of a calibration of ROS, a file of YAML or a message; `file` is its name in errors. `is_rectified`: that of
+/// the camera's rectified images, which have no distortion, by the projection P; else that of its own images, by the matrix K.
 ///
 /// # Errors
 /// Names the file, the line and what was expected: a file that is none, a camera that is not calibrated, one with skew or
@@ -194,7 +194,12 @@ impl InfoKeys {
             ),
             (true, Some(projection)) => {
                 let rows = matrix(source, projection, "projection P", [3, 4])?;
-                // The fourth column moves a second camera beside the first; here the camera's position says where it is.
+                // Tx and Ty move a second camera beside the first; here the camera's position says where it is.
+                let last = projection.value.0[11];
+                if last != 0.0 {
+                    let message = format!("the last number of the projection P is {last}; expected 0");
+                    return Err(source.error(span(source, &projection.referenced), message));
+                }
                 (rows, "projection P", &projection.referenced)
             }
             (true, None) => {
@@ -330,6 +335,10 @@ mod tests {
             (
                 read(&FILE.replace("projection_matrix", "p_matrix"), true).unwrap_err(),
                 "there is no `projection_matrix` (P)",
+            ),
+            (
+                read(&FILE.replace("0, 0, 1, 0]", "0, 0, 1, -0.5]"), true).unwrap_err(),
+                "left.yaml:18:3: the last number of the projection P is -0.5; expected 0",
             ),
             (
                 read(&MESSAGE.replace("d:\n- 0.0", &format!("d:\n{}", "- 0.0\n".repeat(64))), false)

@@ -129,54 +129,51 @@ pub(crate) fn text_of_ground(key: &str, value: &str) -> String {
     format!("version = 1\n[terrain]\n{key} = {}\n", Value::from(value))
 }
 
-/// Makes room for the first setting of a table that the file leaves out: the default beams, which a file with a beam of its
-/// own does not have. A new ground takes the place of the one before.
+/// Makes room for a setting: the default beams, which a file with a beam of its own does not have; and what cannot stand beside
+/// a new ground or a new description of the image goes.
 fn make_room(root: &mut Table, parts: &[&str]) {
-    match parts {
-        ["beam", ..] if !root.contains_key("beam") => {
-            let mut beams = ArrayOfTables::new();
-            for _ in raypencil_scene::rig::DEFAULT_BEAM_MOUNTS {
-                beams.push(Table::new());
-            }
-            root.insert("beam", Item::ArrayOfTables(beams));
+    let [name, key, ..] = parts else { return };
+    if *name == "beam" && !root.contains_key("beam") {
+        let mut beams = ArrayOfTables::new();
+        for _ in raypencil_scene::rig::DEFAULT_BEAM_MOUNTS {
+            beams.push(Table::new());
         }
-        ["terrain", ground @ ("builtin" | "file" | "dem" | "generate"), ..] => {
-            if let Some(terrain) = root.get_mut("terrain").and_then(Item::as_table_like_mut) {
-                for other in ["builtin", "file", "dem", "generate"].iter().filter(|other| *other != ground) {
-                    terrain.remove(other);
-                }
-                // Axes and unit of a file hold for the next one, such as each terrain of a campaign under one rig.
-                if *ground != "file" {
-                    terrain.remove("up");
-                    terrain.remove("scale");
-                }
-                if *ground != "dem" {
-                    terrain.remove("dem_window_m");
-                    terrain.remove("dem_max_error_m");
-                }
-            }
+        root.insert("beam", Item::ArrayOfTables(beams));
+    }
+    let displaced = match *name {
+        "terrain" => displaced_by_ground(key),
+        "camera" => displaced_by_image(key),
+        _ => return,
+    };
+    if let Some(table) = root.get_mut(name).and_then(Item::as_table_like_mut) {
+        for other in displaced.into_iter().flatten().filter(|other| **other != *key) {
+            table.remove(other);
         }
-        // One description of the image takes the place of the one before.
-        ["camera", way @ ("focal_length_mm" | "field_of_view_deg" | "intrinsics_px" | "camera_info"), ..] => {
-            if let Some(camera) = root.get_mut("camera").and_then(Item::as_table_like_mut) {
-                let image = ["width_px", "height_px"].as_slice();
-                let point = ["principal_point_px"].as_slice();
-                let (gone, too): (&[&str], &[&str]) = match *way {
-                    "camera_info" => (image, point),
-                    "focal_length_mm" => (&[], &[]),
-                    _ => (&[], point),
-                };
-                let ways = ["focal_length_mm", "field_of_view_deg", "intrinsics_px", "camera_info"];
-                let others = ways.iter().filter(|other| *other != way);
-                for key in others.chain(gone).chain(too) {
-                    camera.remove(key);
-                }
-                if *way != "camera_info" {
-                    camera.remove("camera_info_rectified");
-                }
-            }
-        }
-        _ => {}
+    }
+}
+
+/// Keys of `[terrain]` that go when one of them says what the ground is.
+fn displaced_by_ground(key: &str) -> [&'static [&'static str]; 3] {
+    let grounds = &["builtin", "file", "dem", "generate"];
+    let [of_file, of_dem] = [&["up", "scale"], &["dem_window_m", "dem_max_error_m"]];
+    match key {
+        // Axes and unit of a file hold for the next one, such as each terrain of a campaign under one rig.
+        "file" => [grounds, &[], of_dem],
+        "dem" => [grounds, of_file, &[]],
+        "builtin" | "generate" => [grounds, of_file, of_dem],
+        _ => [&[]; 3],
+    }
+}
+
+/// Keys of `[camera]` that go when one of them says how the image is made.
+fn displaced_by_image(key: &str) -> [&'static [&'static str]; 3] {
+    let ways = &["focal_length_mm", "field_of_view_deg", "intrinsics_px", "camera_info"];
+    let of_calibration = &["camera_info_rectified"];
+    match key {
+        "focal_length_mm" => [ways, of_calibration, &[]],
+        "field_of_view_deg" | "intrinsics_px" => [ways, of_calibration, &["principal_point_px"]],
+        "camera_info" => [ways, &["width_px", "height_px"], &["principal_point_px"]],
+        _ => [&[]; 3],
     }
 }
 

@@ -37,8 +37,8 @@ pub(crate) struct Everywhere {
     )]
     pub(crate) threads: Option<u16>,
 
-    /// Refuse work that would take more memory, such as 2GB or 512MiB; default: the memory of the machine. It is asked before
-    /// the work begins.
+    /// Refuse work that would take more memory, such as 2GB or 512MiB; default: the memory of the machine. Asked before the work
+    /// begins, by render, validate, minimise, pack, check, probe, drive and cast.
     #[arg(
         long,
         global = true,

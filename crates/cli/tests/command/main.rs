@@ -13,7 +13,6 @@ mod forged_packs;
 mod help;
 mod injection;
 mod manners;
-mod memory;
 mod messages;
 mod packs;
 mod ray_sets;

@@ -99,7 +99,7 @@ fn wrong_kind(message: &str) -> Option<String> {
         _ => found.to_string(),
     });
     let expected = match expected {
-        "a sequence" => "a list in brackets, or a table with two of them, [[...]], for each part".to_string(),
+        "a sequence" => "a list: of numbers, [1, 2.5]; of tables, each under its [[name]]".to_string(),
         "a map" => "a table of keys, { ... } or [...]".into(),
         "a string" | "string" => "a text in quotes".into(),
         "a boolean" => "true or false".into(),
@@ -160,7 +160,7 @@ mod tests {
             ("unknown field `a`, there are no fields", "unknown key `a`; no keys are expected here"),
             (
                 "invalid type: map, expected a sequence",
-                "a table; expected a list in brackets, or a table with two of them, [[...]], for each part",
+                "a table; expected a list: of numbers, [1, 2.5]; of tables, each under its [[name]]",
             ),
             (
                 "invalid type: string \"pyramids\", expected struct TerrainKeys",
