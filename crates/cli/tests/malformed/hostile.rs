@@ -42,7 +42,7 @@ fn hostile_records_of_a_campaign() {
 
 #[test]
 fn hostile_calibrations() {
-    assert_family(&calibrations(), 588, 75);
+    assert_family(&calibrations(), 588, 73);
 }
 
 #[test]
