@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::double_double::DoubleDouble;
+use crate::elementary;
 use crate::enclosure::{Enclosure, Precision};
 use crate::number::{Dyadic, Number};
 use crate::rounding::Rounded;
@@ -51,7 +52,7 @@ pub(crate) struct WeightSum {
     enclosures: [OnceLock<Enclosure>; PRECISIONS_BITS.len()],
 }
 
-/// Pairs of f64. They have no exp, ln and atan: these are unknown.
+/// Pairs of f64.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fast;
 
@@ -83,12 +84,12 @@ impl Arithmetic for Fast {
         x.sqrt()
     }
 
-    fn exp_minus(&self, _: &DoubleDouble) -> DoubleDouble {
-        DoubleDouble::UNKNOWN
+    fn exp_minus(&self, x: &DoubleDouble) -> DoubleDouble {
+        elementary::exp_minus(x)
     }
 
-    fn atan(&self, _: &DoubleDouble) -> DoubleDouble {
-        DoubleDouble::UNKNOWN
+    fn atan(&self, x: &DoubleDouble) -> DoubleDouble {
+        elementary::atan(x)
     }
 
     fn pi(&self) -> DoubleDouble {
@@ -96,7 +97,7 @@ impl Arithmetic for Fast {
     }
 
     fn ln_2(&self) -> DoubleDouble {
-        DoubleDouble::UNKNOWN
+        elementary::LN_2
     }
 
     fn weight_sum(&self, cache: &WeightSum, form: impl FnOnce() -> DoubleDouble) -> DoubleDouble {

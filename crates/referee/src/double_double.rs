@@ -67,12 +67,22 @@ impl DoubleDouble {
     /// A number of which nothing is known.
     pub(crate) const UNKNOWN: Self = Self { high: 0.0, low: 0.0, error: f64::INFINITY };
     /// pi = 3.14159265358979323846 (its first f64) + 1.2246467991473532e-16 (its second) to 3e-33.
-    pub(crate) const PI: Self =
-        Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16, error: 3e-33 };
+    pub(crate) const PI: Self = Self::constant(std::f64::consts::PI, 1.224_646_799_147_353_2e-16, 3e-33);
+
+    /// A constant by its first two f64, and how far it is from their sum.
+    pub(crate) const fn constant(high: f64, low: f64, error: f64) -> Self {
+        Self { high, low, error }
+    }
+
+    /// The nearest f64, or almost.
+    #[inline]
+    pub(crate) fn high(&self) -> f64 {
+        self.high
+    }
 
     /// An upper bound of the true number's absolute value.
     #[inline]
-    fn upper_bound(&self) -> f64 {
+    pub(crate) fn upper_bound(&self) -> f64 {
         (self.high.abs() + self.low.abs() + self.error) * ROUNDED_UP
     }
 
@@ -126,6 +136,18 @@ impl DoubleDouble {
     #[inline]
     fn with_error(self, error: f64) -> Self {
         if error.is_finite() { Self { error, ..self } } else { Self::UNKNOWN }
+    }
+
+    /// Both f64, and the error.
+    #[cfg(test)]
+    pub(crate) fn parts(&self) -> [f64; 3] {
+        [self.high, self.low, self.error]
+    }
+
+    /// The number, if it may be off by so much more.
+    #[inline]
+    pub(crate) fn with_more_error(self, more: f64) -> Self {
+        self.with_error((self.error + more) * ROUNDED_UP)
     }
 
     /// The number correctly rounded, if that is certain.

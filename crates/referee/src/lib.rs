@@ -45,6 +45,7 @@
 //! ```text
 //! number, vector        intervals and exact dyadic rationals
 //! double_double         pairs of f64 with a proven error
+//! elementary            exp and atan of such pairs
 //! rounding, enclosure   exact quotients and roots, rounded; intervals of any precision
 //! arithmetic            one formula in pairs of f64 and in enclosures
 //! kleene                three-valued logic of intervals
@@ -90,6 +91,7 @@ mod certified;
 mod displacement;
 mod double_double;
 mod edge_filter;
+mod elementary;
 mod enclosure;
 mod face;
 mod face_forms;
