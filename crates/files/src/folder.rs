@@ -10,7 +10,7 @@ use crate::error::FileError;
 #[non_exhaustive]
 pub enum FolderError {
     /// The folder, or a folder inside it, could not be created.
-    #[error("{}: cannot create the folder: {source}", path.display())]
+    #[error("{}: {}", path.display(), no_folder(source))]
     Create {
         /// Path of the folder.
         path: PathBuf,
@@ -42,6 +42,14 @@ pub enum FolderError {
     /// One of the files could not be written; the message names it.
     #[error(transparent)]
     File(#[from] FileError),
+}
+
+/// Why there is no folder, in words.
+fn no_folder(source: &io::Error) -> String {
+    match source.kind() {
+        io::ErrorKind::AlreadyExists => "it is a file; expected a folder, or a new name".into(),
+        _ => format!("cannot create the folder: {source}"),
+    }
 }
 
 /// Creates the output folder of a run and removes `last`, the file by which an earlier run marked it as complete.
