@@ -1,9 +1,11 @@
 //! Record of a run: a file that says by a digest whether it is whole.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use raypencil_files::{FileError, bytes, hex_digits, sha256, write_atomically};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::plan::Sweep;
 use crate::results::Named;
@@ -13,6 +15,15 @@ const FORMAT: u32 = 1;
 
 /// Maximum size of a record, bytes. One has some hundred numbers.
 const MAX_RECORD_BYTES: u64 = 1 << 20;
+
+/// Most results of a run, of which each becomes a column: a drive has about a hundred.
+const MAX_RESULTS: usize = 1000;
+
+/// Most characters of the name of a result.
+const MAX_NAME_CHARS: usize = 200;
+
+/// Most characters of a result that is a text.
+const MAX_TEXT_CHARS: usize = 4000;
 
 /// What a run gave.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -62,12 +73,87 @@ pub(crate) fn write_record(
     write_atomically(record_file(folder, sweep, run), |file| writeln!(file, "{sealed}"))
 }
 
+/// Whether a run may have given that: whoever writes a record by hand can seal it, too.
+fn is_possible(outcome: &Outcome) -> bool {
+    let Outcome::Results(results) = outcome else { return true };
+    let is_name = |name: &str| {
+        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-.".contains(c);
+        !name.is_empty() && name.len() <= MAX_NAME_CHARS && name.chars().all(allowed)
+    };
+    let is_cell = |value: &Value| match value {
+        Value::Null | Value::Bool(_) | Value::Number(_) => true,
+        Value::String(text) => text.len() <= MAX_TEXT_CHARS && !text.chars().any(char::is_control),
+        Value::Array(_) | Value::Object(_) => false,
+    };
+    let names: BTreeSet<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
+    // No run is without any result, and none gives two of one name.
+    !results.is_empty()
+        && results.len() <= MAX_RESULTS
+        && names.len() == results.len()
+        && results.iter().all(|(name, value)| is_name(name) && is_cell(value))
+}
+
 /// Reads a record. `None`: it is not there, damaged, or of another run, and the run must be made again.
 pub(crate) fn read_record(folder: &Path, sweep: &Sweep, run: u64) -> Option<Outcome> {
     let text = bytes::read_file(&record_file(folder, sweep, run), MAX_RECORD_BYTES).ok()?;
     let sealed: Sealed = serde_json::from_slice(&text).ok()?;
     let is_whole = sealed.format == FORMAT
         && sealed.run == sweep.identity(run)
-        && sealed.sha256 == digest(&sealed.run, &sealed.outcome);
+        && sealed.sha256 == digest(&sealed.run, &sealed.outcome)
+        && is_possible(&sealed.outcome);
     is_whole.then_some(sealed.outcome)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Task;
+    use serde_json::json;
+
+    fn read_back(outcome: &Outcome) -> Option<Outcome> {
+        let folder = tempfile::tempdir().unwrap();
+        let sweep = Sweep::new("pyramids", Vec::new(), Task::Render, vec!["scanline".into()], false).unwrap();
+        write_record(folder.path(), &sweep, 0, outcome).unwrap();
+        read_record(folder.path(), &sweep, 0)
+    }
+
+    fn results(results: &[(&str, Value)]) -> Outcome {
+        Outcome::Results(results.iter().map(|(name, value)| (name.to_string(), value.clone())).collect())
+    }
+
+    #[test]
+    fn a_record_is_read_back() {
+        for outcome in [
+            results(&[
+                ("camera.hits", json!(7)),
+                ("beam-0.flux_w", json!(0.5)),
+                ("share", Value::Null),
+                ("goal", json!("met")),
+                ("passes", json!(true)),
+            ]),
+            Outcome::Refused("scene.toml:3:1: unknown key\nKnown keys: ...".into()),
+        ] {
+            assert_eq!(read_back(&outcome).as_ref(), Some(&outcome));
+        }
+    }
+
+    #[test]
+    fn what_no_run_gives_is_no_record_although_it_is_sealed() {
+        let many: Vec<(String, Value)> = (0..=MAX_RESULTS).map(|k| (format!("k{k}"), json!(k))).collect();
+        for outcome in [
+            results(&[]),
+            results(&[("camera.hits", json!(1)), ("camera.hits", json!(2))]),
+            results(&[("", json!(1))]),
+            results(&[("\u{1b}[31mhits", json!(1))]),
+            results(&[("a,b", json!(1))]),
+            results(&[(&"a".repeat(MAX_NAME_CHARS + 1), json!(1))]),
+            results(&[("hits", json!([1, 2]))]),
+            results(&[("hits", json!({ "of": 1 }))]),
+            results(&[("goal", json!("\u{1b}]0;title\u{7}"))]),
+            results(&[("goal", json!("a".repeat(MAX_TEXT_CHARS + 1)))]),
+            Outcome::Results(many),
+        ] {
+            assert_eq!(read_back(&outcome), None, "{outcome:?}");
+        }
+    }
 }
