@@ -112,6 +112,7 @@ mod tests {
 
     fn read_back(outcome: &Outcome) -> Option<Outcome> {
         let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("runs")).unwrap();
         let sweep = Sweep::new("pyramids", Vec::new(), Task::Render, vec!["scanline".into()], false).unwrap();
         write_record(folder.path(), &sweep, 0, outcome).unwrap();
         read_record(folder.path(), &sweep, 0)
