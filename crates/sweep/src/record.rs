@@ -22,7 +22,7 @@ const MAX_RESULTS: usize = 1000;
 /// Most characters of the name of a result.
 const MAX_NAME_CHARS: usize = 200;
 
-/// Most characters of a result that is a text.
+/// Most characters of a result that is a text, and of a reason.
 const MAX_TEXT_CHARS: usize = 4000;
 
 /// What a run gave.
@@ -33,6 +33,14 @@ pub enum Outcome {
     Results(Vec<Named>),
     /// Why it could not be made.
     Refused(String),
+}
+
+impl Outcome {
+    /// A run that could not be made, with the reason in one line: it becomes a cell of the table.
+    pub(crate) fn refused(why: &str) -> Self {
+        let plain = why.chars().map(|c| if c.is_control() { ' ' } else { c });
+        Self::Refused(plain.take(MAX_TEXT_CHARS).collect())
+    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -75,14 +83,18 @@ pub(crate) fn write_record(
 
 /// Whether a run may have given that: whoever writes a record by hand can seal it, too.
 fn is_possible(outcome: &Outcome) -> bool {
-    let Outcome::Results(results) = outcome else { return true };
+    let is_text = |text: &str| text.chars().count() <= MAX_TEXT_CHARS && !text.chars().any(char::is_control);
+    let results = match outcome {
+        Outcome::Results(results) => results,
+        Outcome::Refused(why) => return is_text(why),
+    };
     let is_name = |name: &str| {
         let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-.".contains(c);
         !name.is_empty() && name.len() <= MAX_NAME_CHARS && name.chars().all(allowed)
     };
     let is_cell = |value: &Value| match value {
         Value::Null | Value::Bool(_) | Value::Number(_) => true,
-        Value::String(text) => text.len() <= MAX_TEXT_CHARS && !text.chars().any(char::is_control),
+        Value::String(text) => is_text(text),
         Value::Array(_) | Value::Object(_) => false,
     };
     let names: BTreeSet<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
@@ -132,7 +144,10 @@ mod tests {
                 ("goal", json!("met")),
                 ("passes", json!(true)),
             ]),
-            Outcome::Refused("scene.toml:3:1: unknown key\nKnown keys: ...".into()),
+            Outcome::refused(&format!(
+                "scene.toml:3:1: unknown key\n\u{1b}[8mKnown keys: {}",
+                "é".repeat(9000)
+            )),
         ] {
             assert_eq!(read_back(&outcome).as_ref(), Some(&outcome));
         }
@@ -153,6 +168,9 @@ mod tests {
             results(&[("goal", json!("\u{1b}]0;title\u{7}"))]),
             results(&[("goal", json!("a".repeat(MAX_TEXT_CHARS + 1)))]),
             Outcome::Results(many),
+            Outcome::Refused("no\nAll runs agree".into()),
+            Outcome::Refused("\u{1b}[8mno".into()),
+            Outcome::Refused("a".repeat(MAX_TEXT_CHARS + 1)),
         ] {
             assert_eq!(read_back(&outcome), None, "{outcome:?}");
         }

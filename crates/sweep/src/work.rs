@@ -51,7 +51,7 @@ impl<'a> Worker<'a> {
         let overrides = Overrides { settings: settings.clone(), ..Overrides::default() };
         let loaded = match load_sharing(&self.sweep.scene, &overrides, &self.grounds) {
             Ok(loaded) => loaded,
-            Err(error) => return Ok(Outcome::Refused(error.to_string())),
+            Err(error) => return Ok(Outcome::refused(&error.to_string())),
         };
         let arguments = arguments(&self.sweep.scene, &settings);
         match self.sweep.task {
@@ -93,7 +93,7 @@ impl<'a> Worker<'a> {
                 let summary = serde_json::from_str(&summary).expect("JSON that was just written");
                 Outcome::Results(drive_results(&summary))
             }
-            Err(error) => Outcome::Refused(error.to_string()),
+            Err(error) => Outcome::refused(&error.to_string()),
         }
     }
 }
