@@ -101,7 +101,7 @@ fn what_is_out_of_reach_is_unknown_and_zero_is_not() {
     assert_eq!(rounded(atan(&of(0.0))), Some(0.0));
 }
 
-/// A proof that the pairs decide: what they leave open costs a hundred times as much.
+/// Otherwise every value would take enclosures after all.
 #[test]
 fn most_values_are_decided() {
     let undecided = (1..20_000).filter(|&n| {
