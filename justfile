@@ -57,9 +57,9 @@ python:
 
 # Writes the packs of data/packs again, and runs the programs of reference/ on them
 packs:
-    cargo run --release --bin raypencil -- pack data/scenes/packs/pyramids.toml -o data/packs/pyramids
-    cargo run --release --bin raypencil -- pack data/scenes/packs/facets.toml -o data/packs/facets
-    cargo run --release --bin raypencil -- pack data/scenes/packs/hard.toml -o data/packs/hard
+    cargo run --release --bin raypencil -- pack data/scenes/packs/pyramids.toml --pack-version 1.0.0 --licence CC0-1.0 -o data/packs/pyramids
+    cargo run --release --bin raypencil -- pack data/scenes/packs/facets.toml --pack-version 1.0.0 --licence CC0-1.0 -o data/packs/facets
+    cargo run --release --bin raypencil -- pack data/scenes/packs/hard.toml --pack-version 1.0.0 --licence CC0-1.0 -o data/packs/hard
     cargo run --release --bin raypencil -- pack --input -o data/packs/input
     reference/run.sh target/release/raypencil
 
