@@ -8,10 +8,6 @@ use crate::source::root;
 
 /// The crates that may have unsafe code, and the one file of each that has it.
 const MAY: &[(&str, &str)] = &[
-    // An allocator that counts, in a test.
-    ("files", "tests/formats/memory.rs"),
-    // The same.
-    ("mesh-io", "tests/triangles/memory.rs"),
     // Arrays of NumPy on memory of ours.
     ("python", "src/mesh.rs"),
     // Code for AVX2.

@@ -6,7 +6,7 @@ mod samples;
 mod write;
 
 // The file alone: it counts what a reader asks for.
-#[path = "../triangles/memory.rs"]
+#[path = "../../../files/tests/formats/memory.rs"]
 mod memory;
 
 use std::path::Path;

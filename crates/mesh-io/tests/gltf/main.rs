@@ -16,7 +16,7 @@ use raypencil_scene::Mesh;
 use serde_json::Value;
 
 // The file alone: it counts what a reader asks for.
-#[path = "../triangles/memory.rs"]
+#[path = "../../../files/tests/formats/memory.rs"]
 mod memory;
 
 // The file alone: as a dependency, `raypencil-tests` would build the whole workspace first.

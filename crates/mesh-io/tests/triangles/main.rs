@@ -5,6 +5,7 @@ pub(crate) mod any_bytes;
 pub(crate) mod formats;
 pub(crate) mod gltf;
 pub(crate) mod hostile;
+#[path = "../../../files/tests/formats/memory.rs"]
 pub(crate) mod memory;
 pub(crate) mod samples;
 
