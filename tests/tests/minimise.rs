@@ -160,7 +160,7 @@ fn a_written_reproducer_shows_the_fault_and_is_deterministic() {
     let Place { i, j, .. } = once.place.expect("a place");
     for line in [
         "# farthest".to_string(),
-        "raypencil validate farthest.toml --with tracer,naive".into(),
+        "raypencil validate farthest.toml --with tracer,naive --judge all".into(),
         format!("raypencil probe farthest.toml --with tracer,naive --beam 0 --pencil {i},{j}"),
         format!("2 faces of {} are left. If one is left out, it does not show any more.", once.faces_before),
     ] {

@@ -236,3 +236,31 @@ fn the_difference_of_tied_faces_is_not_an_error_of_flux() {
     let worst = flux.worst_ratio.clone().expect("pencils that agree");
     assert!(worst.value < 0.1, "{worst:?}");
 }
+
+/// Found by a campaign: a needle whose normal a file's first corner gives without any rounding, and the lowest corner, at which
+/// both renderers begin, with a thousand roundings. Neither is wrong.
+#[test]
+#[allow(clippy::excessive_precision, reason = "the numbers of a campaign, to the last digit")]
+fn a_renderer_may_begin_at_any_corner_of_a_face() {
+    let [a, b, c] = [
+        [2.298424005508423, -4.474820137023926, -0.189406618475914],
+        [-0.12348393350839615, -5.487187385559082, 0.6740085482597351],
+        [2.2967379093170166, -4.475577354431152, -0.1887989044189453],
+    ];
+    let exact_normal = DVec3::new(0.28852999696550724, 0.1199101848090539, 0.9499326231002613);
+    // Straight down onto the middle of the needle, from 10 m above it.
+    let above = DVec3::new(1.4905593, -4.8125283, 10.0);
+    let pose = Pose { position: above, rotation: DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0) };
+    let camera = Mounted { scene_from_sensor: pose, sensor: rig::camera(9, 9, 1e-7, 1e-2) };
+    for corners in [[a, b, c], [b, c, a], [c, a, b]] {
+        let scene = scene(mesh(corners.to_vec(), vec![[0, 1, 2]]), camera, Vec::new());
+        let [scanline, tracer] = renderers();
+        let map = scanline.render(&scene, &Request::EVERYTHING).camera.expect("the camera was asked for");
+        let of_hits: Vec<_> = (0..81).filter_map(|k| hit(&map, k % 9, k / 9)).collect();
+        let error = of_hits.iter().map(|hit| (hit.normal - exact_normal).length()).fold(0.0, f64::max);
+        assert!(error > 5e-14, "{} hits, {error}", of_hits.len());
+        let found = &compared(&scene, &*scanline, &*tracer)[0];
+        assert_eq!(found.of(Class::Defect), 0, "{:?}", found.defects);
+        assert!(found.judged > 0);
+    }
+}

@@ -84,7 +84,7 @@ fn write_wrong_scene(
 ) -> Result<(), CampaignError> {
     create_folder(folder)?;
     write_resolved(folder.join(format!("{name}.toml")), scene, &format!("{name}.glb"))?;
-    for (class, verb) in [(Class::Defect, "differ beyond doubt"), (Class::Undecided, "differ, undecided")] {
+    for class in [Class::Defect, Class::Undecided] {
         let Some(first) = first_interesting_ray(contenders, scene, class, JudgeShare::All) else { continue };
         let is_interesting = is_interesting_in_class(contenders, class);
         let Ok(minimised) = minimise(scene, Some(first.place), &is_interesting, MINIMISE_BUDGET, &Silent)
@@ -92,7 +92,11 @@ fn write_wrong_scene(
             continue;
         };
         let [a, b] = contenders.map(|contender| contender.renderer.name());
-        let (name, what) = (format!("{name}-smallest"), format!("{a} and {b} {verb}."));
+        let what = match class {
+            Class::Undecided => format!("{a} and {b} differ, undecided."),
+            _ => format!("{a} or {b} is wrong beyond doubt."),
+        };
+        let name = format!("{name}-smallest");
         let with = typed_contenders(&contenders);
         write_reproducer(folder, &minimised, Reproducer { name: &name, what: &what, with: &with })?;
         break;
@@ -189,7 +193,7 @@ mod tests {
         assert_eq!(load("terrain-000007-own.toml").mesh().faces(), scene.mesh().faces());
         assert_eq!(load("terrain-000007-own-smallest.toml").mesh().faces().len(), 1);
         let words = std::fs::read_to_string(folder.path().join("terrain-000007-own-smallest.md")).unwrap();
-        assert!(words.contains("scanline and tracer differ beyond doubt."), "{words}");
+        assert!(words.contains("scanline or tracer is wrong beyond doubt."), "{words}");
     }
 
     #[test]

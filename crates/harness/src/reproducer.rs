@@ -46,7 +46,8 @@ fn description_of(minimised: &Minimised, Reproducer { name, what, with }: Reprod
     let Minimised { scene, place, faces_before, faces_after, is_finished, .. } = minimised;
     let arguments = format!("{} {with}", quoted(&format!("{name}.toml")));
     let arguments = arguments.trim_end().to_string();
-    let mut commands = vec![format!("raypencil validate {arguments}")];
+    // Both renderers may be wrong in the same way: then only the referee differs.
+    let mut commands = vec![format!("raypencil validate {arguments} --judge all")];
     let sha256 = scene_sha256(scene);
     let subject = Subject { scene: scene.clone(), name: name.into(), arguments, sha256, vehicle: None };
     commands.extend(place.map(|place| probe_command(&subject, place)));

@@ -1,7 +1,8 @@
 //! Bounds of the rounding error of an honest renderer, quantity by quantity, with their derivation.
 //!
-//! Let u be the unit roundoff, and for the face hit: e1 = b - a, e2 = c - a, n = e1 x e2,
-//! kappa = |e1| |e2| / |n| (its aspect: at most longest edge / smallest altitude), L its longest edge.
+//! Let u be the unit roundoff, and for the face hit: e1 = b - a, e2 = c - a, n = e1 x e2, L its longest edge, and
+//! kappa its [aspect]: the largest |e1| |e2| / |n| of its three corners, as the corner a at which a renderer begins is its
+//! own affair (ours begin at the lowest of the three). It is at most longest edge / smallest altitude.
 //! Let the ray start at o, run along q, meet the face at range R under the cosine c = cos(psi), and let
 //! S = R + L + |o|, which is at least the length of every vector that is subtracted or dotted on the way.
 //!
@@ -25,6 +26,7 @@
 use glam::DVec3;
 
 use crate::answer::{StatedHit, StatedReturn};
+use raypencil_referee::aspect;
 use raypencil_scene::{
     Beam, FaceId, Filter, FluxModel, Hit, HitQuantity, HitValue, Mesh, Place, Precision, Profile, Ray,
     Return, Scene,
@@ -145,7 +147,7 @@ impl FaceShape {
         let (e1, e2) = (b - a, c - a);
         let n = e1.cross(e2);
         let n_length = n.length();
-        let aspect = e1.length() * e2.length() / n_length;
+        let aspect = aspect([a, b, c]);
         let longest_edge = e1.length().max(e2.length()).max((c - b).length());
         Self { n, n_length, aspect, longest_edge }
     }

@@ -217,12 +217,13 @@ impl<'a> FaceMarginSearch<'a> {
         points
     }
 
-    /// Points of a face in and near its nearest corner. A corner that the ray all but meets is known more exactly
-    /// than any form.
+    /// Points of a face in and near its nearest corner, and between the points of its sides that the ray passes. These are
+    /// known more exactly than any form.
     fn tips(&self, index: usize) -> Vec<[f64; 2]> {
         let mut points = self.near.displacements_inside_corners(index, 1.0);
         let nearest = points.iter().map(|&at| max_norm(at)).fold(1.0, f64::min);
         points.extend(self.near.displacements_inside_corners(index, (2.0 * nearest).min(1.0)));
+        points.extend(self.near.displacements_between_sides(index));
         points.sort_by(|a, b| max_norm(*a).total_cmp(&max_norm(*b)));
         points
     }

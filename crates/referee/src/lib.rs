@@ -48,6 +48,7 @@
 //! elementary            exp and atan of such pairs
 //! rounding, enclosure   exact quotients and roots, rounded; intervals of any precision
 //! arithmetic            one formula in pairs of f64 and in enclosures
+//! aspect                how badly the normal of a triangle may be rounded
 //! kleene                three-valued logic of intervals
 //! displacement          displacements of a ray, in cells
 //! ray                   the contract's rays, multiplied by their denominators
@@ -84,6 +85,7 @@
 
 mod approximations;
 mod arithmetic;
+mod aspect;
 mod beam_returns;
 mod bvh;
 mod cast;
@@ -138,6 +140,7 @@ struct Readme;
 
 pub use approximations::{Approximations, Explained, Reason};
 pub use arithmetic::Undecided;
+pub use aspect::aspect;
 pub use beam_returns::{BeamReturns, Contribution, RoundedReturn};
 pub use cast::{CastHit, CastMargin, CastMargins, CastRuling, ExactCast, HitGroup, SidedFace};
 pub use certified::{CertifiedMap, CertifiedReturns, PixelSum};

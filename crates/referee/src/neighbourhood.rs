@@ -13,7 +13,7 @@ use crate::face_forms::{Exclusion, FaceForms};
 use crate::form::Form;
 use crate::moving_ray::MovingRay;
 use crate::ray::{Aim, MountedSensor};
-use crate::through_point::displacements_inside_corners;
+use crate::through_point::{displacements_between_sides, displacements_inside_corners};
 use crate::verdict::{Referee, bundle_of};
 
 /// The faces near the ray of one cell.
@@ -92,6 +92,11 @@ impl<'a> Neighbourhood<'a> {
     /// Displacements of at most `max_cells` cells, just inside the corners of a face.
     pub(crate) fn displacements_inside_corners(&self, face: usize, max_cells: f64) -> Vec<[f64; 2]> {
         displacements_inside_corners(self.sensor, self.aim, self.faces[face].face, max_cells)
+    }
+
+    /// Displacements of at most a cell, between the points of a face's sides that the ray passes.
+    pub(crate) fn displacements_between_sides(&self, face: usize) -> Vec<[f64; 2]> {
+        displacements_between_sides(self.sensor, self.aim, self.faces[face].face, 1.0)
     }
 
     /// Extends the known faces to `range`, metres; returns whether there are new ones.

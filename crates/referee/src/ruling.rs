@@ -14,7 +14,7 @@ use crate::face_forms::FaceForms;
 use crate::moving_ray::MovingRay;
 use crate::ray::{Aim, MountedSensor};
 use crate::region::Region;
-use crate::through_point::displacements_inside_corners;
+use crate::through_point::{displacements_between_sides, displacements_inside_corners};
 use crate::verdict::Referee;
 
 /// The tolerances that follow from a renderer's arithmetic.
@@ -159,12 +159,14 @@ impl Referee<'_> {
             at.map(|part| (part * tolerance.lateral).clamp(-tolerance.lateral, tolerance.lateral))
         };
         // Lazily: they are exact and hardly ever needed.
-        let corners = std::iter::once(())
-            .flat_map(|()| displacements_inside_corners(sensor, aim, face, tolerance.lateral));
+        let (most, once) = (tolerance.lateral, || std::iter::once(()));
+        let corners = once().flat_map(|()| displacements_inside_corners(sensor, aim, face, most));
+        let sides = once().flat_map(|()| displacements_between_sides(sensor, aim, face, most));
         tried
             .into_iter()
             .map(scaled)
             .chain(corners)
+            .chain(sides)
             .find(|&[dx, dy]| {
                 let aim = Aim { dx, dy, ..aim };
                 let exact = ExactRay::new(sensor, aim);

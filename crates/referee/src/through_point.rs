@@ -1,5 +1,5 @@
-//! The displacement whose ray passes through a given point, correctly rounded, and displacements just inside the
-//! corners of a face.
+//! The displacement whose ray passes through a given point, correctly rounded; displacements just inside the corners of
+//! a face, and between those points of its sides that the ray passes.
 //!
 //! The forms of a face are linear in f64. Near a corner that the ray all but meets, their error is as large as the
 //! ray's distance from it; where the face is also thin, they cannot tell where it is. The corner itself is known
@@ -16,11 +16,13 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
 use raypencil_scene::Mounted;
 
+use crate::bvh::InBox;
 use crate::displacement::max_norm;
 use crate::face::Face;
-use crate::number::{Dyadic, Number};
+use crate::number::{Dyadic, Interval, Number};
 use crate::ray::{Aim, MountedSensor};
 use crate::rounding::quotient;
 use crate::vector::{ScaledRotation, Vector};
@@ -98,6 +100,45 @@ pub(crate) fn displacements_inside_corners(
         }
     }
     inside
+}
+
+/// Displacements of at most `max_cells` whose rays pass through points of a face between two of its sides, each side being
+/// taken where the cell's ray passes it.
+///
+/// A needle across the ray and almost in a plane with it looks thinner than f64 can tell, and its corners are far away: the
+/// forms do not find it, nor do its corners. These points lie on the face without rounding. Where along its side a point
+/// lies is found in f64: that is wrong by a few roundings of the distance, across the ray, as a renderer is.
+pub(crate) fn displacements_between_sides(
+    sensor: &MountedSensor,
+    aim: Aim,
+    face: &Face,
+    max_cells: f64,
+) -> Vec<[f64; 2]> {
+    let ray = sensor.ray::<Interval>(aim);
+    let middle = |v: &Vector<Interval>| DVec3::from_array(std::array::from_fn(|k| v.0[k].middle()));
+    let (start, along) = (middle(&ray.origin) / ray.origin_scale.middle(), middle(&ray.direction));
+    let corners = face.corners();
+    let passed: Vec<Vector<Dyadic>> = (0..3)
+        .filter_map(|k| {
+            // Nearest to the ray is a + s e with ((a + s e - o) x q).(e x q) = 0.
+            let (a, e) = (corners[k], corners[(k + 1) % 3] - corners[k]);
+            let across = e.cross(along);
+            let s = -(a - start).cross(along).dot(across) / across.length_squared();
+            let s = s.is_finite().then(|| Dyadic::of(s.clamp(0.0, 1.0)))?;
+            let (from, to) = (face.corner::<Dyadic>(k), face.corner::<Dyadic>((k + 1) % 3));
+            Some(from.add(&to.sub(&from).scaled(&s)))
+        })
+        .collect();
+    let mut between = Vec::new();
+    for (k, from) in passed.iter().enumerate() {
+        for to in &passed[k + 1..] {
+            let way = to.sub(from);
+            let at = [0.5, 0.25, 0.75, 0.0, 1.0].map(|share| from.add(&way.scaled(&Dyadic::of(share))));
+            between.extend(at.iter().filter_map(|point| sensor.displacement_through(aim, point)));
+        }
+    }
+    between.retain(|at| max_norm(*at) <= max_cells);
+    between
 }
 
 #[cfg(test)]

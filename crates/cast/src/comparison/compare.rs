@@ -18,7 +18,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_referee::{CastHit, CastRuling, ExactCast, Rounded};
+use raypencil_referee::{CastHit, CastRuling, ExactCast, Rounded, aspect};
 use raypencil_scene::{CastRay, FaceId, Precision, Progress, Sides, Triangles};
 
 use super::stated::Stated;
@@ -205,7 +205,7 @@ impl Judge<'_> {
         let doubled_area = (b - a).cross(c - a).length();
         let longest = edges[0].max(edges[1]).max(edges[2]);
         let shortest = edges[0].min(edges[1]).min(edges[2]);
-        let kappa = (b - a).length() * (c - a).length() / doubled_area;
+        let kappa = aspect([a, b, c]);
         let normal = kappa * (16.0 * u + lateral / shortest);
         match value {
             CastValue::T => range / length,

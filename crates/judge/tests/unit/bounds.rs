@@ -22,26 +22,28 @@ fn mesh_of(corners: [[f32; 3]; 3]) -> Mesh {
 
 #[test]
 fn the_bound_of_a_right_triangle_seen_head_on() {
-    // Legs of 1 m: kappa = 1, L = sqrt 2. From 3 m above its corner at the origin, straight down:
-    // R = 3, |o| = 3, c = 1, so |dR| <= 36 u (6 + sqrt 2), u = 2^-53.
+    // Legs of 1 m: kappa = L = sqrt 2. From 3 m above its corner at the origin, straight down:
+    // R = 3, |o| = 3, c = 1, so |dR| <= 36 kappa u (6 + sqrt 2), u = 2^-53.
     let mesh = mesh_of([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: DVec3::new(0.0, 0.0, -0.5) };
     let bounds = HitBounds::of(&mesh, FaceId(0), &ray, 3.0, Precision::F64);
     let u = 2.0_f64.recip() * f64::EPSILON;
-    let scale = 6.0 + 2.0_f64.sqrt();
-    assert_close(bounds.range, 36.0 * u * scale);
-    assert_close(bounds.point, 54.0 * u * scale);
-    assert_close(bounds.normal, 13.0 * u);
+    let kappa = 2.0_f64.sqrt();
+    let scale = 6.0 + kappa;
+    assert_close(bounds.range, 36.0 * kappa * u * scale);
+    assert_close(bounds.point, (36.0 * kappa + 18.0) * u * scale);
+    assert_close(bounds.normal, 13.0 * kappa * u);
 }
 
 #[test]
 fn the_bound_of_an_oblique_face_from_anywhere() {
-    // Sides of 3, 4 and 5 m and an area of 6 m^2, |n| = 12 m^2. kappa = |e1| |e2| / |n| depends on the first corner:
-    // 3 * 5 / 12, 3 * 4 / 12 or 4 * 5 / 12. L = 5 m for each.
+    // Sides of 3, 4 and 5 m and an area of 6 m^2, |n| = 12 m^2. |e1| |e2| / |n| is 3 * 5 / 12, 3 * 4 / 12 or
+    // 4 * 5 / 12, by the corner at which a renderer begins; kappa is the largest, wherever the file begins. L = 5 m.
     let (p, q, r) = ([1.0, 1.0, 0.0], [4.0, 1.0, 0.0], [4.0, 5.0, 0.0]);
     // |o| = 5 m, |q| = 2 m, cos(psi) = 1.6 / 2, R = 6 m: S = 6 + 5 + 5 m.
     let ray = Ray { origin: DVec3::new(3.0, 0.0, 4.0), direction: DVec3::new(0.0, 1.2, -1.6) };
-    for (corners, kappa) in [([p, q, r], 1.25), ([q, r, p], 1.0), ([r, p, q], 5.0 / 3.0)] {
+    let kappa = 5.0 / 3.0;
+    for corners in [[p, q, r], [q, r, p], [r, p, q]] {
         let bounds = HitBounds::of(&mesh_of(corners), FaceId(0), &ray, 6.0, COARSE);
         let range = 36.0 * kappa * U * 16.0 / 0.8;
         assert_close(bounds.range, range);

@@ -6,7 +6,7 @@
 //! vertex within 8 u S of where it is (three subtractions and a product for each coordinate, and the rounding of vertices
 //! and ray when they are stored), so it decides an edge as for a ray that is moved sideways by as much. It is charged
 //! twice that, delta = 16 u S. It finds the t of a face from n.a' / n.d: the range is then wrong by at most 36 kappa u S / c,
-//! with kappa = |b - a| |c - a| / |n| and c the cosine between ray and normal. It is charged twice that too.
+//! with kappa the [aspect] of the face and c the cosine between ray and normal. It is charged twice that too.
 //!
 //! So a stated face F is excused if there is *one* displacement of at most delta at which the moved ray meets F exactly,
 //! within the ray's ends, and every face that it meets before F is as near to F as the errors of both ranges. A stated miss
@@ -29,6 +29,7 @@ use super::margin::{Frame, onto_face};
 use super::query_ray::QueryRay;
 use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
+use crate::aspect;
 use crate::number::Interval;
 
 /// What the exact answer says of a stated first hit.
@@ -111,9 +112,8 @@ impl ExactCast<'_> {
             let [a, b, c] = face.corners;
             let normal = (b - a).cross(c - a);
             let cosine_length = normal.dot(ray.direction).abs() / QueryRay::length(ray);
-            let error =
-                ALONG * precision.unit_roundoff * self.size(ray) * (b - a).length() * (c - a).length()
-                    / cosine_length;
+            let kappa_n = aspect(face.corners) * normal.length();
+            let error = ALONG * precision.unit_roundoff * self.size(ray) * kappa_n / cosine_length;
             if error.is_nan() { f64::INFINITY } else { error }
         })
     }

@@ -103,3 +103,47 @@ fn the_tip_of_a_needle_is_met_by_a_ray_next_to_it() {
     assert!(margins.face.hi <= 1e-9, "{:?}", margins.face);
     assert!(margins.surface.hi <= 1e-9, "{:?}", margins.surface);
 }
+
+/// A needle 1.6 m long across the ray, whose plane the ray misses by 6e-12 radians: across the ray it is 1e-16 m thin, and
+/// the ray passes 2e-16 m beside it, far from its corners. Found by a campaign.
+#[allow(clippy::excessive_precision, reason = "the numbers of a campaign, to the last digit")]
+fn needle_across() -> Scene {
+    let vertices = vec![
+        [11.54992389678955, 5.256635665893555, -0.05701039731502533],
+        [10.358511924743652, 4.227706432342529, 0.2043776661157608],
+        [11.199811935424805, 4.954240798950195, 0.019805200397968292],
+    ];
+    let ground = Material { name: "ground".into(), reflectivity: 0.25 };
+    let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![ground]).expect("a mesh");
+    let pose = Pose {
+        position: DVec3::new(9.061130115169984, 6.2015420129665735, 0.15479333817261343),
+        rotation: DQuat::from_xyzw(
+            0.7073199381509535,
+            0.005473023423473111,
+            0.4578088300430579,
+            0.5385904067501984,
+        ),
+    };
+    let mut beam = beam(pose, 4e-8, 6.158109287186978e-6, 0.02);
+    (beam.sensor.columns, beam.sensor.rows) = (17, 3);
+    let air = Atmosphere { attenuation: 0.0 };
+    Scene::new(Arc::new(mesh), camera(), vec![beam], air, FluxModel::Radiometric).expect("a scene")
+}
+
+#[test]
+fn a_needle_across_the_ray_is_met_by_a_ray_next_to_it() {
+    let scene = needle_across();
+    let referee = Referee::new(&scene);
+    let beam = SensorId::Beam(0);
+    assert!(!referee.verdict(beam, 8, 1).expect("a pencil").is_hit());
+    let rule = |lateral| {
+        let tolerance = Tolerance { lateral, depth: 1e-9, position: 0.0 };
+        referee.rule(beam, 8, 1, Some(FaceId(0)), tolerance).expect("a pencil")
+    };
+    // 1e-9 cells are 5e-16 m. That the needle is met is no more wrong than that.
+    let Ruling::Rounding(witness) = rule(1e-9) else { panic!("{:?}", rule(1e-9)) };
+    assert!(witness.max_norm() <= 1e-9, "{witness:?}");
+    assert_eq!(rule(1e-12), Ruling::Wrong);
+    let margins = referee.margins(beam, 8, 1).expect("a pencil");
+    assert!(margins.face.hi <= 1e-9 && margins.surface.hi <= 1e-9, "{margins:?}");
+}
