@@ -40,6 +40,14 @@ fn beam(pose: Pose, half_width: f64, thickness: f64, grid_distance: f64) -> Moun
     Mounted { scene_from_sensor: pose, sensor }
 }
 
+/// A scene of one face, under one beam.
+fn one_face(vertices: Vec<[f32; 3]>, beam: Mounted<Beam>) -> Scene {
+    let ground = Material { name: "ground".into(), reflectivity: 0.25 };
+    let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![ground]).expect("a mesh");
+    let air = Atmosphere { attenuation: 0.0 };
+    Scene::new(Arc::new(mesh), camera(), vec![beam], air, FluxModel::Radiometric).expect("a scene")
+}
+
 fn exactly(x: f64, y: f64, z: f64) -> Vector<Dyadic> {
     Vector::of(DVec3::new(x, y, z))
 }
@@ -68,8 +76,6 @@ fn needle() -> Scene {
         [9.750_529, 4.189_095, 0.367_478_55],
         [10.486328125, 3.55859375, 0.125],
     ];
-    let ground = Material { name: "ground".into(), reflectivity: 0.25 };
-    let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![ground]).expect("a mesh");
     let pose = Pose {
         position: DVec3::new(11.312596292665075, -1.7929520999900985, 8.320111742053232),
         rotation: DQuat::from_xyzw(
@@ -80,8 +86,7 @@ fn needle() -> Scene {
         ),
     };
     let beam = beam(pose, 4.76837158203125e-7, 0.00048828125, 0.019999980926513672);
-    let air = Atmosphere { attenuation: 0.0 };
-    Scene::new(Arc::new(mesh), camera(), vec![beam], air, FluxModel::Radiometric).expect("a scene")
+    one_face(vertices, beam)
 }
 
 #[test]
@@ -113,8 +118,6 @@ fn needle_across() -> Scene {
         [10.358511924743652, 4.227706432342529, 0.2043776661157608],
         [11.199811935424805, 4.954240798950195, 0.019805200397968292],
     ];
-    let ground = Material { name: "ground".into(), reflectivity: 0.25 };
-    let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![ground]).expect("a mesh");
     let pose = Pose {
         position: DVec3::new(9.061130115169984, 6.2015420129665735, 0.15479333817261343),
         rotation: DQuat::from_xyzw(
@@ -126,8 +129,7 @@ fn needle_across() -> Scene {
     };
     let mut beam = beam(pose, 4e-8, 6.158109287186978e-6, 0.02);
     (beam.sensor.columns, beam.sensor.rows) = (17, 3);
-    let air = Atmosphere { attenuation: 0.0 };
-    Scene::new(Arc::new(mesh), camera(), vec![beam], air, FluxModel::Radiometric).expect("a scene")
+    one_face(vertices, beam)
 }
 
 #[test]
