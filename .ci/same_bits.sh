@@ -9,22 +9,28 @@ a=$1 b=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# same: whether both builds wrote the same files to $work/a and $work/b, which go then: a hundred megabytes at a time.
 files=0
+same() {
+    diff -r "$work/a" "$work/b"
+    files=$((files + $(find "$work/a" -type f | wc -l)))
+    rm -r "$work/a" "$work/b"
+}
 for scene in data/scenes/pyramids-small.toml data/scenes/facets-small.toml data/scenes/random.toml; do
     for renderer in scanline scanline-paper tracer; do
         for build in a b; do
-            "${!build}" render "$scene" --with "$renderer" --format npy -o "$work/$build/$(basename "$scene")/$renderer" >/dev/null
+            "${!build}" render "$scene" --with "$renderer" --format npy -o "$work/$build" >/dev/null
         done
+        same
     done
 done
 small=(--set camera.width_px=96 --set camera.height_px=96 --set camera.pixel_pitch_um=96 --set 'drive.waypoints_m=[[0.3, 0]]'
     --set drive.scans=false --set drive.sensor=ccd_1989 --set beam.rows=2)
 for build in a b; do
     "${!build}" drive pyramids "${small[@]}" --record npy,points,maps -o "$work/drive-$build" >/dev/null
-    mv "$work/drive-$build/recording" "$work/$build/recording"
+    mv "$work/drive-$build/recording" "$work/$build"
 done
-diff -r "$work/a" "$work/b"
-files=$(find "$work/a" -type f | wc -l)
+same
 [[ $files -gt 300 ]] || { echo "only $files files were compared" >&2; exit 1; }
 echo "$files files of renderings and of a drive are the same"
 
@@ -33,5 +39,6 @@ own=(--pack-version 1.0.0 --licence CC0-1.0)
 for pack in pyramids facets hard; do
     "$b" pack "data/scenes/packs/$pack.toml" "${own[@]}" -o "$work/packs/$pack" >/dev/null
     diff -r "$work/packs/$pack" "data/packs/$pack"
+    rm -r "$work/packs/$pack"
     echo "the pack $pack is the committed one"
 done
