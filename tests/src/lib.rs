@@ -9,6 +9,7 @@
 //!   of an output ([`bits`], [`light_bits`]). `agreement`: a comparison without defects ([`agreement()`]).
 //! * [`light`]: every renderer that computes light, and short access to its results.
 //! * [`naive`]: a third renderer, into which one [`Fault`](naive::Fault) at a time is injected (a crate of its own).
+//! * [`single`]: an honest program in single precision.
 //! * [`injected_faults`]: small scenes that reveal such faults, faults of files, and the search that writes
 //!   `docs/evidence/injected-faults.md`.
 //! * [`planted`]: faults planted in the sources of products, listed in `docs/evidence/shared-faults.md`.
@@ -44,6 +45,7 @@ pub mod planted;
 pub mod quadrature;
 pub mod reproducers;
 pub mod schema;
+pub mod single;
 
 pub use agreement::agreement;
 pub use meshes::{remeshed, unindexed};

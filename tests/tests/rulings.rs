@@ -1,19 +1,23 @@
 //! Classes of differences at the limit of arithmetic: a crack is a defect at any width, and a choice between faces
 //! closer than the rounding error is not.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use raypencil::campaign::{Campaign, PartName, scene_of};
 use raypencil::judge::{Class, Judge, JudgeShare, Quantity, SensorResult, Side, compare_judged};
+use raypencil::referee::{Displacement, Ruling, aspect};
 use raypencil::scanline::Scanline;
 use raypencil::terrain::builtin;
 use raypencil::tracer::Tracer;
 use raypencil::{
-    Camera, Maybe, Mesh, Mounted, Place, Pose, RenderOutput, Renderer, Request, Scene, SensorId,
+    Camera, FaceId, Maybe, Mesh, Mounted, Place, Pose, Precision, RenderOutput, Renderer, Request, Scene,
+    SensorId,
 };
+use raypencil_tests::draws::SplitMix64;
 use raypencil_tests::naive::{Fault, Naive};
-use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene};
+use raypencil_tests::{hit, lattice, mesh, renderers, rig, scene, single};
 
 fn compared(scene: &Scene, a: &dyn Renderer, b: &dyn Renderer) -> Vec<SensorResult> {
     let outputs = [a, b].map(|renderer| renderer.render(scene, &Request::EVERYTHING));
@@ -263,4 +267,75 @@ fn a_renderer_may_begin_at_any_corner_of_a_face() {
         assert_eq!(found.of(Class::Defect), 0, "{:?}", found.defects);
         assert!(found.judged > 0);
     }
+}
+
+/// A plank of 2 to 20 m by 5 to 50 mm, seen along its length by a camera whose middle pixel looks at the plank's middle;
+/// behind it a wall, or nothing. The cosine between the pixel's ray and the plank's normal is `angle` times 5 kappa u of
+/// single precision.
+fn plank_on_end(draws: &mut SplitMix64, angle: f64) -> Scene {
+    let (length, width) = (draws.between(2.0, 20.0), draws.between(5e-3, 0.05));
+    let along = draws.direction();
+    let across = along.cross(draws.direction()).normalize();
+    let at = draws.vector(3.0);
+    let corners = [at, at + length * along + width * across, at + draws.between(0.0, 1.0) * length * along];
+    let corners = corners.map(|corner| corner.as_vec3());
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).normalize());
+    let cosine = angle * 5.0 * aspect([a, b, c]) * Precision::F32.unit_roundoff;
+    let forward = ((b - a).normalize() - cosine * normal).normalize();
+    let position = middle - draws.between(0.7, 3.0) * length * forward;
+    let rotation = DQuat::from_rotation_arc(DVec3::Z, forward);
+    let sensor = rig::camera(9, 9, 1e-5, 1e-2);
+    let mut vertices = corners.map(|corner| corner.to_array()).to_vec();
+    let mut faces = vec![[0, 1, 2]];
+    if draws.between(0.0, 1.0) < 0.5 {
+        let far = middle + draws.between(0.8, 2.0) * length * forward;
+        let (right, down) = forward.any_orthonormal_pair();
+        let wall = [[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]].map(|[x, y]| far + 5.0 * (x * right + y * down));
+        vertices.extend(wall.map(|corner| corner.as_vec3().to_array()));
+        faces.push([3, 5, 4]);
+    }
+    let camera = Mounted { scene_from_sensor: Pose { position, rotation }, sensor };
+    scene(mesh(vertices, faces), camera, Vec::new())
+}
+
+/// Where a face is so slender that rounding turns its normal by more than the angle at which it is seen, an honest program may
+/// take its front for its back. That is not wrong; a program that does so at sixty times this angle is.
+#[test]
+fn an_honest_program_may_lose_a_needle_that_it_sees_edge_on() {
+    let place = Place { sensor: SensorId::Camera, i: 4, j: 4 };
+    let mut draws = SplitMix64::new(36);
+    // Rulings on a program that never sees the plank: where it is edge-on, and at sixty to a hundred times that angle.
+    let [mut edge_on, mut slanting] = [BTreeMap::new(), BTreeMap::new()];
+    let mut lost_in_single = 0;
+    for k in 0..4000 {
+        let is_slanting = k % 4 == 0;
+        let angle = if is_slanting { draws.between(60.0, 100.0) } else { draws.between(-1.0, 1.0) };
+        let scene = plank_on_end(&mut draws, angle);
+        let ray = scene.ray(place.sensor, place.i, place.j).expect("a pixel");
+        let judge = Judge::new(&scene, JudgeShare::All);
+        let rule = |stated| judge.rule(place, stated, None, Precision::F32);
+        let honest = single::first_hit(scene.mesh(), &ray, 1e3);
+        assert_ne!(rule(honest), Ruling::Wrong, "{k}: {honest:?}");
+        let exact = judge.referee().verdict(place.sensor, place.i, place.j).expect("a pixel");
+        if exact.faces != [FaceId(0)] {
+            continue;
+        }
+        let behind = (scene.mesh().faces().len() > 1).then_some(FaceId(1));
+        lost_in_single += u32::from(honest == behind && rule(honest) == Ruling::Rounding(Displacement::ZERO));
+        let kind = match rule(behind) {
+            Ruling::Rounding(Displacement::ZERO) => "edge-on",
+            Ruling::Rounding(_) => "displaced",
+            Ruling::Wrong => "wrong",
+            Ruling::Exact | Ruling::Tie => panic!("{k}: the plank is met"),
+        };
+        *(if is_slanting { &mut slanting } else { &mut edge_on }).entry(kind).or_insert(0) += 1;
+    }
+    let of = |kinds: &BTreeMap<&str, u32>, kind| kinds.get(kind).copied().unwrap_or(0);
+    assert!(of(&edge_on, "edge-on") > 500 && of(&edge_on, "wrong") == 0, "{edge_on:?}");
+    assert!(of(&slanting, "wrong") > 950, "{slanting:?}");
+    assert!(
+        lost_in_single > 30,
+        "{lost_in_single} planks are lost by the honest program and no displaced ray"
+    );
 }

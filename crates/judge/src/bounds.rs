@@ -14,7 +14,8 @@
 //! * n.(a - o): n's error, the subtraction (u S, and u |o| where o had to be formed), a dot product (3 u):
 //!   <= (5 kappa + 6) u |n| S.
 //! * n.q: n's error, the rotation of q by a quaternion or a matrix formed from it (12 u), a dot product
-//!   (3 u): <= (5 kappa + 15) u |n| |q|.
+//!   (3 u): <= (5 kappa + 15) u |n| |q|. Where c is smaller than (5 kappa + 15) u, its sign is open: the referee excuses a
+//!   renderer that takes the front of such a face for its back.
 //! * |n.(a - o)| = |n| R c and |n.q| = |n| |q| c, so the relative error of t is at most
 //!   ((5 kappa + 6) S / R + 5 kappa + 15 + 3) u / c <= 34 kappa u S / (R c), as kappa >= 1 and S >= R.
 //! * R = t |q|, or |q| / (1/t): two more roundings at most, and a square root.
@@ -26,14 +27,11 @@
 use glam::DVec3;
 
 use crate::answer::{StatedHit, StatedReturn};
-use raypencil_referee::aspect;
+use raypencil_referee::{RANGE_ROUNDINGS, aspect};
 use raypencil_scene::{
     Beam, FaceId, Filter, FluxModel, Hit, HitQuantity, HitValue, Mesh, Place, Precision, Profile, Ray,
     Return, Scene,
 };
-
-/// Roundings of the range: |dR| <= RANGE_ROUNDINGS kappa u S / c.
-const RANGE_ROUNDINGS: f64 = 36.0;
 
 /// Roundings of a point along a known range: rotation (12 u R), origin (4 u |o|), sum (u |P|), |P| <= S.
 const POINT_ROUNDINGS: f64 = 18.0;

@@ -188,7 +188,12 @@ impl<'s> Judge<'s> {
     ) -> Tolerance {
         let scene = self.scene;
         let (Some(ray), Some(max_range)) = (scene.ray(sensor, i, j), scene.max_range(sensor)) else {
-            return Tolerance { lateral: MIN_LATERAL_TOLERANCE_CELLS, depth: 0.0, position: 0.0 };
+            return Tolerance {
+                lateral: MIN_LATERAL_TOLERANCE_CELLS,
+                depth: 0.0,
+                position: 0.0,
+                unit_roundoff: precision.unit_roundoff,
+            };
         };
         let mesh = scene.mesh();
         let known = answer.filter(|face| (face.0 as usize) < mesh.faces().len());
@@ -217,7 +222,12 @@ impl<'s> Judge<'s> {
                 (error / range / cell).max(error / row)
             }
         };
-        Tolerance { lateral: lateral.clamp(MIN_LATERAL_TOLERANCE_CELLS, 1.0), depth, position: error }
+        Tolerance {
+            lateral: lateral.clamp(MIN_LATERAL_TOLERANCE_CELLS, 1.0),
+            depth,
+            position: error,
+            unit_roundoff: precision.unit_roundoff,
+        }
     }
 
     /// The scene whose rays are judged.

@@ -47,6 +47,11 @@ impl<'a> ExactRay<'a> {
         &self.fast
     }
 
+    /// The range at which the ray begins, at its cell's centre: t = 1, metres, to f64 rounding.
+    pub(crate) fn start_range(&self) -> f64 {
+        self.fast.direction.length_squared().middle().sqrt() / self.fast.direction_scale.middle()
+    }
+
     /// The ray without rounding.
     pub(crate) fn exact(&self) -> &ScaledRay<Dyadic> {
         self.exact.get_or_init(|| self.sensor.ray(self.aim))
@@ -155,6 +160,23 @@ impl Face {
             && sign(crossing.beyond(max_range, &ray.fast), &|| exact().beyond(max_range, ray.exact()))
                 != Ordering::Greater;
         is_met.then_some(crossing)
+    }
+
+    /// Whether the ray meets this face's plane exactly where it begins, t = 1, or exactly at `max_range`.
+    pub(crate) fn is_at_an_end(&self, ray: &ExactRay<'_>, max_range: f64) -> bool {
+        let ends = |crossing: [Option<Ordering>; 2]| crossing.map(|sign| sign.is_none_or(Ordering::is_eq));
+        let fast = self.crossing(&ray.fast);
+        let may_be = ends([fast.before_plane(&ray.fast), fast.beyond(max_range, &ray.fast)]);
+        may_be.contains(&true) && {
+            let exact = self.crossing(ray.exact());
+            ends([exact.before_plane(ray.exact()), exact.beyond(max_range, ray.exact())]).contains(&true)
+        }
+    }
+
+    /// Whether the line of the ray passes this face's inside, edges and corners included, from either side and at any distance.
+    pub(crate) fn is_crossed_by(&self, ray: &ExactRay<'_>) -> bool {
+        let sides = [0, 1, 2].map(|k| ray.sign(&EdgeSide { face: self, k }));
+        [Ordering::Less, Ordering::Greater].iter().any(|outside| !sides.contains(outside))
     }
 
     /// Whether `other` lies in this face's plane and faces the same way, exactly.

@@ -65,6 +65,7 @@
 //! margin, margins       how far a verdict is from changing, with a witness
 //! face_margin           the margin of the nearest faces
 //! sheet, surface_margin where the range is continuous, and the margin of that
+//! rounded_face          how wrong an honest program may be about one face
 //! ruling                whether an answer is right, or admissible
 //! line_of_sight         the line from the camera to a point, as polynomials
 //! visibility            what the camera sees of a pencil's hit
@@ -115,6 +116,7 @@ mod paper_visibility;
 mod ray;
 mod region;
 mod render;
+mod rounded_face;
 mod rounding;
 mod ruling;
 mod shares;
@@ -150,6 +152,7 @@ pub use margin::Margin;
 pub use margins::Margins;
 pub use paper_visibility::{ExplainedVisibility, VisibilityApproximations, VisibilityReason};
 pub use render::ExactRenderer;
+pub use rounded_face::RANGE_ROUNDINGS;
 pub use rounding::{Format, Rounded};
 pub use ruling::{Ruling, Tolerance};
 pub use values::RoundedHit;

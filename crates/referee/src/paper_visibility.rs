@@ -139,7 +139,7 @@ impl<'a> Section6<'a> {
         let aim = Aim { i: pixel.i, j: pixel.j, dx: 0.0, dy: 0.0 };
         let off = tolerance.depth + tolerance.position;
         // The pixel's ray is displaced by rounding only; points near the image plane have the error `off`.
-        let tolerance = Tolerance { lateral: 1e-9, depth: off, position: off };
+        let tolerance = Tolerance { lateral: 1e-9, depth: off, position: off, ..tolerance };
         let centre = PaperRay::new(camera, aim, Approximations::default(), tolerance);
         Self { with, centre, distance, off }
     }

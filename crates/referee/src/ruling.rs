@@ -1,10 +1,19 @@
 //! Rulings on a hit or a miss: whether an answer is right, or one that a correct renderer of finite precision may
 //! give.
 //!
-//! A renderer with lateral tolerance delta and depth tolerance epsilon may give the exact answer of *some* ray
-//! displaced by at most delta, or name a face that such a ray meets within epsilon of its true range. The ruling
-//! contains that displacement. So a miss at an edge shared by two faces is never admissible: no displaced ray misses
-//! there.
+//! The renderer sees a ray displaced by at most delta; finds ranges up to their errors; and cannot tell the front of a face from
+//! its back where [both look alike](crate::rounded_face) in its arithmetic. So an answer is admissible if *one* such displacement
+//! makes it right:
+//!
+//! * a face F, if the displaced ray meets it, and every face that it meets before F is as near to F as the errors of both ranges,
+//!   or edge-on;
+//! * a miss, if every face that the displaced ray meets is edge-on, or as near to an end of the ray as the error of its range. But
+//!   not exactly there: the contract includes the ends, and only a face in round numbers, made to test that, lies at one.
+//!
+//! The ruling contains the displacement. A miss at an edge shared by two faces is never admissible: each displaced ray meets one
+//! of the two.
+
+use std::cmp::Ordering;
 
 use raypencil_scene::{FaceId, SensorId};
 
@@ -14,19 +23,22 @@ use crate::face_forms::FaceForms;
 use crate::moving_ray::MovingRay;
 use crate::ray::{Aim, MountedSensor};
 use crate::region::Region;
+use crate::rounded_face::RoundedFace;
 use crate::through_point::{displacements_between_sides, displacements_inside_corners};
-use crate::verdict::Referee;
+use crate::verdict::{Referee, bundle};
 
 /// The tolerances that follow from a renderer's arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// delta: displacement of a ray, cells of the sensor; clamped to 0..=1.
     pub lateral: f64,
-    /// epsilon: error of a range, metres.
+    /// epsilon: error of the range of the face that is named, metres.
     pub depth: f64,
     /// Error of a terrain point's position, metres. Rulings on visibility use it, and explanations by the paper's
     /// approximations, whose sides and limits are computed themselves.
     pub position: f64,
+    /// u: the largest relative error of one rounding. The errors of other faces' ranges and normals follow from it.
+    pub unit_roundoff: f64,
 }
 
 /// The referee's ruling on one answer to one ray.
@@ -36,7 +48,8 @@ pub enum Ruling {
     Exact,
     /// One of several faces met at exactly the same point.
     Tie,
-    /// The answer of the ray displaced by this, or a face which that ray meets within epsilon of its range.
+    /// The answer of the ray displaced by this, but for errors of ranges, and for faces whose front the renderer cannot tell
+    /// from their back.
     Rounding(Displacement),
     /// No ray within the tolerance has this answer.
     Wrong,
@@ -54,7 +67,7 @@ impl Referee<'_> {
     /// let scene = wall_scene();
     /// let referee = Referee::new(&scene);
     /// let rule_on_miss = |lateral: f64| {
-    ///     let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
+    ///     let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0, unit_roundoff: 0.0 };
     ///     referee.rule(SensorId::Camera, 4, 4, None, tolerance).unwrap()
     /// };
     /// // Pixel (4, 4) hits the wall, which ends half a cell to the right: a miss is excused only beyond that.
@@ -93,7 +106,7 @@ impl Referee<'_> {
         let tolerance = tolerance();
         let lateral = tolerance.lateral.clamp(0.0, 1.0);
         let witness = match answer {
-            None => self.displaced_miss(&sensor, aim, &nearest, lateral),
+            None => self.displaced_miss(&sensor, aim, &nearest, Tolerance { lateral, ..tolerance }),
             Some(id) => {
                 let mesh = self.scene.mesh();
                 if id.0 as usize >= mesh.faces().len() {
@@ -106,14 +119,15 @@ impl Referee<'_> {
         Some(witness.map_or(Ruling::Wrong, Ruling::Rounding))
     }
 
-    /// A ray within `lateral` cells that misses everything; searched for where a nearest face ends.
+    /// A ray within the tolerance that may be said to miss everything; searched for where a nearest face ends.
     fn displaced_miss(
         &self,
         sensor: &MountedSensor,
         aim: Aim,
         nearest: &[&Face],
-        lateral: f64,
+        tolerance: Tolerance,
     ) -> Option<Displacement> {
+        let lateral = tolerance.lateral;
         let ray = MovingRay::new(sensor, aim);
         let mut tried = vec![];
         for face in nearest {
@@ -130,11 +144,12 @@ impl Referee<'_> {
                 tried.push([x * lateral, y * lateral]);
             }
         }
-        let missed = |[dx, dy]: &[f64; 2]| self.nearest(sensor, Aim { dx: *dx, dy: *dy, ..aim }).is_empty();
+        let missed =
+            |[dx, dy]: &[f64; 2]| self.is_right_for(sensor, Aim { dx: *dx, dy: *dy, ..aim }, None, tolerance);
         tried.into_iter().find(missed).map(|[dx, dy]| Displacement { dx, dy })
     }
 
-    /// A ray within the tolerance that meets `face` first, or within epsilon of the face that it meets first.
+    /// A ray within the tolerance for which `face` may be named.
     fn displaced_hit(
         &self,
         sensor: &MountedSensor,
@@ -167,16 +182,53 @@ impl Referee<'_> {
             .map(scaled)
             .chain(corners)
             .chain(sides)
-            .find(|&[dx, dy]| {
-                let aim = Aim { dx, dy, ..aim };
-                let exact = ExactRay::new(sensor, aim);
-                if !face.is_met_by(&exact, sensor.max_range()) {
+            .find(|&[dx, dy]| self.is_right_for(sensor, Aim { dx, dy, ..aim }, Some(face), tolerance))
+            .map(|[dx, dy]| Displacement { dx, dy })
+    }
+
+    /// Whether a face, or a miss, is the answer of this ray up to the errors of ranges and normals.
+    fn is_right_for(
+        &self,
+        sensor: &MountedSensor,
+        aim: Aim,
+        answer: Option<&Face>,
+        tolerance: Tolerance,
+    ) -> bool {
+        let ray = ExactRay::new(sensor, aim);
+        let (start, end) = (ray.start_range(), sensor.max_range());
+        let seen = |face: &Face| RoundedFace::of(face, &ray, tolerance.unit_roundoff);
+        let named = match answer {
+            None => None,
+            Some(face) => {
+                let Some(named) = seen(face).filter(|_| face.is_crossed_by(&ray)) else { return false };
+                let is_within =
+                    named.range + tolerance.depth >= start && named.range - tolerance.depth <= end;
+                if !is_within || (named.is_back && !named.is_edge_on) {
                     return false;
                 }
-                let first = self.nearest(sensor, aim);
-                let Some(first) = first.first() else { return false };
-                first.id == face.id || face.range(&exact) - first.range(&exact) <= tolerance.depth
-            })
-            .map(|[dx, dy]| Displacement { dx, dy })
+                Some((face, named))
+            }
+        };
+        let mut is_right = true;
+        self.bvh.visit(&bundle(sensor, aim, 0.0), |face| {
+            if is_right && face.is_met_by(&ray, end) {
+                is_right = match (named, seen(face)) {
+                    // Exactly parallel: it was not met.
+                    (_, None) => true,
+                    (_, Some(met)) if met.is_edge_on => true,
+                    (None, Some(met)) => {
+                        let may_end_before =
+                            met.range + met.range_error > end || met.range - met.range_error < start;
+                        may_end_before && !face.is_at_an_end(&ray, end)
+                    }
+                    (Some((named, at)), Some(met)) => {
+                        let is_exact = !at.is_back && named.compare(face, &ray) != Ordering::Greater;
+                        is_exact || at.range - met.range <= tolerance.depth + met.range_error
+                    }
+                };
+            }
+            if is_right { end } else { f64::NEG_INFINITY }
+        });
+        is_right
     }
 }

@@ -129,14 +129,16 @@ pub(crate) fn displacements_between_sides(
             Some(from.add(&to.sub(&from).scaled(&s)))
         })
         .collect();
-    let mut between = Vec::new();
+    let mut points = Vec::new();
     for (k, from) in passed.iter().enumerate() {
         for to in &passed[k + 1..] {
             let way = to.sub(from);
-            let at = [0.5, 0.25, 0.75, 0.0, 1.0].map(|share| from.add(&way.scaled(&Dyadic::of(share))));
-            between.extend(at.iter().filter_map(|point| sensor.displacement_through(aim, point)));
+            points.extend([0.5, 0.25, 0.75].map(|share| from.add(&way.scaled(&Dyadic::of(share)))));
         }
     }
+    points.extend(passed);
+    let mut between: Vec<[f64; 2]> =
+        points.iter().filter_map(|point| sensor.displacement_through(aim, point)).collect();
     between.retain(|at| max_norm(*at) <= max_cells);
     between
 }

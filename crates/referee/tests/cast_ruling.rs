@@ -132,3 +132,19 @@ fn a_side_that_does_not_count_is_no_excuse() {
     assert_eq!(exact.rule(&up, Sides::Fronts, None, Precision::F64), CastRuling::Same);
     assert_eq!(exact.rule(&up, Sides::Fronts, Some(FaceId(0)), Precision::F64), CastRuling::Wrong);
 }
+
+/// The back of a face does not count, unless the program cannot tell it from the front: up to a cosine of 2 (5 kappa + 15) u.
+#[test]
+fn the_back_of_a_face_that_is_edge_on_may_be_hit() {
+    // n = (0, -4, 2 d), seen along z: the cosine is d/2 from behind, and kappa = sqrt 5 sqrt 5 / 4.
+    let d = 1.0 / 1024.0;
+    let corners = vec![[-1.0, -d / 2.0, 1.0], [1.0, -d / 2.0, 1.0], [0.0, d / 2.0, 3.0]];
+    let mesh = Triangles::new(corners, vec![[0, 1, 2]]).unwrap();
+    let ray = CastRay::new(DVec3::ZERO, DVec3::Z);
+    let least = d / 2.0 / (2.0 * (5.0 * 1.25 + 15.0));
+    let rule = |unit_roundoff: f64| {
+        ExactCast::new(&mesh).rule(&ray, Sides::Fronts, Some(FaceId(0)), Precision { unit_roundoff })
+    };
+    assert_eq!(rule(0.99 * least), CastRuling::Wrong);
+    assert!(is_rounding(rule(1.01 * least)));
+}

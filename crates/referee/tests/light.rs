@@ -252,7 +252,7 @@ fn a_landing_is_excused_as_far_as_the_position_explains_it() {
     let scene = Setting::of(FluxModel::Radiometric).scene();
     let referee = Referee::new(&scene);
     let rule = |pixel: Option<Pixel>, position: f64| {
-        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position };
+        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position, unit_roundoff: 0.0 };
         let ruling = referee.rule_visibility(0, 0, 0, Displacement::ZERO, FaceId(0), true, pixel, tolerance);
         ruling.expect("a pencil").pixel
     };
@@ -301,5 +301,36 @@ fn a_landing_on_a_border_is_in_the_pixel_that_begins_there() {
             let Some(sight) = referee.visibility(0, i, 0, Displacement::ZERO) else { continue };
             assert_eq!(sight.pixel, Some(Pixel { i: 2 * i + 1, j: 32 }), "pencil {i} of {n}");
         }
+    }
+}
+
+/// A renderer knows a plane no better than its normal: n.(p - a) is off by up to (5 kappa + 6) u |n| S. Up to there it may take
+/// the point, or the camera, to be on either side of a face between them.
+#[test]
+fn a_face_is_told_from_the_point_as_well_as_its_plane_is_known() {
+    let kappa = 2.0_f64.sqrt();
+    // Legs of 3 m: kappa = 3 (3 sqrt 2) / 9. The camera is 1 m from the scene's origin and sqrt 5 m from the point.
+    let per_roundoff = (5.0 * kappa + 6.0) * (1.0 + 5.0_f64.sqrt() + 3.0 * 2.0_f64.sqrt());
+    let rule = |occluder: [[f32; 3]; 3], unit_roundoff: f64| {
+        let scene = Setting { faces: vec![WALL, occluder], ..Setting::of(FluxModel::Radiometric) }.scene();
+        let referee = Referee::new(&scene);
+        let exact = referee.visibility(0, 0, 0, Displacement::ZERO).expect("a pencil");
+        assert_eq!((exact.visible, exact.pixel), (false, Some(Pixel { i: 0, j: 32 })));
+        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
+        let pixel = exact.pixel;
+        let ruling = referee.rule_visibility(0, 0, 0, Displacement::ZERO, FaceId(0), true, pixel, tolerance);
+        ruling.expect("a pencil").visible
+    };
+    let off = 1.0 / 128.0;
+    // That far before the wall, its back to the pencil.
+    let z = 2.0 - off as f32;
+    let lid = [[-1.0, -1.0, z], [2.0, -1.0, z], [-1.0, 2.0, z]];
+    // That far beside the camera, 1 m from the point. It crosses the way at z = 2 off, which must be beyond the lens: 1/128 m.
+    let x = 1.0 - off as f32;
+    let screen = [[x, -1.0, -1.0], [x, -1.0, 2.0], [x, 2.0, -1.0]];
+    for occluder in [lid, screen] {
+        assert_eq!(rule(occluder, 0.0), Ruling::Wrong);
+        assert_eq!(rule(occluder, 0.99 * off / per_roundoff), Ruling::Wrong);
+        assert_eq!(rule(occluder, 1.01 * off / per_roundoff), Ruling::Rounding(Displacement::ZERO));
     }
 }

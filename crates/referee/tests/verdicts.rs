@@ -127,7 +127,13 @@ fn rulings_tell_rounding_from_wrong() {
     let referee = Referee::new(&scene);
     let rule = |i, answer: Option<u32>, lateral| {
         referee
-            .rule(CAMERA, i, 4, answer.map(FaceId), Tolerance { lateral, depth: 1e-12, position: 0.0 })
+            .rule(
+                CAMERA,
+                i,
+                4,
+                answer.map(FaceId),
+                Tolerance { lateral, depth: 1e-12, position: 0.0, unit_roundoff: 0.0 },
+            )
             .unwrap()
     };
     // On the edge of faces 0 and 5: both tie. A miss there is never admissible, however coarse.
@@ -140,8 +146,13 @@ fn rulings_tell_rounding_from_wrong() {
     assert_eq!(rule(4, Some(3), 1e-9), Ruling::Tie);
     assert_eq!(rule(4, None, 1e-3), Ruling::Wrong);
     // An index that the mesh does not have.
-    let none =
-        referee.rule(CAMERA, 4, 4, Some(FaceId(6)), Tolerance { lateral: 1e-9, depth: 0.0, position: 0.0 });
+    let none = referee.rule(
+        CAMERA,
+        4,
+        4,
+        Some(FaceId(6)),
+        Tolerance { lateral: 1e-9, depth: 0.0, position: 0.0, unit_roundoff: 0.0 },
+    );
     assert_eq!(none, None);
 }
 
@@ -153,8 +164,11 @@ fn an_answer_just_beyond_an_edge_is_rounding_with_its_witness() {
     let scene = looking_along_z(vertices, vec![[0, 2, 1]], 100.0);
     let referee = Referee::new(&scene);
     assert_eq!(faces(&scene, 4, 4), [0]);
-    let rule =
-        |lateral| referee.rule(CAMERA, 4, 4, None, Tolerance { lateral, depth: 0.0, position: 0.0 }).unwrap();
+    let rule = |lateral| {
+        referee
+            .rule(CAMERA, 4, 4, None, Tolerance { lateral, depth: 0.0, position: 0.0, unit_roundoff: 0.0 })
+            .unwrap()
+    };
     assert_eq!(rule(1e-9), Ruling::Wrong);
     let Ruling::Rounding(by) = rule(1e-8) else { panic!("{:?}", rule(1e-8)) };
     assert!(by.max_norm() <= 1e-8);
@@ -174,11 +188,97 @@ fn faces_one_ulp_apart_are_rounding_in_depth() {
     let scene = looking_along_z(vertices, vec![[0, 2, 1], [3, 5, 4]], 100.0);
     assert_eq!(faces(&scene, 4, 4), [0]);
     let rule = |depth| {
-        let tolerance = Tolerance { lateral: 1e-9, depth, position: 0.0 };
+        let tolerance = Tolerance { lateral: 1e-9, depth, position: 0.0, unit_roundoff: 0.0 };
         Referee::new(&scene).rule(CAMERA, 4, 4, Some(FaceId(1)), tolerance).unwrap()
     };
     assert_eq!(rule(1e-12), Ruling::Wrong);
     assert_eq!(rule(3e-7), Ruling::Rounding(Displacement::ZERO));
+}
+
+/// The error of a range is 36 kappa u S / c, of the face that is in the way as well as of the one that is named.
+#[test]
+fn a_face_in_the_way_has_an_error_of_its_own() {
+    let far = 2.0_f32.next_up();
+    let vertices =
+        [2.0, far].iter().flat_map(|&z| [[-9.0, -9.0, z], [9.0, -9.0, z], [0.0, 9.0, z]]).collect();
+    let scene = looking_along_z(vertices, vec![[0, 2, 1], [3, 5, 4]], 100.0);
+    // Edges of 18 m and twice sqrt(405) m, |n| = 324 m^2: kappa = 405/324. R = 2 m, c = 1.
+    let gap = f64::from(far) - 2.0;
+    let least = gap / (36.0 * (405.0 / 324.0) * (2.0 + 405.0_f64.sqrt()));
+    let rule = |unit_roundoff: f64| {
+        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
+        Referee::new(&scene).rule(CAMERA, 4, 4, Some(FaceId(1)), tolerance).unwrap()
+    };
+    assert_eq!(rule(0.99 * least), Ruling::Wrong);
+    assert_eq!(rule(1.01 * least), Ruling::Rounding(Displacement::ZERO));
+}
+
+/// A ray begins at t = 1 and ends at its longest range. A renderer knows on which side of an end a face lies as well as it
+/// knows its range.
+#[test]
+fn the_ends_of_a_ray_are_as_sharp_as_ranges_are() {
+    let off = 1.0 / f64::from(1 << 20);
+    // Pixel (4, 4): |q| = 1/2 m.
+    for (end, inwards) in [(0.5, 1.0), (8.0, -1.0)] {
+        let scene = |z: f64| {
+            let wall = vec![[-90.0, -90.0, z as f32], [90.0, -90.0, z as f32], [0.0, 90.0, z as f32]];
+            looking_along_z(wall, vec![[0, 2, 1]], 8.0)
+        };
+        // Beyond the end, and named.
+        let outside = scene(end - inwards * off);
+        assert_eq!(faces(&outside, 4, 4), []);
+        let rule = |depth: f64| {
+            let tolerance = Tolerance { lateral: 0.0, depth, position: 0.0, unit_roundoff: 0.0 };
+            Referee::new(&outside).rule(CAMERA, 4, 4, Some(FaceId(0)), tolerance).unwrap()
+        };
+        assert_eq!(rule(0.99 * off), Ruling::Wrong, "{end}");
+        assert_eq!(rule(1.01 * off), Ruling::Rounding(Displacement::ZERO), "{end}");
+        // Exactly at the end it is met, as the contract says.
+        let at_end = scene(end);
+        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff: 1e-6 };
+        assert_eq!(Referee::new(&at_end).rule(CAMERA, 4, 4, None, tolerance), Some(Ruling::Wrong), "{end}");
+        // Before the end, and lost: 36 kappa u S with edges of 180 m and twice sqrt(40500) m, |n| = 180^2 m^2.
+        let inside = scene(end + inwards * off);
+        assert_eq!(faces(&inside, 4, 4), [0]);
+        let least = off / (36.0 * (40500.0 / 32400.0) * (end + 40500.0_f64.sqrt()));
+        let rule = |unit_roundoff: f64| {
+            let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
+            Referee::new(&inside).rule(CAMERA, 4, 4, None, tolerance).unwrap()
+        };
+        assert_eq!(rule(0.99 * least), Ruling::Wrong, "{end}");
+        assert_eq!(rule(1.01 * least), Ruling::Rounding(Displacement::ZERO), "{end}");
+    }
+}
+
+/// Up to a cosine of (5 kappa + 15) u the front of a face is not told from its back.
+#[test]
+fn an_edge_on_face_may_be_met_from_behind_or_not_at_all() {
+    // From (-+1, -d/2, 1) to (0, d/2, 3): n = (0, -4, 2 d) m^2, the cosine is d/2, and kappa = sqrt 5 sqrt 5 / 4. A wall far
+    // behind it.
+    let scene = |d: f32| {
+        let vertices = vec![
+            [-1.0, -d / 2.0, 1.0],
+            [1.0, -d / 2.0, 1.0],
+            [0.0, d / 2.0, 3.0],
+            [-90.0, -90.0, 90.0],
+            [90.0, -90.0, 90.0],
+            [0.0, 90.0, 90.0],
+        ];
+        looking_along_z(vertices, vec![[0, 1, 2], [3, 5, 4]], 100.0)
+    };
+    let least = 0.5 / 1024.0 / (5.0 * 1.25 + 15.0);
+    let rule = |scene: &Scene, answer: u32, unit_roundoff: f64| {
+        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
+        Referee::new(scene).rule(CAMERA, 4, 4, Some(FaceId(answer)), tolerance).unwrap()
+    };
+    let [behind, before] = [scene(1.0 / 1024.0), scene(-1.0 / 1024.0)];
+    assert_eq!((faces(&behind, 4, 4), faces(&before, 4, 4)), (vec![1], vec![0]));
+    for (scene, wrong_answer) in [(&behind, 0), (&before, 1)] {
+        assert_eq!(rule(scene, wrong_answer, 0.99 * least), Ruling::Wrong, "{wrong_answer}");
+        assert_eq!(rule(scene, wrong_answer, 1.01 * least), Ruling::Rounding(Displacement::ZERO));
+    }
+    // Seen exactly along its plane it is never met, however coarse the arithmetic.
+    assert_eq!(rule(&scene(0.0), 0, 1e-3), Ruling::Wrong);
 }
 
 /// No ray is displaced by more than a cell, however coarse a renderer's arithmetic is.
@@ -198,7 +298,7 @@ fn a_tolerance_is_a_cell_at_most() {
     let scene = looking_along_z(vertices, vec![[0, 2, 1], [0, 3, 2], [4, 6, 5]], 100.0);
     let referee = Referee::new(&scene);
     let rule = |answer: Option<FaceId>, lateral: f64| {
-        let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
+        let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0, unit_roundoff: 0.0 };
         referee.rule(CAMERA, 4, 4, answer, tolerance).expect("a pixel")
     };
     assert_eq!(faces(&scene, 4, 4), [0]);

@@ -79,32 +79,40 @@ fn assert_said_is_taken(folder: &Path, arguments: &[&str]) {
     assert!(said <= BASE + least, "{arguments:?}: says {said} bytes, and takes {taken}");
 }
 
-#[test]
-fn commands_take_the_memory_that_they_say() {
+/// Every command that takes a scene keeps to what it says for this one.
+fn assert_commands_take_what_they_say(faces: u32, side: u32, pencils: [u32; 2]) {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let scenes = [
-        scene(folder, "faces", 100_000, 16, [16, 2]),
-        scene(folder, "pixels", 1000, 384, [16, 2]),
-        scene(folder, "pencils", 1000, 16, [1024, 64]),
-    ];
-    for (number, scene) in scenes.iter().enumerate() {
-        let out = |name: &str| format!("{name}-{number}");
-        let outputs = ["scanline", "tracer", "referee", "validate", "pack"].map(out);
-        for (output, arguments) in [
-            (&outputs[0], vec!["render", scene, "--with", "scanline"]),
-            (&outputs[1], vec!["render", scene, "--with", "tracer"]),
-            (&outputs[2], vec!["render", scene, "--with", "referee"]),
-            (&outputs[3], vec!["validate", scene]),
-            (&outputs[4], vec!["pack", scene, "--no-bench"]),
-        ] {
-            assert_said_is_taken(folder, &[arguments.as_slice(), &["-o", output.as_str()]].concat());
-        }
-        assert_said_is_taken(folder, &["check", &outputs[4], &outputs[4]]);
-        assert_said_is_taken(folder, &["probe", scene, "--pixel", "3,3"]);
-        let both = out("drive");
-        assert_said_is_taken(folder, &["drive", scene, "--to", "0.1,0", "--both", "-o", &both]);
+    let scene = scene(folder, "scene", faces, side, pencils);
+    for (output, arguments) in [
+        ("scanline", vec!["render", &scene, "--with", "scanline"]),
+        ("tracer", vec!["render", &scene, "--with", "tracer"]),
+        ("referee", vec!["render", &scene, "--with", "referee"]),
+        ("validate", vec!["validate", &scene]),
+        ("pack", vec!["pack", &scene, "--no-bench"]),
+    ] {
+        assert_said_is_taken(folder, &[arguments.as_slice(), &["-o", output]].concat());
     }
+    assert_said_is_taken(folder, &["check", "pack", "pack"]);
+    assert_said_is_taken(folder, &["probe", &scene, "--pixel", "3,3"]);
+    assert_said_is_taken(folder, &["drive", &scene, "--to", "0.1,0", "--both", "-o", "both"]);
+}
+
+// One test each, so that they run at the same time.
+
+#[test]
+fn many_faces_take_the_memory_that_is_said() {
+    assert_commands_take_what_they_say(100_000, 16, [16, 2]);
+}
+
+#[test]
+fn many_pixels_take_the_memory_that_is_said() {
+    assert_commands_take_what_they_say(1000, 384, [16, 2]);
+}
+
+#[test]
+fn many_pencils_take_the_memory_that_is_said() {
+    assert_commands_take_what_they_say(1000, 16, [1024, 64]);
 }
 
 #[test]

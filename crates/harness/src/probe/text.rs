@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 use raypencil_judge::name_of;
-use raypencil_referee::{Explained, Margin, Ruling};
+use raypencil_referee::{Displacement, Explained, Margin, Ruling};
 use raypencil_scene::{Hit, Ray, Return};
 use serde::Serialize;
 
@@ -142,6 +142,9 @@ fn in_words(ruling: Ruling) -> String {
     match ruling {
         Ruling::Exact => "exact".into(),
         Ruling::Tie => "one of a tie".into(),
+        Ruling::Rounding(Displacement::ZERO) => {
+            "rounding: exact up to the errors of ranges and normals".into()
+        }
         Ruling::Rounding(by) => {
             format!("rounding: exact for the ray displaced by {:e}, {:e} cells", by.dx, by.dy)
         }

@@ -8,7 +8,7 @@ use crate::difference::{Difference, hit_values};
 use crate::entry::RayEntry;
 use crate::quantity::Quantity;
 use crate::recorded::Recorded;
-use raypencil_referee::Ruling;
+use raypencil_referee::{Displacement, Ruling};
 use raypencil_scene::{FaceId, Hit, HitQuantity, Ray};
 
 /// The exact hit that a ray's values, and its pencil's return, are held to.
@@ -31,6 +31,9 @@ pub(super) fn words(ruling: Ruling) -> String {
     match ruling {
         Ruling::Exact => "exact".into(),
         Ruling::Tie => "tie: one of several faces met at exactly this point".into(),
+        Ruling::Rounding(Displacement::ZERO) => {
+            "rounding: right up to the errors of ranges and normals".into()
+        }
         Ruling::Rounding(witness) => {
             format!("rounding: right for the ray displaced by ({:.3e}, {:.3e}) cells", witness.dx, witness.dy)
         }

@@ -6,7 +6,8 @@
 //! vertex within 8 u S of where it is (three subtractions and a product for each coordinate, and the rounding of vertices
 //! and ray when they are stored), so it decides an edge as for a ray that is moved sideways by as much. It is charged
 //! twice that, delta = 16 u S. It finds the t of a face from n.a' / n.d: the range is then wrong by at most 36 kappa u S / c,
-//! with kappa the [aspect] of the face and c the cosine between ray and normal. It is charged twice that too.
+//! with kappa the [aspect] of the face and c the cosine between ray and normal. It is charged twice that too. Where c is below
+//! (5 kappa + 15) u, charged twice, it may take the front of the face [for its back](crate::rounded_face).
 //!
 //! So a stated face F is excused if there is *one* displacement of at most delta at which the moved ray meets F exactly,
 //! within the ray's ends, and every face that it meets before F is as near to F as the errors of both ranges. A stated miss
@@ -29,8 +30,9 @@ use super::margin::{Frame, onto_face};
 use super::query_ray::QueryRay;
 use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
-use crate::aspect;
 use crate::number::Interval;
+use crate::rounded_face::least_cosine;
+use crate::{RANGE_ROUNDINGS, aspect};
 
 /// What the exact answer says of a stated first hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +52,7 @@ pub enum CastRuling {
 /// How often the errors of the rule are charged, sideways: 8 u S twice.
 const LATERAL: f64 = 16.0;
 /// The same along the ray: 36 kappa u S / c twice.
-const ALONG: f64 = 72.0;
+const ALONG: f64 = 2.0 * RANGE_ROUNDINGS;
 
 impl ExactCast<'_> {
     /// Rules on the first hit that a program of this precision states. `None` states that nothing is hit.
@@ -116,6 +118,14 @@ impl ExactCast<'_> {
             let error = ALONG * precision.unit_roundoff * self.size(ray) * kappa_n / cosine_length;
             if error.is_nan() { f64::INFINITY } else { error }
         })
+    }
+
+    /// Whether a program of this precision may take the front of the face for its back.
+    fn is_edge_on(&self, ray: &CastRay, face: &Triangle, precision: Precision) -> bool {
+        let [a, b, c] = face.corners;
+        let normal = (b - a).cross(c - a);
+        let cosine = normal.dot(ray.direction).abs() / (normal.length() * QueryRay::length(ray));
+        cosine <= 2.0 * least_cosine(aspect(face.corners), precision.unit_roundoff)
     }
 
     /// S: no coordinate seen from the ray's origin is larger.
@@ -190,7 +200,9 @@ impl Trial<'_> {
             None => None,
             Some(face) => {
                 let (t, error) = self.t_and_error(face, &query);
-                if face.met_side(&query, self.sides).is_none() || t + error < t_min || t - error > t_max {
+                let is_edge_on = self.cast.is_edge_on(self.ray, face, self.precision);
+                let sides = if is_edge_on { Sides::Both } else { self.sides };
+                if face.met_side(&query, sides).is_none() || t + error < t_min || t - error > t_max {
                     return false;
                 }
                 Some((t, error))

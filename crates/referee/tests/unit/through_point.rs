@@ -96,7 +96,7 @@ fn the_tip_of_a_needle_is_met_by_a_ray_next_to_it() {
     let beam = SensorId::Beam(0);
     assert!(!referee.verdict(beam, 0, 0).expect("a pencil").is_hit());
     // An answer that it is met is wrong by no more than the rounding of f64.
-    let tolerance = Tolerance { lateral: 1e-9, depth: 1e-9, position: 0.0 };
+    let tolerance = Tolerance { lateral: 1e-9, depth: 1e-9, position: 0.0, unit_roundoff: 0.0 };
     let ruling = referee.rule(beam, 0, 0, Some(FaceId(0)), tolerance);
     let Some(Ruling::Rounding(witness)) = ruling else { panic!("{ruling:?}") };
     assert!(witness.max_norm() <= 1e-9, "{witness:?}");
@@ -139,7 +139,7 @@ fn a_needle_across_the_ray_is_met_by_a_ray_next_to_it() {
     let beam = SensorId::Beam(0);
     assert!(!referee.verdict(beam, 8, 1).expect("a pencil").is_hit());
     let rule = |lateral| {
-        let tolerance = Tolerance { lateral, depth: 1e-9, position: 0.0 };
+        let tolerance = Tolerance { lateral, depth: 1e-9, position: 0.0, unit_roundoff: 0.0 };
         referee.rule(beam, 8, 1, Some(FaceId(0)), tolerance).expect("a pencil")
     };
     // 1e-9 cells are 5e-16 m. That the needle is met is no more wrong than that.

@@ -205,7 +205,7 @@ fn a_ray_beside_excuses_what_is_true_of_it() {
         let referee = Referee::new(&scene);
         let pixel = referee.visibility(0, 1, 1, Displacement::ZERO).expect("a pencil").pixel;
         let rule = |lateral: f64| {
-            let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0 };
+            let tolerance = Tolerance { lateral, depth: 0.0, position: 0.0, unit_roundoff: 0.0 };
             let ruled =
                 referee.rule_visibility(0, 1, 1, Displacement::ZERO, FaceId(0), false, pixel, tolerance);
             ruled.expect("a pencil").visible

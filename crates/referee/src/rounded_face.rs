@@ -1,0 +1,93 @@
+//! How wrong a program in rounded arithmetic may be about one face, and still be honest.
+//!
+//! Such a program forms n = e1 x e2, n.(a - o) and n.q. To first order in its unit roundoff u, with kappa the [aspect] of the
+//! face, L its longest edge, R its range along the ray, c the cosine between ray and normal, and S = R + L + |o|:
+//!
+//! * n.q has an error of at most (5 kappa + 15) u |n| |q|: 5 kappa u of the normal, 15 u of the direction and of the product. So
+//!   where c is smaller than that, the program cannot tell the front of the face from its back, nor a face that it meets from
+//!   one that it passes;
+//! * the range has an error of at most 36 kappa u S / c.
+//!
+//! The derivation, step by step, is that of the judge's bounds.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use crate::aspect;
+use crate::bvh::InBox;
+use crate::face::{ExactRay, Face};
+use crate::number::{Dyadic, Interval, Number};
+use crate::rounding::quotient;
+use crate::vector::Vector;
+
+/// Roundings of the range: |dR| <= RANGE_ROUNDINGS kappa u S / c.
+pub const RANGE_ROUNDINGS: f64 = 36.0;
+
+/// Roundings of n.q that grow with the aspect: those of the normal.
+const NORMAL_ROUNDINGS: f64 = 5.0;
+/// The other roundings of n.q: the rotation of q, and a dot product.
+const APPROACH_ROUNDINGS: f64 = 15.0;
+/// Roundings of n.(a - o) beside the normal's: a subtraction, and a dot product.
+const HEIGHT_ROUNDINGS: f64 = 6.0;
+
+/// A face whose plane a ray crosses, as a program in rounded arithmetic may see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RoundedFace {
+    /// R, metres, to f64 rounding.
+    pub(crate) range: f64,
+    /// The error of R, metres.
+    pub(crate) range_error: f64,
+    /// Whether the ray comes from behind.
+    pub(crate) is_back: bool,
+    /// Whether the program may take the front for the back.
+    pub(crate) is_edge_on: bool,
+}
+
+impl RoundedFace {
+    /// What a program with this unit roundoff may make of a face; `None` if the ray is exactly parallel to the face.
+    pub(crate) fn of(face: &Face, ray: &ExactRay<'_>, unit_roundoff: f64) -> Option<Self> {
+        let fast = ray.fast();
+        let middle = |v: &Vector<Interval>| DVec3::from_array(std::array::from_fn(|k| v.0[k].middle()));
+        let (direction, scale) = (middle(&fast.direction), fast.origin_scale.middle());
+        let (height, approach) = height_and_approach(face, ray)?;
+        let corners = face.corners();
+        let normal = middle(&face.normal::<Interval>());
+        let length = direction.length();
+        let range = height * length / (approach * scale);
+        let edge = (0..3).map(|k| corners[k].distance(corners[(k + 1) % 3])).fold(0.0, f64::max);
+        let size = range.abs() + edge + middle(&fast.origin).length() / scale;
+        let cosine = approach.abs() / (normal.length() * length);
+        let kappa = aspect(corners);
+        Some(Self {
+            range,
+            range_error: RANGE_ROUNDINGS * kappa * unit_roundoff * size / cosine,
+            is_back: approach > 0.0,
+            is_edge_on: cosine <= least_cosine(kappa, unit_roundoff),
+        })
+    }
+}
+
+/// The cosine up to which a face of this aspect is edge-on for a program with this unit roundoff.
+pub(crate) fn least_cosine(kappa: f64, unit_roundoff: f64) -> f64 {
+    (NORMAL_ROUNDINGS * kappa + APPROACH_ROUNDINGS) * unit_roundoff
+}
+
+/// n.a' and n.D, each to f64 rounding also where they are tiny; `None` if n.D is 0.
+fn height_and_approach(face: &Face, ray: &ExactRay<'_>) -> Option<(f64, f64)> {
+    let fast = face.crossing(ray.fast());
+    let is_sharp = |x: &Interval| x.high - x.low <= 1e-9 * x.magnitude();
+    if is_sharp(&fast.height) && is_sharp(&fast.approach) {
+        return Some((fast.height.middle(), fast.approach.middle()));
+    }
+    let exact = face.crossing(ray.exact());
+    let nearest = |x: &Dyadic| quotient(x, &Dyadic::of(1.0)).double;
+    (exact.approach.sign() != Some(Ordering::Equal))
+        .then(|| (nearest(&exact.height), nearest(&exact.approach)))
+}
+
+/// How far from its place the plane of a face may seem, metres, to a program with this unit roundoff that is `size` metres
+/// away at most: n.(p - a) has an error of (5 kappa + 6) u |n| S.
+pub(crate) fn plane_error(face: &Face, size: f64, unit_roundoff: f64) -> f64 {
+    (NORMAL_ROUNDINGS * aspect(face.corners()) + HEIGHT_ROUNDINGS) * unit_roundoff * size
+}
