@@ -1,4 +1,5 @@
-//! An honest program in single precision: the planes of all faces, one after the other, in `f32` from beginning to end.
+//! An honest program in single precision: the planes of all faces, one after the other, in `f32` but for the ray, which it gets
+//! rounded.
 
 use glam::Vec3;
 use raypencil::{FaceId, Mesh, Ray};

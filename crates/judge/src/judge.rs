@@ -197,9 +197,11 @@ impl<'s> Judge<'s> {
         };
         let mesh = scene.mesh();
         let known = answer.filter(|face| (face.0 as usize) < mesh.faces().len());
-        // The range of the face itself: a stated range must not set the tolerance that it is judged by.
-        let place = Place { sensor, i, j };
-        let range = known.and_then(|face| self.plane_hit(place, face)).map(|hit| hit.range);
+        // The range of the face itself, also where its plane is behind the ray: a stated range must not set the tolerance that
+        // it is judged by.
+        let of_plane = known.and_then(|face| self.referee.plane_hit(sensor, i, j, face));
+        let range =
+            of_plane.map(|hit| hit.in_format(Format::Double).range.abs()).filter(|range| range.is_finite());
         let stated_range = stated_range.filter(|range| range.is_finite() && *range > 0.0);
         let range = range.or(stated_range).unwrap_or(max_range);
         let depth = known.map_or(0.0, |face| HitBounds::of(mesh, face, &ray, range, precision).range);

@@ -162,7 +162,7 @@ impl Face {
         is_met.then_some(crossing)
     }
 
-    /// Whether the ray meets this face's plane exactly where it begins, t = 1, or exactly at `max_range`.
+    /// Whether a ray that meets this face meets it exactly where it begins, t = 1, or exactly at `max_range`.
     pub(crate) fn is_at_an_end(&self, ray: &ExactRay<'_>, max_range: f64) -> bool {
         let ends = |crossing: [Option<Ordering>; 2]| crossing.map(|sign| sign.is_none_or(Ordering::is_eq));
         let fast = self.crossing(&ray.fast);
@@ -173,7 +173,8 @@ impl Face {
         }
     }
 
-    /// Whether the line of the ray passes this face's inside, edges and corners included, from either side and at any distance.
+    /// Whether the line of the ray passes this face's inside, edges and corners included, from either side and at any
+    /// distance. A line in the face's plane may be said to pass it.
     pub(crate) fn is_crossed_by(&self, ray: &ExactRay<'_>) -> bool {
         let sides = [0, 1, 2].map(|k| ray.sign(&EdgeSide { face: self, k }));
         [Ordering::Less, Ordering::Greater].iter().any(|outside| !sides.contains(outside))

@@ -1,14 +1,19 @@
 //! How wrong a program in rounded arithmetic may be about one face, and still be honest.
 //!
-//! Such a program forms n = e1 x e2, n.(a - o) and n.q. To first order in its unit roundoff u, with kappa the [aspect] of the
-//! face, L its longest edge, R its range along the ray, c the cosine between ray and normal, and S = R + L + |o|:
+//! Such a program forms n = e1 x e2, n.(a - o) and n.q, for a ray from o along q and a face with a corner a. To first order in
+//! its unit roundoff u, with kappa the [aspect] of the face, L its longest edge, R its range along the ray, c the cosine between
+//! ray and normal, and S = R + L + |o|:
 //!
 //! * n.q has an error of at most (5 kappa + 15) u |n| |q|: 5 kappa u of the normal, 15 u of the direction and of the product. So
-//!   where c is smaller than that, the program cannot tell the front of the face from its back, nor a face that it meets from
-//!   one that it passes;
-//! * the range has an error of at most 36 kappa u S / c.
+//!   where c is smaller than that, the face is *edge-on*: the program cannot tell its front from its back;
+//! * n.(a - o) has one of (5 kappa + 6) u |n| S, so the range, their quotient times |q| and three roundings more, has one of at
+//!   most ((5 kappa + 6) S + (5 kappa + 18 + 3) R) u / c, which is below (10 kappa + 27) u S / c.
 //!
-//! The derivation, step by step, is that of the judge's bounds.
+//! Of an edge-on face the second is more than (10 kappa + 27) / (5 kappa + 15) S, which is larger than R.
+//!
+//! The judge's bounds derive both, step by step; a range that is stated may be off by 36 kappa u S / c, which is more, as kappa is
+//! at least 1.15.
+//! A face in the way gets the smaller bound: of a slender one the other would excuse too much.
 
 use std::cmp::Ordering;
 
@@ -21,22 +26,24 @@ use crate::number::{Dyadic, Interval, Number};
 use crate::rounding::quotient;
 use crate::vector::Vector;
 
-/// Roundings of the range: |dR| <= RANGE_ROUNDINGS kappa u S / c.
+/// Roundings of a stated range: |dR| <= RANGE_ROUNDINGS kappa u S / c.
 pub const RANGE_ROUNDINGS: f64 = 36.0;
 
 /// Roundings of n.q that grow with the aspect: those of the normal.
 const NORMAL_ROUNDINGS: f64 = 5.0;
 /// The other roundings of n.q: the rotation of q, and a dot product.
 const APPROACH_ROUNDINGS: f64 = 15.0;
+/// Roundings of the range that do not grow with the aspect: 6 S, and 21 R.
+const QUOTIENT_ROUNDINGS: f64 = 27.0;
 /// Roundings of n.(a - o) beside the normal's: a subtraction, and a dot product.
 const HEIGHT_ROUNDINGS: f64 = 6.0;
 
 /// A face whose plane a ray crosses, as a program in rounded arithmetic may see it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RoundedFace {
-    /// R, metres, to f64 rounding.
+    /// R, metres, to nine digits; negative behind the ray's start.
     pub(crate) range: f64,
-    /// The error of R, metres.
+    /// The error of R, metres: more than R itself if the face is edge-on.
     pub(crate) range_error: f64,
     /// Whether the ray comes from behind.
     pub(crate) is_back: bool,
@@ -59,9 +66,12 @@ impl RoundedFace {
         let size = range.abs() + edge + middle(&fast.origin).length() / scale;
         let cosine = approach.abs() / (normal.length() * length);
         let kappa = aspect(corners);
+        let range_error =
+            (2.0 * NORMAL_ROUNDINGS * kappa + QUOTIENT_ROUNDINGS) * unit_roundoff * size / cosine;
         Some(Self {
             range,
-            range_error: RANGE_ROUNDINGS * kappa * unit_roundoff * size / cosine,
+            // Not a number for a face whose normal is too small for f64.
+            range_error: if range_error.is_nan() { f64::INFINITY } else { range_error },
             is_back: approach > 0.0,
             is_edge_on: cosine <= least_cosine(kappa, unit_roundoff),
         })
@@ -73,7 +83,7 @@ pub(crate) fn least_cosine(kappa: f64, unit_roundoff: f64) -> f64 {
     (NORMAL_ROUNDINGS * kappa + APPROACH_ROUNDINGS) * unit_roundoff
 }
 
-/// n.a' and n.D, each to f64 rounding also where they are tiny; `None` if n.D is 0.
+/// n.a' and n.D, each to nine digits also where they are tiny; `None` if n.D is 0.
 fn height_and_approach(face: &Face, ray: &ExactRay<'_>) -> Option<(f64, f64)> {
     let fast = face.crossing(ray.fast());
     let is_sharp = |x: &Interval| x.high - x.low <= 1e-9 * x.magnitude();
@@ -86,8 +96,8 @@ fn height_and_approach(face: &Face, ray: &ExactRay<'_>) -> Option<(f64, f64)> {
         .then(|| (nearest(&exact.height), nearest(&exact.approach)))
 }
 
-/// How far from its place the plane of a face may seem, metres, to a program with this unit roundoff that is `size` metres
-/// away at most: n.(p - a) has an error of (5 kappa + 6) u |n| S.
+/// How far from its place the plane of a face may seem, metres, to a program with this unit roundoff: seen from a point p,
+/// n.(p - a) has an error of (5 kappa + 6) u |n| S. `size` is S, at least |p| and |p - a|.
 pub(crate) fn plane_error(face: &Face, size: f64, unit_roundoff: f64) -> f64 {
     (NORMAL_ROUNDINGS * aspect(face.corners()) + HEIGHT_ROUNDINGS) * unit_roundoff * size
 }

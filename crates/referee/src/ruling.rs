@@ -5,13 +5,13 @@
 //! its back where [both look alike](crate::rounded_face) in its arithmetic. So an answer is admissible if *one* such displacement
 //! makes it right:
 //!
-//! * a face F, if the displaced ray meets it, and every face that it meets before F is as near to F as the errors of both ranges,
-//!   or edge-on;
-//! * a miss, if every face that the displaced ray meets is edge-on, or as near to an end of the ray as the error of its range. But
-//!   not exactly there: the contract includes the ends, and only a face in round numbers, made to test that, lies at one.
+//! * a face F, if the displaced ray meets it, and no other face clearly before F: nearer by more than the errors of both ranges;
+//! * a miss, if it meets no face clearly within its ends: farther from both than the error of the face's range. (A face that it
+//!   meets exactly at an end is within: the contract says so, and round numbers have no error.)
 //!
-//! The ruling contains the displacement. A miss at an edge shared by two faces is never admissible: each displaced ray meets one
-//! of the two.
+//! A face that is not clearly within the ends is not in the way of F either. An edge-on face never is: the error of its range
+//! is larger than the range. The ruling contains the displacement. So a miss at an edge shared by two faces is not admissible,
+//! unless both are edge-on or at an end of the ray: each displaced ray meets one of the two.
 
 use std::cmp::Ordering;
 
@@ -129,7 +129,7 @@ impl Referee<'_> {
     ) -> Option<Displacement> {
         let lateral = tolerance.lateral;
         let ray = MovingRay::new(sensor, aim);
-        let mut tried = vec![];
+        let mut tried = vec![[0.0, 0.0]];
         for face in nearest {
             for form in FaceForms::new(&ray, face).conditions() {
                 if form.holds_within() < lateral {
@@ -197,12 +197,14 @@ impl Referee<'_> {
         let ray = ExactRay::new(sensor, aim);
         let (start, end) = (ray.start_range(), sensor.max_range());
         let seen = |face: &Face| RoundedFace::of(face, &ray, tolerance.unit_roundoff);
+        // Of a face too thin for f64 the error is not a number: its range is anything.
+        let depth = if tolerance.depth.is_nan() { f64::INFINITY } else { tolerance.depth };
         let named = match answer {
             None => None,
             Some(face) => {
+                // A face exactly parallel to the ray is never met. That is strict: rounding may turn its normal.
                 let Some(named) = seen(face).filter(|_| face.is_crossed_by(&ray)) else { return false };
-                let is_within =
-                    named.range + tolerance.depth >= start && named.range - tolerance.depth <= end;
+                let is_within = named.range + depth >= start && named.range - depth <= end;
                 if !is_within || (named.is_back && !named.is_edge_on) {
                     return false;
                 }
@@ -211,21 +213,16 @@ impl Referee<'_> {
         };
         let mut is_right = true;
         self.bvh.visit(&bundle(sensor, aim, 0.0), |face| {
-            if is_right && face.is_met_by(&ray, end) {
-                is_right = match (named, seen(face)) {
-                    // Exactly parallel: it was not met.
-                    (_, None) => true,
-                    (_, Some(met)) if met.is_edge_on => true,
-                    (None, Some(met)) => {
-                        let may_end_before =
-                            met.range + met.range_error > end || met.range - met.range_error < start;
-                        may_end_before && !face.is_at_an_end(&ray, end)
-                    }
-                    (Some((named, at)), Some(met)) => {
-                        let is_exact = !at.is_back && named.compare(face, &ray) != Ordering::Greater;
-                        is_exact || at.range - met.range <= tolerance.depth + met.range_error
-                    }
-                };
+            if is_right
+                && face.is_met_by(&ray, end)
+                && let Some(met) = seen(face)
+            {
+                let may_be_beyond = met.range + met.range_error > end || met.range - met.range_error < start;
+                is_right = (may_be_beyond && !face.is_at_an_end(&ray, end))
+                    || named.is_some_and(|(named, at)| {
+                        let is_before = at.is_back || named.compare(face, &ray) == Ordering::Greater;
+                        !is_before || at.range - met.range <= depth + met.range_error
+                    });
             }
             if is_right { end } else { f64::NEG_INFINITY }
         });

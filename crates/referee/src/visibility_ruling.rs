@@ -2,8 +2,9 @@
 //! finite precision may give.
 //!
 //! A renderer's ray may be displaced by delta, and its point may be wrong by epsilon. Then it may give the right
-//! answer of some ray displaced by at most delta, and it may take a face that passes within epsilon of the point, or of the
-//! camera, to lie on either side of it. To epsilon comes the error of the face's own plane, which is larger for a needle.
+//! answer of some ray displaced by at most delta, and it may take a face that passes within epsilon of the point to lie on either
+//! side of it. To epsilon comes the error of the face's own plane, which is larger for a needle. Within that error of the camera
+//! a face may be taken not to be in the way.
 
 use glam::DVec3;
 use raypencil_scene::{FaceId, Pixel, SensorId};
@@ -74,18 +75,18 @@ impl Referee<'_> {
         let ray = ExactRay::new(&sensor, aim);
         let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
         let off = tolerance.depth + tolerance.position;
-        let off_plane = |face: &Face| {
+        let of_plane = |face: &Face| {
             let [a, b, c] = face.corners();
             let edge = a.distance(b).max(b.distance(c)).max(c.distance(a));
             let camera = self.scene.camera().scene_from_sensor.position;
             let size = camera.length() + line.centre_to_point().length() + edge;
-            off + plane_error(face, size, tolerance.unit_roundoff)
+            plane_error(face, size, tolerance.unit_roundoff)
         };
         let of_visible = if exact.visible == visible {
             Ruling::Exact
         } else if let Some(witness) = witness(&|sight| sight.visible == visible) {
             witness
-        } else if self.may_see(&line, &face, exact, visible, off, off_plane) {
+        } else if self.may_see(&line, &face, exact, visible, off, of_plane) {
             Ruling::Rounding(Displacement::ZERO)
         } else {
             Ruling::Wrong
@@ -102,8 +103,8 @@ impl Referee<'_> {
         Some(VisibilityRuling { visible: of_visible, pixel: of_pixel })
     }
 
-    /// Whether a point with an error of `off` metres may be called seen, or hidden, against the exact answer. `off_plane` is its
-    /// error as a distance from a face's plane.
+    /// Whether a point with an error of `off` metres may be called seen, or hidden, against the exact answer. `of_plane` is the
+    /// error of a face's plane, metres.
     fn may_see(
         &self,
         line: &ExactLineOfSight<'_>,
@@ -111,30 +112,30 @@ impl Referee<'_> {
         exact: Visibility,
         visible: bool,
         off: f64,
-        off_plane: impl Fn(&Face) -> f64,
+        of_plane: impl Fn(&Face) -> f64,
     ) -> bool {
         let from_centre = line.centre_to_point();
         let centre = self.scene.camera().scene_from_sensor.position;
         let point = centre + from_centre;
-        let may_be_in_plane = |of: &Face, point: DVec3| distance_from_plane(of, point).abs() <= off_plane(of);
-        if may_be_in_plane(face, centre) {
+        let may_hold_point = |of: &Face| distance_from_plane(of, point).abs() <= off + of_plane(of);
+        // The camera's place is known without error: only the plane's is not.
+        let may_hold_camera = |of: &Face| distance_from_plane(of, centre).abs() <= of_plane(of);
+        // Whether the hit face's front is seen: a program may take the point's position for the plane's.
+        let side = distance_from_plane(face, centre);
+        if side.abs() <= off + of_plane(face) {
             return true;
         }
         if visible {
             return exact.pixel.is_some()
-                && distance_from_plane(face, centre) > 0.0
-                && self
-                    .occluders(line)
-                    .iter()
-                    .all(|other| may_be_in_plane(other, point) || may_be_in_plane(other, centre));
+                && side > 0.0
+                && self.occluders(line).iter().all(|other| may_hold_point(other) || may_hold_camera(other));
         }
         // A face that does not hide the point passes within rounding of it.
         let mut found = false;
         let bundle = RayBundle { start_radius: off, ..line.bundle() };
         self.bvh.visit(&bundle, |other| {
             // A face in the hit face's own plane never hides it: rounding does not excuse the shadow of a duplicate.
-            found |=
-                !other.is_in_plane_of(face) && may_be_in_plane(other, point) && is_beside(other, point, off);
+            found |= !other.is_in_plane_of(face) && may_hold_point(other) && is_beside(other, point, off);
             if found { f64::NEG_INFINITY } else { bundle.max_range }
         });
         found

@@ -311,16 +311,17 @@ fn a_face_is_told_from_the_point_as_well_as_its_plane_is_known() {
     let kappa = 2.0_f64.sqrt();
     // Legs of 3 m: kappa = 3 (3 sqrt 2) / 9. The camera is 1 m from the scene's origin and sqrt 5 m from the point.
     let per_roundoff = (5.0 * kappa + 6.0) * (1.0 + 5.0_f64.sqrt() + 3.0 * 2.0_f64.sqrt());
-    let rule = |occluder: [[f32; 3]; 3], unit_roundoff: f64| {
+    let rule_with = |occluder: [[f32; 3]; 3], depth: f64, unit_roundoff: f64| {
         let scene = Setting { faces: vec![WALL, occluder], ..Setting::of(FluxModel::Radiometric) }.scene();
         let referee = Referee::new(&scene);
         let exact = referee.visibility(0, 0, 0, Displacement::ZERO).expect("a pencil");
         assert_eq!((exact.visible, exact.pixel), (false, Some(Pixel { i: 0, j: 32 })));
-        let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
+        let tolerance = Tolerance { lateral: 0.0, depth, position: 0.0, unit_roundoff };
         let pixel = exact.pixel;
         let ruling = referee.rule_visibility(0, 0, 0, Displacement::ZERO, FaceId(0), true, pixel, tolerance);
         ruling.expect("a pencil").visible
     };
+    let rule = |occluder, unit_roundoff| rule_with(occluder, 0.0, unit_roundoff);
     let off = 1.0 / 128.0;
     // That far before the wall, its back to the pencil.
     let z = 2.0 - off as f32;
@@ -333,4 +334,7 @@ fn a_face_is_told_from_the_point_as_well_as_its_plane_is_known() {
         assert_eq!(rule(occluder, 0.99 * off / per_roundoff), Ruling::Wrong);
         assert_eq!(rule(occluder, 1.01 * off / per_roundoff), Ruling::Rounding(Displacement::ZERO));
     }
+    // An error of the point comes on top, but is none of the camera.
+    assert_eq!(rule_with(lid, 1.01 * off, 0.0), Ruling::Rounding(Displacement::ZERO));
+    assert_eq!(rule_with(screen, 1.01 * off, 0.0), Ruling::Wrong);
 }

@@ -195,7 +195,7 @@ fn faces_one_ulp_apart_are_rounding_in_depth() {
     assert_eq!(rule(3e-7), Ruling::Rounding(Displacement::ZERO));
 }
 
-/// The error of a range is 36 kappa u S / c, of the face that is in the way as well as of the one that is named.
+/// The range of a face in the way has an error too: (10 kappa + 27) u S / c.
 #[test]
 fn a_face_in_the_way_has_an_error_of_its_own() {
     let far = 2.0_f32.next_up();
@@ -204,7 +204,7 @@ fn a_face_in_the_way_has_an_error_of_its_own() {
     let scene = looking_along_z(vertices, vec![[0, 2, 1], [3, 5, 4]], 100.0);
     // Edges of 18 m and twice sqrt(405) m, |n| = 324 m^2: kappa = 405/324. R = 2 m, c = 1.
     let gap = f64::from(far) - 2.0;
-    let least = gap / (36.0 * (405.0 / 324.0) * (2.0 + 405.0_f64.sqrt()));
+    let least = gap / ((10.0 * (405.0 / 324.0) + 27.0) * (2.0 + 405.0_f64.sqrt()));
     let rule = |unit_roundoff: f64| {
         let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
         Referee::new(&scene).rule(CAMERA, 4, 4, Some(FaceId(1)), tolerance).unwrap()
@@ -237,10 +237,10 @@ fn the_ends_of_a_ray_are_as_sharp_as_ranges_are() {
         let at_end = scene(end);
         let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff: 1e-6 };
         assert_eq!(Referee::new(&at_end).rule(CAMERA, 4, 4, None, tolerance), Some(Ruling::Wrong), "{end}");
-        // Before the end, and lost: 36 kappa u S with edges of 180 m and twice sqrt(40500) m, |n| = 180^2 m^2.
+        // Before the end, and lost: edges of 180 m and twice sqrt(40500) m, |n| = 180^2 m^2.
         let inside = scene(end + inwards * off);
         assert_eq!(faces(&inside, 4, 4), [0]);
-        let least = off / (36.0 * (40500.0 / 32400.0) * (end + 40500.0_f64.sqrt()));
+        let least = off / ((10.0 * (40500.0 / 32400.0) + 27.0) * (end + 40500.0_f64.sqrt()));
         let rule = |unit_roundoff: f64| {
             let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
             Referee::new(&inside).rule(CAMERA, 4, 4, None, tolerance).unwrap()
@@ -250,7 +250,25 @@ fn the_ends_of_a_ray_are_as_sharp_as_ranges_are() {
     }
 }
 
-/// Up to a cosine of (5 kappa + 15) u the front of a face is not told from its back.
+/// Who takes a face to lie before the ray's start sees what is behind it.
+#[test]
+fn a_face_at_the_start_of_a_ray_may_be_seen_through() {
+    let off = 1.0 / f64::from(1 << 20);
+    let wall = |z: f32| [[-90.0, -90.0, z], [90.0, -90.0, z], [0.0, 90.0, z]];
+    let vertices = [wall(0.5 + off as f32), wall(7.0)].concat();
+    let scene = looking_along_z(vertices, vec![[0, 2, 1], [3, 5, 4]], 8.0);
+    assert_eq!(faces(&scene, 4, 4), [0]);
+    let least = off / ((10.0 * (40500.0 / 32400.0) + 27.0) * (0.5 + 40500.0_f64.sqrt()));
+    let rule = |unit_roundoff: f64| {
+        let tolerance = Tolerance { lateral: 1e-9, depth: 0.0, position: 0.0, unit_roundoff };
+        Referee::new(&scene).rule(CAMERA, 4, 4, Some(FaceId(1)), tolerance).unwrap()
+    };
+    assert_eq!(rule(0.99 * least), Ruling::Wrong);
+    assert_eq!(rule(1.01 * least), Ruling::Rounding(Displacement::ZERO));
+}
+
+/// Up to a cosine of (5 kappa + 15) u the front of a face is not told from its back. A face that is seen so is not in the way
+/// either, because the error of its range is larger than the range.
 #[test]
 fn an_edge_on_face_may_be_met_from_behind_or_not_at_all() {
     // From (-+1, -d/2, 1) to (0, d/2, 3): n = (0, -4, 2 d) m^2, the cosine is d/2, and kappa = sqrt 5 sqrt 5 / 4. A wall far
@@ -266,17 +284,26 @@ fn an_edge_on_face_may_be_met_from_behind_or_not_at_all() {
         ];
         looking_along_z(vertices, vec![[0, 1, 2], [3, 5, 4]], 100.0)
     };
-    let least = 0.5 / 1024.0 / (5.0 * 1.25 + 15.0);
+    let cosine = 0.5 / 1024.0;
+    // From behind; and before the wall: R = 2 m, of which the ray has its first half metre before t = 1, and L = sqrt 5 m.
+    let of_back = cosine / (5.0 * 1.25 + 15.0);
+    let in_the_way = 1.5 * cosine / ((10.0 * 1.25 + 27.0) * (2.0 + 5.0_f64.sqrt()));
     let rule = |scene: &Scene, answer: u32, unit_roundoff: f64| {
         let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
         Referee::new(scene).rule(CAMERA, 4, 4, Some(FaceId(answer)), tolerance).unwrap()
     };
     let [behind, before] = [scene(1.0 / 1024.0), scene(-1.0 / 1024.0)];
     assert_eq!((faces(&behind, 4, 4), faces(&before, 4, 4)), (vec![1], vec![0]));
-    for (scene, wrong_answer) in [(&behind, 0), (&before, 1)] {
+    for (scene, wrong_answer, least) in [(&behind, 0, of_back), (&before, 1, in_the_way)] {
         assert_eq!(rule(scene, wrong_answer, 0.99 * least), Ruling::Wrong, "{wrong_answer}");
         assert_eq!(rule(scene, wrong_answer, 1.01 * least), Ruling::Rounding(Displacement::ZERO));
     }
+    // Without the wall it may be missed, and no other ray need be sought.
+    let corners = vec![[-1.0, 1.0 / 2048.0, 1.0], [1.0, 1.0 / 2048.0, 1.0], [0.0, -1.0 / 2048.0, 3.0]];
+    let alone = looking_along_z(corners, vec![[0, 1, 2]], 100.0);
+    let tolerance = Tolerance { lateral: 1e-3, depth: 0.0, position: 0.0, unit_roundoff: 1.01 * in_the_way };
+    let missed = Referee::new(&alone).rule(CAMERA, 4, 4, None, tolerance);
+    assert_eq!(missed, Some(Ruling::Rounding(Displacement::ZERO)));
     // Seen exactly along its plane it is never met, however coarse the arithmetic.
     assert_eq!(rule(&scene(0.0), 0, 1e-3), Ruling::Wrong);
 }

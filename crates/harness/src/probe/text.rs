@@ -143,7 +143,7 @@ fn in_words(ruling: Ruling) -> String {
         Ruling::Exact => "exact".into(),
         Ruling::Tie => "one of a tie".into(),
         Ruling::Rounding(Displacement::ZERO) => {
-            "rounding: exact up to the errors of ranges and normals".into()
+            "rounding: right up to the errors of ranges, normals and points".into()
         }
         Ruling::Rounding(by) => {
             format!("rounding: exact for the ray displaced by {:e}, {:e} cells", by.dx, by.dy)

@@ -32,7 +32,7 @@ pub(super) fn words(ruling: Ruling) -> String {
         Ruling::Exact => "exact".into(),
         Ruling::Tie => "tie: one of several faces met at exactly this point".into(),
         Ruling::Rounding(Displacement::ZERO) => {
-            "rounding: right up to the errors of ranges and normals".into()
+            "rounding: right up to the errors of ranges, normals and points".into()
         }
         Ruling::Rounding(witness) => {
             format!("rounding: right for the ray displaced by ({:.3e}, {:.3e}) cells", witness.dx, witness.dy)

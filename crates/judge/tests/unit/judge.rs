@@ -74,6 +74,17 @@ fn tolerances_of_a_pixel() {
             assert_tolerance(found, position / range / 0.04, 0.0, position);
         }
     }
+    // Of a face behind the sensor it is the distance of its plane, 16 |q|, whatever is stated.
+    for stated in [None, Some(1e17)] {
+        let found = judge.tolerance(PIXEL, Some(FaceId(1)), stated, COARSE);
+        let scale = 10.0 + 10.0 + 1.0;
+        assert_tolerance(
+            found,
+            21.0 * U * scale / 10.0 / 0.04,
+            36.0 * KAPPA * U * scale / 0.8,
+            21.0 * U * scale,
+        );
+    }
     // Never below 1e-9 cells, and never more than one.
     assert_eq!(judge.tolerance(PIXEL, None, None, Precision::F64).lateral, 1e-9);
     assert_eq!(judge.tolerance(PIXEL, None, None, Precision { unit_roundoff: 0.25 }).lateral, 1.0);

@@ -11,7 +11,8 @@
 //!
 //! So a stated face F is excused if there is *one* displacement of at most delta at which the moved ray meets F exactly,
 //! within the ray's ends, and every face that it meets before F is as near to F as the errors of both ranges. A stated miss
-//! is excused if there is one displacement at which nothing is met. Ends of the ray are moved by the error of a range.
+//! is excused if there is one displacement at which nothing is met. Ends of the ray are moved by the error of a range. (Of a
+//! face that is edge-on this error is more than 2 S, so it is never in the way.)
 //! The displacement is the witness: it can be put into [`ExactCast::first_moved`].
 //!
 //! A ray cannot slip through an edge that two faces share in this rule, as it can in one that excuses face by face: the
