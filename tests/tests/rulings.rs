@@ -334,8 +334,5 @@ fn an_honest_program_may_lose_a_needle_that_it_sees_edge_on() {
     let of = |kinds: &BTreeMap<&str, u32>, kind| kinds.get(kind).copied().unwrap_or(0);
     assert!(of(&edge_on, "edge-on") > 500 && of(&edge_on, "wrong") == 0, "{edge_on:?}");
     assert!(of(&slanting, "wrong") > 950, "{slanting:?}");
-    assert!(
-        lost_in_single > 30,
-        "{lost_in_single} planks are lost by the honest program and no displaced ray"
-    );
+    assert!(lost_in_single > 30, "only {lost_in_single} planks are lost by the honest program");
 }
