@@ -112,6 +112,12 @@ impl Face {
         Vector::of_f32(self.corners[k])
     }
 
+    /// The longest edge, metres, to f64 rounding.
+    pub(crate) fn longest_edge(&self) -> f64 {
+        let [a, b, c] = self.corners();
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    }
+
     /// The normal n, not a unit vector.
     pub(crate) fn normal<T: Number>(&self) -> Vector<T> {
         let a = self.corner::<T>(0);

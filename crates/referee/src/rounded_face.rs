@@ -58,14 +58,12 @@ impl RoundedFace {
         let middle = |v: &Vector<Interval>| DVec3::from_array(std::array::from_fn(|k| v.0[k].middle()));
         let (direction, scale) = (middle(&fast.direction), fast.origin_scale.middle());
         let (height, approach) = height_and_approach(face, ray)?;
-        let corners = face.corners();
         let normal = middle(&face.normal::<Interval>());
         let length = direction.length();
         let range = height * length / (approach * scale);
-        let edge = (0..3).map(|k| corners[k].distance(corners[(k + 1) % 3])).fold(0.0, f64::max);
-        let size = range.abs() + edge + middle(&fast.origin).length() / scale;
+        let size = range.abs() + face.longest_edge() + middle(&fast.origin).length() / scale;
         let cosine = approach.abs() / (normal.length() * length);
-        let kappa = aspect(corners);
+        let kappa = aspect(face.corners());
         let range_error =
             (2.0 * NORMAL_ROUNDINGS * kappa + QUOTIENT_ROUNDINGS) * unit_roundoff * size / cosine;
         Some(Self {

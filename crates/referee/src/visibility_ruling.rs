@@ -76,10 +76,8 @@ impl Referee<'_> {
         let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
         let off = tolerance.depth + tolerance.position;
         let of_plane = |face: &Face| {
-            let [a, b, c] = face.corners();
-            let edge = a.distance(b).max(b.distance(c)).max(c.distance(a));
             let camera = self.scene.camera().scene_from_sensor.position;
-            let size = camera.length() + line.centre_to_point().length() + edge;
+            let size = camera.length() + line.centre_to_point().length() + face.longest_edge();
             plane_error(face, size, tolerance.unit_roundoff)
         };
         let of_visible = if exact.visible == visible {

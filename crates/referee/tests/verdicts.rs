@@ -179,14 +179,18 @@ fn an_answer_just_beyond_an_edge_is_rounding_with_its_witness() {
     assert!(margin.lo <= exact && exact <= margin.hi && margin.hi <= 1.001 * margin.lo, "{margin:?}");
 }
 
-#[test]
-fn faces_one_ulp_apart_are_rounding_in_depth() {
-    // Two walls at depth 2 and one f32 step behind it: naming the farther one is 2.4e-7 m wrong.
-    let far = 2.0_f32.next_up();
-    let vertices =
-        [2.0, far].iter().flat_map(|&z| [[-9.0, -9.0, z], [9.0, -9.0, z], [0.0, 9.0, z]]).collect();
+/// Two walls at depth 2 and one f32 step behind it: naming the farther one is 2.4e-7 m wrong.
+fn walls_one_ulp_apart() -> Scene {
+    let depths = [2.0, 2.0_f32.next_up()];
+    let vertices = depths.iter().flat_map(|&z| [[-9.0, -9.0, z], [9.0, -9.0, z], [0.0, 9.0, z]]).collect();
     let scene = looking_along_z(vertices, vec![[0, 2, 1], [3, 5, 4]], 100.0);
     assert_eq!(faces(&scene, 4, 4), [0]);
+    scene
+}
+
+#[test]
+fn faces_one_ulp_apart_are_rounding_in_depth() {
+    let scene = walls_one_ulp_apart();
     let rule = |depth| {
         let tolerance = Tolerance { lateral: 1e-9, depth, position: 0.0, unit_roundoff: 0.0 };
         Referee::new(&scene).rule(CAMERA, 4, 4, Some(FaceId(1)), tolerance).unwrap()
@@ -198,12 +202,9 @@ fn faces_one_ulp_apart_are_rounding_in_depth() {
 /// The range of a face in the way has an error too: (10 kappa + 27) u S / c.
 #[test]
 fn a_face_in_the_way_has_an_error_of_its_own() {
-    let far = 2.0_f32.next_up();
-    let vertices =
-        [2.0, far].iter().flat_map(|&z| [[-9.0, -9.0, z], [9.0, -9.0, z], [0.0, 9.0, z]]).collect();
-    let scene = looking_along_z(vertices, vec![[0, 2, 1], [3, 5, 4]], 100.0);
+    let scene = walls_one_ulp_apart();
     // Edges of 18 m and twice sqrt(405) m, |n| = 324 m^2: kappa = 405/324. R = 2 m, c = 1.
-    let gap = f64::from(far) - 2.0;
+    let gap = f64::from(2.0_f32.next_up()) - 2.0;
     let least = gap / ((10.0 * (405.0 / 324.0) + 27.0) * (2.0 + 405.0_f64.sqrt()));
     let rule = |unit_roundoff: f64| {
         let tolerance = Tolerance { lateral: 0.0, depth: 0.0, position: 0.0, unit_roundoff };
