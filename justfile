@@ -17,7 +17,7 @@ test:
 # Format, clippy and docs, warnings refused
 lint:
     cargo fmt --all --check
-    cargo clippy --workspace --all-targets -- -D warnings
+    cargo clippy --workspace --all-targets --all-features -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 
 # The documents as a book: out/book/index.html
@@ -30,8 +30,8 @@ deny:
 
 # The committed digest and packs at -O0 and in release: the bits are the same at any optimisation level
 digest:
-    cargo test --profile unoptimised -p raypencil-tests --test digest --test packs
-    cargo test --release -p raypencil-tests --test digest --test packs
+    cargo test --profile unoptimised -p raypencil-tests --test same_bits
+    cargo test --release -p raypencil-tests --test same_bits
 
 # Every number of both renderers and of a drive by the unoptimised and by the optimised program
 same-bits:
@@ -65,20 +65,20 @@ packs:
 
 # The largest errors in ulp, as in the first half of docs/evidence/results.md; MESH is a mesh of your own
 results MESH:
-    cargo run --release -p raypencil --example results -- pyramids facets {{ quote(MESH) }}
+    cargo run --release -p raypencil --features examples --example results -- pyramids facets {{ quote(MESH) }}
 
 # The confusion matrices of the rover's detections, as in the second half of that page
 truth:
-    cargo run --release -p raypencil --example truth
+    cargo run --release -p raypencil --features examples --example truth
 
 # The times of raypencil and of Embree on the same rays: docs/speed.md. MESH: a mesh of your own beside the generated grounds
 speed MESH="":
-    cargo build --release -p raypencil --example speed
+    cargo build --release -p raypencil --features examples --example speed
     python3 reference/speed/speed.py target/release/examples/speed {{ if MESH == "" { "" } else { "--mesh " + quote(MESH) } }} -o docs/speed.md
 
 # The detection of each injected fault, and the smallest scene that reveals it: docs/evidence/injected-faults.md
 injected-faults:
-    cargo run --release -p raypencil-tests --example injected_faults > docs/evidence/injected-faults.md
+    cargo run --release -p raypencil-tests --features examples --example injected_faults > docs/evidence/injected-faults.md
 
 # The reference of the command line, from the program itself: docs/reference/commands
 reference:
@@ -94,17 +94,21 @@ report-figures:
     target/release/raypencil validate pyramids --with scanline-paper,tracer --thickness 80 -o out/figures/paper
     {{ chromium }} --window-size=1280,1480 --screenshot=docs/figures/report.png "file://$PWD/out/figures/paper/report.html"
 
+# Times of the cold build, of rebuilds and of the tests: docs/evidence/build-times.md. An hour on two cores with nothing beside it
+build-times:
+    .ci/build_times.py
+
 # Sizes of reports and the time to their first picture, as in docs/evidence/page-times.md. Needs Chromium with its driver
 page-times:
-    cargo run --release -p raypencil-tests --example page_times
+    cargo run --release -p raypencil-tests --features examples --example page_times
 
 # Pictures of the presets of generated ground: docs/figures/ground-*.svg
 portraits:
-    cargo run --release -p raypencil --example portraits -- docs/figures
+    cargo run --release -p raypencil --features examples --example portraits -- docs/figures
 
 # The property tests on CASES cases each, from a random seed
 properties CASES:
-    PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test properties
+    PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test it properties::
 
 # Random mutants of a crate against its fast tests; goes on where it was interrupted. PASS: first, or again (those that were
 # missed so far, after new tests were written): docs/evidence/mutants.md
@@ -117,17 +121,17 @@ mutation-scores *CRATES:
 
 # The faults of tests/planted, planted one at a time in a clone, and the tests that catch them: docs/evidence/shared-faults.md
 planted-faults *AGAIN:
-    cargo run -p raypencil-tests --example planted_faults -- {{ AGAIN }}
+    cargo run -p raypencil-tests --features examples --example planted_faults -- {{ AGAIN }}
 
 # The malformed inputs and their refusals: docs/evidence/malformed-inputs.md
 malformed-inputs:
-    cargo run --release -p raypencil-tests --example malformed_inputs > docs/evidence/malformed-inputs.md
+    cargo run --release -p raypencil-tests --features examples --example malformed_inputs > docs/evidence/malformed-inputs.md
 
 # Fuzzes a reader for SECONDS, starting from the malformed inputs: scene_toml, resolved_scene, glb, dem, exr, npy, pfm, stl,
 # obj, ply, manifest, candidate; from good files: terrain, campaign, camera_info; from nothing: rays, ray_sets, numbers. Needs a nightly
 # compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
 fuzz TARGET SECONDS:
-    cargo run --release -p raypencil-tests --example malformed_inputs fuzz/corpus
+    cargo run --release -p raypencil-tests --features examples --example malformed_inputs fuzz/corpus
     cd fuzz && cargo +nightly fuzz run {{ TARGET }} -- -rss_limit_mb=512 -timeout=5 -max_total_time={{ SECONDS }}
 
 # All benchmarks

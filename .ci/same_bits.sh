@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Whether two builds of the program give the same bits: every map and all light of both renderers in double precision, a
-# drive with its camera's noise, and the committed packs, byte for byte.
+# drive with its camera's noise, the records of a sweep and of a campaign, and the committed packs, byte for byte.
 #
 #     .ci/same_bits.sh A B          A: the slower build, which renders small scenes only; B also writes the packs
 set -euo pipefail
@@ -33,6 +33,16 @@ done
 same
 [[ $files -gt 300 ]] || { echo "only $files files were compared" >&2; exit 1; }
 echo "$files files of renderings and of a drive are the same"
+mkdir "$work/scenes"
+cp data/scenes/pyramids-small.toml data/scenes/random.toml "$work/scenes"
+for build in a b; do
+    "${!build}" sweep data/scenes/pyramids-small.toml --set beam.thickness_mm=5,8 -o "$work/$build/sweep" >/dev/null
+    "${!build}" campaign --scenes "$work/scenes" -o "$work/$build/campaign" >/dev/null
+done
+before=$files
+same
+[[ $((files - before)) -gt 6 ]] || { echo "only $((files - before)) records were compared" >&2; exit 1; }
+echo "$((files - before)) files of a sweep and of a campaign are the same"
 
 # The version and the licence of the committed packs are in them: data/packs/README.md.
 own=(--pack-version 1.0.0 --licence CC0-1.0)

@@ -6,7 +6,7 @@
 RAYPENCIL is the binary. Tracers that cannot be imported are left out, and the page says so: Embree (embreex), Mitsuba 3,
 Open3D, trimesh (requirements-peers.txt), and the triangle test of obvhs, a program beside the binary:
 
-    cargo build --release -p raypencil-cast --example obvhs_triangles
+    cargo build --release -p raypencil-cast --features examples --example obvhs_triangles
 
  Those that compute in single precision are asked the question that they can
 read: mesh and rays are rounded to f32 first, and the answer is that of the rounded question. So what is counted is no

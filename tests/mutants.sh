@@ -16,18 +16,20 @@ source tests/mutants_results.sh
 crate=$1 pass=${2:-first} shard=${3:-0/1}
 part=${shard%/*} parts=${shard#*/}
 
-# The fast tests of a crate: they take some ten seconds with their build. `--package` names a second package with tests.
-# Left out are whole drives of the rover, ten seconds and more by themselves.
+# The fast tests of a crate: they take some ten seconds with their build. `--package` names a second package with tests;
+# `-E` is a filter of nextest. Left out are whole drives of the rover, ten seconds and more by themselves.
+all='all()'
+whole="package(=raypencil-$crate)|test(/^digest::/)|test(/^closed_form::/)"
 declare -A fast=(
-    [scanline]="--package raypencil-tests --lib --test light --test paper --test digest --test closed_form"
-    [tracer]="--package raypencil-tests --lib --test flux --test visibility --test digest --test closed_form"
-    [referee]="--lib --test digest --test verdicts --test light"
-    [scene]="--lib --tests"
-    [sensor]="--lib --tests"
-    [rover]="--lib --test rules --test ground"
-    [judge]="--lib --tests"
-    [scene-io]="--lib --tests"
-    [terrain]="--lib --tests"
+    [scanline]="--package raypencil-tests -E $whole"
+    [tracer]="--package raypencil-tests -E $whole"
+    [referee]="-E not(test(/^it::(cast|cast_margins|cast_ruling|margins|visibility_margins)::/))"
+    [scene]="-E $all"
+    [sensor]="-E $all"
+    [rover]="-E not(test(/^it::(drive|pyramids)::/))"
+    [judge]="-E $all"
+    [scene-io]="-E $all"
+    [terrain]="-E $all"
 )
 # How many mutants are drawn. Some do not compile, and at least 80 that do shall be left.
 declare -A counts=([scanline]=400 [tracer]=400 [referee]=400 [scene]=125 [scene-io]=115)

@@ -4,7 +4,7 @@
 //! its argument it also writes the smallest scenes there.
 //!
 //! ```sh
-//! cargo run --release -p raypencil-tests --example injected_faults > docs/evidence/injected-faults.md
+//! cargo run --release -p raypencil-tests --features examples --example injected_faults > docs/evidence/injected-faults.md
 //! ```
 
 use std::path::Path;

@@ -2,10 +2,10 @@
 //! Needs Chromium with its driver. The table of `docs/evidence/page-times.md` was made so.
 //!
 //! ```sh
-//! cargo run --release -p raypencil-tests --example page_times
+//! cargo run --release -p raypencil-tests --features examples --example page_times
 //! ```
 
-#[path = "../tests/report_page/browser.rs"]
+#[path = "../tests/it/report_page/browser.rs"]
 #[allow(dead_code, reason = "tests ask for more than this program")]
 mod browser;
 

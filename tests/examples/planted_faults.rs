@@ -8,7 +8,7 @@
 //! (`tests/planted/.nextest.toml`). Without it all tests of a crate run.
 //!
 //! ```sh
-//! cargo run -p raypencil-tests --example planted_faults
+//! cargo run -p raypencil-tests --features examples --example planted_faults
 //! ```
 
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! First hits by the triangle test that comes with obvhs, in single precision, for the comparison of ray tracers.
 //!
-//!     cargo run --release -p raypencil-cast --example obvhs_triangles -- MESH RAYS OUT
+//!     cargo run --release -p raypencil-cast --features examples --example obvhs_triangles -- MESH RAYS OUT
 //!
 //! MESH and RAYS are what `raypencil cast` reads; OUT gets the index of each ray's first face as an NPY array, -1 where it
 //! hits nothing. Our own tracer takes only the boxes of obvhs, not this test.

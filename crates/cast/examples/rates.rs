@@ -1,6 +1,6 @@
 //! How many rays a second: the tracer's first hits, the exact first hits, and their margins.
 //!
-//!     cargo run --release -p raypencil-cast --example rates -- MESH TRACED [EXACT [MARGINS]]
+//!     cargo run --release -p raypencil-cast --features examples --example rates -- MESH TRACED [EXACT [MARGINS]]
 //!
 //! MESH is any mesh that `raypencil cast` reads; the others are numbers of rays. The rays start at random places above
 //! the mesh's bounding box, up to half its height, and aim at random points of its lower half, so that they meet the mesh at

@@ -110,3 +110,10 @@ struct Readme;
 #[cfg(test)]
 #[path = "../tests/unit/common.rs"]
 mod common;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_drive;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

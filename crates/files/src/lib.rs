@@ -82,3 +82,10 @@ pub use values::{Array, Storage, Values};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_files;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -126,3 +126,10 @@ pub use tally::{
     ApproximationTallies, ApproximationTally, Defect, DifferingRay, ItemTallies, ItemTally, Largest,
     SensorResult, WrongRay,
 };
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_judge;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -65,3 +65,10 @@ pub use triangles::{TriangleFile, load_triangles, read_triangles, triangles_from
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_mesh_io;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -77,3 +77,10 @@ pub use write::{PackError, write_pack, write_questions};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_pack;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -2,7 +2,7 @@
 //! models, each divided by its maximum, and the quotient of both.
 //!
 //! ```text
-//! cargo run --release -p raypencil --example eq1_along_stripe > docs/figures/eq1-along-stripe.svg
+//! cargo run --release -p raypencil --features examples --example eq1_along_stripe > docs/figures/eq1-along-stripe.svg
 //! ```
 
 use std::sync::Arc;

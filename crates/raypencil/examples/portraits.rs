@@ -2,7 +2,7 @@
 //! 1.8 m above it sees it.
 //!
 //! ```text
-//! cargo run --release -p raypencil --example portraits -- docs/figures
+//! cargo run --release -p raypencil --features examples --example portraits -- docs/figures
 //! ```
 
 use std::path::PathBuf;

@@ -3,7 +3,7 @@
 //! the example `truth` prints the tables below it.
 //!
 //! ```sh
-//! cargo run --release -p raypencil --example results -- pyramids facets marsyard2021.glb
+//! cargo run --release -p raypencil --features examples --example results -- pyramids facets marsyard2021.glb
 //! ```
 
 use std::path::Path;
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!(
         "The tables are made by\n\
-         `cargo run --release -p raypencil --example results -- {}`.\n\
+         `cargo run --release -p raypencil --features examples --example results -- {}`.\n\
          The last scene is the Mars yard of half a million triangles, which is not part of this repository. The\n\
          numbers are the same on any machine.\n",
         names.join(" ")

@@ -2,8 +2,8 @@
 //! pointing errors: the tables of `docs/evidence/results.md` below its mark, as Markdown on standard output.
 //!
 //! ```sh
-//! cargo run --release -p raypencil --example truth            # all tables
-//! cargo run --release -p raypencil --example truth rules      # one: rules, noise, pointing
+//! cargo run --release -p raypencil --features examples --example truth            # all tables
+//! cargo run --release -p raypencil --features examples --example truth rules      # one: rules, noise, pointing
 //! ```
 
 use glam::DVec2;

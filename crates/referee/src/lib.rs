@@ -160,3 +160,10 @@ pub use verdict::{Referee, RefereeTree, Verdict};
 pub use visibility::Visibility;
 pub use visibility_margin::VisibilityMargins;
 pub use visibility_ruling::VisibilityRuling;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_referee;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

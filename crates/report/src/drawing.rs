@@ -1,8 +1,8 @@
-//! A drawing: a page of marks as SVG, and that SVG as PNG.
+//! A drawing: a page of marks, and that page as SVG.
 
 use crate::colour::{Colour, css_hex};
+use crate::png;
 use crate::text::escaped;
-use crate::{paint, png};
 
 /// Colour of text and of the main lines.
 pub const INK: Colour = [29, 31, 34];
@@ -70,6 +70,9 @@ pub enum Mark {
         cells: Vec<Option<Colour>>,
     },
 }
+
+/// Width of the line around a polygon, pixels.
+pub(crate) const POLYGON_EDGE: f64 = 0.5;
 
 /// Font size of all text, pixels.
 pub const LETTERS: f64 = 13.0;
@@ -147,7 +150,7 @@ impl Drawing {
             match mark {
                 Mark::Polygon { points, fill, edge } => {
                     let edge = edge.map_or(String::new(), |edge| {
-                        format!(" stroke=\"{}\" stroke-width=\"0.5\"", css_hex(edge))
+                        format!(" stroke=\"{}\" stroke-width=\"{POLYGON_EDGE}\"", css_hex(edge))
                     });
                     out += &format!("<path d=\"{}z\" fill=\"{}\"{edge}/>\n", path(points), css_hex(*fill));
                 }
@@ -186,16 +189,6 @@ impl Drawing {
             }
         }
         out + "</svg>\n"
-    }
-
-    /// [`Self::png`] as an address that holds the picture itself, for a page.
-    pub fn data_uri(&self) -> String {
-        png::data_uri(&self.png())
-    }
-
-    /// The page as PNG.
-    pub fn png(&self) -> Vec<u8> {
-        paint::page(&self.svg(), self.width, self.height)
     }
 }
 

@@ -10,13 +10,14 @@
 //! colour, png                     colours, and PNG in memory
 //! scale -> picture -> plot        ticks at round values, maps as pictures, pictures with axes and rings
 //! maps                            range maps of a sensor beside their differences, as HTML
-//! paint -> drawing -> axes        SVG and PNG of polygons, lines and text; axes of a plot
+//! letters, drawing -> paint       polygons, lines, text and cells on a page: as SVG, and as PNG
+//! drawing -> axes                 axes of a plot
 //! version -> page                 head and end of an HTML page
 //! junit                           test results for continuous integration
 //! ```
 //!
 //! Sources: the colour maps are viridis (van der Walt and Smith) and ColorBrewer's RdBu (Brewer), by `colorous`. SVG is
-//! drawn by `resvg`.
+//! painted by `tiny-skia`.
 //!
 //! ```
 //! use raypencil_report::{Align, Table, count, quantity};
@@ -33,6 +34,7 @@ mod colour;
 mod defect_list;
 mod drawing;
 mod junit;
+mod letters;
 mod maps;
 mod page;
 mod paint;
@@ -64,3 +66,10 @@ pub use version::VERSION;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_report;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -74,12 +74,8 @@ impl BagWriter {
             _ => {}
         }
         let path = folder.join(format!("{name}_0.mcap"));
-        let options = WriteOptions::new()
-            .profile("ros2")
-            .library("raypencil")
-            .compression(Some(Compression::Zstd))
-            // Threads would cut a chunk into pieces by their number: the same drive is to give the same bytes.
-            .compression_threads(0);
+        let options =
+            WriteOptions::new().profile("ros2").library("raypencil").compression(Some(Compression::Lz4));
         let file = options.create(GrowingFile::create(&path)?).map_err(|error| failed(&path, error))?;
         Ok(Self { folder: folder.to_path_buf(), name, file, channels: Vec::new(), span: None })
     }

@@ -44,3 +44,10 @@ pub use messages::{
     PointField, Pose, PoseWithCovariance, Quaternion, RegionOfInterest, Stamp, TfMessage, Transform,
     TransformStamped, Twist, TwistWithCovariance, Vector3,
 };
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_rosbag;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -113,3 +113,10 @@ pub use vehicle::{Attitude, Stance, Vehicle};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_rover;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -65,3 +65,10 @@ pub use sunlight::{MARS_SEMI_MAJOR_AXIS_AU, SOLAR_IRRADIANCE_810_NM, Sunlight, V
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_sensor;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

@@ -61,3 +61,10 @@ pub use simplify::simplify;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_terrain;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

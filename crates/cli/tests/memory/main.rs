@@ -112,7 +112,7 @@ fn many_pixels_take_the_memory_that_is_said() {
 
 #[test]
 fn many_pencils_take_the_memory_that_is_said() {
-    assert_commands_take_what_they_say(1000, 16, [1024, 64]);
+    assert_commands_take_what_they_say(1000, 16, [1024, 32]);
 }
 
 #[test]

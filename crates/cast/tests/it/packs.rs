@@ -1,0 +1,235 @@
+//! Packs of rays: wrong programs fail them, and are told what they do otherwise.
+
+use std::path::Path;
+
+use raypencil_cast::{
+    CandidateConventions, CastSource, Questions, RayArray, RayPackChecked, cast, check_ray_pack,
+    rays_from_bytes, write_answers, write_ray_pack,
+};
+use raypencil_files::{read_npy_numbers, write_npy_numbers};
+use raypencil_scene::{CastRay, Precision, Sides, Silent, Triangles};
+
+/// The cube from -1 to 1, its fronts outside.
+fn cube() -> Triangles {
+    let corner = |k: u32| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { 1.0 } else { -1.0 });
+    let squares = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = squares.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    Triangles::new((0..8).map(corner).collect(), faces.collect()).unwrap()
+}
+
+/// Rays from outside and inside at all lengths, with and without ends, some exactly through corners.
+fn rays() -> RayArray {
+    let mut text = String::new();
+    let mut state = 1_u64;
+    let mut draw = |low: f64, high: f64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * ((state >> 11) as f64 / (1_u64 << 53) as f64)
+    };
+    for k in 0..200 {
+        let from = [0; 3].map(|_| draw(-3.0, 3.0));
+        let to = if k % 20 == 0 { [1.0; 3] } else { [0; 3].map(|_| draw(-1.0, 1.0)) };
+        let length = draw(0.2, 3.0);
+        let along =
+            [0, 1, 2].map(
+                |axis: usize| {
+                    if k % 20 == 0 { to[axis] - from[axis] } else { (to[axis] - from[axis]) * length }
+                },
+            );
+        let ends = match k % 4 {
+            1 => [draw(0.0, 2.0), f64::INFINITY],
+            2 => [0.0, draw(0.0, 2.0)],
+            _ => [0.0, f64::INFINITY],
+        };
+        let numbers = from.into_iter().chain(along).chain(ends).map(|number| number.to_string());
+        text += &(numbers.collect::<Vec<_>>().join(",") + "\n");
+    }
+    let rays = rays_from_bytes(text.as_bytes(), "rays".as_ref()).unwrap().rays;
+    RayArray { shape: vec![10, 20], rays }
+}
+
+fn source() -> CastSource {
+    CastSource { mesh: "cube".into(), mesh_sha256: vec![], rays: "rays".into(), rays_sha256: None }
+}
+
+/// The pack, and a folder with the answers to a question that may be another.
+struct Folders {
+    pack: tempfile::TempDir,
+    candidate: tempfile::TempDir,
+}
+
+impl Folders {
+    fn new(sides: Sides, answered: Sides, change: impl Fn(&mut CastRay)) -> Self {
+        let folders = Self { pack: tempfile::tempdir().unwrap(), candidate: tempfile::tempdir().unwrap() };
+        let (mesh, rays) = (cube(), rays());
+        let counts = write_ray_pack(folders.pack.path(), (&mesh, &rays, sides), &source(), &Silent).unwrap();
+        assert_eq!(counts.untested(), [""; 0], "{counts:?}");
+        let mut changed = rays.clone();
+        changed.rays.iter_mut().for_each(change);
+        let answers = cast(&mesh, &changed.rays, answered, Questions::default(), &Silent);
+        write_answers(folders.candidate.path(), &answers, (&mesh, &changed, answered), &source()).unwrap();
+        folders
+    }
+
+    fn right() -> Self {
+        Self::new(Sides::Both, Sides::Both, |_| {})
+    }
+
+    /// Changes an array of the candidate, number by number; its index goes with it.
+    fn change(self, name: &str, by: impl Fn(usize, f64) -> f64) -> Self {
+        let path = self.candidate.path().join(format!("{name}.npy"));
+        let array = read_npy_numbers(&path, &Default::default()).unwrap();
+        let values: Vec<f64> =
+            array.values.iter().enumerate().map(|(index, &value)| by(index, value)).collect();
+        write_npy_numbers(&path, &array.shape, &values).unwrap();
+        self
+    }
+
+    fn without(self, names: &[&str]) -> Self {
+        for name in names {
+            std::fs::remove_file(self.candidate.path().join(format!("{name}.npy"))).unwrap();
+        }
+        self
+    }
+
+    fn of(&self, name: &str) -> Vec<f64> {
+        let path = self.pack.path().join(format!("{name}.npy"));
+        read_npy_numbers(path, &Default::default()).unwrap().values
+    }
+
+    fn check(&self) -> RayPackChecked {
+        self.check_by(Precision::F64, CandidateConventions::default())
+    }
+
+    fn check_by(&self, precision: Precision, conventions: CandidateConventions) -> RayPackChecked {
+        check_ray_pack(self.pack.path(), self.candidate.path(), precision, conventions, &Silent).unwrap()
+    }
+
+    /// The candidate fails, and this explains it.
+    #[track_caller]
+    fn expect_why(self, words: &[&str]) {
+        let checked = self.check();
+        assert!(!checked.passes());
+        let why = checked.why.expect("an explanation");
+        for words in words {
+            assert!(why.contains(words), "{why}");
+        }
+    }
+}
+
+/// What a single-precision program has of a number.
+fn single(_: usize, value: f64) -> f64 {
+    if value == f64::from(u32::MAX) { -1.0 } else { f64::from(value as f32) }
+}
+
+#[test]
+fn a_right_program_passes_whatever_it_gives() {
+    assert!(Folders::right().check().passes());
+    let all = ["side", "point", "normal", "barycentric", "cos_incidence"];
+    assert!(Folders::right().without(&all).without(&["face"]).check().passes());
+    assert!(Folders::right().without(&all).without(&["face", "t"]).check().passes());
+    let faces = Folders::right().without(&all).without(&["t", "range"]);
+    assert!(faces.check().passes());
+    // Nothing says which rays hit.
+    let nothing = faces.without(&["face"]);
+    let folders = [nothing.pack.path(), nothing.candidate.path()];
+    let error =
+        check_ray_pack(folders[0], folders[1], Precision::F64, CandidateConventions::default(), &Silent);
+    assert!(error.unwrap_err().to_string().contains("expected face.npy, t.npy or range.npy"));
+}
+
+#[test]
+fn numbers_of_another_convention_are_named() {
+    let no_hit = f64::from(u32::MAX);
+    let right = Folders::right;
+    right()
+        .change("face", |_, face| if face == no_hit { -1.0 } else { face + 1.0 })
+        .expect_why(&["1 too large"]);
+    let ranges = right().of("range");
+    right().change("t", |index, _| ranges[index]).expect_why(&["t.npy holds the range"]);
+    let t = right().of("t");
+    right().change("range", |index, _| t[index]).expect_why(&["range.npy holds t"]);
+    let thousandths = |_: usize, length: f64| length * 1e3;
+    right()
+        .change("t", thousandths)
+        .change("range", thousandths)
+        .change("point", thousandths)
+        .expect_why(&["thousandths"]);
+    right().change("normal", |_, part| -part).expect_why(&["normals point inward"]);
+    right().change("cos_incidence", |_, cos| cos.abs()).expect_why(&["without sign"]);
+    right().change("cos_incidence", |_, cos| libm::acos(cos)).expect_why(&["angles in radians"]);
+    let weights = right().of("barycentric");
+    right()
+        .change("barycentric", |index, _| weights[index / 3 * 3 + (index + 1) % 3])
+        .expect_why(&["order (b, c, a)"]);
+    right().change("side", |_, side| -side).expect_why(&["taken for each other"]);
+}
+
+#[test]
+fn two_mistakes_are_both_named() {
+    let no_hit = f64::from(u32::MAX);
+    let two = Folders::right().change("face", |_, face| if face == no_hit { face } else { face + 1.0 });
+    two.change("normal", |_, part| -part).expect_why(&["1 too large", "normals point inward"]);
+}
+
+#[test]
+fn answers_to_another_question_are_named() {
+    Folders::new(Sides::Both, Sides::Both, |ray| ray.t_min = 0.0).expect_why(&["t_min is ignored"]);
+    Folders::new(Sides::Both, Sides::Both, |ray| ray.t_max = f64::INFINITY).expect_why(&["t_max is ignored"]);
+    Folders::new(Sides::Both, Sides::Fronts, |_| {}).expect_why(&["pass through the backs"]);
+    Folders::new(Sides::Fronts, Sides::Both, |_| {}).expect_why(&["hit the backs"]);
+}
+
+#[test]
+fn single_precision_must_be_declared() {
+    let values = ["face", "t", "range", "point", "normal", "barycentric", "cos_incidence"];
+    let folders = values.iter().fold(Folders::right(), |folders, name| folders.change(name, single));
+    assert!(folders.check_by(Precision::F32, CandidateConventions::default()).passes());
+    folders.expect_why(&["declare --arithmetic f32"]);
+}
+
+#[test]
+fn a_number_for_no_hit_must_be_declared() {
+    let to_zero = |_: usize, distance: f64| if distance.is_finite() { distance } else { 0.0 };
+    let folders = Folders::right().without(&["face"]).change("t", to_zero).change("range", to_zero);
+    let declared = CandidateConventions { miss: Some(0.0), ..CandidateConventions::default() };
+    assert!(folders.check_by(Precision::F64, declared).passes());
+    folders.expect_why(&["declare --miss 0"]);
+}
+
+#[test]
+fn errors_without_a_rule_are_not_explained() {
+    let checked = Folders::right().change("t", |index, t| t + 1e-3 * (index % 7) as f64).check();
+    assert!(!checked.passes() && checked.why.is_none());
+    // One wrong ray in six hundred is enough.
+    let hit = Folders::right().of("t").iter().position(|t| t.is_finite()).unwrap();
+    let checked =
+        Folders::right().change("t", |index, t| if index == hit { t * (1.0 + 1e-9) } else { t }).check();
+    assert_eq!(checked.comparison.counts().wrong, 1);
+}
+
+#[test]
+fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
+    let refused = |folders: &Folders| -> String {
+        let (pack, candidate): (&Path, &Path) = (folders.pack.path(), folders.candidate.path());
+        let conventions = CandidateConventions::default();
+        check_ray_pack(pack, candidate, Precision::F64, conventions, &Silent).unwrap_err().to_string()
+    };
+    let folders = Folders::right();
+    write_npy_numbers(folders.candidate.path().join("t.npy"), &[20, 10], &[0.0; 200]).unwrap();
+    assert!(
+        refused(&folders).contains("shape: [20, 10]; expected [10, 20], or flat [200]"),
+        "{}",
+        refused(&folders)
+    );
+    let folders = Folders::right().change("face", |_, _| 5.5);
+    assert!(refused(&folders).contains("cell 0: 5.5"), "{}", refused(&folders));
+    let folders = Folders::right();
+    write_npy_numbers(folders.pack.path().join("rays.npy"), &[1, 8], &[1.0; 8]).unwrap();
+    assert!(refused(&folders).contains("SHA-256"), "{}", refused(&folders));
+    for (document, expected) in
+        [("{", "document"), (r#"{"format":1,"kind":"x","sides":"both","files":[]}"#, "kind")]
+    {
+        std::fs::write(folders.pack.path().join("raypack.json"), document).unwrap();
+        assert!(refused(&folders).contains(expected), "{}", refused(&folders));
+    }
+}

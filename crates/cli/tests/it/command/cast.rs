@@ -1,0 +1,254 @@
+//! `cast`: any rays on any mesh.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+
+use raypencil::io::{Limits, read_npy_numbers};
+use raypencil_tests::schema::schema_faults;
+use tempfile::TempDir;
+
+use super::{assert_trouble, command, raypencil, screen, text};
+
+/// The project's own mesh and rays.
+fn data(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/rays").join(name).display().to_string()
+}
+
+#[test]
+fn arrays_have_the_shape_of_the_rays() {
+    let folder = TempDir::new().unwrap();
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    let shown = screen(folder.path(), &["cast", &cube, &rays, "-o", "out", "--all", "--any"], 0);
+    assert!(shown.contains("8 vertices, 12 faces; 2 x 2 x 2 wide"), "{shown}");
+    assert!(shown.contains("25 rays: 9 hit, 3 of them at a tie; 16 miss"), "{shown}");
+    let read =
+        |name: &str| read_npy_numbers(folder.path().join("out").join(name), &Limits::default()).unwrap();
+    // From z = 3 down to the top at z = 1, at x, y = -1.5, -1, 0, 1, 1.5: the middle 3 x 3 rays hit. The diagonal of the top
+    // belongs to both of its faces, and runs through three of them.
+    let t = read("t.npy");
+    assert_eq!(t.shape, [5, 5]);
+    for (k, &t) in t.values.iter().enumerate() {
+        let is_hit = (1..4).contains(&(k % 5)) && (1..4).contains(&(k / 5));
+        assert_eq!(t, if is_hit { 2.0 } else { f64::INFINITY });
+    }
+    assert_eq!(read("ties.npy").values.iter().filter(|&&ties| ties == 2.0).count(), 3);
+    assert_eq!(read("any.npy").values.iter().sum::<f64>(), 9.0);
+    let point = read("point.npy");
+    assert_eq!((point.shape, &point.values[3 * 6..3 * 7]), (vec![5, 5, 3], &[-1.0, -1.0, 1.0][..]));
+    // Each of the nine rays enters by the top and leaves by the bottom: at t = 2 and t = 4.
+    let (start, all, crossing) = (read("all.start.npy"), read("all.t.npy"), read("all.crossing.npy"));
+    assert_eq!((start.shape, start.values.last()), (vec![26], Some(&(all.values.len() as f64))));
+    assert!(all.values.iter().all(|&t| t == 2.0 || t == 4.0));
+    // The middle ray: two faces at the top, two at the bottom.
+    let [from, to] = [12, 13].map(|k: usize| start.values[k] as usize);
+    assert_eq!(all.values[from..to], [2.0, 2.0, 4.0, 4.0]);
+    assert_eq!(crossing.values[from..to], [1.0, 1.0, -1.0, -1.0]);
+    assert_eq!(read("all.group.npy").values[from..to], [0.0, 0.0, 1.0, 1.0]);
+    let summary = fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+    let schema = include_str!("../../../../../docs/formats/cast.schema.json");
+    let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
+    assert_eq!(schema_faults(&schema, &serde_json::from_str(&summary).unwrap()), Vec::<String>::new());
+}
+
+#[test]
+fn one_ray_is_answered_on_the_screen_and_as_json() {
+    let folder = TempDir::new().unwrap();
+    let cube = data("cube.obj");
+    let ray = "--ray=-3,0.25,0.5,2,0,0";
+    let shown = screen(folder.path(), &["cast", &cube, ray, "--all"], 0);
+    for line in [
+        "face 0, front",
+        "t            1\n",
+        "range        2\n",
+        "point        (-1, 0.25, 0.5)",
+        "t 2: face 3 (back)",
+    ] {
+        assert!(shown.contains(line), "{line} is not in\n{shown}");
+    }
+    let json = screen(folder.path(), &["cast", &cube, ray, "--json", "--any"], 0);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let first = &json["rays"][0]["first"];
+    assert_eq!(
+        (&first["face"], &first["t"], &json["rays"][0]["any"]),
+        (&0.into(), &1.0.into(), &true.into())
+    );
+    // From inside only backs are met.
+    let inside = ["cast", &cube, "--ray", "0,0.25,0.5,1,0,0"];
+    assert!(screen(folder.path(), &inside, 0).contains("face 3, back"));
+    assert!(screen(folder.path(), &[&inside[..], &["--fronts-only"]].concat(), 0).contains("nothing is hit"));
+}
+
+#[test]
+fn rays_come_from_standard_input() {
+    let folder = TempDir::new().unwrap();
+    let mut child = command(folder.path(), &["cast", &data("cube.obj"), "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(b"0,0,3,0,0,-1\n9,9,9,0,0,1\n").unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(
+        text(&output.stdout).contains("2 rays: 1 hit, 1 of them at a tie; 1 miss"),
+        "{}",
+        text(&output.stdout)
+    );
+}
+
+#[test]
+fn rubbish_is_refused_with_its_place() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("bad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
+    fs::write(folder.path().join("bad.csv"), "0,0,0,0,0,1\n0,0,0,0,0,0\n").unwrap();
+    let refused = |arguments: &[&str], words: &[&str]| {
+        assert_trouble(&raypencil(folder.path(), &[&["cast"], arguments].concat()), words);
+    };
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    refused(&["bad.obj", &rays, "-o", "out"], &["bad.obj: line 2: vertex 3", "expected 1 to 1"]);
+    refused(&[&cube, "bad.csv", "-o", "out"], &["bad.csv: ray 1.direction is [0, 0, 0]"]);
+    refused(&[&cube, "none.npy"], &["none.npy: cannot read"]);
+    refused(&[&cube, "--ray", "1,2,3"], &["--ray", "3 fields; expected 6 numbers"]);
+    refused(&[&cube], &["no rays are given; expected RAYS, --ray"]);
+    // Nothing was written.
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn sets_of_rays_have_a_folder_each_with_clouds_and_pictures() {
+    let folder = TempDir::new().unwrap();
+    let cube = data("cube.obj");
+    let grid = "grid = { columns = 8, rows = 6, width_deg = 30, height_deg = 20 }\nposition_m = [-4, 0, 0]\n";
+    let set = |name: &str| format!("[[rays]]\nname = \"{name}\"\n{grid}");
+    fs::write(folder.path().join("one.toml"), set("front")).unwrap();
+    fs::write(folder.path().join("two.toml"), set("front") + &set("again")).unwrap();
+    let shown = screen(folder.path(), &["cast", &cube, "one.toml", "-o", "one"], 0);
+    assert!(shown.contains("front: 48 rays: 48 hit"), "{shown}");
+    let shown = screen(folder.path(), &["cast", &cube, "two.toml", "-o", "two"], 0);
+    assert!(shown.contains("again: 48 rays: 48 hit"), "{shown}");
+    let schema = include_str!("../../../../../docs/formats/cast.schema.json");
+    let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
+    for of_set in ["one", "two/front", "two/again"] {
+        let of_set = folder.path().join(of_set);
+        let summary = fs::read_to_string(of_set.join("summary.json")).unwrap();
+        assert_eq!(schema_faults(&schema, &serde_json::from_str(&summary).unwrap()), Vec::<String>::new());
+        for file in ["t.npy", "cloud.ply", "cloud.pcd", "range.png", "top.png"] {
+            assert!(of_set.join(file).is_file(), "{file}");
+        }
+        // The front of the cube is 3 m ahead.
+        let point = read_npy_numbers(of_set.join("point.npy"), &Limits::default()).unwrap();
+        assert_eq!(point.shape, [6, 8, 3]);
+        assert!(point.values.chunks_exact(3).all(|point| point[0] == -1.0));
+    }
+    let shown = screen(folder.path(), &["cast", &cube, "two.toml", "--json"], 0);
+    let shown: serde_json::Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(
+        (&shown["sets"][1]["name"], &shown["sets"][1]["counts"]["hits"]),
+        (&"again".into(), &48.into())
+    );
+}
+
+#[test]
+fn wrong_sets_of_rays_are_an_error_with_a_place() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("rays.toml"), "[[rays]]\nname = \"a\"\n").unwrap();
+    let cube = data("cube.obj");
+    let output = raypencil(folder.path(), &["cast", &cube, "rays.toml"]);
+    assert_trouble(&output, &["rays.toml:1:1", "`rays 0` has no pattern"]);
+}
+
+#[test]
+fn a_renderer_stands_beside_the_truth() {
+    let folder = TempDir::new().unwrap();
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    let shown = screen(folder.path(), &["cast", &cube, &rays, "--with", "tracer", "-o", "out"], 0);
+    // All numbers of these rays are exact in f64.
+    for line in ["tracer: 25 the same (3 at ties), 0 rounding, 0 wrong", "All 25 rays agree."] {
+        assert!(shown.contains(line), "{shown}");
+    }
+    let verdicts =
+        read_npy_numbers(folder.path().join("out/tracer.verdict.npy"), &Limits::default()).unwrap();
+    assert_eq!((verdicts.shape, verdicts.values.iter().sum::<f64>()), (vec![5, 5], 3.0));
+    // Where nothing is hit, nothing is compared.
+    let shown = screen(folder.path(), &["cast", &cube, "--ray=0,0,3,0,0,1", "--with", "tracer"], 1);
+    assert!(shown.contains("Nothing is hit: 1 ray compared, and all miss the mesh."), "{shown}");
+    let shown =
+        screen(folder.path(), &["cast", &cube, "--ray=0,0,3,0,0,-1", "--with", "tracer", "--json"], 0);
+    let json: serde_json::Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(
+        json["compared"]["counts"],
+        serde_json::json!({"same": 1, "ties": 1, "rounding": 0, "wrong": 0})
+    );
+    let refused = raypencil(folder.path(), &["cast", &cube, &rays, "--with", "scanline"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("possible values: tracer"), "{}", text(&refused.stderr));
+}
+
+#[test]
+fn packs_of_rays_judge_arrays() {
+    let folder = TempDir::new().unwrap();
+    let (cube, rays) = (data("cube.obj"), data("cube.npy"));
+    let shown = screen(folder.path(), &["pack", &cube, "--rays", &rays, "-o", "pack"], 0);
+    let untested = "Not tested by any of its rays: backs of faces, t_min, t_max";
+    assert!(
+        shown.contains("25 rays; 9 hit, 3 of them at a tie, 16 miss") && shown.contains(untested),
+        "{shown}"
+    );
+    screen(folder.path(), &["cast", &cube, &rays, "-o", "mine"], 0);
+    let shown = screen(folder.path(), &["check", "pack", "mine", "-o", "checked"], 0);
+    assert!(shown.contains("All 25 rays agree."), "{shown}");
+    assert!(folder.path().join("checked/junit.xml").is_file());
+    let check = fs::read_to_string(folder.path().join("checked/check.json")).unwrap();
+    let check: serde_json::Value = serde_json::from_str(&check).unwrap();
+    assert_eq!((&check["kind"], &check["candidate"]["passes"]), (&"rays".into(), &true.into()));
+    // A program that finds nothing: the rays through the top's outline are excused by rounding, that through its middle,
+    // on an edge that two faces share, is not.
+    let nothing = [f64::INFINITY; 25];
+    for name in ["t", "range"] {
+        raypencil::io::write_npy_numbers(folder.path().join(format!("mine/{name}.npy")), &[25], &nothing)
+            .unwrap();
+    }
+    fs::remove_file(folder.path().join("mine/face.npy")).unwrap();
+    let shown = screen(folder.path(), &["check", "pack", "mine"], 1);
+    assert!(shown.contains("1 of 25 rays is wrong."), "{shown}");
+    assert!(shown.contains("raypencil cast pack --ray=0,0,3,0,0,-1,0,inf --all --margins"), "{shown}");
+}
+
+#[test]
+fn a_scene_without_a_camera_has_its_terrain_as_the_file_gives_it() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    // A tilted square around (0.1, 0.1) whose heights are no f32 numbers, in a text file.
+    let hill = "v -1 -1 0.1\nv 1.2 -1 0.1\nv 1.2 1.2 0.3\nv -1 1.2 0.3\nf 1 2 3\nf 1 3 4\n";
+    fs::write(at.join("hill.obj"), hill).expect("a file");
+    let scene = "version = 1\n[terrain]\nfile = \"hill.obj\"\n[vehicle]\nposition_m = [0.1, 0.25]\n";
+    let sets = "[[rays]]\nname = \"down\"\nspinning = { elevations_deg = [-90], steps = 1 }\nposition_m = [0, 0, 1]\n";
+    fs::write(at.join("scene.toml"), format!("{scene}{sets}")).expect("a file");
+    let shown = screen(at, &["cast", "scene.toml", "-o", "out", "--with", "tracer", "--margins"], 0);
+    assert!(shown.contains("4 vertices, 2 faces") && shown.contains("down: 1 ray"), "{shown}");
+    let read = |name: &str| {
+        let array = read_npy_numbers(at.join("out").join(format!("{name}.npy")), &Limits::default());
+        array.expect("an array").values
+    };
+    // The vehicle stands on the ground and the ray starts 1 m above it: to the rounding of the vehicle's height, which
+    // comes from f32.
+    let point = read("point");
+    assert!((point[2] - (0.1 + 0.2 * (0.25 + 1.0) / 2.2)).abs() < 1e-15, "{point:?}");
+    assert!((read("range")[0] - 1.0).abs() < 1e-6);
+    // Other rays on the same terrain, as the commands of wrong rays have them.
+    let shown = screen(at, &["cast", "scene.toml", "--ray", "-1,-1,1,0,0,-1"], 0);
+    assert!(shown.contains("(-1, -1, 0.1)"), "{shown}");
+    // The same scene with a camera keeps f32 offsets and says so.
+    let shown = screen(at, &["validate", "scene.toml", "--set", "camera.width_px=8", "-o", "seen"], 0);
+    assert!(shown.contains("4 vertices, 4 rounded to f32 offsets, by 4.8e-8 m at most"), "{shown}");
+    fs::write(at.join("no-rays.toml"), scene).expect("a file");
+    assert_trouble(
+        &raypencil(at, &["cast", "no-rays.toml"]),
+        &["no-rays.toml", "there is no table `[[rays]]`"],
+    );
+    let outcome = raypencil(at, &["cast", "hill.obj"]);
+    assert_trouble(&outcome, &["hill.obj: no rays are given; expected RAYS, --ray, or a scene file"]);
+    fs::write(at.join("off.toml"), scene.replace("0.25]", "9]") + sets).expect("a file");
+    assert_trouble(&raypencil(at, &["cast", "off.toml"]), &["off.toml:5:14", "no ground under (0.1, 9)"]);
+}

@@ -1,0 +1,138 @@
+//! `check` says why a candidate is wrong nearly everywhere, and what may be declared.
+
+use std::fs;
+use std::path::Path;
+
+use raypencil::Image;
+use raypencil::io::{ExrMap, Raster};
+
+use super::check::{assert_fails, assert_passes, check, edit, folder, reals};
+use super::{assert_trouble, text};
+
+/// The camera's answers alone are left.
+fn camera_alone(folder: &Path) {
+    for file in ["beam-0.exr", "beam-1.exr"] {
+        fs::remove_file(folder.join("mine").join(file)).expect("what was rendered");
+    }
+}
+
+fn flipped<T: Copy>(image: &Image<T>) -> Image<T> {
+    let (width, height) = (image.width(), image.height());
+    let cells = (0..height).rev().flat_map(|j| (0..width).map(move |i| image.at(i, j)));
+    Image::from_cells(width, height, cells.collect())
+}
+
+fn flip(map: &mut ExrMap) {
+    for raster in map.channels.values_mut() {
+        *raster = match raster {
+            Raster::F32(image) => Raster::F32(flipped(image)),
+            Raster::U32(image) => Raster::U32(flipped(image)),
+        };
+    }
+}
+
+#[test]
+fn reversed_rows_are_named_on_all_reports_and_the_verdict_stays() {
+    let folder = folder("pyramids");
+    camera_alone(folder.path());
+    assert_passes(&check(folder.path(), "pyramids", &[]));
+    edit(&folder, "camera.exr", flip);
+    let output = check(folder.path(), "pyramids", &["-o", "out"]);
+    let why =
+        "Why: 100 % agree if rows are reversed: row 0 is the top row (docs/formats/files.md, Orientation).";
+    assert_fails(&output, &["rays are wrong", why]);
+    let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).expect("a report");
+    let json: serde_json::Value = serde_json::from_str(&read("check.json")).expect("JSON");
+    assert_eq!(json["verdict"], "defects");
+    assert_eq!(json["diagnosis"]["mistakes"][0]["name"], "rows_reversed");
+    assert_eq!(json["diagnosis"]["agree"], json["diagnosis"]["tried"]);
+    assert!(read("junit.xml").contains("agree if rows are reversed"), "{}", read("junit.xml"));
+}
+
+#[test]
+fn a_number_for_no_hit_is_suggested_and_can_be_declared() {
+    for (number, word) in [(-1.0, "-1"), (0.0, "0")] {
+        let folder = folder("pyramids");
+        camera_alone(folder.path());
+        edit(&folder, "camera.exr", |map| {
+            for channel in ["range.T", "depth.Z"] {
+                let cells = reals(map, channel).cells_mut();
+                cells.iter_mut().filter(|x| x.is_infinite()).for_each(|x| *x = number);
+            }
+        });
+        let declare = format!("declare --miss {word}");
+        assert_trouble(&check(folder.path(), "pyramids", &[]), &["`range.T` at", "+Inf", "help", &declare]);
+        assert_passes(&check(folder.path(), "pyramids", &["--miss", word]));
+        // Another number declares nothing.
+        assert_trouble(&check(folder.path(), "pyramids", &["--miss", "7"]), &["`range.T` at"]);
+    }
+}
+
+#[test]
+fn a_number_for_no_hit_without_faces_is_refused_or_named() {
+    let folder = folder("pyramids");
+    camera_alone(folder.path());
+    let missed = |number: f32| {
+        edit(&folder, "camera.exr", |map| {
+            map.channels.retain(|name, _| name == "range.T");
+            // The first range of all belongs to the sky.
+            let was = reals(map, "range.T").at(0, 0);
+            let same = |x: &f32| *x == was || x.is_nan() && was.is_nan();
+            reals(map, "range.T").cells_mut().iter_mut().filter(|x| same(x)).for_each(|x| *x = number);
+        });
+    };
+    missed(-1.0);
+    assert_trouble(&check(folder.path(), "pyramids", &[]), &["no negative length", "declare --miss -1"]);
+    assert_passes(&check(folder.path(), "pyramids", &["--miss", "-1"]));
+    missed(f32::NAN);
+    // A value that is not finite means no hit without a declaration.
+    assert_passes(&check(folder.path(), "pyramids", &[]));
+    // A range of 0 breaks no rule of files: the rays are judged, and the constant is found.
+    missed(0.0);
+    assert_fails(&check(folder.path(), "pyramids", &[]), &["Why: 100 % agree if 0 means \"no hit\""]);
+    assert_passes(&check(folder.path(), "pyramids", &["--miss", "0"]));
+}
+
+#[test]
+fn faces_of_an_own_order_are_named_and_can_be_left_out() {
+    let folder = folder("pyramids");
+    camera_alone(folder.path());
+    edit(&folder, "camera.exr", |map| {
+        let Some(Raster::U32(faces)) = map.channels.get_mut("face.I") else { panic!("no faces") };
+        // 224 faces; 137 has no common divisor with 224.
+        let others = faces.cells_mut().iter_mut().filter(|face| **face != u32::MAX);
+        others.for_each(|face| *face = (137 * *face + 5) % 224);
+    });
+    assert_fails(
+        &check(folder.path(), "pyramids", &[]),
+        &["agree if faces are numbered in an order of their own"],
+    );
+    let output = check(folder.path(), "pyramids", &["--no-faces"]);
+    assert_passes(&output);
+    let screen = text(&output.stdout);
+    assert!(
+        screen.contains("Not compared, because not given: face") && !screen.contains("Unknown channel"),
+        "{screen}"
+    );
+    // A face map that says wrongly which rays hit: with 0 for none.
+    edit(&folder, "camera.exr", |map| {
+        let Some(Raster::U32(faces)) = map.channels.get_mut("face.I") else { panic!("no faces") };
+        faces.cells_mut().iter_mut().filter(|face| **face == u32::MAX).for_each(|face| *face = 0);
+    });
+    assert_trouble(&check(folder.path(), "pyramids", &[]), &["declare --no-faces"]);
+    assert_passes(&check(folder.path(), "pyramids", &["--no-faces"]));
+}
+
+#[test]
+fn an_error_of_one_ray_has_no_explanation() {
+    let folder = folder("pyramids");
+    edit(&folder, "camera.exr", |map| {
+        let range = reals(map, "range.T");
+        let value = range.at(40, 50);
+        range.set(40, 50, 2.0 * value);
+    });
+    let output = check(folder.path(), "pyramids", &["--json"]);
+    let json: serde_json::Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
+    assert_eq!(json["verdict"], "defects");
+    assert!(json["diagnosis"].is_null(), "{}", json["diagnosis"]);
+}

@@ -1,0 +1,94 @@
+//! `pack`: with and without a bench, of a scene in which nothing is hit, and the input pack.
+
+use std::fs;
+
+use raypencil::Image;
+use raypencil::io::write_npy;
+use tempfile::TempDir;
+
+use super::check::{assert_fails, assert_passes, pack};
+use super::{assert_trouble, raypencil, screen, text};
+
+/// A camera of a few pixels that looks up or down, and no beams.
+fn scene(pitch_down_deg: f64) -> String {
+    format!(
+        "version = 1\nbeam = []\n[camera]\nwidth_px = 8\nheight_px = 6\npixel_pitch_um = 1000\npitch_down_deg = \
+         {pitch_down_deg}\n[terrain]\nbuiltin = \"pyramids\"\n"
+    )
+}
+
+#[test]
+fn a_pack_has_a_bench_and_says_which_clauses_its_rays_decide() {
+    let folder = TempDir::new().expect("a temporary folder");
+    fs::write(folder.path().join("down.toml"), scene(40.0)).expect("a file");
+    let said = screen(folder.path(), &["pack", "down.toml", "-o", "benched"], 0);
+    assert!(said.contains("clauses of the contract decide 3 or more of its rays each; fewer: "), "{said}");
+    // The camera alone has one pitch for both axes; backs and edges are those of the bench.
+    assert!(said.contains("pixel-pitches (0)") && !said.contains("fronts-only"), "{said}");
+    let sensors = |name: &str| {
+        let manifest = fs::read(folder.path().join(name).join("manifest.json")).expect("a manifest");
+        let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
+        manifest["sensors"].as_array().expect("sensors").len()
+    };
+    assert_eq!(sensors("benched"), 5);
+
+    let plain = raypencil(folder.path(), &["pack", "down.toml", "--no-bench", "-o", "plain", "--json"]);
+    let plain: serde_json::Value = serde_json::from_slice(&plain.stdout).expect("JSON");
+    let rays = |clause: &str| {
+        let clauses = plain["clauses"].as_array().expect("clauses");
+        clauses.iter().find(|one| one["clause"] == clause).expect("a clause of hits")["rays"].clone()
+    };
+    assert_eq!((sensors("plain"), rays("fronts-only"), rays("rows-from-the-top")), (1, 0.into(), 48.into()));
+    let conflict = ["pack", "--blind", "3", "--no-bench", "-o", "x"];
+    assert_trouble(&raypencil(folder.path(), &conflict), &["--no-bench"]);
+}
+
+#[test]
+fn a_pack_in_which_nothing_is_hit_is_passed_by_nobody() {
+    let folder = TempDir::new().expect("a temporary folder");
+    fs::write(folder.path().join("up.toml"), scene(-60.0)).expect("a file");
+    let packed = raypencil(folder.path(), &["pack", "up.toml", "--no-bench", "-o", "sky"]);
+    assert_passes(&packed);
+    assert!(text(&packed.stderr).contains("none of its 48 rays hits"), "{}", text(&packed.stderr));
+    let checked = raypencil(folder.path(), &["check", "sky", "sky", "-o", "out"]);
+    assert_fails(&checked, &["? No ray of this pack hits anything"]);
+    let json = fs::read_to_string(folder.path().join("out/check.json")).expect("a file");
+    assert!(json.contains("\"verdict\": \"nothing_hit\""), "{json}");
+    let junit = fs::read_to_string(folder.path().join("out/junit.xml")).expect("a file");
+    assert!(
+        junit.contains("failures=\"1\"") && junit.contains("no ray of this pack hits anything"),
+        "{junit}"
+    );
+}
+
+#[test]
+fn an_input_pack_tests_a_loader() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let said = screen(folder.path(), &["pack", "--input", "-o", "input"], 0);
+    assert_eq!(said, "input: the input pack, 28 faces\n");
+    let right = screen(folder.path(), &["check", "input", "input"], 0);
+    assert!(right.ends_with("✓ 28 faces: all are right.\n"), "{right}");
+
+    fs::create_dir(folder.path().join("mine")).expect("a folder");
+    write_npy(folder.path().join("mine/triangles.npy"), &[&Image::filled(9, 29, 0.5)]).expect("a file");
+    let wrong = raypencil(folder.path(), &["check", "input", "mine", "-o", "out"]);
+    let words = ["✗ 28 of 28 faces are wrong; 29 are given.", "face 0, `axes` (glTF is y up"];
+    assert_fails(&wrong, &words);
+    let json = fs::read(folder.path().join("out/check.json")).expect("a file");
+    let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
+    assert_eq!(
+        (&json["passes"], &json["given"], &json["wrong"][3]["clause"]),
+        (&false.into(), &29.into(), &"scale".into())
+    );
+    let junit = fs::read_to_string(folder.path().join("out/junit.xml")).expect("a file");
+    assert!(junit.contains("failures=\"22\""), "each clause, and the scene by a face too many: {junit}");
+
+    let declared = ["check", "input", "mine", "--miss", "0"];
+    assert_trouble(&raypencil(folder.path(), &declared), &["input is an input pack", "--miss"]);
+    assert_trouble(&raypencil(folder.path(), &["check", "input", "nowhere"]), &["nowhere/triangles.npy"]);
+    let both = ["pack", "pyramids", "--input", "-o", "x"];
+    assert_trouble(&raypencil(folder.path(), &both), &["--input"]);
+    // A pack of rays is no input pack.
+    let rays = pack("hard").to_string_lossy().into_owned();
+    assert_trouble(&raypencil(folder.path(), &["check", &rays, "mine"]), &["mine"]);
+}

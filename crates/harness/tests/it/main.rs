@@ -1,0 +1,7 @@
+//! The tests of this crate by its public items: a program of its own, because the fixtures of `raypencil-tests` are made by
+//! the library, and to its unit tests they would be values of another crate.
+
+mod formats;
+mod output;
+mod summary_schema;
+mod warnings;

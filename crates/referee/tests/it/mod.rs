@@ -1,0 +1,14 @@
+//! The tests of this crate by its public items, one program together with its unit tests.
+
+mod cast;
+mod cast_margins;
+mod cast_ruling;
+#[path = "../common/mod.rs"]
+mod common;
+mod digest;
+mod light;
+mod margins;
+mod verdicts;
+mod visibility_margins;
+#[path = "../common/wall.rs"]
+mod wall;

@@ -1,0 +1,13 @@
+//! The rules of section 7, each alone, on inputs made by hand.
+
+use super::common;
+
+mod elevation_map;
+mod localisation;
+mod mapper;
+mod mended;
+mod obstacle_map;
+mod rig;
+mod traversability;
+mod triangulation;
+mod vehicle;

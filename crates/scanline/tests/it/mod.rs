@@ -1,0 +1,5 @@
+//! The tests of this crate by its public items, one program together with its unit tests.
+
+mod backs;
+mod light;
+mod paper;

@@ -1,0 +1,3 @@
+//! The tests of this crate by its public items, one program together with its unit tests.
+
+mod repair;
