@@ -3,13 +3,11 @@
 //! A digest changes with any change of a ground, a rig, or the way in which a margin or a ruling is found. Verdicts
 //! and values are exact, so theirs change with scenes alone. When a digest changes, the commit must say why.
 
-use super::common;
-
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use common::SplitMix64;
+use crate::splitmix::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Approximations, Displacement, Referee, Tolerance, VisibilityApproximations};
 use raypencil_scene::{

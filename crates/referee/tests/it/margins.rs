@@ -1,11 +1,10 @@
 //! Margins of many rays over malformed grounds: they hold, they have witnesses, and they are tight.
 
-use super::common;
 use super::wall;
 
 use std::sync::Arc;
 
-use common::SplitMix64;
+use crate::splitmix::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Displacement, Margin, Referee};
 use raypencil_scene::{Atmosphere, Beam, Camera, FluxModel, Mesh, Mounted, Pose, Profile, Scene, SensorId};

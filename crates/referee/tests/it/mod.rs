@@ -3,8 +3,6 @@
 mod cast;
 mod cast_margins;
 mod cast_ruling;
-#[path = "../common/mod.rs"]
-mod common;
 mod digest;
 mod light;
 mod margins;

@@ -1,10 +1,8 @@
 //! Margins of visibility: they hold, they have witnesses, and two are derived by hand.
 
-use super::common;
-
 use std::sync::Arc;
 
-use common::SplitMix64;
+use crate::splitmix::SplitMix64;
 use glam::{DQuat, DVec3};
 use raypencil_referee::{Displacement, Margin, Referee, VisibilityMargins};
 use raypencil_scene::{
