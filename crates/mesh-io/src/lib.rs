@@ -18,7 +18,7 @@
 //!       registration -> georeference          what a pixel is, and where pixels are on the map
 //!       lattice, model -> read                the posts inside a window, and the ground through them
 //!       write                                 a grid of heights to GeoTIFF
-//! triangles  text, parts                      lines and decimal numbers of a text, polygons to faces
+//! triangles  text, polygon -> parts            lines and decimal numbers of a text, polygons to faces
 //!       stl, obj, npy_pair                    a format each
 //!       ply: header -> numbers                elements and types, and the numbers of either kind
 //!       read                                  which format a file has, and triangles as `f64`

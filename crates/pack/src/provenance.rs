@@ -32,8 +32,9 @@ pub struct Provenance {
     pub program: String,
     /// Arithmetic that the program computes in.
     pub arithmetic: Arithmetic,
-    /// The scene that the recording belongs to.
-    pub scene: ManifestScene,
+    /// The scene that the recording belongs to, if the program knows it.
+    #[serde(default)]
+    pub scene: Option<ManifestScene>,
     /// Total fluxes of Monte Carlo images.
     #[serde(default)]
     pub totals: Vec<MonteCarloTotal>,
@@ -134,12 +135,10 @@ impl Provenance {
             return Err(refuse(Fault::new("format", format.to_string(), FORMAT.to_string())));
         }
         let read: Self = serde_json::from_slice(bytes).map_err(invalid)?;
-        let texts = [
-            ("program", &read.program, MAX_TEXT_BYTES),
-            ("scene.name", &read.scene.name, MAX_TEXT_BYTES),
-            ("scene.sha256", &read.scene.sha256, MAX_DIGEST_BYTES),
-        ];
-        for (place, text, most) in texts {
+        let of_scene = read.scene.iter().flat_map(|scene| {
+            [("scene.name", &scene.name, MAX_TEXT_BYTES), ("scene.sha256", &scene.sha256, MAX_DIGEST_BYTES)]
+        });
+        for (place, text, most) in of_scene.chain([("program", &read.program, MAX_TEXT_BYTES)]) {
             if text.len() > most {
                 return Err(refuse(Fault::new(
                     place,
@@ -172,18 +171,20 @@ pub fn precision_of(arithmetic: Arithmetic) -> Precision {
     }
 }
 
-/// Reads the note of the recording in `folder`, and checks that it belongs to `scene`. `None`: there is no note.
+/// Reads the note of the recording in `folder`, and checks that it belongs to `scene`, if it names one. `None`: there is no
+/// note.
 ///
 /// # Errors
 /// A note that cannot be read, or that belongs to another scene.
 pub fn note(folder: &Path, scene: &Scene) -> Result<Option<Provenance>, ProvenanceError> {
     let note = Provenance::read(folder)?;
     let ours = scene_sha256(scene);
-    match note {
-        Some(note) if note.scene.sha256 != ours => {
-            Err(ProvenanceError::OtherScene { folder: folder.to_path_buf(), theirs: note.scene.sha256, ours })
+    match note.as_ref().and_then(|note| note.scene.as_ref()) {
+        Some(scene) if scene.sha256 != ours => {
+            let theirs = scene.sha256.clone();
+            Err(ProvenanceError::OtherScene { folder: folder.to_path_buf(), theirs, ours })
         }
-        note => Ok(note),
+        _ => Ok(note),
     }
 }
 
@@ -206,7 +207,32 @@ mod tests {
         assert_eq!(Provenance::read(empty.path()).expect("no note is fine"), None);
         let note = read(GOOD).expect("a note").expect("one that is there");
         assert_eq!((note.program.as_str(), note.arithmetic), ("P 1", Arithmetic::F32));
-        assert_eq!((note.scene.sha256.as_str(), note.totals[0].beam, note.totals[0].mean), ("ab", 1, 2e-9));
+        assert_eq!((note.totals[0].beam, note.totals[0].mean), (1, 2e-9));
+        assert_eq!(note.scene.expect("a scene").sha256, "ab");
+    }
+
+    #[test]
+    fn a_note_may_leave_its_scene_out() {
+        let scene = r#", "scene": {"name": "s", "sha256": "ab"}"#;
+        assert!(GOOD.contains(scene));
+        let note = read(&GOOD.replace(scene, "")).expect("a note").expect("one that is there");
+        assert_eq!((note.scene, note.arithmetic), (None, Arithmetic::F32));
+        // Half a scene is none.
+        assert!(read(&GOOD.replace(r#", "sha256": "ab""#, "")).is_err());
+    }
+
+    #[test]
+    fn a_note_of_another_scene_is_refused_and_one_without_a_scene_is_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let loaded = raypencil_scene_io::load("pyramids", &Default::default()).expect("a built-in scene");
+        let of = |text: &str| {
+            std::fs::write(folder.path().join(FILE_NAME), text).expect("a file");
+            note(folder.path(), &loaded.scene)
+        };
+        let message = of(GOOD).expect_err("another scene").to_string();
+        assert!(message.contains("of the scene ab; expected"), "{message}");
+        let alone = r#"{"format": 1, "program": "ann", "arithmetic": "f32"}"#;
+        assert_eq!(of(alone).expect("no scene, no other scene").expect("a note").program, "ann");
     }
 
     #[test]

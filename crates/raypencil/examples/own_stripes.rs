@@ -1,7 +1,7 @@
 //! One's own stripe extraction in the rover, in place of the paper's thresholding: the centroid of the brightest peak of each
 //! column. The same drive by both, and how far off the true ground their points are.
 //!
-//!     cargo run --release -p raypencil --example own_stripes [pyramids|facets|SCENE.toml]
+//!     cargo run --release -p raypencil --features examples --example own_stripes [pyramids|facets|SCENE.toml]
 
 use std::error::Error;
 use std::sync::Arc;

@@ -131,9 +131,19 @@ fn split(text: &str) -> Vec<&str> {
 /// and two steps of 0.1 are 0.3.
 fn range(text: &str, room: usize) -> Result<Option<Vec<String>>, String> {
     let parts: Vec<&str> = text.split(':').map(str::trim).collect();
-    let [first, last, step] = parts.as_slice() else { return Ok(None) };
     let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
-    let (Some(low), Some(high), Some(by)) = (number(first), number(last), number(step)) else {
+    let numbers: Vec<Option<f64>> = parts.iter().map(|part| number(part)).collect();
+    let (&[Some(low), Some(high), Some(by)], &[first, _, step]) = (numbers.as_slice(), parts.as_slice())
+    else {
+        // A key of a scene file takes no text that looks like a range: so it is one, with a slip.
+        if parts.len() > 1 && numbers.iter().any(Option::is_some) {
+            let slip = match parts.len() {
+                2 => "a range needs a step",
+                3 => "a range has three numbers",
+                _ => "a range has three parts",
+            };
+            return Err(format!("{text}: {slip}; expected FIRST:LAST:STEP, such as 20:35:5"));
+        }
         return Ok(None);
     };
     if by == 0.0 || (high - low) / by < 0.0 {
@@ -191,6 +201,11 @@ mod tests {
             ("a=1:2:-1", "does not come to its end"),
             ("a=0:1e9:1", "expected at most 1000000"),
             ("a=1,2,1", "1 is given twice"),
+            ("a=20:35", "20:35: a range needs a step; expected FIRST:LAST:STEP, such as 20:35:5"),
+            ("a=7,20:", "a range needs a step"),
+            ("a=1:five:2", "a range has three numbers"),
+            ("a=1:2:3:4", "a range has three parts"),
+            ("a=1:inf:1", "a range has three numbers"),
         ] {
             let message = Axis::parse(text).unwrap_err().to_string();
             assert!(message.contains(expected), "{text}: {message}");

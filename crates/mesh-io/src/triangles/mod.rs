@@ -8,6 +8,7 @@ mod npy_pair;
 mod obj;
 mod parts;
 mod ply;
+mod polygon;
 mod read;
 mod stl;
 mod text;

@@ -5,10 +5,11 @@
 use raypencil_files::Fault;
 
 use crate::triangles::parts::{Parts, coordinate};
-use crate::triangles::text::{Lines, number, quoted};
+use crate::triangles::text::{Lines, number, quoted, without_mark};
 
 /// Reads the vertices and the faces of a file.
 pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
+    let file = without_mark(file);
     // Otherwise any file whose lines start with letters would be an empty mesh.
     if let Some(at) = file.iter().position(|&byte| byte == 0) {
         return Err(Fault::new(format!("byte {at}"), "a byte 0", "a text"));

@@ -2,6 +2,11 @@
 
 use raypencil_files::Fault;
 
+use crate::triangles::polygon;
+
+/// Maximum number of corners of a polygon that is not convex: the time to cut it grows with their square.
+const MAX_CONCAVE_CORNERS: usize = 10_000;
+
 /// Maximum magnitude of a coordinate: that of [`raypencil_scene::Triangles`].
 pub(crate) const MAX_COORDINATE: f64 = 1e30;
 
@@ -23,7 +28,7 @@ impl Parts {
         Self { vertices, faces, polygons: None, count }
     }
 
-    /// Adds a polygon of three or more corners as a fan around its first.
+    /// Adds a polygon of three or more corners as a fan around its first. Its vertices may follow.
     pub(super) fn add_polygon(&mut self, corners: &[u32]) {
         let &[first, ref others @ ..] = corners else { return };
         if corners.len() > 3 && self.polygons.is_none() {
@@ -36,6 +41,39 @@ impl Parts {
             }
         }
         self.count += 1;
+    }
+
+    /// Cuts the polygons that are not convex truly, once all vertices are known. Their fans may lie outside of them.
+    ///
+    /// # Errors
+    /// The polygon that has too many corners.
+    pub(super) fn cut_concave_polygons(&mut self) -> Result<(), Fault> {
+        let Some(polygons) = &self.polygons else { return Ok(()) };
+        let mut corners: Vec<u32> = Vec::new();
+        let mut first = 0;
+        while let Some(&polygon) = polygons.get(first) {
+            let count = polygons[first..].iter().take_while(|&&other| other == polygon).count();
+            let faces = &mut self.faces[first..first + count];
+            first += count;
+            if count == 1 {
+                continue;
+            }
+            // A fan has its polygon's corners in order.
+            corners.clear();
+            corners.extend(&faces[0][..2]);
+            corners.extend(faces.iter().map(|face| face[2]));
+            let points: Vec<[f64; 3]> = corners.iter().map(|&k| self.vertices[k as usize]).collect();
+            if points.len() > MAX_CONCAVE_CORNERS && !polygon::is_convex_or_flat(&points) {
+                let found = format!("{} corners, and it is not convex", points.len());
+                let expected =
+                    format!("at most {MAX_CONCAVE_CORNERS}; triangulate it in the program that wrote it");
+                return Err(Fault::new(format!("polygon {polygon}"), found, expected));
+            }
+            for (face, triangle) in faces.iter_mut().zip(polygon::cut(&points).into_iter().flatten()) {
+                *face = triangle.map(|k| corners[k]);
+            }
+        }
+        Ok(())
     }
 
     /// Number of polygons so far.

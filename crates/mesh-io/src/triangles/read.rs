@@ -31,11 +31,12 @@ pub struct TriangleFile {
 /// [`crate::load_mesh`]. Each number is taken as it is: of a decimal the nearest `f64`; single precision is widened.
 /// Only the nodes of a glTF file move vertices, in double precision.
 ///
-/// Faces count from 0 in the order of the file. A polygon of n corners becomes n - 2 faces, a fan around its first
-/// corner; [`read_triangles`] tells which polygon a face belongs to. The corners of STL become one vertex if they have
+/// Faces count from 0 in the order of the file. A polygon of n corners becomes n - 2 faces: a fan around its first corner if it
+/// is convex, else triangles that cover it, the same ones whichever corner it begins with. [`read_triangles`] tells which
+/// polygon a face belongs to. Of a polygon that crosses itself the fan is taken. The corners of STL become one vertex if they have
 /// the same three numbers. A file may have no faces.
 ///
-/// Limits: 1 GiB for each file; of PLY 256 elements, each of at most 1024 properties.
+/// Limits: 1 GiB for each file; 10,000 corners of a polygon that is not convex; of PLY 256 elements, each of at most 1024 properties.
 ///
 /// `path` is a file; or a folder with `vertices.npy` and `faces.npy`; or one of two files whose names end with these;
 /// or `rock` for `rock.vertices.npy` and `rock.faces.npy`, also with `_` or `-` for the dot.
@@ -129,7 +130,7 @@ pub(crate) fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError
         return Err(in_file(Fault::new("length", found, format!("at most {MAX_FILE_BYTES} bytes"))));
     }
     let mut digests = vec![sha256(bytes)];
-    let parts = match format(bytes, file).map_err(in_file)? {
+    let mut parts = match format(bytes, file).map_err(in_file)? {
         Format::Gltf => {
             let read = exact_triangles(bytes, file)?;
             digests.extend(read.buffers);
@@ -139,6 +140,7 @@ pub(crate) fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError
         Format::Obj => obj::read(bytes).map_err(in_file)?,
         Format::Ply => ply::read(bytes).map_err(in_file)?,
     };
+    parts.cut_concave_polygons().map_err(in_file)?;
     finished(parts, file, digests)
 }
 

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use raypencil_files::Fault;
 
 use crate::triangles::parts::{Parts, coordinate};
-use crate::triangles::text::{Lines, number, quoted, words};
+use crate::triangles::text::{Lines, number, quoted, without_mark, words};
 
 /// Size of the header of a binary file: 80 bytes of any text, and the number of faces.
 const HEADER_BYTES: usize = 84;
@@ -19,14 +19,21 @@ const FACE_BYTES: usize = 50;
 
 /// Reads the faces of a file.
 pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
-    // A binary file may start with "solid" as well. It has bytes 0, which no text has: at least one is in its number of
-    // faces, which would otherwise need more bytes than any file has.
+    // A binary file may start with "solid" as well. It has bytes 0, which no text has but at its end: at least one is in its
+    // number of faces, which would otherwise need more bytes than any file has.
+    let text = without_mark(without_zeros(file));
     let starts_as_text =
-        file.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    match starts_as_text && !file.contains(&0) {
-        true => read_text(file),
+        text.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    match starts_as_text && !text.contains(&0) {
+        true => read_text(text),
         false => read_binary(file),
     }
+}
+
+/// A text without the bytes 0 that some programs write at its end.
+fn without_zeros(file: &[u8]) -> &[u8] {
+    let end = file.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+    &file[..end]
 }
 
 /// Whether a file is as long as its number of faces in the place of a binary file says.
@@ -44,20 +51,56 @@ fn claimed_bytes(faces: u32) -> u64 {
     HEADER_BYTES as u64 + FACE_BYTES as u64 * u64::from(faces)
 }
 
+/// Where each face of a binary file begins. Its last two bytes count the bytes of its attributes. They are zero, or a colour;
+/// some programs do put attributes between the faces. Then, and only then, the file is as long as all counts say.
+fn face_starts(file: &[u8], claimed: u32) -> Result<Vec<usize>, Fault> {
+    let needed = claimed_bytes(claimed);
+    let length = file.len() as u64;
+    // CHOICE: less than a face may follow, or bytes 0, by which programs fill up blocks. Other bytes are refused: the number of
+    // faces does not belong to them.
+    let rest = usize::try_from(needed).ok().and_then(|needed| file.get(needed..));
+    let is_filled =
+        |rest: &[u8]| rest.len() < FACE_BYTES || (claimed > 0 && rest.iter().all(|&byte| byte == 0));
+    let with_attributes = || {
+        let (mut starts, mut at) = (Vec::new(), HEADER_BYTES);
+        for _ in 0..claimed {
+            let count = file.get(at + FACE_BYTES - 2..at + FACE_BYTES)?;
+            starts.push(at);
+            at += FACE_BYTES + usize::from(u16::from_le_bytes([count[0], count[1]]));
+        }
+        (at == file.len()).then_some(starts)
+    };
+    let plain = || (0..claimed as usize).map(|face| HEADER_BYTES + FACE_BYTES * face).collect();
+    match rest {
+        Some([]) => Ok(plain()),
+        Some(rest) => match with_attributes() {
+            Some(starts) => Ok(starts),
+            None if is_filled(rest) => Ok(plain()),
+            None => {
+                let found = format!("{claimed} faces, and {} bytes behind them", rest.len());
+                let expected = format!(
+                    "{} faces, if all bytes are faces (is the number of faces right?)",
+                    (length - HEADER_BYTES as u64) / FACE_BYTES as u64
+                );
+                Err(Fault::new("byte 80", found, expected))
+            }
+        },
+        None => {
+            let found = format!("{claimed} faces in a file of {length} bytes");
+            Err(Fault::new("byte 80", found, format!("a file of {needed} bytes (is it cut off?)")))
+        }
+    }
+}
+
 fn read_binary(file: &[u8]) -> Result<Parts, Fault> {
     let Some(claimed) = claimed_faces(file) else {
         let found = format!("{} bytes", file.len());
         let expected = "a text that starts with `solid`, or the 84 bytes of a binary header";
         return Err(Fault::new("header", found, expected));
     };
-    // CHOICE: surplus bytes are refused as well. Number and faces then do not belong together.
-    if claimed_bytes(claimed) != file.len() as u64 {
-        let found = format!("{claimed} faces in a file of {} bytes", file.len());
-        let expected = format!("a file of {} bytes (is it cut off?)", claimed_bytes(claimed));
-        return Err(Fault::new("byte 80", found, expected));
-    }
     let mut corners = Corners::default();
-    for (face, bytes) in file[HEADER_BYTES..].chunks_exact(FACE_BYTES).enumerate() {
+    for (face, start) in face_starts(file, claimed)?.into_iter().enumerate() {
+        let bytes = &file[start..start + FACE_BYTES];
         let mut indices = [0; 3];
         for (corner, index) in indices.iter_mut().enumerate() {
             let mut vertex = [0.0; 3];
@@ -65,7 +108,7 @@ fn read_binary(file: &[u8]) -> Result<Parts, Fault> {
                 // The normal comes first.
                 let at = 12 + 12 * corner + 4 * axis;
                 let number = f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
-                let place = || format!("byte {}, face {face}", HEADER_BYTES + FACE_BYTES * face + at);
+                let place = || format!("byte {}, face {face}", start + at);
                 *coordinate_of_corner = coordinate(number.into(), place)?;
             }
             *index = corners.index(vertex);
@@ -84,7 +127,12 @@ fn read_text(file: &[u8]) -> Result<Parts, Fault> {
         text.rest = &[];
         loop {
             let word = text.next();
-            if text.check(word, &["facet", "endsolid"])? == "endsolid" {
+            // Some programs write the end in two words.
+            let is_end = word.is_some_and(|word| word.eq_ignore_ascii_case(b"end"));
+            if is_end {
+                text.expect("solid")?;
+            }
+            if is_end || text.check(word, &["facet", "endsolid"])? == "endsolid" {
                 text.rest = &[];
                 break;
             }

@@ -56,6 +56,11 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
+/// A text without the mark of UTF-8 that editors on Windows put before it (U+FEFF).
+pub(super) fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
+}
+
 /// Words of a line.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())

@@ -64,7 +64,7 @@ fn headers() -> Vec<Case> {
             bytes.truncate(88);
             bytes
         }),
-        case("surplus", "a byte after the last face", "byte 80", [good(), vec![0]].concat()),
+        case("surplus", "sixty bytes after the last face", "byte 80", [good(), vec![7; 60]].concat()),
         case(
             "big-endian",
             "a number of faces in the other byte order",

@@ -109,6 +109,73 @@ fn stl_corners_of_the_same_numbers_are_one_vertex() {
     assert_eq!(mesh.vertices()[0][0].to_bits(), (-0.0_f64).to_bits());
 }
 
+/// A binary STL of one face, whose attributes are as long as said.
+fn binary_face(attributes: u16) -> Vec<u8> {
+    let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let numbers = corners.as_flattened().iter().flat_map(|number| number.to_le_bytes());
+    [0; 12].into_iter().chain(numbers).chain(attributes.to_le_bytes()).collect()
+}
+
+#[test]
+fn stl_with_attributes_or_filled_up_is_read() {
+    let file = |faces: u32, bytes: &[&[u8]]| {
+        let header = [&[b' '; 80][..], &faces.to_le_bytes()].concat();
+        [&header, bytes.concat().as_slice()].concat()
+    };
+    let faces = |bytes: &[u8]| parse("a.stl", bytes).map(|mesh| mesh.faces().len());
+    // A colour in the place of the count, as most programs write it; attributes between the faces.
+    assert_eq!(faces(&file(2, &[&binary_face(0x7fff), &binary_face(0x7fff)])), Ok(2));
+    assert_eq!(faces(&file(2, &[&binary_face(4), b"abcd", &binary_face(3), b"efg"])), Ok(2));
+    // Less than a face behind the last one, and bytes 0 up to the end of a block.
+    assert_eq!(faces(&file(1, &[&binary_face(0), b"\r\n"])), Ok(1));
+    assert_eq!(faces(&file(1, &[&binary_face(0), &[0; 378]])), Ok(1));
+    // The bytes of a second face: which of both numbers is right?
+    assert_eq!(
+        faces(&file(1, &[&binary_face(0), &binary_face(0)])).unwrap_err(),
+        "byte 80: 1 faces, and 50 bytes behind them; expected 2 faces, if all bytes are faces (is the number of faces right?)"
+    );
+    // Attributes that end elsewhere than the file.
+    assert!(faces(&file(2, &[&binary_face(4), b"abcd", &binary_face(3), &[7; 90]])).is_err());
+}
+
+#[test]
+fn texts_may_have_a_mark_of_utf8_zeros_at_the_end_and_an_end_in_two_words() {
+    let facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    for (before, after) in [
+        ("", "endsolid"),
+        ("\u{feff}", "endsolid a"),
+        ("", "end solid a\n"),
+        ("  \n", "END SOLID\nsolid b\nend solid b"),
+        ("", "endsolid a\n\0"),
+        ("", "endsolid\0\0\0\0"),
+    ] {
+        let file = format!("{before}solid a\n{facet}{after}");
+        assert_eq!(parse("a.stl", file.as_bytes()).map(|mesh| mesh.faces().len()), Ok(1), "{after:?}");
+    }
+    let marked = "\u{feff}v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n";
+    assert_eq!(parse("a.obj", marked.as_bytes()).unwrap().faces(), [[0, 1, 2]]);
+}
+
+#[test]
+fn a_concave_polygon_is_covered_and_not_fanned() {
+    // A U: two legs and a courtyard between them, seen from above. Its area is 28; a fan has 44.
+    let u = "v 0 0 0\nv 8 0 0\nv 8 5 0\nv 6 5 0\nv 6 2 0\nv 2 2 0\nv 2 5 0\nv 0 5 0\n";
+    for face in ["f 1 2 3 4 5 6 7 8", "f 4 5 6 7 8 1 2 3", "f 8 7 6 5 4 3 2 1"] {
+        let mesh = parse("u.obj", format!("{u}{face}\n").as_bytes()).unwrap();
+        let at = |k: u32| mesh.vertices()[k as usize];
+        let area = |[a, b, c]: [u32; 3]| {
+            let ([ax, ay, _], [bx, by, _], [cx, cy, _]) = (at(a), at(b), at(c));
+            ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2.0
+        };
+        let areas: Vec<f64> = mesh.faces().iter().map(|&face| area(face)).collect();
+        // In the direction of the polygon, all of them.
+        let direction = if face.starts_with("f 8 7") { -1.0 } else { 1.0 };
+        assert!(areas.iter().all(|area| area * direction > 0.0), "{face}: {areas:?}");
+        assert_eq!(areas.iter().sum::<f64>(), 28.0 * direction, "{face}");
+    }
+}
+
 #[test]
 fn obj_statements_may_go_on_over_lines_and_stand_in_any_order() {
     let file = "f 1 2 \\\n 3 # a square\\\nv 0 0 0 1.0\rv 1 0 0 0.5 0.5 0.5\r\n\tv 1 1 0\n# C:\\rocks\\\nfo -1 -3 -2\n";
