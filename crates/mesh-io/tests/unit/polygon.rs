@@ -250,7 +250,7 @@ fn what_has_no_true_cut_stays_a_fan() {
 #[test]
 fn a_shallow_notch_at_map_coordinates_is_seen() {
     // Ten million metres away, a corner 2^-20 m inside of the lower side: exact as f64, lost in the product of coordinates.
-    let (far, deep) = (10_485_760.0, 2.0_f64.powi(-20));
+    let (far, deep) = (10_485_760.0, 1.0 / 1_048_576.0);
     let notched = [[0.0, 0.0], [1.0, deep], [2.0, 0.0], [1.0, 1.0]].map(|[x, y]| [x + far, y + far, 7.0]);
     let triangles = cut(&notched).expect("a notch");
     // Of four corners with a notch there is one cut: from the notch to the corner across.
