@@ -101,6 +101,8 @@ def main() -> None:
             executables, packages = metadata(folder)
             shutil.rmtree(folder / "target")
 
+    runs = "one run" if arguments.runs == 1 else f"medians of {arguments.runs} runs"
+
     def median(name: str, part: int) -> str:
         return f"{statistics.median(pair[part] for pair in times[name]):.0f}"
 
@@ -113,7 +115,7 @@ def main() -> None:
     table = "".join(f"| `{name}` | {value:.1f} |\n" for name, value in heaviest[:20])
     page = f"""# Times of builds and tests
 
-`just build-times` wrote this page at commit {commit}: {machine()}, nothing else running, {arguments.runs} run{"s"[: arguments.runs != 1]}, medians.
+`just build-times` wrote this page at commit {commit}: {machine()}, nothing else running, {runs}.
 
 | what | wall, s | processor, s |
 | --- | ---: | ---: |

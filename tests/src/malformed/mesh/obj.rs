@@ -94,7 +94,6 @@ fn files() -> Vec<Case> {
         case("numbers", "numbers alone", "line 1", "0 0 0\n1 0 0\n"),
         case("null", "a byte 0", "byte 10", square.replacen('\n', "\n\0", 1)),
         case("utf16", "a text in UTF-16", "byte 1", utf16),
-        case("byte-order-mark", "a byte order mark", "line 1", format!("\u{feff}{square}")),
         case("binary", "the numbers of a binary mesh after a text", "byte ", {
             [square.as_bytes(), &[0x80, 0x3f, 0, 0].repeat(64)].concat()
         }),
