@@ -13,7 +13,7 @@ use std::error::Error;
 
 use raypencil::Silent;
 use raypencil::harness::{contender, validate, write_validation};
-use raypencil::io::{LoadedScene, Overrides, Subject, load, load_text};
+use raypencil::io::{Overrides, load, load_text};
 use raypencil::judge::JudgeShare;
 use raypencil::report::count;
 
@@ -38,15 +38,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("| --- | ---: | ---: | --- | ---: | ---: |");
     for (name, loaded, renderers) in pages {
-        let LoadedScene { scene, name: subject, source_sha256, vehicle, .. } = loaded;
-        let faces = scene.mesh().faces().len() as u64;
-        let subject = Subject {
-            scene,
-            arguments: subject.clone(),
-            name: subject,
-            sha256: source_sha256,
-            vehicle: Some(vehicle),
-        };
+        let faces = loaded.scene.mesh().faces().len() as u64;
+        let arguments = loaded.name.clone();
+        let subject = loaded.into_subject(arguments);
         let contenders = renderers.map(|name| contender(name).expect("a renderer"));
         let validation = validate(subject, &contenders, JudgeShare::Sample, &Silent);
         let folder = tempfile::tempdir()?;

@@ -9,6 +9,7 @@
 //! page           the answers as a page that answers when asked
 //! pack/          packs of rays: a mesh, rays, exact answers; the check of a candidate, and what explains its mistakes
 //! range_picture  ranges as a picture, and the points from above
+//! warnings       what looks wrong in rays and their mesh
 //! write          answers as NPY arrays, and their summary
 //! text           the answers to one ray, and counts of many, as text and as JSON
 //! ```
@@ -40,6 +41,7 @@ mod pack;
 mod page;
 mod range_picture;
 mod text;
+mod warnings;
 mod write;
 
 pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast, cast_with};
@@ -56,6 +58,7 @@ pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
 pub use text::{counts_text, ray_json, ray_text};
+pub use warnings::cast_warnings;
 pub use write::{CastSource, write_answers, write_set};
 
 #[cfg(doctest)]

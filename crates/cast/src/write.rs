@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use raypencil_files::{
     FileError, FolderError, RayArray, begin_output_folder, write_atomically, write_npy_numbers,
 };
+use raypencil_mesh_io::{FileFrame, PolygonFacts, UpAxis};
 use raypencil_referee::CastMargin;
 use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
@@ -13,9 +14,10 @@ use serde_json::{Value, json};
 use crate::answers::{Answers, FirstHit, GroupAtT};
 use crate::cloud::{write_pcd, write_ply};
 use crate::range_picture::{range_picture, top_picture};
+use crate::warnings::cast_warnings;
 
 /// Where mesh and rays come from, for the summary.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct CastSource {
     /// The mesh as it was given.
     pub mesh: String,
@@ -25,6 +27,10 @@ pub struct CastSource {
     pub rays: String,
     /// SHA-256 of the bytes of the rays, in hexadecimal; `None` if they were given one by one.
     pub rays_sha256: Option<String>,
+    /// The axes and the unit that were given for the mesh's file.
+    pub frame: FileFrame,
+    /// What was found out about the polygons of the mesh's file.
+    pub polygons: PolygonFacts,
 }
 
 /// What stands for no face.
@@ -62,7 +68,8 @@ pub fn write_answers(
     source: &CastSource,
 ) -> Result<PathBuf, FolderError> {
     let summary = begin_output_folder(folder, "summary.json")?;
-    let (arrays, document) = write_arrays(folder, answers, (mesh, &rays.shape, &rays.rays, sides), source)?;
+    let (arrays, document) =
+        write_arrays(folder, answers, (mesh, &rays.shape, &rays.rays, sides), None, source)?;
     finish(summary, arrays, document)
 }
 
@@ -85,7 +92,8 @@ pub fn write_set(
 ) -> Result<PathBuf, FolderError> {
     let summary = begin_output_folder(folder, "summary.json")?;
     let rays = set.set.rays();
-    let (mut arrays, mut document) = write_arrays(folder, answers, (mesh, &set.shape, rays, sides), source)?;
+    let (mut arrays, mut document) =
+        write_arrays(folder, answers, (mesh, &set.shape, rays, sides), Some(set), source)?;
     let mut more = ArrayFolder { folder, arrays: &mut arrays };
     if let Some(times) = &set.times {
         more.write("time", &set.shape, times)?;
@@ -120,6 +128,7 @@ fn write_arrays(
     folder: &Path,
     answers: &Answers,
     (mesh, shape, rays, sides): (&Triangles, &[u64], &[CastRay], Sides),
+    set: Option<&NamedRaySet>,
     source: &CastSource,
 ) -> Result<(Vec<String>, Value), FileError> {
     let mut arrays = Vec::new();
@@ -172,9 +181,13 @@ fn write_arrays(
             "vertices": mesh.vertices().len(),
             "faces": mesh.faces().len(),
             "zeroAreaFaces": mesh.zero_area_faces(),
+            "up": source.frame.up.map(UpAxis::word),
+            "scale": source.frame.scale,
+            "polygons": source.polygons,
         },
         "rays": { "file": source.rays, "sha256": source.rays_sha256, "shape": shape, "count": answers.first.len() },
         "sides": if sides == Sides::Both { "both" } else { "fronts" },
+        "warnings": cast_warnings(mesh, rays, sides, set, answers),
         "counts": { "hits": hits, "misses": answers.first.len() - hits, "ties": ties },
     });
     Ok((arrays, document))

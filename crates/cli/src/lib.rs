@@ -37,6 +37,7 @@ mod completions;
 mod console;
 mod diff;
 mod drive;
+mod file_frame;
 mod man;
 mod memory;
 mod minimise;

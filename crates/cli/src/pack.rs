@@ -4,7 +4,7 @@ use std::path::Path;
 
 use raypencil::cast::{CastSource, RayPackCounts, read_rays, write_ray_pack};
 use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
-use raypencil::io::{FileError, OutputFolder, file_sha256_hex, hex_digits, read_triangles};
+use raypencil::io::{FileError, OutputFolder, file_sha256_hex, hex_digits, polygon_warnings, read_triangles};
 use raypencil::pack::{
     MIN_RAYS_PER_CLAUSE, Manifest, PackLabel, benched, blind_subject, input_faces, write_input,
 };
@@ -42,9 +42,10 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
             let subject = subject(&command.scene, "", &spinner)?;
             memory::ask(Rates::PACK, &subject.scene)?;
             spinner.stage("looking at the scene");
-            let warnings = warnings(&subject.scene, subject.vehicle.as_ref(), None);
+            let mut warned = subject.file_warnings.clone();
+            warned.extend(warnings(&subject.scene, subject.vehicle.as_ref(), None));
             let is_plain = command.no_bench;
-            (if is_plain { subject } else { benched(subject)? }, warnings)
+            (if is_plain { subject } else { benched(subject)? }, warned)
         }
     };
     let (manifest, sets) =
@@ -82,7 +83,10 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
         mesh_sha256: mesh.digests.iter().map(hex_digits).collect(),
         rays: rays.display().to_string(),
         rays_sha256: Some(file_sha256_hex(rays).map_err(|error| FileError::io(rays, "read", error))?.1),
+        polygons: mesh.polygon_facts,
+        ..CastSource::default()
     };
+    warn(&polygon_warnings(&source.polygons));
     memory::ask_cast(array.rays.len(), mesh.triangles.faces().len())?;
     let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
     let counts = write_ray_pack(&command.output, (&mesh.triangles, &array, sides), &source, &spinner)?;

@@ -37,7 +37,8 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     folder.finish()?;
     spinner.stage("looking at the scene");
     let hits: Vec<SensorHits> = output.maps().filter_map(SensorHits::of_map).collect();
-    let warnings = warnings(&subject.scene, subject.vehicle.as_ref(), Some(&hits));
+    let mut warned = subject.file_warnings.clone();
+    warned.extend(warnings(&subject.scene, subject.vehicle.as_ref(), Some(&hits)));
     drop(spinner);
     let files: Vec<String> =
         files.iter().chain(sets.iter().flatten()).map(|path| path.display().to_string()).collect();
@@ -45,11 +46,11 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
         let document = serde_json::json!({
             "renderer": renderer.name(),
             "files": files,
-            "warnings": warnings,
+            "warnings": warned,
         });
         say(&format!("{document:#}\n"));
     } else {
-        warn(&warnings);
+        warn(&warned);
         if sets.is_none() {
             let count = counted(subject.scene.ray_sets().len() as u64, "set of rays", "sets of rays");
             say(&format!(

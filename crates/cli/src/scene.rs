@@ -59,9 +59,10 @@ fn show(command: &SceneShow, json: bool) -> Result<Outcome, Trouble> {
         write_atomically(path, |file| file.write_all(&bytes))?;
     }
     let vehicle = loaded.standing_vehicle();
-    let warnings = warnings(&loaded.scene, vehicle.as_ref(), None);
+    let mut warned = loaded.file_warnings();
+    warned.extend(warnings(&loaded.scene, vehicle.as_ref(), None));
     drop(spinner);
-    warn(&warnings);
+    warn(&warned);
     let picture = output.map(|(path, _)| path.display().to_string());
     if json {
         let mut document = scene_json(&loaded);

@@ -15,13 +15,7 @@ pub(crate) fn subject(
 ) -> Result<Subject, Trouble> {
     progress.stage(&format!("{}: loading", arguments.scene));
     let loaded = load(&arguments.scene, &arguments.overrides())?;
-    Ok(Subject {
-        vehicle: loaded.standing_vehicle(),
-        scene: loaded.scene,
-        name: loaded.name,
-        arguments: arguments.typed() + renderers,
-        sha256: loaded.source_sha256,
-    })
+    Ok(loaded.into_subject(arguments.typed() + renderers))
 }
 
 /// The renderers with these names and with the switches set: at least `min_count`, no two of the same name.

@@ -71,6 +71,7 @@ fn run(command: &args::SweepRun, json: bool, registry: &Registry) -> Result<Outc
     }
     let mut sweep = Sweep::new(&command.scene, axes, command.task, names, command.as_printed)?;
     sweep.build = crate::build();
+    sweep.check_values()?;
     let part = Part { index: command.shard.index, count: command.shard.count };
     let bar = Bar::new(part.runs(sweep.runs()).count() as u64);
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);

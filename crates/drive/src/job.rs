@@ -112,8 +112,10 @@ impl DriveJob {
         }
         plan.route.start = start.unwrap_or(plan.route.start);
 
-        let (rig, mut warnings) = with_columns(plan.rig, drive.pencils_per_pixel, &mut notes);
+        let mut warnings = loaded.file_warnings();
+        let (rig, of_columns) = with_columns(plan.rig, drive.pencils_per_pixel, &mut notes);
         plan.rig = rig;
+        warnings.extend(of_columns);
         warnings.extend(drive.threshold_ignores.map(blind_threshold));
         warnings.extend(beams_out_of_order(&plan));
         plan.validate("drive")?;

@@ -49,7 +49,14 @@ fn description_of(minimised: &Minimised, Reproducer { name, what, with }: Reprod
     // Both renderers may be wrong in the same way: then only the referee differs.
     let mut commands = vec![format!("raypencil validate {arguments} --judge all")];
     let sha256 = scene_sha256(scene);
-    let subject = Subject { scene: scene.clone(), name: name.into(), arguments, sha256, vehicle: None };
+    let subject = Subject {
+        scene: scene.clone(),
+        name: name.into(),
+        arguments,
+        sha256,
+        vehicle: None,
+        file_warnings: Vec::new(),
+    };
     commands.extend(place.map(|place| probe_command(&subject, place)));
     let commands = commands.join("\n");
     let left = match (*faces_after, is_finished) {

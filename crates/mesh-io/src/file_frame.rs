@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use glam::DVec3;
+use raypencil_scene::{SceneError, Triangles};
 
 /// Allowed range of a scale: from micrometres to thousands of kilometres.
 pub const SCALE_RANGE: RangeInclusive<f64> = 1e-6..=1e6;
@@ -64,6 +65,19 @@ impl FileFrame {
             UpAxis::Z => DVec3::new(x, y, z),
         };
         turned * self.scale
+    }
+
+    /// Triangles of a file with the axes and the unit that are given. With neither they are not changed: no axis is turned, whatever
+    /// the format says. Each coordinate is rounded once, by its multiplication.
+    ///
+    /// # Errors
+    /// A coordinate that becomes too large.
+    pub fn triangles(&self, triangles: Triangles) -> Result<Triangles, SceneError> {
+        if *self == Self::default() {
+            return Ok(triangles);
+        }
+        let vertices = triangles.vertices().iter().map(|&vertex| self.global(vertex, UpAxis::Z).to_array());
+        Triangles::new(vertices.collect(), triangles.faces().to_vec())
     }
 
     /// Whether a glTF file is taken as its specification says: y up, in metres.

@@ -8,8 +8,9 @@
 //!
 //! ```text
 //! gltf  limits, container, json               the chunks of a GLB, and its JSON as far as it can be trusted
-//!       buffers -> accessors -> primitives    bytes, typed numbers, triangles
-//!       placement -> nodes                    transforms in double precision, and where each mesh stands
+//!       buffers -> elements -> accessors      bytes, elements of views, typed numbers
+//!       primitives                            triangles
+//!       placement, instances -> nodes         transforms in double precision, and where each mesh stands
 //!       nodes, materials -> assemble          one list of vertices and faces
 //!       stated_origin -> read                 a mesh with its scene origin
 //!       exact                                 triangles in the axes of the file, in double precision
@@ -18,7 +19,8 @@
 //!       registration -> georeference          what a pixel is, and where pixels are on the map
 //!       lattice, model -> read                the posts inside a window, and the ground through them
 //!       write                                 a grid of heights to GeoTIFF
-//! triangles  text, polygon -> parts            lines and decimal numbers of a text, polygons to faces
+//! triangles  text, polygon, polygon_facts     lines and decimal numbers of a text; a polygon's triangles; what is told of it
+//!       parts                                 vertices and faces
 //!       stl, obj, npy_pair                    a format each
 //!       ply: header -> numbers                elements and types, and the numbers of either kind
 //!       read                                  which format a file has, and triangles as `f64`
@@ -59,8 +61,11 @@ pub use gltf::{
     DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes,
     mesh_of_offsets, write_glb, write_terrain_glb,
 };
-pub use terrain::{load_terrain, read_terrain, terrain_from_bytes};
-pub use triangles::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};
+pub use terrain::{TerrainFile, load_terrain, read_terrain, terrain_from_bytes};
+pub use triangles::{
+    BentPolygons, CrossingPolygons, PolygonFacts, PolygonPlace, TriangleFile, load_triangles, read_triangles,
+    triangles_from_bytes,
+};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

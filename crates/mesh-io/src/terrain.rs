@@ -8,7 +8,7 @@ use raypencil_scene::{Material, Mesh};
 
 use crate::file_frame::{FileFrame, UpAxis};
 use crate::gltf::{self, MAX_FACES_OR_VERTICES, WITHOUT_MATERIAL};
-use crate::triangles::{Format, TriangleFile, format, parse, read_bytes};
+use crate::triangles::{Format, PolygonFacts, TriangleFile, format, parse, read_bytes};
 
 /// Loads a terrain: a GLB, glTF, STL, OBJ or PLY file.
 ///
@@ -34,18 +34,25 @@ use crate::triangles::{Format, TriangleFile, format, parse, read_bytes};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn load_terrain(path: impl AsRef<Path>, reflectivity: f64, frame: &FileFrame) -> Result<Mesh, FileError> {
-    Ok(read_terrain(path.as_ref(), reflectivity, frame)?.0)
+    Ok(read_terrain(path.as_ref(), reflectivity, frame)?.mesh)
 }
 
-/// Terrain of a file, and the digests of the file and of the buffers beside it.
+/// Terrain of a file, and what ties it to the file.
+#[derive(Debug, Clone)]
+pub struct TerrainFile {
+    /// The terrain.
+    pub mesh: Mesh,
+    /// Digests of the file and of the buffers beside it.
+    pub digests: Vec<Sha256Digest>,
+    /// What was found out about the polygons of the file that are no triangles.
+    pub polygon_facts: PolygonFacts,
+}
+
+/// Loads a terrain as [`load_terrain`] does, with the digests of its files and what was found out about its polygons.
 ///
 /// # Errors
 /// As [`load_terrain`].
-pub fn read_terrain(
-    path: &Path,
-    reflectivity: f64,
-    frame: &FileFrame,
-) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
+pub fn read_terrain(path: &Path, reflectivity: f64, frame: &FileFrame) -> Result<TerrainFile, FileError> {
     terrain_of_bytes(&read_bytes(path)?, path, reflectivity, frame)
 }
 
@@ -60,7 +67,7 @@ pub fn terrain_from_bytes(
     reflectivity: f64,
     frame: &FileFrame,
 ) -> Result<Mesh, FileError> {
-    Ok(terrain_of_bytes(bytes, file, reflectivity, frame)?.0)
+    Ok(terrain_of_bytes(bytes, file, reflectivity, frame)?.mesh)
 }
 
 fn terrain_of_bytes(
@@ -68,12 +75,13 @@ fn terrain_of_bytes(
     file: &Path,
     reflectivity: f64,
     frame: &FileFrame,
-) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
+) -> Result<TerrainFile, FileError> {
     let in_file = |fault: Fault| FileError::Mesh(fault.in_file(file));
     if format(bytes, file).map_err(in_file)? == Format::Gltf {
-        return gltf::terrain_from_bytes(bytes, file, reflectivity, frame);
+        let (mesh, digests) = gltf::terrain_from_bytes(bytes, file, reflectivity, frame)?;
+        return Ok(TerrainFile { mesh, digests, polygon_facts: PolygonFacts::default() });
     }
-    let TriangleFile { triangles, digests, .. } = parse(bytes, file)?;
+    let TriangleFile { triangles, digests, polygon_facts, .. } = parse(bytes, file)?;
     let (vertices, faces) = (triangles.vertices(), triangles.faces());
     if faces.is_empty() {
         return Err(in_file(Fault::new("file", "no triangles", "at least one")));
@@ -88,5 +96,5 @@ fn terrain_of_bytes(
     let material = Material { name: WITHOUT_MATERIAL.to_string(), reflectivity };
     let mesh = Mesh::from_global(&vertices, faces.to_vec(), vec![0; faces.len()], vec![material])
         .map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
-    Ok((mesh, digests))
+    Ok(TerrainFile { mesh, digests, polygon_facts })
 }

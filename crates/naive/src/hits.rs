@@ -30,21 +30,59 @@ pub(crate) fn clipped(faults: Injected, faces: &[[DVec3; 3]], sensor: &PosedSens
 /// A sphere around a face. A ray that passes well beside it cannot meet the face, so that most faces need no test. It
 /// decides nothing: its radius is enlarged by more than what rounding, or a fault, moves a face by.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sphere {
+struct Sphere {
     centre: DVec3,
     squared_radius: f64,
 }
 
 impl Sphere {
-    pub(crate) fn around([a, b, c]: &[DVec3; 3]) -> Self {
+    fn around([a, b, c]: &[DVec3; 3]) -> Self {
         let centre = (a + b + c) / 3.0;
         let farthest =
             [a, b, c].map(|corner| corner.distance_squared(centre)).into_iter().fold(0.0, f64::max);
         Self { centre, squared_radius: 1.01 * farthest }
     }
 
+    /// A sphere around spheres.
+    fn around_all(spheres: &[Self]) -> Self {
+        let centre = spheres.iter().map(|sphere| sphere.centre).sum::<DVec3>() / spheres.len() as f64;
+        let reach = |sphere: &Self| sphere.centre.distance(centre) + sphere.squared_radius.sqrt();
+        let farthest = spheres.iter().map(reach).fold(0.0, f64::max);
+        Self { centre, squared_radius: 1.01 * farthest * farthest }
+    }
+
     fn may_meet(&self, ray: &SceneRay, squared_length: f64) -> bool {
         (self.centre - ray.origin).cross(ray.q).length_squared() <= self.squared_radius * squared_length
+    }
+}
+
+/// Number of faces that follow each other in the mesh and have one sphere around them. Neighbours in the list are neighbours in
+/// most meshes; where they are not, the sphere is large and saves nothing.
+const GROUPED_FACES: usize = 16;
+
+/// Spheres around the faces, and around groups of them.
+pub(crate) struct Spheres {
+    of_faces: Vec<Sphere>,
+    of_groups: Vec<Sphere>,
+}
+
+impl Spheres {
+    pub(crate) fn around(faces: &[[DVec3; 3]]) -> Self {
+        let of_faces: Vec<Sphere> = faces.iter().map(Sphere::around).collect();
+        let of_groups = of_faces.chunks(GROUPED_FACES).map(Sphere::around_all).collect();
+        Self { of_faces, of_groups }
+    }
+
+    /// The faces that a ray may meet, in their order.
+    fn near(&self, ray: &SceneRay) -> impl Iterator<Item = usize> {
+        let squared_length = ray.q.length_squared();
+        let groups = self.of_groups.iter().zip(self.of_faces.chunks(GROUPED_FACES)).enumerate();
+        let near = groups.filter(move |(_, (group, _))| group.may_meet(ray, squared_length));
+        near.flat_map(move |(number, (_, faces))| {
+            let first = number * GROUPED_FACES;
+            let near = faces.iter().enumerate().filter(move |(_, face)| face.may_meet(ray, squared_length));
+            near.map(move |(within, _)| first + within)
+        })
     }
 }
 
@@ -72,17 +110,13 @@ fn is_within(faults: Injected, sensor: &PosedSensor<'_>, ray: &SceneRay, t: f64)
 pub(crate) fn first_hit(
     faults: Injected,
     faces: &[[DVec3; 3]],
-    spheres: &[Sphere],
+    spheres: &Spheres,
     sensor: &PosedSensor<'_>,
     ray: &SceneRay,
 ) -> Option<(usize, f64)> {
     let mut best: Option<(usize, f64)> = None;
-    let squared_length = ray.q.length_squared();
-    for (index, (face, sphere)) in faces.iter().zip(spheres).enumerate() {
-        if !sphere.may_meet(ray, squared_length) {
-            continue;
-        }
-        let Some(t) = meets(faults, face, ray) else { continue };
+    for index in spheres.near(ray) {
+        let Some(t) = meets(faults, &faces[index], ray) else { continue };
         if !is_within(faults, sensor, ray, t) {
             continue;
         }

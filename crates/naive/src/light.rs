@@ -3,6 +3,7 @@
 use std::f64::consts::{LN_2, PI};
 
 use glam::DVec3;
+use rayon::prelude::*;
 use raypencil_scene::{
     Beam, Filter, FluxModel, Hit, Image, Mounted, Pixel, Profile, Return, Returns, Scene, SensorMap,
 };
@@ -42,12 +43,17 @@ impl Light<'_> {
         let mut returns = Returns::empty(beam.columns, beam.rows);
         let camera = &scene.camera().sensor;
         let mut image = Image::filled(camera.width, camera.height, 0.0);
-        for j in 0..beam.rows {
-            for i in 0..beam.columns {
-                let Some(hit) = map.hit(i, j) else { continue };
-                let power = beam.power * shares[i as usize % shares.len()];
-                let of_hit = self.return_of(&hit, &beam, power);
-                returns.put(i, j, &of_hit);
+        let pencils: Vec<[u32; 2]> =
+            (0..beam.rows).flat_map(|j| (0..beam.columns).map(move |i| [i, j])).collect();
+        // Pencils do not know of one another, and are summed in their order: the result does not depend on threads.
+        let all = pencils.par_iter().map(|&[i, j]| {
+            let power = beam.power * shares[i as usize % shares.len()];
+            Some(self.return_of(&map.hit(i, j)?, &beam, power))
+        });
+        let all: Vec<Option<Return>> = all.collect();
+        for (&[i, j], of_hit) in pencils.iter().zip(&all) {
+            if let Some(of_hit) = of_hit {
+                returns.put(i, j, of_hit);
                 let is_received = of_hit.visible || (self.has(Fault::HiddenLit) && of_hit.flux > 0.0);
                 if let (true, Some(Pixel { i, j })) = (is_received, of_hit.pixel) {
                     let before = if self.has(Fault::LastPencilWins) { 0.0 } else { image.at(i, j) };

@@ -10,7 +10,7 @@ use raypencil_scene::{
 };
 
 use crate::fault::{Fault, Injected};
-use crate::hits::{Sphere, clipped, describe, first_hit, meets};
+use crate::hits::{Spheres, clipped, describe, first_hit, meets};
 use crate::light;
 use crate::rays::{PosedSensor, camera_pose, pencil_ray, pixel_ray};
 
@@ -120,7 +120,7 @@ fn map(
     let (width, height) = sensor.size;
     let mut map = SensorMap::empty(sensor.id, width, height, quantities);
     let faces = clipped(faults, faces, sensor);
-    let spheres: Vec<Sphere> = faces.iter().map(Sphere::around).collect();
+    let spheres = Spheres::around(&faces);
     // Rows do not know of one another: the result does not depend on threads.
     map.rows_mut().into_par_iter().for_each(|mut row| {
         for i in 0..width {

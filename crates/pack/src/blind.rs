@@ -88,8 +88,8 @@ fn on_bench(scene: &Scene) -> Scene {
 pub fn blind_subject(seed: u64) -> Result<Subject, SceneIoError> {
     let loaded = load(seed)?;
     let scene = on_bench(&loaded.scene);
-    let (sha256, vehicle) = (scene_sha256(&scene), loaded.standing_vehicle());
-    Ok(Subject { arguments: loaded.name.clone(), name: loaded.name, scene, sha256, vehicle })
+    let arguments = loaded.name.clone();
+    Ok(Subject { sha256: scene_sha256(&scene), scene, ..loaded.into_subject(arguments) })
 }
 
 fn load(seed: u64) -> Result<LoadedScene, SceneIoError> {

@@ -280,6 +280,7 @@ pub fn check_pack_verifying(
         sha256,
         scene,
         vehicle: None,
+        file_warnings: Vec::new(),
     };
     let is_blind = manifest.kind == PackKind::Blind;
     let ray_sets = Vec::new();

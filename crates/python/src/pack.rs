@@ -59,12 +59,7 @@ pub(crate) fn pack_rays<'py>(
     }
     let (mesh, array) = (mesh.clone(), shaped(set, &shape));
     watched(py, on_stage, move |watch| {
-        let source = CastSource {
-            mesh: "arrays".into(),
-            mesh_sha256: Vec::new(),
-            rays: "arrays".into(),
-            rays_sha256: None,
-        };
+        let source = CastSource { mesh: "arrays".into(), rays: "arrays".into(), ..CastSource::default() };
         let counts = write_ray_pack(&output, (&mesh.triangles, &array, sides), &source, watch)?;
         Ok(counts.untested())
     })

@@ -29,13 +29,7 @@
 //!      [[beam]]\ncolumns = 64\nrows = 4\n[[beam]]\ncolumns = 64\nrows = 4\n",
 //!     "small",
 //! )?;
-//! let subject = Subject {
-//!     vehicle: loaded.standing_vehicle(),
-//!     scene: loaded.scene,
-//!     name: loaded.name,
-//!     arguments: "small.toml".into(),
-//!     sha256: loaded.source_sha256,
-//! };
+//! let subject = loaded.into_subject("small.toml".into());
 //! let renderers = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));
 //! let validation = validate(subject, &renderers, JudgeShare::Sample, &Silent);
 //! // Every pixel and every pencil was compared, and nothing is wrong.

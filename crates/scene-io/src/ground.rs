@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use raypencil_files::Sha256Digest;
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, dem, read_terrain};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, PolygonFacts, TerrainFile, dem, read_terrain};
 use raypencil_scene::{Mesh, SceneError};
 use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
 
@@ -16,21 +16,32 @@ use crate::scene_source::MESH_ENDINGS;
 /// Side of a plain random ground without `extent_m`, metres: the default sensors see 20 m to every side.
 const PLAIN_EXTENT_M: f64 = 40.0;
 
-/// Mesh of a terrain that needs files, with the digests of these files; `None`: the terrain needs none.
+/// A terrain from files.
+pub(crate) struct GroundFromFiles {
+    pub(crate) mesh: Mesh,
+    /// Digests of the files.
+    pub(crate) digests: Vec<Sha256Digest>,
+    /// What was found out about the polygons of the file.
+    pub(crate) polygon_facts: PolygonFacts,
+}
+
+/// Mesh of a terrain that needs files; `None`: the terrain needs none.
 pub(crate) fn read_ground(
     source: &Source,
     plan: &ScenePlan,
-) -> Result<Option<(Mesh, Vec<Sha256Digest>)>, SceneIoError> {
+) -> Result<Option<GroundFromFiles>, SceneIoError> {
     let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
     match &plan.terrain {
         Terrain::File(MeshPart { file, frame }) => {
             let terrain = terrain_file(source, "file", &MESH_ENDINGS, file, &plan.terrain_span)?;
-            Ok(Some(read_terrain(&terrain, reflectivity, frame)?))
+            let TerrainFile { mesh, digests, polygon_facts } = read_terrain(&terrain, reflectivity, frame)?;
+            Ok(Some(GroundFromFiles { mesh, digests, polygon_facts }))
         }
         Terrain::Dem(DemPart { file, window, max_error }) => {
             let terrain = terrain_file(source, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
             let (mesh, sha) = dem::read_mesh(&terrain, *window, *max_error, reflectivity)?;
-            Ok(Some((mesh, vec![sha])))
+            let polygon_facts = PolygonFacts::default();
+            Ok(Some(GroundFromFiles { mesh, digests: vec![sha], polygon_facts }))
         }
         Terrain::Mars { ground, coarse: Some((file, span)) } => {
             let coarse = terrain_file(source, "generate.coarse", &["tif", "tiff"], file, span)?;
@@ -41,7 +52,8 @@ pub(crate) fn read_ground(
                 let message = format!("`terrain.generate.{field}` is {value}; expected {expected}");
                 source.error(span.clone(), message)
             })?;
-            Ok(Some((mesh, vec![sha])))
+            let polygon_facts = PolygonFacts::default();
+            Ok(Some(GroundFromFiles { mesh, digests: vec![sha], polygon_facts }))
         }
         Terrain::Builtin(_) | Terrain::Generate { .. } | Terrain::Mars { coarse: None, .. } => Ok(None),
     }

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use raypencil_files::Sha256Digest;
+use raypencil_mesh_io::PolygonFacts;
 use raypencil_scene::Mesh;
 
 /// A ground, and where it comes from.
@@ -11,6 +12,8 @@ pub(crate) struct Ground {
     pub(crate) mesh: Arc<Mesh>,
     /// Digests of its files; `None`: it has no file.
     pub(crate) digests: Option<Vec<Sha256Digest>>,
+    /// What was found out about the polygons of its file.
+    pub(crate) polygon_facts: PolygonFacts,
 }
 
 /// The grounds of the last few scenes. A scene with the same ground shares it, and with it all that renderers and the

@@ -13,7 +13,7 @@
 //!    `parse/scene` fill it in;
 //! 5. `resolve`: a plan and a mesh become a scene; `resolved`: files that hold the scene's own numbers;
 //! 6. `digest`: SHA-256 of a scene's numbers;
-//! 7. `settings`: keys given outside of the file; `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
+//! 7. `settings`: keys given outside of the file; `file_warnings`, `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
 //!
 //! `parse/rays` reads tables `[[rays]]` into named ray sets, `ray_sets` a file that has nothing else, `ray_scene` a scene of
 //! them without a camera.
@@ -41,6 +41,7 @@
 mod camera_info;
 mod digest;
 mod drive;
+mod file_warnings;
 mod ground;
 mod grounds;
 mod load;
@@ -71,8 +72,9 @@ pub const SCENE_TEMPLATE: &str = include_str!("template.toml");
 pub use camera_info::{CameraInfo, camera_info_from_text};
 pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
+pub use file_warnings::polygon_warnings;
 pub use grounds::Grounds;
-pub use load::{LoadedScene, MAX_TOML_BYTES, load, load_sharing, load_text, load_text_with};
+pub use load::{LoadedScene, MAX_TOML_BYTES, check_settings, load, load_sharing, load_text, load_text_with};
 pub use overrides::Overrides;
 pub use ray_scene::{RayScene, load_ray_scene};
 pub use ray_sets::{LoadedRaySets, ray_sets_from_text, read_ray_sets};

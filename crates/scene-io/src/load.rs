@@ -5,13 +5,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, FileFrame, Vertices, dem, gltf, read_terrain};
+use raypencil_mesh_io::{
+    DEFAULT_REFLECTIVITY, FileFrame, PolygonFacts, TerrainFile, Vertices, dem, gltf, read_terrain,
+};
 use raypencil_rover::Rig;
-use raypencil_scene::{Mesh, Pose, Scene, SceneError};
+use raypencil_scene::{Pose, Scene, SceneError};
+use raypencil_survey::Warning;
 
 use crate::digest;
 use crate::drive::setup::{DriveSetup, rig_of};
-use crate::ground::{make_ground, read_ground, terrain_file};
+use crate::file_warnings::polygon_warnings;
+use crate::ground::{GroundFromFiles, make_ground, read_ground, terrain_file};
 use crate::grounds::{Ground, Grounds};
 use crate::overrides::Overrides;
 use crate::parse::kind::Kind;
@@ -22,7 +26,8 @@ use crate::resolve::{central_place, extent, resolve};
 use crate::resolved::read::parse_resolved;
 use crate::scene_error::SceneIoError;
 use crate::scene_source::SceneSource;
-use crate::settings::{changed, text_of_ground};
+use crate::settings::{Setting, changed, text_of_ground};
+use crate::subject::Subject;
 
 /// Maximum size of a scene file, bytes: 1 MiB.
 pub const MAX_TOML_BYTES: u64 = 1 << 20;
@@ -48,12 +53,31 @@ pub struct LoadedScene {
     pub source: SceneSource,
     /// Drive of the scene file, placed in the scene; `None`: the file has no `[drive]`.
     pub drive: Option<DriveSetup>,
+    /// What was found out about the polygons of the terrain's file.
+    pub polygon_facts: PolygonFacts,
 }
 
 impl LoadedScene {
     /// Pose of the vehicle in the global frame, if there is one.
     pub fn standing_vehicle(&self) -> Option<Pose> {
         self.has_vehicle.then_some(self.vehicle)
+    }
+
+    /// What looks wrong in the files of the terrain.
+    pub fn file_warnings(&self) -> Vec<Warning> {
+        polygon_warnings(&self.polygon_facts)
+    }
+
+    /// The scene under test. `arguments` are words that give it again on a command line.
+    pub fn into_subject(self, arguments: String) -> Subject {
+        Subject {
+            file_warnings: self.file_warnings(),
+            vehicle: self.standing_vehicle(),
+            scene: self.scene,
+            name: self.name,
+            arguments,
+            sha256: self.source_sha256,
+        }
     }
 
     /// Camera and beams in the frame of the vehicle.
@@ -94,18 +118,23 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
         SceneSource::Builtin(name) => {
             let plan = default_rig(Terrain::Builtin(name.clone()));
             let mesh = make_ground(&plan).map_err(|error| SceneIoError::scene(source.origin(), error))?;
-            finish(&source, plan, Vec::new(), Arc::new(mesh), false, overrides)
+            let polygon_facts = PolygonFacts::default();
+            let ground = Ground { mesh: Arc::new(mesh), digests: None, polygon_facts };
+            finish(&source, plan, Vec::new(), ground, overrides)
         }
         SceneSource::Mesh(path) => {
             let frame = FileFrame::default();
-            let (mesh, parts) = read_terrain(path, DEFAULT_REFLECTIVITY, &frame)?;
+            let TerrainFile { mesh, digests, polygon_facts } =
+                read_terrain(path, DEFAULT_REFLECTIVITY, &frame)?;
             let terrain = Terrain::File(MeshPart { file: path.clone(), frame });
-            finish_alone(&source, terrain, parts, mesh, overrides)
+            finish_alone(&source, terrain, GroundFromFiles { mesh, digests, polygon_facts }, overrides)
         }
         SceneSource::Dem(path) => {
             let (mesh, sha) = dem::read_mesh(path, None, None, DEFAULT_REFLECTIVITY)?;
             let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
-            finish_alone(&source, terrain, vec![sha], mesh, overrides)
+            let polygon_facts = PolygonFacts::default();
+            let ground = GroundFromFiles { mesh, digests: vec![sha], polygon_facts };
+            finish_alone(&source, terrain, ground, overrides)
         }
         SceneSource::Toml(path) => load_toml(&source, path, &read_toml(path)?, overrides, None),
     }
@@ -124,25 +153,53 @@ pub fn load_sharing(
     load_changed(&SceneSource::parse(source)?, overrides, Some(grounds))
 }
 
+/// Whether the keys of a scene take these settings: the text is read and its numbers are checked. No ground is read or made, and
+/// nothing is placed on it.
+///
+/// # Errors
+/// As [`load`], for what the text alone decides.
+///
+/// ```
+/// use raypencil_scene_io::{Setting, check_settings};
+///
+/// assert!(check_settings("pyramids", &[Setting::parse("camera.pitch_down_deg=25")?]).is_ok());
+/// let error = check_settings("pyramids", &[Setting::parse("camera.pitch_down_deg=steep")?]).unwrap_err();
+/// assert!(error.to_string().contains("camera.pitch_down_deg"), "{error}");
+/// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+/// ```
+pub fn check_settings(source: &str, settings: &[Setting]) -> Result<(), SceneIoError> {
+    let source = SceneSource::parse(source)?;
+    let (path, text) = text_of(&source)?;
+    let changed = changed(&text, settings)?;
+    let file = match &changed {
+        None => Source::unchanged(&path, &text),
+        Some(changed) => Source { file: &path, text: &changed.text, settings: &changed.places },
+    };
+    match file.kind()? {
+        Kind::Rig => parse(&file).map(|_| ()),
+        Kind::Resolved => parse_resolved(&file).map(|_| ()),
+    }
+}
+
+/// The text of a scene, which a ground alone gets for the purpose, and the path that messages call it by.
+fn text_of(source: &SceneSource) -> Result<(PathBuf, String), SceneIoError> {
+    let beside = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(match source {
+        SceneSource::Toml(path) => (path.clone(), read_toml(path)?),
+        SceneSource::Builtin(name) => (PathBuf::from(name), text_of_ground("builtin", name)),
+        SceneSource::Mesh(path) => (path.clone(), text_of_ground("file", &beside(path))),
+        SceneSource::Dem(path) => (path.clone(), text_of_ground("dem", &beside(path))),
+    })
+}
+
 /// Loads a scene from a text, which a ground alone gets for the purpose, so that it can be changed.
 fn load_changed(
     source: &SceneSource,
     overrides: &Overrides,
     grounds: Option<&Grounds>,
 ) -> Result<LoadedScene, SceneIoError> {
-    let beside = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    match source {
-        SceneSource::Toml(path) => load_toml(source, path, &read_toml(path)?, overrides, grounds),
-        SceneSource::Builtin(name) => {
-            load_toml(source, Path::new(name), &text_of_ground("builtin", name), overrides, grounds)
-        }
-        SceneSource::Mesh(path) => {
-            load_toml(source, path, &text_of_ground("file", &beside(path)), overrides, grounds)
-        }
-        SceneSource::Dem(path) => {
-            load_toml(source, path, &text_of_ground("dem", &beside(path)), overrides, grounds)
-        }
-    }
+    let (path, text) = text_of(source)?;
+    load_toml(source, &path, &text, overrides, grounds)
 }
 
 /// The text of a TOML file, at most [`MAX_TOML_BYTES`] long.
@@ -225,9 +282,15 @@ fn load_rig(
     parts.append(&mut plan.ray_digests);
     let make = || -> Result<Ground, SceneIoError> {
         match read_ground(file, &plan)? {
-            Some((mesh, digests)) => Ok(Ground { mesh: Arc::new(mesh), digests: Some(digests) }),
+            Some(GroundFromFiles { mesh, digests, polygon_facts }) => {
+                Ok(Ground { mesh: Arc::new(mesh), digests: Some(digests), polygon_facts })
+            }
             None => make_ground(&plan)
-                .map(|mesh| Ground { mesh: Arc::new(mesh), digests: None })
+                .map(|mesh| Ground {
+                    mesh: Arc::new(mesh),
+                    digests: None,
+                    polygon_facts: PolygonFacts::default(),
+                })
                 .map_err(|error| SceneIoError::scene(source.origin(), error)),
         }
     };
@@ -238,14 +301,14 @@ fn load_rig(
         None => make()?,
     };
     let is_from_file = ground.digests.is_some();
-    parts.extend(ground.digests.into_iter().flatten());
+    parts.extend(ground.digests.iter().flatten());
     let position_span = plan.position_span.clone();
     // A lone terrain, whose text is only settings: as in `finish_alone`.
     let is_alone = matches!(source, SceneSource::Mesh(_) | SceneSource::Dem(_));
     if is_alone && is_from_file && position_span.is_empty() && overrides.at.is_none() {
         plan.vehicle.position = central_place(&ground.mesh).unwrap_or_default();
     }
-    finish(source, plan, parts, ground.mesh, is_from_file, overrides).map_err(|error| match error {
+    finish(source, plan, parts, ground, overrides).map_err(|error| match error {
         // A vehicle off the ground is the fault of a line in the file, unless the command line put it there.
         SceneIoError::NoGround { x, y, ground, .. } if overrides.at.is_none() => {
             no_ground(file, position_span, [x, y], &ground)
@@ -284,31 +347,30 @@ fn load_resolved(
     let scene = Scene::new(Arc::new(mesh), resolved.camera, beams, resolved.atmosphere, flux_model)
         .map_err(|error| resolved.point_to(file, error))?;
     let vehicle = Pose::from_position(scene.mesh().origin());
-    Ok(LoadedScene { has_vehicle: false, ..loaded(source, scene, vehicle, parts, overrides, None) })
+    Ok(LoadedScene { has_vehicle: false, ..loaded(source, scene, vehicle, parts, overrides) })
 }
 
 /// Loads a terrain without a scene file: the default rig stands in its middle.
 fn finish_alone(
     source: &SceneSource,
     terrain: Terrain,
-    parts: Vec<Sha256Digest>,
-    mesh: Mesh,
+    GroundFromFiles { mesh, digests, polygon_facts }: GroundFromFiles,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = default_rig(terrain);
     if overrides.at.is_none() {
         plan.vehicle.position = central_place(&mesh).unwrap_or_default();
     }
-    finish(source, plan, parts, Arc::new(mesh), true, overrides)
+    let ground = Ground { mesh: Arc::new(mesh), digests: Some(digests.clone()), polygon_facts };
+    finish(source, plan, digests, ground, overrides)
 }
 
-/// Resolves a plan: stands the vehicle on the ground and mounts the sensors.
+/// Resolves a plan: stands the vehicle on the ground and mounts the sensors. `parts` are digests, also those of the ground's files.
 fn finish(
     source: &SceneSource,
     mut plan: ScenePlan,
     mut parts: Vec<Sha256Digest>,
-    mesh: Arc<Mesh>,
-    is_from_file: bool,
+    Ground { mesh, digests, polygon_facts }: Ground,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let unfit = |error: SceneError| SceneIoError::scene(source.origin(), error);
@@ -321,13 +383,14 @@ fn finish(
     // A generated ground takes part in the digest by its numbers, which its name does not promise.
     match source {
         SceneSource::Builtin(_) => parts.push(digest::resolved(&scene)),
-        _ if !is_from_file => parts.push(digest::mesh(scene.mesh())),
+        _ if digests.is_none() => parts.push(digest::mesh(scene.mesh())),
         _ => {}
     }
     if let Some(drive) = &mut plan.drive {
         drive.place(&scene, &vehicle);
     }
-    Ok(loaded(source, scene, vehicle, parts, overrides, plan.drive))
+    let drive = plan.drive;
+    Ok(LoadedScene { drive, polygon_facts, ..loaded(source, scene, vehicle, parts, overrides) })
 }
 
 /// Adds names and digests to a scene.
@@ -337,7 +400,6 @@ fn loaded(
     vehicle: Pose,
     mut parts: Vec<Sha256Digest>,
     overrides: &Overrides,
-    drive: Option<DriveSetup>,
 ) -> LoadedScene {
     if let Some(words) = overrides.words().filter(|_| !matches!(source, SceneSource::Builtin(_))) {
         parts.push(sha256(words.as_bytes()));
@@ -350,6 +412,7 @@ fn loaded(
         vehicle,
         has_vehicle: true,
         source: source.clone(),
-        drive,
+        drive: None,
+        polygon_facts: PolygonFacts::default(),
     }
 }

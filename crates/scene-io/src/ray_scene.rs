@@ -7,10 +7,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::{Sha256Digest, combined_sha256_hex, sha256};
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, FileFrame, UpAxis, read_triangles};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, PolygonFacts, read_triangles};
 use raypencil_scene::{Material, Mesh, NamedRaySet, Pose, SceneError, Triangles};
 
-use crate::ground::{make_ground, read_ground, terrain_file};
+use crate::ground::{GroundFromFiles, make_ground, read_ground, terrain_file};
 use crate::load::{no_ground, read_toml};
 use crate::parse::kind::Kind;
 use crate::parse::scene::parse;
@@ -32,6 +32,8 @@ pub struct RayScene {
     pub sets: Vec<NamedRaySet>,
     /// SHA-256 of the terrain's files, or of its numbers if it has none.
     pub terrain_digests: Vec<Sha256Digest>,
+    /// What was found out about the polygons of the terrain's file.
+    pub polygon_facts: PolygonFacts,
     /// SHA-256 in hexadecimal of the scene file, followed by the digests of the files that its sets name.
     pub sha256: String,
 }
@@ -73,31 +75,32 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
         return Err(file.error(0..0, "there is no table `[[rays]]`; expected at least one"));
     }
     let unfit = |error: SceneError| SceneIoError::scene(path.display().to_string(), error);
-    let (triangles, vehicle, terrain_digests) = match &plan.terrain {
+    let (triangles, vehicle, terrain_digests, polygon_facts) = match &plan.terrain {
         Terrain::File(MeshPart { file: terrain, frame }) => {
             let terrain = terrain_file(&file, "file", &MESH_ENDINGS, terrain, &plan.terrain_span)?;
             let read = read_triangles(&terrain)?;
-            let triangles = framed(read.triangles, frame).map_err(unfit)?;
+            let triangles = frame.triangles(read.triangles).map_err(unfit)?;
             // A vehicle with a height needs no ground, which may then have any size.
             let ground = match plan.vehicle.height {
                 Some(_) => Mesh::from_global(&[], vec![], vec![], vec![]),
                 None => ground_of(&triangles),
             };
             let vehicle = stood(&file, &plan, &ground.map_err(unfit)?)?;
-            (triangles, vehicle, read.digests)
+            (triangles, vehicle, read.digests, read.polygon_facts)
         }
         _ => {
-            let (mesh, digests) = match read_ground(&file, &plan)? {
+            let GroundFromFiles { mesh, digests, polygon_facts } = match read_ground(&file, &plan)? {
                 Some(read) => read,
                 None => {
                     let mesh = make_ground(&plan).map_err(unfit)?;
                     let digest = crate::digest::mesh(&mesh);
-                    (mesh, vec![digest])
+                    let polygon_facts = PolygonFacts::default();
+                    GroundFromFiles { mesh, digests: vec![digest], polygon_facts }
                 }
             };
             let global = stood(&file, &plan, &mesh)?;
             let vehicle = Pose { position: global.position - mesh.origin(), ..global };
-            (Triangles::from(&mesh), vehicle, digests)
+            (Triangles::from(&mesh), vehicle, digests, polygon_facts)
         }
     };
     let sets = plan.ray_sets.iter().map(|set| set.placed(&vehicle));
@@ -107,17 +110,9 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
         triangles,
         sets,
         terrain_digests,
+        polygon_facts,
         sha256: combined_sha256_hex(&[own, plan.ray_digests].concat()),
     })
-}
-
-/// The triangles with the axes and the unit that the scene file states; without these keys they are not changed.
-fn framed(triangles: Triangles, frame: &FileFrame) -> Result<Triangles, SceneError> {
-    if *frame == FileFrame::default() {
-        return Ok(triangles);
-    }
-    let vertices = triangles.vertices().iter().map(|&vertex| frame.global(vertex, UpAxis::Z).to_array());
-    Triangles::new(vertices.collect(), triangles.faces().to_vec())
 }
 
 /// The vehicle's pose in the global frame.

@@ -1,6 +1,7 @@
 //! A scene under test, and the commands that people type to see it.
 
 use raypencil_scene::{Place, Pose, Scene, SensorId};
+use raypencil_survey::Warning;
 
 /// Scene under test, with the names that people give it.
 #[derive(Debug, Clone)]
@@ -16,23 +17,19 @@ pub struct Subject {
     pub sha256: String,
     /// Pose of the vehicle in the global frame; `None`: the scene has sensors alone.
     pub vehicle: Option<Pose>,
+    /// What looks wrong in the files of its terrain.
+    pub file_warnings: Vec<Warning>,
 }
 
 /// Command that shows everything about one ray.
 ///
 /// ```
 /// use raypencil_scene::{Place, SensorId};
-/// use raypencil_scene_io::{Overrides, Subject, load, probe_command, quoted};
+/// use raypencil_scene_io::{Overrides, load, probe_command, quoted};
 ///
 /// let loaded = load("pyramids", &Overrides::default())?;
-/// let subject = Subject {
-///     scene: loaded.scene,
-///     name: loaded.name,
-///     // A shell splits words at spaces, so this path needs quotes.
-///     arguments: quoted("my scenes/pyramids.toml"),
-///     sha256: loaded.source_sha256,
-///     vehicle: Some(loaded.vehicle),
-/// };
+/// // A shell splits words at spaces, so this path needs quotes.
+/// let subject = loaded.into_subject(quoted("my scenes/pyramids.toml"));
 /// let place = Place { sensor: SensorId::Beam(1), i: 412, j: 3 };
 /// let command = "raypencil probe 'my scenes/pyramids.toml' --beam 1 --pencil 412,3";
 /// assert_eq!(probe_command(&subject, place), command);

@@ -41,11 +41,17 @@ pub enum WarningCode {
     BeamsOutOfOrder,
     /// A drive has measured no point of the ground.
     NothingMeasured,
+    /// Polygons of the terrain's file cross themselves.
+    PolygonsCross,
+    /// Polygons of the terrain's file are not planar.
+    PolygonsNotPlanar,
+    /// Crossings are asked for of a mesh that is not closed.
+    OpenMesh,
 }
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 16] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -59,6 +65,9 @@ impl WarningCode {
         Self::BlindThreshold,
         Self::BeamsOutOfOrder,
         Self::NothingMeasured,
+        Self::PolygonsCross,
+        Self::PolygonsNotPlanar,
+        Self::OpenMesh,
     ];
 
     /// The code as files have it.
@@ -77,6 +86,9 @@ impl WarningCode {
             Self::BlindThreshold => "blind_threshold",
             Self::BeamsOutOfOrder => "beams_out_of_order",
             Self::NothingMeasured => "nothing_measured",
+            Self::PolygonsCross => "polygons_cross",
+            Self::PolygonsNotPlanar => "polygons_not_planar",
+            Self::OpenMesh => "open_mesh",
         }
     }
 }

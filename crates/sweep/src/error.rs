@@ -25,6 +25,16 @@ pub enum SweepError {
         /// What was found and expected.
         message: String,
     },
+    /// A value that its key does not take.
+    #[error("run {run} of the sweep, {given}: {source}; nothing was written")]
+    Value {
+        /// Number of the run.
+        run: u64,
+        /// The keys and values that are new in it.
+        given: String,
+        /// What the scene says of them.
+        source: Box<SceneIoError>,
+    },
     /// A list of runs that is none.
     #[error("{file}: {message}")]
     List {

@@ -1,7 +1,7 @@
 //! The plan of a sweep: a scene, its parameters and what is done with each of their combinations.
 
 use raypencil_files::{FileError, bytes, hex_digits, sha256};
-use raypencil_scene_io::{MAX_TOML_BYTES, Overrides, SceneSource, Setting, load};
+use raypencil_scene_io::{MAX_TOML_BYTES, Overrides, SceneSource, Setting, check_settings, load};
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
@@ -9,6 +9,9 @@ use crate::error::SweepError;
 
 /// Maximum number of runs.
 pub const MAX_RUNS: u64 = 10_000_000;
+
+/// Maximum number of rows of an axis that are tried before the first run: more would take longer than they save.
+const MAX_TRIED_ROWS: u64 = 10_000;
 
 /// What is done with each scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,6 +113,31 @@ impl Sweep {
                 expected: format!("1 to {MAX_RUNS}"),
             }),
         }
+    }
+
+    /// Refuses a value that its key does not take, before any run is made: each row of an axis is tried beside the first rows of the
+    /// others, at most 10,000 of each axis. What a ground decides, such as a place beside it, is known when its run is made.
+    ///
+    /// # Errors
+    /// The first run that the text of its scene alone refuses.
+    pub fn check_values(&self) -> Result<(), SweepError> {
+        // Runs count up along the last axis first.
+        let mut stride = 1;
+        for (index, axis) in self.axes.iter().enumerate().rev() {
+            let rows = axis.rows.len() as u64;
+            // The run of all first rows is tried once.
+            let first = u64::from(index + 1 < self.axes.len());
+            for row in first..rows.min(MAX_TRIED_ROWS) {
+                let run = row * stride;
+                check_settings(&self.scene, &self.settings(run)?).map_err(|error| {
+                    let pairs = axis.keys.iter().zip(&axis.rows[row as usize]);
+                    let words: Vec<String> = pairs.map(|(key, value)| format!("{key}={value}")).collect();
+                    SweepError::Value { run, given: words.join(" "), source: Box::new(error) }
+                })?;
+            }
+            stride *= rows;
+        }
+        Ok(())
     }
 
     /// Number of runs.

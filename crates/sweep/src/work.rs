@@ -6,7 +6,7 @@ use raypencil_drive::{DriveExtras, DriveJob, DriveProgress, drive_json, drive_wi
 use raypencil_harness::{Contender, Validator, write_maps};
 use raypencil_judge::JudgeShare;
 use raypencil_scene::{Request, Sampling, Silent};
-use raypencil_scene_io::{Grounds, LoadedScene, Overrides, Setting, Subject, load_sharing, quoted};
+use raypencil_scene_io::{Grounds, LoadedScene, Overrides, Setting, load_sharing, quoted};
 
 use crate::error::SweepError;
 use crate::plan::{Sweep, Task};
@@ -65,12 +65,12 @@ impl<'a> Worker<'a> {
     }
 
     fn validate(&mut self, loaded: LoadedScene, arguments: String) -> Vec<Named> {
-        let subject = subject(loaded, arguments);
+        let subject = loaded.into_subject(arguments);
         validation_results(&self.validator.validate(subject, self.contenders, JudgeShare::Sample, &Silent))
     }
 
     fn render(&self, loaded: LoadedScene, arguments: String, maps: &Path) -> Result<Vec<Named>, SweepError> {
-        let subject = subject(loaded, arguments);
+        let subject = loaded.into_subject(arguments);
         let renderer = &self.contenders[0].renderer;
         let output = renderer.render(&subject.scene, &Request::EVERYTHING);
         write_maps(&output, renderer.name(), &subject, Sampling::Centres, maps)?;
@@ -95,16 +95,6 @@ impl<'a> Worker<'a> {
             }
             Err(error) => Outcome::refused(&error.to_string()),
         }
-    }
-}
-
-fn subject(loaded: LoadedScene, arguments: String) -> Subject {
-    Subject {
-        vehicle: loaded.standing_vehicle(),
-        scene: loaded.scene,
-        name: loaded.name,
-        arguments,
-        sha256: loaded.source_sha256,
     }
 }
 

@@ -61,9 +61,7 @@ impl RayPackChecked {
 /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 /// let mesh = Triangles::new(corners, vec![[0, 1, 2]])?;
 /// let rays = rays_from_bytes(b"0.25,0.25,1,0,0,-1\n2,2,1,0,0,-1", "here".as_ref())?;
-/// let source = CastSource {
-///     mesh: "mine".into(), mesh_sha256: vec![], rays: "mine".into(), rays_sha256: None,
-/// };
+/// let source = CastSource { mesh: "mine".into(), rays: "mine".into(), ..CastSource::default() };
 /// let folder = tempfile::tempdir()?;
 /// let counts = write_ray_pack(folder.path(), (&mesh, &rays, Sides::Both), &source, &Silent)?;
 /// assert_eq!((counts.hits, counts.misses, counts.t_min), (1, 1, 0));

@@ -103,7 +103,7 @@ fn clouds_hold_the_points_their_channels_and_their_times() {
     let set = vlp_16(Pose::from_position(DVec3::new(3.0, -1.0, 1.25)), 5);
     let mesh = floor();
     let found = answers(&mesh, &set);
-    let source = CastSource { mesh: "m".into(), mesh_sha256: vec![], rays: "r".into(), rays_sha256: None };
+    let source = CastSource { mesh: "m".into(), rays: "r".into(), ..CastSource::default() };
     write_set(folder.path(), &found, (&mesh, &set, Sides::Both), &source).unwrap();
 
     let (header, body) = parts(&std::fs::read(folder.path().join("cloud.ply")).unwrap(), "end_header\n");

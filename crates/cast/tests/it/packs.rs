@@ -48,7 +48,7 @@ fn rays() -> RayArray {
 }
 
 fn source() -> CastSource {
-    CastSource { mesh: "cube".into(), mesh_sha256: vec![], rays: "rays".into(), rays_sha256: None }
+    CastSource { mesh: "cube".into(), rays: "rays".into(), ..CastSource::default() }
 }
 
 /// The pack, and a folder with the answers to a question that may be another.

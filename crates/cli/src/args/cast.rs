@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use raypencil::CastRay;
-use raypencil::io::Setting;
+use raypencil::io::{Setting, UpAxis};
 
-use crate::parsers::{ray, setting};
+use crate::parsers::{number, ray, setting, up_axis};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -48,11 +48,25 @@ pub(crate) struct Cast {
     #[arg(long)]
     pub(crate) margins: bool,
 
+    /// Axis of the mesh that points up: with `y` each vertex (x, y, z) becomes (x, -z, y). Without it no axis is turned, whatever the
+    /// format.
+    #[arg(long, value_name = "AXIS", value_parser = up_axis())]
+    pub(crate) up: Option<UpAxis>,
+
+    /// Multiply each coordinate of the mesh by this, rounded once: 0.001 if the file is in millimetres and the rays in metres.
+    /// Without it: 1.
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = number)]
+    pub(crate) scale: Option<f64>,
+
+    /// Exit with 0 even if none of the rays of a file or a set hits anything. Rays of --ray may miss in any case.
+    #[arg(long)]
+    pub(crate) allow_empty: bool,
+
     /// Set a key of the scene file MESH, as in `validate`. May be repeated.
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// Compare a renderer's first hits with the exact ones, ray by ray. Exit code 1: a ray is wrong, or nothing is hit.
+    /// Compare a renderer's first hits with the exact ones, ray by ray. Exit code 1: a ray is wrong.
     #[arg(long, value_name = "RENDERER", value_parser = ["tracer"])]
     pub(crate) with: Option<String>,
 

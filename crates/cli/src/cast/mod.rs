@@ -6,18 +6,20 @@ mod ray_command;
 use std::path::{Path, PathBuf};
 
 use raypencil::cast::{
-    Answers, CastPage, CastSource, Questions, RayArray, cast as answer, counts_text, ray_json, ray_text,
-    rays_from_bytes, write_answers, write_cast_page, write_set,
+    Answers, CastPage, CastSource, Questions, RayArray, cast as answer, cast_warnings, counts_text, ray_json,
+    ray_text, rays_from_bytes, write_answers, write_cast_page, write_set,
 };
 use raypencil::io::{
-    FileError, Limits, LoadedRaySets, OutputFolder, RayScene, bytes, create_folder, hex_digits,
-    load_ray_scene, read_ray_sets, read_triangles, sha256,
+    FileError, FileFrame, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene, bytes,
+    create_folder, hex_digits, load_ray_scene, polygon_warnings, read_ray_sets, read_triangles, sha256,
 };
+use raypencil::survey::Warning;
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
 use serde_json::{Value, json};
 
 use crate::args::Cast;
-use crate::console::{Spinner, say};
+use crate::console::{Spinner, say, warn};
+use crate::file_frame::file_frame;
 use crate::{Outcome, Trouble, memory};
 use compared::Compared;
 use ray_command::ray_command;
@@ -36,10 +38,16 @@ enum Rays {
 pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.mesh.display()));
-    let Given { mesh, mesh_sha256, rays, from, rays_sha256 } = given(command, &spinner)?;
+    let Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, polygons } = given(command, &spinner)?;
     let questions = Questions { any: command.any, all: command.all, margins: command.margins };
-    let source =
-        CastSource { mesh: command.mesh.display().to_string(), mesh_sha256, rays: from, rays_sha256 };
+    let source = CastSource {
+        mesh: command.mesh.display().to_string(),
+        mesh_sha256,
+        rays: from,
+        rays_sha256,
+        frame,
+        polygons,
+    };
     let mesh = &mesh;
     let count = match &rays {
         Rays::Array(array) => array.rays.len(),
@@ -54,6 +62,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
             let answers = answer(mesh, &array.rays, sides, questions, &spinner);
             let compared = Compared::of(command, mesh, &array.rays, sides, &spinner);
+            let warnings = cast_warnings(mesh, &array.rays, sides, None, &answers);
             spinner.stage("writing");
             if let Some(folder) = folder {
                 let set = None;
@@ -74,6 +83,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 shape: &array.shape,
                 answers,
                 compared,
+                warnings,
                 summary: written.transpose()?,
             }]
         }
@@ -83,6 +93,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 let sides = if command.fronts_only { Sides::Fronts } else { set.set.sides() };
                 let answers = answer(mesh, set.set.rays(), sides, questions, &spinner);
                 let compared = Compared::of(command, mesh, set.set.rays(), sides, &spinner);
+                let warnings = cast_warnings(mesh, set.set.rays(), sides, Some(set), &answers);
                 spinner.stage(&format!("{}: writing", set.name));
                 // One set is written as rays of no set are; of several each has a folder of its own.
                 let folder: Option<PathBuf> =
@@ -99,6 +110,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                     shape: &set.shape,
                     answers,
                     compared,
+                    warnings,
                     summary,
                 });
             }
@@ -107,19 +119,34 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     };
     output.map_or(Ok(()), OutputFolder::finish)?;
     drop(spinner);
-    let is_each_right = results.iter().flat_map(|result| &result.compared).all(Compared::passes);
-    let outcome = if is_each_right { Outcome::Fine } else { Outcome::Differs };
+    let is_each_right = results
+        .iter()
+        .flat_map(|result| &result.compared)
+        .all(|compared| compared.passes(command.allow_empty));
+    // Rays of the command line are questions, one by one; a miss is their answer.
+    let hits = results.iter().map(|result| result.answers.counts().0).sum::<usize>();
+    let is_empty = command.ray.is_empty() && hits == 0 && !command.allow_empty;
+    let outcome = if is_each_right && !is_empty { Outcome::Fine } else { Outcome::Differs };
+    let of_file = polygon_warnings(&source.polygons);
     let printed = if command.ray.is_empty() { MAX_PRINTED_RAYS } else { usize::MAX };
     if json {
         let documents: Vec<Value> = results.iter().map(|result| result.json(printed)).collect();
-        let document = match (&rays, documents.as_slice()) {
+        let mut document = match (&rays, documents.as_slice()) {
             (Rays::Array(_), [document]) => document.clone(),
             _ => json!({ "sets": documents }),
         };
+        document["mesh"] = json!({
+            "up": source.frame.up.map(|up| up.word()),
+            "scale": source.frame.scale,
+            "polygons": source.polygons,
+            "warnings": of_file,
+        });
         say(&format!("{document:#}\n"));
         return Ok(outcome);
     }
-    let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(mesh));
+    warn(&of_file);
+    results.iter().for_each(|result| warn(&result.warnings));
+    let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(mesh, &source.polygons));
     for result in &results {
         text += &result.text(printed);
     }
@@ -166,6 +193,7 @@ struct Answered<'a> {
     shape: &'a [u64],
     answers: Answers,
     compared: Option<Compared<'a>>,
+    warnings: Vec<Warning>,
     summary: Option<PathBuf>,
 }
 
@@ -179,7 +207,8 @@ impl Answered<'_> {
         });
         let counts = json!({ "rays": rays, "hits": hits, "misses": rays - hits, "ties": ties });
         let summary = self.summary.as_ref().map(|path| path.display().to_string());
-        let mut document = json!({ "counts": counts, "rays": each, "summary": summary });
+        let mut document =
+            json!({ "counts": counts, "rays": each, "warnings": self.warnings, "summary": summary });
         if let Some(name) = self.set {
             document["name"] = json!(name);
         }
@@ -223,21 +252,38 @@ struct Given {
     /// The rays' file, or what else they come from.
     from: String,
     rays_sha256: Option<String>,
+    /// The axes and the unit that the options give for the mesh's file.
+    frame: FileFrame,
+    polygons: PolygonFacts,
 }
 
 fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
     let name = command.mesh.display().to_string();
     let has_rays = command.rays.is_some() || !command.ray.is_empty();
-    let (mesh, digests) = match is_toml(&command.mesh) {
+    let frame = file_frame(command.up, command.scale)?;
+    let (mesh, digests, polygons) = match is_toml(&command.mesh) {
+        true if frame != FileFrame::default() => {
+            let text = "--up and --scale are for a mesh; a scene file has them in [terrain] (--set terrain.scale=0.001)";
+            return Err(Trouble::Usage(format!("{name}: {text}")));
+        }
         true => {
-            let RayScene { triangles, sets, terrain_digests, sha256 } =
+            let RayScene { triangles, sets, terrain_digests, polygon_facts, sha256 } =
                 load_ray_scene(&command.mesh, &command.set)?;
             if !has_rays {
                 let mesh_sha256 = terrain_digests.iter().map(hex_digits).collect();
                 let (rays, rays_sha256) = (Rays::Sets(sets), Some(sha256));
-                return Ok(Given { mesh: triangles, mesh_sha256, rays, from: name, rays_sha256 });
+                let polygons = polygon_facts;
+                return Ok(Given {
+                    mesh: triangles,
+                    mesh_sha256,
+                    rays,
+                    from: name,
+                    rays_sha256,
+                    frame,
+                    polygons,
+                });
             }
-            (triangles, terrain_digests)
+            (triangles, terrain_digests, polygon_facts)
         }
         false if !command.set.is_empty() => {
             let text = "--set changes a scene file; expected a MESH that ends in .toml, or no --set";
@@ -249,7 +295,8 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
         }
         false => {
             let read = read_triangles(&command.mesh)?;
-            (read.triangles, read.digests)
+            let too_large = |source| FileError::Scene { origin: name.clone(), source };
+            (frame.triangles(read.triangles).map_err(too_large)?, read.digests, read.polygon_facts)
         }
     };
     let mesh_sha256 = digests.iter().map(hex_digits).collect();
@@ -264,7 +311,7 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
             (rays, path.display().to_string(), Some(digest))
         }
     };
-    Ok(Given { mesh, mesh_sha256, rays, from, rays_sha256 })
+    Ok(Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, polygons })
 }
 
 fn is_toml(path: &Path) -> bool {
@@ -293,15 +340,19 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     read.map_err(|error| FileError::io(path, "read", error))
 }
 
-fn mesh_text(mesh: &Triangles) -> String {
+fn mesh_text(mesh: &Triangles, polygons: &PolygonFacts) -> String {
     let of_zero_area = match mesh.zero_area_faces() {
         0 => String::new(),
         count => format!(", {count} of them without an area"),
     };
     let Some([low, high]) = mesh.bounds() else { return "no vertices".into() };
     let size = high - low;
+    let of_polygons = match polygons.words() {
+        words if words.is_empty() => words,
+        words => format!("; {words}"),
+    };
     format!(
-        "{} vertices, {} faces{of_zero_area}; {} x {} x {} wide",
+        "{} vertices, {} faces{of_zero_area}; {} x {} x {} wide{of_polygons}",
         mesh.vertices().len(),
         mesh.faces().len(),
         size.x,

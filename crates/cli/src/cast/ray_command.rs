@@ -15,6 +15,8 @@ pub(super) fn ray_command(command: &Cast, ray: &CastRay) -> String {
     }
     let mesh = quoted(&command.mesh.display().to_string());
     let settings: String = command.set.iter().map(|setting| format!(" {}", typed_setting(setting))).collect();
+    let up = command.up.map_or(String::new(), |up| format!(" --up {}", up.word()));
+    let scale = command.scale.map_or(String::new(), |scale| format!(" --scale {scale}"));
     let fronts = if command.fronts_only { " --fronts-only" } else { "" };
-    format!("raypencil cast {mesh} --ray={numbers}{settings}{fronts} --all --margins")
+    format!("raypencil cast {mesh} --ray={numbers}{settings}{up}{scale}{fronts} --all --margins")
 }

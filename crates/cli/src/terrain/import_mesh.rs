@@ -1,19 +1,33 @@
 //! `raypencil terrain import` of a mesh: glTF, STL, OBJ or PLY to a GLB terrain, with z up and in metres.
 
+use std::io::Read as _;
 use std::path::Path;
 
-use raypencil::io::{FileFrame, MESH_ENDINGS, SCALE_RANGE, load_terrain, write_terrain_glb};
+use raypencil::io::{
+    FileFrame, MESH_ENDINGS, PolygonFacts, TerrainFile, polygon_warnings, read_terrain, write_terrain_glb,
+};
 use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
 
 use crate::args::TerrainImport;
-use crate::console::{Spinner, say};
+use crate::console::{Spinner, say, warn};
+use crate::file_frame::file_frame;
 use crate::terrain::output::{create_folder, refuse_same_file};
 use crate::{Outcome, Trouble};
 
-/// Whether a file's name is that of a mesh.
+/// Whether a file is read as a mesh: by its name; where that tells nothing, whatever does not begin as a TIFF does.
 pub(super) fn is_mesh(file: &Path) -> bool {
-    file.extension().is_some_and(|end| MESH_ENDINGS.iter().any(|known| end.eq_ignore_ascii_case(known)))
+    let ends_in = |known: &[&str]| {
+        file.extension().is_some_and(|end| known.iter().any(|known| end.eq_ignore_ascii_case(known)))
+    };
+    ends_in(&MESH_ENDINGS) || !(ends_in(&["tif", "tiff"]) || begins_as_tiff(file))
+}
+
+/// Whether the first bytes are those of a TIFF, of either byte order, or of a BigTIFF.
+fn begins_as_tiff(file: &Path) -> bool {
+    let mut first = [0; 4];
+    let read = std::fs::File::open(file).and_then(|mut file| file.read_exact(&mut first));
+    read.is_ok() && matches!(first, [b'I', b'I', 42 | 43, 0] | [b'M', b'M', 0, 42 | 43])
 }
 
 pub(super) fn import_mesh(command: &TerrainImport, json: bool) -> Result<Outcome, Trouble> {
@@ -25,30 +39,18 @@ pub(super) fn import_mesh(command: &TerrainImport, json: bool) -> Result<Outcome
         )));
     }
     refuse_same_file(&command.output, &command.file)?;
-    let frame = frame(command)?;
+    let frame = file_frame(command.up, command.scale)?;
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: reading", command.file.display()));
-    let mesh = load_terrain(&command.file, command.reflectivity, &frame)?;
+    let TerrainFile { mesh, polygon_facts, .. } = read_terrain(&command.file, command.reflectivity, &frame)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
     create_folder(&command.output)?;
     write_terrain_glb(&command.output, &mesh, &source(command, &frame))?;
     drop(spinner);
-    let report = report(command, &frame, &mesh);
+    warn(&polygon_warnings(&polygon_facts));
+    let report = report(command, &frame, &mesh, &polygon_facts);
     say(&if json { format!("{report:#}\n") } else { screen(&report) });
     Ok(Outcome::Fine)
-}
-
-/// Axes and unit that the options give.
-fn frame(command: &TerrainImport) -> Result<FileFrame, Trouble> {
-    let scale = command.scale.unwrap_or(1.0);
-    if !SCALE_RANGE.contains(&scale) {
-        return Err(Trouble::Usage(format!(
-            "--scale {scale}: expected {:e} to {:e} metres for each unit of the file",
-            SCALE_RANGE.start(),
-            SCALE_RANGE.end()
-        )));
-    }
-    Ok(FileFrame { up: command.up, scale })
 }
 
 /// The source of the terrain, for the extras of its file: the file's name without its folder.
@@ -61,7 +63,7 @@ fn source(command: &TerrainImport, frame: &FileFrame) -> Value {
 }
 
 /// The report for programs, from which that for people is made.
-fn report(command: &TerrainImport, frame: &FileFrame, mesh: &Mesh) -> Value {
+fn report(command: &TerrainImport, frame: &FileFrame, mesh: &Mesh, facts: &PolygonFacts) -> Value {
     let bounds = mesh.bounds().map(|bounds| bounds.map(|corner| (corner + mesh.origin()).to_array()));
     let along = |axis: usize| bounds.map(|[low, high]| [low[axis], high[axis]]);
     json!({
@@ -75,6 +77,7 @@ fn report(command: &TerrainImport, frame: &FileFrame, mesh: &Mesh) -> Value {
         "reflectivity": command.reflectivity,
         "vertices": mesh.vertices().len(),
         "faces": mesh.faces().len(),
+        "polygons": facts,
         "scene_origin_m": mesh.origin().to_array(),
     })
 }
@@ -99,6 +102,10 @@ fn screen(report: &Value) -> String {
         ("scale", format!("{} m for each unit of the file", at("/scale"))),
         ("vertices", at("/vertices")),
         ("faces", at("/faces")),
+        (
+            "polygons",
+            format!("{}; not convex, and cut truly: {}", at("/polygons/count"), at("/polygons/cut")),
+        ),
         (
             "scene origin",
             format!(

@@ -70,6 +70,7 @@ const MAX_DEFECT_LINES: usize = 2;
 /// #     arguments: "small.toml".into(),
 /// #     sha256: "0".repeat(64),
 /// #     vehicle: None,
+/// #     file_warnings: Vec::new(),
 /// # };
 /// // One renderer alone is no comparison: the screen says so, and it is no pass.
 /// let alone = validate(subject, &[contender("tracer").expect("a name")], JudgeShare::Sample, &Silent);

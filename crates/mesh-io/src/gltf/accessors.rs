@@ -1,4 +1,4 @@
-//! Accessors, typed numbers in buffer views: vertex positions and indices. (glTF 2.0, §3.6.2)
+//! Typed numbers of accessors: vertex positions, indices, and where instances stand. (glTF 2.0, §3.6.2)
 
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
@@ -6,6 +6,8 @@ use gltf::json::{Index, Root};
 use raypencil_files::Fault;
 
 use crate::gltf::buffers::{Buffers, missing_reference};
+use crate::gltf::elements::{Elements, whole};
+use crate::gltf::json::{QUANTIZATION, is_used};
 
 /// The accessor at `index`.
 pub(super) fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, Fault> {
@@ -14,40 +16,110 @@ pub(super) fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor,
 }
 
 /// Place of an accessor in messages.
-fn place(index: usize) -> String {
+pub(super) fn place(index: usize) -> String {
     format!("accessor {index}")
 }
 
-/// Vertex positions: VEC3 of F32, interleaved or not, all finite.
+/// Vertex positions: VEC3 of F32, or of whole numbers where KHR_mesh_quantization is used; interleaved or not, all finite.
 pub(super) fn positions(
     root: &Root,
     buffers: &mut Buffers<'_>,
     index: Index<Accessor>,
-) -> Result<Vec<[f32; 3]>, Fault> {
+) -> Result<Vec<[f64; 3]>, Fault> {
+    let expected = match is_used(root, QUANTIZATION) {
+        true => "VEC3 of F32, or of I8, U8, I16 or U16",
+        false => "VEC3 of F32; whole numbers need the extension KHR_mesh_quantization",
+    };
+    let takes = |component, _| {
+        let is_quantized = matches!(
+            component,
+            ComponentType::I8 | ComponentType::U8 | ComponentType::I16 | ComponentType::U16
+        );
+        component == ComponentType::F32 || (is_quantized && is_used(root, QUANTIZATION))
+    };
+    vectors(root, buffers, index, ("POSITION", "vertex"), takes, expected)
+}
+
+/// Vectors of an instance's attribute: F32; of rotations, which have four numbers, also normalised I8 or I16.
+pub(super) fn instance_vectors<const N: usize>(
+    root: &Root,
+    buffers: &mut Buffers<'_>,
+    index: Index<Accessor>,
+    name: &str,
+) -> Result<Vec<[f64; N]>, Fault> {
+    let expected = if N == 4 { "VEC4 of F32, or of normalized I8 or I16" } else { "VEC3 of F32" };
+    let takes = |component, is_normalized| match component {
+        ComponentType::F32 => true,
+        ComponentType::I8 | ComponentType::I16 => N == 4 && is_normalized,
+        _ => false,
+    };
+    vectors(root, buffers, index, (name, "instance"), takes, expected)
+}
+
+/// Weights of a skin: F32, or normalised U8 or U16.
+pub(super) fn weights(
+    root: &Root,
+    buffers: &mut Buffers<'_>,
+    index: Index<Accessor>,
+) -> Result<Vec<[f64; 4]>, Fault> {
+    let takes = |component, is_normalized| match component {
+        ComponentType::F32 => true,
+        ComponentType::U8 | ComponentType::U16 => is_normalized,
+        _ => false,
+    };
+    vectors(root, buffers, index, ("WEIGHTS", "vertex"), takes, "VEC4 of F32, or of normalized U8 or U16")
+}
+
+/// Vectors of N numbers, whose components `takes` allows by their type and by whether they are normalised.
+fn vectors<const N: usize>(
+    root: &Root,
+    buffers: &mut Buffers<'_>,
+    index: Index<Accessor>,
+    (name, each): (&str, &str),
+    takes: impl Fn(ComponentType, bool) -> bool,
+    expected: &str,
+) -> Result<Vec<[f64; N]>, Fault> {
     let accessor = accessor(root, index)?;
     let index = index.value();
     let (component, shape) = kind(accessor);
-    if (component, shape) != (Some(ComponentType::F32), Some(Type::Vec3)) {
-        let found = format!("POSITION of {}", kind_name(component, shape));
-        return Err(Fault::new(place(index), found, "VEC3 of F32"));
-    }
-    let elements = Elements::of(root, buffers, accessor, index, [12, 4])?;
-    let mut vertices = Vec::with_capacity(elements.count);
+    let wanted = if N == 4 { Type::Vec4 } else { Type::Vec3 };
+    let component = match component.filter(|&component| takes(component, accessor.normalized)) {
+        Some(component) if shape == Some(wanted) => component,
+        _ => {
+            let found = format!("{name} of {}", kind_name(component, shape));
+            return Err(Fault::new(place(index), found, expected));
+        }
+    };
+    let size = component.size();
+    let elements = Elements::of(root, buffers, accessor, index, [N * size, size])?;
+    let mut vectors = Vec::with_capacity(elements.count);
     for number in 0..elements.count {
         let bytes = elements.bytes(number);
-        let part = |axis: usize| {
-            let at = 4 * axis;
-            f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
-        };
-        let vertex = [part(0), part(1), part(2)];
-        if !vertex.iter().all(|coordinate| coordinate.is_finite()) {
-            let [x, y, z] = vertex;
-            let found = format!("vertex {number} is ({x}, {y}, {z})");
-            return Err(Fault::new(place(index), found, "three finite numbers"));
+        let vector: [f64; N] = std::array::from_fn(|axis| {
+            real(&bytes[axis * size..(axis + 1) * size], component, accessor.normalized)
+        });
+        if !vector.iter().all(|part| part.is_finite()) {
+            let words: Vec<String> = vector.iter().map(f64::to_string).collect();
+            let found = format!("{each} {number} is ({})", words.join(", "));
+            return Err(Fault::new(place(index), found, "finite numbers"));
         }
-        vertices.push(vertex);
+        vectors.push(vector);
     }
-    Ok(vertices)
+    Ok(vectors)
+}
+
+/// A number of an accessor. A normalised one is a fraction of two whole numbers, rounded once. (glTF 2.0, §3.6.2.2 and §3.11)
+fn real(bytes: &[u8], component: ComponentType, is_normalized: bool) -> f64 {
+    let fraction = |number: f64, most: f64| if is_normalized { (number / most).max(-1.0) } else { number };
+    match (component, bytes) {
+        (ComponentType::I8, &[byte]) => fraction(f64::from(byte as i8), 127.0),
+        (ComponentType::U8, &[byte]) => fraction(f64::from(byte), 255.0),
+        (ComponentType::I16, &[low, high]) => fraction(f64::from(i16::from_le_bytes([low, high])), 32767.0),
+        (ComponentType::U16, &[low, high]) => fraction(f64::from(u16::from_le_bytes([low, high])), 65535.0),
+        (ComponentType::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+        // Refused before: it is no type of a vector.
+        _ => f64::NAN,
+    }
 }
 
 /// Vertex indices: SCALAR of U8, U16 or U32, each below `vertices`.
@@ -72,10 +144,7 @@ pub(super) fn indices(
     let elements = Elements::of(root, buffers, accessor, index, [size, size])?;
     let mut indices = Vec::with_capacity(elements.count);
     for number in 0..elements.count {
-        // Little-endian; absent high bytes are zero.
-        let mut word = [0; 4];
-        word[..size].copy_from_slice(elements.bytes(number));
-        let vertex = u32::from_le_bytes(word);
+        let vertex = whole(elements.bytes(number));
         if vertex as usize >= vertices {
             let found = format!("index {number} is {vertex}");
             return Err(Fault::new(place(index), found, format!("a vertex below {vertices}")));
@@ -103,68 +172,4 @@ fn kind_name(component: Option<ComponentType>, shape: Option<Type>) -> String {
     let shape = shape.map_or("an unknown type".to_string(), |shape| format!("{shape:?}").to_uppercase());
     let component = component.map_or("unknown components".to_string(), |component| format!("{component:?}"));
     format!("{shape} of {component}")
-}
-
-/// Elements of an accessor, checked to lie within their buffer view.
-struct Elements<'a> {
-    view: &'a [u8],
-    start: usize,
-    stride: usize,
-    size: usize,
-    count: usize,
-}
-
-impl<'a> Elements<'a> {
-    /// The elements of `size` bytes each, made of numbers of `component` bytes.
-    fn of(
-        root: &Root,
-        buffers: &'a mut Buffers<'_>,
-        accessor: &Accessor,
-        index: usize,
-        [size, component]: [usize; 2],
-    ) -> Result<Self, Fault> {
-        // CHOICE: sparse accessors are refused. They serve morph targets, which a terrain does not have.
-        if accessor.sparse.is_some() {
-            return Err(Fault::new(place(index), "sparse storage", "plain storage: sparse is not supported"));
-        }
-        let Some(view_index) = accessor.buffer_view else {
-            return Err(Fault::new(place(index), "no buffer view", "a buffer view with its data"));
-        };
-        let view_index = view_index.value();
-        let stride = root
-            .buffer_views
-            .get(view_index)
-            .and_then(|view| view.byte_stride)
-            .map_or(size, |stride| stride.0);
-        if stride < size || stride > 252 {
-            let found = format!("a stride of {stride} bytes in buffer view {view_index}");
-            return Err(Fault::new(place(index), found, format!("{size} to 252")));
-        }
-        let view = buffers.view(view_index)?;
-        let (count, offset) = (accessor.count.0, accessor.byte_offset.map_or(0, |offset| offset.0));
-        // The last element need not be followed by the rest of its stride.
-        let end = (u128::from(count).saturating_sub(1)) * stride as u128 + size as u128 + u128::from(offset);
-        if count == 0 || end > view.len() as u128 {
-            let found = format!("{count} elements of {size} bytes, {stride} apart, from byte {offset}");
-            let expected = format!("1 or more within buffer view {view_index} of {} bytes", view.len());
-            return Err(Fault::new(place(index), found, expected));
-        }
-        // An unaligned number would overlap two others, so the file cannot mean what it claims. (§3.6.2.4)
-        let view_offset =
-            root.buffer_views.get(view_index).and_then(|view| view.byte_offset).map_or(0, |at| at.0);
-        let start = u128::from(view_offset) + u128::from(offset);
-        if !start.is_multiple_of(component as u128) || !stride.is_multiple_of(component) {
-            let found =
-                format!("numbers of {component} bytes from byte {start} of their buffer, {stride} apart");
-            return Err(Fault::new(place(index), found, format!("multiples of {component}")));
-        }
-        // Both have been checked to be below the view's length.
-        Ok(Self { view, start: offset as usize, stride, size, count: count as usize })
-    }
-
-    /// Bytes of one element.
-    fn bytes(&self, number: usize) -> &[u8] {
-        let at = self.start + number * self.stride;
-        &self.view[at..at + self.size]
-    }
 }

@@ -11,7 +11,7 @@ use crate::gltf::accessors;
 use crate::gltf::buffers::{Buffers, missing_reference};
 use crate::gltf::limits::{MAX_FACES_OR_VERTICES, MAX_PRIMITIVES};
 use crate::gltf::nodes::{PlacedNode, node_place};
-use crate::gltf::primitives::{counts, primitives, triangle_primitive, triangles};
+use crate::gltf::primitives::{check_skin, counts, primitives, triangle_primitive, triangles};
 
 /// Name of the material of faces that have none.
 pub(crate) const WITHOUT_MATERIAL: &str = "no material";
@@ -27,7 +27,7 @@ pub(super) struct Parts {
 
 /// Adds the vertices and faces of all nodes to `parts`.
 ///
-/// Faces are ordered by node, then by primitive, then as in the primitive: this is their `FaceId`. With `as_is` the
+/// Faces are ordered by node, then by instance, then by primitive, then as in the primitive: this is their `FaceId`. With `as_is` the
 /// transforms of nodes are not applied. Vertices beyond `max_coordinate`, metres, are refused.
 pub(super) fn assemble(
     root: &Root,
@@ -44,6 +44,7 @@ pub(super) fn assemble(
     let mut totals = [0_u64; 3];
     for node in &nodes {
         let primitives = primitives(root, node.node)?;
+        check_skin(root, buffers, node.node)?;
         let counts = match root.nodes[node.node].mesh.map(|mesh| mesh.value()) {
             None => continue,
             Some(mesh) => match known.get(&mesh) {
@@ -66,7 +67,11 @@ pub(super) fn assemble(
     }
 
     let mut default_material = None;
-    for PlacedNode { node, file_from_node } in nodes {
+    for PlacedNode { node, file_from_node, is_instance } in nodes {
+        if as_is && is_instance {
+            let found = "instances, in a file that states its scene origin";
+            return Err(Fault::new(node_place(root, node), found, "vertices that stand where they are"));
+        }
         // Primitives of one mesh often share their vertices.
         let mut first_vertex = BTreeMap::new();
         let mirrored = file_from_node.matrix3.determinant() < 0.0;
@@ -79,8 +84,8 @@ pub(super) fn assemble(
                 None => {
                     let first = parts.vertices.len();
                     let positions = accessors::positions(root, buffers, triangle.positions)?;
-                    for (number, &[x, y, z]) in positions.iter().enumerate() {
-                        let local = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+                    for (number, &position) in positions.iter().enumerate() {
+                        let local = DVec3::from_array(position);
                         let file = if untouched { local } else { file_from_node.transform_point3(local) };
                         if !(file.abs().max_element() <= max_coordinate) {
                             let found = format!("vertex {number} of accessor {accessor} lands at {file}");

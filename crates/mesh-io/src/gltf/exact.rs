@@ -24,7 +24,7 @@ pub(crate) fn exact_triangles(bytes: &[u8], file: &Path) -> Result<ExactTriangle
         let container = container::split(bytes)?;
         let root = json::root(container.json)?;
         let mut buffers = Buffers::new(&root, file.parent().unwrap_or(Path::new("")), container.bin);
-        let nodes = nodes::placed_nodes(&root, container.json)?;
+        let nodes = nodes::placed_nodes(&root, container.json, &mut buffers)?;
         // Any reflectivity: nobody sees it.
         let parts = assemble(&root, nodes, &mut buffers, Parts::default(), 0.0, false, MAX_COORDINATE)?;
         // Terrain is turned to z up by exchanging coordinates; turned back, each is the number that it was.

@@ -11,8 +11,6 @@ struct Head {
     asset: HeadAsset,
     #[serde(default, rename = "extensionsRequired")]
     required: Vec<String>,
-    #[serde(default, rename = "extensionsUsed")]
-    used: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -20,6 +18,17 @@ struct HeadAsset {
     version: String,
     #[serde(rename = "minVersion")]
     min_version: Option<String>,
+}
+
+/// Extension by which vertices may be whole numbers.
+pub(super) const QUANTIZATION: &str = "KHR_mesh_quantization";
+
+/// Extension by which a node's mesh stands several times.
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// Whether a file says that it uses an extension.
+pub(super) fn is_used(root: &Root, extension: &str) -> bool {
+    root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == extension)
 }
 
 /// Maximum number of objects in the JSON. CHOICE: an object of two bytes takes half a kilobyte of memory, and a ground
@@ -40,20 +49,24 @@ pub(super) fn root(json: &[u8]) -> Result<Root, Fault> {
         let found = format!("version {version:?}, minVersion {min_version:?}");
         return Err(Fault::new("asset", found, "glTF 2.0"));
     }
-    // Extensions of light and colour move no vertex.
+    // Extensions of light, colour and descriptions move no vertex.
     let harmless = |name: &str| {
-        ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"]
+        ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp"]
             .iter()
             .any(|start| name.starts_with(start))
     };
-    if let Some(name) = head.required.iter().find(|name| !harmless(name)) {
-        let expected =
-            "plain buffers and nodes; extensions are known only for materials, textures and lights";
+    let is_known = |name: &str| [QUANTIZATION, INSTANCING].contains(&name) || harmless(name);
+    if let Some(name) = head.required.iter().find(|name| !is_known(name)) {
+        let expected = match name.contains("draco") || name.contains("meshopt") {
+            true => {
+                "plain buffers; `gltf-transform cp IN OUT` decompresses, and so does Blender's import and export"
+            }
+            false => {
+                "plain buffers and nodes; extensions are known only for quantized meshes, instances, materials, textures \
+                 and lights"
+            }
+        };
         return Err(Fault::new("extensionsRequired", format!("{name:?}"), expected));
-    }
-    // If it were ignored, most of the ground would be missing without any message.
-    if head.used.iter().any(|name| name == "EXT_mesh_gpu_instancing") {
-        return Err(Fault::new("extensionsUsed", "\"EXT_mesh_gpu_instancing\"", "a node for each instance"));
     }
     let _: References = serde_json::from_slice(json).map_err(unfit)?;
     serde_json::from_slice(json).map_err(unfit)
@@ -116,6 +129,21 @@ struct AttributeReferences {
 #[derive(Deserialize)]
 #[allow(dead_code, reason = "checked by being read")]
 struct AccessorReferences {
+    #[serde(rename = "bufferView")]
+    view: Option<Index>,
+    sparse: Option<SparseReferences>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct SparseReferences {
+    indices: Option<PartReferences>,
+    values: Option<PartReferences>,
+}
+
+#[derive(Deserialize)]
+#[allow(dead_code, reason = "checked by being read")]
+struct PartReferences {
     #[serde(rename = "bufferView")]
     view: Option<Index>,
 }

@@ -5,7 +5,8 @@ use gltf::json::Root;
 use raypencil_files::Fault;
 use raypencil_scene::Pose;
 
-use crate::gltf::buffers::missing_reference;
+use crate::gltf::buffers::{Buffers, missing_reference};
+use crate::gltf::instances::instances;
 use crate::gltf::placement::Placement;
 
 /// Maximum depth of the hierarchy, levels. At this depth even a scale of 2 in each level overflows.
@@ -17,6 +18,8 @@ pub(super) struct PlacedNode {
     pub node: usize,
     /// Transform from the node's own axes to those of the file (y up).
     pub file_from_node: DAffine3,
+    /// Whether it is an instance of a node that stands several times.
+    pub is_instance: bool,
 }
 
 /// Place of a node in messages.
@@ -27,10 +30,15 @@ pub(super) fn node_place(root: &Root, index: usize) -> String {
     }
 }
 
-/// All nodes below the roots: a node before its children, children in the order of the file.
+/// All nodes below the roots: a node before its children, children in the order of the file. A node with instances is there once
+/// for each of them.
 ///
 /// `json` is the text of `root`: transforms are read from it again, in double precision.
-pub(super) fn placed_nodes(root: &Root, json: &[u8]) -> Result<Vec<PlacedNode>, Fault> {
+pub(super) fn placed_nodes(
+    root: &Root,
+    json: &[u8],
+    buffers: &mut Buffers<'_>,
+) -> Result<Vec<PlacedNode>, Fault> {
     // As many as `root` has nodes: both are read from the same list.
     let placements = Placement::of_nodes(json)?;
     let parents = parents(root)?;
@@ -51,7 +59,18 @@ pub(super) fn placed_nodes(root: &Root, json: &[u8]) -> Result<Vec<PlacedNode>, 
             Some(transform) => file_from_parent * transform,
             None => file_from_parent,
         };
-        placed.push(PlacedNode { node: index, file_from_node });
+        // Instances are of the node's mesh; its children stand once.
+        match placements[index].instancing().filter(|_| node.mesh.is_some()) {
+            None => placed.push(PlacedNode { node: index, file_from_node, is_instance: false }),
+            Some(instancing) => {
+                let stand = instances(root, buffers, instancing, &node_place(root, index))?;
+                placed.extend(stand.into_iter().map(|node_from_instance| PlacedNode {
+                    node: index,
+                    file_from_node: file_from_node * node_from_instance,
+                    is_instance: true,
+                }));
+            }
+        }
         for child in node.children.iter().flatten().rev() {
             stack.push((child.value(), file_from_node, depth + 1));
         }
@@ -134,7 +153,7 @@ fn roots(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Fault> {
 }
 
 /// Transform of a node to its parent's axes; `None` if it has none, so that its vertices are not changed.
-fn local(node: &Placement, place: &str) -> Result<Option<DAffine3>, Fault> {
+pub(super) fn local(node: &Placement, place: &str) -> Result<Option<DAffine3>, Fault> {
     let finite = |name: &str, numbers: &[f64]| match numbers.iter().all(|number| number.is_finite()) {
         true => Ok(()),
         false => Err(Fault::new(place, format!("{name} {numbers:?}"), "finite numbers")),

@@ -3,6 +3,8 @@
 use raypencil_files::Fault;
 use serde::Deserialize;
 
+use crate::gltf::instances::Instancing;
+
 /// Transform of a node as its JSON states it; absent parts are `None`.
 #[derive(Deserialize)]
 pub(super) struct Placement {
@@ -11,9 +13,31 @@ pub(super) struct Placement {
     pub(super) translation: Option<[f64; 3]>,
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
+    extensions: Option<Box<Extensions>>,
+}
+
+/// Extensions of a node that place its mesh.
+#[derive(Deserialize)]
+struct Extensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    instancing: Option<Instancing>,
 }
 
 impl Placement {
+    /// A translation, a rotation and a scale, each if it is given.
+    pub(super) fn of_parts(
+        translation: Option<[f64; 3]>,
+        rotation: Option<[f64; 4]>,
+        scale: Option<[f64; 3]>,
+    ) -> Self {
+        Self { matrix: None, translation, rotation, scale, extensions: None }
+    }
+
+    /// Where instances of the node's mesh stand; `None`: it is drawn once.
+    pub(super) fn instancing(&self) -> Option<&Instancing> {
+        self.extensions.as_ref()?.instancing.as_ref()
+    }
+
     /// For each node the doubles nearest to the numbers of the text.
     ///
     /// The `gltf` crate rounds them to single precision. At a map coordinate of 4,500,000 m that would move the ground

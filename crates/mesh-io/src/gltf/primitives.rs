@@ -7,8 +7,8 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, Root};
 use raypencil_files::Fault;
 
-use crate::gltf::accessors::accessor;
-use crate::gltf::buffers::missing_reference;
+use crate::gltf::accessors::{accessor, weights};
+use crate::gltf::buffers::{Buffers, missing_reference};
 use crate::gltf::nodes::node_place;
 
 /// Number of vertices, faces and primitives of a mesh, as its accessors claim.
@@ -39,16 +39,32 @@ pub(super) fn primitives(root: &Root, index: usize) -> Result<&[Primitive], Faul
             root.meshes.len(),
         ));
     };
-    // Skins and morph targets move vertices; without them the ground would be in the wrong place.
-    if node.skin.is_some() {
-        return Err(Fault::new(node_place(root, index), "a skin", "a rigid mesh: skins are not supported"));
-    }
+    // Morph targets move vertices; without them the ground would be in the wrong place.
     let weights = node.weights.as_ref().or(mesh.weights.as_ref());
     if weights.is_some_and(|weights| weights.iter().any(|&weight| weight != 0.0)) {
-        let expected = "a rigid mesh: morph targets are not supported";
+        let expected = "weights of 0: bake the shape into the mesh (in Blender: Apply All Shape Keys)";
         return Err(Fault::new(node_place(root, index), "morph weights", expected));
     }
     Ok(&mesh.primitives)
+}
+
+/// Refuses a skin that moves vertices: without it the ground would be in the wrong place. One whose weights are all 0, or that has
+/// none, moves nothing.
+pub(super) fn check_skin(root: &Root, buffers: &mut Buffers<'_>, index: usize) -> Result<(), Fault> {
+    if root.nodes[index].skin.is_none() {
+        return Ok(());
+    }
+    for primitive in primitives(root, index)? {
+        for (semantic, &accessor) in &primitive.attributes {
+            let Checked::Valid(Semantic::Weights(_)) = semantic else { continue };
+            if weights(root, buffers, accessor)?.as_flattened().iter().any(|&weight| weight != 0.0) {
+                let expected =
+                    "a rigid mesh: bake the pose into it (in Blender: apply the armature, then export)";
+                return Err(Fault::new(node_place(root, index), "a skin that moves vertices", expected));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A primitive with triangles, whose references have been checked to exist.

@@ -120,7 +120,7 @@ fn parse(
     let container = container::split(bytes).map_err(in_file)?;
     let root = json::root(container.json).map_err(in_file)?;
     let mut buffers = Buffers::new(&root, folder, container.bin);
-    let nodes = nodes::placed_nodes(&root, container.json).map_err(in_file)?;
+    let nodes = nodes::placed_nodes(&root, container.json, &mut buffers).map_err(in_file)?;
     let materials = materials::read(&root, container.json, reflectivity).map_err(in_file)?;
     let stated = match kind {
         Vertices::Global if frame.is_of_gltf() => stated_origin::origin(&root, &nodes),

@@ -9,10 +9,12 @@ mod obj;
 mod parts;
 mod ply;
 mod polygon;
+mod polygon_facts;
 mod read;
 mod stl;
 mod text;
 
 pub(crate) use parts::MAX_COORDINATE;
+pub use polygon_facts::{BentPolygons, CrossingPolygons, PolygonFacts, PolygonPlace};
 pub(crate) use read::{Format, format, parse, read_bytes};
 pub use read::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};

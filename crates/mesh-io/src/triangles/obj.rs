@@ -62,6 +62,13 @@ pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     }
 }
 
+/// The line of a polygon, counted from 0 among the polygons of a file that [`read`] has read.
+pub(super) fn line_of_polygon(file: &[u8], polygon: u32) -> Option<usize> {
+    let is_polygon = |(_, statement): &(usize, &[u8])| matches!(words(statement).next(), Some(b"f" | b"fo"));
+    let mut polygons = Lines::joined_by_backslash(without_mark(file)).filter(is_polygon);
+    polygons.nth(polygon as usize).map(|(line, _)| line)
+}
+
 /// Words of a statement. A backslash joins lines, and has no other meaning in the statements that are read.
 fn words(statement: &[u8]) -> impl Iterator<Item = &[u8]> {
     let words = statement.split(|byte| byte.is_ascii_whitespace() || *byte == b'\\');

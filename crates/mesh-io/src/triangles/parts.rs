@@ -2,7 +2,8 @@
 
 use raypencil_files::Fault;
 
-use crate::triangles::polygon;
+use crate::triangles::polygon::{self, Cut};
+use crate::triangles::polygon_facts::PolygonFacts;
 
 /// Maximum number of corners of a polygon that is not convex: the time to cut it grows with their square.
 const MAX_CONCAVE_CORNERS: usize = 10_000;
@@ -43,12 +44,14 @@ impl Parts {
         self.count += 1;
     }
 
-    /// Cuts the polygons that are not convex truly, once all vertices are known. Their fans may lie outside of them.
+    /// Cuts the polygons that are not convex truly, once all vertices are known. Their fans may lie outside of them. Returns what
+    /// was found out about the polygons.
     ///
     /// # Errors
     /// The polygon that has too many corners.
-    pub(super) fn cut_concave_polygons(&mut self) -> Result<(), Fault> {
-        let Some(polygons) = &self.polygons else { return Ok(()) };
+    pub(super) fn cut_concave_polygons(&mut self) -> Result<PolygonFacts, Fault> {
+        let mut facts = PolygonFacts::default();
+        let Some(polygons) = &self.polygons else { return Ok(facts) };
         let mut corners: Vec<u32> = Vec::new();
         let mut first = 0;
         while let Some(&polygon) = polygons.get(first) {
@@ -69,11 +72,22 @@ impl Parts {
                     format!("at most {MAX_CONCAVE_CORNERS}; triangulate it in the program that wrote it");
                 return Err(Fault::new(format!("polygon {polygon}"), found, expected));
             }
-            for (face, triangle) in faces.iter_mut().zip(polygon::cut(&points).into_iter().flatten()) {
-                *face = triangle.map(|k| corners[k]);
+            facts.count += 1;
+            match polygon::cut(&points) {
+                Cut::Fan => {}
+                Cut::Ears(triangles) => {
+                    facts.cut += 1;
+                    for (face, triangle) in faces.iter_mut().zip(triangles) {
+                        *face = triangle.map(|k| corners[k]);
+                    }
+                }
+                Cut::CrossesItself => facts.add_crossing(polygon),
+            }
+            if let Some(distance) = polygon::off_its_plane(&points) {
+                facts.add_bent(polygon, distance);
             }
         }
-        Ok(())
+        Ok(facts)
     }
 
     /// Number of polygons so far.

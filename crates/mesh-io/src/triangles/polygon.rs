@@ -12,24 +12,94 @@ use robust::{Coord, orient2d};
 /// A corner as it is seen along an axis.
 type Corner = Coord<f64>;
 
-/// The triangles of a polygon, each as the places of its three corners in `corners`, in the direction of the polygon.
-///
-/// `None` if the polygon is convex, has no area, or crosses itself: then a fan around its first corner is as good as any cut.
-pub(super) fn cut(corners: &[[f64; 3]]) -> Option<Vec<[usize; 3]>> {
-    let seen = Seen::along_its_normal(corners)?;
+/// How a polygon becomes triangles.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Cut {
+    /// It is convex, or has no area: a fan around its first corner is as good as any cut.
+    Fan,
+    /// It is not convex: its triangles, each as the places of its three corners in the polygon, in its direction.
+    Ears(Vec<[usize; 3]>),
+    /// It crosses itself: nobody can say what is inside of it.
+    CrossesItself,
+}
+
+/// Cuts a polygon into triangles.
+pub(super) fn cut(corners: &[[f64; 3]]) -> Cut {
+    let Some(seen) = Seen::along_its_normal(corners) else {
+        // Corners on a line enclose nothing. Else there are areas that cancel, like the halves of an hourglass.
+        return if is_on_a_line(corners) { Cut::Fan } else { Cut::CrossesItself };
+    };
     if seen.is_convex() {
-        return None;
+        return Cut::Fan;
     }
-    let mut triangles = Ears::of(&seen.corners, seen.order_from_smallest()).cut()?;
+    if seen.crosses_itself() {
+        return Cut::CrossesItself;
+    }
+    // Without an ear it crosses itself at a corner. With ears all triangles run the same way, so that no part is covered that the
+    // polygon does not run around.
+    let Some(mut triangles) = Ears::of(&seen.corners, seen.order_from_smallest()).cut() else {
+        return Cut::CrossesItself;
+    };
     if seen.is_turned {
         triangles.iter_mut().for_each(|triangle| triangle.reverse());
     }
-    Some(triangles)
+    Cut::Ears(triangles)
 }
 
 /// Whether [`cut`] does not look for ears.
 pub(super) fn is_convex_or_flat(corners: &[[f64; 3]]) -> bool {
     Seen::along_its_normal(corners).is_none_or(|seen| seen.is_convex())
+}
+
+/// Largest distance of a corner from the polygon's plane that rounding explains, as a share of the largest coordinate. Three
+/// coordinates in single precision are off by 2^-24 each, and the plane by as much: 2^-22 for a polygon that is not slender.
+/// Tuned above it.
+const PLANE_SHARE: f64 = 1.0 / 1_048_576.0;
+
+/// The same for the numbers of a text, which have six decimals as a rule: 0.5e-6 for each of three coordinates, and as much for the
+/// plane. In the unit of the file.
+const PLANE_OF_SIX_DECIMALS: f64 = 2e-6;
+
+/// The largest distance of a corner from the plane of the polygon, if rounding does not explain it. The plane lies in the middle
+/// of the corners, across Newell's normal.
+pub(super) fn off_its_plane(corners: &[[f64; 3]]) -> Option<f64> {
+    let normal = newell(corners)?;
+    let length = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let origin = corners.first()?;
+    let dot =
+        |corner: &[f64; 3]| -> f64 { (0..3).map(|axis| normal[axis] * (corner[axis] - origin[axis])).sum() };
+    let middle = corners.iter().map(dot).sum::<f64>() / corners.len() as f64;
+    let distance = corners.iter().map(|corner| (dot(corner) - middle).abs()).fold(0.0, f64::max) / length;
+    let largest = corners.as_flattened().iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+    (distance > PLANE_SHARE * largest + PLANE_OF_SIX_DECIMALS).then_some(distance)
+}
+
+/// Newell's normal: twice the areas of the polygon's shadows along the three axes. `None` if all are zero, or beyond a number's
+/// range.
+fn newell(corners: &[[f64; 3]]) -> Option<[f64; 3]> {
+    let mut normal = [0.0; 3];
+    // From one corner, so that ground at map coordinates keeps its digits.
+    let origin = corners.first()?;
+    let from_origin = |corner: &[f64; 3]| [0, 1, 2].map(|axis| corner[axis] - origin[axis]);
+    for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let (a, b) = (from_origin(a), from_origin(b));
+        for axis in 0..3 {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            normal[axis] += a[u] * b[v] - a[v] * b[u];
+        }
+    }
+    let largest = normal.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+    (largest > 0.0 && normal.iter().all(|part| part.is_finite())).then_some(normal)
+}
+
+/// Whether all corners lie on one line, exactly.
+fn is_on_a_line(corners: &[[f64; 3]]) -> bool {
+    let Some(first) = corners.first() else { return true };
+    let Some(second) = corners.iter().find(|corner| *corner != first) else { return true };
+    let seen =
+        |corner: &[f64; 3], axis: usize| Coord { x: corner[(axis + 1) % 3], y: corner[(axis + 2) % 3] };
+    let is_on = |corner, axis| orient2d(seen(first, axis), seen(second, axis), seen(corner, axis)) == 0.0;
+    corners.iter().all(|corner| (0..3).all(|axis| is_on(corner, axis)))
 }
 
 /// A polygon as it is seen along an axis.
@@ -43,24 +113,10 @@ struct Seen {
 }
 
 impl Seen {
-    /// Seen along the axis that is nearest to its normal; `None` if it has no area.
+    /// Seen along the axis that is nearest to its normal; `None` if it has none.
     fn along_its_normal(corners: &[[f64; 3]]) -> Option<Self> {
-        // Newell's normal: the areas of the polygon's shadows along the three axes. From one corner, so that ground at map
-        // coordinates keeps its digits.
-        let mut normal = [0.0; 3];
-        let origin = corners.first()?;
-        let from_origin = |corner: &[f64; 3]| [0, 1, 2].map(|axis| corner[axis] - origin[axis]);
-        for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            let (a, b) = (from_origin(a), from_origin(b));
-            for axis in 0..3 {
-                let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-                normal[axis] += a[u] * b[v] - a[v] * b[u];
-            }
-        }
+        let normal = newell(corners)?;
         let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs()))?;
-        if normal[axis] == 0.0 || !normal[axis].is_finite() {
-            return None;
-        }
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         // -0 is 0, so that equal corners are ordered alike.
         let corners: Vec<Corner> =
@@ -109,6 +165,27 @@ impl Seen {
         let rightwards = |k: usize| position(&at(k + 1)) > position(&at(k));
         let changes = (0..ring.len()).filter(|&k| rightwards(k) != rightwards(k + 1)).count();
         !turns_right && changes <= 2
+    }
+
+    /// Whether two of its sides cross, each beyond the line of the other.
+    fn crosses_itself(&self) -> bool {
+        let mut sides: Vec<[Corner; 2]> = (0..self.order.len())
+            .map(|place| [self.at(place), self.at(place + 1)])
+            .map(|[a, b]| if a.x <= b.x { [a, b] } else { [b, a] })
+            .collect();
+        // From left to right, so that a side is compared with those alone that begin before it ends.
+        sides.sort_by(|[a, _], [b, _]| a.x.total_cmp(&b.x));
+        let are_apart = |p: f64, q: f64| (p < 0.0 && q > 0.0) || (p > 0.0 && q < 0.0);
+        let is_across =
+            |[a, b]: [Corner; 2], [c, d]: [Corner; 2]| are_apart(orient2d(a, b, c), orient2d(a, b, d));
+        sides.iter().enumerate().any(|(k, &one)| {
+            let others = sides[k + 1..].iter().take_while(|other| other[0].x <= one[1].x);
+            others.into_iter().any(|&other| {
+                let [low, high] = [one[0].y.min(one[1].y), one[0].y.max(one[1].y)];
+                let is_beside = other.iter().all(|end| end.y < low) || other.iter().all(|end| end.y > high);
+                !is_beside && is_across(one, other) && is_across(other, one)
+            })
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use raypencil_scene::Triangles;
 
 use crate::gltf::exact_triangles;
 use crate::triangles::parts::Parts;
+use crate::triangles::polygon_facts::PolygonFacts;
 use crate::triangles::{npy_pair, obj, ply, stl};
 
 /// Maximum size of a file: 1 GiB, as of a glTF file.
@@ -20,6 +21,8 @@ pub struct TriangleFile {
     /// For each face the polygon of the file that it is a part of, from 0; `None` if each polygon is one triangle, so
     /// that face i is polygon i.
     pub polygons: Option<Vec<u32>>,
+    /// What was found out about the polygons that are no triangles.
+    pub polygon_facts: PolygonFacts,
     /// Digests of the files that were read: the file itself, then the buffers beside it; of a pair of NPY files the
     /// vertices, then the faces.
     pub digests: Vec<Sha256Digest>,
@@ -33,7 +36,7 @@ pub struct TriangleFile {
 ///
 /// Faces count from 0 in the order of the file. A polygon of n corners becomes n - 2 faces: a fan around its first corner if it
 /// is convex, else triangles that cover it, the same ones whichever corner it begins with. [`read_triangles`] tells which
-/// polygon a face belongs to. Of a polygon that crosses itself the fan is taken. The corners of STL become one vertex if they have
+/// polygon a face belongs to, and names the polygons that cross themselves (of these the fan is taken) or are not planar. The corners of STL become one vertex if they have
 /// the same three numbers. A file may have no faces.
 ///
 /// Limits: 1 GiB for each file; 10,000 corners of a polygon that is not convex; of PLY 256 elements, each of at most 1024 properties.
@@ -86,7 +89,7 @@ pub fn read_triangles(path: &Path) -> Result<TriangleFile, FileError> {
     if let Some(files) = npy_pair::files(path) {
         let (vertices, faces) = (read_bytes(&files[0])?, read_bytes(&files[1])?);
         let parts = npy_pair::read(&files, [&vertices, &faces])?;
-        return finished(parts, path, vec![sha256(&vertices), sha256(&faces)]);
+        return finished(parts, PolygonFacts::default(), path, vec![sha256(&vertices), sha256(&faces)]);
     }
     parse(&read_bytes(path)?, path)
 }
@@ -113,6 +116,12 @@ pub fn triangles_from_bytes(bytes: &[u8], file: &Path) -> Result<Triangles, File
     Ok(parse(bytes, file)?.triangles)
 }
 
+/// Endings of meshes in formats that are not read. They are told by their names, not by their first bytes.
+const OTHER_MESH_ENDINGS: [&str; 20] = [
+    "3ds", "3mf", "amf", "blend", "ctm", "dae", "fbx", "iges", "igs", "lwo", "msh", "off", "step", "stp",
+    "usd", "usda", "usdc", "usdz", "wrl", "x3d",
+];
+
 /// Mesh format of a single file.
 #[derive(PartialEq)]
 pub(crate) enum Format {
@@ -130,7 +139,8 @@ pub(crate) fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError
         return Err(in_file(Fault::new("length", found, format!("at most {MAX_FILE_BYTES} bytes"))));
     }
     let mut digests = vec![sha256(bytes)];
-    let mut parts = match format(bytes, file).map_err(in_file)? {
+    let format = format(bytes, file).map_err(in_file)?;
+    let mut parts = match format {
         Format::Gltf => {
             let read = exact_triangles(bytes, file)?;
             digests.extend(read.buffers);
@@ -140,8 +150,11 @@ pub(crate) fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError
         Format::Obj => obj::read(bytes).map_err(in_file)?,
         Format::Ply => ply::read(bytes).map_err(in_file)?,
     };
-    parts.cut_concave_polygons().map_err(in_file)?;
-    finished(parts, file, digests)
+    let mut facts = parts.cut_concave_polygons().map_err(in_file)?;
+    if format == Format::Obj {
+        facts = facts.with_lines(|polygon| obj::line_of_polygon(bytes, polygon));
+    }
+    finished(parts, facts, file, digests)
 }
 
 /// Format of a file: by its first bytes, then by its ending, then by the rest of its bytes. OBJ has no mark of its own.
@@ -160,16 +173,30 @@ pub(crate) fn format(bytes: &[u8], file: &Path) -> Result<Format, Fault> {
             let expected = "two files whose names end with vertices.npy and faces.npy";
             Err(Fault::new("first bytes", "a single NPY file", expected))
         }
+        (_, Some(ending)) if OTHER_MESH_ENDINGS.contains(&ending) => {
+            let expected = "GLB, glTF, STL, OBJ or PLY, to which `assimp export` or Blender converts it";
+            Err(Fault::new("format", format!("a mesh as .{ending}"), expected))
+        }
+        ([b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..], _) => {
+            let expected = "a mesh, which `raypencil terrain import` makes of an elevation model";
+            Err(Fault::new("first bytes", "a TIFF", expected))
+        }
         _ => {
             let found = format!("{:02x?}", &bytes[..bytes.len().min(4)]);
-            Err(Fault::new("first bytes", found, "GLB, glTF, STL or PLY, or the ending .obj"))
+            let expected = "GLB, glTF, STL or PLY, or the ending .obj; an elevation model is a GeoTIFF";
+            Err(Fault::new("first bytes", found, expected))
         }
     }
 }
 
-fn finished(parts: Parts, file: &Path, digests: Vec<Sha256Digest>) -> Result<TriangleFile, FileError> {
+fn finished(
+    parts: Parts,
+    polygon_facts: PolygonFacts,
+    file: &Path,
+    digests: Vec<Sha256Digest>,
+) -> Result<TriangleFile, FileError> {
     let Parts { vertices, faces, polygons, .. } = parts;
     let triangles = Triangles::new(vertices, faces)
         .map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
-    Ok(TriangleFile { triangles, polygons, digests })
+    Ok(TriangleFile { triangles, polygons, polygon_facts, digests })
 }

@@ -148,7 +148,7 @@ fn digests_are_those_of_the_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
     std::fs::write(&path, obj()).unwrap();
-    let (_, digests) = read_terrain(&path, 0.25, &FileFrame::default()).unwrap();
+    let digests = read_terrain(&path, 0.25, &FileFrame::default()).unwrap().digests;
     assert_eq!(digests, [sha256(&obj())]);
 }
 
@@ -172,7 +172,7 @@ fn what_is_no_terrain_is_refused_with_the_name_of_the_file() {
         "a.xyz",
         b"0 0 0\n",
         plain,
-        "a.xyz: first bytes: [30, 20, 30, 20]; expected GLB, glTF, STL or PLY, or the ending .obj",
+        "a.xyz: first bytes: [30, 20, 30, 20]; expected GLB, glTF, STL or PLY, or the ending .obj; an elevation model is a GeoTIFF",
     );
     // Within the limit of triangles, and beyond that of terrain only by its scale.
     let far = b"v 0 0 0\nv 1e9 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::cut;
+use super::{Cut, cut, off_its_plane};
 
 type Point = [i64; 2];
 
@@ -136,8 +136,10 @@ fn placed(points: &[Point], [origin, along, across]: Plane) -> Vec<[f64; 3]> {
 
 /// The triangles; those of a fan if the polygon is not cut.
 fn triangles(points: &[Point], plane: Plane) -> Vec<[Point; 3]> {
-    let fan = || (2..points.len()).map(|k| [0, k - 1, k]).collect();
-    let places = cut(&placed(points, plane)).unwrap_or_else(fan);
+    let places = match cut(&placed(points, plane)) {
+        Cut::Ears(triangles) => triangles,
+        Cut::Fan | Cut::CrossesItself => (2..points.len()).map(|k| [0, k - 1, k]).collect(),
+    };
     places.into_iter().map(|triangle| triangle.map(|k| points[k])).collect()
 }
 
@@ -203,7 +205,7 @@ fn two_thousand_polygons_are_covered_in_any_plane() {
             [0, 1, 2].map(|k: usize| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
         let plane = if normal == [0; 3] || number % 3 == 0 { FLAT } else { plane };
         assert_covered(&points, plane);
-        cut_truly += usize::from(cut(&placed(&points, plane)).is_some());
+        cut_truly += usize::from(matches!(cut(&placed(&points, plane)), Cut::Ears(_)));
         corners += points.len();
         // The same triangles, whichever corner the file begins with, and in whichever direction it goes.
         let expected = as_set(triangles(&points, plane));
@@ -220,9 +222,14 @@ fn two_thousand_polygons_are_covered_in_any_plane() {
 fn convex_polygons_stay_fans() {
     let of = |points: &[Point]| cut(&placed(points, FLAT));
     // A square with a corner on a side, a rhombus, a triangle with a corner that is there twice.
-    assert_eq!(of(&[[0, 0], [2, 0], [4, 0], [4, 4], [0, 4]]), None);
-    assert_eq!(of(&[[0, -3], [2, 0], [0, 3], [-2, 0]]), None);
-    assert_eq!(of(&[[0, 0], [3, 0], [3, 0], [0, 3]]), None);
+    assert_eq!(of(&[[0, 0], [2, 0], [4, 0], [4, 4], [0, 4]]), Cut::Fan);
+    assert_eq!(of(&[[0, -3], [2, 0], [0, 3], [-2, 0]]), Cut::Fan);
+    assert_eq!(of(&[[0, 0], [3, 0], [3, 0], [0, 3]]), Cut::Fan);
+    // On a line, in a plane and across the axes, or all at one point.
+    assert_eq!(of(&[[0, 0], [1, 1], [3, 3], [2, 2]]), Cut::Fan);
+    let slanted = placed(&[[0, 0], [1, 1], [3, 3], [2, 2]], [[5, 6, 7], [3, -1, 2], [4, 4, -9]]);
+    assert_eq!(cut(&slanted), Cut::Fan);
+    assert_eq!(of(&[[2, 2]; 5]), Cut::Fan);
 }
 
 #[test]
@@ -234,17 +241,63 @@ fn corners_that_are_there_twice_hide_no_turn() {
         &[[2, 1], [4, 0], [2, 6], [0, 0], [2, 1]],
         &[[0, 0], [2, 1], [4, 0], [2, 6], [0, 0]],
     ] {
-        assert!(cut(&placed(points, FLAT)).is_some(), "{points:?}");
+        assert!(matches!(cut(&placed(points, FLAT)), Cut::Ears(_)), "{points:?}");
         assert_covered(points, FLAT);
     }
 }
 
 #[test]
-fn what_has_no_true_cut_stays_a_fan() {
-    // All on a line; an hourglass, whose halves cancel; numbers whose products overflow.
-    assert_eq!(cut(&placed(&[[0, 0], [1, 1], [3, 3], [2, 2]], FLAT)), None);
-    assert_eq!(cut(&placed(&[[0, 0], [4, 4], [4, 0], [0, 4]], FLAT)), None);
-    assert_eq!(cut(&[[1e300, 0.0, 0.0], [0.0; 3], [0.0, 1e300, 0.0], [1.0, 1.0, 0.0]]), None);
+fn polygons_that_cross_themselves_are_told_apart() {
+    let mut draws = Draws(2);
+    let (mut crossing, mut covered) = (0, 0);
+    for number in 0..2000 {
+        // Corners as they come: most such polygons cross themselves, and some touch themselves at a corner.
+        let mut points: Vec<Point> = (0..4 + number % 4).map(|_| [draws.below(9), draws.below(9)]).collect();
+        let twice: i64 = sides(&points).take(points.len()).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
+        if twice < 0 {
+            points.reverse();
+        }
+        let found = cut(&placed(&points, FLAT));
+        if crosses_itself(&points) {
+            assert_eq!(found, Cut::CrossesItself, "{points:?}");
+            crossing += 1;
+        } else if found != Cut::CrossesItself {
+            assert_covered(&points, FLAT);
+            covered += 1;
+        }
+    }
+    assert!(crossing > 500 && covered > 500, "{crossing} cross themselves, {covered} were covered");
+    // An hourglass, whose halves cancel; the same through a corner in its middle; a star of five points.
+    for points in [
+        &[[0, 0], [4, 4], [4, 0], [0, 4]][..],
+        &[[0, 0], [2, 2], [4, 4], [4, 0], [2, 2], [0, 4]],
+        &[[0, 10], [6, -8], [-9, 3], [9, 3], [-6, -8]],
+    ] {
+        let tilted = [[1, 2, 3], [3, 1, -2], [-1, 5, 4]];
+        assert_eq!(cut(&placed(points, FLAT)), Cut::CrossesItself, "{points:?}");
+        assert_eq!(cut(&placed(points, tilted)), Cut::CrossesItself, "{points:?}");
+    }
+}
+
+#[test]
+fn a_corner_off_the_plane_is_told_beyond_rounding() {
+    let with_corner = |height: f64| [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, height], [0.0, 2.0, 0.0]];
+    // Each corner is a quarter of the height away from the plane between them.
+    let distance = off_its_plane(&with_corner(0.4)).expect("bent");
+    assert!((distance - 0.1).abs() < 0.005, "{distance}");
+    assert_eq!(off_its_plane(&with_corner(0.0)), None);
+    // Six decimals; single precision at map coordinates.
+    assert_eq!(off_its_plane(&with_corner(1e-6)), None);
+    assert!(off_its_plane(&with_corner(2e-5)).is_some());
+    let on_a_slope = [[0.0, 0.0], [7.0, 0.1], [8.0, 9.0], [0.3, 8.0]].map(|[x, y]| {
+        let (x, y) = (x + 300_000.0, y + 4_000_000.0);
+        [x, y, 0.3 * x + 0.1 * y]
+    });
+    let single = on_a_slope.map(|corner| corner.map(|part| f64::from(part as f32)));
+    assert_ne!(single, on_a_slope);
+    assert_eq!(off_its_plane(&single), None);
+    // What has no plane is not bent.
+    assert_eq!(off_its_plane(&[[1.0; 3]; 4]), None);
 }
 
 #[test]
@@ -252,9 +305,9 @@ fn a_shallow_notch_at_map_coordinates_is_seen() {
     // Ten million metres away, a corner 2^-20 m inside of the lower side: exact as f64, lost in the product of coordinates.
     let (far, deep) = (10_485_760.0, 1.0 / 1_048_576.0);
     let notched = [[0.0, 0.0], [1.0, deep], [2.0, 0.0], [1.0, 1.0]].map(|[x, y]| [x + far, y + far, 7.0]);
-    let triangles = cut(&notched).expect("a notch");
+    let Cut::Ears(triangles) = cut(&notched) else { panic!("a notch") };
     // Of four corners with a notch there is one cut: from the notch to the corner across.
     assert!(triangles.iter().all(|triangle| triangle.contains(&1) && triangle.contains(&3)), "{triangles:?}");
     let bulged = [[0.0, 0.0], [1.0, -deep], [2.0, 0.0], [1.0, 1.0]].map(|[x, y]| [x + far, y + far, 7.0]);
-    assert_eq!(cut(&bulged), None);
+    assert_eq!(cut(&bulged), Cut::Fan);
 }

@@ -39,13 +39,7 @@ pub fn subject(ground: &str) -> Result<Subject, Box<dyn Error>> {
         }
         Err(_) => load(ground, &Overrides::default())?,
     };
-    Ok(Subject {
-        vehicle: loaded.standing_vehicle(),
-        scene: loaded.scene,
-        name: loaded.name,
-        arguments: ground.into(),
-        sha256: loaded.source_sha256,
-    })
+    Ok(loaded.into_subject(ground.into()))
 }
 
 /// The two renderers of a validation.
@@ -77,6 +71,7 @@ pub fn validated(subject: &Subject, contenders: &[Contender], validator: &mut Va
         name: subject.name.clone(),
         arguments: subject.arguments.clone(),
         sha256: subject.sha256.clone(),
+        file_warnings: subject.file_warnings.clone(),
     };
     validator.validate(subject, contenders, JudgeShare::Sample, &Silent)
 }

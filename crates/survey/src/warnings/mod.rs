@@ -2,6 +2,7 @@
 
 pub(crate) mod hits;
 pub(crate) mod image;
+pub(crate) mod polygons;
 pub(crate) mod terrain;
 pub(crate) mod vehicle;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use raypencil_report::quantity;
-use raypencil_scene::Mesh;
+use raypencil_scene::{Mesh, Triangles};
 
 use crate::warning::{Warning, WarningCode};
 
@@ -26,14 +26,24 @@ const MEASURED_FACES: usize = 1 << 16;
 impl TerrainShape {
     /// Measures a mesh. `None` if it has no faces.
     pub fn of(mesh: &Mesh) -> Option<Self> {
-        let vertex = |index: u32| DVec3::from_array(mesh.vertices()[index as usize].map(f64::from));
+        Self::of_faces(mesh.faces(), |index| {
+            DVec3::from_array(mesh.vertices()[index as usize].map(f64::from))
+        })
+    }
+
+    /// Measures a mesh in the axes and the unit of its file. `None` if it has no faces.
+    pub fn of_triangles(mesh: &Triangles) -> Option<Self> {
+        Self::of_faces(mesh.faces(), |index| DVec3::from_array(mesh.vertices()[index as usize]))
+    }
+
+    fn of_faces(faces: &[[u32; 3]], vertex: impl Fn(u32) -> DVec3) -> Option<Self> {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (mut area_vector, mut area) = (DVec3::ZERO, 0.0);
         let mut sides = Vec::new();
         // Every n-th face, so that a large mesh costs no more.
-        let step = mesh.faces().len().div_ceil(MEASURED_FACES).max(1);
-        for (index, face) in mesh.faces().iter().enumerate() {
-            let corners @ [a, b, c] = face.map(vertex);
+        let step = faces.len().div_ceil(MEASURED_FACES).max(1);
+        for (index, face) in faces.iter().enumerate() {
+            let corners @ [a, b, c] = face.map(&vertex);
             for corner in corners {
                 (low, high) = (low.min(corner), high.max(corner));
             }
@@ -79,6 +89,16 @@ pub fn terrain_on_its_side(shape: &TerrainShape) -> Option<Warning> {
         );
         Warning::of_scene(WarningCode::TerrainOnItsSide, sentence)
     })
+}
+
+/// Whether a mesh whose axes were not turned lies on its side where z is up: it is flat along y and faces along it, like a ground
+/// whose file has y up.
+pub fn lies_on_its_side(shape: &TerrainShape) -> bool {
+    let TerrainShape { extents, area_vector, area, .. } = *shape;
+    let is_flat = MIN_UPRIGHT_RATIO * extents.y < extents.x.min(extents.z);
+    let [x, y, z] = area_vector.abs().to_array();
+    let has_direction = area_vector.length() > MIN_DIRECTION * area;
+    is_flat && has_direction && y > x && y > z
 }
 
 /// Smallest extent of a terrain that may be in the wrong unit, metres, tuned: a ground of 1 m to 1 km in millimetres

@@ -11,7 +11,7 @@ use raypencil_drive::{DriveJob, drive, drive_json};
 use raypencil_harness::{Contender, contender, validate};
 use raypencil_judge::JudgeShare;
 use raypencil_scene::Silent;
-use raypencil_scene_io::{Overrides, Setting, Subject, load};
+use raypencil_scene_io::{Overrides, Setting, load};
 use raypencil_sweep::{
     Axis, Cells, Chart, Finished, Outcome, Part, Sweep, SweepError, SweepProgress, SweepTable, Task,
     default_charts, finish, read_plan, run_part, write_sweep,
@@ -107,13 +107,7 @@ fn every_number_of_a_validation_is_that_of_the_scene_by_itself() {
     {
         let loaded =
             loaded(&house, &[&format!("beam.0.pitch_down_deg={pitch}"), &format!("flux.model={model}")]);
-        let subject = Subject {
-            vehicle: loaded.standing_vehicle(),
-            scene: loaded.scene,
-            name: loaded.name,
-            arguments: String::new(),
-            sha256: loaded.source_sha256,
-        };
+        let subject = loaded.into_subject(String::new());
         let alone = validate(subject, &contenders(&sweep), JudgeShare::Sample, &Silent);
         let found = results(&finished, run);
         assert_eq!(found["compared"], alone.counts().compared);

@@ -9,6 +9,9 @@ use super::report::Report;
 pub(super) fn report_json(report: &Report) -> String {
     let mut printed = inspection(&report.found);
     printed["mesh"] = report.mesh.into();
+    printed["passes"] = report.passes().into();
+    printed["kinds_wrong"] = report.fault_kinds().into();
+    printed["polygons"] = json!(report.polygons);
     if let Some(repaired) = &report.repaired {
         let repairs = &repaired.repairs;
         printed["repaired"] = json!({

@@ -9,7 +9,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use raypencil::io::{
-    DEFAULT_REFLECTIVITY, FileFrame, Overrides, SceneSource, load, load_terrain, write_terrain_glb,
+    DEFAULT_REFLECTIVITY, FileFrame, Overrides, PolygonFacts, SceneSource, TerrainFile, load, read_terrain,
+    write_terrain_glb,
 };
 use raypencil::terrain::{inspect as inspect_mesh, repair};
 use raypencil::{Mesh, Progress as _};
@@ -34,14 +35,17 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
     }
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.mesh));
-    let mesh: Arc<Mesh> = match &source {
+    let (mesh, polygons): (Arc<Mesh>, PolygonFacts) = match &source {
         // The mesh alone: a scene would need a place for the vehicle.
         SceneSource::Mesh(path) if command.set.is_empty() => {
-            Arc::new(load_terrain(path, DEFAULT_REFLECTIVITY, &FileFrame::default())?)
+            let TerrainFile { mesh, polygon_facts, .. } =
+                read_terrain(path, DEFAULT_REFLECTIVITY, &FileFrame::default())?;
+            (Arc::new(mesh), polygon_facts)
         }
         _ => {
             let settings = command.set.clone();
-            Arc::clone(load(&command.mesh, &Overrides { settings, ..Overrides::default() })?.scene.mesh())
+            let loaded = load(&command.mesh, &Overrides { settings, ..Overrides::default() })?;
+            (Arc::clone(loaded.scene.mesh()), loaded.polygon_facts)
         }
     };
     spinner.stage(&format!("{}: inspecting {} faces", command.mesh, mesh.faces().len()));
@@ -60,7 +64,7 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
         }
     };
     drop(spinner);
-    let report = Report { mesh: &command.mesh, found, repaired };
+    let report = Report { mesh: &command.mesh, polygons, found, repaired };
     say(&if json { json::report_json(&report) } else { screen::screen(&report) });
     Ok(if report.passes() { Outcome::Fine } else { Outcome::Differs })
 }

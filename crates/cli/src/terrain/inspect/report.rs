@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use raypencil::io::PolygonFacts;
 use raypencil::terrain::{Inspection, Repairs};
 
 /// The result of `terrain inspect`.
@@ -10,6 +11,8 @@ pub(super) struct Report<'a> {
     pub(super) mesh: &'a str,
     /// The inspection of that mesh.
     pub(super) found: Inspection,
+    /// What was found out about the polygons of its file.
+    pub(super) polygons: PolygonFacts,
     /// The repair; `None` without `--repair`.
     pub(super) repaired: Option<Repaired<'a>>,
 }
@@ -25,9 +28,14 @@ pub(super) struct Repaired<'a> {
 }
 
 impl Report<'_> {
-    /// Whether the last inspection found no faults.
+    /// Whether the last inspection found no faults. A repair does not know what a polygon that crosses itself should be.
     pub(super) fn passes(&self) -> bool {
-        self.last().passes()
+        self.fault_kinds() == 0
+    }
+
+    /// Number of kinds of faults that are left.
+    pub(super) fn fault_kinds(&self) -> usize {
+        self.last().fault_kinds() + usize::from(self.polygons.crossing.is_some())
     }
 
     /// The inspection of the repaired mesh, or, without one, of the given mesh.

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use raypencil::report::count;
+use raypencil::io::PolygonFacts;
+use raypencil::report::{count, number};
 use raypencil::terrain::{Inspection, MeshElement, Occurrence, Occurrences, Repairs};
 
 use super::report::Report;
@@ -26,14 +27,14 @@ pub(super) fn screen(report: &Report) -> String {
         line(&words);
     }
     line("");
-    for row in fault_rows(found) {
+    for row in fault_rows(found, &report.polygons) {
         line(&format!("{} {:>11}  {}", if row.count > 0 { '!' } else { ' ' }, counted(row.count), row.words));
         if !row.places.is_empty() {
             line(&format!("{:INDENT$}{}", "", row.places));
         }
     }
     line("");
-    for words in facts(found) {
+    for words in facts(found, &report.polygons) {
         line(&words);
     }
     line("");
@@ -66,7 +67,7 @@ fn row_with(words: &str, more: &str, found: &Occurrences) -> FaultRow {
 }
 
 /// All kinds of faults, found or not.
-fn fault_rows(found: &Inspection) -> Vec<FaultRow> {
+fn fault_rows(found: &Inspection, polygons: &PolygonFacts) -> Vec<FaultRow> {
     let kinds = &found.zero_area_kinds;
     let of_kinds = format!(
         ": {} repeat a vertex, {} a place, {} are lines",
@@ -85,6 +86,7 @@ fn fault_rows(found: &Inspection) -> Vec<FaultRow> {
         }
         _ => String::new(),
     };
+    let crossing = polygons.crossing.as_ref();
     let back = "ground that mostly shows its back to someone above";
     vec![
         row("vertices that no face uses", &found.unused_vertices),
@@ -100,6 +102,11 @@ fn fault_rows(found: &Inspection) -> Vec<FaultRow> {
             places: holes,
         },
         FaultRow { count: usize::from(found.upside_down), words: back.into(), places: String::new() },
+        FaultRow {
+            count: crossing.map_or(0, |found| found.count as usize),
+            words: "polygons of the file that cross themselves".into(),
+            places: crossing.map_or(String::new(), |found| format!("the first: {}", found.first)),
+        },
     ]
 }
 
@@ -120,7 +127,7 @@ fn extent(found: &Inspection) -> Vec<String> {
 }
 
 /// Facts about the mesh that are not faults.
-fn facts(found: &Inspection) -> Vec<String> {
+fn facts(found: &Inspection, polygons: &PolygonFacts) -> Vec<String> {
     let open = &found.open_edges;
     let line = |count: usize, words: String| format!("  {:>11}  {words}", counted(count));
     let mut facts =
@@ -138,6 +145,19 @@ fn facts(found: &Inspection) -> Vec<String> {
         if found.count > 0 {
             facts.push(line(found.count, words));
         }
+    }
+    if polygons.count > 0 {
+        let words = format!(
+            "polygons of more than three corners; not convex, and cut truly: {}",
+            count(polygons.cut)
+        );
+        facts.push(line(polygons.count as usize, words));
+    }
+    if let Some(bent) = &polygons.bent {
+        let distance = number(bent.distance);
+        let words =
+            format!("of them not planar; {} leaves its plane by {distance} units of the file", bent.worst);
+        facts.push(line(bent.count as usize, words));
     }
     facts
 }
@@ -164,9 +184,9 @@ fn repairs_made(repairs: &Repairs) -> String {
 /// The last line.
 fn verdict(report: &Report) -> String {
     let last = report.last();
-    let checks = fault_rows(last).len();
+    let checks = fault_rows(last, &report.polygons).len();
     let place = if report.repaired.is_some() { " in the repaired mesh" } else { "" };
-    match last.fault_kinds() {
+    match report.fault_kinds() {
         0 => format!("PASS {checks} checks found nothing{place}."),
         some => {
             let would = match &report.repaired {

@@ -252,3 +252,99 @@ fn a_scene_without_a_camera_has_its_terrain_as_the_file_gives_it() {
     fs::write(at.join("off.toml"), scene.replace("0.25]", "9]") + sets).expect("a file");
     assert_trouble(&raypencil(at, &["cast", "off.toml"]), &["off.toml:5:14", "no ground under (0.1, 9)"]);
 }
+
+#[test]
+fn a_scan_of_a_room_in_millimetres_is_told_and_scaled() {
+    let folder = TempDir::new().unwrap();
+    // A room of 4 m by 4 m in millimetres, y up, and a spinning head in metres within it.
+    let corner = |k: u32| {
+        let [x, y, z] = [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
+        format!("v {} {} {}\n", 4000.0 * x - 2000.0, 2500.0 * y, 4000.0 * z - 2000.0)
+    };
+    let room: String = (0..8).map(corner).collect();
+    let squares = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+    fs::write(folder.path().join("room.obj"), room + squares).unwrap();
+    let scan = "[[rays]]\nname = \"scan\"\nspinning = { preset = \"vlp-16\", steps = 36 }\nposition_m = [0, 0, 1.2]\n";
+    fs::write(folder.path().join("scan.toml"), scan).unwrap();
+    let cast = |more: &[&str]| raypencil(folder.path(), &[&["cast", "room.obj", "scan.toml"], more].concat());
+    let nothing = cast(&["-o", "nothing"]);
+    assert_eq!(nothing.status.code(), Some(1), "{}", text(&nothing.stderr));
+    let told = text(&nothing.stderr);
+    for words in
+        ["scan: none of the 576 rays hits the mesh", "the nearest at 1", "the limit is 100", "millimetres"]
+    {
+        assert!(told.contains(words), "{words} is not in\n{told}");
+    }
+    let summary = fs::read_to_string(folder.path().join("nothing/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["warnings"][0]["code"], "no_hits");
+    assert_eq!(cast(&["--allow-empty"]).status.code(), Some(0));
+    assert_eq!(cast(&["--allow-empty", "--with", "tracer"]).status.code(), Some(0));
+    assert_eq!(cast(&["--with", "tracer"]).status.code(), Some(1));
+    // In metres and with z up every ray meets a wall, the floor or the ceiling; the head is inside, so it meets fronts turned inwards.
+    let scaled = cast(&["--scale", "0.001", "--up", "y", "-o", "scaled", "--with", "tracer"]);
+    assert_eq!(scaled.status.code(), Some(0), "{}", text(&scaled.stderr));
+    assert!(text(&scaled.stdout).contains("576 hit"), "{}", text(&scaled.stdout));
+    let summary = fs::read_to_string(folder.path().join("scaled/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!((&summary["mesh"]["up"], &summary["mesh"]["scale"]), (&"y".into(), &0.001.into()));
+    assert_eq!(summary["mesh"]["polygons"]["count"], 6);
+    let schema = include_str!("../../../../../docs/formats/cast.schema.json");
+    let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
+    assert_eq!(schema_faults(&schema, &summary), Vec::<String>::new());
+    // A single ray is a question: a miss is its answer. It is asked again with the same frame.
+    let miss = cast(&["--scale", "1e9"]);
+    assert_trouble(&miss, &["--scale 1000000000: expected 1e-6 to 1e6 metres"]);
+    let one = raypencil(folder.path(), &["cast", "room.obj", "--ray", "0,0,9,0,0,1", "--scale", "0.001"]);
+    assert_eq!(one.status.code(), Some(0));
+}
+
+#[test]
+fn polygons_that_are_not_convex_or_cross_themselves_are_told() {
+    let folder = TempDir::new().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    // A U: two legs and a courtyard. A ray into the courtyard hits nothing; one into a leg hits it once.
+    let u = "v 0 0 0\nv 8 0 0\nv 8 5 0\nv 6 5 0\nv 6 2 0\nv 2 2 0\nv 2 5 0\nv 0 5 0\nf 1 2 3 4 5 6 7 8\n";
+    write("u.obj", u);
+    let cast = |ray: &str| screen(folder.path(), &["cast", "u.obj", "--ray", ray, "--all"], 0);
+    assert!(cast("4,3,5,0,0,-1").contains("nothing is hit"));
+    let leg = cast("1,4,5,0,0,-1");
+    assert!(
+        leg.contains("t            5") && leg.contains("1 polygon of more than three corners, 1 of them"),
+        "{leg}"
+    );
+    let inspected = screen(folder.path(), &["terrain", "inspect", "u.obj"], 0);
+    for words in [
+        "area 28.000 m2",
+        "polygons of more than three corners; not convex, and cut truly: 1",
+        "PASS 10 checks",
+    ] {
+        assert!(inspected.contains(words), "{words} is not in\n{inspected}");
+    }
+    write("hourglass.obj", "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 4 0.5\nv 9 9 9\nf 1 2 3 4\nf 1 2 3\n");
+    let told = raypencil(folder.path(), &["cast", "hourglass.obj", "--ray", "1,1,9,0,0,-1"]);
+    let words = "warning: 1 polygon of the file crosses itself, the first is polygon 0 (line 6)";
+    assert!(text(&told.stderr).contains(words), "{}", text(&told.stderr));
+    let inspected = screen(folder.path(), &["terrain", "inspect", "hourglass.obj"], 1);
+    for words in [
+        "!           1  polygons of the file that cross themselves",
+        "the first: polygon 0 (line 6)",
+        "not planar",
+    ] {
+        assert!(inspected.contains(words), "{words} is not in\n{inspected}");
+    }
+    let json = screen(folder.path(), &["terrain", "inspect", "hourglass.obj", "--json"], 1);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&json["passes"], &json["polygons"]["crossing"]["first"]["line"]), (&false.into(), &6.into()));
+    // A scene on such a file says it too, as do its summary and its page.
+    let scene = "version = 1\nterrain = { file = \"hourglass.obj\" }\nvehicle = { position_m = [1, 1, 2] }\n\
+                 camera = { width_px = 16, height_px = 16 }\nbeam = { columns = 16, rows = 2 }\n";
+    write("scene.toml", scene);
+    let shown = raypencil(folder.path(), &["validate", "scene.toml", "--allow-empty", "-o", "out"]);
+    assert!(text(&shown.stdout).contains("crosses itself"), "{}", text(&shown.stdout));
+    let summary = fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+    assert!(
+        summary.contains("\"polygons_cross\"") && summary.contains("\"polygons_not_planar\""),
+        "{summary}"
+    );
+}

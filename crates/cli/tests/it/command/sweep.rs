@@ -93,10 +93,13 @@ fn a_sweep_of_drives_and_one_of_validations() {
     screen(house, &words, 0);
     let json: Value = serde_json::from_str(&screen(house, &[&words[..], &["--json"]].concat(), 0)).unwrap();
     assert_eq!(json["runs"][1]["arguments"], "scene.toml --set drive.speed_m_per_s=0.6");
-    fs::write(house.join("list.csv"), "beam.thickness_mm\n4\n-4\n").unwrap();
-    // One run is refused: the others are made, and the exit code says it.
+    fs::write(house.join("list.csv"), "vehicle.position_m\n\"[0, 0]\"\n\"[500, 0]\"\n").unwrap();
+    // One run is refused, for its place is beside the ground: the others are made, and the exit code says it.
     let shown = screen(house, &["sweep", "scene.toml", "--list", "list.csv", "-o", "list"], 1);
-    assert!(shown.contains("1 run could not be made:\n  run 1: set beam.thickness_mm=-4: "), "{shown}");
+    assert!(
+        shown.contains("1 run could not be made:\n  run 1: set vehicle.position_m=[500, 0]: "),
+        "{shown}"
+    );
     let table = String::from_utf8(table(house, "list")).unwrap();
     assert!(table.lines().next().unwrap().ends_with(",refused"), "{table}");
 }
@@ -114,6 +117,19 @@ fn sweeps_that_make_no_sense_are_refused() {
         &sweep(&["--do", "drive", "--with", "scanline,tracer"]),
         &["expected one renderer to drive"],
     );
+    // A value that its key does not take, anywhere in a list, a range or a file: nothing is begun.
+    fs::write(house.join("list.csv"), "beam.thickness_mm,camera.pitch_down_deg\n4,20\n4,20:35:5\n").unwrap();
+    for (more, run, words) in [
+        (&["--set", "beam.thickness_mm=4,-4"][..], "run 1 of", "beam.thickness_mm=-4"),
+        (&["--set", "beam.thickness_mm=4,2", "--set", "camera.pitch_down_deg=20,x,30"], "run 1 of", "=x"),
+        (&["--set", "beam.thickness_mm=-4:4:4", "--set", "camera.pitch_down_deg=20,30"], "run 0 of", "=-4"),
+        (&["--set", "beam.thickness_mm=4,2,-1", "--set", "camera.pitch_down_deg=20,30"], "run 4 of", "=-1"),
+        (&["--set", "camera.pitch_down_deg=20:35"], "20:35: a range needs a step", "20:35:5"),
+        (&["--list", "list.csv"], "run 1 of", "camera.pitch_down_deg=20:35:5"),
+    ] {
+        assert_trouble(&sweep(&[more, &["-o", "none"]].concat()), &[run, words]);
+        assert!(!house.join("none").exists(), "{more:?}");
+    }
     assert_trouble(&sweep(&["--as-printed"]), &["expected it with --do drive"]);
     assert_trouble(&sweep(&["--with", "tracer"]), &["at least 2 renderers"]);
     assert_trouble(&sweep(&["--do", "render", "--chart", "a,b"]), &["the table has no result `a`"]);

@@ -4,6 +4,7 @@
 pub(crate) mod any_bytes;
 pub(crate) mod buffers;
 pub(crate) mod container;
+pub(crate) mod extensions;
 pub(crate) mod scenes;
 pub(crate) mod storage;
 pub(crate) mod transforms;

@@ -213,13 +213,16 @@ fn accessors_that_do_not_fit_are_refused_before_they_are_read() {
     refused(accessor(1, "count", json!(5)), "accessor 1: 5 corners of triangles; expected a multiple of 3");
     refused(
         accessor(0, "componentType", json!(5123)),
-        "accessor 0: POSITION of VEC3 of U16; expected VEC3 of F32",
+        "accessor 0: POSITION of VEC3 of U16; expected VEC3 of F32; whole numbers need the extension KHR_mesh_quantization",
     );
     refused(
         accessor(0, "componentType", json!(5130)),
-        "accessor 0: POSITION of VEC3 of unknown components; expected VEC3 of F32",
+        "accessor 0: POSITION of VEC3 of unknown components; expected VEC3 of F32; whole numbers need the extension KHR_mesh_quantization",
     );
-    refused(accessor(0, "type", json!("VEC2")), "accessor 0: POSITION of VEC2 of F32; expected VEC3 of F32");
+    refused(
+        accessor(0, "type", json!("VEC2")),
+        "accessor 0: POSITION of VEC2 of F32; expected VEC3 of F32; whole numbers need the extension KHR_mesh_quantization",
+    );
     refused(
         accessor(1, "type", json!("VEC9")),
         "accessor 1: indices of an unknown type of U16; expected SCALAR of U8, U16 or U32",
@@ -227,16 +230,6 @@ fn accessors_that_do_not_fit_are_refused_before_they_are_read() {
     refused(
         accessor(1, "componentType", json!(5126)),
         "accessor 1: indices of SCALAR of F32; expected SCALAR of U8, U16 or U32",
-    );
-    let sparse =
-        json!({"count": 1, "indices": {"bufferView": 0, "componentType": 5121}, "values": {"bufferView": 0}});
-    refused(
-        accessor(0, "sparse", sparse),
-        "accessor 0: sparse storage; expected plain storage: sparse is not supported",
-    );
-    refused(
-        accessor(0, "bufferView", Value::Null),
-        "accessor 0: no buffer view; expected a buffer view with its data",
     );
     refused(accessor(0, "bufferView", json!(9)), "buffer view 9: does not exist; expected an index below 2");
     let view = |key: &'static str, value: Value| changed(move |json| json["bufferViews"][0][key] = value);
@@ -293,9 +286,9 @@ fn wrong_numbers_name_the_accessor_and_the_index() {
     let (json, bin) = square();
     let mut nan = bin.clone();
     nan[28..32].copy_from_slice(&f32::NAN.to_le_bytes());
-    refused(parse(&json, &nan), "accessor 0: vertex 2 is (1, NaN, -1); expected three finite numbers");
+    refused(parse(&json, &nan), "accessor 0: vertex 2 is (1, NaN, -1); expected finite numbers");
     nan[28..32].copy_from_slice(&f32::NEG_INFINITY.to_le_bytes());
-    refused(parse(&json, &nan), "accessor 0: vertex 2 is (1, -inf, -1); expected three finite numbers");
+    refused(parse(&json, &nan), "accessor 0: vertex 2 is (1, -inf, -1); expected finite numbers");
     let mut index = bin;
     index[56..58].copy_from_slice(&4_u16.to_le_bytes());
     refused(parse(&json, &index), "accessor 1: index 4 is 4; expected a vertex below 4");

@@ -177,6 +177,34 @@ fn a_concave_polygon_is_covered_and_not_fanned() {
 }
 
 #[test]
+fn polygons_are_told_that_cross_themselves_or_are_not_planar() {
+    let folder = tempfile::tempdir().unwrap();
+    let facts = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        read_triangles(&path).unwrap().polygon_facts
+    };
+    // A triangle, a square, a dart, an hourglass, a bent square twice: polygons 0 to 5. The last one is bent more.
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.2 0\nv 1 1 0.1\nv 1 1 0.2\n\
+                f 1 2 3\n# a comment\nf 1 2 3 4\nf 1 5 2 3\nf 1 3 2 4\nf 1 2 6 4\nf 1 2 \\\n 7 4\n";
+    let found = facts("a.obj", text);
+    assert_eq!((found.count, found.cut), (5, 1));
+    let crossing = found.crossing.as_ref().unwrap();
+    assert_eq!((crossing.count, crossing.first.to_string()), (1, "polygon 3 (line 12)".into()));
+    let bent = found.bent.as_ref().unwrap();
+    assert_eq!((bent.count, bent.worst.to_string()), (2, "polygon 5 (line 14)".into()));
+    // The corners of a square, one of them 0.2 up, are 0.05 off the plane between them, whose normal is tilted by 0.14.
+    assert!((0.049..0.05).contains(&bent.distance), "{}", bent.distance);
+    assert_eq!(found.words(), "5 polygons of more than three corners, 1 of them not convex and cut truly");
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    let found = facts("a.ply", &format!("{header}0 0 0\n1 1 0\n1 0 0\n0 1 0\n4 0 2 1 3\n4 0 1 2 3\n"));
+    assert_eq!(found.crossing.unwrap().first.to_string(), "polygon 1");
+    assert_eq!((found.count, found.cut, found.bent), (2, 0, None));
+    assert_eq!(facts("b.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"), Default::default());
+}
+
+#[test]
 fn obj_statements_may_go_on_over_lines_and_stand_in_any_order() {
     let file = "f 1 2 \\\n 3 # a square\\\nv 0 0 0 1.0\rv 1 0 0 0.5 0.5 0.5\r\n\tv 1 1 0\n# C:\\rocks\\\nfo -1 -3 -2\n";
     let mesh = parse("a.obj", file.as_bytes()).unwrap();
@@ -271,5 +299,11 @@ fn contents_decide_before_the_ending() {
         assert_eq!(parse("a.3d", &bytes).unwrap().faces(), FACES);
     }
     assert_eq!(parse("a.OBJ", &samples::obj()).unwrap().faces(), FACES);
-    refused("a.3d", b"v 0", "first bytes: [76, 20, 30]; expected GLB, glTF, STL or PLY, or the ending .obj");
+    let expected = "GLB, glTF, STL or PLY, or the ending .obj; an elevation model is a GeoTIFF";
+    refused("a.3d", b"v 0", &format!("first bytes: [76, 20, 30]; expected {expected}"));
+    let expected = "GLB, glTF, STL, OBJ or PLY, to which `assimp export` or Blender converts it";
+    refused("a.off", b"OFF\n3 1 0\n", &format!("format: a mesh as .off; expected {expected}"));
+    refused("a.FBX", b"Kaydara FBX Binary", &format!("format: a mesh as .fbx; expected {expected}"));
+    let expected = "a mesh, which `raypencil terrain import` makes of an elevation model";
+    refused("a.tif", b"II*\0....", &format!("first bytes: a TIFF; expected {expected}"))
 }

@@ -1,0 +1,176 @@
+//! What looks wrong in rays and their mesh: nothing is hit, another unit or axis, backs, an open mesh.
+//!
+//! A warning changes no answer. Its numbers are measured; what it asks is for the reader to decide.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use raypencil_report::{count, counted, number};
+use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
+use raypencil_survey::{TerrainShape, Warning, WarningCode, lies_on_its_side, terrain_too_large};
+use raypencil_tracer::TracerCast;
+
+use crate::answers::Answers;
+
+/// Largest share of backs among the first hits, tuned: one half, as for a sensor.
+const MAX_BACK_SHARE: f64 = 0.5;
+
+/// Rays that are traced once more, at most, where none hits: with other limits, and against both sides.
+const MAX_TRIED_RAYS: usize = 4096;
+
+/// Warnings about the rays of a set, or of no set, whose answers are known.
+///
+/// ```
+/// use raypencil_cast::{Questions, cast, cast_warnings, rays_from_bytes};
+/// use raypencil_scene::{Sides, Silent, Triangles};
+///
+/// // A floor in millimetres, 1.5 m below a ray that reaches 100 units.
+/// let corners = vec![[0.0, 0.0, 0.0], [4000.0, 0.0, 0.0], [0.0, 4000.0, 0.0]];
+/// let mesh = Triangles::new(corners, vec![[0, 1, 2]])?;
+/// let rays = rays_from_bytes(b"100,100,1500,0,0,-1,0,100", "here".as_ref())?.rays;
+/// let answers = cast(&mesh, &rays, Sides::Both, Questions::default(), &Silent);
+/// let found = cast_warnings(&mesh, &rays, Sides::Both, None, &answers);
+/// let sentence = "the ray does not hit the mesh within its limits. Without them 1 of 1 that were tried would, the nearest at \
+///                 1500 where the limit is 100: is the mesh in another unit, such as millimetres (--scale 0.001)?";
+/// assert_eq!(found[0].to_string(), sentence);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn cast_warnings(
+    mesh: &Triangles,
+    rays: &[CastRay],
+    sides: Sides,
+    set: Option<&NamedRaySet>,
+    answers: &Answers,
+) -> Vec<Warning> {
+    let of = set.map_or(String::new(), |set| format!("{}: ", set.name));
+    let warning = |code, sentence: String| Warning::of_scene(code, format!("{of}{sentence}"));
+    let mut found = Vec::new();
+    let (hits, _) = answers.counts();
+    if hits == 0 && !rays.is_empty() {
+        found.push(warning(WarningCode::NoHits, nothing_hit(mesh, rays, sides)));
+    }
+    let backs = answers.first.iter().flatten().filter(|hit| hit.side == Side::Back).count();
+    if backs as f64 > MAX_BACK_SHARE * hits as f64 {
+        let percent = number(100.0 * backs as f64 / hits as f64);
+        let sentence = format!(
+            "{percent} % of the rays that hit meet the back of a face: are the faces wound clockwise, or do the rays begin inside?"
+        );
+        found.push(warning(WarningCode::BacksFirst, sentence));
+    }
+    // The z axis of a pattern is up; rays as numbers may have any axes.
+    if let Some(shape) = set.and_then(|_| TerrainShape::of_triangles(mesh)) {
+        if lies_on_its_side(&shape) {
+            let sentence = "the mesh lies in the plane of x and z and faces along y, but the z axis of the pattern is up: is y up in \
+                            its file (--up y)?";
+            found.push(warning(WarningCode::TerrainOnItsSide, sentence.into()));
+        }
+        let reach = rays.iter().map(reach).fold(0.0, f64::max);
+        found.extend(
+            terrain_too_large(&shape, reach)
+                .map(|Warning { code, sentence, .. }| warning(code, format!("{sentence} (--scale 0.001)"))),
+        );
+    }
+    if answers.all.is_some() {
+        let open = open_edges(mesh);
+        if open > 0 {
+            let edges = counted(open, "open edge", "open edges");
+            let sentence = format!(
+                "the mesh has {edges}: sums of crossings tell its inside from its outside only where it is closed."
+            );
+            found.push(warning(WarningCode::OpenMesh, sentence));
+        }
+    }
+    found
+}
+
+/// The longest range of a ray, in the unit of the mesh.
+fn reach(ray: &CastRay) -> f64 {
+    ray.t_max * ray.direction.length()
+}
+
+/// Why no ray hits, as far as tracing some of them again can tell.
+fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
+    let none = match rays.len() {
+        1 => "the ray does not hit the mesh".to_string(),
+        rays => format!("none of the {} rays hits the mesh", count(rays as u64)),
+    };
+    let tracer = TracerCast::new(mesh);
+    let mut traverser = tracer.traverser();
+    let step = rays.len().div_ceil(MAX_TRIED_RAYS);
+    let tried: Vec<&CastRay> = rays.iter().step_by(step).collect();
+    let mut nearest = |limited: bool, sides: Sides| {
+        let mut hits = 0_u64;
+        let mut nearest: Option<(f64, f64)> = None;
+        for &ray in &tried {
+            let asked = if limited { *ray } else { CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray } };
+            let Some(hit) = traverser.first(&asked, sides) else { continue };
+            hits += 1;
+            if nearest.is_none_or(|(range, _)| hit.range < range) {
+                nearest = Some((hit.range, reach(ray)));
+            }
+        }
+        nearest.map(|(range, reach)| (hits, range, reach))
+    };
+    let of = tried.len();
+    if let Some((hits, range, reach)) = nearest(false, sides) {
+        return format!(
+            "{none} within its limits. Without them {hits} of {of} that were tried would, the nearest at {} where the limit is {}: \
+             is the mesh in another unit, such as millimetres (--scale 0.001)?",
+            number(range),
+            number(reach)
+        );
+    }
+    if sides == Sides::Fronts
+        && let Some((hits, ..)) = nearest(true, Sides::Both)
+    {
+        return format!(
+            "{none} at a front. {hits} of {of} that were tried meet the back of a face, through which they pass: are the faces \
+             wound clockwise, or do the rays begin inside?"
+        );
+    }
+    let Some([low, high]) = mesh.bounds() else { return format!("{none}: it has no vertices.") };
+    let origins = rays.iter().map(|ray| ray.origin);
+    let (first, last) = origins.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), origin| {
+        (low.min(origin), high.max(origin))
+    });
+    let place = |at: DVec3| format!("({}, {}, {})", number(at.x), number(at.y), number(at.z));
+    format!(
+        "{none}, however far they reach. It lies between {} and {}, and the rays begin between {} and {}: is its unit or its up axis \
+         another (--scale, --up)?",
+        place(low),
+        place(high),
+        place(first),
+        place(last)
+    )
+}
+
+/// Number of edges that are not run through once in each direction, after vertices at the same place are taken as one.
+fn open_edges(mesh: &Triangles) -> u64 {
+    let mut known = HashMap::new();
+    let places: Vec<u32> = mesh
+        .vertices()
+        .iter()
+        .enumerate()
+        // -0 and 0 are one place.
+        .map(|(k, vertex)| *known.entry(vertex.map(|part| (part + 0.0).to_bits())).or_insert(k as u32))
+        .collect();
+    // An edge from the lower to the higher index counts 1, back it counts -1.
+    let mut edges: Vec<(u32, u32, i32)> = Vec::with_capacity(3 * mesh.faces().len());
+    for face in mesh.faces() {
+        let [a, b, c] = face.map(|corner| places[corner as usize]);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            match from.cmp(&to) {
+                std::cmp::Ordering::Less => edges.push((from, to, 1)),
+                std::cmp::Ordering::Greater => edges.push((to, from, -1)),
+                std::cmp::Ordering::Equal => {}
+            }
+        }
+    }
+    edges.sort_unstable();
+    let of_one_edge = edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
+    of_one_edge.filter(|edge| edge.iter().map(|(.., way)| way).sum::<i32>() != 0).count() as u64
+}
+
+#[cfg(test)]
+#[path = "../tests/unit/warnings.rs"]
+mod tests;

@@ -1,0 +1,154 @@
+//! Each warning on rays that deserve it, and on rays that do not.
+
+use raypencil_scene::Silent;
+use raypencil_scene::pattern::PatternRays;
+
+use super::*;
+use crate::answers::{Questions, cast};
+
+/// A box around the origin with its faces outwards, `half` to every side; without its lid it is open.
+fn cube(half: f64, has_lid: bool) -> Triangles {
+    let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2].map(|bit| if bit == 1 { half } else { -half });
+    let squares = [[0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6]];
+    let count = if has_lid { 6 } else { 5 };
+    let faces = squares[..count].iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    Triangles::new((0..8).map(corner).collect(), faces.collect()).unwrap()
+}
+
+/// A square of ground of `side`, from the origin on, in the plane of two axes, with its front along the third.
+fn ground(side: f64, [u, v]: [usize; 2]) -> Triangles {
+    let corner = |[a, b]: [f64; 2]| {
+        let mut at = [0.0; 3];
+        (at[u], at[v]) = (a, b);
+        at
+    };
+    let corners = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]].map(corner);
+    Triangles::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+}
+
+fn ray(origin: [f64; 3], direction: [f64; 3]) -> CastRay {
+    CastRay::new(DVec3::from_array(origin), DVec3::from_array(direction))
+}
+
+fn found(mesh: &Triangles, rays: &[CastRay], sides: Sides, all: bool) -> Vec<(WarningCode, String)> {
+    let answers = cast(mesh, rays, sides, Questions { all, ..Questions::default() }, &Silent);
+    let warnings = cast_warnings(mesh, rays, sides, None, &answers);
+    warnings.into_iter().map(|warning| (warning.code, warning.sentence)).collect()
+}
+
+/// Asserts that there is one warning of a code, whose sentence has all of these parts.
+#[track_caller]
+fn assert_one(found: Vec<(WarningCode, String)>, code: WarningCode, parts: &[&str]) {
+    assert_eq!(found.iter().map(|(code, _)| *code).collect::<Vec<_>>(), [code], "{found:?}");
+    assert!(parts.iter().all(|part| found[0].1.contains(part)), "{}", found[0].1);
+}
+
+#[test]
+fn rays_that_are_fine_have_none() {
+    let rays = [ray([0.1, 0.2, -5.0], [0.0, 0.0, 1.0]), ray([9.0, 9.0, 9.0], [1.0, 0.0, 0.0])];
+    assert_eq!(found(&cube(1.0, true), &rays, Sides::Both, true), []);
+    assert_eq!(found(&cube(1.0, false), &rays, Sides::Both, false), []);
+    assert_eq!(found(&cube(1.0, true), &[], Sides::Both, true), []);
+}
+
+#[test]
+fn limits_that_end_before_the_mesh_are_told_with_their_numbers() {
+    // 3 x 1000 rays to walls at 2000 and more; a direction of length 2 reaches twice as far as its t.
+    let rays: Vec<CastRay> = (0..3000)
+        .map(|k| CastRay { t_max: 50.0, ..ray([0.0, f64::from(k % 7), 0.0], [2.0, 0.0, 0.0]) })
+        .collect();
+    let words = [
+        "none of the 3,000 rays",
+        "3000 of 3000",
+        "the nearest at 2000 where the limit is 100",
+        "--scale 0.001",
+    ];
+    assert_one(found(&cube(2000.0, true), &rays, Sides::Both, false), WarningCode::NoHits, &words);
+    // Of more rays some are tried.
+    let many: Vec<CastRay> = (0..3).flat_map(|_| rays.clone()).collect();
+    let words = ["none of the 9,000 rays", "3000 of 3000"];
+    assert_one(found(&cube(2000.0, true), &many, Sides::Both, false), WarningCode::NoHits, &words);
+    // What lies before t_min counts as well.
+    let behind = [CastRay { t_min: 9.0, ..ray([-5.0, 0.1, 0.2], [1.0, 0.0, 0.0]) }];
+    assert_one(
+        found(&cube(1.0, true), &behind, Sides::Both, false),
+        WarningCode::NoHits,
+        &["the nearest at 4.00 where"],
+    );
+}
+
+#[test]
+fn rays_beside_the_mesh_are_told_with_both_places() {
+    let rays = [ray([0.0, 0.0, 5.0], [1.0, 0.0, 0.0]), ray([2.0, 0.0, 7.0], [1.0, 0.0, 0.0])];
+    let words = ["however far they reach", "(-1.00, -1.00, -1.00) and (1.00, 1.00, 1.00)", "(0, 0, 5.00) and (2.00, 0, 7.00)"];
+    assert_one(found(&cube(1.0, true), &rays, Sides::Both, false), WarningCode::NoHits, &words);
+}
+
+#[test]
+fn backs_are_told_whether_they_are_hit_or_passed() {
+    let inside = [ray([0.0, 0.1, 0.2], [1.0, 0.0, 0.0]), ray([0.0, 0.1, 0.2], [0.0, 1.0, 0.0])];
+    let words = ["100 % of the rays that hit meet the back"];
+    assert_one(found(&cube(1.0, true), &inside, Sides::Both, false), WarningCode::BacksFirst, &words);
+    let words = ["at a front. 2 of 2 that were tried meet the back"];
+    assert_one(found(&cube(1.0, true), &inside, Sides::Fronts, false), WarningCode::NoHits, &words);
+    // Half of them are no majority.
+    let half = [inside[0], ray([5.0, 0.1, 0.2], [-1.0, 0.0, 0.0])];
+    assert_eq!(found(&cube(1.0, true), &half, Sides::Both, false), []);
+}
+
+#[test]
+fn an_open_mesh_is_told_where_crossings_are_asked_for() {
+    let rays = [ray([0.1, 0.2, -5.0], [0.0, 0.0, 1.0])];
+    let words = ["4 open edges"];
+    assert_one(found(&cube(1.0, false), &rays, Sides::Both, true), WarningCode::OpenMesh, &words);
+    // Each square with corners of its own, one at -0: closed all the same.
+    let whole = cube(1.0, true);
+    let apart: Vec<[f64; 3]> = whole
+        .faces()
+        .iter()
+        .flatten()
+        .map(|&corner| whole.vertices()[corner as usize].map(|part| part - 1.0))
+        .collect();
+    let apart: Vec<[f64; 3]> = apart
+        .iter()
+        .enumerate()
+        .map(|(k, at)| at.map(|part| if part == 0.0 && k % 2 == 0 { -0.0 } else { part }))
+        .collect();
+    let faces = (0..apart.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let rays = [ray([-0.9, -0.8, -5.0], [0.0, 0.0, 1.0])];
+    assert_eq!(found(&Triangles::new(apart, faces).unwrap(), &rays, Sides::Both, true), []);
+}
+
+#[test]
+fn a_pattern_is_told_of_another_axis_and_another_unit() {
+    let of_set = |mesh: &Triangles, rays: Vec<CastRay>| {
+        let shape = vec![rays.len() as u64];
+        let pattern =
+            PatternRays { shape, rays, times: None, weights: None, elevations_deg: None, up: DVec3::Z };
+        let set = NamedRaySet::new("os1", pattern, Sides::Both).unwrap();
+        let answers = cast(mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
+        let warnings = cast_warnings(mesh, set.set.rays(), Sides::Both, Some(&set), &answers);
+        assert!(warnings.iter().all(|warning| warning.sentence.starts_with("os1: ")), "{warnings:?}");
+        warnings.into_iter().map(|warning| (warning.code, warning.sentence)).collect::<Vec<_>>()
+    };
+    let sees = |at: [f64; 3], along: [f64; 3], t_max: f64| vec![CastRay { t_max, ..ray(at, along) }];
+    // Its front along +y: z and x span it.
+    let y_up = ground(30.0, [2, 0]);
+    let words = ["--up y"];
+    assert_one(
+        of_set(&y_up, sees([5.0, 2.0, 5.0], [0.0, -1.0, 0.0], 100.0)),
+        WarningCode::TerrainOnItsSide,
+        &words,
+    );
+    let z_up = ground(30.0, [0, 1]);
+    assert_eq!(of_set(&z_up, sees([5.0, 5.0, 2.0], [0.0, 0.0, -1.0], 100.0)), []);
+    // Rays of no set have the axes of their file.
+    assert_eq!(found(&y_up, &sees([5.0, 2.0, 5.0], [0.0, -1.0, 0.0], 100.0), Sides::Both, false), []);
+    let large = ground(30_000.0, [0, 1]);
+    let words = ["millimetres", "--scale 0.001"];
+    assert_one(
+        of_set(&large, sees([5.0, 5.0, 2.0], [0.0, 0.0, -1.0], 100.0)),
+        WarningCode::TerrainTooLarge,
+        &words,
+    );
+}

@@ -1,0 +1,28 @@
+//! Rules on the polygons of a terrain's file.
+
+use raypencil_report::{counted, number};
+
+use crate::warning::{Warning, WarningCode};
+
+/// Warns that polygons of a file cross themselves. `first` names the first one.
+pub fn polygons_cross(count: u64, first: &str) -> Warning {
+    let polygons =
+        counted(count, "polygon of the file crosses itself", "polygons of the file cross themselves");
+    let sentence = format!(
+        "{polygons}, the first is {first}: nobody can say what is inside of it, and a fan around its first corner was taken. Mend \
+         it in the program that wrote it."
+    );
+    Warning::of_scene(WarningCode::PolygonsCross, sentence)
+}
+
+/// Warns that polygons of a file are not planar. `worst` names the one that leaves its plane by the largest distance, in units of
+/// the file.
+pub fn polygons_not_planar(count: u64, worst: &str, distance: f64) -> Warning {
+    let polygons = counted(count, "polygon of the file is not planar", "polygons of the file are not planar");
+    let sentence = format!(
+        "{polygons}; {worst} leaves its plane by {} units of the file: another program may cut it along other lines, and make \
+         another surface. Triangles leave no choice.",
+        number(distance)
+    );
+    Warning::of_scene(WarningCode::PolygonsNotPlanar, sentence)
+}
