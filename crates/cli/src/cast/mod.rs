@@ -177,7 +177,9 @@ impl Answered<'_> {
         let each = (rays <= printed).then(|| {
             self.rays.iter().enumerate().map(|(k, ray)| ray_json(ray, &self.answers, k)).collect::<Vec<_>>()
         });
-        let counts = json!({ "rays": rays, "hits": hits, "misses": rays - hits, "ties": ties });
+        let (too_near, misses) = (self.answers.too_near(), self.answers.misses());
+        let counts =
+            json!({ "rays": rays, "hits": hits, "tooNear": too_near, "misses": misses, "ties": ties });
         let summary = self.summary.as_ref().map(|path| path.display().to_string());
         let mut document = json!({ "counts": counts, "rays": each, "summary": summary });
         if let Some(name) = self.set {
