@@ -5,8 +5,8 @@
 
 FOLDER is what `raypencil cast MESH.obj RAYS.npy --any --all -o FOLDER` wrote. For each ray all faces are tried. Every array
 is compared bit for bit. If FOLDER has margins, some rays (--displaced) are moved sideways by a little less than their
-lower bounds, in eight directions: the nearest faces, or whether anything is hit, must not change. Upper bounds are not
-examined.
+lower bounds, in eight directions: the nearest faces, or whether anything is hit, must not change, nor whether that is too near.
+Upper bounds are not examined.
 
 Exit code 0: all bits are equal; 1: some are not, or nothing was compared; 2: a file cannot be used.
 """
@@ -85,8 +85,8 @@ class Ray:
         self.d = tuple(whole(x, self.f) for x in self.numbers[3:6])
         self.unit = Fraction(2) ** (self.f - self.e)
         self.vertices = [tuple(whole(x, self.e) for x in vertex) for vertex in mesh.vertices]
-        self.t_min = Fraction(self.numbers[6]) if len(numbers) == 8 else Fraction(0)
-        t_max = self.numbers[7] if len(numbers) == 8 else math.inf
+        t_min, t_max, t_blind = (*self.numbers[6:], *(0.0, math.inf, 0.0)[len(numbers) - 6 :])
+        self.t_min, self.t_blind = Fraction(t_min), Fraction(t_blind)
         self.t_max = None if t_max == math.inf else Fraction(t_max)
         self.largest = max(range(3), key=lambda k: abs(self.d[k]))
 
@@ -138,10 +138,11 @@ def counted(group, fronts_only):
 
 
 def nearest(mesh, ray, fronts_only):
+    """The nearest faces, and whether they are too near."""
     for group in groups_of(mesh, ray):
         if faces := counted(group, fronts_only):
-            return [hit.index for hit in faces]
-    return []
+            return [hit.index for hit in faces], faces[0].t < ray.t_blind
+    return [], False
 
 
 def values(ray, hit):
@@ -204,10 +205,11 @@ def displaced(table, mesh, rays, folder, fronts_only, count):
             first = nearest(mesh, Ray(mesh, rays[k]), fronts_only)
             for x, y in around:
                 there = nearest(mesh, moved(mesh, rays[k], across[k], (size * x, size * y)), fronts_only)
-                if name == "face":
-                    table.compare("margin.face", f"ray {k}, {x},{y}", first, there)
-                else:
-                    table.compare("margin.surface", f"ray {k}, {x},{y}", bool(first), bool(there))
+                if name == "surface":
+                    there = [bool(part) for part in there]
+                kept = [bool(part) for part in first] if name == "surface" else first
+                for part, (of_ray, of_moved) in enumerate(zip(kept, there)):
+                    table.compare(f"margin.{name}", f"ray {k}, {x},{y}, part {part}", of_ray, of_moved)
 
 
 def main():
@@ -238,7 +240,9 @@ def main():
         first = groups[0][1] if groups else []
         expected = {"face": NO_FACE, "side": 0, "ties": 0, "t": math.inf, "range": math.inf, "cos_incidence": math.nan}
         expected |= {name: [math.nan] * 3 for name in ("point", "normal", "barycentric")}
-        if first:
+        if first and first[0].t < ray.t_blind:
+            expected |= {"t": -math.inf, "range": -math.inf}
+        elif first:
             expected = {"face": first[0].index, "side": 1 if first[0].front else -1, "ties": len(first)}
             expected |= values(ray, first[0])
         expected["any"] = int(bool(first))

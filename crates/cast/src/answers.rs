@@ -3,10 +3,13 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_referee::{CastHit, CastMargins, ExactCast, SidedFace};
-use raypencil_scene::{CastRay, FaceId, Progress, Side, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
 use raypencil_tracer::{CastTraverser, TracedHit, TracerCast};
 
 /// What is asked beside the first hit.
+///
+/// `any` and `all` ask where the ray meets the mesh between its ends, not what a sensor reads: they know of hits that are too
+/// near for it, and of those behind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Questions {
     /// Whether anything is hit.
@@ -54,8 +57,8 @@ pub struct GroupAtT {
 /// The answers to some rays, in their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answers {
-    /// The first hit of each ray; `None` where nothing is hit.
-    pub first: Vec<Option<FirstHit>>,
+    /// The first hit of each ray, where there is one and it is not too near.
+    pub first: Vec<Reading<FirstHit>>,
     /// Whether each ray hits anything, if that was asked.
     pub any: Option<Vec<bool>>,
     /// All hits of each ray, if they were asked for.
@@ -72,19 +75,50 @@ impl Answers {
 
     /// The same with a tree that is there already.
     pub fn traced(tracer: &TracerCast, rays: &[CastRay], sides: Sides) -> Self {
-        let first = |traverser: &mut CastTraverser<'_>, ray| {
-            let TracedHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
-                traverser.first(ray, sides)?;
-            Some(FirstHit { face, side, ties: 1, t, range, point, normal, barycentric, cos_incidence })
+        let first = |traverser: &mut CastTraverser<'_>, ray: &CastRay| {
+            let hit = Reading::of(traverser.first(ray, sides), |hit| ray.is_too_near(hit.t));
+            hit.map(|hit| {
+                let TracedHit { face, side, t, range, point, normal, barycentric, cos_incidence } = hit;
+                FirstHit { face, side, ties: 1, t, range, point, normal, barycentric, cos_incidence }
+            })
         };
         let first = rays.par_iter().map_init(|| tracer.traverser(), first).collect();
         Self { first, any: None, all: None, margins: None }
     }
 
+    /// The first hits, of the rays that have one.
+    pub fn hits(&self) -> impl Iterator<Item = &FirstHit> + Clone {
+        self.first.iter().filter_map(Reading::hit)
+    }
+
     /// Number of rays that hit something, and of these the number whose first hit is a tie.
     pub fn counts(&self) -> (usize, usize) {
-        let hits = self.first.iter().flatten();
-        (hits.clone().count(), hits.filter(|hit| hit.ties > 1).count())
+        (self.hits().count(), self.hits().filter(|hit| hit.ties > 1).count())
+    }
+
+    /// Number of rays whose nearest hit is too near for their sensor.
+    pub fn too_near(&self) -> usize {
+        self.first.iter().filter(|read| matches!(read, Reading::TooNear)).count()
+    }
+
+    /// Number of rays that hit nothing.
+    pub fn misses(&self) -> usize {
+        self.first.iter().filter(|read| matches!(read, Reading::Miss)).count()
+    }
+
+    /// A distance along each ray as files have it (REP-117): -Inf where the nearest hit is too near, +Inf where nothing is hit.
+    pub fn distances(&self, of: impl Fn(&FirstHit) -> f64) -> Vec<f64> {
+        let distance = |read: &Reading<FirstHit>| match read {
+            Reading::Hit(hit) => of(hit),
+            Reading::TooNear => f64::NEG_INFINITY,
+            Reading::Miss => f64::INFINITY,
+        };
+        self.first.iter().map(distance).collect()
+    }
+
+    /// Another value of each first hit; `none` where there is none, too near or not.
+    pub fn values<T: Clone>(&self, of: impl Fn(&FirstHit) -> T, none: T) -> Vec<T> {
+        self.first.iter().map(|read| read.hit().map_or_else(|| none.clone(), &of)).collect()
     }
 }
 
@@ -124,20 +158,21 @@ pub fn cast_with(
     Answers { first, any, all, margins }
 }
 
-fn first(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Option<FirstHit> {
-    let faces = exact.first(ray, sides);
-    let CastHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
-        exact.values(ray, *faces.first()?)?;
-    Some(FirstHit {
-        face,
-        side,
-        ties: faces.len() as u32,
-        t: t.double,
-        range: range.double,
-        point: DVec3::from_array(point.map(|part| part.double)),
-        normal: DVec3::from_array(normal.map(|part| part.double)),
-        barycentric: barycentric.map(|weight| weight.double),
-        cos_incidence: cos_incidence.double,
+fn first(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Reading<FirstHit> {
+    exact.reading(ray, sides).map(|faces| {
+        let CastHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
+            exact.values(ray, faces[0]).expect("a nearest face is met");
+        FirstHit {
+            face,
+            side,
+            ties: faces.len() as u32,
+            t: t.double,
+            range: range.double,
+            point: DVec3::from_array(point.map(|part| part.double)),
+            normal: DVec3::from_array(normal.map(|part| part.double)),
+            barycentric: barycentric.map(|weight| weight.double),
+            cos_incidence: cos_incidence.double,
+        }
     })
 }
 

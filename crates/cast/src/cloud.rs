@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use raypencil_files::{FileError, write_atomically};
-use raypencil_scene::NamedRaySet;
+use raypencil_scene::{NamedRaySet, Reading};
 
 use crate::answers::Answers;
 
@@ -21,7 +21,7 @@ pub fn write_ply(path: impl AsRef<Path>, answers: &Answers) -> Result<(), FileEr
              property double cos_incidence\nend_header\n",
             answers.counts().0
         )?;
-        for hit in answers.first.iter().flatten() {
+        for hit in answers.hits() {
             for value in hit.point.to_array() {
                 file.write_all(&value.to_le_bytes())?;
             }
@@ -32,8 +32,9 @@ pub fn write_ply(path: impl AsRef<Path>, answers: &Answers) -> Result<(), FileEr
     })
 }
 
-/// Writes one point for each ray: PCD 0.7, binary, organised. Where nothing is hit x, y, z and `range` are NaN. (Point
-/// Cloud Library, "The PCD (Point Cloud Data) file format")
+/// Writes one point for each ray: PCD 0.7, binary, organised. Where nothing is hit x, y, z and `range` are NaN. What is too near
+/// is no point either: x, y, z are NaN, and `range` is -Inf. (Point Cloud Library, "The PCD (Point Cloud Data) file format";
+/// REP-117)
 ///
 /// The width is the last dimension of the set's shape, the height the product of the others, so that points are in the
 /// order of the rays. Fields: x, y, z (float32), `ring` (uint16: the index in the second dimension, 0 without one, at most
@@ -58,15 +59,19 @@ pub fn write_pcd(path: impl AsRef<Path>, answers: &Answers, set: &NamedRaySet) -
              SIZE 4 4 4 2 8 4\nTYPE F F F U F F\nCOUNT 1 1 1 1 1 1\nWIDTH {width}\nHEIGHT {height}\n\
              VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {count}\nDATA binary\n"
         )?;
-        for (index, hit) in answers.first.iter().enumerate() {
-            let point = hit.map_or([f64::NAN; 3], |hit| hit.point.to_array());
+        for (index, read) in answers.first.iter().enumerate() {
+            let (point, range) = match read {
+                Reading::Hit(hit) => (hit.point.to_array(), hit.range),
+                Reading::TooNear => ([f64::NAN; 3], f64::NEG_INFINITY),
+                Reading::Miss => ([f64::NAN; 3], f64::NAN),
+            };
             for value in point {
                 file.write_all(&(value as f32).to_le_bytes())?;
             }
             file.write_all(&ring(index as u64).to_le_bytes())?;
             let time = set.times.as_ref().map_or(0.0, |times| times[index]);
             file.write_all(&time.to_le_bytes())?;
-            file.write_all(&(hit.map_or(f64::NAN, |hit| hit.range) as f32).to_le_bytes())?;
+            file.write_all(&(range as f32).to_le_bytes())?;
         }
         Ok(())
     })

@@ -212,11 +212,9 @@ impl CastPage<'_> {
 
     /// Each channel with its name and unit, in order of importance: ray by ray, the exact answers and then the others.
     fn channels(&self) -> Vec<(&'static str, &'static str, PerRay)> {
-        let hits = &self.answers.first;
+        let (answers, rays) = (self.answers, self.answers.first.len() as u32);
         let stated = self.compared.map(|compared| compared.stated);
-        let real = |of: OfHit, miss: f64| -> Vec<f64> {
-            hits.iter().map(|hit| hit.as_ref().map_or(miss, of)).collect()
-        };
+        let real = |of: OfHit, none: f64| answers.values(of, none);
         let both = |exact: Vec<f64>, other: Option<Vec<f64>>| match stated {
             Some(_) => PerRay::Reals(vec![Some(exact), other]),
             None => PerRay::Reals(vec![Some(exact)]),
@@ -236,12 +234,12 @@ impl CastPage<'_> {
         };
         let given = |of: fn(&Stated) -> &Option<Vec<f64>>| stated.and_then(|stated| of(stated).clone());
         let mut channels = vec![
-            ("range.T", "m", both(real(|hit| hit.range, f64::INFINITY), given(|stated| &stated.range))),
+            ("range.T", "m", both(answers.distances(|hit| hit.range), given(|stated| &stated.range))),
             (
                 "face.I",
                 "",
                 wholes(
-                    hits.iter().map(|hit| face(hit.map(|hit| hit.face))).collect(),
+                    answers.values(|hit| hit.face.0, u32::MAX),
                     stated.and_then(|stated| {
                         Some(stated.face.as_ref()?.iter().map(|one| face(*one)).collect())
                     }),
@@ -253,23 +251,19 @@ impl CastPage<'_> {
                 both(real(|hit| hit.cos_incidence, f64::NAN), given(|stated| &stated.cos_incidence)),
             ),
             // Which ray of the arrays a cell is.
-            (
-                "ray",
-                "",
-                wholes((0..hits.len() as u32).collect(), stated.map(|_| (0..hits.len() as u32).collect())),
-            ),
+            ("ray", "", wholes((0..rays).collect(), stated.map(|_| (0..rays).collect()))),
             (
                 "side",
                 "",
                 both(
-                    hits.iter().map(|hit| sides(hit.map(|hit| hit.side))).collect(),
+                    answers.values(|hit| sides(Some(hit.side)), 0.0),
                     stated.and_then(|stated| {
                         Some(stated.side.as_ref()?.iter().map(|one| sides(*one)).collect())
                     }),
                 ),
             ),
             ("faces at this t", "", both(real(|hit| f64::from(hit.ties), 0.0), None)),
-            ("t", "", both(real(|hit| hit.t, f64::INFINITY), given(|stated| &stated.t))),
+            ("t", "", both(answers.distances(|hit| hit.t), given(|stated| &stated.t))),
         ];
         let points: [(&str, OfHit); 3] =
             [("P.X", |hit| hit.point.x), ("P.Y", |hit| hit.point.y), ("P.Z", |hit| hit.point.z)];
@@ -309,7 +303,7 @@ impl CastPage<'_> {
                 .stated
                 .face
                 .as_ref()
-                .is_some_and(|faces| faces[ray] != self.answers.first[ray].map(|hit| hit.face));
+                .is_some_and(|faces| faces[ray] != self.answers.first[ray].hit().map(|hit| hit.face));
             let (class, words) = match verdict {
                 RayVerdict::Same { is_tie: true } if names_another => {
                     (Class::Tie, "another face that is met at this very t".to_string())

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use raypencil_report::{Anchor, Colour, ColourMap, Drawing, INK, Mark, SOFT, Scale};
-use raypencil_scene::NamedRaySet;
+use raypencil_scene::{NamedRaySet, Reading};
 
 use crate::answers::Answers;
 
@@ -27,13 +27,16 @@ const MAX_CELLS: u64 = 900;
 /// Colour of cells without a hit.
 const MISS: Colour = [224, 226, 229];
 
+/// Colour of cells in which what is hit is too near.
+const TOO_NEAR: Colour = [46, 48, 56];
+
 /// The ranges as a picture, for a set of two dimensions; `None` for others, and if nothing is hit.
 ///
 /// A spinning head has a row for each channel, the highest elevation on top, and its firing sequences from left to right.
 /// Other sets have the rows and columns of their shape. Of many rows or columns some are left out.
 pub fn range_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     let &[first, second] = set.shape.as_slice() else { return None };
-    let scale = Scale::of_ranges(answers.first.iter().flatten().map(|hit| hit.range))?;
+    let scale = Scale::of_ranges(answers.hits().map(|hit| hit.range))?;
     let order = set.elevations_deg.as_ref().map(|elevations| {
         let mut order: Vec<usize> = (0..elevations.len()).collect();
         order.sort_by(|&a, &b| elevations[b].total_cmp(&elevations[a]));
@@ -51,8 +54,11 @@ pub fn range_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
                 Some(order) => i * second as usize + order[j],
                 None => j * second as usize + i,
             };
-            let colour =
-                answers.first[index].map_or(MISS, |hit| ColourMap::Sequential.at(scale.fraction(hit.range)));
+            let colour = match &answers.first[index] {
+                Reading::Hit(hit) => ColourMap::Sequential.at(scale.fraction(hit.range)),
+                Reading::TooNear => TOO_NEAR,
+                Reading::Miss => MISS,
+            };
             cells.push(Some(colour));
         }
     }
@@ -83,7 +89,12 @@ pub fn range_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     page.text([LEFT_PX, below], "0", Anchor::Start, SOFT);
     page.text([LEFT_PX + 0.5 * width, below], words, Anchor::Middle, SOFT);
     page.text([LEFT_PX + width, below], (columns - 1).to_string(), Anchor::End, SOFT);
-    bar(&mut page, scale, "range, m", TOP_PX + height + 38.0);
+    let y = TOP_PX + height + 38.0;
+    bar(&mut page, scale, "range, m", y);
+    key(&mut page, [LEFT_PX + 610.0, y], MISS, "nothing is hit");
+    if answers.too_near() > 0 {
+        key(&mut page, [LEFT_PX + 760.0, y], TOO_NEAR, "too near");
+    }
     Some(page)
 }
 
@@ -124,7 +135,7 @@ pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     const SIDE: usize = 900;
     const SIDE_PX: f64 = SIDE as f64;
     let view = View::along(set.up);
-    let points = || answers.first.iter().flatten().map(|hit| view.of(hit.point));
+    let points = || answers.hits().map(|hit| view.of(hit.point));
     let scale = Scale::of(points().map(|point| point.z))?;
     let origin = view.of(set.set.rays().first()?.origin);
     let (low, high) = points().fold((origin, origin), |(low, high), point| (low.min(point), high.max(point)));
@@ -189,7 +200,7 @@ fn cross(page: &mut Drawing, [x, y]: [f64; 2]) {
     page.line(vec![[x, y - 8.0], [x, y + 8.0]], INK, 2.0);
 }
 
-/// A scale of colours with its ticks and its label, and the colour of rays that hit nothing.
+/// A scale of colours with its ticks and its label.
 fn bar(page: &mut Drawing, scale: Scale, label: &str, y: f64) {
     const STEPS: usize = 256;
     const BAR_PX: f64 = 480.0;
@@ -206,10 +217,11 @@ fn bar(page: &mut Drawing, scale: Scale, label: &str, y: f64) {
         page.text([x, y + 33.0], tick.label, Anchor::Middle, SOFT);
     }
     page.text([LEFT_PX + BAR_PX + 16.0, y + 12.0], label, Anchor::Start, INK);
-    if label.starts_with("range") {
-        let x = LEFT_PX + BAR_PX + 130.0;
-        let corners = vec![[x, y], [x + 14.0, y], [x + 14.0, y + 14.0], [x, y + 14.0]];
-        page.polygon(corners, MISS, None);
-        page.text([x + 20.0, y + 12.0], "nothing is hit", Anchor::Start, SOFT);
-    }
+}
+
+/// A colour that is beside the scale, and what it means.
+fn key(page: &mut Drawing, [x, y]: [f64; 2], colour: Colour, words: &str) {
+    let corners = vec![[x, y], [x + 14.0, y], [x + 14.0, y + 14.0], [x, y + 14.0]];
+    page.polygon(corners, colour, None);
+    page.text([x + 20.0, y + 12.0], words, Anchor::Start, SOFT);
 }

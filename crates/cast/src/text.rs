@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use raypencil_referee::{CastMargin, CastMargins};
 use raypencil_report::{count, counted};
-use raypencil_scene::{CastRay, Side};
+use raypencil_scene::{CastRay, Reading, Side};
 use serde_json::{Value, json};
 
 use crate::answers::{Answers, GroupAtT};
@@ -16,16 +16,20 @@ fn side_word(side: Side) -> &'static str {
     }
 }
 
-/// How many rays hit, tie and miss, as one line.
+/// How many rays hit, tie, are too near and miss, as one line.
 pub fn counts_text(answers: &Answers) -> String {
     let (hits, ties) = answers.counts();
-    let misses = answers.first.len() - hits;
+    // Only a sensor's rays can be too near.
+    let too_near = match answers.too_near() as u64 {
+        0 => String::new(),
+        rays => format!("{} too near; ", count(rays)),
+    };
     format!(
-        "{}: {} hit, {} of them at a tie; {} miss",
+        "{}: {} hit, {} of them at a tie; {too_near}{} miss",
         counted(answers.first.len() as u64, "ray", "rays"),
         count(hits as u64),
         count(ties as u64),
-        count(misses as u64)
+        count(answers.misses() as u64)
     )
 }
 
@@ -36,10 +40,16 @@ pub fn ray_text(ray: &CastRay, answers: &Answers, index: usize) -> String {
     if ray.t_min > 0.0 || ray.t_max < f64::INFINITY {
         let _ = write!(text, ", t from {} to {}", ray.t_min, ray.t_max);
     }
+    if ray.t_blind > 0.0 {
+        let _ = write!(text, ", blind before t {}", ray.t_blind);
+    }
     text.push('\n');
     match &answers.first[index] {
-        None => text.push_str("  nothing is hit\n"),
-        Some(hit) => {
+        Reading::Miss => text.push_str("  nothing is hit\n"),
+        Reading::TooNear => {
+            let _ = writeln!(text, "  too near     the nearest surface is met before t {}", ray.t_blind);
+        }
+        Reading::Hit(hit) => {
             let _ = writeln!(text, "  first        face {}, {}", hit.face.0, side_word(hit.side));
             if hit.ties > 1 {
                 let _ =
@@ -88,7 +98,8 @@ fn group_text(group: &GroupAtT) -> String {
 
 /// The answers to the ray with this index, for programs.
 pub fn ray_json(ray: &CastRay, answers: &Answers, index: usize) -> Value {
-    let first = answers.first[index].as_ref().map(|hit| {
+    let read = &answers.first[index];
+    let first = read.hit().map(|hit| {
         json!({
             "face": hit.face.0,
             "side": side_word(hit.side),
@@ -115,6 +126,8 @@ pub fn ray_json(ray: &CastRay, answers: &Answers, index: usize) -> Value {
         "tMin": ray.t_min,
         // JSON has no infinity.
         "tMax": (ray.t_max < f64::INFINITY).then_some(ray.t_max),
+        "tBlind": ray.t_blind,
+        "tooNear": matches!(read, Reading::TooNear),
         "first": first,
     });
     if let Some(any) = &answers.any {

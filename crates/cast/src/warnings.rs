@@ -46,10 +46,10 @@ pub fn cast_warnings(
     let warning = |code, sentence: String| Warning::of_scene(code, format!("{of}{sentence}"));
     let mut found = Vec::new();
     let (hits, _) = answers.counts();
-    if hits == 0 && !rays.is_empty() {
+    if hits + answers.too_near() == 0 && !rays.is_empty() {
         found.push(warning(WarningCode::NoHits, nothing_hit(mesh, rays, sides)));
     }
-    let backs = answers.first.iter().flatten().filter(|hit| hit.side == Side::Back).count();
+    let backs = answers.hits().filter(|hit| hit.side == Side::Back).count();
     if backs as f64 > MAX_BACK_SHARE * hits as f64 {
         let percent = number(100.0 * backs as f64 / hits as f64);
         let sentence = format!(
@@ -102,7 +102,7 @@ fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
         let mut hits = 0_u64;
         let mut nearest: Option<(f64, f64)> = None;
         for &ray in &tried {
-            let asked = if limited { *ray } else { CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray } };
+            let asked = if limited { *ray } else { CastRay { t_min: 0.0, t_max: f64::INFINITY, t_blind: 0.0, ..*ray } };
             let Some(hit) = traverser.first(&asked, sides) else { continue };
             hits += 1;
             if nearest.is_none_or(|(range, _)| hit.range < range) {

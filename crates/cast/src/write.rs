@@ -45,15 +45,15 @@ pub(crate) fn side_number(side: Side) -> i8 {
 
 /// Writes a folder: an array for each value, of the rays' own shape, and last `summary.json`. Returns its path.
 ///
-/// | array | type and shape | where nothing is hit |
+/// | array | type and shape | where nothing is hit, or what is hit is too near |
 /// | --- | --- | --- |
 /// | `face` | u4 | 4294967295 |
 /// | `side` | i1: 1 front, -1 back | 0 |
 /// | `ties` | u4: number of faces at this t | 0 |
-/// | `t`, `range` | f8 | +Inf |
+/// | `t`, `range` | f8 | +Inf; -Inf for what is too near |
 /// | `cos_incidence` | f8 | NaN |
 /// | `point`, `normal`, `barycentric` | f8, (..., 3) | NaN |
-/// | `any`, if it was asked | u1: 0 or 1 | 0 |
+/// | `any`, if it was asked | u1: 0 or 1 | 0; 1 for what is too near |
 /// | `all.start`, if all hits were asked for | u8, (rays + 1): the hits of ray k are `start[k]..start[k + 1]` | |
 /// | `margin.face`, `margin.surface`, if they were asked for | f8, (..., 2): lo and hi, in the mesh's unit | as for hits |
 /// | `across`, with the margins | f8, (..., 2, 3): the vectors along which a ray is moved | as for hits |
@@ -133,23 +133,15 @@ fn write_arrays(
 ) -> Result<(Vec<String>, Value), FileError> {
     let mut arrays = Vec::new();
     let mut folder = ArrayFolder { folder, arrays: &mut arrays };
-    let of = |value: fn(&FirstHit) -> f64, miss: f64| -> Vec<f64> {
-        answers.first.iter().map(|hit| hit.as_ref().map_or(miss, value)).collect()
-    };
-    let vectors = |value: fn(&FirstHit) -> [f64; 3]| -> Vec<f64> {
-        answers.first.iter().flat_map(|hit| hit.as_ref().map_or([f64::NAN; 3], value)).collect()
-    };
+    let vectors =
+        |value: fn(&FirstHit) -> [f64; 3]| -> Vec<f64> { answers.values(value, [f64::NAN; 3]).concat() };
     let with_three: Vec<u64> = shape.iter().copied().chain([3]).collect();
-    let faces: Vec<u32> = answers.first.iter().map(|hit| hit.map_or(NO_FACE, |hit| hit.face.0)).collect();
-    let of_sides: Vec<i8> =
-        answers.first.iter().map(|hit| hit.map_or(0, |hit| side_number(hit.side))).collect();
-    let ties: Vec<u32> = answers.first.iter().map(|hit| hit.map_or(0, |hit| hit.ties)).collect();
-    folder.write("face", shape, &faces)?;
-    folder.write("side", shape, &of_sides)?;
-    folder.write("ties", shape, &ties)?;
-    folder.write("t", shape, &of(|hit| hit.t, f64::INFINITY))?;
-    folder.write("range", shape, &of(|hit| hit.range, f64::INFINITY))?;
-    folder.write("cos_incidence", shape, &of(|hit| hit.cos_incidence, f64::NAN))?;
+    folder.write("face", shape, &answers.values(|hit| hit.face.0, NO_FACE))?;
+    folder.write("side", shape, &answers.values(|hit| side_number(hit.side), 0))?;
+    folder.write("ties", shape, &answers.values(|hit| hit.ties, 0))?;
+    folder.write("t", shape, &answers.distances(|hit| hit.t))?;
+    folder.write("range", shape, &answers.distances(|hit| hit.range))?;
+    folder.write("cos_incidence", shape, &answers.values(|hit| hit.cos_incidence, f64::NAN))?;
     folder.write("point", &with_three, &vectors(|hit| hit.point.to_array()))?;
     folder.write("normal", &with_three, &vectors(|hit| hit.normal.to_array()))?;
     folder.write("barycentric", &with_three, &vectors(|hit| hit.barycentric))?;
@@ -188,7 +180,7 @@ fn write_arrays(
         "rays": { "file": source.rays, "sha256": source.rays_sha256, "shape": shape, "count": answers.first.len() },
         "sides": if sides == Sides::Both { "both" } else { "fronts" },
         "warnings": cast_warnings(mesh, rays, sides, set, answers),
-        "counts": { "hits": hits, "misses": answers.first.len() - hits, "ties": ties },
+        "counts": { "hits": hits, "tooNear": answers.too_near(), "misses": answers.misses(), "ties": ties },
     });
     Ok((arrays, document))
 }

@@ -104,9 +104,10 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
 fn counts_text(counts: &RayPackCounts) -> String {
     let untested = counts.untested();
     let nothing = if untested.is_empty() { "nothing".to_string() } else { untested.join(", ") };
-    let RayPackCounts { rays, hits, misses, ties, .. } = counts;
+    let RayPackCounts { rays, hits, misses, ties, too_near, .. } = counts;
+    let too_near = if *too_near == 0 { String::new() } else { format!(", {too_near} too near") };
     format!(
-        "{}; {hits} hit, {ties} of them at a tie, {misses} miss\n\
+        "{}; {hits} hit, {ties} of them at a tie{too_near}, {misses} miss\n\
          Not tested by any of its rays: {nothing}.\n",
         counted(*rays, "ray", "rays")
     )
@@ -114,7 +115,9 @@ fn counts_text(counts: &RayPackCounts) -> String {
 
 /// The same for programs, of a set in a pack of a scene.
 fn set_json(PackedRaySet { name, counts }: &PackedRaySet) -> serde_json::Value {
-    serde_json::json!({ "name": name, "rays": counts.rays, "hits": counts.hits, "untested": counts.untested() })
+    serde_json::json!({
+        "name": name, "rays": counts.rays, "hits": counts.hits, "too_near": counts.too_near, "untested": counts.untested(),
+    })
 }
 
 /// Which clauses of the contract the pack tests, in a sentence.

@@ -236,7 +236,7 @@ pub(crate) fn pair<T: FromStr>(text: &str) -> Result<[T; 2], String> {
     Ok([one(a)?, one(b)?])
 }
 
-/// `--ray`: 6 or 8 numbers, as a row of a CSV file.
+/// `--ray`: 6, 8 or 9 numbers, as a row of a CSV file.
 pub(crate) fn ray(text: &str) -> Result<CastRay, String> {
     let rays = rays_from_bytes(text.as_bytes(), "--ray".as_ref()).map_err(|error| {
         // One row: its line says nothing.

@@ -20,7 +20,12 @@ export function recordedWords(value, isGiven, channel) {
   if (value === NOTHING) {
     return channel.key === 'face.I' ? 'none' : 'off the image';
   }
-  return Number.isFinite(value) ? shortestSingle(value) : 'no hit';
+  return Number.isFinite(value) ? shortestSingle(value) : noValueWords(value);
+}
+
+/** What a number that is not finite stands for. (REP-117) @param {number} value */
+export function noValueWords(value) {
+  return value === -Infinity ? 'too near' : 'no hit';
 }
 
 /**

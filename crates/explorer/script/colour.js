@@ -44,6 +44,9 @@ const BLUE_RED = [
 /** A hit on one side only. */
 export const ONE_SIDED_COLOUR = '#ff00e6';
 
+/** What is nearer than a sensor's shortest range. */
+export const TOO_NEAR_COLOUR = '#2e3038';
+
 /** Colour, letter and outline of each class, in the order of the classes. */
 export const CLASS_LOOKS = [
   { colour: '#d8d6d0', letter: '', shape: 'none' },

@@ -96,13 +96,14 @@ async function anglesBetween(data, sensor, a, b) {
  * @param {number} a
  * @param {number} b
  * @param {number|null} ulps steps of f64 from a to b
- * @returns {number} NaN: neither side hits; Infinity: one of them does not
+ * @returns {number} NaN: neither side hits; Infinity: one of them does not, or for one only it is too near
  */
 export function differenceOf(a, b, ulps) {
   const hasA = Number.isFinite(a) && a !== NOTHING;
   const hasB = Number.isFinite(b) && b !== NOTHING;
   if (!hasA || !hasB) {
-    return hasA === hasB ? NaN : Infinity;
+    const isAlike = hasA === hasB && (a === -Infinity) === (b === -Infinity);
+    return isAlike ? NaN : Infinity;
   }
   return ulps !== null && Math.abs(ulps) < SATURATED_ULPS ? ulps * doubleUlp(a) : b - a;
 }

@@ -1,7 +1,7 @@
 // The key of a picture: colour bar with ticks and unit, and what other colours and hatching mean.
 
 import { element, svgElement } from './elements.js';
-import { CLASS_LOOKS, ONE_SIDED_COLOUR, causeLook, gradientOf } from './colour.js';
+import { CLASS_LOOKS, ONE_SIDED_COLOUR, TOO_NEAR_COLOUR, causeLook, gradientOf } from './colour.js';
 import { ticksOf } from './limits.js';
 import { CLASS_NAMES } from './page_model.js';
 
@@ -110,6 +110,12 @@ function keysOf(model, layer) {
     case 'light':
       return [];
     default:
+      if (layer.statistics?.isTooNear) {
+        return [
+          [swatch(TOO_NEAR_COLOUR), 'too near'],
+          [hatch, 'no hit'],
+        ];
+      }
       return [[hatch, layer.channel.belongs === 'side' ? 'no hit' : 'not known']];
   }
 }

@@ -11,6 +11,7 @@ import { withUnit } from './numbers.js';
  * @property {Float64Array} sample sorted values, about `SAMPLE_SIZE` of them
  * @property {Float64Array} sizes sorted absolute values other than 0
  * @property {boolean} isOneSided whether some value is infinite: a hit on one side only
+ * @property {boolean} isTooNear whether some value is -Infinity: nearer than a sensor's shortest range
  * @property {boolean} isMissing whether some value is missing: no hit
  */
 
@@ -28,6 +29,7 @@ export function statisticsOf(values, nothing = NaN) {
   let highest = -Infinity;
   let unlikeZero = 0;
   let isOneSided = false;
+  let isTooNear = false;
   let isMissing = false;
   for (let k = 0; k < values.length; k += 1) {
     const value = values[k];
@@ -45,6 +47,8 @@ export function statisticsOf(values, nothing = NaN) {
       }
     } else if (value === Infinity) {
       isOneSided = true;
+    } else if (value === -Infinity) {
+      isTooNear = true;
     } else {
       isMissing = true;
     }
@@ -52,7 +56,7 @@ export function statisticsOf(values, nothing = NaN) {
   const largest = count === 0 ? 0 : Math.max(Math.abs(lowest), Math.abs(highest));
   const sample = sampleOf(values, nothing, count, false);
   const sizes = sampleOf(values, nothing, unlikeZero, true);
-  return { count, lowest, highest, largest, sample, sizes, isOneSided, isMissing };
+  return { count, lowest, highest, largest, sample, sizes, isOneSided, isTooNear, isMissing };
 }
 
 /**

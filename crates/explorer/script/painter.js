@@ -1,6 +1,13 @@
 // Pictures of rasters: one canvas pixel for each cell, with the scale it was coloured by.
 
-import { CLASS_LOOKS, MAP_COLOURS, ONE_SIDED_COLOUR, causeLook, colourTable } from './colour.js';
+import {
+  CLASS_LOOKS,
+  MAP_COLOURS,
+  ONE_SIDED_COLOUR,
+  TOO_NEAR_COLOUR,
+  causeLook,
+  colourTable,
+} from './colour.js';
 import { faceColour, packedColour, packedHex } from './colour.js';
 import { placeOn, scaleOfDifferences, scaleOfValues, statisticsOf } from './limits.js';
 import { NOTHING, NO_CODE } from './page_model.js';
@@ -215,11 +222,11 @@ function scaledPixels(values, scale, nothing, marksInfinite = true) {
   const table = colourTable(scale.map);
   const place = placeOn(scale);
   const last = MAP_COLOURS - 1;
-  const oneSided = packedHex(ONE_SIDED_COLOUR);
+  const [oneSided, tooNear] = [ONE_SIDED_COLOUR, TOO_NEAR_COLOUR].map(packedHex);
   for (let cell = 0; cell < pixels.length; cell += 1) {
     const value = values[cell];
     if (!(value < Infinity && value > -Infinity) || value === nothing) {
-      pixels[cell] = marksInfinite && value === Infinity ? oneSided : 0;
+      pixels[cell] = value === -Infinity ? tooNear : marksInfinite && value === Infinity ? oneSided : 0;
       continue;
     }
     const step = Math.round(place(value) * last);

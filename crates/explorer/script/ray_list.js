@@ -26,7 +26,7 @@ export class RayList {
     this.class = new Uint8Array(0);
     this.cause = new Uint8Array(0);
     this.quantity = new Uint8Array(0);
-    /** b - a of the ranges, metres; Infinity: a hit on one side only; NaN: none or not known. */
+    /** b - a of the ranges, metres; Infinity: a hit, or what is too near, on one side only; NaN: none or not known. */
     this.range = new Float64Array(0);
     this.flux = new Float64Array(0);
     /** @type {Promise<void>|null} */

@@ -267,14 +267,24 @@ function faceCell(name, face) {
   return element('td', {}, readoutSpan(name, text, face));
 }
 
+/** Two values of which one at least is none. @param {number} a @param {number} b */
+function unlikeWords(a, b) {
+  if (a !== -Infinity && b !== -Infinity) {
+    return 'one side hits, the other does not';
+  }
+  const isHit = Number.isFinite(a) || Number.isFinite(b);
+  return `too near on one side, ${isHit ? 'a hit' : 'no hit'} on the other`;
+}
+
 /** @param {CellReading} reading @param {Channel} channel @returns {(Node|string)[]} */
 function differenceWords(reading, channel) {
   const { difference, singleSteps, doubleSteps } = reading;
   if (Number.isNaN(difference)) {
-    return [readoutSpan('difference', 'none: no hit on either side', NaN)];
+    const words = reading.a === -Infinity ? 'too near on both sides' : 'no hit on either side';
+    return [readoutSpan('difference', `none: ${words}`, NaN)];
   }
   if (!Number.isFinite(difference)) {
-    return [readoutSpan('difference', 'one side hits, the other does not', Infinity)];
+    return [readoutSpan('difference', unlikeWords(reading.a, reading.b), Infinity)];
   }
   if (channel.key.startsWith('pixel.')) {
     return [readoutSpan('difference', String(difference), difference), ' pixels'];

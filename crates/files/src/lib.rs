@@ -75,7 +75,7 @@ pub use npy::{
 };
 pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, remove_abandoned};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
-pub use rays::{RayArray, rays_from_bytes, read_rays};
+pub use rays::{RayArray, ray_rows, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};
 pub use values::{Array, Storage, Values};
 

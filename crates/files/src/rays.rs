@@ -23,9 +23,9 @@ pub struct RayArray {
 const NPY_MAGIC: &[u8] = b"\x93NUMPY";
 
 /// What a row of numbers must be.
-const ROW: &str = "6 numbers (origin, direction) or 8 (origin, direction, t_min, t_max)";
+const ROW: &str = "6 numbers (origin, direction), 8 (origin, direction, t_min, t_max) or 9 (with t_blind)";
 
-/// Reads rays from a file: NPY of shape (..., 6) or (..., 8), or CSV with 6 or 8 numbers in a row.
+/// Reads rays from a file: NPY of shape (..., 6), (..., 8) or (..., 9), or CSV with 6, 8 or 9 numbers in a row.
 ///
 /// # Errors
 /// Names the file, and the number, row or ray that is wrong.
@@ -54,13 +54,34 @@ pub fn rays_from_bytes(bytes: &[u8], file: &Path) -> Result<RayArray, FileError>
     Ok(RayArray { shape, rays: rays.collect::<Result<_, FileError>>()? })
 }
 
-/// A ray from its 6 or 8 numbers.
+/// A ray from its 6, 8 or 9 numbers.
 fn ray(row: &[f64]) -> CastRay {
     let ray = CastRay::new(DVec3::from_slice(row), DVec3::from_slice(&row[3..]));
-    match *row {
-        [.., t_min, t_max] if row.len() == 8 => CastRay { t_min, t_max, ..ray },
+    match row[6..] {
+        [t_min, t_max] => CastRay { t_min, t_max, ..ray },
+        [t_min, t_max, t_blind] => CastRay { t_min, t_max, t_blind, ..ray },
         _ => ray,
     }
+}
+
+/// The numbers of rays as rows of a file, and how many a row has: 8, or 9 if a ray of them has a `t_blind`.
+///
+/// ```
+/// use glam::DVec3;
+/// use raypencil_files::ray_rows;
+/// use raypencil_scene::CastRay;
+///
+/// let ray = CastRay::new(DVec3::ZERO, DVec3::X);
+/// assert_eq!(ray_rows(&[ray]), (8, vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::INFINITY]));
+/// assert_eq!(ray_rows(&[ray, CastRay { t_blind: 0.5, ..ray }]).1[8..], [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::INFINITY, 0.5]);
+/// ```
+pub fn ray_rows(rays: &[CastRay]) -> (usize, Vec<f64>) {
+    let width = if rays.iter().any(|ray| ray.t_blind > 0.0) { 9 } else { 8 };
+    let row = |ray: &CastRay| {
+        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
+        [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max, ray.t_blind].into_iter().take(width)
+    };
+    (width, rays.iter().flat_map(row).collect())
 }
 
 type Table = (Vec<u64>, usize, Vec<f64>);
@@ -68,10 +89,13 @@ type Table = (Vec<u64>, usize, Vec<f64>);
 fn of_npy(bytes: &[u8], file: &Path) -> Result<Table, FileError> {
     let array = npy_numbers_from_bytes(bytes, file)?;
     match array.shape.split_last() {
-        Some((&width @ (6 | 8), leading)) => Ok((leading.to_vec(), width as usize, array.values)),
+        Some((&width @ (6 | 8 | 9), leading)) => Ok((leading.to_vec(), width as usize, array.values)),
         _ => {
-            let fault =
-                Fault::new("shape", format!("{:?}", array.shape), format!("(..., 6) or (..., 8): {ROW}"));
+            let fault = Fault::new(
+                "shape",
+                format!("{:?}", array.shape),
+                format!("(..., 6), (..., 8) or (..., 9): {ROW}"),
+            );
             Err(FileError::Array(fault.in_file(file)))
         }
     }
@@ -103,7 +127,7 @@ fn of_csv(bytes: &[u8]) -> Result<Table, Fault> {
         }
         let refuse =
             |found: String, expected: String| Err(Fault::new(format!("line {line}"), found, expected));
-        if !matches!(record.len(), 6 | 8) {
+        if !matches!(record.len(), 6 | 8 | 9) {
             return refuse(format!("{} fields", record.len()), ROW.into());
         }
         if let Some((first, of_line)) = width

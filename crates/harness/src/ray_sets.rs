@@ -42,6 +42,11 @@ impl RaySetResult {
         self.answers.counts().0 as u64
     }
 
+    /// Number of rays whose nearest hit is too near for the sensor.
+    pub fn too_near(&self) -> u64 {
+        self.answers.too_near() as u64
+    }
+
     /// Rays by what became of them; all 0 if nothing was compared.
     pub fn counts(&self) -> CastCounts {
         self.comparison.as_ref().map(Comparison::counts).unwrap_or_default()
@@ -49,7 +54,10 @@ impl RaySetResult {
 
     /// The result in words.
     pub fn words(&self) -> String {
-        let all = format!("{}, {} hit", counted(self.rays(), "ray", "rays"), count(self.hits()));
+        let mut all = format!("{}, {} hit", counted(self.rays(), "ray", "rays"), count(self.hits()));
+        if self.too_near() > 0 {
+            all += &format!(", {} too near", count(self.too_near()));
+        }
         if self.comparison.is_none() {
             return format!("{all}; not compared, only the {WITH} answers them");
         }

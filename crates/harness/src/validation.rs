@@ -141,7 +141,7 @@ impl Validation {
 
     /// Whether a ray of any sensor hits the terrain, by any renderer.
     pub fn hits_something(&self) -> bool {
-        let is_hit_by_a_set = self.ray_sets.iter().any(|set| set.hits() > 0);
+        let is_hit_by_a_set = self.ray_sets.iter().any(|set| set.hits() + set.too_near() > 0);
         is_hit_by_a_set || most_hits(&self.rendered).iter().any(|of| of.hits > 0)
     }
 

@@ -19,7 +19,7 @@ const RAYS_AT_A_TIME: usize = 1 << 16;
 /// What stands for no face.
 const NO_FACE: u32 = u32::MAX;
 
-/// Answers rays of (n, 8) on a mesh: the arrays of `docs/guide/cast.md`, flat.
+/// Answers rays of (n, 9) on a mesh: the arrays of `docs/guide/cast.md`, flat.
 #[pyfunction]
 #[pyo3(signature = (mesh, rays, by_tracer, fronts_only, any, all, margins, on_stage=None))]
 pub(crate) fn cast<'py>(
@@ -109,23 +109,15 @@ fn side_number(side: Side) -> i8 {
 
 /// The arrays of some answers; of first hits with a row for each ray. Names and values are those of the command's files.
 pub(crate) fn arrays_of(answers: &Answers, rays: &[CastRay]) -> Arrays {
-    let first = &answers.first;
-    let (count, mut arrays) = (first.len(), Arrays::default());
-    let of = |value: fn(&FirstHit) -> f64, miss: f64| -> Vec<f64> {
-        first.iter().map(|hit| hit.as_ref().map_or(miss, value)).collect()
-    };
-    let vectors = |value: fn(&FirstHit) -> [f64; 3]| -> Vec<f64> {
-        first.iter().flat_map(|hit| hit.as_ref().map_or([f64::NAN; 3], value)).collect()
-    };
-    let faces: Vec<u32> = first.iter().map(|hit| hit.map_or(NO_FACE, |hit| hit.face.0)).collect();
-    let of_sides: Vec<i8> = first.iter().map(|hit| hit.map_or(0, |hit| side_number(hit.side))).collect();
-    let ties: Vec<u32> = first.iter().map(|hit| hit.map_or(0, |hit| hit.ties)).collect();
-    arrays.add("face", &[count], faces);
-    arrays.add("side", &[count], of_sides);
-    arrays.add("ties", &[count], ties);
-    arrays.add("t", &[count], of(|hit| hit.t, f64::INFINITY));
-    arrays.add("range", &[count], of(|hit| hit.range, f64::INFINITY));
-    arrays.add("cos_incidence", &[count], of(|hit| hit.cos_incidence, f64::NAN));
+    let (count, mut arrays) = (answers.first.len(), Arrays::default());
+    let vectors =
+        |value: fn(&FirstHit) -> [f64; 3]| -> Vec<f64> { answers.values(value, [f64::NAN; 3]).concat() };
+    arrays.add("face", &[count], answers.values(|hit| hit.face.0, NO_FACE));
+    arrays.add("side", &[count], answers.values(|hit| side_number(hit.side), 0));
+    arrays.add("ties", &[count], answers.values(|hit| hit.ties, 0));
+    arrays.add("t", &[count], answers.distances(|hit| hit.t));
+    arrays.add("range", &[count], answers.distances(|hit| hit.range));
+    arrays.add("cos_incidence", &[count], answers.values(|hit| hit.cos_incidence, f64::NAN));
     arrays.add("point", &[count, 3], vectors(|hit| hit.point.to_array()));
     arrays.add("normal", &[count, 3], vectors(|hit| hit.normal.to_array()));
     arrays.add("barycentric", &[count, 3], vectors(|hit| hit.barycentric));

@@ -7,6 +7,7 @@ use pyo3::types::PyDict;
 use raypencil::cast::{
     Comparison, RayVerdict, Stated, compare_with, comparison_headline, comparison_json, comparison_text,
 };
+use raypencil::io::ray_rows;
 use raypencil::referee::ExactCast;
 use raypencil::{CastRay, FaceId, Precision, Progress, Side};
 
@@ -79,7 +80,7 @@ fn compared(
             None => whole = Some(part),
             Some(whole) => {
                 whole.verdicts.extend(part.verdicts);
-                whole.hits += part.hits;
+                whole.met += part.met;
                 for (tally, more) in whole.values.iter_mut().zip(part.values) {
                     tally.compared += more.compared;
                     let later = more.worst.map(|(worst, ray)| (worst, ray + from));
@@ -98,7 +99,8 @@ fn compared(
     }
 }
 
-/// Compares first hits with the exact ones. `face` is -1 where nothing is hit; `t` and `range` are infinite there.
+/// Compares first hits with the exact ones. `face` is -1 where nothing is hit; `t` and `range` are +Inf there, and -Inf where what
+/// is hit is too near.
 #[pyfunction]
 #[pyo3(signature = (
     mesh, rays, name, arithmetic, fronts_only, face=None, t=None, range=None, side=None, point=None, normal=None,
@@ -159,16 +161,10 @@ pub(crate) fn judge<'py>(
         let exact = ExactCast::new(&mesh.triangles);
         let comparison = compared(&exact, &mesh, (set.rays(), sides), &stated, precision, watch);
         let command = |index: usize| {
-            let ray = &set.rays()[index];
-            let numbers: Vec<String> = ray
-                .origin
-                .to_array()
-                .iter()
-                .chain(&ray.direction.to_array())
-                .chain(&[ray.t_min, ray.t_max])
-                .map(ToString::to_string)
-                .collect();
-            format!("origin, direction, t_min, t_max: {}", numbers.join(", "))
+            let (width, numbers) = ray_rows(&set.rays()[index..=index]);
+            let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+            let blind = if width == 9 { ", t_blind" } else { "" };
+            format!("origin, direction, t_min, t_max{blind}: {}", numbers.join(", "))
         };
         let text = comparison_text(&name, &comparison, command);
         let json = comparison_json(&name, &comparison).to_string();

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
-use raypencil::io::RayArray;
+use raypencil::io::{RayArray, ray_rows};
 use raypencil::{CastRay, NamedRaySet, RaySet, Sides};
 
 use crate::array::Arrays;
@@ -13,13 +13,13 @@ pub(crate) fn sides(fronts_only: bool) -> Sides {
     if fronts_only { Sides::Fronts } else { Sides::Both }
 }
 
-/// Rays from an array of (n, 8): origin, direction, `t_min`, `t_max`.
+/// Rays from an array of (n, 9): origin, direction, `t_min`, `t_max`, `t_blind`.
 ///
 /// # Errors
 /// As [`RaySet::new`], for the first ray that is wrong.
 pub(crate) fn rays_of(array: &PyReadonlyArray2<'_, f64>, sides: Sides) -> Result<RaySet, Failure> {
-    if array.shape()[1] != 8 {
-        return Err(Failure::new(format!("rays are {:?}; expected (n, 8)", array.shape())));
+    if array.shape()[1] != 9 {
+        return Err(Failure::new(format!("rays are {:?}; expected (n, 9)", array.shape())));
     }
     let view = array.as_array();
     let rays = view.rows().into_iter().map(|row| CastRay {
@@ -27,25 +27,18 @@ pub(crate) fn rays_of(array: &PyReadonlyArray2<'_, f64>, sides: Sides) -> Result
         direction: DVec3::new(row[3], row[4], row[5]),
         t_min: row[6],
         t_max: row[7],
+        t_blind: row[8],
     });
     Ok(RaySet::new(rays.collect(), sides)?)
-}
-
-/// The numbers of rays, eight each.
-fn numbers(rays: &[CastRay]) -> Vec<f64> {
-    let eight = |ray: &CastRay| {
-        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
-        [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max]
-    };
-    rays.iter().flat_map(eight).collect()
 }
 
 /// A set of rays as arrays.
 pub(crate) fn set_arrays(set: &NamedRaySet) -> Arrays {
     let shape: Vec<usize> = set.shape.iter().map(|&side| side as usize).collect();
-    let of_eight: Vec<usize> = shape.iter().copied().chain([8]).collect();
+    let (width, numbers) = ray_rows(set.set.rays());
+    let of_rays: Vec<usize> = shape.iter().copied().chain([width]).collect();
     let mut arrays = Arrays::default();
-    arrays.add("rays", &of_eight, numbers(set.set.rays()));
+    arrays.add("rays", &of_rays, numbers);
     if let Some(times) = &set.times {
         arrays.add("times", &shape, times.clone());
     }

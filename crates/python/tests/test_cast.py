@@ -80,6 +80,23 @@ def test_the_ends_of_a_ray_belong_to_it(cube: Mesh) -> None:
     assert hits(t_min=2.0) and not hits(t_min=2.0 + 1e-15, t_max=9.0)
 
 
+def test_what_is_before_the_shortest_range_is_too_near(cube: Mesh) -> None:
+    # The top at z = 1 is met at t = 1, the bottom at t = 2, by a ray down by 2 for each t; the last ray misses.
+    origins = [[0.25, 0.5, 3], [0.25, 0.5, 3], [9, 9, 3]]
+    blind = [1.5, 1.0, 1.5]
+    answers = cast(cube, origins, [0, 0, -2], t_blind=blind, query=("any", "all"), margins=True)
+    assert answers.too_near.tolist() == [True, False, False] and answers.hit.tolist() == [False, True, False]
+    assert answers.t.tolist() == [-np.inf, 1.0, np.inf] and answers.range.tolist() == [-np.inf, 2.0, np.inf]
+    assert answers.face[0] == answers.face[2] == 4294967295 and np.isnan(answers.point[0]).all()
+    assert "1 of 3 rays hit, 1 too near" in repr(answers)
+    # Where the ray meets the mesh is another question; a start of the ray is another ray.
+    assert answers.any is not None and answers.any.tolist() == [1, 1, 0]
+    assert answers.all is not None and answers.all.t[answers.all.of(0)].tolist() == [1.0, 2.0]
+    assert cast(cube, origins[0], [0, 0, -2], t_min=1.5).t == 2.0
+    rays = np.array([[*origin, 0, 0, -2, 0, np.inf, t] for origin, t in zip(origins, blind, strict=True)])
+    assert same_bits(cast(cube, rays).t, answers.t) and same_bits(cast(cube, rays, with_="tracer").t, answers.t)
+
+
 def test_a_ray_through_the_diagonal_ties(cube: Mesh) -> None:
     answers = cast(cube, [[0, 0, 3]], [[0, 0, -1]])
     assert answers.ties.tolist() == [2] and answers.face.tolist() == [10]
@@ -128,8 +145,11 @@ def test_no_rays_are_no_answers(cube: Mesh) -> None:
         (([[0, 0, 0]], [[0, 0, 1]]), {"t_max": np.nan}, r"t_max is NaN"),
         (([0, 0], [0, 0, 1]), {}, r"origins has the shape \(2,\); expected \(\.\.\., 3\)"),
         ((np.zeros((4, 3)), np.ones((5, 3))), {}, r"shapes do not fit: origins \(4,\), directions \(5,\)"),
-        ((np.zeros((4, 7)),), {}, r"rays have the shape \(4, 7\); expected \(\.\.\., 6\) or \(\.\.\., 8\)"),
-        ((np.ones((4, 8)),), {"t_min": 0}, r"t_min and t_max are given twice"),
+        ((np.zeros((4, 7)),), {}, r"rays have the shape \(4, 7\); expected \(\.\.\., 6\), \(\.\.\., 8\) or \(\.\.\., 9\)"),
+        ((np.ones((4, 8)),), {"t_min": 0}, r"t_min and t_max are given twice: rays of 8 numbers have them"),
+        ((np.ones((4, 9)),), {"t_blind": 0}, r"t_blind is given twice"),
+        (([[0, 0, 0]], [[0, 0, 1]]), {"t_blind": -1}, r"rays\[0\].t_blind is -1: expected 0 to 1e30"),
+        (([[0, 0, 0]], [[0, 0, 1]]), {"t_blind": [0, 1], "t_min": [0, 1, 2]}, r"shapes do not fit: .*t_blind \(2,\)"),
         (([[0, 0, 0]], [[0, 0, 1]]), {"query": "last"}, r"query is 'last'"),
         (([[0, 0, 0]], [[0, 0, 1]]), {"with_": "embree"}, r"with_ is 'embree'"),
         (([[0, 0, 0]], [[0, 0, 1]]), {"with_": "tracer", "query": "all"}, r"query=\"first\" alone"),

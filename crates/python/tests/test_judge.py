@@ -105,6 +105,26 @@ def test_a_mistake_of_the_question_is_told(cube: Mesh) -> None:
     assert zeros.why == "100.0000 % agree if 0 means no hit: declare miss=0"
 
 
+def test_too_near_is_told_from_a_miss(cube: Mesh) -> None:
+    # Half of the rays are those of a sensor that is blind up to the middle of what they meet.
+    plain = cast(cube, RAYS)
+    blind = np.where(plain.hit & (np.arange(len(RAYS)) % 2 == 0), np.nextafter(plain.t, np.inf) + 1e-3, 0)
+    rays = np.concatenate([RAYS, np.minimum(blind, RAYS[:, 7])[:, None]], axis=1)
+    truth = cast(cube, rays)
+    near = int(truth.too_near.sum())
+    assert near > 20 and not (truth.too_near & truth.hit).any()
+    assert judge(cube, rays, truth).passes and judge(cube, rays, {"range": truth.range, "hit": truth.hit}).passes
+    assert judge(cube, rays, {"face": truth.face}).passes
+    missed = judge(cube, rays, {"t": np.where(truth.too_near, np.inf, truth.t)})
+    assert len(missed.wrong) == near and missed.why is not None and "is not told from a miss" in missed.why
+    assert "exactly what is hit is too near" in missed.text and "t_blind: " in missed.text
+    measured = judge(cube, rays, plain)
+    assert len(measured.wrong) == near and measured.why is not None and "shortest range is ignored" in measured.why
+    swapped = {"t": np.where(np.isposinf(truth.t), -np.inf, truth.t)}
+    assert "too near; exactly it is no hit" in judge(cube, rays, swapped).text
+    assert judge(cube, RAYS, {"t": np.where(plain.hit, plain.t, -np.inf)}, miss=-np.inf).passes
+
+
 def test_a_miss_can_be_declared(cube: Mesh) -> None:
     truth = cast(cube, RAYS)
     assert judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 0)}, miss=0).passes

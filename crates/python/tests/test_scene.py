@@ -145,6 +145,15 @@ def test_sets_of_rays_are_arrays_and_answered_as_by_the_command(command: Command
     answers = raypencil.cast(scene, mast.rays, fronts_only=mast.fronts_only)
     for name in ("face", "t", "point"):
         assert same_bits(answers.arrays[name], np.load(tmp_path / f"out/{name}.npy")), name
+    # A sensor with a shortest range has a number more, and what is too near for it is told.
+    text = text.replace('"vlp-16" }', '"vlp-16", min_range_m = 5 }')
+    (tmp_path / "lidar.toml").write_text(text)
+    command("cast", "lidar.toml", "-o", "blind")
+    mast = Scene(text).ray_sets["mast"]
+    assert mast.rays.shape[1:] == (16, 9) and (mast.rays[..., 8] == 5).all() and (mast.rays[..., 6] == 0).all()
+    blind = raypencil.cast(Scene(text), mast.rays, fronts_only=mast.fronts_only)
+    assert same_bits(blind.t, np.load(tmp_path / "blind/t.npy")) and blind.too_near.any()
+    assert np.array_equal(blind.too_near, answers.hit & (answers.t < 5))
 
 
 def test_generated_ground_is_the_same_by_table_and_by_call() -> None:

@@ -19,6 +19,7 @@
 //! approximations  the paper's approximations, by name
 //! place progress  names of rays; who is told what is being done
 //! triangles ray_set  meshes and rays of no sensor, as their files give them
+//! reading       what a range sensor reads along a ray: a hit, too near, a miss
 //! pattern named_ray_set  patterns of range sensors (LiDAR) as rays, and ray sets with names
 //! ```
 //!
@@ -59,6 +60,7 @@ mod pose;
 mod progress;
 mod ray;
 mod ray_set;
+mod reading;
 mod renderer;
 mod returns;
 pub mod rig;
@@ -80,6 +82,7 @@ pub use pose::Pose;
 pub use progress::{Progress, Silent};
 pub use ray::{FaceId, Hit, Ray, SensorId};
 pub use ray_set::{CastRay, RaySet, Side, Sides};
+pub use reading::Reading;
 pub use renderer::{Precision, Renderer};
 pub use returns::{Pixel, Return, Returns};
 pub use sampling::{Sampling, philox};

@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::SceneError;
 use crate::triangles::MAX_COORDINATE;
 
-/// A ray with both ends given: the points origin + t direction, `t_min <= t <= t_max`, exactly.
+/// A ray with both ends given: the points origin + t direction, `t_min <= t <= t_max`, exactly. And the t before which a
+/// sensor is blind, if the ray is one of a sensor.
 ///
 /// ```
 /// use glam::DVec3;
@@ -26,12 +27,20 @@ pub struct CastRay {
     pub t_min: f64,
     /// Greatest t of a hit; infinite for a ray without an end.
     pub t_max: f64,
+    /// The shortest range of a sensor, as a t: a nearest hit before it is too near, one at it is measured. 0 for a ray of no
+    /// such sensor. It is no end of the ray, which a surface before it stops like any other.
+    pub t_blind: f64,
 }
 
 impl CastRay {
     /// The ray from its origin, without an end.
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY }
+        Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, t_blind: 0.0 }
+    }
+
+    /// Whether a nearest hit at this t is too near for the sensor.
+    pub fn is_too_near(&self, t: f64) -> bool {
+        t < self.t_blind
     }
 
     /// Two vectors across the ray, along which it is moved sideways: u, v and the direction d are at right angles and
@@ -59,7 +68,8 @@ impl CastRay {
     ///
     /// # Errors
     /// Names the first part that is wrong: an origin that is not finite or beyond 1e30, a direction that is 0, not finite
-    /// or beyond 1e30, a `t_min` that is negative or not finite, a `t_max` below it.
+    /// or beyond 1e30, a `t_min` that is negative or not finite, a `t_max` below it, a `t_blind` that is negative or beyond
+    /// `t_max`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         let refuse = |part: &str, value: String, expected: &str| {
             Err(SceneError::new(format!("{field}.{part}"), value, expected))
@@ -81,6 +91,11 @@ impl CastRay {
         if !(self.t_max >= self.t_min && (self.t_max <= MAX_COORDINATE || self.t_max == f64::INFINITY)) {
             let expected = format!("{} (t_min) to 1e30, or infinity for no end", self.t_min);
             return refuse("t_max", self.t_max.to_string(), &expected);
+        }
+        let most = self.t_max.min(MAX_COORDINATE);
+        if !(self.t_blind >= 0.0 && self.t_blind <= most) {
+            let end = if self.t_max <= MAX_COORDINATE { format!("{most} (t_max)") } else { "1e30".into() };
+            return refuse("t_blind", self.t_blind.to_string(), &format!("0 to {end}"));
         }
         Ok(())
     }
@@ -164,6 +179,14 @@ mod tests {
             message(CastRay { t_min: 2.0, t_max: 1.0, ..good }).starts_with("rays[1].t_max is 1: expected 2")
         );
         assert!(message(CastRay { t_max: f64::NAN, ..good }).starts_with("rays[1].t_max is NaN"));
+        assert_eq!(message(CastRay { t_blind: -1.0, ..good }), "rays[1].t_blind is -1: expected 0 to 1e30");
+        assert!(message(CastRay { t_blind: f64::NAN, ..good }).starts_with("rays[1].t_blind is NaN"));
+        assert!(message(CastRay { t_blind: f64::INFINITY, ..good }).starts_with("rays[1].t_blind is inf"));
+        assert_eq!(
+            message(CastRay { t_max: 2.0, t_blind: 3.0, ..good }),
+            "rays[1].t_blind is 3: expected 0 to 2 (t_max)"
+        );
+        assert!(RaySet::new(vec![CastRay { t_max: 2.0, t_blind: 2.0, ..good }], Sides::Both).is_ok());
         // A single point of a ray is a ray.
         assert!(RaySet::new(vec![CastRay { t_min: 2.0, t_max: 2.0, ..good }], Sides::Both).is_ok());
     }

@@ -6,7 +6,7 @@ use raypencil::referee::{CastRuling, ExactCast};
 use raypencil::tracer::{CastTraverser, TracerCast};
 use raypencil::{
     Atmosphere, Beam, Camera, CastRay, ExactRenderer, FaceId, FluxModel, Lens, Material, Mesh, Mounted, Pose,
-    Precision, Renderer, Request, Scene, Sides, Triangles,
+    Precision, Reading, Renderer, Request, Scene, Sides, Triangles,
 };
 
 /// 2^-53.
@@ -31,7 +31,8 @@ fn compare(
     for sides in [Sides::Both, Sides::Fronts] {
         let traced = tracer.first(ray, sides).map(|hit| hit.face);
         let first = exact.first(ray, sides);
-        match exact.rule(ray, sides, traced, Precision::F64) {
+        let stated = Reading::of(traced, |_| false);
+        match exact.rule(ray, sides, stated, Precision::F64) {
             CastRuling::Same => tally.same += 1,
             CastRuling::Rounding { moved } => {
                 let most = exact.lateral_error(ray, Precision::F64);

@@ -50,13 +50,11 @@ fn the_exact_answers_are_those_beside_the_rays() {
     let mut count = 0;
     for family in families() {
         let answers = family.answers(true);
-        let of = |value: fn(&raypencil::cast::FirstHit) -> f64, miss: f64| -> Vec<f64> {
-            answers.first.iter().map(|hit| hit.as_ref().map_or(miss, value)).collect()
-        };
         let name = &family.name;
-        assert_eq!(of(|hit| f64::from(hit.face.0), f64::from(u32::MAX)), family.stored("face"), "{name}");
-        assert_eq!(of(|hit| f64::from(hit.ties), 0.0), family.stored("ties"), "{name}");
-        assert_eq!(of(|hit| hit.t, f64::INFINITY), family.stored("t"), "{name}");
+        let faces = answers.values(|hit| f64::from(hit.face.0), f64::from(u32::MAX));
+        assert_eq!(faces, family.stored("face"), "{name}");
+        assert_eq!(answers.values(|hit| f64::from(hit.ties), 0.0), family.stored("ties"), "{name}");
+        assert_eq!(answers.distances(|hit| hit.t), family.stored("t"), "{name}");
         let margins = answers.margins.as_ref().expect("margins");
         let face: Vec<f64> = margins.iter().flat_map(|both| [both.face.lo, both.face.hi]).collect();
         let surface: Vec<f64> = margins.iter().flat_map(|both| [both.surface.lo, both.surface.hi]).collect();
@@ -95,7 +93,7 @@ fn families_are_what_their_names_say() {
             "edges" | "vertices" | "tiny" | "huge" | "far-mesh" | "far-origins" | "long-directions" => {
                 hits == rays && ties * 10 > rays * 9
             }
-            "just-before" => answers.first.iter().flatten().filter(|hit| hit.t < 1e-7).count() == rays,
+            "just-before" => answers.hits().filter(|hit| hit.t < 1e-7).count() == rays,
             "one-ulp-beside" => hits == rays && ties * 10 < rays,
             "duplicates" | "crossing" | "folds" | "grazing" | "needles" => ties * 2 > rays,
             "in-plane" => {
@@ -103,8 +101,9 @@ fn families_are_what_their_names_say() {
             }
             "on-surface" => {
                 let at_ends = answers.first.iter().zip(&family.rays);
-                let at_ends = at_ends
-                    .filter(|(hit, ray)| hit.is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max));
+                let at_ends = at_ends.filter(|(read, ray)| {
+                    read.hit().is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max)
+                });
                 at_ends.count() * 2 > rays
             }
             "nearly-coincident" => hits == rays,

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use raypencil::harness::{Counts, Validation, contender, validate};
-use raypencil::io::{Overrides, Subject, load};
+use raypencil::io::{Overrides, load};
 use raypencil::judge::JudgeShare;
 use raypencil::{FluxModel, Silent};
 
@@ -24,13 +24,7 @@ fn marsyard(test: &str) -> Option<PathBuf> {
 
 fn validated(path: &Path, overrides: Overrides, names: &[&str]) -> Validation {
     let loaded = load(path.to_str().expect("a path in UTF-8"), &overrides).expect("the marsyard loads");
-    let subject = Subject {
-        vehicle: loaded.standing_vehicle(),
-        scene: loaded.scene,
-        name: loaded.name,
-        arguments: "marsyard2021.glb".into(),
-        sha256: loaded.source_sha256,
-    };
+    let subject = loaded.into_subject("marsyard2021.glb".into());
     let contenders: Vec<_> = names.iter().map(|name| contender(name).expect("a renderer")).collect();
     validate(subject, &contenders, JudgeShare::Sample, &Silent)
 }

@@ -23,14 +23,8 @@ fn data(path: &str) -> PathBuf {
 fn subject(pack: &str) -> Subject {
     let file = data(&format!("scenes/packs/{pack}.toml"));
     let loaded = load(&file.to_string_lossy(), &Overrides::default()).expect("a scene of this repository");
-    let subject = Subject {
-        vehicle: loaded.standing_vehicle(),
-        scene: loaded.scene,
-        arguments: loaded.name.clone(),
-        name: loaded.name,
-        sha256: loaded.source_sha256,
-    };
-    benched(subject).expect("room for a bench")
+    let arguments = loaded.name.clone();
+    benched(loaded.into_subject(arguments)).expect("room for a bench")
 }
 
 /// Every file below a folder, by its relative path.
@@ -110,13 +104,7 @@ fn judged(pack: &str, renderer: &str) -> Checked {
     let pack = data(&format!("packs/{pack}"));
     let scene_file = pack.join("scene.toml");
     let loaded = load(&scene_file.to_string_lossy(), &Overrides::default()).expect("the pack's scene");
-    let subject = Subject {
-        vehicle: loaded.standing_vehicle(),
-        scene: loaded.scene,
-        name: loaded.name,
-        arguments: String::new(),
-        sha256: loaded.source_sha256,
-    };
+    let subject = loaded.into_subject(String::new());
     let contender = contender(renderer).expect("a renderer of the workspace");
     let output = contender.renderer.render(&subject.scene, &Request::EVERYTHING);
     let folder = tempfile::tempdir().expect("a folder");

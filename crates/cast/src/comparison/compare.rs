@@ -1,6 +1,7 @@
 //! Stated first hits against the exact ones.
 //!
-//! A stated hit is *the same* if its face is one of the nearest. It is *rounding* if the referee finds a ray, moved sideways
+//! A stated hit is *the same* if its face is one of the nearest and these are not too near for the ray's sensor. 'Too near' and a
+//! miss are the same if they are the exact answer. What is stated is *rounding* if the referee finds a ray, moved sideways
 //! by no more than the program's arithmetic may, of which it is the answer; else it is *wrong*. Values are compared where
 //! the face is the same, with bounds that follow from the same errors (u: the unit roundoff, S: the largest coordinate
 //! seen from the ray, d: the ray's direction, kappa and c as in the referee's ruling):
@@ -19,7 +20,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_referee::{CastHit, CastRuling, ExactCast, Rounded, aspect};
-use raypencil_scene::{CastRay, FaceId, Precision, Progress, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, Precision, Progress, Reading, Sides, Triangles};
 
 use super::stated::Stated;
 use super::verdict::{CastValue, Comparison, RayVerdict, ValueTally, Wrong};
@@ -80,7 +81,7 @@ pub fn compare_with(
     };
     Comparison {
         values: CastValue::ALL.into_iter().filter(given).map(tally).collect(),
-        hits: judged.iter().filter(|judged| judged.is_hit).count() as u64,
+        met: judged.iter().filter(|judged| judged.is_met).count() as u64,
         verdicts: judged.into_iter().map(|judged| judged.verdict).collect(),
         precision,
     }
@@ -109,7 +110,8 @@ impl Stated {
 /// One ray, judged.
 struct Judged {
     verdict: RayVerdict,
-    is_hit: bool,
+    /// Whether the ray meets something, too near or not.
+    is_met: bool,
     /// The error of each value as a part of its bound, where it was compared.
     ratios: [Option<f64>; 7],
 }
@@ -124,13 +126,17 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn ray(&self, index: usize, ray: &CastRay) -> Judged {
-        let first = self.exact.first(ray, self.sides);
-        let judged = |verdict| Judged { verdict, is_hit: !first.is_empty(), ratios: [None; 7] };
-        let stated = match self.stated_face(index, ray, &first) {
-            Ok(face) => face,
+        let read = self.exact.reading(ray, self.sides);
+        let judged = |verdict| Judged { verdict, is_met: !matches!(read, Reading::Miss), ratios: [None; 7] };
+        let stated = match self.stated_reading(index, ray, &read) {
+            Ok(stated) => stated,
             Err(wrong) => return judged(RayVerdict::Wrong(wrong)),
         };
-        let is_same = stated.map_or(first.is_empty(), |face| first.contains(&face));
+        let is_same = match (stated, &read) {
+            (Reading::Hit(face), Reading::Hit(faces)) => faces.contains(&face),
+            (Reading::TooNear, Reading::TooNear) | (Reading::Miss, Reading::Miss) => true,
+            _ => false,
+        };
         let ruling = match is_same {
             true => CastRuling::Same,
             false => self.exact.rule(ray, self.sides, stated, self.precision),
@@ -138,30 +144,74 @@ impl Judge<'_> {
         match ruling {
             CastRuling::Rounding { moved } => judged(RayVerdict::Rounding { moved }),
             CastRuling::Wrong => {
-                judged(RayVerdict::Wrong(Wrong::Hit { stated, exact: first.first().copied() }))
+                let exact = read.clone().map(|faces| faces[0]);
+                judged(RayVerdict::Wrong(Wrong::Hit { stated, exact }))
             }
             CastRuling::Same => {
-                let (wrong, ratios) = match stated.and_then(|face| self.exact.values(ray, face)) {
+                let hit = stated.hit().and_then(|face| self.exact.values(ray, *face));
+                let (wrong, ratios) = match hit {
                     None => (None, [None; 7]),
                     Some(hit) => self.values(index, ray, &hit),
                 };
-                let same = RayVerdict::Same { is_tie: first.len() > 1 };
+                let is_tie = read.hit().is_some_and(|faces| faces.len() > 1);
+                let same = RayVerdict::Same { is_tie };
                 Judged { ratios, ..judged(wrong.map_or(same, RayVerdict::Wrong)) }
             }
         }
     }
 
-    /// The face that is stated. Where faces are not given it is a face that is met at the distance that is.
-    fn stated_face(&self, index: usize, ray: &CastRay, first: &[FaceId]) -> Result<Option<FaceId>, Wrong> {
-        if let Some(face) = &self.stated.face {
-            return Ok(face[index]);
+    /// What is stated: a face, or why there is none.
+    fn stated_reading(
+        &self,
+        index: usize,
+        ray: &CastRay,
+        read: &Reading<Vec<FaceId>>,
+    ) -> Result<Reading<FaceId>, Wrong> {
+        let of = |value| Some(self.stated.part(value, index)?[0]);
+        let (t, range) = (of(CastValue::T), of(CastValue::Range));
+        match &self.stated.face {
+            Some(faces) => {
+                if let Some(face) = faces[index] {
+                    return Ok(Reading::Hit(face));
+                }
+            }
+            None => {
+                let distance = t.or(range).expect("a distance for each ray, or faces");
+                if distance.is_finite() {
+                    return self.stated_face(ray, distance, t.is_some(), read).map(Reading::Hit);
+                }
+            }
         }
-        let is_t = self.stated.t.is_some();
+        let says = |distance: Option<f64>| distance.filter(|distance| !distance.is_nan());
+        match [says(t), says(range)].map(|said| said.map(|distance| distance == f64::NEG_INFINITY)) {
+            [Some(t), Some(range)] if t != range => Err(Wrong::Contradiction),
+            [Some(true), _] | [_, Some(true)] => Ok(Reading::TooNear),
+            [None, None] => Ok(self.unsaid(ray, read)),
+            _ => Ok(Reading::Miss),
+        }
+    }
+
+    /// What stands in the place of a face, where it is not said: the better one of too near and a miss.
+    fn unsaid(&self, ray: &CastRay, read: &Reading<Vec<FaceId>>) -> Reading<FaceId> {
+        let is_too_near = match read {
+            Reading::TooNear => true,
+            Reading::Miss => false,
+            Reading::Hit(_) => {
+                self.exact.rule(ray, self.sides, Reading::TooNear, self.precision) != CastRuling::Wrong
+            }
+        };
+        if is_too_near { Reading::TooNear } else { Reading::Miss }
+    }
+
+    /// The face that is met at a distance that is stated, `t` or a range.
+    fn stated_face(
+        &self,
+        ray: &CastRay,
+        distance: f64,
+        is_t: bool,
+        read: &Reading<Vec<FaceId>>,
+    ) -> Result<FaceId, Wrong> {
         let value = if is_t { CastValue::T } else { CastValue::Range };
-        let distance = self.stated.part(value, index).expect("a distance for each ray, or faces")[0];
-        if !distance.is_finite() {
-            return Ok(None);
-        }
         let of = |hit: &CastHit| if is_t { hit.t.double } else { hit.range.double };
         let is_there = |face: &FaceId| {
             self.exact
@@ -169,9 +219,10 @@ impl Judge<'_> {
                 .is_some_and(|hit| (of(&hit) - distance).abs() <= self.bound(value, ray, &hit))
         };
         let all = || self.exact.all(ray, self.sides).into_iter().flat_map(|group| group.faces);
-        let found = first.iter().copied().find(is_there);
+        let found = read.hit().and_then(|first| first.iter().copied().find(is_there));
         let found = found.or_else(|| all().map(|met| met.face).find(is_there));
-        let exact = first.first().and_then(|face| self.exact.values(ray, *face)).map(|hit| of(&hit));
+        let value_of = |face: FaceId| self.exact.values(ray, face).map_or(f64::NAN, |hit| of(&hit));
+        let exact = read.clone().map(|faces| value_of(faces[0]));
         // A face that only a ray beside this one meets: its distance there is that of its plane, up to the bound.
         let beside = || {
             let most = self.exact.lateral_error(ray, self.precision);
@@ -181,7 +232,7 @@ impl Judge<'_> {
                 faces.into_iter().find(|face| self.is_plane_at(ray, *face, distance, is_t))
             })
         };
-        found.or_else(beside).map(Some).ok_or(Wrong::Distance { stated: distance, exact })
+        found.or_else(beside).ok_or(Wrong::Distance { stated: distance, exact })
     }
 
     /// Whether the ray passes the plane of a face at this distance.

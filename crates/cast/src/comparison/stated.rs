@@ -7,15 +7,16 @@ use crate::answers::{Answers, FirstHit};
 
 /// First hits as another program states them: for each quantity that it gives, one value for each ray, in their order.
 ///
-/// Whether a ray hits is said by `face` if it is given, else by `t`, else by `range`: at least one of them must be.
-/// Values of rays that hit nothing have no meaning.
+/// Whether a ray hits is said by `face` if it is given, else by `t`, else by `range`: at least one of them must be. Where it
+/// does not, both distances say why: -Inf says that what is hit is too near, +Inf that nothing is hit. `face` alone says neither, nor
+/// does NaN. Other values of rays that do not hit have no meaning.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stated {
-    /// The face; `None` where nothing is hit.
+    /// The face; `None` where nothing is hit, or what is hit is too near.
     pub face: Option<Vec<Option<FaceId>>>,
-    /// The ray's parameter; not finite where nothing is hit.
+    /// The ray's parameter; -Inf, +Inf or NaN where there is no face.
     pub t: Option<Vec<f64>>,
-    /// Distance from the ray's origin; not finite where nothing is hit.
+    /// Distance from the ray's origin; -Inf, +Inf or NaN where there is no face.
     pub range: Option<Vec<f64>>,
     /// The side that is met.
     pub side: Option<Vec<Option<Side>>>,
@@ -37,22 +38,16 @@ impl Stated {
 
     /// The first hits of answers.
     pub fn of(answers: &Answers) -> Self {
-        let hits = &answers.first;
-        let number = |value: fn(&FirstHit) -> f64, miss: f64| {
-            Some(hits.iter().map(|hit| hit.as_ref().map_or(miss, value)).collect())
-        };
-        let vector = |value: fn(&FirstHit) -> DVec3| {
-            Some(hits.iter().map(|hit| hit.as_ref().map_or(DVec3::NAN, value)).collect())
-        };
+        let vector = |value: fn(&FirstHit) -> DVec3| Some(answers.values(value, DVec3::NAN));
         Self {
-            face: Some(hits.iter().map(|hit| hit.map(|hit| hit.face)).collect()),
-            t: number(|hit| hit.t, f64::INFINITY),
-            range: number(|hit| hit.range, f64::INFINITY),
-            side: Some(hits.iter().map(|hit| hit.map(|hit| hit.side)).collect()),
+            face: Some(answers.values(|hit| Some(hit.face), None)),
+            t: Some(answers.distances(|hit| hit.t)),
+            range: Some(answers.distances(|hit| hit.range)),
+            side: Some(answers.values(|hit| Some(hit.side), None)),
             point: vector(|hit| hit.point),
             normal: vector(|hit| hit.normal),
             barycentric: vector(|hit| DVec3::from_array(hit.barycentric)),
-            cos_incidence: number(|hit| hit.cos_incidence, f64::NAN),
+            cos_incidence: Some(answers.values(|hit| hit.cos_incidence, f64::NAN)),
         }
     }
 

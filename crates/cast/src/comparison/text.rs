@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use raypencil_report::{Align, Table, count, counted};
-use raypencil_scene::FaceId;
+use raypencil_scene::{FaceId, Reading};
 use serde_json::{Value, json};
 
 use super::verdict::{Comparison, Wrong};
@@ -15,7 +15,7 @@ const MAX_LISTED: usize = 5;
 pub fn comparison_headline(comparison: &Comparison) -> String {
     let counts = comparison.counts();
     let all = counted(comparison.verdicts.len() as u64, "ray", "rays");
-    if comparison.hits == 0 {
+    if comparison.met == 0 {
         return format!("Nothing is hit: {all} compared, and all miss the mesh.");
     }
     match counts.wrong {
@@ -55,18 +55,32 @@ pub fn comparison_text(name: &str, comparison: &Comparison, ray_command: impl Fn
     text
 }
 
-fn face_text(face: Option<FaceId>) -> String {
-    face.map_or("no hit".into(), |face| format!("face {}", face.0))
+fn face_text(read: Reading<FaceId>) -> String {
+    match read {
+        Reading::Hit(face) => format!("face {}", face.0),
+        Reading::TooNear => "too near".into(),
+        Reading::Miss => "no hit".into(),
+    }
 }
+
+/// The exact answer where it is that what is hit is too near.
+const TOO_NEAR: &str = "what is hit is too near: its surface stands before the sensor's shortest range";
 
 /// What is wrong with a ray, in words.
 pub(crate) fn wrong_text(wrong: &Wrong) -> String {
     match wrong {
+        Wrong::Hit { stated, exact: Reading::TooNear } => {
+            format!("{}; exactly {TOO_NEAR}", face_text(*stated))
+        }
         Wrong::Hit { stated, exact } => {
             format!("{}; exactly it is {}", face_text(*stated), face_text(*exact))
         }
-        Wrong::Distance { stated, exact: Some(exact) } => format!("a hit at {stated}; exactly it is {exact}"),
-        Wrong::Distance { stated, exact: None } => format!("a hit at {stated}; exactly nothing is hit"),
+        Wrong::Distance { stated, exact } => match exact {
+            Reading::Hit(exact) => format!("a hit at {stated}; exactly it is {exact}"),
+            Reading::TooNear => format!("a hit at {stated}; exactly {TOO_NEAR}"),
+            Reading::Miss => format!("a hit at {stated}; exactly nothing is hit"),
+        },
+        Wrong::Contradiction => "one of t and range is -Inf, too near, and the other is not".into(),
         Wrong::Value { value, error, bound } => {
             format!("{} is off by {error:.3e}; rounding explains {bound:.3e}", value.name())
         }

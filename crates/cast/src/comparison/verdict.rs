@@ -1,6 +1,6 @@
 //! What became of stated first hits.
 
-use raypencil_scene::{FaceId, Precision};
+use raypencil_scene::{FaceId, Precision, Reading};
 
 /// A value of a first hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -43,20 +43,22 @@ impl CastValue {
 /// What is wrong with one ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wrong {
-    /// The stated first hit is not that of the ray, nor of one nearby. `None`: no hit.
+    /// What is stated is not the answer to the ray, nor to one nearby.
     Hit {
-        /// The face that is stated.
-        stated: Option<FaceId>,
+        /// The face that is stated, or what stands in its place.
+        stated: Reading<FaceId>,
         /// The exact one; of several the lowest.
-        exact: Option<FaceId>,
+        exact: Reading<FaceId>,
     },
     /// A hit is stated where no face is met at that distance.
     Distance {
         /// The t that is stated, or the range if only that is given.
         stated: f64,
-        /// The exact one; `None` where nothing is hit.
-        exact: Option<f64>,
+        /// The exact one.
+        exact: Reading<f64>,
     },
+    /// One of t and range says that what is hit is too near, the other that nothing is hit.
+    Contradiction,
     /// The face is right and a value is not.
     Value {
         /// Which value.
@@ -103,8 +105,8 @@ pub struct Comparison {
     pub verdicts: Vec<RayVerdict>,
     /// One for each value that is given.
     pub values: Vec<ValueTally>,
-    /// Number of rays that hit something, by the exact answer.
-    pub hits: u64,
+    /// Number of rays that meet something, too near or not, by the exact answer.
+    pub met: u64,
     /// Precision of the program's arithmetic.
     pub precision: Precision,
 }
@@ -126,9 +128,9 @@ impl Comparison {
         counts
     }
 
-    /// Whether no ray is wrong, and some ray hits.
+    /// Whether no ray is wrong, and some ray meets something.
     pub fn passes(&self) -> bool {
-        self.hits > 0 && self.counts().wrong == 0
+        self.met > 0 && self.counts().wrong == 0
     }
 
     /// The wrong rays, by index.

@@ -11,8 +11,8 @@ use crate::comparison::Stated;
 /// What a candidate declares of its arrays.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CandidateConventions {
-    /// A number that means "no hit" in `face`, `t` and `range`. Numbers that are not finite, and faces of -1 or 4294967295,
-    /// always do.
+    /// A number that means "no hit" in `face`, `t` and `range`. NaN and +Inf, and faces of -1 or 4294967295, always do. -Inf in
+    /// `t` and `range` says that what is hit is too near, unless it is this number.
     pub miss: Option<f64>,
     /// Leave out `face.npy`.
     pub ignores_faces: bool,
@@ -30,7 +30,13 @@ pub(super) fn read_candidate(
     let distance = |name: &str| -> Result<Option<Vec<f64>>, FileError> {
         let numbers = reader.numbers(name, &[])?;
         Ok(numbers.map(|numbers| {
-            numbers.into_iter().map(|number| if is_miss(number) { f64::INFINITY } else { number }).collect()
+            let said = |number: f64| match number {
+                number if Some(number) == conventions.miss => f64::INFINITY,
+                f64::NEG_INFINITY => number,
+                number if is_miss(number) => f64::INFINITY,
+                number => number,
+            };
+            numbers.into_iter().map(said).collect()
         }))
     };
     let vectors = |name: &str| -> Result<Option<Vec<DVec3>>, FileError> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{FileError, RayArray};
+use raypencil_files::{FileError, RayArray, ray_rows};
 use raypencil_referee::ExactCast;
 use raypencil_scene::{Precision, Progress};
 
@@ -34,16 +34,15 @@ pub struct RayPackChecked {
 }
 
 impl RayPackChecked {
-    /// Whether no ray is wrong, and some ray hits.
+    /// Whether no ray is wrong, and some ray meets something.
     pub fn passes(&self) -> bool {
         self.comparison.passes()
     }
 
     /// The command that shows everything about the ray with this index.
     pub fn ray_command(&self, index: usize) -> String {
-        let ray = &self.rays.rays[index];
-        let parts = ray.origin.to_array().into_iter().chain(ray.direction.to_array());
-        let numbers: Vec<String> = parts.chain([ray.t_min, ray.t_max]).map(|part| part.to_string()).collect();
+        let (_, numbers) = ray_rows(&self.rays.rays[index..=index]);
+        let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
         let fronts = if self.fronts_only { " --fronts-only" } else { "" };
         format!("raypencil cast {} --ray={}{fronts} --all --margins", self.pack, numbers.join(","))
     }

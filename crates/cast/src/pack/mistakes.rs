@@ -70,10 +70,11 @@ fn renumber(trial: &mut Trial, by: i64) {
     });
 }
 
-fn misses_at(trial: &mut Trial, number: f64) {
+/// Puts another number that is not finite in the place of one that stands for no hit.
+fn misses_at(trial: &mut Trial, number: f64, other: f64) {
     let miss = |_: usize, distance: &mut f64| {
         if *distance == number {
-            *distance = f64::INFINITY;
+            *distance = other;
         }
     };
     each(&mut trial.stated.t, miss);
@@ -207,8 +208,32 @@ const MISTAKES: &[Mistake] = &[
             }
         },
     },
-    Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| misses_at(trial, 0.0) },
-    Mistake { words: "-1 means no hit: declare --miss -1", undo: |trial| misses_at(trial, -1.0) },
+    Mistake {
+        words: "rays pass through what is nearer than the sensor's shortest range: the nearest surface decides",
+        undo: |trial| {
+            for ray in &mut trial.rays {
+                (ray.t_min, ray.t_blind) = (ray.t_min.max(ray.t_blind), 0.0);
+            }
+        },
+    },
+    Mistake {
+        words: "the sensor's shortest range is ignored: what is nearer is too near, -Inf",
+        undo: |trial| trial.rays.iter_mut().for_each(|ray| ray.t_blind = 0.0),
+    },
+    Mistake {
+        words: "what is too near is not told from a miss: it is -Inf, a miss is +Inf",
+        // NaN says neither.
+        undo: |trial| misses_at(trial, f64::INFINITY, f64::NAN),
+    },
+    Mistake {
+        words: "-Inf means no hit: declare --miss -inf",
+        undo: |trial| misses_at(trial, f64::NEG_INFINITY, f64::INFINITY),
+    },
+    Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| misses_at(trial, 0.0, f64::INFINITY) },
+    Mistake {
+        words: "-1 means no hit: declare --miss -1",
+        undo: |trial| misses_at(trial, -1.0, f64::INFINITY),
+    },
     Mistake {
         words: "arithmetic is of single precision: declare --arithmetic f32",
         undo: |trial| trial.precision = Precision::F32,

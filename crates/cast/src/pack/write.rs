@@ -4,12 +4,12 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use raypencil_files::{
-    FileError, FolderError, RayArray, begin_output_folder, file_sha256_hex, write_atomically,
+    FileError, FolderError, RayArray, begin_output_folder, file_sha256_hex, ray_rows, write_atomically,
     write_npy_numbers,
 };
 use raypencil_referee::ExactCast;
 use raypencil_report::VERSION;
-use raypencil_scene::{CastRay, FaceId, Progress, Side, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
 use serde_json::json;
 
 use super::{PACK_FORMAT, PACK_NAME};
@@ -23,6 +23,10 @@ pub struct RayPackCounts {
     pub rays: u64,
     /// Rays that hit.
     pub hits: u64,
+    /// Rays of a sensor that has a shortest range.
+    pub blind: u64,
+    /// Rays whose nearest hit is too near for their sensor: they answer otherwise if its shortest range is ignored.
+    pub too_near: u64,
     /// Rays that hit nothing.
     pub misses: u64,
     /// Rays on which several faces are nearest.
@@ -42,13 +46,16 @@ impl RayPackCounts {
         let exact = ExactCast::new(mesh);
         let other = if sides == Sides::Both { Sides::Fronts } else { Sides::Both };
         let count = |ray: &CastRay| {
-            let first = exact.first(ray, sides);
-            let differs = |ray: CastRay, sides| u64::from(exact.first(&ray, sides) != first);
-            let hit = first.first().and_then(|face: &FaceId| exact.values(ray, *face));
+            let read = exact.reading(ray, sides);
+            let differs = |ray: CastRay, sides| u64::from(exact.reading(&ray, sides) != read);
+            let first: &[FaceId] = read.hit().map_or(&[], |faces| faces);
+            let hit = first.first().and_then(|face| exact.values(ray, *face));
             Self {
                 rays: 1,
                 hits: u64::from(hit.is_some()),
-                misses: u64::from(hit.is_none()),
+                blind: u64::from(ray.t_blind > 0.0),
+                too_near: u64::from(read == Reading::TooNear),
+                misses: u64::from(read == Reading::Miss),
                 ties: u64::from(first.len() > 1),
                 backs: match (sides, &hit) {
                     // A program that hits fronts only is told apart by its first hit on a back.
@@ -63,6 +70,8 @@ impl RayPackCounts {
         rays.par_iter().map(count).reduce(Self::default, |a, b| Self {
             rays: a.rays + b.rays,
             hits: a.hits + b.hits,
+            blind: a.blind + b.blind,
+            too_near: a.too_near + b.too_near,
             misses: a.misses + b.misses,
             ties: a.ties + b.ties,
             backs: a.backs + b.backs,
@@ -83,11 +92,13 @@ impl RayPackCounts {
             (self.t_max, "t_max"),
             (self.lengths, "directions that are not 1 long"),
         ];
-        tested.into_iter().filter(|(count, _)| *count == 0).map(|(_, name)| name).collect()
+        // Only a sensor's shortest range asks for it.
+        let of_sensors = [(self.too_near, "what is too near")].into_iter().filter(|_| self.blind > 0);
+        tested.into_iter().chain(of_sensors).filter(|(count, _)| *count == 0).map(|(_, name)| name).collect()
     }
 }
 
-/// Writes a pack: `vertices.npy`, `faces.npy` and `rays.npy` (..., 8), which say the question; every answer as `cast` writes
+/// Writes a pack: `vertices.npy`, `faces.npy` and `rays.npy` (..., 8), or (..., 9) with `t_blind`, which say the question; every answer as `cast` writes
 /// it, margins included; and last `raypack.json`, with the SHA-256 of each file.
 ///
 /// # Errors
@@ -106,15 +117,11 @@ pub fn write_ray_pack(
     progress.stage("writing the mesh and the rays");
     let vertices: Vec<f64> = mesh.vertices().iter().flatten().copied().collect();
     let faces: Vec<u32> = mesh.faces().iter().flatten().copied().collect();
-    let numbers = rays.rays.iter().flat_map(|ray| {
-        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
-        [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max]
-    });
-    let numbers: Vec<f64> = numbers.collect();
-    let with_eight: Vec<u64> = rays.shape.iter().copied().chain([8]).collect();
+    let (width, numbers) = ray_rows(&rays.rays);
+    let with_width: Vec<u64> = rays.shape.iter().copied().chain([width as u64]).collect();
     write_npy_numbers(folder.join("vertices.npy"), &[mesh.vertices().len() as u64, 3], &vertices)?;
     write_npy_numbers(folder.join("faces.npy"), &[mesh.faces().len() as u64, 3], &faces)?;
-    write_npy_numbers(folder.join("rays.npy"), &with_eight, &numbers)?;
+    write_npy_numbers(folder.join("rays.npy"), &with_width, &numbers)?;
     let mut names: Vec<String> = ["vertices", "faces", "rays"].map(|name| format!("{name}.npy")).into();
     names.extend(answer_names());
     let files = names.iter().map(|name| {
@@ -129,7 +136,7 @@ pub fn write_ray_pack(
         "raypencilVersion": VERSION,
         "sides": if sides == Sides::Both { "both" } else { "fronts" },
         "counts": {
-            "rays": counts.rays, "hits": counts.hits, "misses": counts.misses, "ties": counts.ties,
+            "rays": counts.rays, "hits": counts.hits, "tooNear": counts.too_near, "misses": counts.misses, "ties": counts.ties,
             "backs": counts.backs, "tMin": counts.t_min, "tMax": counts.t_max, "lengths": counts.lengths,
         },
         "files": files,

@@ -30,9 +30,9 @@ fn over_a_floor_the_range_is_the_height_over_the_sine() {
     let set = vlp_16(Pose::from_position(DVec3::Z * height), 1808);
     let found = answers(&floor(), &set);
     let elevations = set.elevations_deg.as_ref().unwrap();
-    for (index, hit) in found.first.iter().enumerate() {
+    for (index, read) in found.first.iter().enumerate() {
         let elevation = elevations[index % 16];
-        match hit {
+        match read.hit() {
             None => assert!(elevation > -1.5, "ray {index} at {elevation} degrees"),
             Some(hit) => {
                 let range = height / libm::sin(-elevation.to_radians());
@@ -55,7 +55,7 @@ fn in_the_middle_of_a_box_ranges_are_those_of_its_planes() {
         Grid { columns: 9, rows: 7, width_deg: 89.0, height_deg: 80.0, ..Grid::preset("l515").unwrap() };
     let set = NamedRaySet::new("grid", grid.rays("rays").unwrap(), Sides::Both).unwrap();
     for (ray, hit) in set.set.rays().iter().zip(&answers(&mesh, &set).first) {
-        let hit = hit.as_ref().unwrap();
+        let hit = hit.hit().unwrap();
         assert!((hit.point.x - 2.0).abs() < 1e-15 && (hit.t * ray.direction.x - 2.0).abs() < 1e-15);
     }
 }
@@ -78,7 +78,7 @@ fn a_footprint_on_a_floor_is_as_wide_as_its_divergence() {
             1..=6 => 10.0 * libm::tan(0.005),
             _ => 10.0 * libm::tan(0.01),
         };
-        assert!((hit.as_ref().unwrap().point.truncate().length() - expected).abs() < 1e-13, "{k}");
+        assert!((hit.hit().unwrap().point.truncate().length() - expected).abs() < 1e-13, "{k}");
     }
 }
 
@@ -107,7 +107,7 @@ fn clouds_hold_the_points_their_channels_and_their_times() {
     write_set(folder.path(), &found, (&mesh, &set, Sides::Both), &source).unwrap();
 
     let (header, body) = parts(&std::fs::read(folder.path().join("cloud.ply")).unwrap(), "end_header\n");
-    let hits: Vec<_> = found.first.iter().flatten().collect();
+    let hits: Vec<_> = found.hits().collect();
     assert_eq!(header[0..2], ["ply", "format binary_little_endian 1.0"]);
     assert!(header.contains(&format!("element vertex {}", hits.len())), "{header:?}");
     let properties: Vec<&str> = header.iter().filter_map(|line| line.strip_prefix("property ")).collect();
@@ -137,7 +137,7 @@ fn clouds_hold_the_points_their_channels_and_their_times() {
     for (index, point) in body.chunks_exact(26).enumerate() {
         assert_eq!(usize::from(u16::from_le_bytes(point[12..14].try_into().unwrap())), index % 16);
         assert_eq!(double(point, 14), times[index]);
-        let hit = &found.first[index];
+        let hit = found.first[index].hit();
         assert_eq!(single(point, 0).is_nan(), hit.is_none());
         if let Some(hit) = hit {
             assert_eq!([single(point, 0), single(point, 8)], [hit.point.x as f32, hit.point.z as f32]);

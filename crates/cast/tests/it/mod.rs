@@ -2,3 +2,4 @@
 
 mod lidar;
 mod packs;
+mod shortest_range;

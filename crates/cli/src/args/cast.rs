@@ -22,12 +22,12 @@ pub(crate) struct Cast {
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
 
-    /// Rays: NPY of shape (..., 6) or (..., 8), or CSV: origin, direction, and if wanted t_min and t_max. `-` is standard
-    /// input. Or sets of rays, such as patterns of LiDAR: TOML with tables [[rays]].
+    /// Rays: NPY of shape (..., 6), (..., 8) or (..., 9), or CSV: origin, direction, and if wanted t_min, t_max, then t_blind, a
+    /// sensor's shortest range. `-` is standard input. Or sets of rays, such as patterns of LiDAR: TOML with tables [[rays]].
     #[arg(value_name = "RAYS", conflicts_with = "ray")]
     pub(crate) rays: Option<PathBuf>,
 
-    /// A ray by its numbers, separated by commas: ox,oy,oz,dx,dy,dz and if wanted t_min,t_max. Its answers are printed.
+    /// A ray by its numbers, separated by commas: ox,oy,oz,dx,dy,dz and if wanted t_min,t_max[,t_blind]. Its answers are printed.
     /// May be repeated.
     #[arg(long, value_name = "NUMBERS", value_parser = ray, allow_hyphen_values = true)]
     pub(crate) ray: Vec<CastRay>,

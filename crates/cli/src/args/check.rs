@@ -29,7 +29,7 @@ pub(crate) struct Check {
     pub(crate) arithmetic: Option<Precision>,
 
     /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan. Numbers that are not finite, and
-    /// faces of -1 or 4294967295, always do.
+    /// faces of -1 or 4294967295, always do; but of rays of a set, -Inf says that what is hit is too near for the sensor.
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true, value_parser = number)]
     pub(crate) miss: Option<f64>,
 

@@ -124,8 +124,8 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         .flat_map(|result| &result.compared)
         .all(|compared| compared.passes(command.allow_empty));
     // Rays of the command line are questions, one by one; a miss is their answer.
-    let hits = results.iter().map(|result| result.answers.counts().0).sum::<usize>();
-    let is_empty = command.ray.is_empty() && hits == 0 && !command.allow_empty;
+    let misses = |result: &Answered| result.answers.misses() == result.rays.len();
+    let is_empty = command.ray.is_empty() && results.iter().all(misses) && !command.allow_empty;
     let outcome = if is_each_right && !is_empty { Outcome::Fine } else { Outcome::Differs };
     let of_file = polygon_warnings(&source.polygons);
     let printed = if command.ray.is_empty() { MAX_PRINTED_RAYS } else { usize::MAX };
@@ -205,7 +205,9 @@ impl Answered<'_> {
         let each = (rays <= printed).then(|| {
             self.rays.iter().enumerate().map(|(k, ray)| ray_json(ray, &self.answers, k)).collect::<Vec<_>>()
         });
-        let counts = json!({ "rays": rays, "hits": hits, "misses": rays - hits, "ties": ties });
+        let (too_near, misses) = (self.answers.too_near(), self.answers.misses());
+        let counts =
+            json!({ "rays": rays, "hits": hits, "tooNear": too_near, "misses": misses, "ties": ties });
         let summary = self.summary.as_ref().map(|path| path.display().to_string());
         let mut document =
             json!({ "counts": counts, "rays": each, "warnings": self.warnings, "summary": summary });

@@ -34,6 +34,10 @@ fn arrays_of_any_leading_shape_are_rays() {
     let found = read(&npy("<f4", "(8,)", &singles(&numbers))).unwrap();
     assert_eq!((found.shape, found.rays.len()), (vec![], 1));
     assert_eq!((found.rays[0].t_min, found.rays[0].t_max), (0.25, f64::INFINITY));
+    // With the shortest range of a sensor.
+    let numbers = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.25, 8.0, 0.5];
+    let found = read(&npy("<f4", "(1, 9)", &singles(&numbers))).unwrap().rays[0];
+    assert_eq!((found.t_min, found.t_max, found.t_blind), (0.25, 8.0, 0.5));
     // No rays are rays.
     assert_eq!(read(&npy("<f8", "(0, 6)", &[])), Ok(RayArray { shape: vec![0], rays: vec![] }));
 }
@@ -47,7 +51,8 @@ fn rows_of_numbers_are_rays() {
     assert_eq!(found.rays[0].origin.to_array(), [0.1, -2.0, 300.0]);
     let found = read(b"0,0,0,1,0,0,0.5,inf\r\n0,0,0,1,0,0,0.5,2\r\n").unwrap();
     assert_eq!(found.rays[0].t_max, f64::INFINITY);
-    assert_eq!((found.rays[1].t_min, found.rays[1].t_max), (0.5, 2.0));
+    assert_eq!((found.rays[1].t_min, found.rays[1].t_max, found.rays[1].t_blind), (0.5, 2.0, 0.0));
+    assert_eq!(read(b"0,0,0,1,0,0,0,inf,0.8").unwrap().rays[0].t_blind, 0.8);
 }
 
 #[test]
@@ -55,8 +60,8 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
     for (bytes, message) in [
         (
             npy("<f8", "(1, 5)", &[0; 40]),
-            "rays: shape: [1, 5]; expected (..., 6) or (..., 8): 6 numbers (origin, \
-            direction) or 8 (origin, direction, t_min, t_max)",
+            "rays: shape: [1, 5]; expected (..., 6), (..., 8) or (..., 9): 6 numbers (origin, \
+            direction), 8 (origin, direction, t_min, t_max) or 9 (with t_blind)",
         ),
         (npy("<f8", "()", &[0; 8]), "rays: shape: []; expected (..., 6)"),
         (npy("<f4", "(2, 6)", &[0; 47]), "rays: numbers: 47 bytes; expected the 48 bytes of shape [2, 6]"),
@@ -71,6 +76,9 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
         (b"0,0,0,0,0,1\na,b,c,d,e,f".to_vec(), "rays: line 2: field 1: \"a\"; expected a number"),
         (b"0,0,0,0,0,1\n0,0,0,nan,0,1".to_vec(), "rays: ray 1.direction is [NaN, 0, 1]: expected"),
         (b"0,0,0,0,0,1,2,1".to_vec(), "rays: ray 0.t_max is 1: expected 2 (t_min) to 1e30, or infinity"),
+        (b"0,0,0,0,0,1,0,inf,-1".to_vec(), "rays: ray 0.t_blind is -1: expected 0 to 1e30"),
+        (b"0,0,0,0,0,1,0,2,3".to_vec(), "rays: ray 0.t_blind is 3: expected 0 to 2 (t_max)"),
+        (b"0,0,0,0,0,1,0,1,0,0".to_vec(), "rays: line 1: 10 fields; expected 6 numbers"),
         (b"0,0,0,0,0,1,-1,1".to_vec(), "rays: ray 0.t_min is -1: expected 0 to 1e30"),
         (b"".to_vec(), "rays: file: no ray; expected rows of 6 numbers"),
         (b"# nothing\nox,oy,oz,dx,dy,dz\n".to_vec(), "rays: file: no ray; expected rows"),

@@ -208,7 +208,13 @@ pub fn summary_json(validation: &Validation) -> String {
 
 fn ray_set_summary(set: &RaySetResult) -> Value {
     let compared = set.comparison.as_ref().map(|comparison| comparison_json("tracer", comparison));
-    json!({ "name": set.name, "rays": set.rays(), "hits": set.hits(), "compared": compared })
+    json!({
+        "name": set.name,
+        "rays": set.rays(),
+        "hits": set.hits(),
+        "too_near": set.too_near(),
+        "compared": compared,
+    })
 }
 
 fn renderer_summary(rendered: &Rendered) -> RendererSummary<'_> {

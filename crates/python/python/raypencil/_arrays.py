@@ -37,41 +37,49 @@ def rays(
     directions: ArrayLike | None,
     t_min: ArrayLike | None = None,
     t_max: ArrayLike | None = None,
+    t_blind: ArrayLike | None = None,
 ) -> tuple[NDArray[np.float64], Shape]:
-    """Rays as (n, 8) with their own shape.
+    """Rays as (n, 9) with their own shape.
 
-    Origins and directions are (..., 3) each, or, without directions, (..., 6) or (..., 8) together. Everything is broadcast
-    against everything else.
+    Origins and directions are (..., 3) each, or, without directions, (..., 6), (..., 8) or (..., 9) together. Everything is
+    broadcast against everything else.
     """
     if directions is None:
         together = reals("rays", origins)
-        if together.ndim == 0 or together.shape[-1] not in (6, 8):
-            raise RaypencilError(f"rays have the shape {together.shape}; expected (..., 6) or (..., 8)")
+        if together.ndim == 0 or together.shape[-1] not in (6, 8, 9):
+            raise RaypencilError(f"rays have the shape {together.shape}; expected (..., 6), (..., 8) or (..., 9)")
         origin, direction = together[..., 0:3], together[..., 3:6]
-        if together.shape[-1] == 8:
+        if together.shape[-1] >= 8:
             if t_min is not None or t_max is not None:
-                raise RaypencilError("t_min and t_max are given twice: rays of 8 numbers have them")
+                raise RaypencilError(f"t_min and t_max are given twice: rays of {together.shape[-1]} numbers have them")
             t_min, t_max = together[..., 6], together[..., 7]
+        if together.shape[-1] == 9:
+            if t_blind is not None:
+                raise RaypencilError("t_blind is given twice: rays of 9 numbers have it")
+            t_blind = together[..., 8]
     else:
         origin, direction = vectors("origins", origins), vectors("directions", directions)
     low = reals("t_min", 0.0 if t_min is None else t_min)
     high = reals("t_max", np.inf if t_max is None else t_max)
+    blind = reals("t_blind", 0.0 if t_blind is None else t_blind)
     parts = {"origins": origin.shape[:-1], "directions": direction.shape[:-1], "t_min": low.shape, "t_max": high.shape}
+    if t_blind is not None:
+        parts["t_blind"] = blind.shape
     try:
         shape = np.broadcast_shapes(*parts.values())
     except ValueError:
         given = ", ".join(f"{name} {of}" for name, of in parts.items())
         raise RaypencilError(f"shapes do not fit: {given}; expected shapes that can be broadcast") from None
-    made = np.empty((*shape, 8))
-    made[..., 0:3], made[..., 3:6], made[..., 6], made[..., 7] = origin, direction, low, high
-    return made.reshape(-1, 8), tuple(int(side) for side in shape)
+    made = np.empty((*shape, 9))
+    made[..., 0:3], made[..., 3:6], made[..., 6], made[..., 7], made[..., 8] = origin, direction, low, high, blind
+    return made.reshape(-1, 9), tuple(int(side) for side in shape)
 
 
 def given_rays(values: Any) -> tuple[NDArray[np.float64], Shape]:
-    """Rays in one argument: an array (..., 6) or (..., 8), or a tuple of origins, directions, and if wanted t_min, t_max."""
+    """Rays in one argument: an array (..., 6), (..., 8) or (..., 9), or a tuple of the arguments of :func:`rays`."""
     if isinstance(values, tuple):
-        if not 2 <= len(values) <= 4:
-            raise RaypencilError(f"rays are {len(values)} arrays; expected origins, directions, t_min, t_max")
+        if not 2 <= len(values) <= 5:
+            raise RaypencilError(f"rays are {len(values)} arrays; expected origins, directions, t_min, t_max, t_blind")
         return rays(*values)
     return rays(values, None)
 

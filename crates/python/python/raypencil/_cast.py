@@ -17,11 +17,11 @@ Query = Literal["first", "any", "all"]
 
 #: Unit, and what it is, of each array that has a value for each ray.
 _MEANINGS = {
-    "face": ("1", "index of the first face that is hit; 4294967295: none"),
+    "face": ("1", "index of the first face that is hit; 4294967295: none, or too near"),
     "side": ("1", "side of the face: 1 front, -1 back, 0 no hit"),
     "ties": ("1", "number of faces at exactly this t"),
-    "t": ("length of the direction", "parameter of the ray at the hit; infinite: no hit"),
-    "range": ("unit of the mesh", "distance along the ray; infinite: no hit"),
+    "t": ("length of the direction", "parameter of the ray at the hit; +Inf: no hit, -Inf: too near"),
+    "range": ("unit of the mesh", "distance along the ray; +Inf: no hit, -Inf: too near"),
     "cos_incidence": ("1", "cosine of the angle between normal and reversed ray; negative: back"),
     "point": ("unit of the mesh", "hit point"),
     "normal": ("1", "unit normal to the front of the face"),
@@ -92,12 +92,17 @@ class CastResult:
 
     @property
     def hit(self) -> NDArray[np.bool_]:
-        """Whether each ray hits anything."""
+        """Whether each ray hits something that is not too near: it has a face and a range."""
         return np.asarray(self.face != _arrays.NO_FACE)
 
     @property
+    def too_near(self) -> NDArray[np.bool_]:
+        """Whether the nearest surface stands before the shortest range of the ray's sensor (``t_blind``)."""
+        return np.asarray(np.isneginf(self.t))
+
+    @property
     def face(self) -> NDArray[np.uint32]:
-        """The first face that is hit, of several at the same t the lowest; 4294967295: none."""
+        """The first face that is hit, of several at the same t the lowest; 4294967295: none, or too near."""
         return self.arrays["face"]
 
     @property
@@ -112,12 +117,12 @@ class CastResult:
 
     @property
     def t(self) -> NDArray[np.float64]:
-        """The ray's parameter: the point is o + t d. Infinite: no hit."""
+        """The ray's parameter: the point is o + t d. +Inf: no hit, -Inf: too near."""
         return self.arrays["t"]
 
     @property
     def range(self) -> NDArray[np.float64]:
-        """Distance along the ray, t |d|, in the mesh's unit. Infinite: no hit."""
+        """Distance along the ray, t |d|, in the mesh's unit. +Inf: no hit, -Inf: too near."""
         return self.arrays["range"]
 
     @property
@@ -142,7 +147,7 @@ class CastResult:
 
     @property
     def any(self) -> NDArray[np.uint8] | None:
-        """Whether anything is hit, 0 or 1; ``None`` if it was not asked."""
+        """Whether anything is hit, too near or not, 0 or 1; ``None`` if it was not asked."""
         return self.arrays.get("any")
 
     @property
@@ -162,7 +167,7 @@ class CastResult:
 
     @property
     def all(self) -> AllHits | None:
-        """All hits; ``None`` if they were not asked for."""
+        """All hits, also what is too near and what is behind it; ``None`` if they were not asked for."""
         if "all.start" not in self.arrays:
             return None
         names = ("start", "face", "side", "t", "group", "crossing")
@@ -172,7 +177,9 @@ class CastResult:
         return int(np.prod(self.shape, dtype=np.int64))
 
     def __repr__(self) -> str:
-        return f"<raypencil.CastResult: {int(self.hit.sum())} of {len(self)} rays hit, shape {self.shape}>"
+        near = int(self.too_near.sum())
+        of_near = f", {near} too near" if near else ""
+        return f"<raypencil.CastResult: {int(self.hit.sum())} of {len(self)} rays hit{of_near}, shape {self.shape}>"
 
     def __getstate__(self) -> dict[str, Any]:
         return {"arrays": self.arrays, "shape": self.shape}
@@ -244,6 +251,7 @@ def cast(
     *,
     t_min: ArrayLike | None = None,
     t_max: ArrayLike | None = None,
+    t_blind: ArrayLike | None = None,
     query: Query | tuple[Query, ...] = "first",
     with_: Literal["referee", "tracer"] = "referee",
     fronts_only: bool = False,
@@ -258,9 +266,12 @@ def cast(
     Args:
         mesh: a :class:`Mesh`, a :class:`Scene` (its terrain, in the scene frame), or anything with ``vertices`` and
             ``faces``, such as a ``trimesh.Trimesh``.
-        origins: (..., 3), in the mesh's unit. Without ``directions``: the rays together, (..., 6) or (..., 8).
+        origins: (..., 3), in the mesh's unit. Without ``directions``: the rays together, (..., 6), (..., 8) or
+            (..., 9).
         directions: (..., 3), not 0; their length counts.
         t_min, t_max: a number or (...), in lengths of the direction. Default: 0, and no end.
+        t_blind: the shortest range of a sensor, as a t: a number or (...). A ray whose nearest hit is before it is too near, and
+            nothing behind that hit is seen. Default: 0.
         query: the first hit is always asked for. ``"any"`` asks besides whether anything is hit, ``"all"`` for all hits in
             exact order; a tuple asks for both.
         with_: ``"referee"`` is exact. ``"tracer"`` is about a hundred times as fast, rounds, and knows no ties.
@@ -273,7 +284,7 @@ def cast(
 
     Raises:
         RaypencilError: shapes that do not fit, and the first ray that is none: a number that is not finite or beyond 1e30, a
-            direction of 0, a t_min below 0, a t_max below t_min.
+            direction of 0, a t_min below 0, a t_max below t_min, a t_blind below 0 or beyond t_max.
     """
     if with_ not in ("referee", "tracer"):
         raise RaypencilError(f'with_ is {with_!r}; expected "referee" or "tracer"')
@@ -284,7 +295,7 @@ def cast(
     by_tracer = with_ == "tracer"
     if by_tracer and (set(asked) != {"first"} or margins):
         raise RaypencilError('with_="tracer" answers query="first" alone, without margins')
-    rays, shape = _arrays.rays(origins, directions, t_min, t_max)
+    rays, shape = _arrays.rays(origins, directions, t_min, t_max, t_blind)
     core = as_mesh(mesh)._core
     with stages(progress) as on_stage:
         flat = _raypencil.cast(core, rays, by_tracer, fronts_only, "any" in asked, "all" in asked, margins, on_stage)

@@ -36,7 +36,7 @@ class Judgement:
         classes: uint8, the rays' shape: 0 the same, 1 the same at a tie, 2 rounding (right for a ray that is moved sideways
             by no more than rounding may), 3 wrong.
         moved: float64, (..., 2): the displacement that excuses a ray, along the vectors ``across``; NaN for the others.
-        passes: whether no ray is wrong, and some ray hits.
+        passes: whether no ray is wrong, and some ray meets something.
         why: the mistake that explains the wrong rays, in words; ``None`` if none does.
         summary: the counts and the worst values, as the command's JSON.
     """
@@ -128,7 +128,8 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
         if name in answers:
             numbers = _arrays.reals(f"answers: {name}", shaped(name, ())).reshape(count)
             if name in ("t", "range"):
-                is_miss = ~np.isfinite(numbers) if miss is None else ~np.isfinite(numbers) | (numbers == miss)
+                # -Inf is no miss: it says that what is hit is too near.
+                is_miss = np.isnan(numbers) if miss is None else np.isnan(numbers) | (numbers == miss)
                 numbers = np.where(is_miss, np.inf, numbers)
             stated[name] = numbers
     for name in _VECTORS:
@@ -138,7 +139,8 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
         hit = shaped("hit", ()).reshape(count).astype(bool)
         for name, none in (("face", -1), ("t", np.inf), ("range", np.inf)):
             if name in stated:
-                stated[name] = np.where(hit, stated[name], none)
+                is_kept = hit if name == "face" else hit | np.isneginf(stated[name])
+                stated[name] = np.where(is_kept, stated[name], none)
     return stated
 
 
@@ -183,11 +185,12 @@ def judge(
 
     Args:
         mesh: as in :func:`cast`.
-        rays: (..., 6) or (..., 8), or a tuple of origins, directions, and if wanted t_min and t_max.
+        rays: (..., 6), (..., 8) or (..., 9), or a tuple of origins, directions, and if wanted t_min, t_max, t_blind.
         answers: a dictionary with some of ``face``, ``t``, ``range``, ``side``, ``point``, ``normal``, ``barycentric``,
             ``cos_incidence``, as :class:`CastResult` has them, in any type; or a :class:`CastResult`. One of ``face``, ``t``
-            and ``range`` must be there. A ray misses where the face is -1 or 4294967295, where t or range is not finite,
-            where either is ``miss``, and where ``hit`` (truth values) says so.
+            and ``range`` must be there. A ray misses where the face is -1 or 4294967295, where t or range is +Inf or NaN,
+            where either is ``miss``, and where ``hit`` (truth values) says so. Where t and range are -Inf, what is hit is too
+            near for the ray's sensor.
         arithmetic: the arithmetic that they were computed in, whatever type they are stored in.
         fronts_only: whether only fronts of faces were to be hit.
         miss: a number that means no hit.

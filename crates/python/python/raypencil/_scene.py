@@ -85,7 +85,8 @@ class Beam:
 class RaySet:
     """A set of rays of a scene, in the scene frame, such as the pattern of a LiDAR."""
 
-    #: (..., 8) float64: origin, direction, t_min, t_max; ``cast(scene, ray_set.rays)`` answers them.
+    #: (..., 8) float64: origin, direction, t_min, t_max; (..., 9), with t_blind, of a sensor that has a shortest range.
+    #: ``cast(scene, ray_set.rays)`` answers them.
     rays: NDArray[np.float64]
     #: Seconds, (...); ``None`` if the rays have no times.
     times: NDArray[np.float64] | None

@@ -1,8 +1,8 @@
-//! The nearest hit with its ties, and whether anything is hit.
+//! The nearest hit with its ties, what a sensor reads of it, and whether anything is hit.
 
 use std::cmp::Ordering;
 
-use raypencil_scene::{CastRay, FaceId, Sides};
+use raypencil_scene::{CastRay, FaceId, Reading, Sides};
 
 use super::query_ray::QueryRay;
 use super::triangle::Triangle;
@@ -11,9 +11,42 @@ use crate::bvh::{RayBundle, Traversal};
 
 impl ExactCast<'_> {
     /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same t, none if the
-    /// ray meets nothing.
+    /// ray meets nothing. They may be too near for a sensor: [`reading`](Self::reading) tells.
     pub fn first(&self, ray: &CastRay, sides: Sides) -> Vec<FaceId> {
         self.nearest(ray, sides).iter().map(|face| face.id).collect()
+    }
+
+    /// What the ray's sensor reads: the faces of [`first`](Self::first), unless they are met before [`CastRay::t_blind`],
+    /// exactly.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, FaceId, Reading, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
+    /// let cast = ExactCast::new(&triangle);
+    /// // Met at t = 1: a sensor that measures from there on sees it, one that is blind a step of f64 farther does not.
+    /// let read = |t_blind: f64| {
+    ///     let ray = CastRay { t_blind, ..CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z) };
+    ///     cast.reading(&ray, Sides::Both)
+    /// };
+    /// assert_eq!(read(1.0), Reading::Hit(vec![FaceId(0)]));
+    /// assert_eq!(read(1.0_f64.next_up()), Reading::TooNear);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn reading(&self, ray: &CastRay, sides: Sides) -> Reading<Vec<FaceId>> {
+        self.read(ray, &self.nearest(ray, sides)).map(|faces| faces.iter().map(|face| face.id).collect())
+    }
+
+    /// What the ray's sensor reads of the nearest faces.
+    pub(super) fn read<'f>(&self, ray: &CastRay, nearest: &'f [&'f Triangle]) -> Reading<&'f [&'f Triangle]> {
+        let met = (!nearest.is_empty()).then_some(nearest);
+        // Most rays have no shortest range; the faces of a tie are all at one t.
+        let is_too_near =
+            |met: &&[&Triangle]| ray.t_blind > 0.0 && met[0].is_before(ray.t_blind, &QueryRay::new(ray));
+        Reading::of(met, is_too_near)
     }
 
     /// The faces that [`first`](Self::first) would give for the ray moved sideways, parallel to itself: its origin is

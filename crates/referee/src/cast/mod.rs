@@ -11,12 +11,15 @@
 //! * t = n.a' / n.d, so t >= t_min if n.a' - t_min n.d is 0 or has the sign of n.d
 //! * t < t' if (n.a' n'.d - n'.a'' n.d) has the opposite sign of n.d n'.d
 //!
+//! A sensor that is blind before t_blind is no other ray: its nearest hit decides, and it is too near if t < t_blind. That is the
+//! sign of n.a' - t_blind n.d.
+//!
 //! The files:
 //!
 //! ```text
 //! query_ray   one ray in both numbers: intervals, and exactly where these are in doubt
 //! triangle    one face, and the conditions above
-//! first       the nearest hit with its ties, and whether anything is hit
+//! first       the nearest hit with its ties, what a sensor reads of it, and whether anything is hit
 //! all         all hits in exact order, and how often the surface is crossed
 //! values      the values of a hit, correctly rounded
 //! margin      how far the ray may be moved sideways before its answer changes

@@ -1,4 +1,4 @@
-//! Whether the first hit that a program in rounded arithmetic states can be excused by its rounding.
+//! Whether the answer that a program in rounded arithmetic states for a ray can be excused by its rounding.
 //!
 //! # The rule
 //!
@@ -13,6 +13,14 @@
 //! within the ray's ends, and every face that it meets before F is as near to F as the errors of both ranges. A stated miss
 //! is excused if there is one displacement at which nothing is met. Ends of the ray are moved by the error of a range. (Of a
 //! face that is edge-on this error is more than 2 S, so it is never in the way.)
+//!
+//! The shortest range of a sensor, `t_blind`, is moved by the error of a range as the ends are: a face whose t differs from it by no
+//! more may be measured, and may be too near. (The program rounds `t_blind` itself by u t, at most 2 u S in ranges of its mesh,
+//! and may compare the range of a unit direction in place of t, which is as much again. The 36 that are charged twice cover it.)
+//! So a stated face is excused only if it may lie at `t_blind` or beyond, and 'too near' if there is one displacement at
+//! which a face is met that may lie before it. Whoever looks through a face that is too near is not excused: that face is clearly
+//! before the one behind it. Nor is a miss: something is clearly met.
+//!
 //! The displacement is the witness: it can be put into [`ExactCast::first_moved`].
 //!
 //! A ray cannot slip through an edge that two faces share in this rule, as it can in one that excuses face by face: the
@@ -25,20 +33,21 @@
 //! makes the ruling stricter, never milder.
 
 use glam::DVec2;
-use raypencil_scene::{CastRay, FaceId, Precision, Sides};
+use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides};
 
 use super::margin::{Frame, onto_face};
 use super::query_ray::QueryRay;
 use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
+use crate::bvh::RayBundle;
 use crate::number::Interval;
 use crate::rounded_face::least_cosine;
 use crate::{RANGE_ROUNDINGS, aspect};
 
-/// What the exact answer says of a stated first hit.
+/// What the exact answer says of a stated one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CastRuling {
-    /// It is the exact answer: one of the nearest faces, or no hit where there is none.
+    /// It is the exact answer: one of the nearest faces, too near where they are, or a miss where there is none.
     Same,
     /// It is the answer for a ray moved sideways by `moved`, along the two vectors of [`CastRay::across`], up to the
     /// errors of ranges.
@@ -56,46 +65,52 @@ const LATERAL: f64 = 16.0;
 const ALONG: f64 = 2.0 * RANGE_ROUNDINGS;
 
 impl ExactCast<'_> {
-    /// Rules on the first hit that a program of this precision states. `None` states that nothing is hit.
+    /// Rules on the first hit that a program of this precision states, or on what it states in place of one.
     ///
     /// ```
     /// use glam::DVec3;
     /// use raypencil_referee::{CastRuling, ExactCast};
-    /// use raypencil_scene::{CastRay, FaceId, Precision, Sides, Triangles};
+    /// use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides, Triangles};
     ///
     /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
     /// let cast = ExactCast::new(&triangle);
-    /// let rule = |x: f64, stated: Option<FaceId>| {
+    /// let rule = |x: f64, stated: Reading<FaceId>| {
     ///     let ray = CastRay::new(DVec3::new(x, 0.25, 1.0), DVec3::NEG_Z);
     ///     cast.rule(&ray, Sides::Both, stated, Precision::F64)
     /// };
-    /// assert_eq!(rule(0.0, Some(FaceId(0))), CastRuling::Same);
+    /// assert_eq!(rule(0.0, Reading::Hit(FaceId(0))), CastRuling::Same);
     /// // It may be missed on its border, and not a micrometre inside.
-    /// assert!(matches!(rule(0.0, None), CastRuling::Rounding { .. }));
-    /// assert_eq!(rule(1e-6, None), CastRuling::Wrong);
-    /// assert_eq!(rule(-1e-6, Some(FaceId(0))), CastRuling::Wrong);
+    /// assert!(matches!(rule(0.0, Reading::Miss), CastRuling::Rounding { .. }));
+    /// assert_eq!(rule(1e-6, Reading::Miss), CastRuling::Wrong);
+    /// assert_eq!(rule(-1e-6, Reading::Hit(FaceId(0))), CastRuling::Wrong);
     /// # Ok::<(), raypencil_scene::SceneError>(())
     /// ```
     pub fn rule(
         &self,
         ray: &CastRay,
         sides: Sides,
-        stated: Option<FaceId>,
+        stated: Reading<FaceId>,
         precision: Precision,
     ) -> CastRuling {
         let first = self.nearest(ray, sides);
-        let is_same = match stated {
-            None => first.is_empty(),
-            Some(face) => first.iter().any(|met| met.id == face),
+        let is_same = match (stated, self.read(ray, &first)) {
+            (Reading::Hit(face), Reading::Hit(met)) => met.iter().any(|met| met.id == face),
+            (Reading::TooNear, Reading::TooNear) | (Reading::Miss, Reading::Miss) => true,
+            _ => false,
         };
         if is_same {
             return CastRuling::Same;
         }
-        let stated = match stated.map(|face| self.triangle(face).filter(Triangle::has_area)) {
-            Some(None) => return CastRuling::Wrong,
-            Some(face) => face,
-            None => None,
+        let stated = match stated {
+            Reading::Hit(face) => match self.triangle(face).filter(Triangle::has_area) {
+                Some(face) => Reading::Hit(face),
+                None => return CastRuling::Wrong,
+            },
+            // Nothing is too near for a ray of no such sensor.
+            Reading::TooNear if ray.t_blind == 0.0 => return CastRuling::Wrong,
+            Reading::TooNear => Reading::TooNear,
+            Reading::Miss => Reading::Miss,
         };
         let trial = Trial { cast: self, ray, sides, precision, frame: Frame::new(ray), stated };
         let witness = trial.displacements(&first).into_iter().find(|&by| trial.excuses(by));
@@ -142,8 +157,7 @@ struct Trial<'a> {
     sides: Sides,
     precision: Precision,
     frame: Frame<'a>,
-    /// `None`: that nothing is hit.
-    stated: Option<Triangle>,
+    stated: Reading<Triangle>,
 }
 
 impl Trial<'_> {
@@ -152,8 +166,9 @@ impl Trial<'_> {
         let most = self.cast.lateral_error(self.ray, self.precision);
         let mut tried = vec![DVec2::ZERO];
         let query = QueryRay::new(self.ray);
-        if let Some((stated, side)) = self.stated.and_then(|face| Some((face, face.seen_side(&query)?))) {
-            let onto = |share: f64| onto_face(&self.frame, &stated, side, share * most);
+        for face in self.sought(most) {
+            let Some(side) = face.seen_side(&query) else { continue };
+            let onto = |share: f64| onto_face(&self.frame, &face, side, share * most);
             tried.extend([0.0625, 0.25, 1.0].into_iter().filter_map(onto).map(DVec2::from_array));
         }
         for face in first {
@@ -173,6 +188,30 @@ impl Trial<'_> {
         }
         let is_small = |by: &DVec2| by.abs().max_element() <= most;
         tried.into_iter().filter(is_small).map(|by| by.to_array()).collect()
+    }
+
+    /// The faces of which a moved ray must meet one: the stated face, or all that are too near and no farther beside the ray
+    /// than is charged.
+    fn sought(&self, most: f64) -> Vec<Triangle> {
+        match self.stated {
+            Reading::Hit(face) => vec![face],
+            Reading::Miss => Vec::new(),
+            Reading::TooNear => {
+                let bundle = moved_bundle(self.ray, [0.0; 2]);
+                // The charge is for each of two directions at right angles.
+                let around = RayBundle { start_radius: bundle.start_radius + 2.0 * most, ..bundle };
+                let query = QueryRay::new(self.ray);
+                let mut beside = Vec::new();
+                self.cast.bvh.visit(&around, |face| {
+                    let (t, error) = self.t_and_error(face, &query);
+                    if t - error < self.ray.t_blind && t + error >= self.ray.t_min {
+                        beside.push(*face);
+                    }
+                    around.max_range
+                });
+                beside
+            }
+        }
     }
 
     /// The corners as displacements that bring the ray to them.
@@ -196,18 +235,22 @@ impl Trial<'_> {
         let behind = -4.0 * self.cast.size(self.ray) / QueryRay::length(self.ray);
         let without_ends = CastRay { t_min: behind, t_max: f64::INFINITY, ..*self.ray };
         let query = QueryRay::moved(&without_ends, by);
-        let (t_min, t_max) = (self.ray.t_min, self.ray.t_max);
+        let CastRay { t_min, t_max, t_blind, .. } = *self.ray;
+        // Its t and the error of it, if the moved ray meets a face that may lie within the ray's ends.
+        let met = |face: &Triangle| {
+            let is_edge_on = self.cast.is_edge_on(self.ray, face, self.precision);
+            let sides = if is_edge_on { Sides::Both } else { self.sides };
+            let (t, error) = self.t_and_error(face, &query);
+            let is_met = face.met_side(&query, sides).is_some() && t + error >= t_min && t - error <= t_max;
+            is_met.then_some((t, error))
+        };
         let stated = match &self.stated {
-            None => None,
-            Some(face) => {
-                let (t, error) = self.t_and_error(face, &query);
-                let is_edge_on = self.cast.is_edge_on(self.ray, face, self.precision);
-                let sides = if is_edge_on { Sides::Both } else { self.sides };
-                if face.met_side(&query, sides).is_none() || t + error < t_min || t - error > t_max {
-                    return false;
-                }
-                Some((t, error))
-            }
+            Reading::Miss => None,
+            Reading::Hit(face) => match met(face) {
+                Some((t, error)) if t + error >= t_blind => Some((t, error)),
+                _ => return false,
+            },
+            Reading::TooNear => return self.is_any_too_near(by, met),
         };
         let bundle = moved_bundle(self.ray, by);
         let mut is_excused = true;
@@ -217,7 +260,7 @@ impl Trial<'_> {
                 // Clearly within the ray's ends, and clearly before the stated face.
                 let is_met = t - error >= t_min && t + error <= t_max;
                 let is_before = stated.is_none_or(|(stated, of_stated)| t + error + of_stated < stated);
-                let is_stated = self.stated.is_some_and(|stated| stated.id == face.id);
+                let is_stated = self.stated.hit().is_some_and(|stated| stated.id == face.id);
                 if is_met && is_before && !is_stated {
                     is_excused = false;
                 }
@@ -225,6 +268,20 @@ impl Trial<'_> {
             bundle.max_range
         });
         is_excused
+    }
+}
+
+impl Trial<'_> {
+    /// Whether the ray moved by this meets a face that may lie before the shortest range. What is met before that face is too
+    /// near all the more.
+    fn is_any_too_near(&self, by: [f64; 2], met: impl Fn(&Triangle) -> Option<(f64, f64)>) -> bool {
+        let bundle = moved_bundle(self.ray, by);
+        let mut is_any = false;
+        self.cast.bvh.visit(&bundle, |face| {
+            is_any = is_any || met(face).is_some_and(|(t, error)| t - error < self.ray.t_blind);
+            bundle.max_range
+        });
+        is_any
     }
 }
 

@@ -103,6 +103,13 @@ impl Triangle {
         Some(side)
     }
 
+    /// Whether the plane is met before this t, exactly; at exactly this t it is not.
+    pub(super) fn is_before(&self, t: f64, ray: &QueryRay<'_>) -> bool {
+        // The sign of (t_hit - t) n.d against that of n.d.
+        let beyond = ray.sign(&Beyond { face: self, t });
+        beyond != Ordering::Equal && beyond != ray.sign(&Approach(self))
+    }
+
     /// The side that rays of this direction see; `None` if the face is parallel to them.
     pub(super) fn seen_side(&self, ray: &QueryRay<'_>) -> Option<Side> {
         match ray.sign(&Approach(self)) {

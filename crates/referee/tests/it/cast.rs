@@ -6,7 +6,8 @@ use glam::DVec3;
 use proptest::prelude::*;
 use raypencil_referee::{ExactCast, HitGroup, Referee, SidedFace};
 use raypencil_scene::{
-    Atmosphere, CastRay, FaceId, FluxModel, Mesh, Mounted, Pose, Scene, SensorId, Side, Sides, Triangles, rig,
+    Atmosphere, CastRay, FaceId, FluxModel, Mesh, Mounted, Pose, Reading, Scene, SensorId, Side, Sides,
+    Triangles, rig,
 };
 
 /// A ray from whole numbers.
@@ -79,6 +80,32 @@ fn an_edge_a_vertex_and_a_touch_are_crossed_as_often_as_the_surface_is() {
     assert_eq!((touch[0].faces.len(), touch[0].crossing), (2, 0));
     assert!(touch[0].faces.iter().any(|met| met.side == Side::Front));
     assert!(touch[0].faces.iter().any(|met| met.side == Side::Back));
+}
+
+#[test]
+fn too_near_is_decided_exactly_and_is_no_end_of_the_ray() {
+    let cube = cube();
+    let cast = ExactCast::new(&cube);
+    // From x = -4 by 5 for each t, the side x = 0 is met at t = 4/5, that at x = 2 at t = 6/5.
+    let blind = |t_blind: f64| CastRay { t_blind, ..ray([-4, 1, 1], [5, 0, 0]) };
+    // The double 0.8 is a little more than 4/5: a sensor that measures from there on finds the side too near, though its t is
+    // rounded to that very double. One step less, and it is measured.
+    let measured = cast.first(&blind(0.0), Sides::Both);
+    assert_eq!(cast.values(&blind(0.0), measured[0]).unwrap().t.double, 0.8);
+    assert_eq!(cast.reading(&blind(0.8), Sides::Both), Reading::TooNear);
+    assert_eq!(cast.reading(&blind(0.8_f64.next_down()), Sides::Both), Reading::Hit(measured));
+    // The other side is met all the same, and is not what is read.
+    let all = cast.all(&blind(1.0), Sides::Both);
+    assert_eq!(all.iter().map(|group| group.crossing).collect::<Vec<_>>(), [1, -1]);
+    assert!(cast.any(&blind(1.0), Sides::Both));
+    assert_eq!(cast.reading(&blind(1.0), Sides::Both), Reading::TooNear);
+    // A ray with a start is another ray: from t = 1 on, the far side is read.
+    let started = CastRay { t_min: 1.0, ..blind(0.0) };
+    assert_eq!(cast.reading(&started, Sides::Both), Reading::Hit(cast.first(&started, Sides::Both)));
+    // From within, fronts only: the back that is passed is not too near.
+    let from_within = CastRay { t_blind: 0.5, ..ray([1, 1, 1], [5, 0, 0]) };
+    assert_eq!(cast.reading(&from_within, Sides::Fronts), Reading::Miss);
+    assert_eq!(cast.reading(&from_within, Sides::Both), Reading::TooNear);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use raypencil_referee::{CastMargin, ExactCast};
-use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, Reading, Sides, Triangles};
 
 /// A ray straight down. Across it, u is y and v is x.
 fn down(x: f64, y: f64, z: f64) -> CastRay {
@@ -52,6 +52,27 @@ fn a_step_ends_the_surface_and_an_edge_between_two_faces_does_not() {
     // On the border: any displacement makes a miss, or not; the surface ends here.
     let margins = cast.margins(&down(0.25, 0.0, 4.0), Sides::Both);
     assert!(margins.surface.lo == 0.0 && margins.surface.hi < 1e-15, "{margins:?}");
+}
+
+#[test]
+fn a_slanted_face_that_comes_too_near_ends_both_margins() {
+    // The plane z = x, of one large triangle, seen from z = 4: t = 4 - x. A sensor that is blind before t = 3 measures up to x = 1.
+    let corners = [[-64.0, -64.0, -64.0], [192.0, -64.0, 192.0], [-64.0, 192.0, -64.0]];
+    let plane = mesh(&corners, &[[0, 1, 2]]);
+    let cast = ExactCast::new(&plane);
+    let at = |x: f64| cast.margins(&CastRay { t_blind: 3.0, ..down(x, 0.0, 4.0) }, Sides::Both);
+    for (x, expected) in [(0.25, 0.75), (1.5, 0.5)] {
+        let margins = at(x);
+        assert_is(margins.face, expected);
+        assert_is(margins.surface, expected);
+        // The witness is on the other side.
+        let by = margins.face.witness.expect("a witness");
+        assert_eq!(x + by[1] > 1.0, x < 1.0, "{margins:?}");
+    }
+    // At exactly t = 3 it is measured, and the smallest displacement makes it too near.
+    assert!(at(1.0).face.lo == 0.0 && at(1.0).face.hi < 1e-12, "{:?}", at(1.0));
+    // Without a shortest range the border of the triangle is far: x + y = 128 at 127.75, over two.
+    assert_is(cast.margins(&down(0.25, 0.0, 4.0), Sides::Both).face, 63.875);
 }
 
 #[test]
@@ -262,6 +283,13 @@ fn moved_t(cast: &ExactCast<'_>, ray: &CastRay, by: [f64; 2]) -> f64 {
     cast.first_values(&moved, Sides::Both).map_or(f64::INFINITY, |hit| hit.t.double)
 }
 
+/// Whether the nearest hit of the ray moved sideways is too near, exactly: what is met first from `t_blind` on is another face.
+fn moved_is_too_near(cast: &ExactCast<'_>, ray: &CastRay, by: [f64; 2]) -> bool {
+    let from_there = CastRay { t_min: ray.t_min.max(ray.t_blind), ..*ray };
+    ray.t_blind > 0.0
+        && cast.first_moved(ray, Sides::Both, by) != cast.first_moved(&from_there, Sides::Both, by)
+}
+
 fn size(by: [f64; 2]) -> f64 {
     by[0].abs().max(by[1].abs())
 }
@@ -321,30 +349,37 @@ fn no_change_within_the_margins(
     for margin in [face, surface] {
         prop_assert!(margin.hi <= 1.02 * margin.lo + 1e-14, "{margins:?}");
     }
-    let own = cast.first(&ray, Sides::Both);
+    let answer = |by: [f64; 2]| (cast.first_moved(&ray, Sides::Both, by), moved_is_too_near(&cast, &ray, by));
+    let own = answer([0.0; 2]);
+    prop_assert_eq!(own.1, cast.reading(&ray, Sides::Both) == Reading::TooNear);
     let first_t = moved_t(&cast, &ray, [0.0; 2]);
     if let Some(witness) = face.witness {
-        prop_assert!(cast.first_moved(&ray, Sides::Both, witness) != own, "{margins:?}");
+        prop_assert!(answer(witness) != own, "{margins:?}");
     }
     // A witness of the surface is just beyond a jump: nearby t differs, however near.
     // An end of the ray that touches a corner leaves a single place, which no rounded ray finds.
     let t_of =
         |v: &[f64; 3]| (DVec3::from(*v) - ray.origin).dot(ray.direction) / ray.direction.length_squared();
-    let is_touched =
-        vertices.iter().any(|v| (t_of(v) - ray.t_min).abs().min((t_of(v) - ray.t_max).abs()) < 1e-9);
-    if let Some(at) = surface.witness.filter(|_| !own.is_empty() && !is_touched) {
+    let is_touched = vertices
+        .iter()
+        .any(|v| [ray.t_min, ray.t_max, ray.t_blind].iter().any(|end| (t_of(v) - end).abs() < 1e-9));
+    if let Some(at) = surface.witness.filter(|_| !own.0.is_empty() && !is_touched) {
         let step = 1e-7 * (1.0 + size(at));
         // Places all round, for the jump may be in a narrow wedge.
         let round = (0..128).map(|k| {
             let along = f64::from(k % 32) / 16.0 - 1.0;
             [[along, 1.0], [along, -1.0], [1.0, along], [-1.0, along]][k as usize / 32]
         });
-        let t: Vec<f64> =
-            round.map(|s| moved_t(&cast, &ray, [at[0] + s[0] * step, at[1] + s[1] * step])).collect();
+        let round = round.map(|s| [at[0] + s[0] * step, at[1] + s[1] * step]);
+        let comes_or_goes = round.clone().any(|by| moved_is_too_near(&cast, &ray, by) != own.1);
+        let t: Vec<f64> = round.map(|by| moved_t(&cast, &ray, by)).collect();
         let (least, most) = t.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(*t), b.max(*t)));
         // Where an edge comes out of another face, its jumps begin with 0: they are farther along the edge.
         let sees_a_jump = most - least > 1e-6 || most == f64::INFINITY && least < most;
-        prop_assert!(sees_a_jump || jumps_near(&cast, &ray, mesh, at), "{ray:?} {margins:?} {t:?}");
+        prop_assert!(
+            sees_a_jump || comes_or_goes || jumps_near(&cast, &ray, mesh, at),
+            "{ray:?} {margins:?} {t:?}"
+        );
     }
     for &(s, x, y) in fractions {
         for triangle in faces {
@@ -355,13 +390,7 @@ fn no_change_within_the_margins(
                 let s = if s < 0.1 { 0.0 } else { s };
                 let at = [p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1])];
                 if size(at) < face.lo * (1.0 - 1e-9) {
-                    prop_assert_eq!(
-                        cast.first_moved(&ray, Sides::Both, at),
-                        own.clone(),
-                        "{:?} {:?}",
-                        ray,
-                        at
-                    );
+                    prop_assert_eq!(answer(at), own.clone(), "{:?} {:?}", ray, at);
                 }
                 // Two rays on both sides of the edge.
                 let step = 1e-9;
@@ -374,12 +403,13 @@ fn no_change_within_the_margins(
                         "{ray:?} {at:?} {one} {other} {margins:?}"
                     );
                     prop_assert_eq!(one.is_finite(), first_t.is_finite());
+                    prop_assert_eq!(moved_is_too_near(&cast, &ray, at), own.1, "{:?} {:?}", ray, at);
                 }
             }
         }
         let at = [x * face.lo, y * face.lo];
         if size(at) < face.lo * (1.0 - 1e-9) {
-            prop_assert_eq!(cast.first_moved(&ray, Sides::Both, at), own.clone());
+            prop_assert_eq!(answer(at), own.clone());
         }
     }
     Ok(())
@@ -394,7 +424,7 @@ proptest! {
     fn no_displaced_ray_within_the_margin_finds_a_change(
         vertices in prop::collection::vec(whole(3), 3..9),
         corners in prop::collection::vec([0_usize..9, 0_usize..9, 0_usize..9], 1..14),
-        rays in prop::collection::vec((whole(8), whole(3), 0_u32..4), 6),
+        rays in prop::collection::vec((whole(8), whole(3), 0_u32..6), 6),
         fractions in prop::collection::vec((0.0_f64..1.0, -1.0_f64..1.0, -1.0_f64..1.0), 16),
     ) {
         let faces: Vec<[u32; 3]> =
@@ -410,6 +440,9 @@ proptest! {
             let ray = match ends {
                 0 => CastRay { t_max: 1.0, ..ray },
                 1 => CastRay { t_min: 0.5, t_max: 2.0, ..ray },
+                // A sensor that is blind half-way to what is met mostly.
+                2 => CastRay { t_blind: 1.0, ..ray },
+                3 => CastRay { t_blind: 1.25, t_max: 2.0, ..ray },
                 _ => ray,
             };
             no_change_within_the_margins(&mesh, ray, &fractions)?;
@@ -423,7 +456,7 @@ proptest! {
         heights in prop::collection::vec(-2_i32..=2, 64),
         origin in [0_i32..15, 0_i32..15],
         direction in [1_i32..=6, -2_i32..=2, -2_i32..=-1],
-        start in 0_u32..3,
+        start in 0_u32..5,
         plate in [whole(8), whole(8), whole(8)],
         fractions in prop::collection::vec((0.0_f64..1.0, -1.0_f64..1.0, -1.0_f64..1.0), 12),
     ) {
@@ -439,6 +472,8 @@ proptest! {
         let ray = match start {
             0 => CastRay::new(place - direction * 4.0, direction),
             1 => CastRay::new(place, direction),
+            2 => CastRay { t_blind: 4.0, ..CastRay::new(place - direction * 4.0, direction) },
+            3 => CastRay { t_blind: 4.625, ..CastRay::new(place - direction * 4.0, direction) },
             _ => CastRay { t_min: 4.0, ..CastRay::new(place - direction * 4.0, direction) },
         };
         no_change_within_the_margins(&mesh(&vertices, &faces), ray, &fractions)?;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use raypencil_referee::{CastRuling, ExactCast};
-use raypencil_scene::{CastRay, FaceId, Precision, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides, Triangles};
 
 fn down(x: f64, y: f64) -> CastRay {
     CastRay::new(DVec3::new(x, y, 3.0), DVec3::NEG_Z)
@@ -18,7 +18,12 @@ fn squares(heights: &[f64]) -> Triangles {
 }
 
 fn rule(mesh: &Triangles, ray: &CastRay, stated: Option<u32>) -> CastRuling {
-    ExactCast::new(mesh).rule(ray, Sides::Both, stated.map(FaceId), Precision::F64)
+    let stated = stated.map_or(Reading::Miss, |face| Reading::Hit(FaceId(face)));
+    ExactCast::new(mesh).rule(ray, Sides::Both, stated, Precision::F64)
+}
+
+fn rule_too_near(mesh: &Triangles, ray: &CastRay) -> CastRuling {
+    ExactCast::new(mesh).rule(ray, Sides::Both, Reading::TooNear, Precision::F64)
 }
 
 fn is_rounding(ruling: CastRuling) -> bool {
@@ -49,7 +54,7 @@ fn on_the_outline_a_hit_may_be_missed_and_found() {
     assert_eq!(rule(&mesh, &down(0.5, 1e-12), None), CastRuling::Wrong);
     // In single precision, a thousand times as much.
     let exact = ExactCast::new(&mesh);
-    let single = |y: f64| exact.rule(&down(0.5, y), Sides::Both, Some(FaceId(0)), Precision::F32);
+    let single = |y: f64| exact.rule(&down(0.5, y), Sides::Both, Reading::Hit(FaceId(0)), Precision::F32);
     assert!(is_rounding(single(-1e-12)));
     assert_eq!(single(-1e-4), CastRuling::Wrong);
 }
@@ -59,7 +64,7 @@ fn a_witness_is_a_ray_with_that_answer() {
     let mesh = squares(&[0.0]);
     let exact = ExactCast::new(&mesh);
     let ray = down(0.5, 0.0);
-    let CastRuling::Rounding { moved } = exact.rule(&ray, Sides::Both, None, Precision::F64) else {
+    let CastRuling::Rounding { moved } = exact.rule(&ray, Sides::Both, Reading::Miss, Precision::F64) else {
         panic!("a miss on the outline is rounding")
     };
     let most = exact.lateral_error(&ray, Precision::F64);
@@ -125,12 +130,88 @@ fn the_ends_of_a_ray_are_as_uncertain_as_ranges() {
 }
 
 #[test]
+fn nobody_sees_through_what_is_too_near_or_misses_it() {
+    // A plate 3 m below the ray's origin, and a floor 1 m below the plate.
+    let mesh = squares(&[0.0, -1.0]);
+    let blind = |t_blind: f64| CastRay { t_blind, ..down(0.75, 0.25) };
+    for t_blind in [3.0 + 1e-9, 3.5, 4.0, 5.0] {
+        let ray = blind(t_blind);
+        assert_eq!(rule_too_near(&mesh, &ray), CastRuling::Same);
+        // Neither the plate nor the floor, were it measured by itself, nor nothing.
+        for stated in [Some(0), Some(2), None] {
+            assert_eq!(rule(&mesh, &ray, stated), CastRuling::Wrong, "{t_blind} {stated:?}");
+        }
+    }
+    // The plate is measured: it is not too near, for a sensor or for none.
+    for t_blind in [0.0, 1.0, 3.0 - 1e-9] {
+        assert_eq!(rule(&mesh, &blind(t_blind), Some(0)), CastRuling::Same);
+        assert_eq!(rule_too_near(&mesh, &blind(t_blind)), CastRuling::Wrong, "{t_blind}");
+    }
+    // Beside the plates nothing is met.
+    let beside = CastRay { t_blind: 3.5, ..down(2.0, 0.25) };
+    assert_eq!(rule(&mesh, &beside, None), CastRuling::Same);
+    assert_eq!(rule_too_near(&mesh, &beside), CastRuling::Wrong);
+}
+
+#[test]
+fn the_shortest_range_is_as_uncertain_as_ranges() {
+    let mesh = squares(&[0.0, -1.0]);
+    let blind = |t_blind: f64| CastRay { t_blind, ..down(0.75, 0.25) };
+    // At exactly the shortest range it is measured, one step before it is too near; rounding may take either for the other.
+    assert_eq!(rule(&mesh, &blind(3.0), Some(0)), CastRuling::Same);
+    assert!(is_rounding(rule_too_near(&mesh, &blind(3.0))));
+    assert_eq!(rule_too_near(&mesh, &blind(3.0_f64.next_up())), CastRuling::Same);
+    assert!(is_rounding(rule(&mesh, &blind(3.0_f64.next_up()), Some(0))));
+    // The bound is that of the range: 72 kappa u S / c, with kappa = sqrt(2), S = 1 + 3 and c = 1.
+    let exact = ExactCast::new(&mesh);
+    for precision in [Precision::F64, Precision::F32] {
+        let bound = exact.range_error(&blind(3.0), FaceId(0), precision);
+        let of = |t_blind: f64, stated| exact.rule(&blind(t_blind), Sides::Both, stated, precision);
+        let (plate, near) = (Reading::Hit(FaceId(0)), Reading::TooNear);
+        assert!(is_rounding(of(3.0 + 0.9 * bound, plate)) && is_rounding(of(3.0 - 0.9 * bound, near)));
+        assert_eq!(of(3.0 + 1.1 * bound, plate), CastRuling::Wrong);
+        assert_eq!(of(3.0 - 1.1 * bound, near), CastRuling::Wrong);
+        // Whoever passes through the plate, or misses it, is wrong however near the limit is.
+        for stated in [Reading::Hit(FaceId(2)), Reading::Miss] {
+            assert_eq!(of(3.0 + 0.5 * bound, stated), CastRuling::Wrong);
+            assert_eq!(of(3.0 - 0.5 * bound, stated), CastRuling::Wrong);
+        }
+    }
+}
+
+#[test]
+fn on_the_outline_of_what_is_too_near_a_ray_may_pass_it() {
+    // The plate ends at y = 0; a floor 1 m below it goes on. Both ways, by one moved ray.
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [-9.0, -9.0, -1.0],
+        [9.0, -9.0, -1.0],
+        [0.0, 9.0, -1.0],
+    ];
+    let mesh = Triangles::new(corners.to_vec(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let blind = |y: f64| CastRay { t_blind: 3.5, ..down(0.5, y) };
+    assert_eq!(rule_too_near(&mesh, &blind(0.0)), CastRuling::Same);
+    assert!(is_rounding(rule(&mesh, &blind(0.0), Some(1))));
+    assert_eq!(rule(&mesh, &blind(1e-9), Some(1)), CastRuling::Wrong);
+    assert!(is_rounding(rule_too_near(&mesh, &blind(-1e-17))));
+    assert_eq!(rule_too_near(&mesh, &blind(-1e-9)), CastRuling::Wrong);
+    // Past the tip of a needle too.
+    let width = libm::scalbn(1.0, -40);
+    let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, width, 0.0]];
+    let needle = Triangles::new(corners, vec![[0, 1, 2]]).unwrap();
+    let past = CastRay { t_blind: 3.5, ..down(-1e-16, 0.0) };
+    assert!(is_rounding(rule_too_near(&needle, &past)));
+}
+
+#[test]
 fn a_side_that_does_not_count_is_no_excuse() {
     let mesh = squares(&[0.0]);
     let exact = ExactCast::new(&mesh);
     let up = CastRay::new(DVec3::new(0.75, 0.25, -3.0), DVec3::Z);
-    assert_eq!(exact.rule(&up, Sides::Fronts, None, Precision::F64), CastRuling::Same);
-    assert_eq!(exact.rule(&up, Sides::Fronts, Some(FaceId(0)), Precision::F64), CastRuling::Wrong);
+    assert_eq!(exact.rule(&up, Sides::Fronts, Reading::Miss, Precision::F64), CastRuling::Same);
+    assert_eq!(exact.rule(&up, Sides::Fronts, Reading::Hit(FaceId(0)), Precision::F64), CastRuling::Wrong);
 }
 
 /// The back of a face does not count, unless the program cannot tell it from the front: up to a cosine of 2 (5 kappa + 15) u.
@@ -143,7 +224,7 @@ fn the_back_of_a_face_that_is_edge_on_may_be_hit() {
     let ray = CastRay::new(DVec3::ZERO, DVec3::Z);
     let least = d / 2.0 / (2.0 * (5.0 * 1.25 + 15.0));
     let rule = |unit_roundoff: f64| {
-        ExactCast::new(&mesh).rule(&ray, Sides::Fronts, Some(FaceId(0)), Precision { unit_roundoff })
+        ExactCast::new(&mesh).rule(&ray, Sides::Fronts, Reading::Hit(FaceId(0)), Precision { unit_roundoff })
     };
     assert_eq!(rule(0.99 * least), CastRuling::Wrong);
     assert!(is_rounding(rule(1.01 * least)));

@@ -43,6 +43,7 @@ fn a_head_of_ones_own_has_its_channels_and_steps() {
     assert_eq!((first.direction, third.direction), (DVec3::X, DVec3::Y));
     assert!((second.direction - DVec3::new(0.5, 0.5, 0.5_f64.sqrt())).length() < 1e-15);
     assert_eq!((second.origin, second.t_max), (DVec3::new(0.0, 0.0, 0.25), 7.0));
+    assert_eq!((second.t_min, second.t_blind), (0.0, 0.0));
     // From start to end, clockwise.
     let text =
         "spinning = { elevations_deg = [0], azimuth_start_deg = 90, azimuth_end_deg = -90, steps = 2 }\n";
@@ -59,6 +60,11 @@ fn cones_and_moving_heads_are_read() {
                 divergence_mrad = 3, rings = 1 }\n";
     let set = one(text).unwrap().sets.remove(0);
     assert_eq!((&set.shape[..], set.weights.map(|weights| weights.len())), (&[2, 3, 7][..], Some(7)));
+    // The shortest range of a sensor is that of all its rays, and no start of them.
+    let text =
+        "cone = { of = { spinning = { preset = \"os1-64\", steps = 1 } }, divergence_mrad = 3, rings = 1 }\n";
+    let set = one(text).unwrap().sets.remove(0);
+    assert!(set.set.rays().iter().all(|ray| (ray.t_min, ray.t_blind) == (0.0, 0.8)));
     let text = "grid = { preset = \"l515\", columns = 1, rows = 1 }\nstart_s = 0.5\n\
                 poses = [{ time_s = 0 }, { time_s = 1, position_m = [2, 0, 4], yaw_left_deg = 90 }]\n";
     let set = one(text).unwrap().sets.remove(0);

@@ -50,7 +50,7 @@ pub struct Grid {
     pub height_deg: f64,
     /// What has equal steps.
     pub spacing: Spacing,
-    /// Shortest range, metres.
+    /// Shortest range, metres: a nearest hit before it is too near ([`CastRay::t_blind`]), and nothing is seen behind it.
     pub min_range_m: f64,
     /// Longest range, metres.
     pub max_range_m: f64,
@@ -99,7 +99,7 @@ impl Grid {
                     Spacing::Tangent => DVec3::new(1.0, tangents[0] * left, tangents[1] * up).normalize(),
                 };
                 let ray = CastRay::new(DVec3::ZERO, direction);
-                rays.push(CastRay { t_min: self.min_range_m, t_max: self.max_range_m, ..ray });
+                rays.push(CastRay { t_max: self.max_range_m, t_blind: self.min_range_m, ..ray });
             }
         }
         let shape = vec![self.rows, self.columns];

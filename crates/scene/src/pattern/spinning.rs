@@ -57,7 +57,7 @@ pub struct Spinning {
     pub steps: u64,
     /// Time from one firing sequence to the next, seconds.
     pub period_s: f64,
-    /// Shortest range, metres.
+    /// Shortest range, metres: a nearest hit before it is too near ([`CastRay::t_blind`]), and nothing is seen behind it.
     pub min_range_m: f64,
     /// Longest range, metres.
     pub max_range_m: f64,
@@ -109,8 +109,9 @@ impl Spinning {
                 rays.push(CastRay {
                     origin: DVec3::new(-channel.lateral_m * sin, channel.lateral_m * cos, channel.vertical_m),
                     direction: direction(azimuth, channel.elevation_deg),
-                    t_min: self.min_range_m,
+                    t_min: 0.0,
                     t_max: self.max_range_m,
+                    t_blind: self.min_range_m,
                 });
                 times.push(step as f64 * self.period_s + channel.firing_s);
             }

@@ -25,6 +25,7 @@ fn channel_0_of_a_vlp_16_looks_forward_and_15_degrees_down() {
     // Its emitter is 11.2 mm above the origin.
     assert_eq!(pattern.rays[0].origin, DVec3::new(0.0, 0.0, 11.2e-3));
     assert_eq!((pattern.rays[0].t_min, pattern.rays[0].t_max), (0.0, 100.0));
+    assert_eq!(pattern.rays[0].t_blind, 0.0);
 }
 
 #[test]
@@ -65,6 +66,11 @@ fn directions_are_units_and_presets_have_their_counts() {
         assert_eq!(pattern.rays.len() as u64, shape[0] * shape[1]);
         assert!(pattern.rays.iter().all(|ray| (ray.direction.length() - 1.0).abs() < 4e-16));
     }
+    // A shortest range is no start of the rays.
+    let mut os1 = Spinning::preset("os1-64").unwrap().rays("a").unwrap().rays.into_iter();
+    assert!(os1.all(|ray| (ray.t_min, ray.t_blind, ray.t_max) == (0.0, 0.8, 120.0)));
+    let mut l515 = Grid::preset("l515").unwrap().rays("a").unwrap().rays.into_iter();
+    assert!(l515.all(|ray| (ray.t_min, ray.t_blind, ray.t_max) == (0.0, 0.25, 9.0)));
     // The ends of the nominal tables.
     let ends = |name: &str| {
         let channels = Spinning::preset(name).unwrap().channels;

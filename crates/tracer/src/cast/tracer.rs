@@ -48,7 +48,7 @@ impl TracerCast {
         CastTraverser { cast: self, stack: HeapStack::new_with_capacity(self.boxes.stack_size()) }
     }
 
-    /// The first hit of each ray of a set, on all threads.
+    /// The first hit of each ray of a set, on all threads; also one that is [too near](CastRay::is_too_near) for a sensor.
     pub fn first_of(&self, set: &RaySet) -> Vec<Option<TracedHit>> {
         let first = |traverser: &mut CastTraverser<'_>, ray| traverser.first(ray, set.sides());
         set.rays().par_iter().map_init(|| self.traverser(), first).collect()
@@ -78,7 +78,8 @@ enum Next {
 }
 
 impl CastTraverser<'_> {
-    /// The nearest hit; of several at the same t, that of the lowest face.
+    /// The nearest hit, also one that is [too near](CastRay::is_too_near) for a sensor; of several at the same t, that of the
+    /// lowest face.
     pub fn first(&mut self, ray: &CastRay, sides: Sides) -> Option<TracedHit> {
         let scaled = self.cast.frame.ray(ray);
         let mut nearest: Option<Crossing> = None;

@@ -88,7 +88,7 @@ fn a_wrong_ray_leads_to_its_words_and_cells_show_their_numbers() {
         let shown = ["a", "b"].map(|side| {
             page.text(&format!("document.querySelector('[data-readout=\"{side}\"]').dataset.value"))
         });
-        let expected = answers.first[k].map_or(f32::INFINITY, |hit| hit.range as f32);
+        let expected = answers.first[k].hit().map_or(f32::INFINITY, |hit| hit.range as f32);
         for text in &shown {
             let number = if text == "Infinity" { f32::INFINITY } else { text.parse().expect("a number") };
             assert_eq!(number, expected, "{i},{j}: {shown:?}");
@@ -117,7 +117,7 @@ fn answers_alone_have_one_side() {
         return;
     };
     page.wait("document.querySelector('[data-readout-root]')?.dataset.state === 'ready'");
-    let face = answers.first[2 * WIDTH + 3].expect("a hit").face.0.to_string();
+    let face = answers.first[2 * WIDTH + 3].hit().expect("a hit").face.0.to_string();
     assert_eq!(page.text("document.querySelector('[data-readout=\"a\"]').dataset.value"), face);
     assert_eq!(
         page.number("document.querySelectorAll('[data-choose=\"b\"], [data-mode=\"b\"]').length"),

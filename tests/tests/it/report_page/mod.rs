@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 use raypencil::Silent;
 use raypencil::harness::{Contender, Validation, contender, validate, write_validation};
-use raypencil::io::{LoadedScene, Overrides, Subject, load};
+use raypencil::io::{Overrides, Subject, load};
 use raypencil::judge::JudgeShare;
 use tempfile::TempDir;
 
@@ -39,9 +39,7 @@ impl Written {
 
 /// A scene by its name, with these overrides.
 fn subject(scene: &str, overrides: &Overrides) -> Subject {
-    let LoadedScene { scene: loaded, name, source_sha256, vehicle, .. } =
-        load(scene, overrides).expect("a scene");
-    Subject { scene: loaded, name, arguments: scene.into(), sha256: source_sha256, vehicle: Some(vehicle) }
+    load(scene, overrides).expect("a scene").into_subject(scene.into())
 }
 
 fn contenders<const N: usize>(names: [&str; N]) -> [Contender; N] {

@@ -348,3 +348,95 @@ fn polygons_that_are_not_convex_or_cross_themselves_are_told() {
         "{summary}"
     );
 }
+
+/// A plate 0.5 m before the origin and a wall 10 m behind it.
+const PLATE_AND_WALL: &str = "v 0.5 -1 -1\nv 0.5 1 -1\nv 0.5 1 1\nv 0.5 -1 1\nv 10 -20 -20\nv 10 20 -20\nv 10 20 20\n\
+    v 10 -20 20\nf 1 3 2\nf 1 4 3\nf 5 7 6\nf 5 8 7\n";
+
+#[test]
+fn what_is_nearer_than_a_sensors_shortest_range_is_too_near() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    fs::write(at.join("near.obj"), PLATE_AND_WALL).expect("a file");
+    let set = |min: f64| {
+        let grid = "columns = 3, rows = 3, width_deg = 20, height_deg = 20";
+        format!("[[rays]]\nname = \"os1\"\ngrid = {{ {grid}, min_range_m = {min}, max_range_m = 120 }}\n")
+    };
+    fs::write(at.join("near.toml"), set(0.8)).expect("a file");
+    fs::write(at.join("nearer.toml"), set(0.4)).expect("a file");
+    let read = |path: &str| read_npy_numbers(at.join(path), &Limits::default()).expect("an array").values;
+    let shown =
+        screen(at, &["cast", "near.obj", "near.toml", "--with", "tracer", "--any", "--all", "-o", "out"], 0);
+    assert!(shown.contains("os1: 9 rays: 0 hit, 0 of them at a tie; 9 too near; 0 miss"), "{shown}");
+    assert!(shown.contains("tracer: 9 the same") && shown.contains("All 9 rays agree."), "{shown}");
+    assert_eq!(read("out/range.npy"), [f64::NEG_INFINITY; 9]);
+    assert_eq!((read("out/any.npy"), read("out/face.npy")), (vec![1.0; 9], vec![f64::from(u32::MAX); 9]));
+    // The plate and the wall behind it, with both faces on the diagonals of each.
+    assert_eq!(read("out/all.t.npy").len(), 2 * (9 + 3));
+    let summary = fs::read_to_string(at.join("out/summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    let counts = serde_json::json!({ "hits": 0, "tooNear": 9, "misses": 0, "ties": 0 });
+    assert_eq!(summary["counts"], counts);
+    let schema = include_str!("../../../../../docs/formats/cast.schema.json");
+    assert_eq!(schema_faults(&serde_json::from_str(schema).expect("JSON"), &summary), Vec::<String>::new());
+    // A sensor that measures from 0.4 m on sees the plate, and the same rays with a start at 0.8 m the wall.
+    let shown = screen(at, &["cast", "near.obj", "nearer.toml", "-o", "seen"], 0);
+    assert!(shown.contains("9 hit") && !shown.contains("too near"), "{shown}");
+    let shown = screen(at, &["cast", "near.obj", "--ray=0,0,0,1,0,0,0.8,120"], 0);
+    assert!(shown.contains("  t            10"), "{shown}");
+    // One of its rays again.
+    let ray = "--ray=0,0,0,1,0,0,0,120,0.8";
+    let shown = screen(at, &["cast", "near.obj", ray, "--all", "--margins"], 0);
+    for line in
+        ["too near     the nearest surface is met before t 0.8", "all          t 0.5", "all          t 10"]
+    {
+        assert!(shown.contains(line), "{shown}");
+    }
+    let json: serde_json::Value =
+        serde_json::from_str(&screen(at, &["--json", "cast", "near.obj", ray], 0)).expect("JSON");
+    let one = &json["rays"][0];
+    assert_eq!(
+        (&one["tooNear"], &one["tBlind"], &one["first"]),
+        (&true.into(), &0.8.into(), &serde_json::Value::Null)
+    );
+    assert_eq!(json["counts"]["tooNear"], 1);
+}
+
+#[test]
+fn recordings_tell_too_near_from_a_miss() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    fs::write(at.join("near.obj"), PLATE_AND_WALL).expect("a file");
+    // Two rays into the plate, one past it onto the wall, one into the air, of a sensor that is blind before 0.8.
+    let rays = "0,0,0,1,0.25,0,0,inf,0.8\n0,0,0,1,0,0.5,0,inf,0.8\n0,1.5,0,1,0,0,0,inf,0.8\n0,0,0,-1,0,0,0,inf,0.8\n";
+    fs::write(at.join("rays.csv"), rays).expect("a file");
+    let shown = screen(at, &["pack", "near.obj", "--rays", "rays.csv", "-o", "pack"], 0);
+    assert!(shown.contains("4 rays; 1 hit, 0 of them at a tie, 2 too near, 1 miss"), "{shown}");
+    for name in ["right", "other"] {
+        let folder = at.join(format!("{name}/rays/mast"));
+        screen(at, &["cast", "near.obj", "rays.csv", "-o", &folder.display().to_string()], 0);
+    }
+    let mine = at.join("other/rays/mast");
+    for name in ["t", "range"] {
+        let path = mine.join(format!("{name}.npy"));
+        // Each -Inf becomes +Inf.
+        let array = read_npy_numbers(&path, &Limits::default()).expect("an array");
+        let missed: Vec<f64> =
+            array.values.iter().map(|t| if t.is_finite() { *t } else { f64::INFINITY }).collect();
+        raypencil::io::write_npy_numbers(&path, &array.shape, &missed).expect("a file");
+    }
+    let shown = screen(at, &["check", "pack", "right/rays/mast"], 0);
+    assert!(shown.contains("All 4 rays agree."), "{shown}");
+    let shown = screen(at, &["check", "pack", "other/rays/mast"], 1);
+    for words in [
+        "2 of 4 rays are wrong.",
+        "no hit; exactly what is hit is too near: its surface stands before the sensor's shortest range",
+        "--ray=0,0,0,1,0.25,0,0,inf,0.8 --all --margins",
+        "what is too near is not told from a miss: it is -Inf, a miss is +Inf",
+    ] {
+        assert!(shown.contains(words), "{shown}");
+    }
+    // `diff` knows no scene: -inf is another number than inf.
+    let shown = screen(at, &["diff", "right", "other", "--fail", "1e9"], 1);
+    assert!(shown.contains("rays/mast/range") && shown.contains("-inf"), "{shown}");
+}

@@ -15,6 +15,11 @@
 //! surface    the margin of the surface: the nearest t jumps
 //! ```
 //!
+//! The answer of a sensor's ray is its nearest faces and whether these are too near ([`CastRay::t_blind`]). As long as they are not,
+//! they are also the first that the ray meets from `t_blind` on; as long as they are too near, the first that it meets up to
+//! there. So the least displacement that changes the answer is the smaller one of two rays: of the whole ray, and of the ray
+//! that begins, or ends, at `t_blind`.
+//!
 //! Everything is decided by signs of polynomials of stored numbers, in intervals first and exactly where these are in
 //! doubt. So a margin is the exact least size but for its rounding to f64, and no search can fail to find it.
 
@@ -28,7 +33,7 @@ mod seams;
 mod segment;
 mod surface;
 
-use raypencil_scene::{CastRay, Sides};
+use raypencil_scene::{CastRay, Reading, Sides};
 
 use super::ExactCast;
 pub(super) use faces::onto_face;
@@ -50,7 +55,7 @@ pub struct CastMargin {
     pub witness: Option<[f64; 2]>,
 }
 
-/// The margins of a ray.
+/// The margins of a ray. Of a ray with [`CastRay::t_blind`] a change from too near to measured, or back, counts in both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CastMargins {
     /// Of the set of nearest faces: any change of it counts, also from one face to the next of a plane.
@@ -60,6 +65,12 @@ pub struct CastMargins {
 }
 
 impl CastMargin {
+    /// The margin of an answer that changes if either of two does.
+    fn of_either(self, other: Self) -> Self {
+        let witness = if other.hi < self.hi { other.witness } else { self.witness };
+        Self { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi), witness }
+    }
+
     /// From a proven interval of the least size. A witness counts if it is as small but for a hundredth, or for `least`,
     /// a size below which `f64` numbers hardly tell rays apart.
     fn of([lo, hi]: [f64; 2], witness: Option<[f64; 2]>, least: f64, cap: f64) -> Self {
@@ -93,6 +104,21 @@ impl ExactCast<'_> {
     /// # Ok::<(), raypencil_scene::SceneError>(())
     /// ```
     pub fn margins(&self, ray: &CastRay, sides: Sides) -> CastMargins {
+        let whole = self.margins_between_ends(ray, sides);
+        if ray.t_blind <= ray.t_min {
+            return whole;
+        }
+        let on_its_side = match self.reading(ray, sides) {
+            Reading::Miss => return whole,
+            Reading::Hit(_) => CastRay { t_min: ray.t_blind, ..*ray },
+            Reading::TooNear => CastRay { t_max: ray.t_blind, ..*ray },
+        };
+        let cut = self.margins_between_ends(&on_its_side, sides);
+        CastMargins { face: whole.face.of_either(cut.face), surface: whole.surface.of_either(cut.surface) }
+    }
+
+    /// The margins of the nearest hit between the ray's ends, wherever it is.
+    fn margins_between_ends(&self, ray: &CastRay, sides: Sides) -> CastMargins {
         let frame = Frame::new(ray);
         let nearest = self.nearest(ray, sides);
         let face = self.face_margin(&frame, &nearest, sides);
