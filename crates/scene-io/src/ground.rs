@@ -27,9 +27,9 @@ pub(crate) fn read_ground(
             let terrain = terrain_file(source, "file", &MESH_ENDINGS, file, &plan.terrain_span)?;
             Ok(Some(read_terrain(&terrain, reflectivity, frame)?))
         }
-        Terrain::Dem(DemPart { file, window, max_error }) => {
+        Terrain::Dem(DemPart { file, options, max_error }) => {
             let terrain = terrain_file(source, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
-            let (mesh, sha) = dem::read_mesh(&terrain, *window, *max_error, reflectivity)?;
+            let (mesh, sha) = dem::read_mesh(&terrain, options, *max_error, reflectivity)?;
             Ok(Some((mesh, vec![sha])))
         }
         Terrain::Mars { ground, coarse: Some((file, span)) } => {

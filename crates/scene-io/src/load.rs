@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, FileFrame, Vertices, dem, gltf, read_terrain};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, DemOptions, FileFrame, Vertices, dem, gltf, read_terrain};
 use raypencil_rover::Rig;
 use raypencil_scene::{Mesh, Pose, Scene, SceneError};
 
@@ -103,8 +103,9 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish_alone(&source, terrain, parts, mesh, overrides)
         }
         SceneSource::Dem(path) => {
-            let (mesh, sha) = dem::read_mesh(path, None, None, DEFAULT_REFLECTIVITY)?;
-            let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
+            let options = DemOptions::default();
+            let (mesh, sha) = dem::read_mesh(path, &options, None, DEFAULT_REFLECTIVITY)?;
+            let terrain = Terrain::Dem(DemPart { file: path.clone(), options, max_error: None });
             finish_alone(&source, terrain, vec![sha], mesh, overrides)
         }
         SceneSource::Toml(path) => load_toml(&source, path, &read_toml(path)?, overrides, None),
