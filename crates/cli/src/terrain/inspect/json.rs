@@ -9,6 +9,7 @@ use super::report::Report;
 pub(super) fn report_json(report: &Report) -> String {
     let mut printed = inspection(&report.found);
     printed["mesh"] = report.mesh.into();
+    printed["file"] = report.facts.of_file.clone();
     if let Some(repaired) = &report.repaired {
         let repairs = &repaired.repairs;
         printed["repaired"] = json!({
