@@ -28,7 +28,7 @@
 //! file_frame -> terrain                       the axes and the unit of a mesh file, and terrain from any of them
 //! ```
 //!
-//! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md`. Sources: glTF 2.0
+//! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md` and `docs/formats/terrain.md`. Sources: glTF 2.0
 //! (Khronos), TIFF 6.0, BigTIFF, GeoTIFF 1.1 (OGC 19-008r4), STL (3D Systems), OBJ (Wavefront), PLY (Greg Turk), NPY
 //! (NumPy Enhancement Proposal 1).
 //!
