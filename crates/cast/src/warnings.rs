@@ -102,7 +102,11 @@ fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
         let mut hits = 0_u64;
         let mut nearest: Option<(f64, f64)> = None;
         for &ray in &tried {
-            let asked = if limited { *ray } else { CastRay { t_min: 0.0, t_max: f64::INFINITY, t_blind: 0.0, ..*ray } };
+            let asked = if limited {
+                *ray
+            } else {
+                CastRay { t_min: 0.0, t_max: f64::INFINITY, t_blind: 0.0, ..*ray }
+            };
             let Some(hit) = traverser.first(&asked, sides) else { continue };
             hits += 1;
             if nearest.is_none_or(|(range, _)| hit.range < range) {

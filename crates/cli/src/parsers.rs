@@ -7,7 +7,7 @@ use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
 use raypencil::cast::rays_from_bytes;
 use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
-use raypencil::io::{SceneIoError, Setting, UpAxis};
+use raypencil::io::{HeightUnit, LengthUnit, NoData, SceneIoError, Setting, UpAxis};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::pack::PackLabel;
 use raypencil::rover::RULE_NAMES;
@@ -52,6 +52,21 @@ pub(crate) fn up_axis() -> impl TypedValueParser<Value = UpAxis> {
         (UpAxis::Y.word(), "(x, y, z) of the file is (x, -z, y) of the terrain", UpAxis::Y),
         (UpAxis::Z.word(), "The axes of the file are those of the terrain", UpAxis::Z),
     ])
+}
+
+/// `--nodata`.
+pub(crate) fn nodata(text: &str) -> Result<NoData, String> {
+    NoData::parse(text)
+}
+
+/// `--unit`.
+pub(crate) fn length_unit(text: &str) -> Result<LengthUnit, String> {
+    LengthUnit::parse(text)
+}
+
+/// `--z-unit`.
+pub(crate) fn height_unit(text: &str) -> Result<HeightUnit, String> {
+    HeightUnit::parse(text)
 }
 
 /// `--do`.

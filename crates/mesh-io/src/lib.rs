@@ -15,8 +15,11 @@
 //!       stated_origin -> read                 a mesh with its scene origin
 //!       exact                                 triangles in the axes of the file, in double precision
 //!       write                                 a mesh to GLB
-//! dem   tags -> blocks                        tags of a TIFF, and the samples in its strips or tiles
-//!       registration -> georeference          what a pixel is, and where pixels are on the map
+//! dem   tags, codec, target -> blocks         tags of a TIFF, and the samples in its strips or tiles
+//!       registration -> geo_keys -> citation  what a pixel is; codes and names of coordinate systems
+//!       unit -> epsg, gdal_metadata           units of length, and what the codes of EPSG say
+//!       coordinate_system -> georeference     the units of map and heights, and where pixels are on the map
+//!       nodata, outliers -> heights           samples that are no heights, and those that can hardly be any
 //!       lattice, model -> read                the posts inside a window, and the ground through them
 //!       write                                 a grid of heights to GeoTIFF
 //! triangles  text, polygon, polygon_facts     lines and decimal numbers of a text; a polygon's triangles; what is told of it
@@ -27,7 +30,7 @@
 //! file_frame -> terrain                       the axes and the unit of a mesh file, and terrain from any of them
 //! ```
 //!
-//! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md`. Sources: glTF 2.0
+//! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md` and `docs/formats/terrain.md`. Sources: glTF 2.0
 //! (Khronos), TIFF 6.0, BigTIFF, GeoTIFF 1.1 (OGC 19-008r4), STL (3D Systems), OBJ (Wavefront), PLY (Greg Turk), NPY
 //! (NumPy Enhancement Proposal 1).
 //!
@@ -55,7 +58,10 @@ pub mod gltf;
 mod terrain;
 pub mod triangles;
 
-pub use dem::{Dem, Registration, dem_from_bytes, read_dem, write_geotiff};
+pub use dem::{
+    AxisSystem, Dem, DemOptions, HeightUnit, LengthUnit, NoData, Registration, Spikes, UnitSource,
+    dem_from_bytes, read_dem, read_dem_with, write_geotiff,
+};
 pub use file_frame::{FileFrame, SCALE_RANGE, UpAxis};
 pub use gltf::{
     DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes,

@@ -37,9 +37,9 @@ pub(crate) fn read_ground(
             let TerrainFile { mesh, digests, polygon_facts } = read_terrain(&terrain, reflectivity, frame)?;
             Ok(Some(GroundFromFiles { mesh, digests, polygon_facts }))
         }
-        Terrain::Dem(DemPart { file, window, max_error }) => {
+        Terrain::Dem(DemPart { file, options, max_error }) => {
             let terrain = terrain_file(source, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
-            let (mesh, sha) = dem::read_mesh(&terrain, *window, *max_error, reflectivity)?;
+            let (mesh, sha) = dem::read_mesh(&terrain, options, *max_error, reflectivity)?;
             let polygon_facts = PolygonFacts::default();
             Ok(Some(GroundFromFiles { mesh, digests: vec![sha], polygon_facts }))
         }

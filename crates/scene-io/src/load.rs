@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
 use raypencil_mesh_io::{
-    DEFAULT_REFLECTIVITY, FileFrame, PolygonFacts, TerrainFile, Vertices, dem, gltf, read_terrain,
+    DEFAULT_REFLECTIVITY, DemOptions, FileFrame, PolygonFacts, TerrainFile, Vertices, dem, gltf, read_terrain,
 };
 use raypencil_rover::Rig;
 use raypencil_scene::{Pose, Scene, SceneError};
@@ -130,8 +130,9 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
             finish_alone(&source, terrain, GroundFromFiles { mesh, digests, polygon_facts }, overrides)
         }
         SceneSource::Dem(path) => {
-            let (mesh, sha) = dem::read_mesh(path, None, None, DEFAULT_REFLECTIVITY)?;
-            let terrain = Terrain::Dem(DemPart { file: path.clone(), window: None, max_error: None });
+            let options = DemOptions::default();
+            let (mesh, sha) = dem::read_mesh(path, &options, None, DEFAULT_REFLECTIVITY)?;
+            let terrain = Terrain::Dem(DemPart { file: path.clone(), options, max_error: None });
             let polygon_facts = PolygonFacts::default();
             let ground = GroundFromFiles { mesh, digests: vec![sha], polygon_facts };
             finish_alone(&source, terrain, ground, overrides)

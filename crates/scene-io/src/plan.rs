@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use raypencil_files::Sha256Digest;
-use raypencil_mesh_io::FileFrame;
+use raypencil_mesh_io::{DemOptions, FileFrame};
 use raypencil_scene::rig::{self, DEFAULT_BEAM_MOUNTS, DEFAULT_CAMERA_MOUNT, DefaultMount};
 use raypencil_scene::{Beam, Camera, FluxModel, NamedRaySet};
 use raypencil_terrain::MarsGround;
@@ -93,8 +93,8 @@ pub(crate) struct MeshPart {
 pub(crate) struct DemPart {
     /// Path relative to the scene file.
     pub file: PathBuf,
-    /// x and y of the lower left corner, width and height, metres; `None`: the whole model.
-    pub window: Option<[f64; 4]>,
+    /// What to read of it, and what it does not say itself.
+    pub options: DemOptions,
     /// Maximum distance from the ground to a post, metres; `None`: the ground passes through all posts.
     pub max_error: Option<f64>,
 }

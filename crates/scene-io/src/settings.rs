@@ -155,7 +155,8 @@ fn make_room(root: &mut Table, parts: &[&str]) {
 /// Keys of `[terrain]` that go when one of them says what the ground is.
 fn displaced_by_ground(key: &str) -> [&'static [&'static str]; 3] {
     let grounds = &["builtin", "file", "dem", "generate"];
-    let [of_file, of_dem] = [&["up", "scale"], &["dem_window_m", "dem_max_error_m"]];
+    let of_file = &["up", "scale"];
+    let of_dem = &["dem_window_m", "dem_max_error_m", "dem_nodata", "dem_unit", "dem_z_unit"];
     match key {
         // Axes and unit of a file hold for the next one, such as each terrain of a campaign under one rig.
         "file" => [grounds, &[], of_dem],

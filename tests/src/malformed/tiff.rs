@@ -17,7 +17,9 @@ const COUNTS: u16 = 279;
 const FORMAT: u16 = 339;
 const SCALE: u16 = 33550;
 const TIEPOINT: u16 = 33922;
+const GEO_KEYS: u16 = 34735;
 const DEFLATE: u32 = 8;
+const ZSTD: u32 = 50_000;
 
 /// An entry of a directory: tag, type, number of values, and the bytes of the values.
 type Entry = (u16, u16, u32, Vec<u8>);
@@ -267,6 +269,49 @@ pub fn tiffs() -> Vec<Case> {
             "strip 0: invalid code",
             good().with(COMPRESSION, 5).strip(vec![0xff; 40]).bytes(),
         ),
+        case(
+            "zstd-garbage",
+            "a strip that is not a ZSTD stream",
+            "strip 0: ",
+            good().with(COMPRESSION, ZSTD).strip(vec![0x5a; 40]).bytes(),
+        ),
+        case(
+            "zstd-segment",
+            "a ZSTD stream of 40 bytes that promises 2^32 - 1",
+            "4294967295 bytes in place of 48",
+            {
+                let mut stream = vec![0x28, 0xb5, 0x2f, 0xfd, 0xa0, 0xff, 0xff, 0xff, 0xff];
+                stream.resize(40, 0);
+                good().with(COMPRESSION, ZSTD).strip(stream).bytes()
+            },
+        ),
+        case(
+            "zstd-bomb",
+            "a ZSTD stream of 0.5 kB that expands to 16 MB, where the header promises 64 MB",
+            "strip 0",
+            {
+                // Blocks of one byte, which is repeated 128 Ki times.
+                let blocks = [2, 0, 0x10, 0].repeat(128);
+                good()
+                    .with(WIDTH, 4000)
+                    .with(HEIGHT, 4000)
+                    .with(ROWS, 4000)
+                    .with(COMPRESSION, ZSTD)
+                    .strip([vec![0x28, 0xb5, 0x2f, 0xfd, 0, 0x88], blocks].concat())
+                    .bytes()
+            },
+        ),
+        case("lerc", "a compression that is not read", "Compression: 34887 (LERC)", {
+            good().with(COMPRESSION, 34_887).bytes()
+        }),
+        case("map-unknown", "a code of a map that EPSG does not have", "1500, whose unit is not known", {
+            let keys = [1, 1, 0, 1, 3072, 0, 1, 1500_u16].map(u16::to_le_bytes).concat();
+            good().entry((GEO_KEYS, 3, 8, keys)).bytes()
+        }),
+        case("keys-cut", "geo keys that are cut off", "GeoKeyDirectoryTag: ", {
+            let keys = [1, 1, 0, 900, 3072, 0, 1, 32632_u16].map(u16::to_le_bytes).concat();
+            good().entry((GEO_KEYS, 3, 8, keys)).bytes()
+        }),
         case(
             "compression",
             "an unknown compression",

@@ -80,7 +80,11 @@ fn limits_that_end_before_the_mesh_are_told_with_their_numbers() {
 #[test]
 fn rays_beside_the_mesh_are_told_with_both_places() {
     let rays = [ray([0.0, 0.0, 5.0], [1.0, 0.0, 0.0]), ray([2.0, 0.0, 7.0], [1.0, 0.0, 0.0])];
-    let words = ["however far they reach", "(-1.00, -1.00, -1.00) and (1.00, 1.00, 1.00)", "(0, 0, 5.00) and (2.00, 0, 7.00)"];
+    let words = [
+        "however far they reach",
+        "(-1.00, -1.00, -1.00) and (1.00, 1.00, 1.00)",
+        "(0, 0, 5.00) and (2.00, 0, 7.00)",
+    ];
     assert_one(found(&cube(1.0, true), &rays, Sides::Both, false), WarningCode::NoHits, &words);
 }
 

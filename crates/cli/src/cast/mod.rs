@@ -10,8 +10,8 @@ use raypencil::cast::{
     ray_text, rays_from_bytes, write_answers, write_cast_page, write_set,
 };
 use raypencil::io::{
-    FileError, FileFrame, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene, bytes,
-    create_folder, hex_digits, load_ray_scene, polygon_warnings, read_ray_sets, read_triangles, sha256,
+    FileError, FileFrame, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene, bytes, create_folder,
+    hex_digits, load_ray_scene, polygon_warnings, read_ray_sets, read_triangles, sha256,
 };
 use raypencil::survey::Warning;
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};

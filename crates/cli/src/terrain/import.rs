@@ -1,11 +1,12 @@
 //! `raypencil terrain import`: converts an elevation model to a GLB terrain; `import_mesh` converts a mesh.
 
-use raypencil::io::{Dem, MESH_ENDINGS, read_dem, write_terrain_glb};
+use raypencil::io::{Dem, MESH_ENDINGS, read_dem_with, write_terrain_glb};
 use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
 
 use crate::args::TerrainImport;
 use crate::console::{Spinner, say};
+use crate::terrain::dem_facts::{dem_facts, dem_lines, extend};
 use crate::terrain::import_mesh::{import_mesh, is_mesh};
 use crate::terrain::output::{check_output, create_folder};
 use crate::{Outcome, Trouble};
@@ -24,7 +25,7 @@ pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Tro
     }
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: reading", command.file.display()));
-    let dem = read_dem(&command.file, command.window)?;
+    let dem = read_dem_with(&command.file, &command.dem.options(command.window))?;
     spinner.stage("making faces");
     let mesh = dem.mesh(command.max_error, command.reflectivity)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
@@ -44,6 +45,8 @@ fn source(command: &TerrainImport, dem: &Dem) -> Value {
         "maxErrorM": command.max_error,
         "spacingM": dem.posts.spacing.to_array(),
         "registration": dem.registration.word(),
+        "unit": dem.map.unit.unit.name,
+        "zUnit": dem.heights.unit.unit.name,
     })
 }
 
@@ -52,14 +55,12 @@ fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
     let posts = &dem.posts;
     let last = posts.at(posts.columns - 1, posts.rows - 1);
     let known = || posts.heights.iter().copied().filter(|height| !height.is_nan());
-    json!({
+    let mut report = json!({
         "dem": command.file.display().to_string(),
         "terrain": command.output.display().to_string(),
         "extent_m": { "x": [posts.corner.x, last.x], "y": [posts.corner.y, last.y] },
         "spacing_m": posts.spacing.to_array(),
         "posts": [posts.columns, posts.rows],
-        "unknown_posts": dem.unknown,
-        "nodata": dem.nodata.filter(|nodata| nodata.is_finite()),
         "registration": dem.registration.word(),
         "registration_is_stated": dem.registration.is_stated(),
         "height_m": [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)],
@@ -68,7 +69,9 @@ fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
         "vertices": mesh.vertices().len(),
         "faces": mesh.faces().len(),
         "scene_origin_m": mesh.origin().to_array(),
-    })
+    });
+    extend(&mut report, dem_facts(dem));
+    report
 }
 
 /// The report for people.
@@ -83,7 +86,7 @@ fn screen(report: &Value) -> String {
         Value::Null => "through all posts".to_string(),
         bound => format!("within {bound} m of every post"),
     };
-    let lines = [
+    let mut lines = vec![
         (
             "extent",
             format!(
@@ -104,7 +107,6 @@ fn screen(report: &Value) -> String {
                 at("/spacing_m/1")
             ),
         ),
-        ("unknown posts", at("/unknown_posts")),
         (
             "registration",
             format!(
@@ -113,6 +115,9 @@ fn screen(report: &Value) -> String {
             ),
         ),
         ("heights", format!("{} to {} m", at("/height_m/0"), at("/height_m/1"))),
+    ];
+    lines.extend(dem_lines(report));
+    lines.extend([
         ("faces", format!("{}, {fitted}", at("/faces"))),
         (
             "scene origin",
@@ -123,7 +128,7 @@ fn screen(report: &Value) -> String {
                 at("/scene_origin_m/2")
             ),
         ),
-    ];
-    let lines = lines.map(|(name, value)| format!("  {name:<14} {value}\n"));
-    format!("{}\n{}{}\n", at("/dem"), lines.concat(), at("/terrain"))
+    ]);
+    let lines: String = lines.iter().map(|(name, value)| format!("  {name:<14} {value}\n")).collect();
+    format!("{}\n{lines}{}\n", at("/dem"), at("/terrain"))
 }

@@ -12,6 +12,8 @@ use serde_json::{Value, json};
 use crate::args::TerrainImport;
 use crate::console::{Spinner, say, warn};
 use crate::file_frame::file_frame;
+use crate::terrain::dem_facts::extend;
+use crate::terrain::mesh_facts::{mesh_facts, mesh_lines};
 use crate::terrain::output::{create_folder, refuse_same_file};
 use crate::{Outcome, Trouble};
 
@@ -38,6 +40,12 @@ pub(super) fn import_mesh(command: &TerrainImport, json: bool) -> Result<Outcome
             "{option}: {file} is a mesh; expected an elevation model (.tif)"
         )));
     }
+    if let Some(option) = command.dem.given() {
+        let (file, scale) = (command.file.display(), "a mesh has its unit by --scale");
+        return Err(Trouble::Usage(format!(
+            "{option}: {file} is a mesh; expected an elevation model (.tif); {scale}"
+        )));
+    }
     refuse_same_file(&command.output, &command.file)?;
     let frame = file_frame(command.up, command.scale)?;
     let spinner = Spinner::new();
@@ -48,7 +56,7 @@ pub(super) fn import_mesh(command: &TerrainImport, json: bool) -> Result<Outcome
     write_terrain_glb(&command.output, &mesh, &source(command, &frame))?;
     drop(spinner);
     warn(&polygon_warnings(&polygon_facts));
-    let report = report(command, &frame, &mesh, &polygon_facts);
+    let report = report(command, &mesh, &polygon_facts);
     say(&if json { format!("{report:#}\n") } else { screen(&report) });
     Ok(Outcome::Fine)
 }
@@ -63,14 +71,12 @@ fn source(command: &TerrainImport, frame: &FileFrame) -> Value {
 }
 
 /// The report for programs, from which that for people is made.
-fn report(command: &TerrainImport, frame: &FileFrame, mesh: &Mesh, facts: &PolygonFacts) -> Value {
+fn report(command: &TerrainImport, mesh: &Mesh, facts: &PolygonFacts) -> Value {
     let bounds = mesh.bounds().map(|bounds| bounds.map(|corner| (corner + mesh.origin()).to_array()));
     let along = |axis: usize| bounds.map(|[low, high]| [low[axis], high[axis]]);
-    json!({
+    let mut report = json!({
         "mesh": command.file.display().to_string(),
         "terrain": command.output.display().to_string(),
-        "up": frame.up.map(|up| up.word()),
-        "scale": frame.scale,
         "x_m": along(0),
         "y_m": along(1),
         "z_m": along(2),
@@ -79,7 +85,9 @@ fn report(command: &TerrainImport, frame: &FileFrame, mesh: &Mesh, facts: &Polyg
         "faces": mesh.faces().len(),
         "polygons": facts,
         "scene_origin_m": mesh.origin().to_array(),
-    })
+    });
+    extend(&mut report, mesh_facts(&command.file, command.up, command.scale));
+    report
 }
 
 /// The report for people.
@@ -91,15 +99,12 @@ fn screen(report: &Value) -> String {
             |at: usize| report[format!("{axis}_m").as_str()][at].as_f64().map_or(f64::NAN, |number| number);
         format!("{axis} {:.3} to {:.3}", end(0), end(1))
     };
-    let up = match &report["up"] {
-        Value::Null => "that of the format: y in glTF, z in STL, OBJ and PLY".to_string(),
-        axis => text(axis),
-    };
-    let lines = [
+    let mut lines = vec![
         ("extent", format!("{}, {} m", extent("x"), extent("y"))),
         ("heights", format!("{} m", extent("z"))),
-        ("up axis", up),
-        ("scale", format!("{} m for each unit of the file", at("/scale"))),
+    ];
+    lines.extend(mesh_lines(report));
+    lines.extend([
         ("vertices", at("/vertices")),
         ("faces", at("/faces")),
         (
@@ -115,7 +120,7 @@ fn screen(report: &Value) -> String {
                 at("/scene_origin_m/2")
             ),
         ),
-    ];
-    let lines = lines.map(|(name, value)| format!("  {name:<14} {value}\n"));
-    format!("{}\n{}{}\n", at("/mesh"), lines.concat(), at("/terrain"))
+    ]);
+    let lines: String = lines.iter().map(|(name, value)| format!("  {name:<14} {value}\n")).collect();
+    format!("{}\n{lines}{}\n", at("/mesh"), at("/terrain"))
 }

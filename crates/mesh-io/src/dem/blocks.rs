@@ -6,7 +6,9 @@ use std::ops::{Range, RangeInclusive};
 use raypencil_files::Fault;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
+use crate::dem::codec::{Codec, samples_of_bytes, unpack_zstd};
 use crate::dem::tags::{Tags, tag_name};
+use crate::dem::target::Target;
 
 /// Maximum number of pixels along a side.
 const MAX_SIDE_PX: u64 = 1 << 24;
@@ -20,8 +22,8 @@ const MAX_BLOCK_BYTES: u64 = 1 << 29;
 /// Bytes by which the decoded size of a compressed block may exceed the bound of its expansion.
 const EXPANSION_SLACK_BYTES: u64 = 4096;
 
-/// Maximum absolute height, metres: the limit of a mesh.
-const MAX_HEIGHT_M: f64 = 1e7;
+/// What is expected of a block.
+const DECODABLE: &str = "samples that can be decoded";
 
 /// Number type of a sample, with its bits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +37,15 @@ impl Sample {
     fn bits(self) -> u64 {
         match self {
             Self::Unsigned(bits) | Self::Signed(bits) | Self::Float(bits) => bits,
+        }
+    }
+
+    /// SampleFormat and BitsPerSample.
+    fn tags(self) -> [u64; 2] {
+        match self {
+            Self::Unsigned(bits) => [1, bits],
+            Self::Signed(bits) => [2, bits],
+            Self::Float(bits) => [3, bits],
         }
     }
 
@@ -62,8 +73,9 @@ pub(super) struct Blocks {
     offsets: u16,
     /// Tag of the blocks' sizes in the file.
     byte_counts: u16,
-    /// Maximum number of bytes that one byte of the file can decode to.
-    expansion: u64,
+    codec: Codec,
+    /// 1: none, 2: differences along a row, 3: those of the bytes of floating-point numbers.
+    predictor: u64,
 }
 
 impl Blocks {
@@ -95,8 +107,6 @@ impl Blocks {
         word(262, 1, &[1], "1 (BlackIsZero), whose samples are the heights themselves")?;
         word(266, 1, &[1], "1, the highest bit first")?;
         word(274, 1, &[1], "1, the first row on top")?;
-        let codecs = "1 (none), 5 (LZW), 8 or 32946 (deflate) or 32773 (PackBits)";
-        let compression = word(259, 1, &[1, 5, 8, 32946, 32773], codecs)?;
         let predictor = word(317, 1, &[1, 2, 3], "1 (none), 2 (horizontal) or 3 (floating point)")?;
         let bits = word(258, 1, &[8, 16, 32, 64], "8, 16, 32 or 64")?;
         let sample = match (word(339, 1, &[1, 2, 3], "1 (unsigned), 2 (signed) or 3 (floating point)")?, bits)
@@ -118,6 +128,8 @@ impl Blocks {
             ));
         }
 
+        let codec = Codec::of(tags.integer(file, 259)?.unwrap_or(1))?;
+
         let (kind, block, offsets, byte_counts) = match tile {
             Some(tile) => ("tile", tile, 324, 325),
             None => {
@@ -138,17 +150,9 @@ impl Blocks {
                 return Err(Fault::new(tag_name(tag), found, expected));
             }
         }
-        // A deflate code of two bits stands for at most 258 bytes: 1032. An LZW code of at least nine bits stands for
-        // at most as many bytes as there are codes: below 4096. PackBits makes 128 bytes of two: 64.
-        let expansion = match compression {
-            1 => 1,
-            5 => 4096,
-            32773 => 64,
-            _ => 1032,
-        };
         // Both are at most 2^24.
         let (width, height) = (width as u32, height as u32);
-        Ok(Self { width, height, sample, kind, block, across, offsets, byte_counts, expansion })
+        Ok(Self { width, height, sample, kind, block, across, offsets, byte_counts, codec, predictor })
     }
 
     /// Places in the file of `count` blocks, from block `first` of the file on; of a block of 0 bytes, which was not
@@ -183,8 +187,8 @@ impl Blocks {
             if needed > MAX_BLOCK_BYTES {
                 return fault(format!("{needed} bytes of samples"), format!("at most {MAX_BLOCK_BYTES}"));
             }
-            let slack = if self.expansion == 1 { 0 } else { EXPANSION_SLACK_BYTES };
-            if needed > bytes.saturating_mul(self.expansion) + slack {
+            let slack = if self.codec == Codec::Plain { 0 } else { EXPANSION_SLACK_BYTES };
+            if needed > bytes.saturating_mul(self.codec.expansion()) + slack {
                 return fault(format!("{bytes} bytes"), format!("enough for {needed} bytes of samples"));
             }
             places.push(Some(offset..offset + bytes));
@@ -221,14 +225,14 @@ impl Blocks {
 
     /// Samples of the pixels in these columns and rows, row by row; NaN where the height is not known.
     ///
-    /// Only the blocks that these pixels touch are read.
+    /// Only the blocks that these pixels touch are read. Samples of one of the values in `nodata` are not known.
     pub fn read<R: Read + Seek>(
         &self,
         tags: &Tags,
         mut file: R,
         length: u64,
         [columns, rows]: [RangeInclusive<u32>; 2],
-        nodata: Option<f64>,
+        nodata: &[f64],
     ) -> Result<Vec<f64>, Fault> {
         let part = |range: &RangeInclusive<u32>, axis: usize| {
             (u64::from(*range.start()) / self.block[axis], u64::from(*range.end()) / self.block[axis])
@@ -240,7 +244,7 @@ impl Blocks {
         for down in top..=bottom {
             let first = down * self.across + left;
             let places = self.places(tags, &mut file, length, first, count)?;
-            if let Some(absent) = places.iter().position(Option::is_none).filter(|_| nodata.is_none()) {
+            if let Some(absent) = places.iter().position(Option::is_none).filter(|_| nodata.is_empty()) {
                 let expected = "samples, or a value in tag 42113 GDAL_NODATA that stands for them";
                 return Err(Fault::new(self.place(first + absent as u64), "no bytes", expected));
             }
@@ -250,96 +254,106 @@ impl Blocks {
             let found = format!("no bytes in any {} that is asked for", self.kind);
             return Err(Fault::new(tag_name(self.byte_counts), found, "some heights"));
         }
-        let indices: Vec<u64> = written.iter().map(|(index, _)| *index).collect();
-        self.refuse_overlaps(written)?;
+        self.refuse_overlaps(written.clone())?;
 
-        let unfit = |place: String| {
-            move |error: tiff::TiffError| Fault::new(place, error.to_string(), "samples that can be decoded")
-        };
-        file.rewind().map_err(|error| Fault::new("first bytes", error.to_string(), "a readable file"))?;
-        let mut limits = Limits::default();
-        limits.decoding_buffer_size = MAX_BLOCK_BYTES as usize;
-        limits.intermediate_buffer_size = MAX_BLOCK_BYTES as usize;
-        let mut decoder = Decoder::new(file).map_err(unfit("tags".to_string()))?.with_limits(limits);
         let mut target = Target {
-            nodata: nodata.map(|value| self.sample.nodata(value)),
+            nodata: nodata.iter().map(|&value| self.sample.nodata(value)).collect(),
             heights: vec![f64::NAN; columns.clone().count() * rows.clone().count()],
             columns,
             rows,
         };
-        for index in indices {
+        if self.codec == Codec::Zstd {
+            for (index, place) in written {
+                let samples = self
+                    .unpacked(tags, &mut file, index, place)
+                    .map_err(|found| Fault::new(self.place(index), found, DECODABLE))?;
+                // Of a tile, what lies beyond the picture is in its rows.
+                self.deliver(&mut target, index, self.block[0], samples)?;
+            }
+            return Ok(target.heights);
+        }
+        let unfit =
+            |place: String| move |error: tiff::TiffError| Fault::new(place, error.to_string(), DECODABLE);
+        file.rewind().map_err(|error| Fault::new("first bytes", error.to_string(), "a readable file"))?;
+        let mut decoder = Decoder::new(file).map_err(unfit("tags".to_string()))?.with_limits(limits());
+        for (index, _) in written {
             let samples = decoder.read_chunk(index as u32).map_err(unfit(self.place(index)))?;
-            let corner = [index % self.across * self.block[0], index / self.across * self.block[1]];
-            let size = [
-                self.block[0].min(u64::from(self.width) - corner[0]),
-                self.block[1].min(u64::from(self.height) - corner[1]),
-            ];
-            match samples {
-                DecodingResult::U8(samples) => target.take(corner, size, &samples),
-                DecodingResult::I8(samples) => target.take(corner, size, &samples),
-                DecodingResult::U16(samples) => target.take(corner, size, &samples),
-                DecodingResult::I16(samples) => target.take(corner, size, &samples),
-                DecodingResult::U32(samples) => target.take(corner, size, &samples),
-                DecodingResult::I32(samples) => target.take(corner, size, &samples),
-                DecodingResult::F32(samples) => target.take(corner, size, &samples),
-                DecodingResult::F64(samples) => target.take(corner, size, &samples),
-                _ => Err(Fault::new(self.place(index), "other samples", "those of the tags")),
-            }?;
+            let width = self.inside(index)[0];
+            self.deliver(&mut target, index, width, samples)?;
         }
         Ok(target.heights)
     }
-}
 
-/// The requested pixels.
-struct Target {
-    columns: RangeInclusive<u32>,
-    rows: RangeInclusive<u32>,
-    nodata: Option<f64>,
-    heights: Vec<f64>,
-}
-
-impl Target {
-    /// Copies the requested pixels of a block, whose first pixel is at `corner`.
-    fn take<T: Copy + Into<f64>>(
-        &mut self,
-        corner: [u64; 2],
-        [across, down]: [u64; 2],
-        samples: &[T],
-    ) -> Result<(), Fault> {
-        let width = self.columns.end() - self.columns.start() + 1;
-        for y in 0..down {
-            let row = corner[1] + y;
-            if row < u64::from(*self.rows.start()) || row > u64::from(*self.rows.end()) {
-                continue;
-            }
-            let low = u64::from(*self.columns.start()).max(corner[0]);
-            let end = (u64::from(*self.columns.end()) + 1).min(corner[0] + across);
-            for column in low..end {
-                let at = (y * across + (column - corner[0])) as usize;
-                let Some(&sample) = samples.get(at) else {
-                    let found = format!("{} samples in its block", samples.len());
-                    return Err(Fault::new(
-                        format!("pixel ({column}, {row})"),
-                        found,
-                        format!("{}", across * down),
-                    ));
-                };
-                let sample: f64 = sample.into();
-                let is_unknown = sample.is_nan() || self.nodata == Some(sample);
-                if !is_unknown && !(sample.abs() <= MAX_HEIGHT_M) {
-                    let expected = "a height within 1e7 m, NaN, or the value of tag 42113 GDAL_NODATA";
-                    return Err(Fault::new(
-                        format!("pixel ({column}, {row})"),
-                        format!("{sample:?}"),
-                        expected,
-                    ));
-                }
-                let place = (row - u64::from(*self.rows.start())) * u64::from(width)
-                    + (column - u64::from(*self.columns.start()));
-                // Adding zero turns -0 into +0.
-                self.heights[place as usize] = if is_unknown { f64::NAN } else { sample + 0.0 };
-            }
-        }
-        Ok(())
+    /// Samples of a block that the `tiff` crate cannot decompress.
+    fn unpacked(
+        &self,
+        tags: &Tags,
+        file: &mut (impl Read + Seek),
+        index: u64,
+        place: Range<u64>,
+    ) -> Result<DecodingResult, String> {
+        let rows = if self.kind == "tile" { self.block[1] } else { self.inside(index)[1] };
+        let packed =
+            tags.bytes(file, place.start, place.end - place.start).map_err(|error| error.to_string())?;
+        let bytes = unpack_zstd(&packed, self.block[0] * rows * (self.sample.bits() / 8))?;
+        let size = [self.block[0], rows];
+        samples_of_bytes(&bytes, size, self.sample.tags(), self.predictor, tags.is_big_endian(), limits())
     }
+
+    /// Columns and rows of a block that lie in the picture.
+    fn inside(&self, index: u64) -> [u64; 2] {
+        [
+            self.block[0].min(u64::from(self.width) - index % self.across * self.block[0]),
+            self.block[1].min(u64::from(self.height) - index / self.across * self.block[1]),
+        ]
+    }
+
+    /// Copies the requested pixels of a block, whose rows have `width` samples.
+    fn deliver(
+        &self,
+        target: &mut Target,
+        index: u64,
+        width: u64,
+        samples: DecodingResult,
+    ) -> Result<(), Fault> {
+        let corner = [index % self.across * self.block[0], index / self.across * self.block[1]];
+        let size = self.inside(index);
+        match samples {
+            DecodingResult::U8(samples) => target.take(corner, size, width, &samples),
+            DecodingResult::I8(samples) => target.take(corner, size, width, &samples),
+            DecodingResult::U16(samples) => target.take(corner, size, width, &samples),
+            DecodingResult::I16(samples) => target.take(corner, size, width, &samples),
+            DecodingResult::U32(samples) => target.take(corner, size, width, &samples),
+            DecodingResult::I32(samples) => target.take(corner, size, width, &samples),
+            DecodingResult::F32(samples) => target.take(corner, size, width, &samples),
+            DecodingResult::F64(samples) => target.take(corner, size, width, &samples),
+            _ => Err(Fault::new(self.place(index), "other samples", "those of the tags")),
+        }
+    }
+
+    /// A sample as the file's own type writes it: the fewest digits that give it back.
+    pub fn decimal(&self, sample: f64) -> String {
+        match self.sample {
+            Sample::Float(32) => short(
+                f64::from(sample as f32),
+                &format!("{}", sample as f32),
+                &format!("{:e}", sample as f32),
+            ),
+            _ => short(sample, &format!("{sample}"), &format!("{sample:e}")),
+        }
+    }
+}
+
+/// The decimal number, or the one with an exponent where it would be long.
+fn short(sample: f64, decimal: &str, with_exponent: &str) -> String {
+    let is_usual = sample == 0.0 || (1e-6..1e7).contains(&sample.abs());
+    if is_usual { decimal.to_string() } else { with_exponent.to_string() }
+}
+
+/// Limits of the memory for a block.
+fn limits() -> Limits {
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = MAX_BLOCK_BYTES as usize;
+    limits.intermediate_buffer_size = MAX_BLOCK_BYTES as usize;
+    limits
 }

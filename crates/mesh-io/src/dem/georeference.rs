@@ -1,12 +1,16 @@
-//! Places of the pixels of a GeoTIFF: tie point, scale, transformation, geo keys. (OGC 19-008r4, GeoTIFF 1.1)
+//! Places of the pixels of a GeoTIFF: tie point, scale, transformation. (OGC 19-008r4, GeoTIFF 1.1)
 
-use std::collections::BTreeMap;
 use std::io::{Read, Seek};
 
 use raypencil_files::Fault;
 
+use crate::dem::coordinate_system::{AxisSystem, GivenUnits, systems};
+use crate::dem::gdal_metadata::GdalMetadata;
+use crate::dem::geo_keys::GeoKeys;
+use crate::dem::nodata;
 use crate::dem::registration::Registration;
 use crate::dem::tags::{Tags, tag_name};
+use crate::dem::unit::LengthUnit;
 
 /// Tag numbers.
 const PIXEL_SCALE: u16 = 33550;
@@ -15,17 +19,8 @@ const TIE_POINT: u16 = 33922;
 
 const TRANSFORMATION: u16 = 34264;
 
-const GEO_KEYS: u16 = 34735;
-
-const METADATA: u16 = 42112;
-
-const NODATA: u16 = 42113;
-
 /// Maximum absolute map coordinate and spacing, metres. At 1e9 m a double has steps of a tenth of a micrometre.
 const MAX_COORDINATE_M: f64 = 1e9;
-
-/// Code of the metre among units of length. (EPSG 9001)
-const METRE_CODE: u16 = 9001;
 
 /// Places of the middles of pixels on the map, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,130 +33,47 @@ pub(super) struct Placement {
     pub row: f64,
 }
 
+impl Placement {
+    /// A placement in another unit, in metres.
+    fn to_metres(self, unit: LengthUnit) -> Self {
+        Self {
+            first: self.first.map(|coordinate| unit.to_metres(coordinate)),
+            column: unit.to_metres(self.column),
+            row: unit.to_metres(self.row),
+        }
+    }
+}
+
 /// Places of a file's pixels, and the meaning of their samples.
 pub(super) struct Georeference {
     pub placement: Placement,
     pub registration: Registration,
+    /// The coordinate systems of the map and of the heights.
+    pub systems: [AxisSystem; 2],
+    /// Sample that stands for "not known"; `None` if the file names none.
     pub nodata: Option<f64>,
 }
 
 /// Reads and checks the places of the posts and the meaning of their samples.
-pub(super) fn read(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<Georeference, Fault> {
+pub(super) fn read(
+    tags: &Tags,
+    file: &mut (impl Read + Seek),
+    given: GivenUnits,
+) -> Result<Georeference, Fault> {
     let keys = GeoKeys::read(tags, file)?;
     let registration = keys.registration()?;
-    keys.check_units()?;
-    check_metadata(tags, file)?;
-    let placement = placement(tags, file, registration)?;
-    Ok(Georeference { placement, registration, nodata: nodata(tags, file)? })
+    let metadata = GdalMetadata::read(tags, file)?;
+    let systems = systems(&keys, &metadata, given)?;
+    let placement = placement(tags, file, registration, systems[0].unit.unit)?;
+    Ok(Georeference { placement, registration, systems, nodata: nodata::declared(tags, file)? })
 }
 
-/// Short values of the geo keys, by key. Texts and doubles, whose values are in other tags, are left out.
-struct GeoKeys(BTreeMap<u16, u16>);
-
-impl GeoKeys {
-    fn read(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<Self, Fault> {
-        let mut keys = BTreeMap::new();
-        let Some(values) = tags.integers(file, GEO_KEYS)? else { return Ok(Self(keys)) };
-        let values: Vec<u16> = values.iter().map(|&value| u16::try_from(value).unwrap_or(u16::MAX)).collect();
-        let unfit = |found: String| {
-            let expected = "version 1, its revision, and four numbers for each of as many keys as it says";
-            Fault::new(tag_name(GEO_KEYS), found, expected)
-        };
-        let (head, rest) = values.split_at_checked(4).ok_or_else(|| unfit(format!("{values:?}")))?;
-        let count = usize::from(head[3]);
-        if head[0] != 1 || rest.len() < 4 * count {
-            return Err(unfit(format!("{head:?} and {} more numbers", rest.len())));
-        }
-        for key in rest.chunks_exact(4).take(count) {
-            // Location 0: the value is in this tag.
-            if key[1] == 0 {
-                keys.insert(key[0], key[3]);
-            }
-        }
-        Ok(Self(keys))
-    }
-
-    /// A fault of the value of a geo key.
-    fn fault(key: u16, key_name: &str, value: u16, expected: &str) -> Fault {
-        Fault::new(format!("{}, key {key} {key_name}", tag_name(GEO_KEYS)), value.to_string(), expected)
-    }
-
-    /// Meaning of a pixel. CHOICE: an area if the file states nothing, as in GeoTIFF 1.0 and GDAL.
-    fn registration(&self) -> Result<Registration, Fault> {
-        match self.0.get(&1025) {
-            None => Ok(Registration::AreaByDefault),
-            Some(1) => Ok(Registration::Area),
-            Some(2) => Ok(Registration::Point),
-            Some(&other) => {
-                Err(Self::fault(1025, "GTRasterTypeGeoKey", other, "1 (PixelIsArea) or 2 (PixelIsPoint)"))
-            }
-        }
-    }
-
-    /// Refuses other units than metres, along any axis that has a key.
-    fn check_units(&self) -> Result<(), Fault> {
-        match self.0.get(&1024) {
-            Some(2) => {
-                let expected =
-                    "map coordinates in metres, not degrees: project the model first (gdalwarp -t_srs)";
-                return Err(Self::fault(1024, "GTModelTypeGeoKey", 2, expected));
-            }
-            Some(3) => {
-                let expected =
-                    "map coordinates, not geocentric ones: project the model first (gdalwarp -t_srs)";
-                return Err(Self::fault(1024, "GTModelTypeGeoKey", 3, expected));
-            }
-            _ => {}
-        }
-        for (key, key_name) in [(3076, "ProjLinearUnitsGeoKey"), (4099, "VerticalUnitsGeoKey")] {
-            match self.0.get(&key) {
-                None | Some(&METRE_CODE) => {}
-                Some(&other) => return Err(Self::fault(key, key_name, other, "9001, metres")),
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Refuses heights that GDAL would scale or shift, or that are in another unit than metres.
-fn check_metadata(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<(), Fault> {
-    let Some(text) = tags.text(file, METADATA)? else { return Ok(()) };
-    // <Item name="SCALE" sample="0" role="scale">0.1</Item>: at most one item of a role for the one band.
-    let item = |role: &str| {
-        let (_, after) = text.split_once(&format!("role=\"{role}\""))?;
-        let (_, value) = after.split_once('>')?;
-        Some(value.split('<').next().unwrap_or(value).trim().to_string())
-    };
-    for (role, neutral) in [("scale", 1.0), ("offset", 0.0)] {
-        if let Some(value) = item(role).filter(|value| value.parse() != Ok(neutral)) {
-            let expected = format!("{neutral}: apply it first (gdal_translate -unscale)");
-            return Err(Fault::new(tag_name(METADATA), format!("a {role} of {value:?}"), expected));
-        }
-    }
-    let is_metre =
-        |unit: &str| ["", "m", "metre", "metres", "meter", "meters"].contains(&unit.to_lowercase().as_str());
-    match item("unittype") {
-        Some(unit) if !is_metre(&unit) => {
-            Err(Fault::new(tag_name(METADATA), format!("heights in {unit:?}"), "metres"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Sample that stands for "not known"; `None` if the file names none.
-fn nodata(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<Option<f64>, Fault> {
-    let Some(text) = tags.text(file, NODATA)? else { return Ok(None) };
-    match text.trim().parse() {
-        Ok(value) => Ok(Some(value)),
-        Err(_) => Err(Fault::new(tag_name(NODATA), format!("{text:?}"), "a number, such as -9999 or nan")),
-    }
-}
-
-/// The affine map from pixels to metres. It may scale and translate, but not rotate.
+/// The affine map from pixels to metres, for a map in `unit`. It may scale and translate, but not rotate.
 fn placement(
     tags: &Tags,
     file: &mut (impl Read + Seek),
     registration: Registration,
+    unit: LengthUnit,
 ) -> Result<Placement, Fault> {
     // (0, 0) is the outer corner of a pixel that is an area, whose post is in the middle.
     let half = match registration {
@@ -172,6 +84,7 @@ fn placement(
         Some(matrix) => (TRANSFORMATION, by_matrix(&matrix, half)?),
         None => (PIXEL_SCALE, by_tie_point(tags, file, half)?),
     };
+    let placement = placement.to_metres(unit);
     let Placement { first: [x, y], column, row } = placement;
     if !(column > 0.0
         && row != 0.0

@@ -1,15 +1,33 @@
-//! Elevation models: GeoTIFF files of heights on a regular grid. `docs/guide/dem.md` has the rules of what is read.
+//! Elevation models: GeoTIFF files of heights on a regular grid. `docs/formats/terrain.md` has the rules of what is read.
 
 mod blocks;
+mod citation;
+mod codec;
+mod coordinate_system;
+mod epsg;
+mod gdal_metadata;
+mod geo_keys;
 mod georeference;
+mod heights;
 mod lattice;
 mod model;
+mod nodata;
+mod outliers;
 mod read;
 mod registration;
 mod tags;
+mod target;
+mod unit;
 mod write;
 
+pub use coordinate_system::{AxisSystem, UnitSource};
 pub use model::{Dem, MAX_ERROR_RANGE_M};
-pub use read::{MAP_RANGE_M, WINDOW_SIDE_RANGE_M, dem_from_bytes, read_dem, read_mesh, read_posts};
+pub use nodata::NoData;
+pub use outliers::Spikes;
+pub use read::{
+    DemOptions, MAP_RANGE_M, WINDOW_SIDE_RANGE_M, dem_from_bytes, read_dem, read_dem_with, read_mesh,
+    read_posts,
+};
 pub use registration::Registration;
+pub use unit::{HeightUnit, LengthUnit};
 pub use write::write_geotiff;

@@ -7,6 +7,8 @@ use raypencil_files::{Fault, FileError};
 use raypencil_scene::{Material, Mesh};
 use raypencil_terrain::{Ground, HeightGrid, simplify};
 
+use crate::dem::coordinate_system::AxisSystem;
+use crate::dem::outliers::{Posts, Spikes};
 use crate::dem::registration::Registration;
 
 /// Allowed range of the maximum error of a simplified ground, metres.
@@ -24,13 +26,25 @@ pub struct Dem {
     pub posts: HeightGrid,
     /// Meaning of a pixel.
     pub registration: Registration,
+    /// Coordinate system of x and y. The posts are in metres; here is what the file has.
+    pub map: AxisSystem,
+    /// Coordinate system of the heights.
+    pub heights: AxisSystem,
     /// Sample that stands for "not known", beside NaN; `None` if the file names none.
     pub nodata: Option<f64>,
+    /// Samples that stand for it by the caller's word.
+    pub given_nodata: Vec<f64>,
     /// Number of posts whose height is not known.
     pub unknown: usize,
 }
 
 impl Dem {
+    /// Posts that stand out by more than the rest of the model is high: spikes and pits.
+    pub fn spikes(&self) -> Option<Spikes> {
+        let HeightGrid { columns, spacing, heights, .. } = &self.posts;
+        Posts { heights, columns: *columns as usize, spacing: *spacing, metre: 1.0 }.spikes()
+    }
+
     /// Ground through all posts, with the one material `ground`.
     ///
     /// With `max_error`, metres, the ground has fewer faces; no known post is farther from it along z.

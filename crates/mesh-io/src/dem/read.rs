@@ -11,10 +11,14 @@ use raypencil_scene::Mesh;
 use raypencil_terrain::HeightGrid;
 
 use crate::dem::blocks::Blocks;
+use crate::dem::coordinate_system::GivenUnits;
 use crate::dem::georeference::{self, Georeference};
+use crate::dem::heights::{Raw, heights};
 use crate::dem::lattice::Lattice;
 use crate::dem::model::Dem;
+use crate::dem::nodata::NoData;
 use crate::dem::tags::Tags;
+use crate::dem::unit::{HeightUnit, LengthUnit};
 
 /// Maximum number of cells between posts. 2^24 cells make 2^25 faces, the limit of a GLB.
 const MAX_CELLS: u64 = 1 << 24;
@@ -31,7 +35,30 @@ pub const MAP_RANGE_M: RangeInclusive<f64> = -1e9..=1e9;
 /// Allowed range of the sides of a window, metres.
 pub const WINDOW_SIDE_RANGE_M: RangeInclusive<f64> = 1e-3..=1e9;
 
+/// What to read of a GeoTIFF, and what it does not say itself.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DemOptions {
+    /// x and y of the lower left corner, width and height, metres of the map; `None`: all posts.
+    pub window: Option<[f64; 4]>,
+    /// Samples that stand for unknown heights.
+    pub nodata: NoData,
+    /// Unit of the map, over what the file says.
+    pub unit: Option<LengthUnit>,
+    /// Unit of the heights, over what the file says.
+    pub z_unit: Option<HeightUnit>,
+}
+
+impl From<Option<[f64; 4]>> for DemOptions {
+    fn from(window: Option<[f64; 4]>) -> Self {
+        Self { window, ..Self::default() }
+    }
+}
+
 /// Reads the heights of a GeoTIFF: all of them, or those inside a window.
+///
+/// Coordinates and heights become metres by the units that the file states, each by its own. A file whose unit is not known is
+/// refused, and so is one of whose heights a constant lies so far from all others that it can hardly be one.
+/// [`DemOptions`] say what a file does not.
 ///
 /// `window` is x and y of its lower left corner, its width and its height, metres of the map. Posts on its border
 /// belong to it. Only the strips and tiles that it touches are read.
@@ -60,6 +87,14 @@ pub const WINDOW_SIDE_RANGE_M: RangeInclusive<f64> = 1e-3..=1e9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_dem(path: impl AsRef<Path>, window: Option<[f64; 4]>) -> Result<Dem, FileError> {
+    read_dem_with(path, &window.into())
+}
+
+/// Reads the heights of a GeoTIFF as [`read_dem`] does, with what it does not say itself.
+///
+/// # Errors
+/// As [`read_dem`].
+pub fn read_dem_with(path: impl AsRef<Path>, options: &DemOptions) -> Result<Dem, FileError> {
     let path = path.as_ref();
     let unreadable = |error| FileError::io(path, "read", error);
     // Asked before the file is opened: opening a pipe waits for its writer.
@@ -68,7 +103,7 @@ pub fn read_dem(path: impl AsRef<Path>, window: Option<[f64; 4]>) -> Result<Dem,
         return Err(unreadable(std::io::Error::new(std::io::ErrorKind::InvalidInput, "not a regular file")));
     }
     let file = BufReader::new(File::open(path).map_err(unreadable)?);
-    read(path, file, metadata.len(), window).map_err(|fault| FileError::Dem(fault.in_file(path)))
+    read(path, file, metadata.len(), options).map_err(|fault| FileError::Dem(fault.in_file(path)))
 }
 
 /// Reads the bytes of a GeoTIFF as [`read_dem`] does; `file` is its name in messages.
@@ -77,7 +112,8 @@ pub fn read_dem(path: impl AsRef<Path>, window: Option<[f64; 4]>) -> Result<Dem,
 /// As [`read_dem`].
 pub fn dem_from_bytes(bytes: &[u8], file: &Path, window: Option<[f64; 4]>) -> Result<Dem, FileError> {
     let length = bytes.len() as u64;
-    read(file, Cursor::new(bytes), length, window).map_err(|fault| FileError::Dem(fault.in_file(file)))
+    read(file, Cursor::new(bytes), length, &window.into())
+        .map_err(|fault| FileError::Dem(fault.in_file(file)))
 }
 
 /// Mesh of an elevation model, or of its part inside a window, and the digest of the whole file.
@@ -86,11 +122,11 @@ pub fn dem_from_bytes(bytes: &[u8], file: &Path, window: Option<[f64; 4]>) -> Re
 /// As [`read_dem`] and [`Dem::mesh`].
 pub fn read_mesh(
     path: &Path,
-    window: Option<[f64; 4]>,
+    options: &DemOptions,
     max_error: Option<f64>,
     reflectivity: f64,
 ) -> Result<(Mesh, Sha256Digest), FileError> {
-    let mesh = read_dem(path, window)?.mesh(max_error, reflectivity)?;
+    let mesh = read_dem_with(path, options)?.mesh(max_error, reflectivity)?;
     let (_, sha) = file_sha256(path).map_err(|error| FileError::io(path, "read", error))?;
     Ok((mesh, sha))
 }
@@ -105,15 +141,13 @@ pub fn read_posts(path: &Path) -> Result<(HeightGrid, Sha256Digest), FileError> 
     Ok((posts, sha))
 }
 
-fn read(
-    path: &Path,
-    mut file: impl Read + Seek,
-    length: u64,
-    window: Option<[f64; 4]>,
-) -> Result<Dem, Fault> {
+fn read(path: &Path, mut file: impl Read + Seek, length: u64, options: &DemOptions) -> Result<Dem, Fault> {
+    let window = options.window;
     let tags = Tags::first(&mut file, length)?;
     let blocks = Blocks::of(&tags, &mut file)?;
-    let Georeference { placement, registration, nodata } = georeference::read(&tags, &mut file)?;
+    let given = GivenUnits { map: options.unit, heights: options.z_unit };
+    let Georeference { placement, registration, systems: [map, vertical], nodata } =
+        georeference::read(&tags, &mut file, given)?;
     refuse_masks(&tags, &mut file)?;
 
     let lattice = Lattice::new(placement, [blocks.width, blocks.height]);
@@ -136,7 +170,15 @@ fn read(
         true => blocks.height - 1 - last..=blocks.height - 1 - first,
         false => first..=last,
     };
-    let mut heights = blocks.read(&tags, file, length, [columns.clone(), in_file], nodata)?;
+    let unknown: Vec<f64> = nodata.iter().chain(&options.nodata.values).copied().collect();
+    let samples = blocks.read(&tags, file, length, [columns.clone(), in_file.clone()], &unknown)?;
+    let raw = Raw {
+        samples,
+        columns: count[0] as usize,
+        first: [*columns.start(), *in_file.start()],
+        spacing: lattice.spacing,
+    };
+    let mut heights = heights(raw, vertical.unit, &options.nodata, &|sample| blocks.decimal(sample))?;
     if is_southward {
         let width = count[0] as usize;
         let mut left = heights.as_mut_slice();
@@ -158,7 +200,9 @@ fn read(
         spacing: lattice.spacing,
         heights,
     };
-    Ok(Dem { file: path.to_path_buf(), posts, registration, nodata, unknown })
+    let given_nodata = options.nodata.values.clone();
+    let file = path.to_path_buf();
+    Ok(Dem { file, posts, registration, map, heights: vertical, nodata, given_nodata, unknown })
 }
 
 /// Refuses a file with a mask, a second image that marks unknown posts: their samples would be taken for heights.

@@ -42,6 +42,8 @@ pub(super) fn tag_name(tag: u16) -> String {
         33922 => "ModelTiepointTag",
         34264 => "ModelTransformationTag",
         34735 => "GeoKeyDirectoryTag",
+        34736 => "GeoDoubleParamsTag",
+        34737 => "GeoAsciiParamsTag",
         42112 => "GDAL_METADATA",
         42113 => "GDAL_NODATA",
         _ => return format!("tag {tag}"),
@@ -145,6 +147,16 @@ impl Tags {
         }
         let Self { is_big_endian, is_big, length, .. } = *self;
         Ok(Self { is_big_endian, is_big, length, entries, next: self.number(next) })
+    }
+
+    /// Whether numbers begin with their highest byte.
+    pub fn is_big_endian(&self) -> bool {
+        self.is_big_endian
+    }
+
+    /// `count` bytes of the file from byte `at` on.
+    pub fn bytes(&self, file: &mut (impl Read + Seek), at: u64, count: u64) -> std::io::Result<Vec<u8>> {
+        bytes(file, at, count)
     }
 
     /// Number of a tag's values; 0 without the tag.

@@ -63,3 +63,33 @@ impl<'de> Deserialize<'de> for OneOrPair {
         deserializer.deserialize_any(Numbers)
     }
 }
+
+/// A word in quotes, or a number that may stand without: `"none"`, `-9999`.
+#[derive(Clone)]
+pub(crate) struct Word(pub String);
+
+impl<'de> Deserialize<'de> for Word {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Words;
+        impl Visitor<'_> for Words {
+            type Value = Word;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a number, or a text in quotes")
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<Word, E> {
+                Ok(Word(value.to_string()))
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<Word, E> {
+                Ok(Word(value.to_string()))
+            }
+
+            fn visit_str<E: Error>(self, value: &str) -> Result<Word, E> {
+                Ok(Word(value.to_string()))
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}

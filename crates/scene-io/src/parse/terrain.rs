@@ -6,8 +6,9 @@ use toml::Spanned;
 
 use raypencil_terrain::BUILTIN_NAMES;
 
+use crate::parse::dem::DemKeys;
 use crate::parse::generate::GenerateKeys;
-use crate::parse::key::{Key, span};
+use crate::parse::key::{Key, Word, span};
 use crate::parse::source::Source;
 use crate::plan::{DemPart, MeshPart, ScenePlan, Terrain};
 use crate::scene_error::SceneIoError;
@@ -22,6 +23,9 @@ pub(crate) struct TerrainKeys {
     dem: Key<String>,
     dem_window_m: Key<Vec<f64>>,
     dem_max_error_m: Key<f64>,
+    dem_nodata: Key<Word>,
+    dem_unit: Key<Word>,
+    dem_z_unit: Key<Word>,
     generate: Key<GenerateKeys>,
     reflectivity: Key<f64>,
 }
@@ -35,7 +39,14 @@ impl Source<'_> {
         let keys = terrain.get_ref();
         plan.reflectivity = self.optional(&keys.reflectivity, "terrain.reflectivity", 0.0..=1.0, "")?;
         let frame = self.file_frame(&keys.up, &keys.scale, &keys.file)?;
-        let dem = self.dem_part(&keys.dem_window_m, &keys.dem_max_error_m, &keys.dem)?;
+        let of_dem = DemKeys {
+            window: &keys.dem_window_m,
+            max_error: &keys.dem_max_error_m,
+            nodata: &keys.dem_nodata,
+            unit: &keys.dem_unit,
+            z_unit: &keys.dem_z_unit,
+        };
+        let dem = self.dem_part(of_dem, &keys.dem)?;
         let one = "exactly one of `builtin`, `file`, `dem` and `generate`";
         plan.terrain = match (&keys.builtin, &keys.file, &keys.dem, &keys.generate) {
             (Some(name), None, None, None) => {

@@ -119,6 +119,23 @@ fn keys_that_are_wrong_are_marked() {
             "`terrain.dem_max_error_m` is 0; expected 1e-6 to 1000000 metres",
         ),
         ("dem = 5", "5", "the number 5; expected a text in quotes"),
+        (
+            "builtin = \"facets\"\ndem_nodata = -9999",
+            "-9999",
+            "`terrain.dem_nodata` is given; expected it only with `dem`",
+        ),
+        (
+            "dem = \"dem.tif\"\ndem_nodata = \"nothing\"",
+            "\"nothing\"",
+            "`terrain.dem_nodata` is \"nothing\"; expected the samples of unknown heights, such as -9999, or none",
+        ),
+        (
+            "dem = \"dem.tif\"\ndem_unit = \"feet\"",
+            "\"feet\"",
+            "`terrain.dem_unit` is \"feet\"; expected m, km, cm, mm, ft (0.3048 m)",
+        ),
+        ("dem = \"dem.tif\"\ndem_z_unit = 9102", "9102", "`terrain.dem_z_unit` is \"9102\"; expected m, km"),
+        ("dem = \"dem.tif\"\ndem_nodata = [1]", "[1]", "expected a number, or a text in quotes"),
     ] {
         match load_text(&folder, terrain) {
             Err(SceneIoError::Toml(problem)) => {
@@ -132,6 +149,28 @@ fn keys_that_are_wrong_are_marked() {
     let message =
         load_text(&folder, "dem = \"dem.tif\"\ndem_window_m = [0, 0, 1, 1]").unwrap_err().to_string();
     assert_names(&message, &["dem.tif: window: no post in x 0 to 1", "posts of x 100.5 to 140.5"]);
+}
+
+#[test]
+fn a_scene_file_says_what_the_model_does_not() {
+    let folder = folder();
+    let metres = load_text(&folder, "dem = \"dem.tif\"").unwrap();
+    // A map in units of 9001 and heights in international feet: 0.3048 m and 0.9144 m, as single precision has them.
+    let feet = load_text(&folder, "dem = \"dem.tif\"\ndem_unit = 9001\ndem_z_unit = \"ft\"").unwrap();
+    let heights = |scene: &LoadedScene| {
+        let z = scene.scene.mesh().origin().z;
+        [120.5, 135.5]
+            .map(|x| (raypencil_terrain::height_at(scene.scene.mesh(), x, 180.5).unwrap() - z) as f32)
+    };
+    assert_eq!(heights(&metres), [1.0, 3.0]);
+    assert_eq!(heights(&feet), [0.3048, 0.9144]);
+    // The step is no ground if its upper level is not known; the same by a setting.
+    let lower = load_text(&folder, "dem = \"dem.tif\"\ndem_nodata = 3").unwrap();
+    assert_eq!(lower.scene.mesh().faces().len(), 2 * 29 * 30);
+    let settings = vec![raypencil_scene_io::Setting::parse("terrain.dem_nodata=3").unwrap()];
+    let alone = folder.path().join("dem.tif");
+    let set = load(alone.to_str().unwrap(), &Overrides { settings, ..Overrides::default() }).unwrap();
+    assert_eq!(set.scene.mesh().faces().len(), 2 * 29 * 30);
 }
 
 fn assert_names(message: &str, words: &[&str]) {

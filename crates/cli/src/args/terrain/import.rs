@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use raypencil::io::{DEFAULT_REFLECTIVITY, UpAxis};
 
+use super::DemArgs;
 use crate::parsers::{number, numbers, up_axis};
 
 #[derive(Debug, Args)]
@@ -12,9 +13,11 @@ use crate::parsers::{number, numbers, up_axis};
   # All of an elevation model, simplified by at most 2 cm.
   raypencil terrain import dem.tif --max-error 0.02 -o out/ground.glb
   # A window of it, 50 m wide and high.
-  raypencil terrain import dem.tif --window 1000,2000,50,50 -o out/window.glb")]
+  raypencil terrain import dem.tif --window 1000,2000,50,50 -o out/window.glb
+  # Heights in US survey feet, of which the file says nothing; -9999 is no height.
+  raypencil terrain import dem.tif --z-unit ftUS --nodata -9999 -o out/ground.glb")]
 pub(crate) struct TerrainImport {
-    /// An elevation model: a GeoTIFF with one band, in metres. Or a mesh: .stl, .obj, .ply, .glb or .gltf.
+    /// An elevation model: a GeoTIFF with one band. Or a mesh: .stl, .obj, .ply, .glb or .gltf.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
 
@@ -29,6 +32,9 @@ pub(crate) struct TerrainImport {
     /// Import only the posts in this window: x and y of its lower left corner, width and height, metres of the map.
     #[arg(long, value_name = "X,Y,W,H", value_parser = numbers::<4>, allow_hyphen_values = true)]
     pub(crate) window: Option<[f64; 4]>,
+
+    #[command(flatten)]
+    pub(crate) dem: DemArgs,
 
     /// Simplify the mesh; maximum vertical distance of a post from the simplified terrain, metres.
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = number)]

@@ -1,11 +1,13 @@
 //! The commands below `terrain`.
 
+mod dem;
 mod generate;
 mod import;
 mod inspect;
 
 use clap::Subcommand;
 
+pub(crate) use dem::DemArgs;
 pub(crate) use generate::TerrainGenerate;
 pub(crate) use import::TerrainImport;
 pub(crate) use inspect::TerrainInspect;

@@ -12,6 +12,7 @@ pub(super) fn report_json(report: &Report) -> String {
     printed["passes"] = report.passes().into();
     printed["kinds_wrong"] = report.fault_kinds().into();
     printed["polygons"] = json!(report.polygons);
+    printed["file"] = report.facts.of_file.clone();
     if let Some(repaired) = &report.repaired {
         let repairs = &repaired.repairs;
         printed["repaired"] = json!({

@@ -9,8 +9,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use raypencil::io::{
-    DEFAULT_REFLECTIVITY, FileFrame, Overrides, PolygonFacts, SceneSource, TerrainFile, load, read_terrain,
-    write_terrain_glb,
+    DEFAULT_REFLECTIVITY, FileFrame, Overrides, PolygonFacts, SceneSource, TerrainFile, load, read_dem_with,
+    read_terrain, write_terrain_glb,
 };
 use raypencil::terrain::{inspect as inspect_mesh, repair};
 use raypencil::{Mesh, Progress as _};
@@ -18,10 +18,12 @@ use serde_json::{Value, json};
 
 use crate::args::TerrainInspect;
 use crate::console::{Spinner, say};
+use crate::terrain::dem_facts::{dem_facts, dem_lines};
+use crate::terrain::mesh_facts::{mesh_facts, mesh_lines};
 use crate::terrain::output::{create_folder, is_glb};
 use crate::{Outcome, Trouble};
 
-use self::report::{Repaired, Report};
+use self::report::{Facts, Repaired, Report};
 
 pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, Trouble> {
     let output = match (&command.output, command.repair) {
@@ -35,17 +37,34 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
     }
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.mesh));
-    let (mesh, polygons): (Arc<Mesh>, PolygonFacts) = match &source {
+    if let Some(option) = command.dem.given().filter(|_| !is_model_alone(command, &source)) {
+        return Err(Trouble::Usage(format!(
+            "{option}: {} is no elevation model by itself; expected a .tif, without --set",
+            command.mesh
+        )));
+    }
+    let mut facts = Facts::default();
+    let mut polygons = PolygonFacts::default();
+    let mesh: Arc<Mesh> = match &source {
         // The mesh alone: a scene would need a place for the vehicle.
         SceneSource::Mesh(path) if command.set.is_empty() => {
-            let TerrainFile { mesh, polygon_facts, .. } =
-                read_terrain(path, DEFAULT_REFLECTIVITY, &FileFrame::default())?;
-            (Arc::new(mesh), polygon_facts)
+            facts.of_file = mesh_facts(path, None, None);
+            facts.lines = mesh_lines(&facts.of_file);
+            let read = read_terrain(path, DEFAULT_REFLECTIVITY, &FileFrame::default())?;
+            polygons = read.polygon_facts;
+            Arc::new(read.mesh)
+        }
+        SceneSource::Dem(path) if command.set.is_empty() => {
+            let dem = read_dem_with(path, &command.dem.options(None))?;
+            facts.of_file = dem_facts(&dem);
+            facts.lines = dem_lines(&facts.of_file);
+            Arc::new(dem.mesh(None, DEFAULT_REFLECTIVITY)?)
         }
         _ => {
             let settings = command.set.clone();
             let loaded = load(&command.mesh, &Overrides { settings, ..Overrides::default() })?;
-            (Arc::clone(loaded.scene.mesh()), loaded.polygon_facts)
+            polygons = loaded.polygon_facts;
+            Arc::clone(loaded.scene.mesh())
         }
     };
     spinner.stage(&format!("{}: inspecting {} faces", command.mesh, mesh.faces().len()));
@@ -64,9 +83,14 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
         }
     };
     drop(spinner);
-    let report = Report { mesh: &command.mesh, polygons, found, repaired };
+    let report = Report { mesh: &command.mesh, facts, polygons, found, repaired };
     say(&if json { json::report_json(&report) } else { screen::screen(&report) });
     Ok(if report.passes() { Outcome::Fine } else { Outcome::Differs })
+}
+
+/// Whether an elevation model is inspected, and not the scene on it.
+fn is_model_alone(command: &TerrainInspect, source: &SceneSource) -> bool {
+    matches!(source, SceneSource::Dem(_)) && command.set.is_empty()
 }
 
 /// The source of a repaired mesh, for the extras of its file: the file's name without its folder.

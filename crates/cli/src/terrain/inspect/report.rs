@@ -4,11 +4,23 @@ use std::path::Path;
 
 use raypencil::io::PolygonFacts;
 use raypencil::terrain::{Inspection, Repairs};
+use serde_json::Value;
+
+/// What a file says about its units and axes.
+#[derive(Default)]
+pub(super) struct Facts {
+    /// For programs; null for a scene.
+    pub(super) of_file: Value,
+    /// For people.
+    pub(super) lines: Vec<(&'static str, String)>,
+}
 
 /// The result of `terrain inspect`.
 pub(super) struct Report<'a> {
     /// The mesh as the command line names it.
     pub(super) mesh: &'a str,
+    /// What its file says.
+    pub(super) facts: Facts,
     /// The inspection of that mesh.
     pub(super) found: Inspection,
     /// What was found out about the polygons of its file.

@@ -26,6 +26,9 @@ pub(super) fn screen(report: &Report) -> String {
     for words in extent(found) {
         line(&words);
     }
+    for (name, words) in &report.facts.lines {
+        line(&format!("  {name:<13} {words}"));
+    }
     line("");
     for row in fault_rows(found, &report.polygons) {
         line(&format!("{} {:>11}  {}", if row.count > 0 { '!' } else { ' ' }, counted(row.count), row.words));

@@ -12,7 +12,7 @@ use std::path::Path;
 #[test]
 fn a_header_alone_allocates_no_memory() {
     // A square of two million pixels a side in a few hundred bytes, as strips and as tiles, plain and compressed.
-    for codec in [Codec::Plain, Codec::Deflate, Codec::Lzw, Codec::PackBits] {
+    for codec in [Codec::Plain, Codec::Deflate, Codec::Lzw, Codec::PackBits, Codec::Zstd] {
         let mut tiff = Tiff::plain();
         tiff.codec = codec;
         let sides = |tiff: Tiff, side: u32| tiff.tag(256, Long(vec![side])).tag(257, Long(vec![side]));
@@ -123,7 +123,7 @@ proptest! {
         tiled: bool,
         is_big: bool,
         is_big_endian: bool,
-        codec in prop_oneof![Just(Codec::Plain), Just(Codec::Deflate), Just(Codec::Lzw), Just(Codec::PackBits)],
+        codec in prop_oneof![Just(Codec::Plain), Just(Codec::Deflate), Just(Codec::Lzw), Just(Codec::PackBits), Just(Codec::Zstd)],
         predictor in 1_u16..4,
         changes in proptest::collection::vec((any::<proptest::sample::Index>(), any::<u8>()), 1..6),
     ) {

@@ -3,18 +3,27 @@
 mod malformed;
 mod placement;
 mod samples;
+mod units;
+mod unknown;
 mod write;
+mod zstd;
 
 use std::path::Path;
 use write::Tiff;
 
 use raypencil_files::FileError;
-use raypencil_mesh_io::{Dem, read_dem};
+use raypencil_mesh_io::{Dem, DemOptions, read_dem, read_dem_with};
 
 /// Writes a file and reads it.
 fn read(tiff: &Tiff, window: Option<[f64; 4]>) -> Result<Dem, FileError> {
     let folder = tempfile::tempdir().unwrap();
     read_dem(tiff.write(folder.path()), window)
+}
+
+/// Writes a file and reads it, with what it does not say itself.
+fn read_with(tiff: &Tiff, options: &DemOptions) -> Result<Dem, FileError> {
+    let folder = tempfile::tempdir().unwrap();
+    read_dem_with(tiff.write(folder.path()), options)
 }
 
 /// Message by which a file is refused.

@@ -27,6 +27,9 @@ fn every_type_of_sample_layout_and_order() {
             (Codec::Lzw, 2),
             (Codec::Deflate, 3),
             (Codec::Lzw, 3),
+            (Codec::Zstd, 1),
+            (Codec::Zstd, 2),
+            (Codec::Zstd, 3),
         ] {
             if predictor == 3 && format[0] != 3 {
                 continue;
@@ -105,7 +108,7 @@ fn unknown_heights_are_nan() {
         assert_eq!(dem.unknown, 1);
     }
     assert_eq!(read(&holes(f64::NAN), None).unwrap().unknown, 1);
-    // Without the tag the sample is a height, or too high to be one; infinities are never heights.
+    // Without the tag one such sample is a height, or too high to be one; infinities are never heights.
     assert_eq!(read(&holes(-9999.0), None).unwrap().posts.heights[5], -9999.0);
     for value in [f64::from(f32::MIN), f64::INFINITY, 1.1e7] {
         assert_names(
@@ -137,7 +140,7 @@ fn samples_that_cannot_be_heights_are_refused() {
     for (tiff, words) in [
         (plain().tag(277, Short(vec![3])), ["tag 277 SamplesPerPixel: 3", "one band"]),
         (plain().tag(262, Short(vec![0])), ["tag 262 PhotometricInterpretation: 0", "BlackIsZero"]),
-        (plain().tag(259, Short(vec![7])), ["tag 259 Compression: 7", "deflate"]),
+        (plain().tag(259, Short(vec![7])), ["tag 259 Compression: 7 (JPEG)", "deflate"]),
         (plain().tag(258, Short(vec![12])), ["tag 258 BitsPerSample: 12", "8, 16, 32 or 64"]),
         (plain().tag(258, Short(vec![16])), ["BitsPerSample and tag 339", "format 3 and 16 bits"]),
         (plain().tag(339, Short(vec![6])), ["tag 339 SampleFormat: 6", "floating point"]),
@@ -149,8 +152,8 @@ fn samples_that_cannot_be_heights_are_refused() {
             ["tag 42112 GDAL_METADATA: a scale of \"0.1\"", "gdal_translate -unscale"],
         ),
         (
-            plain().tag(42112, Text("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">ft</Item>")),
-            ["heights in \"ft\"", "metres"],
+            plain().tag(42112, Text("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">feet</Item>")),
+            ["heights in \"feet\"", "--z-unit"],
         ),
     ] {
         let message = refusal(&tiff, None);

@@ -20,6 +20,7 @@ pub enum Codec {
     PackBits,
     Deflate,
     Lzw,
+    Zstd,
 }
 
 /// A file under construction: 4 x 3 pixels of 0.5 m and 2 m whose tie point is at (10, 5), if nothing is changed.
@@ -194,6 +195,7 @@ impl Tiff {
             Codec::PackBits => 32773,
             Codec::Deflate => 8,
             Codec::Lzw => 5,
+            Codec::Zstd => 50000,
         };
         let own = [
             (256, Short(vec![self.size[0] as u16])),
@@ -264,6 +266,17 @@ impl Codec {
                 .chunks(128)
                 .flat_map(|run| std::iter::once(run.len() as u8 - 1).chain(run.iter().copied()))
                 .collect(),
+            // A frame with a window of 128 KiB, of raw blocks; the lowest bit marks the last. (RFC 8878, section 3.1.1)
+            Self::Zstd => {
+                let mut stream = vec![0x28, 0xb5, 0x2f, 0xfd, 0, 7 << 3];
+                let mut chunks = bytes.chunks(1 << 16).peekable();
+                while let Some(chunk) = chunks.next() {
+                    let header = (chunk.len() as u32) << 3 | u32::from(chunks.peek().is_none());
+                    stream.extend(&header.to_le_bytes()[..3]);
+                    stream.extend(chunk);
+                }
+                stream
+            }
             // A zlib stream of stored blocks. (RFC 1950, RFC 1951 section 3.2.4)
             Self::Deflate => {
                 let mut stream = vec![0x78, 0x01];

@@ -70,7 +70,10 @@ fn an_elevation_model_becomes_a_terrain() {
     for line in [
         "extent         x 1000001.0 to 1000009.0, y 493.0 to 499.0 m",
         "posts          5 x 4, 2.0 x 2.0 m apart",
-        "unknown posts  1",
+        "map            the file does not say",
+        "unit           metre (EPSG:9001), by default: the file does not say",
+        "z unit         metre (EPSG:9001), by default: the file does not say",
+        "unknown posts  1 (NaN; -9999.0 as the file says)",
         "registration   a pixel is an area, by default: the file does not say",
         "heights        0.0 to 42.0 m",
         "faces          22, through all posts",
@@ -149,8 +152,8 @@ fn a_mesh_becomes_a_terrain() {
     for line in [
         "extent         x 0.000 to 4.000, y 1.000 to 3.000 m",
         "heights        z 1.000 to 1.000 m",
-        "up axis        y",
-        "scale          0.01 m for each unit of the file",
+        "up axis        y, as --up says",
+        "scale          0.01 m for each unit of the file, as --scale says",
         "vertices       4",
         "faces          2",
         "floor.glb",
@@ -162,6 +165,7 @@ fn a_mesh_becomes_a_terrain() {
     // Neither turned nor scaled: z of the file is the height.
     assert_eq!(report["z_m"], serde_json::json!([-300.0, -100.0]));
     assert_eq!((&report["up"], &report["scale"]), (&Value::Null, &1.0.into()));
+    assert_eq!(report["file_states"], serde_json::json!({ "unit": null, "up": null }));
     // The GLB is the terrain: the same as the mesh under these words, to the bit.
     let digest = |arguments: &[&str]| {
         let arguments = [&["validate"], arguments, &["-o", "out", "--json", "--fan", "5"]].concat();
@@ -192,6 +196,12 @@ fn options_of_meshes_and_models_are_kept_apart() {
         &["--window", "floor.obj is a mesh", ".tif"],
     );
     assert_trouble(&import(&["floor.obj", "--max-error", "1"]), &["--max-error", "floor.obj is a mesh"]);
+    for option in ["--nodata", "--unit", "--z-unit"] {
+        let value = if option == "--nodata" { "-1" } else { "m" };
+        assert_trouble(&import(&["floor.obj", option, value]), &[option, "floor.obj is a mesh", "--scale"]);
+        let inspect = ["terrain", "inspect", "floor.obj", option, value];
+        assert_trouble(&raypencil(folder.path(), &inspect), &[option, "floor.obj is no elevation model"]);
+    }
     for scale in ["0", "-1", "nan", "inf", "1e7"] {
         assert_trouble(
             &import(&["floor.obj", "--scale", scale]),
@@ -203,4 +213,90 @@ fn options_of_meshes_and_models_are_kept_apart() {
     let same = ["terrain", "import", "copy.glb", "-o", "copy.glb"];
     screen(folder.path(), &["terrain", "import", "floor.obj", "-o", "copy.glb"], 0);
     assert_trouble(&raypencil(folder.path(), &same), &["copy.glb", "is the mesh itself"]);
+}
+
+#[test]
+fn what_a_model_does_not_say_is_said_by_options() {
+    let folder = folder();
+    let path = folder.path();
+    let words = ["--unit", "ft", "--z-unit", "-ftUS", "--nodata", "42"];
+    let out = screen(path, &[&["terrain", "import", "hill.tif", "-o", "feet.glb"], &words[..]].concat(), 0);
+    // x 1000001 ft are 304800.3048 m; heights of 0 to 41 become depths. The sample 42 is unknown, and the one that the file declares.
+    for line in [
+        "extent         x 304800.3048 to 304802.7432, y 150.2664 to 152.0952 m",
+        "heights        -12.4968",
+        "unit           foot (EPSG:9002), 0.3048 m, as --unit says",
+        "z unit         US survey foot (EPSG:9003), 0.3048006096012192 m, as --z-unit says; depths, which became heights",
+        "unknown posts  2 (NaN; -9999.0 as the file says; 42.0 as --nodata says)",
+    ] {
+        assert!(out.contains(line), "{line} is not in:\n{out}");
+    }
+    let json = screen(
+        path,
+        &[&["terrain", "import", "hill.tif", "-o", "feet.glb", "--json"], &words[..]].concat(),
+        0,
+    );
+    let report: Value = serde_json::from_str(&json).expect("JSON");
+    let [map, vertical] = [&report["map"], &report["vertical"]];
+    assert_eq!(
+        (&map["unit"], &map["unit_epsg"], &map["unit_from"]),
+        (&"foot".into(), &9002.into(), &"option".into())
+    );
+    assert_eq!(
+        (&vertical["is_depth"], &vertical["metres_per_unit"]),
+        (&true.into(), &(1200.0 / 3937.0).into())
+    );
+    assert_eq!((&report["nodata"], &report["spikes"]), (&(-9999.0).into(), &Value::Null));
+    for (option, wrong, expected) in [
+        ("--unit", "feet", "expected m, km, cm, mm, ft (0.3048 m)"),
+        ("--z-unit", "-9102", "a minus before it for depths"),
+        ("--nodata", "nought", "such as -9999, or none"),
+    ] {
+        let output = raypencil(path, &["terrain", "import", "hill.tif", "-o", "x.glb", option, wrong]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(text(&output.stderr).contains(expected), "{}", text(&output.stderr));
+    }
+}
+
+/// 24 x 24 heights around 100 m, with so many posts of a constant.
+fn with_constant(path: &std::path::Path, value: f32, count: usize) {
+    let heights: Vec<f32> =
+        (0..24 * 24).map(|k| if k < count { value } else { 100.0 + (k % 97) as f32 / 10.0 }).collect();
+    std::fs::write(path.join("hole.tif"), geotiff(24, 24, &heights)).expect("a file");
+}
+
+#[test]
+fn a_constant_that_nobody_declared_is_refused_wherever_a_model_is_read() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let path = folder.path();
+    with_constant(path, -32768.0, 30);
+    let words = ["hole.tif", "-32768 in 30 of 576 posts", "--nodata -32768", "--nodata none", "dem_nodata"];
+    for command in [
+        &["terrain", "import", "hole.tif", "-o", "out.glb"][..],
+        &["terrain", "inspect", "hole.tif"],
+        &["validate", "hole.tif", "-o", "out"],
+        &["terrain", "generate", "--coarse", "hole.tif", "-o", "out.glb"],
+    ] {
+        assert_trouble(&raypencil(path, command), &words);
+        assert!(!path.join("out.glb").exists() && !path.join("out").exists());
+    }
+    let inspected = screen(path, &["terrain", "inspect", "hole.tif", "--nodata", "-32768", "--json"], 0);
+    let report: Value = serde_json::from_str(&inspected).expect("JSON");
+    assert_eq!((&report["file"]["unknown_posts"], &report["file"]["spikes"]), (&30.into(), &Value::Null));
+    // As heights they are a pit, which both commands tell.
+    for command in
+        [&["terrain", "import", "hole.tif", "-o", "pit.glb"][..], &["terrain", "inspect", "hole.tif"]]
+    {
+        let out = screen(path, &[command, &["--nodata", "none"]].concat(), 0);
+        assert!(out.contains("30 of the posts stand out: the worst, at ("), "{out}");
+    }
+    // One post of it is a spike.
+    with_constant(path, -32768.0, 1);
+    let out = screen(path, &["terrain", "inspect", "hole.tif"], 0);
+    assert!(
+        out.contains(
+            "1 of the posts stand out: the worst, at (1000001.0, 499.0), is 32868.0 m below all others"
+        ),
+        "{out}"
+    );
 }

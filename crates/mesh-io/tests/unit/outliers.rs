@@ -1,0 +1,206 @@
+//! Constants that can hardly be heights, and models that must pass.
+
+use super::*;
+
+/// 24 x 24 posts 1 m apart. The diagonal, 32.5 m, is the smallest step that is no ground.
+const SIDE: usize = 24;
+
+/// Numbers that look random, from 0 to 1. (Knuth, "The Art of Computer Programming", volume 2: MMIX)
+struct Draws(u64);
+
+impl Draws {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f64 / (1 << 24) as f64
+    }
+}
+
+fn grid(height: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let at = |place: usize| height((place % SIDE) as f64, (place / SIDE) as f64);
+    (0..SIDE * SIDE).map(at).collect()
+}
+
+/// Ground between 100 m and 112 m, all of its heights different.
+fn ground() -> Vec<f64> {
+    grid(|x, y| 106.0 + 3.0 * wave(x / 4.0) + 3.0 * wave(y / 5.0) + 1e-4 * x + 1e-3 * y)
+}
+
+/// The sine between -1 and 1, near enough for hills: a parabola for each half wave.
+fn wave(angle: f64) -> f64 {
+    let turns = angle / std::f64::consts::TAU;
+    let part = 2.0 * (turns - turns.floor());
+    if part < 1.0 { 4.0 * part * (1.0 - part) } else { -4.0 * (part - 1.0) * (2.0 - part) }
+}
+
+fn posts(heights: &[f64]) -> Posts<'_> {
+    Posts { heights, columns: SIDE, spacing: DVec2::ONE, metre: 1.0 }
+}
+
+/// Replaces the posts of a block of columns and rows.
+fn put(heights: &mut [f64], columns: std::ops::Range<usize>, rows: std::ops::Range<usize>, value: f64) {
+    for row in rows {
+        heights[row * SIDE..][columns.clone()].fill(value);
+    }
+}
+
+/// As a program does that moves a model by half a post without knowing of unknown heights: the mean of four.
+fn resampled(heights: &[f64]) -> Vec<f64> {
+    let at = |column: usize, row: usize| heights[row.min(SIDE - 1) * SIDE + column.min(SIDE - 1)];
+    let mean = |(c, r): (usize, usize)| (at(c, r) + at(c + 1, r) + at(c, r + 1) + at(c + 1, r + 1)) / 4.0;
+    (0..SIDE * SIDE).map(|place| mean((place % SIDE, place / SIDE))).collect()
+}
+
+/// What programs write for unknown heights.
+const USUAL: [f64; 12] =
+    [-9999.0, -32768.0, 32767.0, 0.0, -999.0, 9999.0, -99999.0, 65535.0, -1.0, -3000.0, 1e6, -123_456.789];
+
+#[test]
+fn usual_constants_are_found_with_and_without_noise() {
+    for value in USUAL {
+        let mut few = ground();
+        put(&mut few, 5..9, 5..9, value);
+        let mut scattered = ground();
+        for place in [17, 200, 341, 342, 570] {
+            scattered[place] = value;
+        }
+        let mut border = ground();
+        put(&mut border, 0..24, 0..20, value);
+        let mut noisy = ground();
+        let mut draws = Draws(7);
+        noisy.iter_mut().for_each(|height| *height += 4.0 * draws.next());
+        put(&mut noisy, 0..3, 0..24, value);
+        for (name, heights) in [("few", few), ("scattered", scattered), ("border", border), ("noisy", noisy)]
+        {
+            let count = heights.iter().filter(|&&height| height == value).count();
+            let found = posts(&heights).constant().unwrap_or_else(|| panic!("{name} {value}"));
+            assert_eq!((found.height, found.count), (value, count), "{name}");
+            assert_eq!(found.is_below, value < 100.0, "{name} {value}");
+            assert!(found.gap > found.span, "{name} {value}: {found:?}");
+            if name == "few" || name == "scattered" {
+                continue;
+            }
+            // With mixtures of it and the ground between them.
+            let mixed = resampled(&heights);
+            let found = posts(&mixed).constant().unwrap_or_else(|| panic!("{name} {value}, resampled"));
+            assert_eq!(found.height, value, "{name}");
+        }
+    }
+}
+
+#[test]
+fn mixtures_by_resampling_hide_no_constant() {
+    for value in USUAL {
+        let mut hole = ground();
+        put(&mut hole, 5..12, 5..12, value);
+        let once = resampled(&hole);
+        for heights in [once.clone(), resampled(&once)] {
+            let found = posts(&heights).constant().unwrap_or_else(|| panic!("{value}"));
+            assert_eq!(found.height, value);
+        }
+    }
+    // So many mixtures that no gap is left: a wide border along a diagonal.
+    let wide = 600;
+    let heights: Vec<f64> = (0..wide * wide)
+        .map(|place| {
+            let (x, y) = ((place % wide) as f64, (place / wide) as f64);
+            let ground = 100.0 + 10.0 * wave(x / 40.0) + 1e-3 * y;
+            let share = ((x - y + 0.37 * wave(1.7 * y)) / 2.0).clamp(0.0, 1.0);
+            share * ground + (1.0 - share) * -9999.0
+        })
+        .collect();
+    let posts = Posts { heights: &heights, columns: wide, spacing: DVec2::ONE, metre: 1.0 };
+    assert_eq!(posts.constant().map(|found| found.height), Some(-9999.0));
+}
+
+#[test]
+fn two_constants_are_found_one_after_the_other() {
+    let mut heights = ground();
+    put(&mut heights, 0..4, 0..24, -32768.0);
+    put(&mut heights, 20..24, 0..24, 32767.0);
+    let first = posts(&heights).constant().unwrap().height;
+    heights.iter_mut().filter(|height| **height == first).for_each(|height| *height = f64::NAN);
+    let second = posts(&heights).constant().unwrap().height;
+    assert_eq!(first.abs() + second.abs(), 32768.0 + 32767.0);
+    heights.iter_mut().filter(|height| **height == second).for_each(|height| *height = f64::NAN);
+    assert_eq!(posts(&heights).constant(), None);
+}
+
+#[test]
+fn what_can_be_ground_passes() {
+    let hill = |x: f64, y: f64, high: f64| {
+        let far = ((x - 12.0) * (x - 12.0) + (y - 12.0) * (y - 12.0)) / 50.0;
+        high / (1.0 + far)
+    };
+    for (name, heights) in [
+        ("a plane", grid(|_, _| 5.0)),
+        ("a slope", grid(|x, y| x + 0.3 * y)),
+        ("a lake in hills", ground().iter().map(|height| height.max(104.0)).collect()),
+        ("a sea of level 0 under hills", grid(|x, y| (hill(x, y, 60.0) - 20.0).max(0.0))),
+        ("a sea of level 0 under a steep hill", grid(|x, y| (hill(x, y, 100.0) - 30.0).max(0.0))),
+        ("a cliff of 20 m", grid(|x, y| if x < 12.0 { 0.0 } else { 20.0 + 0.1 * y })),
+        ("a cliff of 30 m between planes", grid(|x, _| if x < 12.0 { 0.0 } else { 30.0 })),
+        ("a terrace of two levels", grid(|x, _| if x < 17.0 { 1.0 } else { 3.0 })),
+        ("a terrace of two levels, 100 m", grid(|x, _| if x < 17.0 { 0.0 } else { 100.0 })),
+        (
+            "a cliff of 60 m in whole metres",
+            grid(|x, y| ((x * 7.0 + y * 3.0) % 5.0).floor() + if x < 9.0 { 0.0 } else { 60.0 }),
+        ),
+        ("a crater with a floor", grid(|x, y| (20.0 - hill(x, y, 45.0)).max(-15.0))),
+        ("one post of -9999", {
+            let mut one = ground();
+            one[77] = -9999.0;
+            one
+        }),
+        ("whole metres", grid(|x, y| (100.0 + 30.0 * wave(x / 9.0) + y).floor())),
+        ("nothing known", grid(|_, _| f64::NAN)),
+        ("one post known", grid(|x, y| if x + y == 0.0 { 1.0 } else { f64::NAN })),
+    ] {
+        assert_eq!(posts(&heights).constant(), None, "{name}");
+    }
+    // A yard of 10 m, 1 cm apart, with a box of 2 m on a floor: steep, but no leap.
+    let floor: Vec<f64> =
+        (0..1000 * 100).map(|place| if (300..360).contains(&(place % 1000)) { 2.0 } else { 0.0 }).collect();
+    let yard = Posts { heights: &floor, columns: 1000, spacing: DVec2::splat(0.01), metre: 1.0 };
+    assert_eq!(yard.constant(), None);
+    assert_eq!(yard.spikes(), None);
+}
+
+#[test]
+fn the_unit_of_the_heights_does_not_matter() {
+    // In feet all of it is larger, and so is the metre: 3.28 units.
+    let metre = 1.0 / 0.3048;
+    let mut heights: Vec<f64> = ground().iter().map(|height| height * metre).collect();
+    put(&mut heights, 5..9, 5..9, 0.0);
+    let in_feet = |heights| Posts { heights, columns: SIDE, spacing: DVec2::splat(metre), metre };
+    assert_eq!(in_feet(&heights).constant().map(|found| found.height), Some(0.0));
+    // A cliff of 30 m, which is 98 ft.
+    let cliff = grid(|x, y| if x < 12.0 { 0.0 } else { 30.0 * metre + 0.1 * y });
+    assert_eq!(in_feet(&cliff).constant(), None);
+    assert!(posts(&cliff).constant().is_some());
+}
+
+#[test]
+fn spikes_are_counted_and_the_worst_is_placed() {
+    let mut heights = ground();
+    assert_eq!(posts(&heights).spikes(), None);
+    (heights[77], heights[300], heights[301]) = (-9999.0, 9000.0, 800.0);
+    let spikes = posts(&heights).spikes().unwrap();
+    assert_eq!((spikes.count, spikes.worst), (3, 77));
+    let rest: Vec<f64> = ground()
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| ![77, 300, 301].contains(at))
+        .map(|(_, &height)| height)
+        .collect();
+    let (low, high) =
+        (rest.iter().copied().fold(f64::MAX, f64::min), rest.iter().copied().fold(f64::MIN, f64::max));
+    assert_eq!((spikes.rest, spikes.stands_out), (high - low, -9999.0 - low));
+    // The same from unknown posts on, and above.
+    (heights[0], heights[77]) = (f64::NAN, f64::NAN);
+    let spikes = posts(&heights).spikes().unwrap();
+    assert_eq!((spikes.count, spikes.worst), (2, 300));
+    assert!(spikes.stands_out > 8880.0);
+    // A hole of the same depth as a tower is high hides neither.
+    (heights[77], heights[300], heights[301]) = (-900.0, 1100.0, 105.0);
+    assert_eq!(posts(&heights).spikes().map(|spikes| spikes.count), Some(2));
+}
