@@ -2,4 +2,5 @@
 
 mod lidar;
 mod packs;
+mod reported;
 mod shortest_range;

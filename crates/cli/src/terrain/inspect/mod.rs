@@ -9,8 +9,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use raypencil::io::{
-    DEFAULT_REFLECTIVITY, FileFrame, Overrides, PolygonFacts, SceneSource, TerrainFile, load, read_dem_with,
-    read_terrain, write_terrain_glb,
+    DEFAULT_REFLECTIVITY, FileFrame, Overrides, PolygonFacts, SceneSource, load, read_dem_with, read_terrain,
+    write_terrain_glb,
 };
 use raypencil::terrain::{inspect as inspect_mesh, repair};
 use raypencil::{Mesh, Progress as _};
