@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use raypencil::io::{DEFAULT_REFLECTIVITY, UpAxis};
 
-use super::DemArgs;
+use super::dem::DemArgs;
 use crate::parsers::{number, numbers, up_axis};
 
 #[derive(Debug, Args)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use raypencil::io::Setting;
 
-use super::DemArgs;
+use super::dem::DemArgs;
 use crate::parsers::setting;
 
 #[derive(Debug, Args)]
