@@ -251,8 +251,12 @@ impl Recorded {
         let unknown: Vec<String> =
             channels.by_key.keys().filter(|key| !used.contains(*key) && !is_known(key)).cloned().collect();
         if storage.is_empty() {
-            let example = channels.by_key.iter().next();
-            let example = example.map_or("CHANNEL", |(key, channel)| channel.name_in_file(key)).to_string();
+            let names: Vec<&str> =
+                channels.by_key.iter().map(|(key, channel)| channel.name_in_file(key)).collect();
+            // Only an example of what can be typed; the channel of a likely name, if there is one.
+            let is_likely =
+                |name: &&&str| ["depth", "range"].iter().any(|word| name.to_lowercase().contains(word));
+            let example = names.iter().find(is_likely).or(names.first()).unwrap_or(&"CHANNEL").to_string();
             let there = shortened(channels.inventory(folder));
             return Err(RecordingError::Nothing { folder: folder.to_path_buf(), there, example });
         }
